@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Rooms: every folder of sources is a target, which says what other rooms it uses.  docs/develop/architecture.md has the
-# picture; tests/sim/include_direction_test.cpp reads the list that shoal_write_rooms() leaves, and holds includes to it.
+# image; tests/sim/include_direction_test.cpp reads the list that shoal_write_rooms() leaves, and holds includes to it.
 
 # shoal_room(<folder> [MAIN] [USES <room>...] [PUBLIC <library>...] [PRIVATE <library>...] [EXCEPT <file>...])
 # MAIN: one of its sources has main(); the program made of its objects is its test of links.

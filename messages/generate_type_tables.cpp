@@ -68,8 +68,8 @@ void write_member_check(std::ostream& out, const MessageSchema& schema, const Me
     if (vectors)
       out << indent << "shoal::require_length(" << element << ".size(), " << length << ", \"" << schema.name << "\", \""
           << member.name << "\");\n";
-    const bool goes_deeper = d + 1 < member.dimensions.size() || member.compound != nullptr;
-    if (!goes_deeper) break;
+    const bool has_deeper_level = d + 1 < member.dimensions.size() || member.compound != nullptr;
+    if (!has_deeper_level) break;
     const std::string inner = "e" + std::to_string(d);
     out << indent << "for (const auto& " << inner << " : " << element << ") {\n";
     closing = indent + "}\n" + closing;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The one file that is compiled anew in every checkout: no other holds a path of it.
+// The one file that is compiled again in every checkout: no other holds a path of it.
 #include "tests/project_paths.hpp"
 
 namespace test_support {

@@ -8,7 +8,7 @@
 
 namespace test_support {
 
-/// A folder of its own for a test, for tests run side by side; it goes away with the test.
+/// Its own folder for a test, for tests run side by side; it goes away with the test.
 class ScratchFolder {
  public:
   ScratchFolder() {

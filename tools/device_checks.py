@@ -21,8 +21,8 @@ statistic = re.compile(r"Noise|Spread|Variance|Mean(?!s)|Allan|Wander|Share|Prob
 head = """<!-- Written by tools/device_checks.py; a test fails when it is stale. -->
 # What each device is checked against
 
-The tests of each device, by their names: against something one can work out on paper, with statistics, and with bad
-input. They are in `tests/devices`. Beside these, `EveryDevice` runs each device of the registry in a world of its own,
+The tests of each device, by their names: against something one can computes on paper, with statistics, and with bad
+input. They are in `tests/devices`. Beside these, `EveryDevice` runs each device of the registry in its own world,
 saves and restores it; `EveryActuator`, `SensorFault`, `ActuatorFault`, `ActuatorLatency`, `SensorLatency`, `Watchdog`,
 `Power`, `Jitter` and `Dropout` check the layer around all devices.
 
@@ -58,16 +58,16 @@ def text():
 
 
 def main():
-    wanted, missing = text()
+    desired, missing = text()
     for device in missing:
         print(f"device '{device}' has no test: neither tests/devices/*/{device}_test.cpp nor a suite of its name",
               file=sys.stderr)
     if sys.argv[1:] == ["--check"]:
-        stale = page.read_text() != wanted
+        stale = page.read_text() != desired
         if stale:
             print("docs/develop/device_checks.md is stale: run tools/device_checks.py", file=sys.stderr)
         return 1 if stale or missing else 0
-    page.write_text(wanted)
+    page.write_text(desired)
     return 1 if missing else 0
 
 

@@ -31,12 +31,12 @@ class Run:
     """A run of a world with the programs that it names.  What it says is in `said`."""
 
     def __init__(self, options, *more):
-        self.shoal, self.results, self.said = os.path.join(options.bin, "shoal"), tempfile.TemporaryDirectory(), []
+        self.shoal, self.results, self.shown = os.path.join(options.bin, "shoal"), tempfile.TemporaryDirectory(), []
         self.process = subprocess.Popen(
-            [self.shoal, "run", options.world, "--launch", "--quiet", "--no-keys", "--no-pictures", "--lcm-url", URL,
+            [self.shoal, "run", options.world, "--launch", "--quiet", "--no-keys", "--no-plots", "--lcm-url", URL,
              "--duration", str(options.duration), "--set", "pass=[]", "--results", self.results.name, *more],
             stderr=subprocess.PIPE, text=True)
-        self.reader = threading.Thread(target=lambda: self.said.extend(self.process.stderr))
+        self.reader = threading.Thread(target=lambda: self.shown.extend(self.process.stderr))
         self.reader.start()
 
     def clients(self):
@@ -96,7 +96,7 @@ def killed(options):
             sys.exit(f"lockstep_tables: the world starts no program with --name={options.client}")
         os.kill(pid, how)
         run.request("resume")
-        run.await_that(lambda: any(line.strip().endswith(("the world waits", "the world pauses")) for line in run.said))
+        run.await_that(lambda: any(line.strip().endswith(("the world waits", "the world pauses")) for line in run.shown))
         then = ""
         if run.process.poll() is None:
             time.sleep(1)
@@ -107,7 +107,7 @@ def killed(options):
                 then = "resume" if policy == "pause" else f"leave --client {options.client}"
                 run.request(*then.split())
         code, summary = run.finish()
-        said = "<br>".join(line.split("lockstep: ")[1].strip() for line in run.said if "lockstep: " in line)
+        shown = "<br>".join(line.split("lockstep: ")[1].strip() for line in run.shown if "lockstep: " in line)
         print(f"| {policy} | {'killed' if how == signal.SIGKILL else 'stalled'} | {said} | {then} "
               f"| {summary['sim_time_s']:g} | {code} | {summary['run_hash']} |", flush=True)
     return 0

@@ -6,8 +6,8 @@
 
 namespace bridges {
 
-/// Locks an open file or folder against other runs, for as long as the file stays open; a process that dies lets go of
-/// it.  Returns nothing, or who has the lock, such as `process 1234 (shoal run world.yaml)`.
+/// Locks an open file or folder against other runs, for as long as the file stays open; the lock is released when the
+/// process dies.  Returns nothing, or the owner of the lock, such as `process 1234 (shoal run world.yaml)`.
 std::optional<std::string> lock_against_others(int file);
 
 }  // namespace bridges

@@ -11,8 +11,8 @@
 
 namespace bridges {
 
-/// Writes a file on a thread of its own, in order.  Who hands over waits only while two blocks are on their way: the
-/// disk is slower than what comes, and nothing may be lost.
+/// Writes a file on its own thread, in order.  The caller waits only while two blocks are pending: the disk is
+/// then too slow, and nothing may be lost.
 class FileWriter {
  public:
   struct Block {
@@ -26,10 +26,10 @@ class FileWriter {
   FileWriter(const FileWriter&) = delete;
   FileWriter& operator=(const FileWriter&) = delete;
 
-  /// Takes the block, and leaves an empty one whose memory was used before.  False when the file could not take an
-  /// earlier one; errno says why.  Nothing is written after that.
+  /// Takes the block, and returns an empty one that reuses memory.  False when an earlier write failed; errno has the
+  /// reason.  Nothing is written after that.
   bool hand_over(Block& block);
-  /// Waits until all is written.  False when the file could not take it; errno says why.
+  /// Waits until all is written.  False when the write failed; errno has the reason.
   bool finish();
 
  private:

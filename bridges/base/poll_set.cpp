@@ -12,7 +12,7 @@
 namespace bridges {
 
 PollSet::PollSet() : epoll_(epoll_create1(EPOLL_CLOEXEC)) {
-  if (epoll_ < 0) throw BusError("no file descriptor is left for the bus");
+  if (epoll_ < 0) throw BusError("no file descriptor is available for the bus");
 }
 
 PollSet::~PollSet() {
@@ -24,7 +24,7 @@ void PollSet::add(int fd, void* tag) {
   event.events = EPOLLIN | EPOLLEXCLUSIVE;
   event.data.ptr = tag;
   if (epoll_ctl(epoll_, EPOLL_CTL_ADD, fd, &event) != 0)
-    throw BusError("the system does not let the bus wait for its messages (epoll)");
+    throw BusError("the system provides no epoll, which the bus needs to wait for messages");
 }
 
 void PollSet::remove(int fd) {
@@ -32,9 +32,9 @@ void PollSet::remove(int fd) {
 }
 
 PollSet::Readable PollSet::wait(std::chrono::milliseconds timeout) {
-  std::array<epoll_event, most_at_once> events;
+  std::array<epoll_event, max_at_once> events;
   const auto limit = std::clamp<std::int64_t>(timeout.count(), -1, std::numeric_limits<int>::max());
-  const int count = epoll_wait(epoll_, events.data(), most_at_once, static_cast<int>(limit));
+  const int count = epoll_wait(epoll_, events.data(), max_at_once, static_cast<int>(limit));
   Readable readable;
   for (int i = 0; i < count; ++i) readable.tags[readable.count++] = events[static_cast<std::size_t>(i)].data.ptr;
   return readable;

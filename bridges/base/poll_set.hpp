@@ -6,8 +6,8 @@
 
 namespace bridges {
 
-/// Waits for file descriptors.  When several sets hold one descriptor, one of them wakes: of those that wait, the one
-/// that has held it for the longest time.
+/// Waits for file descriptors.  When several sets hold the same descriptor, only one wakes: of the waiting ones, the
+/// one that has held it longest.
 class PollSet {
  public:
   /// Throws BusError when no file descriptor is left.
@@ -16,9 +16,9 @@ class PollSet {
   PollSet(const PollSet&) = delete;
   PollSet& operator=(const PollSet&) = delete;
 
-  static constexpr std::size_t most_at_once = 16;
+  static constexpr std::size_t max_at_once = 16;
   struct Readable {
-    std::array<void*, most_at_once> tags;
+    std::array<void*, max_at_once> tags;
     std::size_t count = 0;
   };
 

@@ -11,7 +11,7 @@
 namespace bridges {
 
 Arrivals::Arrivals() : wake_fd_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
-  if (wake_fd_ < 0) throw BusError("no file descriptor is left for the bus");
+  if (wake_fd_ < 0) throw BusError("no file descriptor is available for the bus");
   readable_.add(wake_fd_, nullptr);
 }
 

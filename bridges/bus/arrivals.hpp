@@ -11,7 +11,7 @@
 namespace bridges {
 
 /// Lets one thread sleep until a message comes on any of the buses that share this.  That thread sends what the buses
-/// have queued before it sleeps, and receives for them: no other thread stands between it and the answer.  A bus that
+/// have queued before it sleeps, and receives for them: no other thread delays the answer.  A bus that
 /// may block does both itself, and is only told when to send.
 class Arrivals {
  public:
@@ -20,7 +20,7 @@ class Arrivals {
    public:
     /// Sends, or begins to.
     virtual void send_queued() = 0;
-    /// Gives what has come to the mailboxes.  False: nothing will come any more.
+    /// Delivers what has arrived to the mailboxes.  False: no further messages will arrive.
     virtual bool receive() = 0;
 
    protected:

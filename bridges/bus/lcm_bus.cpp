@@ -49,7 +49,7 @@ struct Channel {
   LcmSubscription* subscription = nullptr;
   std::mutex mutex;  // also guards what is in the mailboxes
   std::vector<ChannelMailbox*> mailboxes;
-  std::deque<std::size_t> echoes;  // hashes of what we sent and may hear again
+  std::deque<std::size_t> echoes;  // hashes of what we sent and may receive again
   std::atomic<std::uint64_t> received = 0;
   std::atomic<std::uint64_t> dropped = 0;
 };
@@ -163,7 +163,7 @@ struct LcmBus::Threads final : Arrivals::Port {
         connection(url),
         outgoing(options.outgoing, [this](const OutgoingQueue::Entry& message) { send(message); }),
         stop_fd(eventfd(0, EFD_CLOEXEC)) {
-    if (stop_fd < 0) throw BusError("no file descriptor is left for the bus");
+    if (stop_fd < 0) throw BusError("no file descriptor is available for the bus");
     if (!options.arrivals) options.arrivals = std::make_shared<Arrivals>();
     // Before the receiver: of the two the first wakes.
     place.emplace(*options.arrivals, *this, connection.may_block() ? -1 : connection.fd());
@@ -226,7 +226,7 @@ struct LcmBus::Threads final : Arrivals::Port {
 
   void count_refused() {
     if (refused.fetch_add(1) == 0)
-      spdlog::warn("LCM did not send a message on {}; more are counted only", connection.url());
+      spdlog::warn("LCM did not send a message on {}; further failures are only counted", connection.url());
   }
 
   void receive_all() {
@@ -273,7 +273,7 @@ LcmBus::~LcmBus() = default;
 
 void LcmBus::publish(std::string_view channel, std::span<const std::byte> payload, sim::Time) {
   if (channel.empty() || channel.size() > max_channel_length)
-    throw std::invalid_argument("a channel has 1 to 63 characters, got '" + std::string(channel) + "'");
+    throw std::invalid_argument("a channel must have 1 to 63 characters, got '" + std::string(channel) + "'");
   threads_->published.fetch_add(1, std::memory_order_relaxed);
   if (payload.size() > threads_->options.max_message_bytes) {
     threads_->refused.fetch_add(1);
@@ -289,7 +289,7 @@ void LcmBus::publish(std::string_view channel, std::span<const std::byte> payloa
 
 std::unique_ptr<sim::Mailbox> LcmBus::open_mailbox(const std::string& channel, std::size_t capacity) {
   if (channel.empty() || channel.size() > max_channel_length)
-    throw std::invalid_argument("a channel has 1 to 63 characters, got '" + channel + "'");
+    throw std::invalid_argument("a channel must have 1 to 63 characters, got '" + channel + "'");
   Channel& opened = threads_->open_channel(channel);
   return std::make_unique<ChannelMailbox>(opened, capacity);
 }

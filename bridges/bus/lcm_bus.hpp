@@ -22,12 +22,12 @@ struct LcmBusOptions {
 };
 
 /// The bus over LCM.  One thread sends, one receives: publish() and take() only move messages, and the
-/// physics loop never waits for the network.  Messages go out at end_of_step(), earlier when many wait.  Who calls
-/// wait_for_message() does the work of both threads while it waits; over tcpq, which may block, he only wakes the one
-/// that sends.
-/// Messages of one sender arrive in the order it sent them, over all channels: when a later one is in a
-/// mailbox, the earlier ones are in theirs.  A subscriber hears also what this process publishes: at once, and not
-/// again when it comes back from the network.
+/// physics loop never waits for the network.  Messages go out at end_of_step(), earlier when many wait.  The caller
+/// of wait_for_message() does the work of both threads while it waits; over tcpq, which may block, it only wakes the
+/// sender.
+/// Messages of one sender arrive in the order it sent them, over all channels: when a later one is in a mailbox, the
+/// earlier ones are too.  A subscriber also receives what this process publishes: immediately, and not again when the
+/// network echoes it.
 class LcmBus final : public sim::Bus {
  public:
   /// An empty URL means LCM_DEFAULT_URL, else default_lcm_url.  Throws BusError when LCM cannot be used.

@@ -29,7 +29,7 @@ namespace {
 
 using Verdict = Finding::Verdict;
 
-constexpr long wanted_buffer_bytes = 4194304;
+constexpr long desired_buffer_bytes = 4194304;
 constexpr unsigned route_is_up = 1;  // RTF_UP of <linux/route.h>
 
 struct Route {
@@ -98,7 +98,7 @@ Finding check_route(const LcmEndpoint& endpoint) {
   } else if ((interface & IFF_MULTICAST) == 0) {
     // Messages pass all the same over lo, but some tools look at the flag.
     finding.verdict = Verdict::warning;
-    finding.text += ", which is not marked as able to do multicast";
+    finding.text += ", which does not support multicast";
     finding.commands = {"ip link set " + route->interface + " multicast on"};
   }
   return finding;
@@ -117,16 +117,16 @@ Finding check_buffers() {
   if (maximum < 0) {
     // Network namespaces of containers do not show it.
     finding.verdict = Verdict::warning;
-    finding.text = "net.core.rmem_max cannot be read here; ask on the host that it is at least 4194304";
+    finding.text = "net.core.rmem_max cannot be read here; on the host it must be at least 4194304";
     return finding;
   }
   finding.text = "net.core.rmem_max is " + std::to_string(maximum);
-  if (maximum < wanted_buffer_bytes) {
+  if (maximum < desired_buffer_bytes) {
     finding.verdict = Verdict::warning;
     finding.text += ": bursts of messages and images will be lost";
     finding.commands.emplace_back("sysctl -w net.core.rmem_max=4194304");
   }
-  if (standard >= 0 && standard < wanted_buffer_bytes) {
+  if (standard >= 0 && standard < desired_buffer_bytes) {
     finding.text += "; net.core.rmem_default is " + std::to_string(standard) +
                     ", so other LCM programs need ?recv_buf_size=4194304 in their URL";
     if (finding.verdict != Verdict::ok) finding.commands.emplace_back("sysctl -w net.core.rmem_default=4194304");
@@ -186,7 +186,7 @@ std::vector<std::string> owners_of(const std::set<std::string>& inodes) {
   return owners;
 }
 
-/// Groups that somebody on this machine has joined, other than `own`.
+/// Groups that another program on this machine has joined, other than `own`.
 std::set<std::string> other_groups(const std::string& own) {
   std::set<std::string> groups;
   std::ifstream table("/proc/net/igmp");
@@ -203,7 +203,7 @@ std::set<std::string> other_groups(const std::string& own) {
 }
 
 Finding check_port(const LcmEndpoint& endpoint) {
-  Finding finding{"UDP port " + std::to_string(endpoint.port), Verdict::ok, "nobody else uses it", {}};
+  Finding finding{"UDP port " + std::to_string(endpoint.port), Verdict::ok, "no other program uses it", {}};
   const auto inodes = sockets_on_port(endpoint.port);
   if (inodes.empty()) return finding;
   finding.text = std::to_string(inodes.size()) + " sockets use it";
@@ -212,7 +212,7 @@ Finding check_port(const LcmEndpoint& endpoint) {
     finding.text += separator + owner;
     separator = ", ";
   }
-  finding.text += "; they and this simulator hear each other";
+  finding.text += "; they and this simulator receive each other's messages";
   const auto groups = other_groups(endpoint.address);
   if (groups.empty()) return finding;
   finding.verdict = Verdict::warning;
@@ -221,7 +221,7 @@ Finding check_port(const LcmEndpoint& endpoint) {
     finding.text += separator + group;
     separator = ", ";
   }
-  finding.text += "): programs on liblcm 1.3 receive all groups of a port, so give every team a port of its own";
+  finding.text += "): programs on liblcm 1.3 receive all groups of a port, so give every team its own port";
   return finding;
 }
 
@@ -241,7 +241,7 @@ int round_trip(const std::string& url, std::chrono::milliseconds time_limit) {
       sender.publish(channel, payload);
       if (receiver.next(std::chrono::milliseconds(100))) return 0;
     }
-    std::fputs("a message did not come back\n", stderr);
+    std::fputs("a test message was not received\n", stderr);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
   }
@@ -275,7 +275,7 @@ Finding check_round_trip(const std::string& url, std::chrono::milliseconds time_
   Finding finding{"round trip", Verdict::bad, "", {}};
   std::array<int, 2> ends{};
   if (pipe2(ends.data(), O_CLOEXEC) != 0) {
-    finding.text = "no file descriptor is left for the test";
+    finding.text = "no file descriptor is available for the test";
     return finding;
   }
   const pid_t child = fork();
@@ -287,11 +287,11 @@ Finding check_round_trip(const std::string& url, std::chrono::milliseconds time_
   }
   close(ends[1]);
   bool ended = false;
-  std::string said;
-  if (child > 0) said = read_until(ends[0], std::chrono::steady_clock::now() + time_limit, ended);
+  std::string reported;
+  if (child > 0) reported = read_until(ends[0], std::chrono::steady_clock::now() + time_limit, ended);
   close(ends[0]);
   if (child < 0) {
-    finding.text = "no process can be made for the test";
+    finding.text = "cannot start a process for the test";
     return finding;
   }
   if (!ended) kill(child, SIGKILL);
@@ -299,17 +299,17 @@ Finding check_round_trip(const std::string& url, std::chrono::milliseconds time_
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
   if (!ended) {
-    finding.text = "no message came back within " + std::to_string(time_limit.count()) +
+    finding.text = "no test message was received within " + std::to_string(time_limit.count()) +
                    " ms; a firewall may drop multicast on UDP";
     finding.commands = {"iptables -I INPUT -p udp -d 224.0.0.0/4 -j ACCEPT",
                         "iptables -I OUTPUT -p udp -d 224.0.0.0/4 -j ACCEPT"};
   } else if (WIFEXITED(status) && WEXITSTATUS(status) == 0) {
     finding.verdict = Verdict::ok;
-    finding.text = "a message came back";
+    finding.text = "a test message was received";
   } else if (WIFSIGNALED(status)) {
-    finding.text = "liblcm stopped with signal " + std::to_string(WTERMSIG(status)) + ": " + last_line(said);
+    finding.text = "liblcm stopped with signal " + std::to_string(WTERMSIG(status)) + ": " + last_line(reported);
   } else {
-    finding.text = last_line(said);
+    finding.text = last_line(reported);
   }
   return finding;
 }

@@ -7,7 +7,7 @@ namespace {
 // Kept for reuse; more is given back, so that one burst of images does not stay in memory.
 constexpr std::size_t max_free_bytes = std::size_t{8} << 20;
 // A publisher that never calls end_of_step() still gets its messages out.
-constexpr std::chrono::milliseconds longest_wait{20};
+constexpr std::chrono::milliseconds max_wait{20};
 
 }  // namespace
 
@@ -48,7 +48,7 @@ std::unique_ptr<OutgoingQueue::Entry> OutgoingQueue::next(std::unique_ptr<Entry>
   if (used) finish(std::move(used));
   sender_waits_ = true;
   while (sending_ || (!closed_ && (waiting_.empty() || !awake_))) {
-    const bool timed_out = sender_.wait_for(lock, longest_wait) == std::cv_status::timeout;
+    const bool timed_out = sender_.wait_for(lock, max_wait) == std::cv_status::timeout;
     if (timed_out && !sending_ && !waiting_.empty()) break;
   }
   sender_waits_ = false;

@@ -15,7 +15,7 @@
 
 namespace bridges {
 
-/// Messages on their way to the network, between the thread that simulates and the one that sends.  Bounded:
+/// Messages queued for the network, between the simulating and the sending thread.  Bounded:
 /// the oldest are dropped and counted.  The lock is held only to move a message; bytes are copied outside of
 /// it.
 class OutgoingQueue {
@@ -33,13 +33,13 @@ class OutgoingQueue {
   explicit OutgoingQueue(const Limits& limits) : limits_(limits) {}
 
   void push(std::string_view channel, std::span<const std::byte> payload);
-  /// Tells the sender to begin.
+  /// Wakes the sender.
   void wake();
   /// The sender's side: the oldest message, waiting for one.  `used`: what was sent before, its memory is
   /// reused. Empty when the queue is closed and either empty or past its deadline.
   std::unique_ptr<Entry> next(std::unique_ptr<Entry> used);
-  /// The same for another thread, at once, also when nobody called wake().  Empty when there is none, or when the
-  /// sender is at it, who sends also what was pushed before this call.
+  /// The same for another thread, immediately, also without a call of wake().  Empty when there is none, or while the
+  /// sender is active, which also sends what was pushed before this call.
   std::unique_ptr<Entry> next_if_idle(std::unique_ptr<Entry> used);
   /// The other thread leaves the rest to the sender.
   void hand_over(std::unique_ptr<Entry> used);
@@ -64,9 +64,9 @@ class OutgoingQueue {
   std::vector<std::unique_ptr<Entry>> free_;
   std::size_t free_bytes_ = 0;
   std::uint64_t dropped_ = 0;
-  bool sending_ = false;  // somebody holds a message that is not sent yet
+  bool sending_ = false;  // a thread holds a message that is not sent yet
   bool sender_waits_ = false;
-  bool awake_ = false;  // told to send all there is
+  bool awake_ = false;  // requested to send all pending messages
   bool closed_ = false;
   std::chrono::steady_clock::time_point deadline_;
 };

@@ -28,7 +28,7 @@ void OutgoingSender::help() {
   while ((entry = queue_.next_if_idle(std::move(entry)))) {
     send_(*entry);
     const Clock::time_point now = Clock::now();
-    if (now - begin <= longest_help) continue;
+    if (now - begin <= max_help) continue;
     help_from_ = now + time_out_of_help;
     return queue_.hand_over(std::move(entry));
   }

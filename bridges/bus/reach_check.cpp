@@ -31,7 +31,7 @@ Finding check_server(const LcmEndpoint& endpoint) {
   std::snprintf(local, sizeof local, ":%04X ", static_cast<unsigned>(endpoint.port));
   const bool everywhere_6 = ports_6.str().find(std::string(32, '0') + local) != std::string::npos;
   if (sockets.everywhere + sockets.elsewhere > 0 || everywhere_6) {
-    finding.text = "a server on TCP port " + port + " of this machine takes connections from other machines";
+    finding.text = "a server on TCP port " + port + " of this machine accepts connections from other machines";
     finding.commands = {"iptables -I INPUT -p tcp --dport " + port + " -m addrtype ! --src-type LOCAL -j DROP"};
   } else {
     finding.text = "what reaches the server " + endpoint.address + ":" + port + " reaches this bus";
@@ -72,7 +72,7 @@ Finding check_reach(const std::string& resolved_url) {
   if (endpoint.kind == "tcpq") return check_server(endpoint);
   if (leaves_machine(resolved_url)) {
     finding.verdict = Finding::Verdict::warning;
-    finding.text = "its ttl is above 0: messages of this bus go out to the network, and other machines can send to it" +
+    finding.text = "its ttl is above 0: messages of this bus leave this machine, and other machines can send to it" +
                    std::string(key_needed);
     return finding;
   }

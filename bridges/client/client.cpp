@@ -79,14 +79,14 @@ void Client::subscribe_bytes(const std::string& channel, BytesHandler handler) {
   Counts& counts = connection_->counts;
   with_own_errors([&] {
     connection_->lcm.subscribe(channel, [&counts, channel, handler = std::move(handler),
-                                         told = false](std::span<const std::byte> payload) mutable {
+                                         reported = false](std::span<const std::byte> payload) mutable {
       ++counts.received;
       try {
         handler(payload);
       } catch (const MessageError& error) {
         ++counts.bad;
-        if (!told) std::cerr << channel << ": " << error.what() << " (ignored; more such are only counted)\n";
-        told = true;
+        if (!reported) std::cerr << channel << ": " << error.what() << " (ignored; further ones are only counted)\n";
+        reported = true;
       }
     });
   });
@@ -125,7 +125,7 @@ void Client::Connection::follow_clock(std::int64_t new_period_us) {
         if (!clock_utime || utime < *clock_utime) lcm.follow();
         clock_utime = utime;
       } catch (const MessageError&) {
-        // Anybody may publish anything; the next one counts.
+        // Any program may publish anything; the next one counts.
       }
     });
   period_us = new_period_us;
@@ -133,7 +133,7 @@ void Client::Connection::follow_clock(std::int64_t new_period_us) {
 }
 
 std::optional<std::int64_t> Client::next_tick() {
-  // After silence somebody may come yet.
+  // After silence another client may still arrive.
   if (connection_->end != End::none && connection_->end != End::silence) return std::nullopt;
   if (connection_->joined) return with_own_errors([&] { return connection_->next_joined_tick(); });
   if (connection_->period_us == 0) throw std::logic_error("shoal::Client: join() or follow() comes before next_tick()");
@@ -154,14 +154,14 @@ std::optional<std::int64_t> Client::Connection::next_joined_tick() {
 
 std::optional<std::int64_t> Client::Connection::next_free_tick() {
   const std::optional<std::int64_t> before = clock_utime;
-  if (!clock_utime) lcm.wait_for("the time on 'sim.clock', which a simulator publishes while its run goes on");
+  if (!clock_utime) lcm.wait_for("the time on 'sim.clock', which a simulator publishes during its run");
   while (true) {
     if (!lcm.handle_message()) {
       end = end_of(lcm.end());
       return std::nullopt;
     }
     if (!clock_utime) continue;
-    lcm.got_it();
+    lcm.mark_received();
     // A clock that went back is that of a new run.
     if (!due_utime || (before && *clock_utime < *before)) due_utime = *clock_utime;
     if (*clock_utime < *due_utime) continue;
@@ -188,8 +188,8 @@ void Client::set_silence_limit(std::chrono::milliseconds limit) {
   connection_->lcm.set_silence_limit(limit);
 }
 
-void Client::set_wait_notice(std::chrono::milliseconds after) {
-  connection_->lcm.set_notice_after(after);
+void Client::set_wait_warning(std::chrono::milliseconds after) {
+  connection_->lcm.set_warning_after(after);
 }
 
 const std::string& Client::reason() const {

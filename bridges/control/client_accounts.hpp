@@ -21,7 +21,7 @@ class ClientAccounts {
   void use(const std::string& client);
 
  private:
-  static constexpr std::size_t max_clients = 1000;  // those who come later share one account
+  static constexpr std::size_t max_clients = 1000;  // further clients share one account
   const std::string& account_of(const std::string& client) const;
 
   std::string what_, key_;

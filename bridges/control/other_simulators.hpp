@@ -15,47 +15,47 @@
 
 namespace bridges {
 
-/// What look() begins with, for those who read it in the error of another process.
+/// Prefix of the text of look(), by which it is recognised in the error of another process.
 inline constexpr const char* another_simulator = "another simulator";
 
-/// Looks for other simulators on the buses of a run, before it publishes anything: two on one bus would answer the same
-/// clients, and mix their reports.  The question goes out when this is made, so that the answers come while the world
-/// is built.
+/// Looks for other simulators on the buses of a run, before it publishes anything: two on one bus would both answer
+/// the clients, and their reports would mix.  The request is sent on construction, so that answers arrive while the
+/// world is built.
 class OtherSimulators {
  public:
   struct BusToAsk {
     std::string url;
     sim::Bus* network;
   };
-  /// Has what was published sent, and waits for messages up to the given time, or returns earlier.
+  /// Flushes published messages, and waits for messages up to the given time, or returns earlier.
   using Wait = std::function<void(std::chrono::milliseconds)>;
 
-  /// `shared`: the run is to share its buses; it does not look, but the others are told of it.
+  /// `shared`: the run shares its buses; it does not check, but the others are notified.
   OtherSimulators(const std::vector<BusToAsk>& buses, bool shared);
 
-  /// Waits until the others had their time to answer.  Says who is there: `another simulator answers on URL`; nothing:
-  /// nobody.  The buses are left alone after that.
+  /// Waits until the others had their time to answer.  Describes another simulator: `another simulator answers on
+  /// URL`; nothing: none. The buses are not used after that.
   std::optional<std::string> look(const Wait& wait);
 
-  /// The run knows that it may not be alone.
+  /// The user allows other simulators on the buses.
   bool shared() const { return shared_; }
   /// Whose question a request is: of another run that starts.
-  enum class Asker { nobody, this_run, another_run, another_run_that_shares };
-  Asker who_asks(const shoal::sim_control_request_t& request) const;
+  enum class Asker { none_of_ours, this_run, another_run, another_run_that_shares };
+  Asker requester_of(const shoal::sim_control_request_t& request) const;
 
  private:
-  struct Line {
+  struct Link {
     std::string url;
     sim::Bus* network;
     std::unique_ptr<sim::Mailbox> requests, replies, clock, tick;
   };
-  void ask(sim::Bus& network);
-  std::optional<std::string> take(Line& line);
+  void send_request(sim::Bus& network);
+  std::optional<std::string> take(Link& link);
   /// True when another run that starts was answered for the first time.
-  bool answer_questions(Line& line);
-  bool is_answered(Line& line) const;
+  bool answer_requests(Link& link);
+  bool is_answered(Link& link) const;
 
-  std::vector<Line> lines_;
+  std::vector<Link> links_;
   bool shared_;
   std::int32_t id_;
   std::set<std::int32_t> met_;  // other runs that start at the same time

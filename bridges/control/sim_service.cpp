@@ -33,22 +33,22 @@ SimService::SimService(sim::Bus& bus, sim::Bus& network, sim::World& world, sim:
       control_(control),
       lockstep_(lockstep),
       info_(std::move(info)),
-      visitors_(world, bus, links.journal),
+      spawned_vehicles_(world, bus, links.journal),
       journal_(links.journal),
       others_(links.others),
-      notices_(bus, world),
+      audit_(bus, world),
       spawns_("spawn requests", "spawns_per_client", world.config().limits.spawns_per_client),
       rewinds_("rewind and restore requests", "rewinds_per_client", world.config().limits.rewinds_per_client) {
-  open_line(network);
-  for (sim::Bus* vehicles : links.vehicle_buses) open_line(*vehicles);
+  open_link(network);
+  for (sim::Bus* vehicles : links.vehicle_buses) open_link(*vehicles);
   lockstep.set_on_contradiction([this](const std::string& client, const std::string& signer, const std::string& text) {
-    notices_.add({0, "contradiction", client, signer, text}, lockstep_.branch());
+    audit_.add({0, "contradiction", client, signer, text}, lockstep_.branch());
   });
-  lockstep.set_on_heard([this](const std::string& client) { visitors_.heard_of(client); });
+  lockstep.set_on_answer([this](const std::string& client) { spawned_vehicles_.client_alive(client); });
 }
 
-void SimService::open_line(sim::Bus& network) {
-  lines_.push_back({&network, network.open_mailbox("sim.control"), network.open_mailbox("sim.info")});
+void SimService::open_link(sim::Bus& network) {
+  links_.push_back({&network, network.open_mailbox("sim.control"), network.open_mailbox("sim.info")});
 }
 
 template <typename Message>
@@ -67,16 +67,16 @@ bool SimService::due(double rate_hz) const {
 }
 
 void SimService::publish_step() {
-  visitors_.tell_changes();
-  if (!muted_) visitors_.tell_others(network_);
+  spawned_vehicles_.report_changes();
+  if (!muted_) spawned_vehicles_.report_to_other_timeline(network_);
   if (due(info_rate_hz) && info_step_ != world_.step_number()) publish_info();
   if (!due(world_.config().state_rate_hz)) return;
   shoal::utime_t clock;
   clock.utime = world_.epoch_us() + world_.now().count();
   publish(bus_, "sim.clock", clock);
-  for (std::size_t i = 1; i < lines_.size(); ++i) {
+  for (std::size_t i = 1; i < links_.size(); ++i) {
     shoal::encode_into(clock, buffer_);
-    if (!muted_) lines_[i].network->publish("sim.clock", buffer_, world_.now());
+    if (!muted_) links_[i].network->publish("sim.clock", buffer_, world_.now());
     lockstep_.post(static_cast<int>(i), "sim.clock", buffer_);
   }
   publish_state();
@@ -93,7 +93,7 @@ void SimService::publish_info() {
   info.epoch_utime = world_.epoch_us();
   info.step = world_.step_number();
   info.branch = journal_ != nullptr ? journal_->branch() : 0;
-  info.mail_sequence = journal_ != nullptr ? journal_->sequence() : 0;
+  info.input_sequence = journal_ != nullptr ? journal_->sequence() : 0;
   info.build = info_.build;
   info.files = info_.files;
   info_step_ = world_.step_number();
@@ -128,64 +128,65 @@ void SimService::publish_state() {
   publish(bus_, "sim.state", state);
 }
 
-void SimService::complain(const std::string& text) {
+void SimService::warn_client(const std::string& text) {
   if (++bad_messages_ <= 100) spdlog::warn("{} (ignored)", sim::shortened(sim::printable(text), 300));
 }
 
 void SimService::handle_requests(TimeMachine* machine) {
-  visitors_.remove_silent();
-  lockstep_.look_at_clock();
+  spawned_vehicles_.remove_timed_out();
+  lockstep_.check_clock();
   // A flood of requests must not keep the world from stepping; the rest waits, and what overflows is counted.
-  constexpr int most_at_once = 50;
-  for (Line& line : lines_)
-    for (int handled = 0; handled < most_at_once; ++handled) {
-      const auto message = line.requests->take();
+  constexpr int max_at_once = 50;
+  for (Link& link : links_)
+    for (int handled = 0; handled < max_at_once; ++handled) {
+      const auto message = link.requests->take();
       if (!message) break;
-      handle_request(line, *message, machine);
+      handle_request(link, *message, machine);
     }
-  for (Line& line : lines_)
-    while (const auto info = line.infos->take())
+  for (Link& link : links_)
+    while (const auto info = link.infos->take())
       // Who shares the bus on purpose knows of the other.
-      if (info->from_outside && others_ != nullptr && !others_->shared()) warn_of_another(line, "publishes");
+      if (info->from_outside && others_ != nullptr && !others_->shared()) warn_of_another(link, "publishes");
 }
 
 /// Of a run that starts, for other simulators.  Another one's is answered, and that run then refuses to start; one that
 /// starts all the same is warned of.
-bool SimService::is_own_question(Line& line, const shoal::sim_control_request_t& request) {
-  const OtherSimulators::Asker asker = others_->who_asks(request);
-  if (asker == OtherSimulators::Asker::another_run_that_shares) warn_of_another(line, "was started with --lcm-shared");
+bool SimService::is_own_request(Link& link, const shoal::sim_control_request_t& request) {
+  const OtherSimulators::Asker asker = others_->requester_of(request);
+  if (asker == OtherSimulators::Asker::another_run_that_shares) warn_of_another(link, "was started with --lcm-shared");
   return asker == OtherSimulators::Asker::this_run;
 }
 
-void SimService::warn_of_another(const Line& line, const char* how) {
+void SimService::warn_of_another(const Link& link, const char* how) {
   if (std::exchange(warned_of_another_, true)) return;
-  spdlog::warn("another simulator {} on {} of this run: clients and reports of the two mix", how,
-               lockstep_.called(number_of(line)));
+  spdlog::warn("another simulator {} on {} of this run: clients and reports of the two runs will mix", how,
+               lockstep_.called(number_of(link)));
 }
 
-void SimService::handle_request(Line& line, const sim::Message& message, TimeMachine* machine) {
+void SimService::handle_request(Link& link, const sim::Message& message, TimeMachine* machine) {
   try {
     const ControlGuard::Opened opened = lockstep_.guard().open(message.channel, message.payload);
     const auto request = shoal::decode<shoal::sim_control_request_t>(opened.content, shoal::Finite::any);
-    if (others_ != nullptr && is_own_question(line, request)) return;
+    if (others_ != nullptr && is_own_request(link, request)) return;
     // A run that starts has no key of ours, and changes nothing.
-    const bool is_question = others_ != nullptr && others_->who_asks(request) != OtherSimulators::Asker::nobody;
-    if (!opened.refusal.empty() && !is_question) return refuse(line, request, opened);
-    answer(line, request, opened.signer, machine);
+    const bool is_question =
+        others_ != nullptr && others_->requester_of(request) != OtherSimulators::Asker::none_of_ours;
+    if (!opened.refusal.empty() && !is_question) return refuse(link, request, opened);
+    answer(link, request, opened.signer, machine);
   } catch (const shoal::MessageError& error) {
-    complain(std::string("sim.control: ") + error.what());
+    warn_client(std::string("sim.control: ") + error.what());
   }
 }
 
 /// Who is refused gets to know the rule, but a flood of such requests is not answered by a flood, and what came before
 /// was answered then: its sender must not take this for the answer.
-void SimService::refuse(Line& line, const shoal::sim_control_request_t& request, const ControlGuard::Opened& opened) {
+void SimService::refuse(Link& link, const shoal::sim_control_request_t& request, const ControlGuard::Opened& opened) {
   constexpr int max_answers_per_s = 10;
-  constexpr std::size_t max_told = 100;
+  constexpr std::size_t max_warned = 100;
   ++refused_requests_;
   ++bad_messages_;
-  if (told_refused_.size() < max_told && told_refused_.insert(sim::shortened(request.client)).second)
-    spdlog::warn("sim.control: '{}' of client '{}' is refused: {} (more of this client are only counted)",
+  if (warned_refused_.size() < max_warned && warned_refused_.insert(sim::shortened(request.client)).second)
+    spdlog::warn("sim.control: '{}' of client '{}' is refused: {} (further requests of this client are only counted)",
                  sim::shortened(sim::printable(request.command)), sim::shortened(sim::printable(request.client)),
                  opened.refusal);
   const auto now = std::chrono::steady_clock::now();
@@ -195,10 +196,10 @@ void SimService::refuse(Line& line, const shoal::sim_control_request_t& request,
   }
   if (opened.came_before || ++refusals_answered_ > max_answers_per_s) return;
   // Without its session: a client that has joined must not be made to believe that it was dropped.
-  reply(line, request, 0, false, opened.refusal);
+  reply(link, request, 0, false, opened.refusal);
 }
 
-void SimService::reply(Line& line, const shoal::sim_control_request_t& request, std::int64_t session, bool ok,
+void SimService::reply(Link& link, const shoal::sim_control_request_t& request, std::int64_t session, bool ok,
                        const std::string& text) {
   shoal::sim_control_reply_t reply;
   reply.id = request.id;
@@ -207,32 +208,32 @@ void SimService::reply(Line& line, const shoal::sim_control_request_t& request, 
   reply.ok = ok;
   reply.text = ok ? text : sim::shortened(text, 4000);
   reply.utime = world_.epoch_us() + world_.now().count();  // after a rewind the new time
-  publish(*line.network, "sim.control.reply", reply);
-  line.network->end_of_step();
+  publish(*link.network, "sim.control.reply", reply);
+  link.network->end_of_step();
 }
 
-void SimService::answer(Line& line, const shoal::sim_control_request_t& request, const std::string& signer,
+void SimService::answer(Link& link, const shoal::sim_control_request_t& request, const std::string& signer,
                         TimeMachine* machine) {
-  const bool on_own_bus = &line != &lines_.front();
+  const bool on_own_bus = &link != &links_.front();
   const std::int64_t session = sim::session_in(request.text, request.command);
-  if (!on_own_bus) visitors_.heard_of(request.client);  // vehicles are brought on the world's bus
+  if (!on_own_bus) spawned_vehicles_.client_alive(request.client);  // vehicles are brought on the world's bus
   try {
     const bool of_lockstep = request.command == "join" || request.command == "leave" || request.command == "alive" ||
                              request.command == "follow";
     if (on_own_bus && !of_lockstep)
-      throw std::runtime_error("only alive, follow, join and leave are served on a vehicle's bus");
+      throw std::runtime_error("a vehicle's bus only serves alive, follow, join and leave");
     ClientAccounts* account = account_for(request.command);
     if (account != nullptr) account->check(request.client);
-    const bool lets_go = request.command == "leave" && lets_go_of_another(request);
-    const std::optional<std::string> text = obey(line, request, machine);
+    const bool releases = request.command == "leave" && releases_another(request);
+    const std::optional<std::string> text = execute(link, request, machine);
     if (!text) return;
     if (account != nullptr) account->use(request.client);
-    if (lets_go || request.command != "leave") note(request, signer);
-    reply(line, request, session, true, *text);
-  } catch (const std::exception& error) {  // whatever it is, it is the request's fault, and the run goes on
-    complain((on_own_bus ? "sim.control of " + lockstep_.called(number_of(line)) : "sim.control") + ": client '" +
-             sim::shortened(request.client) + "': " + error.what());
-    reply(line, request, session, false, error.what());
+    if (releases || request.command != "leave") note(request, signer);
+    reply(link, request, session, true, *text);
+  } catch (const std::exception& error) {  // whatever it is, it is the request's fault, and the run continues
+    warn_client((on_own_bus ? "sim.control of " + lockstep_.called(number_of(link)) : "sim.control") + ": client '" +
+                sim::shortened(request.client) + "': " + error.what());
+    reply(link, request, session, false, error.what());
   }
 }
 
@@ -242,7 +243,7 @@ ClientAccounts* SimService::account_for(const std::string& command) {
 }
 
 /// A program that leaves names its session, which it alone knows by heart; who lets go of a hanging one does not.
-bool SimService::lets_go_of_another(const shoal::sim_control_request_t& request) const {
+bool SimService::releases_another(const shoal::sim_control_request_t& request) const {
   return lockstep_.has(request.client) && sim::session_in(request.text, request.command) == 0;
 }
 
@@ -254,15 +255,15 @@ void SimService::note(const shoal::sim_control_request_t& request, const std::st
                                                         : request.text;
   spdlog::info("{} requests '{}{}{}'", who_asked(request.client, signer), request.command, what.empty() ? "" : " ",
                sim::shortened(sim::printable(what)));
-  notices_.add({0, request.command, request.client, signer, what}, lockstep_.branch());
+  audit_.add({0, request.command, request.client, signer, what}, lockstep_.branch());
 }
 
-std::optional<std::string> SimService::obey(Line& line, const shoal::sim_control_request_t& request,
-                                            TimeMachine* machine) {
+std::optional<std::string> SimService::execute(Link& link, const shoal::sim_control_request_t& request,
+                                               TimeMachine* machine) {
   const std::string& command = request.command;
-  const int number = number_of(line);
+  const int number = number_of(link);
   if (machine != nullptr)
-    if (auto text = machine->obey(command, request.text, request.value)) return text;
+    if (auto text = machine->execute(command, request.text, request.value)) return text;
   if (command == "quit") {
     control_.quit = true;
   } else if (command == "join") {
@@ -272,13 +273,13 @@ std::optional<std::string> SimService::obey(Line& line, const shoal::sim_control
   } else if (command == "follow") {
     lockstep_.follow(number, request);
   } else if (command == "spawn") {
-    return visitors_.spawn(request.client, request.text);
+    return spawned_vehicles_.spawn(request.client, request.text);
   } else if (command == "remove") {
-    visitors_.remove(request.client, request.text);
+    spawned_vehicles_.remove(request.client, request.text);
   } else if (command == "describe") {
-    return visitors_.describe(request.client, request.text);
+    return spawned_vehicles_.describe(request.client, request.text);
   } else if (command == "do") {
-    visitors_.act(request.client, request.text);
+    spawned_vehicles_.act(request.client, request.text);
   } else if (command != "alive") {
     throw std::runtime_error("unknown command '" + sim::shortened(sim::printable(command)) +
                              "'; known commands: alive, describe, do, follow, join, leave, pause, quit, "
@@ -287,32 +288,32 @@ std::optional<std::string> SimService::obey(Line& line, const shoal::sim_control
   return "";
 }
 
-bool SimService::leave(int line, const shoal::sim_control_request_t& request) {
-  const bool brought_vehicles = line == 0 && visitors_.has(request.client);
-  const bool takes_part = lockstep_.has(request.client, line);
-  if ((takes_part || !brought_vehicles) && !lockstep_.leave(line, request)) return false;
-  if (line == 0) visitors_.remove_those_of(request.client);
+bool SimService::leave(int link, const shoal::sim_control_request_t& request) {
+  const bool has_spawned = link == 0 && spawned_vehicles_.has(request.client);
+  const bool takes_part = lockstep_.has(request.client, link);
+  if ((takes_part || !has_spawned) && !lockstep_.leave(link, request)) return false;
+  if (link == 0) spawned_vehicles_.remove_vehicles_of(request.client);
   return true;
 }
 
-void SimService::obey_again(const shoal::sim_control_request_t& request) {
+void SimService::execute_again(const shoal::sim_control_request_t& request) {
   const std::string& command = request.command;
   if (command == "spawn")
-    visitors_.spawn_again(request.client, request.text);
+    spawned_vehicles_.spawn_again(request.client, request.text);
   else if (command == "remove")
-    visitors_.remove(request.client, request.text);
+    spawned_vehicles_.remove(request.client, request.text);
   else if (command == "describe")
-    visitors_.describe(request.client, request.text);
+    spawned_vehicles_.describe(request.client, request.text);
   else if (command == "do")
-    visitors_.act(request.client, request.text);
+    spawned_vehicles_.act(request.client, request.text);
   else
     throw std::runtime_error("'" + sim::shortened(sim::printable(command)) + "' does not change a world");
 }
 
-void SimService::client_gone(const std::string& client) {
+void SimService::client_exited(const std::string& client) {
   const bool on_own_bus = lockstep_.has(client) && !lockstep_.has(client, 0);
-  lockstep_.client_gone(client);
-  if (!on_own_bus) visitors_.remove_those_of(client);
+  lockstep_.client_exited(client);
+  if (!on_own_bus) spawned_vehicles_.remove_vehicles_of(client);
 }
 
 }  // namespace bridges

@@ -6,13 +6,13 @@
 
 namespace bridges {
 
-/// Carries out requests about the time of the world: how fast it goes on, and where it goes back to.
+/// Executes requests about simulated time: speed, pause, rewind and restore.
 class TimeMachine {
  public:
   virtual ~TimeMachine() = default;
-  /// What came of a request; nothing when the command is none of its own.  Throws std::runtime_error that says why it
+  /// The result of a request; nothing when it does not know the command.  Throws std::runtime_error that says why it
   /// was refused.
-  virtual std::optional<std::string> obey(const std::string& command, const std::string& text, double value) = 0;
+  virtual std::optional<std::string> execute(const std::string& command, const std::string& text, double value) = 0;
 };
 
 }  // namespace bridges

@@ -92,28 +92,28 @@ void LcmConnection::open_udp(const LcmEndpoint& endpoint) {
 
 void LcmConnection::test_itself() {
   struct Test {
-    std::string said = "shoal " + std::to_string(getpid()) + " " +
-                       std::to_string(std::chrono::steady_clock::now().time_since_epoch().count());
-    bool heard = false;
+    std::string reported = "shoal " + std::to_string(getpid()) + " " +
+                           std::to_string(std::chrono::steady_clock::now().time_since_epoch().count());
+    bool received = false;
   } test;
   LcmSubscription* own = subscribe(
       self_test_channel,
       [](const LcmMessage& message, void* user) {
         auto& waiting = *static_cast<Test*>(user);
         const std::string_view text(reinterpret_cast<const char*>(message.payload.data()), message.payload.size());
-        waiting.heard |= text == waiting.said;
+        waiting.received |= text == waiting.reported;
       },
       &test);
   const auto deadline = std::chrono::steady_clock::now() + self_test_limit;
-  while (!test.heard && std::chrono::steady_clock::now() < deadline) {
-    publish(self_test_channel, std::as_bytes(std::span(test.said)));
+  while (!test.received && std::chrono::steady_clock::now() < deadline) {
+    publish(self_test_channel, std::as_bytes(std::span(test.reported)));
     // It may be lost among others that come.
     const auto again = std::chrono::steady_clock::now() + 100ms;
-    while (!test.heard && std::chrono::steady_clock::now() < again)
+    while (!test.received && std::chrono::steady_clock::now() < again)
       if (wait_readable(fd_, -1, 100ms)) handle();
   }
   unsubscribe(own);
-  if (!test.heard)
+  if (!test.received)
     refuse_url(
         url_,
         "LCM cannot receive its own messages (a firewall, or an interface without multicast); run `shoal doctor`");
@@ -184,10 +184,10 @@ std::uint64_t LcmConnection::received_bytes() const {
 
 bool GatherPauses::due(bool something_came) {
   const std::uint64_t bytes = connection_.received_bytes();
-  const bool few = bytes - std::exchange(bytes_, bytes) <= max_bytes_of_look;
-  looks_ = something_came && few ? looks_ + 1 : 0;
-  if (looks_ < looks_before_pause || connection_.may_block()) return false;
-  looks_ = 0;
+  const bool few = bytes - std::exchange(bytes_, bytes) <= max_bytes_of_check;
+  polls_ = something_came && few ? polls_ + 1 : 0;
+  if (polls_ < polls_before_pause || connection_.may_block()) return false;
+  polls_ = 0;
   return true;
 }
 

@@ -31,12 +31,12 @@ class UdpInbox;
 /// everything first and throws BusError.  A group that a firewall drops takes it ten seconds to notice.
 ///
 /// liblcm sends, and receives over tcpq and memq.  Over udpm UdpReceiver receives: with ttl=0 what processes of this
-/// machine send to the multicast group, with a larger ttl what anybody sends to it.
+/// machine send to the multicast group, with a larger ttl all messages sent to it.
 class LcmConnection {
  public:
   using Handler = void (*)(const LcmMessage& message, void* user);
   enum class Handled {
-    all,   ///< nothing more has come
+    all,   ///< no further messages
     more,  ///< something more may have come
     lost,  ///< the connection is lost
   };
@@ -85,26 +85,26 @@ class LcmConnection {
   int fd_ = -1;
 };
 
-/// When a thread that receives while nobody waits lets messages gather for a while.  Where small ones come one by one
-/// without end, waking for each costs more than receiving it; the kernel's buffer holds what comes in a pause.
+/// When a thread that receives in the background lets messages gather for a while.  In a stream of small messages,
+/// waking for each costs more than receiving it; the kernel's buffer holds those that arrive in a pause.
 class GatherPauses {
  public:
-  static constexpr std::chrono::milliseconds until_next_look{1}, length{1};
+  static constexpr std::chrono::milliseconds until_next_check{1}, length{1};
 
   explicit GatherPauses(const LcmConnection& connection) : connection_(connection) {}
   /// How long to wait for the next messages; negative: without limit.
-  std::chrono::milliseconds wait() const { return looks_ == 0 ? std::chrono::milliseconds(-1) : until_next_look; }
+  std::chrono::milliseconds wait() const { return polls_ == 0 ? std::chrono::milliseconds(-1) : until_next_check; }
   /// After the wait, and after receiving if there was something: whether to pause now.
   bool due(bool something_came);
 
  private:
-  static constexpr int looks_before_pause = 8;
-  /// More at a time are no small messages one by one: images need all the room that the kernel has.
-  static constexpr std::uint64_t max_bytes_of_look = 16 << 10;
+  static constexpr int polls_before_pause = 8;
+  /// More at a time are not small messages one by one: images need all the room that the kernel has.
+  static constexpr std::uint64_t max_bytes_of_check = 16 << 10;
 
   const LcmConnection& connection_;
   std::uint64_t bytes_ = 0;
-  int looks_ = 0;
+  int polls_ = 0;
 };
 
 /// Waits until one of the descriptors is readable.  `second` may be -1.  False on time-out or signal.

@@ -25,14 +25,14 @@ void raise(const FileDescriptor& event) {
 
 LcmListener::LcmListener(const std::string& url)
     : connection_(url), wake_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)), stop_(eventfd(0, EFD_CLOEXEC)) {
-  if (wake_.number() < 0 || stop_.number() < 0) throw BusError("no file descriptor is left for the bus");
+  if (wake_.number() < 0 || stop_.number() < 0) throw BusError("no file descriptor is available for the bus");
   // Before the thread: of the two the first wakes.
   readable_.add(connection_.fd(), &connection_);
   readable_.add(wake_.number(), nullptr);
   if (lcm_endpoint(connection_.url()).kind != "udpm") return;
   readable_by_thread_.add(connection_.fd(), &connection_);
   readable_by_thread_.add(stop_.number(), nullptr);
-  thread_ = std::thread([this] { receive_while_nobody_waits(); });
+  thread_ = std::thread([this] { receive_in_background(); });
 }
 
 LcmListener::~LcmListener() {
@@ -109,7 +109,7 @@ void LcmListener::receive() {
   if (connection_.handle() == LcmConnection::Handled::lost) throw BusError("the connection to " + url() + " is lost");
 }
 
-void LcmListener::receive_while_nobody_waits() {
+void LcmListener::receive_in_background() {
   const auto stopped = [](const PollSet::Readable& readable) {
     return std::any_of(readable.tags.begin(), readable.tags.begin() + readable.count,
                        [](const void* tag) { return tag == nullptr; });

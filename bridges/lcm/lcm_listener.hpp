@@ -49,7 +49,7 @@ class LcmListener {
   std::optional<Received> take();
   /// Throws BusError when the connection is lost.
   void receive();
-  void receive_while_nobody_waits();
+  void receive_in_background();
 
   std::mutex mutex_;  // of what has arrived
   std::deque<Received> arrived_;

@@ -51,14 +51,14 @@ std::nullopt_t LcmReassembly::bad() {
 
 std::optional<LcmReassembly::Message> LcmReassembly::add(std::span<const std::byte> datagram,
                                                          const DatagramSender& from,
-                                                         const std::function<bool(std::string_view)>& wanted) {
+                                                         const std::function<bool(std::string_view)>& accepts) {
   ++datagrams_;
   if (datagram.size() < short_header_bytes) return bad();
   switch (number_at(datagram, 0, 4)) {
     case short_magic:
       return add_short(datagram);
     case fragment_magic:
-      return add_fragment(datagram, std::uint64_t{from.address} << 16 | from.port, wanted);
+      return add_fragment(datagram, std::uint64_t{from.address} << 16 | from.port, accepts);
     default:
       return bad();
   }
@@ -71,9 +71,8 @@ std::optional<LcmReassembly::Message> LcmReassembly::add_short(std::span<const s
   return Message{channel, body.subspan(channel.size() + 1)};
 }
 
-std::optional<LcmReassembly::Message> LcmReassembly::add_fragment(std::span<const std::byte> datagram,
-                                                                  std::uint64_t sender,
-                                                                  const std::function<bool(std::string_view)>& wanted) {
+std::optional<LcmReassembly::Message> LcmReassembly::add_fragment(
+    std::span<const std::byte> datagram, std::uint64_t sender, const std::function<bool(std::string_view)>& accepts) {
   if (datagram.size() < fragment_header_bytes) return bad();
   Fragment fragment{number_at(datagram, 4, 4),
                     number_at(datagram, 8, 4),
@@ -99,8 +98,8 @@ std::optional<LcmReassembly::Message> LcmReassembly::add_fragment(std::span<cons
   if (!continues) {
     if (fragment.number != 0) return std::nullopt;
     if (found != partial_.end()) drop(found);
-    if (wanted && !wanted(channel)) return std::nullopt;
-    found = begin_message(sender, channel, fragment);
+    if (accepts && !accepts(channel)) return std::nullopt;
+    found = start_message(sender, channel, fragment);
   }
   Partial& partial = found->second;
   partial.touched_at = datagrams_;
@@ -122,7 +121,7 @@ std::optional<LcmReassembly::Message> LcmReassembly::add_fragment(std::span<cons
   return Message{channel_, payload_};
 }
 
-LcmReassembly::Partials::iterator LcmReassembly::begin_message(std::uint64_t sender, std::string_view channel,
+LcmReassembly::Partials::iterator LcmReassembly::start_message(std::uint64_t sender, std::string_view channel,
                                                                const Fragment& fragment) {
   Partial& partial = partial_[sender];
   partial.channel = channel;

@@ -25,10 +25,10 @@ struct DatagramSender {
 };
 
 /// Makes messages of the datagrams of LCM's udpm (format of LCM 1.3.1): a message in one datagram ("LC02"), or in
-/// fragments ("LC03").  Trusts nothing that a datagram says; memory is bounded whatever comes.  No sockets, no clock.
+/// fragments ("LC03").  Validates every field of a datagram; memory is bounded for any input.  No sockets, no clock.
 ///
-/// A sender has at most one message under way; its next one ends it.  As in liblcm, fragments that come before the
-/// one that names the channel are dropped; other fragments may change places within `max_early_bytes`.  The parts of
+/// A sender has at most one message under way; its next one ends it.  As in liblcm, fragments before the one that
+/// names the channel are dropped; other fragments may be reordered within `max_early_bytes`.  The parts of
 /// the payload must follow each other without gap or overlap; a repeated fragment is ignored.
 class LcmReassembly {
  public:
@@ -51,10 +51,10 @@ class LcmReassembly {
   LcmReassembly() : LcmReassembly(Limits{}) {}
   explicit LcmReassembly(const Limits& limits) : limits_(limits) {}
 
-  /// The message that this datagram completes.  `wanted` is asked for the channel before memory is spent on a message
-  /// in fragments; empty: all are wanted.
+  /// The message that this datagram completes.  `wanted` filters by channel before memory is used for a fragmented
+  /// message; empty: accepts all.
   std::optional<Message> add(std::span<const std::byte> datagram, const DatagramSender& from,
-                             const std::function<bool(std::string_view)>& wanted = {});
+                             const std::function<bool(std::string_view)>& accepts = {});
 
   const Counts& counts() const { return counts_; }
   std::size_t partial_messages() const { return partial_.size(); }
@@ -85,13 +85,13 @@ class LcmReassembly {
 
   std::optional<Message> add_short(std::span<const std::byte> datagram);
   std::optional<Message> add_fragment(std::span<const std::byte> datagram, std::uint64_t sender,
-                                      const std::function<bool(std::string_view)>& wanted);
-  Partials::iterator begin_message(std::uint64_t sender, std::string_view channel, const Fragment& fragment);
+                                      const std::function<bool(std::string_view)>& accepts);
+  Partials::iterator start_message(std::uint64_t sender, std::string_view channel, const Fragment& fragment);
   /// False when the fragment contradicts the others of its message.
   bool append(Partial& partial, const Fragment& fragment);
   bool keep_early(Partial& partial, const Fragment& fragment);
   void drop(Partials::iterator partial);
-  /// Drops others than `keep` until the limits hold.
+  /// Drops messages other than `keep` until the limits are met.
   void make_room(std::uint64_t keep);
   std::nullopt_t bad();
 

@@ -72,7 +72,7 @@ LcmEndpoint endpoint_of(const std::string& url, const UrlParts& parts) {
   }
   in_addr address{};
   if (!tcp && (inet_pton(AF_INET, endpoint.address.c_str(), &address) != 1 || !IN_MULTICAST(ntohl(address.s_addr))))
-    refuse_url(url, "'" + endpoint.address + "' is no multicast address (224.0.0.0 to 239.255.255.255)");
+    refuse_url(url, "'" + endpoint.address + "' is not a multicast address (224.0.0.0 to 239.255.255.255)");
   for (const auto& [key, value] : parts.options) {
     if (key == "ttl") endpoint.ttl = whole_number(value).value_or(0);
     if (key == "recv_buf_size") endpoint.recv_buf_bytes = whole_number(value).value_or(0);
@@ -105,8 +105,9 @@ std::string resolve_lcm_url(const std::string& url) {
   const UrlParts parts = split_url(chosen);
   if (parts.kind == "file") refuse_url(chosen, "the simulator writes logs with --record; lcm-logplayer plays them");
   if (parts.kind == "mpudpm")
-    refuse_url(chosen,
-               "mpudpm is not supported: one datagram of anybody can crash liblcm's receiver; use udpm or tcpq");
+    refuse_url(
+        chosen,
+        "mpudpm is not supported: a single datagram from any sender can crash liblcm's receiver; use udpm or tcpq");
   if (parts.kind != "udpm" && parts.kind != "tcpq" && parts.kind != "memq")
     refuse_url(chosen, "unknown kind '" + parts.kind + "'; known kinds: memq, tcpq, udpm");
   check_options(chosen, parts);

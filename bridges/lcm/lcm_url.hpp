@@ -33,7 +33,7 @@ LcmEndpoint lcm_endpoint(const std::string& resolved_url);
 /// Throws BusError that names the URL.
 [[noreturn]] void refuse_url(const std::string& url, const std::string& what);
 
-/// Throws BusError when no LCM server answers there: liblcm would retry for ever, and then abort.
+/// Throws BusError when no LCM server answers there: liblcm would retry forever, and then abort.
 void require_tcp_server(const std::string& url, const LcmEndpoint& endpoint);
 
 }  // namespace bridges

@@ -12,8 +12,8 @@ class OwnAddresses {
  public:
   OwnAddresses();
 
-  /// Whether `address` (host byte order) is one of this machine's; all of 127.0.0.0/8 are.  For an unknown one the list
-  /// is read again, at most once a second: interfaces come and go.
+  /// Whether `address` (host byte order) is one of this machine's; all of 127.0.0.0/8 are.  For an unknown one the
+  /// list is read again, at most once a second, as interfaces change.
   bool contain(std::uint32_t address);
 
  private:

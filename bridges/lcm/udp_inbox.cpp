@@ -11,7 +11,7 @@ namespace bridges {
 namespace {
 
 /// Unwanted messages, since the subscriptions changed, that are worth a filter.
-constexpr std::uint64_t unwanted_worth_a_filter = 64;
+constexpr std::uint64_t min_unmatched_for_filter = 64;
 /// While vehicles come and go the filter would be made again and again.
 constexpr std::chrono::milliseconds quiet_before_filter{100};
 
@@ -46,17 +46,17 @@ void UdpInbox::subscriptions_changed() {
 bool UdpInbox::handle() {
   const bool more = receiver_.receive(
       [this](std::string_view channel) {
-        const bool is_wanted = wanted(channel);
-        if (!is_wanted) ++unwanted_;
-        return is_wanted;
+        const bool is_subscribed = accepts(channel);
+        if (!is_subscribed) ++unmatched_;
+        return is_subscribed;
       },
       [this](const LcmReassembly::Message& message, std::int64_t at_us) { deliver(message, at_us); });
   received_bytes_ = receiver_.counts().bytes;
-  if (unwanted_ - unwanted_before_ >= unwanted_worth_a_filter) filter_when_it_pays();
+  if (unmatched_ - unmatched_before_ >= min_unmatched_for_filter) filter_if_worthwhile();
   return more;
 }
 
-bool UdpInbox::wanted(std::string_view channel) const {
+bool UdpInbox::accepts(std::string_view channel) const {
   const std::lock_guard lock(mutex_);
   return !to_all_.empty() || by_channel_.contains(channel);
 }
@@ -68,14 +68,14 @@ void UdpInbox::deliver(const LcmReassembly::Message& message, std::int64_t recei
     if (const auto channel = by_channel_.find(message.channel); channel != by_channel_.end()) called_ = channel->second;
     called_.insert(called_.end(), to_all_.begin(), to_all_.end());
   }
-  if (called_.empty()) ++unwanted_;
+  if (called_.empty()) ++unmatched_;
   for (const Call& each : called_) each.handler({message.channel, message.payload, received_at_us}, each.user);
 }
 
-void UdpInbox::filter_when_it_pays() {
+void UdpInbox::filter_if_worthwhile() {
   const std::lock_guard lock(mutex_);
   if (filtering_ || filter_refused_ || !to_all_.empty() || Clock::now() - changed_at_ < quiet_before_filter) return;
-  unwanted_before_ = unwanted_;
+  unmatched_before_ = unmatched_;
   std::vector<std::string> channels;
   for (const auto& [channel, subscriptions] : by_channel_) channels.push_back(channel);
   auto program = channel_filter(channels);
@@ -84,7 +84,7 @@ void UdpInbox::filter_when_it_pays() {
 }
 
 UdpInbox::Counts UdpInbox::counts() const {
-  return {receiver_.counts().datagrams, receiver_.counts().foreign, receiver_.reassembly_counts().bad, unwanted_};
+  return {receiver_.counts().datagrams, receiver_.counts().foreign, receiver_.reassembly_counts().bad, unmatched_};
 }
 
 }  // namespace bridges

@@ -16,8 +16,8 @@
 
 namespace bridges {
 
-/// What one udpm connection receives, by channel.  Where many messages come that nobody here wants, it has the kernel
-/// drop them (channel_filter): on a bus the messages of others, and one's own that come back, outnumber the wanted.
+/// What one udpm connection receives, by channel.  When many messages without a subscription arrive, the kernel drops
+/// them (channel_filter): on a bus, messages for others and echoes of one's own outnumber the subscribed ones.
 class UdpInbox {
  public:
   using Handler = LcmConnection::Handler;
@@ -31,7 +31,7 @@ class UdpInbox {
   explicit UdpInbox(const UdpReceiver::Options& options) : receiver_(options) {}
 
   int fd() const { return receiver_.fd(); }
-  /// From any thread.  The address of `subscription` is what remove() knows it by.
+  /// From any thread.  remove() identifies it by the address of `subscription`.
   void add(const Subscription& subscription);
   void remove(const Subscription& subscription);
   /// Calls the handlers for one batch.  By one thread at a time.  True when there may be more.
@@ -41,7 +41,7 @@ class UdpInbox {
     std::uint64_t datagrams = 0;  ///< that the kernel let pass
     std::uint64_t foreign = 0;    ///< of other machines, dropped
     std::uint64_t bad = 0;        ///< not LCM's, or breaking its format
-    std::uint64_t unwanted = 0;   ///< messages on channels without subscription
+    std::uint64_t unmatched = 0;  ///< messages on channels without subscription
   };
   /// By the thread that handles.
   Counts counts() const;
@@ -57,9 +57,9 @@ class UdpInbox {
     Handler handler;
     void* user;
   };
-  bool wanted(std::string_view channel) const;
+  bool accepts(std::string_view channel) const;
   void deliver(const LcmReassembly::Message& message, std::int64_t received_at_us);
-  void filter_when_it_pays();
+  void filter_if_worthwhile();
   void subscriptions_changed();
 
   UdpReceiver receiver_;
@@ -71,7 +71,7 @@ class UdpInbox {
   Clock::time_point changed_at_;
   std::atomic<std::uint64_t> received_bytes_ = 0;
   std::vector<Call> called_;  // by the thread that handles
-  std::uint64_t unwanted_ = 0, unwanted_before_ = 0;
+  std::uint64_t unmatched_ = 0, unmatched_before_ = 0;
 };
 
 }  // namespace bridges

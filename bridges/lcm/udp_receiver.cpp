@@ -34,7 +34,7 @@ FileDescriptor open_socket(const UdpReceiver::Options& options) {
   if (fd < 0) fail_with_errno("no socket can be opened");
   // lcm-spy, lcm-logger and other runs use the same port.
   set_option(fd, SOL_SOCKET, SO_REUSEADDR, 1, "the port cannot be shared");
-  set_option(fd, SOL_SOCKET, SO_TIMESTAMP, 1, "the kernel does not stamp messages");
+  set_option(fd, SOL_SOCKET, SO_TIMESTAMP, 1, "the kernel provides no timestamps for messages");
   if (options.buffer_bytes > 0)
     set_option(fd, SOL_SOCKET, SO_RCVBUF, options.buffer_bytes, "the receive buffer cannot be set");
   sockaddr_in address{};
@@ -107,7 +107,7 @@ UdpReceiver::UdpReceiver(const Options& options)
       socket_(open_socket(options)),
       batch_(new Batch) {}
 
-bool UdpReceiver::receive(const Wanted& wanted, const Sink& sink) {
+bool UdpReceiver::receive(const Accepts& accepts, const Sink& sink) {
   batch_->prepare();
   const int count = recvmmsg(fd(), batch_->headers.data(), max_batch, MSG_DONTWAIT, nullptr);
   if (count <= 0) return false;
@@ -122,7 +122,7 @@ bool UdpReceiver::receive(const Wanted& wanted, const Sink& sink) {
       continue;
     }
     const auto* data = static_cast<const std::byte*>(batch_->parts[i].iov_base);
-    if (const auto message = reassembly_.add({data, header.msg_len}, from, wanted))
+    if (const auto message = reassembly_.add({data, header.msg_len}, from, accepts))
       sink(*message, received_at_us(header.msg_hdr));
   }
   return received == max_batch;

@@ -27,7 +27,7 @@ class UdpReceiver {
     int buffer_bytes = 0;           ///< of the kernel, which may grant less; 0: its default
     bool this_machine_only = true;  ///< drop what other machines send
   };
-  using Wanted = std::function<bool(std::string_view channel)>;
+  using Accepts = std::function<bool(std::string_view channel)>;
   /// `received_at_us`: wall clock when the kernel got the last datagram of it, in microseconds since 1970.
   using Sink = std::function<void(const LcmReassembly::Message&, std::int64_t received_at_us)>;
 
@@ -38,11 +38,11 @@ class UdpReceiver {
 
   /// Readable when receive() has something.
   int fd() const { return socket_.number(); }
-  /// Takes at most `max_batch` datagrams of those that have come, without waiting, and gives whole messages to `sink`.
-  /// `wanted` is asked for the channel of messages in several datagrams.  True when there may be more.
-  bool receive(const Wanted& wanted, const Sink& sink);
-  /// Lets the kernel drop what `program` (classic BPF) rejects; empty: nothing.  False when the kernel does not take
-  /// it; then it drops nothing.
+  /// Receives at most `max_batch` datagrams without waiting, and passes complete messages to `sink`.
+  /// `wanted` filters fragmented messages by channel.  True when there may be more.
+  bool receive(const Accepts& accepts, const Sink& sink);
+  /// Lets the kernel drop what `program` (classic BPF) rejects; empty: nothing.  False when the kernel rejects it;
+  /// then nothing is dropped.
   bool set_filter(std::vector<sock_filter> program);
 
   struct Counts {

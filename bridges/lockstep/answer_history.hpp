@@ -13,10 +13,10 @@ namespace bridges {
 /// The last answers of one client, to find two different ones to one tick.
 class AnswerHistory {
  public:
-  /// More than a client can be behind whose ticks somebody else answers.
+  /// More than the lag of a client whose ticks another program answers.
   static constexpr std::size_t max_answers = 64;
 
-  /// Says how an answer differs from the first one to its tick; nothing when it is the first, or the same.  `utime`
+  /// Describes how an answer differs from the first one to its tick; nothing when it is the first, or equal.  `utime`
   /// does not count.
   std::optional<std::string> add(const shoal::sim_ack_t& ack);
   /// The world went back: a client without session may answer the same step again.

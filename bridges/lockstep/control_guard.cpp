@@ -48,7 +48,7 @@ std::string ControlGuard::refusal_of(const SignedMessage& message, std::string_v
   came_before = last != sender.counters.end() && counter <= last->second;
   if (came_before)
     return "its counter " + std::to_string(counter) + " is not above the last one, " + std::to_string(last->second) +
-           ": it was sent before, and came once more";
+           ": it was sent before, and was received again";
   sender.counters.insert_or_assign(std::string(channel), counter);
   by_age_.splice(by_age_.end(), by_age_, sender.place);
   return "";

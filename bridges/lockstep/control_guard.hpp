@@ -17,23 +17,24 @@ namespace bridges {
 
 /// How a message is refused that must be signed and is not.
 inline constexpr const char* needs_key_text =
-    "this run is controlled with its key only: use --run DIR, or set SHOAL_RUN_KEY; see docs/guides/access_control.md";
+    "this run can only be controlled with its key: use --run DIR, or set SHOAL_RUN_KEY; see "
+    "docs/guides/access_control.md";
 
-/// Stands where the simulator takes what controls a run from the buses: takes signed messages out of their envelopes,
-/// and when the run has a key, checks who sent them.  One for all buses of a run: a message is taken once, whichever
-/// bus it comes on first.  Not part of the state of the world: a rewind must not make a captured message valid again.
+/// Entry point of the messages that control a run: unwraps signed messages, and verifies their senders when the run
+/// has a key.  One for all buses of a run: a message is accepted once, from the bus on which it arrives first.
+///   Not part of the state of the world: a rewind must not make a captured message valid again.
 class ControlGuard {
  public:
   struct Opened {
     sim::Bytes content;        ///< the message itself
     std::string signer;        ///< who sent it, with the key of the run; empty: not signed, or not checked
-    std::string refusal;       ///< why it must not be obeyed; empty: it may
-    bool came_before = false;  ///< refused as one that was sent again, by somebody or by the network
+    std::string refusal;       ///< why it must not be executed; empty: it may
+    bool came_before = false;  ///< rejected as a repetition, by a sender or the network
   };
-  /// Senders whose counters are kept; the one that was heard the longest time ago makes room.
+  /// Senders whose counters are kept; the least recently seen one is replaced.
   static constexpr std::size_t max_senders = 10'000;
 
-  /// From now on only messages that are signed with this key are to be obeyed.
+  /// From now on only messages that are signed with this key are to be executed.
   void require(const RunKey& key) { key_ = key; }
   bool requires_key() const { return key_.has_value(); }
 
@@ -53,7 +54,7 @@ class ControlGuard {
 
   std::optional<RunKey> key_;
   std::map<Name, Sender> senders_;
-  std::list<Name> by_age_;  // heard the longest time ago first
+  std::list<Name> by_age_;  // received the longest time ago first
   std::int64_t floor_ = 0;  // no sender that made room had a greater counter
 };
 

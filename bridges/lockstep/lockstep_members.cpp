@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "bridges/lockstep/lockstep_line.hpp"
+#include "bridges/lockstep/lockstep_link.hpp"
 #include "bridges/lockstep_client/resend.hpp"
 #include "shoal/sim_control_reply_t.hpp"
 #include "sim/config/message_text.hpp"
@@ -18,7 +18,7 @@ namespace {
 
 /// After this the world takes another client of the same name.
 constexpr std::chrono::seconds alive_for{1};
-constexpr std::size_t most_ended_sessions = 1000;
+constexpr std::size_t max_ended_sessions = 1000;
 /// How the summary calls the end of a client that asked for it.
 constexpr const char* left = "left";
 
@@ -36,7 +36,7 @@ std::string LockstepService::names() const {
   return names;
 }
 
-bool LockstepService::join(int line, const shoal::sim_control_request_t& request) {
+bool LockstepService::join(int link, const shoal::sim_control_request_t& request) {
   if (request.client.empty() || request.client.size() > 60)
     throw std::runtime_error("'join' needs a client name of 1 to 60 characters");
   const double steps = request.value * 1e6 / static_cast<double>(world_.step_time().count());
@@ -50,16 +50,16 @@ bool LockstepService::join(int line, const shoal::sim_control_request_t& request
   check_session(request.client, terms.session);
   const sim::LockstepMember* first = lockstep_.find(request.client);
   // A request acts on its own bus only.
-  if (first && first->line != line && !first->gone)
-    throw std::runtime_error("a client '" + request.client + "' takes part on " + line_of(first->line).called +
-                             "; give this one on " + line_of(line).called + " another name");
-  if (first && (first->terms.session != terms.session || first->line != line)) {
+  if (first && first->link != link && !first->removed)
+    throw std::runtime_error("a client '" + request.client + "' already takes part on " + link_of(first->link).called +
+                             "; give the one on " + link_of(link).called + " another name");
+  if (first && (first->terms.session != terms.session || first->link != link)) {
     if (!may_join(*first, terms)) return false;
-    forget(request.client, "another client of its name took its place");
+    discard(request.client, "another client of the same name replaced it");
   }
   if (!lockstep_.has(request.client) && lockstep_.members().size() >= 1000)
-    throw std::runtime_error("1000 clients have joined; there is room for no more");
-  lockstep_.join(request.client, terms, period_steps, world_.step_number(), line);
+    throw std::runtime_error("1000 clients have joined, which is the maximum");
+  lockstep_.join(request.client, terms, period_steps, world_.step_number(), link);
   challenges_.erase(request.client);
   dropped_.erase(request.client);
   join_ids_[request.client] = request.id;
@@ -85,33 +85,33 @@ void LockstepService::check_session(const std::string& client, std::int64_t sess
 
 /// The other of that name may have died a moment ago; it can show that it lives.
 bool LockstepService::may_join(const sim::LockstepMember& first, const sim::LockstepTerms& terms) {
-  if (first.gone) return true;
+  if (first.removed) return true;
   const std::string name = first.name;
   const Clock::time_point now = Clock::now();
   take_messages();  // what it said before it was asked tells nothing
   const auto [entry, fresh] = challenges_.try_emplace(name);
   Challenge& challenge = entry->second;
   if (fresh || now - challenge.ask_at > 5 * alive_for) challenge = {now, now, false};
-  if (challenge.lives) {
+  if (challenge.is_alive) {
     challenges_.erase(name);
-    throw std::runtime_error("another client of the name '" + name + "' takes part, and answers" +
+    throw std::runtime_error("another client named '" + name + "' takes part and is responding" +
                              (terms.session == 0 ? "" : "; give this one another name"));
   }
-  const auto asked = asked_.find(name);
-  const bool at_work = asked != asked_.end() && !first.answered;
-  if (at_work) return now - asked->second.since > alive_for;
+  const auto requested = pending_.find(name);
+  const bool at_work = requested != pending_.end() && !first.answered;
+  if (at_work) return now - requested->second.since > alive_for;
   // While the world runs its next tick will show; a program may be busy between its ticks.
   if (control_.paused && now - challenge.since > alive_for) return true;
   if (now >= challenge.ask_at) {
     challenge.ask_at = now + first_resend_interval;
-    ask_whether_it_lives(first);
+    probe_client(first);
   }
   return false;
 }
 
-bool LockstepService::has(const std::string& client, int line) const {
+bool LockstepService::has(const std::string& client, int link) const {
   const auto member = lockstep_.members().find(client);
-  return member != lockstep_.members().end() && member->second.line == line;
+  return member != lockstep_.members().end() && member->second.link == link;
 }
 
 bool LockstepService::has_left(const std::string& client) const {
@@ -119,82 +119,82 @@ bool LockstepService::has_left(const std::string& client) const {
   return !lockstep_.has(client) && summary != summaries_.end() && summary->second.ended == left;
 }
 
-bool LockstepService::leave(int line, const shoal::sim_control_request_t& request) {
+bool LockstepService::leave(int link, const shoal::sim_control_request_t& request) {
   const std::string called = "client '" + sim::printable(sim::shortened(request.client)) + "'";
   const sim::LeaveTerms terms = sim::read_leave_terms(request.text);
   const sim::LockstepMember* member = lockstep_.find(request.client);
   if (member == nullptr && is_over(request.client, terms.session))
     return true;  // it asks again: the answer was lost, or is on its way
   if (member == nullptr)
-    throw std::runtime_error("no client of the name '" + sim::shortened(request.client) + "' has joined");
-  if (member->line != line)
-    throw std::runtime_error("the " + called + " takes part on " + line_of(member->line).called + "; a request on " +
-                             line_of(line).called + " does not act there");
+    throw std::runtime_error("no client named '" + sim::shortened(request.client) + "' has joined");
+  if (member->link != link)
+    throw std::runtime_error("the " + called + " takes part on " + link_of(member->link).called + "; a request on " +
+                             link_of(link).called + " does not affect it");
   if (terms.session != 0 && terms.session != member->terms.session)
-    throw std::runtime_error("the client '" + member->name + "' that has joined is another one");
+    throw std::runtime_error("the client '" + member->name + "' that joined is a different one");
   if (terms.acknowledged > member->sequence)
     throw std::runtime_error("the client '" + member->name + "' leaves after tick " +
-                             std::to_string(terms.acknowledged) + ", which it was not sent");
+                             std::to_string(terms.acknowledged) + ", which was not sent to it");
   // What it said before it leaves counts, if it takes a while to arrive.  It does not answer ticks that come later.
   const bool answered = member->answered || (terms.acknowledged >= 0 && terms.acknowledged < member->sequence);
-  const bool complete = line_of(member->line).mail.is_complete(member->name);
+  const bool complete = link_of(member->link).messages.is_complete(member->name);
   if (terms.session != 0 && !(answered && complete)) return false;
-  tell_who_left(*member, line, terms);
-  forget(request.client, left);
+  report_who_left(*member, link, terms);
+  discard(request.client, left);
   return true;
 }
 
-void LockstepService::tell_who_left(const sim::LockstepMember& member, int line, const sim::LeaveTerms& terms) {
-  constexpr int most_told = 100;
-  if (++told_left_ > most_told) return;
+void LockstepService::report_who_left(const sim::LockstepMember& member, int link, const sim::LeaveTerms& terms) {
+  constexpr int max_reports = 100;
+  if (++reported_left_ > max_reports) return;
   const std::string called = "client '" + sim::printable(member.name) + "'";
-  const std::string at = " at " + seconds_text(world_.now()) + " on " + line_of(line).called;
-  const std::string more = told_left_ == most_told ? " (no more of these are told)" : "";
+  const std::string at = " at " + seconds_text(world_.now()) + " on " + link_of(link).called;
+  const std::string more = reported_left_ == max_reports ? " (further ones are not reported)" : "";
   if (terms.session == 0 && member.terms.session != 0)
-    spdlog::warn("lockstep: a request without its session{} let go of {}; the world goes on without it{}", at, called,
+    spdlog::warn("lockstep: a request without its session{} released {}; the world continues without it{}", at, called,
                  more);
   else
     spdlog::info("lockstep: {} left{}{}", called, at, more);
 }
 
-void LockstepService::follow(int line, const shoal::sim_control_request_t& request) {
-  constexpr std::size_t most_followers = 1000;
+void LockstepService::follow(int link, const shoal::sim_control_request_t& request) {
+  constexpr std::size_t max_followers = 1000;
   if (request.client.empty() || request.client.size() > 60)
     throw std::runtime_error("'follow' needs a client name of 1 to 60 characters");
   const std::int64_t session = sim::read_follow_terms(request.text).session;
   if (session == 0) throw std::runtime_error("'follow' needs a 'session' from 1 on");
   const auto known = std::find_if(followers_.begin(), followers_.end(), [&](const Follower& each) {
-    return each.name == request.client && each.session == session && each.line == line;
+    return each.name == request.client && each.session == session && each.link == link;
   });
   if (known != followers_.end()) return;
-  followers_.push_back({request.client, session, line});
-  if (followers_.size() > most_followers) followers_.pop_front();
+  followers_.push_back({request.client, session, link});
+  if (followers_.size() > max_followers) followers_.pop_front();
 }
 
 std::string LockstepService::what_is_missing(const sim::LockstepMember& member) {
-  return "client '" + member.name + "' acknowledged step " + std::to_string(member.asked) + ", but " +
-         line_of(member.line).mail.missing_text(member.name);
+  return "client '" + member.name + "' acknowledged step " + std::to_string(member.requested) + ", but " +
+         link_of(member.link).messages.missing_text(member.name);
 }
 
-void LockstepService::client_gone(const std::string& client) {
+void LockstepService::client_exited(const std::string& client) {
   sim::LockstepMember* member = lockstep_.find(client);
-  if (member == nullptr || member->gone) return;
-  if (!member->terms.agreed) return forget(client, "its process ended");
-  member->gone = true;
+  if (member == nullptr || member->removed) return;
+  if (!member->terms.agreed) return discard(client, "its process ended");
+  member->removed = true;
   summary_of(client).ended = "its process ended";
 }
 
-void LockstepService::forget(const std::string& client, const std::string& why) {
+void LockstepService::discard(const std::string& client, const std::string& why) {
   if (const sim::LockstepMember* member = lockstep_.find(client)) {
-    Line& line = line_of(member->line);
-    line.mail.give_up(client);
+    Link& link = link_of(member->link);
+    link.messages.give_up(client);
     if (member->terms.session != 0) {
       ended_.emplace_back(client, member->terms.session);
-      if (ended_.size() > most_ended_sessions) ended_.pop_front();
+      if (ended_.size() > max_ended_sessions) ended_.pop_front();
     }
   }
   lockstep_.leave(client);
-  asked_.erase(client);
+  pending_.erase(client);
   join_ids_.erase(client);
   challenges_.erase(client);
   answers_.erase(client);
@@ -205,14 +205,14 @@ void LockstepService::forget(const std::string& client, const std::string& why) 
 void LockstepService::drop(const std::string& client, const std::string& why) {
   const sim::LockstepMember* member = lockstep_.find(client);
   if (member == nullptr) return;
-  spdlog::warn("lockstep: {}; the world goes on without it", why);
+  spdlog::warn("lockstep: {}; the world continues without it", why);
   if (dropped_.size() < 1000)
-    dropped_[client] = {member->terms.session, join_ids_[client], member->line,
-                        why + "; the world went on without it: join again"};
-  forget(client, why);
+    dropped_[client] = {member->terms.session, join_ids_[client], member->link,
+                        why + "; the world continued without it: join again"};
+  discard(client, why);
 }
 
-void LockstepService::tell_dropped(const Dropped& dropped, const std::string& client) {
+void LockstepService::notify_dropped(const Dropped& dropped, const std::string& client) {
   shoal::sim_control_reply_t reply;
   reply.utime = utime();
   reply.id = dropped.join_id;
@@ -220,7 +220,7 @@ void LockstepService::tell_dropped(const Dropped& dropped, const std::string& cl
   reply.session = dropped.session;
   reply.ok = false;
   reply.text = dropped.why;
-  line_of(dropped.line).publish("sim.control.reply", reply, world_.now());
+  link_of(dropped.link).publish("sim.control.reply", reply, world_.now());
 }
 
 }  // namespace bridges

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <spdlog/spdlog.h>
 
-#include "bridges/lockstep/lockstep_line.hpp"
+#include "bridges/lockstep/lockstep_link.hpp"
 #include "bridges/lockstep_client/resend.hpp"
 #include "shoal/sim_ack_t.hpp"
 #include "shoal/sim_resend_t.hpp"
@@ -17,11 +17,11 @@ using std::chrono::milliseconds;
 namespace {
 
 /// Messages of a kind that are looked at before the world looks at something else.
-constexpr int most_at_once = 1000;
+constexpr int max_at_once = 1000;
 
 template <typename Take>
-void take_up_to(int most, sim::Mailbox& mailbox, Take&& take) {
-  for (int taken = 0; taken < most; ++taken) {
+void take_up_to(int max, sim::Mailbox& mailbox, Take&& take) {
+  for (int taken = 0; taken < max; ++taken) {
     const auto message = mailbox.take();
     if (!message) return;
     take(*message);
@@ -49,7 +49,7 @@ shoal::sim_due_t due_of(const sim::LockstepMember& member) {
 }  // namespace
 
 void LockstepService::publish_tick(const std::vector<std::string>& clients, bool last) {
-  for (std::size_t i = 0; i < lines_.size(); ++i) {
+  for (std::size_t i = 0; i < links_.size(); ++i) {
     shoal::sim_tick_t tick;
     tick.utime = utime();
     tick.step = world_.step_number();
@@ -57,11 +57,11 @@ void LockstepService::publish_tick(const std::vector<std::string>& clients, bool
     tick.last = last;
     for (const std::string& client : clients) {
       const sim::LockstepMember* member = lockstep_.find(client);
-      if (member == nullptr || member->line != static_cast<int>(i)) continue;
+      if (member == nullptr || member->link != static_cast<int>(i)) continue;
       tick.client.push_back(due_of(*member));
     }
     for (const Follower& follower : followers_)
-      if (last && follower.line == static_cast<int>(i)) {
+      if (last && follower.link == static_cast<int>(i)) {
         shoal::sim_due_t& due = tick.client.emplace_back();
         due.name = follower.name;
         due.session = follower.session;
@@ -69,7 +69,7 @@ void LockstepService::publish_tick(const std::vector<std::string>& clients, bool
         due.count = 0;
       }
     tick.count = static_cast<std::int32_t>(tick.client.size());
-    if (tick.count > 0 || last) lines_[i]->publish("sim.tick", tick, world_.now());
+    if (tick.count > 0 || last) links_[i]->publish("sim.tick", tick, world_.now());
   }
 }
 
@@ -82,22 +82,22 @@ void LockstepService::publish_left_tick(const sim::LockstepMember& member) {
   tick.last = false;
   tick.client.push_back(due_of(member));
   tick.count = 1;
-  line_of(member.line).publish("sim.tick", tick, world_.now());
+  link_of(member.link).publish("sim.tick", tick, world_.now());
 }
 
 /// Its last tick once more, or one with sequence 0: it answers both, and does nothing else.
-void LockstepService::ask_whether_it_lives(const sim::LockstepMember& member) {
-  Line& line = line_of(member.line);
+void LockstepService::probe_client(const sim::LockstepMember& member) {
+  Link& link = link_of(member.link);
   if (!member.answered) {
     if (member.abandoned)
       publish_left_tick(member);
     else
       publish_tick({member.name}, false);
-    return line.network.end_of_step();
+    return link.network.end_of_step();
   }
   shoal::sim_tick_t tick;
   tick.utime = utime();
-  tick.step = member.asked;
+  tick.step = member.requested;
   tick.branch = branch_;
   tick.last = false;
   shoal::sim_due_t& due = tick.client.emplace_back();
@@ -106,46 +106,46 @@ void LockstepService::ask_whether_it_lives(const sim::LockstepMember& member) {
   due.sequence = member.sequence;
   due.count = 0;
   tick.count = 1;
-  line.publish("sim.tick", tick, world_.now());
-  line.network.end_of_step();
+  link.publish("sim.tick", tick, world_.now());
+  link.network.end_of_step();
 }
 
-void LockstepService::ask_client(const sim::LockstepMember& member) {
-  Line& line = line_of(member.line);
+void LockstepService::request_from_client(const sim::LockstepMember& member) {
+  Link& link = link_of(member.link);
   shoal::sim_resend_t question;
   question.utime = utime();
   question.client = member.name;
   question.session = member.terms.session;
   question.sequence = member.sequence;
   question.of_client = true;
-  question.first = line.mail.first_missing(member.name);
-  line.publish("sim.resend", question, world_.now());
+  question.first = link.messages.first_missing(member.name);
+  link.publish("sim.resend", question, world_.now());
 }
 
 void LockstepService::take_messages() {
-  for (std::size_t i = 0; i < lines_.size(); ++i) {
-    Line& line = *lines_[i];
-    if (!lockstep_.empty()) line.mail.collect();
-    take_up_to(most_at_once, *line.acks, [&](const sim::Message& ack) { take_ack(static_cast<int>(i), ack); });
-    take_up_to(most_at_once, *line.questions,
-               [&](const sim::Message& question) { take_question(static_cast<int>(i), question); });
-    take_up_to(most_at_once, *line.bundles,
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    Link& link = *links_[i];
+    if (!lockstep_.empty()) link.messages.collect();
+    take_up_to(max_at_once, *link.acks, [&](const sim::Message& ack) { take_ack(static_cast<int>(i), ack); });
+    take_up_to(max_at_once, *link.questions,
+               [&](const sim::Message& question) { take_request(static_cast<int>(i), question); });
+    take_up_to(max_at_once, *link.bundles,
                [&](const sim::Message& bundle) { take_bundle(static_cast<int>(i), bundle); });
-    for (const auto& mailbox : line.passed_on)
+    for (const auto& mailbox : link.passed_on)
       while (mailbox->take()) {
       }
   }
 }
 
-void LockstepService::check_line(int line, const std::string& client, const char* does) const {
+void LockstepService::check_link(int link, const std::string& client, const char* does) const {
   const auto& members = lockstep_.members();
   const auto member = members.find(client);
-  if (member == members.end() || member->second.line == line) return;
-  throw std::runtime_error("client '" + client + "' " + does + " on " + line_of(line).called + ", but takes part on " +
-                           line_of(member->second.line).called);
+  if (member == members.end() || member->second.link == link) return;
+  throw std::runtime_error("client '" + client + "' " + does + " on " + link_of(link).called + ", but takes part on " +
+                           link_of(member->second.link).called);
 }
 
-void LockstepService::take_ack(int line_index, const sim::Message& message) {
+void LockstepService::take_ack(int link_index, const sim::Message& message) {
   std::string who;
   try {
     const ControlGuard::Opened opened = guard_.open(message.channel, message.payload);
@@ -153,52 +153,52 @@ void LockstepService::take_ack(int line_index, const sim::Message& message) {
     const auto ack = shoal::decode<shoal::sim_ack_t>(opened.content, shoal::Finite::any);
     who = ack.client.substr(0, 60);
     check_permission(ack.client, "acknowledges a tick", opened);
-    if (ack.channel.size() > sim::most_named_messages)
+    if (ack.channel.size() > sim::max_named_messages)
       throw std::runtime_error("client '" + ack.client + "' names " + std::to_string(ack.channel.size()) +
-                               " messages; at most " + std::to_string(sim::most_named_messages) + " are allowed");
-    check_line(line_index, ack.client, "acknowledges a tick");
+                               " messages; at most " + std::to_string(sim::max_named_messages) + " are allowed");
+    check_link(link_index, ack.client, "acknowledges a tick");
     std::string why;
     const auto verdict =
         lockstep_.acknowledge({ack.client, ack.step, ack.session, ack.sequence}, world_.step_number(), why);
     if (verdict == sim::Lockstep::Verdict::refused) {
       if (const auto dropped = dropped_.find(ack.client);
           dropped != dropped_.end() && dropped->second.session == ack.session && !lockstep_.has(ack.client))
-        tell_dropped(dropped->second, ack.client);
+        notify_dropped(dropped->second, ack.client);
       else if (is_over(ack.client, ack.session))
         return;  // its last answer, sent again while it left
       throw std::runtime_error(why);
     }
-    if (heard_ && line_index == 0) heard_(ack.client);
+    if (on_answer_ && link_index == 0) on_answer_(ack.client);
     if (const auto challenge = challenges_.find(ack.client); challenge != challenges_.end())
-      challenge->second.lives = true;
+      challenge->second.is_alive = true;
     compare_answers(ack, opened.signer);
     if (verdict == sim::Lockstep::Verdict::repeated) return;
     sim::LockstepMember& member = *lockstep_.find(ack.client);
-    Line& line = line_of(member.line);
+    Link& link = link_of(member.link);
     std::vector<sim::NamedMessage> named;
     for (std::size_t i = 0; i < ack.channel.size(); ++i)
       named.push_back({ack.channel[i], static_cast<std::uint32_t>(ack.crc[i])});
     if (verdict == sim::Lockstep::Verdict::abandoned) {
-      line.mail.collect();  // what came before this answer
-      asked_.erase(ack.client);
+      link.messages.collect();  // what came before this answer
+      pending_.erase(ack.client);
       if (ack.listed)
-        line.mail.drop(ack.client, named);
+        link.messages.drop(ack.client, named);
       else
-        line.mail.drop_unnamed();
+        link.messages.drop_unnamed();
       return;
     }
     if (!ack.listed) return;
     for (const std::string& channel : ack.channel)
-      if (!line.gate.reads(channel) && lockstep_.somebody_receives(line_index, channel) && !channel.empty() &&
+      if (!link.gate.reads(channel) && lockstep_.has_receiver(link_index, channel) && !channel.empty() &&
           channel.size() <= sim::Bus::max_channel_length)
-        line.passed_on.push_back(line.gate.open_mailbox(channel));
-    line.mail.collect();  // what came before this answer, also since the mail was looked at
-    line.mail.expect(ack.client, named);
-    Asked& asked = asked_[ack.client];
-    asked.send_at = Clock::now() + resend_grace;
-    asked.interval = first_resend_interval;
+        link.passed_on.push_back(link.gate.open_mailbox(channel));
+    link.messages.collect();  // what came before this answer, also since the messages were collected
+    link.messages.expect(ack.client, named);
+    Pending& requested = pending_[ack.client];
+    requested.send_at = Clock::now() + resend_grace;
+    requested.interval = first_resend_interval;
   } catch (const std::runtime_error& error) {
-    complain(who, std::string("sim.ack: ") + error.what());
+    warn_client(who, std::string("sim.ack: ") + error.what());
   }
 }
 
@@ -210,12 +210,14 @@ void LockstepService::compare_answers(const shoal::sim_ack_t& ack, const std::st
   const std::string text = "client '" + ack.client + "' gave two different answers to the tick of step " +
                            std::to_string(ack.step) + ": " + *difference;
   if (++summary.contradictions == 1)
-    spdlog::warn("lockstep: {}; another program answers in its name (the first answer counts; more are only counted)",
-                 sim::shortened(sim::printable(text), 300));
+    spdlog::warn(
+        "lockstep: {}; another program answers under its name (the first answer is used; further ones are only "
+        "counted)",
+        sim::shortened(sim::printable(text), 300));
   if (contradiction_) contradiction_(ack.client, signer, text);
 }
 
-void LockstepService::take_question(int line_index, const sim::Message& message) {
+void LockstepService::take_request(int link_index, const sim::Message& message) {
   std::string who;
   try {
     const ControlGuard::Opened opened = guard_.open(message.channel, message.payload);
@@ -223,28 +225,28 @@ void LockstepService::take_question(int line_index, const sim::Message& message)
     const auto question = shoal::decode<shoal::sim_resend_t>(opened.content, shoal::Finite::any);
     if (question.of_client) return;  // our own
     who = question.client.substr(0, 60);
-    check_permission(question.client, "asks for messages", opened);
-    check_line(line_index, question.client, "asks for messages");
+    check_permission(question.client, "requests messages", opened);
+    check_link(link_index, question.client, "requests messages");
     const sim::LockstepMember* member = lockstep_.find(question.client);
     if (is_over(question.client, question.session)) return;
     if (member == nullptr || member->terms.session != question.session)
-      throw std::runtime_error("client '" + question.client + "' asks for messages, but takes no part in the lockstep");
+      throw std::runtime_error("client '" + question.client + "' requests messages, but is not a lockstep client");
     if (question.sequence != member->sequence || member->answered) return;  // late
     if (question.first < 0 || static_cast<std::size_t>(question.first) >= member->list.size())
-      throw std::runtime_error("client '" + question.client + "' asks for message " + std::to_string(question.first) +
+      throw std::runtime_error("client '" + question.client + "' requests message " + std::to_string(question.first) +
                                " of " + std::to_string(member->list.size()));
-    const auto asked = asked_.find(question.client);
+    const auto requested = pending_.find(question.client);
     // What is on its way need not go out twice.
-    if (asked == asked_.end() || Clock::now() < asked->second.serve_after) return;
-    asked->second.serve_after = Clock::now() + milliseconds(5);
+    if (requested == pending_.end() || Clock::now() < requested->second.serve_after) return;
+    requested->second.serve_after = Clock::now() + milliseconds(5);
     send_again(*member, question.first);
   } catch (const std::runtime_error& error) {
-    complain(who, std::string("sim.resend: ") + error.what());
+    warn_client(who, std::string("sim.resend: ") + error.what());
   }
 }
 
 void LockstepService::send_again(const sim::LockstepMember& member, std::int32_t first) {
-  Line& line = line_of(member.line);
+  Link& link = link_of(member.link);
   shoal::sim_resent_t head;
   head.utime = utime();
   head.client = member.name;
@@ -259,11 +261,11 @@ void LockstepService::send_again(const sim::LockstepMember& member, std::int32_t
       },
       [&](const shoal::sim_resent_t& bundle) {
         summary_of(member.name).messages_sent_again += bundle.count;
-        line.publish("sim.resent", bundle, world_.now());
+        link.publish("sim.resent", bundle, world_.now());
       });
 }
 
-void LockstepService::take_bundle(int line_index, const sim::Message& message) {
+void LockstepService::take_bundle(int link_index, const sim::Message& message) {
   std::string who;
   try {
     const ControlGuard::Opened opened = guard_.open(message.channel, message.payload);
@@ -272,25 +274,24 @@ void LockstepService::take_bundle(int line_index, const sim::Message& message) {
     if (!bundle.of_client) return;  // our own
     who = bundle.client.substr(0, 60);
     check_permission(bundle.client, "sends messages again", opened);
-    check_line(line_index, bundle.client, "sends messages again");
+    check_link(link_index, bundle.client, "sends messages again");
     const sim::LockstepMember* member = lockstep_.find(bundle.client);
     if (is_over(bundle.client, bundle.session)) return;
     if (member == nullptr || member->terms.session != bundle.session)
-      throw std::runtime_error("client '" + bundle.client +
-                               "' sends messages again, but takes no part in the lockstep");
+      throw std::runtime_error("client '" + bundle.client + "' sends messages again, but is not a lockstep client");
     if (bundle.sequence != member->sequence || !member->answered) return;  // late
-    Line& line = line_of(member->line);
+    Link& link = link_of(member->link);
     for (std::size_t i = 0; i < bundle.message.size(); ++i) {
       const auto bytes = bytes_of(bundle.message[i]);
       ++summary_of(bundle.client).messages_asked_for;
-      if (!line.mail.add(bundle.client, bundle.first + static_cast<std::int32_t>(i), bundle.message[i].channel,
-                         {bytes.begin(), bytes.end()}))
+      if (!link.messages.add(bundle.client, bundle.first + static_cast<std::int32_t>(i), bundle.message[i].channel,
+                             {bytes.begin(), bytes.end()}))
         throw std::runtime_error("client '" + bundle.client + "' " +
-                                 line.mail.why_not(bundle.client, bundle.first + static_cast<std::int32_t>(i),
-                                                   bundle.message[i].channel, {bytes.begin(), bytes.end()}));
+                                 link.messages.why_not(bundle.client, bundle.first + static_cast<std::int32_t>(i),
+                                                       bundle.message[i].channel, {bytes.begin(), bytes.end()}));
     }
   } catch (const std::runtime_error& error) {
-    complain(who, std::string("sim.resent: ") + error.what());
+    warn_client(who, std::string("sim.resent: ") + error.what());
   }
 }
 

@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <utility>
 
-#include "bridges/lockstep/lockstep_line.hpp"
+#include "bridges/lockstep/lockstep_link.hpp"
 #include "bridges/lockstep_client/resend.hpp"
 #include "sim/config/message_text.hpp"
 
@@ -18,16 +18,16 @@ using std::chrono::milliseconds;
 namespace {
 
 /// Of clients; at most 1000 of them take part at the same time.
-constexpr std::size_t most_summaries = 2000;
-/// Of sim::ClientMail.
-constexpr milliseconds mail_window{50};
+constexpr std::size_t max_summaries = 2000;
+/// Of sim::ClientMessages.
+constexpr milliseconds delivery_window{50};
 
 }  // namespace
 
 LockstepService::LockstepService(sim::World& world, sim::RunControl& control, const std::vector<LockstepBus>& buses,
-                                 bool posts_mail)
-    : world_(world), control_(control), posts_mail_(posts_mail) {
-  for (const LockstepBus& bus : buses) add_line(bus);
+                                 bool posts_messages)
+    : world_(world), control_(control), posts_messages_(posts_messages) {
+  for (const LockstepBus& bus : buses) add_link(bus);
   const sim::LockstepConfig& config = world.config().lockstep;
   defaults_.on_timeout = config.on_timeout;
   defaults_.timeout_s = config.timeout_s;
@@ -35,44 +35,44 @@ LockstepService::LockstepService(sim::World& world, sim::RunControl& control, co
 }
 
 LockstepService::~LockstepService() {
-  for (const auto& line : lines_) {
-    line->gate.set_watch({});
-    line->gate.set_order({});
+  for (const auto& link : links_) {
+    link->gate.set_watch({});
+    link->gate.set_order({});
   }
 }
 
-void LockstepService::add_line(const LockstepBus& bus) {
-  const int index = static_cast<int>(lines_.size());
-  lines_.push_back(std::make_unique<Line>(bus.network, bus.gate, bus.name));
-  bus.gate.set_order([this, index, line = lines_.back().get()](std::vector<sim::MailGate::Mail>& mail) {
-    if (!suspended_) line->mail.order(mail);
-    if (!posts_mail_) return;
-    for (const sim::MailGate::Mail& each : mail) lockstep_.post(index, each.channel, each.payload);
+void LockstepService::add_link(const LockstepBus& bus) {
+  const int index = static_cast<int>(links_.size());
+  links_.push_back(std::make_unique<Link>(bus.network, bus.gate, bus.name));
+  bus.gate.set_order([this, index, link = links_.back().get()](std::vector<sim::MessageGate::Delivery>& messages) {
+    if (!suspended_) link->messages.order(messages);
+    if (!posts_messages_) return;
+    for (const sim::MessageGate::Delivery& each : messages) lockstep_.post(index, each.channel, each.payload);
   });
 }
 
-const std::string& LockstepService::called(int line) const {
-  return line_of(line).called;
+const std::string& LockstepService::called(int link) const {
+  return link_of(link).called;
 }
 
 void LockstepService::watch_gates() {
-  const bool wanted = std::any_of(lockstep_.members().begin(), lockstep_.members().end(),
-                                  [](const auto& entry) { return !entry.second.terms.receives.empty(); });
-  for (std::size_t i = 0; i < lines_.size(); ++i) {
-    if (!wanted)
-      lines_[i]->gate.set_watch({});
+  const bool desired = std::any_of(lockstep_.members().begin(), lockstep_.members().end(),
+                                   [](const auto& entry) { return !entry.second.terms.receives.empty(); });
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    if (!desired)
+      links_[i]->gate.set_watch({});
     else
-      lines_[i]->gate.set_watch([this, i](std::string_view channel, std::span<const std::byte> payload) {
+      links_[i]->gate.set_watch([this, i](std::string_view channel, std::span<const std::byte> payload) {
         lockstep_.post(static_cast<int>(i), channel, payload);
       });
   }
 }
 
 LockstepSummary& LockstepService::summary_of(const std::string& client) {
-  if (summaries_.size() >= most_summaries && !summaries_.contains(client)) {
-    const auto gone = std::find_if(summaries_.begin(), summaries_.end(),
-                                   [&](const auto& entry) { return !lockstep_.has(entry.first); });
-    if (gone != summaries_.end()) summaries_.erase(gone);
+  if (summaries_.size() >= max_summaries && !summaries_.contains(client)) {
+    const auto removed = std::find_if(summaries_.begin(), summaries_.end(),
+                                      [&](const auto& entry) { return !lockstep_.has(entry.first); });
+    if (removed != summaries_.end()) summaries_.erase(removed);
   }
   LockstepSummary& summary = summaries_[client];
   summary.client = client;
@@ -83,8 +83,8 @@ std::vector<LockstepSummary> LockstepService::summaries() const {
   std::vector<LockstepSummary> all;
   for (const auto& [client, summary] : summaries_) {
     all.push_back(summary);
-    for (const auto& line : lines_)
-      if (const auto repeated = line->mail.repeated().find(client); repeated != line->mail.repeated().end())
+    for (const auto& link : links_)
+      if (const auto repeated = link->messages.repeated().find(client); repeated != link->messages.repeated().end())
         all.back().messages_repeated += static_cast<std::int64_t>(repeated->second);
   }
   return all;
@@ -92,22 +92,22 @@ std::vector<LockstepSummary> LockstepService::summaries() const {
 
 std::uint64_t LockstepService::dropped_messages() const {
   std::uint64_t dropped = 0;
-  for (const auto& line : lines_) dropped += line->mail.dropped();
+  for (const auto& link : links_) dropped += link->messages.dropped();
   return dropped;
 }
 
-void LockstepService::complain(const std::string& client, const std::string& text) {
+void LockstepService::warn_client(const std::string& client, const std::string& text) {
   ++bad_messages_;
-  if (told_.size() < 100 && told_.insert(client).second)
+  if (warned_.size() < 100 && warned_.insert(client).second)
     spdlog::warn("{} (ignored; more of this client are only counted)", sim::shortened(sim::printable(text), 300));
 }
 
 void LockstepService::suspend(bool suspended) {
   suspended_ = suspended;
   if (suspended)
-    lockstep_.begin_again();
+    lockstep_.restart_replay();
   else
-    lockstep_.end_again();
+    lockstep_.end_replay();
 }
 
 void LockstepService::set_branch(std::int32_t branch) {
@@ -115,8 +115,8 @@ void LockstepService::set_branch(std::int32_t branch) {
     if (!member.answered && !member.abandoned) member.left_branch = branch_;
   branch_ = branch;
   lockstep_.rewound(world_.step_number());
-  for (const auto& line : lines_) line->mail.clear();
-  asked_.clear();
+  for (const auto& link : links_) link->messages.clear();
+  pending_.clear();
   for (auto& [client, answers] : answers_) answers.set_branch();
   paused_here_ = false;
 }
@@ -127,9 +127,9 @@ void LockstepService::drop_overflowing() {
     if (member.too_much) names.push_back(name);
   for (const std::string& name : names) {
     drop(name, "client '" + name + "' must have more than " +
-                   std::to_string(sim::Lockstep::most_pending_bytes / 1'000'000) +
+                   std::to_string(sim::Lockstep::max_pending_bytes / 1'000'000) +
                    " MB of messages until its next tick");
-    if (const auto dropped = dropped_.find(name); dropped != dropped_.end()) tell_dropped(dropped->second, name);
+    if (const auto dropped = dropped_.find(name); dropped != dropped_.end()) notify_dropped(dropped->second, name);
   }
 }
 
@@ -139,26 +139,26 @@ std::vector<std::string> LockstepService::late() {
   if (!names.empty()) return names;
   for (const sim::LockstepMember* member : lockstep_.missing(world_.step_number())) names.push_back(member->name);
   for (const auto& [name, member] : lockstep_.members())
-    if (member.answered && !line_of(member.line).mail.is_complete(name)) names.push_back(name);
+    if (member.answered && !link_of(member.link).messages.is_complete(name)) names.push_back(name);
   return names;
 }
 
 LockstepOutcome LockstepService::synchronize(const Wait& wait, const std::function<bool()>& idle) {
-  take_messages();  // also when nobody is due: what comes is checked, and does not pile up
+  take_messages();  // also when no client is due: messages are checked, and does not pile up
   drop_overflowing();
   while (true) {
     std::vector<std::string> names = late();
     if (names.empty()) break;
     if (!idle() || control_.quit) return LockstepOutcome::stopped;
-    if (lockstep_.abandoned().empty()) lockstep_.ask(world_.step_number());
+    if (lockstep_.abandoned().empty()) lockstep_.send_request(world_.step_number());
     names = late();  // some may have joined or left
     serve(names);
     if (names.empty()) break;
     wait(nap(names));
     take_messages();
   }
-  asked_.clear();
-  tell_repeated();
+  pending_.clear();
+  report_repeated();
   resume();
   return LockstepOutcome::done;
 }
@@ -166,58 +166,59 @@ LockstepOutcome LockstepService::synchronize(const Wait& wait, const std::functi
 void LockstepService::resume() {
   if (!paused_here_) return;
   paused_here_ = false;
-  if (control_.pause_requests != pause_requests_) return;  // somebody else wants it so
+  if (control_.pause_requests != pause_requests_) return;  // another client paused it
   control_.paused = false;
   ++control_.changes;
-  spdlog::info("lockstep: the world goes on");
+  spdlog::info("lockstep: the world continues");
 }
 
 milliseconds LockstepService::nap(const std::vector<std::string>& late) const {
   Clock::time_point next = Clock::now() + milliseconds(20);
   for (const std::string& client : late)
-    if (const auto asked = asked_.find(client); asked != asked_.end()) next = std::min(next, asked->second.send_at);
+    if (const auto requested = pending_.find(client); requested != pending_.end())
+      next = std::min(next, requested->second.send_at);
   return std::max(milliseconds(1), std::chrono::ceil<milliseconds>(next - Clock::now()));
 }
 
 std::string LockstepService::waits_for() {
   std::string text;
-  for (const auto& [client, asked] : asked_) {
+  for (const auto& [client, requested] : pending_) {
     const sim::LockstepMember* member = lockstep_.find(client);
-    if (member == nullptr || (member->answered && line_of(member->line).mail.is_complete(client))) continue;
+    if (member == nullptr || (member->answered && link_of(member->link).messages.is_complete(client))) continue;
     char wait[32];
     std::snprintf(wait, sizeof wait, "waits %.1f s for '",
-                  std::chrono::duration<double>(Clock::now() - asked.since).count());
+                  std::chrono::duration<double>(Clock::now() - requested.since).count());
     text += (text.empty() ? "" : ", ") + std::string(wait) + client + "'";
     if (text.size() > 1000) return text + ", ...";
   }
   return text;
 }
 
-void LockstepService::look_at_clock() {
+void LockstepService::check_clock() {
   const Clock::time_point now = Clock::now();
   // One at a time: what came while this process had no processor is looked at before its time is over.
-  if (now - window_began_ < mail_window) return;
-  window_began_ = now;
-  for (const auto& line : lines_) line->mail.next_window();
+  if (now - window_start_ < delivery_window) return;
+  window_start_ = now;
+  for (const auto& link : links_) link->messages.next_window();
 }
 
-void LockstepService::tell_repeated() {
-  for (const auto& line : lines_) {
-    const auto repeated = line->mail.take_repeated();
-    if (!repeated || told_repeated_) continue;
-    told_repeated_ = true;
+void LockstepService::report_repeated() {
+  for (const auto& link : links_) {
+    const auto repeated = link->messages.take_repeated();
+    if (!repeated || warned_repeated_) continue;
+    warned_repeated_ = true;
     spdlog::warn(
-        "lockstep: a message on '{}' was dropped: it equals one of client '{}', and may be the same one, late or "
-        "repeated by the network (more of these are only counted)",
+        "lockstep: a message on '{}' was dropped: it equals one of client '{}' and may be the same message, delayed or "
+        "duplicated by the network (further ones are only counted)",
         sim::printable(repeated->channel), sim::printable(repeated->client));
   }
 }
 
-/// A world that somebody has paused gives its clients the time.
+/// Time-outs rest while a user has paused the world.
 void LockstepService::rest_time_outs(Clock::time_point now) {
   const auto passed = now - std::exchange(served_, now);
   if (!control_.paused || control_.single_steps > 0 || paused_here_) return;
-  for (auto& [client, asked] : asked_) asked.begin = std::min(now, asked.begin + passed);
+  for (auto& [client, requested] : pending_) requested.begin = std::min(now, requested.begin + passed);
 }
 
 void LockstepService::serve(const std::vector<std::string>& late) {
@@ -225,16 +226,16 @@ void LockstepService::serve(const std::vector<std::string>& late) {
   std::vector<std::string> to_tick;
   for (const std::string& client : late) {
     const Clock::time_point now = Clock::now();
-    const auto [entry, fresh] = asked_.try_emplace(client);
-    Asked& asked = entry->second;
-    if (fresh) asked = {now, now, now, now, first_resend_interval, false};
-    check_time(client, asked, now);
+    const auto [entry, fresh] = pending_.try_emplace(client);
+    Pending& requested = entry->second;
+    if (fresh) requested = {now, now, now, now, first_resend_interval, false};
+    check_time(client, requested, now);
     const sim::LockstepMember* member = lockstep_.find(client);
-    if (member == nullptr || asked.send_at > now) continue;
-    asked.send_at = now + asked.interval;
-    asked.interval = fresh ? asked.interval : next_resend_interval(asked.interval);
+    if (member == nullptr || requested.send_at > now) continue;
+    requested.send_at = now + requested.interval;
+    requested.interval = fresh ? requested.interval : next_resend_interval(requested.interval);
     if (member->answered) {
-      ask_client(*member);
+      request_from_client(*member);
     } else {
       LockstepSummary& summary = summary_of(client);
       ++(fresh && !member->abandoned ? summary.ticks : summary.repeated_ticks);
@@ -247,25 +248,25 @@ void LockstepService::serve(const std::vector<std::string>& late) {
   if (!to_tick.empty()) publish_tick(to_tick, false);
 }
 
-void LockstepService::check_time(const std::string& client, Asked& asked, Clock::time_point now) {
+void LockstepService::check_time(const std::string& client, Pending& requested, Clock::time_point now) {
   const sim::LockstepMember* member = lockstep_.find(client);
   const double timeout_s = member->terms.timeout_s;
-  if (now - asked.begin < std::chrono::duration<double>(timeout_s) && !member->gone) return;
+  if (now - requested.begin < std::chrono::duration<double>(timeout_s) && !member->removed) return;
   char limit[32];
   std::snprintf(limit, sizeof limit, "%g s", timeout_s);
-  const std::string step = std::to_string(member->asked);
-  const std::string when = member->gone ? "before its process ended" : "within " + std::string(limit);
+  const std::string step = std::to_string(member->requested);
+  const std::string when = member->removed ? "before its process ended" : "within " + std::string(limit);
   const std::string why = member->answered ? what_is_missing(*member) + " " + when
-                          : member->gone
+                          : member->removed
                               ? "the process of client '" + client + "' ended before it answered step " + step
                               : "no acknowledgement from '" + client + "' for step " + step + " " + when;
-  if (!asked.told) ++summary_of(client).timeouts;
+  if (!requested.reported) ++summary_of(client).timeouts;
   switch (member->terms.on_timeout) {
     case sim::OnTimeout::wait:
-      if (!asked.told) spdlog::warn("lockstep: {}; the world waits", why);
+      if (!requested.reported) spdlog::warn("lockstep: {}; the world waits", why);
       break;
     case sim::OnTimeout::pause:
-      if (!asked.told) {
+      if (!requested.reported) {
         spdlog::warn("lockstep: {}; the world pauses", why);
         if (!control_.paused) {
           paused_here_ = control_.paused = true;
@@ -281,30 +282,30 @@ void LockstepService::check_time(const std::string& client, Asked& asked, Clock:
     case sim::OnTimeout::go_on:
       return drop(client, why);
     case sim::OnTimeout::end_run:
-      asked.told = true;
+      requested.reported = true;
       summary_of(client).ended = why;
       throw LockstepTimeout("lockstep: " + why);
   }
-  asked.told = true;
+  requested.reported = true;
 }
 
-/// All members are listed, for nobody obeys a last tick that does not list him; who cannot answer is not waited for.
+/// All members are listed, as clients ignore a last tick that does not list them; who cannot answer is not waited for.
 void LockstepService::publish_end(const Wait& wait, milliseconds limit) {
-  asked_.clear();
+  pending_.clear();
   lockstep_.ask_all(world_.step_number());
-  for (const auto& [client, dropped] : dropped_) tell_dropped(dropped, client);
+  for (const auto& [client, dropped] : dropped_) notify_dropped(dropped, client);
   const Clock::time_point end = Clock::now() + limit;
   milliseconds interval = first_resend_interval;
   Clock::time_point send_at = Clock::now();
   while (true) {
     std::vector<std::string> names;
-    bool wanted = false;
+    bool desired = false;
     for (const auto& [name, member] : lockstep_.members()) {
-      if (member.answered || member.gone) continue;
+      if (member.answered || member.removed) continue;
       names.push_back(name);
       if (member.terms.session == 0 || !summary_of(name).ended.empty()) continue;
-      wanted = true;
-      asked_.try_emplace(name);
+      desired = true;
+      pending_.try_emplace(name);
     }
     const Clock::time_point now = Clock::now();
     if (now >= send_at) {
@@ -312,11 +313,11 @@ void LockstepService::publish_end(const Wait& wait, milliseconds limit) {
       send_at = now + interval;
       interval = next_resend_interval(interval);
     }
-    if (!wanted || now >= end) break;
+    if (!desired || now >= end) break;
     wait(milliseconds(10));
     take_messages();
   }
-  for (const auto& line : lines_) line->network.end_of_step();
+  for (const auto& link : links_) link->network.end_of_step();
 }
 
 }  // namespace bridges

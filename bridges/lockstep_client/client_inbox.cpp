@@ -9,15 +9,15 @@
 namespace bridges {
 namespace {
 
-/// The handshake, and what tells of it: no tick names them, and handlers are called when they come.
+/// The handshake, and what reports it: no tick names them, and handlers are called when they come.
 constexpr std::string_view unnamed_channels[] = {"sim.ack",    "sim.control", "sim.control.reply", "sim.hash",
-                                                 "sim.info",   "sim.mail",    "sim.notice",        "sim.resend",
+                                                 "sim.info",   "sim.inputs",  "sim.audit",         "sim.resend",
                                                  "sim.resent", "sim.tick"};
 
-constexpr std::size_t most_recent = 8192;
-constexpr std::size_t most_held = 100'000;
+constexpr std::size_t max_recent = 8192;
+constexpr std::size_t max_held = 100'000;
 /// After so many ticks that do not name a message none will.
-constexpr int patience_ticks = 3;
+constexpr int hold_ticks = 3;
 
 }  // namespace
 
@@ -36,7 +36,7 @@ bool ClientInbox::hold(Received& message) {
   if (place == places_.end()) return false;
   std::deque<Held>& held = held_[place->second];
   held.push_back({sim::crc32(message.payload), std::move(message.payload)});
-  if (held.size() > most_held) held.pop_front();  // if a tick names it, it is asked for
+  if (held.size() > max_held) held.pop_front();  // if a tick names it, it is asked for
   return true;
 }
 
@@ -103,12 +103,12 @@ void ClientInbox::hand_over_unnamed(const Handle& handle) {
     for (Held& held : std::exchange(held_[i], {})) {
       if (recent_.contains({i, held.crc})) {
         ++counts_.repeated;
-      } else if (++held.ticks < patience_ticks) {
+      } else if (++held.ticks < hold_ticks) {
         keep.push_back(std::move(held));
       } else {
         ++counts_.unnamed;
         remember({i, held.crc});
-        if (early_.size() < most_recent) early_.insert({i, held.crc});
+        if (early_.size() < max_recent) early_.insert({i, held.crc});
         handle(std::string(names_[i]), held.payload);
       }
     }
@@ -119,7 +119,7 @@ void ClientInbox::hand_over_unnamed(const Handle& handle) {
 void ClientInbox::remember(const Key& key) {
   if (!recent_.insert(key).second) return;
   recent_order_.push_back(key);
-  if (recent_order_.size() <= most_recent) return;
+  if (recent_order_.size() <= max_recent) return;
   recent_.erase(recent_order_.front());
   early_.erase(recent_order_.front());
   recent_order_.pop_front();
@@ -129,7 +129,7 @@ void ClientInbox::drop_held() {
   for (std::deque<Held>& held : held_) held.clear();
 }
 
-void ClientInbox::forget() {
+void ClientInbox::discard() {
   drop_held();
   recent_.clear();
   recent_order_.clear();

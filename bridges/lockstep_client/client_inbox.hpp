@@ -23,12 +23,12 @@ class ClientInbox {
  public:
   using Handle = std::function<void(const std::string& channel, std::span<const std::byte> payload)>;
   struct Counts {
-    std::uint64_t asked_for = 0;  ///< messages that came only after they were asked for
+    std::uint64_t asked_for = 0;  ///< messages that arrived only after a request
     std::uint64_t repeated = 0;   ///< messages that came again, and were dropped
-    std::uint64_t unnamed = 0;    ///< messages that no tick named: of senders the simulator does not hear
+    std::uint64_t unnamed = 0;    ///< messages that no tick named: of senders that the simulator does not receive
   };
 
-  /// Not a channel of the handshake, or of what tells of it.
+  /// Not a channel of the handshake, or of what reports it.
   static bool is_named(std::string_view channel);
   /// A channel whose messages ticks name; they do so by its place.
   void add_channel(const std::string& channel);
@@ -36,7 +36,7 @@ class ClientInbox {
   /// False: on none of these channels, and left as it is.
   bool hold(Received& message);
 
-  /// A tick came.  False: it names a channel that is none of these, and changes nothing.
+  /// A tick came.  False: it names an unknown channel, and changes nothing.
   bool expect(const shoal::sim_due_t& due);
   /// All that the tick names has come.
   bool complete();
@@ -47,10 +47,10 @@ class ClientInbox {
   /// Handles what the tick names, then what no tick has named for a while.
   void hand_over(const Handle& handle);
 
-  /// Forgets what has come, and no tick has named.
+  /// Discards messages that no tick has listed.
   void drop_held();
-  /// Forgets also what was handled: it may come anew.
-  void forget();
+  /// Also forgets the handled messages: they may arrive again.
+  void discard();
   const Counts& counts() const { return counts_; }
 
  private:

@@ -11,8 +11,8 @@
 namespace bridges {
 
 void ClientOutbox::publish(std::string_view channel, std::span<const std::byte> payload) {
-  if (published_.size() + delayed_.size() >= sim::most_named_messages)
-    throw BusError("'" + client_ + "' publishes more than " + std::to_string(sim::most_named_messages) +
+  if (published_.size() + delayed_.size() >= sim::max_named_messages)
+    throw BusError("'" + client_ + "' publishes more than " + std::to_string(sim::max_named_messages) +
                    " messages between two ticks");
   Published message{std::string(channel), sim::crc32(payload), sim::Bytes(payload.begin(), payload.end())};
   if (!open_) {

@@ -34,7 +34,7 @@ class ClientOutbox {
   /// What the last answer named, from a place in its list on.
   void send_again(const shoal::sim_resent_t& head, std::int32_t first,
                   const std::function<void(const shoal::sim_resent_t& bundle)>& send) const;
-  /// Answers begin anew; what waits for the next tick stays.
+  /// Restarts the answers; messages for the next tick are kept.
   void restart();
   /// Nothing was published.
   void clear();

@@ -26,12 +26,12 @@ constexpr const char* question_channel = "sim.resend";
 constexpr const char* bundle_channel = "sim.resent";
 
 constexpr milliseconds slice{50};
-/// How often somebody who follows a run asks, at most, to be told of its end.
-constexpr int most_questions = 20;
+/// How often a program that follows a run requests, at most, to be notified of its end.
+constexpr int max_requests = 20;
 /// What a client waits, at most, for the simulator to let it go.
 constexpr milliseconds time_to_leave{1000};
 
-/// Nothing when the payload is not a valid M: anybody may publish anything.
+/// Nothing when the payload is not a valid M: any program may publish anything.
 template <class M>
 std::optional<M> try_decode(std::span<const std::byte> payload) {
   try {
@@ -41,7 +41,7 @@ std::optional<M> try_decode(std::span<const std::byte> payload) {
   }
 }
 
-/// Its own at each start, so that nobody takes it for a program that ran before it.
+/// A fresh random number per start, so that replies from an earlier instance are recognised as stale.
 std::int64_t random_session() {
   std::random_device device;
   const std::uint64_t high = device();
@@ -111,7 +111,7 @@ void LockstepClient::request(const std::string& command, double value, const std
     while (auto message = wait(resend, heed_stop)) {
       take(std::move(*message));
       if (answered_id_ != id) continue;
-      if (!refusal_.empty()) throw BusError("the simulator refuses '" + name_ + "': " + refusal_);
+      if (!refusal_.empty()) throw BusError("the simulator rejects '" + name_ + "': " + refusal_);
       return;
     }
   }
@@ -121,18 +121,18 @@ void LockstepClient::request(const std::string& command, double value, const std
 }
 
 void LockstepClient::wait_for(const std::string& what) {
-  notice_.emplace("'" + name_ + "' waits for " + what + ", at " + lcm_.url(), notice_after_);
+  wait_warning_.emplace("'" + name_ + "' waits for " + what + ", at " + lcm_.url(), warning_after_);
 }
 
-void LockstepClient::ask_to_join(Clock::time_point deadline) {
-  const std::size_t told = inbox_.channels().size();
+void LockstepClient::request_join(Clock::time_point deadline) {
+  const std::size_t reported = inbox_.channels().size();
   const sim::LockstepTerms terms{.session = session_,
                                  .receives = inbox_.channels(),
                                  .on_timeout = options_.on_timeout.value_or(sim::OnTimeout::end_run),
                                  .timeout_s = options_.timeout_s,
                                  .agreed = options_.on_timeout.has_value()};
   request("join", period_s_, text_of(terms), deadline, true);
-  channels_told_ = told;
+  channels_reported_ = reported;
 }
 
 void LockstepClient::join(double period_s, milliseconds timeout, const JoinOptions& options) {
@@ -149,8 +149,8 @@ void LockstepClient::join(double period_s, milliseconds timeout, const JoinOptio
   options_ = options;
   end_ = End::none;
   wait_for("a simulator to answer its join on 'sim.control.reply'");
-  ask_to_join(Clock::now() + timeout);
-  got_it();
+  request_join(Clock::now() + timeout);
+  mark_received();
   // What came before was not for a member of the lockstep.
   if (!joined_) inbox_.drop_held();
   joined_ = true;
@@ -158,7 +158,7 @@ void LockstepClient::join(double period_s, milliseconds timeout, const JoinOptio
 
 std::optional<Received> LockstepClient::wait(Clock::time_point deadline, bool heed_stop) {
   while (!(stop_ && heed_stop)) {
-    if (notice_) notice_->look();
+    if (wait_warning_) wait_warning_->look();
     const auto left = std::chrono::ceil<milliseconds>(deadline - Clock::now());
     if (auto message = lcm_.next(std::clamp(left, milliseconds(0), slice))) return message;
     if (Clock::now() >= deadline) break;
@@ -178,16 +178,16 @@ void LockstepClient::follow() {
   end_ = End::none;
   join_id_ = ++request_id_;  // the number of the request: follow() takes the place of join()
   answered_id_.reset();
-  questions_left_ = most_questions;
+  requests_left_ = max_requests;
   ask_at_ = Clock::now();
-  ask_interval_ = first_resend_interval;
+  request_interval_ = first_resend_interval;
 }
 
-void LockstepClient::ask_to_be_told_of_the_end() {
-  if (questions_left_ == 0 || answered_id_ == join_id_ || Clock::now() < ask_at_) return;
-  --questions_left_;
-  ask_at_ = Clock::now() + ask_interval_;
-  ask_interval_ = next_resend_interval(ask_interval_);
+void LockstepClient::request_end_notification() {
+  if (requests_left_ == 0 || answered_id_ == join_id_ || Clock::now() < ask_at_) return;
+  --requests_left_;
+  ask_at_ = Clock::now() + request_interval_;
+  request_interval_ = next_resend_interval(request_interval_);
   send_request("follow", join_id_, 0, text_of(sim::FollowTerms{session_}));
 }
 
@@ -197,8 +197,8 @@ bool LockstepClient::handle_message() {
   while (true) {
     auto until = deadline;
     if (following_) {
-      ask_to_be_told_of_the_end();
-      if (questions_left_ > 0 && answered_id_ != join_id_) until = std::min(until, ask_at_);
+      request_end_notification();
+      if (requests_left_ > 0 && answered_id_ != join_id_) until = std::min(until, ask_at_);
     }
     const auto message = wait(until);
     if (message) {
@@ -216,7 +216,7 @@ bool LockstepClient::handle_message() {
 void LockstepClient::take(Received message) {
   if (message.channel == tick_channel) take_tick(message.payload);
   if (message.channel == reply_channel) take_reply(message.payload);
-  if (message.channel == question_channel) take_question(message.payload);
+  if (message.channel == question_channel) take_request(message.payload);
   if (message.channel == bundle_channel) take_bundle(message.payload);
   if (!inbox_.hold(message)) call_handlers(message.channel, message.payload);
 }
@@ -229,7 +229,7 @@ void LockstepClient::take_reply(std::span<const std::byte> payload) {
   if (!ours && reply->session != 0) return;
   if (reply->id == request_id_) {
     answered_id_ = reply->id;
-    refusal_ = reply->ok != 0 ? "" : reply->text.empty() ? "it does not say why" : reply->text;
+    refusal_ = reply->ok != 0 ? "" : reply->text.empty() ? "no reason given" : reply->text;
   } else if (reply->id != join_id_) {
     return;
   }
@@ -245,24 +245,24 @@ void LockstepClient::take_tick(std::span<const std::byte> payload) {
   const auto due = std::find_if(tick->client.begin(), tick->client.end(), [&](const shoal::sim_due_t& each) {
     return each.name == name_ && each.session == session_;
   });
-  if (due == tick->client.end()) return;  // also a last one: the end of somebody else's run
+  if (due == tick->client.end()) return;  // also a last one: the end of another run
   if (following_) {
     if (tick->last != 0) end_ = End::last_tick;
     return;
   }
   if (due->sequence == sequence_ && !outbox_.is_open())
-    return send_ack();  // our answer was lost, or is on its way; or we are asked whether we live
+    return send_ack();  // our answer was lost or is in transit, or the simulator checks whether we are alive
   if (due->sequence <= sequence_ || (incomplete_ && incomplete_->sequence == due->sequence)) return;
   const shoal::sim_due_t own = *due;
-  begin_tick(std::move(*tick), own);
+  start_tick(std::move(*tick), own);
 }
 
-void LockstepClient::begin_tick(shoal::sim_tick_t tick, const shoal::sim_due_t& due) {
+void LockstepClient::start_tick(shoal::sim_tick_t tick, const shoal::sim_due_t& due) {
   if (!inbox_.expect(due)) return;  // not what we asked for
   incomplete_ = {std::move(tick), due.sequence, Clock::now() + resend_grace, first_resend_interval};
 }
 
-void LockstepClient::take_question(std::span<const std::byte> payload) {
+void LockstepClient::take_request(std::span<const std::byte> payload) {
   const auto question = try_decode<shoal::sim_resend_t>(payload);
   if (!question || question->of_client == 0 || question->client != name_ || question->session != session_) return;
   if (question->sequence != sequence_ || outbox_.is_open()) return;
@@ -283,7 +283,7 @@ void LockstepClient::take_bundle(std::span<const std::byte> payload) {
   if (bundle->sequence == incomplete_->sequence) inbox_.add(bundle->first, bundle->message);
 }
 
-void LockstepClient::ask_when_due() {
+void LockstepClient::request_when_due() {
   const auto now = Clock::now();
   if (now < incomplete_->ask_at) return;
   incomplete_->ask_at = now + incomplete_->interval;
@@ -301,7 +301,7 @@ void LockstepClient::ask_when_due() {
 bool LockstepClient::rewind(const shoal::sim_tick_t& tick) {
   branch_ = tick.branch;
   outbox_.clear();
-  inbox_.forget();
+  inbox_.discard();
   if (!rewound_) {
     end_ = End::rewound;
     return false;
@@ -330,13 +330,12 @@ void LockstepClient::handle_tick() {
 }
 
 bool LockstepClient::next_tick(shoal::sim_tick_t& tick) {
-  auto heard = Clock::now();
-  if (sequence_ == 0 && !notice_)
-    wait_for(
-        "its first tick on 'sim.tick' (it has joined; a paused run, or other clients that are missing, hold it up)");
+  auto received = Clock::now();
+  if (sequence_ == 0 && !wait_warning_)
+    wait_for("its first tick on 'sim.tick' (it has joined; a paused run or missing clients may delay it)");
   while (!stop_ && end_ != End::dropped) {
     if (incomplete_ && inbox_.complete()) {
-      got_it();
+      mark_received();
       handle_tick();
       if (end_ == End::rewound) return false;
       tick = tick_;
@@ -348,14 +347,14 @@ bool LockstepClient::next_tick(shoal::sim_tick_t& tick) {
       tick = tick_;
       return false;
     }
-    if (incomplete_) ask_when_due();
+    if (incomplete_) request_when_due();
     const bool forever = silence_limit_.count() == 0;
-    auto until = forever ? Clock::time_point::max() : heard + silence_limit_;
+    auto until = forever ? Clock::time_point::max() : received + silence_limit_;
     if (incomplete_) until = std::min(until, incomplete_->ask_at);
     if (auto message = wait(until)) {
-      heard = Clock::now();
+      received = Clock::now();
       take(std::move(*message));
-    } else if (!stop_ && !forever && Clock::now() >= heard + silence_limit_) {
+    } else if (!stop_ && !forever && Clock::now() >= received + silence_limit_) {
       end_ = End::silence;
       return false;
     }
@@ -367,7 +366,7 @@ bool LockstepClient::next_tick(shoal::sim_tick_t& tick) {
 void LockstepClient::acknowledge(const shoal::sim_tick_t&) {
   if (!outbox_.is_open()) return;
   // The world waits, so it is the same step in every run from which it knows of new channels.
-  if (inbox_.channels().size() > channels_told_) ask_to_join(Clock::now() + std::chrono::seconds(30));
+  if (inbox_.channels().size() > channels_reported_) request_join(Clock::now() + std::chrono::seconds(30));
   outbox_.close();
   send_ack();
 }

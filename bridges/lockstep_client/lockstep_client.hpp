@@ -15,7 +15,7 @@
 #include "bridges/lcm/lcm_listener.hpp"
 #include "bridges/lockstep_client/client_inbox.hpp"
 #include "bridges/lockstep_client/client_outbox.hpp"
-#include "bridges/lockstep_client/wait_notice.hpp"
+#include "bridges/lockstep_client/wait_warning.hpp"
 #include "bridges/signing/signed_message.hpp"
 #include "shoal/sim_tick_t.hpp"
 #include "sim/run/lockstep.hpp"
@@ -33,11 +33,11 @@ namespace bridges {
 ///       client.acknowledge(tick);
 ///     }
 ///
-/// The world waits between a tick and its acknowledgement.  Messages are held until the tick that names them, and are
-/// then handled in the order of that list; those that are missing are asked for.  So a client does the same whatever
-/// the network loses, repeats or puts in another order; docs/guides/lockstep.md has the protocol.  Payloads that are no
-/// valid ticks or replies are ignored; a handler that decodes with shoal::decode() should catch shoal::MessageError,
-/// which else leaves next_tick().
+/// The world waits between a tick and its acknowledgement.  Messages are held until the tick that lists them, and
+/// then handled in the order of that list; missing ones are requested.  So a client does the same whatever
+/// the network loses, repeats or puts in another order; docs/guides/lockstep.md has the protocol.  Payloads that are
+/// not valid ticks or replies are ignored; a handler that decodes with shoal::decode() should catch
+/// shoal::MessageError, which else leaves next_tick().
 class LockstepClient {
  public:
   using Handler = std::function<void(std::span<const std::byte>)>;
@@ -47,7 +47,7 @@ class LockstepClient {
     stopped,
     silence,
     rewound,  ///< the world went back, and on_rewind() was not called before
-    dropped,  ///< the world went on without this client; see reason()
+    dropped,  ///< the world continued without this client; see reason()
   };
   struct JoinOptions {
     std::optional<sim::OnTimeout> on_timeout;  ///< unset: the world's choice
@@ -73,13 +73,13 @@ class LockstepClient {
   /// message, and for what End says.
   bool next_tick(shoal::sim_tick_t& tick);
   void acknowledge(const shoal::sim_tick_t& tick);
-  /// Acknowledges the tick that is open, and tells the simulator not to wait for this client any more.  Waits for a
+  /// Acknowledges the tick that is open, and asks the simulator to stop waiting for this client.  Waits for a
   /// moment until it knows.
   void leave();
   /// For a program that does not take part in the lockstep: asks the simulator, from handle_message(), to be listed in
   /// the last tick of its run.  Again for each run that is followed.
   void follow();
-  /// Calls the handlers of the next message, whatever it is: for a program that does not take part in the lockstep.
+  /// Calls the handlers of the next message: for a program that does not take part in the lockstep.
   /// False when stop() was called, after `silence_limit`, and after follow() at the end of the run.
   bool handle_message();
   /// `handler` is called when the world went back, before the messages of the first tick there.
@@ -92,14 +92,14 @@ class LockstepClient {
   /// The simulator's words, when it dropped this client.
   const std::string& reason() const { return reason_; }
   const Counts& counts() const { return inbox_.counts(); }
-  /// Zero: wait for ever.
+  /// Zero: wait forever.
   void set_silence_limit(std::chrono::milliseconds limit) { silence_limit_ = limit; }
-  /// After so much wall time without an answer to join(), a first tick, or what wait_for() names, it is said once on
-  /// standard error what is missing.  3 s unless set; zero: never.
-  void set_notice_after(std::chrono::milliseconds after) { notice_after_ = after; }
-  /// `what`, a channel with its reason, is waited for from now on, until got_it().
+  /// Wall time without an answer to join(), a first tick, or the message of wait_for(), after which a warning on
+  /// standard error names what is missing.  3 s unless set; zero: never.
+  void set_warning_after(std::chrono::milliseconds after) { warning_after_ = after; }
+  /// `what`, a channel with its reason, is waited for from now on, until mark_received().
   void wait_for(const std::string& what);
-  void got_it() { notice_.reset(); }
+  void mark_received() { wait_warning_.reset(); }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -117,18 +117,18 @@ class LockstepClient {
   void request(const std::string& command, double value, const std::string& text, Clock::time_point deadline,
                bool heed_stop);
   void send_request(const std::string& command, std::int32_t id, double value, const std::string& text);
-  void ask_to_join(Clock::time_point deadline);
-  void ask_to_be_told_of_the_end();
+  void request_join(Clock::time_point deadline);
+  void request_end_notification();
   void call_handlers(const std::string& channel, std::span<const std::byte> payload);
 
   void take(Received message);
   void take_tick(std::span<const std::byte> payload);
   void take_reply(std::span<const std::byte> payload);
-  void take_question(std::span<const std::byte> payload);
+  void take_request(std::span<const std::byte> payload);
   void take_bundle(std::span<const std::byte> payload);
-  void begin_tick(shoal::sim_tick_t tick, const shoal::sim_due_t& due);
+  void start_tick(shoal::sim_tick_t tick, const shoal::sim_due_t& due);
   bool rewind(const shoal::sim_tick_t& tick);
-  void ask_when_due();
+  void request_when_due();
   void handle_tick();
   void send(std::string_view channel, std::span<const std::byte> payload);
   void send_ack();
@@ -143,16 +143,16 @@ class LockstepClient {
   std::map<std::string, std::deque<Handler>, std::less<>> handlers_;
   ClientInbox inbox_;
   ClientOutbox outbox_;
-  std::size_t channels_told_ = 0;  // so many of the inbox the simulator knows
+  std::size_t channels_reported_ = 0;  // number of channels that the simulator knows
   bool joined_ = false;
   std::int32_t request_id_ = 0, join_id_ = 0;
   std::optional<std::int32_t> answered_id_;
   std::string refusal_;  // of the request; empty: granted
 
   bool following_ = false;
-  int questions_left_ = 0;  // to be told of the end of the run that is followed
+  int requests_left_ = 0;  // for notification of the end of the followed run
   Clock::time_point ask_at_;
-  std::chrono::milliseconds ask_interval_{0};
+  std::chrono::milliseconds request_interval_{0};
 
   std::optional<Incomplete> incomplete_;
   std::int64_t sequence_ = 0;  // of the last tick that was handled
@@ -164,8 +164,8 @@ class LockstepClient {
   End end_ = End::none;
   std::string reason_;
   std::chrono::milliseconds silence_limit_{30'000};
-  std::chrono::milliseconds notice_after_ = WaitNotice::usual_patience;
-  std::optional<WaitNotice> notice_;
+  std::chrono::milliseconds warning_after_ = WaitWarning::default_delay;
+  std::optional<WaitWarning> wait_warning_;
   static_assert(std::atomic<bool>::is_always_lock_free, "stop() is called from signal handlers");
 };
 

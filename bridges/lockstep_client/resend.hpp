@@ -14,7 +14,7 @@ namespace bridges {
 
 // What both ends of the lockstep have in common when something is lost.
 
-/// A message that is on its way comes within this; it is asked for then.
+/// A message in transit arrives within this time; after it, the message is requested.
 constexpr std::chrono::milliseconds resend_grace{1};
 /// What was not answered is sent again after the first interval, then after twice as long, up to the last.
 constexpr std::chrono::milliseconds first_resend_interval{20}, last_resend_interval{250};

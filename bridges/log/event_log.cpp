@@ -40,7 +40,7 @@ EventLogReader::EventLogReader(const std::string& path)
   if (file_.number() < 0) throw BusError(path + ": " + std::strerror(errno));
   struct stat status {};
   if (fstat(file_.number(), &status) != 0) throw BusError(path + ": " + std::strerror(errno));
-  if (!S_ISREG(status.st_mode)) throw BusError(path + ": is no regular file");
+  if (!S_ISREG(status.st_mode)) throw BusError(path + ": is not a regular file");
   file_bytes_ = static_cast<std::uint64_t>(status.st_size);
 }
 
@@ -62,7 +62,7 @@ bool EventLogReader::next(LogEventView& event) {
         return true;
       case Outcome::garbage:
         find_sync();
-        report(start, std::to_string(at_ - start) + " bytes that are no event were skipped");
+        report(start, std::to_string(at_ - start) + " bytes between events were skipped");
         break;
       case Outcome::truncated:
         // A damaged length looks the same as a cut end; then whole events follow.
@@ -77,16 +77,16 @@ bool EventLogReader::next(LogEventView& event) {
 }
 
 std::size_t EventLogReader::fill(std::size_t size) {
-  const std::size_t skipped = static_cast<std::size_t>(at_ - buffer_begin_);
+  const std::size_t skipped = static_cast<std::size_t>(at_ - buffer_start_);
   std::size_t there = skipped <= buffered_ ? buffered_ - skipped : 0;
   if (there >= size) return there;
   if (there > 0) std::memmove(buffer_.data(), buffer_.data() + skipped, there);
-  buffer_begin_ = at_;
+  buffer_start_ = at_;
   buffered_ = there;
   if (buffer_.size() < size + read_bytes) buffer_.resize(size + read_bytes);
   while (buffered_ < size) {
     const ssize_t got = ::pread(file_.number(), buffer_.data() + buffered_, buffer_.size() - buffered_,
-                                static_cast<off_t>(buffer_begin_ + buffered_));
+                                static_cast<off_t>(buffer_start_ + buffered_));
     if (got < 0 && errno == EINTR) continue;
     if (got <= 0) break;
     buffered_ += static_cast<std::size_t>(got);

@@ -33,18 +33,18 @@ struct LogEventView {
   std::uint64_t offset = 0;  ///< where in the file it begins
 };
 
-/// Reads an LCM event log, also a damaged one: lengths are bounded by the file, what is no event is skipped
+/// Reads an LCM event log, also a damaged one: lengths are bounded by the file, what is not an event is skipped
 /// and reported, an event cut off at the end (the writer was killed) ends the reading.
 class EventLogReader {
  public:
-  /// Throws BusError when the file cannot be opened or is no regular file.
+  /// Throws BusError when the file cannot be opened or is not a regular file.
   explicit EventLogReader(const std::string& path);
 
   /// In the order of the file.  Empty at the end.
   std::optional<LogEvent> next();
   /// The same without a copy.  False at the end.
   bool next(LogEventView& event);
-  /// So far, such as `byte 4711: 28 bytes that are no event were skipped`.
+  /// So far, such as `byte 4711: 28 bytes between events were skipped`.
   const std::vector<std::string>& problems() const { return problems_; }
   std::uint64_t file_bytes() const { return file_bytes_; }
 
@@ -56,11 +56,11 @@ class EventLogReader {
   void find_sync();
   /// Has the bytes of the file from at_ on in memory, at least `size` unless it ends before.  How many there are.
   std::size_t fill(std::size_t size);
-  const unsigned char* here() const { return buffer_.data() + (at_ - buffer_begin_); }
+  const unsigned char* here() const { return buffer_.data() + (at_ - buffer_start_); }
 
   FileDescriptor file_;
   std::vector<unsigned char> buffer_;
-  std::uint64_t buffer_begin_ = 0;  // in the file
+  std::uint64_t buffer_start_ = 0;  // in the file
   std::size_t buffered_ = 0;
   std::uint64_t file_bytes_ = 0;
   std::uint64_t at_ = 0;
@@ -72,7 +72,7 @@ class EventLogWriter {
  public:
   explicit EventLogWriter(FileDescriptor file) : file_(std::move(file)) {}
 
-  /// All return false when the file cannot take what was written so far; errno says why.
+  /// All return false when a write failed so far; errno has the reason.
   bool write(std::int64_t number, std::int64_t utime, std::string_view channel, std::span<const std::byte> payload);
   /// Bytes of another log.
   bool write(std::span<const std::byte> bytes);
@@ -82,7 +82,7 @@ class EventLogWriter {
   bool flush();
 
  private:
-  /// Where `size` bytes of the block can be put; null: the file takes no more.
+  /// Space for `size` bytes in the block; null: writing has failed.
   std::byte* room(std::size_t size);
 
   FileWriter file_;

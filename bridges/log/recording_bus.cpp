@@ -28,7 +28,7 @@ std::unique_ptr<EventLogWriter> create(const std::string& path, Existing existin
   const int flags = O_WRONLY | O_CREAT | O_CLOEXEC | (existing == Existing::refuse ? O_EXCL : 0);
   FileDescriptor file(open(path.c_str(), flags, 0666));
   if (file.number() < 0 && errno == EEXIST)
-    throw BusError(path + ": exists already; choose another name or pass --overwrite");
+    throw BusError(path + ": already exists; choose another name or pass --overwrite");
   if (file.number() < 0) throw BusError(path + ": " + std::strerror(errno));
   if (const auto owner = lock_against_others(file.number()))
     throw BusError(path + ": " + *owner + " is recording into it; choose another name");
@@ -60,8 +60,8 @@ void RecordingBus::publish(std::string_view channel, std::span<const std::byte> 
   record(channel, payload);
 }
 
-void RecordingBus::admitted(std::span<const sim::MailGate::Mail> mail) {
-  for (const sim::MailGate::Mail& each : mail) record(each.channel, each.payload);
+void RecordingBus::admitted(std::span<const sim::MessageGate::Delivery> input_record) {
+  for (const sim::MessageGate::Delivery& each : input_record) record(each.channel, each.payload);
 }
 
 void RecordingBus::set_time(sim::Time at) {
@@ -78,8 +78,8 @@ void RecordingBus::record(std::string_view channel, std::span<const std::byte> p
   bytes_ += event_head_bytes + channel.size() + payload.size();
   // Once a simulated second, but not more often than it is worth it: a killed run loses little, and `tail` sees it
   // grow.
-  if (const std::int64_t second = (utime_ - epoch_utime_) / 1'000'000; second > looked_s_) {
-    looked_s_ = second;
+  if (const std::int64_t second = (utime_ - epoch_utime_) / 1'000'000; second > checked_s_) {
+    checked_s_ = second;
     hand_over();
   }
 }
@@ -137,7 +137,7 @@ void RecordingBus::go_on() {
   bytes_ = next_->bytes;
   next_.reset();
   utime_ = epoch_utime_;  // time went back: the next set_time() tells
-  looked_s_ = 0;
+  checked_s_ = 0;
 }
 
 void RecordingBus::fail(int error_number) {

@@ -11,7 +11,7 @@
 
 #include "bridges/base/bus_error.hpp"
 #include "sim/bus/bus.hpp"
-#include "sim/bus/mail_gate.hpp"
+#include "sim/bus/message_gate.hpp"
 
 namespace bridges {
 
@@ -41,8 +41,8 @@ class RecordingBus final : public sim::Bus {
                                              std::size_t capacity = default_mailbox_capacity) override {
     return inner_.open_mailbox(channel, capacity);
   }
-  /// Writes down what came from outside and was handed to the world.
-  void admitted(std::span<const sim::MailGate::Mail> mail);
+  /// Writes down messages from outside and was handed to the world.
+  void admitted(std::span<const sim::MessageGate::Delivery> input_record);
   /// Has what is older than a quarter of a second of wall time written: a run that is killed loses no more.
   void end_of_step() override;
   sim::BusCounts counts() const override { return inner_.counts(); }
@@ -54,17 +54,17 @@ class RecordingBus final : public sim::Bus {
   std::uint64_t recorded() const { return recorded_; }
   /// Size of the log so far.
   std::uint64_t bytes() const { return bytes_; }
-  /// Makes another log, which begins with a copy of the first `events` events, of `bytes` bytes.  This one goes on
+  /// Makes another log, which begins with a copy of the first `events` events, of `bytes` bytes.  This one continues
   /// until go_on().  Throws BusError when the file cannot be made whole.
   void prepare(const std::string& path, std::uint64_t events, std::uint64_t bytes, Existing existing);
-  /// Leaves the log as it is and goes on in the one that was prepared.
+  /// Closes the log and continues in the prepared one.
   void go_on();
   /// Removes the one that was prepared.
   void give_up();
   /// Lets what is buffered be written, and does not wait for it: for a run that stands still.  Not more often than it
   /// is worth it, so call it again.
   void hand_over();
-  /// Writes what is buffered.  The bus goes on without recording.
+  /// Writes what is buffered.  The bus continues without recording.
   void close();
   sim::Bus& inner() { return inner_; }
 
@@ -84,8 +84,8 @@ class RecordingBus final : public sim::Bus {
   RecordingBus* first_ = nullptr;  // whose log is used; null: our own
   std::string path_;
   std::int64_t epoch_utime_ = 0;
-  std::int64_t utime_ = 0;     // of the last event; never goes back
-  std::int64_t looked_s_ = 0;  // simulated second in which it was last looked whether to hand over
+  std::int64_t utime_ = 0;      // of the last event; never goes back
+  std::int64_t checked_s_ = 0;  // simulated second in which it was last looked whether to hand over
   std::chrono::steady_clock::time_point handed_over_;
   std::unique_ptr<EventLogWriter> log_;
   std::optional<Next> next_;  // prepared

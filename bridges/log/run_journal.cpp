@@ -11,23 +11,23 @@ namespace bridges {
 
 namespace {
 
-/// What one sim.mail holds, about: LCM carries at most 16 MB.
-constexpr std::size_t most_bytes = std::size_t{1} << 20;
+/// What one sim.inputs holds, about: LCM carries at most 16 MB.
+constexpr std::size_t max_bytes = std::size_t{1} << 20;
 
 }  // namespace
 
-void SerialMail::add(std::int64_t step, const std::string& path, sim::Bytes bytes) {
+void SerialInputs::add(std::int64_t step, const std::string& path, sim::Bytes bytes) {
   waiting_[path].emplace_back(step, std::move(bytes));
 }
 
-sim::Bytes SerialMail::read(const std::string& path, std::int64_t step) {
+sim::Bytes SerialInputs::read(const std::string& path, std::int64_t step) {
   const auto known = waiting_.find(path);
   if (known == waiting_.end()) return {};
-  auto& letters = known->second;
-  while (!letters.empty() && letters.front().first < step) letters.pop_front();
-  if (letters.empty() || letters.front().first != step) return {};
-  sim::Bytes bytes = std::move(letters.front().second);
-  letters.pop_front();
+  auto& inputs = known->second;
+  while (!inputs.empty() && inputs.front().first < step) inputs.pop_front();
+  if (inputs.empty() || inputs.front().first != step) return {};
+  sim::Bytes bytes = std::move(inputs.front().second);
+  inputs.pop_front();
   return bytes;
 }
 
@@ -38,7 +38,7 @@ class JournalPorts::Port final : public sim::BytePort {
       : ports_(ports), path_(std::move(path)), inner_(std::move(inner)) {}
 
   sim::Bytes read() override {
-    if (ports_.muted_) return ports_.mail_.read(path_, ports_.step_);
+    if (ports_.muted_) return ports_.inputs_.read(path_, ports_.step_);
     sim::Bytes bytes = inner_->read();
     if (!bytes.empty()) ports_.read_.push_back({ports_.step_, path_, bytes});
     return bytes;
@@ -61,25 +61,25 @@ sim::PortOpener JournalPorts::wrap(sim::PortOpener open) {
   };
 }
 
-RunJournal::RunJournal(sim::Bus& bus, const sim::World& world, JournalPorts& ports, std::function<bool()> heard)
+RunJournal::RunJournal(sim::Bus& bus, const sim::World& world, JournalPorts& ports, std::function<bool()> received)
     : bus_(bus),
       world_(world),
       ports_(ports),
       every_steps_(world.config().run.hash_every_steps),
-      heard_(std::move(heard)) {
+      is_observed_(std::move(received)) {
   begin_step();
 }
 
-void RunJournal::admitted(const std::string& bus, std::span<const sim::MailGate::Mail> mail) {
-  for (const sim::MailGate::Mail& each : mail) letter(bus, each.channel, each.payload);
+void RunJournal::admitted(const std::string& bus, std::span<const sim::MessageGate::Delivery> input_record) {
+  for (const sim::MessageGate::Delivery& each : input_record) input(bus, each.channel, each.payload);
 }
 
 void RunJournal::request(const shoal::sim_control_request_t& request) {
   shoal::encode_into(request, buffer_);
-  letter("", request_channel, buffer_);
+  input("", request_channel, buffer_);
 }
 
-void RunJournal::letter(const std::string& bus, const std::string& channel, std::span<const std::byte> payload) {
+void RunJournal::input(const std::string& bus, const std::string& channel, std::span<const std::byte> payload) {
   take_readings();
   add(step(), bus, channel, payload);
 }
@@ -92,15 +92,15 @@ void RunJournal::add(std::int64_t step, const std::string& bus, const std::strin
                      std::span<const std::byte> payload) {
   if (muted_) return;
   if (listener_) listener_(step, {bus, channel, sim::Bytes(payload.begin(), payload.end())});
-  if (!waiting_.empty() && waiting_bytes_ + payload.size() > most_bytes) publish_mail();
-  shoal::sim_letter_t letter;
-  letter.step = step;
-  letter.bus = bus;
-  letter.channel = channel;
-  letter.size = static_cast<std::int32_t>(payload.size());
+  if (!waiting_.empty() && waiting_bytes_ + payload.size() > max_bytes) publish_inputs();
+  shoal::sim_input_t input;
+  input.step = step;
+  input.bus = bus;
+  input.channel = channel;
+  input.size = static_cast<std::int32_t>(payload.size());
   const auto* begin = reinterpret_cast<const std::uint8_t*>(payload.data());
-  letter.data.assign(begin, begin + payload.size());
-  waiting_.push_back(std::move(letter));
+  input.data.assign(begin, begin + payload.size());
+  waiting_.push_back(std::move(input));
   waiting_bytes_ += payload.size();
 }
 
@@ -108,22 +108,22 @@ void RunJournal::after_step() {
   begin_step();
   if (muted_) return;
   take_readings();
-  if (!waiting_.empty()) publish_mail();
+  if (!waiting_.empty()) publish_inputs();
   if (every_steps_ > 0 && world_.step_number() % every_steps_ == 0) publish_hash();
 }
 
 void RunJournal::finish(bool step_is_whole) {
   if (muted_) return;
   take_readings();
-  if (!waiting_.empty()) publish_mail();
+  if (!waiting_.empty()) publish_inputs();
   if (!step_is_whole || !started_ || last_hash_step_ == world_.step_number()) return;
   if (every_steps_ > 0) return publish_hash();
-  if (heard_ && !heard_()) return;
-  publish_mail();  // without letters: a log that ends with this one was not cut off
+  if (is_observed_ && !is_observed_()) return;
+  publish_inputs();  // without inputs: a log that ends with this one was not cut off
   last_hash_step_ = world_.step_number();
 }
 
-void RunJournal::begin_branch(std::int32_t branch, std::int64_t next_sequence) {
+void RunJournal::start_branch(std::int32_t branch, std::int64_t next_sequence) {
   begin_step();
   branch_ = branch;
   sequence_ = next_sequence;
@@ -132,27 +132,27 @@ void RunJournal::begin_branch(std::int32_t branch, std::int64_t next_sequence) {
   last_hash_step_ = -1;
 }
 
-void RunJournal::publish_mail() {
-  shoal::sim_mail_t message;
+void RunJournal::publish_inputs() {
+  shoal::sim_inputs_t message;
   message.utime = world_.epoch_us() + world_.now().count();
   message.step = world_.step_number();
   message.sequence = sequence_++;
   message.branch = branch_;
   message.count = static_cast<std::int32_t>(waiting_.size());
-  message.letter = std::move(waiting_);
+  message.input = std::move(waiting_);
   waiting_.clear();
   waiting_bytes_ = 0;
   shoal::encode_into(message, buffer_);
-  bus_.publish("sim.mail", buffer_, world_.now());
+  bus_.publish("sim.inputs", buffer_, world_.now());
 }
 
 void RunJournal::publish_hash() {
-  if (heard_ && !heard_()) return;
+  if (is_observed_ && !is_observed_()) return;
   shoal::sim_hash_t message;
   message.utime = world_.epoch_us() + world_.now().count();
   message.step = world_.step_number();
   message.branch = branch_;
-  message.mail_sequence = sequence_;
+  message.input_sequence = sequence_;
   sim::StateHash whole;  // WorldState::hash() is that of the hashes of all parts; so the state is gone through once
   for (const sim::PartHash& part : world_.state().part_hashes()) {
     whole.add(part.hash);

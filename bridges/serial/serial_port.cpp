@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t most_waiting_bytes = 1 << 16;
+constexpr std::size_t max_waiting_bytes = 1 << 16;
 
 [[noreturn]] void fail(const std::string& what, const std::string& path) {
   throw std::runtime_error("serial port '" + path + "': " + what + ": " + std::strerror(errno));
@@ -47,7 +47,7 @@ class Descriptor {
   int number_;
 };
 
-/// Where a port is made: a name in an open folder, so that nobody can put a link in the way in between.
+/// Where a port is made: a name in an open folder, so that no link can be inserted in between.
 struct Place {
   Descriptor folder;
   std::string name;
@@ -58,7 +58,7 @@ struct Place {
 Place open_place(const std::string& folder, const std::string& path) {
   const std::string whole = (fs::path(folder) / path).string();
   const auto fail_folder = [&](const std::string& why) {
-    throw std::runtime_error("serial port '" + whole + "': cannot make its directory: " + why);
+    throw std::runtime_error("serial port '" + whole + "': cannot create its directory: " + why);
   };
   std::error_code error;
   fs::create_directories(folder.empty() ? "." : folder, error);
@@ -84,8 +84,8 @@ class Outbox {
  public:
   void add(std::span<const std::byte> bytes) {
     waiting_.insert(waiting_.end(), bytes.begin(), bytes.end());
-    if (waiting_.size() <= most_waiting_bytes) return;
-    const std::size_t excess = waiting_.size() - most_waiting_bytes;
+    if (waiting_.size() <= max_waiting_bytes) return;
+    const std::size_t excess = waiting_.size() - max_waiting_bytes;
     waiting_.erase(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(excess));
     dropped_ += excess;
   }
@@ -111,7 +111,7 @@ sim::Bytes read_all(int descriptor) {
   sim::Bytes bytes;
   char chunk[512];
   // Bounded, so that a program that writes without end cannot hold up the step.
-  while (bytes.size() < most_waiting_bytes) {
+  while (bytes.size() < max_waiting_bytes) {
     const ssize_t size = ::read(descriptor, chunk, sizeof chunk);
     if (size <= 0) break;
     const auto* data = reinterpret_cast<const std::byte*>(chunk);
@@ -122,7 +122,7 @@ sim::Bytes read_all(int descriptor) {
 
 // The system gives the number of a pseudo-terminal that is gone to the next one, so a link that a killed run left may
 // lead to another terminal.  While a run lives, it holds a lock on a byte of its terminal that stands for the path of
-// the link; and its links are spelt in a way of their own, so that no other program's is taken for one.
+// the link; and its links are spelt in their own way, so that no other program's is taken for one.
 
 constexpr char terminals[] = "/dev/pts/";
 constexpr char own_spelling[] = "/dev/pts/./";
@@ -155,7 +155,7 @@ std::string target_of(const Place& place) {
 /// Whether a run that lives made this link.
 bool is_held(const Place& place) {
   const Descriptor terminal(openat(*place.folder, place.name.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
-  if (*terminal < 0) return errno != ENOENT;  // else somebody else's, perhaps
+  if (*terminal < 0) return errno != ENOENT;  // otherwise it may belong to another program
   struct flock lock = lock_of(place);
   return fcntl(*terminal, F_OFD_GETLK, &lock) != 0 || lock.l_type != F_UNLCK;
 }
@@ -167,8 +167,8 @@ void remove_stale_link(const Place& place) {
   // A run that was killed leaves its link, and another program's terminal may have that number since.
   if (!target.starts_with(own_spelling) || is_held(place))
     throw std::runtime_error("serial port '" + place.path + "': is in use: " + std::strerror(EEXIST) +
-                             "; when no run has it, remove the link");
-  spdlog::warn("serial port '{}': replaced the link that a killed run left", place.path);
+                             "; if no run uses it, remove the link");
+  spdlog::warn("serial port '{}': replaced a link left behind by a killed run", place.path);
   unlinkat(*place.folder, place.name.c_str(), 0);
 }
 
@@ -180,7 +180,7 @@ class PtyPort final : public sim::BytePort {
     char name[128];
     termios raw{};
     cfmakeraw(&raw);
-    // The slave stays open here too: reading the master fails while nobody has it open.
+    // The slave stays open here too: reading the master fails while the slave is not open.
     if (openpty(&master_, &slave_, name, &raw, nullptr) != 0) fail("cannot open a pseudo-terminal", path);
     fcntl(master_, F_SETFL, O_NONBLOCK);
     fcntl(master_, F_SETFD, FD_CLOEXEC);
@@ -193,7 +193,7 @@ class PtyPort final : public sim::BytePort {
       const int reason = errno;
       close_all();
       errno = reason;
-      fail("cannot make the link", path);
+      fail("cannot create the link", path);
     }
   }
   ~PtyPort() override {
@@ -228,8 +228,8 @@ class Fifo {
   Fifo(const Place& port, const std::string& ending)
       : folder_(fcntl(*port.folder, F_DUPFD_CLOEXEC, 0)), name_(port.name + ending), path_(port.path + ending) {
     remove_stale();
-    if (mkfifoat(*folder_, name_.c_str(), 0600) != 0) fail("cannot make the FIFO", path_);
-    // Both ways: no end-of-file when a writer leaves, no error while nobody reads.
+    if (mkfifoat(*folder_, name_.c_str(), 0600) != 0) fail("cannot create the FIFO", path_);
+    // Both ways: no end-of-file when a writer leaves, no error without a reader.
     end_ = Descriptor(openat(*folder_, name_.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC | O_NOFOLLOW));
     if (*end_ < 0 || fstat(*end_, &status_) != 0 || !S_ISFIFO(status_.st_mode)) fail("cannot open the FIFO", path_);
     fchmod(*end_, own_mode);
@@ -250,7 +250,7 @@ class Fifo {
     return *end_ >= 0 && fstatat(*folder_, name_.c_str(), &now, AT_SYMLINK_NOFOLLOW) == 0 &&
            now.st_ino == status_.st_ino && now.st_dev == status_.st_dev;
   }
-  /// Removes a FIFO that a killed run left: one that nobody reads.  Throws for that of a run that lives.
+  /// Removes a FIFO left behind by a killed run, that is one without a reader. Throws for that of a live run.
   void remove_stale() {
     struct stat status {};
     if (fstatat(*folder_, name_.c_str(), &status, AT_SYMLINK_NOFOLLOW) != 0 || !S_ISFIFO(status.st_mode)) return;
@@ -259,7 +259,7 @@ class Fifo {
       errno = EEXIST;
       fail("is in use", path_);
     }
-    spdlog::warn("serial port '{}': replaced the FIFO that a killed run left", path_);
+    spdlog::warn("serial port '{}': replaced a FIFO left behind by a killed run", path_);
     unlinkat(*folder_, name_.c_str(), 0);
   }
 

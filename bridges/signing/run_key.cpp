@@ -42,7 +42,7 @@ std::string_view trimmed(std::string_view text) {
 RunKey RunKey::random() {
   RunKey key;
   if (RAND_bytes(key.bytes_.data(), static_cast<int>(size)) != 1)
-    throw BusError("the system gives no random numbers for the key of the run");
+    throw BusError("the system provides no random numbers for the key of the run");
   return key;
 }
 
@@ -101,7 +101,7 @@ RunKey read_run_key(const std::string& folder) {
   const FileDescriptor file(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   if (file.number() < 0)
     throw BusError(path + ": " + std::strerror(errno) +
-                   (errno == ENOENT ? "; the run has ended, needs no key, or has another folder" : ""));
+                   (errno == ENOENT ? "; the run has ended, does not need a key, or uses another folder" : ""));
   struct stat status {};
   if (fstat(file.number(), &status) != 0 || !S_ISREG(status.st_mode)) throw BusError(path + ": is not a regular file");
   std::array<char, 256> text{};

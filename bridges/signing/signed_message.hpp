@@ -12,7 +12,7 @@
 
 namespace bridges {
 
-/// What a shoal.sim_signed_t says, once it has been read.
+/// The content of a shoal.sim_signed_t.
 struct SignedMessage {
   std::int64_t session = 0;
   std::string sender;
@@ -30,7 +30,7 @@ sim::Bytes content_of(std::span<const std::byte> payload);
 /// Whether the MAC of a payload that read_signed() takes is that of this key and channel.
 bool has_mac_of(const RunKey& key, std::string_view channel, std::span<const std::byte> payload);
 
-/// Whether signed messages stand in the place of others on this channel: what programs send to control a run.
+/// Whether this channel carries signed messages in place of others: those of programs that control a run.
 bool is_control_channel(std::string_view channel);
 
 /// Signs what one program sends.

@@ -65,14 +65,14 @@ Autopilot::Autopilot(const Params& params, const sim::DeviceContext& context)
       mode_(params.first_mode()) {
   check_helm(context, params.helm);
   const HoldParams& hold = params.hold;
-  wanted_.speed_mps = hold.speed_mps;
-  wanted_.heading_rad =
+  desired_.speed_mps = hold.speed_mps;
+  desired_.heading_rad =
       hold.heading_deg ? sim::degrees_to_radians(*hold.heading_deg) : sim::yaw_of(body_.X_WB().linear());
-  depth_wanted_m_ = depth_m();
+  depth_desired_m_ = depth_m();
   take_height(hold.depth_m, hold.altitude_m);
-  if (mode_ == Mode::waypoints) begin_route(params.route(), params.loop);
-  if (mode_ == Mode::station) wanted_.station_m = params.station.place_m.value_or(place());
-  if (mode_ == Mode::circle) begin_circle(params.station.place_m.value_or(place()));
+  if (mode_ == Mode::waypoints) start_route(params.route(), params.loop);
+  if (mode_ == Mode::station) desired_.station_m = params.station.place_m.value_or(place());
+  if (mode_ == Mode::circle) start_circle(params.station.place_m.value_or(place()));
 }
 
 double Autopilot::depth_m() const {
@@ -85,52 +85,52 @@ Eigen::Vector2d Autopilot::place() const {
 
 void Autopilot::take_height(const std::optional<double>& depth_m, const std::optional<double>& altitude_m) {
   if (!depth_m && !altitude_m) return;
-  altitude_wanted_m_ = altitude_m;
-  depth_wanted_m_ = altitude_m ? std::nullopt : depth_m;
+  altitude_desired_m_ = altitude_m;
+  depth_desired_m_ = altitude_m ? std::nullopt : depth_m;
 }
 
-void Autopilot::begin_route(std::vector<Waypoint> points, bool loop) {
+void Autopilot::start_route(std::vector<Waypoint> points, bool loop) {
   route_.start(std::move(points), loop, place());
   mode_ = Mode::waypoints;
-  wanted_.station_m.reset();
+  desired_.station_m.reset();
   take_waypoint();
 }
 
-void Autopilot::begin_circle(const Eigen::Vector2d& center_W) {
+void Autopilot::start_circle(const Eigen::Vector2d& center_W) {
   circle_.start(center_W, place(), sim::yaw_of(body_.X_WB().linear()));
   mode_ = Mode::circle;
-  wanted_.station_m.reset();
+  desired_.station_m.reset();
 }
 
 void Autopilot::take_waypoint() {
   take_height(route_.to().depth_m, route_.to().altitude_m);
-  if (route_.to().speed_mps) wanted_.speed_mps = *route_.to().speed_mps;
+  if (route_.to().speed_mps) desired_.speed_mps = *route_.to().speed_mps;
 }
 
 void Autopilot::set_mode(Mode mode) {
   if (mode == Mode::waypoints) {
     if (route_.size() == 0 && params_.route().empty()) throw std::runtime_error("there is no route");
     const bool own = route_.size() == 0;
-    return own ? begin_route(params_.route(), params_.loop) : begin_route(route_.points(), route_.loops());
+    return own ? start_route(params_.route(), params_.loop) : start_route(route_.points(), route_.loops());
   }
   if (mode_ == Mode::off || mode == Mode::off) law_.reset();
-  wanted_.station_m.reset();
-  if (mode == Mode::station) wanted_.station_m = place();
+  desired_.station_m.reset();
+  if (mode == Mode::station) desired_.station_m = place();
   if (mode_ == Mode::off) {
-    depth_wanted_m_ = depth_m();
-    altitude_wanted_m_.reset();
+    depth_desired_m_ = depth_m();
+    altitude_desired_m_.reset();
   }
-  wanted_.heading_rad = sim::yaw_of(body_.X_WB().linear());
+  desired_.heading_rad = sim::yaw_of(body_.X_WB().linear());
   mode_ = mode;
-  if (mode == Mode::circle) begin_circle(place());
+  if (mode == Mode::circle) start_circle(place());
 }
 
 void Autopilot::set_helm(const shoal::helm_command_t& command) {
   if (mode_ == Mode::off || !std::isnan(command.heading_rad)) {
     if (mode_ != Mode::hold) set_mode(Mode::hold);
-    wanted_.heading_rad = given(command.heading_rad, wanted_.heading_rad);
+    desired_.heading_rad = given(command.heading_rad, desired_.heading_rad);
   }
-  wanted_.speed_mps = given(command.speed_mps, wanted_.speed_mps);
+  desired_.speed_mps = given(command.speed_mps, desired_.speed_mps);
   take_height(if_number(command.depth_m), if_number(command.altitude_m));
 }
 
@@ -140,16 +140,16 @@ void Autopilot::set_waypoints(const shoal::waypoints_command_t& command) {
     points[i].p_W = {command.x_m[i], command.y_m[i]};
     points[i].depth_m = if_number(command.depth_m[i]);
   }
-  wanted_.speed_mps = given(command.speed_mps, wanted_.speed_mps);
-  begin_route(std::move(points), command.loop != 0);
+  desired_.speed_mps = given(command.speed_mps, desired_.speed_mps);
+  start_route(std::move(points), command.loop != 0);
 }
 
 void Autopilot::set_station(const shoal::station_command_t& command) {
-  const double heading_rad = wanted_.heading_rad;
+  const double heading_rad = desired_.heading_rad;
   const bool kept = mode_ == Mode::station;
   set_mode(Mode::station);
-  wanted_.station_m = Eigen::Vector2d(given(command.x_m, place().x()), given(command.y_m, place().y()));
-  wanted_.heading_rad = given(command.heading_rad, kept ? heading_rad : wanted_.heading_rad);
+  desired_.station_m = Eigen::Vector2d(given(command.x_m, place().x()), given(command.y_m, place().y()));
+  desired_.heading_rad = given(command.heading_rad, kept ? heading_rad : desired_.heading_rad);
   take_height(if_number(command.depth_m), std::nullopt);
 }
 
@@ -175,11 +175,11 @@ double Autopilot::altitude_of(const sim::SenseContext& context) const {
 }
 
 /// Where the altitude is wanted and no bottom is seen, the depth of this moment.
-double Autopilot::height_wanted(const sim::SenseContext& context) {
+double Autopilot::height_desired(const sim::SenseContext& context) {
   const double height_m = body_.X_WB().translation().z();
-  if (!altitude_wanted_m_) return surface_m_ - *depth_wanted_m_;
-  const double error_m = *altitude_wanted_m_ - altitude_of(context);
-  reading_.altitude_m = *altitude_wanted_m_;
+  if (!altitude_desired_m_) return surface_m_ - *depth_desired_m_;
+  const double error_m = *altitude_desired_m_ - altitude_of(context);
+  reading_.altitude_m = *altitude_desired_m_;
   reading_.altitude_error_m = error_m;
   return std::isnan(error_m) ? height_m : height_m + error_m;
 }
@@ -191,16 +191,16 @@ void Autopilot::follow_route(double dt_s) {
   reading_.cross_track_m = aim.cross_track_m;
   reading_.distance_m = aim.distance_m;
   if (!route_.finished()) {
-    wanted_.heading_rad = aim.heading_rad;
+    desired_.heading_rad = aim.heading_rad;
     return;
   }
   if (params_.at_end == AtEnd::circle) {
-    begin_circle(route_.to().p_W);
+    start_circle(route_.to().p_W);
     return follow_circle();
   }
   mode_ = params_.at_end == AtEnd::station ? Mode::station : Mode::hold;
-  if (params_.at_end == AtEnd::station) wanted_.station_m = route_.to().p_W;
-  if (params_.at_end == AtEnd::stop) wanted_.speed_mps = 0;
+  if (params_.at_end == AtEnd::station) desired_.station_m = route_.to().p_W;
+  if (params_.at_end == AtEnd::stop) desired_.speed_mps = 0;
 }
 
 /// The craft heads so that it goes along the course, whatever the current and its own sideslip do: what it makes of its
@@ -215,7 +215,7 @@ void Autopilot::follow_circle() {
       v_WS_W.norm() < slow_mps
           ? 0
           : sim::wrap_angle(std::atan2(v_WS_W.y(), v_WS_W.x()) - sim::yaw_of(body_.X_WB().linear()));
-  wanted_.heading_rad = sim::wrap_angle(aim.heading_rad - std::clamp(drift_rad, -max_drift_rad, max_drift_rad));
+  desired_.heading_rad = sim::wrap_angle(aim.heading_rad - std::clamp(drift_rad, -max_drift_rad, max_drift_rad));
 }
 
 void Autopilot::measure(const sim::SenseContext& context) {
@@ -230,8 +230,8 @@ void Autopilot::measure(const sim::SenseContext& context) {
     follow_route(context.dt_s);
   else if (mode_ == Mode::circle)
     follow_circle();
-  wanted_.height_m = height_wanted(context);
-  drive(context, law_.step(motion_of(context.world), wanted_, context.dt_s, limited_));
+  desired_.height_m = height_desired(context);
+  drive(context, law_.step(motion_of(context.world), desired_, context.dt_s, limited_));
 }
 
 void Autopilot::drive(const sim::SenseContext& context, const Demand& demand) {
@@ -240,9 +240,9 @@ void Autopilot::drive(const sim::SenseContext& context, const Demand& demand) {
   reading_.heading_rad = demand.heading_rad;
   reading_.speed_error_mps = demand.speed_error_mps;
   reading_.heading_error_rad = demand.heading_error_rad;
-  reading_.depth_m = or_nothing(depth_wanted_m_);
-  if (depth_wanted_m_) reading_.depth_error_m = *depth_wanted_m_ - depth_m();
-  if (wanted_.station_m) reading_.distance_m = (*wanted_.station_m - place()).norm();
+  reading_.depth_m = or_nothing(depth_desired_m_);
+  if (depth_desired_m_) reading_.depth_error_m = *depth_desired_m_ - depth_m();
+  if (desired_.station_m) reading_.distance_m = (*desired_.station_m - place()).norm();
   if (!actuators_) return drive_helm(demand, context.now);
   const CraftMotion motion = motion_of(context.world);
   limited_ = actuators_->share(demand.wrench, motion.v_S, context.world.hydrodynamics().water_at(body_).density_kgpm3);
@@ -255,7 +255,7 @@ void Autopilot::drive_helm(const Demand& demand, sim::Time now) {
   message.utime = world_.epoch_us() + vehicle_.clock().reading(now).count();
   message.speed_mps = demand.speed_mps;
   message.heading_rad = demand.heading_rad;
-  message.depth_m = surface_m_ - wanted_.height_m;
+  message.depth_m = surface_m_ - desired_.height_m;
   message.altitude_m = nothing;
   const std::string& channel = vehicle_.find_device(params_.helm)->command_channel();
   vehicle_.bus().publish(channel, shoal::encode(message), now);
@@ -273,11 +273,11 @@ void Autopilot::Reading::visit_state(sim::StateArchive& archive) {
 }
 
 void Autopilot::visit_state(sim::StateArchive& archive) {
-  archive(law_, route_, circle_, mode_, wanted_, depth_wanted_m_, altitude_wanted_m_, limited_, reading_);
+  archive(law_, route_, circle_, mode_, desired_, depth_desired_m_, altitude_desired_m_, limited_, reading_);
   if (!archive.restoring()) return;
-  if (mode_ < Mode::off || mode_ > Mode::circle) archive.fail("an autopilot has no such mode");
+  if (mode_ < Mode::off || mode_ > Mode::circle) archive.fail("unknown autopilot mode");
   if (mode_ == Mode::waypoints && route_.size() == 0) archive.fail("an autopilot follows a route without waypoints");
-  if (!depth_wanted_m_ && !altitude_wanted_m_) archive.fail("an autopilot holds neither depth nor altitude");
+  if (!depth_desired_m_ && !altitude_desired_m_) archive.fail("an autopilot holds neither depth nor altitude");
 }
 
 void fill(const Autopilot& autopilot, shoal::autopilot_state_t& message) {

@@ -42,7 +42,7 @@ class Autopilot final : public sim::Sensor {
   Autopilot(const Params& params, const sim::DeviceContext& context);
   void measure(const sim::SenseContext& context) override;
   void disturb(double, sim::Random&) override {}
-  /// It is told to keep an altitude somewhere.
+  /// Whether it is ever to hold an altitude.
   bool needs_bottom() const override;
   void visit_state(sim::StateArchive& archive) override;
   const Reading& reading() const { return reading_; }
@@ -61,12 +61,12 @@ class Autopilot final : public sim::Sensor {
   double depth_m() const;
   Eigen::Vector2d place() const;
   void take_height(const std::optional<double>& depth_m, const std::optional<double>& altitude_m);
-  void begin_route(std::vector<Waypoint> points, bool loop);
+  void start_route(std::vector<Waypoint> points, bool loop);
   void follow_route(double dt_s);
   void follow_circle();
-  void begin_circle(const Eigen::Vector2d& center_W);
+  void start_circle(const Eigen::Vector2d& center_W);
   void take_waypoint();
-  double height_wanted(const sim::SenseContext& context);
+  double height_desired(const sim::SenseContext& context);
   void drive(const sim::SenseContext& context, const Demand& demand);
   void drive_helm(const Demand& demand, sim::Time now);
 
@@ -81,9 +81,9 @@ class Autopilot final : public sim::Sensor {
   Route route_;
   Circle circle_;
   Mode mode_;
-  Setpoint wanted_;
+  Setpoint desired_;
   // One of them.
-  std::optional<double> depth_wanted_m_, altitude_wanted_m_;
+  std::optional<double> depth_desired_m_, altitude_desired_m_;
   Limited limited_;
   Reading reading_;
 };

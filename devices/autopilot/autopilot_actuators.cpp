@@ -66,7 +66,7 @@ void refuse_two_masters(const AutopilotParams& params, const sim::DeviceContext&
     const auto& other = static_cast<const sim::detail::ParamsOf<AutopilotParams>&>(*device.params).params;
     for (const std::string& name : driven_by(other))
       if (std::find(own.begin(), own.end(), name) != own.end())
-        refuse(context, "'" + name + "' is driven by autopilot '" + device.name + "' already");
+        refuse(context, "'" + name + "' is already driven by autopilot '" + device.name + "'");
   }
 }
 
@@ -136,7 +136,7 @@ CraftAbilities AutopilotActuators::abilities() const {
 Limited AutopilotActuators::share(const Wrench& wrench, const sim::Vector3d& v_B, double density_kgpm3) {
   const double density = density_kgpm3 > 0 ? density_kgpm3 : plan_density_kgpm3;
   Limited limited;
-  constexpr double all = 1 - 1e-9;  // but for rounding
+  constexpr double all = 1 - 1e-9;  // except for rounding
   limited.thrusters = allocation_->allocate(wrench, forces_N_) < all;
   for (std::size_t i = 0; i < propellers_.size(); ++i) {
     Propeller& propeller = propellers_[i];

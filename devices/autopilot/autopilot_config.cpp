@@ -25,26 +25,27 @@ void AutopilotParams::read(sim::ParamReader& in) {
   in.read_choice("mode", mode, "auto", autopilot_mode_words,
                  "at the start; auto: waypoints where there are some, else hold; off: others drive the actuators");
   in.read("thrusters", thrusters, "names of thrusters of the vehicle");
-  in.read("fins", fins, "names of fins of the vehicle; with fins it turns and climbs by them");
+  in.read("fins", fins, "names of fins of the vehicle; with fins it turns and changes depth by means of them");
   in.read("helm", helm, "name of a device that takes shoal.helm_command_t, in place of thrusters and fins");
   in.read("thruster_weights", thruster_weights, sim::above_to(0, 1e6),
-          "one for each thruster: what has twice the weight is used half as much; unset: all 1");
+          "one for each thruster: twice the weight means half the use; unset: all 1");
   in.read("axes", axes,
-          "of surge, sway, heave, roll, pitch, yaw those that the thrusters serve; unset: as many as they can, and "
-          "surge alone beside fins");
+          "those of surge, sway, heave, roll, pitch and yaw that the thrusters control; unset: as many as possible, "
+          "only surge when there are fins");
   in.read("hold", hold, "what is held at the start");
-  in.read("station", station, "where to stay, in mode station");
+  in.read("station", station, "position to hold in mode station");
   in.read_list("waypoints", waypoints, "waypoint", "the route");
   in.read("lawnmower", lawnmower, "a route of parallel tracks, in place of waypoints");
-  in.read("loop", loop, "after the last waypoint to the first");
+  in.read("loop", loop, "continue with the first waypoint after the last");
   in.read_choice("at_end", at_end,
                  {{"station", AtEnd::station}, {"stop", AtEnd::stop}, {"hold", AtEnd::hold}, {"circle", AtEnd::circle}},
-                 "after the last waypoint: stay there, speed 0, go on with the last heading, or circle around it");
+                 "after the last waypoint: hold station there, stop, keep the last heading, or circle around it");
   in.read("circle_radius_m", circle_radius_m, sim::above_to(0, 1e6),
-          "of the circle; no less than the craft can turn at its speed");
+          "of the circle; at least the turning radius of the craft at its speed");
   in.read("guidance", guidance, "how the route is followed");
   in.read("gains", gains, "of the controllers");
-  in.read("altitude_range_m", altitude_range_m, sim::above(0), "the bottom is looked for so far below");
+  in.read("altitude_range_m", altitude_range_m, sim::above(0),
+          "maximum distance below at which the bottom is detected");
   if (in.describing()) return;
   check(in);
 }
@@ -52,8 +53,7 @@ void AutopilotParams::read(sim::ParamReader& in) {
 /// What depends on two keys.
 void AutopilotParams::check(sim::ParamReader& in) const {
   if (thrusters.empty() && helm.empty()) in.error("'thrusters' or 'helm' must name what the autopilot drives");
-  if (!helm.empty() && !(thrusters.empty() && fins.empty()))
-    in.error("helm", "'helm' stands in place of 'thrusters' and 'fins'");
+  if (!helm.empty() && !(thrusters.empty() && fins.empty())) in.error("helm", "'helm' replaces 'thrusters' and 'fins'");
   if (!thruster_weights.empty() && thruster_weights.size() != thrusters.size())
     in.error("thruster_weights", "'thruster_weights' must have one number for each thruster");
   const auto twice = [&](const char* key, std::vector<std::string> names) {

@@ -26,8 +26,8 @@ class AxisHold {
  public:
   explicit AxisHold(const HoldGains& gains) : gains_(gains) {}
 
-  /// The acceleration to ask for.  `error`: wanted less true; `rate`: x'.  `frozen`: the sum of errors stands still,
-  /// for the actuators gave less than was asked for.
+  /// The acceleration to ask for.  `error`: wanted less true; `rate`: x'.  `frozen`: the integral of the error is
+  /// held (anti-windup), as the actuators are saturated.
   double step(double error, double rate, double dt_s, bool frozen);
   void reset() { sum_ = 0; }
   void visit_state(sim::StateArchive& archive) { archive(sum_); }

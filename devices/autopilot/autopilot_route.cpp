@@ -67,10 +67,11 @@ std::vector<Waypoint> Lawnmower::waypoints() const {
 }
 
 void GuidanceParams::read(sim::ParamReader& in) {
-  in.read("lookahead_m", lookahead_m, sim::above(0), "it heads for the leg this far ahead; a few lengths of the craft");
+  in.read("lookahead_m", lookahead_m, sim::above(0), "look-ahead distance on the leg; a few lengths of the craft");
   in.read("integral", integral, sim::between(0, 10),
-          "against drift: weight of the sum of cross-track errors, m/s; a quarter of the speed");
-  in.read("acceptance_radius_m", acceptance_radius_m, sim::above(0), "so near to a waypoint it is reached");
+          "against drift: gain of the integral of the cross-track error, m/s; typically a quarter of the speed");
+  in.read("acceptance_radius_m", acceptance_radius_m, sim::above(0),
+          "distance within which a waypoint counts as reached");
 }
 
 void Route::start(std::vector<Waypoint> points, bool loop, const Eigen::Vector2d& from_W) {
@@ -98,7 +99,7 @@ Aim Route::aim(const Eigen::Vector2d& p_W, double dt_s) {
     to_ = (to_ + 1) % points_.size();
     sum_m_ = 0;
   }
-  const Eigen::Vector2d leg = to().p_W - from_W_, way = p_W - from_W_;
+  const Eigen::Vector2d leg = to().p_W - from_W_, offset = p_W - from_W_;
   Aim aim;
   aim.distance_m = (to().p_W - p_W).norm();
   // A leg without length has no direction: the point itself is aimed at.
@@ -107,7 +108,7 @@ Aim Route::aim(const Eigen::Vector2d& p_W, double dt_s) {
     aim.heading_rad = std::atan2(to().p_W.y() - p_W.y(), to().p_W.x() - p_W.x());
     return aim;
   }
-  aim.cross_track_m = (leg.x() * way.y() - leg.y() * way.x()) / length;
+  aim.cross_track_m = (leg.x() * offset.y() - leg.y() * offset.x()) / length;
   const double lookahead = params_.lookahead_m, biased = aim.cross_track_m + params_.integral * sum_m_;
   aim.heading_rad = sim::wrap_angle(std::atan2(leg.y(), leg.x()) - std::atan(biased / lookahead));
   // In a turn the sum would only wind up.
@@ -136,14 +137,13 @@ Aim Circle::aim(const Eigen::Vector2d& p_W) const {
 
 void Circle::visit_state(sim::StateArchive& archive) {
   archive(center_W_, turn_);
-  if (archive.restoring() && turn_ != 1 && turn_ != -1) archive.fail("a circle turns to the left or to the right");
+  if (archive.restoring() && turn_ != 1 && turn_ != -1) archive.fail("direction of the circle: left or right");
 }
 
 void Route::visit_state(sim::StateArchive& archive) {
   archive(points_, loop_, finished_, to_, from_W_, sum_m_);
   if (to_ >= std::max<std::size_t>(points_.size(), 1))
-    archive.fail("a route of " + std::to_string(points_.size()) + " waypoints cannot go to number " +
-                 std::to_string(to_));
+    archive.fail("a route of " + std::to_string(points_.size()) + " waypoints has no number " + std::to_string(to_));
 }
 
 }  // namespace devices

@@ -10,7 +10,7 @@
 
 namespace devices {
 
-/// A point of a route in the world's horizontal plane.  What is unset stays as it was.
+/// A point of a route in the world's horizontal plane.  Unset members are unchanged.
 struct Waypoint {
   Eigen::Vector2d p_W = Eigen::Vector2d::Zero();
   std::optional<double> depth_m;     ///< below the still surface
@@ -52,15 +52,15 @@ struct Aim {
 /// Fossen 2021, section 12.4):
 ///   heading = direction of the leg - atan((e + kappa s) / Delta),  s' = Delta e / (Delta^2 + (e + kappa s)^2),
 /// with e the cross-track error, Delta the lookahead, kappa the integral; s stands while |e| > Delta / 2.  A waypoint
-/// is reached inside of its radius, or when the craft has passed the line through it across the leg: nobody turns back
-/// for a point that was missed.
+/// is reached inside of its radius, or when the craft has passed the line through it across the leg: the craft does
+/// not return to a missed point.
 class Route {
  public:
   explicit Route(const GuidanceParams& params) : params_(params) {}
 
   /// Begins at `from_W`.
   void start(std::vector<Waypoint> points, bool loop, const Eigen::Vector2d& from_W);
-  /// Goes on to the next waypoint where one was reached.  Not for an empty route.
+  /// Continues to the next waypoint where one was reached.  Not for an empty route.
   Aim aim(const Eigen::Vector2d& p_W, double dt_s);
   /// The one it goes to.
   const Waypoint& to() const { return points_[to_]; }

@@ -24,10 +24,10 @@ void HelmGains::read(sim::ParamReader& in) {
   in.read("attitude", attitude, "hold of roll and pitch, rad and rad/s");
   in.read("position", position, "hold of a station, m and m/s");
   in.read("speed_bandwidth_radps", speed_bandwidth_radps, sim::above_to(0, 100), "hold of the speed");
-  in.read("speed_integral", speed_integral, sim::between(0, 1), "weight of the sum of its errors");
+  in.read("speed_integral", speed_integral, sim::between(0, 1), "gain of the integral of its error");
   in.read("climb_gain_per_s", climb_gain_per_s, sim::above_to(0, 10), "with fins: climb in m/s per m of depth error");
   in.read("steerage_mps", steerage_mps, sim::above(0),
-          "with fins: no slower at a station, which it passes over again and again");
+          "with fins: minimum speed when holding a station, which it passes repeatedly");
   in.read_deg("pitch_max_deg", pitch_max_rad, sim::above_to(0, 80), "with fins: the steepest climb or dive");
 }
 
@@ -43,8 +43,8 @@ HelmLaw::HelmLaw(const HelmGains& gains, const CraftAbilities& craft)
       speed_(gains.speed_bandwidth_radps, gains.speed_integral) {}
 
 /// Acceleration in the world that takes a craft with thrusters to all sides to its station.
-sim::Vector3d HelmLaw::stay_sideways(const CraftMotion& motion, const Eigen::Vector2d& station, double dt_s,
-                                     bool frozen) {
+sim::Vector3d HelmLaw::hold_station_sideways(const CraftMotion& motion, const Eigen::Vector2d& station, double dt_s,
+                                             bool frozen) {
   const sim::Vector3d p = motion.X_WS.translation();
   return {east_.step(station.x() - p.x(), motion.v_WS_W.x(), dt_s, frozen),
           north_.step(station.y() - p.y(), motion.v_WS_W.y(), dt_s, frozen), 0};
@@ -52,8 +52,8 @@ sim::Vector3d HelmLaw::stay_sideways(const CraftMotion& motion, const Eigen::Vec
 
 /// A craft that goes ahead only heads where the water must be left behind: against the current in the end, which the
 /// sum of errors finds.
-void HelmLaw::stay_ahead(const CraftMotion& motion, const Eigen::Vector2d& station, double dt_s, bool frozen,
-                         Demand& demand) {
+void HelmLaw::hold_station_ahead(const CraftMotion& motion, const Eigen::Vector2d& station, double dt_s, bool frozen,
+                                 Demand& demand) {
   const HoldGains& gains = gains_.position;
   // Its heading has to come first, so it is slower than a craft that moves to all sides.
   const double k = 0.2 * gains.bandwidth_radps / gains.damping;
@@ -65,11 +65,11 @@ void HelmLaw::stay_ahead(const CraftMotion& motion, const Eigen::Vector2d& stati
   }
   const Eigen::Vector2d near = at_most(k * error, gains.rate_max);
   if (!frozen && (k * error).norm() <= gains.rate_max) drift_sum_mps_ += gains.integral * k * k * error * dt_s;
-  const Eigen::Vector2d wanted = near + drift_sum_mps_;
-  if (wanted.norm() < idle_mps) return;
-  demand.heading_rad = std::atan2(wanted.y(), wanted.x());
+  const Eigen::Vector2d desired = near + drift_sum_mps_;
+  if (desired.norm() < idle_mps) return;
+  demand.heading_rad = std::atan2(desired.y(), desired.x());
   const double turn = sim::wrap_angle(demand.heading_rad - sim::yaw_of(motion.X_WS.linear()));
-  demand.speed_mps = wanted.norm() * std::max(0.0, std::cos(turn));
+  demand.speed_mps = desired.norm() * std::max(0.0, std::cos(turn));
 }
 
 /// The pitch (nose down is positive) at which a craft with fins comes to its height.
@@ -83,26 +83,26 @@ double HelmLaw::pitch_for(const CraftMotion& motion, double height_m, double dt_
   return -kept;
 }
 
-Demand HelmLaw::step(const CraftMotion& motion, const Setpoint& wanted, double dt_s, const Limited& limited) {
+Demand HelmLaw::step(const CraftMotion& motion, const Setpoint& desired, double dt_s, const Limited& limited) {
   const bool frozen = limited.thrusters, turn_frozen = craft_.fins ? limited.fins : limited.thrusters;
   Demand demand;
-  demand.heading_rad = wanted.heading_rad;
-  demand.speed_mps = wanted.station_m ? 0 : wanted.speed_mps;
+  demand.heading_rad = desired.heading_rad;
+  demand.speed_mps = desired.station_m ? 0 : desired.speed_mps;
   const sim::Vector3d rpy = sim::rpy_from_rotation(motion.X_WS.linear());
   sim::Vector3d a_W = sim::Vector3d::Zero(), a_S = sim::Vector3d::Zero(), turn_S;
-  if (wanted.station_m && craft_.sideways) {
-    a_W = stay_sideways(motion, *wanted.station_m, dt_s, frozen);
+  if (desired.station_m && craft_.sideways) {
+    a_W = hold_station_sideways(motion, *desired.station_m, dt_s, frozen);
   } else {
-    if (wanted.station_m) stay_ahead(motion, *wanted.station_m, dt_s, frozen, demand);
+    if (desired.station_m) hold_station_ahead(motion, *desired.station_m, dt_s, frozen, demand);
     demand.speed_error_mps = demand.speed_mps - motion.v_S.x();
     a_S.x() = speed_.step(demand.speed_error_mps, dt_s, frozen);
     a_S.y() = -gains_.speed_bandwidth_radps * motion.v_S.y();
   }
   double pitch = 0;
   if (craft_.fins)
-    pitch = pitch_for(motion, wanted.height_m, dt_s, turn_frozen);
+    pitch = pitch_for(motion, desired.height_m, dt_s, turn_frozen);
   else if (craft_.heaves)
-    a_W.z() = depth_.step(wanted.height_m - motion.X_WS.translation().z(), motion.v_WS_W.z(), dt_s, frozen);
+    a_W.z() = depth_.step(desired.height_m - motion.X_WS.translation().z(), motion.v_WS_W.z(), dt_s, frozen);
   demand.heading_error_rad = sim::wrap_angle(demand.heading_rad - rpy.z());
   turn_S.x() = roll_.step(-rpy.x(), motion.w_S.x(), dt_s, turn_frozen);
   turn_S.y() = pitch_.step(pitch - rpy.y(), motion.w_S.y(), dt_s, turn_frozen);

@@ -67,7 +67,7 @@ class HelmLaw {
  public:
   HelmLaw(const HelmGains& gains, const CraftAbilities& craft);
 
-  Demand step(const CraftMotion& motion, const Setpoint& wanted, double dt_s, const Limited& limited);
+  Demand step(const CraftMotion& motion, const Setpoint& desired, double dt_s, const Limited& limited);
   /// Forgets the sums of errors.
   void reset();
   void visit_state(sim::StateArchive& archive) {
@@ -75,8 +75,10 @@ class HelmLaw {
   }
 
  private:
-  sim::Vector3d stay_sideways(const CraftMotion& motion, const Eigen::Vector2d& station, double dt_s, bool frozen);
-  void stay_ahead(const CraftMotion& motion, const Eigen::Vector2d& station, double dt_s, bool frozen, Demand& demand);
+  sim::Vector3d hold_station_sideways(const CraftMotion& motion, const Eigen::Vector2d& station, double dt_s,
+                                      bool frozen);
+  void hold_station_ahead(const CraftMotion& motion, const Eigen::Vector2d& station, double dt_s, bool frozen,
+                          Demand& demand);
   double pitch_for(const CraftMotion& motion, double height_m, double dt_s, bool frozen);
 
   HelmGains gains_;

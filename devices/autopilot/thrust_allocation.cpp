@@ -34,7 +34,7 @@ ThrustAllocation::ThrustAllocation(std::vector<ThrusterPlace> thrusters, const s
     if (!controllable({axes_.begin(), axes_.begin() + static_cast<std::ptrdiff_t>(n)}))
       throw std::invalid_argument("the thrusters cannot give " + wrench_axes()[static_cast<std::size_t>(axes_[n - 1])] +
                                   (n > 1 ? " beside the axes before it" : ""));
-  if (axes_.empty()) throw std::invalid_argument("the thrusters push nowhere");
+  if (axes_.empty()) throw std::invalid_argument("the thrusters produce no force");
   const Eigen::Index rows = static_cast<Eigen::Index>(axes_.size());
   Eigen::MatrixXd effect(rows, effect_.cols());
   for (Eigen::Index row = 0; row < rows; ++row) effect.row(row) = effect_.row(axes_[static_cast<std::size_t>(row)]);
@@ -66,14 +66,14 @@ bool ThrustAllocation::cannot_push(Eigen::Index thruster, double force_N) const 
 
 /// The least weighted squares of the forces among those that come nearest to the wrench, without what was dropped; what
 /// turns out to be dropped too goes the same way (active set).  Returns the share of the wrench that they give.
-double ThrustAllocation::nearest(const Wrench& wanted, std::vector<bool> dropped, Eigen::VectorXd& forces_N) const {
+double ThrustAllocation::nearest(const Wrench& desired, std::vector<bool> dropped, Eigen::VectorXd& forces_N) const {
   const auto rows = static_cast<Eigen::Index>(axes_.size());
   Eigen::VectorXd target(rows), given(rows);
   Eigen::MatrixXd effect(rows, effect_.cols());
   for (Eigen::Index row = 0; row < rows; ++row) {
     const int axis = axes_[static_cast<std::size_t>(row)];
     const double arm = axis < 3 ? 1 : arm_m_;
-    target[row] = wanted[axis] / arm;
+    target[row] = desired[axis] / arm;
     effect.row(row) = effect_.row(axis) / arm;
   }
   for (bool again = true; again;) {
@@ -95,16 +95,16 @@ double ThrustAllocation::nearest(const Wrench& wanted, std::vector<bool> dropped
   return square > 0 ? std::clamp(given.dot(target) / square, 0.0, 1.0) : 1;
 }
 
-double ThrustAllocation::allocate(const Wrench& wanted, Eigen::VectorXd& forces_N) const {
+double ThrustAllocation::allocate(const Wrench& desired, Eigen::VectorXd& forces_N) const {
   forces_N = Eigen::VectorXd::Zero(effect_.cols());
-  if (!wanted.allFinite()) return 0;
+  if (!desired.allFinite()) return 0;
   for (std::size_t i = 0; i < axes_.size(); ++i)
-    forces_N += inverse_.col(static_cast<Eigen::Index>(i)) * wanted[axes_[i]];
+    forces_N += inverse_.col(static_cast<Eigen::Index>(i)) * desired[axes_[i]];
   std::vector<bool> dropped(thrusters_.size());
   for (std::size_t i = 0; i < dropped.size(); ++i)
     dropped[i] = cannot_push(static_cast<Eigen::Index>(i), forces_N[static_cast<Eigen::Index>(i)]);
   const bool any = std::find(dropped.begin(), dropped.end(), true) != dropped.end();
-  const double share = any ? nearest(wanted, dropped, forces_N) : 1;
+  const double share = any ? nearest(desired, dropped, forces_N) : 1;
   double scale = 1;
   for (Eigen::Index i = 0; i < forces_N.size(); ++i) {
     const ThrusterPlace& thruster = thrusters_[static_cast<std::size_t>(i)];

@@ -35,7 +35,7 @@ class ThrustAllocation {
   /// others come as near to the wrench as they can.  Where one would be over its limit all are scaled by one number, so
   /// that the direction of the wrench stays.  The share of the wrench that they give is returned: 1 when nothing was
   /// dropped or is over.
-  double allocate(const Wrench& wanted, Eigen::VectorXd& forces_N) const;
+  double allocate(const Wrench& desired, Eigen::VectorXd& forces_N) const;
   /// What such forces give together.
   Wrench wrench_of(const Eigen::VectorXd& forces_N) const { return effect_ * forces_N; }
   bool gives(int axis) const;
@@ -44,7 +44,7 @@ class ThrustAllocation {
  private:
   bool controllable(const std::vector<int>& axes) const;
   bool cannot_push(Eigen::Index thruster, double force_N) const;
-  double nearest(const Wrench& wanted, std::vector<bool> dropped, Eigen::VectorXd& forces_N) const;
+  double nearest(const Wrench& desired, std::vector<bool> dropped, Eigen::VectorXd& forces_N) const;
 
   std::vector<ThrusterPlace> thrusters_;
   Eigen::Matrix<double, 6, Eigen::Dynamic> effect_;  // wrench of a unit force of each

@@ -7,7 +7,7 @@
 namespace devices {
 
 void LagParams::read(sim::ParamReader& in) {
-  in.read("lag_s", lag_s, sim::at_least(0), "time constant of a first-order lag; 0: it follows at once");
+  in.read("lag_s", lag_s, sim::at_least(0), "time constant of a first-order lag; 0: none");
   in.read_or_word("natural_frequency_radps", natural_frequency_radps, sim::between(1e-3, 1e5), {"none"},
                   "it follows as an oscillator of second order of this frequency, instead of lag_s");
   in.read("damping_ratio", damping_ratio, sim::above_to(0, 1e3), "of the second order");
@@ -52,12 +52,12 @@ void Lag::prepare(double h) {
 double Lag::follow(double target, double step_s) {
   if (step_s != prepared_for_s_) prepare(step_s);
   const double rest = value_ - target;
-  const double most = rate_limit_ * step_s;
+  const double max = rate_limit_ * step_s;
   const double change = rest_of_rest_ * rest + rest_of_rate_ * rate_ - rest;
   if (params_.natural_frequency_radps > 0)
     rate_ = std::clamp(rate_of_rest_ * rest + rate_of_rate_ * rate_, -rate_limit_, rate_limit_);
-  if (std::abs(change) > most)
-    value_ += std::copysign(most, change);
+  if (std::abs(change) > max)
+    value_ += std::copysign(max, change);
   else
     value_ = target + (rest + change);
   return value_;

@@ -6,8 +6,7 @@
 
 namespace devices {
 
-/// How what an actuator does follows what it is told: at once, with a first-order lag, or as a damped oscillator of
-/// second order; and never faster than a rate.
+/// Response of an actuator to its command: immediate, first-order lag, or damped second-order; limited in rate.
 struct LagParams {
   double lag_s = 0;                    ///< time constant of first order
   double natural_frequency_radps = 0;  ///< above 0: second order
@@ -15,8 +14,8 @@ struct LagParams {
   void read(sim::ParamReader& in);
 };
 
-/// The solution for a target that is constant in the step, which is exact for any step: in a first-order lag the rest
-/// of the way shrinks by exp(-step/lag).
+/// The solution for a target that is constant in the step, which is exact for any step: in a first-order lag the
+/// remaining difference shrinks by exp(-step/lag).
 class Lag {
  public:
   /// `rate_limit`: the most that value() changes in a second; infinity: no limit.
@@ -31,7 +30,7 @@ class Lag {
  private:
   void prepare(double step_s);
 
-  // The rest of the way and its rate after a step, from those before it.
+  // The remaining difference and its rate after a step, from those before it.
   double rest_of_rest_ = 0, rest_of_rate_ = 0, rate_of_rest_ = 0, rate_of_rate_ = 0;
   double prepared_for_s_ = -1;
   double rate_limit_ = 0;

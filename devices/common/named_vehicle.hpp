@@ -8,7 +8,7 @@
 
 namespace devices {
 
-/// What a device that is being built may name: a vehicle that is in the world, or that the world file puts there.
+/// The vehicles that a device may name while it is built: those in the world, or in the world file.
 /// Null: there is none of this name.
 inline const sim::VehicleConfig* named_vehicle(const sim::World& world, const std::string& name) {
   if (const sim::Vehicle* vehicle = world.find_vehicle(name)) return &vehicle->config();

@@ -12,12 +12,12 @@ const std::string& NmeaSentence::at(std::size_t i) const {
   return i < fields.size() ? fields[i] : none;
 }
 
-std::optional<int> NmeaSentence::number(std::size_t i, int least, int most) const {
+std::optional<int> NmeaSentence::number(std::size_t i, int min, int max) const {
   const std::string& text = at(i);
   int value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (text.empty() || error != std::errc{} || end != text.data() + text.size()) return {};
-  if (value < least || value > most) return {};
+  if (value < min || value > max) return {};
   return value;
 }
 

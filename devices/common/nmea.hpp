@@ -21,7 +21,7 @@ struct NmeaSentence {
   const std::string& at(std::size_t i) const;
   std::size_t count() const { return fields.size() - 1; }
   /// A whole number in a range; nothing when the field is anything else.
-  std::optional<int> number(std::size_t i, int least, int most) const;
+  std::optional<int> number(std::size_t i, int min, int max) const;
 };
 
 /// What reading a line gave.
@@ -32,10 +32,10 @@ unsigned nmea_checksum(std::string_view body);
 /// `$`, what is given, `*` and the checksum.
 std::string nmea_sentence(std::string_view body);
 /// Reads a line without its end.  What stands before the `$` is passed over; a checksum may be missing, but must be
-/// right where it is.  A line with characters that cannot be printed is no sentence.
+/// right where it is.  A line with characters that cannot be printed is not a sentence.
 NmeaError parse_nmea(std::string_view line, NmeaSentence& sentence);
 
-/// Makes lines of bytes as they come.  Needs bounded memory whatever comes.
+/// Makes lines of bytes as they come.  Memory is bounded for any input.
 class NmeaLines {
  public:
   struct Line {
@@ -56,7 +56,7 @@ class NmeaLines {
 
 /// Two digits for each byte, small letters.
 std::string to_hex(std::span<const std::byte> bytes);
-/// Nothing when it is no even number of hexadecimal digits.
+/// Nothing when it is not an even number of hexadecimal digits.
 std::optional<sim::Bytes> from_hex(std::string_view text);
 
 }  // namespace devices

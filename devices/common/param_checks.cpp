@@ -7,7 +7,7 @@ namespace devices {
 
 namespace {
 
-constexpr double most_rays = 1e6;
+constexpr double max_rays = 1e6;
 
 }  // namespace
 
@@ -22,17 +22,17 @@ void check_rays(sim::ParamReader& in, std::span<const RayFactor> factors) {
     counts += between + fmt::format("{:.0f}", factor.count);
     if (in.has(factor.key.c_str())) last_given = factor.key.c_str();
   }
-  if (rays <= most_rays) return;
+  if (rays <= max_rays) return;
   const std::string text =
-      fmt::format("{} must be at most {:.0f} rays in a sample, got {} = {:.0f}", keys, most_rays, counts, rays);
+      fmt::format("{} must be at most {:.0f} rays in a sample, got {} = {:.0f}", keys, max_rays, counts, rays);
   last_given ? in.error(last_given, text) : in.error(text);
 }
 
 double rate_hz_of(const sim::ParamReader& in, double default_rate_hz) {
   double rate_hz = default_rate_hz;
   if (in.node() == nullptr) return rate_hz;
-  sim::Diagnostics said_elsewhere;
-  sim::ParamReader again(*in.node(), in.who(), said_elsewhere);
+  sim::Diagnostics reported_elsewhere;
+  sim::ParamReader again(*in.node(), in.who(), reported_elsewhere);
   again.read_or_word("rate_hz", rate_hz, sim::between(1e-6, 1e6), {"every_step"}, "");
   return rate_hz;
 }

@@ -8,8 +8,8 @@
 
 namespace devices {
 
-/// Stands in a snapshot for a large reading, such as an image, that was published when it was taken and that nothing
-/// works with until the next one takes its place: of such a reading only the hash is kept.
+/// Represents in a snapshot a large reading, such as an image, that was published when it was taken and is not used
+/// until the next one replaces it: only its hash is kept.
 class ReadingDigest {
  public:
   /// Another reading takes the place of the last one.

@@ -17,8 +17,8 @@ void visit_same_size(sim::StateArchive& archive, std::vector<T>& values, std::st
   archive.expect_count(values.size(), of);
   archive.raw(values.data(), values.size() * sizeof(T));
   if constexpr (std::is_floating_point_v<T>) {
-    constexpr T most = static_cast<T>(sim::StateArchive::max_number);
-    for (const T value : values) archive.require(value, -most, most, of);
+    constexpr T max = static_cast<T>(sim::StateArchive::max_number);
+    for (const T value : values) archive.require(value, -max, max, of);
   }
 }
 

@@ -26,14 +26,14 @@ void SerialParams::read(sim::ParamReader& in) {
                  "pseudo-terminal, or a pair of FIFOs PATH.in and PATH.out");
   in.require("path");
   in.read_path("path", path, sim::PathUse::made,
-               "where programs find it, from the folder of the run; {vehicle}, {device} and {run} are replaced");
+               "path relative to the folder of the run; {vehicle}, {device} and {run} are replaced");
   if (in.has("path") && path.empty()) in.error("path", "'path' must not be empty");
 }
 
 void SerialMessageParams::read(sim::ParamReader& in) {
   SerialParams::read(in);
   in.read_choice("framing", framing, {{"line", Framing::line}, {"raw", Framing::raw}},
-                 "line: a message is a line; raw: what came within a step");
+                 "line: one message per line; raw: one message with all bytes received within a step");
 }
 
 SerialPort::SerialPort(const SerialParams& params, const sim::DeviceContext& context)
@@ -58,9 +58,9 @@ void SerialPort::write(std::span<const std::byte> bytes) {
   const std::uint64_t dropped_bytes = port_->dropped_bytes();
   if (dropped_bytes == dropped_bytes_) return;
   host_.shared.of(serial_losses).dropped_bytes += dropped_bytes - dropped_bytes_;
-  const bool told = dropped_bytes_ > 0;
+  const bool reported = dropped_bytes_ > 0;
   dropped_bytes_ = dropped_bytes;
-  if (!told) host_.warnings.bad_message(who_, "nobody reads '" + path_ + "': what waits longest is dropped");
+  if (!reported) host_.warnings.bad_message(who_, "no program reads '" + path_ + "': the oldest bytes are dropped");
 }
 
 void SerialPort::write(const std::string& text) {
@@ -69,7 +69,7 @@ void SerialPort::write(const std::string& text) {
 
 void warn_of_length(sim::WorldWarnings& warnings, const std::string& device, std::size_t max_bytes) {
   warnings.bad_message("device '" + device + "'",
-                       "what came by its serial port has more than " + std::to_string(max_bytes) + " bytes");
+                       "the data received on its serial port exceeds " + std::to_string(max_bytes) + " bytes");
 }
 
 SerialMessages::SerialMessages(const SerialMessageParams& params, const sim::DeviceContext& context)

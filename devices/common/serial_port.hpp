@@ -12,7 +12,7 @@
 
 namespace devices {
 
-/// A way for other programs to talk to a modem, beside the bus.
+/// A connection of other programs to a modem, in addition to the bus.
 struct SerialParams {
   sim::PortKind kind = sim::PortKind::pty;
   std::string path;
@@ -30,7 +30,7 @@ struct SerialMessageParams : SerialParams {
   void read(sim::ParamReader& in);
 };
 
-/// Bytes that nobody fetched from the serial ports of a world, since its start.  It depends on the programs at their
+/// Bytes of the serial ports of a world that no program read, since its start.  It depends on the programs at their
 /// other ends, and is no part of the state.
 std::uint64_t serial_dropped_bytes(const sim::World& world);
 
@@ -41,7 +41,7 @@ class SerialPort {
   SerialPort(const SerialParams& params, const sim::DeviceContext& context);
 
   sim::Bytes read();
-  /// Never waits: what nobody reads is dropped in the end, oldest first.  The world is told of it once.
+  /// Never blocks: unread bytes are eventually dropped, oldest first.  The world reports it once.
   void write(std::span<const std::byte> bytes);
   void write(const std::string& text);
 
@@ -63,7 +63,7 @@ class SerialMessages {
   /// What has come since the last call.  A message that is too long has max_bytes + 1 bytes.
   std::vector<sim::Bytes> take(std::size_t max_bytes);
   void write(sim::Bytes data);
-  /// What has come of a line that has not ended.  What is in the port itself is beyond the simulator.
+  /// The received part of an unfinished line.  What is in the port itself is beyond the simulator.
   void visit_state(sim::StateArchive& archive) { archive(line_, cut_); }
 
  private:

@@ -81,21 +81,20 @@ void AcousticModem::Params::read(sim::ParamReader& in) {
   for (const MicromodemRate& rate : micromodem_rates())
     presets.push_back("micromodem_rate" + std::to_string(rate.number));
   presets.insert(presets.end(), {"low_rate", "high_rate"});
-  in.read_one_of("preset", preset, presets, "a packet type or a modem as there are many; the keys below win over it");
+  in.read_one_of("preset", preset, presets, "preset of a packet type or modem; the keys below override it");
   if (!in.describing()) use_preset(*this);
-  in.read("network", network, "modems understand each other only in the same network; the others are noise");
+  in.read("network", network, "only modems of the same network understand each other; others act as noise");
   in.read("source_level_dB", source_level_dB, sim::between(0, 300), "re 1 uPa at 1 m, on its axis");
   in.read("frequency_Hz", frequency_Hz, sim::between(100, 1e6), "middle of its band");
   in.read("bandwidth_Hz", bandwidth_Hz, sim::between(1, 1e6), "of its band");
-  in.read_choice(
-      "modulation", modulation,
-      {{"fsk", sim::Modulation::fsk}, {"psk", sim::Modulation::psk}, {"dpsk", sim::Modulation::dpsk}},
-      "frequency shift keying, heard without phase; phase shift keying, coherent; differential phase shift keying");
+  in.read_choice("modulation", modulation,
+                 {{"fsk", sim::Modulation::fsk}, {"psk", sim::Modulation::psk}, {"dpsk", sim::Modulation::dpsk}},
+                 "frequency shift keying, non-coherent; phase shift keying, coherent; differential phase shift keying");
   in.read("bit_rate_bps", bit_rate_bps, sim::between(1e-3, 1e9), "bits per second while it sends");
-  in.read("coding_gain_dB", coding_gain_dB, sim::between(0, 60), "what its code adds to Eb/N0");
+  in.read("coding_gain_dB", coding_gain_dB, sim::between(0, 60), "coding gain on Eb/N0");
   in.read("frame_bytes", frame_bytes, sim::between(1, 1 << 16), "bytes of a frame");
   in.read("frames", frames, sim::between(1, 256), "of a packet, at most");
-  in.read("whole_frames", whole_frames, "a packet takes the time of whole frames, however few bytes are in them");
+  in.read("whole_frames", whole_frames, "a packet always takes the time of full frames, however few bytes they hold");
   in.read_or_word("max_message_bytes", max_message_bytes, sim::between(1, 1 << 20), {"all_frames"},
                   "longer messages are refused; all_frames: frames x frame_bytes");
   in.read("preamble_s", preamble_s, sim::between(0, 100), "of each packet, before its bits");
@@ -103,11 +102,11 @@ void AcousticModem::Params::read(sim::ParamReader& in) {
   in.read("queue_messages", queue_messages, sim::at_least(1), "messages waiting to be sent; the oldest is dropped");
   in.read_or_word("synchronous_s", synchronous_s, sim::between(1e-3, 3600), {"at_once"},
                   "sending begins at a whole multiple of this (in UTC) by the vehicle's clock");
-  in.read("listen_before_sending", listen_before_sending, "it waits while it is taking a signal");
-  in.read("promiscuous", promiscuous, "reports messages for others, too");
-  in.read("transmit_power_W", transmit_power_W, sim::at_least(0), "taken from the battery while it sends");
-  in.read("receiver", receiver, "how it hears");
-  in.read("serial", serial, "a pseudo-terminal or FIFO that any program can open");
+  in.read("listen_before_sending", listen_before_sending, "it does not transmit while it is receiving a signal");
+  in.read("promiscuous", promiscuous, "also reports messages addressed to others");
+  in.read("transmit_power_W", transmit_power_W, sim::at_least(0), "power drawn from the battery while it transmits");
+  in.read("receiver", receiver, "properties of its receiver");
+  in.read("serial", serial, "pseudo-terminal or FIFO for programs that use no LCM");
   if (in.describing()) return;
   if (bandwidth_Hz >= 2 * frequency_Hz)
     in.error("bandwidth_Hz", "'bandwidth_Hz' must be < 2 x frequency_Hz, got " + sim::number_text(bandwidth_Hz));
@@ -138,7 +137,7 @@ void AcousticModem::change(const Params& params) {
   transducer_.change(params.receiver);
 }
 
-std::size_t AcousticModem::longest_message_bytes() const {
+std::size_t AcousticModem::message_limit_bytes() const {
   const int bytes = params_.max_message_bytes > 0 ? params_.max_message_bytes : params_.frames * params_.frame_bytes;
   return static_cast<std::size_t>(bytes);
 }
@@ -156,8 +155,8 @@ double AcousticModem::duration_s(std::size_t bytes) const {
 
 void AcousticModem::send(sim::Time, std::string destination, sim::Bytes data) {
   if (data.empty()) throw std::runtime_error("a message must have at least 1 byte");
-  if (data.size() > longest_message_bytes())
-    throw std::runtime_error("a message must have at most " + std::to_string(longest_message_bytes()) + " bytes, got " +
+  if (data.size() > message_limit_bytes())
+    throw std::runtime_error("a message must have at most " + std::to_string(message_limit_bytes()) + " bytes, got " +
                              std::to_string(data.size()));
   if (!destination.empty() && world_.find_vehicle(destination) == nullptr)
     throw std::runtime_error("'destination' names no vehicle: '" + sim::shortened(sim::printable(destination)) + "'");
@@ -211,21 +210,21 @@ bool AcousticModem::listens_to(const sim::Signal& signal) const {
   return signal.kind == sim::Signal::Kind::message && signal.network == params_.network;
 }
 
-void AcousticModem::heard(const sim::Reception& heard) {
-  if (!heard.understood()) return;
+void AcousticModem::receive(const sim::Reception& reception) {
+  if (!reception.understood()) return;
   Packet packet;
-  if (!read_code(heard.signal.code, packet.sent_reading, packet.destination)) return;
-  packet.source = heard.source.substr(0, heard.source.find('/'));
+  if (!read_code(reception.signal.code, packet.sent_reading, packet.destination)) return;
+  packet.source = reception.source.substr(0, reception.source.find('/'));
   if (!packet.destination.empty() && packet.destination != vehicle_.name() && !params_.promiscuous) return;
-  packet.sent = heard.sent;
-  packet.arrived = heard.begun;
-  packet.arrived_reading = vehicle_.clock().reading(heard.begun);
-  packet.snr_dB = heard.sinr.dB();
-  packet.level_dB = heard.level.dB();
-  packet.closing_mps = heard.closing_mps;
-  packet.data = heard.signal.payload;
+  packet.sent = reception.sent;
+  packet.arrived = reception.started;
+  packet.arrived_reading = vehicle_.clock().reading(reception.started);
+  packet.snr_dB = reception.sinr.dB();
+  packet.level_dB = reception.level.dB();
+  packet.closing_mps = reception.closing_mps;
+  packet.data = reception.signal.payload;
   if (serial_) serial_->write(packet.data);
-  tell_tap(heard.ended, packet.source, packet.data);
+  report_to_tap(reception.ended, packet.source, packet.data);
   arrived_.push_back(std::move(packet));
 }
 
@@ -241,9 +240,9 @@ void AcousticModem::visit_state(sim::StateArchive& archive) {
 }
 
 void AcousticModem::read_serial(sim::Time now) {
-  for (sim::Bytes& data : serial_->take(longest_message_bytes()))
-    if (data.size() > longest_message_bytes())
-      warn_of_length(host_.warnings, transducer_.full_name(), longest_message_bytes());
+  for (sim::Bytes& data : serial_->take(message_limit_bytes()))
+    if (data.size() > message_limit_bytes())
+      warn_of_length(host_.warnings, transducer_.full_name(), message_limit_bytes());
     else
       send(now, "", std::move(data));
 }

@@ -14,9 +14,9 @@
 
 namespace devices {
 
-/// Acoustic modem: carries messages of bytes between vehicles under water, by world.acoustics().  It sends one message
-/// at a time and hears nothing meanwhile; it knows no protocol: who may send when, what is sent again, is up to the
-/// programs that use it.
+/// Acoustic modem: carries messages of bytes between vehicles under water, by world.acoustics().  It sends one
+/// message at a time and cannot receive meanwhile; medium access and retransmission are up to the programs that use
+/// it.
 class AcousticModem final : public sim::Sensor, public MessageModem, private sim::AcousticListener {
  public:
   static constexpr const char* meaning = "Acoustic modem: messages of bytes between vehicles under water.";
@@ -61,10 +61,10 @@ class AcousticModem final : public sim::Sensor, public MessageModem, private sim
   ~AcousticModem() override;
   void change(const Params& params);
 
-  /// Queues a message; when the queue is full the oldest is dropped and counted.  Empty destination: everybody.
+  /// Queues a message; when the queue is full the oldest is dropped and counted.  Empty destination: broadcast.
   /// Throws std::runtime_error when the message is empty or too long, or the destination names no vehicle.
   void send(sim::Time now, std::string destination, sim::Bytes data) override;
-  std::size_t longest_message_bytes() const override;
+  std::size_t message_limit_bytes() const override;
   /// Begins the next transmission when it may.
   void act(const sim::ActContext& context);
   double power_W() const;
@@ -88,7 +88,7 @@ class AcousticModem final : public sim::Sensor, public MessageModem, private sim
   };
 
   bool listens_to(const sim::Signal& signal) const override;
-  void heard(const sim::Reception& heard) override;
+  void receive(const sim::Reception& received) override;
   void transmit(sim::Time at, Outgoing message);
   /// Bits of the sound of a message.
   std::int64_t bits(std::size_t bytes) const;

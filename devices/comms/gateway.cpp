@@ -25,12 +25,14 @@ void Gateway::Params::read(sim::ParamReader& in) {
   in.require("between");
   in.read("between", between, "two devices of the vehicle of type modem or acoustic_modem");
   in.read("destinations", destinations,
-          "vehicles of the world that the first and the second modem send to; empty text: everybody");
+          "vehicles of the world that the first and the second modem send to; empty text: broadcast");
   in.read("delay_s", delay_s, sim::between(0, 3600), "between arrival at one and sending by the other");
-  in.read("repeat_s", repeat_s, sim::between(0, 86400), "the same bytes do not pass again so long; 0: they do");
+  in.read("repeat_s", repeat_s, sim::between(0, 86400),
+          "time for which the same bytes are not forwarded again; 0: always forwarded");
   in.read("name_source", name_source, "puts the name of the sending vehicle and a colon before the bytes");
-  in.read("only_prefix", only_prefix, "passes only messages that begin with this text; empty: all");
-  in.read("queue_messages", queue_messages, sim::at_least(1), "messages waiting for their delay; more are refused");
+  in.read("only_prefix", only_prefix, "forwards only messages that start with this text; empty: all");
+  in.read("queue_messages", queue_messages, sim::at_least(1),
+          "maximum number of delayed messages; further ones are rejected");
   if (in.describing()) return;
   if (between.size() != 2 || between[0] == between[1])
     in.error("between", "'between' must name two different devices, got " + std::to_string(between.size()) + " names");
@@ -59,7 +61,7 @@ Gateway::Gateway(const Params& params, const sim::DeviceContext& context)
     const auto& names = static_cast<const sim::detail::ParamsOf<Params>&>(*other.params).params.between;
     for (const std::string& name : params.between)
       if (std::find(names.begin(), names.end(), name) != names.end())
-        fail("'" + name + "' belongs to gateway '" + other.name + "' already");
+        fail("'" + name + "' already belongs to gateway '" + other.name + "'");
   }
   for (const std::string& name : params.destinations) {
     if (name == context.vehicle.name()) fail("'destinations' names its own vehicle");
@@ -120,7 +122,7 @@ void Gateway::arrived(std::size_t from, sim::Time at, const std::string& source,
     message.data.assign(bytes, bytes + name.size());
   }
   message.data.insert(message.data.end(), data.begin(), data.end());
-  if (message.data.size() > modems_[1 - from]->longest_message_bytes()) {
+  if (message.data.size() > modems_[1 - from]->message_limit_bytes()) {
     ++counts.too_long;
     return;
   }

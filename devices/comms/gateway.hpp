@@ -12,8 +12,8 @@
 namespace devices {
 
 /// Passes messages between two modems of one vehicle, such as the radio and the acoustic modem of a buoy.  What arrives
-/// at one is sent by the other, after `delay_s`; it never goes back to where it came from, and the same bytes do not
-/// pass twice within `repeat_s`, so that two gateways between the same networks do not play ping-pong.
+/// at one is sent by the other, after `delay_s`; it is never returned to its source, and the same bytes are not
+/// forwarded twice within `repeat_s`, so that two gateways between the same networks do not loop.
 class Gateway final : public sim::Sensor {
  public:
   static constexpr const char* meaning = "Gateway: passes messages between two modems of its vehicle.";

@@ -15,20 +15,20 @@ namespace devices {
 /// A modem that carries messages of bytes between vehicles, as a gateway sees it.
 class MessageModem {
  public:
-  /// Told of each message that arrives.
+  /// Reported each message that arrives.
   using Tap = std::function<void(sim::Time at, const std::string& source, const sim::Bytes& data)>;
 
   virtual ~MessageModem() = default;
-  /// Queues a message; empty destination: everybody.  Throws std::runtime_error when it cannot be sent.
+  /// Queues a message; empty destination: broadcast.  Throws std::runtime_error when it cannot be sent.
   virtual void send(sim::Time now, std::string destination, sim::Bytes data) = 0;
-  virtual std::size_t longest_message_bytes() const = 0;
+  virtual std::size_t message_limit_bytes() const = 0;
   /// Messages that were not sent, as its queue was full.
   virtual std::int64_t dropped_from_queue() const = 0;
   /// One at most.
   void set_tap(Tap tap) { tap_ = std::move(tap); }
 
  protected:
-  void tell_tap(sim::Time at, const std::string& source, const sim::Bytes& data) const {
+  void report_to_tap(sim::Time at, const std::string& source, const sim::Bytes& data) const {
     if (tap_) tap_(at, source, data);
   }
 
@@ -43,7 +43,7 @@ class MessageModems {
   void leave(const std::string& full_name) {
     const auto modem = modems_.find(full_name);
     if (modem == modems_.end()) return;
-    dropped_by_those_gone_ += modem->second->dropped_from_queue();
+    dropped_by_removed_ += modem->second->dropped_from_queue();
     modems_.erase(modem);
   }
   /// Null when there is none.
@@ -54,14 +54,14 @@ class MessageModems {
 
   /// Messages that all modems, also those that have left, dropped from full queues.
   std::int64_t dropped_from_queues() const {
-    std::int64_t dropped = dropped_by_those_gone_;
+    std::int64_t dropped = dropped_by_removed_;
     for (const auto& [name, modem] : modems_) dropped += modem->dropped_from_queue();
     return dropped;
   }
 
  private:
   std::map<std::string, MessageModem*, std::less<>> modems_;
-  std::int64_t dropped_by_those_gone_ = 0;
+  std::int64_t dropped_by_removed_ = 0;
 };
 
 /// Of each world.

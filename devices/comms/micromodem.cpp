@@ -40,29 +40,30 @@ const sim::SharedKind<Micromodem::Addresses> Micromodem::addresses_of_world;
 
 void MicromodemBeaconParams::read(sim::ParamReader& in) {
   in.read("network", network, "of the transponders");
-  in.read("transponders", transponders, "up to four that are told apart: vehicle, or vehicle/device");
-  in.read("turnaround_s", turnaround_s, sim::between(0, 10), "of the transponders; it is taken off the travel times");
-  in.read("ping_s", ping_s, sim::between(1e-4, 1), "of the sound that asks");
-  in.read("frequency_Hz", frequency_Hz, sim::between(100, 1e6), "of the sound that asks");
-  in.read("bandwidth_Hz", bandwidth_Hz, sim::between(1, 1e6), "of the sound that asks");
+  in.read("transponders", transponders, "up to four, distinguished by their answers: vehicle, or vehicle/device");
+  in.read("turnaround_s", turnaround_s, sim::between(0, 10),
+          "turnaround time of the transponders, subtracted from the travel times");
+  in.read("ping_s", ping_s, sim::between(1e-4, 1), "of the interrogation ping");
+  in.read("frequency_Hz", frequency_Hz, sim::between(100, 1e6), "of the interrogation ping");
+  in.read("bandwidth_Hz", bandwidth_Hz, sim::between(1, 1e6), "of the interrogation ping");
   if (!in.describing() && transponders.size() > micromodem_beacons)
     in.error("transponders", "'transponders' must be at most 4, got " + std::to_string(transponders.size()));
 }
 
 void Micromodem::Params::read(sim::ParamReader& in) {
-  in.read("address", address, sim::between(0, micromodem_broadcast - 1), "its own; 127 means everybody");
-  in.read("psk", psk, "has the co-processor that rates 1 to 6 need");
+  in.read("address", address, sim::between(0, micromodem_broadcast - 1), "its own address; 127 means broadcast");
+  in.read("psk", psk, "whether it has the co-processor that rates 1 to 6 need");
   in.read("synchronous", synchronous,
           "sends at whole seconds of the vehicle's clock from the start (setting SNV), for one-way travel times");
-  in.read("network", network, "modems understand each other only in the same network; the others are noise");
+  in.read("network", network, "only modems of the same network understand each other; others act as noise");
   in.read("revision", revision, "of its software, in $CAREV; from 2 on it takes $CCTMS beside $CCCLK");
   in.read("source_level_dB", source_level_dB, sim::between(0, 300), "re 1 uPa at 1 m, on its axis");
   in.read("frequency_Hz", frequency_Hz, sim::between(2500, 1e6), "middle of its band");
-  in.read("coding_gain_dB", coding_gain_dB, sim::between(0, 60), "what its codes add to Eb/N0");
-  in.read("transmit_power_W", transmit_power_W, sim::at_least(0), "taken from the battery while it sends");
-  in.read("receiver", receiver, "how it hears");
+  in.read("coding_gain_dB", coding_gain_dB, sim::between(0, 60), "coding gain on Eb/N0");
+  in.read("transmit_power_W", transmit_power_W, sim::at_least(0), "power drawn from the battery while it transmits");
+  in.read("receiver", receiver, "properties of its receiver");
   in.read("lbl", lbl, "transponders that $CCPDT, $CCPNT and $CCPGT ask");
-  in.read("serial", serial, "a pseudo-terminal or FIFO that any program can open");
+  in.read("serial", serial, "pseudo-terminal or FIFO for programs that use no LCM");
   const auto is_plain = [](char c) { return c > ' ' && c < 127 && c != ',' && c != '*' && c != '$'; };
   if (!in.describing() && (revision.empty() || !std::all_of(revision.begin(), revision.end(), is_plain)))
     in.error("revision",
@@ -148,7 +149,7 @@ void Micromodem::take_address() {
 void Micromodem::act(const sim::ActContext& context) {
   now_ = context.now;
   if (!transducer_.works()) {
-    if (serial_) serial_->read();  // nobody listens
+    if (serial_) serial_->read();  // the modem is off
     off_ = true;
     return;
   }
@@ -165,10 +166,10 @@ double Micromodem::power_W() const {
   return transducer_.busy_until() > now_ ? params_.transmit_power_W : 0;
 }
 
-void Micromodem::say(const std::string& body) {
+void Micromodem::emit(const std::string& body) {
   std::string sentence = nmea_sentence(body);
   if (serial_) serial_->write(sentence + "\r\n");
-  if (saying_.size() >= most_sentences) saying_.pop_front();
+  if (saying_.size() >= max_sentences) saying_.pop_front();
   saying_.push_back({now_, vehicle_.clock().reading(now_), std::move(sentence)});
 }
 
@@ -202,7 +203,7 @@ MicromodemSide::Sound Micromodem::transmit(const MicromodemPacket& packet, sim::
   return send(std::move(signal), at, on_the_second);
 }
 
-MicromodemSide::Sound Micromodem::ask_beacons(sim::Time at, bool on_the_second) {
+MicromodemSide::Sound Micromodem::interrogate_beacons(sim::Time at, bool on_the_second) {
   const MicromodemBeaconParams beacons = params_.lbl.value_or(MicromodemBeaconParams{});
   sim::Signal signal;
   signal.kind = sim::Signal::Kind::ping;
@@ -233,49 +234,50 @@ bool Micromodem::listens_to(const sim::Signal& signal) const {
          (signal.code.empty() || signal.code == transducer_.full_name());
 }
 
-void Micromodem::heard(const sim::Reception& heard) {
-  now_ = std::max(now_, heard.ended);
-  if (heard.signal.kind == sim::Signal::Kind::answer) return heard_beacon(heard);
-  // One that it did not take is nothing to it.  Out of the water is the sender: it would hear nothing there itself.
-  const bool has_errors = heard.loss == sim::SignalLoss::noise || heard.loss == sim::SignalLoss::interference ||
-                          heard.loss == sim::SignalLoss::sender_off || heard.loss == sim::SignalLoss::out_of_water;
-  if (!heard.understood() && !(heard.noticed && has_errors)) return;
-  const auto packet = MicromodemPacket::read(heard.signal.code, heard.signal.payload);
+void Micromodem::receive(const sim::Reception& received) {
+  now_ = std::max(now_, received.ended);
+  if (received.signal.kind == sim::Signal::Kind::answer) return received_beacon(received);
+  // One that it did not take is nothing to it.  Out of the water is the sender: it would receive nothing there itself.
+  const bool has_errors = received.loss == sim::SignalLoss::noise || received.loss == sim::SignalLoss::interference ||
+                          received.loss == sim::SignalLoss::sender_off ||
+                          received.loss == sim::SignalLoss::out_of_water;
+  if (!received.understood() && !(received.detected && has_errors)) return;
+  const auto packet = MicromodemPacket::read(received.signal.code, received.signal.payload);
   if (!packet) return;
   MicromodemArrival arrival;
-  arrival.begun = heard.begun, arrival.ended = heard.ended;
-  arrival.level_dB = heard.level.dB();
-  arrival.snr_dB = heard.sinr.dB();
-  arrival.noise_dB = (heard.level - heard.snr).dB();
-  arrival.closing_mps = heard.closing_mps;
-  arrival.good = heard.understood();
-  protocol_.heard(*packet, arrival);
+  arrival.started = received.started, arrival.ended = received.ended;
+  arrival.level_dB = received.level.dB();
+  arrival.snr_dB = received.sinr.dB();
+  arrival.noise_dB = (received.level - received.snr).dB();
+  arrival.closing_mps = received.closing_mps;
+  arrival.good = received.understood();
+  protocol_.receive(*packet, arrival);
 }
 
-void Micromodem::heard_beacon(const sim::Reception& heard) {
-  if (!heard.understood()) return;
+void Micromodem::received_beacon(const sim::Reception& received) {
+  if (!received.understood()) return;
   for (std::size_t i = 0; i < params_.lbl->transponders.size(); ++i) {
     const std::string& name = params_.lbl->transponders[i];
-    if (heard.source == name || heard.source.starts_with(name + "/"))
-      return protocol_.beacon_answered(static_cast<int>(i), heard.begun);
+    if (received.source == name || received.source.starts_with(name + "/"))
+      return protocol_.beacon_answered(static_cast<int>(i), received.started);
   }
 }
 
 void Micromodem::measure(const sim::SenseContext&) {
-  said_.assign(std::make_move_iterator(saying_.begin()), std::make_move_iterator(saying_.end()));
+  sentences_.assign(std::make_move_iterator(saying_.begin()), std::make_move_iterator(saying_.end()));
   saying_.clear();
 }
 
 void Micromodem::visit_state(sim::StateArchive& archive) {
-  archive(protocol_, lines_, off_, now_, saying_, said_);
+  archive(protocol_, lines_, off_, now_, saying_, sentences_);
   if (archive.restoring()) list(protocol_.address());
 }
 
 void MicromodemReporter::report(sim::Time, sim::Publisher& out) const {
-  for (const Micromodem::Said& said : modem_.said()) {
+  for (const Micromodem::Sentence& sentences : modem_.sentences()) {
     shoal::nmea_sentence_t message;
-    message.utime = out.utime_elsewhere(said.at, said.reading);
-    message.sentence = said.sentence;
+    message.utime = out.utime_elsewhere(sentences.at, sentences.reading);
+    message.sentence = sentences.sentence;
     shoal::encode_into(message, out.buffer());
     out.publish(out.buffer());
   }

@@ -45,7 +45,7 @@ class Micromodem final : public sim::Sensor, private sim::AcousticListener, priv
     std::optional<SerialParams> serial;
     void read(sim::ParamReader& in);
   };
-  struct Said {
+  struct Sentence {
     sim::Time at;       ///< true time
     sim::Time reading;  ///< by the vehicle's clock
     std::string sentence;
@@ -66,14 +66,14 @@ class Micromodem final : public sim::Sensor, private sim::AcousticListener, priv
   void visit_state(sim::StateArchive& archive) override;
 
   /// What it said since the last sample.
-  const std::vector<Said>& said() const { return said_; }
+  const std::vector<Sentence>& sentences() const { return sentences_; }
   const MicromodemProtocol& protocol() const { return protocol_; }
   const sim::Transducer& transducer() const { return transducer_; }
 
  private:
   struct Addresses;
   static const sim::SharedKind<Addresses> addresses_of_world;
-  static constexpr std::size_t most_sentences = 4096;  // between two samples
+  static constexpr std::size_t max_sentences = 4096;  // between two samples
 
   void check_beacons(const sim::DeviceContext& context) const;
   void warn_of_address() const;
@@ -81,11 +81,11 @@ class Micromodem final : public sim::Sensor, private sim::AcousticListener, priv
   void list(int address);
   void unlist();
   bool listens_to(const sim::Signal& signal) const override;
-  void heard(const sim::Reception& heard) override;
-  void heard_beacon(const sim::Reception& heard);
-  void say(const std::string& body) override;
+  void receive(const sim::Reception& received) override;
+  void received_beacon(const sim::Reception& received);
+  void emit(const std::string& body) override;
   Sound transmit(const MicromodemPacket& packet, sim::Time at, bool on_the_second) override;
-  Sound ask_beacons(sim::Time at, bool on_the_second) override;
+  Sound interrogate_beacons(sim::Time at, bool on_the_second) override;
   sim::Time call_back() override;
   std::int64_t utc_us(sim::Time at) const override;
   double elapsed_s(sim::Time from, sim::Time to) const override;
@@ -102,8 +102,8 @@ class Micromodem final : public sim::Sensor, private sim::AcousticListener, priv
   sim::Transducer transducer_;
   MicromodemProtocol protocol_;
   NmeaLines lines_;
-  std::deque<Said> saying_;
-  std::vector<Said> said_;
+  std::deque<Sentence> saying_;
+  std::vector<Sentence> sentences_;
   std::unique_ptr<SerialPort> serial_;
   sim::Time now_{0};
   int address_ = -1;  // that the channel knows; -1: none yet

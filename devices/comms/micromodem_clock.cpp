@@ -95,7 +95,7 @@ void MicromodemProtocol::set_clock(const NmeaSentence& in, sim::Time now) {
   const auto set_us = utc_of(*year, *month, *day, *hour, *minute, *second);
   if (!set_us) return error("NMEA", bad_field, "no such day", now);
   set_utc(*set_us, now);
-  side_.say(echo(in, "CACLK"));
+  side_.emit(echo(in, "CACLK"));
 }
 
 /// $CCTMS,time,mode: 0 at once, 1 with the next pulse.
@@ -109,24 +109,24 @@ void MicromodemProtocol::set_time(const NmeaSentence& in, sim::Time now) {
     return;
   }
   set_utc(*set_us, now);
-  side_.say("CATMS,0," + iso_time(*set_us));
+  side_.emit("CATMS,0," + iso_time(*set_us));
 }
 
-void MicromodemProtocol::look_for_pulse(sim::Time now) {
+void MicromodemProtocol::detect_pulse(sim::Time now) {
   if (!pulse_time_) return;
   const std::int64_t second = floor_second(side_.utc_us(now));
   if (second == pulse_time_->second) return;
   clock_offset_us_ = pulse_time_->set_us - second * second_us;
   clock_set_ = true;
-  side_.say("CATMS,0," + iso_time(pulse_time_->set_us));
+  side_.emit("CATMS,0," + iso_time(pulse_time_->set_us));
   pulse_time_.reset();
 }
 
 /// $CCTMQ,0.
 void MicromodemProtocol::query_time(const NmeaSentence& in, sim::Time now) {
   if (!in.number(1, 0, 0)) return error("NMEA", bad_field, "TMQ needs a 0", now);
-  side_.say("CATMQ," + iso_time(utc_us(now)) + (clock_set_ ? ",USER_CMD," : ",NONE,") +
-            (settings_.on("SNV") ? "EXT_PPS" : "RTC"));
+  side_.emit("CATMQ," + iso_time(utc_us(now)) + (clock_set_ ? ",USER_CMD," : ",NONE,") +
+             (settings_.on("SNV") ? "EXT_PPS" : "RTC"));
 }
 
 int MicromodemProtocol::clock_mode() const {

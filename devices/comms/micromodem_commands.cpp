@@ -22,12 +22,17 @@ std::optional<bool> is_sequence_set(const std::string& text) {
 
 MicromodemProtocol::Command MicromodemProtocol::command_of(const std::string& name) const {
   static const std::map<std::string, Command> commands{
-      {"CCCFG", &MicromodemProtocol::configure},           {"CCCFQ", &MicromodemProtocol::query},
-      {"CCCLK", &MicromodemProtocol::set_clock},           {"CCMSC", &MicromodemProtocol::reset},
-      {"CCCYC", &MicromodemProtocol::begin_cycle},         {"CCTXD", &MicromodemProtocol::take_data},
-      {"CCMPC", &MicromodemProtocol::send_ping},           {"CCMUC", &MicromodemProtocol::send_mini},
-      {"CCPDT", &MicromodemProtocol::ask_remus_beacons},   {"CCPNT", &MicromodemProtocol::ask_narrowband_beacons},
-      {"CCPGT", &MicromodemProtocol::ask_generic_beacons},
+      {"CCCFG", &MicromodemProtocol::configure},
+      {"CCCFQ", &MicromodemProtocol::query},
+      {"CCCLK", &MicromodemProtocol::set_clock},
+      {"CCMSC", &MicromodemProtocol::reset},
+      {"CCCYC", &MicromodemProtocol::start_cycle},
+      {"CCTXD", &MicromodemProtocol::take_data},
+      {"CCMPC", &MicromodemProtocol::send_ping},
+      {"CCMUC", &MicromodemProtocol::send_mini},
+      {"CCPDT", &MicromodemProtocol::interrogate_remus_beacons},
+      {"CCPNT", &MicromodemProtocol::interrogate_narrowband_beacons},
+      {"CCPGT", &MicromodemProtocol::interrogate_generic_beacons},
   };
   // A Micro-Modem-1 does not know them.
   static const std::map<std::string, Command> of_second_generation{
@@ -62,7 +67,7 @@ void MicromodemProtocol::take_line(const NmeaLines::Line& line, sim::Time now) {
     case NmeaError::none:
       break;
   }
-  // What a modem says comes back from a terminal that echoes; an answer to it would go round for ever.
+  // What a modem says comes back from a terminal that echoes; an answer to it would go round forever.
   if (in.name().starts_with("CA") || in.name().starts_with("SN")) return;
   if (const Command command = command_of(in.name()))
     (this->*command)(in, now);
@@ -85,7 +90,7 @@ void MicromodemProtocol::configure(const NmeaSentence& in, sim::Time now) {
   if (in.at(1) == "ALL") {
     if (*value != 0) return error("NMEA", bad_field, "CFG of ALL takes 0 only: factory settings", now);
     settings_.reset();
-    return side_.say("CACFG,ALL,0");
+    return side_.emit("CACFG,ALL,0");
   }
   switch (settings_.set(in.at(1), *value)) {
     case MicromodemSettings::Outcome::unknown:
@@ -93,43 +98,43 @@ void MicromodemProtocol::configure(const NmeaSentence& in, sim::Time now) {
     case MicromodemSettings::Outcome::out_of_range:
       return error("NMEA", bad_field, "value of " + in.at(1) + " out of range", now);
     case MicromodemSettings::Outcome::done:
-      side_.say("CACFG," + in.at(1) + "," + std::to_string(*value));
+      side_.emit("CACFG," + in.at(1) + "," + std::to_string(*value));
   }
 }
 
 void MicromodemProtocol::query(const NmeaSentence& in, sim::Time now) {
   if (in.at(1) == "ALL") {
-    for (const auto& [name, value] : settings_.all()) side_.say("CACFG," + name + "," + std::to_string(value));
+    for (const auto& [name, value] : settings_.all()) side_.emit("CACFG," + name + "," + std::to_string(value));
     return;
   }
   const auto value = settings_.find(in.at(1));
   if (!value) return error("NMEA", bad_field, "unknown setting " + in.at(1).substr(0, 16), now);
-  side_.say("CACFG," + in.at(1) + "," + std::to_string(*value));
+  side_.emit("CACFG," + in.at(1) + "," + std::to_string(*value));
 }
 
 void MicromodemProtocol::reset(const NmeaSentence& in, sim::Time now) {
   const auto who = addresses(in, 1, now);
   if (!who) return;
   if (who->first != address() || who->second != address())
-    return error("MSC", bad_field, "only this modem can be started again", now);
+    return error("MSC", bad_field, "only this modem can be restarted", now);
   if (in.number(3, -1000000, 1000000) != 0)
     return error("MSC", bad_field, "the time to sleep must be 0: there is no sleep", now);
-  side_.say(echo(in, "CAMSC"));
+  side_.emit(echo(in, "CAMSC"));
   restart(now + sim::from_seconds(1));
 }
 
-void MicromodemProtocol::begin_cycle(const NmeaSentence& in, sim::Time now) {
+void MicromodemProtocol::start_cycle(const NmeaSentence& in, sim::Time now) {
   const auto who = addresses(in, 2, now);
   if (!who) return;
   const int highest_rate = config_.psk ? static_cast<int>(micromodem_rates().size()) - 1 : 0;
   const auto rate = in.number(4, 0, highest_rate);
   if (!rate) return error("CYC", bad_field, "rate must be 0 to " + std::to_string(highest_rate), now);
-  const int most = micromodem_rates()[static_cast<std::size_t>(*rate)].frames;
-  const auto ack = in.number(5, 0, 1), frames = in.number(6, 1, most);
+  const int max = micromodem_rates()[static_cast<std::size_t>(*rate)].frames;
+  const auto ack = in.number(5, 0, 1), frames = in.number(6, 1, max);
   if (!ack) return error("CYC", bad_field, "ack must be 0 or 1", now);
-  if (!frames) return error("CYC", bad_field, "frames must be 1 to " + std::to_string(most), now);
+  if (!frames) return error("CYC", bad_field, "frames must be 1 to " + std::to_string(max), now);
   if (busy("CYC", now)) return;
-  side_.say(echo(in, "CACYC"));
+  side_.emit(echo(in, "CACYC"));
   Cycle cycle{who->first, who->second, *rate, *frames, *ack != 0, false, {}, sim::Time{0}};
   if (cycle.source == address()) return gather(std::move(cycle), now);
   // It asks another to send.
@@ -145,7 +150,7 @@ void MicromodemProtocol::begin_cycle(const NmeaSentence& in, sim::Time now) {
 void MicromodemProtocol::take_data(const NmeaSentence& in, sim::Time now) {
   const auto who = addresses(in, 1, now);
   if (!who) return;
-  if (!cycle_ || who->first != address()) return error("TXD", no_request, "no data was asked for", now);
+  if (!cycle_ || who->first != address()) return error("TXD", no_request, "no data was requested", now);
   if (who->second != cycle_->destination)
     return error(
         "TXD", bad_field,
@@ -158,22 +163,22 @@ void MicromodemProtocol::take_data(const NmeaSentence& in, sim::Time now) {
   if (data->size() > static_cast<std::size_t>(room))
     return error("TXD", too_long_data,
                  "data too long: " + std::to_string(data->size()) + " bytes and room for " + std::to_string(room), now);
-  side_.say("CATXD," + in.at(1) + "," + in.at(2) + "," + in.at(3) + "," + std::to_string(data->size()));
+  side_.emit("CATXD," + in.at(1) + "," + in.at(2) + "," + in.at(3) + "," + std::to_string(data->size()));
   const bool last = data->empty();
   if (!last || cycle_->gathered.empty()) cycle_->gathered.push_back({*ack != 0, *data});
   if (last || static_cast<int>(cycle_->gathered.size()) == cycle_->frames)
     send_cycle(now);
   else
-    ask_for_frame(now);
+    request_frame(now);
 }
 
 void MicromodemProtocol::send_ping(const NmeaSentence& in, sim::Time now) {
   const auto who = addresses(in, 1, now);
   if (!who) return;
   if (who->first != address() || who->second == address() || who->second == micromodem_broadcast)
-    return error("MPC", bad_field, "a ping goes from this modem to another one", now);
+    return error("MPC", bad_field, "a ping must be sent from this modem to another", now);
   if (busy("MPC", now)) return;
-  side_.say(echo(in, "CAMPC"));
+  side_.emit(echo(in, "CAMPC"));
   MicromodemPacket packet;
   packet.kind = MicromodemPacket::Kind::ping;
   packet.source = who->first, packet.destination = who->second;
@@ -191,7 +196,7 @@ void MicromodemProtocol::send_mini(const NmeaSentence& in, sim::Time now) {
   if (!good) return error("MUC", bad_field, "data must be 0000 to 1fff", now);
   if (who->first != address()) return error("MUC", bad_field, "the source is not this modem", now);
   if (busy("MUC", now)) return;
-  side_.say(echo(in, "CAMUC"));
+  side_.emit(echo(in, "CAMUC"));
   MicromodemPacket packet;
   packet.kind = MicromodemPacket::Kind::mini;
   packet.source = who->first, packet.destination = who->second, packet.value = std::stoi(hex, nullptr, 16);
@@ -199,53 +204,53 @@ void MicromodemProtocol::send_mini(const NmeaSentence& in, sim::Time now) {
 }
 
 /// $CCPDT,group,channel,synchronous,sync timeout,timeout,A,B,C,D: flags.
-void MicromodemProtocol::ask_remus_beacons(const NmeaSentence& in, sim::Time now) {
+void MicromodemProtocol::interrogate_remus_beacons(const NmeaSentence& in, sim::Time now) {
   const auto on_the_second = in.number(3, 0, 1);
   BeaconPing ping;
   bool good = on_the_second.has_value();
   for (std::size_t i = 0; i < micromodem_beacons; ++i) {
-    const auto wanted = in.number(6 + i, 0, 1);
-    good = good && wanted;
-    ping.wanted[i] = wanted.value_or(0) != 0;
+    const auto desired = in.number(6 + i, 0, 1);
+    good = good && desired;
+    ping.desired[i] = desired.value_or(0) != 0;
   }
-  ask_beacons(in, good, in.number(5, 1, max_beacon_ms), ping, on_the_second.value_or(0) != 0, now);
+  interrogate_beacons(in, good, in.number(5, 1, max_beacon_ms), ping, on_the_second.value_or(0) != 0, now);
 }
 
 /// $CCPNT,frequency,length,length of the answers,timeout,A,B,C,D: frequencies,flag: 1 at once, 0 by the pulse.
-void MicromodemProtocol::ask_narrowband_beacons(const NmeaSentence& in, sim::Time now) {
+void MicromodemProtocol::interrogate_narrowband_beacons(const NmeaSentence& in, sim::Time now) {
   const auto at_once = in.number(9, 0, 1);
   BeaconPing ping;
   bool good = at_once.has_value();
   for (std::size_t i = 0; i < micromodem_beacons; ++i) {
     const auto frequency_Hz = in.number(5 + i, 0, 1000000);
     good = good && frequency_Hz;
-    ping.wanted[i] = frequency_Hz.value_or(0) != 0;
+    ping.desired[i] = frequency_Hz.value_or(0) != 0;
   }
-  ask_beacons(in, good, in.number(4, 1, max_beacon_ms), ping, at_once.value_or(1) == 0, now);
+  interrogate_beacons(in, good, in.number(4, 1, max_beacon_ms), ping, at_once.value_or(1) == 0, now);
 }
 
 /// $CCPGT,frequency,bits,sequence,timeout,frequency of the answers,A,B,C,D: sequences,bandwidth,reserved.
-void MicromodemProtocol::ask_generic_beacons(const NmeaSentence& in, sim::Time now) {
+void MicromodemProtocol::interrogate_generic_beacons(const NmeaSentence& in, sim::Time now) {
   BeaconPing ping;
   bool good = is_sequence_set(in.at(3)).has_value();
   for (const std::size_t frequency : {1, 5}) good = good && in.number(frequency, 1, 1000000);
   good = good && in.number(2, 1, 64) && in.number(10, 0, 1000000);
   for (std::size_t i = 0; i < micromodem_beacons; ++i) {
-    const auto wanted = is_sequence_set(in.at(6 + i));
-    good = good && wanted;
-    ping.wanted[i] = wanted.value_or(false);
+    const auto desired = is_sequence_set(in.at(6 + i));
+    good = good && desired;
+    ping.desired[i] = desired.value_or(false);
   }
-  ask_beacons(in, good, in.number(4, 1, max_beacon_ms), ping, false, now);
+  interrogate_beacons(in, good, in.number(4, 1, max_beacon_ms), ping, false, now);
 }
 
 /// The frequencies and sequences are those of the transponders here: the host only says which of them it asks.
-void MicromodemProtocol::ask_beacons(const NmeaSentence& in, bool good, std::optional<int> timeout_ms, BeaconPing ping,
-                                     bool on_the_second, sim::Time now) {
+void MicromodemProtocol::interrogate_beacons(const NmeaSentence& in, bool good, std::optional<int> timeout_ms,
+                                             BeaconPing ping, bool on_the_second, sim::Time now) {
   const std::string name = in.name().substr(2);
   if (!good || !timeout_ms) return error("NMEA", bad_field, name + " has a field out of range", now);
   if (busy("LBL", now)) return;
-  side_.say(echo(in, "SN" + name));
-  const auto sound = side_.ask_beacons(now, on_the_second);
+  side_.emit(echo(in, "SN" + name));
+  const auto sound = side_.interrogate_beacons(now, on_the_second);
   sending_until_ = std::max(sending_until_, sound.end);
   ping.sent = sound.begin;
   ping.deadline = sound.begin + sim::from_seconds(*timeout_ms * 1e-3);

@@ -23,8 +23,8 @@ std::string padded(int value, int digits) {
   return text;
 }
 
-int rounded(double value, int least, int most) {
-  return static_cast<int>(std::lround(std::clamp<double>(value, least, most)));
+int rounded(double value, int min, int max) {
+  return static_cast<int>(std::lround(std::clamp<double>(value, min, max)));
 }
 
 /// The word of Goby and others for a packet in $CACST and $CAXST.
@@ -65,7 +65,7 @@ std::string MicromodemProtocol::time_of_day(sim::Time at, int digits) const {
   return nmea_time_of_day(utc_us(at), digits);
 }
 
-void MicromodemProtocol::say_later(sim::Time at, std::string body) {
+void MicromodemProtocol::emit_later(sim::Time at, std::string body) {
   const auto after =
       std::upper_bound(due_.begin(), due_.end(), at, [](sim::Time t, const Due& due) { return t < due.at; });
   due_.insert(after, {at, std::move(body)});
@@ -73,7 +73,7 @@ void MicromodemProtocol::say_later(sim::Time at, std::string body) {
 
 void MicromodemProtocol::error(const std::string& module, int number, const std::string& text, sim::Time now) {
   ++errors_;
-  side_.say("CAERR," + time_of_day(now) + "," + module + "," + std::to_string(number) + "," + text);
+  side_.emit("CAERR," + time_of_day(now) + "," + module + "," + std::to_string(number) + "," + text);
 }
 
 bool MicromodemProtocol::busy(const char* module, sim::Time now) {
@@ -93,32 +93,33 @@ void MicromodemProtocol::restart(sim::Time up) {
 }
 
 void MicromodemProtocol::tick(sim::Time now) {
-  look_for_pulse(now);
+  detect_pulse(now);
   while (!due_.empty() && due_.front().at <= now) {
     const std::string body = std::move(due_.front().body);
     due_.erase(due_.begin());
-    side_.say(body);
+    side_.emit(body);
   }
   if (now >= next_revision_) {
     const char* event = starting_ ? "INIT" : "AUV";
-    if (starting_ || settings_.on("REV")) side_.say("CAREV," + time_of_day(now) + "," + event + "," + config_.revision);
+    if (starting_ || settings_.on("REV"))
+      side_.emit("CAREV," + time_of_day(now) + "," + event + "," + config_.revision);
     next_revision_ = now + sim::from_seconds(revision_period_s);
     starting_ = false;
   }
   if (cycle_ && now >= cycle_->deadline) {
     ++errors_;
-    side_.say("CAERR," + time_of_day(now) + ",DATA_TIMEOUT," + std::to_string(cycle_->gathered.size() + 1));
+    side_.emit("CAERR," + time_of_day(now) + ",DATA_TIMEOUT," + std::to_string(cycle_->gathered.size() + 1));
     if (cycle_->gathered.empty())
       cycle_.reset();
     else
       send_cycle(now);
   }
   if (expected_ && now >= expected_->deadline) {
-    side_.say("CAMSG,PACKET_TIMEOUT," + std::to_string(expected_->rate));
+    side_.emit("CAMSG,PACKET_TIMEOUT," + std::to_string(expected_->rate));
     expected_.reset();
   }
   if (ping_ && now >= ping_->deadline) {
-    side_.say("CAMPR," + std::to_string(ping_->destination) + "," + std::to_string(address()));
+    side_.emit("CAMPR," + std::to_string(ping_->destination) + "," + std::to_string(address()));
     ping_.reset();
   }
   if (beacon_ping_ && now >= beacon_ping_->deadline) report_beacons(now);
@@ -130,8 +131,8 @@ MicromodemSide::Sound MicromodemProtocol::send(const MicromodemPacket& packet, s
   const auto& rate = micromodem_rates()[static_cast<std::size_t>(packet.is_short() ? 0 : packet.rate)];
   const int bytes = packet.kind == Kind::data ? packet.data_bytes() : 2;
   const auto frames = packet.frames.size();
-  if (settings_.on("TXP")) say_later(sound.begin, "CATXP," + std::to_string(bytes));
-  if (settings_.on("TXF")) say_later(sound.end, "CATXF," + std::to_string(bytes));
+  if (settings_.on("TXP")) emit_later(sound.begin, "CATXP," + std::to_string(bytes));
+  if (settings_.on("TXF")) emit_later(sound.end, "CATXF," + std::to_string(bytes));
   if (!settings_.on("XST")) return sound;
   std::string body = "CAXST," + nmea_date(utc_us(sound.begin)) + "," + time_of_day(sound.begin, 4) + "," +
                      std::to_string(clock_mode()) + ",0,200";
@@ -140,22 +141,22 @@ MicromodemSide::Sound MicromodemProtocol::send(const MicromodemPacket& packet, s
         packet.is_short() ? 0 : packet.rate, packet.source, packet.destination, static_cast<int>(packet.ack),
         packet.frame_count, static_cast<int>(frames), packet_type(packet), bytes})
     body += "," + std::to_string(field);
-  say_later(sound.end, std::move(body));
+  emit_later(sound.end, std::move(body));
   return sound;
 }
 
 void MicromodemProtocol::gather(Cycle cycle, sim::Time now) {
   cycle_ = std::move(cycle);
-  ask_for_frame(now);
+  request_frame(now);
 }
 
-void MicromodemProtocol::ask_for_frame(sim::Time now) {
+void MicromodemProtocol::request_frame(sim::Time now) {
   const int room = micromodem_rates()[static_cast<std::size_t>(cycle_->rate)].frame_bytes;
   std::string body = "CADRQ," + time_of_day(now);
   for (const int field : {cycle_->source, cycle_->destination, static_cast<int>(cycle_->ack), room,
                           static_cast<int>(cycle_->gathered.size()) + 1})
     body += "," + std::to_string(field);
-  side_.say(body);
+  side_.emit(body);
   cycle_->deadline = now + sim::from_seconds(settings_.get("DTO"));
 }
 
@@ -178,45 +179,45 @@ void MicromodemProtocol::send_cycle(sim::Time now) {
   send(packet, at, settings_.on("SNV"));
 }
 
-void MicromodemProtocol::heard(const MicromodemPacket& packet, const MicromodemArrival& arrival) {
+void MicromodemProtocol::receive(const MicromodemPacket& packet, const MicromodemArrival& arrival) {
   if (is_down(arrival.ended)) return;
   if (!arrival.good && packet.is_short()) {
     // What it was about is not known.
-    side_.say("CAMSG,BAD_CRC,0");
+    side_.emit("CAMSG,BAD_CRC,0");
     return;
   }
   switch (packet.kind) {
     case Kind::cycle_init:
-      return heard_cycle(packet, arrival);
+      return received_cycle(packet, arrival);
     case Kind::data:
-      return heard_data(packet, arrival);
+      return received_data(packet, arrival);
     case Kind::ping:
-      return heard_ping(packet, arrival);
+      return received_ping(packet, arrival);
     case Kind::ping_reply:
-      return heard_reply(packet, arrival);
+      return received_reply(packet, arrival);
     case Kind::ack:
       for (int i = 0; i < 8; ++i)
         if ((packet.value >> i & 1) != 0)
-          side_.say("CAACK," + std::to_string(packet.source) + "," + std::to_string(packet.destination) + "," +
-                    std::to_string(i + 1) + ",1");
-      return say_statistics(packet, arrival, 0);
+          side_.emit("CAACK," + std::to_string(packet.source) + "," + std::to_string(packet.destination) + "," +
+                     std::to_string(i + 1) + ",1");
+      return emit_statistics(packet, arrival, 0);
     case Kind::mini: {
       char hex[8];
       std::snprintf(hex, sizeof hex, "%04x", static_cast<unsigned>(packet.value));
-      side_.say("CAMUA," + std::to_string(packet.source) + "," + std::to_string(packet.destination) + "," + hex);
-      return say_statistics(packet, arrival, 0);
+      side_.emit("CAMUA," + std::to_string(packet.source) + "," + std::to_string(packet.destination) + "," + hex);
+      return emit_statistics(packet, arrival, 0);
     }
   }
 }
 
-void MicromodemProtocol::heard_cycle(const MicromodemPacket& packet, const MicromodemArrival& arrival) {
+void MicromodemProtocol::received_cycle(const MicromodemPacket& packet, const MicromodemArrival& arrival) {
   std::string body = "CACYC,0";
   for (const int field :
        {packet.source, packet.destination, packet.rate, static_cast<int>(packet.ack), packet.frame_count})
     body += "," + std::to_string(field);
-  side_.say(body);
+  side_.emit(body);
   if (packet.kind == Kind::data) return;
-  say_statistics(packet, arrival, 0);
+  emit_statistics(packet, arrival, 0);
   if (packet.source == address()) {
     if (cycle_ || arrival.ended < sending_until_) return;
     return gather({packet.source, packet.destination, packet.rate, packet.frame_count, packet.ack, true, {}, {}},
@@ -226,39 +227,39 @@ void MicromodemProtocol::heard_cycle(const MicromodemPacket& packet, const Micro
                        arrival.ended + sim::from_seconds(settings_.get("PTO"))};
 }
 
-void MicromodemProtocol::heard_data(const MicromodemPacket& packet, const MicromodemArrival& arrival) {
+void MicromodemProtocol::received_data(const MicromodemPacket& packet, const MicromodemArrival& arrival) {
   const bool announced = expected_ && expected_->source == packet.source && expected_->rate == packet.rate;
-  if (packet.rate == 0 && !announced) return;  // without its cycle init nobody knows what it is
+  if (packet.rate == 0 && !announced) return;  // without its cycle init its meaning is unknown
   if (packet.rate > 0 && !config_.psk) return;
-  if (!announced) heard_cycle(packet, arrival);
+  if (!announced) received_cycle(packet, arrival);
   expected_.reset();
-  if (settings_.on("RXP")) side_.say(packet.rate == 0 ? "CARXP,0" : "CARXP,1");
-  int bad_frames = 0, wanted = 0;
+  if (settings_.on("RXP")) side_.emit(packet.rate == 0 ? "CARXP,0" : "CARXP,1");
+  int bad_frames = 0, desired = 0;
   for (std::size_t i = 0; i < packet.frames.size(); ++i) {
     const auto& frame = packet.frames[i];
     if (!arrival.good) {
       ++bad_frames;
-      side_.say("CAMSG,BAD_CRC," + std::to_string(packet.rate));
+      side_.emit("CAMSG,BAD_CRC," + std::to_string(packet.rate));
       continue;
     }
-    if (frame.ack) wanted |= 1 << i;
+    if (frame.ack) desired |= 1 << i;
     if (settings_.on("RXD"))
-      side_.say("CARXD," + std::to_string(packet.source) + "," + std::to_string(packet.destination) + "," +
-                std::to_string(static_cast<int>(frame.ack)) + "," + std::to_string(i + 1) + "," + to_hex(frame.data));
+      side_.emit("CARXD," + std::to_string(packet.source) + "," + std::to_string(packet.destination) + "," +
+                 std::to_string(static_cast<int>(frame.ack)) + "," + std::to_string(i + 1) + "," + to_hex(frame.data));
   }
-  say_statistics(packet, arrival, bad_frames);
-  if (wanted == 0 || packet.destination != address()) return;
+  emit_statistics(packet, arrival, bad_frames);
+  if (desired == 0 || packet.destination != address()) return;
   MicromodemPacket ack;
   ack.kind = Kind::ack;
-  ack.source = address(), ack.destination = packet.source, ack.value = wanted;
+  ack.source = address(), ack.destination = packet.source, ack.value = desired;
   send(ack, arrival.ended + sim::from_seconds(gap_s), false);
 }
 
-void MicromodemProtocol::heard_ping(const MicromodemPacket& packet, const MicromodemArrival& arrival) {
-  side_.say("CAMPA," + std::to_string(packet.source) + "," + std::to_string(packet.destination));
-  say_statistics(packet, arrival, 0);
+void MicromodemProtocol::received_ping(const MicromodemPacket& packet, const MicromodemArrival& arrival) {
+  side_.emit("CAMPA," + std::to_string(packet.source) + "," + std::to_string(packet.destination));
+  emit_statistics(packet, arrival, 0);
   if (packet.destination != address()) return;
-  const sim::Time at = std::max(arrival.begun + sim::from_seconds(micromodem_turnaround_s), arrival.ended);
+  const sim::Time at = std::max(arrival.started + sim::from_seconds(micromodem_turnaround_s), arrival.ended);
   if (at < sending_until_) return;  // it sends something else then, and the time would be wrong
   MicromodemPacket reply;
   reply.kind = Kind::ping_reply;
@@ -266,44 +267,44 @@ void MicromodemProtocol::heard_ping(const MicromodemPacket& packet, const Microm
   send(reply, at, false);
 }
 
-void MicromodemProtocol::heard_reply(const MicromodemPacket& packet, const MicromodemArrival& arrival) {
+void MicromodemProtocol::received_reply(const MicromodemPacket& packet, const MicromodemArrival& arrival) {
   const std::string who = "CAMPR," + std::to_string(packet.source) + "," + std::to_string(packet.destination);
   if (packet.destination != address() || !ping_ || ping_->destination != packet.source) {
     // Of a ping that another one sent it knows no time.
-    side_.say(who);
-    return say_statistics(packet, arrival, 0);
+    side_.emit(who);
+    return emit_statistics(packet, arrival, 0);
   }
-  const double one_way_s = (side_.elapsed_s(ping_->sent, arrival.begun) - micromodem_turnaround_s) / 2;
+  const double one_way_s = (side_.elapsed_s(ping_->sent, arrival.started) - micromodem_turnaround_s) / 2;
   ping_.reset();
   char time[24];
   std::snprintf(time, sizeof time, "%.4f", one_way_s);
-  side_.say(who + "," + time);
-  say_statistics(packet, arrival, 0);
+  side_.emit(who + "," + time);
+  emit_statistics(packet, arrival, 0);
 }
 
-void MicromodemProtocol::beacon_answered(int beacon, sim::Time begun) {
+void MicromodemProtocol::beacon_answered(int beacon, sim::Time started) {
   if (!beacon_ping_ || beacon < 0 || beacon >= micromodem_beacons) return;
   auto& answered = beacon_ping_->answered[static_cast<std::size_t>(beacon)];
-  if (!answered && begun <= beacon_ping_->deadline) answered = begun;
+  if (!answered && started <= beacon_ping_->deadline) answered = started;
 }
 
 void MicromodemProtocol::report_beacons(sim::Time now) {
   std::string body = "SNTTA";
   for (std::size_t i = 0; i < micromodem_beacons; ++i) {
     body += ",";
-    if (!beacon_ping_->wanted[i] || !beacon_ping_->answered[i]) continue;
+    if (!beacon_ping_->desired[i] || !beacon_ping_->answered[i]) continue;
     const double both_s = side_.elapsed_s(beacon_ping_->sent, *beacon_ping_->answered[i]);
     char time[24];
     std::snprintf(time, sizeof time, "%.4f", (both_s - beacon_ping_->turnaround_s) / 2);
     body += time;
   }
-  side_.say(body + "," + time_of_day(beacon_ping_->sent, 2));
+  side_.emit(body + "," + time_of_day(beacon_ping_->sent, 2));
   beacon_ping_.reset();
   (void)now;
 }
 
-void MicromodemProtocol::say_statistics(const MicromodemPacket& packet, const MicromodemArrival& arrival,
-                                        int bad_frames) {
+void MicromodemProtocol::emit_statistics(const MicromodemPacket& packet, const MicromodemArrival& arrival,
+                                         int bad_frames) {
   if (!settings_.on("CST")) return;
   const auto& rate = micromodem_rates()[static_cast<std::size_t>(packet.is_short() ? 0 : packet.rate)];
   const int snr = rounded(arrival.snr_dB, -99, 99);
@@ -312,7 +313,7 @@ void MicromodemProtocol::say_statistics(const MicromodemPacket& packet, const Mi
   const bool psk = packet_type(packet) == 3;
   const int frames = packet.kind == Kind::data ? static_cast<int>(packet.frames.size()) : 1;
   // mode (0: good; 1: bad), time of arrival, clock mode, matched filter, level, five gains, then the packet.
-  std::string body = "CACST," + std::to_string(bad_frames > 0 ? 1 : 0) + "," + time_of_day(arrival.begun, 4) + "," +
+  std::string body = "CACST," + std::to_string(bad_frames > 0 ? 1 : 0) + "," + time_of_day(arrival.started, 4) + "," +
                      std::to_string(clock_mode());
   for (const int field : {peak,
                           30,
@@ -342,7 +343,7 @@ void MicromodemProtocol::say_statistics(const MicromodemPacket& packet, const Mi
   body += std::string(",") + doppler + "," + std::to_string(rounded(arrival.noise_dB, 0, 999)) + "," +
           std::to_string(rounded(config_.frequency_Hz, 0, 10000000)) + "," +
           std::to_string(rounded(rate.bandwidth_Hz, 0, 1000000));
-  side_.say(body);
+  side_.emit(body);
 }
 
 void MicromodemProtocol::visit_state(sim::StateArchive& archive) {
@@ -361,7 +362,7 @@ void MicromodemProtocol::visit_state(sim::StateArchive& archive) {
 void MicromodemPending::Cycle::visit_state(sim::StateArchive& archive) {
   archive(source, destination, rate, frames, ack, announced, gathered, deadline);
   const bool known = rate >= 0 && static_cast<std::size_t>(rate) < micromodem_rates().size();
-  if (archive.restoring() && !known) archive.fail("no modem has the rate " + std::to_string(rate));
+  if (archive.restoring() && !known) archive.fail("unknown rate " + std::to_string(rate));
 }
 
 }  // namespace devices

@@ -23,7 +23,7 @@ inline constexpr int micromodem_beacons = 4;
 inline constexpr int max_beacon_ms = 60000;
 /// The first firmware of a Micro-Modem-2, and the first whose clock mode is a bit field.
 inline constexpr std::array<int, 3> micromodem_2{2, 0, 0}, micromodem_clock_bits{2, 0, 26038};
-/// From the first sound of a ping to that of its answer, s; the one that asks takes it off.
+/// Time from the start of a ping to the start of its answer, s; the interrogator subtracts it.
 inline constexpr double micromodem_turnaround_s = 1;
 
 /// What the protocol of a Micro-Modem needs of the modem around it.
@@ -34,28 +34,28 @@ class MicromodemSide {
   };
   virtual ~MicromodemSide() = default;
   /// To the host.  `body`: a sentence without `$` and checksum.
-  virtual void say(const std::string& body) = 0;
+  virtual void emit(const std::string& body) = 0;
   /// Sends at `at`, or as soon after it as what it sends already has ended; at a whole second of the clock if asked to.
   virtual Sound transmit(const MicromodemPacket& packet, sim::Time at, bool on_the_second) = 0;
   /// Asks the transponders.
-  virtual Sound ask_beacons(sim::Time at, bool on_the_second) = 0;
-  /// What it was to send and has not begun is not sent.  Until when it goes on sending.
+  virtual Sound interrogate_beacons(sim::Time at, bool on_the_second) = 0;
+  /// What it was to send and has not begun is not sent.  Until when it continues sending.
   virtual sim::Time call_back() = 0;
   /// By the clock of the vehicle: microseconds since 1970 in UTC.
   virtual std::int64_t utc_us(sim::Time at) const = 0;
-  /// Between two times, by a counter that runs as fast as that clock and knows nothing of its steps, s.
+  /// Interval between two times by a counter at the rate of that clock, unaffected by its steps, s.
   virtual double elapsed_s(sim::Time from, sim::Time to) const = 0;
 };
 
 /// How a packet came.
 struct MicromodemArrival {
-  sim::Time begun{0}, ended{0};
+  sim::Time started{0}, ended{0};
   double level_dB = 0, snr_dB = 0, closing_mps = 0;
   double noise_dB = 0;
   bool good = true;  ///< false: it was noticed, but not understood
 };
 
-/// What is in progress.  Outside of the class that uses it: clang takes no optional of a class that is not complete.
+/// What is in progress.  Outside of the class that uses it: clang rejects an optional of an incomplete class.
 struct MicromodemPending {
   /// A cycle whose data it gathers from the host.
   struct Cycle {
@@ -81,9 +81,9 @@ struct MicromodemPending {
   struct BeaconPing {
     sim::Time sent{0}, deadline{0};
     double turnaround_s = 0;
-    std::array<bool, micromodem_beacons> wanted{};
+    std::array<bool, micromodem_beacons> desired{};
     std::array<std::optional<sim::Time>, micromodem_beacons> answered{};
-    void visit_state(sim::StateArchive& archive) { archive(sent, deadline, turnaround_s, wanted, answered); }
+    void visit_state(sim::StateArchive& archive) { archive(sent, deadline, turnaround_s, desired, answered); }
   };
   /// A time that the clock is set to when the next second of the vehicle's clock begins.
   struct PulseTime {
@@ -115,11 +115,11 @@ class MicromodemProtocol : private MicromodemPending {
   /// A line from the host, whatever it holds.
   void take_line(const NmeaLines::Line& line, sim::Time now);
   void tick(sim::Time now);
-  /// Forgets what it was about, and says hello anew at `up`.  Settings stay; the time that the host set does not.
+  /// Resets its state, and sends its greeting again at `up`.  Settings stay; the time that the host set does not.
   void restart(sim::Time up);
-  void heard(const MicromodemPacket& packet, const MicromodemArrival& arrival);
+  void receive(const MicromodemPacket& packet, const MicromodemArrival& arrival);
   /// A transponder (0: the first) answered.
-  void beacon_answered(int beacon, sim::Time begun);
+  void beacon_answered(int beacon, sim::Time started);
 
   int address() const { return settings_.get("SRC"); }
   const MicromodemSettings& settings() const { return settings_; }
@@ -134,15 +134,15 @@ class MicromodemProtocol : private MicromodemPending {
   void configure(const NmeaSentence& in, sim::Time now);
   void query(const NmeaSentence& in, sim::Time now);
   void reset(const NmeaSentence& in, sim::Time now);
-  void begin_cycle(const NmeaSentence& in, sim::Time now);
+  void start_cycle(const NmeaSentence& in, sim::Time now);
   void take_data(const NmeaSentence& in, sim::Time now);
   void send_ping(const NmeaSentence& in, sim::Time now);
   void send_mini(const NmeaSentence& in, sim::Time now);
-  void ask_remus_beacons(const NmeaSentence& in, sim::Time now);
-  void ask_narrowband_beacons(const NmeaSentence& in, sim::Time now);
-  void ask_generic_beacons(const NmeaSentence& in, sim::Time now);
-  void ask_beacons(const NmeaSentence& in, bool good, std::optional<int> timeout_ms, BeaconPing ping,
-                   bool on_the_second, sim::Time now);
+  void interrogate_remus_beacons(const NmeaSentence& in, sim::Time now);
+  void interrogate_narrowband_beacons(const NmeaSentence& in, sim::Time now);
+  void interrogate_generic_beacons(const NmeaSentence& in, sim::Time now);
+  void interrogate_beacons(const NmeaSentence& in, bool good, std::optional<int> timeout_ms, BeaconPing ping,
+                           bool on_the_second, sim::Time now);
   /// Null: this modem does not know the sentence.
   Command command_of(const std::string& name) const;
   /// The fields of the sentence under another name.
@@ -155,14 +155,14 @@ class MicromodemProtocol : private MicromodemPending {
   /// The host set the time of its clock to this.
   void set_utc(std::int64_t set_us, sim::Time now);
   /// A whole second of the vehicle's clock may have begun since.
-  void look_for_pulse(sim::Time now);
+  void detect_pulse(sim::Time now);
   /// $CACST and $CAXST: 0 to 3, bit 1: packets keep the second of the vehicle's clock; bit 0: the time was set.  From
-  /// firmware 2.0.26038 on: bits 0 and 1 say who set the time, bits 2 to 4 what gives the pulse.
+  /// firmware 2.0.26038 on: bits 0 and 1 give the source of the time, bits 2 to 4 that of the pulse.
   int clock_mode() const;
 
-  /// It has been told to start again, and has not yet.
+  /// A restart was requested and is pending.
   bool is_down(sim::Time now) const { return starting_ && now < next_revision_; }
-  void say_later(sim::Time at, std::string body);
+  void emit_later(sim::Time at, std::string body);
   void error(const std::string& module, int number, const std::string& text, sim::Time now);
   /// Says so when it is.
   bool busy(const char* module, sim::Time now);
@@ -170,17 +170,17 @@ class MicromodemProtocol : private MicromodemPending {
   std::optional<std::pair<int, int>> addresses(const NmeaSentence& in, std::size_t first, sim::Time now);
 
   void gather(Cycle cycle, sim::Time now);
-  void ask_for_frame(sim::Time now);
+  void request_frame(sim::Time now);
   void send_cycle(sim::Time now);
-  /// Sends, and tells the host of its begin and end.
+  /// Sends, and reports the start and end to the host.
   MicromodemSide::Sound send(const MicromodemPacket& packet, sim::Time at, bool on_the_second);
   void report_beacons(sim::Time now);
 
-  void heard_cycle(const MicromodemPacket& packet, const MicromodemArrival& arrival);
-  void heard_data(const MicromodemPacket& packet, const MicromodemArrival& arrival);
-  void heard_ping(const MicromodemPacket& packet, const MicromodemArrival& arrival);
-  void heard_reply(const MicromodemPacket& packet, const MicromodemArrival& arrival);
-  void say_statistics(const MicromodemPacket& packet, const MicromodemArrival& arrival, int bad_frames);
+  void received_cycle(const MicromodemPacket& packet, const MicromodemArrival& arrival);
+  void received_data(const MicromodemPacket& packet, const MicromodemArrival& arrival);
+  void received_ping(const MicromodemPacket& packet, const MicromodemArrival& arrival);
+  void received_reply(const MicromodemPacket& packet, const MicromodemArrival& arrival);
+  void emit_statistics(const MicromodemPacket& packet, const MicromodemArrival& arrival, int bad_frames);
 
   /// The modem's own clock, which the host may have set.
   std::int64_t utc_us(sim::Time at) const { return side_.utc_us(at) + clock_offset_us_; }

@@ -9,8 +9,8 @@
 
 namespace devices {
 
-/// The settings of a Micro-Modem ($CCCFG, $CCCFQ): numbers with names of three letters.  It knows the names of the real
-/// one; those without an effect here are kept and told all the same, so that a driver finds what it wrote.
+/// The settings of a Micro-Modem ($CCCFG, $CCCFQ): numbers with names of three letters.  It has the names of the real
+/// one; those without an effect here are stored and reported nevertheless, so that a driver reads back what it wrote.
 class MicromodemSettings {
  public:
   MicromodemSettings();

@@ -26,18 +26,18 @@ class Modem::Network {
 const sim::SharedKind<Modem::Network> Modem::network_of_world;
 
 void Modem::Params::read(sim::ParamReader& in) {
-  in.read("network", network, "modems hear each other only in the same network, such as a radio channel");
+  in.read("network", network, "only modems of the same network, such as a radio channel, receive each other");
   read_through(in, through);
-  in.read("range_m", range_m, sim::above(0), "how far it is heard");
+  in.read("range_m", range_m, sim::above(0), "maximum range of reception");
   in.read("data_rate_bps", data_rate_bps, sim::between(1e-3, 1e12), "bits per second");
   in.read("propagation_mps", propagation_mps, sim::between(1, 1e12),
           "speed of the signal; unset: 299792458, for an acoustic one that of sound at the sender");
   in.read("loss_probability", loss_probability, sim::between(0, 1), "of each message at each receiver");
   in.read("line_of_sight", line_of_sight,
-          "what stands between the antennas stops the signal; the two vehicles themselves do not");
+          "objects between the antennas block the signal; the two vehicles themselves do not");
   in.read("queue_messages", queue_messages, sim::at_least(1), "messages waiting to be sent; the oldest is dropped");
-  in.read("max_message_bytes", max_message_bytes, sim::between(1, 1 << 20), "longer messages are refused");
-  in.read("serial", serial, "a pseudo-terminal or FIFO that any program can open");
+  in.read("max_message_bytes", max_message_bytes, sim::between(1, 1 << 20), "maximum length of a message");
+  in.read("serial", serial, "pseudo-terminal or FIFO for programs that use no LCM");
 }
 
 Modem::Modem(const Params& params, const sim::DeviceContext& context)
@@ -142,7 +142,7 @@ sim::SignalLoss Modem::loss_to(const Modem& receiver) const {
     if (!carries(medium, params_.through, end->p_WS())) return sim::SignalLoss::blocked;
   }
   if ((receiver.p_WS() - p_WS()).norm() > params_.range_m) return sim::SignalLoss::range;
-  if (lost_on_the_way_to(receiver)) return sim::SignalLoss::link;
+  if (lost_in_transit_to(receiver)) return sim::SignalLoss::link;
   if (params_.line_of_sight && hidden_from(receiver)) return sim::SignalLoss::blocked;
   return sim::SignalLoss::none;
 }
@@ -153,7 +153,7 @@ double Modem::propagation_mps() const {
   return params_.through == SignalCarrier::acoustic ? world_.medium().sound_speed_mps(p_WS()) : light_mps;
 }
 
-bool Modem::lost_on_the_way_to(const Modem& receiver) const {
+bool Modem::lost_in_transit_to(const Modem& receiver) const {
   if (params_.loss_probability <= 0) return false;
   // A stream for each pair, so that another modem in the world changes no other link.
   sim::Random link(seed_, full_name_ + ">" + receiver.full_name_);
@@ -164,11 +164,11 @@ bool Modem::lost_on_the_way_to(const Modem& receiver) const {
 bool Modem::hidden_from(const Modem& receiver) const {
   sim::RayFilter filter;
   filter.exclude_group = group_;
-  const sim::Vector3d way_W = receiver.p_WS() - p_WS();
-  const double length_m = way_W.norm();
+  const sim::Vector3d displacement_W = receiver.p_WS() - p_WS();
+  const double length_m = displacement_W.norm();
   if (length_m < 1e-3) return false;
   const sim::PhysicsWorld& physics = world_.physics();
-  const auto hit = physics.scene().cast(p_WS(), way_W / length_m, length_m - 1e-3, filter);
+  const auto hit = physics.scene().cast(p_WS(), displacement_W / length_m, length_m - 1e-3, filter);
   return hit && physics.parts()[static_cast<std::size_t>(hit->part)].group != receiver.group_;
 }
 
@@ -180,7 +180,7 @@ void Modem::arrive(sim::Time at, std::span<const std::byte> payload) {
   packet.data.assign(data, data + frame.data.size());
   ++counts_.received;
   if (serial_) serial_->write(packet.data);
-  tell_tap(at, packet.source, packet.data);
+  report_to_tap(at, packet.source, packet.data);
   arrived_.push_back(std::move(packet));
 }
 
@@ -196,9 +196,9 @@ void Modem::visit_state(sim::StateArchive& archive) {
 }
 
 void Modem::read_serial(sim::Time now) {
-  for (sim::Bytes& data : serial_->take(longest_message_bytes()))
-    if (data.size() > longest_message_bytes())
-      warn_of_length(host_.warnings, full_name_, longest_message_bytes());
+  for (sim::Bytes& data : serial_->take(message_limit_bytes()))
+    if (data.size() > message_limit_bytes())
+      warn_of_length(host_.warnings, full_name_, message_limit_bytes());
     else
       send(now, "", std::move(data));
 }

@@ -36,11 +36,11 @@ class Modem final : public sim::Sensor, public MessageModem {
     std::optional<SerialMessageParams> serial;
     void read(sim::ParamReader& in);
   };
-  /// What it sent, and what became of messages of its network that were for it or for everybody.
+  /// What it sent, and the delivery of messages of its network addressed to it or broadcast.
   struct Counts {
     std::int64_t sent = 0, sent_bytes = 0, received = 0;
-    /// By SignalLoss: `range` out of range, `noise` in a zone without radio, `blocked` by what stands between or an
-    /// antenna where the signal does not go, `link` by `loss_probability`.
+    /// By SignalLoss: `range` out of range, `noise` in a zone without radio, `blocked` by obstacles or by an antenna
+    /// where the signal does not propagate, `link` by `loss_probability`.
     std::array<std::int64_t, sim::signal_losses> lost{};
     void visit_state(sim::StateArchive& archive) { archive(sent, sent_bytes, received, lost); }
   };
@@ -55,10 +55,10 @@ class Modem final : public sim::Sensor, public MessageModem {
   Modem(const Params& params, const sim::DeviceContext& context);
   ~Modem() override;
 
-  /// Queues a message; when the queue is full the oldest is dropped and counted.  Empty destination: everybody.
+  /// Queues a message; when the queue is full the oldest is dropped and counted.  Empty destination: broadcast.
   /// Throws std::runtime_error when the message is empty or too long, or the destination has no modem here.
   void send(sim::Time now, std::string destination, sim::Bytes data) override;
-  std::size_t longest_message_bytes() const override { return static_cast<std::size_t>(params_.max_message_bytes); }
+  std::size_t message_limit_bytes() const override { return static_cast<std::size_t>(params_.max_message_bytes); }
   /// Begins the next transmission when the last one has ended.
   void act(const sim::ActContext& context);
 
@@ -87,8 +87,8 @@ class Modem final : public sim::Sensor, public MessageModem {
   double propagation_mps() const;
   /// Why a message does not come to a modem that it is for; none: it does.
   sim::SignalLoss loss_to(const Modem& receiver) const;
-  bool lost_on_the_way_to(const Modem& receiver) const;
-  /// Something stands between the two antennas; not the hulls that carry them.
+  bool lost_in_transit_to(const Modem& receiver) const;
+  /// Whether an obstacle is between the two antennas; their own hulls do not count.
   bool hidden_from(const Modem& receiver) const;
   sim::Vector3d p_WS() const;
   void read_serial(sim::Time now);

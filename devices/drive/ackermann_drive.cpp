@@ -35,13 +35,14 @@ void AckermannDrive::Params::read(sim::ParamReader& in) {
   in.read("track_m", track_m, sim::above(0),
           "between the axes that the front wheels are steered about; unset: as the joints are");
   in.read("wheel_radius_m", wheel_radius_m, sim::above(0), "radius of the driven wheels; unset: as in the vehicle");
-  in.read("differential", differential, "driven wheels turn as each one's way asks; false: all alike");
-  in.read("max_speed_mps", max_speed_mps, sim::above(0), "speeds are cut to this");
+  in.read("differential", differential,
+          "each driven wheel turns at the speed of its own path; false: all at the same speed");
+  in.read("max_speed_mps", max_speed_mps, sim::above(0), "maximum speed");
   in.read("max_acceleration_mps2", max_acceleration_mps2, sim::above(0), "of the speed");
-  in.read("max_torque_Nm", max_torque_Nm, sim::above(0), "the most the motor of each driven wheel can give");
-  in.read_deg("max_steering_deg", max_steering_rad, sim::above_to(0, 80), "steering angles are cut to this");
-  in.read("max_steering_rate_radps", max_steering_rate_radps, sim::above(0), "how fast the steering angle changes");
-  in.read("max_steering_torque_Nm", max_steering_torque_Nm, sim::above(0), "the most each steering motor can give");
+  in.read("max_torque_Nm", max_torque_Nm, sim::above(0), "maximum torque of the motor of each driven wheel");
+  in.read_deg("max_steering_deg", max_steering_rad, sim::above_to(0, 80), "maximum steering angle");
+  in.read("max_steering_rate_radps", max_steering_rate_radps, sim::above(0), "maximum rate of the steering angle");
+  in.read("max_steering_torque_Nm", max_steering_torque_Nm, sim::above(0), "maximum torque of each steering motor");
   power.read(in);
   if (track_m && wheelbase_m && turns_inside(*track_m, *wheelbase_m, max_steering_rad))
     in.error("max_steering_deg", turns_inside_text);
@@ -71,11 +72,11 @@ void AckermannDrive::take_lengths(const sim::DeviceContext& context) {
   const std::optional<double> wheelbase_m = wheelbase_m_of(vehicle, steered);
   const std::optional<double> radius_m = wheel_radius_m_of(vehicle, params_.drive_joints);
   check_length(context, {"track_m", params_.track_m, track_m}, {},
-               "its front wheels do not point to one centre of turn", as_it_is);
-  check_length(context, {"wheelbase_m", params_.wheelbase_m, wheelbase_m}, {}, "it turns {} times as fast as asked",
+               "the axes of its front wheels do not meet in one centre of turn", as_it_is);
+  check_length(context, {"wheelbase_m", params_.wheelbase_m, wheelbase_m}, {}, "it turns {} times as fast as commanded",
                as_it_is);
-  check_length(context, {"wheel_radius_m", params_.wheel_radius_m, radius_m}, {}, "it drives {} times as fast as asked",
-               inverse);
+  check_length(context, {"wheel_radius_m", params_.wheel_radius_m, radius_m}, {},
+               "it drives {} times as fast as commanded", inverse);
   of_joints_ = {wheelbase_m.value_or(of_joints_.wheelbase_m), track_m.value_or(of_joints_.track_m),
                 radius_m.value_or(of_joints_.wheel_radius_m)};
   lengths_ = lengths_of(params_);
@@ -121,9 +122,9 @@ void AckermannDrive::steer(sim::Joint& joint, double side, double torque_Nm, dou
   const double angle_rad = std::atan(L * tangent / (L + side * lengths_.track_m / 2 * tangent));
   // A fifth of the error each step, as ODE's erp: quick and without overshoot.
   const double velocity = 0.2 * (angle_rad - joint.position(0)) / step_s;
-  const double most = 2 * params_.max_steering_rate_radps;  // the inner wheel turns faster than the middle
+  const double max = 2 * params_.max_steering_rate_radps;  // the inner wheel turns faster than the middle
   if (vehicle_.systems().metered) joint.measure_load();
-  joint.set_motor(std::clamp(velocity, -most, most), torque_Nm, 0);
+  joint.set_motor(std::clamp(velocity, -max, max), torque_Nm, 0);
 }
 
 double AckermannDrive::speed_ratio(const DrivenWheel& wheel) const {

@@ -81,7 +81,7 @@ class AckermannDrive final : public sim::Actuator {
   bool coasting_ = false;
 };
 
-/// Takes shoal.ackermann_command_t, shoal.twist_command_t or shoal.thrust_rudder_command_t, told apart by their
+/// Takes shoal.ackermann_command_t, shoal.twist_command_t or shoal.thrust_rudder_command_t, distinguished by their
 /// fingerprints.
 class AckermannDriveController final : public sim::Controller {
  public:

@@ -23,7 +23,7 @@ class DifferentialDrive final : public TwoSidedDrive {
   void change(const Params& params) { change_drive(params.drive); }
 };
 
-/// Takes shoal.wheel_speeds_command_t, shoal.twist_command_t or shoal.thrust_rudder_command_t, told apart by their
+/// Takes shoal.wheel_speeds_command_t, shoal.twist_command_t or shoal.thrust_rudder_command_t, distinguished by their
 /// fingerprints.
 class DifferentialDriveController final : public sim::Controller {
  public:

@@ -11,7 +11,7 @@
 
 namespace devices {
 
-/// Hands a drive the command in a payload, told apart by its fingerprint: a twist or thrust and rudder, and wheel
+/// Hands a drive the command in a payload, identified by its fingerprint: a twist or thrust and rudder, and wheel
 /// speeds or speed and steering where the drive knows them.
 template <typename Drive>
 void receive_drive_command(Drive& drive, std::span<const std::byte> payload) {

@@ -20,24 +20,23 @@ namespace devices {
 void NaiveDrive::Params::read(sim::ParamReader& in) {
   in.read("max_speed_mps", max_speed_mps, sim::above_to(0, 100), "through the water, at full thrust");
   in.read("max_astern_mps", max_astern_mps, sim::between(0, 100), "at full thrust astern");
-  in.read("speed_time_constant_s", speed_time_constant_s, sim::between(0, 1e4), "of the way to another speed");
+  in.read("speed_time_constant_s", speed_time_constant_s, sim::between(0, 1e4), "time constant of the speed");
   in.read_deg("max_turn_rate_degps", max_turn_rate_radps, sim::above_to(0, 360), "at full rudder");
-  in.read("turn_time_constant_s", turn_time_constant_s, sim::between(0, 1e4), "of the way to another turn rate");
+  in.read("turn_time_constant_s", turn_time_constant_s, sim::between(0, 1e4), "time constant of the turn rate");
   in.read("steerage_speed_mps", steerage_speed_mps, sim::between(0, 100),
-          "below it the rudder turns less, in proportion to the speed; 0: it turns on the spot");
+          "below this speed the rudder loses effect in proportion to the speed; 0: it turns on the spot");
   in.read_deg("max_pitch_deg", max_pitch_rad, sim::between(0, 80), "steepest path down or up");
   in.read("heading_gain_per_s", heading_gain_per_s, sim::above_to(0, 100), "turn rate by error of the heading");
   in.read("depth_gain_per_s", depth_gain_per_s, sim::above_to(0, 100), "speed down by error of the depth");
-  constexpr double most = 4;  // above it swings for long: its damping is 1 / (2 sqrt(gain times time constant))
-  if (!in.describing() && heading_gain_per_s * turn_time_constant_s > most)
+  constexpr double max = 4;  // above it swings for long: its damping is 1 / (2 sqrt(gain times time constant))
+  if (!in.describing() && heading_gain_per_s * turn_time_constant_s > max)
     in.error("heading_gain_per_s", "'heading_gain_per_s' times 'turn_time_constant_s' must be <= 4, got " +
                                        sim::number_text(heading_gain_per_s * turn_time_constant_s));
   in.read("rise_mps", rise_mps, sim::between(0, 100),
-          "it rises so fast when nobody asks for a depth: positive buoyancy");
-  in.read("surface", surface, "a surface craft: it stays on the water and takes no depth");
-  in.read("drifts", drifts, "the water carries it along");
-  in.read("start_speed_mps", start_speed_mps, sim::between(-100, 100),
-          "speed at the start, kept until a command comes");
+          "speed of rising when no depth is commanded, by positive buoyancy");
+  in.read("surface", surface, "surface craft: it stays at the surface and accepts no depth");
+  in.read("drifts", drifts, "whether the current carries it along");
+  in.read("start_speed_mps", start_speed_mps, sim::between(-100, 100), "initial speed, kept until the first command");
 }
 
 NaiveDrive::NaiveDrive(const Params& params, const sim::DeviceContext& context)
@@ -58,17 +57,17 @@ NaiveDrive::NaiveDrive(const Params& params, const sim::DeviceContext& context)
     if (device.type == "naive_drive" && device.name != context.config.name &&
         body_of(device) == body_of(context.config))
       sim::throw_config_error(context.config.place, "device '" + context.full_name() + "'",
-                              "its body is moved by device '" + device.name + "' already");
+                              "its body is already moved by device '" + device.name + "'");
   change(params);
   take_pose();
 }
 
 void NaiveDrive::change(const Params& params) {
   params_ = params;
-  step_s_ = 0;  // the shares are worked out again
+  step_s_ = 0;  // the shares are computed again
 }
 
-/// Somebody else put the body where it is: goes on from there.
+/// Another actor moved the body: continues from there.
 void NaiveDrive::take_pose() {
   X_WB_ = body_.X_WB();
   p_WB_ = X_WB_.translation();
@@ -77,21 +76,21 @@ void NaiveDrive::take_pose() {
 }
 
 /// Says once that a current from a file carries it no more.
-void NaiveDrive::look_for_the_current() {
+void NaiveDrive::check_current() {
   if (!params_.drifts || left_the_current_ || world_.medium().current_known(p_WB_)) return;
   left_the_current_ = true;
-  warnings_.notice("body '" + body_.name() + "'",
-                   fmt::format("has left the file of the current at {:.1f}, {:.1f} m", p_WB_.x(), p_WB_.y()));
+  warnings_.warn("body '" + body_.name() + "'",
+                 fmt::format("has left the file of the current at {:.1f}, {:.1f} m", p_WB_.x(), p_WB_.y()));
 }
 
-double NaiveDrive::wanted_turn(double speed_share) const {
-  const double most = params_.max_turn_rate_radps * std::min(1.0, std::abs(speed_share));
+double NaiveDrive::desired_turn(double speed_share) const {
+  const double max = params_.max_turn_rate_radps * std::min(1.0, std::abs(speed_share));
   if (std::isnan(heading_target_rad_))
     return rudder_ * params_.max_turn_rate_radps * std::clamp(speed_share, -1.0, 1.0);
   const double error = sim::wrap_angle(heading_target_rad_ - yaw_rad_);
   // No faster than to the heading in one step.
   const double gain = std::min(params_.heading_gain_per_s, 1 / step_s_);
-  return std::clamp(gain * error, -most, most);
+  return std::clamp(gain * error, -max, max);
 }
 
 /// Of the momentary surface.  Without water nothing says how deep it is: the world's zero does.
@@ -100,27 +99,27 @@ double NaiveDrive::surface_over_m() const {
 }
 
 /// Speed upwards; `surface_m`: of the momentary surface.
-double NaiveDrive::wanted_climb(double surface_m) const {
-  const double z_m = p_WB_.z(), most = std::abs(speed_mps_) * std::sin(params_.max_pitch_rad);
+double NaiveDrive::desired_climb(double surface_m) const {
+  const double z_m = p_WB_.z(), max = std::abs(speed_mps_) * std::sin(params_.max_pitch_rad);
   // The nearer to the surface, the slower it rises.
   const double level = params_.depth_gain_per_s * std::max(0.0, surface_m - z_m);
   if (std::isnan(depth_target_m_)) {
-    const double climb = std::min(params_.rise_mps, level) - elevator_ * most;
+    const double climb = std::min(params_.rise_mps, level) - elevator_ * max;
     return world_.medium().has_water() ? std::min(climb, level) : climb;
   }
   const double climb = params_.depth_gain_per_s * (still_surface_m_ - depth_target_m_ - z_m);
-  return std::clamp(world_.medium().has_water() ? std::min(climb, level) : climb, -most, most);
+  return std::clamp(world_.medium().has_water() ? std::min(climb, level) : climb, -max, max);
 }
 
 /// The path that depth or elevator ask for.
 NaiveDrive::Path NaiveDrive::path(double surface_m) {
   Path path{speed_mps_, 0, 0};
   if (params_.surface) return path;
-  path.climb_mps = climb_mps_ = wanted_climb(surface_m);
+  path.climb_mps = climb_mps_ = desired_climb(surface_m);
   if (std::abs(speed_mps_) > 1e-3) {
     const double sine = std::clamp(climb_mps_ / speed_mps_, -1.0, 1.0);
-    const double most = std::sin(params_.max_pitch_rad);
-    path.pitch_rad = std::asin(std::clamp(sine, -most, most));
+    const double max = std::sin(params_.max_pitch_rad);
+    path.pitch_rad = std::asin(std::clamp(sine, -max, max));
     path.forward_mps = speed_mps_ * std::sqrt(1 - sine * sine);
   }
   return path;
@@ -139,11 +138,11 @@ void NaiveDrive::act(const sim::ActContext& context) {
   constexpr double moved = 1e-6;
   if ((body_.X_WB().translation() - p_WB_).squaredNorm() > moved * moved) take_pose();
 
-  look_for_the_current();
+  check_current();
   const sim::Medium& medium = world_.medium();
   speed_mps_ += (speed_target_mps_ * context.effectiveness - speed_mps_) * speed_share_;
   const double speed_share = params_.steerage_speed_mps > 0 ? speed_mps_ / params_.steerage_speed_mps : 1;
-  turn_radps_ += (wanted_turn(speed_share) - turn_radps_) * turn_share_;
+  turn_radps_ += (desired_turn(speed_share) - turn_radps_) * turn_share_;
   yaw_rad_ = sim::wrap_angle(yaw_rad_ + h * turn_radps_);
 
   sim::Vector3d v_W = params_.drifts ? medium.water_velocity_W(p_WB_) : sim::Vector3d(sim::Vector3d::Zero());
@@ -211,7 +210,7 @@ void NaiveDriveController::receive(sim::Time, std::span<const std::byte> payload
     if (std::isinf(value)) throw std::runtime_error("speed, heading and depth must not be infinite");
   if (!std::isnan(command.altitude_m)) throw std::runtime_error("it holds no altitude: altitude_m must be NaN");
   if (drive_.surface() && !std::isnan(command.depth_m))
-    throw std::runtime_error("a surface craft takes no depth: depth_m must be NaN");
+    throw std::runtime_error("a surface craft accepts no depth: depth_m must be NaN");
   drive_.set_helm(command.speed_mps, command.heading_rad, command.depth_m);
 }
 

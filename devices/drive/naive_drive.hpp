@@ -10,9 +10,9 @@ namespace devices {
 /// Moves a kinematic body as a helm asks, without forces: first order in speed and in turn rate, no gravity, no
 /// contact that stops it.  The cheapest marine vehicle, for thousands.
 ///
-/// Speed and turn rate tend to their targets with their time constants; the path angle is what the depth asks for, or
-/// the elevator; the water carries the vehicle along.  Depth counts from the still surface.  It does not rise out of
-/// the water: it levels out below the surface.  x and y of the body are its own, roll is none.
+/// Speed and turn rate tend to their targets with their time constants; the path angle follows from the depth
+/// controller or the elevator; the current carries the vehicle along.  Depth counts from the still surface.  It does
+/// not rise out of the water: it levels out below the surface.  x and y of the body are its own, roll is none.
 class NaiveDrive final : public sim::Actuator {
  public:
   static constexpr const char* meaning =
@@ -52,12 +52,12 @@ class NaiveDrive final : public sim::Actuator {
   struct Path {
     double forward_mps, climb_mps, pitch_rad;
   };
-  double wanted_turn(double speed_share) const;
+  double desired_turn(double speed_share) const;
   double surface_over_m() const;
-  double wanted_climb(double surface_m) const;
+  double desired_climb(double surface_m) const;
   Path path(double surface_m);
   void take_pose();
-  void look_for_the_current();
+  void check_current();
 
   // What each step needs, side by side.
   sim::Body& body_;
@@ -67,7 +67,7 @@ class NaiveDrive final : public sim::Actuator {
   double speed_mps_, turn_radps_ = 0, climb_mps_ = 0;
   double yaw_rad_ = 0, pitch_rad_ = 0;
   sim::Vector3d p_WB_ = sim::Vector3d::Zero();
-  sim::Pose X_WB_ = sim::Pose::Identity();  // where it left the body; another pose means that somebody moved it
+  sim::Pose X_WB_ = sim::Pose::Identity();  // where it left the body; another pose means that it was moved
   double speed_target_mps_;
   double heading_target_rad_ = std::numeric_limits<double>::quiet_NaN();  // NaN: by rudder
   double depth_target_m_ = std::numeric_limits<double>::quiet_NaN();      // NaN: by elevator

@@ -22,9 +22,9 @@ void TwoSidedDrive::Params::read(sim::ParamReader& in, const char* meaning_of_tr
   in.read("wheel_radius_m", wheel_radius_m, sim::above(0), "radius of the driven wheels; unset: as in the vehicle");
   in.read("track_m", track_m, sim::above(0), meaning_of_track);
   in.read("max_speed_mps", max_speed_mps, sim::above(0), "ground speed a wheel can reach");
-  in.read("max_turn_radps", max_turn_radps, sim::above(0), "turn rates are cut to this");
+  in.read("max_turn_radps", max_turn_radps, sim::above(0), "maximum turn rate");
   in.read("max_acceleration_mps2", max_acceleration_mps2, sim::above(0), "of a wheel's ground speed");
-  in.read("max_torque_Nm", max_torque_Nm, sim::above(0), "the most each motor can give");
+  in.read("max_torque_Nm", max_torque_Nm, sim::above(0), "maximum torque of each motor");
   power.read(in);
 }
 
@@ -54,9 +54,9 @@ void TwoSidedDrive::check_lengths(const sim::DeviceContext& context, bool scrubs
   const AllowedRatio usual;
   const AllowedRatio at_least{usual.low, std::numeric_limits<double>::infinity()};
   check_length(context, {"track_m", params_.track_m, joint_track_m_}, scrubs ? at_least : usual,
-               scrubs ? "it turns slower than asked" : "it turns {} times as fast as asked", as_it_is);
+               scrubs ? "it turns slower than commanded" : "it turns {} times as fast as commanded", as_it_is);
   check_length(context, {"wheel_radius_m", params_.wheel_radius_m, joint_radius_m_}, usual,
-               "it drives {} times as fast as asked", inverse);
+               "it drives {} times as fast as commanded", inverse);
 }
 
 void TwoSidedDrive::act(const sim::ActContext& context) {
@@ -81,17 +81,17 @@ void TwoSidedDrive::visit_state(sim::StateArchive& archive) {
 void TwoSidedDrive::change_drive(const Params& params) {
   params_ = params;
   take_lengths();
-  const double most = params_.max_speed_mps / wheel_radius_m_;
+  const double max = params_.max_speed_mps / wheel_radius_m_;
   const double fastest = std::max(std::abs(left_.target_radps()), std::abs(right_.target_radps()));
-  if (fastest <= most) return;
-  for (WheelMotors* side : {&left_, &right_}) side->set_target(side->target_radps() * most / fastest);
+  if (fastest <= max) return;
+  for (WheelMotors* side : {&left_, &right_}) side->set_target(side->target_radps() * max / fastest);
 }
 
 void TwoSidedDrive::set_wheel_speeds(double left_radps, double right_radps) {
   coasting_ = false;
-  const double most = params_.max_speed_mps / wheel_radius_m_;
-  left_.set_target(std::clamp(left_radps, -most, most));
-  right_.set_target(std::clamp(right_radps, -most, most));
+  const double max = params_.max_speed_mps / wheel_radius_m_;
+  left_.set_target(std::clamp(left_radps, -max, max));
+  right_.set_target(std::clamp(right_radps, -max, max));
 }
 
 void TwoSidedDrive::set_twist(double forward_mps, double turn_radps) {

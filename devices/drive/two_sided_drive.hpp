@@ -33,7 +33,7 @@ class TwoSidedDrive : public sim::Actuator {
   void visit_state(sim::StateArchive& archive) override;
 
   void set_wheel_speeds(double left_radps, double right_radps);
-  /// Where a side cannot turn as fast as asked, both are slowed so that the curvature stays.
+  /// Where a side cannot turn as fast as commanded, both are slowed so that the curvature is kept.
   void set_twist(double forward_mps, double turn_radps);
   /// As a vessel: thrust sets the forward speed, the rudder a turn rate in proportion to it.
   void set_thrust_rudder(double thrust, double rudder);

@@ -74,7 +74,7 @@ bool gives(const sim::VehicleConfig& vehicle) {
     if (joint.type == sim::JointType::fixed) return false;
     if (!sim::joint_info(joint.type).carries_a_wheel) return true;
     if (joint.axis1.suspension_erp || joint.axis1.suspension_cfm) return true;
-    return wheel_geometry(vehicle, joint.name).body == nullptr;  // a rocker, or an arm that may lean on the ground
+    return wheel_geometry(vehicle, joint.name).body == nullptr;  // a rocker, or an arm that may rest on the ground
   });
 }
 

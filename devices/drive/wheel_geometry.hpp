@@ -42,7 +42,7 @@ double scrubbing_track_m_of(const sim::VehicleConfig& vehicle, const std::vector
 std::optional<double> wheel_radius_m_of(const sim::VehicleConfig& vehicle, const std::vector<std::string>& joints);
 
 /// From the rear axle to the steered wheels: the rear axle has the hindmost of the other wheels on hinges.  Nothing
-/// when there are none behind the steered ones.
+/// when there are no wheels behind the steered ones.
 std::optional<double> wheelbase_m_of(const sim::VehicleConfig& vehicle, const std::vector<std::string>& steered_joints);
 
 /// A length that a device was given, or has from the joints.
@@ -58,8 +58,8 @@ struct AllowedRatio {
   double low = 0.97, high = 1.03;  ///< of given / real
 };
 
-/// Warns of a length that is not that of the joints.  `effect`: what comes of it, such as `it turns {} times as fast as
-/// asked`, where {} becomes `factor(given / real)`.
+/// Warns of a length that is not that of the joints.  `effect`: the consequence, such as `it turns {} times as fast
+/// as commanded`, where {} becomes `factor(given / real)`.
 void check_length(const sim::DeviceContext& context, const LengthOfDevice& length, const AllowedRatio& allowed,
                   const std::string& effect, double (*factor)(double ratio));
 

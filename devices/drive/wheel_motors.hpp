@@ -11,7 +11,7 @@
 
 namespace devices {
 
-/// Driven wheels that turn at one speed, each by a motor of its own.  The speed follows its target with a limited
+/// Driven wheels that turn at one speed, each by its own motor.  The speed follows its target with a limited
 /// acceleration.
 class WheelMotors {
  public:

@@ -32,8 +32,9 @@ void Compass::Params::read(sim::ParamReader& in) {
   in.read_deg("inclination_deg", inclination_rad, sim::between(-90, 90), "of the earth's field, + is downwards");
   in.read("field_uT", field_uT, sim::above(0), "strength of the earth's field, microtesla");
   in.read_deg("declination_correction_deg", declination_correction_rad, sim::between(-180, 180),
-              "declination it was told: added to the heading for heading_true");
-  in.read("hard_iron_uT", hard_iron_uT, sim::any_number(), "field of what turns with the sensor, in its axes");
+              "configured declination, added to the heading for heading_true");
+  in.read("hard_iron_uT", hard_iron_uT, sim::any_number(),
+          "field of magnetised parts that move with the sensor, in its axes");
   in.read("soft_iron", soft_iron, sim::any_number(), "3x3 matrix on the field, 9 numbers by rows");
   if (!in.describing() && soft_iron.size() != 9) {
     in.error("soft_iron", "'soft_iron' must have 9 numbers, got " + std::to_string(soft_iron.size()));
@@ -43,7 +44,7 @@ void Compass::Params::read(sim::ParamReader& in) {
                  {{"none", TiltCompensation::none},
                   {"ideal", TiltCompensation::ideal},
                   {"accelerometer", TiltCompensation::accelerometer}},
-                 "what it knows of its tilt: nothing, the truth, or the specific force");
+                 "source of its tilt compensation: none, the truth, or the specific force");
   in.read("tilt_time_s", tilt_time_s, sim::at_least(0), "accelerometer: time constant of a low pass; 0: none");
   in.read("field_noise", field_noise, "error of each axis, microtesla");
   in.read("heading_noise", heading_noise, "further error of the heading, rad");

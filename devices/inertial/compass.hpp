@@ -34,7 +34,7 @@ class Compass final : public sim::Sensor {
   };
   struct Reading {
     double heading_rad = 0;       ///< from magnetic north, clockwise, [0, 2 pi)
-    double heading_true_rad = 0;  ///< from true north; the measured one by the declination it was told
+    double heading_true_rad = 0;  ///< from true north; the measured one by the configured declination
     sim::Vector3d field_S_uT = sim::Vector3d::Zero();
     void visit_state(sim::StateArchive& archive) { archive(heading_rad, heading_true_rad, field_S_uT); }
   };

@@ -67,7 +67,7 @@ double time_constant_s(double bandwidth_hz) {
 void Imu::Params::read(sim::ParamReader& in) {
   std::vector<std::string> names;
   for (const ImuPreset& unit : imu_presets()) names.push_back(unit.name);
-  in.read_one_of("preset", preset, names, "a unit by its data sheet; the keys below win over it");
+  in.read_one_of("preset", preset, names, "preset of a product by its data sheet; the keys below override it");
   // The preset is the default of the keys that follow.
   for (const ImuPreset& unit : imu_presets()) {
     if (unit.name != preset || in.describing()) continue;

@@ -40,7 +40,7 @@ class InertialErrors {
  public:
   /// What faults do to the quantity of `noise` reaches the errors of the data sheet too.
   InertialErrors(const InertialParams& params, const sim::NoiseParams& noise, const sim::DeviceContext& context);
-  /// What was drawn once keeps its direction and takes its new size.
+  /// Errors that were drawn once keep their direction and are rescaled.
   void change(const InertialParams& params, const sim::NoiseParams& noise);
   void apply(sim::Vector3d& value, double dt_s, sim::Random& random);
   void visit_state(sim::StateArchive& archive) { archive(noise_, started_, gauss_markov_, walk_); }

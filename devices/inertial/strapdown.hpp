@@ -14,7 +14,7 @@ sim::Quaterniond rotation_of(const sim::Vector3d& vector_rad);
 /// First-order low pass, exact for an input that is constant between samples: y += (1 - exp(-dt / T)) (x - y).
 class LowPass {
  public:
-  /// `time_constant_s` 0: what comes in goes out.
+  /// `time_constant_s` 0: no filtering.
   explicit LowPass(double time_constant_s) : time_constant_s_(time_constant_s) {}
   void change(double time_constant_s);
   const sim::Vector3d& apply(const sim::Vector3d& x, double dt_s);

@@ -10,8 +10,8 @@
 namespace devices {
 
 void Bumper::Params::read(sim::ParamReader& in) {
-  in.read_references("parts", parts, "part", "parts that feel, as BODY/PART; none: all parts of the device's body");
-  in.read("min_force_N", min_force_N, sim::at_least(0), "places where the force is less are not felt");
+  in.read_references("parts", parts, "part", "sensitive parts, as BODY/PART; none: all parts of the device's body");
+  in.read("min_force_N", min_force_N, sim::at_least(0), "contacts with a smaller force are not reported");
   in.read_choice("report", report, {{"changes", When::changes}, {"always", When::always}},
                  "changes: at the first sample and when a touch begins or ends; always: at every sample");
   in.read("force_noise", force_noise, "error of the force at each place, N");
@@ -26,7 +26,7 @@ Bumper::Bumper(const Params& params, const sim::DeviceContext& context)
     for (std::size_t i = 0; i < physics.parts().size(); ++i)
       if (physics.parts()[i].group == vehicle_.group() && physics.parts()[i].body == context.body.number())
         parts_.push_back(static_cast<int>(i));
-  if (parts_.empty()) refuse(context, "there is no part that could touch");
+  if (parts_.empty()) refuse(context, "no part of it can touch anything");
   std::sort(parts_.begin(), parts_.end());
   physics_.watch_contacts(vehicle_.group());
 }
@@ -60,8 +60,8 @@ void Bumper::look() {
     force_N += places.back().force_N;
   }
   looked_ = true;
-  if (places.empty() || force_N <= most_force_N_) return;
-  most_force_N_ = force_N;
+  if (places.empty() || force_N <= max_force_N_) return;
+  max_force_N_ = force_N;
   pressed_ = std::move(places);
 }
 
@@ -78,7 +78,7 @@ void Bumper::measure(const sim::SenseContext&) {
   touching_ = touching;
   places_ = std::move(pressed_);
   pressed_.clear();
-  most_force_N_ = -1;
+  max_force_N_ = -1;
 }
 
 void Bumper::disturb(double dt_s, sim::Random& random) {
@@ -97,7 +97,7 @@ void Bumper::change(const Params& params) {
 // Publishes shoal.bumper_t: at the first sample and when a touch begins or ends, or at every sample.  A report of a
 // change that is lost on its way is not repeated.
 bool fill(const Bumper& bumper, shoal::bumper_t& message) {
-  if (!bumper.is_news()) return false;
+  if (!bumper.is_update()) return false;
   message.touching = bumper.touching();
   message.count = static_cast<std::int32_t>(bumper.places().size());
   for (const Bumper::Place& place : bumper.places()) {

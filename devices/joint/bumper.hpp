@@ -7,8 +7,8 @@
 
 namespace devices {
 
-/// Tells what parts of the vehicle touch.  It looks at every step: a touch that is over before the next sample is
-/// reported, with the places of the step in which it pressed most.
+/// Tells what parts of the vehicle touch.  It is updated at every step: a contact that ends before the next sample is
+/// reported, with the places of the step with the largest force.
 class Bumper final : public sim::Sensor {
  public:
   static constexpr const char* meaning = "Contacts of parts of the vehicle: where, with whom and how hard.";
@@ -41,12 +41,12 @@ class Bumper final : public sim::Sensor {
   void change(const Params& params);
   auto noises() { return std::tie(force_noise_); }
   void visit_state(sim::StateArchive& archive) override {
-    archive(force_noise_, looked_, pressed_, most_force_N_, touching_, changed_, sampled_, places_);
+    archive(force_noise_, looked_, pressed_, max_force_N_, touching_, changed_, sampled_, places_);
   }
 
   bool touching() const { return touching_; }
   /// The reporter has something to say.
-  bool is_news() const { return params_.report == When::always || changed_; }
+  bool is_update() const { return params_.report == When::always || changed_; }
   const std::vector<Place>& places() const { return places_; }
 
  private:
@@ -61,7 +61,7 @@ class Bumper final : public sim::Sensor {
   sim::NoiseOf<&Params::force_noise> force_noise_;
   bool looked_ = true;          ///< at the last step
   std::vector<Place> pressed_;  ///< since the last sample: the step that pressed most
-  double most_force_N_ = -1;
+  double max_force_N_ = -1;
   bool touching_ = false;
   bool changed_ = false;
   bool sampled_ = false;

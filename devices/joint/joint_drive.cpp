@@ -17,9 +17,9 @@ namespace devices {
 void JointDrive::Params::read(sim::ParamReader& in) {
   in.require("joint");
   in.read_reference("joint", joint, "joint", "joint that it drives; a ball needs 'motor: true'");
-  in.read("axes", axes, sim::between(0, 2), "axes that it drives; unset: all that the joint has");
-  in.read("max_velocity", max_velocity, sim::above(0), "commands are cut to this, rad/s or m/s");
-  in.read("max_force", max_force, sim::above(0), "the most it can give on each axis, N m or N");
+  in.read("axes", axes, sim::between(0, 2), "axes that it drives; unset: all axes of the joint");
+  in.read("max_velocity", max_velocity, sim::above(0), "maximum command, rad/s or m/s");
+  in.read("max_force", max_force, sim::above(0), "maximum effort on each axis, N m or N");
   power.read(in);
 }
 

@@ -12,8 +12,8 @@ namespace devices {
 
 /// The motors and the stops of a joint's axes, all of which messages set while the world runs.
 ///
-/// Each axis has a motor with a velocity and the most force that it may take for it, as ODE's: it gives what brings the
-/// axis to that velocity within a step, and not more than its force.  A velocity out of reach and a force is thus a
+/// Each axis has a motor with a velocity and a maximum force, as in ODE: it applies the force that reaches that
+/// velocity within a step, up to the maximum.  A velocity out of reach and a force is thus a
 /// motor of that force.  A stop that is set behind the joint pushes it back, as fast as the stops of the joint are
 /// stiff.
 class JointDrive final : public sim::Actuator {

@@ -12,8 +12,8 @@ namespace devices {
 void JointMotor::Params::read(sim::ParamReader& in) {
   in.require("joint");
   in.read_reference("joint", joint, "joint", "hinge or slider that it drives");
-  in.read("max_velocity", max_velocity, sim::above(0), "commands are cut to this, rad/s or m/s");
-  in.read("max_force", max_force, sim::above(0), "the most it can give, N m or N");
+  in.read("max_velocity", max_velocity, sim::above(0), "maximum command, rad/s or m/s");
+  in.read("max_force", max_force, sim::above(0), "maximum effort, N m or N");
   power.read(in);
 }
 

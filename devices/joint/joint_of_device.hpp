@@ -14,7 +14,7 @@ namespace devices {
 /// The joint of a name; ConfigError where it has no such axis (0 or 1).
 sim::Joint& joint_with_axis(const sim::DeviceContext& context, const std::string& name, int axis);
 
-/// The joint of a wheel, which turns about the last axis; ConfigError where it is no hinge or hinge2.
+/// The joint of a wheel, which turns about the last axis; ConfigError where it is not a hinge or hinge2.
 sim::Joint& wheel_joint(const sim::DeviceContext& context, const std::string& name);
 
 /// How the vehicle file describes a joint.

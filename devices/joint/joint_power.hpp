@@ -11,7 +11,7 @@ namespace devices {
 /// What the motor of an axis takes from the battery, by the model of a DC motor: mechanical power over efficiency, and
 /// the heat of its winding, which grows with the square of the effort and is there at standstill too (Krause et al.,
 /// Analysis of Electric Machinery and Drive Systems, 3rd ed., 2013: P = effort * velocity + R i^2, effort ~ i).
-/// Braking gives nothing back.
+/// Braking recovers no energy.
 struct MotorPower {
   double efficiency = 0.8;
   double holding_W = 0;  ///< heat at the largest effort
@@ -23,7 +23,7 @@ struct MotorPower {
   }
   /// Of the motor that the physics keeps on an axis.  Its load must be measured.
   double of_motor(const sim::Joint& joint, int axis, double max_effort) const {
-    // A stop may push harder than the motor, but takes nothing for it.
+    // A stop may push harder than the motor, without drawing power.
     const double limit = joint.motor_max_force(axis);
     return of(std::clamp(joint.effort(axis), -limit, limit), joint.velocity(axis), max_effort);
   }

@@ -31,16 +31,16 @@ double stopping_velocity(double distance, double acceleration, double step_s) {
 
 }  // namespace
 
-void SetPoint::advance(double wanted_velocity, const Limits& limits, double step_s) {
+void SetPoint::advance(double desired_velocity, const Limits& limits, double step_s) {
   const double change = limits.acceleration * step_s;
-  velocity += std::clamp(wanted_velocity - velocity, -change, change);
+  velocity += std::clamp(desired_velocity - velocity, -change, change);
   position += velocity * step_s;
 }
 
 void SetPoint::approach(double target, const Limits& limits, double step_s) {
   const double distance = target - position;
-  const double most = std::min(limits.velocity, stopping_velocity(std::abs(distance), limits.acceleration, step_s));
-  advance(std::copysign(most, distance), limits, step_s);
+  const double upper = std::min(limits.velocity, stopping_velocity(std::abs(distance), limits.acceleration, step_s));
+  advance(std::copysign(upper, distance), limits, step_s);
   if (std::abs(target - position) < 1e-12) position = target;  // rounding
 }
 
@@ -59,13 +59,13 @@ void JointServo::Params::read(sim::ParamReader& in) {
   in.read("kp", kp, sim::at_least(0), "velocity: 1/s; pid: effort for an error, N m/rad or N/m");
   in.read("ki", ki, sim::at_least(0), "pid: effort for the integral of the error");
   in.read("kd", kd, sim::at_least(0), "pid: effort for an error of the velocity; stable below inertia / step");
-  in.read("integral_limit", integral_limit, sim::at_least(0), "pid: the most effort that the integral gives");
-  in.read("low", low, sim::any_number(), "lowest position it goes to, rad or m; unset: the joint's stop");
-  in.read("high", high, sim::any_number(), "highest position it goes to; unset: the joint's stop");
-  in.read("max_velocity", max_velocity, sim::above(0), "of the set point, and where an effort pushes no more");
+  in.read("integral_limit", integral_limit, sim::at_least(0), "pid: maximum effort of the integral term");
+  in.read("low", low, sim::any_number(), "lower limit of the position, rad or m; unset: the joint's stop");
+  in.read("high", high, sim::any_number(), "upper limit of the position; unset: the joint's stop");
+  in.read("max_velocity", max_velocity, sim::above(0), "of the set point, and beyond which an effort no longer acts");
   in.read("max_acceleration", max_acceleration, sim::above(0), "of the set point; unset: no limit");
-  in.read("max_effort", max_effort, sim::above(0), "the most it can give, N m or N");
-  in.read("park_position", park_position, sim::any_number(), "where the safe state 'park' goes, rad or m");
+  in.read("max_effort", max_effort, sim::above(0), "maximum effort, N m or N");
+  in.read("park_position", park_position, sim::any_number(), "position of the safe state 'park', rad or m");
   power.read(in);
   if (low && high && *low > *high) in.error("low", "'low' must not be above 'high'");
 }
@@ -151,8 +151,8 @@ void JointServo::act(const sim::ActContext& context) {
     if (params_.control == Control::velocity) {
       // More than the whole error in a step would swing.
       const double gain = std::min(params_.kp, 1 / context.step_s);
-      const double wanted = set_point_.velocity + gain * error_before;
-      joint_.set_motor(std::clamp(wanted, -params_.max_velocity, params_.max_velocity), max_effort, params_.axis);
+      const double desired = set_point_.velocity + gain * error_before;
+      joint_.set_motor(std::clamp(desired, -params_.max_velocity, params_.max_velocity), max_effort, params_.axis);
       return;
     }
     joint_.set_motor(0, 0, params_.axis);
@@ -200,7 +200,7 @@ void JointServo::set_effort(double effort) {
 
 void JointServo::visit_state(sim::StateArchive& archive) {
   archive(mode_, target_, set_point_, follows_, integral_, applied_);
-  if (mode_ < Mode::position || mode_ > Mode::coast) archive.fail("a servo has no such mode");
+  if (mode_ < Mode::position || mode_ > Mode::coast) archive.fail("unknown mode of a servo");
 }
 
 void JointServoController::receive(sim::Time, std::span<const std::byte> payload) {

@@ -9,7 +9,7 @@
 
 namespace devices {
 
-/// A set point that keeps to a largest velocity and acceleration, and comes to rest exactly at its target.
+/// A set point with limited velocity and acceleration that comes to rest exactly at its target.
 class SetPoint {
  public:
   double position = 0;
@@ -26,7 +26,7 @@ class SetPoint {
   void run(double target_velocity, double low, double high, const Limits& limits, double step_s);
 
  private:
-  void advance(double wanted_velocity, const Limits& limits, double step_s);
+  void advance(double desired_velocity, const Limits& limits, double step_s);
 };
 
 /// Drives one axis of a joint to a position, at a velocity or with an effort.
@@ -98,7 +98,7 @@ class JointServo final : public sim::Actuator {
   double applied_ = 0;    ///< effort of the last step, where this class gave it
 };
 
-/// Takes shoal.joint_servo_command_t, or shoal.joint_command_t for a velocity, told apart by their fingerprints.
+/// Takes shoal.joint_servo_command_t, or shoal.joint_command_t for a velocity, distinguished by their fingerprints.
 class JointServoController final : public sim::Controller {
  public:
   static constexpr const char* command_messages = "shoal.joint_servo_command_t, shoal.joint_command_t";

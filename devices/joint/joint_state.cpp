@@ -10,7 +10,7 @@
 namespace devices {
 
 void JointState::Params::read(sim::ParamReader& in) {
-  in.read_references("joints", joints, "joint", "joints it reports, in this order; none: all that have an axis");
+  in.read_references("joints", joints, "joint", "joints to report, in this order; none: all that have an axis");
   in.read("effort", effort, "measure efforts; false: they are reported as 0");
   in.read("position_noise", position_noise, "error of the positions, rad or m");
   in.read("velocity_noise", velocity_noise, "error of the velocities, rad/s or m/s");

@@ -10,12 +10,12 @@ void MovingMass::Params::read(sim::ParamReader& in) {
   in.read_choice("motion", motion, {{"slide", MassMotion::slide}, {"turn", MassMotion::turn}},
                  "slide: along x of the device's frame; turn: about it, hanging along -z");
   in.read("mass_kg", mass_kg, sim::above_to(0, 1e6), "of what moves; part of the vehicle's mass");
-  in.read("max_m", max_m, sim::between(0, 1000), "slide: so far forwards");
-  in.read("min_m", min_m, sim::between(-1000, 0), "slide: so far backwards; absent: -max_m");
-  in.read("rate_mps", rate_mps, sim::above(0), "slide: the fastest that it moves");
+  in.read("max_m", max_m, sim::between(0, 1000), "slide: maximum forward travel");
+  in.read("min_m", min_m, sim::between(-1000, 0), "slide: maximum backward travel; absent: -max_m");
+  in.read("rate_mps", rate_mps, sim::above(0), "slide: maximum speed");
   in.read("radius_m", radius_m, sim::between(0, 1000), "turn: of its centre of mass about the axis");
-  in.read_deg("limit_deg", limit_rad, sim::above_to(0, 180), "turn: so far to each side");
-  in.read("rate_degps", rate_degps, sim::above(0), "turn: the fastest that it turns");
+  in.read_deg("limit_deg", limit_rad, sim::above_to(0, 180), "turn: maximum angle to each side");
+  in.read("rate_degps", rate_degps, sim::above(0), "turn: maximum rate");
   lag.read(in);
 }
 
@@ -28,19 +28,19 @@ void MovingMass::change(const Params& params) {
   params_ = params;
   lag_.set(params.lag,
            params.motion == MassMotion::slide ? params.rate_mps : sim::degrees_to_radians(params.rate_degps));
-  wanted_ = std::clamp(wanted_, params.least(), params.most());
+  desired_ = std::clamp(desired_, params.lower(), params.upper());
 }
 
 void MovingMass::set_command(double command) {
-  wanted_ = std::clamp(command, params_.least(), params_.most());
+  desired_ = std::clamp(command, params_.lower(), params_.upper());
 }
 
 void MovingMass::make_safe(sim::SafeState safe) {
   if (safe == sim::SafeState::hold) {
     lag_.jump_to(lag_.value());
-    wanted_ = std::clamp(lag_.value(), params_.least(), params_.most());
+    desired_ = std::clamp(lag_.value(), params_.lower(), params_.upper());
   } else {
-    wanted_ = 0;
+    desired_ = 0;
   }
 }
 
@@ -52,7 +52,7 @@ sim::Vector3d MovingMass::offset_D(double place) const {
 
 void MovingMass::act(const sim::ActContext& context) {
   const double h = context.effectiveness * context.step_s;
-  const double place = h > 0 ? lag_.follow(wanted_, h) : lag_.value();
+  const double place = h > 0 ? lag_.follow(desired_, h) : lag_.value();
   if (place == 0) return;
   const sim::Vector3d offset_B = R_BD_ * offset_D(place);
   const sim::Vector3d offset_W = body_.motion().R_WB * offset_B;
@@ -61,7 +61,7 @@ void MovingMass::act(const sim::ActContext& context) {
 }
 
 void MovingMass::visit_state(sim::StateArchive& archive) {
-  archive(lag_, wanted_);
+  archive(lag_, desired_);
 }
 
 SHOAL_ACTUATOR("moving_mass", MovingMass, NumberController<MovingMass>);

@@ -35,8 +35,8 @@ class MovingMass final : public sim::Actuator {
     double rate_degps = 10;
     LagParams lag;
     void read(sim::ParamReader& in);
-    double most() const { return motion == MassMotion::slide ? max_m : limit_rad; }
-    double least() const { return motion == MassMotion::slide ? min_m.value_or(-max_m) : -limit_rad; }
+    double upper() const { return motion == MassMotion::slide ? max_m : limit_rad; }
+    double lower() const { return motion == MassMotion::slide ? min_m.value_or(-max_m) : -limit_rad; }
   };
 
   MovingMass(const Params& params, const sim::DeviceContext& context);
@@ -59,7 +59,7 @@ class MovingMass final : public sim::Actuator {
   sim::Body& body_;
   sim::Matrix3d R_BD_;
   Lag lag_;
-  double wanted_ = 0;
+  double desired_ = 0;
 };
 
 }  // namespace devices

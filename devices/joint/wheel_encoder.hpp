@@ -48,7 +48,7 @@ class WheelEncoder final : public sim::Sensor {
   std::vector<double> angles_rad_;     ///< true, at the last sample
   std::vector<double> believed_rad_;   ///< with the noise
   std::vector<std::int64_t> passed_;   ///< ticks of the believed angle
-  std::vector<std::int64_t> counted_;  ///< of those the ones not missed
+  std::vector<std::int64_t> counted_;  ///< of those, the ones that were counted
   std::vector<std::int64_t> ticks_;    ///< the reading
   std::vector<double> rates_radps_;    ///< the reading
 };

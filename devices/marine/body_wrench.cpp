@@ -11,7 +11,7 @@ namespace devices {
 void BodyWrench::Params::read(sim::ParamReader& in) {
   in.read("force_max_N", force_max_N, sim::between(0, 1e9), "the most along each axis, both ways");
   in.read("torque_max_Nm", torque_max_Nm, sim::between(0, 1e9), "the most about each axis, both ways");
-  in.read("lag_s", lag_s, sim::at_least(0), "time constant of a first-order lag; 0: it follows at once");
+  in.read("lag_s", lag_s, sim::at_least(0), "time constant of a first-order lag; 0: none");
 }
 
 BodyWrench::BodyWrench(const Params& params, const sim::DeviceContext& context)
@@ -22,18 +22,18 @@ BodyWrench::BodyWrench(const Params& params, const sim::DeviceContext& context)
 
 void BodyWrench::change(const Params& params) {
   params_ = params;
-  set_wrench(wanted_force_N_, wanted_torque_Nm_);
+  set_wrench(desired_force_N_, desired_torque_Nm_);
 }
 
 void BodyWrench::set_wrench(const sim::Vector3d& force_N, const sim::Vector3d& torque_Nm) {
-  wanted_force_N_ = force_N.cwiseMin(params_.force_max_N).cwiseMax(-params_.force_max_N);
-  wanted_torque_Nm_ = torque_Nm.cwiseMin(params_.torque_max_Nm).cwiseMax(-params_.torque_max_Nm);
+  desired_force_N_ = force_N.cwiseMin(params_.force_max_N).cwiseMax(-params_.force_max_N);
+  desired_torque_Nm_ = torque_Nm.cwiseMin(params_.torque_max_Nm).cwiseMax(-params_.torque_max_Nm);
 }
 
 void BodyWrench::act(const sim::ActContext& context) {
   const double left = params_.lag_s > 0 ? std::exp(-context.step_s / params_.lag_s) : 0;  // of the way
-  force_N_ = wanted_force_N_ + left * (force_N_ - wanted_force_N_);
-  torque_Nm_ = wanted_torque_Nm_ + left * (torque_Nm_ - wanted_torque_Nm_);
+  force_N_ = desired_force_N_ + left * (force_N_ - desired_force_N_);
+  torque_Nm_ = desired_torque_Nm_ + left * (torque_Nm_ - desired_torque_Nm_);
   if (context.effectiveness == 0 || (force_N_.isZero(0) && torque_Nm_.isZero(0))) return;
   const sim::BodyMotion body = body_.motion();
   const sim::Vector3d force_B = R_BD_ * (context.effectiveness * force_N_).eval();

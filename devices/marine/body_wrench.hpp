@@ -7,8 +7,8 @@
 
 namespace devices {
 
-/// A force and a torque on the body, in the device frame, the force at its origin: thrusters that somebody else has
-/// allocated, a tow, a push in a test.  Works in air too.
+/// A force and a torque on the body, in the device frame, the force at its origin: thrusters that are modelled
+/// elsewhere allocated, a tow, a push in a test.  Works in air too.
 class BodyWrench final : public sim::Actuator {
  public:
   static constexpr const char* meaning = "Force and torque on the body in the device's frame, at its origin.";
@@ -25,7 +25,7 @@ class BodyWrench final : public sim::Actuator {
   void make_safe(sim::SafeState) override { set_wrench(sim::Vector3d::Zero(), sim::Vector3d::Zero()); }
   void change(const Params& params);
   void visit_state(sim::StateArchive& archive) override {
-    archive(wanted_force_N_, wanted_torque_Nm_, force_N_, torque_Nm_);
+    archive(desired_force_N_, desired_torque_Nm_, force_N_, torque_Nm_);
   }
 
   /// In the device frame; each axis is cut to its limit.
@@ -36,7 +36,7 @@ class BodyWrench final : public sim::Actuator {
   sim::Body& body_;
   sim::Vector3d p_BD_;
   sim::Matrix3d R_BD_;
-  sim::Vector3d wanted_force_N_ = sim::Vector3d::Zero(), wanted_torque_Nm_ = sim::Vector3d::Zero();
+  sim::Vector3d desired_force_N_ = sim::Vector3d::Zero(), desired_torque_Nm_ = sim::Vector3d::Zero();
   sim::Vector3d force_N_ = sim::Vector3d::Zero(), torque_Nm_ = sim::Vector3d::Zero();
 };
 

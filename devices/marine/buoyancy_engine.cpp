@@ -9,12 +9,13 @@ namespace devices {
 
 void BuoyancyEngine::Params::read(sim::ParamReader& in) {
   in.read_choice("command", command, {{"volume", Command::volume}, {"fraction", Command::fraction}},
-                 "what the number in a command is: m^3, or a share of max_m3 (above 0) or min_m3");
+                 "unit of a command: m^3, or a fraction of max_m3 (above 0) or min_m3");
   in.read("max_m3", max_m3, sim::between(0, 1e6), "largest volume");
   in.read("min_m3", min_m3, sim::between(-1e6, 0), "smallest volume");
   in.read("rate_m3ps", rate_m3ps, sim::above(0), "of the pump, m^3/s");
   in.read("initial_m3", initial_m3, sim::between(-1e6, 1e6), "volume at the start");
-  in.read("park_m3", park_m3, sim::between(-1e6, 1e6), "volume of the safe state park; absent: max_m3, it comes up");
+  in.read("park_m3", park_m3, sim::between(-1e6, 1e6),
+          "volume of the safe state park; absent: max_m3, so that it surfaces");
   in.read("efficiency", efficiency, sim::above_to(0, 1), "work against the pressure over energy from the battery");
   lag.read(in);
   if (in.describing()) return;
@@ -25,7 +26,7 @@ void BuoyancyEngine::Params::read(sim::ParamReader& in) {
 }
 
 BuoyancyEngine::BuoyancyEngine(const Params& params, const sim::DeviceContext& context) : mount_(context) {
-  wanted_m3_ = params.initial_m3;
+  desired_m3_ = params.initial_m3;
   lag_.jump_to(params.initial_m3);
   change(params);
 }
@@ -33,28 +34,28 @@ BuoyancyEngine::BuoyancyEngine(const Params& params, const sim::DeviceContext& c
 void BuoyancyEngine::change(const Params& params) {
   params_ = params;
   lag_.set(params.lag, params.rate_m3ps);
-  wanted_m3_ = std::clamp(wanted_m3_, params.min_m3, params.max_m3);
+  desired_m3_ = std::clamp(desired_m3_, params.min_m3, params.max_m3);
   // Of a ball of the largest volume.
   height_m_ = 2 * std::cbrt(std::max({params.max_m3, -params.min_m3, 1e-9}) * 3 / (4 * std::numbers::pi));
 }
 
 void BuoyancyEngine::make_safe(sim::SafeState safe) {
-  if (safe == sim::SafeState::park) wanted_m3_ = params_.park_m3.value_or(params_.max_m3);
-  if (safe == sim::SafeState::stop) wanted_m3_ = std::clamp(0.0, params_.min_m3, params_.max_m3);
+  if (safe == sim::SafeState::park) desired_m3_ = params_.park_m3.value_or(params_.max_m3);
+  if (safe == sim::SafeState::stop) desired_m3_ = std::clamp(0.0, params_.min_m3, params_.max_m3);
   if (safe != sim::SafeState::hold) return;
   lag_.jump_to(lag_.value());
-  wanted_m3_ = lag_.value();
+  desired_m3_ = lag_.value();
 }
 
 void BuoyancyEngine::set_command(double command) {
   if (params_.command == Command::fraction) command *= command > 0 ? params_.max_m3 : -params_.min_m3;
-  wanted_m3_ = std::clamp(command, params_.min_m3, params_.max_m3);
+  desired_m3_ = std::clamp(command, params_.min_m3, params_.max_m3);
 }
 
 void BuoyancyEngine::act(const sim::ActContext& context) {
   const double before = lag_.value();
   const double h = context.effectiveness * context.step_s;
-  const double volume = h > 0 ? lag_.follow(wanted_m3_, h) : before;
+  const double volume = h > 0 ? lag_.follow(desired_m3_, h) : before;
   power_W_ = 0;
   if (volume == before && volume == 0) return;
   const WaterFlow flow = mount_.flow();

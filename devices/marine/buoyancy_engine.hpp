@@ -34,7 +34,7 @@ class BuoyancyEngine final : public sim::Actuator {
   void make_safe(sim::SafeState safe) override;
   double power_W() const override { return power_W_; }
   void change(const Params& params);
-  void visit_state(sim::StateArchive& archive) override { archive(lag_, wanted_m3_, power_W_); }
+  void visit_state(sim::StateArchive& archive) override { archive(lag_, desired_m3_, power_W_); }
 
   /// m^3 or a fraction, by `command`; beyond the limits it is cut.
   void set_command(double command);
@@ -44,7 +44,7 @@ class BuoyancyEngine final : public sim::Actuator {
   Params params_;
   WaterMount mount_;
   Lag lag_;
-  double wanted_m3_ = 0;
+  double desired_m3_ = 0;
   double power_W_ = 0;
   double height_m_ = 0;  // over which it comes out of the water
 };

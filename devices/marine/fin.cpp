@@ -31,7 +31,7 @@ void Fin::Params::read(sim::ParamReader& in) {
   in.read("density_kgpm3", density_kgpm3, sim::above(0), "instead of the water's");
   in.read("coefficients", coefficients,
           "of model coefficients: about the body's origin, times angle and speed squared");
-  in.read_deg("limit_deg", limit_rad, sim::above_to(0, 90), "it turns so far to each side");
+  in.read_deg("limit_deg", limit_rad, sim::above_to(0, 90), "maximum deflection to each side");
   in.read("rate_limit_degps", rate_limit_degps, sim::above(0), "of its servo; absent: no limit");
   lag.read(in);
   if (in.describing()) return;
@@ -55,7 +55,7 @@ void Fin::change(const Params& params) {
   span_m_ = std::sqrt(params.area_m2 * params.foil.aspect_ratio);
   foil_ = Foil(params.foil);
   if (params.coefficients)
-    largest_coefficient_ = std::max(params.coefficients->force.norm(), params.coefficients->moment.norm());
+    max_coefficient_ = std::max(params.coefficients->force.norm(), params.coefficients->moment.norm());
 }
 
 void Fin::set_command(double angle_rad) {
@@ -91,17 +91,17 @@ void Fin::lift_locally(const WaterFlow& flow, double angle_rad, double scale, do
   const double speed = std::sqrt(square);
   const double pressure = 0.5 * params_.density_kgpm3.value_or(flow.density_kgpm3) * square * params_.area_m2 * scale;
   const Eigen::Vector2d force = pressure * foil_.force(flow.v_D.x() / speed, flow.v_D.y() / speed, angle_rad);
-  const double bound = std::min(1.0, mount_.largest_force_N(speed, step_s) / force.norm());
+  const double bound = std::min(1.0, mount_.max_force_N(speed, step_s) / force.norm());
   mount_.add_force_D(flow, {bound * force.x(), bound * force.y(), 0});
 }
 
 void Fin::lift_by_speed_of_body(const WaterFlow& flow, double angle_rad, double scale, double step_s) {
   const sim::Vector3d v_D = mount_.in_D(flow, flow.body.v_WB_W - flow.water_W);
   const double square = v_D.x() * v_D.x() + v_D.y() * v_D.y();
-  const double most = mount_.largest_force_N(std::sqrt(square), step_s);
+  const double upper = mount_.max_force_N(std::sqrt(square), step_s);
   const double lift = std::clamp(0.5 * params_.density_kgpm3.value_or(flow.density_kgpm3) * square * params_.area_m2 *
                                      foil_.slope() * angle_rad * scale,
-                                 -most, most);
+                                 -upper, upper);
   mount_.add_force_D(flow, {-lift * angle_rad, lift, 0});
 }
 
@@ -110,8 +110,8 @@ void Fin::act_as_published(const WaterFlow& flow, double angle_rad, double scale
   const double u = body.R_WB.col(0).dot(body.v_WB_W - flow.water_W);
   const double published = u * u * angle_rad * scale;
   if (published == 0) return;
-  const double most = mount_.largest_force_N(std::abs(u), step_s);
-  const double factor = published * std::min(1.0, most / (std::abs(published) * largest_coefficient_));
+  const double upper = mount_.max_force_N(std::abs(u), step_s);
+  const double factor = published * std::min(1.0, upper / (std::abs(published) * max_coefficient_));
   const sim::Vector3d force_B = factor * params_.coefficients->force;
   const sim::Vector3d moment_B = factor * params_.coefficients->moment;
   mount_.body().add_force_W(body.R_WB * force_B, body.p_WB);

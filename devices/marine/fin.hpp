@@ -72,7 +72,7 @@ class Fin final : public sim::Actuator {
   Lag lag_;
   double command_ = 0;
   double span_m_ = 0;
-  double largest_coefficient_ = 1;  // of force or moment
+  double max_coefficient_ = 1;  // of force or moment
   Foil foil_;
 };
 

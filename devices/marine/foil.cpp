@@ -11,11 +11,12 @@ void FoilParams::read(sim::ParamReader& in) {
   in.read("aspect_ratio", aspect_ratio, sim::above_to(0, 100), "square of the span over the area");
   in.read("lift_slope", lift_slope, sim::between(0, 20),
           "dC_L/d(angle), per rad; absent: pi AR / (1 + sqrt(1 + (AR/2)^2))");
-  in.read_deg("stall_deg", stall_rad, sim::above_to(0, 89), "angle of attack at which the flow begins to part");
-  in.read_deg("stall_width_deg", stall_width_rad, sim::above_to(0, 89), "so much later it is a plate across the flow");
+  in.read_deg("stall_deg", stall_rad, sim::above_to(0, 89), "angle of attack at which the flow starts to separate");
+  in.read_deg("stall_width_deg", stall_width_rad, sim::above_to(0, 89),
+              "width of the transition from there to a plate across the flow");
   in.read("drag_coefficient", drag_coefficient, sim::between(0, 10), "C_D without lift");
   in.read("span_efficiency", span_efficiency, sim::above_to(0, 2), "e of the drag that comes with lift");
-  in.read("plate_coefficient", plate_coefficient, sim::between(0, 3), "C_D when it stands across the flow");
+  in.read("plate_coefficient", plate_coefficient, sim::between(0, 3), "C_D when it is perpendicular to the flow");
 }
 
 double FoilParams::slope() const {

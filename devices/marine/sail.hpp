@@ -53,7 +53,7 @@ class Sail final : public sim::Actuator {
   WaterMount mount_;
   Foil foil_;
   Lag lag_;
-  double wanted_rad_ = 0;
+  double desired_rad_ = 0;
 };
 
 }  // namespace devices

@@ -33,17 +33,17 @@ void Thruster::Params::read(sim::ParamReader& in) {
   in.read_choice(
       "command", command,
       {{"effort", Command::effort}, {"rpm", Command::rpm}, {"radps", Command::radps}, {"thrust_N", Command::thrust_N}},
-      "what the number in a command is; effort is -1 to 1; this is the unit of the level below");
+      "unit of a command; effort is -1 to 1; also the unit of the levels below");
   in.read("max", max, sim::above_to(0, 1e6), "largest level; 1 of an effort");
   in.read("min", min, sim::between(-1e6, 0), "largest level astern; absent: -max");
   in.read("dead_band", dead_band, sim::at_least(0), "commands smaller than this are 0");
   lag.read(in);
-  in.read("rate_limit", rate_limit, sim::above(0), "the most that the level changes in a second; absent: no limit");
+  in.read("rate_limit", rate_limit, sim::above(0), "maximum change of the level per second; absent: no limit");
   if (command == Command::thrust_N) curve = Curve::direct;
   in.read_choice(
       "curve", curve,
       {{"quadratic", Curve::quadratic}, {"table", Curve::table}, {"kt_kq", Curve::kt_kq}, {"direct", Curve::direct}},
-      "how the level makes thrust; direct with commands of thrust_N, and only then");
+      "how the level determines the thrust; direct only with commands of thrust_N, and always then");
   in.read("ahead", ahead, sim::between(0, 1e6), "quadratic: N per level squared");
   in.read("astern", astern, sim::between(0, 1e6), "quadratic, at levels below 0; absent: as ahead");
   in.read("inflow_loss", inflow_loss, sim::between(0, 1e6), "quadratic: N lost per level and m/s of inflow");
@@ -57,24 +57,25 @@ void Thruster::Params::read(sim::ParamReader& in) {
   in.read("full_speed_rpm", full_speed_rpm, sim::above_to(0, 1e6), "kt_kq: shaft speed at effort 1");
   // Without inflow or thrust it would be no thruster, and no autopilot could reckon with it.
   in.read("wake_fraction", wake_fraction, sim::between(0, 0.99),
-          "share of the speed that the hull takes from the inflow");
-  in.read("thrust_deduction", thrust_deduction, sim::between(0, 0.99), "share of the thrust that the hull loses again");
+          "wake fraction: share of the speed that the inflow loses to the hull");
+  in.read("thrust_deduction", thrust_deduction, sim::between(0, 0.99),
+          "thrust deduction: share of the thrust lost to the hull");
   in.read_choice("inflow", inflow,
                  {{"water", Inflow::water}, {"water_speed", Inflow::water_speed}, {"ground", Inflow::ground}},
                  "water: along the axis, where the propeller is; water_speed: speed of the body through the water; "
                  "ground: its speed over ground, as MSS remus100 has it");
   in.read_choice("turns", turns, {{"right", Turns::right}, {"left", Turns::left}},
-                 "right: clockwise seen from behind; the hull is turned the other way");
-  in.read("torque_per_thrust_m", torque_per_thrust_m, sim::between(0, 10), "shaft torque per thrust, but for kt_kq");
-  in.read("torque_share", torque_share, sim::between(0, 1), "share of the shaft torque that turns the hull");
-  in.read("ventilation", ventilation, "the thrust fades as the disc comes out of the water; false: at no depth");
+                 "right: clockwise seen from behind; the reaction torque turns the hull the other way");
+  in.read("torque_per_thrust_m", torque_per_thrust_m, sim::between(0, 10), "shaft torque per thrust, except for kt_kq");
+  in.read("torque_share", torque_share, sim::between(0, 1), "share of the shaft torque that acts on the hull");
+  in.read("ventilation", ventilation, "the thrust fades as the disc emerges from the water; false: never");
   in.read("full_power_W", full_power_W, sim::at_least(0),
           "from the battery at full thrust; less by thrust^1.5; not for kt_kq");
   in.read("efficiency", efficiency, sim::above_to(0, 1), "kt_kq: shaft power over power from the battery");
   if (in.describing()) return;
   if (command != Command::effort && !max) in.error("'max' is missing: the largest level in the unit of 'command'");
-  if (command == Command::effort && (most() > 1 || least() < -1))
-    in.error(most() > 1 ? "max" : "min", "an effort is at most 1: 'max' and 'min' must lie in -1 to 1");
+  if (command == Command::effort && (upper() > 1 || lower() < -1))
+    in.error(upper() > 1 ? "max" : "min", "an effort is at most 1: 'max' and 'min' must lie in -1 to 1");
   if ((command == Command::thrust_N) != (curve == Curve::direct))
     in.error("curve", "'curve' direct belongs to 'command' thrust_N, and only to it");
   if (curve == Curve::table) check_table(in, table);
@@ -89,14 +90,14 @@ Thruster::Thruster(const Params& params, const sim::DeviceContext& context) : mo
 void Thruster::change(const Params& params) {
   params_ = params;
   lag_.set(params.lag, params.rate_limit.value_or(std::numeric_limits<double>::infinity()));
-  command_ = std::clamp(command_, params.least(), params.most());
+  command_ = std::clamp(command_, params.lower(), params.upper());
   const double any_density = 1000;
-  full_thrust_N_ = std::max(std::abs(effort_of(params.most(), 0, any_density).thrust_N),
-                            std::abs(effort_of(params.least(), 0, any_density).thrust_N));
+  full_thrust_N_ = std::max(std::abs(effort_of(params.upper(), 0, any_density).thrust_N),
+                            std::abs(effort_of(params.lower(), 0, any_density).thrust_N));
 }
 
 void Thruster::set_command(double command) {
-  command_ = std::abs(command) < params_.dead_band ? 0 : std::clamp(command, params_.least(), params_.most());
+  command_ = std::abs(command) < params_.dead_band ? 0 : std::clamp(command, params_.lower(), params_.upper());
 }
 
 double Thruster::turns_per_second(double level) const {
@@ -154,8 +155,8 @@ void Thruster::act(const sim::ActContext& context) {
   thrust_N_ = scale * (1 - params_.thrust_deduction) * full.thrust_N;
   mount_.add_force_D(flow, {thrust_N_, 0, 0});
   // The hull is turned against the shaft.
-  const double way = params_.turns == Turns::right ? -1 : 1;
-  const double torque = way * params_.torque_share * scale * full.shaft_torque_Nm;
+  const double sense = params_.turns == Turns::right ? -1 : 1;
+  const double torque = sense * params_.torque_share * scale * full.shaft_torque_Nm;
   if (torque != 0) mount_.add_torque_D(flow, {torque, 0, 0});
   if (params_.curve == Curve::kt_kq) {
     const double radps = 2 * std::numbers::pi * turns_per_second(level);

@@ -51,8 +51,8 @@ class Thruster final : public sim::Actuator {
     bool ventilation = true;
     double full_power_W = 0, efficiency = 0.7;
     void read(sim::ParamReader& in);
-    double most() const { return max.value_or(1); }
-    double least() const { return min.value_or(-most()); }
+    double upper() const { return max.value_or(1); }
+    double lower() const { return min.value_or(-upper()); }
   };
 
   Thruster(const Params& params, const sim::DeviceContext& context);

@@ -36,11 +36,11 @@ double ThrusterCommand::thrust_N(double level, double density_kgpm3) const {
 }
 
 double ThrusterCommand::max_N(double density_kgpm3) const {
-  return thrust_N(params_.most(), density_kgpm3);
+  return thrust_N(params_.upper(), density_kgpm3);
 }
 
 double ThrusterCommand::min_N(double density_kgpm3) const {
-  return thrust_N(params_.least(), density_kgpm3);
+  return thrust_N(params_.lower(), density_kgpm3);
 }
 
 /// The level nearest to zero with this thrust; a flat part of the table is a dead band.
@@ -74,7 +74,7 @@ double ThrusterCommand::command_for_N(double thrust_N, double inflow_mps, double
     }
     if (!ahead) level = -level;
   }
-  return std::clamp(level, params_.least(), params_.most());
+  return std::clamp(level, params_.lower(), params_.upper());
 }
 
 }  // namespace devices

@@ -41,7 +41,7 @@ class WaterMount {
   }
   /// The largest force of a flow of this speed: one that stops the flow at D in a step.  A larger one would turn it
   /// round, which no lift and no drag does.
-  double largest_force_N(double speed_mps, double step_s) const { return mass_at_D_kg_ * speed_mps / step_s; }
+  double max_force_N(double speed_mps, double step_s) const { return mass_at_D_kg_ * speed_mps / step_s; }
   /// At the origin of D.
   void add_force_D(const WaterFlow& flow, const sim::Vector3d& force_N) {
     body_.add_force_W(in_W(flow, force_N), flow.p_WD);

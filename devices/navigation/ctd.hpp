@@ -7,7 +7,7 @@
 
 namespace devices {
 
-/// CTD: conductivity, temperature and pressure of the medium, each with its error; salinity and depth are worked out of
+/// CTD: conductivity, temperature and pressure of the medium, each with its error; salinity and depth are computed of
 /// these as a real one does.
 class Ctd final : public sim::Sensor {
  public:

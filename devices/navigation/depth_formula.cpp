@@ -5,10 +5,10 @@ namespace devices {
 
 void DepthFormula::read(sim::ParamReader& in) {
   in.read("assumed_density_kgpm3", assumed_density_kgpm3, sim::between(500, 2000),
-          "of the water, as the sensor believes when it makes a depth of a pressure");
-  in.read("assumed_gravity_mps2", assumed_gravity_mps2, sim::between(0.1, 100), "as the sensor believes");
+          "density that the sensor assumes when it converts pressure to depth");
+  in.read("assumed_gravity_mps2", assumed_gravity_mps2, sim::between(0.1, 100), "gravity that the sensor assumes");
   in.read("assumed_surface_Pa", assumed_surface_Pa, sim::between(0, 1e7),
-          "absolute pressure that it takes for depth 0");
+          "absolute pressure that it assumes at depth 0");
 }
 
 }  // namespace devices

@@ -45,7 +45,7 @@ std::optional<BeamSystem> beam_system(const std::array<sim::Vector3d, dvl_beams>
 void Dvl::Params::read(sim::ParamReader& in) {
   std::vector<std::string> names;
   for (const DvlPreset& unit : dvl_presets()) names.push_back(unit.name);
-  in.read_one_of("preset", preset, names, "a unit by its data sheet; the keys below win over it");
+  in.read_one_of("preset", preset, names, "preset of a product by its data sheet; the keys below override it");
   // The preset is the default of the keys that follow.
   for (const DvlPreset& unit : dvl_presets()) {
     if (unit.name != preset || in.describing()) continue;
@@ -58,20 +58,22 @@ void Dvl::Params::read(sim::ParamReader& in) {
   in.read_deg("beam_angle_deg", beam_angle_rad, sim::between(5, 60), "between each beam and -z");
   in.read_deg("first_azimuth_deg", first_azimuth_rad, sim::between(-360, 360),
               "of the first beam, from x towards y; the others follow every 90 deg");
-  in.read("altitude_min_m", altitude_min_m, sim::at_least(0), "a beam sees no bottom nearer than this along -z");
-  in.read("altitude_max_m", altitude_max_m, sim::above_to(0, 10000), "nor farther than this along -z");
+  in.read("altitude_min_m", altitude_min_m, sim::at_least(0),
+          "minimum distance along -z at which a beam detects the bottom");
+  in.read("altitude_max_m", altitude_max_m, sim::above_to(0, 10000),
+          "maximum distance along -z at which a beam detects the bottom");
   in.read_deg("incidence_max_deg", incidence_max_rad, sim::above_to(0, 90),
-              "a beam that meets the bottom farther than this from its normal gets no echo");
-  in.read("beam_dropout", beam_dropout, sim::between(0, 1), "probability that a beam is lost, for each anew");
-  in.read("water_track", water_track, "measure the velocity relative to a layer of water, too");
-  in.read("layer_from_m", layer_from_m, sim::at_least(0), "begin of that layer along -z");
+              "maximum angle of incidence, from the normal of the bottom, that returns an echo");
+  in.read("beam_dropout", beam_dropout, sim::between(0, 1), "probability that a beam is lost, drawn for each beam");
+  in.read("water_track", water_track, "also measure the velocity relative to a layer of water");
+  in.read("layer_from_m", layer_from_m, sim::at_least(0), "start of that layer along -z");
   in.read("layer_to_m", layer_to_m, sim::above(0), "end of that layer along -z");
   in.read("beam_std_mps", beam_std_mps, sim::at_least(0), "white noise of each beam, standard deviation");
-  in.read("beam_std_per_mps", beam_std_per_mps, sim::at_least(0), "and so much more for each m/s of speed");
+  in.read("beam_std_per_mps", beam_std_per_mps, sim::at_least(0), "its increase per m/s of speed");
   in.read("scale_std", scale_std, sim::at_least(0), "of a relative error of all velocities, drawn once in a run");
   in.read("assumed_sound_speed_mps", assumed_sound_speed_mps, sim::between(100, 10000),
           "velocities and ranges are off by its ratio to the true speed; unset: the true speed");
-  in.read_references("see_through", see_through, "category", "categories of parts that sound passes");
+  in.read_references("see_through", see_through, "category", "categories of parts that sound passes through");
   in.read("beam_noise", beam_noise, "further error of the velocity along each beam, m/s");
   in.read("velocity_noise", velocity_noise, "error of each component of the velocities, m/s");
   in.read("range_noise", range_noise, "error of the range of each beam, m");
@@ -145,7 +147,7 @@ void Dvl::listen_to_water(const sim::Ray& ray_W, const sim::Vector3d& v_WS_W, Be
     const double range_m = (params_.layer_from_m + share * thickness_m) / cosine;
     v_water_W += medium_.water_velocity_W(ray_W.origin_W + range_m * ray_W.direction_W) / 3;
   }
-  beam.hears_water = true;
+  beam.detects_water = true;
   beam.water_mps = ray_W.direction_W.dot(v_WS_W - v_water_W);
 }
 
@@ -168,7 +170,8 @@ void Dvl::solve() {
     reading_.altitude_m = std::clamp(-1 / plane->solution().z(), 0.0, 2 * params_.altitude_max_m);
   }
   const auto through_water = beam_system(
-      beams_S_, [&](std::size_t i) { return beams[i].hears_water; }, [&](std::size_t i) { return beams[i].water_mps; });
+      beams_S_, [&](std::size_t i) { return beams[i].detects_water; },
+      [&](std::size_t i) { return beams[i].water_mps; });
   if (through_water) reading_.water_velocity_S = through_water->solution();
 }
 
@@ -190,10 +193,10 @@ void Dvl::disturb(double dt_s, sim::Random& random) {
     beam.water_mps = water_mps[i];
     beam.range_m = std::max(ranges_m[i], 1e-3);
     if (random.uniform() < params_.beam_dropout) beam.sees_bottom = false;
-    if (random.uniform() < params_.beam_dropout) beam.hears_water = false;
+    if (random.uniform() < params_.beam_dropout) beam.detects_water = false;
   }
   solve();
-  // The slow errors go on without lock.
+  // The slow errors continue without lock.
   const auto disturb_velocity = [&](sim::Noise& noise, std::optional<sim::Vector3d>& velocity) {
     sim::Vector3d value = velocity.value_or(sim::Vector3d::Zero());
     noise.apply(std::span<double>(value.data(), 3), dt_s, random);
@@ -205,7 +208,7 @@ void Dvl::disturb(double dt_s, sim::Random& random) {
 
 void Dvl::visit_state(sim::StateArchive& archive) {
   archive(beam_noise_, water_beam_noise_, velocity_noise_, water_velocity_noise_, range_noise_);
-  // Out of the water the last values go on to scale the errors.
+  // Out of the water the last values continue to scale the errors.
   archive(sound_scale_, speed_mps_, reading_);
 }
 

@@ -45,9 +45,9 @@ class Dvl final : public sim::Sensor {
     double range_m = 0;
     double velocity_mps = 0;  ///< towards what it hits
     double water_mps = 0;     ///< towards the layer of water
-    bool sees_bottom = false, hears_water = false;
+    bool sees_bottom = false, detects_water = false;
     void visit_state(sim::StateArchive& archive) {
-      archive(range_m, velocity_mps, water_mps, sees_bottom, hears_water);
+      archive(range_m, velocity_mps, water_mps, sees_bottom, detects_water);
     }
   };
   struct Reading {
@@ -69,7 +69,7 @@ class Dvl final : public sim::Sensor {
   const Reading& reading() const { return reading_; }
 
  private:
-  /// The water that a beam hears in the layer: sets its velocity.
+  /// The water that a beam receives in the layer: sets its velocity.
   void listen_to_water(const sim::Ray& ray_W, const sim::Vector3d& v_WS_W, Beam& beam) const;
   /// Velocities and altitude from the beams.
   void solve();

@@ -21,7 +21,7 @@ void refuse_two_masters(const sim::DeviceContext& context) {
     if (other.disciplines_clock)
       sim::throw_config_error(
           context.config.place, "device '" + context.full_name() + "'",
-          "'disciplines_clock': '" + device.name + "' disciplines the clock of this vehicle already");
+          "'disciplines_clock': '" + device.name + "' already disciplines the clock of this vehicle");
   }
 }
 
@@ -35,12 +35,12 @@ void Gps::Params::read(sim::ParamReader& in) {
   in.read("satellites", satellites, sim::between(4, 40), "reported number of satellites");
   in.read("min_height_m", min_height_m, sim::any_number(), "below this height the antenna has no fix");
   in.read("reacquisition_s", reacquisition_s, sim::between(0, 1e6),
-          "no fix for so long after a zone that denies it, or after water over the antenna");
-  in.read("disciplines_clock", disciplines_clock, "steers the clock of its vehicle at every fix");
+          "reacquisition time after a zone that denies it, or after water over the antenna");
+  in.read("disciplines_clock", disciplines_clock, "disciplines the clock of its vehicle at every fix");
   in.read("discipline_time_constant_s", discipline.time_constant_s, sim::between(0.1, 1e5),
-          "in which the critically damped loop takes out an error of the clock");
+          "time constant of the critically damped loop that corrects the clock");
   in.read("step_above_s", discipline.step_above_s, sim::between(0, 1),
-          "a larger error of the clock is taken out at once");
+          "a larger error of the clock is corrected in one step");
   in.read("pps_std_s", discipline.pps_std_s, sim::between(0, 1), "jitter of the pulse that the clock is compared with");
 }
 

@@ -12,7 +12,7 @@ namespace devices {
 
 /// Satellite receiver: position on the WGS84 ellipsoid by the world's origin, and velocity over ground.  No fix while
 /// its antenna, the origin of its frame, is under the momentary surface of the water.  It may steer the clock of its
-/// vehicle (docs/models/clocks.md): a fix tells the clock's error but for the jitter of its pulse.
+/// vehicle (docs/models/clocks.md): a fix tells the clock's error except for the jitter of its pulse.
 class Gps final : public sim::Sensor {
  public:
   static constexpr const char* meaning = "Satellite positioning: WGS84 position, velocity over ground, fix quality.";

@@ -30,10 +30,8 @@ void Odometry::Params::read(sim::ParamReader& in) {
   in.read_reference("left_joint", left_joint, "joint", "hinge of the left wheel");
   in.require("right_joint");
   in.read_reference("right_joint", right_joint, "joint", "hinge of the right wheel");
-  in.read("wheel_radius_m", wheel_radius_m, sim::above(0),
-          "what it believes the wheels' radius to be; unset: as in the vehicle");
-  in.read("track_m", track_m, sim::above(0),
-          "what it believes the distance of the wheels to be; unset: as the joints have it");
+  in.read("wheel_radius_m", wheel_radius_m, sim::above(0), "assumed radius of the wheels; unset: as in the vehicle");
+  in.read("track_m", track_m, sim::above(0), "assumed distance between the wheels; unset: as given by the joints");
   in.read("ticks_per_turn", ticks_per_turn, sim::at_least(1), "encoder ticks in one turn of a wheel");
   in.read("noise", noise, "error of the angle a wheel turned between two samples, rad");
 }
@@ -55,9 +53,9 @@ Odometry::Odometry(const Params& params, const sim::DeviceContext& context)
   const AllowedRatio miscalibrated{0.9, 1.1};
   const bool scrubs = std::any_of(vehicle.devices.begin(), vehicle.devices.end(),
                                   [](const sim::DeviceConfig& device) { return device.type == "skid_steer"; });
-  check_length(context, radius, miscalibrated, "it reckons {} times the distance", as_it_is);
+  check_length(context, radius, miscalibrated, "it estimates {} times the distance", as_it_is);
   if (!scrubs || *track.real_m > track_m_)
-    check_length(context, track, miscalibrated, "it reckons {} times the turn", inverse);
+    check_length(context, track, miscalibrated, "it estimates {} times the turn", inverse);
 }
 
 void Odometry::measure(const sim::SenseContext& context) {
@@ -107,7 +105,7 @@ void Odometry::visit_state(sim::StateArchive& archive) {
   archive(X_W0_, truth_theta_rad_, wheel_rad_, believed_rad_, reading_, reckoned_, noise_);
   for (const std::int64_t ticks : {reckoned_.left_ticks, reckoned_.right_ticks})
     if (archive.restoring() && (ticks > max_ticks || ticks < -max_ticks))
-      archive.fail("a wheel that turned further than can be counted");
+      archive.fail("a wheel that turned farther than can be counted");
 }
 
 void fill(const Odometry& odometry, shoal::odometry_t& message) {

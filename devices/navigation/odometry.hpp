@@ -9,8 +9,8 @@
 
 namespace devices {
 
-/// Dead reckoning of a differential drive from quantised wheel ticks.  It believes its own wheel radius and track,
-/// which may be off, and knows nothing of slip: the error grows as it does on a real rover.
+/// Dead reckoning of a differential drive from quantised wheel ticks.  It uses its own calibration of wheel radius
+/// and track, which may be wrong, and ignores slip: the error grows as on a real rover.
 class Odometry final : public sim::Sensor {
  public:
   static constexpr const char* meaning =

@@ -11,10 +11,10 @@
 namespace devices {
 
 void SwarmPosition::Params::read(sim::ParamReader& in) {
-  in.read("range_max_m", range_max_m, sim::above(0), "vehicles farther away are not seen");
+  in.read("range_max_m", range_max_m, sim::above(0), "maximum range to a vehicle");
   in.read("absolute", absolute, "measure positions in the world frame too");
-  in.read("occlusion", occlusion, "parts of the world hide vehicles");
-  in.read_references("see_through", see_through, "category", "categories of parts that do not hide a vehicle");
+  in.read("occlusion", occlusion, "parts of the world occlude vehicles");
+  in.read_references("see_through", see_through, "category", "categories of parts that do not occlude a vehicle");
   in.read("relative_noise", relative_noise, "error of each coordinate relative to the sensor, m");
   in.read("absolute_noise", absolute_noise, "error of each coordinate in the world frame, m");
 }

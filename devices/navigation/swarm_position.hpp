@@ -9,7 +9,7 @@
 
 namespace devices {
 
-/// Senses where the other vehicles are: relative to itself, and in the world if asked for.
+/// Measures the positions of the other vehicles: relative to itself, and in the world if configured.
 class SwarmPosition final : public sim::Sensor {
  public:
   static constexpr const char* meaning = "Relative (and absolute) positions of the other vehicles within range.";
@@ -18,7 +18,7 @@ class SwarmPosition final : public sim::Sensor {
     double range_max_m = 30;
     bool absolute = false;
     bool occlusion = false;
-    std::vector<std::string> see_through;  ///< categories of parts that do not hide a vehicle
+    std::vector<std::string> see_through;  ///< categories of parts that do not occlude a vehicle
     sim::NoiseParams relative_noise;
     sim::NoiseParams absolute_noise;
     void read(sim::ParamReader& in);

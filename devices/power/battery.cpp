@@ -20,7 +20,7 @@ void Battery::Params::read(sim::ParamReader& in) {
     in.error("open_circuit_V", "'open_circuit_V' must have at least one voltage");
     open_circuit_V = {12};
   }
-  in.read("internal_resistance_ohm", internal_resistance_ohm, sim::at_least(0), "what the voltage falls by, per A");
+  in.read("internal_resistance_ohm", internal_resistance_ohm, sim::at_least(0), "voltage drop per A");
   in.read("voltage_noise", voltage_noise, "error of the voltage, V");
   in.read("current_noise", current_noise, "error of the current, A");
   in.read("charge_noise", charge_noise, "error of the charge, which is a share from 0 to 1");
@@ -33,7 +33,7 @@ Battery::Battery(const Params& params, const sim::DeviceContext& context)
       current_noise_(context, params),
       charge_noise_(context, params),
       energy_J_(capacity_J() * params.initial_charge) {
-  if (vehicle_.systems().metered) refuse(context, "the vehicle has a battery already");
+  if (vehicle_.systems().metered) refuse(context, "the vehicle already has a battery");
   vehicle_.systems().metered = true;
 }
 

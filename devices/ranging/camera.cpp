@@ -17,7 +17,7 @@ namespace devices {
 namespace {
 
 /// LCM 1.3.1 sends no message of more than 16 MiB; some of it is left for the metadata.
-constexpr int most_message_bytes = (16 << 20) - (64 << 10);
+constexpr int max_message_bytes = (16 << 20) - (64 << 10);
 
 /// What the cameras of a world share: decoded textures, and the rays of lenses that are alike.
 struct SharedByCameras {
@@ -54,8 +54,8 @@ sim::ImageKind render_kind(Camera::Kind kind) {
 }  // namespace
 
 void ExposureParams::read(sim::ParamReader& in) {
-  in.read("auto", automatic, "each picture is made as bright as a middle grey");
-  in.read("gain", gain, sim::above_to(0, 1000), "times the light, on top of auto");
+  in.read("auto", automatic, "automatic exposure: the mean of each image becomes middle grey");
+  in.read("gain", gain, sim::above_to(0, 1000), "factor of the brightness, in addition to auto");
 }
 
 void Camera::Params::read(sim::ParamReader& in) {
@@ -65,17 +65,17 @@ void Camera::Params::read(sim::ParamReader& in) {
                   {"depth", Kind::depth},
                   {"segmentation_parts", Kind::parts},
                   {"segmentation_vehicles", Kind::vehicles}},
-                 "what it takes");
+                 "kind of image");
   optics.read(in);
   in.read_choice("encoding", encoding,
                  {{"raw", Encoding::raw}, {"raw16", Encoding::raw16}, {"png", Encoding::png}, {"jpeg", Encoding::jpeg}},
                  "of the message; raw16: depth in mm, 0 where there is none; png of depth too");
   in.read("jpeg_quality", jpeg_quality, sim::between(1, 100), "of jpeg");
-  in.read("range_max_m", range_max_m, sim::above_to(0, 100'000), "what is farther along the ray is not seen");
+  in.read("range_max_m", range_max_m, sim::above_to(0, 100'000), "maximum range along the ray");
   in.read_choice("depth_along", depth_along, depth_along_words,
                  "depth: distance along the optical axis, or range of the ray");
   in.read("antialias", antialias, sim::between(1, 4), "rgb, grey: so many rays along each side of a pixel");
-  in.read("exposure", exposure, "rgb, grey: how bright it becomes");
+  in.read("exposure", exposure, "rgb, grey: exposure");
   in.read("noise", noise, "rgb, grey: error of each level from 0 to 255; depth: of each depth, m");
   in.read("depth_noise_per_m", depth_noise_per_m, sim::at_least(0),
           "depth: a standard deviation of this times depth squared, 1/m, as stereo has it");
@@ -86,25 +86,25 @@ void Camera::Params::read(sim::ParamReader& in) {
           "rolling shutter: the first row is exposed this long before the last, which is at the sample time");
   in.read("exposure_time_s", exposure_time_s, sim::between(0, 10),
           "rgb, grey: motion blur over this time up to the sample");
-  in.read("blur_samples", blur_samples, sim::between(2, 64), "images that a blurred one is made of");
-  in.read("sees_own_vehicle", sees_own_vehicle, "the own vehicle is in the picture");
-  in.read_references("see_through", see_through, "category", "categories of parts that are not in the picture");
+  in.read("blur_samples", blur_samples, sim::between(2, 64), "images that are averaged for a blurred one");
+  in.read("sees_own_vehicle", sees_own_vehicle, "its own vehicle is visible in the image");
+  in.read_references("see_through", see_through, "category", "categories of parts that are not visible in the image");
   if (in.describing()) return;
   if (encoding == Encoding::raw16 && image != Kind::depth) in.error("encoding", "'raw16' is for images of depth");
   if (encoding == Encoding::jpeg && !takes_light(image)) in.error("encoding", "'jpeg' is for images rgb and grey");
   if (static_cast<double>(optics.width) * optics.height * antialias * antialias > sim::max_image_pixels)
     in.error("antialias", "'antialias' makes more than " + std::to_string(sim::max_image_pixels) + " rays in an image");
   if (exposure_time_s > 0 && readout_s > 0)
-    in.error("exposure_time_s", "needs either 'readout_s' or 'exposure_time_s', not both");
+    in.error("exposure_time_s", "must have either 'readout_s' or 'exposure_time_s', not both");
   if (exposure_time_s > 0 && !takes_light(image)) in.error("exposure_time_s", "is for images rgb and grey");
   if (read_noise_electrons > 0 && full_well_electrons == 0)
     in.error("read_noise_electrons", "'read_noise_electrons' needs 'full_well_electrons'");
   check_time(in);
-  if (message_bytes() > most_message_bytes)
+  if (message_bytes() > max_message_bytes)
     in.error(in.has("height") ? "height" : "width",
              fmt::format("an image must have at most {} bytes, got {:.0f}: the bus carries no more; 'encoding' png or "
                          "jpeg makes it smaller",
-                         most_message_bytes, message_bytes()));
+                         max_message_bytes, message_bytes()));
 }
 
 void Camera::Params::check_time(sim::ParamReader& in) const {
@@ -154,7 +154,7 @@ void Camera::change(const Params& params) {
   const int per_side = takes_light(params.image) ? params.antialias : 1;
   renderer_ =
       std::make_unique<sim::Renderer>(physics_, shared.rays_of(params.optics, per_side), options, shared.textures);
-  renderer_->clear(under_way_);
+  renderer_->clear(in_progress_);
   next_exposure_ = 0;
   next_sample_ = swept_at_;  // not known until the next sweep
 }
@@ -166,9 +166,9 @@ int Camera::exposures() const {
 
 void Camera::expose(int exposure, const sim::Pose& X_WS) {
   if (params_.readout_s > 0)
-    renderer_->render_rows(X_WS, exposure, exposure + 1, 1, under_way_);
+    renderer_->render_rows(X_WS, exposure, exposure + 1, 1, in_progress_);
   else
-    renderer_->render_rows(X_WS, 0, params_.optics.height, 1.0F / static_cast<float>(exposures()), under_way_);
+    renderer_->render_rows(X_WS, 0, params_.optics.height, 1.0F / static_cast<float>(exposures()), in_progress_);
 }
 
 sim::Time Camera::before_sample(int exposure) const {
@@ -221,11 +221,11 @@ void Camera::measure(const sim::SenseContext& context) {
   for (; next_exposure_ < exposures(); ++next_exposure_) expose(next_exposure_, context.X_WS);
   next_exposure_ = 0;
   image_digest_.renew();
-  // The next one is no earlier than this; the next sweep knows.
+  // The next one is not an earlier than this; the next sweep knows.
   const double steps = config_.rate_hz > 0 ? 1 / (config_.rate_hz * sim::to_seconds(step_)) : 1;
   next_sample_ = context.now + step_ * std::max<std::int64_t>(1, static_cast<std::int64_t>(steps + 1e-9));
-  std::swap(frame_, under_way_);
-  renderer_->clear(under_way_);
+  std::swap(frame_, in_progress_);
+  renderer_->clear(in_progress_);
   if (params_.image == Kind::depth) depth_m_ = frame_.depth_m;
   if (!takes_light(params_.image)) return;
   gain_ = static_cast<float>(params_.exposure.gain);
@@ -275,11 +275,11 @@ void Camera::visit_state(sim::StateArchive& archive) {
     archive.raw(image.data.data(), image.data.size() * sizeof image.data[0]);
   };
   // The part of the next image that is there already.
-  if (archive.restoring()) renderer_->clear(under_way_);
+  if (archive.restoring()) renderer_->clear(in_progress_);
   if (next_exposure_ > 0) {
-    visit(under_way_.light);
-    visit(under_way_.depth_m);
-    visit(under_way_.labels);
+    visit(in_progress_.light);
+    visit(in_progress_.depth_m);
+    visit(in_progress_.labels);
   }
   image_digest_.visit(archive, levels_.data, depth_m_.data, frame_.labels.data);
 }

@@ -13,9 +13,9 @@
 
 namespace devices {
 
-/// How bright a picture becomes.
+/// How bright an image becomes.
 struct ExposureParams {
-  bool automatic = false;  ///< each picture gets the gain that makes its mean a middle grey
+  bool automatic = false;  ///< each image gets the gain that makes its mean a middle grey
   double gain = 1;         ///< times the light; beside `automatic` on top of that
   void read(sim::ParamReader& in);
 };
@@ -71,9 +71,9 @@ class Camera final : public sim::Sensor {
   void visit_state(sim::StateArchive& archive) override;
 
   const Params& params() const { return params_; }
-  /// What it sees and in which light, for pictures with its lens.
+  /// What it sees and in which light, for images with its lens.
   const sim::RenderOptions& render_options() const { return renderer_->options(); }
-  /// The last image, of the kind that was asked for; the others are empty.
+  /// The last image, of the configured kind; the others are empty.
   const sim::Image8& levels() const { return levels_; }        ///< rgb, grey
   const sim::FloatImage& depth_m() const { return depth_m_; }  ///< depth; infinity: nothing in range
   const sim::Image16& labels() const { return frame_.labels; }
@@ -86,7 +86,7 @@ class Camera final : public sim::Sensor {
   /// When one of them is, before the sample of its image.
   sim::Time before_sample(int exposure) const;
   void expose(int exposure, const sim::Pose& X_WS);
-  /// Keeps where the camera was, for as long as an image takes.
+  /// Records the poses of the camera during an image.
   void remember(const sim::SweepContext& context);
   /// Where it was, as far back as that is known.
   sim::Pose X_WS_at(sim::Time at) const;
@@ -108,7 +108,7 @@ class Camera final : public sim::Sensor {
   Params params_;
   std::unique_ptr<sim::Renderer> renderer_;
   sim::NoiseOf<&Params::noise> noise_;
-  sim::Frame under_way_, frame_;  // the next image, and the last one
+  sim::Frame in_progress_, frame_;  // the next image, and the last one
   int next_exposure_ = 0;
   std::deque<Place> places_;                // at the ends of steps, the last one now
   sim::Time swept_at_{0}, next_sample_{0};  // as far as known, for rays()

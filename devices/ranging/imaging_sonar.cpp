@@ -11,31 +11,31 @@
 namespace devices {
 
 void ImagingSonar::Params::read(sim::ParamReader& in) {
-  in.read("beams", beams, sim::between(1, 4096), "columns of the picture");
+  in.read("beams", beams, sim::between(1, 4096), "number of columns of the image");
   in.read_deg("fov_deg", fov_rad, sim::above_to(0, 360), "bearings from the first beam to the last");
   in.read_deg("vertical_deg", vertical_rad, sim::above_to(0, 90), "height of a beam, at -3 dB");
   in.read("elevation_rays", elevation_rays, sim::between(1, 2000), "rays over the height of a beam");
   in.read("beam_rays", beam_rays, sim::between(1, 20), "rays over the width of a beam");
   sonar.read(in);
-  picture.read(in, sonar);
+  image.read(in, sonar);
   if (in.describing()) return;
-  const double pixels = static_cast<double>(beams) * picture.bins;
+  const double pixels = static_cast<double>(beams) * image.bins;
   if (pixels > 4e6)
-    in.error("bins", "a picture must have at most 4000000 values, got " + std::to_string(static_cast<int>(pixels)));
+    in.error("bins", "an image must have at most 4000000 values, got " + std::to_string(static_cast<int>(pixels)));
   const RayFactor factors[] = {
       {"beams", double(beams)}, {"elevation_rays", double(elevation_rays)}, {"beam_rays", double(beam_rays)}};
   check_rays(in, factors);
 }
 
 ImagingSonar::ImagingSonar(const Params& params, const sim::DeviceContext& context)
-    : receiver_(params.sonar, context), bins_(params.picture, context) {
+    : receiver_(params.sonar, context), bins_(params.image, context) {
   change(params);
 }
 
 void ImagingSonar::change(const Params& params) {
   params_ = params;
   receiver_.change(params.sonar);
-  bins_.change(params.picture, params.sonar, params.beams);
+  bins_.change(params.image, params.sonar, params.beams);
   make_rays();
 }
 
@@ -79,17 +79,17 @@ void ImagingSonar::disturb(double dt_s, sim::Random& random) {
 }
 
 void fill(const ImagingSonar& sonar, shoal::sonar_image_t& message) {
-  const SonarBins& picture = sonar.picture();
-  message.nbins = picture.bins();
-  message.nbeams = picture.beams();
+  const SonarBins& image = sonar.image();
+  message.nbins = image.bins();
+  message.nbeams = image.beams();
   message.range_min_m = static_cast<float>(sonar.sonar().range_min_m);
   message.range_max_m = static_cast<float>(sonar.sonar().range_max_m);
   message.rad0 = static_cast<float>(sonar.first_bearing_rad());
   message.radstep = static_cast<float>(sonar.bearing_step_rad());
-  message.floor_dB = static_cast<float>(picture.params().floor_dB);
-  message.dB_per_count = static_cast<float>(picture.params().dB_per_count());
-  message.size = static_cast<std::int32_t>(picture.pixels().size());
-  message.data.assign(picture.pixels().begin(), picture.pixels().end());
+  message.floor_dB = static_cast<float>(image.params().floor_dB);
+  message.dB_per_count = static_cast<float>(image.params().dB_per_count());
+  message.size = static_cast<std::int32_t>(image.pixels().size());
+  message.data.assign(image.pixels().begin(), image.pixels().end());
 }
 
 SHOAL_SENSOR("imaging_sonar", ImagingSonar, shoal::sonar_image_t);

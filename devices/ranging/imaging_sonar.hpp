@@ -11,7 +11,7 @@ namespace devices {
 /// from -fov/2 to +fov/2 about +z, counter-clockwise, and are tall: elevation is not told apart.
 class ImagingSonar final : public sim::Sensor {
  public:
-  static constexpr const char* meaning = "Forward-looking sonar: a picture of echo levels over range and bearing.";
+  static constexpr const char* meaning = "Forward-looking sonar: an image of echo levels over range and bearing.";
   static constexpr double default_rate_hz = 5;
   static constexpr bool casts_rays = true;
   static constexpr bool reuses_message = true;
@@ -22,7 +22,7 @@ class ImagingSonar final : public sim::Sensor {
     int elevation_rays = 48;
     int beam_rays = 1;
     SonarParams sonar;
-    SonarPictureParams picture;
+    SonarImageParams image;
     Params() { sonar.tvg = SonarParams::Gain::log20; }
     void read(sim::ParamReader& in);
   };
@@ -34,7 +34,7 @@ class ImagingSonar final : public sim::Sensor {
   std::int64_t rays() const override { return static_cast<std::int64_t>(rays_S_.size()); }
   void visit_state(sim::StateArchive& archive) override { archive(receiver_, bins_); }
 
-  const SonarBins& picture() const { return bins_; }
+  const SonarBins& image() const { return bins_; }
   const SonarParams& sonar() const { return params_.sonar; }
   double first_bearing_rad() const { return params_.beams > 1 ? -params_.fov_rad / 2 : 0; }
   double bearing_step_rad() const { return params_.beams > 1 ? params_.fov_rad / (params_.beams - 1) : 0; }

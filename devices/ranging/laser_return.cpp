@@ -26,23 +26,23 @@ void LaserWeather::read(sim::ParamReader& in) {
 }
 
 void LaserParams::read(sim::ParamReader& in) {
-  in.read("range_min_m", range_min_m, sim::at_least(0), "anything nearer reports this");
-  in.read("range_max_m", range_max_m, sim::above(0), "a ray that hits nothing reports this");
+  in.read("range_min_m", range_min_m, sim::at_least(0), "minimum range: closer hits report this");
+  in.read("range_max_m", range_max_m, sim::above(0), "maximum range: a ray that hits nothing reports this");
   in.read("resolution_m", resolution_m, sim::at_least(0), "ranges are rounded to multiples of this; 0: not");
   in.read("range_std_m", range_std_m, sim::at_least(0), "white noise of each range at no distance ...");
   in.read("range_std_per_m", range_std_per_m, sim::between(0, 1),
-          "... and what its standard deviation grows by per metre");
+          "... and the increase of its standard deviation per metre");
   in.read_or_word("range_at_10_percent_m", dark_range_m, sim::above(0), {"unlimited"},
                   "largest range at which a surface of reflectivity 0.1 is seen head-on; unlimited: every surface is");
-  in.read_deg("beam_divergence_deg", beam_divergence_rad, sim::between(0, 30), "full angle of a beam");
+  in.read_deg("beam_divergence_deg", beam_divergence_rad, sim::between(0, 30), "full divergence angle of a beam");
   in.read("beam_samples", beam_samples, sim::between(1, 100), "rays that sample a beam; 1: its axis only");
   in.read(
       "merge_m", merge_m, sim::at_least(0),
       "echoes of one beam nearer together than this (half a pulse's length) are one, at their mean weighted by power");
   in.read_choice("returns", returns, {{"strongest", Returns::strongest}, {"first", Returns::first}},
                  "which of several echoes of a beam is reported");
-  in.read("sees_own_vehicle", sees_own_vehicle, "rays hit the parts of the own vehicle");
-  in.read_references("see_through", see_through, "category", "categories of parts that rays pass");
+  in.read("sees_own_vehicle", sees_own_vehicle, "rays also hit parts of its own vehicle");
+  in.read_references("see_through", see_through, "category", "categories of parts that rays pass through");
   in.read("weather", weather, "rain, fog or dust");
   in.read("noise", noise, "error of each range, m");
   if (in.describing()) return;

@@ -48,7 +48,7 @@ struct LaserReturns {
   std::vector<double> ranges_m;
   /// Received power times range squared, as a share of what a white matte surface hit head-on gives in clear air.
   std::vector<double> intensities;
-  std::vector<std::uint8_t> returned;  ///< 0: nothing came back
+  std::vector<std::uint8_t> returned;  ///< 0: no return
 
   void assign(std::size_t beams, double range_m);
   std::size_t size() const { return ranges_m.size(); }

@@ -15,7 +15,7 @@ namespace devices {
 void Lidar::Params::read(sim::ParamReader& in) {
   std::vector<std::string> names{"none"};
   for (const LidarPreset& unit : lidar_presets()) names.push_back(unit.name);
-  in.read_one_of("preset", preset, names, "a unit by its data sheet; the keys below win over it");
+  in.read_one_of("preset", preset, names, "preset of a product by its data sheet; the keys below override it");
   // The preset is the default of the keys that follow.
   for (const LidarPreset& unit : lidar_presets()) {
     if (unit.name != preset || in.describing()) continue;
@@ -25,7 +25,7 @@ void Lidar::Params::read(sim::ParamReader& in) {
   }
   in.read("beams", beams, sim::between(1, 100000), "rays per scan");
   in.read_deg("fov_deg", fov_rad, sim::between(0, 360), "angle the fan covers");
-  in.read("intensities", intensities, "the message has the strength of each return, too");
+  in.read("intensities", intensities, "the message also holds the intensity of each return");
   laser.read(in);
   if (in.describing()) return;
   const RayFactor factors[] = {{"beams", double(beams)}, {"beam_samples", double(laser.beam_samples)}};

@@ -32,7 +32,7 @@ class Lidar final : public sim::Sensor {
   std::int64_t rays() const override { return static_cast<std::int64_t>(hits_.size()); }
   void visit_state(sim::StateArchive& archive) override;
 
-  /// From right to left; range_max_m where nothing came back, and range_min_m where something is nearer.
+  /// From right to left; range_max_m where there is no return, and range_min_m where something is closer.
   const std::vector<double>& ranges_m() const { return returns_.ranges_m; }
   /// See LaserReturns; empty unless asked for.
   std::span<const double> intensities() const;

@@ -23,7 +23,7 @@ constexpr int max_rings = 1000;  // their numbers are 16 bits in the message
 void Lidar3d::Params::read(sim::ParamReader& in) {
   std::vector<std::string> names{"none"};
   for (const Lidar3dPreset& unit : lidar3d_presets()) names.push_back(unit.name);
-  in.read_one_of("preset", preset, names, "a unit by its data sheet; the keys below win over it");
+  in.read_one_of("preset", preset, names, "preset of a product by its data sheet; the keys below override it");
   // The preset is the default of the keys that follow.
   for (const Lidar3dPreset& unit : lidar3d_presets()) {
     if (unit.name != preset || in.describing()) continue;
@@ -91,7 +91,7 @@ sim::Time Lidar3d::offset(int column) const {
   return -turn_length_ * (params_.columns - 1 - column) / params_.columns;
 }
 
-void Lidar3d::begin_turn(const sim::SweepContext& context) {
+void Lidar3d::start_turn(const sim::SweepContext& context) {
   // A turn follows the last one.  The first one, one after a pause and one at a new rate have the length of the rate.
   if (turn_end_ == context.from)
     turn_length_ = context.next_sample - context.from;
@@ -106,7 +106,7 @@ void Lidar3d::begin_turn(const sim::SweepContext& context) {
 
 void Lidar3d::sweep(const sim::SweepContext& context) {
   step_ = context.now - context.from;
-  if (turn_end_ != context.next_sample) begin_turn(context);
+  if (turn_end_ != context.next_sample) start_turn(context);
   int last = next_column_;
   while (last < params_.columns && turn_end_ + offset(last) <= context.now) ++last;
   cast_columns(context, next_column_, last);
@@ -152,7 +152,7 @@ void Lidar3d::visit_state(sim::StateArchive& archive) {
   archive(turn_end_, turn_length_, step_, next_column_, receiver_);
   const bool possible = next_column_ >= 0 && next_column_ <= params_.columns && turn_length_ >= sim::Time{0} &&
                         turn_length_ <= sim::StateArchive::max_time / params_.columns && step_ >= sim::Time{0};
-  if (archive.restoring() && !possible) archive.fail("a turn of the laser's head that cannot be");
+  if (archive.restoring() && !possible) archive.fail("an invalid rotation of the laser's head");
   // A whole turn is out already.
   if (next_column_ == params_.columns)
     digest_.visit(archive, returns_.ranges_m, returns_.intensities, returns_.returned);

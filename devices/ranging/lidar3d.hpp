@@ -9,7 +9,7 @@
 namespace devices {
 
 /// Multi-ring laser scanner.  Its head turns about +z of the sensor frame S, counter-clockwise seen from above, once in
-/// a report period: column k of n looks to the azimuth -pi + 2 pi k / n, and the last column is measured at the end of
+/// a report period: column k of n points to the azimuth -pi + 2 pi k / n, and the last column is measured at the end of
 /// the turn.  Each step casts the columns that passed in it, from where the sensor was at their times.  The turn that
 /// begins before the run, or while the device has no power, lacks the columns of that time.
 class Lidar3d final : public sim::Sensor {
@@ -49,7 +49,7 @@ class Lidar3d final : public sim::Sensor {
  private:
   /// The beams of the columns that have passed in this turn; the others are empty.
   void visit_begun_turn(sim::StateArchive& archive);
-  void begin_turn(const sim::SweepContext& context);
+  void start_turn(const sim::SweepContext& context);
   /// Casts the columns [first, last).
   void cast_columns(const sim::SweepContext& context, int first, int last);
 

@@ -96,11 +96,11 @@ void Multibeam::detect(std::size_t beam) {
   };
   // A stretch that begins later ends later: both ends only move on.
   std::size_t loudest_from = 0, loudest_to = 0;
-  double most_uPa2 = 0, stretch_uPa2 = 0;
+  double max_uPa2 = 0, stretch_uPa2 = 0;
   for (std::size_t from = 0, to = 0; from < echoes_.size(); ++from) {
     const double end_m = end_of(echoes_[from].range_m);
     for (; to < echoes_.size() && echoes_[to].range_m <= end_m; ++to) stretch_uPa2 += echoes_[to].power_uPa2;
-    if (stretch_uPa2 > most_uPa2) most_uPa2 = stretch_uPa2, loudest_from = from, loudest_to = to;
+    if (stretch_uPa2 > max_uPa2) max_uPa2 = stretch_uPa2, loudest_from = from, loudest_to = to;
     stretch_uPa2 -= echoes_[from].power_uPa2;
   }
   double loudest_uPa2 = 0, moment = 0;

@@ -22,18 +22,18 @@ void SideScan::Params::read(sim::ParamReader& in) {
   in.read("rays", rays, sim::between(1, 20000), "rays over the height of each beam");
   in.read("along_rays", along_rays, sim::between(1, 20), "rays over the width of a beam");
   sonar.read(in);
-  picture.read(in, sonar);
+  image.read(in, sonar);
 }
 
 SideScan::SideScan(const Params& params, const sim::DeviceContext& context)
-    : receiver_(params.sonar, context), bins_(params.picture, context) {
+    : receiver_(params.sonar, context), bins_(params.image, context) {
   change(params);
 }
 
 void SideScan::change(const Params& params) {
   params_ = params;
   receiver_.change(params.sonar);
-  bins_.change(params.picture, params.sonar, 2);
+  bins_.change(params.image, params.sonar, 2);
   make_rays();
 }
 
@@ -79,17 +79,17 @@ void SideScan::visit_state(sim::StateArchive& archive) {
 }
 
 void fill(const SideScan& sonar, shoal::side_scan_t& message) {
-  const SonarBins& picture = sonar.picture();
+  const SonarBins& image = sonar.image();
   message.range_min_m = static_cast<float>(sonar.sonar().range_min_m);
   message.range_max_m = static_cast<float>(sonar.sonar().range_max_m);
-  message.floor_dB = static_cast<float>(picture.params().floor_dB);
-  message.dB_per_count = static_cast<float>(picture.params().dB_per_count());
-  message.nbins = picture.bins();
-  message.port.resize(static_cast<std::size_t>(picture.bins()));
+  message.floor_dB = static_cast<float>(image.params().floor_dB);
+  message.dB_per_count = static_cast<float>(image.params().dB_per_count());
+  message.nbins = image.bins();
+  message.port.resize(static_cast<std::size_t>(image.bins()));
   message.starboard.resize(message.port.size());
   for (std::size_t bin = 0; bin < message.port.size(); ++bin) {
-    message.port[bin] = picture.pixels()[2 * bin];
-    message.starboard[bin] = picture.pixels()[2 * bin + 1];
+    message.port[bin] = image.pixels()[2 * bin];
+    message.starboard[bin] = image.pixels()[2 * bin + 1];
   }
 }
 

@@ -23,7 +23,7 @@ class SideScan final : public sim::Sensor {
     int rays = 600;
     int along_rays = 1;
     SonarParams sonar;
-    SonarPictureParams picture;
+    SonarImageParams image;
     Params();
     void read(sim::ParamReader& in);
   };
@@ -36,7 +36,7 @@ class SideScan final : public sim::Sensor {
   void visit_state(sim::StateArchive& archive) override;
 
   /// Two beams: port and starboard.
-  const SonarBins& picture() const { return bins_; }
+  const SonarBins& image() const { return bins_; }
   const SonarParams& sonar() const { return params_.sonar; }
 
  private:

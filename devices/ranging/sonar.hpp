@@ -8,7 +8,7 @@
 
 namespace devices {
 
-/// A sonar with one beam, a cone about an axis of the sensor frame S: the range to what it hears first.
+/// A sonar with one beam, a cone about an axis of the sensor frame S: the range to what it receives first.
 class RangeSonar : public sim::Sensor {
  public:
   static constexpr double default_rate_hz = 10;

@@ -19,7 +19,7 @@ double level_dB(double power_uPa2) {
 
 }  // namespace
 
-void SonarPictureParams::read(sim::ParamReader& in, const SonarParams& sonar) {
+void SonarImageParams::read(sim::ParamReader& in, const SonarParams& sonar) {
   in.read("bins", bins, sim::between(1, 10000), "steps in range");
   in.read("noise_level_dB", noise_level_dB, sim::any_number(), "background in each bin, re 1 uPa, before the gain");
   in.read("floor_dB", floor_dB, sim::any_number(), "level of the value 0, re 1 uPa, after the gain");
@@ -32,10 +32,10 @@ void SonarPictureParams::read(sim::ParamReader& in, const SonarParams& sonar) {
                             smallest_bin_m, bin_m));
 }
 
-SonarBins::SonarBins(const SonarPictureParams& params, const sim::DeviceContext& context)
+SonarBins::SonarBins(const SonarImageParams& params, const sim::DeviceContext& context)
     : params_(params), level_noise_(context, params) {}
 
-void SonarBins::change(const SonarPictureParams& params, const SonarParams& sonar, int beams) {
+void SonarBins::change(const SonarImageParams& params, const SonarParams& sonar, int beams) {
   params_ = params;
   level_noise_.change(params);
   speckle_ = sonar.speckle;

@@ -9,8 +9,8 @@
 
 namespace devices {
 
-/// How echo levels become a picture; read from the device's own map.
-struct SonarPictureParams {
+/// How echo levels become an image; read from the device's own map.
+struct SonarImageParams {
   int bins = 400;
   double noise_level_dB = 50;  ///< background in each bin, re 1 uPa
   double floor_dB = 75;
@@ -24,8 +24,8 @@ struct SonarPictureParams {
 /// Echo power over range, for a number of beams: bin by bin, and in each bin beam by beam.
 class SonarBins {
  public:
-  SonarBins(const SonarPictureParams& params, const sim::DeviceContext& context);
-  void change(const SonarPictureParams& params, const SonarParams& sonar, int beams);
+  SonarBins(const SonarImageParams& params, const sim::DeviceContext& context);
+  void change(const SonarImageParams& params, const SonarParams& sonar, int beams);
 
   /// Before the echoes of a ping: `receiver` has cast its rays.
   void begin(const SonarReceiver& receiver);
@@ -38,16 +38,16 @@ class SonarBins {
 
   int bins() const { return params_.bins; }
   int beams() const { return beams_; }
-  const SonarPictureParams& params() const { return params_; }
+  const SonarImageParams& params() const { return params_; }
   const std::vector<std::uint8_t>& pixels() const { return pixels_; }
-  /// The picture of the last ping is out already: its hash.
+  /// The image of the last ping is out already: its hash.
   void visit_state(sim::StateArchive& archive);
 
  private:
   void quantize();
 
-  SonarPictureParams params_;
-  sim::NoiseOf<&SonarPictureParams::level_noise> level_noise_;
+  SonarImageParams params_;
+  sim::NoiseOf<&SonarImageParams::level_noise> level_noise_;
   bool speckle_ = true;
   int beams_ = 0;
   double range_min_m_ = 0, range_max_m_ = 0, pulse_m_ = 0, range_scale_ = 1;

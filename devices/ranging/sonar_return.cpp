@@ -30,31 +30,33 @@ bool works(SonarParams::WorksIn where, bool wet) {
 }  // namespace
 
 void SonarParams::read(sim::ParamReader& in) {
-  in.read("range_min_m", range_min_m, sim::at_least(0), "echoes from nearer are not heard: the sonar still sends");
-  in.read("range_max_m", range_max_m, sim::above_to(0, 20000), "how long it listens");
-  in.read_choice("works_in", works_in, {{"water", WorksIn::water}, {"air", WorksIn::air}, {"any", WorksIn::any}},
-                 "in a world with water: where it hears; on the other side of the surface it hears nothing");
+  in.read("range_min_m", range_min_m, sim::at_least(0),
+          "minimum range: closer echoes are lost while the sonar transmits");
+  in.read("range_max_m", range_max_m, sim::above_to(0, 20000), "maximum range, which determines how long it listens");
+  in.read_choice(
+      "works_in", works_in, {{"water", WorksIn::water}, {"air", WorksIn::air}, {"any", WorksIn::any}},
+      "in a world with water: the medium in which it works; on the other side of the surface it receives nothing");
   in.read("sound_speed_mps", sound_speed_mps, sim::between(100, 10000),
           "true speed of sound; unset: that of the medium at the sonar, 1500 in a world without water");
   in.read("assumed_sound_speed_mps", assumed_sound_speed_mps, sim::between(100, 10000),
-          "what the sonar turns times into ranges with; unset: the true speed");
+          "speed of sound with which the sonar converts times to ranges; unset: the true speed");
   in.read("absorption_dBpkm", absorption_dBpkm, sim::at_least(0),
-          "loss of sound on its way, dB per km; unset: that of the water for frequency_kHz, else 0");
+          "absorption of sound, dB per km; unset: that of the water for frequency_kHz, else 0");
   in.read("frequency_kHz", frequency_kHz, sim::between(0.1, 10000), "of the sound, for the absorption of the water");
-  in.read("surface_echo", surface_echo, "the surface of the water gives an echo; else rays that meet it are lost");
+  in.read("surface_echo", surface_echo, "the water surface returns an echo; otherwise rays that reach it are lost");
   in.read("surface_backscatter_dB", surface_backscatter_dB, sim::between(-100, 0), "of the surface of the water");
   in.read("source_level_dB", source_level_dB, sim::between(0, 300), "re 1 uPa at 1 m");
   in.read("pulse_s", pulse_s, sim::above_to(0, 1), "length of the ping; c pulse / 2 is the resolution in range");
   in.read_choice("tvg", tvg, {{"none", Gain::none}, {"20log", Gain::log20}, {"40log", Gain::log40}},
                  "gain that grows with range: 20 or 40 log10 r, and twice the absorption");
   in.read("speckle", speckle, "strengths fluctuate from ping to ping, with a Rayleigh amplitude");
-  in.read("sees_own_vehicle", sees_own_vehicle, "sound hits the parts of the own vehicle");
-  in.read_references("see_through", see_through, "category", "categories of parts that sound passes");
+  in.read("sees_own_vehicle", sees_own_vehicle, "rays also hit parts of its own vehicle");
+  in.read_references("see_through", see_through, "category", "categories of parts that sound passes through");
   if (!in.describing() && range_min_m >= range_max_m) in.error("range_min_m", "'range_min_m' must be < range_max_m");
 }
 
 void SonarDetectionParams::read(sim::ParamReader& in) {
-  in.read("threshold_dB", threshold_dB, sim::any_number(), "echo level that is heard, re 1 uPa, before the gain");
+  in.read("threshold_dB", threshold_dB, sim::any_number(), "minimum detectable echo level, re 1 uPa, before the gain");
 }
 
 double beam_response(double off_axis_rad, double width_rad) {
@@ -80,7 +82,7 @@ void SonarReceiver::change(const SonarParams& params) {
   range_scale_ = params.assumed_sound_speed_mps.value_or(sound_speed_mps_) / sound_speed_mps_;
 }
 
-bool SonarReceiver::look_at_medium(const sim::Vector3d& p_WS) {
+bool SonarReceiver::update_medium(const sim::Vector3d& p_WS) {
   if (!medium_.has_water()) return true;
   const bool wet = medium_.in_water(p_WS);
   if (!works(params_.works_in, wet)) return false;
@@ -107,7 +109,7 @@ double SonarReceiver::range_to_surface_m(const sim::Ray& ray_W, double surface_m
 void SonarReceiver::cast(const sim::Scene& scene, const sim::Pose& X_WS, std::span<const SonarRay> rays_S) {
   rays_W_.resize(rays_S.size());
   hits_.assign(rays_S.size(), {});
-  if (!look_at_medium(X_WS.translation())) return;
+  if (!update_medium(X_WS.translation())) return;
   const double range_max_m = params_.range_max_m / range_scale_;
   for (std::size_t i = 0; i < rays_S.size(); ++i)
     rays_W_[i] = {X_WS.translation(), X_WS.linear() * rays_S[i].direction_S, range_max_m};

@@ -66,20 +66,20 @@ struct SonarEcho {
 /// ed., ch. 2 and 8; Lambert's rule: Mackenzie 1961).  What fills the beam falls with 20 log r, what is smaller than
 /// the beam with 40 log r, by itself.  Echoes add up in power, as those of rough surfaces do.
 ///
-/// In a world with water a sonar hears nothing while it is on the wrong side of the surface, and its rays end at the
-/// surface, which is taken as level over each ray's end.  Speed of sound and absorption are those at the sensor.
+/// In a world with water a sonar receives nothing while it is on the wrong side of the surface, and its rays end at
+/// the surface, which is assumed level at each ray's end.  Speed of sound and absorption are those at the sensor.
 class SonarReceiver {
  public:
   SonarReceiver(const SonarParams& params, const sim::DeviceContext& context);
   void change(const SonarParams& params);
 
   const sim::RayFilter& filter() const { return filter_; }
-  /// Looks at the medium and casts the rays from the sensor's pose; hits() and rays_W() then tell of each.
+  /// Updates the medium and casts the rays from the sensor's pose; hits() and rays_W() give the results.
   void cast(const sim::Scene& scene, const sim::Pose& X_WS, std::span<const SonarRay> rays_S);
   std::span<const sim::RayHit> hits() const { return hits_; }
   std::span<const sim::Ray> rays_W() const { return rays_W_; }
   /// The echo along one ray of the last cast, at its true range; power 0 where nothing was hit, or where the echo
-  /// comes before it listens.
+  /// arrives during the ping.
   SonarEcho echo(std::size_t ray, const SonarRay& ray_S) const;
   /// How much farther the surface gets per radian that the ray turns towards `tangent_W`, m/rad; never negative.
   double range_slope(std::size_t ray, const sim::Vector3d& tangent_W) const;
@@ -94,7 +94,7 @@ class SonarReceiver {
 
  private:
   /// Whether it works in the medium where it is; takes over what the medium is like there.
-  bool look_at_medium(const sim::Vector3d& p_WS);
+  bool update_medium(const sim::Vector3d& p_WS);
   /// How far along a ray the surface of the water is, at most `range_max_m`.  `surface_m`: its height over the sensor.
   double range_to_surface_m(const sim::Ray& ray_W, double surface_m) const;
 

@@ -16,12 +16,12 @@ class Transponder;
 /// That of pings and answers: a tone of 26 kHz that fills 1 kHz is still in its band at 20 m/s.
 sim::ReceiverConfig receiver_of_tones();
 
-/// Payload of a ping: a number that the answers repeat, so that late ones are not taken for those to a later ping.
+/// Payload of a ping: a number that the answers repeat, so that late answers are not attributed to a later ping.
 sim::Bytes encode_ping(std::int64_t number);
 /// 0 when there is none.
 std::int64_t decode_ping(const sim::Bytes& payload);
 
-/// Payload of an answer.  The code of its signal is the full name of who asked.
+/// Payload of an answer.  The code of its signal is the full name of the interrogator.
 struct PingAnswer {
   std::int64_t ping = 0;    ///< its number
   double turnaround_s = 0;  ///< from the first sound of the ping to that of the answer, if the ping is not longer
@@ -29,7 +29,7 @@ struct PingAnswer {
   std::string code;         ///< of the transponder
 };
 sim::Bytes encode_answer(const PingAnswer& answer);
-/// Nothing when it is no answer of a transponder.
+/// Nothing when it is not an answer of a transponder.
 std::optional<PingAnswer> decode_answer(const sim::Bytes& payload);
 
 /// All transponders of a world, in the order in which they came.

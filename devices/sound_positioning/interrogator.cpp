@@ -18,12 +18,12 @@ constexpr double slowest_mps = 1400;
 
 void InterrogatorParams::read(sim::ParamReader& in) {
   in.read("network", network, "transponders of this network answer");
-  in.read("range_max_m", range_max_m, sim::above_to(0, 20000), "transponders farther away are not heard");
+  in.read("range_max_m", range_max_m, sim::above_to(0, 20000), "maximum range to a transponder");
   in.read("source_level_dB", source_level_dB, sim::between(0, 260), "of the ping, re 1 uPa at 1 m");
   in.read("frequency_Hz", frequency_Hz, sim::between(100, 1e6), "of the ping");
   in.read("bandwidth_Hz", bandwidth_Hz, sim::between(1, 1e5), "of the ping");
   in.read("ping_s", ping_s, sim::between(1e-4, 1), "length of the ping");
-  in.read("receiver", receiver, "what it hears");
+  in.read("receiver", receiver, "properties of its receiver");
 }
 
 Interrogator::Interrogator(const InterrogatorParams& params, const sim::DeviceContext& context)
@@ -42,18 +42,18 @@ bool Interrogator::listens_to(const sim::Signal& signal) const {
 }
 
 void Interrogator::ping(sim::Time at) {
-  asked_.clear();
+  requested_.clear();
   answers_.clear();
-  double slowest_turnaround_s = params_.ping_s, longest_answer_s = 0;
+  double slowest_turnaround_s = params_.ping_s, max_answer_s = 0;
   for (const Transponder* transponder : network_.members()) {
     if (transponder->params().network != params_.network || &transponder->vehicle() == &context_.vehicle) continue;
-    asked_.push_back(transponder->full_name());
+    requested_.push_back(transponder->full_name());
     slowest_turnaround_s = std::max(slowest_turnaround_s, transponder->params().turnaround_s);
-    longest_answer_s = std::max(longest_answer_s, transponder->params().ping_s);
+    max_answer_s = std::max(max_answer_s, transponder->params().ping_s);
   }
-  waiting_for_ = asked_;
+  waiting_for_ = requested_;
   pinged_ = at;
-  window_end_ = at + sim::from_seconds(2 * params_.range_max_m / slowest_mps + slowest_turnaround_s + longest_answer_s);
+  window_end_ = at + sim::from_seconds(2 * params_.range_max_m / slowest_mps + slowest_turnaround_s + max_answer_s);
   sim::Signal signal;
   signal.kind = sim::Signal::Kind::ping;
   signal.source_level = sim::Decibels{params_.source_level_dB};
@@ -65,17 +65,17 @@ void Interrogator::ping(sim::Time at) {
   transducer_.transmit(std::move(signal), at);
 }
 
-void Interrogator::heard(const sim::Reception& heard) {
-  if (!heard.understood() || heard.signal.code != context_.full_name()) return;
-  const auto answer = decode_answer(heard.signal.payload);
+void Interrogator::receive(const sim::Reception& received) {
+  if (!received.understood() || received.signal.code != context_.full_name()) return;
+  const auto answer = decode_answer(received.signal.payload);
   if (!answer || answer->ping != number_) return;
   const double turnaround_s = std::max(answer->turnaround_s, params_.ping_s);
-  const sim::Vector3d p_ST_W = heard.p_sent_W - heard.p_begun_W;
-  const double way_m = (answer->out_m + p_ST_W.norm()) / 2;
-  std::erase(waiting_for_, heard.source);
-  if (way_m > params_.range_max_m) return;
-  answers_.push_back({heard.source, heard.begun, sim::to_seconds(heard.begun - pinged_) - turnaround_s, way_m,
-                      R_WS(heard.begun).transpose() * p_ST_W});
+  const sim::Vector3d p_ST_W = received.p_sent_W - received.p_begun_W;
+  const double distance_m = (answer->out_m + p_ST_W.norm()) / 2;
+  std::erase(waiting_for_, received.source);
+  if (distance_m > params_.range_max_m) return;
+  answers_.push_back({received.source, received.started, sim::to_seconds(received.started - pinged_) - turnaround_s,
+                      distance_m, R_WS(received.started).transpose() * p_ST_W});
 }
 
 sim::Matrix3d Interrogator::R_WS(sim::Time at) const {
@@ -93,7 +93,7 @@ std::vector<Interrogator::Answer> Interrogator::take_answers() {
 }
 
 void Interrogator::visit_state(sim::StateArchive& archive) {
-  archive(number_, pinged_, window_end_, asked_, waiting_for_, answers_);
+  archive(number_, pinged_, window_end_, requested_, waiting_for_, answers_);
 }
 
 }  // namespace devices

@@ -28,11 +28,11 @@ class Interrogator final : public sim::AcousticListener {
   /// What came back from one transponder.
   struct Answer {
     std::string transponder;                       ///< vehicle/device
-    sim::Time begun{0};                            ///< when it came
+    sim::Time started{0};                          ///< when it came
     double two_way_s = 0;                          ///< of the sound there and back, without the turnaround
-    double way_m = 0;                              ///< the mean of the ways there and back: the truth
+    double distance_m = 0;                         ///< the mean of the ways there and back: the truth
     sim::Vector3d p_ST_S = sim::Vector3d::Zero();  ///< where it answered, from where and how the sensor was at `begun`
-    void visit_state(sim::StateArchive& archive) { archive(transponder, begun, two_way_s, way_m, p_ST_S); }
+    void visit_state(sim::StateArchive& archive) { archive(transponder, started, two_way_s, distance_m, p_ST_S); }
   };
 
   Interrogator(const InterrogatorParams& params, const sim::DeviceContext& context);
@@ -40,17 +40,17 @@ class Interrogator final : public sim::AcousticListener {
   /// Sends a ping at `at`, the end of a step, to all that are in the network now.  Answers to an earlier one no longer
   /// count.
   void ping(sim::Time at);
-  /// All that were asked have answered, or nothing in range can answer any more.
+  /// Whether all interrogated transponders have answered, or none in range can still answer.
   bool done(sim::Time now) const { return waiting_for_.empty() || now >= window_end_; }
   /// Names of all that were asked.
-  const std::vector<std::string>& asked() const { return asked_; }
+  const std::vector<std::string>& requested() const { return requested_; }
   /// What came since the last call, in the order of its arrival.
   std::vector<Answer> take_answers();
   /// All but its transducer, which the acoustic channel knows.
   void visit_state(sim::StateArchive& archive);
 
   bool listens_to(const sim::Signal& signal) const override;
-  void heard(const sim::Reception& heard) override;
+  void receive(const sim::Reception& received) override;
 
  private:
   sim::Matrix3d R_WS(sim::Time at) const;
@@ -61,7 +61,7 @@ class Interrogator final : public sim::AcousticListener {
   sim::Transducer transducer_;
   std::int64_t number_ = 0;  // of the last ping
   sim::Time pinged_{0}, window_end_{0};
-  std::vector<std::string> asked_, waiting_for_;
+  std::vector<std::string> requested_, waiting_for_;
   std::vector<Answer> answers_;
 };
 

@@ -21,9 +21,10 @@ void Lbl::Params::read(sim::ParamReader& in) {
   interrogator.read(in);
   in.read("ping_period_s", ping_period_s, sim::between(0.01, 1e4), "between two pings, at least");
   in.read("assumed_sound_speed_mps", assumed_sound_speed_mps, sim::between(100, 10000),
-          "that turns times into ranges; unset: the true one at the sensor");
-  in.read("answer_dropout", answer_dropout, sim::between(0, 1), "probability that an answer is missed, for each anew");
-  in.read("time_noise", time_noise, "error of each travel time there and back, s");
+          "speed of sound that converts times to ranges; unset: the true one at the sensor");
+  in.read("answer_dropout", answer_dropout, sim::between(0, 1),
+          "probability that an answer is missed, drawn for each answer");
+  in.read("time_noise", time_noise, "error of each two-way travel time, s");
 }
 
 Lbl::Lbl(const Params& params, const sim::DeviceContext& context)
@@ -48,11 +49,11 @@ void Lbl::measure(const sim::SenseContext& context) {
 
 void Lbl::collect() {
   asking_ = false;
-  for (const std::string& name : interrogator_.asked()) ranges_.push_back({name, no_answer, no_answer});
+  for (const std::string& name : interrogator_.requested()) ranges_.push_back({name, no_answer, no_answer});
   for (const Interrogator::Answer& answer : interrogator_.take_answers()) {
     const auto range = std::find_if(ranges_.begin(), ranges_.end(),
                                     [&](const Range& each) { return each.transponder == answer.transponder; });
-    if (range != ranges_.end()) *range = {answer.transponder, answer.two_way_s, answer.way_m};
+    if (range != ranges_.end()) *range = {answer.transponder, answer.two_way_s, answer.distance_m};
   }
 }
 

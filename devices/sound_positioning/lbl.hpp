@@ -10,9 +10,9 @@
 
 namespace devices {
 
-/// Long baseline: asks a net of transponders with one ping, and reports the travel times of all answers together, when
-/// they are in or nothing in range can come any more.  The next ping goes out at a sample after that, not before
-/// `ping_period_s` is over.
+/// Long baseline: interrogates a net of transponders with one ping, and reports the travel times of all answers
+/// together, when they are complete or no more can arrive from within range.  The next ping goes out at a sample after
+/// that, not before `ping_period_s` is over.
 class Lbl final : public sim::Sensor {
  public:
   static constexpr const char* meaning = "LBL: ranges to a net of acoustic transponders, by the time of sound.";
@@ -41,7 +41,7 @@ class Lbl final : public sim::Sensor {
   void measure(const sim::SenseContext& context) override;
   void disturb(double dt_s, sim::Random& random) override;
   void visit_state(sim::StateArchive& archive) override;
-  /// Of the ping that is over with this sample; empty: none is, or nobody was asked.
+  /// Answers to the ping that is finished at this sample; empty: none is, or no transponder was interrogated.
   const std::vector<Range>& ranges() const { return ranges_; }
 
  private:

@@ -37,7 +37,7 @@ class NoiseSource final : public sim::Actuator, public sim::AcousticListener {
   bool sounding() const { return sound_ && sound_->on(); }
 
   bool listens_to(const sim::Signal&) const override { return false; }
-  void heard(const sim::Reception&) override {}
+  void receive(const sim::Reception&) override {}
 
  private:
   void send_pulses(const sim::ActContext& context);

@@ -17,7 +17,7 @@ class RangeBeacon::Network {
   void join(RangeBeacon& device) { members_.push_back(&device); }
   void leave(RangeBeacon& device) {
     std::erase(members_, &device);
-    for (RangeBeacon* member : members_) member->forget(device.full_name_);
+    for (RangeBeacon* member : members_) member->discard(device.full_name_);
   }
   const std::vector<RangeBeacon*>& members() const { return members_; }
 
@@ -37,13 +37,14 @@ void RangeBeacon::FixedBeacon::read(sim::ParamReader& in) {
 void RangeBeacon::Params::read(sim::ParamReader& in) {
   in.read("network", network, "devices measure each other only in the same network, such as a frequency");
   in.read_list("beacons", beacons, "beacon", "beacons at fixed places");
-  in.read("beacon_only", beacon_only, "it is a beacon for others and measures nothing");
+  in.read("beacon_only", beacon_only, "it only serves as a beacon for others and measures nothing");
   in.read("bearing", bearing, "measure the direction in the xy-plane of the sensor too");
   in.read("elevation", elevation, "measure the direction out of that plane too");
   read_through(in, through);
-  in.read("range_max_m", range_max_m, sim::above(0), "beacons farther away are not heard");
-  in.read("occlusion", occlusion, "parts of the world hide beacons");
-  in.read("beacon_dropout", beacon_dropout, sim::between(0, 1), "probability that a beacon is missed, for each anew");
+  in.read("range_max_m", range_max_m, sim::above(0), "maximum range to a beacon");
+  in.read("occlusion", occlusion, "parts of the world occlude beacons");
+  in.read("beacon_dropout", beacon_dropout, sim::between(0, 1),
+          "probability that a beacon is missed, drawn for each beacon");
   in.read("range_noise", range_noise, "error of each range, m");
   in.read("bearing_noise", bearing_noise, "error of each bearing, rad");
   in.read("elevation_noise", elevation_noise, "error of each elevation, rad");
@@ -126,7 +127,7 @@ RangeBeacon::Errors& RangeBeacon::errors_of(const std::string& beacon) {
   return errors_.back();
 }
 
-void RangeBeacon::forget(const std::string& beacon) {
+void RangeBeacon::discard(const std::string& beacon) {
   std::erase_if(errors_, [&](const Errors& errors) { return errors.beacon == beacon; });
 }
 

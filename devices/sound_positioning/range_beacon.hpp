@@ -10,7 +10,7 @@
 
 namespace devices {
 
-/// Measures ranges, and directions when asked to, to beacons of its network: the range_beacon devices of other vehicles
+/// Measures ranges, and directions if configured, to beacons of its network: the range_beacon devices of other vehicles
 /// and beacons at fixed places.  The signal takes no time.
 class RangeBeacon final : public sim::Sensor {
  public:
@@ -24,7 +24,7 @@ class RangeBeacon final : public sim::Sensor {
   struct Params {
     std::string network = "beacons";
     std::vector<FixedBeacon> beacons;
-    bool beacon_only = false;  ///< it is a beacon for others and measures nothing
+    bool beacon_only = false;  ///< it only serves as a beacon for others and measures nothing
     bool bearing = false;
     bool elevation = false;
     SignalCarrier through = SignalCarrier::radio;
@@ -57,7 +57,7 @@ class RangeBeacon final : public sim::Sensor {
  private:
   class Network;
   static const sim::SharedKind<Network> network_of_world;
-  /// The errors to one beacon have a life of their own.
+  /// The errors to one beacon have their own life.
   struct Errors {
     std::string beacon;
     sim::Noise range, bearing, elevation;
@@ -68,7 +68,7 @@ class RangeBeacon final : public sim::Sensor {
   bool answers() const;
   sim::Vector3d p_WS() const;
   Errors& errors_of(const std::string& beacon);
-  void forget(const std::string& beacon);
+  void discard(const std::string& beacon);
 
   Params params_;
   Network& network_;

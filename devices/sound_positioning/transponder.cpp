@@ -12,16 +12,18 @@
 namespace devices {
 
 void Transponder::Params::read(sim::ParamReader& in) {
-  in.read("network", network, "it answers pings of this network, and those without one");
-  in.read("code", code, "it answers pings with this code, and those without one");
-  in.read("turnaround_s", turnaround_s, sim::between(0, 10), "from the ping to its answer, first sound to first sound");
+  in.read("network", network, "it answers pings of this network and pings without a network");
+  in.read("code", code, "it answers pings with this code and pings without a code");
+  in.read("turnaround_s", turnaround_s, sim::between(0, 10),
+          "turnaround time, from the start of the ping to the start of the answer");
   in.read("source_level_dB", source_level_dB, sim::between(0, 260), "of the answer, re 1 uPa at 1 m");
-  in.read("frequency_Hz", frequency_Hz, sim::between(100, 1e6), "of pings that it hears");
-  in.read("answer_frequency_Hz", answer_frequency_Hz, sim::between(100, 1e6),
-          "of its answer; unset: the lowest of 28000, 29000, ... that no other one of its network answers on");
+  in.read("frequency_Hz", frequency_Hz, sim::between(100, 1e6), "of the pings that it receives");
+  in.read(
+      "answer_frequency_Hz", answer_frequency_Hz, sim::between(100, 1e6),
+      "frequency of its answer; unset: the lowest of 28000, 29000, ... that no other transponder of its network uses");
   in.read("bandwidth_Hz", bandwidth_Hz, sim::between(1, 1e5), "about both frequencies");
   in.read("ping_s", ping_s, sim::between(1e-4, 1), "length of the answer");
-  in.read("receiver", receiver, "what it hears");
+  in.read("receiver", receiver, "properties of its receiver");
 }
 
 Transponder::Transponder(const Params& params, const sim::DeviceContext& context)
@@ -44,12 +46,12 @@ bool Transponder::listens_to(const sim::Signal& signal) const {
          std::abs(signal.centre_Hz - params_.frequency_Hz) < (signal.bandwidth_Hz + params_.bandwidth_Hz) / 2;
 }
 
-void Transponder::heard(const sim::Reception& heard) {
-  if (!heard.understood() || heard.source.starts_with(vehicle().name() + "/")) return;
-  const sim::Time at = std::max(heard.begun + sim::from_seconds(params_.turnaround_s), heard.ended);
+void Transponder::receive(const sim::Reception& received) {
+  if (!received.understood() || received.source.starts_with(vehicle().name() + "/")) return;
+  const sim::Time at = std::max(received.started + sim::from_seconds(params_.turnaround_s), received.ended);
   if (at < transducer_.busy_until()) return;
   ++answers_;
-  asked_by_ = heard.source;
+  asked_by_ = received.source;
   sim::Signal answer;
   answer.kind = sim::Signal::Kind::answer;
   answer.source_level = sim::Decibels{params_.source_level_dB};
@@ -57,9 +59,9 @@ void Transponder::heard(const sim::Reception& heard) {
   answer.bandwidth_Hz = params_.bandwidth_Hz;
   answer.duration = sim::from_seconds(params_.ping_s);
   answer.network = params_.network;
-  answer.code = heard.source;
-  answer.payload = encode_answer({decode_ping(heard.signal.payload), params_.turnaround_s,
-                                  (heard.p_begun_W - heard.p_sent_W).norm(), params_.code});
+  answer.code = received.source;
+  answer.payload = encode_answer({decode_ping(received.signal.payload), params_.turnaround_s,
+                                  (received.p_begun_W - received.p_sent_W).norm(), params_.code});
   transducer_.transmit(std::move(answer), at);
 }
 

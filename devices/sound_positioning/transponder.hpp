@@ -9,7 +9,7 @@
 
 namespace devices {
 
-/// Acoustic transponder: answers the pings of its network that come from other vehicles, on a frequency of its own.
+/// Acoustic transponder: answers the pings of other vehicles in its network on its own frequency.
 /// The answer begins `turnaround_s` after the ping, first sound to first sound, but not before the ping has ended.  A
 /// ping that comes while an answer is still to be sent is not answered.
 class Transponder final : public sim::Sensor, public sim::AcousticListener {
@@ -38,7 +38,7 @@ class Transponder final : public sim::Sensor, public sim::AcousticListener {
   void disturb(double, sim::Random&) override {}
   void visit_state(sim::StateArchive& archive) override;
   bool listens_to(const sim::Signal& signal) const override;
-  void heard(const sim::Reception& heard) override;
+  void receive(const sim::Reception& received) override;
 
   const Params& params() const { return params_; }
   double answer_Hz() const { return answer_Hz_; }

@@ -14,8 +14,9 @@ void Usbl::Params::read(sim::ParamReader& in) {
   interrogator.read(in);
   in.read("ping_period_s", ping_period_s, sim::between(0.01, 1e4), "between two pings, at least");
   in.read("assumed_sound_speed_mps", assumed_sound_speed_mps, sim::between(100, 10000),
-          "that turns times into ranges; unset: the true one at the sensor");
-  in.read("answer_dropout", answer_dropout, sim::between(0, 1), "probability that an answer is missed, for each anew");
+          "speed of sound that converts times to ranges; unset: the true one at the sensor");
+  in.read("answer_dropout", answer_dropout, sim::between(0, 1),
+          "probability that an answer is missed, drawn for each answer");
   in.read("range_noise", range_noise, "error of each range, m");
   in.read("azimuth_noise", azimuth_noise, "error of each azimuth, rad");
   in.read("elevation_noise", elevation_noise, "error of each elevation, rad");
@@ -44,7 +45,7 @@ void Usbl::measure(const sim::SenseContext& context) {
   const sim::Vector3d& p_WS = context.X_WS.translation();
   for (const Interrogator::Answer& answer : interrogator_.take_answers()) {
     const sim::Vector3d& p_ST_S = answer.p_ST_S;
-    fixes_.push_back({answer.transponder, answer.two_way_s, answer.way_m, std::atan2(p_ST_S.y(), p_ST_S.x()),
+    fixes_.push_back({answer.transponder, answer.two_way_s, answer.distance_m, std::atan2(p_ST_S.y(), p_ST_S.x()),
                       std::atan2(p_ST_S.z(), std::hypot(p_ST_S.x(), p_ST_S.y()))});
   }
   assumed_mps_ = params_.assumed_sound_speed_mps.value_or(medium.sound_speed_mps(p_WS));

@@ -28,7 +28,7 @@ class Usbl final : public sim::Sensor {
     sim::NoiseParams elevation_noise;  ///< rad
     void read(sim::ParamReader& in);
   };
-  /// What has been heard of one transponder.
+  /// What has been received from one transponder.
   struct Fix {
     std::string target;
     double travel_time_s = 0, range_m = 0, azimuth_rad = 0, elevation_rad = 0;

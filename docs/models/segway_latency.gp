@@ -1,10 +1,10 @@
-# The picture of docs/models/segway.md, from the study:  gnuplot docs/models/segway_latency.gp
+# The image of docs/models/segway.md, from the study:  gnuplot docs/models/segway_latency.gp
 set terminal pngcairo size 900,420 font "sans,11"
 set output "docs/models/segway_latency.png"
 set datafile separator ","
 set datafile missing ""
 set xlabel "latency of the commands, ms"
-set ylabel "lean, degrees"
+set ylabel "tilt, degrees"
 set logscale y
 set yrange [1:130]
 set xrange [0:145]

@@ -110,7 +110,7 @@ public class LockstepClient implements LCMSubscriber {
       lcm.subscribe(channel.replace(".", "\\."), this);
   }
 
-  /// LCM calls this in a thread of its own.
+  /// LCM calls this in its own thread.
   @Override
   public void messageReceived(LCM from, String channel, LCMDataInputStream in) {
     try {
@@ -156,15 +156,15 @@ public class LockstepClient implements LCMSubscriber {
     }
     held.values().forEach(ArrayDeque::clear); // it was not for a member of the lockstep
     long pauseMs = 1;
-    long heard = System.nanoTime();
+    long received = System.nanoTime();
     while (!over) {
       Message message = arrived.poll(tick == null ? 1000 : pauseMs, TimeUnit.MILLISECONDS);
       take(message);
-      if (message != null) heard = System.nanoTime();
-      if (System.nanoTime() - heard > SILENCE_S * 1_000_000_000L)
+      if (message != null) received = System.nanoTime();
+      if (System.nanoTime() - received > SILENCE_S * 1_000_000_000L)
         throw new IllegalStateException("the simulator fell silent");
       if (message == null && tick != null) {
-        ask();
+        send_request();
         pauseMs = Math.min(Math.max(20, 2 * pauseMs), 250);
       }
       if (tick != null && hasAll()) {
@@ -179,7 +179,7 @@ public class LockstepClient implements LCMSubscriber {
     try {
       takeValid(message);
     } catch (IOException | IndexOutOfBoundsException | NegativeArraySizeException error) {
-      // Anybody may publish anything: what is no message of its type is as if it had not come.
+      // Any program may publish anything: what is not a message of its type is as if it had not come.
       System.err.println(message.channel() + ": " + error + " (ignored)");
     }
   }
@@ -210,7 +210,7 @@ public class LockstepClient implements LCMSubscriber {
     for (sim_due_t each : next.client) {
       if (!each.name.equals(name) || each.session != session) continue;
       if (each.sequence == sequence) {
-        send("sim.ack", ack); // ours was lost, or somebody asks whether we live
+        send("sim.ack", ack); // ours was lost, or the simulator checks whether we are alive
       } else if (each.sequence > (tick == null ? sequence : due.sequence)) { // takes the place of an older one
         if (next.branch != branch && sequence > 0) throw new IllegalStateException("the world went back in time");
         for (int channel : each.channel)
@@ -222,7 +222,7 @@ public class LockstepClient implements LCMSubscriber {
       }
       return;
     }
-    // It does not list us: also a last one is no concern of ours, but the end of somebody else's run.
+    // It does not list us: also a last one is not a concern of ours, but the end of another run.
   }
 
   private boolean hasAll() {
@@ -241,7 +241,7 @@ public class LockstepClient implements LCMSubscriber {
     return all;
   }
 
-  private void ask() throws IOException {
+  private void send_request() throws IOException {
     sim_resend_t question = new sim_resend_t();
     question.client = name;
     question.session = session;
@@ -330,6 +330,6 @@ public class LockstepClient implements LCMSubscriber {
       }
     });
     System.out.printf("the run is over, %.2f m before the wall%n", aheadM[0]);
-    System.exit(0); // LCM's thread would go on
+    System.exit(0); // LCM's thread would continue
   }
 }

@@ -19,7 +19,7 @@ from marine_ekf import MarineEkf, turned
 PERIOD_S = 0.5
 WEEK_MS = 7 * 24 * 3600 * 1000
 NEWEST_S = 3
-LONGEST_TRAVEL_S = 60  # 90 km; below 0 the own clock is behind
+MAX_TRAVEL_S = 60  # 90 km; below 0 the own clock is behind
 OLDEST_MS = 60 * 1000
 FIRST_SUNDAY_MS = 3 * 24 * 3600 * 1000
 
@@ -104,7 +104,7 @@ class CoopAuv:
 
     def on_modem(self, packet):
         state = decode_frame(bytes(packet.data), packet.sent_utime)
-        if state is None or self.ekf is None or not abs(packet.travel_time_s) < LONGEST_TRAVEL_S:
+        if state is None or self.ekf is None or not abs(packet.travel_time_s) < MAX_TRAVEL_S:
             return
         moved_s = (packet.sent_utime - state["utime"]) * 1e-6
         # What a gateway passed on is older, and from elsewhere: its travel time says nothing of the sender.
@@ -139,12 +139,12 @@ def attach(options):
     bus.subscribe(name + ".dvl", shoal.dvl_t, auv.on_dvl)
     bus.subscribe(name + ".modem", shoal.acoustic_received_t, auv.on_modem)
 
-    patience = iter(range(round(60 / PERIOD_S), -1, -1))
+    timeout = iter(range(round(60 / PERIOD_S), -1, -1))
 
     def decide(utime):
         if auv.ekf is not None:
             bus.publish(name + ".python_estimate", auv.estimate())
-        elif next(patience, None) == 0:
+        elif next(timeout, None) == 0:
             missing = "heading" if auv.yaw_rad is None else "GPS fix"
             print(f"{name}: no estimate after a minute, as there was no {missing}", file=sys.stderr)
 

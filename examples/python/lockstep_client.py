@@ -70,7 +70,7 @@ class LockstepClient:
 
     @staticmethod
     def only_valid(handler):
-        """Anybody may publish anything: what is no message of its type is as if it had not come."""
+        """Any program may publish anything: what is not a message of its type is as if it had not come."""
         def handle(channel, data):
             try:
                 if shoal.sim_signed_t._get_packed_fingerprint() != data[:8]:  # that is from another client
@@ -113,14 +113,14 @@ class LockstepClient:
             while not self.joined and time.monotonic() < again:
                 self.lc.handle_timeout(max(1, round(1000 * (again - time.monotonic()))))
         self.held.clear()  # it was not for a member of the lockstep
-        heard, pause_s = time.monotonic(), 0.001
+        received, pause_s = time.monotonic(), 0.001
         while not self.over:
             if self.lc.handle_timeout(1000 * pause_s if self.tick else 1000):
-                heard = time.monotonic()
-            elif time.monotonic() - heard > SILENCE_S:
+                received = time.monotonic()
+            elif time.monotonic() - received > SILENCE_S:
                 raise SystemExit("the simulator fell silent")
             elif self.tick:
-                self.ask()
+                self.send_request()
                 pause_s = min(max(0.02, 2 * pause_s), 0.25)
             if self.tick and self.has_all():
                 self.handle()
@@ -131,24 +131,24 @@ class LockstepClient:
         # A reply to what could not be read has no session; others of our name have another one.
         ours = reply.session == self.session or (reply.session == 0 and not self.joined)
         if reply.client == self.name and reply.id == self.id and ours:
-            if not reply.ok:  # refused, or later: the world went on without us
+            if not reply.ok:  # refused, or later: the world continued without us
                 raise SystemExit(reply.text)
             self.joined = True
 
     def on_tick(self, channel, data):
         tick = shoal.sim_tick_t.decode(data)
-        mine = [due for due in tick.client if due.name == self.name and due.session == self.session]
-        if not mine:
-            return  # also a last one: the end of somebody else's run
-        if mine[0].sequence == self.sequence:
-            self.send("sim.ack", self.ack)  # ours was lost, or somebody asks whether we live
-        elif mine[0].sequence > (self.due.sequence if self.tick else self.sequence):  # takes the place of an older one
+        own = [due for due in tick.client if due.name == self.name and due.session == self.session]
+        if not own:
+            return  # also a last one: the end of another run
+        if own[0].sequence == self.sequence:
+            self.send("sim.ack", self.ack)  # ours was lost, or the simulator checks whether we are alive
+        elif own[0].sequence > (self.due.sequence if self.tick else self.sequence):  # takes the place of an older one
             if tick.branch != self.branch and self.sequence > 0:
                 raise SystemExit("the world went back in time")
-            if any(not 0 <= channel < len(self.receives) for channel in mine[0].channel):
+            if any(not 0 <= channel < len(self.receives) for channel in own[0].channel):
                 return  # not what we asked for
-            self.tick, self.due, self.branch = tick, mine[0], tick.branch
-            self.messages = [None] * mine[0].count
+            self.tick, self.due, self.branch = tick, own[0], tick.branch
+            self.messages = [None] * own[0].count
 
     def has_all(self):
         for place, (channel, crc) in enumerate(zip(self.due.channel, self.due.crc)):
@@ -159,7 +159,7 @@ class LockstepClient:
                     self.held.remove(found)
         return None not in self.messages
 
-    def ask(self):
+    def send_request(self):
         question = shoal.sim_resend_t()
         question.client, question.session, question.sequence = self.name, self.session, self.due.sequence
         question.of_client, question.first = False, self.messages.index(None)
@@ -179,7 +179,7 @@ class LockstepClient:
         for channel, data in zip(channels, messages):
             for handler in self.handlers[channel]:
                 handler(data)
-        # What no tick of ours names came twice, or of somebody whom the simulator does not hear.
+        # What no tick of ours lists was duplicated, or is from a sender that the simulator does not receive.
         del self.held[:-1000]
         self.over = bool(tick.last)
         if not self.over:

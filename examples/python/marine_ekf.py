@@ -29,7 +29,7 @@ def turned(v, angle):
 
 class MarineEkf:
     GATE = 10.83  # 99.9 % of chi-square with one degree
-    MOST_REFUSALS = 5  # in a row, before something is held to be wrong, and not only a measurement
+    MAX_REFUSALS = 5  # in a row, before something is held to be wrong, and not only a measurement
     BAD_CLOCK_MPS = 0.15  # 100 ppm, the worst of usual quartz clocks, by the speed of sound
 
     def __init__(self, time_s, position_m, position_std_m, states=4, heading_bias_std_rad=0.05, speed_scale_std=0.03,
@@ -42,10 +42,10 @@ class MarineEkf:
         self.states = states
         self.heading_noise, self.speed_noise = heading_noise, speed_noise
         self.time_s = time_s
-        self.way = deque([(time_s, 0.0, 0.0)])  # measured, since the start
+        self.motion = deque([(time_s, 0.0, 0.0)])  # measured, since the start
         self.refused_positions = 0
         self.trust = {}  # of a beacon: refusals in a row, agreements in doubt, variance when the doubt began
-        self.contradictions = deque(maxlen=2 * self.MOST_REFUSALS)  # beacon, time, innovation, its variance
+        self.contradictions = deque(maxlen=2 * self.MAX_REFUSALS)  # beacon, time, innovation, its variance
         self.ranges_used = 0
 
     def predict(self, time_s, velocity_mps):
@@ -53,8 +53,8 @@ class MarineEkf:
         dt = time_s - self.time_s
         if dt <= 0:
             return
-        way = velocity_mps[0] * dt, velocity_mps[1] * dt
-        by_scale = turned(way, self.x[2])
+        motion = velocity_mps[0] * dt, velocity_mps[1] * dt
+        by_scale = turned(motion, self.x[2])
         moved = [(1 + self.x[3]) * m for m in by_scale]
         F = diagonal([1.0] * N)
         F[0][2], F[1][2] = -moved[1], moved[0]
@@ -77,17 +77,17 @@ class MarineEkf:
         self.x[1] += moved[1]
         self.x[4] += self.x[5] * dt
         self.time_s = time_s
-        self.way.append((time_s, self.way[-1][1] + way[0], self.way[-1][2] + way[1]))
-        while self.way[1][0] < time_s - 60:
-            self.way.popleft()
+        self.motion.append((time_s, self.motion[-1][1] + motion[0], self.motion[-1][2] + motion[1]))
+        while self.motion[1][0] < time_s - 60:
+            self.motion.popleft()
 
-    def way_since(self, time_s):
+    def distance_since(self, time_s):
         """Measured way from then to now; None when that is too long ago."""
-        later = self.way[-1]
-        for mark in reversed(self.way):
+        later = self.motion[-1]
+        for mark in reversed(self.motion):
             if mark[0] <= time_s:
                 part = (time_s - mark[0]) / (later[0] - mark[0]) if later[0] > mark[0] else 0.0
-                return tuple(self.way[-1][i] - mark[i] - part * (later[i] - mark[i]) for i in (1, 2))
+                return tuple(self.motion[-1][i] - mark[i] - part * (later[i] - mark[i]) for i in (1, 2))
             later = mark
         return None
 
@@ -98,7 +98,7 @@ class MarineEkf:
         the same amount, or by one that grows evenly, else it is the beacon, which is then in doubt until it agrees again
         for a while.
         """
-        since = self.way_since(time_s)
+        since = self.distance_since(time_s)
         if since is None:
             return False
         by_scale = turned(since, self.x[2])
@@ -133,23 +133,23 @@ class MarineEkf:
 
     def opinion_of(self, beacon, innovation, variance):
         refusals, agreements, doubted_at = self.trust.get(beacon, (0, 0, None))
-        # A filter that hears nobody else grows unsure, which is no reason to believe who was wrong when it was sure.
+        # A filter without other messages becomes uncertain, which is not a reason to believe who was wrong when it was sure.
         if not innovation ** 2 <= self.GATE * min(variance, doubted_at or variance):
             refusals += 1
-            if refusals >= self.MOST_REFUSALS and not doubted_at:
+            if refusals >= self.MAX_REFUSALS and not doubted_at:
                 doubted_at = variance
             self.trust[beacon] = refusals, 0, doubted_at
             return "contradicts"
-        if doubted_at and agreements + 1 < self.MOST_REFUSALS:
+        if doubted_at and agreements + 1 < self.MAX_REFUSALS:
             self.trust[beacon] = 0, agreements + 1, doubted_at
             return "in doubt"
         self.trust.pop(beacon, None)
         return "agrees"
 
     def common_error(self):
-        """By how much all contradictions are too long now, how fast that grows, and the variance of the first; None
+        """Common excess of all contradictions now, the rate at which it grows, and the variance of the first; None
         when they are of one beacon, or do not agree.  A weighted straight line over the time before the last."""
-        if self.states <= 4 or len(self.contradictions) < self.MOST_REFUSALS:
+        if self.states <= 4 or len(self.contradictions) < self.MAX_REFUSALS:
             return None
         if len({beacon for beacon, *_ in self.contradictions}) < 2:
             return None
@@ -187,7 +187,7 @@ class MarineEkf:
         fits = all(e ** 2 <= self.GATE * (self.variance_of(h) + std_m ** 2) for h, e in zip(rows, innovations))
         if not fits:
             self.refused_positions += 1
-            if self.refused_positions < self.MOST_REFUSALS or not all(map(math.isfinite, innovations)):
+            if self.refused_positions < self.MAX_REFUSALS or not all(map(math.isfinite, innovations)):
                 return False
             for i in (0, 1):  # sure and wrong: open it
                 self.P[i][i] += sum(e ** 2 for e in innovations)

@@ -44,13 +44,13 @@ class LCM:
         self.number += 1
 
     def handle_timeout(self, timeout_ms):
-        """Handles one message; 0 when none that somebody wants came in time."""
+        """Handles one message; 0 when no subscribed message arrived in time."""
         while select.select([self.socket], [], [], timeout_ms / 1000)[0]:
             channel, data = self.message_of(*self.socket.recvfrom(65536))
-            wanted = [handler for pattern, handler in self.handlers if channel and pattern.fullmatch(channel)]
-            for handler in wanted:
+            desired = [handler for pattern, handler in self.handlers if channel and pattern.fullmatch(channel)]
+            for handler in desired:
                 handler(channel, data)
-            if wanted:
+            if desired:
                 return 1
         return 0
 

@@ -14,15 +14,15 @@
 
 namespace sim {
 
-/// Reports one message a sample.  A device writes what it has to say into the message by a function beside its model:
+/// Reports one message a sample.  A device fills in its message by a function next to its model:
 ///
 ///     void fill(const Pressure& pressure, shoal::pressure_t& message);
 ///     SHOAL_SENSOR("pressure", Pressure, shoal::pressure_t);
 ///
 /// `message.utime` is set before fill() is called: the time of the sample by the clock of the vehicle.  All other
-/// members are zero or empty, unless the model says `static constexpr bool reuses_message = true`: then they are what a
-/// former call left in them, so that large arrays keep their memory, and fill() sets every one of them.
-/// A fill() that returns bool says by false that this sample has nothing to report.
+/// members are zero or empty, unless the model declares `static constexpr bool reuses_message = true`: then they keep
+/// their values of the previous call, so that large arrays keep their memory, and fill() must set all of them.
+/// A fill() that returns false has nothing to report for this sample.
 template <typename Model, typename Message>
 class MessageReporter final : public Reporter {
  public:

@@ -229,7 +229,7 @@ class Parser {
       for (const Member& other : schema.members)
         if (other.name == member.name) {
           token_ = at;
-          fail("member '" + member.name + "' is there twice");
+          fail("duplicate member '" + member.name + "'");
         }
       while (token_.text == "[") {
         advance();
@@ -260,7 +260,7 @@ class Parser {
     }
     const auto length = std::find_if(schema.members.begin(), schema.members.end(),
                                      [&](const Member& m) { return m.name == token_.text; });
-    if (length == schema.members.end()) fail("array size '" + token_.text + "' is no member declared before");
+    if (length == schema.members.end()) fail("array size '" + token_.text + "' is not a member declared before");
     if (!is_integer(length->type) || !length->dimensions.empty())
       fail("array size '" + token_.text + "' must be a plain integer member");
     if (length->length_slot < 0) {

@@ -22,7 +22,7 @@ std::int64_t fingerprint_of() {
 template <class M>
 const MessageSchema& schema_of() {
   static const MessageSchema& schema = [&]() -> const MessageSchema& {
-    // The generated class knows its name without package only; utime_t and others may share a fingerprint.
+    // The generated class only has its name without the package; utime_t and others may share a fingerprint.
     const MessageSchema* found = embedded_types().find(M::getTypeName(), static_cast<std::uint64_t>(M::getHash()));
     if (found == nullptr) throw MessageError(std::string(M::getTypeName()) + " is none of Shoal's message types");
     return *found;

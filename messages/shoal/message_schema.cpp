@@ -48,7 +48,7 @@ std::uint64_t compute_fingerprint(const MessageSchema& schema, std::vector<const
 
 std::size_t compute_min_size(const MessageSchema& schema, std::vector<const MessageSchema*>& parents) {
   for (const MessageSchema* parent : parents)
-    if (parent == &schema) throw MessageError("type " + schema.name + " contains itself without end");
+    if (parent == &schema) throw MessageError("type " + schema.name + " contains itself");
   parents.push_back(&schema);
   std::size_t size = 0;
   for (const Member& member : schema.members) {
@@ -99,7 +99,7 @@ MessageTypes::MessageTypes(std::span<const LcmSource> sources) {
     for (MessageSchema& schema : parse_lcm(source)) {
       const std::string name = schema.name;
       if (!by_name_.emplace(name, std::move(schema)).second)
-        throw MessageError(source.file + ": type " + name + " is there twice");
+        throw MessageError(source.file + ": duplicate type " + name + "");
     }
   resolve();
 }

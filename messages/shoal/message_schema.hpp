@@ -98,8 +98,8 @@ MessageTypes types_with(const std::vector<std::string>& lcm_files);
 /// Whether NaN and infinity are refused.  Commands: required; reports may hold NaN for "not measured".
 enum class Finite { required, any };
 
-/// What is wrong with an encoded message of this type, or nothing.  Never reads outside the payload, and
-/// takes time in proportion to it, whatever the bytes are.
+/// What is wrong with an encoded message of this type, or nothing.  Never reads outside the payload, and takes time
+/// proportional to its size, for any bytes.
 std::optional<std::string> validate(const MessageSchema& schema, std::span<const std::byte> payload, Finite finite);
 
 /// A `boolean`; any integer; float or double; string; a one-dimensional array of `byte`.

@@ -125,11 +125,11 @@ class Writer {
   void write_length(const Member& member, std::int64_t length, const ConfigNode* given, const std::string& who) {
     put_word(static_cast<std::uint64_t>(length), wire_size(member.type));
     if (given == nullptr) return;
-    std::int64_t said = length;
+    std::int64_t reported = length;
     const ConfigNode map = map_of(member.name, *given);
     sim::ParamReader in(map, who, diagnostics_);
-    in.read(member.name.c_str(), said, sim::at_least(0), "");
-    if (said != length)
+    in.read(member.name.c_str(), reported, sim::at_least(0), "");
+    if (reported != length)
       in.error(member.name.c_str(),
                "'" + member.name + "' follows from its array, which has " + std::to_string(length) + " elements");
   }
@@ -196,9 +196,9 @@ class Writer {
 
   void write_real(WireType type, sim::ParamReader& in, const char* key) {
     double number = 0;
-    const double most = type == WireType::float32 ? static_cast<double>(std::numeric_limits<float>::max())
-                                                  : std::numeric_limits<double>::max();
-    in.read(key, number, sim::between(-most, most), "");
+    const double max = type == WireType::float32 ? static_cast<double>(std::numeric_limits<float>::max())
+                                                 : std::numeric_limits<double>::max();
+    in.read(key, number, sim::between(-max, max), "");
     put_real(type, number);
   }
 

@@ -12,15 +12,15 @@ void LinkConfig::read(ParamReader& in) {
 }
 
 void AcousticsConfig::read(ParamReader& in) {
-  in.read("spreading", spreading, "how sound thins out with range");
-  in.read("absorption", absorption, "how sound is swallowed with range");
+  in.read("spreading", spreading, "spreading loss of sound with range");
+  in.read("absorption", absorption, "absorption of sound with range");
   in.read("noise", noise, "of the sea");
   in.read("multipath", multipath, "echoes of surface and bottom; absent: the direct path alone");
-  in.read("fading", fading, "how levels vary");
-  in.read("occlusion", occlusion, "terrain, objects and hulls stand in the way of sound");
-  in.read("occlusion_loss_dB", occlusion_loss_dB, between(0, 1000), "of what stands in the way; unset: nothing passes");
-  in.read("inaudible_dB", inaudible_dB, between(0, 100), "sounds this far below the noise of the sea do not count");
-  in.read("range_max_m", range_max_m, above(0), "nothing is heard beyond");
+  in.read("fading", fading, "fading of the level");
+  in.read("occlusion", occlusion, "terrain, objects and hulls block sound of sound");
+  in.read("occlusion_loss_dB", occlusion_loss_dB, between(0, 1000), "loss through obstacles; unset: nothing passes");
+  in.read("inaudible_dB", inaudible_dB, between(0, 100), "signals this far below the ambient noise are ignored");
+  in.read("range_max_m", range_max_m, above(0), "maximum range of reception");
   in.read_list("links", links, "link", "losses of single links");
 }
 

@@ -29,10 +29,10 @@ struct AcousticsConfig {
   NoiseConfig noise;
   std::optional<MultipathConfig> multipath;
   FadingConfig fading;
-  bool occlusion = true;                    ///< terrain, objects and hulls stand in the way
-  std::optional<double> occlusion_loss_dB;  ///< of what stands in the way; unset: nothing passes
+  bool occlusion = true;                    ///< terrain, objects and hulls block sound
+  std::optional<double> occlusion_loss_dB;  ///< loss through obstacles; unset: nothing passes
   double inaudible_dB = 10;                 ///< sounds that are this far below the noise do not count
-  std::optional<double> range_max_m;        ///< nothing is heard beyond
+  std::optional<double> range_max_m;        ///< nothing is received beyond
   std::vector<LinkConfig> links;
   void read(ParamReader& in);
 };

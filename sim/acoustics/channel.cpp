@@ -13,10 +13,10 @@ namespace sim {
 
 namespace {
 
-/// Nobody closes in on a sound faster than by this share of its speed; the last part of the way is worked out when
+/// Limit of the closing speed on a sound, as a share of its speed; the last part of the way is computed when
 /// the sound is so near.
 constexpr double early = 0.02;
-/// Who is near whom holds so long; and nobody goes farther meanwhile, nor while a sound is under way.
+/// The neighbours are valid for this time; no transducer moves farther meanwhile, nor while a sound is under way.
 constexpr double neighbours_hold_s = 1;
 constexpr double stray_m = 150;
 /// How often those who send or take signals are looked after.
@@ -48,14 +48,14 @@ void AcousticChannel::join(Transducer& transducer) {
   transducer.number_ = static_cast<int>(number);
   transducer.join_ = ++joins_;
   transducer.meant_before_ = messages_for(transducer.own_);
-  forget_receivers();
+  clear_receivers();
 }
 
 bool AcousticChannel::prescribe(std::vector<int> numbers) {
-  constexpr int most = 10'000'000;
+  constexpr int upper = 10'000'000;
   for (const int number : numbers) {
     const auto at = static_cast<std::size_t>(number);
-    if (number < 0 || number >= most || (at < transducers_.size() && transducers_[at] != nullptr)) return false;
+    if (number < 0 || number >= upper || (at < transducers_.size() && transducers_[at] != nullptr)) return false;
   }
   if (std::set<int>(numbers.begin(), numbers.end()).size() != numbers.size()) return false;
   std::reverse(numbers.begin(), numbers.end());
@@ -65,33 +65,33 @@ bool AcousticChannel::prescribe(std::vector<int> numbers) {
 
 void AcousticChannel::leave(Transducer& transducer) {
   const Transducer::Counts counts = transducer.counts();
-  gone_.sent += counts.sent;
-  gone_.sent_bytes += counts.sent_bytes;
-  gone_.understood += counts.understood;
-  gone_.understood_bytes += counts.understood_bytes;
-  gone_.unsent += counts.unsent;
-  for (std::size_t i = 0; i < counts.lost.size(); ++i) gone_.lost[i] += counts.lost[i];
+  removed_.sent += counts.sent;
+  removed_.sent_bytes += counts.sent_bytes;
+  removed_.understood += counts.understood;
+  removed_.understood_bytes += counts.understood_bytes;
+  removed_.unsent += counts.unsent;
+  for (std::size_t i = 0; i < counts.lost.size(); ++i) removed_.lost[i] += counts.lost[i];
   if (transducer.sending_ >= 0) cut(transducer.sending_, SignalLoss::sender_off, around_.medium.now());
   transducers_[static_cast<std::size_t>(transducer.number())] = nullptr;
   for (const auto& sending : sendings_)
     if (sending && sending->from == &transducer) sending->from = nullptr;
-  forget_messages_for(transducer.own_);
-  forget_receivers();
+  discard_messages_for(transducer.own_);
+  clear_receivers();
 }
 
 /// The counts of names that come and go would be more and more.
-void AcousticChannel::forget_messages_for(const Audience& gone) {
-  const auto group = messages_.find(gone.group);
-  if (gone.address.empty() || group == messages_.end() || !group->second.contains(gone.address)) return;
+void AcousticChannel::discard_messages_for(const Audience& removed) {
+  const auto group = messages_.find(removed.group);
+  if (removed.address.empty() || group == messages_.end() || !group->second.contains(removed.address)) return;
   const bool is_used = std::any_of(transducers_.begin(), transducers_.end(), [&](const Transducer* each) {
-    return each != nullptr && each->own_.address == gone.address && each->own_.group == gone.group;
+    return each != nullptr && each->own_.address == removed.address && each->own_.group == removed.group;
   });
-  if (!is_used) group->second.erase(gone.address);
+  if (!is_used) group->second.erase(removed.address);
 }
 
-void AcousticChannel::forget_receivers() {
-  faintest_.clear();
-  forget_places();
+void AcousticChannel::clear_receivers() {
+  min_levels_.clear();
+  discard_places();
 }
 
 std::int64_t AcousticChannel::messages_for(const Audience& own) const {
@@ -118,7 +118,7 @@ void AcousticChannel::noise_changed() {
   for (std::size_t i = 0; i < flights_.size(); ++i) {
     const Flight& flight = flights_[i];
     const auto number = static_cast<std::int64_t>(i);
-    Transducer* const to = flight.noticed ? receiver_of(flight) : nullptr;
+    Transducer* const to = flight.detected ? receiver_of(flight) : nullptr;
     if (to == nullptr || !to->receiver_.takes(number)) continue;
     const Signal& signal = sendings_[static_cast<std::size_t>(flight.sending)]->signal;
     const PowerRatio noise = noise_at(*to, to->p_W(around_.medium.now()), signal);
@@ -126,16 +126,16 @@ void AcousticChannel::noise_changed() {
   }
 }
 
-Decibels AcousticChannel::faintest(double frequency_Hz) const {
-  for (const auto& [known_Hz, below] : faintest_)
+Decibels AcousticChannel::min_level(double frequency_Hz) const {
+  for (const auto& [known_Hz, below] : min_levels_)
     if (known_Hz == frequency_Hz) return below;
-  const Decibels below = work_out_faintest(frequency_Hz);
-  constexpr std::size_t most_frequencies = 64;
-  if (faintest_.size() < most_frequencies) faintest_.emplace_back(frequency_Hz, below);
+  const Decibels below = compute_min_level(frequency_Hz);
+  constexpr std::size_t max_frequencies = 64;
+  if (min_levels_.size() < max_frequencies) min_levels_.emplace_back(frequency_Hz, below);
   return below;
 }
 
-Decibels AcousticChannel::work_out_faintest(double frequency_Hz) const {
+Decibels AcousticChannel::compute_min_level(double frequency_Hz) const {
   examined_ += static_cast<std::int64_t>(transducers_.size());
   double below_dB = config_.inaudible_dB;
   for (const Transducer* each : transducers_)
@@ -243,7 +243,7 @@ void AcousticChannel::fetch_ahead() const {
 }
 
 void AcousticChannel::handle(const Event& event, Time now) {
-  if (now != step_end_) ++looks_;
+  if (now != step_end_) ++polls_;
   step_end_ = now;
   handling_ = true;
   fetch_ahead();
@@ -258,7 +258,7 @@ void AcousticChannel::handle(const Event& event, Time now) {
     case near_event:
       approach(item, event.due);
       break;
-    case begin_event:
+    case start_event:
       begin(item);
       break;
     case end_event:
@@ -303,17 +303,17 @@ void AcousticChannel::emit(int number, Time now) {
   for (std::int64_t flight = from->receiver_.drop(); flight >= 0; flight = from->receiver_.drop())
     flights_[static_cast<std::size_t>(flight)].loss = SignalLoss::half_duplex;
 
-  const double reach_m = look_around(sending.signal, now) + stray_m;
+  const double reach_m = update_neighbours(sending.signal, now) + stray_m;
   neighbours_.near(sending.p_W, reach_m, near_);
   examined_ += static_cast<std::int64_t>(near_.size());
-  for (const int hearer : near_) {
-    Transducer* to = transducers_[static_cast<std::size_t>(hearer)];
+  for (const int listener : near_) {
+    Transducer* to = transducers_[static_cast<std::size_t>(listener)];
     if (to != nullptr && to != from && (to->p_W(sending.sent) - sending.p_W).norm() <= reach_m) send_to(number, *to);
   }
   release(number);
 }
 
-double AcousticChannel::look_around(const Signal& signal, Time now) {
+double AcousticChannel::update_neighbours(const Signal& signal, Time now) {
   const bool anew = neighbours_age_ < 0 || to_seconds(now) - neighbours_age_ > neighbours_hold_s;
   std::vector<Neighbourhood::Member> members;
   if (anew) {
@@ -327,7 +327,7 @@ double AcousticChannel::look_around(const Signal& signal, Time now) {
     neighbours_age_ = to_seconds(now);
   }
   const double deepest_m = around_.medium.highest_surface_m() - lowest_m_ + stray_m;
-  const double reach_m = propagation_.audible_range_m(signal, faintest(signal.centre_Hz), deepest_m);
+  const double reach_m = propagation_.audible_range_m(signal, min_level(signal.centre_Hz), deepest_m);
   if (anew) neighbours_.build(members, reach_m);
   return reach_m;
 }
@@ -376,7 +376,7 @@ void AcousticChannel::schedule_silence(int number, const Sending& sending, Time 
   const Flight& flight = flights_[static_cast<std::size_t>(number)];
   const double whole_s = to_seconds(sending.signal.duration);
   const double share = whole_s > 0 ? to_seconds(sending.cut_after) / whole_s : 1;
-  const Time at = std::max(now, flight.begun + from_seconds(share * to_seconds(flight.ended - flight.begun)));
+  const Time at = std::max(now, flight.started + from_seconds(share * to_seconds(flight.ended - flight.started)));
   if (at < flight.ended) schedule(at, silence_event, number);
 }
 
@@ -384,17 +384,17 @@ void AcousticChannel::approach(int number, Time due) {
   Flight& flight = flights_[static_cast<std::size_t>(number)];
   if (const Transducer* const to = receiver_of(flight)) {
     const Sending& sending = *sendings_[static_cast<std::size_t>(flight.sending)];
-    // From here on the receiver goes on as it does now.
+    // From here on the receiver continues as it does now.
     const auto arrival = meeting(around_.medium, sending.p_W, sending.sent, to->p_W(step_end_), step_end_, to->v_W());
     if (arrival) {
       flight.travel_time_s = arrival->travel_time_s;
-      flight.begun = std::max(due, sending.sent + from_seconds(arrival->travel_time_s));
-      flight.p_begun_W = to->p_W(flight.begun);
+      flight.started = std::max(due, sending.sent + from_seconds(arrival->travel_time_s));
+      flight.p_begun_W = to->p_W(flight.started);
     } else {
       set_receiver(flight, nullptr);  // faster than sound: it was thrown out of the world
     }
   }
-  schedule(std::max(flight.begun, due), begin_event, number);
+  schedule(std::max(flight.started, due), start_event, number);
 }
 
 }  // namespace sim

@@ -42,25 +42,25 @@ class AcousticChannel {
   bool has_water() const { return around_.medium.has_water(); }
   /// An event of the channel is due; `now` is the end of the step that just ended.
   void handle(const Event& event, Time now);
-  /// Somebody was put elsewhere: who is near whom is looked up again.
-  void forget_places() { neighbours_age_ = -1; }
+  /// A transducer was moved: neighbours are searched again.
+  void discard_places() { neighbours_age_ = -1; }
   /// A receiver changed: how faint a sound may be and matter is looked up again.
-  void forget_receivers();
+  void clear_receivers();
   /// Messages that were sent to this one, since the last with its address left, or all of its group since the start.
   std::int64_t messages_for(const Audience& own) const;
-  /// What transducers that have left sent and heard.
-  const Transducer::Counts& counts_of_those_gone() const { return gone_; }
+  /// What transducers that have left sent and received.
+  const Transducer::Counts& counts_of_removed() const { return removed_; }
 
   /// In device order; null where one has left.
   const std::vector<Transducer*>& transducers() const { return transducers_; }
-  /// For who builds a world again as it became: those who join next get these numbers.  False: one is taken or cannot
+  /// For rebuilding a world: the transducers that join next get these numbers.  False: one is taken or cannot
   /// be.
   bool prescribe(std::vector<int> numbers);
   bool as_prescribed() const { return prescribed_.empty(); }
   const Propagation& propagation() const { return propagation_; }
-  /// Receptions, heard or not, since the start: what the work grows with.
+  /// Receptions, received or not, since the start: what the work grows with.
   std::int64_t flights() const { return flights_made_; }
-  /// Transducers that were looked at to find who hears, since the start.
+  /// Number of transducers examined in the search for receivers, since the start.
   std::int64_t examined() const { return examined_; }
   /// With the transducers and continuous sounds, whose devices do not.
   void visit_state(StateArchive& archive);
@@ -71,7 +71,7 @@ class AcousticChannel {
  private:
   friend class Transducer;
   friend class ContinuousSound;
-  enum EventKind { emission_event, emission_end_event, near_event, begin_event, end_event, watch_event, silence_event };
+  enum EventKind { emission_event, emission_end_event, near_event, start_event, end_event, watch_event, silence_event };
 
   /// A signal under way.
   struct Sending {
@@ -94,22 +94,22 @@ class AcousticChannel {
   struct Flight {
     int sending = -1;
     int to = -1;  // number of the transducer; -1: it left
-    Time begun{0}, ended{0};
+    Time started{0}, ended{0};
     double travel_time_s = 0;
     Vector3d p_begun_W = Vector3d::Zero();
     double closing_mps = 0;
     Decibels level{0}, snr{0};
     SignalLoss loss = SignalLoss::none;
     std::uint32_t to_join = 0;  // else another has its number now
-    bool listened = false, present = false, noticed = false, delayed = false;
+    bool listened = false, present = false, detected = false, delayed = false;
     bool meant = false;                       // it is for the receiver
     void visit_state(StateArchive& archive);  // but for `to`
   };
 
   void join(Transducer& transducer);
   void leave(Transducer& transducer);
-  /// When nobody else is of that address.
-  void forget_messages_for(const Audience& gone);
+  /// When no other transducer has that address.
+  void discard_messages_for(const Audience& removed);
   void join(ContinuousSound& sound);
   void leave(ContinuousSound& sound);
   void transmit(Transducer& from, Signal signal, Time at);
@@ -125,32 +125,32 @@ class AcousticChannel {
   void fetch_ahead() const;
   void emit(int sending, Time now);
   void send_to(int sending, Transducer& to);
-  /// Who is near whom, when that is too old, for signals that are heard so far.  Returns that range, m.
-  double look_around(const Signal& signal, Time now);
+  /// Updates the neighbours when they are outdated, for signals of this range.  Returns that range, m.
+  double update_neighbours(const Signal& signal, Time now);
   void end_emission(int sending, Time at);
   /// The sender stops before the end.
   void cut(int sending, SignalLoss why, Time at);
-  /// The receiver will hear that, if there is anything left to hear then.
+  /// The receiver will be notified, if the signal still exists then.
   void schedule_silence(int flight, const Sending& sending, Time now);
   void approach(int flight, Time due);
   void begin(int flight);
   void fall_silent(int flight, Time due);
-  /// Looks whether those who send and take signals still can.
+  /// Checks whether senders and receivers of signals are still able to.
   void watch();
   bool can(const Transducer& transducer) const;
   /// A continuous sound began, ended or changed.
   void noise_changed();
-  /// By how much a signal may be below the noise and still matter to somebody.
-  Decibels faintest(double frequency_Hz) const;
-  Decibels work_out_faintest(double frequency_Hz) const;
+  /// Margin below the noise within which a signal may still matter to a receiver.
+  Decibels min_level(double frequency_Hz) const;
+  Decibels compute_min_level(double frequency_Hz) const;
   void end(int flight);
   /// Level, end and Doppler.  Returns the power of echoes that disturb, re 1 uPa^2.
   /// `later_s`: by which the first sound is an echo's.
-  PowerRatio work_out_level(Flight& flight, const Sending& sending, double& later_s);
-  /// Why it cannot be understood, whatever else is heard.
+  PowerRatio compute_level(Flight& flight, const Sending& sending, double& later_s);
+  /// The reason why it cannot be decoded, independent of other signals.
   SignalLoss obstacle(const Flight& flight) const;
   Decibels link_loss(const Transducer& to, const Sending& sending, double& loss_probability) const;
-  /// Of the sea and of continuous sounds, in the band of a signal, as a receiver hears it.
+  /// Of the sea and of continuous sounds, in the band of a signal, as a receiver receives it.
   PowerRatio noise_at(const Transducer& to, const Vector3d& p_W, const Signal& signal) const;
   void take(int number, Flight& flight, const Sending& sending, PowerRatio power, PowerRatio disturbing);
   void finish(const Transducer& to, Flight& flight, const Sending& sending, const SignalReceiver::Outcome& outcome);
@@ -163,8 +163,8 @@ class AcousticChannel {
   int new_flight();
   void release(int sending);
   Time step_end() const { return step_end_; }
-  /// While events are handled: a number of its own for each time that bodies may have moved.  Else negative.
-  std::int64_t look() const { return handling_ ? looks_ : -1; }
+  /// While events are handled: its own number for each time that bodies may have moved.  Else negative.
+  std::int64_t look() const { return handling_ ? polls_ : -1; }
 
   AcousticsConfig config_;
   AcousticSurroundings around_;
@@ -179,16 +179,16 @@ class AcousticChannel {
   std::int64_t flights_made_ = 0;
   Time step_end_{0};
   std::uint32_t joins_ = 0;
-  std::int64_t looks_ = 0;
+  std::int64_t polls_ = 0;
   bool handling_ = false;
   Neighbourhood neighbours_;
   double neighbours_age_ = -1;                                           // when they were looked up, s; negative: not
   double lowest_m_ = 0;                                                  // z of the lowest of them then
   std::map<std::string, std::map<std::string, std::int64_t>> messages_;  // sent, by group and address
-  mutable std::vector<std::pair<double, Decibels>> faintest_;            // of a frequency, worked out before
+  mutable std::vector<std::pair<double, Decibels>> min_levels_;          // of a frequency, computed before
   mutable std::int64_t examined_ = 0;
   bool watching_ = false;  // a watch_event is under way
-  Transducer::Counts gone_;
+  Transducer::Counts removed_;
   std::vector<int> near_;
 };
 

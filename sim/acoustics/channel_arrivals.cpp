@@ -61,17 +61,17 @@ Random AcousticChannel::stream(const Transducer& to, const Sending& sending, boo
   return random;
 }
 
-PowerRatio AcousticChannel::work_out_level(Flight& flight, const Sending& sending, double& later_s) {
+PowerRatio AcousticChannel::compute_level(Flight& flight, const Sending& sending, double& later_s) {
   const Transducer& to = *receiver_of(flight);
   const Signal& signal = sending.signal;
-  const Vector3d way_W = flight.p_begun_W - sending.p_W;
-  const double range_m = way_W.norm();
-  const Vector3d direction_W = range_m > 0 ? Vector3d(way_W / range_m) : Vector3d(Vector3d::UnitX());
+  const Vector3d displacement_W = flight.p_begun_W - sending.p_W;
+  const double range_m = displacement_W.norm();
+  const Vector3d direction_W = range_m > 0 ? Vector3d(displacement_W / range_m) : Vector3d(Vector3d::UnitX());
   const Vector3d v_to_W = to.v_W();
   flight.closing_mps = closing_speed_mps(direction_W, sending.v_W, v_to_W);
   const double c = around_.medium.sound_speed_mps(flight.p_begun_W);
   const double squeezed = doppler_factor(direction_W, sending.v_W, v_to_W, c);
-  flight.ended = flight.begun + from_seconds(to_seconds(signal.duration) / squeezed);
+  flight.ended = flight.started + from_seconds(to_seconds(signal.duration) / squeezed);
 
   Random random = propagation_.draws() ? stream(to, sending, false) : Random(0, {});
   const Propagation::Gain gain =
@@ -95,9 +95,9 @@ SignalLoss AcousticChannel::obstacle(const Flight& flight) const {
   if (!around_.medium.in_water(flight.p_begun_W)) return SignalLoss::out_of_water;
   if (!to.works()) return SignalLoss::receiver_off;
   if (flight.loss != SignalLoss::none) return flight.loss;  // blocked
-  // SignalReceiver::take() looks, too; but what nobody could notice is lost in the noise, whatever is below.
+  // SignalReceiver::take() looks, too; but what no receiver could detect is lost in the noise, whatever is below.
   if (flight.snr < Decibels{to.config().detection_dB}) return SignalLoss::noise;
-  if (flight.begun < to.sending_until_) return SignalLoss::half_duplex;
+  if (flight.started < to.sending_until_) return SignalLoss::half_duplex;
   if (std::abs(flight.closing_mps) > to.config().doppler_limit_mps) return SignalLoss::doppler;
   return SignalLoss::none;
 }
@@ -111,10 +111,11 @@ void AcousticChannel::begin(int number) {
     return;
   }
   Transducer& to = *receiver;
-  const Vector3d p_W = to.p_W(flight.begun);
-  // Where it was expected, but for what its turns do in so short a time; somebody who was put elsewhere is met anew.
+  const Vector3d p_W = to.p_W(flight.started);
+  // Where it was expected, except for what its turns do in so short a time; a transducer that was moved is searched
+  // again.
   if (!flight.delayed && (p_W - flight.p_begun_W).norm() > 0.01) {
-    approach(number, flight.begun);
+    approach(number, flight.started);
     return;
   }
   flight.p_begun_W = p_W;
@@ -124,13 +125,13 @@ void AcousticChannel::begin(int number) {
     return;
   }
   double later_s = 0;
-  const PowerRatio disturbing = work_out_level(flight, sending, later_s);
+  const PowerRatio disturbing = compute_level(flight, sending, later_s);
   if (later_s > 0 && !flight.delayed) {
     // Nothing comes along the direct path: the first sound is an echo.
     flight.delayed = true;
     flight.travel_time_s += later_s;
-    flight.begun += from_seconds(later_s);
-    schedule(flight.begun, begin_event, number);
+    flight.started += from_seconds(later_s);
+    schedule(flight.started, start_event, number);
     return;
   }
   flight.listened = to.listener_.listens_to(sending.signal);
@@ -139,10 +140,10 @@ void AcousticChannel::begin(int number) {
   if (flight.present)
     to.receiver_.begin({number, sending.signal.centre_Hz, sending.signal.bandwidth_Hz, power + disturbing, flight.ended,
                         sending.signal.kind == Signal::Kind::message},
-                       flight.begun);
+                       flight.started);
   if (flight.listened) take(number, flight, sending, power, disturbing);
   schedule(flight.ended, end_event, number);
-  if (flight.present && sending.cut != SignalLoss::none) schedule_silence(number, sending, flight.begun);
+  if (flight.present && sending.cut != SignalLoss::none) schedule_silence(number, sending, flight.started);
 }
 
 void AcousticChannel::fall_silent(int number, Time due) {
@@ -164,14 +165,14 @@ void AcousticChannel::take(int number, Flight& flight, const Sending& sending, P
   taken.bits = signal.bits;
   taken.coding_gain_dB = signal.coding_gain_dB;
   taken.protection = to_power(Decibels{to.config().protection_dB});
-  taken.begun = flight.begun;
+  taken.started = flight.started;
   taken.ended = flight.ended;
   flight.snr = to_decibels(taken.sound.power / (taken.noise + disturbing));
   flight.loss = obstacle(flight);
   if (flight.loss != SignalLoss::none) return;
   std::int64_t displaced = -1;
   flight.loss = to.receiver_.take(taken, {to.config().detection_dB, to.config().capture_dB}, displaced);
-  flight.noticed = flight.loss == SignalLoss::none;
+  flight.detected = flight.loss == SignalLoss::none;
   if (displaced >= 0) flights_[static_cast<std::size_t>(displaced)].loss = SignalLoss::captured;
 }
 
@@ -206,17 +207,17 @@ void AcousticChannel::end(int number) {
         ++to->counts_.understood;
         to->counts_.understood_bytes += static_cast<std::int64_t>(sending.signal.payload.size());
       }
-      // By what is so of the receiver: a sender that went out of the water is heard to stop.
+      // By what is so of the receiver: a sender that went out of the water is received to stop.
       const bool out_itself = flight.loss == SignalLoss::out_of_water && sending.cut != SignalLoss::out_of_water;
       const bool deaf = out_itself || flight.loss == SignalLoss::receiver_off || flight.loss == SignalLoss::blocked ||
                         !to->works() || !around_.medium.in_water(to->p_W(flight.ended));
       if (!deaf)
-        to->listener_.heard({sending.signal, sending.source, sending.number, sending.sent, flight.begun, flight.ended,
-                             flight.travel_time_s, sending.p_W, flight.p_begun_W, flight.level, flight.snr, sinr,
-                             flight.closing_mps, flight.loss, flight.noticed});
+        to->listener_.receive({sending.signal, sending.source, sending.number, sending.sent, flight.started,
+                               flight.ended, flight.travel_time_s, sending.p_W, flight.p_begun_W, flight.level,
+                               flight.snr, sinr, flight.closing_mps, flight.loss, flight.detected});
     }
   }
-  // heard() may have transmitted: references are stale.
+  // receive() may have transmitted: references are stale.
   const int of = flights_[static_cast<std::size_t>(number)].sending;
   free_flights_.push_back(number);
   flights_[static_cast<std::size_t>(number)] = {};

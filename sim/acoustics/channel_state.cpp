@@ -13,7 +13,7 @@ namespace {
 /// It is the place of a count.
 void check_loss(SignalLoss loss, const StateArchive& archive) {
   if (static_cast<int>(loss) < 0 || static_cast<int>(loss) >= signal_losses)
-    archive.fail("a signal that is lost for no known cause");
+    archive.fail("a signal lost for an unknown cause");
 }
 
 }  // namespace
@@ -28,7 +28,7 @@ void AcousticChannel::Sending::visit_state(StateArchive& archive) {
 }
 
 void AcousticChannel::Flight::visit_state(StateArchive& archive) {
-  archive(sending, begun, ended, travel_time_s, p_begun_W, closing_mps, level, snr, loss, listened, present, noticed,
+  archive(sending, started, ended, travel_time_s, p_begun_W, closing_mps, level, snr, loss, listened, present, detected,
           delayed, meant);
   if (archive.restoring()) check_loss(loss, archive);
 }
@@ -37,7 +37,7 @@ void AcousticChannel::Flight::visit_state(StateArchive& archive) {
 Transducer* AcousticChannel::visit_transducer(StateArchive& archive, const Transducer* transducer) {
   int number = transducer != nullptr ? transducer->number() : -1;
   archive(number);
-  if (number >= static_cast<int>(transducers_.size())) archive.fail("a signal of a transducer that is not there");
+  if (number >= static_cast<int>(transducers_.size())) archive.fail("a signal of a transducer that does not exist");
   return number < 0 ? nullptr : transducers_[static_cast<std::size_t>(number)];
 }
 
@@ -64,17 +64,17 @@ void AcousticChannel::visit_state(StateArchive& archive) {
     const Transducer* const to = visit_transducer(archive, receiver_of(flights_[i]));
     if (archive.restoring()) set_receiver(flights_[i], to);
   }
-  if (archive.restoring()) ++looks_;
+  if (archive.restoring()) ++polls_;
   archive.unhashed(free_sendings_, free_flights_, flights_made_, step_end_, neighbours_, neighbours_age_);
-  if (!archive.hashing()) archive.not_only_finite(lowest_m_);  // infinity: of nobody
-  archive.unhashed(messages_, watching_, gone_);
+  if (!archive.hashing()) archive.not_only_finite(lowest_m_);  // infinity: without a receiver
+  archive.unhashed(messages_, watching_, removed_);
   if (archive.restoring()) check_numbers(archive);
 }
 
 namespace {
 
 [[noreturn]] void fail_for_signal(const StateArchive& archive) {
-  archive.fail("a signal that is not there");
+  archive.fail("a signal that does not exist");
 }
 
 /// Which of `count` items are in use.  A free one may be listed once.
@@ -82,7 +82,7 @@ std::vector<char> in_use(const std::vector<int>& free, std::size_t count, const 
   std::vector<char> used(count, 1);
   for (const int number : free) {
     if (number < 0 || static_cast<std::size_t>(number) >= count) fail_for_signal(archive);
-    if (!std::exchange(used[static_cast<std::size_t>(number)], 0)) archive.fail("a signal that is free twice");
+    if (!std::exchange(used[static_cast<std::size_t>(number)], 0)) archive.fail("a signal that is freed twice");
   }
   return used;
 }
@@ -106,7 +106,8 @@ void AcousticChannel::check_numbers(const StateArchive& archive) const {
   }
   // Those of one that has left stay in the list until it is built again, which a negative age asks for.
   const bool in_use_now = !(neighbours_age_ < 0);
-  if (in_use_now && !neighbours_.numbers_are_below(transducers_.size())) archive.fail("a neighbour that is not there");
+  if (in_use_now && !neighbours_.numbers_are_below(transducers_.size()))
+    archive.fail("a neighbour that does not exist");
 }
 
 /// A signal in use has just the events and flights that it counts, and a flight one event; else one would be let go of
@@ -119,7 +120,7 @@ void AcousticChannel::check_events(std::span<const Event> events, const StateArc
   for (const Event& event : events) {
     if (event.device != Event::of_acoustics) continue;
     const bool of_sending = event.kind == emission_event || event.kind == emission_end_event;
-    const bool of_flight = event.kind == near_event || event.kind == begin_event || event.kind == end_event;
+    const bool of_flight = event.kind == near_event || event.kind == start_event || event.kind == end_event;
     const bool of_silence = event.kind == silence_event;
     if (!of_sending && !of_flight && !of_silence) continue;
     std::vector<int>& counts = of_sending ? users : flight_events;
@@ -129,9 +130,9 @@ void AcousticChannel::check_events(std::span<const Event> events, const StateArc
   }
   const std::vector<char> sending_used = in_use(free_sendings_, sendings_.size(), archive);
   for (std::size_t i = 0; i < sendings_.size(); ++i)
-    if (users[i] != (sending_used[i] ? sendings_[i]->users : 0)) archive.fail("a signal whose users are not there");
+    if (users[i] != (sending_used[i] ? sendings_[i]->users : 0)) archive.fail("a signal whose users do not exist");
   for (std::size_t i = 0; i < flights_.size(); ++i)
-    if (flight_events[i] != flight_used[i]) archive.fail("a signal on its way that never arrives, or twice");
+    if (flight_events[i] != flight_used[i]) archive.fail("a signal in flight that never arrives, or arrives twice");
 }
 
 }  // namespace sim

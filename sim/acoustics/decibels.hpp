@@ -7,8 +7,8 @@
 
 namespace sim {
 
-// A level and a power are different types: adding decibels multiplies powers, and whoever mixes the two is told by the
-// compiler.  The only ways between them are to_decibels() and to_power().
+// A level and a power are different types: adding decibels multiplies powers, and the compiler rejects mixing the
+// two. The only conversions are to_decibels() and to_power().
 //
 // Levels under water are over the pressure of 1 uPa: a source level is that at 1 m from the source, a noise level is
 // per hertz or in a band, as its name says.
@@ -39,11 +39,11 @@ class Decibels {
   template <typename Archive>
   void visit_state(Archive& archive) {
     archive.not_only_finite(dB_);  // -infinity: silence
-    if (archive.restoring() && !(dB_ <= most_dB)) archive.fail("a level above all that there is");
+    if (archive.restoring() && !(dB_ <= max_dB)) archive.fail("a level beyond any physical one");
   }
 
  private:
-  static constexpr double most_dB = 1000;
+  static constexpr double max_dB = 1000;
 
   double dB_ = 0;
 };
@@ -69,7 +69,7 @@ class PowerRatio {
   template <typename Archive>
   void visit_state(Archive& archive) {
     archive(linear_);
-    if (archive.restoring() && !(linear_ >= 0)) archive.fail("a power below nothing");
+    if (archive.restoring() && !(linear_ >= 0)) archive.fail("a negative power");
   }
 
  private:

@@ -52,9 +52,10 @@ void DirectivityConfig::read(ParamReader& in) {
                   {"toroid", Pattern::toroid}},
                  "omni: to all sides; piston: a beam along +x; hemisphere: about +x; toroid: level about z");
   in.read("diameter_m", diameter_m, above_to(0, 10),
-          "piston: the wider and the higher the tone, the narrower the beam");
-  in.read("length_m", length_m, above_to(0, 10), "toroid: of the line along z; the longer, the flatter the beam");
-  in.read("floor_dB", floor_dB, between(-200, 0), "not less than this anywhere, over the axis");
+          "piston: a larger diameter or a higher frequency makes the beam narrower");
+  in.read("length_m", length_m, above_to(0, 10),
+          "toroid: length of the line along z; a longer one makes the beam flatter");
+  in.read("floor_dB", floor_dB, between(-200, 0), "minimum response in any direction, relative to the axis");
   if (in.has("diameter_m") && pattern != Pattern::piston) in.error("diameter_m", "'diameter_m' is for pattern piston");
   if (in.has("length_m") && pattern != Pattern::toroid) in.error("length_m", "'length_m' is for pattern toroid");
 }

@@ -26,8 +26,8 @@ struct DirectivityConfig {
 Decibels directivity_gain(const DirectivityConfig& config, const Vector3d& direction_S, double frequency_Hz,
                           double sound_speed_mps);
 
-/// By how much noise that is the same from all directions is less in the transducer than in one without direction: the
-/// directivity index.  Integrated over the pattern, with its floor.
+/// Directivity index: reduction of isotropic noise relative to an omnidirectional transducer.
+///   Integrated over the pattern, with its floor.
 Decibels directivity_index(const DirectivityConfig& config, double frequency_Hz, double sound_speed_mps);
 
 }  // namespace sim

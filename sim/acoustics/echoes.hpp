@@ -17,7 +17,7 @@ struct Echoes {
   PowerRatio signal{1};  ///< all inside the window, the direct path with them
   PowerRatio late{0};    ///< what comes later and disturbs
   double spread_s = 0;   ///< rms of the delays
-  double later_s = 0;    ///< by which the first sound comes after that of the direct path, where nothing is left of it
+  double later_s = 0;    ///< delay of the first arrival relative to the direct path, where that is blocked
 };
 
 /// Depths out of the water count as at surface and bottom.  `random`: draws the phases for `phases: random`; null:

@@ -19,8 +19,8 @@ double bit_error_probability(Modulation modulation, PowerRatio EbN0);
 /// Of fsk when the power fades as Rayleigh's amplitude does, from bit to bit, about this mean (Proakis, chapter 14).
 double bit_error_rayleigh_fsk(PowerRatio mean_EbN0);
 
-/// That none of `bits` independent bits is wrong; also of 1e5 bits and bit errors of 1e-12.  `coding_gain_dB`: by how
-/// much a code makes Eb/N0 better.
+/// That none of `bits` independent bits is wrong; also of 1e5 bits and bit errors of 1e-12. `coding_gain_dB`: coding
+/// gain on Eb/N0.
 double packet_success_probability(Modulation modulation, PowerRatio EbN0, std::int64_t bits,
                                   Decibels coding_gain = Decibels(0));
 double packet_success_probability(double bit_error, std::int64_t bits);

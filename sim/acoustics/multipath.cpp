@@ -54,15 +54,16 @@ void BottomConfig::read(ParamReader& in) {
 
 void MultipathConfig::read(ParamReader& in) {
   in.read("max_bounces", max_bounces, between(0, 20), "at surface and bottom together; 0: the direct path alone");
-  in.read("window_s", window_s, between(0, 10), "what comes later than this after the first sound disturbs");
+  in.read("window_s", window_s, between(0, 10), "echoes later than this after the first arrival are interference");
   in.read("water_depth_m", water_depth_m, above_to(0, 12000),
-          "of a flat bottom; absent: the terrain below the middle of the path; without terrain no bottom is heard");
+          "depth of a flat bottom; absent: the terrain below the middle of the path; without terrain there is no "
+          "bottom echo");
   in.read("surface_loss_dB", surface_loss_dB, between(0, 200), "of each bounce; absent: by the roughness");
   in.read("surface_roughness_m", surface_roughness_m, between(0, 20),
-          "rms height of the waves; absent: of a sea that has grown under the wind");
-  in.read("bottom", bottom, "what the bottom does to sound");
+          "rms height of the waves; absent: that of a fully developed sea under the wind");
+  in.read("bottom", bottom, "reflection of sound by the bottom");
   in.read_choice("phases", phases, {{"random", Phases::random}, {"geometric", Phases::geometric}},
-                 "random: each path has a phase of its own for each packet; geometric: by the lengths");
+                 "random: each path has its own phase for each packet; geometric: by the lengths");
   if (in.has("surface_loss_dB") && in.has("surface_roughness_m"))
     in.error("surface_roughness_m", "'surface_roughness_m' and 'surface_loss_dB' exclude each other");
 }

@@ -24,7 +24,7 @@ class Neighbourhood {
   void visit_state(StateArchive& archive) {
     archive(cell_m_, entries_);
     archive.require(cell_m_, 1.0, StateArchive::max_number, "a grid of transducers with cells of a size");
-    if (archive.restoring() && !in_order()) archive.fail("the snapshot has transducers in an order that cannot be");
+    if (archive.restoring() && !in_order()) archive.fail("the snapshot has transducers in an invalid order");
   }
   /// All members have numbers from 0 to below this.
   bool numbers_are_below(std::size_t count) const;

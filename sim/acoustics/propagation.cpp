@@ -22,9 +22,9 @@ Propagation::Band Propagation::band(double centre_Hz, double bandwidth_Hz) const
     if (known.centre_Hz == centre_Hz && known.bandwidth_Hz == bandwidth_Hz) return known;
   const AmbientNoise noise = config_.noise.with_wind(medium_.mean_wind_mps());
   const Decibels ambient = noise.band_level(centre_Hz, bandwidth_Hz);
-  const Band band{centre_Hz, bandwidth_Hz, ambient, to_power(ambient), least_absorption_dBpkm(centre_Hz)};
-  constexpr std::size_t most_bands = 64;
-  if (bands_.size() < most_bands) bands_.push_back(band);
+  const Band band{centre_Hz, bandwidth_Hz, ambient, to_power(ambient), min_absorption_dBpkm(centre_Hz)};
+  constexpr std::size_t max_bands = 64;
+  if (bands_.size() < max_bands) bands_.push_back(band);
   return band;
 }
 
@@ -37,41 +37,41 @@ PowerRatio Propagation::ambient_power(double centre_Hz, double bandwidth_Hz, Dec
   return less.dB() == 0 ? of.ambient_power : to_power(of.ambient - less);
 }
 
-std::array<double, Propagation::depths_m.size()> Propagation::least_absorption_dBpkm(double frequency_Hz) const {
-  std::array<double, depths_m.size()> least_dBpkm;
-  double so_far_dBpkm = std::numeric_limits<double>::infinity();
+std::array<double, Propagation::depths_m.size()> Propagation::min_absorption_dBpkm(double frequency_Hz) const {
+  std::array<double, depths_m.size()> min_dBpkm;
+  double lowest_dBpkm = std::numeric_limits<double>::infinity();
   const double surface_m = medium_.highest_surface_m();
   for (std::size_t i = 0; i < depths_m.size(); ++i) {
     const Vector3d p_W(0, 0, surface_m - depths_m[i]);
-    so_far_dBpkm = std::min(so_far_dBpkm, absorption_dBpkm(config_.absorption, frequency_Hz, medium_, p_W, p_W));
-    least_dBpkm[i] = 0.95 * so_far_dBpkm;  // between those depths
+    lowest_dBpkm = std::min(lowest_dBpkm, absorption_dBpkm(config_.absorption, frequency_Hz, medium_, p_W, p_W));
+    min_dBpkm[i] = 0.95 * lowest_dBpkm;  // between those depths
   }
-  return least_dBpkm;
+  return min_dBpkm;
 }
 
 double Propagation::audible_range_m(const Signal& signal, Decibels below, double deepest_m) const {
   const Band of = band(signal.centre_Hz, signal.bandwidth_Hz);
   const auto depth = std::lower_bound(depths_m.begin(), depths_m.end() - 1, deepest_m);
-  const double least_dBpkm = of.least_dBpkm[static_cast<std::size_t>(depth - depths_m.begin())];
+  const double min_dBpkm = of.min_dBpkm[static_cast<std::size_t>(depth - depths_m.begin())];
   const Decibels floor = of.ambient - below;
-  const double most_m = config_.range_max_m.value_or(1e6);
-  const auto heard = [&](double range_m) {
-    return signal.source_level - spreading_loss(range_m, config_.spreading) - absorption_loss(range_m, least_dBpkm) >
+  const double max_m = config_.range_max_m.value_or(1e6);
+  const auto received = [&](double range_m) {
+    return signal.source_level - spreading_loss(range_m, config_.spreading) - absorption_loss(range_m, min_dBpkm) >
            floor;
   };
-  if (heard(most_m)) return most_m;
-  double near_m = 1, far_m = most_m;
+  if (received(max_m)) return max_m;
+  double near_m = 1, far_m = max_m;
   for (int i = 0; i < 30; ++i) {
     const double middle_m = std::sqrt(near_m * far_m);
-    (heard(middle_m) ? near_m : far_m) = middle_m;
+    (received(middle_m) ? near_m : far_m) = middle_m;
   }
   return far_m;
 }
 
 double Propagation::free_part(const Vector3d& from_W, int from_group, const Vector3d& to_W, int to_group,
                               double frequency_Hz) const {
-  const Vector3d way_W = from_W - to_W;
-  const double length_m = way_W.norm();
+  const Vector3d displacement_W = from_W - to_W;
+  const double length_m = displacement_W.norm();
   if (length_m < 1e-3) return 1;
   RayFilter filter;
   filter.kind = RayKind::sound;
@@ -90,7 +90,7 @@ double Propagation::free_part(const Vector3d& from_W, int from_group, const Vect
   // of that zone is free tells how much passes.
   const double wavelength_m = medium_.sound_speed_mps(to_W) / frequency_Hz;
   const double radius_m = std::sqrt(wavelength_m * *at_m * (length_m - *at_m) / length_m);
-  const Vector3d along_W = way_W / length_m;
+  const Vector3d along_W = displacement_W / length_m;
   const Vector3d across_W = along_W.unitOrthogonal(), other_W = along_W.cross(across_W);
   constexpr int rim = 8;
   int free = 0;

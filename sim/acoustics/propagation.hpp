@@ -20,15 +20,15 @@ class Propagation {
   Propagation(const AcousticsConfig& config, const Medium& medium, const PhysicsWorld& physics)
       : config_(config), medium_(medium), physics_(physics) {}
 
-  /// Of a signal over the level at 1 m on the axis.
+  /// Path gain: received level relative to the source level at 1 m on the axis.
   struct Gain {
-    Decibels signal;        ///< minus infinity: nothing comes through
+    Decibels signal;        ///< minus infinity: nothing is received
     PowerRatio disturbing;  ///< echoes that come too late to help
     bool blocked = false;   ///< the direct path is
-    double later_s = 0;     ///< by which an echo comes after the direct path that is blocked
+    double later_s = 0;     ///< delay of an echo relative to the blocked direct path
   };
   /// The random draws: phases of the echoes, then fading.  The groups are those of the vehicles at both ends, whose
-  /// hulls do not stand in the way.
+  /// hulls do not block the path.
   Gain gain(const Vector3d& from_W, int from_group, const Vector3d& to_W, int to_group, double frequency_Hz,
             Random& random) const;
   /// Spreading and absorption along the straight line.
@@ -53,7 +53,7 @@ class Propagation {
   /// Down to these depths.
   static constexpr std::array<double, 12> depths_m{0, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, deepest_sea_m};
   /// The least absorption anywhere between the surface and each of depths_m.
-  std::array<double, depths_m.size()> least_absorption_dBpkm(double frequency_Hz) const;
+  std::array<double, depths_m.size()> min_absorption_dBpkm(double frequency_Hz) const;
   /// Below the surface; infinite when there is no bottom.
   double water_depth_m(const Vector3d& p_W) const;
 
@@ -62,14 +62,14 @@ class Propagation {
     double centre_Hz, bandwidth_Hz;
     Decibels ambient;
     PowerRatio ambient_power;
-    std::array<double, depths_m.size()> least_dBpkm;
+    std::array<double, depths_m.size()> min_dBpkm;
   };
   Band band(double centre_Hz, double bandwidth_Hz) const;
 
   const AcousticsConfig& config_;
   const Medium& medium_;
   const PhysicsWorld& physics_;
-  mutable std::vector<Band> bands_;  // worked out before
+  mutable std::vector<Band> bands_;  // computed before
 };
 
 }  // namespace sim

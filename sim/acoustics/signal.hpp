@@ -13,9 +13,9 @@
 
 namespace sim {
 
-/// Who a message is for, and who somebody is: what the counts of delivery go by.
+/// Addressees and addresses, by which delivery is counted.
 struct Audience {
-  std::string group;    ///< who could understand each other, such as kind and network of modems
+  std::string group;    ///< group that understands each other, such as kind and network of modems
   std::string address;  ///< in the group; of a message, empty: for all of the group
 
   template <typename Archive>
@@ -31,7 +31,7 @@ struct Signal {
     message,  ///< bits of a modem
     ping,     ///< asks transponders
     answer,   ///< of a transponder
-    noise,    ///< means nothing to anybody
+    noise,    ///< carries no information
   };
 
   Kind kind = Kind::message;
@@ -44,14 +44,14 @@ struct Signal {
   std::int64_t bits = 0;      ///< that must all come through; 0: it need only be detected
   double coding_gain_dB = 0;  ///< added to Eb/N0
   std::string network;        ///< listeners of another network do not understand it
-  std::string code;           ///< the listener's own: a frame type, who is asked
+  std::string code;           ///< defined by the listener: a frame type, the addressee of a ping
   Bytes payload;              ///< the listener's own
   Audience to;                ///< of a message: who it is for
 
   /// Above what any device sends.
   static constexpr double max_Hz = 1e9;
 
-  /// Its numbers are within what any sound in water can have: levels and rates worked out of them are finite.
+  /// Its numbers are within what any sound in water can have: levels and rates computed of them are finite.
   bool possible() const {
     const auto within = [](double value) { return value > 0 && value <= max_Hz; };
     return within(centre_Hz) && within(bandwidth_Hz) && within(bit_rate_bps) && bits >= 0 &&
@@ -62,11 +62,11 @@ struct Signal {
   void visit_state(Archive& archive) {
     archive(kind, source_level, centre_Hz, bandwidth_Hz, duration, modulation, bit_rate_bps, bits, coding_gain_dB,
             network, code, payload, to);
-    if (archive.restoring() && !possible()) archive.fail("a signal that cannot be");
+    if (archive.restoring() && !possible()) archive.fail("an invalid signal");
   }
 };
 
-/// Why a signal was not understood where it was heard.
+/// Why a signal was not understood where it was received.
 enum class SignalLoss {
   none,          ///< it was understood
   noise,         ///< too weak against the noise
@@ -79,7 +79,7 @@ enum class SignalLoss {
   out_of_water,  ///< sender or receiver left the water
   receiver_off,  ///< without power, or silent by a fault
   link,          ///< `links:` of the world lost it
-  range,         ///< so far away that nothing of it could be heard
+  range,         ///< too far away to be received
   sender_off,    ///< the sender lost its power, or was removed, in the middle of it
 };
 inline constexpr int signal_losses = 13;
@@ -92,7 +92,7 @@ struct Reception {
   std::string source;                     ///< vehicle and device that sent it, such as `auv1/modem`
   int from = -1;                          ///< number of the sending transducer
   Time sent{0};                           ///< begin of sending
-  Time begun{0}, ended{0};                ///< of the sound at the receiver
+  Time started{0}, ended{0};              ///< of the sound at the receiver
   double travel_time_s = 0;               ///< from `sent` to `begun`, not rounded
   Vector3d p_sent_W = Vector3d::Zero();   ///< where the sender was at `sent`
   Vector3d p_begun_W = Vector3d::Zero();  ///< where the receiver was at `begun`
@@ -101,7 +101,7 @@ struct Reception {
   Decibels sinr{0};                       ///< against noise and other sounds, at its worst
   double closing_mps = 0;                 ///< Doppler: how fast sender and receiver came nearer
   SignalLoss loss = SignalLoss::none;
-  bool noticed = false;  ///< the receiver took it, whatever came of it then
+  bool detected = false;  ///< the receiver locked on to it, successfully or not
 
   bool understood() const { return loss == SignalLoss::none; }
 };

@@ -29,16 +29,16 @@ SignalReceiver::Others SignalReceiver::others(const PresentSound& but, Time at) 
   return sum;
 }
 
-bool SignalReceiver::stands_out(const TakenSignal& signal, PowerRatio needed) const {
+bool SignalReceiver::is_detectable(const TakenSignal& signal, PowerRatio needed) const {
   const PowerRatio still = signal.noise + signal.disturbing;
   PowerRatio sum{0};
   // What is added to a sum never makes it less, rounded or not: once it is too much, the rest does not matter.
-  constexpr std::size_t between_looks = 8;
+  constexpr std::size_t check_interval = 8;
   for (std::size_t i = 0; i < present_.size();) {
-    const std::size_t end = std::min(i + between_looks, present_.size());
+    const std::size_t end = std::min(i + check_interval, present_.size());
     for (; i < end; ++i) {
       const PresentSound& sound = present_[i];
-      if (sound.flight != signal.sound.flight && sound.ended > signal.begun)
+      if (sound.flight != signal.sound.flight && sound.ended > signal.started)
         sum += share_in_band(sound, signal.sound) * sound.power;
     }
     if (!(signal.sound.power / (still + sum) >= needed)) return false;
@@ -54,7 +54,7 @@ void SignalReceiver::count_bits(Taken& taken, Time until) const {
   if (until <= taken.counted_until) return;
   const TakenSignal& signal = taken.signal;
   const double span = to_seconds(std::min(until, signal.ended) - taken.counted_until);
-  const double whole = to_seconds(signal.ended - signal.begun);
+  const double whole = to_seconds(signal.ended - signal.started);
   const Others other = others(signal.sound, taken.counted_until);
   taken.counted_until = until;
   const PowerRatio alone = signal.sound.power / (signal.noise + signal.disturbing);
@@ -83,23 +83,23 @@ SignalLoss SignalReceiver::take(const TakenSignal& signal, const Rules& rules, s
   const PowerRatio needed = to_power(Decibels{rules.detection_dB});
   const PowerRatio still = signal.noise + signal.disturbing;
   if (signal.sound.power / still < needed) return SignalLoss::noise;
-  const bool noticed = stands_out(signal, needed);
+  const bool detected = is_detectable(signal, needed);
   auto rival = taken_.end();
   for (auto each = taken_.begin(); each != taken_.end(); ++each) {
-    // One that ends as this one begins is no rival.
-    if (each->signal.ended <= signal.begun || share_in_band(each->signal.sound, signal.sound) <= 0) continue;
+    // One that ends as this one begins is not a rival.
+    if (each->signal.ended <= signal.started || share_in_band(each->signal.sound, signal.sound) <= 0) continue;
     if (rival != taken_.end()) return SignalLoss::busy;
     rival = each;
   }
   if (rival != taken_.end()) {
     const PowerRatio stronger = signal.sound.power / rival->signal.sound.power;
-    if (!noticed || stronger < to_power(Decibels{rules.capture_dB})) return SignalLoss::busy;
+    if (!detected || stronger < to_power(Decibels{rules.capture_dB})) return SignalLoss::busy;
     displaced = rival->signal.sound.flight;
     taken_.erase(rival);
-  } else if (!noticed) {
+  } else if (!detected) {
     return SignalLoss::interference;
   }
-  taken_.push_back({signal, signal.begun, 0, 0, signal.sound.power / still});
+  taken_.push_back({signal, signal.started, 0, 0, signal.sound.power / still});
   return SignalLoss::none;
 }
 
@@ -141,11 +141,11 @@ bool SignalReceiver::end(std::int64_t flight, Time at, Outcome& outcome) {
     outcome = {std::exp(taken->log_success), std::exp(taken->log_success_alone), taken->worst_sinr};
     taken_.erase(taken);
   }
-  const auto gone = std::find(present_flights_.begin(), present_flights_.end(), flight);
-  if (gone != present_flights_.end()) {
-    present_[static_cast<std::size_t>(gone - present_flights_.begin())] = present_.back();
+  const auto removed = std::find(present_flights_.begin(), present_flights_.end(), flight);
+  if (removed != present_flights_.end()) {
+    present_[static_cast<std::size_t>(removed - present_flights_.begin())] = present_.back();
     present_.pop_back();
-    *gone = present_flights_.back();
+    *removed = present_flights_.back();
     present_flights_.pop_back();
   }
   return was_taken;

@@ -20,7 +20,7 @@ struct PresentSound {
   void visit_state(StateArchive& archive) { archive(flight, centre_Hz, bandwidth_Hz, power, ended, message); }
 };
 
-/// What a receiver needs to know of a signal that it tries to take.
+/// The properties of a signal that a receiver tries to lock on to.
 struct TakenSignal {
   PresentSound sound;
   PowerRatio noise{0};       ///< re 1 uPa^2, in the band of the signal
@@ -29,19 +29,18 @@ struct TakenSignal {
   double bit_rate_bps = 80;
   std::int64_t bits = 0;
   double coding_gain_dB = 0;
-  /// Over other messages in its band: bits that come while it has less are a guess each.  What other messages have
-  /// less than that is noise to it.
+  /// Over other messages in its band: bits received below it are random.  Weaker messages act as noise.
   PowerRatio protection{0};
-  Time begun{0}, ended{0};
+  Time started{0}, ended{0};
   void visit_state(StateArchive& archive) {
-    archive(sound, noise, disturbing, modulation, bit_rate_bps, bits, coding_gain_dB, protection, begun, ended);
+    archive(sound, noise, disturbing, modulation, bit_rate_bps, bits, coding_gain_dB, protection, started, ended);
   }
 };
 
-/// The receiver of a transducer: which of the sounds that overlap it takes, and how well it comes through.  It takes
-/// the first signal that it notices in a band; a much stronger one takes it over.  Signals in bands apart from each
-/// other are taken side by side.  While what else is heard stays the same the
-/// bits are equally likely to be wrong, so the probability that all are right is a product over such spans.
+/// The receiver of a transducer: which of several overlapping signals it receives, and with what quality.  It locks
+/// on to the first signal that it detects in a band; a much stronger one captures it.  Signals in bands apart from each
+/// other are taken side by side.  While the interference is constant all bits have the same error probability, so the
+/// probability of an error-free message is a product over such spans.
 class SignalReceiver {
  public:
   struct Rules {
@@ -58,16 +57,16 @@ class SignalReceiver {
   /// A sound begins.  Before take() of the same one.
   void begin(const PresentSound& sound, Time at);
   /// Tries to take a signal that has begun.  `displaced`: the flight that lost its band to it, or -1.  One that would
-  /// take more than one band over is not taken.
+  /// capture more than one band is ignored.
   SignalLoss take(const TakenSignal& signal, const Rules& rules, std::int64_t& displaced);
   /// From now on the noise in the band of a signal that is taken is this.
   void set_noise(std::int64_t flight, PowerRatio noise, Time at);
   bool takes(std::int64_t flight) const;
-  /// A sound stops before its end; who takes it goes on until that.
+  /// A sound stops before its end; its receiver continues until then.
   void silence(std::int64_t flight, Time at);
   /// A sound ends.  True, with the outcome, when it was taken.
   bool end(std::int64_t flight, Time at, Outcome& outcome);
-  /// Lets go of the last signal that is taken; its flight, or -1 when there was none.
+  /// Releases the last signal being received; its flight, or -1 when there was none.
   std::int64_t drop();
   bool taking() const { return !taken_.empty(); }
   /// All flights it knows of have numbers from 0 to below this.
@@ -75,7 +74,7 @@ class SignalReceiver {
   void visit_state(StateArchive& archive);
 
  private:
-  /// A signal that is taken, and what has come of it so far.
+  /// A signal being received, and its state so far.
   struct Taken {
     TakenSignal signal;
     Time counted_until{0};
@@ -94,7 +93,7 @@ class SignalReceiver {
   /// Of all sounds but one, in its band, that last beyond a time.
   Others others(const PresentSound& but, Time at) const;
   /// Whether a signal is so much stronger than all else in its band.
-  bool stands_out(const TakenSignal& signal, PowerRatio needed) const;
+  bool is_detectable(const TakenSignal& signal, PowerRatio needed) const;
   /// Counts the bits of what is taken since the last change.
   void count_bits(Time until);
   void count_bits(Taken& taken, Time until) const;

@@ -35,9 +35,9 @@ std::optional<Arrival> meeting(const Medium& medium, const Vector3d& source_W, c
     p_W = receiver_W + velocity_W * t_s;
     if (done) break;
   }
-  const Vector3d way_W = p_W - source_W;
-  const double range_m = way_W.norm();
-  return Arrival{t_s, p_W, range_m > 0 ? Vector3d(way_W / range_m) : Vector3d::UnitX(), range_m};
+  const Vector3d displacement_W = p_W - source_W;
+  const double range_m = displacement_W.norm();
+  return Arrival{t_s, p_W, range_m > 0 ? Vector3d(displacement_W / range_m) : Vector3d::UnitX(), range_m};
 }
 
 std::optional<Arrival> meeting(const Medium& medium, const Vector3d& source_W, Time sent_at, const Vector3d& receiver_W,

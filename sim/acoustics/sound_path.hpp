@@ -20,7 +20,7 @@ struct Arrival {
   double range_m = 0;                        ///< from where the source was
 };
 
-/// A sound starts at `source_W`, when a receiver is at `receiver_W` and goes on at `velocity_W`: when and where they
+/// A sound starts at `source_W`, when a receiver is at `receiver_W` and continues at `velocity_W`: when and where they
 /// meet, to 1e-9 s.  Nothing when the receiver is as fast as the sound.
 std::optional<Arrival> meeting(const Medium& medium, const Vector3d& source_W, const Vector3d& receiver_W,
                                const Vector3d& velocity_W);
@@ -28,11 +28,11 @@ std::optional<Arrival> meeting(const Medium& medium, const Vector3d& source_W, c
 std::optional<Arrival> meeting(const Medium& medium, const Vector3d& source_W, Time sent_at, const Vector3d& receiver_W,
                                Time seen_at, const Vector3d& velocity_W);
 
-/// How fast the ends come together, m/s: the source's velocity when it sends, the receiver's when it hears, along the
-/// unit vector from the one to the other.
+/// Closing speed of the ends, m/s: the source's velocity at transmission, the receiver's at reception, along the unit
+/// vector between them.
 double closing_speed_mps(const Vector3d& direction_W, const Vector3d& source_velocity_W,
                          const Vector3d& receiver_velocity_W);
-/// Heard frequency over sent: (c - v_r) / (c - v_s), each along the direction.
+/// Received frequency over sent: (c - v_r) / (c - v_s), each along the direction.
 double doppler_factor(const Vector3d& direction_W, const Vector3d& source_velocity_W,
                       const Vector3d& receiver_velocity_W, double sound_speed_mps);
 

@@ -16,8 +16,8 @@ struct SoundSite {
   AcousticChannel& channel;
   const Body& body;            ///< that carries it
   Pose X_BS;                   ///< of the device in that body; x is the axis
-  int group;                   ///< of the bodies that are not in the way of its own sound
-  const bool& powered;         ///< false: it neither sends nor hears
+  int group;                   ///< of the bodies that do not block its own sound
+  const bool& powered;         ///< false: it neither sends nor receives
   const DeviceFaults& faults;  ///< of the device
   std::string full_name;       ///< such as `auv1/modem`
 };

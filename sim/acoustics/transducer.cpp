@@ -8,12 +8,14 @@
 namespace sim {
 
 void ReceiverConfig::read(ParamReader& in) {
-  in.read("detection_dB", detection_dB, between(-60, 100), "signal over noise and other sounds to notice a signal");
-  in.read("capture_dB", capture_dB, between(0, 200), "a signal this much stronger takes over from the one it takes");
+  in.read("detection_dB", detection_dB, between(-60, 100),
+          "signal-to-noise-and-interference ratio needed to detect a signal");
+  in.read("capture_dB", capture_dB, between(0, 200),
+          "capture ratio: a signal this much stronger replaces the one being received");
   in.read("protection_dB", protection_dB, between(-60, 200),
-          "a message that it takes is lost where it is not this much stronger than all others in its band together");
-  in.read("doppler_limit_mps", doppler_limit_mps, between(0, 1000), "closing or parting speed that it follows");
-  in.read("directivity", directivity, "for sending and hearing; its axis is x of the device");
+          "a message is lost unless it is this much stronger than all other signals in its band together");
+  in.read("doppler_limit_mps", doppler_limit_mps, between(0, 1000), "maximum closing or opening speed that it tracks");
+  in.read("directivity", directivity, "for sending and receiving; its axis is x of the device");
 }
 
 Transducer::Transducer(AcousticListener& listener, const ReceiverConfig& config, SoundSite site)
@@ -42,7 +44,7 @@ void Transducer::belong_to(const Audience& own) {
 }
 
 std::int64_t Transducer::out_of_range() const {
-  // Without signs: a snapshot that somebody made up may hold any counts.
+  // Without signs: a forged snapshot may hold any counts.
   const auto meant = static_cast<std::uint64_t>(site_.channel.messages_for(own_));
   return static_cast<std::int64_t>(meant - static_cast<std::uint64_t>(meant_before_) -
                                    static_cast<std::uint64_t>(meant_near_));
@@ -59,7 +61,7 @@ bool Transducer::works() const {
 }
 
 const Transducer::Motion& Transducer::motion() const {
-  // Where hundreds of signals come to it in a step, it is worked out once.
+  // Where hundreds of signals come to it in a step, it is computed once.
   const std::int64_t look = site_.channel.look();
   if (look == motion_of_ && look >= 0) return motion_;
   const BodyMotion body = site_.body.motion();
@@ -82,7 +84,7 @@ Matrix3d Transducer::R_WS() const {
 
 void Transducer::change(const ReceiverConfig& config) {
   config_ = config;
-  site_.channel.forget_receivers();
+  site_.channel.clear_receivers();
   index_of_Hz_ = std::numeric_limits<double>::quiet_NaN();
 }
 

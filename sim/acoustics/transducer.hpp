@@ -13,16 +13,16 @@
 
 namespace sim {
 
-/// Who hears through a transducer.
+/// Receiver of the signals of a transducer.
 class AcousticListener {
  public:
   virtual ~AcousticListener() = default;
   /// Tries to understand it.  What it does not listen to is noise in its band.
   virtual bool listens_to(const Signal& signal) const = 0;
-  /// A signal that it listens to has ended, understood or not (a transducer that cannot hear, under no power or out
-  /// of the water, is told nothing).  Called at a simulated time within the step that just ended, `heard.ended`; the
+  /// Called when a signal that it receives has ended, decoded or not (not for a transducer without power or out of
+  /// the water).  Called at a simulated time within the step that just ended, `received.ended`; the
   /// listener may transmit at that time or later.
-  virtual void heard(const Reception& heard) = 0;
+  virtual void receive(const Reception& received) = 0;
 };
 
 /// The receiver of a transducer.
@@ -31,11 +31,11 @@ struct ReceiverConfig {
   double capture_dB = 6;          ///< a signal stronger by this takes it from the one it is taking
   double protection_dB = 6;       ///< over all other messages in its band that one needs while it is taken
   double doppler_limit_mps = 5;   ///< closing or parting speed it follows
-  DirectivityConfig directivity;  ///< for sending and hearing; the axis is x of the device
+  DirectivityConfig directivity;  ///< for sending and receiving; the axis is x of the device
   void read(ParamReader& in);
 };
 
-/// Where sound goes into the water and comes out.  Owned by a device; in the channel while it exists, which hashes and
+/// Point where sound enters and leaves the water.  Owned by a device; in the channel while it exists, which hashes and
 /// saves its state: the device does not visit it.
 class Transducer {
  public:
@@ -53,15 +53,15 @@ class Transducer {
   Transducer(const Transducer&) = delete;
   Transducer& operator=(const Transducer&) = delete;
 
-  /// From `at` on, which is not before now (the start of the step in act(), `Reception::ended` in heard()).  The
+  /// From `at` on, which is not before now (the start of the step in act(), `Reception::ended` in receive()).  The
   /// caller lets one signal end before the next begins.
   void transmit(Signal signal, Time at);
-  /// What it was asked to send and has not begun is not sent.
+  /// Cancels queued transmissions that have not started.
   void call_back();
-  /// Who it is from now on; before the first call, nobody in particular.
+  /// Sets its identity; anonymous before the first call.
   void belong_to(const Audience& own);
   /// It was called: messages may be for this one, as for that of a modem.
-  bool belongs_to_somebody() const { return !own_.group.empty(); }
+  bool has_owner() const { return !own_.group.empty(); }
   /// It sends now, or has something scheduled, until this time.
   Time busy_until() const { return busy_until_; }
   /// It is taking a signal now.
@@ -79,7 +79,7 @@ class Transducer {
   int number() const { return number_; }
   const ReceiverConfig& config() const { return config_; }
   void change(const ReceiverConfig& config);
-  /// By how much noise from all sides is less through its directivity: the directivity index.
+  /// Directivity index: reduction of isotropic noise: the directivity index.
   Decibels noise_reduction(double frequency_Hz) const;
   Counts counts() const;
   void visit_state(StateArchive& archive) {
@@ -93,13 +93,13 @@ class Transducer {
   /// Where it is at the end of the step, and how it moves.
   struct Motion {
     Vector3d p_W, v_W;
-    Vector3d drift_W;  // v_W as p_W(Time) has it: the same but for rounding
+    Vector3d drift_W;  // v_W as p_W(Time) has it: the same except for rounding
   };
   const Motion& motion() const;
   bool is_meant_by(const Signal& signal) const {
     return signal.to.group == own_.group && (signal.to.address.empty() || signal.to.address == own_.address);
   }
-  /// Messages for it that were sent where it could not hear them.
+  /// Messages for it that were sent out of its range.
   std::int64_t out_of_range() const;
 
   AcousticListener& listener_;
@@ -115,16 +115,16 @@ class Transducer {
   Counts counts_;  // without those that are out of range
   Audience own_;
   std::int64_t meant_before_ = 0;  // messages for who it is, sent before it was
-  std::int64_t meant_near_ = 0;    // since then: those that are or were on their way to it, and its own
-  // The directivity index of a frequency, worked out before; NaN: none.
+  std::int64_t meant_near_ = 0;    // since then: those that are or were in flight to it, and its own
+  // The directivity index of a frequency, computed before; NaN: none.
   mutable double index_of_Hz_ = std::numeric_limits<double>::quiet_NaN();
   mutable Decibels index_;
   mutable Motion motion_;
   mutable std::int64_t motion_of_ = -1;  // AcousticChannel::look() that it is of
 };
 
-/// A sound that goes on and on: an engine, a pile driver, a jammer.  Owned by a device; in the channel while it exists,
-/// which hashes and saves its state: the device does not visit it.
+/// A sound that continues and on: an engine, a pile driver, a jammer.  Owned by a device; in the channel while it
+/// exists, which hashes and saves its state: the device does not visit it.
 class ContinuousSound {
  public:
   /// Even over its band.

@@ -18,7 +18,7 @@ class ActorAction final : public Action {
     in.require(main);
     in.read_reference(main, actor_, "actor", "the actor");
     in.require("command");
-    in.read_choice("command", command_, actor_command_words, "what it does from now on");
+    in.read_choice("command", command_, actor_command_words, "new state of the actor");
   }
   void carry_out(const ActionRun& run) const override { run.script.command_actor(actor_, command_); }
 

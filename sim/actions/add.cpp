@@ -46,7 +46,7 @@ class AddAction final : public Action {
     ParamInfo info;
     info.key = key;
     info.type = "text or map";
-    info.meaning = "name of an object of the world that is not there, or a map with the keys of a new object";
+    info.meaning = "name of an object of the world that does not exist, or a map with the keys of a new object";
     info.required = true;
     in.describe(std::move(info));
   }

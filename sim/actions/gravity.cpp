@@ -23,7 +23,7 @@ class GravityAction final : public Action {
   void check(const ActionCheck& check) override {
     if (!check.world().medium.water) return;
     check.error("'gravity_mps2' cannot change in a world with water: pressure, waves and published weights are for " +
-                number_text(check.world().physics.gravity_mps2) + " m/s^2, which the world begins with");
+                number_text(check.world().physics.gravity_mps2) + " m/s^2, with which the world starts");
   }
 
   void carry_out(const ActionRun& run) const override { run.stage.set_gravity(gravity_mps2_); }

@@ -13,7 +13,7 @@ void PlaceChoice::read(ParamReader& in) {
   in.read("position_m", position, any_place(), "place in the world");
   in.read_deg("rpy_deg", rpy, "roll, pitch, yaw; unset: as it was");
   read_points(in, "places", places_m, 3, "one of these places, at random");
-  in.read("area_m", area_m, at_least(0), "size of a box around the place, somewhere in which it is put");
+  in.read("area_m", area_m, at_least(0), "size of a box around the place from which the position is drawn");
   in.read("random_yaw", random_yaw, "the heading is drawn from the full circle");
   if (in.has("position_m")) position_m = position;
   if (in.has("rpy_deg")) rpy_rad = rpy;

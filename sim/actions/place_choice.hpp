@@ -19,7 +19,7 @@ struct PlaceChoice {
   bool random_yaw = false;
 
   void read(ParamReader& in);
-  /// `X_W_unless`: what is not said stays as it is there.
+  /// `X_W_unless`: default of the parts that are not given.
   Pose choose(const Pose& X_W_unless, Random& random) const;
 };
 

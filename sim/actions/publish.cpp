@@ -39,7 +39,7 @@ class PublishAction final : public Action {
     Diagnostics found;
     payload_ = encode(type_, value_, found);
     for (const std::string& line : found.lines()) check.diagnostics().error({}, "", line);
-    if (found.ok() && value_.find("utime") == nullptr) stamp_utime_ = begins_with_utime(encode, check.entry().place);
+    if (found.ok() && value_.find("utime") == nullptr) stamp_utime_ = starts_with_utime(encode, check.entry().place);
   }
 
   void carry_out(const ActionRun& run) const override {
@@ -61,8 +61,9 @@ class PublishAction final : public Action {
                         "' cannot be published on: sim.* belongs to the simulator, and names are printable");
   }
 
-  /// sim/ knows no message types, but one whose first member is `int64_t utime` shows when it is given another one.
-  bool begins_with_utime(const EncodeMessage& encode, const SourcePlace& place) const {
+  /// sim/ has no message types, but a type whose first member is `int64_t utime` can be recognised by encoding
+  /// different values.
+  bool starts_with_utime(const EncodeMessage& encode, const SourcePlace& place) const {
     ConfigNode stamped = value_;
     stamped.entries.push_back({"utime", place, scalar_node("1", place)});
     Diagnostics ignored;

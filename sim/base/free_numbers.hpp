@@ -27,12 +27,12 @@ class FreeNumbers {
 
   /// The next ones are these, in this order.  Throws std::out_of_range when one of them is in use or cannot be.
   void prescribe(const std::vector<int>& numbers) {
-    constexpr int most = 10'000'000;
+    constexpr int max = 10'000'000;
     for (const int number : numbers)
-      if (number < 0 || number >= most || (number < count_ && !free_.contains(number)))
-        throw std::out_of_range("number " + std::to_string(number) + " is in use, or is none");
+      if (number < 0 || number >= max || (number < count_ && !free_.contains(number)))
+        throw std::out_of_range("number " + std::to_string(number) + " is in use or out of range");
     if (std::set<int>(numbers.begin(), numbers.end()).size() != numbers.size())
-      throw std::out_of_range("a number comes twice");
+      throw std::out_of_range("a number occurs twice");
     prescribed_.assign(numbers.begin(), numbers.end());
   }
   /// All that were prescribed have been taken.

@@ -29,8 +29,8 @@ class StateHash {
     add(static_cast<std::uint64_t>(size));
     const char* at = static_cast<const char*>(data);
     // Four chains side by side, for each step of a chain waits for the one before.
-    constexpr std::size_t lanes = 4, worth_it = 64;
-    if (size >= worth_it) {
+    constexpr std::size_t lanes = 4, min_size_for_lanes = 64;
+    if (size >= min_size_for_lanes) {
       std::uint64_t chain[lanes] = {value_, value_ + 1, value_ + 2, value_ + 3};
       for (; size >= sizeof chain; size -= sizeof chain, at += sizeof chain) {
         std::uint64_t words[lanes];

@@ -35,8 +35,8 @@ class Mailbox {
   /// The oldest unread message.  Never waits.
   virtual std::optional<Message> take() = 0;
   virtual std::uint64_t dropped() const = 0;
-  /// From now on `flag` becomes true whenever a message has come, so that who reads thousands of mailboxes need not
-  /// look into those that are empty.  Who reads lowers it first, then takes all there is.  For one flag.
+  /// Sets `flag` whenever a message arrives, so that a reader of thousands of mailboxes can skip the empty ones.
+  ///   The reader clears it first, then takes all messages.  For one flag.
   virtual void raise_on_arrival(std::shared_ptr<std::atomic<bool>> flag) = 0;
   /// What waits, oldest first, for a snapshot.  A mailbox that only the network fills need not tell.
   virtual std::vector<Message> unread() const { return {}; }
@@ -63,7 +63,7 @@ class Bus {
   virtual ~Bus() = default;
   /// Never waits for the network.  `at`: simulated time, stamped on records.
   virtual void publish(std::string_view channel, std::span<const std::byte> payload, Time at) = 0;
-  /// A mailbox of its own for every call.  It must not outlive the bus.  Throws std::invalid_argument on a channel
+  /// Its own mailbox for every call.  It must not outlive the bus.  Throws std::invalid_argument on a channel
   /// name that is empty or too long.
   virtual std::unique_ptr<Mailbox> open_mailbox(const std::string& channel,
                                                 std::size_t capacity = default_mailbox_capacity) = 0;

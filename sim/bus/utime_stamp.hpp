@@ -9,9 +9,9 @@
 
 namespace sim {
 
-// Messages begin with 8 bytes of fingerprint, and Shoal's go on with `int64_t utime`, big-endian.
+// Messages start with 8 bytes of fingerprint, followed in Shoal's types by `int64_t utime`, big-endian.
 
-/// What stands where a message has its utime; nothing when it is too short.
+/// The value at the position of utime in a message; nothing when it is too short.
 std::optional<std::int64_t> utime_of(std::span<const std::byte> payload);
 /// Puts a utime there.  The message must be long enough.
 void set_utime(Bytes& payload, std::int64_t utime);

@@ -18,7 +18,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 /// The undistorted radius at which a pinhole gives up: 89.4 degrees off the axis.
 constexpr double widest_pinhole = 100;
 
-constexpr double least_focal_px = 1e-3, most_focal_px = 1e9;
+constexpr double min_focal_px = 1e-3, max_focal_px = 1e9;
 
 /// fx and fy.
 Vector2d focal_px_of(const OpticsConfig& config) {
@@ -34,8 +34,8 @@ Vector2d focal_px_of(const OpticsConfig& config) {
   return Vector2d::Constant(half_width_px / half_rad);
 }
 
-bool in_form(const std::vector<double>& values, std::size_t least, std::size_t most) {
-  return values.empty() || (values.size() >= least && values.size() <= most);
+bool in_form(const std::vector<double>& values, std::size_t min, std::size_t max) {
+  return values.empty() || (values.size() >= min && values.size() <= max);
 }
 
 }  // namespace
@@ -43,15 +43,15 @@ bool in_form(const std::vector<double>& values, std::size_t least, std::size_t m
 void OpticsConfig::read(ParamReader& in) {
   in.read("width", width, between(1, max_image_side_px), "pixels in a row");
   in.read("height", height, between(1, max_image_side_px), "rows");
-  in.read_choice("lens", lens, lens_words, "how angles become places in the image");
+  in.read_choice("lens", lens, lens_words, "projection of angles onto the image");
   in.read_deg("fov_deg", fov_rad, above_to(0, 359),
               "horizontal angle of view, without the distortion; a pinhole's is < 180");
   in.read("focal_px", focal_px, above(0), "focal length, or fx and fy, instead of fov_deg");
   in.read("principal_px", principal_px, between(-max_image_side_px, 2 * max_image_side_px),
-          "where the axis meets the image, from its outer corner; left out: its middle");
+          "principal point, from the outer corner of the image; unset: its middle");
   in.read("distortion", distortion, any_number(),
           "pinhole: k1, k2, p1, p2, k3 (Brown-Conrady); fisheye: k1 to k4 (Kannala-Brandt); both as OpenCV has them");
-  in.read_deg("max_angle_deg", max_angle_rad, above_to(0, 180), "fisheye: what is farther off the axis is black");
+  in.read_deg("max_angle_deg", max_angle_rad, above_to(0, 180), "fisheye: pixels farther off the axis are black");
   if (in.describing()) return;
   if (in.has("fov_deg") && in.has("focal_px")) in.error("focal_px", "needs either 'fov_deg' or 'focal_px', not both");
   const std::string wrong = problem();
@@ -69,9 +69,9 @@ std::string OpticsConfig::problem() const {
   if (!in_form(principal_px, 2, 2))
     return fmt::format("'principal_px' must have 2 numbers, got {}", principal_px.size());
   const bool fisheye = lens == Lens::fisheye;
-  const std::size_t most = fisheye ? 4 : 5;
-  if (distortion.size() > most)
-    return fmt::format("'distortion' of a {} must have at most {} numbers, got {}", word_of(lens_words, lens), most,
+  const std::size_t max = fisheye ? 4 : 5;
+  if (distortion.size() > max)
+    return fmt::format("'distortion' of a {} must have at most {} numbers, got {}", word_of(lens_words, lens), max,
                        distortion.size());
   if (focal_px.empty() && !fisheye && !(fov_rad > 0 && fov_rad < std::numbers::pi))
     return fmt::format("'fov_deg' of a pinhole must be > 0 and < 180, got {:g}", radians_to_degrees(fov_rad));
@@ -79,9 +79,9 @@ std::string OpticsConfig::problem() const {
     return fmt::format("'fov_deg' must be > 0 and < 360, got {:g}", radians_to_degrees(fov_rad));
   const Vector2d focal = focal_px_of(*this);
   for (const double f : focal)
-    if (!(f >= least_focal_px && f <= most_focal_px))
+    if (!(f >= min_focal_px && f <= max_focal_px))
       return fmt::format("'{}' must make a focal length >= {:g} and <= {:g} pixels, got {:g}",
-                         focal_px.empty() ? "fov_deg" : "focal_px", least_focal_px, most_focal_px, f);
+                         focal_px.empty() ? "fov_deg" : "focal_px", min_focal_px, max_focal_px, f);
   const Optics optics(*this);
   // The distortion is smooth and grows outwards: where corners and sides are good, all is.
   for (int i = 0; i <= 16; ++i)

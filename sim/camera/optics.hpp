@@ -30,7 +30,7 @@ struct OpticsConfig {
   std::vector<double> focal_px;                    ///< fx, fy or one for both; empty: from the field of view
   std::vector<double> principal_px;                ///< empty: the middle of the image
   std::vector<double> distortion;                  ///< pinhole: k1, k2, p1, p2, k3; fisheye: k1 to k4; OpenCV's order
-  double max_angle_rad = degrees_to_radians(180);  ///< fisheye: pixels that look farther off the axis see nothing
+  double max_angle_rad = degrees_to_radians(180);  ///< fisheye: pixels farther off the axis are empty
 
   void read(ParamReader& in);
   /// What is wrong with it; empty: nothing.
@@ -39,7 +39,7 @@ struct OpticsConfig {
   std::string text() const;
 };
 
-/// Which way each pixel looks.
+/// Viewing direction of each pixel.
 class Optics {
  public:
   /// Throws std::invalid_argument when there is no focal length > 0; the rest is up to config.problem().
@@ -51,7 +51,7 @@ class Optics {
   double focal_y_px() const { return fy_; }
   const OpticsConfig& config() const { return config_; }
 
-  /// Unit vector in S along which the place (u, v) of the image looks; nothing where the lens sees nothing.
+  /// Unit vector in S of the viewing direction at (u, v) in the image; nothing outside the lens's field of view.
   std::optional<Vector3d> direction_S(double u, double v) const;
   /// Where a point in S is seen, inside the image or not; nothing when the lens cannot see it.
   std::optional<Vector2d> project(const Vector3d& p_S) const;
@@ -79,7 +79,7 @@ class Optics {
   double fold_radius_ = 0;  ///< distorted_radius(last_good_), or infinity when it never folds
 };
 
-/// The directions of a whole image, worked out once.
+/// The directions of a whole image, computed once.
 struct PixelRays {
   int width = 0, height = 0;  ///< of the image
   int per_side = 1;           ///< rays of a pixel along u and along v

@@ -25,7 +25,7 @@ struct RenderOptions {
   LightConfig light;
 };
 
-/// One image under way: `light` holds a color image in linear RGB, `depth_m` depth (infinity: nothing), `labels` a
+/// One image in progress: `light` holds a color image in linear RGB, `depth_m` depth (infinity: nothing), `labels` a
 /// segmentation (see Renderer::label_name); the others stay empty.
 struct Frame {
   FloatImage light;
@@ -39,8 +39,8 @@ struct Frame {
 /// One thread at a time; several renderers may work at once when the scene allows it.
 class Renderer {
  public:
-  /// Throws ConfigError for a texture that cannot be read, of a material that the world has now.  Of one that comes
-  /// later, such a texture is left out.
+  /// Throws ConfigError for a texture that cannot be read, of a material that the world has now.  For one that is
+  /// added later, such a texture is left out.
   Renderer(const PhysicsWorld& physics, std::shared_ptr<const PixelRays> rays, const RenderOptions& options,
            std::shared_ptr<TextureLibrary> textures);
 

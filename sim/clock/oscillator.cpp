@@ -29,7 +29,7 @@ constexpr ClockPreset presets[] = {
 };
 
 /// Steps of the frequency that no oscillator makes are cut, so that the clock never runs backwards.
-constexpr double most_rate = 0.1;
+constexpr double max_rate = 0.1;
 
 }  // namespace
 
@@ -60,7 +60,7 @@ void ClockConfig::read(ParamReader& in) {
   in.read("temperature_ppm_per_C", temperature_ppm_per_C, between(-100, 100),
           "change of the frequency with the temperature of the water at the vehicle");
   in.read("reference_temperature_C", reference_temperature_C, between(-50, 100),
-          "without an effect; also that of the clock in air");
+          "temperature without an effect; also that of the clock in air");
   in.read("update_s", update_s, between(0.01, 3600), "interval at which the random parts advance; linear in between");
   in.read("resolution_s", resolution_s, between(1e-6, 60),
           "tick: the reading is rounded down to a multiple of it, and to whole microseconds");
@@ -88,7 +88,7 @@ Oscillator::Oscillator(const ClockConfig& config, std::uint64_t seed, const std:
     : config_(config), random_(seed, name) {
   offset_s_ = config.offset_s + config.offset_std_s * random_.gaussian();
   drift_ = 1e-6 * (config.drift_ppm + config.drift_std_ppm * random_.gaussian());
-  drift_ = std::clamp(drift_, -most_rate, most_rate);
+  drift_ = std::clamp(drift_, -max_rate, max_rate);
   if (config.flicker_floor <= 0) return;
   // From the stationary distribution: it has been on for a while.
   for (std::size_t i = 0; i < flicker_times_s().size(); ++i)
@@ -116,8 +116,8 @@ void Oscillator::advance(std::optional<double> temperature_C) {
   }
   if (temperature_C)
     gained_s += 1e-6 * config_.temperature_ppm_per_C * (*temperature_C - config_.reference_temperature_C) * dt_s;
-  walk_ = std::clamp(walk_, -most_rate, most_rate);
-  wander_s_ += std::clamp(gained_s, -most_rate * dt_s, most_rate * dt_s);
+  walk_ = std::clamp(walk_, -max_rate, max_rate);
+  wander_s_ += std::clamp(gained_s, -max_rate * dt_s, max_rate * dt_s);
 }
 
 void Oscillator::visit_state(StateArchive& archive) {

@@ -11,8 +11,8 @@
 
 namespace sim {
 
-/// The clock of a kind of vehicle (`clock:` of a vehicle file): how it is set, and how its oscillator goes wrong when
-/// nothing steers it.  Frequencies are fractional errors: 1e-6 (1 ppm) gains 3.6 ms in an hour.
+/// The clock of a kind of vehicle (`clock:` of a vehicle file): its initial offset, and the errors of its
+/// free-running oscillator.  Frequencies are fractional errors: 1e-6 (1 ppm) gains 3.6 ms in an hour.
 struct ClockConfig {
   std::string preset = "perfect";
   double offset_s = 0;               ///< reading minus true time at the start
@@ -47,7 +47,7 @@ class Oscillator {
   double offset_s() const { return offset_s_; }  ///< at the start
   double drift() const { return drift_; }        ///< constant part of the frequency error, a fraction
   double wander_s() const { return wander_s_; }  ///< w at the end of the last interval
-  /// The next interval of `update_s`, exact but for the flicker processes, which are integrated by the trapezoid.
+  /// The next interval of `update_s`, exact except for the flicker processes, which are integrated by the trapezoid.
   /// `temperature_C`: of the water around; nothing: not in water.
   void advance(std::optional<double> temperature_C);
   void visit_state(StateArchive& archive);

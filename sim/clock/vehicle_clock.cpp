@@ -13,9 +13,9 @@ namespace sim {
 namespace {
 
 constexpr Time look_ahead{2'000'000};
-constexpr double longest_error_s = 4e7;  ///< a bit more than a year
-constexpr double most_slew = 0.1;
-constexpr double most_learnt = 0.05;
+constexpr double max_error_s = 4e7;  ///< a bit more than a year
+constexpr double max_slew = 0.1;
+constexpr double max_learnt = 0.05;
 
 }  // namespace
 
@@ -46,7 +46,7 @@ struct VehicleClock::State {
       for (std::size_t i = 0; i < rows.size(); ++i) std::memcpy(&block[words * i], &rows[i], sizeof(Row));
     archive(block);
     if (!archive.restoring()) return;
-    if (block.size() % words != 0) archive.fail("a clock whose past has holes");
+    if (block.size() % words != 0) archive.fail("a clock whose history has gaps");
     rows.resize(block.size() / words);
     for (std::size_t i = 0; i < rows.size(); ++i) std::memcpy(&rows[i], &block[words * i], sizeof(Row));
   }
@@ -54,7 +54,7 @@ struct VehicleClock::State {
   double wander_s(Time at) const {
     if (nodes.size() == 1 || at <= nodes.front().at) return nodes.front().wander_s;
     auto end = std::upper_bound(nodes.begin(), nodes.end(), at, [](Time t, const Node& node) { return t < node.at; });
-    if (end == nodes.end()) --end;  // beyond what is planned it goes on as in the last interval
+    if (end == nodes.end()) --end;  // beyond what is planned it continues as in the last interval
     const Node& from = *(end - 1);
     const double share = to_seconds(at - from.at) / to_seconds(end->at - from.at);
     return from.wander_s + share * (end->wander_s - from.wander_s);
@@ -74,10 +74,10 @@ struct VehicleClock::State {
 
   double error_s(Time at) const {
     const double free_s = oscillator.offset_s() + oscillator.drift() * to_seconds(at - start) + wander_s(at);
-    return std::clamp(free_s + correction_s(at), -longest_error_s, longest_error_s);
+    return std::clamp(free_s + correction_s(at), -max_error_s, max_error_s);
   }
 
-  void forget_what_is_old() {
+  void discard_old() {
     while (nodes.size() > 2 && nodes[1].at < now - memory) nodes.pop_front();
     while (steers.size() > 1 && steers[1].after < now - memory) {
       steers.pop_front();
@@ -156,7 +156,7 @@ void VehicleClock::advance_to(Time now, std::optional<double> water_temperature_
     state.oscillator.advance(water_temperature_C);
     state.nodes.push_back({state.nodes.back().at + update, state.oscillator.wander_s()});
   }
-  state.forget_what_is_old();
+  state.discard_old();
 }
 
 void VehicleClock::discipline(Time now, double measured_error_s, const DisciplineParams& params) {
@@ -164,7 +164,7 @@ void VehicleClock::discipline(Time now, double measured_error_s, const Disciplin
   State& state = *state_;
   const double dt_s = params.interval_s;
   state.loop = params;
-  // The correction that begins at `now` goes on from the one before, at its end.
+  // The correction that begins at `now` continues from the one before, at its end.
   const State::Steer* before = state.steer_at(now + Time{1});
   double offset_s = before ? before->offset_s + before->rate * to_seconds(now - before->after) : 0;
   if (!state.first_fix) state.first_fix = now;
@@ -182,22 +182,22 @@ void VehicleClock::discipline(Time now, double measured_error_s, const Disciplin
   if (left_s != measured_error_s) {
     // Stepped; the next fix tells the rate.
   } else if (state.rate_is_unknown && state.last_fix && now > *state.last_fix) {
-    // What two fixes tell of the rate spares a drift of many ppm the loop's time, when it stands out of the jitter.
+    // What two fixes report the rate spares a drift of many ppm the loop's time, when it stands out of the jitter.
     const double rate = (measured_error_s - state.last_measured_s) / to_seconds(now - *state.last_fix);
     if (std::abs(rate) > 5 * std::sqrt(2.0) * params.pps_std_s / dt_s) state.learnt_rate -= rate;
     state.rate_is_unknown = false;
   } else {
     state.learnt_rate -= ki * left_s / dt_s;
   }
-  state.learnt_rate = std::clamp(state.learnt_rate, -most_learnt, most_learnt);
-  const double slew = std::clamp(-kp * left_s / dt_s, -most_slew, most_slew);
+  state.learnt_rate = std::clamp(state.learnt_rate, -max_learnt, max_learnt);
+  const double slew = std::clamp(-kp * left_s / dt_s, -max_slew, max_slew);
   state.last_measured_s = left_s + slew * dt_s;
   state.last_fix = now;
-  // The slew lasts until the next fix; when none comes the clock goes on with the rate it has learnt.
+  // The slew lasts until the next fix; when none comes the clock continues with the rate it has learnt.
   while (!state.steers.empty() && state.steers.back().after >= now) state.steers.pop_back();
   state.steers.push_back({now, offset_s, state.learnt_rate + slew});
   state.steers.push_back({now + from_seconds(dt_s), offset_s + (state.learnt_rate + slew) * dt_s, state.learnt_rate});
-  state.forget_what_is_old();
+  state.discard_old();
 }
 
 bool VehicleClock::disciplined(Time now) const {
@@ -224,12 +224,12 @@ double VehicleClock::estimated_std_s(Time now) const {
     const double jitter = pps * state_->loop.interval_s;
     // Responses of the critically damped loop to white noise of the pulse, and of the oscillator's frequency.
     phase = 5 * jitter / (4 * tau_s) + white * tau_s / 4 + walk * std::pow(tau_s, 3) / 4 + floor * tau_s * tau_s;
-    // What two fixes told of the drift, or what was known before, and what the loop has left of it.
-    const double told =
+    // What two fixes reported the drift, or what was known before, and what the loop has left of it.
+    const double reported =
         state_->rate_is_unknown ? rate : std::min(rate, 50 * pps / std::pow(state_->loop.interval_s, 2));
     const double times = to_seconds(*state_->last_fix - *state_->first_fix) / tau_s;
     const double left = (1 + times) * std::exp(-times);
-    rate = told * left * left + jitter / (4 * std::pow(tau_s, 3)) + white / (4 * tau_s) + 5 * tau_s * walk / 4 +
+    rate = reported * left * left + jitter / (4 * std::pow(tau_s, 3)) + white / (4 * tau_s) + 5 * tau_s * walk / 4 +
            2.5 * floor;
   }
   return std::sqrt(phase + rate * t_s * t_s + white * t_s + walk * std::pow(t_s, 3) / 3);
@@ -245,7 +245,7 @@ void VehicleClock::visit_state(StateArchive& archive) {
   archive(s.loop.time_constant_s, s.loop.step_above_s, s.loop.pps_std_s, s.loop.interval_s);
   archive(s.learnt_rate, s.last_measured_s, s.rate_is_unknown, s.start);
   if (archive.restoring() && (s.nodes.empty() || (s.forgot_steers && s.steers.empty())))
-    archive.fail("a clock without its past");
+    archive.fail("a clock without its history");
   if (!archive.restoring()) return;
   const auto usable = [](Time at, double number) {
     return at <= StateArchive::max_time && at >= -StateArchive::max_time && std::abs(number) < 1e30;
@@ -255,14 +255,14 @@ void VehicleClock::visit_state(StateArchive& archive) {
   const bool steers_fit = std::all_of(s.steers.begin(), s.steers.end(), [&](const State::Steer& steer) {
     return usable(steer.after, steer.offset_s) && std::abs(steer.rate) < 1e30;
   });
-  if (!nodes_fit || !steers_fit) archive.fail("the snapshot has an error of a clock that cannot be");
+  if (!nodes_fit || !steers_fit) archive.fail("the snapshot has an invalid clock error");
   const bool in_order = std::is_sorted(s.nodes.begin(), s.nodes.end(),
                                        [](const State::Node& a, const State::Node& b) { return a.at < b.at; });
   if (s.now < Time{0} || !in_order || (s.config.wanders() && s.nodes.back().at <= s.now + look_ahead))
-    archive.fail("a clock that stands at another time than its past");
+    archive.fail("a clock whose time does not match its history");
 }
 
-bool VehicleClock::stands_at(Time now) const {
+bool VehicleClock::is_stopped_at(Time now) const {
   return !state_ || state_->now == now;
 }
 

@@ -22,7 +22,7 @@ struct DisciplineParams {
 /// the true time, and costs nothing.
 ///
 /// Reading and true time are times since the start of the run; the error is reading minus true time.  A reading never
-/// goes back while true time goes on, but for a step by the discipline.
+/// decreases while true time advances, except for a step by the discipline.
 class VehicleClock {
  public:
   VehicleClock();
@@ -35,15 +35,15 @@ class VehicleClock {
   bool perfect() const { return !state_; }
   /// What it shows at a true time: exact for the last `memory` and for 2 s to come, unless it is steered in that time.
   Time reading(Time at) const;
-  /// When it shows a reading: the inverse of reading(), but for rounding.  Where a step of the discipline makes it show
-  /// a reading twice, one of the two times; where it skips one, a time near the step.
+  /// When it shows a reading: the inverse of reading(), except for rounding.  Where a step of the discipline makes it
+  /// show a reading twice, one of the two times; where it skips one, a time near the step.
   Time true_time(Time reading) const;
   /// Reading minus true time, without the rounding to ticks.
   double error_s(Time at) const;
   /// Error of its rate now (1e-6: it gains 1 us in a second), a steering slew included.
   double rate_error() const;
 
-  /// Goes on to the time of the world.
+  /// Continues to the time of the world.
   void advance_to(Time now, std::optional<double> water_temperature_C);
   /// advance_to() will look at the temperature of the water.
   bool wants_temperature(Time now) const;
@@ -61,7 +61,7 @@ class VehicleClock {
 
   void visit_state(StateArchive& archive);
   /// It was advanced to this time last, or is perfect.
-  bool stands_at(Time now) const;
+  bool is_stopped_at(Time now) const;
 
   static constexpr Time memory{60'000'000};
 

@@ -65,12 +65,12 @@ constexpr void check_choice_words(std::span<const ChoiceWord<Enum>> words) {
       if (words[k].value == words[i].value) throw std::logic_error("an enumerator has two words");
     }
   }
-  // Each word stands for an enumerator of its own, so none is left when there are as many.
+  // Each word stands for its own enumerator, so none is left when there are as many.
   if (words.size() < count) throw std::logic_error("an enumerator has no word");
 }
 
 /// The words of YAML for an enum, in the order in which messages and documentation list them.  The compiler refuses a
-/// table that check_choice_words() would: whoever adds an enumerator is told to give it a word.
+/// table that check_choice_words() would: an enumerator without a word does not compile.
 template <typename Enum>
 class ChoiceWords {
   static_assert(std::is_enum_v<Enum> && !std::is_convertible_v<Enum, int>, "words stand for an enum class");
@@ -95,7 +95,7 @@ template <typename Enum>
 constexpr std::string_view word_of(const ChoiceWords<Enum>& words, Enum value) {
   for (const ChoiceWord<Enum>& each : words)
     if (each.value == value) return each.word;
-  assert(false && "a value that is no enumerator");
+  assert(false && "a value that is not an enumerator");
   return "?";
 }
 

@@ -108,7 +108,7 @@ class Substitution {
   bool within_limits(const ConfigNode& at, const ConfigNode& value) {
     count(value);
     const bool within = nodes_ <= max_inserted_nodes && bytes_ <= max_inserted_bytes;
-    if (!within && !too_much_) error(at, "the parameters put in make the file too large");
+    if (!within && !too_much_) error(at, "the substituted parameters make the file too large");
     too_much_ = !within;
     return within;
   }
@@ -184,7 +184,7 @@ void set_config_path(ConfigNode& root, std::string_view path, const ConfigNode& 
                      Diagnostics& diagnostics) {
   const std::vector<std::string> keys = split_path(path);
   if (keys.size() > max_path_keys || std::find(keys.begin(), keys.end(), "") != keys.end()) {
-    diagnostics.error(place, "", "bad path '" + shortened(path) + "'; a path is keys and names with dots between");
+    diagnostics.error(place, "", "bad path '" + shortened(path) + "'; a path is keys and names joined by dots");
     return;
   }
   ConfigNode* node = &root;

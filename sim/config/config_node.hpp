@@ -38,7 +38,7 @@ SourcePlace place_in(const ConfigNode& scalar, std::size_t offset);
 
 /// A plain scalar, as if it were written at `place`.
 ConfigNode scalar_node(const std::string& text, const SourcePlace& place);
-/// Says of a tree, values and keys, who wrote it.
+/// Marks the values and keys of a tree with their origin.
 void set_origin(ConfigNode& node, Origin origin);
 /// A map of one key, so that a value is read with the rules and messages of a key.
 ConfigNode map_node(const std::string& key, const ConfigNode& value);

@@ -11,7 +11,7 @@ namespace sim {
 
 namespace {
 
-// One mistake in a vehicle file repeats for every vehicle of a fleet; nobody reads more than this.
+// One mistake in a vehicle file repeats for every vehicle of a fleet; more is not helpful.
 constexpr std::size_t max_lines = 1000;
 
 std::string joined(const std::vector<std::string>& lines) {
@@ -53,7 +53,7 @@ void Diagnostics::error(const SourcePlace& place, const std::string& who, const 
     if (!part.empty()) line += (line.empty() ? "" : ": ") + part;
   if (hides) {
     hidden_.push_back(printable(line));
-    line = place.text() + ": is wrong here; the file is not quoted, for the command line does not name it";
+    line = place.text() + ": is wrong; the file is not quoted, for the command line does not name it";
   }
   // Names come from files: a line feed or an escape sequence in one must not reach the terminal.
   line = printable(line);

@@ -53,7 +53,7 @@ class Diagnostics {
   /// `files`: which files may be named in what is read with these diagnostics; null: any.
   explicit Diagnostics(std::shared_ptr<const FileAccess> files) : files_(std::move(files)) {}
 
-  /// Adds `place: who: text` (who may be empty).  The same text at the same place is kept once, whoever it is about.
+  /// Adds `place: who: text` (who may be empty).  The same text at the same place is kept once, independent of `who`.
   void error(const SourcePlace& place, const std::string& who, const std::string& text);
   bool ok() const { return lines_.empty(); }
   const std::vector<std::string>& lines() const { return lines_; }
@@ -61,8 +61,8 @@ class Diagnostics {
   void throw_if_any() const;
 
   const std::shared_ptr<const FileAccess>& files() const { return files_; }
-  /// From now on an error in a file says no more than the place: what it quotes is not for whoever reads the errors.
-  /// Errors in what came over the bus stay as they are.  The whole lines are in hidden().
+  /// Reduces errors in files to their places: the reader of the errors may not be entitled to see quoted content.
+  /// Errors in requests from the bus are unchanged.  The whole lines are in hidden().
   void hide_files() { hides_files_ = true; }
   const std::vector<std::string>& hidden() const { return hidden_; }
 

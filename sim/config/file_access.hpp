@@ -9,8 +9,8 @@
 
 namespace sim {
 
-/// Which files a world may name.  A world may be a stranger's: the files that it names lie below a few folders, unless
-/// whoever runs it says otherwise.  Symbolic links count by what they lead to.
+/// Which files a world may name.  A world may be untrusted: the files that it names must lie below a few folders,
+/// unless the user allows others.  Symbolic links count by what they lead to.
 class FileAccess {
  public:
   /// `folders`: what lies below them may be read.  `allowed`: folders and files that the command line names: they may

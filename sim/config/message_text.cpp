@@ -120,23 +120,23 @@ std::string with_article(std::string_view word) {
   return (vowel ? "an " : "a ") + std::string(word);
 }
 
-std::string list_text(const std::vector<std::string>& names, std::size_t most) {
+std::string list_text(const std::vector<std::string>& names, std::size_t max) {
   if (names.empty()) return "none";
   std::string text;
-  for (std::size_t i = 0; i < names.size() && i < most; ++i) text += (i == 0 ? "" : ", ") + shortened(names[i]);
-  if (names.size() > most) text += ", ... (" + std::to_string(names.size()) + " in all)";
+  for (std::size_t i = 0; i < names.size() && i < max; ++i) text += (i == 0 ? "" : ", ") + shortened(names[i]);
+  if (names.size() > max) text += ", ... (" + std::to_string(names.size()) + " in all)";
   return text;
 }
 
 std::string closest_name(std::string_view misspelt, const std::vector<std::string>& names) {
   std::string closest;
-  std::size_t least = std::max<std::size_t>(1, std::min<std::size_t>(3, misspelt.size() / 3)) + 1;
+  std::size_t min = std::max<std::size_t>(1, std::min<std::size_t>(3, misspelt.size() / 3)) + 1;
   for (const std::string& name : names) {
     const std::size_t longer = std::max(name.size(), misspelt.size());
-    if (longer - std::min(name.size(), misspelt.size()) >= least) continue;
+    if (longer - std::min(name.size(), misspelt.size()) >= min) continue;
     const std::size_t distance = edit_distance(misspelt, name);
-    if (distance >= least || distance >= name.size()) continue;  // 'x' is not a misspelt 'y'
-    least = distance;
+    if (distance >= min || distance >= name.size()) continue;  // 'x' is not a misspelt 'y'
+    min = distance;
     closest = name;
   }
   return closest;

@@ -31,7 +31,7 @@ std::string plural_of(std::string_view word);
 std::string with_article(std::string_view word);
 
 /// `a, b, c`; `none` when empty; a long list is cut.
-std::string list_text(const std::vector<std::string>& names, std::size_t most = 40);
+std::string list_text(const std::vector<std::string>& names, std::size_t max = 40);
 
 /// The name a misspelt one most likely meant; empty when none is close.
 std::string closest_name(std::string_view misspelt, const std::vector<std::string>& names);

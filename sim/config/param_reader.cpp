@@ -405,7 +405,7 @@ bool ParamReader::read_path(const char* key, std::string& value, PathUse use, co
 bool ParamReader::check_path(const char* key, const std::string& value, PathUse use, const SourcePlace& place) {
   if (value.empty() || use == PathUse::looked_up || place.origin == Origin::command_line) return true;
   if (place.origin == Origin::bus) {
-    error_at(place, quoted_name(key) + " cannot be used in what comes over the bus: it names a file");
+    error_at(place, quoted_name(key) + " cannot be used in a request from the bus: it names a file");
     return false;
   }
   const auto& files = diagnostics_->files();
@@ -424,7 +424,7 @@ void ParamReader::read_paths(const char* key, std::vector<std::string>& value, c
   if (node == nullptr || !take_texts(key, *node, value)) return;
   for (const ConfigNode& item : node->items)
     if (item.place.origin == Origin::bus)
-      error_at(item.place, quoted_name(key) + " cannot be used in what comes over the bus: it names a file");
+      error_at(item.place, quoted_name(key) + " cannot be used in a request from the bus: it names a file");
 }
 
 void ParamReader::read(const char* key, Vector3d& value, const Rule& rule, const char* meaning) {

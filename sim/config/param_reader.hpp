@@ -74,7 +74,7 @@ class ParamReader {
   /// folder of the run.  An error, and false, when it comes over the bus, or when the FileAccess of the diagnostics
   /// does not allow it; what the command line sets is allowed.  The value is kept as it was written.
   bool read_path(const char* key, std::string& value, PathUse use, const char* meaning);
-  /// Libraries, which whoever loads them looks up.
+  /// Libraries, which are looked up by their loader.
   void read_paths(const char* key, std::vector<std::string>& value, const char* meaning);
   /// A number in degrees in the file (key ends in `_deg`), in radians in the struct; `rule` is in degrees.
   void read_deg(const char* key, double& value_rad, const Rule& rule, const char* meaning);
@@ -185,12 +185,12 @@ class ParamReader {
                           const char* meaning);
   std::string who_of_item(const ConfigNode& item, const char* kind, std::size_t index) const;
 
-  /// `type` tells types apart, so that describing one that contains itself ends.
+  /// `type` identifies the type, so that describing a recursive type terminates.
   std::vector<ParamInfo> describe_children(const void* type, const ReadInto& read_into) const;
   void describe_nested(const char* key, ParamKind kind, const std::string& initial, const void* type,
                        const ReadInto& read_into, const char* meaning);
   void read_nested(const char* key, const ConfigNode& node, const ReadInto& read_into);
-  /// Calls `read_into` for each item of the list.  False when the value is no list.
+  /// Calls `read_into` for each item of the list.  False when the value is not a list.
   bool read_items(const char* key, const ConfigNode& node, const char* kind, const ReadInto& read_into);
 
   const ConfigNode* node_ = nullptr;

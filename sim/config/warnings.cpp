@@ -8,7 +8,7 @@
 namespace sim {
 
 void Warnings::warn(const SourcePlace& place, const std::string& who, const std::string& text) {
-  constexpr std::size_t max_lines = 100;  // nobody reads more
+  constexpr std::size_t max_lines = 100;  // more is not helpful
   if (lines_.size() > max_lines) return;
   std::string line = place.text();
   for (const std::string& part : {who, text})

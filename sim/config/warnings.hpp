@@ -10,11 +10,11 @@
 
 namespace sim {
 
-/// Input that is allowed and hardly meant: goes to the log, a line each, as `file:line:column: who: text`.
+/// Input that is valid but probably unintended: logged as one line each, `file:line:column: who: text`.
 class Warnings {
  public:
-  /// Logs `place: who: text` (place and who may be empty).  The same text at the same place is logged once, whoever it
-  /// is about; from 100 lines on nothing more is.
+  /// Logs `place: who: text` (place and who may be empty).  The same text at the same place is logged once,
+  /// independent of `who`; at most 100 lines are logged.
   void warn(const SourcePlace& place, const std::string& who, const std::string& text);
   /// All that was logged.
   const std::vector<std::string>& lines() const { return lines_; }

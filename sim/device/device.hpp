@@ -30,7 +30,7 @@ struct SenseContext {
   Vector3d v_WS_W;         ///< velocity of its origin
 };
 
-/// A step that a sensor looks into all the while, as a laser that turns does.
+/// One physics step, for sensors that observe continuously (spinning lidar, rolling shutter).
 struct SweepContext {
   const World& world;      ///< as it stands at the end of the step
   const Vehicle& vehicle;  ///< the vehicle that carries the sensor
@@ -54,7 +54,7 @@ class Sensor {
   virtual ~Sensor() = default;
   /// Measures without error: the truth becomes the reading.  Called at every sample.
   virtual void measure(const SenseContext& context) = 0;
-  /// Called after each step, before measure() when that is due; the world stands as it does at the end of the step.
+  /// Called after each step, before measure() when that is due; the world is in its state at the end of the step.
   virtual void sweep(const SweepContext& /*context*/) {}
   /// Turns the truth into a measurement, in place: noise, quantisation.  Called once after every measure().
   virtual void disturb(double dt_s, Random& random) = 0;
@@ -114,13 +114,12 @@ struct ActContext {
   double effectiveness;  ///< the share of its effort it can give: 1 sound, 0 dead or without power
 };
 
-/// What an actuator does when nobody tells it anything: at an emergency stop, when its commands stop coming, when the
-/// power fails.
+/// What an actuator does without valid commands: at an emergency stop, when commands time out, when the power fails.
 enum class SafeState {
   stop,   ///< the command that stands for rest: no speed, no thrust, rudder amidships
   coast,  ///< no effort at all
   hold,   ///< the position of this moment is kept
-  park,   ///< it goes to a position of its own, see the device
+  park,   ///< it goes to its parking position, see the device
 };
 
 /// The model of an actuator: acts on physics, knows no message.
@@ -129,9 +128,9 @@ class Actuator : public VisitedInSteps {
   virtual ~Actuator() = default;
   /// Called before each physics step.
   virtual void act(const ActContext& context) = 0;
-  /// Takes the place of a command, until the next one comes.
+  /// Replaces the command until the next one arrives.
   virtual void make_safe(SafeState safe) = 0;
-  /// What it takes from the battery now, beside the device's `power_W`.
+  /// Power that it currently draws from the battery, in addition to the device's `power_W`.
   virtual double power_W() const { return 0; }
   /// Everything that outlasts a step, as Sensor::visit_state.
   virtual void visit_state(StateArchive& archive) = 0;
@@ -141,7 +140,7 @@ class Actuator : public VisitedInSteps {
 class Controller {
  public:
   virtual ~Controller() = default;
-  /// `payload` is unchecked bytes.  A bad one throws std::runtime_error that says what is wrong, and changes nothing.
+  /// `payload` is unchecked bytes.  An invalid one throws std::runtime_error with the reason, and changes nothing.
   virtual void receive(Time now, std::span<const std::byte> payload) = 0;
 };
 

@@ -24,7 +24,7 @@ void DeviceConfig::read_common(ParamReader& in) {
   in.read("jitter_s", jitter_s, between(0, 1e6), "added to the latency, uniform between 0 and this");
   in.read("dropout", dropout, between(0, 1), "probability that a report or a command is lost");
   in.read("truth", truth, "publish the reading without its errors on CHANNEL.truth");
-  in.read("power_W", power_W, at_least(0), "taken from the vehicle's battery all the time");
+  in.read("power_W", power_W, at_least(0), "power drawn from the vehicle's battery all the time");
   in.read("channel", channel, "channel of the reports; unset: by the world's template");
 }
 
@@ -32,7 +32,7 @@ void DeviceConfig::read_actuator(ParamReader& in, const DeviceType& of) {
   in.read_or_word("watchdog_s", watchdog_s, above_to(0, 1e6), {"never"}, "a last command older than this is stale");
   safe = of.safe_states.front();
   in.read_choice("safe", safe, safe_state_words, of.safe_states,
-                 "where it goes when commands are stale, at an emergency stop, without power");
+                 "safe state when commands are stale, at an emergency stop, or without power");
 }
 
 void DeviceConfig::read(ParamReader& in) {
@@ -49,7 +49,7 @@ void DeviceConfig::read(ParamReader& in) {
       in.error("type", "unknown device type '" + node->scalar + "'; known types: " + list_text(known, known.size()) +
                            (meant.empty() ? "" : "; did you mean '" + meant + "'?"));
       in.read("name", name, "");
-      // The other keys belong to a type nobody knows; calling them unknown too would bury the mistake.
+      // The other keys belong to an unknown type; calling them unknown too would bury the mistake.
       for (const ConfigNode::Entry& entry : in.node()->entries) in.child(entry.key.c_str());
       return;
     }

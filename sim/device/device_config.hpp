@@ -34,7 +34,7 @@ struct DeviceConfig {
   double jitter_s = 0;                     ///< added to the latency, uniform in [0, jitter)
   double dropout = 0;                      ///< probability that a report or a command is lost
   bool truth = false;                      ///< publish the reading without errors beside the report
-  double power_W = 0;                      ///< taken from the vehicle's battery all the time
+  double power_W = 0;                      ///< power drawn from the vehicle's battery all the time
   std::string channel;                     ///< of the reports; empty: by the world's template
   double watchdog_s = 0;                   ///< actuator: a command older than this is stale; 0: never
   SafeState safe{};                        ///< actuator: where it goes then

@@ -27,7 +27,7 @@ std::vector<std::string> DeviceType::quantities() const {
 
 std::string fault_misfit(const DeviceType& type, const FaultConfig& fault) {
   const bool of_actuator = fault.kind == FaultKind::partial || fault.kind == FaultKind::dead;
-  if (of_actuator && !type.is_actuator()) return "a " + type.name + " is no actuator: it cannot be dead or partial";
+  if (of_actuator && !type.is_actuator()) return "a " + type.name + " is not an actuator: it cannot be dead or partial";
   const bool of_quantity = fault.kind == FaultKind::biased || !fault.quantity.empty();
   if (!of_quantity) return {};
   const std::vector<std::string> known = type.quantities();

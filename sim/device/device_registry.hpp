@@ -29,7 +29,7 @@ struct BuiltDevice {
   std::unique_ptr<Reporter> reporter;      ///< publishes what the sensor measured
   std::unique_ptr<Actuator> actuator;      ///< acts on the physics
   std::unique_ptr<Controller> controller;  ///< takes the commands of the actuator
-  /// Takes other parameters while it runs; empty: it cannot.
+  /// Changes parameters at run time; empty: not supported.
   std::function<void(const DeviceParams&)> change;
 };
 
@@ -71,7 +71,7 @@ class DeviceRegistry {
  public:
   /// The registry of this process.
   static DeviceRegistry& instance();
-  /// A name that is taken is a problem; the first type keeps it.  Nothing is thrown: a static initialiser calls this,
+  /// A duplicate name is a problem; the first type keeps it.  Nothing is thrown: a static initialiser calls this,
   /// and what it throws ends the program.
   void add(DeviceType type);
   /// What went wrong while types were added, since the last call.

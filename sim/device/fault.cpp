@@ -46,13 +46,13 @@ const NoiseFault& DeviceFaults::noise_of(const std::string& name) {
 
 void DeviceFaults::update() {
   stuck_ = silent_ = false;
-  double heard = 1;
+  double received = 1;
   effectiveness_ = 1;
   for (const auto& quantity : quantities_) quantity->fault = {};
   for (const FaultConfig& fault : active_) {
     stuck_ |= fault.kind == FaultKind::stuck;
     silent_ |= fault.kind == FaultKind::silent;
-    if (fault.kind == FaultKind::degraded) heard *= 1 - fault.dropout;
+    if (fault.kind == FaultKind::degraded) received *= 1 - fault.dropout;
     if (fault.kind == FaultKind::dead) effectiveness_ = 0;
     if (fault.kind == FaultKind::partial) effectiveness_ *= fault.effectiveness;
     for (const auto& quantity : quantities_) {
@@ -61,14 +61,14 @@ void DeviceFaults::update() {
       if (fault.kind == FaultKind::degraded) quantity->fault.factor *= fault.noise_factor;
     }
   }
-  dropout_ = 1 - heard;
+  dropout_ = 1 - received;
 }
 
 void DeviceFaults::visit_state(StateArchive& archive) {
   archive(active_);
   if (!archive.restoring()) return;
   for (const FaultConfig& fault : active_)
-    if (fault.kind < FaultKind::stuck || fault.kind > FaultKind::dead) archive.fail("a fault of a kind that is none");
+    if (fault.kind < FaultKind::stuck || fault.kind > FaultKind::dead) archive.fail("an unknown kind of fault");
   update();
 }
 

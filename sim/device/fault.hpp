@@ -14,7 +14,7 @@ namespace sim {
 
 enum class FaultKind {
   stuck,     ///< a sensor repeats its last report, an actuator keeps its last command
-  silent,    ///< no report goes out, no command comes in
+  silent,    ///< no report is published, no command is received
   biased,    ///< `bias` is added to a quantity
   degraded,  ///< the random errors of a quantity are `noise_factor` times as large; `dropout` more is lost
   partial,   ///< an actuator gives `effectiveness` of its effort
@@ -71,7 +71,7 @@ class DeviceFaults {
     std::string name;
     NoiseFault fault;
   };
-  /// Works out what the active faults come to.
+  /// Computes what the active faults come to.
   void update();
 
   std::vector<FaultConfig> active_;

@@ -66,17 +66,17 @@ std::string objection(const fs::path& path) {
                                            "ELF")
     return "is not a library";
   const std::string info = info_in_file(path);
-  if (info.empty()) return "is no plugin of Shoal: it lacks SHOAL_PLUGIN(\"name\", \"version\")";
+  if (info.empty()) return "is not a Shoal plugin: it lacks SHOAL_PLUGIN(\"name\", \"version\")";
   const std::string abi = info.substr(info.rfind('|') + 1);
   if (abi != SHOAL_PLUGIN_ABI)
-    return "was built against another Shoal and must be built again; it has '" + printable(abi) + "', this program '" +
-           SHOAL_PLUGIN_ABI + "'";
+    return "was built for another version of Shoal and must be rebuilt; it has '" + printable(abi) +
+           "', this program '" + SHOAL_PLUGIN_ABI + "'";
   return {};
 }
 
 /// An exception cannot leave an initialiser of a library: it ends the program.  This says so before it does.
 std::string initialising;
-[[noreturn]] void say_what_was_thrown() {
+[[noreturn]] void print_exception() {
   std::string what = "an initialiser ended the program";
   if (const std::exception_ptr thrown = std::current_exception()) {
     try {
@@ -84,7 +84,7 @@ std::string initialising;
     } catch (const std::exception& error) {
       what = std::string("an initialiser threw: ") + error.what();
     } catch (...) {
-      what = "an initialiser threw something";
+      what = "an initialiser threw an unknown exception";
     }
   }
   std::fprintf(stderr, "%s: %s\n", initialising.c_str(), printable(what).c_str());
@@ -93,7 +93,7 @@ std::string initialising;
 
 /// Why it could not be loaded; empty: it is there.
 std::string open_library(const fs::path& path) {
-  const std::terminate_handler before = std::set_terminate(say_what_was_thrown);
+  const std::terminate_handler before = std::set_terminate(print_exception);
   void* library = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
   std::set_terminate(before);
   if (library == nullptr) {

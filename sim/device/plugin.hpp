@@ -8,7 +8,7 @@
 #include "sim/device/plugin_interface.hpp"
 
 // A plugin is a library with device types that were built outside of the source tree.  It is loaded into the program,
-// takes its functions from there, and registers its devices by the same macros as those of the tree.
+// uses its functions, and registers its devices with the same macros as built-in ones.
 
 #define SHOAL_TEXT_OF_EXPANDED(value) #value
 #define SHOAL_TEXT_OF(value) SHOAL_TEXT_OF_EXPANDED(value)

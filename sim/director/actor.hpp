@@ -35,7 +35,7 @@ class Actor {
   double from_ = 0;  ///< progress then; bounce: up to twice the length, there and back
   int direction_ = 1;
   bool moving_ = true;
-  // The object by its name, looked up again when something came or went.
+  // The object by its name, looked up again when entities were added or removed.
   Body* body_ = nullptr;
   Pose X_WB_ = Pose::Identity();  ///< where it was sent last
   std::uint64_t generation_ = ~std::uint64_t{0};

@@ -20,7 +20,7 @@ class ConditionWatch {
   virtual void visit_state(StateArchive& archive) = 0;
 };
 
-/// Null when there is nothing to watch: no condition, or one of another event.
+/// Null when there is nothing to watch: no condition, or that of another event.
 std::unique_ptr<ConditionWatch> make_watch(const Condition& condition, Stage& stage, const Zones& zones);
 
 }  // namespace sim

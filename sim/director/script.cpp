@@ -15,8 +15,8 @@ namespace sim {
 
 namespace {
 
-constexpr int most_firings_per_step = 1000;
-constexpr int most_depth = 100;
+constexpr int max_firings_per_step = 1000;
+constexpr int max_depth = 100;
 
 std::uint64_t seed_of(const Stage& stage) {
   return static_cast<std::uint64_t>(stage.config().run.seed);
@@ -27,7 +27,7 @@ std::uint64_t seed_of(const Stage& stage) {
 Script::EventState::EventState(const EventConfig& config_, std::uint64_t seed)
     : config(config_), random(seed, "event/" + config_.name), jitter(seed, "event/" + config_.name + "#jitter") {}
 
-void Script::EventState::begin_draws(std::int64_t step_number) {
+void Script::EventState::start_draws(std::int64_t step_number) {
   if (random_step == step_number) return;
   random_step = step_number;
   random.begin_step(step_number);
@@ -121,7 +121,7 @@ int Script::due_times(EventState& event, Time now) {
     ++count;
     ++event.planned;
     // More than may fire in a step: a restored count, or one of another interval.  The rest is passed over at once.
-    if (count > most_firings_per_step && event.config.every_s > 0) {
+    if (count > max_firings_per_step && event.config.every_s > 0) {
       const double passed = (to_seconds(now) - event.config.from_s) / event.config.every_s;
       event.planned = std::max(event.planned, static_cast<std::int64_t>(passed));
     }
@@ -133,9 +133,9 @@ int Script::due_times(EventState& event, Time now) {
 void Script::attempt(std::size_t i, int depth) {
   EventState& event = events_[i];
   if (event.config.times > 0 && event.fired >= event.config.times) return;
-  if (firings_ >= most_firings_per_step) return cut(event, "more than 1000 events fired in a step");
-  if (depth > most_depth) return cut(event, "events fire each other more than 100 deep");
-  event.begin_draws(stage_.clock().step_number);
+  if (firings_ >= max_firings_per_step) return cut(event, "more than 1000 events fired in a step");
+  if (depth > max_depth) return cut(event, "events fire each other more than 100 deep");
+  event.start_draws(stage_.clock().step_number);
   if (event.config.probability < 1 && event.random.uniform() >= event.config.probability) return;
   ++event.fired;
   if (event.config.delay_s > 0) {
@@ -149,15 +149,15 @@ void Script::attempt(std::size_t i, int depth) {
 void Script::fire(std::size_t i, int depth) {
   EventState& event = events_[i];
   ++firings_;
-  event.begin_draws(stage_.clock().step_number);
+  event.start_draws(stage_.clock().step_number);
   carry_out(event.config.actions, {*this, stage_, "event '" + event.config.name + "'", event.random, nullptr, depth});
   for (const int next : event.fired_by_this) attempt(static_cast<std::size_t>(next), depth + 1);
 }
 
 void Script::cut(EventState& event, const std::string& why) {
-  if (!event.told_of_cut)
-    stage_.warnings().bad_message("event '" + event.config.name + "'", why + "; the rest does not happen");
-  event.told_of_cut = true;
+  if (!event.reported_cut)
+    stage_.warnings().bad_message("event '" + event.config.name + "'", why + "; the remaining actions are skipped");
+  event.reported_cut = true;
 }
 
 std::vector<ActionEntry> Script::parse_now(const ConfigNode& action, Diagnostics& diagnostics) const {
@@ -205,10 +205,10 @@ void Script::run_now(const ConfigNode& action, Diagnostics& diagnostics) {
 
 void Script::EventState::visit_state(StateArchive& archive) {
   archive(fired, planned);
-  archive.unhashed(next, random, random_step, told_of_cut);
-  constexpr std::int64_t most = std::int64_t{1} << 53;
-  archive.require(fired, 0, most, "a count of firings");
-  archive.require(planned, 0, most, "a count of firings");
+  archive.unhashed(next, random, random_step, reported_cut);
+  constexpr std::int64_t max = std::int64_t{1} << 53;
+  archive.require(fired, 0, max, "a count of firings");
+  archive.require(planned, 0, max, "a count of firings");
 }
 
 void Script::visit_state(StateArchive& archive) {
@@ -218,14 +218,14 @@ void Script::visit_state(StateArchive& archive) {
     // It would be made up for at once, as often as a forger likes.
     const std::optional<Time>& next = events_[i].next;
     if (archive.restoring() && next && *next <= stage_.now() - stage_.clock().step)
-      archive.fail("an event that should have fired long ago");
+      archive.fail("an event that is overdue");
     if (watches_[i]) archive(*watches_[i]);
   }
   archive(delayed_, records_);
   archive.unhashed(next_delayed_, live_random_, live_random_step_, log_lines_);
   if (!archive.restoring()) return;
   for (const auto& [due, event] : delayed_)
-    if (event >= events_.size()) archive.fail("a delayed event that is not there");
+    if (event >= events_.size()) archive.fail("a delayed event that does not exist");
 }
 
 }  // namespace sim

@@ -40,7 +40,7 @@ class Script {
 
   const Zones& zones() const { return zones_; }
   const std::map<std::string, ZoneRecord>& zone_records() const { return records_; }
-  /// How often the event of this name has fired; nothing when there is none.
+  /// Number of firings of the event of this name; nothing when it does not exist.
   std::optional<std::int64_t> firings(const std::string& event) const;
   /// The world file has none of it.
   bool empty() const;
@@ -66,16 +66,16 @@ class Script {
   struct EventState {
     explicit EventState(const EventConfig& config, std::uint64_t seed);
     /// Once in a step.
-    void begin_draws(std::int64_t step_number);
+    void start_draws(std::int64_t step_number);
     const EventConfig& config;
-    Random random;  ///< of its choices; begun anew in each step
+    Random random;  ///< of its choices; restarts in each step
     Random jitter;  ///< of its times; one draw for each planned firing
     std::int64_t random_step = -1;
     std::int64_t fired = 0;
     std::int64_t planned = 0;        ///< how many of its times have come
     std::optional<Time> next;        ///< the next of its times
     std::vector<int> fired_by_this;  ///< events that wait for this one
-    bool told_of_cut = false;
+    bool reported_cut = false;
     void visit_state(StateArchive& archive);
   };
   void update_records(Time now);

@@ -65,7 +65,7 @@ void Script::log(const std::string& who, const std::string& text) {
   constexpr int max_lines = 1000;
   if (++log_lines_ > max_lines + 1) return;
   if (log_lines_ > max_lines)
-    spdlog::warn("events have said {} lines; what they say from now on is left out", max_lines);
+    spdlog::warn("events have logged {} lines; further lines are left out", max_lines);
   else
     spdlog::info("{}{}{} (at {:.3f} s)", who, who.empty() ? "" : ": ", printable(text), to_seconds(stage_.now()));
 }

@@ -44,7 +44,7 @@ class Stage {
   /// Moves all bodies of a vehicle so that its frame stands at X_WV, at rest.  Throws WorldError.
   virtual void move_vehicle(const std::string& name, const Pose& X_WV) = 0;
   /// Adds one object (config.count is not looked at).  Throws ConfigError (names that are taken, meshes, masses,
-  /// limits, contacts that would change the surfaces of others), and the object is not there then.
+  /// limits, contacts that would change the surfaces of others); the object is then not added.
   virtual const WorldObject& add_object(const ObjectConfig& config, const std::string& name, const Pose& X_WE) = 0;
   /// Throws WorldError when there is none.
   virtual void remove_object(const std::string& name) = 0;
@@ -53,7 +53,7 @@ class Stage {
   /// Throw WorldError when there is no such device, or the fault does not fit it.
   virtual void set_fault(const std::string& device, const FaultConfig& fault) = 0;
   virtual void clear_faults(const std::string& device) = 0;
-  /// Gives a device other values while it runs.  False: `diagnostics` say why, and nothing has changed.
+  /// Changes parameters of a device at run time.  False: `diagnostics` has the reasons, and nothing has changed.
   virtual bool change_device(const std::string& full_name, const ConfigNode& values, Diagnostics& diagnostics) = 0;
   /// Downwards, in m/s2, from the next step on.
   virtual void set_gravity(double gravity_mps2) = 0;

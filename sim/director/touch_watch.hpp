@@ -5,7 +5,7 @@
 
 namespace sim {
 
-/// Of `NAME touches NAME`.  `any`: every vehicle and object but those made of planes, which everything stands on.
+/// Of `NAME touches NAME`.  `any`: every vehicle and object except those made of planes, which everything rests on.
 std::unique_ptr<ConditionWatch> make_touch_watch(const Condition& condition, Stage& stage);
 
 }  // namespace sim

@@ -49,8 +49,8 @@ void EventQueue::reach(std::int64_t slice) {
     sorted_.insert(sorted_.end(), entries.begin(), entries.end());
     std::sort(sorted_.begin() + old, sorted_.end(), Earlier());
     entries.clear();
-    constexpr std::size_t most_spare = 256;
-    if (spare_.size() < most_spare) spare_.push_back(std::move(entries));
+    constexpr std::size_t max_spare = 256;
+    if (spare_.size() < max_spare) spare_.push_back(std::move(entries));
     slices_.erase(slices_.begin());
   }
 }
@@ -81,7 +81,7 @@ bool EventQueue::take_due(Time now, Event& event) {
   return true;
 }
 
-void EventQueue::forget_device(int device) {
+void EventQueue::drop_device(int device) {
   const auto of_device = [&](const Entry& entry) {
     if (entry.device != device) return false;
     take(entry);
@@ -114,7 +114,7 @@ void EventQueue::visit_state(StateArchive& archive) {
     reached_ = reached;
     next_sequence_ = next_sequence;
     for (Event& event : events) {
-      if (event.device < 0 && event.device != Event::of_acoustics) archive.fail("an event of nobody");
+      if (event.device < 0 && event.device != Event::of_acoustics) archive.fail("an event without a device");
       insert(std::move(event));
     }
     return;

@@ -37,14 +37,14 @@ class EventQueue {
   void schedule(Event event);
   /// Takes the next event that is due at or before `now`; false when there is none.
   bool take_due(Time now, Event& event);
-  /// The stamp of an event that is about so many events ahead, if it is of this device: so that memory that it will
-  /// need can be fetched before.  Nothing is lost when there is none.
+  /// The stamp of an event about this many events ahead, if it belongs to this device: for prefetching its memory.
+  ///   Nothing is lost when there is none.
   std::optional<Time> stamp_ahead(std::size_t events, int device) const {
     if (next_ + events >= sorted_.size() || sorted_[next_ + events].device != device) return std::nullopt;
     return sorted_[next_ + events].stamp;
   }
   /// Drops what waits for a device that goes.
-  void forget_device(int device);
+  void drop_device(int device);
   std::size_t size() const { return size_; }
   void visit_state(StateArchive& archive);
 

@@ -139,7 +139,7 @@ Mesh parse_ascii_stl(std::string_view text) {
     }
   }
   if (!corners.empty()) throw MeshError("ends inside a facet");
-  if (!ended) throw MeshError("is cut off: it ends without 'endsolid'");
+  if (!ended) throw MeshError("is truncated: it ends without 'endsolid'");
   return mesh;
 }
 

@@ -12,7 +12,7 @@
 
 namespace sim {
 
-/// A file that is no usable triangle mesh; what() says why, without the file's name.
+/// A file that is not a usable triangle mesh; what() says why, without the file's name.
 class MeshError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -13,7 +13,7 @@ struct BodyInWater {
   BodyMotion motion;
   Vector3d v_B = Vector3d::Zero();  ///< of the body's origin through the water, in its own axes
   Vector3d w_B = Vector3d::Zero();  ///< its angular velocity, in its own axes
-  bool known = false;               ///< false: the water does nothing to this body, and nothing here means anything
+  bool known = false;  ///< false: hydrodynamics do not apply to this body, and the other members are unused
 };
 
 }  // namespace sim

@@ -109,11 +109,11 @@ void CoefficientModel::find_rates() {
   Vector6d quadratic = quadratic_diagonal_;
   if (config_.cross_flow) {
     const CrossFlowConfig& hull = *config_.cross_flow;
-    double most = 0;
+    double max = 0;
     for (std::size_t i = hull.drag_coefficient.size() > 1 ? 1 : 0; i < hull.drag_coefficient.size(); i += 2)
-      most = std::max(most, hull.drag_coefficient[i]);
+      max = std::max(max, hull.drag_coefficient[i]);
     const double any_density = 1025, L = hull.length_m;
-    const double drag = 0.5 * hull.density_kgpm3.value_or(any_density) * hull.height_m * most;
+    const double drag = 0.5 * hull.density_kgpm3.value_or(any_density) * hull.height_m * max;
     for (const int across : {1, 2}) quadratic[across] += drag * L;
     // The integral of |x|^3 over the hull.
     for (const int turning : {4, 5}) quadratic[turning] += drag * L * L * L * L / 32;
@@ -131,13 +131,13 @@ void CoefficientModel::find_turning() {
     spin_ratio_ = std::max(spin_ratio_, std::abs(mass[3 + j] - mass[3 + k]) / mass[3 + i]);
     if (munk) munk_radpm_ = std::max(munk_radpm_, std::sqrt(std::abs(mass[j] - mass[k]) / mass[3 + i]));
   }
-  constexpr double most = 4;  // of a hull; beyond it somebody holds an axis by a mass
-  lightest_share = std::min(lightest_share, most);
-  spin_ratio_ = std::clamp(spin_ratio_, lightest_share, most);
+  constexpr double max = 4;  // of a hull; beyond it an axis is probably constrained by a mass
+  lightest_share = std::min(lightest_share, max);
+  spin_ratio_ = std::clamp(spin_ratio_, lightest_share, max);
   munk_radpm_ *= std::sqrt(lightest_share);
 }
 
-CoefficientModel::StepLimit CoefficientModel::longest_step() const {
+CoefficientModel::StepLimit CoefficientModel::max_step() const {
   const double damping = spectral_radius(mass_inverse_ * config_.linear_damping);
   Matrix6d stiffness = Matrix6d::Zero();
   if (config_.waterline) {

@@ -33,7 +33,7 @@ class CoefficientModel {
   /// The same for a step that is too long for this velocity: damping is that at the end of the step, linearised
   /// (backward Euler), and Coriolis forces add no energy, so that the body is not thrown about at any speed.
   Vector6d stiff_acceleration(const CraftState& state, const Vector6d& tau, double step_s) const;
-  /// The forces of the water but those that come with acceleration, with weight and buoyancy.
+  /// The hydrodynamic forces except those proportional to acceleration, with weight and buoyancy.
   Vector6d forces(const CraftState& state, const Vector6d& nu_r) const;
 
   /// The wrench about the centre of mass, in these axes, that gives a body of mass `mass_kg` and inertia `inertia`
@@ -52,7 +52,7 @@ class CoefficientModel {
     double step_s;
     const char* why;
   };
-  StepLimit longest_step() const;
+  StepLimit max_step() const;
   /// The fastest rate at this velocity in the water, of damping or of Coriolis forces, 1/s.  An explicit step has to be
   /// shorter than 1 over it.
   double fastest_rate(const Vector6d& nu_r) const {

@@ -24,12 +24,12 @@ Vector3d flipped(const Vector3d& v) {
 
 }  // namespace
 
-Hydrodynamics::Hydrodynamics(const Medium& medium, double gravity_mps2, double step_s, Notice notice)
+Hydrodynamics::Hydrodynamics(const Medium& medium, double gravity_mps2, double step_s, Warn warn)
     : medium_(medium),
       gravity_mps2_(gravity_mps2),
       step_s_(step_s),
       floaters_(medium, step_s),
-      notice_(std::move(notice)) {}
+      warn_(std::move(warn)) {}
 
 void Hydrodynamics::add_body(Body& body, const BodyConfig& config) {
   if (!medium_.has_water()) return;
@@ -65,7 +65,7 @@ void Hydrodynamics::add_craft(Body& body, const HydrodynamicsConfig& config) {
 
 void Hydrodynamics::check_step(const CoefficientModel& model, const HydrodynamicsConfig& config,
                                const std::string& who) const {
-  const CoefficientModel::StepLimit limit = model.longest_step();
+  const CoefficientModel::StepLimit limit = model.max_step();
   if (limit.step_s < step_s_)
     throw_config_error(config.place, who,
                        std::string("the ") + limit.why + " are too stiff for 'step_s' " + number_text(step_s_) +
@@ -96,15 +96,15 @@ void Hydrodynamics::begin_step() {
     }
     around.water = medium_.water_at(motion.p_WB);
     around.v_B = motion.R_WB.transpose() * (motion.v_WB_W - around.water.velocity_W);
-    if (!wetted.left_the_current && !medium_.current_known(motion.p_WB)) tell_of_the_current(wetted, motion.p_WB);
+    if (!wetted.left_the_current && !medium_.current_known(motion.p_WB)) warn_of_missing_current(wetted, motion.p_WB);
   }
 }
 
-void Hydrodynamics::tell_of_the_current(Wetted& wetted, const Vector3d& p_WB) {
+void Hydrodynamics::warn_of_missing_current(Wetted& wetted, const Vector3d& p_WB) {
   wetted.left_the_current = true;
-  if (notice_)
-    notice_("body '" + wetted.body->name() + "'",
-            fmt::format("has left the file of the current at {:.1f}, {:.1f} m", p_WB.x(), p_WB.y()));
+  if (warn_)
+    warn_("body '" + wetted.body->name() + "'",
+          fmt::format("has left the file of the current at {:.1f}, {:.1f} m", p_WB.x(), p_WB.y()));
 }
 
 CraftState Hydrodynamics::state_of(const CoefficientModel& model, const BodyInWater& around) const {
@@ -152,14 +152,14 @@ void Hydrodynamics::step(double gravity_mps2) {
   floaters_.step(gravity_mps2, around_);
 }
 
-void Hydrodynamics::tell_of_stiffness(CoefficientBody& craft, const Vector6d& nu_r, double fastest_rate) {
-  craft.stiffness_told = true;
+void Hydrodynamics::warn_of_stiffness(CoefficientBody& craft, const Vector6d& nu_r, double fastest_rate) {
+  craft.stiffness_warned = true;
   const auto rounded = [](double value) { return fmt::format("{:.3g}", value); };
-  if (notice_)
-    notice_("body '" + craft.body->name() + "'",
-            "what the water does at " + rounded(nu_r.head<3>().norm()) + " m/s and " + rounded(nu_r.tail<3>().norm()) +
-                " rad/s is too fast for 'step_s' " + number_text(step_s_) + ": a step below " +
-                rounded(1 / fastest_rate) + " s follows it; until then it brakes by backward Euler");
+  if (warn_)
+    warn_("body '" + craft.body->name() + "'",
+          "the hydrodynamics at " + rounded(nu_r.head<3>().norm()) + " m/s and " + rounded(nu_r.tail<3>().norm()) +
+              " rad/s are too stiff for 'step_s' " + number_text(step_s_) + ": use a step below " +
+              rounded(1 / fastest_rate) + " s; until then backward Euler adds damping");
 }
 
 void Hydrodynamics::step_crafts() {
@@ -173,7 +173,7 @@ void Hydrodynamics::step_crafts() {
     nu_r.head<3>() -= state.v_water;
     const double fastest = model.fastest_rate(nu_r);
     const bool stiff = !(fastest * step_s_ < 1) && model.immersed(state) > 0;
-    if (stiff && !craft.stiffness_told) tell_of_stiffness(craft, nu_r, fastest);
+    if (stiff && !craft.stiffness_warned) warn_of_stiffness(craft, nu_r, fastest);
     const Vector3d force = flipped(R_WB.transpose() * body.applied_force_W());
     Vector6d tau;
     tau << force, flipped(R_WB.transpose() * body.applied_torque_W()) + model.config().center_of_mass_m.cross(force);
@@ -189,7 +189,7 @@ void Hydrodynamics::visit_state(StateArchive& archive) {
   for (Wetted& wetted : wetted_)
     archive.unhashed(around_[static_cast<std::size_t>(wetted.body->number())].water, wetted.left_the_current);
   archive.expect_count(crafts_.size(), "bodies with coefficients");
-  for (CoefficientBody& craft : crafts_) archive.unhashed(craft.stiffness_told);
+  for (CoefficientBody& craft : crafts_) archive.unhashed(craft.stiffness_warned);
 }
 
 }  // namespace sim

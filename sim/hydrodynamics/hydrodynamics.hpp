@@ -20,13 +20,13 @@ namespace sim {
 /// What the water does to the bodies of a world: stage 3 of a step.
 class Hydrodynamics {
  public:
-  /// Called in a step with what goes wrong: who and what.
-  using Notice = std::function<void(const std::string& who, const std::string& text)>;
+  /// Called during a step with warnings: who and what.
+  using Warn = std::function<void(const std::string& who, const std::string& text)>;
 
   /// `notice` may be empty.
-  Hydrodynamics(const Medium& medium, double gravity_mps2, double step_s, Notice notice = {});
+  Hydrodynamics(const Medium& medium, double gravity_mps2, double step_s, Warn warn = {});
 
-  /// A free body that has come; does nothing for one that water does not touch.  Throws ConfigError.
+  /// Adds a free body; no effect for one without hydrodynamics.  Throws ConfigError.
   void add_body(Body& body, const BodyConfig& config);
   /// The bodies of a group are about to go.
   void remove_group(int group);
@@ -45,14 +45,14 @@ class Hydrodynamics {
   /// What was found about bodies since the last call; each is one line.
   std::vector<std::string> take_warnings() { return std::exchange(warnings_, {}); }
 
-  /// The water that bodies in the air had around them last, and what was told already.
+  /// The water last seen by bodies in the air, and the warnings already given.
   void visit_state(StateArchive& archive);
 
  private:
   struct CoefficientBody {
     Body* body;
     std::shared_ptr<const CoefficientModel> model;
-    bool stiffness_told = false;
+    bool stiffness_warned = false;
   };
   struct Wetted {
     Body* body;
@@ -61,9 +61,9 @@ class Hydrodynamics {
   };
   void add_craft(Body& body, const HydrodynamicsConfig& config);
   void step_crafts();
-  void tell_of_stiffness(CoefficientBody& craft, const Vector6d& nu_r, double fastest_rate);
+  void warn_of_stiffness(CoefficientBody& craft, const Vector6d& nu_r, double fastest_rate);
   CraftState state_of(const CoefficientModel& model, const BodyInWater& around) const;
-  void tell_of_the_current(Wetted& wetted, const Vector3d& p_WB);
+  void warn_of_missing_current(Wetted& wetted, const Vector3d& p_WB);
   void check_step(const CoefficientModel& model, const HydrodynamicsConfig& config, const std::string& who) const;
 
   const Medium& medium_;
@@ -73,9 +73,9 @@ class Hydrodynamics {
   ImmersedBodies floaters_;              // bodies without coefficients
   std::vector<BodyInWater> around_;      // by body number
   const BodyInWater nowhere_;
-  std::vector<Wetted> wetted_;  // bodies whose water begin_step() looks at
+  std::vector<Wetted> wetted_;  // bodies whose water begin_step() updates
   std::vector<std::string> warnings_;
-  Notice notice_;
+  Warn warn_;
   // Vehicles that are alike share a model.
   std::map<const HydrodynamicsConfig*, std::weak_ptr<const CoefficientModel>> models_;
 };

@@ -53,12 +53,12 @@ double ImmersedBodies::add(Body& body, const BodyConfig& config, double gravity_
   return bodies_.back().radius_m;
 }
 
-std::vector<ImmersedPiece> ImmersedBodies::pieces_of(const Body& body, const BodyConfig& config, double longest_m,
+std::vector<ImmersedPiece> ImmersedBodies::pieces_of(const Body& body, const BodyConfig& config, double max_m,
                                                      std::vector<std::string>& warnings) {
   std::vector<ImmersedPiece> pieces;
   for (const PartConfig& part : config.parts) {
     std::optional<std::string> warning;
-    for (ImmersedPiece& piece : sim::pieces_of(part, longest_m, "body '" + body.name() + "'", meshes_, warning))
+    for (ImmersedPiece& piece : sim::pieces_of(part, max_m, "body '" + body.name() + "'", meshes_, warning))
       pieces.push_back(std::move(piece));
     if (warning) warnings.push_back(*warning);
   }
@@ -82,19 +82,19 @@ void ImmersedBodies::find_stiffness(ImmersedBody& body, double gravity_mps2, std
         turn_Nmprad[i] =
             std::max(turn_Nmprad[i], pressure * size[i] * size[j] * (size[j] * size[j] / 12 + p_CP[j] * p_CP[j]));
   }
-  const double most = 2 / (step_s_ * step_s_);
+  const double max = 2 / (step_s_ * step_s_);
   double fastest = heave_Npm / body.body->mass_kg();
-  if (fastest > most) body.stiff_Npm = heave_Npm;
+  if (fastest > max) body.stiff_Npm = heave_Npm;
   for (int i = 0; i < 3; ++i) {
     const double square = turn_Nmprad[i] / body.body->inertia_C_B()(i, i);
-    if (square > most) body.stiff_Nmprad[i] = turn_Nmprad[i];
+    if (square > max) body.stiff_Nmprad[i] = turn_Nmprad[i];
     fastest = std::max(fastest, square);
   }
-  body.stiff = fastest > most;
+  body.stiff = fastest > max;
   if (!body.stiff) return;
-  warnings.push_back("body '" + body.body->name() + "': it is so light that it swings in the water faster than " +
-                     "'step_s' " + number_text(step_s_) + " can follow, and is braked; a step below " +
-                     number_text(std::floor(std::sqrt(2 / fastest) * 1e4) / 1e4) + " s would follow it");
+  warnings.push_back("body '" + body.body->name() + "': it is so light that it oscillates in the water faster than " +
+                     "'step_s' " + number_text(step_s_) + " resolves, and is damped; use a step below " +
+                     number_text(std::floor(std::sqrt(2 / fastest) * 1e4) / 1e4) + " s");
 }
 
 void ImmersedBodies::remove_group(int group) {

@@ -39,7 +39,7 @@ class ImmersedBodies {
   };
   struct Wrench;
 
-  std::vector<ImmersedPiece> pieces_of(const Body& body, const BodyConfig& config, double longest_m,
+  std::vector<ImmersedPiece> pieces_of(const Body& body, const BodyConfig& config, double max_m,
                                        std::vector<std::string>& warnings);
   void find_stiffness(ImmersedBody& body, double gravity_mps2, std::vector<std::string>& warnings) const;
   void step_body(const ImmersedBody& body, double gravity_mps2, const LocalWater& at_origin);

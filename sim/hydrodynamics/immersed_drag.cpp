@@ -60,11 +60,11 @@ void ImmersedDrag::add(const ImmersedPiece& piece, double share, double density_
 
 bool ImmersedDrag::too_stiff(double mass_kg, const Vector3d& inertia_kgm2, double dv_mps, const Vector3d& dw_radps,
                              double step_s) const {
-  constexpr double most = 0.25;  // of a velocity that drag may take away in a step
+  constexpr double max = 0.25;  // of a velocity that drag may take away in a step
   const double faster = dv_mps + dw_radps.dot(reach_m_);
-  if (step_s * (linear_kgps_ + linear_kgpm_ * faster) > most * mass_kg) return true;
+  if (step_s * (linear_kgps_ + linear_kgpm_ * faster) > max * mass_kg) return true;
   const Vector3d rates = angular_Nms_ + angular_by_speed_Ns2_ * faster + angular_by_rate_Nms2_.cwiseProduct(dw_radps);
-  return (step_s * rates - most * inertia_kgm2).maxCoeff() > 0;
+  return (step_s * rates - max * inertia_kgm2).maxCoeff() > 0;
 }
 
 /// The factors `speed` and `rate` of the end of the step are found by iteration.  With the geometric mean of two

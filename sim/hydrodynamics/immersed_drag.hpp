@@ -18,17 +18,17 @@ class ImmersedDrag {
   void add(const ImmersedPiece& piece, double share, double density_kgpm3, const Vector3d& v_fluid_W,
            const Vector3d& at_CP_W, const Matrix3d& R_WP);
 
-  /// With the velocities at the begin of the step.
+  /// With the velocities at the start of the step.
   const Vector3d& force_N() const { return force_N_; }
   const Vector3d& torque_Nm() const { return torque_Nm_; }
 
-  /// True when a step with the drag of its begin would be far off: drag changes much in the step, or what drives the
-  /// body would have changed its velocities by up to `dv_mps` and `dw_radps` without drag.  Inertia and `dw_radps` are
-  /// about the axes of the body.
+  /// True when the drag at the start of the step would be inaccurate: drag changes much during the step, or what drives
+  /// the body would have changed its velocities by up to `dv_mps` and `dw_radps` without drag.  Inertia and `dw_radps`
+  /// are about the axes of the body.
   bool too_stiff(double mass_kg, const Vector3d& inertia_kgm2, double dv_mps, const Vector3d& dw_radps,
                  double step_s) const;
-  /// Backward Euler: the acceleration a that solves M a = `other` + drag(twist + h a).  Drag cannot turn a motion round
-  /// there, and a body that is driven comes up to its terminal speed from below, in steps of any length.
+  /// Backward Euler: the acceleration a that solves M a = `other` + drag(twist + h a).  Drag cannot reverse a motion
+  /// there, and a driven body approaches its terminal speed from below, for any step length.
   Vector6d acceleration(const Matrix6d& M, const Vector6d& other, double step_s);
 
  private:

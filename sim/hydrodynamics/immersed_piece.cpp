@@ -106,7 +106,7 @@ std::shared_ptr<const Mesh> closed_mesh(const PartConfig& part, const std::strin
   return nullptr;
 }
 
-/// Lowest and highest corner along the axes of a part that is no sphere.
+/// Lowest and highest corner along the axes of a part that is not a sphere.
 std::pair<Vector3d, Vector3d> extent_of(const PartConfig& part, const Mesh* mesh) {
   Vector3d low = -part.size_m / 2, high = part.size_m / 2;
   if (mesh != nullptr) {
@@ -160,14 +160,14 @@ std::optional<ImmersedPiece> section_piece(const PartConfig& part, const Mesh* m
 }
 
 /// The pieces in the frame of the part.
-std::vector<ImmersedPiece> pieces_in_part(const PartConfig& part, double longest_m, const Mesh* mesh) {
+std::vector<ImmersedPiece> pieces_in_part(const PartConfig& part, double max_m, const Mesh* mesh) {
   const Vector3d C = drag_of(part);
   if (part.shape == PartShape::sphere) return {sphere_piece(part, C)};
   const auto [low, high] = extent_of(part, mesh);
   int axis = 2;
   if (!shape_info(part.shape).round) (high - low).maxCoeff(&axis);
   const double whole = high[axis] - low[axis];
-  const int sections = static_cast<int>(std::clamp(std::ceil(whole / longest_m), 1.0, 8.0));
+  const int sections = static_cast<int>(std::clamp(std::ceil(whole / max_m), 1.0, 8.0));
   const double from = low[axis], length = whole / sections;
   Vector3d shared_ends = Vector3d::Ones();  // all sections together have one end against the flow
   shared_ends[axis] = 1.0 / sections;
@@ -200,15 +200,15 @@ ImmersedVolume ImmersedPiece::immersed(const WaterPlane& plane) const {
   return volume;
 }
 
-std::vector<ImmersedPiece> pieces_of(const PartConfig& part, double longest_m, const std::string& who,
-                                     PieceMeshes& meshes, std::optional<std::string>& warning) {
+std::vector<ImmersedPiece> pieces_of(const PartConfig& part, double max_m, const std::string& who, PieceMeshes& meshes,
+                                     std::optional<std::string>& warning) {
   if (!part.displaces || !shape_info(part.shape).solid) return {};
   std::shared_ptr<const Mesh> mesh;
   if (part.shape == PartShape::mesh) {
     mesh = closed_mesh(part, who, meshes, warning);
     if (!mesh) return {};
   }
-  std::vector<ImmersedPiece> pieces = pieces_in_part(part, longest_m, mesh.get());
+  std::vector<ImmersedPiece> pieces = pieces_in_part(part, max_m, mesh.get());
   const Matrix3d R_BG = rotation_from_rpy(part.rpy_rad);
   for (ImmersedPiece& piece : pieces) {
     piece.R_BP = R_BG;

@@ -34,10 +34,10 @@ struct ImmersedPiece {
 /// Meshes are loaded and cut once, however many parts use them.
 using PieceMeshes = std::map<std::pair<std::string, double>, std::shared_ptr<const Mesh>>;
 
-/// The pieces of a part; none for one that displaces nothing.  What is longer than `longest_m` is cut across its
-/// longest axis, into 8 at most; a sphere never is.  A mesh that is not closed displaces nothing, which `warning` says;
-/// ConfigError when the part says that it displaces.
-std::vector<ImmersedPiece> pieces_of(const PartConfig& part, double longest_m, const std::string& who,
-                                     PieceMeshes& meshes, std::optional<std::string>& warning);
+/// The pieces of a part; none for one that displaces nothing.  What is longer than `max_m` is cut across its
+/// longest axis, into 8 at most; a sphere never is.  An open mesh displaces nothing, which `warning` reports;
+/// ConfigError when the part sets `displaces`.
+std::vector<ImmersedPiece> pieces_of(const PartConfig& part, double max_m, const std::string& who, PieceMeshes& meshes,
+                                     std::optional<std::string>& warning);
 
 }  // namespace sim

@@ -186,7 +186,7 @@ class RoundSum {
 
   void add_segments(double low, double high) {
     // Gauss-Legendre, 8 points on [0, 1].  The area of a segment grows with the power 3/2 where the surface reaches
-    // the solid; in u, with z a smooth step of u, that is no singularity.
+    // the solid; in u, with z a smooth step of u, that is not a singularity.
     static constexpr double at[4] = {0.019855071751231912, 0.10166676129318664, 0.2372337950418355, 0.4082826787521751};
     static constexpr double weight[4] = {0.05061426814518813, 0.11119051722668724, 0.15685332293894363,
                                          0.18134189168918100};

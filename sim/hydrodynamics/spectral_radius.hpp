@@ -5,8 +5,8 @@
 
 namespace sim {
 
-/// Largest magnitude of the eigenvalues of a matrix, which need not be symmetric.  In a file of its own: Eigen's solver
-/// takes the compiler longer than the rest of the model.
+/// Largest magnitude of the eigenvalues of a matrix, which need not be symmetric.  In a separate file: Eigen's solver
+/// takes longer to compile than the rest of the model.
 double spectral_radius(const Matrix6d& matrix);
 
 }  // namespace sim

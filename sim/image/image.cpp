@@ -43,18 +43,18 @@ std::uint8_t srgb_from_linear(float light) {
   return tables.level[static_cast<std::size_t>(light * srgb_steps + 0.5F)];
 }
 
-Image8 picture_of_depth(const FloatImage& depth_m) {
+Image8 depth_image(const FloatImage& depth_m) {
   float nearest = std::numeric_limits<float>::infinity(), farthest = 0;
   for (const float depth : depth_m.data)
     if (depth > 0 && std::isfinite(depth)) nearest = std::min(nearest, depth), farthest = std::max(farthest, depth);
-  Image8 picture(depth_m.width, depth_m.height, 1);
+  Image8 shown(depth_m.width, depth_m.height, 1);
   const float span = farthest > nearest ? std::log(farthest / nearest) : 1;
-  for (std::size_t i = 0; i < picture.data.size(); ++i) {
+  for (std::size_t i = 0; i < shown.data.size(); ++i) {
     const float depth = depth_m.data[i];
     if (depth > 0 && std::isfinite(depth))
-      picture.data[i] = static_cast<std::uint8_t>(std::lround(255 - 215 * std::log(depth / nearest) / span));
+      shown.data[i] = static_cast<std::uint8_t>(std::lround(255 - 215 * std::log(depth / nearest) / span));
   }
-  return picture;
+  return shown;
 }
 
 std::array<std::uint8_t, 3> label_color(std::uint16_t label) {
@@ -71,13 +71,13 @@ std::array<std::uint8_t, 3> label_color(std::uint16_t label) {
   return {channel(0), channel(4), channel(2)};
 }
 
-Image8 picture_of_labels(const Image16& labels) {
-  Image8 picture(labels.width, labels.height, 3);
+Image8 label_image(const Image16& labels) {
+  Image8 shown(labels.width, labels.height, 3);
   for (std::size_t i = 0; i < labels.data.size(); ++i) {
     const auto color = label_color(labels.data[i]);
-    std::copy(color.begin(), color.end(), picture.data.begin() + static_cast<std::ptrdiff_t>(3 * i));
+    std::copy(color.begin(), color.end(), shown.data.begin() + static_cast<std::ptrdiff_t>(3 * i));
   }
-  return picture;
+  return shown;
 }
 
 }  // namespace sim

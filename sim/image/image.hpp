@@ -34,7 +34,7 @@ struct Image {
   void visit_state(StateArchive& archive) {
     archive(width, height, channels, data);
     if (archive.restoring() && (width < 0 || height < 0 || channels < 0 || data.size() != size()))
-      archive.fail("an image that has not as many values as pixels");
+      archive.fail("an image whose number of values differs from that of its pixels");
   }
 
  private:
@@ -60,11 +60,11 @@ inline float luminance(const float* rgb) {
   return 0.2126F * rgb[0] + 0.7152F * rgb[1] + 0.0722F * rgb[2];
 }
 
-/// A picture of depth for people: near is bright, black is nothing; logarithmic between the nearest and the farthest.
-Image8 picture_of_depth(const FloatImage& depth_m);
-/// A picture of labels for people: each has a color of its own, 0 is black.
-Image8 picture_of_labels(const Image16& labels);
-/// The color of a label, the same in every picture.
+/// An image of depth for people: near is bright, black is nothing; logarithmic between the nearest and the farthest.
+Image8 depth_image(const FloatImage& depth_m);
+/// An image of labels for people: each has its own color, 0 is black.
+Image8 label_image(const Image16& labels);
+/// The color of a label, the same in every image.
 std::array<std::uint8_t, 3> label_color(std::uint16_t label);
 
 }  // namespace sim

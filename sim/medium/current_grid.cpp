@@ -44,7 +44,7 @@ std::vector<std::string_view> split(std::string_view line) {
 std::string bytes_of(const std::string& path) {
   std::error_code error;
   if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error))
-    throw TerrainError("is no file");
+    throw TerrainError("is not a file");
   return whole_file<TerrainError>(path);
 }
 
@@ -96,7 +96,7 @@ std::vector<double> places_along(const std::vector<CsvRow>& rows, double CsvRow:
   const double cell = (places.back() - places.front()) / static_cast<double>(places.size() - 1);
   for (std::size_t i = 0; i < places.size(); ++i)
     if (std::abs(places[i] - places[0] - cell * static_cast<double>(i)) > 1e-3 * cell)
-      throw TerrainError("is no regular grid: the values of " + std::string(name) + " are not equally far apart at " +
+      throw TerrainError("is not a regular grid: the values of " + std::string(name) + " are not equally spaced at " +
                          number_text(places[i]));
   return places;
 }

@@ -24,13 +24,13 @@ Vector3d GaussMarkov::draw(std::int64_t tick) {
 }
 
 void GaussMarkov::advance_to(Time now) {
-  const std::int64_t wanted = now.count() / tick_us_;
+  const std::int64_t desired = now.count() / tick_us_;
   const double dt_s = static_cast<double>(tick_us_) * 1e-6;
   // What was more than 1300 correlation times ago, e^-1300 of it, has been rounded away: the values are the same.
   constexpr std::int64_t remembered_ticks = 1 << 16;
-  // Only a snapshot that somebody made up is ahead of the time.
-  tick_ = std::clamp(tick_, wanted - remembered_ticks, wanted);
-  for (; tick_ < wanted; ++tick_) {
+  // Only a forged snapshot is ahead of the time.
+  tick_ = std::clamp(tick_, desired - remembered_ticks, desired);
+  for (; tick_ < desired; ++tick_) {
     from_ = to_;
     to_ = kept_share(dt_s, correlation_time_s_) * from_ +
           fresh_std(1, dt_s, correlation_time_s_) * std_.cwiseProduct(draw(tick_ + 2));

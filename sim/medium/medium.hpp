@@ -30,7 +30,7 @@ struct LocalWater {
 /// What surrounds the bodies of a world: water below the surface, air over it.  World frame, east-north-up.  The models
 /// and their sources are in docs/models/medium.md.
 ///
-/// Time goes on by advance_to() only; all answers are for that time, and do not depend on what was asked before.
+/// Time advances by advance_to() only; all results are for that time, and do not depend on previous calls.
 /// Places beyond the water (over the surface, or in a world without water) have answers too: those of the air, and
 /// LocalWater as at the surface.
 class Medium {

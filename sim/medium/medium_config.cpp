@@ -23,7 +23,7 @@ template <typename Layer>
 void check_depths(ParamReader& in, const std::vector<Layer>& rows) {
   for (std::size_t i = 1; i < rows.size(); ++i)
     if (!(rows[i].depth_m > rows[i - 1].depth_m)) {
-      in.error("profile", "'depth_m' must grow from row to row of 'profile', got " + number_text(rows[i].depth_m) +
+      in.error("profile", "'depth_m' must increase from row to row of 'profile', got " + number_text(rows[i].depth_m) +
                               " after " + number_text(rows[i - 1].depth_m));
       return;
     }
@@ -46,7 +46,7 @@ void keep_place(ParamReader& in, SourcePlace& place) {
 
 void WaterLayerConfig::read(ParamReader& in) {
   in.require("depth_m");
-  in.read("depth_m", depth_m, between(0, 12000), "below the surface; grows from row to row");
+  in.read("depth_m", depth_m, between(0, 12000), "depth below the surface; must increase from row to row");
   in.read("temperature_C", temperature_C, between(-5, 100), "of the water there");
   in.read("salinity_psu", salinity_psu, between(0, 400), "of the water there");
   in.read("density_kgpm3", density_kgpm3, between(1, 20000), "of the water there; in all rows or in none");
@@ -71,18 +71,18 @@ void WaterConfig::read(ParamReader& in) {
   check_column(in, profile, &WaterLayerConfig::sound_speed_mps, "sound_speed_mps");
   const bool density_rows = !profile.empty() && profile[0].density_kgpm3;
   if (density == Density::eos80 && (in.has("density_kgpm3") || density_rows))
-    in.error("density", "'density' eos80 makes the density; leave 'density_kgpm3' out");
+    in.error("density", "'density' eos80 computes the density; leave out 'density_kgpm3'");
   if (!profile.empty())
     for (const char* key : {"temperature_C", "salinity_psu"})
       if (in.has(key)) in.error(key, "'" + std::string(key) + "' is not for water with a 'profile'");
-  if (density_rows && in.has("density_kgpm3")) in.error("density_kgpm3", "'density_kgpm3' is in 'profile' already");
+  if (density_rows && in.has("density_kgpm3")) in.error("density_kgpm3", "'profile' already gives 'density_kgpm3'");
   if (sound_speed_mps && !profile.empty() && profile[0].sound_speed_mps)
-    in.error("sound_speed_mps", "'sound_speed_mps' is in 'profile' already");
+    in.error("sound_speed_mps", "'profile' already gives 'sound_speed_mps'");
 }
 
 void CurrentLayerConfig::read(ParamReader& in) {
   in.require("depth_m");
-  in.read("depth_m", depth_m, between(0, 12000), "below the surface; grows from row to row");
+  in.read("depth_m", depth_m, between(0, 12000), "depth below the surface; must increase from row to row");
   in.read("velocity_mps", velocity_mps, between(-100, 100), "east, north, up");
 }
 
@@ -125,7 +125,8 @@ void CurrentConfig::read(ParamReader& in) {
   in.read("velocity_mps", velocity_mps, between(-100, 100), "constant: east, north, up");
   in.read_list("profile", profile, "row", "profile: velocities by depth, linear in between");
   in.read("speed_mps", speed_mps, between(0, 100), "power_law, wind_driven: at the surface; gauss_markov: mean");
-  in.read_deg("direction_deg", direction_rad, between(-360, 360), "of it: where to, counter-clockwise from east");
+  in.read_deg("direction_deg", direction_rad, between(-360, 360),
+              "direction towards which it flows, counter-clockwise from east");
   in.read("water_depth_m", water_depth_m, above_to(0, 12000), "power_law: depth of the bottom");
   in.read("exponent", exponent, between(0, 10), "power_law");
   in.read("reference_depth_m", reference_depth_m, above_to(0, 12000), "wind_driven: no current below");
@@ -137,12 +138,12 @@ void CurrentConfig::read(ParamReader& in) {
   in.read("peak_speed_mps", peak_speed_mps, between(-100, 100), "vortex: positive turns counter-clockwise");
   in.read("core_radius_m", core_radius_m, above_to(0, 1e7), "vortex: where it is fastest");
   in.read_choice("core", core, {{"lamb_oseen", Core::lamb_oseen}, {"rankine", Core::rankine}},
-                 "vortex: how the speed goes with the radius");
+                 "vortex: profile of the speed over the radius");
   in.read_path("file", file, PathUse::read,
                "grid: CSV with columns x_m, y_m, east_mps, north_mps; relative to this file");
   in.read_path("east_file", east_file, PathUse::read, "grid: ESRI ASCII grid of the velocity to the east, m/s");
   in.read_path("north_file", north_file, PathUse::read, "grid: ESRI ASCII grid of the velocity to the north, m/s");
-  read_pair(in, "map_origin_m", map_origin_m, "grid: where the origin of the world lies in the files");
+  read_pair(in, "map_origin_m", map_origin_m, "grid: position of the world's origin in the files");
   in.read_choice("outside", outside, {{"zero", Outside::zero}, {"edge", Outside::edge}},
                  "grid: the current beyond its border");
   if (in.describing()) return;
@@ -160,9 +161,9 @@ void TideConfig::read(ParamReader& in) {
   in.read_deg("phase_deg", phase_rad, between(-360, 360), "at time 0; 0: high water");
   in.read("current_mps", current_mps, between(0, 20), "highest speed of the tidal current");
   in.read_deg("current_direction_deg", current_direction_rad, between(-360, 360),
-              "where the flood goes, counter-clockwise from east");
+              "direction of the flood, counter-clockwise from east");
   in.read_deg("current_lead_deg", current_lead_rad, between(-360, 360),
-              "by how much the fastest flood comes before high water; 90: slack at high water");
+              "phase lead of the fastest flood over high water; 90: slack at high water");
 }
 
 void GustConfig::read(ParamReader& in) {
@@ -179,11 +180,11 @@ void WindConfig::read(ParamReader& in) {
   in.read("velocity_mps", velocity_mps, between(-120, 120), "east, north, up, at the reference height");
   in.read("speed_mps", speed_mps, between(0, 120), "instead of 'velocity_mps'");
   in.read_deg("direction_deg", direction_rad, between(-360, 360),
-              "of 'speed_mps': where to, counter-clockwise from east");
+              "of 'speed_mps': direction towards which it blows, counter-clockwise from east");
   in.read("from_compass_deg", from_compass_deg, between(-360, 360),
-          "of 'speed_mps': where from, clockwise from north, as forecasts say it");
+          "of 'speed_mps': direction from which it blows, clockwise from north, as in forecasts");
   in.read_choice("profile", profile, {{"uniform", Profile::uniform}, {"power", Profile::power}, {"log", Profile::log}},
-                 "how the mean grows with the height");
+                 "profile of the mean over the height");
   in.read("reference_height_m", reference_height_m, above_to(0.001, 1000),
           "height of the given wind over the still water");
   in.read("exponent", exponent, between(0, 1), "power");
@@ -226,7 +227,7 @@ ChoiceKeys keys_of_waves(WavesConfig::Type type) {
 void check_keys_of_waves(ParamReader& in, WavesConfig::Type type) {
   refuse_keys_of_others(in, "type", waves_type_words, type, keys_of_waves);
   if (in.has("sea_state") && (in.has("hs_m") || in.has("tp_s")))
-    in.error("sea_state", "'sea_state' says height and period; leave 'hs_m' and 'tp_s' out");
+    in.error("sea_state", "'sea_state' gives height and period; leave out 'hs_m' and 'tp_s'");
 }
 
 /// Sets height and period of a sea state: the middle of the range of heights and the most probable period in the open
@@ -248,13 +249,15 @@ void WavesConfig::read(ParamReader& in) {
   in.read_deg("phase_deg", phase_rad, between(-360, 360), "regular: at the origin at time 0; 0: a crest");
   in.read("hs_m", hs_m, between(0, 40), "significant wave height");
   in.read("tp_s", tp_s, between(0.2, 60), "peak period");
-  in.read("gamma", gamma, between(1, 10), "jonswap: how sharp the peak is; 1: as pierson_moskowitz");
+  in.read("gamma", gamma, between(1, 10), "jonswap: peak enhancement factor gamma; 1: as pierson_moskowitz");
   in.read("sea_state", sea_state, between(0, 8),
           "instead of 'hs_m' and 'tp_s': those of the open North Atlantic; 0: calm");
-  in.read("components", components, between(1, max_components), "waves that the sea is made of");
-  in.read("cutoff", cutoff, between(1.5, 50), "highest frequency by that of the peak");
-  in.read("spreading", spreading, between(0.5, 1000), "s of cos^2s of half the angle; absent: all go one way");
-  in.read_deg("direction_deg", direction_rad, between(-360, 360), "where they go, counter-clockwise from east");
+  in.read("components", components, between(1, max_components), "number of wave components");
+  in.read("cutoff", cutoff, between(1.5, 50), "highest frequency relative to the peak frequency");
+  in.read("spreading", spreading, between(0.5, 1000),
+          "exponent s of the spreading cos^2s of half the angle; absent: long-crested");
+  in.read_deg("direction_deg", direction_rad, between(-360, 360),
+              "direction towards which they travel, counter-clockwise from east");
   in.read("water_depth_m", water_depth_m, above_to(0.01, 12000), "of the bottom, for the waves; absent: deep");
   if (in.describing()) return;
   check_keys_of_waves(in, type);
@@ -283,7 +286,7 @@ void read_one_or_more(ParamReader& in, const char* key, std::vector<Entry>& entr
 void MediumConfig::read(ParamReader& in) {
   in.read("water", water, "the sea, a lake or a tank; absent: the world is dry");
   read_one_or_more(in, "current", current, "current", "how the water flows; the entries add up");
-  read_one_or_more(in, "tides", tides, "tide", "surface and current that go up and down; the entries add up");
+  read_one_or_more(in, "tides", tides, "tide", "tidal constituents of surface and current; the entries add up");
   in.read("waves", waves, "absent: the surface is flat");
   in.read("wind", wind, "absent: still air");
   if (in.describing()) return;

@@ -11,7 +11,7 @@
 
 namespace sim {
 
-// Directions here say where something goes to, counter-clockwise from east.
+// Directions are those towards which something moves, counter-clockwise from east.
 
 /// A row of `profile:` of the water.
 struct WaterLayerConfig {
@@ -33,7 +33,7 @@ struct WaterConfig {
   Density density = Density::constant;       ///< where no profile says it
   double temperature_C = 10;                 ///< without profile
   double salinity_psu = 35;                  ///< without profile
-  std::vector<WaterLayerConfig> profile;     ///< by depth; linear between rows, the ends go on
+  std::vector<WaterLayerConfig> profile;     ///< by depth; linear between rows, the ends continue
   SoundSpeed sound = SoundSpeed::mackenzie;  ///< where neither profile nor constant say it
   std::optional<double> sound_speed_mps;     ///< the same everywhere
   void read(ParamReader& in);
@@ -136,7 +136,7 @@ struct WavesConfig {
   std::int64_t sea_state = 0;       ///< irregular: 0 to 8 sets hs_m and tp_s when it is given
   int components = 200;             ///< irregular
   double cutoff = 10;               ///< irregular: highest frequency by the peak frequency
-  std::optional<double> spreading;  ///< irregular: s of cos^2s(half angle); unset: all go one way
+  std::optional<double> spreading;  ///< irregular: s of cos^2s(half angle); unset: long-crested
   double direction_rad = 0;
   std::optional<double> water_depth_m;  ///< unset: deep
   SourcePlace place;

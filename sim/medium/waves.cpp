@@ -18,7 +18,7 @@ namespace sim {
 namespace {
 
 constexpr std::size_t lanes = 8;
-constexpr std::size_t most = (WavesConfig::max_components + lanes - 1) / lanes * lanes;
+constexpr std::size_t max = (WavesConfig::max_components + lanes - 1) / lanes * lanes;
 constexpr double round_magic = 6755399441055744.0;  // 1.5 * 2^52: adding it rounds to a whole number
 
 /// Sine of pi u for |u| <= 1/2 (Taylor; error below 1e-11).
@@ -89,17 +89,17 @@ void check_steepness(const WavesConfig& config, double gravity_mps2) {
     const double k = wave_number(2 * std::numbers::pi / config.period_s, gravity_mps2, depth_m);
     const double highest_m = 0.142 * std::tanh(k * depth_m) * 2 * std::numbers::pi / k;
     if (config.height_m > highest_m)
-      fail("'height_m' " + number_text(config.height_m) + " is more than a wave of " + number_text(config.period_s) +
-           " s can have before it breaks, " + number_text(std::floor(highest_m * 1000) / 1000) + " m");
+      fail("'height_m' " + number_text(config.height_m) + " is above the breaking limit of a wave of " +
+           number_text(config.period_s) + " s, " + number_text(std::floor(highest_m * 1000) / 1000) + " m");
     return;
   }
   const double highest_m = gravity_mps2 * config.tp_s * config.tp_s / (2 * std::numbers::pi * 15);
   if (config.hs_m > highest_m)
-    fail("'hs_m' " + number_text(config.hs_m) + " is more than a sea of 'tp_s' " + number_text(config.tp_s) +
-         " can have before it breaks, " + number_text(std::floor(highest_m * 1000) / 1000) + " m");
+    fail("'hs_m' " + number_text(config.hs_m) + " is above the breaking limit of a sea with 'tp_s' " +
+         number_text(config.tp_s) + ", " + number_text(std::floor(highest_m * 1000) / 1000) + " m");
   if (config.water_depth_m && config.hs_m > 0.6 * depth_m)
-    fail("'hs_m' " + number_text(config.hs_m) + " is more than water of 'water_depth_m' " + number_text(depth_m) +
-         " can have before it breaks, 0.6 of the depth");
+    fail("'hs_m' " + number_text(config.hs_m) + " is above the breaking limit in water of 'water_depth_m' " +
+         number_text(depth_m) + ", 0.6 of the depth");
 }
 
 }  // namespace
@@ -173,7 +173,7 @@ double Waves::elevation_m(double x_m, double y_m, Time at) const {
 }
 
 WaveMotion Waves::at(double x_m, double y_m, double z_m) const {
-  alignas(64) double cosines[most], sines[most];
+  alignas(64) double cosines[max], sines[max];
   const std::size_t count = k_.size();
   WaveMotion motion;
   Lanes elevation{};
@@ -204,7 +204,7 @@ WaveMotion Waves::at(double x_m, double y_m, double z_m) const {
   const double *two_kh = two_k_depth_.data(), *by_sinh = by_sinh_.data(), *by_cosh = by_cosh_.data();
   const double *v = speed_.data(), *v_x = speed_x_.data(), *v_y = speed_y_.data();
   const double *a = acceleration_.data(), *a_x = acceleration_x_.data(), *a_y = acceleration_y_.data();
-  alignas(64) double cosh_by_sinh[most], sinh_by_sinh[most], cosh_by_cosh[most];
+  alignas(64) double cosh_by_sinh[max], sinh_by_sinh[max], cosh_by_cosh[max];
   if (deep) {
     for (std::size_t i = 0; i < reach; ++i) sinh_by_sinh[i] = exp_minus(k[i] * below_m);
   } else {

@@ -49,9 +49,9 @@ void check_added_mass(const Matrix6d& A, ParamReader& in) {
                         axes[i] + " and " + axes[j] + " and " + number_text(A(j, i)) + " the other way");
       return;
     }
-  const double least = smallest_eigenvalue(A);
-  if (!not_negative(least, A))
-    in.error(key, "the matrix of added mass has a negative eigenvalue, " + number_text(least) +
+  const double min = smallest_eigenvalue(A);
+  if (!not_negative(min, A))
+    in.error(key, "the matrix of added mass has a negative eigenvalue, " + number_text(min) +
                       ": its couplings are too large for its diagonal");
 }
 
@@ -61,28 +61,29 @@ void check_inertia(const HydrodynamicsConfig& config, ParamReader& in) {
     in.error("inertia_kgm2", "'inertia_kgm2' must be symmetric");
     return;
   }
-  const double least = smallest_eigenvalue(I);
-  if (!(least > 0))
+  const double min = smallest_eigenvalue(I);
+  if (!(min > 0))
     in.error("inertia_kgm2",
              "'inertia_kgm2' about the centre of mass must be positive definite, its smallest eigenvalue is " +
-                 number_text(least) + "; see 'inertia_about'");
+                 number_text(min) + "; see 'inertia_about'");
 }
 
 void check_damping(const char* key, const Matrix6d& damping, ParamReader& in) {
   for (int i = 0; i < 6; ++i)
     if (!(damping(i, i) >= 0))
-      in.error(key, std::string("'") + key + "' must be >= 0 in " + axes[i] + ", got " + number_text(damping(i, i)) +
-                        ": negative, it would push the vehicle on; papers print derivatives, which are its negative");
+      in.error(key,
+               std::string("'") + key + "' must be >= 0 in " + axes[i] + ", got " + number_text(damping(i, i)) +
+                   ": a negative value would accelerate the vehicle; papers print derivatives, which are its negative");
 }
 
 /// That no combination of motions is driven: what damping takes is nu' D nu, of which only the symmetric part counts.
 void check_damping_couplings(const HydrodynamicsConfig& config, ParamReader& in) {
   const Matrix6d& D = config.linear_damping;
   if (!(D.diagonal().minCoeff() >= 0)) return;  // was said
-  const double least = smallest_eigenvalue(Matrix6d((D + D.transpose()) / 2));
-  if (!not_negative(least, D))
-    in.error("linear_damping", "the symmetric part of 'linear_damping' has a negative eigenvalue, " +
-                                   number_text(least) + ": there are motions that it would push on");
+  const double min = smallest_eigenvalue(Matrix6d((D + D.transpose()) / 2));
+  if (!not_negative(min, D))
+    in.error("linear_damping", "the symmetric part of 'linear_damping' has a negative eigenvalue, " + number_text(min) +
+                                   ": it would accelerate some motions");
 }
 
 void check_waterline(const WaterlineConfig& plane, ParamReader& in) {
@@ -90,7 +91,7 @@ void check_waterline(const WaterlineConfig& plane, ParamReader& in) {
   if (!(alone > coupled))
     in.error("waterline", "'heave_pitch_N' squared must stay below 'heave_Npm' times 'pitch_Nmprad', got " +
                               number_text(coupled) + " and " + number_text(alone) +
-                              ": heaving and pitching at once, it would be pushed over");
+                              ": combined heave and pitch would be unstable");
 }
 
 void check_derivatives(const HydrodynamicsConfig& config, ParamReader& in) {

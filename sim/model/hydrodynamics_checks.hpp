@@ -8,8 +8,8 @@
 
 namespace sim {
 
-/// Reports what no vehicle can have: mass that is not positive definite, added mass that is not symmetric or negative,
-/// damping that drives.  For numbers that were read without errors.
+/// Reports unphysical values: mass that is not positive definite, added mass that is asymmetric or negative, damping
+/// that adds energy.  For numbers that were read without errors.
 void check_coefficients(const HydrodynamicsConfig& config, ParamReader& in);
 
 /// What is possible but most likely a mistake, a line each: `body 'auv1/hull': ...`.

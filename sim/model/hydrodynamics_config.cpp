@@ -187,8 +187,9 @@ void HydrodynamicsConfig::read(ParamReader& in) {
     in.error("added_mass_of_spheroid", "only one of 'added_mass' and 'added_mass_of_spheroid'");
   if (spheroid && spheroid->half_length_m >= spheroid->radius_m)
     added_mass = spheroid_added_mass(spheroid->half_length_m, spheroid->radius_m, spheroid->density_kgpm3).asDiagonal();
-  read_matrix<6>(in, "linear_damping", linear_damping, "6 or 36 numbers; positive brakes");
-  read_matrix<6>(in, "quadratic_damping", quadratic_damping, "6 or 36 numbers, times |speed| speed; positive brakes");
+  read_matrix<6>(in, "linear_damping", linear_damping, "6 or 36 numbers; positive values damp");
+  read_matrix<6>(in, "quadratic_damping", quadratic_damping,
+                 "6 or 36 numbers, times |speed| speed; positive values damp");
   if (frame == AxesFrame::flu) {
     const Matrix6d P = flip.asDiagonal();
     for (Matrix6d* matrix : {&added_mass, &linear_damping, &quadratic_damping}) *matrix = (P * *matrix * P).eval();
@@ -205,9 +206,10 @@ void HydrodynamicsConfig::read(ParamReader& in) {
     char* end = nullptr;
     term.coefficient = std::strtod(entry.value.scalar.c_str(), &end);
     if (!parse_derivative(entry.key, term)) {
-      in.diagnostics().error(entry.place, in.who(),
-                             "'" + shortened(printable(entry.key)) +
-                                 "' is no derivative: X_u, X_uu, Y_uv, N_|v|r, Z_wdot with rows XYZKMN, states uvwpqr");
+      in.diagnostics().error(
+          entry.place, in.who(),
+          "'" + shortened(printable(entry.key)) +
+              "' is not a derivative: X_u, X_uu, Y_uv, N_|v|r, Z_wdot with rows XYZKMN, states uvwpqr");
       continue;
     }
     if (entry.value.kind != ConfigNode::Kind::scalar || entry.value.scalar.empty() || *end != 0 ||

@@ -5,7 +5,7 @@ namespace sim {
 
 void refuse_reserved(ParamReader& in, const std::string& name) {
   if (name == "any" || name == "world" || name == "sim")
-    in.error("name", "'" + name + "' cannot be a name: it is a word");
+    in.error("name", "'" + name + "' cannot be a name: it is a keyword");
 }
 
 void ObjectConfig::read(ParamReader& in) {
@@ -18,10 +18,10 @@ void ObjectConfig::read(ParamReader& in) {
   refuse_reserved(in, name);
   in.read("position_m", position_m, any_place(), "place in the world");
   in.read_deg("rpy_deg", rpy_rad, "roll, pitch, yaw");
-  in.read("fixed", fixed, "it never moves");
-  in.read("present", present, "false: it is not there until an event adds it");
+  in.read("fixed", fixed, "it is static");
+  in.read("present", present, "false: it is absent until an event adds it");
   in.read("count", count, between(1, 100000), "how many; named NAME1, NAME2, ...");
-  in.read("placement", placement, "where the instances stand when there is a count");
+  in.read("placement", placement, "placement of the instances when there is a count");
   in.require("parts");
   in.read_list("parts", parts, "part", "what it is made of");
   if (in.has("parts") && in.child("parts")->items.empty() && in.child("parts")->kind != ConfigNode::Kind::scalar)

@@ -16,7 +16,7 @@ struct ObjectConfig {
   Vector3d position_m = Vector3d::Zero();
   Vector3d rpy_rad = Vector3d::Zero();
   bool fixed = false;      ///< never moves
-  bool present = true;     ///< false: it is not there until an event adds it
+  bool present = true;     ///< false: it is absent until an event adds it
   bool kinematic = false;  ///< an actor moves it
   int count = 1;
   PlacementConfig placement;

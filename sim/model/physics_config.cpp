@@ -21,16 +21,17 @@ void PhysicsConfig::read(ParamReader& in) {
   in.read("quick_above_rows", quick_above_rows, at_least(0),
           "auto: islands with more constraint rows are stepped by quick");
   in.read("quick_iterations", quick_iterations, between(1, 10000), "iterations of the quick solver");
-  in.read("erp", erp, between(0, 1), "part of a joint's or contact's error put right in each step");
+  in.read("erp", erp, between(0, 1),
+          "error reduction parameter: fraction of the joint or contact error corrected per step");
   in.read("cfm", cfm, between(0, 1), "softness of joints and contacts, (m/s)/N s");
   in.read("contact_max_correcting_velocity_mps", contact_max_correcting_velocity_mps, above(0),
-          "speed at which parts that overlap are pushed apart");
+          "maximum speed at which overlapping parts are separated");
   in.read("contact_surface_layer_m", contact_surface_layer_m, between(0, 1),
-          "depth to which parts at rest sink in, which keeps contacts from flickering");
+          "penetration of parts at rest, which keeps contacts from flickering");
   in.read("max_contacts_per_pair", max_contacts_per_pair, between(1, 256), "contact points of two parts");
-  in.read_choice("space", space, space_words, "how parts near each other are found");
+  in.read_choice("space", space, space_words, "broad phase of collision detection");
   in.read_choice("rays", rays, ray_library_words,
-                 "how rays find parts: embree is fast; ode, one ray at a time, is there to compare");
+                 "library for ray casting: embree is fast; ode casts one ray at a time, for comparison");
   in.read("max_speed_mps", max_speed_mps, above(0), "a body faster than this stops the run");
   in.read("max_distance_m", max_distance_m, above(0), "a body farther from the origin than this stops the run");
 }
@@ -45,7 +46,7 @@ void ContactConfig::read(ParamReader& in) {
   }
   in.read("friction", friction, at_least(0), "Coulomb's coefficient of friction");
   in.read("bounce", bounce, sim::between(0, 1), "coefficient of restitution");
-  in.read("bounce_velocity_mps", bounce_velocity_mps, at_least(0), "slower impacts do not bounce");
+  in.read("bounce_velocity_mps", bounce_velocity_mps, at_least(0), "minimum impact speed for a bounce");
   in.read("soft_erp", soft_erp, sim::between(0, 1), "erp of these contacts, instead of the world's");
   in.read("soft_cfm", soft_cfm, sim::between(0, 1), "cfm of these contacts, instead of the world's");
   in.read("rolling_friction_m", rolling_friction_m, at_least(0), "lever of rolling resistance");
@@ -86,11 +87,12 @@ void PartConfig::read(ParamReader& in) {
   in.read_deg("rpy_deg", rpy_rad, "roll, pitch and yaw of the part in the frame of the body");
   in.read("mass_kg", mass_kg, between(1e-9, 1e12), "mass; a part with neither mass nor density weighs nothing");
   in.read("density_kgpm3", density_kgpm3, between(1e-6, 1e9), "density, instead of a mass");
-  in.read_reference("material", material, "material", "decides friction and bounce, see contacts of the world");
-  in.read_reference("category", category, "category", "what others see in the part: whether it collides, stops rays");
+  in.read_reference("material", material, "material",
+                    "material, which determines friction and restitution, see contacts of the world");
+  in.read_reference("category", category, "category", "categories of the part, for collisions and ray filters");
   in.read_references("collides_with", collides_with, "category",
-                     "categories it collides with, if they want to as well; none: all");
-  in.read("color", color, "color in pictures and viewers, #rrggbb; none: the material's");
+                     "categories with which it collides, if they also collide with its own; none: all");
+  in.read("color", color, "color in images and viewers, #rrggbb; none: the material's");
   read_water_keys(in);
   if (in.describing()) return;
   check_keys_of_shape(in, shape);
@@ -102,7 +104,7 @@ void PartConfig::read(ParamReader& in) {
 
 void PartConfig::read_water_keys(ParamReader& in) {
   if (!in.describing()) displaces_was_given = in.has("displaces");
-  in.read("displaces", displaces, "water lifts and brakes the part; false: hollow, or there for the looks");
+  in.read("displaces", displaces, "buoyancy and drag act on the part; false: hollow, or only visual");
   read_drag_coefficient(in);
   in.read("added_mass_coefficient", added_mass_coefficient, between(0, 100),
           "in water: added mass over the mass of the water displaced; 0.5 is that of a sphere");
@@ -138,8 +140,9 @@ void BodyConfig::read(ParamReader& in) {
   in.read_name("name", name, "name of the body");
   in.read("position_m", position_m, any_place(), "origin of the body's frame in the frame of the vehicle");
   in.read_deg("rpy_deg", rpy_rad, "roll, pitch and yaw of the body's frame in the frame of the vehicle");
-  in.read_list("parts", parts, "part", "shapes that move as one");
-  in.read("kinematic", kinematic, "a device moves it, such as naive_drive; it pushes others and no force moves it");
+  in.read_list("parts", parts, "part", "shapes of the rigid body");
+  in.read("kinematic", kinematic,
+          "kinematic: a device such as naive_drive moves it; it pushes others and is not affected by forces");
   in.read("hydrodynamics", hydrodynamics,
           "mass and forces in water by published coefficients, see docs/models/marine.md");
 }

@@ -44,12 +44,12 @@ struct PhysicsConfig {
 };
 
 /// What happens where two materials touch.  `any` stands for every
-/// material.  An entry that names both materials wins over one that says `any`; among equals the last one wins.
+/// material.  An entry that names both materials takes precedence over one with `any`; among equals the last one.
 struct ContactConfig {
   std::vector<std::string> between = {"any", "any"};  ///< two names of materials, or `any`
   double friction = 0.8;                              ///< Coulomb coefficient, along the slip (dContactApprox1)
   double bounce = 0;                                  ///< coefficient of restitution, 0 to 1
-  double bounce_velocity_mps = 0.1;                   ///< slower impacts do not bounce
+  double bounce_velocity_mps = 0.1;                   ///< minimum impact speed for a bounce
   std::optional<double> soft_erp;                     ///< unset: the world's erp
   std::optional<double> soft_cfm;                     ///< unset: the world's cfm
   double rolling_friction_m = 0;                      ///< rolling resistance as a lever, m (ODE's rho)
@@ -77,7 +77,7 @@ struct PartConfig {
   std::string material = "default";
   std::string category = "solid";
   std::vector<std::string> collides_with;  ///< categories; empty: all.  A plane with normal +z of its frame.
-  std::string color;                       ///< in pictures and viewers: `#rrggbb`; empty: the material's
+  std::string color;                       ///< in images and viewers: `#rrggbb`; empty: the material's
   // In water, for a free body without coefficients of its own.
   bool displaces = true;                 ///< a solid that water lifts and brakes
   bool displaces_was_given = false;      ///< `displaces` is written

@@ -14,7 +14,7 @@ void PlacementConfig::read(ParamReader& in) {
   in.read_or_word("columns", columns, at_least(1), {"auto"}, "grid: instances along x; auto: as square as possible");
   in.read("radius_m", radius_m, above(0), "circle: its radius; instances face outwards");
   in.read("area_m", area_m, at_least(0), "random: size of the box that places are drawn from");
-  in.read("jitter_m", jitter_m, at_least(0), "places are moved by up to this in x and in y");
+  in.read("jitter_m", jitter_m, at_least(0), "maximum random offset of each place in x and in y");
   in.read("random_yaw", random_yaw, "headings are drawn from the full circle");
 }
 

@@ -36,14 +36,14 @@ void on_message(int, const char* text, va_list arguments) {
 }
 
 // ODE asks for memory of each body, geom and joint by itself, and walks through them several times in a step.
-constexpr std::size_t largest_object_bytes = 4096;
+constexpr std::size_t max_object_bytes = 4096;
 
 void* allocate(std::size_t bytes) {
-  return bytes <= largest_object_bytes ? allocate_for_steps(bytes) : std::malloc(bytes);
+  return bytes <= max_object_bytes ? allocate_for_steps(bytes) : std::malloc(bytes);
 }
 
 void free(void* memory, std::size_t bytes) {
-  bytes <= largest_object_bytes ? free_for_steps(memory, bytes) : std::free(memory);
+  bytes <= max_object_bytes ? free_for_steps(memory, bytes) : std::free(memory);
 }
 
 void* reallocate(void* memory, std::size_t old_bytes, std::size_t new_bytes) {

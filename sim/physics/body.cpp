@@ -95,7 +95,7 @@ void Body::set_pose(const Pose& X_WB) {
   if (kinematic()) {
     seat_X_WB_ = X_WB;
     end_kinematic_step();
-    begin_kinematic_step();
+    start_kinematic_step();
   } else {
     place_ode_body(X_WB);
   }
@@ -127,13 +127,13 @@ void Body::move_to(const Pose& X_WB_at_end, const Vector3d& v_WB_W, const Vector
   move_is_due_ = true;
 }
 
-void Body::begin_kinematic_step() {
+void Body::start_kinematic_step() {
   if (move_is_due_) return;
   dBodySetLinearVel(ode_.get(), 0, 0, 0);
   dBodySetAngularVel(ode_.get(), 0, 0, 0);
 }
 
-/// ODE arrived there but for rounding, which would add up, also in a body at rest: ODE normalizes the quaternion in
+/// ODE arrived there except for rounding, which would add up, also in a body at rest: ODE normalizes the quaternion in
 /// each step, and that is not idempotent.
 void Body::end_kinematic_step() {
   place_ode_body(seat_X_WB_);
@@ -157,7 +157,7 @@ void Body::set_gravity(bool on) {
 
 namespace {
 
-/// ODE aborts in mid-step on what is no number, and squares what is huge.
+/// ODE aborts in mid-step on what is not a number, and squares what is huge.
 bool is_usable(std::span<const double> numbers) {
   return std::all_of(numbers.begin(), numbers.end(), [](double number) { return std::abs(number) < 1e30; });
 }
@@ -175,13 +175,13 @@ bool is_pose(const Pose& X) {
 
 }  // namespace
 
-// ODE's setters normalize the quaternion, which is not idempotent: a restored world would go on from other bits.  So
+// ODE's setters normalize the quaternion, which is not idempotent: a restored world would continue from other bits.  So
 // they are written where ODE has them; dBodySetPosition then tells ODE that geoms moved.
 void Body::visit_state(StateArchive& archive) {
   if (fixed()) {
     Pose X_WB = seat_X_WB_;
     archive(X_WB);
-    if (archive.restoring() && !is_pose(X_WB)) archive.fail("'" + name_ + "' is at a pose that cannot be");
+    if (archive.restoring() && !is_pose(X_WB)) archive.fail("'" + name_ + "' has an invalid pose");
     if (archive.restoring() && X_WB.matrix() != seat_X_WB_.matrix()) set_pose(X_WB);
     return;
   }
@@ -215,9 +215,9 @@ void Body::visit_state(StateArchive& archive) {
   seat_X_WB.matrix() = rest.seat_X_WB;
   if (!is_usable(motion.p_WC) || !is_usable(motion.R_WB) || !is_rotation(rotation_to_eigen(motion.R_WB)) ||
       !(std::abs(q_WB.norm() - 1) < rotation_tolerance) || (kinematic() && !is_pose(seat_X_WB)))
-    archive.fail("'" + name_ + "' is at a pose that cannot be");
+    archive.fail("'" + name_ + "' has an invalid pose");
   if (!is_usable(motion.v_WC_W) || !is_usable(motion.w_WB_W) || !is_usable(rest.force_N) || !is_usable(rest.torque_Nm))
-    archive.fail("'" + name_ + "' has a velocity or force that cannot be");
+    archive.fail("'" + name_ + "' has an invalid velocity or force");
   each([](const double* from, const dReal* to, int count) { std::copy_n(from, count, const_cast<dReal*>(to)); });
   dBodySetPosition(ode_.get(), motion.p_WC[0], motion.p_WC[1], motion.p_WC[2]);
   dBodySetForce(ode_.get(), rest.force_N[0], rest.force_N[1], rest.force_N[2]);

@@ -52,7 +52,7 @@ class Body : public VisitedInSteps {
   /// Velocity of a point of the body given in B.
   Vector3d velocity_at_W(const Vector3d& p_B) const;
 
-  /// Forces last for the next step, and do nothing to a body that is not free.  Not finite: PhysicsFault.
+  /// Forces act during the next step, and have no effect on a body that is not free.  Not finite: PhysicsFault.
   void add_force_W(const Vector3d& force_N, const Vector3d& at_W);
   void add_torque_W(const Vector3d& torque_Nm);
   /// What was added for the next step: the force, and the torque about the centre of mass.
@@ -67,7 +67,7 @@ class Body : public VisitedInSteps {
   /// turning the shorter way.  What it touches sees that velocity, which has the bound of every body: for a jump there
   /// is set_pose.  Without a call it stands still in a step.
   void move_to(const Pose& X_WB_at_end, double step_s);
-  /// The same for who knows the velocities of the step: of the origin of B, and the angular one.
+  /// The same for callers that have the velocities of the step: linear of the origin of B, and angular.
   void move_to(const Pose& X_WB_at_end, const Vector3d& v_WB_W, const Vector3d& w_WB_W);
   /// Of a free body; others do not take it.
   void set_velocity_W(const Vector3d& v_WB_W, const Vector3d& w_WB_W);
@@ -89,7 +89,7 @@ class Body : public VisitedInSteps {
   bool free() const { return motion_ == Motion::free; }
   void place_fixed_geoms();
   void place_ode_body(const Pose& X_WB);
-  void begin_kinematic_step();
+  void start_kinematic_step();
   void end_kinematic_step();
   void add_gyroscopic_torque(double step_s);
 

@@ -71,7 +71,7 @@ void Collider::add_part(int number, const CollisionPart& part, GeomHandle geom, 
   parts_[number].geom = geom.get();
   dGeomSetData(geom.get(), reinterpret_cast<void*>(static_cast<std::intptr_t>(number)));
   dGeomSetCategoryBits(geom.get(), part.category);
-  // Parts that nothing can push look for nobody: so the space drops pairs of two such parts at once.
+  // Parts that nothing can push do not search for contacts, so the space drops pairs of two such parts at once.
   const unsigned long collides = motion == Motion::free ? part.collides_with : 0;
   dGeomSetCollideBits(geom.get(), collides);
   Group& group = groups_[part.group];

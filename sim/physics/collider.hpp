@@ -41,13 +41,13 @@ struct CollisionBody {
 
 /// Finds the parts that touch and makes contact joints.
 ///
-/// The order of contacts decides the last bits of a step, and each kind of space has an order of its own.  So
+/// The order of contacts decides the last bits of a step, and each kind of space has its own order.  So
 /// pairs are collected first, the lower part number first, sorted, and only then looked at closely.
 class Collider {
  public:
   Collider(const PhysicsConfig& config, ContactTable table);
 
-  // Numbers of groups, bodies and parts are the caller's, who may use those of removed things again.
+  // Numbers of groups, bodies and parts are assigned by the caller, who may reuse those of removed entities.
   void add_group(int group, bool self_collision);
   /// Takes the geom into its group's space.  A moving geom must be attached to its body and posed.
   void add_part(int number, const CollisionPart& part, GeomHandle geom, Motion motion);
@@ -62,7 +62,7 @@ class Collider {
     table_.add(materials, contacts);
   }
   void set_gravity(double gravity_mps2);
-  /// How deep the parts of a group stand in those of another, at the deepest; group -1: nowhere.
+  /// Maximum penetration of the parts of a group into those of another; group -1: none.
   struct Overlap {
     int group = -1;
     double depth_m = 0;
@@ -88,7 +88,7 @@ class Collider {
     bool self_collision = false;
     int watchers = 0;
   };
-  /// A contact joint of this step whose force is asked for.
+  /// A contact joint of this step whose force is requested.
   struct WatchedContact {
     dJointID joint;
     ContactReport report;
@@ -123,7 +123,7 @@ class Collider {
   std::vector<dContact> touching_;
   int watchers_ = 0;  // of all groups
   std::vector<WatchedContact> watched_;
-  std::vector<dJointFeedback> feedback_;  // of watched_; sized once per step, for ODE keeps addresses
+  std::vector<dJointFeedback> feedback_;  // of watched_; sized once per step, as ODE keeps addresses
 };
 
 }  // namespace sim

@@ -52,7 +52,7 @@ ContactTable::ContactTable(const std::vector<MaterialConfig>& materials, const s
     : contacts_(contacts) {
   materials_.emplace_back().name = "default";
   add_materials(materials);
-  work_out_surfaces();
+  compute_surfaces();
 }
 
 void ContactTable::add(const std::vector<MaterialConfig>& materials, const std::vector<ContactConfig>& contacts) {
@@ -62,7 +62,7 @@ void ContactTable::add(const std::vector<MaterialConfig>& materials, const std::
     if (std::find(contacts_.begin(), contacts_.end(), contact) == contacts_.end())
       contacts_.insert(contacts_.begin() + static_cast<std::ptrdiff_t>(added_++), contact);
   // The second vehicle of a kind brings nothing new.
-  if (contacts_.size() > known || static_cast<int>(materials_.size()) > count_) work_out_surfaces();
+  if (contacts_.size() > known || static_cast<int>(materials_.size()) > count_) compute_surfaces();
 }
 
 void ContactTable::add_materials(const std::vector<MaterialConfig>& materials) {
@@ -74,10 +74,10 @@ std::vector<MaterialConfig>::const_iterator ContactTable::find(const std::string
   return std::find_if(materials_.begin(), materials_.end(), [&](const auto& each) { return each.name == material; });
 }
 
-void ContactTable::work_out_surfaces() {
+void ContactTable::compute_surfaces() {
   count_ = static_cast<int>(materials_.size());
   surfaces_.assign(materials_.size() * materials_.size(), make_surface(ContactConfig{}));
-  // An entry that names both materials wins over one that says `any`; among equals the last one wins.
+  // An entry that names both materials takes precedence over one with `any`; among equals the last one.
   std::vector<ContactConfig> by_weight = contacts_;
   std::stable_sort(by_weight.begin(), by_weight.end(), [](const ContactConfig& a, const ContactConfig& b) {
     const auto named = [](const ContactConfig& each) {

@@ -17,11 +17,12 @@ struct Surface {
   bool friction = false;
 };
 
-/// A surface for each pair of materials, worked out once.
+/// A surface for each pair of materials, computed once.
 class ContactTable {
  public:
   ContactTable(const std::vector<MaterialConfig>& materials, const std::vector<ContactConfig>& contacts);
-  /// More of them.  Numbers of known materials stay; the contacts given at construction win over later ones.
+  /// More of them.  Numbers of known materials are stable; the contacts given at construction take precedence over
+  /// later ones.
   void add(const std::vector<MaterialConfig>& materials, const std::vector<ContactConfig>& contacts);
   const Surface& of(int first, int second) const { return surfaces_[first * count_ + second]; }
   int materials() const { return count_; }
@@ -33,10 +34,10 @@ class ContactTable {
  private:
   void add_materials(const std::vector<MaterialConfig>& materials);
   std::vector<MaterialConfig>::const_iterator find(const std::string& material) const;
-  void work_out_surfaces();
+  void compute_surfaces();
 
   std::vector<MaterialConfig> materials_;
-  std::vector<ContactConfig> contacts_;  // in the order of their weight: the added ones, then those of construction
+  std::vector<ContactConfig> contacts_;  // in the order of precedence: the added ones, then those of construction
   std::size_t added_ = 0;                // how many of them were added
   int count_ = 0;
   std::vector<Surface> surfaces_;

@@ -23,14 +23,14 @@ struct Stander {
 };
 
 /// What is wrong with a part on a ground; `it` stands for the part.
-std::vector<std::string> complaints(const CollisionTerrain& ground, const Stander& it) {
+std::vector<std::string> warnings_about(const CollisionTerrain& ground, const Stander& it) {
   const double cell_m = ground.terrain.grid.cell_m;
   std::vector<std::string> found;
   switch (ground.collision) {
     case TerrainCollision::smooth:
       if (it.wheel && cell_m < it.size_m.x() / 4)
         found.push_back("cells of " + number_text(cell_m) + " m are much smaller than a wheel of radius " +
-                        number_text(it.size_m.x()) + " m, which meets the ground in one place: bumps may be missed");
+                        number_text(it.size_m.x()) + " m, which touches the ground at one point: bumps may be missed");
       break;
     case TerrainCollision::facets: {
       if (it.wheel && cell_m < 2 * it.size_m.x())
@@ -40,10 +40,10 @@ std::vector<std::string> complaints(const CollisionTerrain& ground, const Stande
         found.push_back(
             "hard contacts of a wheel jump from facet to facet, and accelerations ring: use collision: smooth, or give "
             "the contact a soft_cfm");
-      constexpr double most_cells = 64;  // about 20 us a contact
+      constexpr double max_cells = 64;  // about 20 us a contact
       const Vector3d cells = it.size_m / cell_m;
       if (it.geom_class == dBoxClass &&
-          cells.x() * cells.y() * cells.z() / std::min({cells.x(), cells.y(), cells.z()}) > most_cells)
+          cells.x() * cells.y() * cells.z() / std::min({cells.x(), cells.y(), cells.z()}) > max_cells)
         found.push_back("a box of " + number_text(it.size_m.maxCoeff()) + " m covers many facets of " +
                         number_text(cell_m) + " m, which costs their square: use collision: smooth");
       break;
@@ -93,7 +93,7 @@ std::vector<std::string> PhysicsWorld::ground_warnings() const {
 
   std::vector<std::string> warnings;
   for (const auto& [number, ground] : all.terrains) {
-    std::map<std::string, std::pair<std::string, int>> named;  // complaint: the first part, how many
+    std::map<std::string, std::pair<std::string, int>> named;  // warning: the first part, how many
     const CollisionPart& under = all.collider.parts()[static_cast<std::size_t>(number)];
     for (std::size_t i = 0; i < all.parts.size(); ++i) {
       const CollisionPart& part = all.collider.parts()[i];
@@ -103,15 +103,15 @@ std::vector<std::string> PhysicsWorld::ground_warnings() const {
       it.wheel = hinged.contains(dGeomGetBody(part.geom)) && !angular.contains(part.body);
       for (const int material : ground->area_materials)
         it.hard |= (all.collider.table().of(part.material, material).parameters.mode & dContactSoftCFM) == 0;
-      for (std::string& complaint : complaints(*ground, it)) {
-        auto& [first, count] = named[std::move(complaint)];
+      for (std::string& warning : warnings_about(*ground, it)) {
+        auto& [first, count] = named[std::move(warning)];
         if (count++ == 0) first = it.name;
       }
     }
-    for (const auto& [complaint, parts] : named)
+    for (const auto& [warning, parts] : named)
       warnings.push_back("terrain '" + all.parts[static_cast<std::size_t>(number)].name + "' under '" + parts.first +
                          "'" + (parts.second > 1 ? " and " + std::to_string(parts.second - 1) + " more" : "") + ": " +
-                         complaint);
+                         warning);
   }
   return warnings;
 }

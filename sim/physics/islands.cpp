@@ -14,15 +14,15 @@ void Islands::add_body(int body) {
 }
 
 void Islands::add_joint(int first, int second, int rows) {
-  joint_largest_ = std::max(joint_largest_, join(joint_parent_, joint_rows_, first, second, rows));
+  joint_max_ = std::max(joint_max_, join(joint_parent_, joint_rows_, first, second, rows));
   paths_are_short_ = false;
 }
 
 void Islands::remove_bodies(std::span<const int> bodies) {
   for (const int body : bodies) add_body(body);
-  joint_largest_ = 0;
+  joint_max_ = 0;
   for (std::size_t body = 0; body < joint_parent_.size(); ++body)
-    if (joint_parent_[body] == static_cast<int>(body)) joint_largest_ = std::max(joint_largest_, joint_rows_[body]);
+    if (joint_parent_[body] == static_cast<int>(body)) joint_max_ = std::max(joint_max_, joint_rows_[body]);
 }
 
 void Islands::begin_step() {
@@ -32,7 +32,7 @@ void Islands::begin_step() {
   paths_are_short_ = true;
   parent_ = joint_parent_;
   rows_ = joint_rows_;
-  largest_ = joint_largest_;
+  largest_ = joint_max_;
 }
 
 void Islands::add_contact(int first, int second, int rows) {

@@ -18,14 +18,14 @@ class Islands {
   void add_body(int body);
   /// Connects two moving bodies; `second` -1: the world.
   void add_joint(int first, int second, int rows);
-  /// Takes out bodies with all that joints connect to them: no joint may lead from them to a body that stays.
+  /// Removes bodies with all that joints connect to them: no joint may connect them to a remaining body.
   void remove_bodies(std::span<const int> bodies);
 
   /// Forgets the contacts of the last step.
   void begin_step();
   /// A contact between two bodies; either may be -1: fixed.
   void add_contact(int first, int second, int rows);
-  int largest_rows() const { return largest_; }
+  int max_rows() const { return largest_; }
   /// Of the island that a moving body is in, with the contacts of this step.
   int rows_of(int body) { return rows_[static_cast<std::size_t>(root(parent_, body))]; }
   /// It was there when the last step began.
@@ -39,7 +39,7 @@ class Islands {
 
   std::vector<int> joint_parent_, joint_rows_;  // with joints only
   std::vector<int> parent_, rows_;              // with the contacts of this step
-  int joint_largest_ = 0;
+  int joint_max_ = 0;
   bool paths_are_short_ = true;  // every body points at its root
   int largest_ = 0;
 };

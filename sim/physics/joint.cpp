@@ -35,7 +35,7 @@ const JointAxisConfig& axis_config(const JointConfig& config, int axis) {
 }
 
 /// Where its axes are: ODE does not measure that of a motor with axes of ours, and needs it for the stops.
-void tell_ball_angles(dJointID motor, double sign, std::span<const double> position) {
+void set_ball_angles(dJointID motor, double sign, std::span<const double> position) {
   for (int axis = 0; motor != nullptr && axis < dJointGetAMotorNumAxes(motor); ++axis)
     dJointSetAMotorAngle(motor, axis, sign * position[static_cast<std::size_t>(axis)]);
 }
@@ -274,7 +274,7 @@ void Joint::update_position(double step_s) {
   if (type_ == JointType::ball) {
     const Vector3d rotation = rotation_of_ball();
     for (int axis = 0; axis < axes_; ++axis) position_[axis] = rotation[axis];
-    tell_ball_angles(ball_motor_.get(), sign_, position_);
+    set_ball_angles(ball_motor_.get(), sign_, position_);
     return;
   }
   for (int axis = 0; axis < axes_; ++axis) {
@@ -338,7 +338,7 @@ Vector3d Joint::axis_W(int axis) const {
 }
 
 /// ODE keeps the world's side of a joint in the world's frame and counts from the pose at which the joint was made.
-/// So the joint is made anew, with its body moved to where it was then.
+/// So the joint is made again, with its body moved to where it was then.
 void Joint::move_world_side(const Pose& X_move_W) {
   if (world_side_) make_again(X_move_W * world_side_->X_WV, X_move_W * world_side_->X_WC);
 }
@@ -369,8 +369,8 @@ void Joint::make_again(const Pose& X_WV, const Pose& X_WC) {
     set_parameter(dParamVel, sign_ * velocity[axis], axis);
     set_parameter(dParamFMax, max_force[axis], axis);
   }
-  tell_ball_angles(ball_motor_.get(), sign_, position_);
-  if (load_) ask_for_load();
+  set_ball_angles(ball_motor_.get(), sign_, position_);
+  if (load_) request_load();
 }
 
 void Joint::visit_state(StateArchive& archive) {
@@ -384,7 +384,7 @@ void Joint::visit_state(StateArchive& archive) {
     set_parameter(dParamVel, sign_ * motor_velocity_[axis], axis);
     set_parameter(dParamFMax, motor_max_force_[axis], axis);
   }
-  if (archive.restoring()) tell_ball_angles(ball_motor_.get(), sign_, position_);
+  if (archive.restoring()) set_ball_angles(ball_motor_.get(), sign_, position_);
   visit_load(archive);
 }
 

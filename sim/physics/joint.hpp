@@ -25,7 +25,7 @@ struct JointDeleter {
 using JointHandle = std::unique_ptr<dxJoint, JointDeleter>;
 
 /// One ODE joint.  Axis 0 is the first (or only) axis, axis 1 the second of hinge2 and universal.  A ball with a motor
-/// has three: x, y and z of the vehicle's frame when the joint was made; the first body takes them along.
+/// has three: x, y and z of the vehicle's frame when the joint was created, fixed to the first body.
 ///
 /// Signs: a joint counts how its second body moves relative to its first, right-handed about (or along) the axis: a
 /// wheel that is the second body, with axis +y, rolls forward at positive speed.  A joint to the world or to a fixed
@@ -89,7 +89,7 @@ class Joint {
   void configure_axis(const JointAxisConfig& config, int axis);
   void place_stops(std::optional<double> low, std::optional<double> high, int axis);
   void put_stops(const OdeStops& stops, int axis);
-  OdeStops stops_of(int axis) const;  ///< stops that do nothing are told as none
+  OdeStops stops_of(int axis) const;  ///< stops without effect are reported as none
   double stop_never_reached() const;
   void visit_stops(StateArchive& archive, int axis);
   void visit_load(StateArchive& archive);
@@ -99,7 +99,7 @@ class Joint {
   double wrapped_position(int axis) const;
   double get_parameter(int parameter, int axis) const;
   Vector3d axis_W(int axis) const;
-  void ask_for_load();
+  void request_load();
   void note_before_step();
   void note_load();
   double motor_at_stop(int axis) const;

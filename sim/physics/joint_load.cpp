@@ -37,7 +37,7 @@ void Joint::add_effort(double effort, int axis) {
 void Joint::measure_load() {
   if (load_) return;
   load_ = std::make_unique<Load>();
-  ask_for_load();
+  request_load();
   measured_joints_->push_back(this);
 }
 
@@ -49,7 +49,7 @@ void Joint::measure_no_load() {
   load_.reset();
 }
 
-void Joint::ask_for_load() {
+void Joint::request_load() {
   dJointSetFeedback(ode_.get(), &load_->feedback);
   if (ball_motor_) dJointSetFeedback(ball_motor_.get(), &load_->motor_feedback);
 }

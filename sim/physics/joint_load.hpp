@@ -7,7 +7,7 @@
 
 namespace sim {
 
-/// What goes through a joint, for the sources of joints alone.
+/// Load of a joint, internal to the sources of joints.
 struct Joint::Load {
   dJointFeedback feedback = {};
   dJointFeedback motor_feedback = {};  // of a ball's motor

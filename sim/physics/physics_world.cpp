@@ -36,7 +36,7 @@ PhysicsWorld::PhysicsWorld(const PhysicsConfig& config, const std::vector<Materi
 void PhysicsWorld::start_again(const PhysicsConfig& config, const std::vector<MaterialConfig>& materials,
                                const std::vector<ContactConfig>& contacts, const std::vector<std::string>& categories,
                                std::uint64_t seed) {
-  forget();
+  discard();
   start_ode();
   impl_ = std::make_unique<Impl>(config, ContactTable(materials, contacts), seed);
   add_categories(categories);
@@ -55,10 +55,10 @@ void PhysicsWorld::start_again(const PhysicsConfig& config, const std::vector<Ma
 }
 
 PhysicsWorld::~PhysicsWorld() {
-  forget();
+  discard();
 }
 
-void PhysicsWorld::forget() {
+void PhysicsWorld::discard() {
   if (!impl_ || !impl_->broken) return impl_.reset();
   // A world that was left in mid-step trips ODE's asserts when it is destroyed.  What is ODE's of it stays, where leak
   // checkers see it.
@@ -90,7 +90,7 @@ void PhysicsWorld::visit_state(StateArchive& archive) {
   archive.unhashed(impl_->contact_reports, impl_->counts, impl_->quick_steps);
   const auto known = [&](int part) { return part >= 0 && part < static_cast<int>(impl_->parts.size()); };
   for (const ContactReport& contact : impl_->contact_reports)
-    if (!known(contact.parts[0]) || !known(contact.parts[1])) archive.fail("a contact of a part that is not there");
+    if (!known(contact.parts[0]) || !known(contact.parts[1])) archive.fail("a contact of a part that does not exist");
 }
 
 void PhysicsWorld::add_surfaces(const std::vector<MaterialConfig>& materials,
@@ -153,10 +153,10 @@ void PhysicsWorld::step(std::int64_t step_number) {
 }
 
 void PhysicsWorld::Impl::collide() {
-  for (Body* body : kinematic) body->begin_kinematic_step();
+  for (Body* body : kinematic) body->start_kinematic_step();
   islands.begin_step();
   counts.contacts = collider.collide(world.get(), contacts.get(), islands);
-  counts.largest_island_rows = islands.largest_rows();
+  counts.max_island_rows = islands.max_rows();
 }
 
 void PhysicsWorld::Impl::solve(std::int64_t step_number) {
@@ -166,7 +166,7 @@ void PhysicsWorld::Impl::solve(std::int64_t step_number) {
   for (Joint* joint : measured_joints) joint->note_before_step();
   // WorldStep is exact and costs the cube of an island's rows; the rows decide, never the time it takes.
   const bool some_too_large =
-      config.solver == PhysicsConfig::Solver::automatic && counts.largest_island_rows > config.quick_above_rows;
+      config.solver == PhysicsConfig::Solver::automatic && counts.max_island_rows > config.quick_above_rows;
   counts.quick = config.solver == PhysicsConfig::Solver::quick || some_too_large;
   if (counts.quick) dRandSetSeed(step_seed(seed, step_number));
   const bool nothing_is_free = moving.size() == kinematic.size();  // then ODE would but look at each body

@@ -23,7 +23,7 @@ namespace sim {
 
 class StateArchive;
 
-/// One part as built: who it belongs to.
+/// One part as built: its owner.
 struct PartInfo {
   std::string name;
   int group = -1;    ///< -1: the part was removed, and nothing else here means anything
@@ -58,11 +58,11 @@ struct JointPlace {
 /// Work done by the last step, the same in every run.
 struct StepCounts {
   int contacts = 0;
-  int largest_island_rows = 0;
+  int max_island_rows = 0;
   bool quick = false;  ///< QuickStep was used
   template <typename Archive>
   void visit_state(Archive& archive) {
-    archive(contacts, largest_island_rows, quick);
+    archive(contacts, max_island_rows, quick);
   }
 };
 
@@ -76,8 +76,8 @@ struct IslandInfo {
 /// Rigid bodies, joints and contacts, stepped by ODE.  Knows no vehicle and no device: a vehicle or an object is a
 /// group, whose parts share one collision space.
 ///
-/// Groups can come and go between any two steps.  Groups, bodies, joints and parts have numbers; those of removed ones
-/// are used again, the lowest first, so that a world in which things come and go for days does not grow.
+/// Groups can come and go between any two steps.  Groups, bodies, joints and parts have numbers; those of removed
+/// ones are reused, the lowest first, so that a world with many additions and removals does not grow.
 class PhysicsWorld {
  public:
   /// Names in `contacts` must be materials; `categories` are the names of part categories (at most 31; `solid` is
@@ -136,7 +136,7 @@ class PhysicsWorld {
   /// One step of `config.step_s`: collide, solve, check.  Throws PhysicsFault naming the body.
   void step(std::int64_t step_number);
 
-  /// From the next step on contacts() tells of this group.  Counted: as many calls of unwatch_contacts end it.
+  /// From the next step on contacts() reports this group.  Counted: as many calls of unwatch_contacts end it.
   void watch_contacts(int group);
   void unwatch_contacts(int group);
   /// The contacts of the last step in which a watched group takes part, ordered by the numbers of their parts. Watching
@@ -181,7 +181,7 @@ class PhysicsWorld {
                    std::uint64_t seed);
 
  private:
-  void forget();
+  void discard();
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };

@@ -235,26 +235,26 @@ void PhysicsWorld::close_group(int group) {
 
 void PhysicsWorld::remove_group(int group) {
   Impl& all = *impl_;
-  Impl::Group& gone = all.group(group);
-  all.forget_in_lists(group);
-  all.scene->remove_group(group, gone.parts);
-  for (const int joint : gone.joints) all.joints[joint].reset();
-  all.collider.remove_group(group, gone.bodies, gone.parts);
-  all.islands.remove_bodies(gone.bodies);
-  for (const int body : gone.bodies) all.bodies[body].reset();
-  for (const int part : gone.parts) {
+  Impl::Group& removed = all.group(group);
+  all.remove_from_lists(group);
+  all.scene->remove_group(group, removed.parts);
+  for (const int joint : removed.joints) all.joints[joint].reset();
+  all.collider.remove_group(group, removed.bodies, removed.parts);
+  all.islands.remove_bodies(removed.bodies);
+  for (const int body : removed.bodies) all.bodies[body].reset();
+  for (const int part : removed.parts) {
     all.terrains.erase(part);
     all.parts[part] = {};
   }
-  for (const int number : gone.joints) all.joint_numbers.give_back(number);
-  for (const int number : gone.bodies) all.body_numbers.give_back(number);
-  for (const int number : gone.parts) all.part_numbers.give_back(number);
-  gone = {};
+  for (const int number : removed.joints) all.joint_numbers.give_back(number);
+  for (const int number : removed.bodies) all.body_numbers.give_back(number);
+  for (const int number : removed.parts) all.part_numbers.give_back(number);
+  removed = {};
   all.group_numbers.give_back(group);
 }
 
 /// Takes a group's bodies and joints out of the lists that a step goes through.
-void PhysicsWorld::Impl::forget_in_lists(int group_number) {
+void PhysicsWorld::Impl::remove_from_lists(int group_number) {
   const auto in_group = [&](const Body* body) { return body->group_ == group_number; };
   std::erase_if(moving, in_group);
   std::erase_if(kinematic, in_group);

@@ -74,7 +74,7 @@ struct PhysicsWorld::Impl {
   };
   NewPart make_part(const Body& body, const PartConfig& part, const std::string& who);
   void add_part(Body& body, const BodyConfig& config, std::size_t index, NewPart made);
-  void forget_in_lists(int group_number);
+  void remove_from_lists(int group_number);
   void set_mass(Body& body, const BodyConfig& config, const dMass& total);
   void collide();
   void solve(std::int64_t step_number);

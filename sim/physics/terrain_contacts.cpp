@@ -34,10 +34,10 @@ class Touches {
   }
   /// Brings the deepest and then, one by one, those farthest from the ones before to the front.  A few contacts then
   /// hold as much as all of them.
-  int choose(int most) {
+  int choose(int max) {
     std::array<double, max_touches> away;
     std::fill_n(away.begin(), count_, 1e30);
-    const int chosen = std::min(most, count_);
+    const int chosen = std::min(max, count_);
     for (int k = 0; k < chosen; ++k) {
       int best = k;
       for (int i = k + 1; i < count_; ++i)
@@ -126,13 +126,13 @@ void touch_along(const HeightGrid& grid, double length_m, Touches& touches, At&&
   touches.add(last);
   const int between = std::clamp(static_cast<int>(length_m / grid.cell_m), 1, 7);
   Touch deepest = no_touch();
-  double most_m = bulge_m;
+  double max_m = bulge_m;
   for (int i = 1; i <= between; ++i) {
     const double s = 2.0 * i / (between + 1) - 1;
     const Touch touch = at(s);
     const double bulge = touch.depth_m - ((1 - s) * first.depth_m + (1 + s) * last.depth_m) / 2;
-    if (!(bulge > most_m)) continue;
-    most_m = bulge;
+    if (!(bulge > max_m)) continue;
+    max_m = bulge;
     deepest = touch;
   }
   touches.add(deepest);

@@ -16,7 +16,7 @@ namespace sim {
 
 /// Ground that ODE can collide and rays can see.  Its geom keeps pointers into it.
 struct CollisionTerrain {
-  /// Reads or makes the terrain of a part.  `table` knows its materials; `meshes` are those of the world.  Throws
+  /// Reads or makes the terrain of a part.  `table` has its materials; `meshes` are those of the world.  Throws
   /// ConfigError at the part's `terrain`.
   CollisionTerrain(const PartConfig& part, const std::string& who, const ContactTable& table, const MeshCache& meshes);
   CollisionTerrain(const CollisionTerrain&) = delete;
@@ -38,7 +38,7 @@ struct CollisionTerrain {
   GeomHandle heightfield_geom;  ///< in no space: the terrain's geom asks it
 };
 
-/// A geom in the frame of the terrain, at the origin and in no space: for `mesh` a trimesh; else of a class of our own,
+/// A geom in the frame of the terrain, at the origin and in no space: for `mesh` a trimesh; else of our own class,
 /// whose collider meets spheres, boxes, capsules, cylinders and meshes, in bounded time whatever the size of the cells.
 /// All that lies below the surface counts as inside, down to 100 m below its lowest point.
 GeomHandle make_terrain_geom(const CollisionTerrain& terrain);

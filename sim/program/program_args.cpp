@@ -30,8 +30,8 @@ std::string json_of(const std::vector<std::vector<double>>& lists) {
 bool read_numbers(const ArgDeclaration& arg, const std::string& name, const ConfigNode& value, const std::string& who,
                   Diagnostics& diagnostics, std::vector<double>& numbers) {
   const std::size_t before = diagnostics.lines().size();
-  const std::size_t least = arg.needed_columns(), count = arg.columns.size();
-  const std::string how_many = std::to_string(least) + (least == count ? "" : " to " + std::to_string(count)) +
+  const std::size_t min = arg.needed_columns(), count = arg.columns.size();
+  const std::string how_many = std::to_string(min) + (min == count ? "" : " to " + std::to_string(count)) +
                                (count == 1 ? " number" : " numbers");
   if (value.kind != Kind::list) {
     diagnostics.error(
@@ -39,7 +39,7 @@ bool read_numbers(const ArgDeclaration& arg, const std::string& name, const Conf
         "'" + name + "' must be a list of " + (count == 0 ? "numbers" : how_many) + ", got " + shown(value));
     return false;
   }
-  if (count > 0 && (value.items.size() < least || value.items.size() > count)) {
+  if (count > 0 && (value.items.size() < min || value.items.size() > count)) {
     diagnostics.error(value.place, who,
                       "'" + name + "' must be " + how_many + ", got " + std::to_string(value.items.size()));
     return false;

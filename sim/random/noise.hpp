@@ -57,7 +57,7 @@ struct NoiseOrigin {
 /// by value; one per axis for a vector).  The slow parts (bias, random walk, Gauss-Markov) are one per value.
 class Noise {
  public:
-  /// `values`: how many values have a slow state of their own.  `fault` must outlive the noise; null: it has none.
+  /// `values`: how many values have their own slow state.  `fault` must outlive the noise; null: it has none.
   /// Devices have NoiseOf.
   Noise(const NoiseParams& params, int values, Random bias_source, const NoiseFault* fault = nullptr);
 
@@ -66,7 +66,7 @@ class Noise {
   void apply(std::span<double> values, double dt_s, Random& random);
   /// Disturbs one value in place.
   void apply(double& value, double dt_s, Random& random);
-  /// Other parameters from now on; biases drawn and drifts so far stay.
+  /// Changes the parameters; drawn biases and accumulated drifts are kept.
   void change(const NoiseParams& params);
 
   /// The slow errors.
@@ -74,7 +74,7 @@ class Noise {
     archive(started_);
     archive.expect_count(slow_.size(), "slow errors of a quantity");
     for (Slow& slow : slow_) {
-      // The constant part is no state, so that another one holds when a snapshot is restored.
+      // The constant part is not a state, so that another one holds when a snapshot is restored.
       if (archive.hashing())
         archive(slow.bias);
       else
@@ -91,7 +91,7 @@ class Noise {
     double walk = 0;
     double gauss_markov = 0;
   };
-  /// Works out what advance() needs for `dt_s`.
+  /// Computes what advance() needs for `dt_s`.
   void plan(double dt_s);
   /// Takes the slow parts over `dt_s`.
   void advance(double dt_s, Random& random);

@@ -12,8 +12,8 @@ namespace sim {
 std::uint64_t hash_text(std::string_view text);
 
 /// A counter-based random stream (Philox 4x32-10, Salmon et al., SC'11).  The key is (seed, name); the counter is
-/// (step, number of the draw), so what a device draws at a step depends on nothing else in the world: a new device
-/// changes no other's noise, and threads do not matter.
+/// (step, number of the draw), so the draws of a device at a step are independent of everything else in the world: a
+/// new device does not change the noise of others, and the number of threads does not matter.
 class Random {
  public:
   /// `name`: such as "auv1/lidar".
@@ -31,7 +31,7 @@ class Random {
   /// Uniform integer in [0, n).  n > 0.
   std::uint32_t integer_below(std::uint32_t n);
 
-  /// Where it is within a step.  Who begins a step before each draw need not visit it.
+  /// Where it is within a step.  Owners that begin a step before each draw need not visit it.
   void visit_state(StateArchive& archive) {
     archive(counter_, block_, used_);
     archive.require(used_, 0, 2, "a place in a block of random numbers");

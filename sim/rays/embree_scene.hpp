@@ -15,8 +15,8 @@
 namespace sim {
 
 /// Rays by Embree.  Embree only finds, in single precision, what a ray may hit; where it does is computed in double by
-/// RayShape and TriangleScene.  So an answer depends on nothing but the ray and the parts: not on the processor, on
-/// which other rays are cast with it, or on how the tree over the parts came about.
+/// RayShape and TriangleScene.  So a result depends only on the ray and the parts: not on the processor, on other
+/// rays cast with it, or on the history of the tree over the parts.
 class EmbreeScene final : public WorldScene {
  public:
   explicit EmbreeScene(const SceneMoves& moves) : moves_(moves) { moving_.moves = true; }
@@ -51,7 +51,7 @@ class EmbreeScene final : public WorldScene {
     Vector3d origin_W = Vector3d::Zero();  // what the tree counts from
     double radius_m = 0;                   // of the sphere around the origin with all shapes in it
     std::uint64_t seen = ~std::uint64_t{0};
-    bool changed = false;     // shapes came or went
+    bool changed = false;     // shapes were added or removed
     double travelled_m = 0;   // sum over shapes since the tree was built
     double half_width_m = 0;  // sum over shapes
   };
@@ -80,7 +80,7 @@ class EmbreeScene final : public WorldScene {
   static unsigned blocked_by(const RayShape& shape, RayPacket& rays, unsigned lanes);
   void cast_packet(RayPacket& rays, unsigned lanes, const RayFilter& filter) const;
   unsigned blocked_packet(RayPacket& rays, unsigned lanes, const RayFilter& filter) const;
-  /// What is found quickly comes first: terrain takes longest, and least so for rays that already end near.
+  /// Fast intersections first: terrain takes longest, and less so for rays that are already shortened.
   std::array<const Layer*, 4> in_order() const { return {&planes_, &moving_, &fixed_, &terrain_}; }
   RayHit hit_of(const RayPacket& rays, int lane) const;
 

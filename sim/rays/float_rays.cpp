@@ -32,23 +32,25 @@ namespace sim {
       const double outside = (along > 0) & (rest >= 0) ? enter : std::numeric_limits<double>::quiet_NaN();
       start_m[i] = over[i] <= 0 ? -margin_m : outside;
     }
-  float origin[3][n], way[3][n], limit_m[n];
+  float origin[3][n], ray_direction[3][n], limit_m[n];
   std::uint32_t good[n];  // all bits or none
   for (int axis = 0; axis < 3; ++axis)
     for (int i = 0; i < n; ++i) {
       origin[axis][i] = static_cast<float>(from[axis][i] + start_m[i] * direction[axis][i]);
-      way[axis][i] = static_cast<float>(direction[axis][i]);
+      ray_direction[axis][i] = static_cast<float>(direction[axis][i]);
     }
   for (int i = 0; i < n; ++i)
     limit_m[i] = static_cast<float>(range_m[i] - start_m[i]) * (1 + 0x1p-21f) + static_cast<float>(margin_m);
   for (int i = 0; i < n; ++i) {
     // Written so that NaN is left out.
-    const float sum = origin[0][i] + origin[1][i] + origin[2][i] + way[0][i] + way[1][i] + way[2][i];
+    const float sum =
+        origin[0][i] + origin[1][i] + origin[2][i] + ray_direction[0][i] + ray_direction[1][i] + ray_direction[2][i];
     const std::uint32_t finite = std::abs(sum) < std::numeric_limits<float>::infinity() ? ~0u : 0;
     const std::uint32_t ahead = limit_m[i] >= 0 ? ~0u : 0;
     good[i] = finite & ahead & (0u - (lanes >> i & 1u));
   }
-  // Embree checks even numbers that it is told to ignore, and where it has no packets of eight it ignores the mask.
+  // Embree even checks numbers that it is configured to ignore, and where it has no packets of eight it ignores the
+  // mask.
   RTCRay8& rays = *reinterpret_cast<RTCRay8*>(out.data_);
   const auto fill = [&](float(&to)[n], const float(&value)[n], float otherwise) {
     for (int i = 0; i < n; ++i) to[i] = good[i] != 0 ? value[i] : otherwise;
@@ -56,9 +58,9 @@ namespace sim {
   fill(rays.org_x, origin[0], 0);
   fill(rays.org_y, origin[1], 0);
   fill(rays.org_z, origin[2], 0);
-  fill(rays.dir_x, way[0], 1);
-  fill(rays.dir_y, way[1], 0);
-  fill(rays.dir_z, way[2], 0);
+  fill(rays.dir_x, ray_direction[0], 1);
+  fill(rays.dir_y, ray_direction[1], 0);
+  fill(rays.dir_z, ray_direction[2], 0);
   fill(rays.tfar, limit_m, -1);
   for (int i = 0; i < n; ++i) {
     rays.tnear[i] = rays.time[i] = 0;

@@ -167,8 +167,8 @@ SHOAL_INLINE void ranges_to_any(const RayShape& shape, const RayPacket& rays, un
   }
 }
 
-SHOAL_INLINE void see_all_from(const RayShape& shape, const RayPacket& rays, double (&from)[3][RayPacket::size],
-                               double (&direction)[3][RayPacket::size]) {
+SHOAL_INLINE void transform_all_to(const RayShape& shape, const RayPacket& rays, double (&from)[3][RayPacket::size],
+                                   double (&direction)[3][RayPacket::size]) {
   const auto& a = shape.axes;
   const auto& c = shape.center;
   for (int axis = 0; axis < 3; ++axis)
@@ -188,7 +188,7 @@ void ranges_sse2(const RayShape& shape, const RayPacket& rays, unsigned lanes, d
 
 void see_sse2(const RayShape& shape, const RayPacket& rays, double (&from)[3][RayPacket::size],
               double (&direction)[3][RayPacket::size]) {
-  see_all_from(shape, rays, from, direction);
+  transform_all_to(shape, rays, from, direction);
 }
 
 // Equal bits: AVX2 alone brings no fused multiply-add.
@@ -200,7 +200,7 @@ void see_sse2(const RayShape& shape, const RayPacket& rays, double (&from)[3][Ra
 
 [[gnu::target("avx2")]] void see_avx2(const RayShape& shape, const RayPacket& rays, double (&from)[3][RayPacket::size],
                                       double (&direction)[3][RayPacket::size]) {
-  see_all_from(shape, rays, from, direction);
+  transform_all_to(shape, rays, from, direction);
 }
 
 }  // namespace
@@ -210,8 +210,8 @@ void find_ranges(const RayShape& shape, const RayPacket& rays, unsigned lanes, d
   best(shape, rays, lanes, range_m);
 }
 
-void see_from(const RayShape& shape, const RayPacket& rays, double (&from)[3][RayPacket::size],
-              double (&direction)[3][RayPacket::size]) {
+void transform_to(const RayShape& shape, const RayPacket& rays, double (&from)[3][RayPacket::size],
+                  double (&direction)[3][RayPacket::size]) {
   static const auto best = __builtin_cpu_supports("avx2") ? see_avx2 : see_sse2;
   best(shape, rays, from, direction);
 }

@@ -46,12 +46,12 @@ struct alignas(32) RayShape {
 };
 
 /// Kind and sizes of the part's geom; `mesh` is of the part's mesh, if it has one.
-/// Throws std::logic_error for a geom that rays know nothing of.
+/// Throws std::logic_error for a geom without ray intersection.
 RayShape make_ray_shape(int number, const ScenePart& part, const TriangleScene* mesh);
 /// Takes over the pose of the geom.
 void follow(RayShape& shape, dxGeom* geom);
 
-/// Up to eight rays on their way, one to a lane, and what each has hit so far.
+/// Up to eight rays, one per lane, and their nearest hits so far.
 struct alignas(64) RayPacket {
   static constexpr int size = 8;
   static constexpr int no_part = std::numeric_limits<int>::max();
@@ -62,7 +62,7 @@ struct alignas(64) RayPacket {
   const RayShape* shape[size];
   std::uint32_t triangle[size];  ///< of a hit mesh
   int part[size];
-  bool coherent = false;  ///< neighbours go nearly the same way
+  bool coherent = false;  ///< neighbours have nearly the same direction
 
   void set(int lane, const Vector3d& origin_W, const Vector3d& direction_W, double range_max_m) {
     for (int i = 0; i < 3; ++i) {
@@ -95,14 +95,14 @@ struct alignas(64) RayPacket {
   Vector3d direction_W(int lane) const { return {direction[0][lane], direction[1][lane], direction[2][lane]}; }
 };
 
-/// Where each lane of `lanes` (bits) meets the shape, which is no mesh: in front of its origin where it enters, or
-/// where it leaves when it begins inside; infinity when it misses.  The bits are the same however many lanes there are.
-/// Other elements of `range_m` are left or filled with anything.
+/// Distance at which each lane of `lanes` (bits) hits the shape, which must not be a mesh: where it enters in front
+/// of its origin, or leaves when it starts inside; infinity when it misses.  The bits are the same however many lanes
+/// there are. Other elements of `range_m` are left or filled with anything.
 void find_ranges(const RayShape& shape, const RayPacket& rays, unsigned lanes, double (&range_m)[RayPacket::size]);
-/// All lanes in the frame of the shape, which is no plane: x of all lanes, y, z.
-void see_from(const RayShape& shape, const RayPacket& rays, double (&from)[3][RayPacket::size],
-              double (&direction)[3][RayPacket::size]);
-/// Outward normal of a shape that is no mesh, at a point on it.
+/// All lanes in the frame of the shape, which is not a plane: x of all lanes, y, z.
+void transform_to(const RayShape& shape, const RayPacket& rays, double (&from)[3][RayPacket::size],
+                  double (&direction)[3][RayPacket::size]);
+/// Outward normal of a shape that is not a mesh, at a point on it.
 Vector3d normal_at(const RayShape& shape, const Vector3d& point_W);
 
 }  // namespace sim

@@ -15,7 +15,7 @@ struct TriangleScene::Query {
       : scene(scene_), rays(rays_), floats(scene_.radius_m_) {
     rtcInitIntersectContext(&context);
     if (rays.coherent) context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-    see_from(shape, rays, from, direction);
+    transform_to(shape, rays, from, direction);
     floats.aim(from, direction, rays.range_m, lanes);
     for (int i = 0; i < RayPacket::size; ++i) {
       nearest[i] = std::numeric_limits<float>::infinity();
@@ -44,8 +44,8 @@ struct TriangleScene::Query {
       return tfar != other.tfar ? tfar < other.tfar : triangle < other.triangle;
     }
   };
-  static constexpr int most = 8;
-  Candidate candidates[RayPacket::size][most];
+  static constexpr int max = 8;
+  Candidate candidates[RayPacket::size][max];
   int found[RayPacket::size];
   float nearest[RayPacket::size];
 };
@@ -55,12 +55,12 @@ void TriangleScene::Query::note(int lane, float tfar, std::uint32_t triangle) {
   int& count = found[lane];
   if (tfar + floats.margin_m() < nearest[lane]) count = 0;
   nearest[lane] = std::min(nearest[lane], tfar);
-  if (count < most) {
+  if (count < max) {
     all[count++] = {tfar, triangle};
     return;
   }
   // The last of them gives way, whatever the order in which they come.
-  Candidate* const last = std::max_element(all, all + most);
+  Candidate* const last = std::max_element(all, all + max);
   *last = std::min(*last, Candidate{tfar, triangle});
 }
 

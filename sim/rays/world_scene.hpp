@@ -14,7 +14,7 @@ namespace sim {
 
 struct Mesh;
 
-/// Counts of what moved, so that the scene knows when to look at the parts again.
+/// Counts of movements, by which the scene detects that parts must be updated.
 struct SceneMoves {
   std::uint64_t moving = 0;  ///< bodies that move: each step
   std::uint64_t fixed = 0;   ///< fixed bodies: only when someone puts them elsewhere
@@ -32,10 +32,10 @@ struct ScenePart {
   std::span<const int> triangle_materials;  ///< of each triangle of `mesh`; empty: all are of `material`
 };
 
-/// A scene that follows a PhysicsWorld: groups and parts come and go.
+/// A scene that follows a PhysicsWorld, in which groups and parts are added and removed.
 class WorldScene : public Scene {
  public:
-  // Numbers of groups and parts are the caller's, who may use those of removed things again.
+  // Numbers of groups and parts are assigned by the caller, who may reuse those of removed entities.
   virtual void add_group(int group) = 0;
   virtual void add_part(int number, const ScenePart& part) = 0;
   /// From now on rays see the parts of the group.

@@ -28,7 +28,9 @@ Terms terms_in(const std::string& text, const char* command, Terms terms) {
 }  // namespace
 
 void LockstepTerms::read(ParamReader& in) {
-  in.read("session", session, between(0, 9e18), "random number of the client, its own at each start; 0: none");
+  in.read("session", session, between(0, 9e18),
+          "fresh random number per start of the client, so that replies from an earlier instance are recognised as "
+          "stale; 0: none");
   in.read("receives", receives, "channels of which it must have every message");
   in.read_choice("on_timeout", on_timeout, on_timeout_words, "when it does not answer in timeout_s");
   in.read("timeout_s", timeout_s, between(0.001, 1e6), "wall time to wait for its acknowledgement");
@@ -37,7 +39,7 @@ void LockstepTerms::read(ParamReader& in) {
   if (!receives.empty() && session == 0) in.error("receives", "'receives' needs a 'session' other than 0");
   for (const std::string& channel : receives)
     if (channel.empty() || channel.size() > Bus::max_channel_length)
-      in.error("receives", "'receives': a channel has 1 to 63 characters, got '" + shortened(channel) + "'");
+      in.error("receives", "'receives': a channel must have 1 to 63 characters, got '" + shortened(channel) + "'");
 }
 
 LockstepTerms read_lockstep_terms(const std::string& text, const LockstepTerms& defaults) {
@@ -50,7 +52,7 @@ LockstepTerms read_lockstep_terms(const std::string& text, const LockstepTerms& 
 }
 
 void LeaveTerms::read(ParamReader& in) {
-  in.read("session", session, between(0, 9e18), "that of the join; 0: whichever it is");
+  in.read("session", session, between(0, 9e18), "session of the join; 0: any");
   in.read("acknowledged", acknowledged, between(-1, 9e18), "sequence of the last tick it acknowledged; -1: unknown");
 }
 
@@ -59,7 +61,7 @@ LeaveTerms read_leave_terms(const std::string& text) {
 }
 
 void FollowTerms::read(ParamReader& in) {
-  in.read("session", session, between(0, 9e18), "random number of the program, its own at each start");
+  in.read("session", session, between(0, 9e18), "fresh random number per start of the program");
 }
 
 FollowTerms read_follow_terms(const std::string& text) {
@@ -77,24 +79,24 @@ std::int64_t session_in(const std::string& text, std::string_view command) {
 }
 
 void Lockstep::join(const std::string& client, const LockstepTerms& terms, std::int64_t period_steps, std::int64_t step,
-                    int line) {
+                    int link) {
   LockstepMember* known = find(client);
-  if (known != nullptr && known->terms.session == terms.session && known->line == line) {
+  if (known != nullptr && known->terms.session == terms.session && known->link == link) {
     const std::vector<std::string>& before = known->terms.receives;
     if (before.size() > terms.receives.size() || !std::equal(before.begin(), before.end(), terms.receives.begin()))
-      throw std::invalid_argument("the channels of 'receives' must stay in their places; new ones come at the end");
+      throw std::invalid_argument("the channels of 'receives' must keep their order; new ones are appended");
     known->terms = terms;
     if (known->period_steps != period_steps) {  // a request that was sent twice moves no tick
       known->period_steps = period_steps;
       known->joined = step;
-      // A tick that waits for its answer goes on doing so; the new period begins with it.
-      if (terms.session == 0 && known->answered) known->asked = -1;
+      // A tick that waits for its answer continues doing so; the new period begins with it.
+      if (terms.session == 0 && known->answered) known->requested = -1;
     }
   } else {
     LockstepMember& member = members_[client];
     member = LockstepMember{};
     member.name = client;
-    member.line = line;
+    member.link = link;
     member.terms = terms;
     member.period_steps = period_steps;
     member.joined = step;
@@ -120,20 +122,20 @@ void Lockstep::index_receivers() {
       receivers_[member.terms.receives[i]].push_back({&member, static_cast<std::int32_t>(i)});
 }
 
-bool Lockstep::somebody_receives(int line, std::string_view channel) const {
+bool Lockstep::has_receiver(int link, std::string_view channel) const {
   const auto found = receivers_.find(channel);
   return found != receivers_.end() &&
          std::any_of(found->second.begin(), found->second.end(),
-                     [&](const Receiver& receiver) { return receiver.member->line == line; });
+                     [&](const Receiver& receiver) { return receiver.member->link == link; });
 }
 
-void Lockstep::post(int line, std::string_view channel, std::span<const std::byte> payload) {
+void Lockstep::post(int link, std::string_view channel, std::span<const std::byte> payload) {
   const auto found = receivers_.find(channel);
   if (found == receivers_.end()) return;
   std::shared_ptr<const Bytes> shared;
   std::uint32_t crc = 0;
   for (const Receiver& receiver : found->second) {
-    if (receiver.member->line != line) continue;
+    if (receiver.member->link != link) continue;
     if (!shared) {
       shared = std::make_shared<const Bytes>(payload.begin(), payload.end());
       crc = crc32(payload);
@@ -141,7 +143,7 @@ void Lockstep::post(int line, std::string_view channel, std::span<const std::byt
     LockstepMember& member = *receiver.member;
     if (again_) {
       member.again_bytes += payload.size() + sizeof(PostedMessage);
-      if (member.again_bytes > most_pending_bytes)
+      if (member.again_bytes > max_pending_bytes)
         member.again.clear();
       else
         member.again.push_back({receiver.channel, crc, shared});
@@ -149,7 +151,7 @@ void Lockstep::post(int line, std::string_view channel, std::span<const std::byt
     }
     if (member.too_much) continue;
     member.pending_bytes += payload.size() + sizeof(PostedMessage);
-    if (member.pending_bytes > most_pending_bytes) {
+    if (member.pending_bytes > max_pending_bytes) {
       member.too_much = true;
       member.pending = {};
     } else {
@@ -160,7 +162,7 @@ void Lockstep::post(int line, std::string_view channel, std::span<const std::byt
 
 void Lockstep::close_list(LockstepMember& member, std::int64_t step) {
   ++member.sequence;
-  member.asked = step;
+  member.requested = step;
   member.answered = false;
   member.abandoned = false;
   member.list.clear();
@@ -168,9 +170,9 @@ void Lockstep::close_list(LockstepMember& member, std::int64_t step) {
   member.pending_bytes = 0;
 }
 
-void Lockstep::ask(std::int64_t step) {
+void Lockstep::send_request(std::int64_t step) {
   for (auto& [name, member] : members_)
-    if (member.due(step) && member.asked < step && !member.abandoned) close_list(member, step);
+    if (member.due(step) && member.requested < step && !member.abandoned) close_list(member, step);
 }
 
 void Lockstep::ask_all(std::int64_t step) {
@@ -180,7 +182,7 @@ void Lockstep::ask_all(std::int64_t step) {
 std::vector<LockstepMember*> Lockstep::missing(std::int64_t step) {
   std::vector<LockstepMember*> late;
   for (auto& [name, member] : members_)
-    if (member.due(step) && (member.asked < step || !member.answered)) late.push_back(&member);
+    if (member.due(step) && (member.requested < step || !member.answered)) late.push_back(&member);
   return late;
 }
 
@@ -199,33 +201,33 @@ Lockstep::Verdict Lockstep::acknowledge(const LockstepAck& ack, std::int64_t ste
     if (left && member->abandoned && ack.step == member->left_step) {
       member->abandoned = false;
       member->answered = true;
-      member->asked = -1;
+      member->requested = -1;
       member->list.clear();
       return Verdict::abandoned;
     }
-    if (left && ack.step != member->asked) return Verdict::repeated;
+    if (left && ack.step != member->requested) return Verdict::repeated;
     // With sequence 0 it says that it lives, before its first tick.
     if (ack.session != 0 && (ack.sequence < member->sequence || ack.sequence == 0)) return Verdict::repeated;
   }
   if (ack.step > step)
-    why = who + " acknowledges step " + std::to_string(ack.step) + ", which is still to come";
+    why = who + " acknowledges step " + std::to_string(ack.step) + ", which is in the future";
   else if (member == nullptr)
-    why = who + " acknowledges a tick, but takes no part in the lockstep";
+    why = who + " acknowledges a tick, but is not a lockstep client";
   else if (member->terms.session != ack.session)
     why = who + " acknowledges in session " + std::to_string(ack.session) + ", which is not the one that joined";
   else if (ack.session != 0 && ack.sequence > member->sequence)
-    why = who + " acknowledges tick " + std::to_string(ack.sequence) + ", which it was not sent";
-  else if (ack.session != 0 && ack.sequence == member->sequence && ack.step != member->asked)
+    why = who + " acknowledges tick " + std::to_string(ack.sequence) + ", which was not sent to it";
+  else if (ack.session != 0 && ack.sequence == member->sequence && ack.step != member->requested)
     why = who + " acknowledges step " + std::to_string(ack.step) + " for the tick of step " +
-          std::to_string(member->asked);
+          std::to_string(member->requested);
   if (!why.empty()) return Verdict::refused;
-  const bool current = ack.session != 0 ? ack.sequence == member->sequence : ack.step == member->asked;
+  const bool current = ack.session != 0 ? ack.sequence == member->sequence : ack.step == member->requested;
   if (!current || member->answered) return Verdict::repeated;
   member->answered = true;
   return Verdict::accepted;
 }
 
-void Lockstep::begin_again() {
+void Lockstep::restart_replay() {
   again_ = true;
   for (auto& [name, member] : members_) {
     member.again.clear();
@@ -241,13 +243,13 @@ void Lockstep::pass(std::int64_t step) {
   }
 }
 
-std::int64_t Lockstep::needed_from(std::int64_t step, std::int64_t most_steps) const {
+std::int64_t Lockstep::needed_from(std::int64_t step, std::int64_t max_steps) const {
   std::int64_t needed = step;
   for (const auto& [name, member] : members_) {
     if (member.terms.receives.empty()) continue;
     const std::int64_t since = (step - 1 - member.joined) % member.period_steps;
     const std::int64_t last = step - 1 - (since < 0 ? since + member.period_steps : since);
-    if (step - last <= most_steps) needed = std::min(needed, last);
+    if (step - last <= max_steps) needed = std::min(needed, last);
   }
   return std::max<std::int64_t>(needed, 0);
 }
@@ -260,13 +262,13 @@ void Lockstep::rewound(std::int64_t step) {
     if (!member.answered && !member.abandoned) {
       member.abandoned = true;
       member.left_sequence = member.sequence;
-      member.left_step = member.asked;
+      member.left_step = member.requested;
     }
     if (!member.abandoned) {
-      member.asked = -1;
+      member.requested = -1;
       member.list.clear();
     }
-    member.too_much = member.again_bytes > most_pending_bytes;
+    member.too_much = member.again_bytes > max_pending_bytes;
     member.pending = std::exchange(member.again, {});
     member.pending_bytes = std::exchange(member.again_bytes, 0);
   }

@@ -75,19 +75,19 @@ struct LockstepAck {
 };
 
 /// Most messages that an acknowledgement may name.
-constexpr std::size_t most_named_messages = 10'000;
+constexpr std::size_t max_named_messages = 10'000;
 
 /// A client as the world knows it.
 struct LockstepMember {
   std::string name;
-  int line = 0;  ///< which bus it is on, as the caller counts
+  int link = 0;  ///< which bus it is on, as the caller counts
   LockstepTerms terms;
   std::int64_t period_steps = 1;
   std::int64_t joined = 0;  ///< the first step it is asked
   std::int64_t sequence = 0;
-  std::int64_t asked = -1;             ///< step of its last tick
+  std::int64_t requested = -1;         ///< step of its last tick
   bool answered = true;                ///< that tick
-  bool gone = false;                   ///< its process is known to have ended
+  bool removed = false;                ///< its process is known to have ended
   std::vector<PostedMessage> list;     ///< of its last tick
   std::vector<PostedMessage> pending;  ///< for the next
   std::size_t pending_bytes = 0;
@@ -107,9 +107,9 @@ class Lockstep {
  public:
   /// From `step` on the world waits for this client every `period_steps` (at least 1).  Joining again in the same
   /// session changes period and terms, and leaves a tick open that was not answered; the list of channels may only
-  /// grow.  Throws std::invalid_argument when it does not.  Another session begins anew.
+  /// grow.  Throws std::invalid_argument when it does not.  A new session starts from the beginning.
   void join(const std::string& client, const LockstepTerms& terms, std::int64_t period_steps, std::int64_t step,
-            int line = 0);
+            int link = 0);
   /// False when there is no such client.
   bool leave(const std::string& client);
   bool has(std::string_view client) const { return members_.contains(client); }
@@ -120,37 +120,37 @@ class Lockstep {
   std::map<std::string, LockstepMember, std::less<>>& members() { return members_; }
   const std::map<std::string, LockstepMember, std::less<>>& members() const { return members_; }
   /// Some client of this line must have every message of this channel.
-  bool somebody_receives(int line, std::string_view channel) const;
+  bool has_receiver(int link, std::string_view channel) const;
 
   /// What is kept of messages that a client must have, until its next tick.
-  static constexpr std::size_t most_pending_bytes = 256'000'000;
-  /// A message was published on a line: it is put on the lists of those who must have it.
-  void post(int line, std::string_view channel, std::span<const std::byte> payload);
-  /// Asks those who are due at this step and were not asked yet; their lists are closed.
-  void ask(std::int64_t step);
-  /// Asks everybody for a last time, due or not.
+  static constexpr std::size_t max_pending_bytes = 256'000'000;
+  /// Adds a message that was published on a link to the lists of the clients that must receive it.
+  void post(int link, std::string_view channel, std::span<const std::byte> payload);
+  /// Sends the tick to the clients that are due at this step and have not got it yet; their lists are closed.
+  void send_request(std::int64_t step);
+  /// Sends the last tick to all clients, due or not.
   void ask_all(std::int64_t step);
   /// Those due at this step that have not answered, in the order of their names.
   std::vector<LockstepMember*> missing(std::int64_t step);
-  /// Those whose tick was open when the world went back.  Nobody is to be asked for a new one before they have
-  /// answered: only then it is known what they published for the branch that was left.
+  /// Those whose tick was open when the world went back.  No client gets a new tick before they have answered: only
+  /// then it is known what they published for the abandoned branch.
   std::vector<LockstepMember*> abandoned();
 
   /// Abandoned: it answers a tick that was open when the world went back.
   enum class Verdict { accepted, repeated, refused, abandoned };
-  /// `why` says what is wrong with one that is refused.
+  /// `why` is the reason for a rejection.
   Verdict acknowledge(const LockstepAck& ack, std::int64_t step, std::string& why);
-  /// The world is about to go back: what is posted from here on comes for a second time.
-  void begin_again();
+  /// Before a rewind: messages posted from here on are repetitions.
+  void restart_replay();
   /// Call after each step that is simulated again, without the last one: who was due had what came up to then.
   void pass(std::int64_t step);
   /// What is posted from here on comes for the first time.
-  void end_again() { again_ = false; }
+  void end_replay() { again_ = false; }
   /// The step that the world should be simulated again from, so that the lists of `step` are whole: the last one before
-  /// it at which each client was due.  Clients that were due more than `most_steps` before it do not count.
-  std::int64_t needed_from(std::int64_t step, std::int64_t most_steps) const;
-  /// The world went back to `step`: lists hold what was posted again, and all are asked by their periods from there,
-  /// when those who have an open tick have answered it.
+  /// it at which each client was due.  Clients that were due more than `max_steps` before it do not count.
+  std::int64_t needed_from(std::int64_t step, std::int64_t max_steps) const;
+  /// After a rewind to `step`: lists hold what was posted again, and ticks continue from there by the clients'
+  /// periods, once clients with an open tick have answered it.
   void rewound(std::int64_t step);
 
  private:

@@ -9,14 +9,14 @@
 
 namespace sim {
 
-/// What people and programs ask of a run while it goes.
+/// Requests of users and programs to a run.
 struct RunControl {
   bool paused = false;
   bool quit = false;
   double speed = 0;                 ///< times real time; 0: as fast as possible
   std::int64_t single_steps = 0;    ///< to take although paused
-  std::int64_t changes = 0;         ///< counts changes of paused and speed, so that pacing starts anew
-  std::int64_t pause_requests = 0;  ///< counts those of people and programs: to pause, to go on, to step
+  std::int64_t changes = 0;         ///< counts changes of paused and speed, so that pacing starts again
+  std::int64_t pause_requests = 0;  ///< counts requests to pause, resume or step
   std::optional<Time> until;        ///< the run pauses at the first step at or after this
   std::string until_event;          ///< the run pauses when this event has fired; empty: none
   std::int64_t until_firings = 0;   ///< how often it had fired before
@@ -41,7 +41,7 @@ struct RunControl {
     speed = times;
     ++changes;
   }
-  void forget_until() {
+  void clear_until() {
     until.reset();
     until_event.clear();
   }

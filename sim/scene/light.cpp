@@ -6,13 +6,14 @@
 namespace sim {
 
 void LightConfig::read(ParamReader& in) {
-  in.read_deg("sun_azimuth_deg", sun_azimuth_rad, between(-360, 360), "where the sun stands, clockwise from north");
-  in.read_deg("sun_elevation_deg", sun_elevation_rad, between(-90, 90), "over the horizon; below 0 there is no sun");
+  in.read_deg("sun_azimuth_deg", sun_azimuth_rad, between(-360, 360), "azimuth of the sun, clockwise from north");
+  in.read_deg("sun_elevation_deg", sun_elevation_rad, between(-90, 90),
+              "elevation of the sun; below 0 there is no sun");
   in.read("sun", sun, between(0, 100), "strength of the sun; 1: a white surface that faces it is white");
   in.read("sky", sky, between(0, 100), "strength of the light of the sky, which makes no shadows");
   in.read("zenith_color", zenith_color, "color of the sky overhead, #rrggbb");
   in.read("horizon_color", horizon_color, "color of the sky at the horizon, #rrggbb");
-  in.read("shadows", shadows, "parts keep the sun off each other");
+  in.read("shadows", shadows, "parts cast shadows on each other");
   if (in.describing()) return;
   for (const auto& [key, color] :
        {std::pair("zenith_color", &zenith_color), std::pair("horizon_color", &horizon_color)})

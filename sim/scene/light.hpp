@@ -8,7 +8,7 @@
 
 namespace sim {
 
-/// `light:` of a world: a sun and the sky, for pictures.  Strengths are what a white surface sends back: 1 is white.
+/// `light:` of a world: a sun and the sky, for images.  Strengths are what a white surface sends back: 1 is white.
 struct LightConfig {
   double sun_azimuth_rad = degrees_to_radians(125);   ///< clockwise from north (+y), as on a compass
   double sun_elevation_rad = degrees_to_radians(45);  ///< over the horizon; below it there is no sun

@@ -65,13 +65,13 @@ void MaterialConfig::read(ParamReader& in) {
   in.require("name");
   in.read("name", name, "name of the material");
   if (name == "any") in.error("name", "'any' stands for every material and cannot be a name");
-  in.read("color", color, "color in pictures and viewers, #rrggbb; a part's own color wins");
+  in.read("color", color, "color in images and viewers, #rrggbb; a part's own color wins");
   if (!in.describing() && !color.empty()) check_color(in, "color", color);
-  in.read("gloss", gloss, between(0, 1), "strength of the sun's highlight in pictures");
-  in.read("texture", texture, "pattern in pictures");
-  in.read("laser", laser, "how it sends back a laser beam");
-  in.read("sound", sound, "how it sends back sound");
-  in.read("lets_through", lets_through, "what passes: light, laser, sound");
+  in.read("gloss", gloss, between(0, 1), "strength of the sun's highlight in images");
+  in.read("texture", texture, "pattern in images");
+  in.read("laser", laser, "reflection of laser beams");
+  in.read("sound", sound, "reflection of sound");
+  in.read("lets_through", lets_through, "what passes through it: light, laser, sound");
   for (const std::string& word : lets_through)
     if (!in.describing() &&
         std::none_of(std::begin(ray_kinds), std::end(ray_kinds), [&](const auto& kind) { return word == kind.first; }))

@@ -72,7 +72,7 @@ class Scene {
                                      const RayFilter& filter) const = 0;
   /// Each ray of the fan.  hits.size() == fan.count.
   virtual void cast_fan(const Fan& fan, const RayFilter& filter, std::span<RayHit> hits) const = 0;
-  /// Many rays; fastest when neighbours in the list go nearly the same way.  hits.size() == rays.size().
+  /// Many rays; fastest when neighbours in the list have nearly the same direction.  hits.size() == rays.size().
   virtual void cast(std::span<const Ray> rays, const RayFilter& filter, std::span<RayHit> hits) const;
   /// blocked[i] is 1 when something stands in ray i, else 0.  blocked.size() == rays.size().
   virtual void find_blocked(std::span<const Ray> rays, const RayFilter& filter, std::span<std::uint8_t> blocked) const;

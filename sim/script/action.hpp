@@ -29,7 +29,7 @@ class Action {
   virtual void read(ParamReader& in, const char* main) = 0;
   /// Reports what shows only when all vehicles of the world are known, and makes what is made once for all firings.
   virtual void check(const ActionCheck& /*check*/) {}
-  /// What is wrong is thrown, and the event goes on with its next action.
+  /// What is wrong is thrown, and the event continues with its next action.
   virtual void carry_out(const ActionRun& run) const = 0;
   /// Adds the channels that it publishes on.
   virtual void add_channels(std::set<std::string>& /*channels*/) const {}

@@ -13,7 +13,7 @@ namespace {
 struct ReadTimedPose : TimedPose {
   void read(ParamReader& in) {
     in.require("at_s");
-    in.read("at_s", at_s, between(0, 1e9), "when it is there, since the start of the path");
+    in.read("at_s", at_s, between(0, 1e9), "time at the pose, since the start of the path");
     in.require("position_m");
     in.read("position_m", position_m, any_place(), "place in the world");
     in.read_deg("rpy_deg", rpy_rad, "roll, pitch, yaw");
@@ -33,23 +33,23 @@ void ActorConfig::read(ParamReader& in) {
                  "straight lines; a smooth curve through the points; poses at times");
   read_points(in, "points", points_m, 3, "waypoints, spline: where it goes");
   std::vector<ReadTimedPose> timed;
-  in.read_list("poses", timed, "pose", "timed: where it is when, straight and even in between");
+  in.read_list("poses", timed, "pose", "timed: poses at times, linear in between");
   poses.assign(timed.begin(), timed.end());
   Vector3d fixed_rpy_rad = Vector3d::Zero();
   in.read_deg("rpy_deg", fixed_rpy_rad, "waypoints, spline: kept all the way; unset: it heads along the path");
   if (in.has("rpy_deg")) rpy_rad = fixed_rpy_rad;
   in.read("speed_mps", speed_mps, above_to(0, 1000), "waypoints, spline: along the path");
   in.read_choice("ends", ends, {{"loop", PathEnds::loop}, {"bounce", PathEnds::bounce}, {"stop", PathEnds::stop}},
-                 "at the end: back to the first point and around, the same way back, or stay");
-  in.read("start_s", start_s, between(0, 1e9), "it stands at the first point until then");
+                 "at the end: continue with the first point, return along the path, or stop");
+  in.read("start_s", start_s, between(0, 1e9), "start time; it waits at the first point until then");
   in.read_choice("starts", starts, {{"moving", ActorStart::moving}, {"waiting", ActorStart::waiting}},
-                 "waiting: for the command of an event");
+                 "initial state; waiting: until an event commands it");
   if (!in.describing()) check_points(in);
 }
 
 void ActorConfig::check_points(ParamReader& in) {
   const bool timed = path == PathKind::timed;
-  const char* wanted = timed ? "poses" : "points";
+  const char* desired = timed ? "poses" : "points";
   const char* other = timed ? "points" : "poses";
   if (in.has(other)) in.error(other, "'" + std::string(other) + "' does not belong to a path of this kind");
   if (timed)
@@ -57,13 +57,12 @@ void ActorConfig::check_points(ParamReader& in) {
       if (in.has(key)) in.error(key, "'" + std::string(key) + "' does not belong to a path of this kind");
   const std::size_t count = timed ? poses.size() : points_m.size();
   if (count < 2)
-    return in.error(wanted, "'" + std::string(wanted) + "' must have at least 2, got " + std::to_string(count));
+    return in.error(desired, "'" + std::string(desired) + "' must have at least 2, got " + std::to_string(count));
   for (std::size_t i = 0; i + 1 < count; ++i) {
     const std::string where = std::to_string(i + 1) + " and " + std::to_string(i + 2);
     if (timed && poses[i + 1].at_s <= poses[i].at_s) in.error("poses", "'at_s' must grow: poses " + where);
-    const double most_mps = 1000;
-    if (timed &&
-        (poses[i + 1].position_m - poses[i].position_m).norm() > most_mps * (poses[i + 1].at_s - poses[i].at_s))
+    const double max_mps = 1000;
+    if (timed && (poses[i + 1].position_m - poses[i].position_m).norm() > max_mps * (poses[i + 1].at_s - poses[i].at_s))
       in.error("poses", "poses " + where + " are too far apart for their times: at most 1000 m/s");
     if (!timed && (points_m[i] - points_m[i + 1]).norm() < 1e-6)
       in.error("points", "points " + where + " are the same place");

@@ -15,7 +15,7 @@ namespace sim {
 enum class PathEnds { loop, bounce, stop };
 
 enum class ActorCommand {
-  start,    ///< go on in the direction it had
+  start,    ///< continue in the direction it had
   stop,     ///< stand
   forward,  ///< towards the end of the path
   back,     ///< towards its beginning

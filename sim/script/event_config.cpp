@@ -83,7 +83,7 @@ class ConditionParser {
 
 Condition parse_condition(ParamReader& in, const char* key) {
   std::string text;
-  in.read(key, text, "what it waits for, see docs/guides/dynamic_worlds.md; it fires every time this becomes true");
+  in.read(key, text, "condition, see docs/guides/dynamic_worlds.md; it fires every time this becomes true");
   Condition condition;
   if (!in.has(key) || in.child(key)->kind != ConfigNode::Kind::scalar) return condition;
   if (!ConditionParser(in, key, text).parse(condition))
@@ -101,11 +101,11 @@ void EventConfig::read(ParamReader& in) {
   if (reasons > 1) in.error("needs one of 'at', 'every' and 'when', not several");
   for (const char* key : {"from_s", "until_s", "jitter_s"})
     if (in.has(key) && !in.has("every")) in.error(key, "'" + std::string(key) + "' belongs to 'every'");
-  in.read("delay_s", delay_s, between(0, 1e9), "what it does comes so much later");
+  in.read("delay_s", delay_s, between(0, 1e9), "delay between firing and the actions");
   in.read_or_word("times", times, at_least(1), {"unlimited"},
                   "it fires at most so often; with 'at' not more often than it says");
   if (times == 0) times = static_cast<std::int64_t>(at_s.size());
-  in.read("probability", probability, between(0, 1), "that it fires when it could");
+  in.read("probability", probability, between(0, 1), "probability of firing");
   in.require("do");
   read_actions(in, "do", actions, "what happens, in this order: actions, each a map of one key, its word");
 }
@@ -129,7 +129,7 @@ void EventConfig::read_times(ParamReader& in) {
   std::optional<double> from, until;
   in.read("every", every_s, between(1e-6, 1e9), "seconds from firing to firing");
   in.read("from_s", from, between(0, 1e9), "every: time of the first firing; unset: after one period");
-  in.read("until_s", until, between(0, 1e9), "every: no firing is planned after this");
+  in.read("until_s", until, between(0, 1e9), "every: time of the last possible firing");
   in.read("jitter_s", jitter_s, between(0, 1e9), "every: each firing is later by up to this, at random");
   from_s = from.value_or(every_s);
   if (until) until_s = *until;

@@ -12,12 +12,12 @@ namespace sim {
 namespace {
 
 std::string cut_value(const ConfigNode& value) {
-  constexpr std::size_t most = 30;
-  const std::string text = to_flow_yaml(value, most + 1);
-  if (text.size() <= most) return text;
+  constexpr std::size_t max = 30;
+  const std::string text = to_flow_yaml(value, max + 1);
+  if (text.size() <= max) return text;
   if (value.kind == ConfigNode::Kind::map) return "{...}";
   if (value.kind == ConfigNode::Kind::list) return "[...]";
-  return shortened(text, most);
+  return shortened(text, max);
 }
 
 }  // namespace

@@ -7,7 +7,7 @@ namespace sim {
 
 namespace {
 
-constexpr std::size_t most_name_bytes = 300;
+constexpr std::size_t max_name_bytes = 300;
 
 }  // namespace
 
@@ -24,17 +24,17 @@ void StateArchive::section(std::string_view name) {
   visit(text);
   std::uint64_t length = 0;  // known at the end of the part
   if (restoring()) {
-    if (text.size() > most_name_bytes || text != name)
+    if (text.size() > max_name_bytes || text != name)
       throw SnapshotError("the snapshot has '" + shortened(printable(text)) + "' where this world has '" +
                           std::string(name) + "'");
     scalar(length);
     if (length > input_.size() - at_)
-      fail("the snapshot is cut off: " + std::to_string(length) + " bytes should follow, " +
-           std::to_string(input_.size() - at_) + " are there");
+      fail("the snapshot is truncated: " + std::to_string(length) + " bytes should follow, " +
+           std::to_string(input_.size() - at_) + " are present");
     part_end_ = at_ + length;
   } else {
     scalar(length);
-    part_begin_ = output_.size();
+    part_start_ = output_.size();
   }
   in_part_ = true;
 }
@@ -53,8 +53,8 @@ void StateArchive::end_part() {
     if (keeps_parts_) parts_.push_back({part_, part_hash_.value()});
     total_.add(part_hash_.value());
   } else if (saving()) {
-    const std::uint64_t length = output_.size() - part_begin_;
-    std::memcpy(output_.data() + part_begin_ - sizeof length, &length, sizeof length);
+    const std::uint64_t length = output_.size() - part_start_;
+    std::memcpy(output_.data() + part_start_ - sizeof length, &length, sizeof length);
   } else if (at_ != part_end_) {
     fail("the snapshot has " + std::to_string(part_end_ - at_) + " bytes more than this world");
   }
@@ -64,16 +64,16 @@ void StateArchive::fail(const std::string& what) const {
   throw SnapshotError("snapshot: " + part_ + ": " + what);
 }
 
-void StateArchive::fail_short(std::size_t wanted) const {
-  fail("the snapshot ends where " + std::to_string(wanted) + " bytes should follow");
+void StateArchive::fail_short(std::size_t desired) const {
+  fail("the snapshot ends where " + std::to_string(desired) + " bytes should follow");
 }
 
 void StateArchive::fail_number(double value) const {
-  fail("the snapshot has the number " + number_text(value) + ", which cannot be");
+  fail("the snapshot has the invalid number " + number_text(value) + "");
 }
 
 void StateArchive::fail_range(std::string_view what) const {
-  fail("the snapshot has " + std::string(what) + " that cannot be");
+  fail("the snapshot has an invalid value: " + std::string(what) + "");
 }
 
 void StateArchive::expect_count(std::size_t size, std::string_view of) {

@@ -39,13 +39,13 @@ struct PartHash {
   bool operator==(const PartHash&) const = default;
 };
 
-/// Goes through all that is state, for one of three purposes: to hash it, to save it, to restore it.  A class with
-/// state has one function for all of them, so that nothing that counts can be left out of a snapshot:
+/// Visits the whole state for one of three purposes: to hash, save or restore it.  A class with
+/// state has one function for all of them, so that a snapshot cannot miss a part of it:
 ///
 ///     void visit_state(StateArchive& archive) { archive(charge_, reading_, noise_); }
 ///
 /// archive(...) takes numbers, enumerations, texts, durations, Eigen's fixed-size types, the containers below of what
-/// it takes, and every class with visit_state().  What follows from other state is worked out again when
+/// it takes, and every class with visit_state().  What follows from other state is computed again when
 /// archive.restoring().  Hashing and saving change nothing.
 ///
 /// What is restored is not trusted.  The archive itself refuses values that no enumeration has, numbers that are not
@@ -55,7 +55,7 @@ class StateArchive {
  public:
   /// Hashes; result in hash() and parts().
   static StateArchive hasher() { return StateArchive(Purpose::hash); }
-  /// The same without parts(), for who wants to know hash() only.
+  /// The same without parts(), for callers that need hash() only.
   static StateArchive quick_hasher() {
     StateArchive archive(Purpose::hash);
     archive.keeps_parts_ = false;
@@ -79,7 +79,7 @@ class StateArchive {
   bool saving() const { return purpose_ == Purpose::save; }
   bool restoring() const { return purpose_ == Purpose::restore; }
 
-  /// A part of the world begins, and the one before ends.  Names what errors and differences are told of.  Restoring
+  /// A part of the world begins, and the one before ends.  Names what errors and differences are notified of. Restoring
   /// throws SnapshotError when the snapshot has another part here, or the part before was longer.
   void section(std::string_view name);
   /// The last part ends.  Restoring throws SnapshotError when bytes are left over.
@@ -195,7 +195,7 @@ class StateArchive {
       const bool finite = std::abs(value) <= max_number;
       if (!finite && (finite_only_ || std::isfinite(value))) fail_number(static_cast<double>(value));
     } else if constexpr (has_names<T>) {
-      if (!detail::is_enumerator(value)) fail("a value that is none of those it can have");
+      if (!detail::is_enumerator(value)) fail("a value out of range");
     }
   }
   template <typename T>
@@ -316,7 +316,7 @@ class StateArchive {
   }
   /// How many follow.  Restoring throws when so many elements of at least `bytes_each` cannot be there.
   std::size_t count(std::size_t size, std::size_t bytes_each);
-  [[noreturn]] void fail_short(std::size_t wanted) const;
+  [[noreturn]] void fail_short(std::size_t desired) const;
   [[noreturn]] void fail_number(double value) const;
   [[noreturn]] void fail_range(std::string_view what) const;
   /// Bytes of this part, or of the snapshot outside of parts.
@@ -329,9 +329,9 @@ class StateArchive {
   bool keeps_parts_ = true;
   bool had_parts_ = false;
   std::vector<PartHash> parts_;
-  std::string part_ = "the begin";
+  std::string part_ = "the start";
   std::vector<std::byte> output_;
-  std::size_t part_begin_ = 0;  // in the output: where the length of the part stands
+  std::size_t part_start_ = 0;  // in the output: where the length of the part stands
   bool in_part_ = false;
   std::span<const std::byte> input_;
   std::size_t at_ = 0;

@@ -87,7 +87,7 @@ Header read_header(Words& words) {
     *value = words.number(key);
   }
   const auto need = [&](const std::optional<double>& value, const char* name) {
-    if (!value) words.fail("is no ESRI ASCII grid: '" + std::string(name) + "' is missing before the heights");
+    if (!value) words.fail("is not an ESRI ASCII grid: '" + std::string(name) + "' is missing before the heights");
   };
   need(header.ncols, "ncols");
   need(header.nrows, "nrows");
@@ -104,7 +104,7 @@ Header read_header(Words& words) {
   return header;
 }
 
-/// The value of the nearest point that is no hole, by rings of points around; of equals the first found.
+/// The value of the nearest point that is not a hole, by rings of points around; of equals the first found.
 void fill_nearest(HeightGrid& grid) {
   const HeightGrid before = grid;
   // Two passes over distances that neighbours hand on (Danielsson, Euclidean distance mapping, 1980).
@@ -194,7 +194,7 @@ HeightGrid parse_ascii_grid(std::string_view text, double vertical_scale, Holes 
       grid.at(column, row) = is_hole ? hole : value * vertical_scale;
     }
   if (!words.next().empty()) words.fail("there are more heights than ncols times nrows");
-  if (holes_found == count) throw TerrainError("has nothing but holes");
+  if (holes_found == count) throw TerrainError("has no heights, only NODATA");
   if (holes_found > 0) holes == Holes::nearest ? fill_nearest(grid) : fill_linear(grid);
   return grid;
 }

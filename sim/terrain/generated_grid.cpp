@@ -63,9 +63,9 @@ class GradientNoise {
 /// grid are left out: they are a plane there.
 void make_fractal(HeightGrid& grid, const TerrainConfig& config) {
   const GradientNoise noise(static_cast<std::uint64_t>(config.seed));
-  double longest_m = config.wavelength_m, weight = 1;
-  while (longest_m > 8 * std::max(grid.width_m(), grid.depth_m())) longest_m /= 2;
-  for (double wave_m = longest_m; wave_m >= 4 * config.cell_m && weight > 1e-4; wave_m /= 2) {
+  double max_m = config.wavelength_m, weight = 1;
+  while (max_m > 8 * std::max(grid.width_m(), grid.depth_m())) max_m /= 2;
+  for (double wave_m = max_m; wave_m >= 4 * config.cell_m && weight > 1e-4; wave_m /= 2) {
     // Shifted by an irrational part of a wave, or all octaves would be 0 at the points they share.
     const double shift = std::numbers::phi * wave_m;
     for (int j = 0; j < grid.rows; ++j)

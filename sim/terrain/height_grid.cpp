@@ -22,7 +22,7 @@ Seat seat(double from_first_m, double cell_m, int points) {
   return {index, s - index};
 }
 
-/// The heights around a point, relative to it; beyond the border the surface goes on straight.
+/// The heights around a point, relative to it; beyond the border the surface continues straight.
 struct Neighbours {
   double d[3][3];  // [row][column]
 
@@ -108,7 +108,7 @@ double HeightGrid::facet_height(double x, double y) const {
 
 void check_grid_size(std::int64_t columns, std::int64_t rows) {
   const std::string size = std::to_string(columns) + " x " + std::to_string(rows) + " points";
-  if (columns < 2 || rows < 2) throw TerrainError("is no grid: it has " + size + ", and needs 2 x 2");
+  if (columns < 2 || rows < 2) throw TerrainError("is not a grid: it has " + size + " and needs at least 2 x 2");
   if (columns > HeightGrid::max_cells || rows > HeightGrid::max_cells || columns * rows > HeightGrid::max_cells)
     throw TerrainError("is too large: it has " + size + ", and may have 16 million");
   // A long strip of few rows is most likely no map of heights.

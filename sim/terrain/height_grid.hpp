@@ -30,7 +30,7 @@ struct SurfacePoint {
 /// neighbouring points lies a cell.
 ///
 /// Two surfaces go over the points.  The triangles are what is seen: each cell is split along the diagonal from its
-/// south-west to its north-east corner.  The smooth surface is what vehicles stand on: the biquadratic B-spline whose
+/// south-west to its north-east corner.  The smooth surface is the collision surface: the biquadratic B-spline whose
 /// control points are the points of the grid (de Boor, A Practical Guide to Splines, for uniform knots).  It has no
 /// edges (C1), never leaves the range of the nine heights around a place, bends no more than the second differences of
 /// the heights say, so that a step in them becomes no spike of acceleration, and passes over the middles of the edges
@@ -70,7 +70,7 @@ struct HeightGrid {
 
 /// Throws TerrainError unless there are 2 x 2 to max_cells points, with room for all in one array.
 void check_grid_size(std::int64_t columns, std::int64_t rows);
-/// Throws TerrainError for heights that are not finite, or look like other units than metres: a span over 20 km, or
+/// Throws TerrainError for heights that are not finite, or are probably not in metres: a span over 20 km, or
 /// more than half of the cells steeper than 89 degrees.
 void check_heights(const HeightGrid& grid);
 /// The triangles: two a cell, in the order of the cells, the south-eastern one first.

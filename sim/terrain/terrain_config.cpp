@@ -47,7 +47,7 @@ ChoiceKeys keys_of_area(TerrainAreaConfig::Shape shape) {
 void TerrainAreaConfig::read(ParamReader& in) {
   in.read_choice("shape", shape, area_shape_words, "outline, seen from above");
   in.require("material");
-  in.read_reference("material", material, "material", "what the ground is made of inside");
+  in.read_reference("material", material, "material", "material of the ground inside");
   read_pair(in, "center_m", center_m, any_number(), "box, circle: middle, in the frame of the terrain");
   read_pair(in, "size_m", size_m, above(0), "box: lengths along x and y");
   in.read_deg("yaw_deg", yaw_rad, any_number(), "box: turned counter-clockwise");
@@ -116,9 +116,9 @@ void TerrainConfig::read(ParamReader& in) {
     if (place.file) directory = std::filesystem::path(*place.file).parent_path().string();
   }
   in.require("source");
-  in.read_choice("source", source, source_words, "where heights come from: an ESRI ASCII grid, a grey PNG, or a rule");
+  in.read_choice("source", source, source_words, "source of the heights: an ESRI ASCII grid, a grey PNG, or a formula");
   in.read_choice("collision", collision, terrain_collision_words,
-                 "what vehicles stand on: a surface without edges, or its triangles as ODE's heightfield or trimesh");
+                 "collision surface: smooth, or triangles as ODE's heightfield or trimesh");
   in.read_path("file", file, PathUse::read, "ascii, png: relative to this file");
   in.read("cell_m", cell_m, between(HeightGrid::min_cell_m, HeightGrid::max_place_m),
           "distance of neighbouring heights; ascii: the file says it");
@@ -131,11 +131,11 @@ void TerrainConfig::read(ParamReader& in) {
   in.read_choice("holes", holes, {{"error", Holes::error}, {"nearest", Holes::nearest}, {"linear", Holes::linear}},
                  "ascii: what NODATA becomes; linear: between the ends of the hole in its row and column");
   in.read_choice("origin", origin, {{"center", Origin::center}, {"corner", Origin::corner}, {"map", Origin::map}},
-                 "what lies at the part's place: the middle of the grid, its south-west point, or map_origin_m");
+                 "point of the grid at the part's position: its middle, its south-west corner, or map_origin_m");
   read_pair(in, "map_origin_m", map_origin_m, any_number(), "origin map: easting and northing, as in the file");
-  in.read_deg("angle_deg", angle_rad, between(-80, 80), "slope: how steeply it climbs");
+  in.read_deg("angle_deg", angle_rad, between(-80, 80), "slope: gradient");
   in.read_deg("direction_deg", direction_rad, any_number(),
-              "slope, sine: where it climbs to, counter-clockwise from +x");
+              "slope, sine: direction of ascent, counter-clockwise from +x");
   in.read("amplitude_m", amplitude_m, at_least(0), "sine; fractal: half of the height between lowest and highest");
   in.read("wavelength_m", wavelength_m, between(HeightGrid::min_cell_m, HeightGrid::max_place_m),
           "sine; fractal: of the largest hills");

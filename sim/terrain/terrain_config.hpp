@@ -43,7 +43,7 @@ struct TerrainConfig {
   Source source = Source::slope;
   TerrainCollision collision = TerrainCollision::smooth;
   std::string file;                      ///< ascii, png: relative to the YAML file
-  double cell_m = 1;                     ///< all but ascii, whose file says it
+  double cell_m = 1;                     ///< all except ascii, whose file gives it
   std::vector<double> size_m{100, 100};  ///< slope, sine, fractal: along x and y
   double vertical_scale = 1;             ///< ascii: its heights times this are metres
   double vertical_offset_m = 0;          ///< ascii, png: added to the heights

@@ -33,7 +33,7 @@ struct DeviceContext {
   T& shared(const SharedKind<T>& kind) const {
     return host.shared.of(kind);
   }
-  /// The error of a quantity, with a random stream of its own, which faults can reach; both are named after the key
+  /// The error of a quantity, with its own random stream, which faults can reach; both are named after the key
   /// that `params` was read by.  `values`: how many have slow parts of their own (axes of a vector).
   Noise noise(const NoiseParams& params, int values) const;
   /// Random stream and faults of a quantity, named after the key that `params` was read by.

@@ -17,7 +17,7 @@ class PhysicsWorld;
 class World;
 struct ChannelConfig;
 
-/// What the devices of a world may use of it beside asking: the same for all of them.
+/// The services of a world that its devices may use in addition to queries; shared by all of them.
 struct DeviceHost {
   const World& world;  ///< to be asked
   const ChannelConfig& channels;

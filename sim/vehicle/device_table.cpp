@@ -19,7 +19,7 @@ int DeviceTable::next_number() {
 
 void DeviceTable::add(std::unique_ptr<MountedDevice> device) {
   const int number = device->number();
-  if (device->mailbox()) device->mailbox()->raise_on_arrival(mail_flags_.of(number));
+  if (device->mailbox()) device->mailbox()->raise_on_arrival(arrival_flags_.of(number));
   free_.pop_back();
   devices_[static_cast<std::size_t>(number)] = std::move(device);
 }
@@ -58,22 +58,22 @@ void DeviceTable::set_free(std::vector<int> free, std::int64_t size) {
   };
   if (places < devices_.size() || there + free.size() != places ||
       std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end() || std::any_of(free.begin(), free.end(), taken))
-    throw SnapshotError("the snapshot has numbers of devices that cannot be");
+    throw SnapshotError("the snapshot has an invalid value: numbers of devices");
   devices_.resize(places);
   free_ = std::move(free);
 }
 
-void DeviceTable::visit_mail(StateArchive& archive) {
-  std::map<int, std::vector<Message>> mail;
+void DeviceTable::visit_messages(StateArchive& archive) {
+  std::map<int, std::vector<Message>> messages;
   for (const auto& device : devices_) {
     if (!device || !device->mailbox() || archive.restoring()) continue;
     if (std::vector<Message> unread = device->mailbox()->unread(); !unread.empty())
-      mail[device->number()] = std::move(unread);
+      messages[device->number()] = std::move(unread);
   }
-  archive(mail);
+  archive(messages);
   if (!archive.restoring()) return;
   for (const auto& device : devices_)
-    if (device && device->mailbox()) device->mailbox()->set_unread(std::move(mail[device->number()]));
+    if (device && device->mailbox()) device->mailbox()->set_unread(std::move(messages[device->number()]));
 }
 
 }  // namespace sim

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "sim/bus/mail_flags.hpp"
+#include "sim/bus/arrival_flags.hpp"
 #include "sim/vehicle/mounted_device.hpp"
 
 namespace sim {
@@ -27,7 +27,7 @@ class DeviceTable {
   void remove(int number);
   void clear();
   /// Raised when something arrives in the mailbox of the device.
-  std::atomic<bool>* mail_flag(int number) { return mail_flags_.of(number).get(); }
+  std::atomic<bool>* arrival_flag(int number) { return arrival_flags_.of(number).get(); }
 
   // For who builds a world again as it became.
   const std::vector<int>& free_numbers() const { return free_; }
@@ -37,10 +37,10 @@ class DeviceTable {
   /// The numbers that are free, in the order in which they will be used.  Throws SnapshotError when they cannot be.
   void set_free(std::vector<int> free, std::int64_t size);
   /// What waits in the mailboxes.
-  void visit_mail(StateArchive& archive);
+  void visit_messages(StateArchive& archive);
 
  private:
-  MailFlags mail_flags_;
+  ArrivalFlags arrival_flags_;
   std::vector<std::unique_ptr<MountedDevice>> devices_;
   std::vector<int> free_;  // the last is used first
 };

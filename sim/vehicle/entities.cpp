@@ -49,7 +49,7 @@ MountedDevice& Entities::device_named(const std::string& full_name) const {
 
 void Entities::check_new_name(const std::string& name, const SourcePlace& place, const std::string& who) const {
   const char* kind = vehicles_by_name_.contains(name) ? "vehicle" : objects_.contains(name) ? "object" : nullptr;
-  if (kind) throw_config_error(place, who, "there is " + with_article(kind) + " of this name already");
+  if (kind) throw_config_error(place, who, "there already is " + with_article(kind) + " of this name");
 }
 
 Vehicle& Entities::add(std::unique_ptr<Vehicle> vehicle) {
@@ -85,7 +85,7 @@ void Entities::visit_state(StateArchive& archive) {
   constexpr int max_vehicles_ever = 100'000'000;  // lists have a place for each number
   if (archive.restoring() &&
       (next_vehicle_number_ < 0 || next_vehicle_number_ > max_vehicles_ever || next_object_number_ < 0))
-    archive.fail("numbers of vehicles or objects that cannot be");
+    archive.fail("invalid numbers of vehicles or objects");
 }
 
 }  // namespace sim

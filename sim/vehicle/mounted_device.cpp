@@ -139,7 +139,7 @@ void MountedDevice::check_schedule(const StateArchive& archive) const {
   archive.require(samples_planned_, 1, std::numeric_limits<std::int64_t>::max() / 2, "a next sample");
   const bool fits = config_.rate_hz > 0 ? next_sample_step_ == step_of_sample(samples_planned_ - 1)
                                         : next_sample_step_ > 0 && next_sample_step_ <= host_.clock.step_number + 1;
-  if (!fits) archive.fail("the snapshot has a next sample that cannot be");
+  if (!fits) archive.fail("the snapshot has an invalid value: a next sample");
 }
 
 Time MountedDevice::next_latency() {
@@ -148,7 +148,7 @@ Time MountedDevice::next_latency() {
   return from_seconds(latency_s);
 }
 
-void MountedDevice::take_mail(Time now, std::int64_t step_number) {
+void MountedDevice::take_messages(Time now, std::int64_t step_number) {
   bool first = true;
   while (const std::optional<Message> message = mailbox_->take()) {
     if (first) link_random_.begin_step(step_number);
@@ -157,7 +157,7 @@ void MountedDevice::take_mail(Time now, std::int64_t step_number) {
     if (faults_.dropout() > 0 && link_random_.uniform() < faults_.dropout()) continue;
     Time latency = next_latency();
     if (type_.is_actuator()) latency += from_seconds(vehicle_.config().actuator_latency_s);
-    // A sensor's latency delays its reports, not what it is told (a modem is both).
+    // A sensor's latency delays its reports, not its commands (a modem is both).
     if (latency.count() == 0 || built_.sensor) {
       receive(now, message->payload);
       continue;
@@ -223,7 +223,7 @@ void MountedDevice::sample(Time now, std::int64_t step_number) {
   }
   noise_random_.begin_step(step_number);
   built_.sensor->disturb(dt_s, noise_random_);
-  link_random_.begin_step(-step_number);  // apart from the draws of take_mail in the same step
+  link_random_.begin_step(-step_number);  // apart from the draws of take_messages in the same step
   if (config_.dropout > 0 && link_random_.uniform() < config_.dropout) return;
   const Time latency = next_latency();
   if (faults_.silent()) return;
@@ -245,7 +245,7 @@ void MountedDevice::report(Time now) {
     report_outlet_->copy_to(nullptr);
     return;
   }
-  // Only the time stamp goes on.
+  // Only the time stamp continues.
   const std::int64_t utime = report_outlet_->utime(now);
   for (Bytes& payload : *frozen_) {
     if (utime_of(payload) == frozen_utime_) set_utime(payload, utime);

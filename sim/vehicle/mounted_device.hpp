@@ -17,7 +17,7 @@ namespace sim {
 
 struct VehicleSystems;
 
-/// What a step needs to let an actuator act; the rest of its device stays out of the way.
+/// The data that a step needs to run an actuator, separate from the rest of its device.
 struct Acting : VisitedInSteps {
   Actuator* actuator = nullptr;
   VehicleSystems* systems = nullptr;
@@ -47,7 +47,7 @@ class MountedDevice {
   MountedDevice& operator=(const MountedDevice&) = delete;
 
   /// Hands the controller the messages that have come; with a latency they become events.
-  void take_mail(Time now, std::int64_t step_number);
+  void take_messages(Time now, std::int64_t step_number);
   /// Of the step after which it samples next.
   std::int64_t next_sample_step() const { return next_sample_step_; }
   /// See Sensor::sweep; called after each step of a sensor that sweeps.

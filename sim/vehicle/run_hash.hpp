@@ -13,11 +13,11 @@
 
 namespace sim {
 
-/// A hash chained over what a world publishes and over its states, in the order in which they come: it differs from the
-/// first difference on, whatever the runs look like later.
+/// A hash chained over what a world publishes and over its states, in the order in which they come: it stays
+/// different after the first difference.
 ///
-/// Counted are the messages that go through counted(): those of devices and of events, on every bus.  What is published
-/// for observation alone goes past it: truth channels, and the simulator's own `sim.*`.
+/// Counted are the messages that go through counted(): those of devices and of events, on every bus.  Channels for
+/// observation only are excluded: truth channels and the simulator's own `sim.*`.
 class RunHash {
  public:
   RunHash();

@@ -33,7 +33,7 @@ void StepSchedule::sort(const Entities& entities, DeviceTable& devices) {
     if (!vehicle->clock().perfect()) clocked_.push_back(vehicle.get());
   for (const auto& device : devices.all()) {
     if (!device) continue;
-    if (device->mailbox()) listening_.push_back({devices.mail_flag(device->number()), device.get()});
+    if (device->mailbox()) listening_.push_back({devices.arrival_flag(device->number()), device.get()});
     if (device->acting()->actuator != nullptr) acting_.push_back(device->acting());
     if (device->senses())
       sensing_.push_back({device->next_sample_step(), device.get(), device->casts_rays(), device->sweeps()});
@@ -45,10 +45,11 @@ void StepSchedule::plan_again(const MountedDevice& device) {
     if (sensing.device == &device) sensing.due_step = device.next_sample_step();
 }
 
-void StepSchedule::take_mail(const StepClock& clock) {
+void StepSchedule::take_messages(const StepClock& clock) {
   for (const Listening& listening : listening_)
-    if (listening.mail->load(std::memory_order_relaxed) && listening.mail->exchange(false, std::memory_order_acquire))
-      listening.device->take_mail(clock.now(), clock.step_number);
+    if (listening.messages->load(std::memory_order_relaxed) &&
+        listening.messages->exchange(false, std::memory_order_acquire))
+      listening.device->take_messages(clock.now(), clock.step_number);
 }
 
 void StepSchedule::act(const StepClock& clock, double step_s) {
@@ -91,12 +92,12 @@ void StepSchedule::cast_rays(const StepClock& clock, const Scene& scene) {
     if (casting.due) casting.device->sample(clock.now(), clock.step_number);
   };
   // Waking threads costs as much as some hundred rays.
-  constexpr std::int64_t worth_sharing = 1500;
+  constexpr std::int64_t min_rays_for_threads = 1500;
   std::int64_t rays = 0;
   for (const Casting& casting : casting_) rays += casting.device->rays();
   // Where nothing is cast, as between the images of cameras, nothing has to be looked up either.
   if (rays > 0) scene.prepare();
-  if (threads_ && rays >= worth_sharing && scene.concurrent())
+  if (threads_ && rays >= min_rays_for_threads && scene.concurrent())
     threads_->for_each(casting_.size(), [&](std::size_t i) { sample(casting_[i]); });
   else
     for (const Casting& casting : casting_) sample(casting);

@@ -31,7 +31,7 @@ class StepSchedule {
   /// A device samples at other times from now on.
   void plan_again(const MountedDevice& device);
 
-  void take_mail(const StepClock& clock);
+  void take_messages(const StepClock& clock);
   void act(const StepClock& clock, double step_s);
   /// Clocks that are not perfect: before what is due, so that what is stamped in a step is stamped by the clocks as
   /// they stand at its end.
@@ -44,7 +44,7 @@ class StepSchedule {
  private:
   /// A device with a mailbox, and whether there may be something in it.
   struct Listening {
-    std::atomic<bool>* mail;
+    std::atomic<bool>* messages;
     MountedDevice* device;
   };
   /// A sensor, and the step after which it samples next.

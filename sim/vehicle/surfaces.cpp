@@ -34,7 +34,7 @@ bool Surfaces::has_new(const VehicleConfig& config) const {
          std::any_of(config.contacts.begin(), config.contacts.end(), new_contact);
 }
 
-/// What a newcomer says of surfaces may concern its own only: a contact of [default, any] would change everybody's.
+/// What a newcomer says of surfaces may concern its own only: a contact of [default, any] would change those of others.
 void Surfaces::check_new(const VehicleInstance& instance) const {
   const std::string who = "vehicle " + shown_name(instance.name);
   const VehicleConfig& config = *instance.config;
@@ -49,7 +49,7 @@ void Surfaces::check_new(const VehicleInstance& instance) const {
     if (!known && !own.contains(contact.between[0]) && !own.contains(contact.between[1]))
       throw_config_error(instance.place, who,
                          "its contact between '" + contact.between[0] + "' and '" + contact.between[1] +
-                             "' would change the surfaces of others: it must name a new material of its own");
+                             "' would change the surfaces of others: it must name a new material");
   }
 }
 

@@ -16,7 +16,7 @@ using BusFinder = std::function<Bus&(const std::string& name)>;
 /// The buses of a world, each counted in its run hash, and which channels its devices have on them.
 class WorldBuses {
  public:
-  /// `find` gives the bus of a name; without it everybody is on `bus`, which must outlive this.
+  /// `find` gives the bus of a name; without it all vehicles are on `bus`, which must outlive this.
   WorldBuses(Bus& bus, BusFinder find) : bus_(bus), find_(std::move(find)) {}
 
   /// The world's own.

@@ -5,7 +5,7 @@
 
 namespace sim {
 
-/// Something that cannot be done to the world as it is now.  what() is one line that says who, rule and value.
+/// Something that cannot be done to the world as it is now.  what() is one line with who, rule and value.
 class WorldError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -19,7 +19,7 @@ void WorldWarnings::bad_message(const std::string& who, const std::string& text)
   spdlog::warn("{} (ignored, at {:.3f} s)", line, to_seconds(clock_.now()));
 }
 
-void WorldWarnings::notice(const std::string& who, const std::string& text) const {
+void WorldWarnings::warn(const std::string& who, const std::string& text) const {
   spdlog::warn("{}: {} (at {:.3f} s)", who, text, to_seconds(clock_.now()));
 }
 

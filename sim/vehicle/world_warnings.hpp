@@ -17,14 +17,14 @@ class WorldWarnings {
   /// `clock` must outlive this.
   explicit WorldWarnings(const StepClock& clock) : clock_(clock) {}
 
-  /// What is found while the world, or something in it, is built.  A world that is built again after a restore repeats
-  /// nothing of it.
+  /// What is found while the world, or something in it, is built.  A world that is rebuilt after a restore does not
+  /// repeat them.
   Warnings& building() { return building_; }
   /// Something that a client or an event did wrong, with the time of the world.  All are counted; the same line is
   /// logged once, and at most 100 lines are.
   void bad_message(const std::string& who, const std::string& text);
   /// Something that is worth knowing, with the time of the world.  Not counted.
-  void notice(const std::string& who, const std::string& text) const;
+  void warn(const std::string& who, const std::string& text) const;
 
   std::int64_t bad_messages() const { return bad_messages_; }
   void visit_state(StateArchive& archive) { archive(bad_messages_, lines_); }

@@ -42,7 +42,7 @@ std::vector<std::string> lines_about(const std::vector<const Vehicle*>& over_not
   const std::size_t more = over_nothing.size() - 1;
   const std::string others = more == 0 ? "" : " (nor below " + std::to_string(more) + " more)";
   return {"there is no bottom below vehicle '" + over_nothing[0]->name() + "'" + others +
-          ": what looks down from there sees nothing"};
+          ": downward-looking sensors there detect nothing"};
 }
 
 }  // namespace

@@ -9,8 +9,8 @@ namespace sim {
 class Vehicle;
 class World;
 
-/// A line when vehicles that are in water, or float on it, have no ground below them and a device that would look for
-/// it, because it casts rays or because it says so (Sensor::needs_bottom).
+/// A line when vehicles that are in water, or float on it, have no ground below them and a device that needs it,
+/// because it casts rays or declares it (Sensor::needs_bottom).
 std::vector<std::string> bottom_warnings(const World& world);
 /// The same for one of them.
 std::vector<std::string> bottom_warnings(const World& world, const Vehicle& vehicle);

@@ -30,19 +30,18 @@ void JournalReplay::replay(std::span<const std::byte> bytes, std::int64_t last_s
   try {
     for (Entry& entry : entries) {
       if (entry.step < earliest || entry.step > last_step)
-        throw SnapshotError("the snapshot tells of changes in an order that cannot be");
+        throw SnapshotError("the snapshot lists changes in an invalid order");
       earliest = entry.step;
       apply(entry);
       journal_.append(std::move(entry));
     }
     parts_.devices.set_free(std::move(free), devices);
   } catch (const ConfigError& error) {
-    throw SnapshotError("what came to the world before the snapshot cannot come again: " + error.lines().front());
+    throw SnapshotError("additions before the snapshot cannot be replayed: " + error.lines().front());
   } catch (const WorldError& error) {
-    throw SnapshotError(std::string("what happened to the world before the snapshot cannot happen again: ") +
-                        error.what());
+    throw SnapshotError(std::string("changes before the snapshot cannot be replayed: ") + error.what());
   } catch (const std::out_of_range& error) {
-    throw SnapshotError(std::string("what came to the world before the snapshot has numbers that cannot be: ") +
+    throw SnapshotError(std::string("what came to the world before the snapshot has an invalid value: numbers: ") +
                         error.what());
   }
 }
@@ -53,7 +52,7 @@ void check_pose(const Pose& X_W) {
   const Matrix3d R = X_W.linear();
   const bool good = X_W.matrix().allFinite() && X_W.translation().cwiseAbs().maxCoeff() < 1e9 &&
                     (R.transpose() * R - Matrix3d::Identity()).cwiseAbs().maxCoeff() < 1e-3 && R.determinant() > 0;
-  if (!good) throw SnapshotError("the snapshot has something come to, or moved to, a pose that cannot be");
+  if (!good) throw SnapshotError("the snapshot has an invalid value: something come to, or moved to, a pose");
 }
 
 }  // namespace
@@ -68,21 +67,22 @@ void JournalReplay::apply(const Entry& entry) {
     case Entry::Kind::surfaces:
       return parts_.surfaces.add(*vehicle_config(entry));
     case Entry::Kind::vehicle_removed:
-      return builder_.take_apart(parts_.entities.vehicle_named(entry.name));
+      return builder_.dismantle(parts_.entities.vehicle_named(entry.name));
     case Entry::Kind::object_added:
       return apply_object(entry);
     case Entry::Kind::object_removed:
-      return builder_.take_apart(parts_.entities.object_named(entry.name));
+      return builder_.dismantle(parts_.entities.object_named(entry.name));
     case Entry::Kind::device_changed:
       return apply_change(entry);
     case Entry::Kind::moved:
       return apply_move(entry);
   }
-  throw SnapshotError("the snapshot tells of a change of a kind that is none");
+  throw SnapshotError("the snapshot lists a change of an unknown kind");
 }
 
 void JournalReplay::apply_vehicle(const Entry& entry) {
-  if (entry.number < 0 || entry.number > 100'000'000) throw SnapshotError("the snapshot has a vehicle of no number");
+  if (entry.number < 0 || entry.number > 100'000'000)
+    throw SnapshotError("the snapshot has a vehicle without a number");
   if (parts_.entities.find_vehicle(entry.name) != nullptr) throw SnapshotError("the snapshot has a vehicle twice");
   VehicleInstance instance;
   instance.name = entry.name;
@@ -96,7 +96,7 @@ void JournalReplay::apply_vehicle(const Entry& entry) {
   if (!parts_.acoustics->prescribe(entry.transducers)) throw std::out_of_range("a transducer");
   builder_.build_vehicle(instance);
   if (!parts_.physics.as_prescribed() || !parts_.acoustics->as_prescribed() || !parts_.devices.as_prescribed())
-    throw std::out_of_range("there are more numbers than things");
+    throw std::out_of_range("there are more numbers than entities");
 }
 
 void JournalReplay::apply_object(const Entry& entry) {
@@ -105,12 +105,12 @@ void JournalReplay::apply_object(const Entry& entry) {
   parts_.physics.prescribe(entry.numbers);
   if (entry.in_file >= 0) {
     if (entry.in_file >= static_cast<std::int64_t>(parts_.config.objects.size()))
-      throw SnapshotError("the snapshot has an object that the world file has not");
+      throw SnapshotError("the snapshot has an object that is not in the world file");
     builder_.place_object(parts_.config.objects[static_cast<std::size_t>(entry.in_file)], entry.name, entry.X_W);
   } else {
     builder_.place_object(object_config(entry), entry.name, entry.X_W);
   }
-  if (!parts_.physics.as_prescribed()) throw std::out_of_range("there are more numbers than things");
+  if (!parts_.physics.as_prescribed()) throw std::out_of_range("there are more numbers than entities");
 }
 
 void JournalReplay::apply_change(const Entry& entry) {
@@ -143,7 +143,7 @@ const ConfigNode& JournalReplay::parsed(std::int64_t text_number) {
 std::shared_ptr<const VehicleConfig> JournalReplay::vehicle_config(const Entry& entry) {
   if (entry.text_number < 0) {
     if (entry.in_file < 0 || entry.in_file >= static_cast<std::int64_t>(parts_.config.vehicles.size()))
-      throw SnapshotError("the snapshot has a vehicle that the world file has not");
+      throw SnapshotError("the snapshot has a vehicle that is not in the world file");
     return parts_.config.vehicles[static_cast<std::size_t>(entry.in_file)].config;
   }
   const auto [found, fresh] = vehicles_.try_emplace(entry.text_number);

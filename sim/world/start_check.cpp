@@ -68,12 +68,12 @@ class StartCheck {
     }
   }
 
-  std::string complaint(const Starter& starter) {
+  std::string warning(const Starter& starter) {
     if (const std::string ground = terrain_over(starter); !ground.empty()) return "below the terrain of " + ground;
     const auto [other, depth_m] = world_.physics().deepest_overlap(starter.group);
     if (depth_m <= allowed_m) return "";
     // Of two that stand in each other one is enough.
-    if (!told_.insert(std::minmax(starter.name, other)).second) return "";
+    if (!warned_.insert(std::minmax(starter.name, other)).second) return "";
     return number_text(std::round(depth_m * 1000) / 1000) + " m deep in '" + other + "'";
   }
 
@@ -95,7 +95,7 @@ class StartCheck {
   const World& world_;
   std::set<int> terrains_;
   std::map<int, double> tops_m_;  // the highest point of each group, in worlds with terrain
-  std::set<std::pair<std::string, std::string>> told_;
+  std::set<std::pair<std::string, std::string>> warned_;
 };
 
 }  // namespace
@@ -108,18 +108,18 @@ void warn_of_starts(const World& world, Warnings& warnings) {
   std::vector<std::pair<Starter, std::string>> first;
   std::map<std::string, int> more;
   for (const Starter& starter : starters_of(world, places)) {
-    const std::string complaint = check.complaint(starter);
-    if (complaint.empty()) continue;
+    const std::string warning = check.warning(starter);
+    if (warning.empty()) continue;
     const auto [at, fresh] = more.emplace(starter.place.line > 0 ? starter.place.text() : starter.name, 0);
     if (fresh)
-      first.emplace_back(starter, complaint);
+      first.emplace_back(starter, warning);
     else
       ++at->second;
   }
-  for (const auto& [starter, complaint] : first) {
+  for (const auto& [starter, warning] : first) {
     const int others = more.at(starter.place.line > 0 ? starter.place.text() : starter.name);
     const std::string and_more = others > 0 ? " (and " + std::to_string(others) + " more of this entry)" : "";
-    warnings.warn(starter.place, starter.kind + " '" + starter.name + "'", "it starts " + complaint + and_more);
+    warnings.warn(starter.place, starter.kind + " '" + starter.name + "'", "it starts " + warning + and_more);
   }
 }
 

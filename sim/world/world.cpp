@@ -44,7 +44,7 @@ void World::step() {
   WorldParts& parts = *parts_;
   if (!parts.script) throw SnapshotError("the world was lost when a snapshot was restored");
   parts.in_step = true;
-  parts.schedule.take_mail(parts.clock);
+  parts.schedule.take_messages(parts.clock);
   parts.hydrodynamics->begin_step();
   parts.schedule.act(parts.clock, config_.physics.step_s);
   parts.hydrodynamics->step(parts.physics.gravity_mps2());

@@ -40,13 +40,13 @@ struct WorldCounts {
   std::int64_t bad_messages = 0;
 };
 
-/// A world as built: bodies, vehicles, devices and the events between them.  Steps when told to; knows no clock.  Is
-/// changed through editor(), and hashed, saved and restored through state().
+/// A world as built: bodies, vehicles, devices and the events between them.  Advances on request; it does not depend on
+/// wall time.  Is changed through editor(), and hashed, saved and restored through state().
 class World {
  public:
   /// `config` must outlive the world.  `open_port` serves devices that talk through a pseudo-terminal or FIFO.
   /// Throws ConfigError for what only building can find (mesh files, masses).
-  /// `find_bus` gives the bus of a name in `config.buses`; without it everybody is on `bus`.
+  /// `find_bus` gives the bus of a name in `config.buses`; without it all vehicles are on `bus`.
   World(const WorldConfig& config, Bus& bus, PortOpener open_port = {}, BusFinder find_bus = {});
   ~World();
   World(const World&) = delete;
@@ -55,7 +55,7 @@ class World {
   /// Threads that share the sensors which cast rays; 0: one for each processor.  The run is the same for any number.
   void use_threads(int threads);
 
-  /// Stages 1 to 7 of a step: mail, act, medium, script, physics, sense, report.  Throws PhysicsFault.
+  /// Stages 1 to 7 of a step: messages, act, medium, script, physics, sense, report.  Throws PhysicsFault.
   void step();
 
   /// Adds, removes, moves and changes what is in the world.
@@ -93,7 +93,8 @@ class World {
   const WorldObject* find_object(const std::string& name) const { return entities_.find_object(name); }
   /// By name.
   const std::map<std::string, WorldObject, std::less<>>& objects() const { return entities_.objects(); }
-  /// Grows with every vehicle or object that comes or goes: who holds pointers to them asks again then.
+  /// Increases with every vehicle or object that is added or removed: holders of pointers to them must then look them
+  /// up again.
   std::uint64_t generation() const { return entities_.generation(); }
   /// What devices of one kind share, such as the network between radio modems.
   const SharedByDevices& shared() const;
@@ -109,7 +110,7 @@ class World {
   const Zones& zones() const;
   /// By vehicle, when the world has zones with a speed limit or a finish.
   const std::map<std::string, ZoneRecord>& zone_records() const;
-  /// How often the event of this name has fired; nothing when there is none.
+  /// Number of firings of the event of this name; nothing when it does not exist.
   std::optional<std::int64_t> event_firings(const std::string& name) const;
   WorldCounts counts() const;
 
@@ -119,7 +120,7 @@ class World {
 
   const WorldConfig& config_;
   const std::unique_ptr<WorldParts> parts_;
-  // Those parts that are asked for again and again; they stay where they are.
+  // Parts that are used often; their addresses are stable.
   const StepClock& clock_;
   const Geodesy& geodesy_;
   PhysicsWorld& physics_;

@@ -24,7 +24,7 @@ void WorldBuilder::build() {
   const WorldConfig& config = parts_.config;
   parts_.hydrodynamics.emplace(
       parts_.medium, config.physics.gravity_mps2, config.physics.step_s,
-      [&parts = parts_](const std::string& who, const std::string& text) { parts.warnings.notice(who, text); });
+      [&parts = parts_](const std::string& who, const std::string& text) { parts.warnings.warn(who, text); });
   parts_.acoustics = std::make_unique<AcousticChannel>(
       config.acoustics, AcousticSurroundings{parts_.medium, parts_.physics, parts_.events, parts_.seed()});
   parts_.surfaces.start(config);
@@ -104,8 +104,8 @@ Vehicle& WorldBuilder::build_vehicle(const VehicleInstance& instance) {
       VehicleClock(instance.config->clock, parts_.seed(), instance.name, parts_.clock.now())));
   try {
     build_parts_of(vehicle, instance);
-  } catch (...) {  // a mesh that is no solid, a port that is taken: nothing of it stays
-    take_apart(vehicle);
+  } catch (...) {  // a mesh that is not a solid, a port that is taken: nothing of it stays
+    dismantle(vehicle);
     throw;
   }
   parts_.entities.mark_changed();
@@ -158,7 +158,7 @@ void WorldBuilder::sort_devices() {
   parts_.schedule.sort(parts_.entities, parts_.devices);
 }
 
-void WorldBuilder::take_apart(Vehicle& vehicle) {
+void WorldBuilder::dismantle(Vehicle& vehicle) {
   for (const MountedDevice* device : vehicle.devices()) remove_device(*device);
   parts_.hydrodynamics->remove_group(vehicle.group());
   parts_.physics.remove_group(vehicle.group());
@@ -167,13 +167,13 @@ void WorldBuilder::take_apart(Vehicle& vehicle) {
 }
 
 void WorldBuilder::remove_device(const MountedDevice& device) {
-  parts_.events.forget_device(device.number());
+  parts_.events.drop_device(device.number());
   for (const ChannelKind kind : all_channel_kinds)
     parts_.buses.release(device_channel(parts_.config.channels, device.vehicle().name(), device.config(), kind));
   parts_.devices.remove(device.number());
 }
 
-void WorldBuilder::take_apart(const WorldObject& object) {
+void WorldBuilder::dismantle(const WorldObject& object) {
   parts_.hydrodynamics->remove_group(object.group);
   parts_.physics.remove_group(object.group);
   parts_.entities.mark_changed();
@@ -195,7 +195,7 @@ bool WorldBuilder::change_device(const std::string& full_name, const ConfigNode&
 }
 
 /// Devices before what they hold on to, as at the end of the world.
-void WorldBuilder::take_all_apart() {
+void WorldBuilder::dismantle_all() {
   parts_.script.reset();
   parts_.schedule.clear();
   parts_.devices.clear();
@@ -210,7 +210,7 @@ void WorldBuilder::take_all_apart() {
 }
 
 void WorldBuilder::rebuild() {
-  take_all_apart();
+  dismantle_all();
   const WorldConfig& config = parts_.config;
   parts_.physics.start_again(config.physics, config.materials, config.contacts, config.categories, parts_.seed());
   StateArchive start = StateArchive::restorer(medium_at_start_);

@@ -26,20 +26,20 @@ class WorldBuilder {
   /// `parts` must outlive this, and have its physics and medium as they begin.
   explicit WorldBuilder(WorldParts& parts);
 
-  /// All that is in the world file, but for its script.  Throws ConfigError.
+  /// Builds everything in the world file except its script.  Throws ConfigError.
   void build();
-  /// The same anew; what was in the world is gone, and so is its script.
+  /// The same again; what was in the world is gone, and so is its script.
   void rebuild();
 
-  /// Throws ConfigError, and nothing of it stays.
+  /// Throws ConfigError; the world is then unchanged.
   Vehicle& build_vehicle(const VehicleInstance& instance);
-  /// An object that an actor moves becomes kinematic.  Throws ConfigError, and nothing of it stays.
+  /// An object that an actor moves becomes kinematic.  Throws ConfigError; the world is then unchanged.
   const WorldObject& place_object(const ObjectConfig& config, const std::string& name, const Pose& X_WE);
-  void take_apart(Vehicle& vehicle);
-  void take_apart(const WorldObject& object);
+  void dismantle(Vehicle& vehicle);
+  void dismantle(const WorldObject& object);
   /// See WorldEditor::change_device.
   bool change_device(const std::string& full_name, const ConfigNode& values, Diagnostics& diagnostics);
-  /// After vehicles came or went.
+  /// To be called after vehicles were added or removed.
   void sort_devices();
 
  private:
@@ -50,7 +50,7 @@ class WorldBuilder {
   void build_joints_of(Vehicle& vehicle, const VehicleInstance& instance);
   void add_device(Vehicle& vehicle, const DeviceConfig& config);
   void remove_device(const MountedDevice& device);
-  void take_all_apart();
+  void dismantle_all();
 
   WorldParts& parts_;
   std::map<const VehicleConfig*, int> built_of_kind_;  // only for WorldConfig::bodies_only_of_many

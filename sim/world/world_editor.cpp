@@ -39,7 +39,7 @@ void WorldEditor::check_place_is_free(Vehicle& vehicle, const VehicleInstance& i
   constexpr double allowed_m = 0.05;
   const auto [other, depth_m] = parts_.physics.deepest_overlap(vehicle.group());
   if (depth_m <= allowed_m) return;
-  builder_.take_apart(vehicle);
+  builder_.dismantle(vehicle);
   throw_config_error(instance.place, "vehicle " + shown_name(instance.name),
                      "'position_m' is taken: it would stand " + number_text(std::round(depth_m * 1000) / 1000) +
                          " m deep in '" + other + "'");
@@ -105,7 +105,7 @@ void WorldEditor::remove_vehicle(const std::string& name) {
   check_removable(name);
   Vehicle& vehicle = parts_.entities.vehicle_named(name);
   const std::string own_name = vehicle.name();  // the caller's may be that of the vehicle
-  builder_.take_apart(vehicle);
+  builder_.dismantle(vehicle);
   journal_.vehicle_removed(own_name);
   builder_.sort_devices();
 }
@@ -114,7 +114,7 @@ void WorldEditor::move_vehicle(const std::string& name, const Pose& X_WV) {
   const Vehicle& vehicle = parts_.entities.vehicle_named(name);
   parts_.physics.move_group(vehicle.group(), X_WV * vehicle.X_WV().inverse());
   if (parts_.physics.anchored(vehicle.group())) journal_.anchored_vehicle_moved(vehicle);
-  parts_.acoustics->forget_places();
+  parts_.acoustics->discard_places();
 }
 
 const WorldObject& WorldEditor::add_object(const ObjectConfig& config, const std::string& name, const Pose& X_WE) {
@@ -131,7 +131,7 @@ const WorldObject& WorldEditor::add_object(const ObjectConfig& config, const std
 void WorldEditor::remove_object(const std::string& name) {
   const WorldObject& object = parts_.entities.object_named(name);
   const std::string own_name = object.name;  // the caller's may be that of the object
-  builder_.take_apart(object);
+  builder_.dismantle(object);
   journal_.object_removed(own_name);
 }
 

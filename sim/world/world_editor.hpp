@@ -42,7 +42,7 @@ class WorldEditor final : public Stage {
   WorldWarnings& warnings() override;
 
   /// Adds a vehicle.  Throws ConfigError (names and channels that are taken, meshes, masses, limits, contacts that
-  /// would change the surfaces of others, a place where something stands), and the vehicle is not there then.
+  /// would change the surfaces of others, an occupied place); the vehicle is then not added.
   const Vehicle& add_vehicle(const VehicleInstance& instance);
   void remove_vehicle(const std::string& name) override;
   /// Throws WorldError as remove_vehicle would.

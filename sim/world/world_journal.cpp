@@ -72,12 +72,12 @@ void WorldJournal::append(Entry entry) {
 
 void WorldJournal::check_size() {
   if (size_ <= max_bytes) return;
-  forget();
+  discard();
   full_ = true;
   gap_ = "the change journal exceeds 16 MiB";
 }
 
-void WorldJournal::forget() {
+void WorldJournal::discard() {
   entries_ = {};
   texts_.clear();
   text_numbers_.clear();
@@ -85,7 +85,7 @@ void WorldJournal::forget() {
 }
 
 void WorldJournal::start_again(const Texts& texts) {
-  forget();
+  discard();
   gap_.clear();
   full_ = false;
   for (const auto& [number, text] : texts) {
@@ -97,7 +97,7 @@ void WorldJournal::start_again(const Texts& texts) {
 
 const std::string& WorldJournal::text(std::int64_t number) const {
   const auto found = texts_.find(number);
-  if (found == texts_.end()) throw SnapshotError("the snapshot tells of a vehicle or object without its YAML");
+  if (found == texts_.end()) throw SnapshotError("the snapshot lists a vehicle or object without its YAML");
   return found->second.text;
 }
 
@@ -185,16 +185,16 @@ void WorldJournal::vehicle_removed(const std::string& name) {
   const std::optional<std::size_t> added = place_of(Entry::Kind::vehicle_added, name);
   drop_changes_of(name, added.value_or(0));
   if (!added) return append(entry(Entry::Kind::vehicle_removed, name));
-  Entry& gone = entries_[*added];
-  if (!gone.new_surfaces || gone.text_number < 0) return drop(*added);
+  Entry& removed = entries_[*added];
+  if (!removed.new_surfaces || removed.text_number < 0) return drop(*added);
   // They stay, and keep their numbers: the place among the others counts.
-  size_ -= gone.bytes();
+  size_ -= removed.bytes();
   Entry surfaces;
-  surfaces.step = gone.step;
+  surfaces.step = removed.step;
   surfaces.name = name;
-  surfaces.text_number = gone.text_number;
-  gone = std::move(surfaces);
-  size_ += gone.bytes();
+  surfaces.text_number = removed.text_number;
+  removed = std::move(surfaces);
+  size_ += removed.bytes();
 }
 
 void WorldJournal::object_added(const ObjectConfig& config, const WorldObject& object, const Pose& X_WE) {
@@ -236,7 +236,7 @@ void WorldJournal::device_changed(const std::string& full_name, const ConfigNode
   append(std::move(changed));
 }
 
-/// Joints that are made anew are the last ones: so is the entry.
+/// Joints that are made again are the last ones: so is the entry.
 void WorldJournal::anchored_vehicle_moved(const Vehicle& vehicle) {
   if (full_) return;
   if (const auto known = place_of(Entry::Kind::moved, vehicle.name())) drop(*known);

@@ -19,11 +19,11 @@ struct WorldParts;
 
 /// The differences between a world and its configuration: vehicles and objects that were added or removed, devices
 /// that got other values.  A snapshot carries it, so that a world of the same configuration can be given the same
-/// structure, with the same numbers and in the same order.  The order counts: ODE goes through bodies and joints as
-/// they came.
+/// structure, with the same numbers and in the same order.  The order matters: ODE processes bodies and joints in the
+/// order of their creation.
 ///
-/// It holds what is there, with the numbers it has, and nothing that was removed again; of values and places that were
-/// changed, the last ones.  Of what the world file has it notes that it was removed.  So it grows with what is there,
+/// It holds the present entities with their numbers, nothing that was removed again, and the latest of changed values
+/// and poses.  Of what the world file has it notes that it was removed.  So it grows with what is there,
 /// not with time.  Beyond max_bytes it drops everything, and gap() says so.
 class WorldJournal {
  public:
@@ -44,7 +44,7 @@ class WorldJournal {
   void object_added(const ObjectConfig& config, const WorldObject& object, const Pose& X_WE);
   void object_removed(const std::string& name);
   void device_changed(const std::string& full_name, const ConfigNode& values);
-  /// One that is joined to the world: its joints were made anew.
+  /// One that is joined to the world: its joints were made again.
   void anchored_vehicle_moved(const Vehicle& vehicle);
 
   /// All of it, as JournalReplay takes it.
@@ -74,7 +74,7 @@ class WorldJournal {
   void use_text(std::int64_t number);
   void release_text(std::int64_t number);
   void check_size();
-  void forget();
+  void discard();
 
   const WorldParts& parts_;
   std::vector<Entry> entries_;

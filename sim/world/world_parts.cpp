@@ -20,7 +20,7 @@ void check_events(EventQueue& queue, std::size_t devices, const AcousticChannel&
   reader(reached, next_sequence, events);
   for (const Event& event : events)
     if (event.device != Event::of_acoustics && static_cast<std::size_t>(event.device) >= devices)
-      archive.fail("an event of a device that is not there");
+      archive.fail("an event of a device that does not exist");
   acoustics.check_events(events, archive);
 }
 
@@ -52,8 +52,8 @@ void WorldParts::visit_state(StateArchive& archive) {
     archive.section(vehicle->name());
     archive(*vehicle);
     // It would be advanced from there in as many small steps as a forger likes.
-    if (archive.restoring() && !vehicle->clock().stands_at(clock.now()))
-      archive.fail("a clock that stands at another time than the world");
+    if (archive.restoring() && !vehicle->clock().is_stopped_at(clock.now()))
+      archive.fail("a clock whose time does not match that of the world");
     for (MountedDevice* device : vehicle->devices()) {
       archive.section(device->full_name());
       archive(*device);
@@ -69,8 +69,8 @@ void WorldParts::visit_state(StateArchive& archive) {
   archive.section("script");
   archive(*script);
   if (!archive.hashing()) {  // what the world itself has sent to its devices in the step that ended
-    archive.section("mail");
-    devices.visit_mail(archive);
+    archive.section("messages");
+    devices.visit_messages(archive);
   }
   archive.end();
 }

@@ -29,14 +29,14 @@ class World;
 /// What a world is made of.  World owns it; WorldBuilder fills and empties it, World steps it, WorldEditor changes it,
 /// WorldState saves and restores it.  For sources of this folder only.
 struct WorldParts {
-  /// `config` and `bus` must outlive this.  Physics and medium as they begin, and nothing in them: WorldBuilder builds.
+  /// `config` and `bus` must outlive this.  Initial physics and medium, without content: WorldBuilder adds it.
   WorldParts(const World& world, const WorldConfig& config, Bus& bus, PortOpener open_port, BusFinder find_bus);
 
   std::uint64_t seed() const { return static_cast<std::uint64_t>(config.run.seed); }
   /// `world`, `medium`, each vehicle with its devices, `objects` and so on; see WorldState::part_hashes().
   void visit_state(StateArchive& archive);
 
-  // In the order in which each needs those before it: devices go before what they hold on to.
+  // In the order of dependence: devices are destroyed before what they refer to.
   const WorldConfig& config;
   PortOpener open_port;
   StepClock clock;

@@ -62,7 +62,8 @@ std::vector<PartHash> WorldState::part_hashes() const {
 
 Bytes WorldState::snapshot() const {
   if (!parts_.script) throw SnapshotError("the world was lost when a snapshot was restored");
-  if (parts_.in_step) throw SnapshotError("the last step of the world was not ended: there is nothing to go on from");
+  if (parts_.in_step)
+    throw SnapshotError("the last step of the world was not finished: there is nothing to continue from");
   if (!journal_.gap().empty()) throw SnapshotError("this world cannot be saved: " + journal_.gap());
   StateArchive archive = StateArchive::saver(last_bytes_ + last_bytes_ / 8);
   archive.section("make");
@@ -106,7 +107,7 @@ void WorldState::load(std::span<const std::byte> snapshot) {
     JournalReplay(parts_, builder_, journal_).replay(head.journal, head.step);
   }
   parts_.visit_state(archive);
-  if (parts_.clock.step_number != head.step) archive.fail("its step is not the one it begins with");
+  if (parts_.clock.step_number != head.step) archive.fail("its step is not the one with which it starts");
   builder_.sort_devices();
   parts_.in_step = false;
 }

@@ -23,7 +23,7 @@ class WorldState {
   WorldState(WorldParts& parts, WorldBuilder& builder, Stage& stage, WorldJournal& journal)
       : parts_(parts), builder_(builder), stage_(stage), journal_(journal) {}
 
-  /// A hash over all that is state: bodies, joints, devices, clocks, medium, events, sound under way, script.
+  /// A hash over the whole state: bodies, joints, devices, clocks, medium, events, sound in flight, script.
   std::uint64_t hash() const;
   /// A hash over the whole way here: every message that devices and events have published, the motion of every body
   /// after each step, the whole state after every tenth step and now.  Equal ones prove equal runs, equal state hashes
@@ -36,11 +36,11 @@ class WorldState {
   /// SnapshotError when a vehicle or object was added that was not read from YAML.
   Bytes snapshot() const;
   /// Goes to a snapshot of a world of the same configuration, of this one or of another process, and on from there
-  /// with the same bits.  When vehicles, objects or the parameters of devices are not those of the snapshot, the world
-  /// is built anew in place: references to vehicles, bodies, devices and scene are then void, and World::generation()
-  /// has grown; those to World and PhysicsWorld hold.  Throws SnapshotError when it does not fit; the world is then as
-  /// before, or where that is not possible as well the error says so.  It may have been built anew on the way there:
-  /// see World::generation().
+  /// with the same bits.  When vehicles, objects or the parameters of devices are not those of the snapshot, the
+  /// world is rebuilt in place: references to vehicles, bodies, devices and scene become invalid, and
+  /// World::generation() increases; references to World and PhysicsWorld stay valid.  Throws SnapshotError when it
+  /// does not fit; the world is then as before, or, when that fails too, the error says so.  The world may have been
+  /// rebuilt meanwhile: see World::generation().
   void restore(std::span<const std::byte> snapshot);
 
  private:

@@ -14,7 +14,7 @@ void check_actor(const ActorConfig& actor, WorldConfig& world, Diagnostics& diag
     if (object.count != 1) diagnostics.error(actor.place, who, "'object' must be one object, not a 'count' of them");
     if (object.fixed) diagnostics.error(actor.place, who, "object '" + object.name + "' is fixed and cannot be moved");
     if (object.kinematic)
-      diagnostics.error(actor.place, who, "object '" + object.name + "' is moved by another actor already");
+      diagnostics.error(actor.place, who, "object '" + object.name + "' is already moved by another actor");
     object.kinematic = true;
   }
 }

@@ -68,7 +68,7 @@ class ConfigCheck {
     const auto place = [&](const char* key) { return device.source ? place_of(*device.source, key) : device.place; };
     if (device.device_type->reports()) {
       const bool given = device.source && device.source->find("rate_hz") != nullptr;
-      check_rate(given ? "'rate_hz'" : "its usual rate", device.rate_hz, place("rate_hz"), who);
+      check_rate(given ? "'rate_hz'" : "its default rate", device.rate_hz, place("rate_hz"), who);
       return;
     }
     for (const char* key : {"rate_hz", "phase_s", "truth", "channel"})
@@ -86,7 +86,7 @@ class ConfigCheck {
                        number_text(std::round(1e6 / step_s) / 1e6) + " Hz with 'step_s' " + number_text(step_s));
   }
 
-  /// Of a channel on which a device would speak if it were told to.
+  /// Of a channel on which a device would publish if it were configured to.
   std::string truth_hint(const std::string& channel) const {
     for (const VehicleInstance& vehicle : world_.vehicles)
       for (const DeviceConfig& device : vehicle.config->devices)

@@ -10,9 +10,9 @@
 
 namespace sim {
 
-/// Warns of what a world file says that will not be as it says: rates above that of the steps, keys without effect,
-/// metrics of channels on which nobody speaks or that begin after the end, events after the end.  `root`: what `world`
-/// was read from; `duration_s`: of the run, where it is not that of the file, 0: without end.  A shorter run is no
+/// Warns of settings of a world file that cannot take effect: rates above that of the steps, keys without effect,
+/// metrics of channels without a publisher or that start after the end, events after the end.  `root`: what `world`
+/// was read from; `duration_s`: of the run, where it is not that of the file, 0: without end.  A shorter run is not a
 /// reason for a warning.  Call when the vehicles are known and there were no errors.
 void warn_of_config(const WorldConfig& world, const ConfigNode& root, Warnings& warnings,
                     std::optional<double> duration_s = {});

@@ -9,7 +9,7 @@
 namespace sim {
 
 /// The configuration of a device after some of its values have changed while it runs.  `values`: dotted key: value.
-/// What cannot be read, or cannot change, goes to `diagnostics`, and there is no result.
+/// Values that cannot be read or changed are reported to `diagnostics`, and there is no result.
 std::optional<DeviceConfig> changed_device(const DeviceConfig& device, const VehicleConfig& vehicle,
                                            const WorldConfig& world, const ConfigNode& values, const std::string& who,
                                            Diagnostics& diagnostics);

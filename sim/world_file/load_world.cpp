@@ -87,13 +87,13 @@ bool is_one_of_count(const ConfigNode& entry, const std::string& name) {
   const std::string& stem = text_at(entry, "name");
   const std::string& count = text_at(entry, "count");
   if (stem.empty() || !name.starts_with(stem) || name.size() == stem.size() || name[stem.size()] == '0') return false;
-  int index = 0, most = 0;
+  int index = 0, max = 0;
   const auto whole = [](std::string_view text, int& value) {
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     return error == std::errc{} && end == text.data() + text.size();
   };
-  return whole(std::string_view(name).substr(stem.size()), index) && whole(count, most) && most > 1 && index >= 1 &&
-         index <= most;
+  return whole(std::string_view(name).substr(stem.size()), index) && whole(count, max) && max > 1 && index >= 1 &&
+         index <= max;
 }
 
 void add_override(ConfigNode& vehicle, const std::string& key, const ConfigNode& value, const SourcePlace& place) {
@@ -195,7 +195,7 @@ void warn_of_missing_water(const WorldConfig& world, Warnings& warnings) {
   if (dry.empty()) return;
   const std::string more = dry.size() == 1 ? "" : fmt::format(" (and {} more)", dry.size() - 1);
   warnings.warn(dry.front()->place, "vehicle '" + dry.front()->name + "'" + more,
-                "it has hydrodynamics, but the world has no 'medium: water:', so it falls like a stone");
+                "it has hydrodynamics, but the world has no 'medium: water:', so it will fall freely");
 }
 
 /// In water that weighs less than nothing all of hydrostatics turns over.
@@ -245,7 +245,7 @@ std::set<std::string> known_keys() {
   return keys;
 }
 
-bool stays_on_machine(const std::string& url) {
+bool is_local_only(const std::string& url) {
   if (url.starts_with("memq:")) return true;
   const std::size_t ttl = url.find("ttl=");
   // LCM takes the last of several.
@@ -264,7 +264,7 @@ void check_buses(const WorldConfig& world, const ConfigNode& root, const LoadOpt
     const std::string who = "bus '" + world.buses[i].name + "'";
     if (url->scalar.starts_with("file:"))
       diagnostics.error(url->place, who, "'lcm_url' must be the URL of a network, got a file");
-    else if (options.only_own_files && !options.allow_plugins && !stays_on_machine(url->scalar))
+    else if (options.only_own_files && !options.allow_plugins && !is_local_only(url->scalar))
       diagnostics.error(url->place, who,
                         "'lcm_url' must stay on this machine (udpm:// with ttl=0, memq://); one that leaves it needs "
                         "--launch or --set buses." +

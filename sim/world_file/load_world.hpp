@@ -15,7 +15,7 @@ struct LoadOptions {
   std::optional<std::int64_t> seed;   ///< instead of the file's
   bool allow_plugins = false;         ///< load the `plugins:` of the world, which then run code
   EncodeMessage encode_message = {};  ///< for events that publish messages
-  /// The world may be a stranger's: the files that it names must lie below its folder, the folder `vehicles` beside
+  /// The world may be untrusted: the files that it names must lie below its folder, the folder `vehicles` beside
   /// that or the shipped ones, and its buses must stay on this machine unless `allow_plugins`.
   bool only_own_files = false;
   std::vector<std::string> allow_paths = {};  ///< further folders and files
@@ -33,7 +33,7 @@ FileAccessPointer files_of(const std::string& world_file, const LoadOptions& opt
 
 struct LoadedWorld {
   WorldConfig config;
-  /// The world as it runs, with includes, vehicle files and --set applied: a world file of its own.
+  /// The world as it runs, with includes, vehicle files and --set applied: its own world file.
   ConfigNode resolved;
 };
 
@@ -41,7 +41,7 @@ struct LoadedWorld {
 LoadedWorld load_world(const std::string& path, const LoadOptions& options = {});
 /// The same from text.  `file_name` is used in messages, its directory to find vehicle files.
 LoadedWorld load_world_text(const std::string& text, const std::string& file_name, const LoadOptions& options = {});
-/// The same from a tree, whose errors are at the places that its nodes know.
+/// The same from a tree; errors are at the places of its nodes.
 LoadedWorld load_world_tree(ConfigNode root, const std::string& file_name, const LoadOptions& options = {});
 
 }  // namespace sim

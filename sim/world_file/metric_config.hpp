@@ -33,7 +33,7 @@ void declare_metrics(ParamReader& in);
 std::optional<RuleProblem> figure_problem(const std::vector<MetricConfig>& metrics, const std::string& name);
 /// Reads `pass:`, the list of rules of a world, which name figures of `metrics`.
 void read_rules(ParamReader& in, std::vector<RuleExpression>& rules, const std::vector<MetricConfig>& metrics);
-/// What is wrong with metrics when the vehicles are known, such as devices that are not there.
+/// What is wrong with metrics when the vehicles are known, such as devices that do not exist.
 void check_metrics(const WorldConfig& world, Diagnostics& diagnostics);
 
 }  // namespace sim

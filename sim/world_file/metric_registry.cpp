@@ -16,7 +16,7 @@ void MetricParams::read_known_name(ParamReader& in, const char* key, std::string
 }
 
 void MetricParams::read_vehicle(ParamReader& in) {
-  read_known_name(in, "vehicle", vehicle, "vehicle", "whose truth counts; where it is not needed: unset: all");
+  read_known_name(in, "vehicle", vehicle, "vehicle", "vehicle whose truth is used; where it is optional: unset: all");
 }
 
 void MetricParams::read_channel(ParamReader& in) {
@@ -27,7 +27,7 @@ void MetricParams::read_channel(ParamReader& in) {
 }
 
 void MetricParams::read_from_s(ParamReader& in) {
-  in.read("from_s", from_s, at_least(0), "what comes before this simulated time does not count");
+  in.read("from_s", from_s, at_least(0), "start of the scoring, simulated time");
 }
 
 const FigureKind* MetricKind::find(const std::string& figure) const {

@@ -31,7 +31,7 @@ class MetricParams {
   virtual void check(const MetricConfig& /*metric*/, const WorldConfig& /*world*/, Diagnostics& /*diagnostics*/) const {
   }
 
-  // Keys that several types have: a type reads those that it has, and the others keep their defaults.
+  // Keys shared by several types: a type reads its own, and the others keep their defaults.
   std::string vehicle;  ///< that it looks at: it cannot be removed; empty: none, or all
   std::string channel;  ///< that it reads
   double from_s = 0;    ///< what comes before this time does not count

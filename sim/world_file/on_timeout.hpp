@@ -7,8 +7,8 @@ namespace sim {
 
 /// What happens when a client of the lockstep does not answer in time.
 enum class OnTimeout {
-  wait,     ///< the world waits for ever
-  pause,    ///< the world pauses, until it answers or somebody resumes: then without it
+  wait,     ///< the world waits forever
+  pause,    ///< the world pauses, until it answers or a client resumes the run: then without it
   go_on,    ///< without it
   end_run,  ///< with exit code 5
 };

@@ -47,13 +47,13 @@ class RuleExpression {
   struct Outcome {
     double left = 0;
     double right = 0;
-    double margin = 0;  ///< by how much the rule holds, below 0 when it fails; NaN for == and !=
+    double margin = 0;  ///< distance to the limit, below 0 when the rule fails; NaN for == and !=
     bool holds = false;
   };
 
   /// Holds nothing.
   RuleExpression() = default;
-  /// Reads `text`.  Nothing when it is no rule; `problem` then says why.
+  /// Reads `text`.  Nothing when it is not a rule; `problem` then says why.
   static std::optional<RuleExpression> parse(std::string_view text, const RuleNames& names, RuleProblem& problem);
 
   const std::string& text() const { return text_; }

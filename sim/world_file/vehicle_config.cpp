@@ -11,18 +11,18 @@ void VehicleConfig::read(ParamReader& in) {
   in.read_raw("parameters", parameters, "default of each ${name} used in the file");
   in.read_list("materials", materials, "material", "materials this vehicle brings");
   for (const MaterialConfig& material : materials) in.declare("material", material.name);
-  in.read_list("contacts", contacts, "contact", "what happens where two materials touch");
+  in.read_list("contacts", contacts, "contact", "contact parameters of pairs of materials");
   in.read("categories", categories, "categories of parts this vehicle brings");
   for (const std::string& category : categories) in.declare("category", category);
   in.read("self_collision", self_collision, "parts of this vehicle collide with each other");
   in.read("actuator_latency_s", actuator_latency_s, between(0, 1e6),
           "from command to effect, added to the latency of each actuator");
-  in.read("clock", clock, "by which its devices stamp their reports; without it: true time");
+  in.read("clock", clock, "clock with which its devices stamp their reports; unset: true time");
   in.require("bodies");
   in.read_list("bodies", bodies, "body", "parts that move as one; the first carries the vehicle frame");
   if (in.has("bodies") && bodies.empty()) in.error("bodies", "'bodies' must have at least one body");
   declare_bodies(in);
-  in.read_list("joints", joints, "joint", "what ties bodies together");
+  in.read_list("joints", joints, "joint", "joints between bodies");
   for (const JointConfig& joint : joints) in.declare("joint", joint.name);
   for (JointConfig& joint : joints)
     if (!joint.anchored) joint.anchor_at_body(bodies);

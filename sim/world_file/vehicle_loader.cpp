@@ -235,7 +235,7 @@ VehicleConfig load_vehicle(const std::string& path, const LoadOptions& options) 
 
 namespace {
 
-constexpr std::size_t most_request_bytes = 1 << 20;
+constexpr std::size_t max_request_bytes = 1 << 20;
 
 /// What a spawn request says beside the entry.
 struct SpawnEntry {
@@ -244,17 +244,18 @@ struct SpawnEntry {
   double alive_timeout_s = 5;
   void read(ParamReader& in) {
     vehicle.read(in);
-    in.read("with_client", with_client, "the vehicle goes when the client that asked for it goes");
-    in.read("alive_timeout_s", alive_timeout_s, between(0.1, 1e6), "wall time after which a silent client is gone");
+    in.read("with_client", with_client, "the vehicle is removed when the client that spawned it leaves");
+    in.read("alive_timeout_s", alive_timeout_s, between(0.1, 1e6),
+            "wall time after which a silent client counts as gone");
   }
 };
 
-enum class Sender { stranger, journal };
+enum class Sender { untrusted, journal };
 
 void check_spawn(const SpawnEntry& entry, Sender sender, Diagnostics& diagnostics) {
   const VehicleEntry& vehicle = entry.vehicle;
   const std::string who = "vehicle '" + vehicle.name + "'";
-  if (sender == Sender::stranger)
+  if (sender == Sender::untrusted)
     for (const ConfigNode* node : {&vehicle.model, &vehicle.parameters, &vehicle.overrides})
       check_untrusted(*node, who, diagnostics);
   if (vehicle.count != 1) diagnostics.error(vehicle.place, who, "'count' must be 1: vehicles are spawned one by one");
@@ -270,14 +271,14 @@ void check_untrusted(const ConfigNode& node, const std::string& who, Diagnostics
     const std::string key = entry.key.substr(entry.key.find_last_of("./") + 1);
     // Files are refused by the kind of their keys; these are more than a file.
     if (key == "serial" || key == "include" || entry.key.find("serial.") != std::string::npos)
-      diagnostics.error(entry.place, who, "'" + key + "' cannot be used in what comes over the bus");
+      diagnostics.error(entry.place, who, "'" + key + "' cannot be used in a request from the bus");
     check_untrusted(entry.value, who, diagnostics);
   }
 }
 
 ConfigNode parse_untrusted(const std::string& text, const std::string& from) {
   Diagnostics diagnostics;
-  if (text.size() > most_request_bytes)
+  if (text.size() > max_request_bytes)
     diagnostics.error({intern_file_name(from), 0, 0}, "",
                       "a request must have at most 1 MiB of text, got " + std::to_string(text.size()) + " bytes");
   diagnostics.throw_if_any();
@@ -315,7 +316,7 @@ SpawnRequest read_spawn(const WorldConfig& world, const ConfigNode& node, Sender
 
 SpawnRequest read_spawn_request(const WorldConfig& world, const std::string& text, std::vector<std::string>* hidden) {
   std::vector<std::string> lines;
-  return read_spawn(world, parse_untrusted(text, "spawn"), Sender::stranger, hidden != nullptr ? hidden : &lines);
+  return read_spawn(world, parse_untrusted(text, "spawn"), Sender::untrusted, hidden != nullptr ? hidden : &lines);
 }
 
 SpawnRequest read_journalled_spawn(const WorldConfig& world, const std::string& text) {

@@ -43,17 +43,17 @@ class VehicleLoader {
 /// Reads and checks a vehicle file by itself, with its default parameters.  Of the options the rule about files counts.
 VehicleConfig load_vehicle(const std::string& path, const LoadOptions& options = {});
 
-/// A vehicle that a client brings while the world runs: an entry of `vehicles:`, and who it belongs to.
+/// A vehicle that a client spawns during the run: an entry of `vehicles:`, and its owner.
 struct SpawnRequest {
   VehicleInstance vehicle;
   bool with_client = false;    ///< it goes when the client goes
-  double alive_timeout_s = 5;  ///< wall time after which a silent client is gone
+  double alive_timeout_s = 5;  ///< wall time after which a silent client counts as gone
 };
 
 /// Reads a spawn request.  The text comes over the network and is not trusted: it can use vehicle files that lie
 /// beside the world file, in ../vehicles or among the shipped ones by their bare names, but no other file, and no
-/// serial port.  Throws ConfigError, with places such as `spawn:3:7`; of an error in a vehicle file it says the place
-/// alone, for whoever asked may not read the file.  `hidden`: gets those errors in full.
+/// serial port.  Throws ConfigError, with places such as `spawn:3:7`; for an error in a vehicle file only the place,
+/// as the requester may not be entitled to read the file.  `hidden`: gets those errors in full.
 SpawnRequest read_spawn_request(const WorldConfig& world, const std::string& text,
                                 std::vector<std::string>* hidden = nullptr);
 /// The same for what self_contained_spawn() made of a request that was checked then.

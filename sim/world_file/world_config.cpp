@@ -48,9 +48,9 @@ void VehicleEntry::read(ParamReader& in) {
   in.read("position_m", position_m, any_place(), "place of the vehicle frame in the world");
   in.read_deg("rpy_deg", rpy_rad, "roll, pitch, yaw");
   in.read("count", count, between(1, 100000), "how many; named NAME1, NAME2, ...");
-  in.read("placement", placement, "where the instances stand when there is a count");
+  in.read("placement", placement, "placement of the instances when there is a count");
   in.read_raw("parameters", parameters, "values of the vehicle file's ${names}; ${index} counts from 1");
-  in.read_reference("bus", bus, "bus", "bus of its own, named in `buses`; unset: the world's");
+  in.read_reference("bus", bus, "bus", "separate bus, named in `buses`; unset: the world's");
   in.read_raw("overrides", overrides,
               "dotted path: value, such as devices.lidar.rate_hz: 5; NAME3/devices.lidar.rate_hz: one of a count");
   if (!in.describing() && in.has("file") == in.has("model"))
@@ -99,8 +99,8 @@ void ProcessConfig::read(ParamReader& in) {
   in.read_reference("bus", bus, "bus", "its LCM URL is that of this bus, named in `buses`; unset: the world's");
   in.read_choice(
       "on_exit", on_exit, {{"continue", OnExit::go_on}, {"end", OnExit::end_run}, {"ignore", OnExit::ignore}},
-      "when it ends before the run; continue: the run goes on, and fails if the program failed; end: the run "
-      "ends with exit code 1; ignore: the run goes on, and a failure does not count");
+      "when it ends before the run; continue: the run continues, and fails if the program failed; end: the run ends "
+      "with exit code 1; ignore: the run continues, and a failure does not count");
   if (in.describing()) return;
   if (in.has("program") && program.empty()) in.error("program", "'program' must not be empty");
   if (in.has("program") == in.has("command"))
@@ -115,18 +115,19 @@ void LockstepConfig::read(ParamReader& in) {
   in.read("join_timeout_s", join_timeout_s, between(0.001, 1e6), "wall time to wait for launched clients to join");
   in.read_choice(
       "on_timeout", on_timeout, on_timeout_words,
-      "when a client does not answer in timeout_s: wait for it for ever, pause the world, continue without "
-      "it, end the run with exit code 5; it then counts for all clients, and timeout_s is the longest that they "
-      "may ask for; unset: each client may say its own when it joins");
+      "when a client does not answer in timeout_s: wait for it forever, pause the world, continue without it, end the "
+      "run with exit code 5; it then applies to all clients, and timeout_s is the maximum that they may request; "
+      "unset: each client may give its own when it joins");
   agreed = in.has("on_timeout");
 }
 
 void LimitsConfig::read(ParamReader& in) {
-  in.read("vehicles", vehicles, between(0, 1000000), "vehicles at any one time, when clients bring more");
-  in.read("objects", objects, between(0, 10000000), "objects at any one time, when scripts or clients bring more");
-  in.read("bodies_per_vehicle", bodies_per_vehicle, between(1, 100000), "of a vehicle that a client brings");
-  in.read("devices_per_vehicle", devices_per_vehicle, between(0, 100000), "of a vehicle that a client brings");
-  in.read("parts", parts, between(1, 100000), "of one vehicle or object that comes while the world runs");
+  in.read("vehicles", vehicles, between(0, 1000000), "vehicles at any one time, including spawned ones");
+  in.read("objects", objects, between(0, 10000000),
+          "objects at any one time, including those that scripts or clients add");
+  in.read("bodies_per_vehicle", bodies_per_vehicle, between(1, 100000), "of a vehicle that a client spawns");
+  in.read("devices_per_vehicle", devices_per_vehicle, between(0, 100000), "of a vehicle that a client spawns");
+  in.read("parts", parts, between(1, 100000), "of one vehicle or object that is added during the run");
   in.read("spawns_per_client", spawns_per_client, between(0, 100000000),
           "spawn requests of one client in a run; of all clients together ten times as many");
   in.read("rewinds_per_client", rewinds_per_client, between(0, 100000000),
@@ -147,9 +148,9 @@ bool parse_utc(const std::string& text, std::int64_t& utime) {
     return false;
   tm.tm_year -= 1900;
   tm.tm_mon -= 1;
-  const std::tm wanted = tm;
+  const std::tm desired = tm;
   const std::time_t seconds = timegm(&tm);
-  if (tm.tm_mday != wanted.tm_mday || tm.tm_mon != wanted.tm_mon || tm.tm_hour != wanted.tm_hour) return false;
+  if (tm.tm_mday != desired.tm_mday || tm.tm_mon != desired.tm_mon || tm.tm_hour != desired.tm_hour) return false;
   utime = static_cast<std::int64_t>(seconds) * 1000000;
   return true;
 }
@@ -180,7 +181,7 @@ void read_script(ParamReader& in, WorldConfig& world) {
   in.read_list("actors", world.actors, "actor", "objects that move along paths");
   for (const ActorConfig& actor : world.actors) in.declare("actor", actor.name);
   declare_for_events(in, world);
-  in.read_list("events", world.events, "event", "what happens when, see docs/guides/dynamic_worlds.md");
+  in.read_list("events", world.events, "event", "events and their actions, see docs/guides/dynamic_worlds.md");
 }
 
 }  // namespace
@@ -190,7 +191,7 @@ void WorldConfig::read(ParamReader& in) {
   in.read("shoal", shoal, between(1, 1), "version of the file format");
   in.read("name", name, "name of the world");
   in.read("description", description, "one sentence for people");
-  in.read("origin", origin, "where the world lies on the earth");
+  in.read("origin", origin, "geographic position of the world");
   in.read("epoch", epoch, "UTC of simulated time 0, as 2026-01-01T00:00:00Z");
   if (!parse_utc(epoch, epoch_us))
     in.error("epoch", "'epoch' must be a UTC time such as 2026-01-01T00:00:00Z, got '" + epoch + "'");
@@ -202,19 +203,19 @@ void WorldConfig::read(ParamReader& in) {
   in.read_list("materials", materials, "material", "materials of this world");
   for (const MaterialConfig& material : materials) in.declare("material", material.name);
   in.read_list("contacts", contacts, "contact",
-               "what happens where two materials touch; both named wins over any, then the last one");
+               "contact parameters of pairs of materials; both named wins over any, then the last one");
   in.read("categories", categories, "categories of parts, beside `solid`; at most 30");
   for (const std::string& category : categories) in.declare("category", category);
   if (categories.size() > 30) in.error("categories", "'categories' must have at most 30 names");
-  in.read("light", light, "sun and sky, for pictures; see docs/models/cameras.md");
+  in.read("light", light, "sun and sky, for images; see docs/models/cameras.md");
   in.read("channels", channels, "names of the channels");
-  in.read("run", run, "how a run goes when the command line says nothing else");
+  in.read("run", run, "defaults of a run, which the command line can override");
   in.read_or_word("state_rate_hz", state_rate_hz, above_to(0, 1e6), {"never"}, "of sim.state and sim.clock");
   in.read_paths("plugins", plugins,
                 "libraries with devices, beside this file or installed; only with --launch or --plugin");
-  in.read_list("objects", objects, "object", "things without devices");
+  in.read_list("objects", objects, "object", "objects: bodies without devices");
   for (const ObjectConfig& object : objects) in.declare("object", object.name);
-  in.read_list("buses", buses, "bus", "buses beside the world's, for vehicles that hear each other by modem only");
+  in.read_list("buses", buses, "bus", "separate buses, for vehicles that communicate by modem only");
   for (const BusConfig& bus : buses) in.declare("bus", bus.name);
   for (std::size_t i = 0; i < buses.size(); ++i)
     for (std::size_t j = 0; j < i; ++j)
@@ -229,7 +230,7 @@ void WorldConfig::read(ParamReader& in) {
   in.read_list("processes", processes, "process", "external programs, started only with --launch");
   for (const ProcessConfig& process : processes) in.declare("process", process.name);
   in.read("lockstep", lockstep, "waiting for clients");
-  in.read("limits", limits, "what may come while the world runs");
+  in.read("limits", limits, "limits of additions during the run");
   declare_metrics(in);
   in.read_list("metrics", metrics, "metric", "figures that score the run");
   for (const MetricConfig& metric : metrics) in.declare("metric", metric.name);

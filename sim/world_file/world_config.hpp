@@ -31,7 +31,7 @@ struct OriginConfig {
   void read(ParamReader& in);
 };
 
-/// How a run goes when the command line says nothing else.
+/// Defaults of a run, which the command line can override.
 struct RunConfig {
   double duration_s = 60;  ///< 0: until told to quit
   double speed = 0;        ///< times real time; 0: as fast as possible
@@ -85,9 +85,9 @@ struct BusConfig {
 
 /// What happens when a program ends before the run.
 enum class OnExit {
-  go_on,    ///< the run goes on, and fails if the program failed
+  go_on,    ///< the run continues, and fails if the program failed
   end_run,  ///< with exit code 1
-  ignore,   ///< the run goes on, and a failure does not count
+  ignore,   ///< the run continues, and a failure does not count
 };
 
 /// An external program of the experiment, started only with --launch.
@@ -124,7 +124,7 @@ struct LimitsConfig {
 /// Everything a world file says.
 struct WorldConfig {
   std::string file;         ///< where it was read
-  FileAccessPointer files;  ///< those that may be named, also by what comes later; null: any
+  FileAccessPointer files;  ///< those that may be named, also by later additions; null: any
   int shoal = 1;
   std::string name;
   std::string description;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Fleets that talk under water beside kinematic vehicles: each sends 32 bytes every 10 s, one after the other, so that
-// what is sent overlaps at many receivers.  Work grows with who hears, which `hearers` counts for each message.
+// what is sent overlaps at many receivers.  Work grows with who receives, which `hearers` counts for each message.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -63,7 +63,7 @@ void talk(benchmark::State& state, double spacing_m, const std::string& acoustic
                          benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 
-/// All within 5 km, so that everybody hears everybody.
+/// All within 5 km, so that everyone receives everyone.
 void EverybodyHears(benchmark::State& state) {
   talk(state, 3000.0 / std::sqrt(static_cast<double>(state.range(0))), "{}");
 }
@@ -75,7 +75,7 @@ void EverybodyHearsEchoes(benchmark::State& state) {
 }
 BENCHMARK(EverybodyHearsEchoes)->Arg(100)->Arg(1000)->MinTime(2);
 
-/// One every 2 km: how many hear does not grow with the fleet.
+/// One every 2 km: how many receive does not grow with the fleet.
 void NeighboursHear(benchmark::State& state) {
   talk(state, 2000, "{}");
 }

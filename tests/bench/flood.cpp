@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Sends garbage to a multicast group, for flood.py; ends by itself.
 //   flood PORT KIND MESSAGES_PER_SECOND SECONDS [CHANNEL]
-// Kinds: unwanted (channels that nobody reads), malformed (100 bytes of 0xff on CHANNEL), fragments (of messages that
+// Kinds: unwanted (channels without a reader), malformed (100 bytes of 0xff on CHANNEL), fragments (of messages that
 // are never completed, on CHANNEL), noise (not LCM's).
 #include <arpa/inet.h>
 #include <netinet/in.h>

@@ -106,7 +106,7 @@ Cost lockstep(const std::string& on, int clients, int steps) {
       "vehicles: [{name: a, model: {shoal: 1, bodies: [{name: b, parts: [{shape: box, mass_kg: 1}]}]}}]\n",
       "bench.yaml", {});
   bridges::LcmBus bus(on);
-  sim::MailGate gate(bus);
+  sim::MessageGate gate(bus);
   sim::World world(loaded.config, gate);
   sim::RunControl control;
   bridges::LockstepService service_of_clients(world, control, {{bus, gate}});

@@ -183,7 +183,7 @@ void BM_AddRemoveRover(benchmark::State& state) {
   state.counters["bodies"] = static_cast<double>(fleet.world().bodies().size());
 }
 
-/// The same with a step after each, against physics_world: what comes and goes must not make steps dear.
+/// The same with a step after each, against physics_world: additions and removals must not make steps expensive.
 void BM_AddStepRemoveRover(benchmark::State& state) {
   ShoalFleet fleet(static_cast<int>(state.range(0)));
   for (int i = 0; i < settle_steps; ++i) fleet.step();
@@ -195,7 +195,7 @@ void BM_AddStepRemoveRover(benchmark::State& state) {
   }
 }
 
-/// Actors in two parts that walk to and fro.
+/// Actors in two parts that walk back and forth.
 void BM_KinematicBodies(benchmark::State& state) {
   const int actors = static_cast<int>(state.range(0));
   PhysicsConfig config;

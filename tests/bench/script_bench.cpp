@@ -8,7 +8,7 @@
 
 namespace {
 
-/// `count` objects in a square of 5 m spacing, each on a round of its own.
+/// `count` objects in a square of 5 m spacing, each on its own round.
 std::string crowd(int count, const std::string& path) {
   std::string objects = "objects:\n";
   std::string actors = "actors:\n";

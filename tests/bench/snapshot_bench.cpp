@@ -51,7 +51,7 @@ void Snapshot(benchmark::State& state) {
 }
 BENCHMARK(Snapshot)->Arg(10)->Arg(100)->Arg(1000)->Unit(benchmark::kMicrosecond);
 
-/// In the world that went on, which saves itself first, so that it can stay as it is when the snapshot does not fit.
+/// In the world that continued, which saves itself first, so that it can stay as it is when the snapshot does not fit.
 void Restore(benchmark::State& state) {
   sim::World& world = scene_of(static_cast<int>(state.range(0))).world();
   const sim::Bytes snapshot = world.state().snapshot();
@@ -100,30 +100,30 @@ void RingOfTenMinutes(benchmark::State& state) {
   const auto wall_s = [] {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
   };
-  double save_s = 0, longest_s = 0, back_s = 0;
+  double save_s = 0, max_s = 0, back_s = 0;
   std::size_t whole_bytes = 0;
   for (auto _ : state) {
     for (int second = 0; second < seconds; ++second) {
       scene.run_for(1);
-      const double begin_s = wall_s();
+      const double start_s = wall_s();
       const sim::Bytes snapshot = world.state().snapshot();
       ring.add(world.step_number(), snapshot);
-      const double took_s = wall_s() - begin_s;
+      const double took_s = wall_s() - start_s;
       save_s += took_s;
-      longest_s = std::max(longest_s, took_s);
+      max_s = std::max(max_s, took_s);
       whole_bytes = snapshot.size();
     }
-    const double begin_s = wall_s();
+    const double start_s = wall_s();
     const std::int64_t to = world.step_number() - 30 * per_second - per_second / 2;
     world.state().restore(ring.get(*ring.newest_until(to)));
     while (world.step_number() < to) world.step();
-    back_s = wall_s() - begin_s;
+    back_s = wall_s() - start_s;
   }
   state.counters["bytes"] = static_cast<double>(whole_bytes);
   state.counters["MB_of_600"] = static_cast<double>(ring.bytes()) * 1e-6;
   state.counters["kept"] = static_cast<double>(ring.size());
   state.counters["us_each"] = 1e6 * save_s / seconds;
-  state.counters["us_longest"] = 1e6 * longest_s;
+  state.counters["us_longest"] = 1e6 * max_s;
   state.counters["back_30s_ms"] = 1e3 * back_s;
 }
 BENCHMARK(RingOfTenMinutes)->Arg(10)->Iterations(1)->Unit(benchmark::kSecond);

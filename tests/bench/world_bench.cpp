@@ -30,7 +30,7 @@ void ScaleSceneSecond(benchmark::State& state) {
 }
 BENCHMARK(ScaleSceneSecond)->Arg(1)->Arg(10)->Arg(100)->Arg(1000)->Unit(benchmark::kMillisecond);
 
-/// Reads and builds a world of 1000 rovers, each an entry of its own (range 1) or one entry with a count (range 0).
+/// Reads and builds a world of 1000 rovers, each its own entry (range 1) or one entry with a count (range 0).
 void LoadThousandVehicles(benchmark::State& state) {
   const std::string text = tools::scale_scene_text(1000, state.range(0) == 1);
   for (auto _ : state) {
@@ -50,13 +50,13 @@ void SpawnAndRemove(benchmark::State& state) {
   sim::InProcessBus bus;
   sim::World world(loaded.config, bus);
   for (int i = 0; i < 10; ++i) world.step();
-  double spawn_s = 0, remove_s = 0, most_s = 0;
+  double spawn_s = 0, remove_s = 0, max_s = 0;
   const auto timed = [&](double& sum_s, const auto& work) {
     const auto begin = std::chrono::steady_clock::now();
     work();
     const double took_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     sum_s += took_s;
-    most_s = std::max(most_s, took_s);
+    max_s = std::max(max_s, took_s);
   };
   for (auto _ : state) {
     timed(spawn_s, [&] {
@@ -68,7 +68,7 @@ void SpawnAndRemove(benchmark::State& state) {
   const auto iterations = static_cast<double>(state.iterations());
   state.counters["spawn_us"] = spawn_s * 1e6 / iterations;
   state.counters["remove_us"] = remove_s * 1e6 / iterations;
-  state.counters["worst_us"] = most_s * 1e6;
+  state.counters["worst_us"] = max_s * 1e6;
 }
 BENCHMARK(SpawnAndRemove)->Arg(10)->Arg(1000)->Unit(benchmark::kMicrosecond);
 

@@ -26,12 +26,12 @@ import subprocess
 import sys
 import time
 
-WORLDS = ["coop_underwater", "living_warehouse"]
+WORLDS = ["coop_underwater", "dynamic_warehouse"]
 SETTLING = 1 / 6  # share of a run in which buffers, caches and rings may still fill
 
 
 def free_port():
-    """A UDP port that nobody has now."""
+    """A UDP port that no one has now."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
         probe.bind(("0.0.0.0", 0))
         return probe.getsockname()[1]
@@ -76,7 +76,7 @@ def run(shoal, world, hours, folder, interval_s, alone, extra):
     os.makedirs(folder, exist_ok=True)
     url = f"udpm://239.255.76.67:{free_port()}?ttl=0"
     command = [shoal, "run", world, "--duration", str(hours * 3600), "--speed", "max", "--no-keys", "--quiet",
-               "--no-serial-ports", "--no-pictures", "--results", results, *extra]
+               "--no-serial-ports", "--no-plots", "--results", results, *extra]
     command += ["--bus", "none"] if alone else ["--launch", "--lcm-url", url]
     samples = {}
     started = time.monotonic()

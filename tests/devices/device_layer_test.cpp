@@ -135,7 +135,7 @@ TEST(ActuatorLatency, DoesNotDelaySensorsOfTheVehicle) {
 
 TEST(SensorLatency, ReportsTheSameReadingsLater) {
   // How many reports have come after each step.
-  const auto run = [](const std::string& keys, std::vector<std::size_t>& heard) {
+  const auto run = [](const std::string& keys, std::vector<std::size_t>& received) {
     test::TestWorld test(test::arm_world(motor() + joints(", rate_hz: 100, phase_s: 0" + keys)));
     test::Listener<shoal::joint_state_t> reports(test, "a1.joints");
     turn(test, 1);
@@ -143,14 +143,14 @@ TEST(SensorLatency, ReportsTheSameReadingsLater) {
     for (int i = 0; i < 200; ++i) {
       test.world.step();
       for (auto& report : reports.take_all()) all.push_back(report);
-      heard.push_back(all.size());
+      received.push_back(all.size());
     }
     return all;
   };
-  std::vector<std::size_t> prompt_heard, late_heard;
-  const auto prompt = run("", prompt_heard), late = run(", latency_s: 0.02", late_heard);
-  for (std::size_t i = 0; i < 20; ++i) ASSERT_EQ(late_heard[i], 0u) << i;
-  for (std::size_t i = 20; i < 200; ++i) ASSERT_EQ(late_heard[i], prompt_heard[i - 20]) << i;
+  std::vector<std::size_t> prompt_received, late_received;
+  const auto prompt = run("", prompt_received), late = run(", latency_s: 0.02", late_received);
+  for (std::size_t i = 0; i < 20; ++i) ASSERT_EQ(late_received[i], 0u) << i;
+  for (std::size_t i = 20; i < 200; ++i) ASSERT_EQ(late_received[i], prompt_received[i - 20]) << i;
   for (std::size_t i = 0; i < late.size(); ++i) {
     ASSERT_EQ(late[i].utime, prompt[i].utime);  // of the sample, not of the report
     ASSERT_EQ(late[i].joint_position, prompt[i].joint_position);
@@ -161,23 +161,23 @@ TEST(Jitter, LiesBetweenTheLatencyAndTheLatencyWithIt) {
   // A sample every 100 ms, a report 20 to 50 ms later: at the first step at or after its time.
   test::TestWorld test(test::arm_world(joints(", rate_hz: 10, phase_s: 0.001, latency_s: 0.02, jitter_s: 0.03")));
   test::Listener<shoal::joint_state_t> reports(test, "a1.joints");
-  double sum_s = 0, least_s = 1, most_s = 0;
+  double sum_s = 0, min_s = 1, max_s = 0;
   int count = 0;
   while (count < 500) {
     test.world.step();
     for (const auto& report : reports.take_all()) {
       const double delay_s =
           sim::to_seconds(test.world.now()) - static_cast<double>(report.utime - test.world.epoch_us()) * 1e-6;
-      least_s = std::min(least_s, delay_s);
-      most_s = std::max(most_s, delay_s);
+      min_s = std::min(min_s, delay_s);
+      max_s = std::max(max_s, delay_s);
       sum_s += delay_s;
       ++count;
     }
   }
-  EXPECT_GE(least_s, 0.02 - 1e-9);
-  EXPECT_LE(most_s, 0.05 + 1e-9);
-  EXPECT_LT(least_s, 0.022);  // 500 draws leave no gap of 2 ms (probability 1e-15)
-  EXPECT_GT(most_s, 0.048);
+  EXPECT_GE(min_s, 0.02 - 1e-9);
+  EXPECT_LE(max_s, 0.05 + 1e-9);
+  EXPECT_LT(min_s, 0.022);  // 500 draws leave no gap of 2 ms (probability 1e-15)
+  EXPECT_GT(max_s, 0.048);
   // The mean of a uniform number, half a step later; four standard deviations.
   EXPECT_NEAR(sum_s / count, 0.0355, 4 * 0.03 / std::sqrt(12.0 * count));
 }
@@ -262,7 +262,7 @@ TEST(Power, WithoutItActuatorsAreFreeAndSensorsSilent) {
   test.run_for(0.01);
   systems(test).powered = true;
   test.run_for(0.1);
-  // It hears again, but what was sent before is lost, and it stays safe until it is told.
+  // It receives again, but what was sent before is lost, and it stays safe until it is commanded.
   EXPECT_EQ(shoulder(test).motor_velocity(), 0);
   EXPECT_EQ(shoulder(test).motor_max_force(), 50);
   EXPECT_FALSE(reports.take_all().empty());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The state of devices by itself, as it is in a snapshot: half read lines, and bytes that are no state.
+// The state of devices by itself, as it is in a snapshot: half read lines, and bytes that are not state.
 #include "sim/vehicle/mounted_device.hpp"
 #include "tests/devices/comms/modem_fixture.hpp"
 #include "tests/devices/comms/port_fixture.hpp"

@@ -91,9 +91,9 @@ TEST(DeviceState, ASonarThatIsChangedBetweenPingsHasAnEmptyPicture) {
       "-5], parts: [{shape: plane}]}]\nmedium: {water: {}}\nvehicles:\n  - {name: v, position_m: [0, 0, -2], model: "
       "{shoal: 1, vehicle: box, bodies: [{name: hull, hydrodynamics: {model: none}, parts: [{shape: box, size_m: [0.1, "
       "0.1, 0.1], mass_kg: 1}]}], devices: [{name: side, type: side_scan, rate_hz: 5, phase_s: 0, rays: 20, bins: 16, "
-      "floor_dB: 40, frequency_kHz: 200, range_max_m: 20}, {name: lean, type: inclinometer, rate_hz: 50}]}}\n"
+      "floor_dB: 40, frequency_kHz: 200, range_max_m: 20}, {name: tilt, type: inclinometer, rate_hz: 50}]}}\n"
       "events: [{name: change, at: 0.55, do: [{set: {device: v/side, values: {floor_dB: 30}}}]}]\n";
-  // Restored between a ping and the change, it goes on to after the change and before the next ping at 0.6 s.
+  // Restored between a ping and the change, it continues to after the change and before the next ping at 0.6 s.
   test::SavedRun run(yaml);
   run.expect_restored_worlds_go_on_alike({52}, 6);
 }
@@ -152,7 +152,7 @@ TEST(DeviceState, AMicromodemGoesOnInTheMiddleOfACycle) {
     if (step == 40) host("a", "$CCTXD,1,2,0,0e");
     if (step == 200) host("b", "$CCCYC,0,3,2,0,0,1");  // it asks c for data, which does not come
     if (step == 1500) host("c", "$CCMPC,3,1");
-    if (step == 1505) host("c", "what is no sentence");
+    if (step == 1505) host("c", "what is not a sentence");
   });
   // Frames gathered; a packet in the water; the answer awaited; a ping.
   run.expect_restored_worlds_go_on_alike({25, 35, 130, 420, 1550}, 900);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What devices keep from step to step: a world that is saved and restored goes on bit for bit as it would have.
+// What devices keep from step to step: a world that is saved and restored continues bit for bit as it would have.
 
 #include "devices/autopilot/autopilot_route.hpp"
 #include "shoal/acoustic_received_t.hpp"

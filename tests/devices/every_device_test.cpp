@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Every device of the registry in a world of its own, which is written here from what the device says of itself: a new
+// Every device of the registry in its own world, which is written here from what the device says of itself: a new
 // device is tested without a word about it.
 
 #include <gtest/gtest.h>
@@ -37,7 +37,7 @@ std::string keys_of(const sim::DeviceType& type) {
   return keys;
 }
 
-/// A vehicle with wheels and a thruster, on the bottom of a sea, beside another one that it can hear and see.
+/// A vehicle with wheels and a thruster, on the bottom of a sea, beside another one that it can receive and see.
 std::string world_with(const sim::DeviceType& type) {
   const std::string wheel = "parts: [{shape: sphere, radius_m: 0.1, mass_kg: 1, displaces: false}]}\n";
   std::string text = R"(

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Every world that comes with the simulator is saved at its start and at random steps, and goes on alike wherever it is
-// restored.
+// Every world that comes with the simulator is saved at its start and at random steps, and continues alike wherever it
+// is restored.
 #include <algorithm>
 #include <filesystem>
 
@@ -92,7 +92,7 @@ class EveryWorld : public testing::TestWithParam<std::string> {
     return false;
   }
 
-  /// Restored, it is the world that was saved, and goes on like it.
+  /// Restored, it is the world that was saved, and continues like it.
   void expect_goes_on(SteppedWorld& test, std::size_t number) {
     const auto at = static_cast<std::size_t>(saved_at[number]);
     test.world.state().restore(snapshots[number]);
@@ -126,7 +126,7 @@ TEST_P(EveryWorld, GoesOnFromASnapshotBitForBit) {
       if (i == 1) fresh.world.use_threads(3);
       ASSERT_NO_FATAL_FAILURE(expect_goes_on(fresh, i));
     }
-    SCOPED_TRACE("restored in the world that went on");
+    SCOPED_TRACE("restored in the world that continued");
     ASSERT_NO_FATAL_FAILURE(expect_goes_on(original, i));
   }
 }

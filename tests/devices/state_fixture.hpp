@@ -60,13 +60,13 @@ class SavedRun {
  public:
   using Load = std::function<sim::LoadedWorld()>;
   /// What comes from outside before a step of this number, counted from 0.
-  using Mail = std::function<void(TappedWorld&, int step)>;
+  using Delivery = std::function<void(TappedWorld&, int step)>;
 
-  explicit SavedRun(Load load, Mail mail = {}) : load_(std::move(load)), mail_(std::move(mail)) {}
+  explicit SavedRun(Load load, Delivery inputs = {}) : load_(std::move(load)), messages_(std::move(inputs)) {}
   /// A world from YAML text.
-  explicit SavedRun(const std::string& yaml, Mail mail = {})
+  explicit SavedRun(const std::string& yaml, Delivery inputs = {})
       : SavedRun([yaml] { return sim::load_world_text(yaml, "worlds/test.yaml", LoadedTestWorld::with_messages({})); },
-                 std::move(mail)) {}
+                 std::move(inputs)) {}
 
   /// Saves the world after each number of steps in `at`.  A fresh world that each is restored in, and one that has gone
   /// elsewhere, must publish the same for `more` steps, byte for byte, and must be in the same state then.
@@ -89,7 +89,7 @@ class SavedRun {
       TappedWorld fresh(load_());
       for (TappedWorld* world : {&fresh, &original}) {
         SCOPED_TRACE("saved after " + std::to_string(step) + " steps, restored in " +
-                     (world == &fresh ? "a fresh world" : "the world that went on"));
+                     (world == &fresh ? "a fresh world" : "the world that continued"));
         world->world.state().restore(snapshots[step]);
         EXPECT_EQ(world->world.state().snapshot(), snapshots[step]);
         if (!goes_on_alike(*world, step, more, sent)) continue;
@@ -100,7 +100,7 @@ class SavedRun {
 
  private:
   std::vector<TapBus::Sent> run_step(TappedWorld& world, int step) const {
-    if (mail_) mail_(world, step);
+    if (messages_) messages_(world, step);
     world.world.step();
     return world.bus.take();
   }
@@ -130,7 +130,7 @@ class SavedRun {
   }
 
   Load load_;
-  Mail mail_;
+  Delivery messages_;
 };
 
 }  // namespace test

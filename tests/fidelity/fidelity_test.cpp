@@ -206,7 +206,7 @@ TEST_F(FidelityFiles, AReferenceMustBeATrackOfTwoRowsOrMore) {
 
 TEST_F(FidelityFiles, ADirectoryIsNoReference) {
   std::filesystem::create_directory(folder_.file("c.csv"));
-  EXPECT_THAT(error_of(cases("")), HasSubstr("c.csv: case 'c': is no file"));
+  EXPECT_THAT(error_of(cases("")), HasSubstr("c.csv: case 'c': is not a file"));
 }
 
 TEST_F(FidelityFiles, ErrorsAreAtTheLineOfTheCasesThatCausesThem) {

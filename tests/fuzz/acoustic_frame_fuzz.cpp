@@ -18,8 +18,8 @@ SHOAL_FUZZ_TARGET(acoustic_frame) {
     bytes[bytes.size() - 2] = static_cast<std::uint8_t>(sum >> 8);
     bytes[bytes.size() - 1] = static_cast<std::uint8_t>(sum);
   }
-  constexpr std::int64_t longest_us = std::int64_t{1} << 60;  // the caller's own clock
-  const std::int64_t near = near_utime % longest_us;
+  constexpr std::int64_t max_us = std::int64_t{1} << 60;  // the caller's own clock
+  const std::int64_t near = near_utime % max_us;
   if (const auto state = frame::decode(bytes, near))
     fuzz::require(frame::encode(*state).has_value(), "a state that was received can be sent");
   if (const auto order = frame::decode_order(bytes, near))

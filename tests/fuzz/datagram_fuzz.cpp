@@ -6,7 +6,7 @@
 #include "bridges/lcm/lcm_reassembly.hpp"
 #include "tests/fuzz/fuzz_input.hpp"
 
-// Datagrams of LCM's udpm from anybody: raw ones, and fragments whose heads are well-formed.
+// Datagrams of LCM's udpm from anyone: raw ones, and fragments whose heads are well-formed.
 
 namespace {
 

@@ -2,7 +2,7 @@
 #include "sim/program/program_args.hpp"
 #include "tests/fuzz/fuzz_input.hpp"
 
-// NAME.args.yaml, which anybody may write, and the `args:` of a world by it.
+// NAME.args.yaml, which anyone may write, and the `args:` of a world by it.
 
 SHOAL_FUZZ_TARGET(declaration) {
   fuzz::Reader reader(input);

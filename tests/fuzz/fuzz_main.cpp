@@ -29,7 +29,7 @@ extern "C" int LLVMFuzzerInitialize(int* /*argc*/, char*** /*argv*/) {
   return 0;
 }
 
-// ODE keeps a few bytes of its own when a fault of the physics is thrown through it; the run ends then.
+// ODE keeps its own few bytes when a fault of the physics is thrown through it; the run ends then.
 extern "C" const char* __lsan_default_suppressions() {
   return "leak:libode.so\n";
 }

@@ -20,7 +20,7 @@ SHOAL_FUZZ_TARGET(log) {
     tools::RecordedSteps steps(log);
     const auto use = [](std::string_view, std::span<const std::byte>) {};
     for (std::int64_t step = log.begin_step(); step <= log.last_step && step < log.begin_step() + 100; ++step) {
-      steps.mail_after(step, use);
+      steps.inputs_after(step, use);
       steps.published_at(step, use);
     }
   });

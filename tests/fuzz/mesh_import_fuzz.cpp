@@ -16,7 +16,7 @@ extern "C" __attribute__((weak)) void __sanitizer_set_death_callback(void (*call
 namespace {
 
 /// A crash of the child is none of ours: libFuzzer must not keep its input.
-void forget_handlers() {
+void remove_handlers() {
   for (const int number : {SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL}) signal(number, SIG_DFL);
   if (__sanitizer_set_death_callback != nullptr) __sanitizer_set_death_callback(nullptr);
 }
@@ -24,7 +24,7 @@ void forget_handlers() {
 }  // namespace
 
 SHOAL_FUZZ_TARGET(mesh_import) {
-  [[maybe_unused]] static const int registered = pthread_atfork(nullptr, nullptr, forget_handlers);
+  [[maybe_unused]] static const int registered = pthread_atfork(nullptr, nullptr, remove_handlers);
   constexpr std::array endings{"dae", "gltf", "glb", "ply", "3ds", "off", "obj", "stl", "x3d", "fbx"};
   fuzz::Reader reader(input);
   const std::string name = std::string("mesh.") + endings[reader.below(endings.size())];

@@ -38,7 +38,7 @@ SHOAL_FUZZ_TARGET(message) {
   fuzz::Reader reader(input);
   const Type& type = types[reader.below(types.size())];
   const Finite finite = reader.below(2) == 0 ? Finite::any : Finite::required;
-  // The fingerprint is known to everybody; guessing it would be a waste of time.
+  // The fingerprint is public; guessing it would be a waste of time.
   std::vector<std::byte> payload(8);
   for (int i = 0; i < 8; ++i)
     payload[static_cast<std::size_t>(i)] = static_cast<std::byte>(type.fingerprint >> (56 - 8 * i));

@@ -13,15 +13,15 @@ using devices::MicromodemPacket;
 /// The modem around the protocol, and water that carries everything at once.
 class Side final : public devices::MicromodemSide {
  public:
-  std::size_t said = 0;
+  std::size_t reported = 0;
 
-  void say(const std::string& body) override { said += body.size(); }
+  void emit(const std::string& body) override { reported += body.size(); }
   Sound transmit(const MicromodemPacket& packet, sim::Time at, bool) override {
     fuzz::require(MicromodemPacket::read(packet.code(), packet.payload()).has_value(),
                   "what a modem sends another one can read");
     return {at, at + sim::Time{1'000'000}};
   }
-  Sound ask_beacons(sim::Time at, bool) override { return {at, at + sim::Time{5'000}}; }
+  Sound interrogate_beacons(sim::Time at, bool) override { return {at, at + sim::Time{5'000}}; }
   sim::Time call_back() override { return sim::Time{0}; }
   std::int64_t utc_us(sim::Time at) const override { return 1'767'225'600'000'000 + at.count(); }
   double elapsed_s(sim::Time from, sim::Time to) const override { return sim::to_seconds(to - from); }
@@ -52,8 +52,9 @@ SHOAL_FUZZ_TARGET(micromodem) {
       case packet: {
         const std::string code = reader.text();
         const fuzz::Input payload = reader.bytes(reader.byte());
-        const auto heard = MicromodemPacket::read(code, sim::Bytes(payload.begin(), payload.end()));
-        if (heard) protocol.heard(*heard, {now, now + sim::Time{900'000}, 80, 20, 0.5, 60, reader.below(2) == 0});
+        const auto received = MicromodemPacket::read(code, sim::Bytes(payload.begin(), payload.end()));
+        if (received)
+          protocol.receive(*received, {now, now + sim::Time{900'000}, 80, 20, 0.5, 60, reader.below(2) == 0});
         break;
       }
       case beacon:

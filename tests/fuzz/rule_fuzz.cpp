@@ -37,7 +37,7 @@ SHOAL_FUZZ_TARGET(rule) {
     std::vector<double> values(rule->figures().size(), 1.5);
     rule->evaluate(values);
     values.front() = std::nan("");
-    fuzz::require(!rule->evaluate(values).holds, "no rule holds for a figure that is not there");
+    fuzz::require(!rule->evaluate(values).holds, "no rule holds for a figure that does not exist");
   }
   sim::Diagnostics diagnostics;
   sim::rule_of_map(sim::parse_config_text(std::string(text), "rule", diagnostics));

@@ -34,7 +34,7 @@ const sim::LoadedWorld& world_file() {
 
 struct Served {
   sim::InProcessBus network;
-  sim::MailGate gate{network};
+  sim::MessageGate gate{network};
   sim::World world{world_file().config, gate};
   sim::RunControl control;
   bridges::LockstepService lockstep{world, control, {{network, gate}}};
@@ -115,12 +115,12 @@ void step(Served& served) {
   served.gate.admit();
   fuzz::allow<sim::PhysicsFault>([&] { served.world.step(); });
   served.service.publish_step();
-  int patience = 3;
+  int timeout = 3;
   fuzz::allow<bridges::LockstepTimeout>([&] {
     served.lockstep.synchronize([](std::chrono::milliseconds) {},
                                 [&] {
                                   served.service.handle_requests();
-                                  return --patience > 0;
+                                  return --timeout > 0;
                                 });
   });
 }

@@ -11,7 +11,7 @@
 #include "tests/fuzz/fuzz_input.hpp"
 
 // A crafted snapshot: that of a world, changed at a few places.  The input is the list of changes, so that it means
-// something also when the state has got another form.  What is restored must go on for a few steps.
+// something also when the state has got another form.  What is restored must continue for a few steps.
 
 namespace {
 

@@ -24,7 +24,7 @@ void generate(const std::string& yaml) {
   sim::TerrainConfig config;
   sim::ParamReader in(node, "terrain", diagnostics);
   config.read(in);
-  // Large ones are slow for a good reason, and other files are no input of this target.
+  // Large ones are slow for a good reason, and other files are not input of this target.
   constexpr double max_points = 10'000;
   const bool large =
       config.size_m.size() == 2 && config.size_m[0] / config.cell_m * (config.size_m[1] / config.cell_m) > max_points;

@@ -21,18 +21,18 @@ bool has_ground(const std::vector<sim::PartConfig>& parts) {
 
 /// Much of anything is slow for a good reason.
 bool is_small(const sim::WorldConfig& world) {
-  constexpr int max_things = 12;
+  constexpr int max_entities = 12;
   static const std::set<std::string> rays{"camera",    "lidar",     "lidar3d", "imaging_sonar",
                                           "side_scan", "multibeam", "sonar",   "range_beacon"};
-  int things = static_cast<int>(world.vehicles.size());
+  int entities = static_cast<int>(world.vehicles.size());
   for (const sim::ObjectConfig& object : world.objects) {
     if (has_ground(object.parts)) return false;
-    things += object.count > max_things ? max_things + 1 : object.count;
+    entities += object.count > max_entities ? max_entities + 1 : object.count;
   }
   for (const sim::VehicleInstance& vehicle : world.vehicles)
     for (const sim::DeviceConfig& device : vehicle.config->devices)
       if (rays.contains(device.type)) return false;
-  return things <= max_things;
+  return entities <= max_entities;
 }
 
 }  // namespace
@@ -53,6 +53,6 @@ SHOAL_FUZZ_TARGET(world_run) {
     const std::uint64_t hash = world.state().hash();
     world.state().restore(snapshot);
     world.step();
-    fuzz::require(world.state().hash() == hash, "a restored world goes on as before");
+    fuzz::require(world.state().hash() == hash, "a restored world continues as before");
   });
 }

@@ -88,13 +88,13 @@ TEST(MessageSchema, FingerprintsOfNestedAndRecursiveTypesAreThoseOfLcmGen) {
 
 TEST(MessageSchema, ErrorsOfLcmFilesSayWhere) {
   EXPECT_EQ(parse_error("package a;\nstruct b_t {\n  double x[n];\n}"),
-            "test.lcm:3:12: array size 'n' is no member declared before");
+            "test.lcm:3:12: array size 'n' is not a member declared before");
   EXPECT_EQ(parse_error("struct b_t { double n; float x[n]; }"),
             "test.lcm:1:32: array size 'n' must be a plain integer member");
   EXPECT_EQ(parse_error("struct b_t { double x }"), "test.lcm:1:23: expected ';', got '}'");
-  EXPECT_EQ(parse_error("struct b_t { double x; float x; }"), "test.lcm:1:30: member 'x' is there twice");
+  EXPECT_EQ(parse_error("struct b_t { double x; float x; }"), "test.lcm:1:30: duplicate member 'x'");
   EXPECT_EQ(parse_error("struct b_t { c_t x; }"), "type b_t: member 'x' has the unknown type c_t");
-  EXPECT_EQ(parse_error("struct b_t { b_t x; }"), "type b_t contains itself without end");
+  EXPECT_EQ(parse_error("struct b_t { b_t x; }"), "type b_t contains itself");
   EXPECT_EQ(parse_error("struct b_t { double x[0]; }"),
             "test.lcm:1:23: array size must be between 1 and 16777216, got 0");
   EXPECT_EQ(parse_error("struct b_t { /* double x; }"), "test.lcm:1:12: comment without end");
@@ -102,7 +102,7 @@ TEST(MessageSchema, ErrorsOfLcmFilesSayWhere) {
   EXPECT_NE(parse_error("struct b_t {"), "no error");
   EXPECT_NE(parse_error("struct b_t { const int32_t A = "), "no error");
   EXPECT_NE(parse_error("enum b_t { A"), "no error");
-  EXPECT_EQ(parse_error("struct a_t {}\nstruct a_t {}"), "test.lcm: type a_t is there twice");
+  EXPECT_EQ(parse_error("struct a_t {}\nstruct a_t {}"), "test.lcm: duplicate type a_t");
 }
 
 TEST(MessageSchema, ReadsLcmFilesOfTheUser) {

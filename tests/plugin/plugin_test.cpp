@@ -244,7 +244,7 @@ TEST_F(Plugin, ThatIsNoneSaysWhy) {
   expect_refused(path("missing.so"), "there is no such file\n");
   write_file(path("text.so"), "hello\n");
   expect_refused(path("text.so"), "is not a library\n");
-  expect_refused(library("plain", "int nothing;\n"), "is no plugin of Shoal: it lacks SHOAL_PLUGIN");
+  expect_refused(library("plain", "int nothing;\n"), "is not a Shoal plugin: it lacks SHOAL_PLUGIN");
 }
 
 TEST_F(Plugin, OfAnotherShoalIsNotEvenInitialised) {

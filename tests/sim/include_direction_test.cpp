@@ -61,7 +61,7 @@ Rooms rooms_of_the_build() {
   return parse_rooms(text);
 }
 
-/// The room that an include lies in; empty: it is no include of the project.
+/// The room that an include lies in; empty: it is not an include of the project.
 std::string room_of_include(const std::string& include) {
   static const std::set<std::string> client_headers = {"shoal/client.hpp"};
   if (client_headers.contains(include)) return "bridges/client";

@@ -40,12 +40,13 @@ Includes includes_below(const std::vector<std::string>& folders) {
 }
 
 /// The way of includes from a file to a header of ODE, such as ` > sim/a.hpp > ode/ode.h`; nullopt: there is none.
-std::optional<std::string> way_to_ode(const std::string& file, const Includes& includes, std::set<std::string>& seen) {
+std::optional<std::string> direction_to_ode(const std::string& file, const Includes& includes,
+                                            std::set<std::string>& seen) {
   const auto found = includes.find(file);
   if (found == includes.end() || !seen.insert(file).second) return std::nullopt;
   for (const std::string& include : found->second) {
     if (include.starts_with("ode/")) return " > " + include;
-    if (const auto way = way_to_ode(include, includes, seen)) return " > " + include + *way;
+    if (const auto distance = direction_to_ode(include, includes, seen)) return " > " + include + *distance;
   }
   return std::nullopt;
 }
@@ -62,9 +63,9 @@ TEST(OdeHeaders, AreReadOnlyByTheRoomsThatCallOde) {
   int readers = 0;
   for (const auto& [file, of_file] : includes) {
     std::set<std::string> seen;
-    const auto way = way_to_ode(file, includes, seen);
-    if (way) ++readers;
-    if (way && !may_read_ode(file)) ADD_FAILURE() << file << *way;
+    const auto distance = direction_to_ode(file, includes, seen);
+    if (distance) ++readers;
+    if (distance && !may_read_ode(file)) ADD_FAILURE() << file << *distance;
   }
   EXPECT_GT(readers, 10);  // ways are found
 }

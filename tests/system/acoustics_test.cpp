@@ -71,7 +71,7 @@ TEST(AcousticsCommand, PrintsATableOverRange) {
 
 TEST(AcousticsCommand, DrawsAPicture) {
   const ScratchFolder folder;
-  const Ended ended = acoustics({"--ranges", "500:2000:500", "--picture", folder.file("link.png")});
+  const Ended ended = acoustics({"--ranges", "500:2000:500", "--image", folder.file("link.png")});
   ASSERT_EQ(ended.exit_code, 0) << ended.errors;
   EXPECT_GT(std::filesystem::file_size(folder.file("link.png")), 1000u);
 }

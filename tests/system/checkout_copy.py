@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A copy of the checkout in which the commands of a page run as they would for somebody who has just cloned it.
+"""A copy of the checkout in which the commands of a page run as they would for someone who has just cloned it.
 
 Nothing is compiled: a stand-in for cmake puts those programs into the copy's build/release/bin that `--build` was asked
 for, out of the build tree of the test, so a program that tools/run forgets to build is missing here as it is in a clone.
@@ -86,7 +86,7 @@ def own_bus():
 
 
 def in_own_network():
-    """Starts this program again in a network namespace of its own, if that is allowed."""
+    """Starts this program again in its own network namespace, if that is allowed."""
     enter = ["unshare", "--map-root-user", "--net", "sh", "-c",
              'ip link set lo multicast on && ip link set lo up && ip route add 224.0.0.0/4 dev lo && exec "$@"', "sh"]
     if "PAGE_TEST_NETWORK" in os.environ:

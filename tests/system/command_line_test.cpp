@@ -47,7 +47,7 @@ Words lines_of(const std::string& text) {
   return lines;
 }
 
-std::size_t longest_line(const std::string& text) {
+std::size_t max_line(const std::string& text) {
   std::size_t longest = 0;
   for (const std::string& line : lines_of(text)) longest = std::max(longest, line.size());
   return longest;
@@ -131,7 +131,7 @@ TEST(CommandLine, HelpOfEveryCommandIsInOurWords) {
     EXPECT_THAT(command.help, HasSubstr("\nExample")) << command.path();
     EXPECT_THAT(command.help, HasSubstr("\nExit codes:\n  0 ")) << command.path();
     EXPECT_THAT(command.help, HasSubstr("print this help")) << command.path();
-    EXPECT_LE(longest_line(command.help), 80u) << command.path();
+    EXPECT_LE(max_line(command.help), 80u) << command.path();
     for (const std::string& option : names_in(command.help, "Options"))
       EXPECT_FALSE(option.ends_with(" TEXT") || option.find(" TEXT  ") != std::string::npos)
           << command.path() << option;
@@ -139,16 +139,16 @@ TEST(CommandLine, HelpOfEveryCommandIsInOurWords) {
 }
 
 TEST(CommandLine, HelpFitsTheWidthThatIsAskedFor) {
-  for (const auto& [columns, least] : {std::pair<std::size_t, std::size_t>{50, 40}, {120, 90}}) {
+  for (const auto& [columns, min] : {std::pair<std::size_t, std::size_t>{50, 40}, {120, 90}}) {
     const Ended ended = run_program("shoal", {"run", "--help"}, {"COLUMNS=" + std::to_string(columns)});
-    EXPECT_GT(longest_line(ended.output), least);
+    EXPECT_GT(max_line(ended.output), min);
     for (const std::string& line : lines_of(ended.output))
       EXPECT_TRUE(line.size() <= columns || line.find(' ', line.find_first_not_of(' ')) >= line.size() - 2) << line;
   }
   OnTerminal narrow({"env", "-u", "COLUMNS", built("shoal"), "check", "--help"}, 60, 24);
   EXPECT_EQ(narrow.wait(), 0);
-  EXPECT_LE(longest_line(narrow.shown()), 61u);  // with the carriage return
-  EXPECT_GT(longest_line(narrow.shown()), 45u);
+  EXPECT_LE(max_line(narrow.shown()), 61u);  // with the carriage return
+  EXPECT_GT(max_line(narrow.shown()), 45u);
 }
 
 TEST(CommandLine, EveryExampleOfAHelpIsOneThatTheCommandTakes) {
@@ -159,7 +159,7 @@ TEST(CommandLine, EveryExampleOfAHelpIsOneThatTheCommandTakes) {
     text = std::regex_replace(text, std::regex(" \\\\\n +"), " ");
     for (const std::string& example :
          names_in(text, text.find("Examples:") != std::string::npos ? "Examples" : "Example")) {
-      // With an option that is not there the command says so before it does anything: what else it says is wrong with
+      // With an option that does not exist the command says so before it does anything: what else it says is wrong with
       // the example.
       const std::string line = example.substr(0, example.find("  #"));
       const std::string cut = line.substr(0, line.find(" > "));
@@ -191,7 +191,7 @@ TEST(CommandLine, UnknownWordsAreNamedWithWhatWasMeantAndTheRightHelp) {
       {{"run", world, "--set", "nonsense"},
        "shoal run: --set: must be PATH=VALUE, such as run.seed=3, got 'nonsense'\n"},
       {{"describe"}, "shoal describe: needs a NAME"},
-      {{"describe", "lider"}, "shoal describe: nothing is called 'lider'; did you mean 'lidar'?\n"},
+      {{"describe", "lider"}, "shoal describe: unknown name 'lider'; did you mean 'lidar'?\n"},
       {{"describe", "lidar", "--page", "devices"}, "shoal describe: "},
       {{"snap", world, "--out", "a.png", "--eye", "1,2,3"}, "shoal snap: --eye needs --look\n"},
       {{"control", "paus"}, "shoal control: unknown request 'paus'; did you mean 'pause'?\n"},
@@ -323,7 +323,7 @@ TEST(CommandLine, FilesThatAreNotWhatTheyShouldBeAreNamed) {
       {{"log", "info", dir}, 4, dir},
       {{"log", "csv", none, "c"}, 4, none},
       {{"log", "allan", none, "c"}, 4, none},
-      {{"log", "picture", none, "c", "--png", folder.file("a.png")}, 4, none},
+      {{"log", "image", none, "c", "--png", folder.file("a.png")}, 4, none},
       {{"replay", none}, 4, none},
       {{"replay", dir}, 4, dir},
       {{"report", none}, 4, none},
@@ -359,9 +359,9 @@ TEST(CommandLine, OutputFitsEightyColumns) {
     for (const std::string& line : lines_of(ended.output))
       EXPECT_TRUE(line.size() <= 80 || line.find(' ', line.find_first_not_of(' ')) == std::string::npos) << line;
   }
-  EXPECT_LE(longest_line(run_program("shoal", {"list", "devices"}, {"COLUMNS=80"}).output), 80u);
-  EXPECT_LE(longest_line(run_program("shoal", {"list", "messages"}, {"COLUMNS=80"}).output), 80u);
-  EXPECT_LE(longest_line(run_program("shoal", {"acoustics"}, {"COLUMNS=80"}).output), 80u);
+  EXPECT_LE(max_line(run_program("shoal", {"list", "devices"}, {"COLUMNS=80"}).output), 80u);
+  EXPECT_LE(max_line(run_program("shoal", {"list", "messages"}, {"COLUMNS=80"}).output), 80u);
+  EXPECT_LE(max_line(run_program("shoal", {"acoustics"}, {"COLUMNS=80"}).output), 80u);
 }
 
 TEST(CommandLine, LogLevelDecidesWhatGoesToStderr) {
@@ -370,11 +370,11 @@ TEST(CommandLine, LogLevelDecidesWhatGoesToStderr) {
   write_file(folder.file("w.yaml"),
              "shoal: 1\nrun: {duration_s: 1, speed: max}\nevents:\n  - {name: e, at: 0.5, do: [{log: here it is}]}\n"
              "  - {name: f, at: 0.6, do: [{publish: {channel: a.cmd, type: shoal.utime_t, value: {utime: 1}}}]}\n");
-  for (const auto& [level, says] :
+  for (const auto& [level, reports] :
        {std::pair{"debug", true}, {"info", true}, {"warn", false}, {"error", false}, {"off", false}}) {
     const Ended ended = run_shoal({"run", folder.file("w.yaml"), "--bus", "none", "--log-level", level});
     EXPECT_EQ(ended.exit_code, 0) << ended.errors;
-    EXPECT_EQ(ended.errors.find("here it is") != std::string::npos, says) << level << ended.errors;
+    EXPECT_EQ(ended.errors.find("here it is") != std::string::npos, reports) << level << ended.errors;
     EXPECT_THAT(ended.output, HasSubstr("state hash")) << level;
     if (std::string(level) == "off") {
       EXPECT_EQ(ended.errors, "");

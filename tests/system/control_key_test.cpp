@@ -30,14 +30,14 @@ std::string far_url() {
 
 std::string key_in(const std::string& folder) {
   const std::string file = folder + "/run.key";
-  EXPECT_TRUE(await([&] { return text_of_file(file).size() == 65; }, patience));
+  EXPECT_TRUE(await([&] { return text_of_file(file).size() == 65; }, timeout));
   return text_of_file(file).substr(0, 64);
 }
 
 struct ControlKey : testing::Test {
   std::string results() const { return folder.file("results"); }
   std::unique_ptr<Program> run(const std::string& world, std::vector<std::string> options = {}) {
-    std::vector<std::string> arguments{built("shoal"), "run", world, "--results", results(), "--no-pictures"};
+    std::vector<std::string> arguments{built("shoal"), "run", world, "--results", results(), "--no-plots"};
     arguments.insert(arguments.end(), options.begin(), options.end());
     return std::make_unique<Program>(arguments);
   }
@@ -59,7 +59,7 @@ TEST_F(ControlKey, IsNeededToQuitARunWhoseBusLeavesTheMachine) {
 
   const Ended refused = control({"quit"});
   EXPECT_EQ(refused.exit_code, 1);
-  EXPECT_THAT(refused.errors, HasSubstr("this run is controlled with its key only: use --run DIR, or set"));
+  EXPECT_THAT(refused.errors, HasSubstr("this run can only be controlled with its key: use --run DIR, or set"));
   EXPECT_TRUE(shoal->running());
   EXPECT_EQ(control({"quit", "--run", results(), "--client", "operator"}).exit_code, 0);
   EXPECT_EQ(shoal->wait(), 0) << shoal->errors();
@@ -74,7 +74,7 @@ TEST_F(ControlKey, IsNeededToQuitARunWhoseBusLeavesTheMachine) {
 
 TEST_F(ControlKey, IsRefusedToWhoSendsACapturedRequestAgainAlsoInALaterRun) {
   const auto send = [](bridges::LcmListener& listener, const sim::Bytes& payload) {
-    const auto deadline = std::chrono::steady_clock::now() + patience;
+    const auto deadline = std::chrono::steady_clock::now() + timeout;
     while (std::chrono::steady_clock::now() < deadline) {
       listener.publish("sim.control", payload);
       const auto message = listener.next(500ms);
@@ -94,8 +94,8 @@ TEST_F(ControlKey, IsRefusedToWhoSendsACapturedRequestAgainAlsoInALaterRun) {
   const sim::Bytes captured = signer.sign("sim.control", shoal::encode(request));
   EXPECT_TRUE(send(listener, captured).ok);
   listener.publish("sim.control", captured);
-  EXPECT_TRUE(await([&] { return shoal->errors().find("it was sent before, and came once more") != std::string::npos; },
-                    patience))
+  EXPECT_TRUE(await(
+      [&] { return shoal->errors().find("it was sent before, and was received again") != std::string::npos; }, timeout))
       << shoal->errors();
   shoal->send_signal(SIGINT);
   EXPECT_EQ(shoal->wait(), 130);
@@ -143,16 +143,17 @@ TEST_F(ControlKey, IsHandedToLaunchedProgramsAndLeavesTheRunAsItIs) {
 TEST_F(ControlKey, IsNotNeededWithOpenControlWhichSaysSo) {
   const auto shoal =
       run(source("worlds/minimal.yaml"), {"--duration", "forever", "--lcm-url", far_url(), "--open-control"});
-  EXPECT_TRUE(await([&] { return control({"quit", "--timeout", "0.3"}).exit_code == 0; }, patience));
+  EXPECT_TRUE(await([&] { return control({"quit", "--timeout", "0.3"}).exit_code == 0; }, timeout));
   EXPECT_EQ(shoal->wait(), 0) << shoal->errors();
-  EXPECT_THAT(shoal->errors(), HasSubstr("--open-control: whoever reaches the network of this run may control it"));
+  EXPECT_THAT(shoal->errors(),
+              HasSubstr("--open-control: any program that reaches the network of this run can control it"));
 }
 
 TEST_F(ControlKey, IsInAFolderOfItsOwnWithoutResults) {
   Program shoal(
       {built("shoal"), "run", source("worlds/minimal.yaml"), "--duration", "forever", "--lcm-url", far_url()});
   const std::string before = "shoal control --run ";
-  EXPECT_TRUE(await([&] { return shoal.errors().find(before) != std::string::npos; }, patience));
+  EXPECT_TRUE(await([&] { return shoal.errors().find(before) != std::string::npos; }, timeout));
   const std::string errors = shoal.errors();
   const auto begin = errors.find(before) + before.size();
   const std::string place = errors.substr(begin, errors.find(',', begin) - begin);

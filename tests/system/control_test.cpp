@@ -20,8 +20,8 @@ using testing::HasSubstr;
 
 /// Waits for a message on a channel and decodes it.
 template <typename Message, typename Condition>
-bool hears(bridges::LcmListener& listener, const std::string& channel, const Condition& condition,
-           std::chrono::milliseconds limit = patience) {
+bool receives(bridges::LcmListener& listener, const std::string& channel, const Condition& condition,
+              std::chrono::milliseconds limit = timeout) {
   const auto deadline = std::chrono::steady_clock::now() + limit;
   while (std::chrono::steady_clock::now() < deadline) {
     const auto message = listener.next(100ms);
@@ -36,21 +36,21 @@ TEST(Control, SpawnsDrivesAndRemovesAVehicleOverLcm) {
   listener.listen("sim.state");
   Program shoal(
       {built("shoal"), "run", source("worlds/minimal.yaml"), "--duration", "forever", "--lcm-url", own_url()});
-  ASSERT_TRUE(hears<shoal::sim_state_t>(listener, "sim.state", [](const auto& state) { return state.count == 1; }));
+  ASSERT_TRUE(receives<shoal::sim_state_t>(listener, "sim.state", [](const auto& state) { return state.count == 1; }));
   const Ended spawned = control({"spawn", "{name: guest, file: rover.yaml, position_m: [0, 3, 0]}"});
   EXPECT_EQ(spawned.exit_code, 0) << spawned.errors;
   EXPECT_THAT(spawned.output, HasSubstr("guest: drive (takes shoal.twist_command_t"));
   shoal::twist_command_t forward{};
   forward.forward_mps = 1;
   listener.publish("guest.drive.cmd", shoal::encode(forward));
-  EXPECT_TRUE(hears<shoal::sim_state_t>(listener, "sim.state", [](const auto& state) {
+  EXPECT_TRUE(receives<shoal::sim_state_t>(listener, "sim.state", [](const auto& state) {
     return state.count == 2 && state.vehicle[1] == "guest" && state.position_m[1][0] > 0.5;
   }));
   const Ended twice = control({"spawn", "{name: guest, file: rover.yaml}"});
   EXPECT_EQ(twice.exit_code, 1);
-  EXPECT_THAT(twice.errors, HasSubstr("vehicle 'guest': there is a vehicle of this name already"));
+  EXPECT_THAT(twice.errors, HasSubstr("vehicle 'guest': there already is a vehicle of this name"));
   EXPECT_EQ(control({"remove", "guest"}).exit_code, 0);
-  EXPECT_TRUE(hears<shoal::sim_state_t>(listener, "sim.state", [](const auto& state) { return state.count == 1; }));
+  EXPECT_TRUE(receives<shoal::sim_state_t>(listener, "sim.state", [](const auto& state) { return state.count == 1; }));
   EXPECT_EQ(control({"quit"}).exit_code, 0);
   EXPECT_EQ(shoal.wait(), 0) << shoal.errors();
 }
@@ -60,12 +60,12 @@ TEST(Control, AVehicleGoesWithTheProgramThatBroughtIt) {
   listener.listen("sim.state");
   Program shoal(
       {built("shoal"), "run", source("worlds/minimal.yaml"), "--duration", "forever", "--lcm-url", own_url()});
-  ASSERT_TRUE(hears<shoal::sim_state_t>(listener, "sim.state", [](const auto& state) { return state.count == 1; }));
+  ASSERT_TRUE(receives<shoal::sim_state_t>(listener, "sim.state", [](const auto& state) { return state.count == 1; }));
   Program client({built("shoal"), "control", "spawn", "--stay", "--lcm-url", own_url(),
                   "{name: guest, file: rover.yaml, position_m: [0, 3, 0], with_client: true, alive_timeout_s: 2}"});
-  EXPECT_TRUE(hears<shoal::sim_state_t>(listener, "sim.state", [](const auto& state) { return state.count == 2; }));
+  EXPECT_TRUE(receives<shoal::sim_state_t>(listener, "sim.state", [](const auto& state) { return state.count == 2; }));
   client.send_signal(SIGKILL);  // it cannot say good-bye
-  EXPECT_TRUE(hears<shoal::sim_state_t>(listener, "sim.state", [](const auto& state) { return state.count == 1; }));
+  EXPECT_TRUE(receives<shoal::sim_state_t>(listener, "sim.state", [](const auto& state) { return state.count == 1; }));
   EXPECT_EQ(control({"quit"}).exit_code, 0);
   EXPECT_EQ(shoal.wait(), 0) << shoal.errors();
 }
@@ -76,7 +76,7 @@ TEST(Control, SaysThatNobodyAnswers) {
   EXPECT_THAT(ended.errors, HasSubstr("no simulator answered within 0.2 s"));
 }
 
-/// Two rovers, each on a bus of its own, that have nothing in common but a modem.
+/// Two rovers, each on its own bus, that have nothing in common but a modem.
 std::string two_buses() {
   const auto rover = [](const std::string& name, const std::string& y_m) {
     return "  - {name: " + name + ", bus: " + name + "_bus, position_m: [0, " + y_m +
@@ -94,7 +94,7 @@ TEST(SeparateBus, NothingButTheModemConnectsTwoRobots) {
   bridges::LcmListener world(own_url()), at_r1(own_url(1)), at_r2(own_url(2));
   for (auto* listener : {&world, &at_r1, &at_r2}) listener->listen_to_all();
   Program shoal({built("shoal"), "run", folder.file("world.yaml"), "--lcm-url", own_url()});
-  ASSERT_TRUE(hears<shoal::sim_state_t>(world, "sim.state", [](const auto& state) { return state.count == 2; }));
+  ASSERT_TRUE(receives<shoal::sim_state_t>(world, "sim.state", [](const auto& state) { return state.count == 2; }));
 
   // A command for r2 that r1's programs send stays on r1's bus; a message by modem arrives at r2.
   shoal::twist_command_t forward{};
@@ -106,22 +106,22 @@ TEST(SeparateBus, NothingButTheModemConnectsTwoRobots) {
   send.data = {'h', 'i'};
   send.size = 2;
   at_r1.publish("r1.modem.cmd", shoal::encode(send));
-  EXPECT_TRUE(hears<shoal::modem_received_t>(at_r2, "r2.modem", [](const auto& m) { return m.source == "r1"; }));
-  EXPECT_TRUE(hears<shoal::sim_state_t>(world, "sim.state", [](const auto& state) {
+  EXPECT_TRUE(receives<shoal::modem_received_t>(at_r2, "r2.modem", [](const auto& m) { return m.source == "r1"; }));
+  EXPECT_TRUE(receives<shoal::sim_state_t>(world, "sim.state", [](const auto& state) {
     EXPECT_NEAR(state.position_m[1][0], 0, 1e-3);  // r2 stands
     return state.position_m[0][0] > 0.5;           // when r1 has driven
   }));
   EXPECT_EQ(control({"quit"}).exit_code, 0);
   EXPECT_EQ(shoal.wait(), 0) << shoal.errors();
   // All that was on the buses: reports of a rover on its own bus only, the truth on the world's bus only.
-  const auto heard = [](bridges::LcmListener& listener, const std::string& start) {
+  const auto received = [](bridges::LcmListener& listener, const std::string& start) {
     bool any = false;
     while (const auto message = listener.next(0ms)) any = any || message->channel.starts_with(start);
     return any;
   };
-  EXPECT_FALSE(heard(at_r1, "r2.lidar"));
-  EXPECT_FALSE(heard(at_r2, "sim.state"));
-  EXPECT_FALSE(heard(world, "r1."));
+  EXPECT_FALSE(received(at_r1, "r2.lidar"));
+  EXPECT_FALSE(received(at_r2, "sim.state"));
+  EXPECT_FALSE(received(world, "r1."));
 }
 
 }  // namespace

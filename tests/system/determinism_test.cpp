@@ -80,7 +80,7 @@ TEST_P(Determinism, HoldsForAnySpeedBusRecordAndListener) {
   const std::string url = own_url();
   EXPECT_EQ(hash_of({"--lcm-url", url, "--speed", "max"}), expected);
   EXPECT_EQ(hash_of({"--lcm-url", url, "--speed", "50", "--record", folder.file("run.lcm"), "--results",
-                     folder.file("results"), "--no-pictures"}),
+                     folder.file("results"), "--no-plots"}),
             expected);
   EXPECT_EQ(summary_value(folder.file("results"), "run_hash"), '"' + expected + '"');
   EXPECT_EQ(hash_of({"--bus", "none", "--speed", "max", "--set", "state_rate_hz=100", "--set", "run.track_rate_hz=1",
@@ -91,7 +91,7 @@ TEST_P(Determinism, HoldsForAnySpeedBusRecordAndListener) {
   bridges::LcmListener listener(url);
   listener.listen_to_all();
   EXPECT_EQ(hash_of({"--lcm-url", url, "--speed", "max"}), expected);
-  EXPECT_TRUE(listener.next(patience));  // somebody did listen
+  EXPECT_TRUE(listener.next(timeout));  // someone did listen
   spy.send_signal(SIGINT);
   EXPECT_EQ(spy.wait(), 0) << spy.errors();
 }
@@ -114,7 +114,7 @@ TEST_P(Determinism, AnotherSeedIsAnotherRun) {
 
 INSTANTIATE_TEST_SUITE_P(Worlds, Determinism,
                          testing::Values(Case{"worlds/minimal.yaml", "20"}, Case{"worlds/erl_room.yaml", "20"},
-                                         Case{"worlds/scale.yaml", "2"}, Case{"worlds/living_warehouse.yaml", "20"},
+                                         Case{"worlds/scale.yaml", "2"}, Case{"worlds/dynamic_warehouse.yaml", "20"},
                                          Case{"worlds/proving_ground.yaml", "20"},
                                          Case{"worlds/proving_sea.yaml", "20"}, Case{"worlds/hill_course.yaml", "5"},
                                          Case{"worlds/sonar_tank.yaml", "5"}, Case{"worlds/survey.yaml", "10"},

@@ -196,9 +196,9 @@ TEST(ExitCode, Is2ForASeedThatIsNone) {
     EXPECT_EQ(ended.exit_code, 2) << seed;
     EXPECT_THAT(ended.errors, HasSubstr("must be a whole number from 0 to 9223372036854775807")) << seed;
   }
-  const Ended most = run_shoal({"run", source("worlds/minimal.yaml"), "--seed", "9223372036854775807", "--bus", "none",
-                                "--duration", "0.1", "--speed", "max"});
-  EXPECT_EQ(most.exit_code, 0) << most.errors;
+  const Ended max = run_shoal({"run", source("worlds/minimal.yaml"), "--seed", "9223372036854775807", "--bus", "none",
+                               "--duration", "0.1", "--speed", "max"});
+  EXPECT_EQ(max.exit_code, 0) << max.errors;
 }
 
 TEST(ExitCode, Is5ForAClientThatNeverAcknowledges) {
@@ -206,7 +206,7 @@ TEST(ExitCode, Is5ForAClientThatNeverAcknowledges) {
   Program shoal({built("shoal"), "run", source("worlds/minimal.yaml"), "--duration", "10", "--await", "sleeper",
                  "--set", "lockstep.timeout_s=0.5", "--lcm-url", own_url(), "--record", folder.file("run.lcm")});
   bridges::LockstepClient client(own_url(), "sleeper");
-  client.join(0.1, patience);
+  client.join(0.1, timeout);
   EXPECT_EQ(shoal.wait(), 5);
   EXPECT_THAT(shoal.errors(), HasSubstr("no acknowledgement from 'sleeper'"));
   EXPECT_GT(events_in(folder.file("run.lcm")), 0u);
@@ -231,7 +231,7 @@ TEST(ExitCode, Is128PlusTheSignal) {
     listener.listen("sim.clock");
     Program shoal({built("shoal"), "run", folder.file("world.yaml"), "--launch", "--lcm-url", own_url(), "--record",
                    folder.file("run.lcm"), "--allow-path", folder.file("")});
-    ASSERT_TRUE(listener.next(patience));
+    ASSERT_TRUE(listener.next(timeout));
     EXPECT_TRUE(std::filesystem::is_symlink(folder.file("port")));
     const auto children = shoal.children();
     ASSERT_EQ(children.size(), 1u);

@@ -7,7 +7,7 @@
 
 #include "tests/system/shoal_program.hpp"
 
-// What somebody meets who has just installed or built the program: names instead of paths, a start for files of one's
+// What someone meets who has just installed or built the program: names instead of paths, a start for files of one's
 // own, and clients that say what they wait for.
 
 namespace {
@@ -103,8 +103,8 @@ TEST(New, WritesWorldsAndVehiclesThatCheckAcceptsAndThatRun) {
     EXPECT_THAT(text, Not(HasSubstr("NAME"))) << name;
   }
   // The first command moves the rover: 5 s at 0.5 m/s.
-  EXPECT_THAT(text_of_file(folder.file("out_yard/metrics.csv")), ContainsRegex("way.travelled_m,2\\.[2-6]"));
-  EXPECT_THAT(text_of_file(folder.file("out_pit/metrics.csv")), ContainsRegex("way.travelled_m,2\\.[2-6]"));
+  EXPECT_THAT(text_of_file(folder.file("out_yard/metrics.csv")), ContainsRegex("distance.travelled_m,2\\.[2-6]"));
+  EXPECT_THAT(text_of_file(folder.file("out_pit/metrics.csv")), ContainsRegex("distance.travelled_m,2\\.[2-6]"));
 }
 
 TEST(New, TouchesNoFileThatIsThere) {

@@ -52,19 +52,19 @@ def processes_of(mark):
 
 
 class Attempt:
-    """A run, in a session of its own, as a shell would start it."""
+    """A run, in its own session, as a shell would start it."""
 
     def __init__(self, folder):
         self.folder, self.mark = folder, f"SHOAL_INTERRUPT_TEST={folder}"
         write_world(folder)
         os.mkdir(os.path.join(folder, "tmp"))
         name, value = self.mark.split("=")
-        self.said = open(os.path.join(folder, "said"), "w+", encoding="utf-8")
+        self.shown = open(os.path.join(folder, "said"), "w+", encoding="utf-8")
         self.shoal = subprocess.Popen(
             [os.path.join(BINARIES, "shoal"), "run", "world.yaml", "--launch", "--lcm-url", URL, "--duration", "5",
              "--snapshot-at", "2,4", "--record", "run.lcm", "--results", "results", "--allow-path", folder],
             cwd=folder, env={**os.environ, name: value, "TMPDIR": os.path.join(folder, "tmp")}, stdin=subprocess.DEVNULL,
-            stdout=self.said, stderr=self.said, start_new_session=True)
+            stdout=self.shown, stderr=self.shown, start_new_session=True)
 
     def interrupt(self):
         try:  # the group in the foreground, as a terminal does
@@ -84,8 +84,8 @@ class Attempt:
         for where, folders, files in os.walk(self.folder):
             for name in folders + files:
                 path = os.path.relpath(os.path.join(where, name), self.folder)
-                unwanted = path.split("/")[0] not in WANTED or path.startswith("tmp/")
-                if unwanted or os.path.islink(os.path.join(where, name)) or name.endswith((".part", ".lock", ".tmp")):
+                unmatched = path.split("/")[0] not in WANTED or path.startswith("tmp/")
+                if unmatched or os.path.islink(os.path.join(where, name)) or name.endswith((".part", ".lock", ".tmp")):
                     left.append(f"file {path}")
         return left
 
@@ -93,10 +93,10 @@ class Attempt:
         for pid, _ in processes_of(self.mark):
             os.kill(pid, signal.SIGKILL)
         self.shoal.wait()
-        self.said.seek(0)
-        said = self.said.read()
-        self.said.close()
-        return said
+        self.shown.seek(0)
+        shown = self.shown.read()
+        self.shown.close()
+        return shown
 
 
 class Interrupt(unittest.TestCase):
@@ -105,8 +105,8 @@ class Interrupt(unittest.TestCase):
             attempt = Attempt(folder)
             begin = time.monotonic()
             code, length_s = attempt.wait(), time.monotonic() - begin
-            left, said = attempt.left(), attempt.end()
-            self.assertIn(code, (0, 1), said)  # 5 s are too few for the rules of the world
+            left, shown = attempt.left(), attempt.end()
+            self.assertIn(code, (0, 1), shown)  # 5 s are too few for the rules of the world
             self.assertEqual(left, [])
         chance, wrong, codes = random.Random(SEED), [], {}
         for i in range(HOW_MANY):
@@ -119,7 +119,7 @@ class Interrupt(unittest.TestCase):
                     time.sleep(again_s)
                     attempt.interrupt()
                 code = attempt.wait()
-                left, said = attempt.left(), attempt.end()
+                left, shown = attempt.left(), attempt.end()
             codes[code] = codes.get(code, 0) + 1
             print(f"{i}: {at_s:.2f} s: exit code {code}, {len(left)} left", flush=True)
             # Before it catches signals it ends by this one; it may also have been over before.

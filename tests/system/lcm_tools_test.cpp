@@ -29,18 +29,18 @@ std::map<std::string, std::vector<sim::Bytes>> payloads_in(const std::string& pa
   return payloads;
 }
 
-/// Plays a log with lcm-logplayer and decodes what a listener hears.
+/// Plays a log with lcm-logplayer and decodes what a listener receives.
 std::map<std::string, int> played_back(const std::string& path, const std::string& speed) {
   bridges::LcmListener listener(own_url(2));
   listener.listen_to_all();
   Program player({"lcm-logplayer", "--speed=" + speed, "--lcm-url=" + own_url(2), path});
-  std::map<std::string, int> heard;
+  std::map<std::string, int> received;
   while (true) {
     const bool over = !player.running();
     const auto message = listener.next(over ? 200ms : 20ms);
     if (!message && over) break;
     if (!message) continue;
-    ++heard[message->channel];
+    ++received[message->channel];
     if (message->channel == "rover1.odometry") {
       const auto odometry = shoal::decode<shoal::odometry_t>(message->payload, shoal::Finite::any);
       EXPECT_GT(odometry.utime, 0);
@@ -53,7 +53,7 @@ std::map<std::string, int> played_back(const std::string& path, const std::strin
     }
   }
   EXPECT_EQ(player.wait(), 0) << player.errors();
-  return heard;
+  return received;
 }
 
 TEST(LcmTools, LogAndPlayBackARunWithItsProcesses) {
@@ -88,9 +88,9 @@ TEST(LcmTools, LogAndPlayBackARunWithItsProcesses) {
   }
 
   for (const char* log : {"logger.lcm", "shoal.lcm"}) {
-    const auto heard = played_back(folder.file(log), "8");
+    const auto received = played_back(folder.file(log), "8");
     for (const char* channel : {"rover1.odometry", "rover1.lidar", "sim.state"})
-      EXPECT_GT(heard.count(channel), 0u) << log << " " << channel;
+      EXPECT_GT(received.count(channel), 0u) << log << " " << channel;
   }
 }
 
@@ -117,7 +117,7 @@ TEST(LcmTools, SpyShowsWhatIsOnTheBus) {
   Program spy({built("shoal"), "spy", "rover1.odometry", "--lcm-url", own_url()});
   Program shoal(
       {built("shoal"), "run", source("worlds/minimal.yaml"), "--duration", "forever", "--lcm-url", own_url()});
-  EXPECT_TRUE(await([&] { return spy.output().find("shoal.odometry_t\n  utime=") != std::string::npos; }, patience));
+  EXPECT_TRUE(await([&] { return spy.output().find("shoal.odometry_t\n  utime=") != std::string::npos; }, timeout));
   spy.send_signal(SIGINT);
   EXPECT_EQ(spy.wait(), 0);
   shoal.send_signal(SIGINT);

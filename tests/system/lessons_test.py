@@ -4,9 +4,9 @@
     python3 lessons_test.py SOURCE BINARY_DIRECTORY LESSON
 
 LESSON is the name of the page without .md.  All its files are written and all its commands run, and what it shows of
-their output is compared (page_steps.py); the seconds are printed.  A lesson that "goes on with the files of" another
-one, by a link, starts with the files that the other page shows.  LCM is in a network namespace of its own, where there
-can be one, else on a port of its own.
+their output is compared (page_steps.py); the seconds are printed.  A lesson that "continues with the files of" another
+one, by a link, starts with the files that the other page shows.  LCM is in its own network namespace, where there
+can be one, else on its own port.
 """
 import os
 import re
@@ -30,7 +30,7 @@ def text_of(page):
 
 
 def files_before(text):
-    """File and Change steps of the lesson whose files this one goes on with."""
+    """File and Change steps of the lesson whose files this one continues with."""
     earlier = re.search(r"goes\s+on\s+with\s+the\s+files\s+of\s+\[[^\]]*\]\(([\w.]+)\)", text)
     return [step for step in steps_of(text_of(earlier[1])) if isinstance(step, (File, Change))] if earlier else []
 

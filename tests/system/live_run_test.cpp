@@ -17,7 +17,7 @@
 #include "shoal/utime_t.hpp"
 #include "tests/system/shoal_program.hpp"
 
-// What programs outside can do to a run that goes on: control it, join it, die, send nonsense.
+// What programs outside can do to a run that continues: control it, join it, die, send nonsense.
 
 namespace {
 
@@ -50,7 +50,7 @@ class LiveRun : public testing::Test {
     request.command = command;
     request.value = value;
     EXPECT_TRUE(listener_.publish("sim.control", shoal::encode(request)));
-    const auto deadline = std::chrono::steady_clock::now() + patience;
+    const auto deadline = std::chrono::steady_clock::now() + timeout;
     while (std::chrono::steady_clock::now() < deadline) {
       const auto message = listener_.next(100ms);
       if (!message || message->channel != "sim.control.reply") continue;
@@ -64,7 +64,7 @@ class LiveRun : public testing::Test {
   /// The first time on sim.clock that fulfils the condition.
   template <typename Condition>
   std::int64_t await_clock(const Condition& condition) {
-    const auto deadline = std::chrono::steady_clock::now() + patience;
+    const auto deadline = std::chrono::steady_clock::now() + timeout;
     while (std::chrono::steady_clock::now() < deadline && shoal_->running()) {
       const auto message = listener_.next(100ms);
       if (!message || message->channel != "sim.clock") continue;
@@ -75,7 +75,7 @@ class LiveRun : public testing::Test {
     return -1;
   }
 
-  /// Lets the run go on for some steps after now.
+  /// Lets the run continue for some steps after now.
   void await_steps(int steps) {
     const std::int64_t end = request("resume").utime + steps * step_us;
     await_clock([&](std::int64_t utime) { return utime >= end; });
@@ -146,7 +146,7 @@ TEST_F(LiveRun, RefusesWhatItDoesNotUnderstand) {
 TEST_F(LiveRun, WaitsForAClientThatJoinsLate) {
   start();
   bridges::LockstepClient client(own_url(), "late");
-  client.join(0.05, patience);
+  client.join(0.05, timeout);
   shoal::sim_tick_t tick{};
   ASSERT_TRUE(client.next_tick(tick));
   // The world waits: the clock stands while the tick is not acknowledged.
@@ -184,7 +184,7 @@ TEST_F(LiveRun, ASecondSimulatorLeavesTheBusToTheFirst) {
   EXPECT_EQ(run_shoal({"run", minimal, "--lcm-url", own_url(), "--duration", "0.1"}).exit_code, 4);
   EXPECT_EQ(run_shoal({"run", minimal, "--lcm-url", own_url(), "--duration", "0.1", "--lcm-shared"}).exit_code, 0);
   EXPECT_EQ(run_shoal({"run", minimal, "--bus", "none", "--duration", "0.1"}).exit_code, 0);
-  await_steps(5);  // the first goes on
+  await_steps(5);  // the first continues
   quit();
 }
 
@@ -200,7 +200,7 @@ TEST_F(LiveRun, AnotherSimulatorIsFoundOnTheBusOfAVehicle) {
 TEST_F(LiveRun, GoesOnWithoutAProcessThatDiedAndFails) {
   start("processes: [{name: pilot, command: [sh, -c, exit 3]}]\n", {"--launch"});
   EXPECT_TRUE(
-      await([&] { return shoal_->errors().find("the run goes on without it, and fails") != std::string::npos; }));
+      await([&] { return shoal_->errors().find("the run continues without it, and fails") != std::string::npos; }));
   EXPECT_THAT(shoal_->errors(), HasSubstr("process 'pilot' exited with code 3"));
   await_steps(3);
   quit(1);
@@ -216,7 +216,8 @@ TEST_F(LiveRun, GoesOnWithoutAProcessWhoseEndDoesNotMatter) {
 TEST_F(LiveRun, EndsWithAProcessThatItShouldEndWith) {
   start("processes: [{name: pilot, command: [sh, -c, sleep 0.2], on_exit: end}]\n", {"--launch"});
   EXPECT_EQ(shoal_->wait(), 1);
-  EXPECT_THAT(shoal_->errors(), HasSubstr("process 'pilot' exited with code 0; the world says the run ends with it"));
+  EXPECT_THAT(shoal_->errors(),
+              HasSubstr("process 'pilot' exited with code 0; the run ends with it, as the world requires"));
 }
 
 TEST_F(LiveRun, NamesAProcessThatCannotBeStarted) {
@@ -291,9 +292,9 @@ class UnjudgedRun : public LiveRun {
  protected:
   void start_it() {
     start(
-        "metrics: [{name: way, type: distance, vehicle: rover1}]\n"
-        "pass: [way.travelled_m > 1000000]\n",
-        {"--duration", "1000", "--results", folder_.file("results"), "--no-pictures"});
+        "metrics: [{name: distance, type: distance, vehicle: rover1}]\n"
+        "pass: [distance.travelled_m > 1000000]\n",
+        {"--duration", "1000", "--results", folder_.file("results"), "--no-plots"});
   }
   void expect_not_judged(const std::string& how) {
     EXPECT_THAT(shoal_->output(),
@@ -325,10 +326,10 @@ TEST_F(UnjudgedRun, WasEndedByASignal) {
 TEST_F(LiveRun, ThatIsEndedByHandHasFailedWhenAProgramDid) {
   const std::string results = folder_.file("results");
   start(
-      "metrics: [{name: way, type: distance, vehicle: rover1}]\npass: [way.travelled_m < 1000]\n"
+      "metrics: [{name: distance, type: distance, vehicle: rover1}]\npass: [distance.travelled_m < 1000]\n"
       "processes: [{name: pilot, command: [sh, -c, exit 3]}]\n",
-      {"--launch", "--duration", "1000", "--results", results, "--no-pictures"});
-  EXPECT_TRUE(await([&] { return shoal_->errors().find("exited with code 3") != std::string::npos; }, patience));
+      {"--launch", "--duration", "1000", "--results", results, "--no-plots"});
+  EXPECT_TRUE(await([&] { return shoal_->errors().find("exited with code 3") != std::string::npos; }, timeout));
   EXPECT_TRUE(request("quit").ok);
   EXPECT_EQ(shoal_->wait(), 1) << shoal_->errors();
   EXPECT_THAT(shoal_->output(), HasSubstr("FAILED: process 'pilot' must not fail"));

@@ -29,7 +29,7 @@ struct Pilot {
   std::int64_t die_at = -1;    ///< tick at which it kills itself
   std::int64_t quit_at = -1;   ///< tick at which it ends with exit code 0, and does not leave
   std::int64_t leave_at = -1;  ///< tick after which it leaves
-  bool go_back = false;        ///< with the world
+  bool rewinds = false;        ///< with the world
 };
 
 std::uint64_t mixed(std::uint64_t hash, const void* data, std::size_t size) {
@@ -45,7 +45,7 @@ int fly(const Pilot& pilot) {
     client.subscribe_bytes(channel, [&hash, channel](std::span<const std::byte> payload) {
       hash = mixed(mixed(hash, channel.data(), channel.size()), payload.data(), payload.size());
     });
-  if (pilot.go_back) client.on_rewind([&hash](std::int64_t) { hash = 0; });
+  if (pilot.rewinds) client.on_rewind([&hash](std::int64_t) { hash = 0; });
   client.join(pilot.period_s, pilot.join);
   std::cerr << "joined\n";
   std::mt19937 random(pilot.seed);
@@ -94,7 +94,7 @@ int main(int argc, char** argv) {
   app.add_option("--die-at", pilot.die_at);
   app.add_option("--quit-at", pilot.quit_at);
   app.add_option("--leave-at", pilot.leave_at);
-  app.add_flag("--go-back", pilot.go_back);
+  app.add_flag("--go-back", pilot.rewinds);
   app.add_option("--lcm-url", pilot.lcm_url);
   CLI11_PARSE(app, argc, argv);
   try {

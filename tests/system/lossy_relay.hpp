@@ -47,7 +47,7 @@ class LossyRelay {
     bridges::LcmConnection lcm;
     Side* twin = nullptr;
     LossyRelay* relay = nullptr;
-    std::map<Sent, int> echoes;  ///< what we sent here, and hear again
+    std::map<Sent, int> echoes;  ///< what we sent here, and receive again
     std::optional<std::pair<std::string, sim::Bytes>> held;
   };
 

@@ -37,7 +37,7 @@ TEST(MarinePrograms, HelpShowsExamplesAndExitCodes) {
 struct Mistake {
   const char* program;
   std::vector<std::string> arguments;
-  const char* says;
+  const char* reports;
 };
 
 TEST(MarinePrograms, WrongUsageIsExitCodeTwoAndSaysWhat) {
@@ -103,8 +103,8 @@ TEST(MarinePrograms, WrongUsageIsExitCodeTwoAndSaysWhat) {
   };
   for (const Mistake& mistake : mistakes) {
     const Ended ended = run(mistake.program, mistake.arguments);
-    EXPECT_EQ(ended.exit_code, 2) << mistake.says;
-    EXPECT_THAT(ended.errors, HasSubstr(mistake.says));
+    EXPECT_EQ(ended.exit_code, 2) << mistake.reports;
+    EXPECT_THAT(ended.errors, HasSubstr(mistake.reports));
   }
 }
 
@@ -123,7 +123,7 @@ TEST(MarinePrograms, SignalWhileItWaitsForTheSimulatorIsSaid) {
   // Its requests to join say that it waits.
   bridges::LcmListener requests(own_url(3));
   requests.listen("sim.control");
-  ASSERT_TRUE(requests.next(system_test::patience));
+  ASSERT_TRUE(requests.next(system_test::timeout));
   program.send_signal(SIGTERM);
   EXPECT_EQ(program.wait(), 143);
   EXPECT_THAT(program.errors(), HasSubstr("'a' was stopped while it waited for a simulator"));
@@ -135,14 +135,14 @@ TEST(CoopRelay, OrderComesToTheAuvByTheRelayAndNotWithoutIt) {
     const std::string results = folder.file(relay ? "relay" : "no_relay");
     std::vector<std::string> arguments = {
         "run",       source("worlds/coop_relay.yaml"), "--launch",  "--duration", "240",
-        "--lcm-url", own_url(relay ? 4 : 5),           "--results", results,      "--no-pictures"};
+        "--lcm-url", own_url(relay ? 4 : 5),           "--results", results,      "--no-plots"};
     if (!relay) arguments.insert(arguments.end(), {"--set", "vehicles.boat.devices.gateway.only_prefix=nothing"});
     const Ended ended = run_shoal(arguments);
     EXPECT_EQ(ended.exit_code, 1) << ended.errors;  // too short for its rules
     // The order is said at 125 s for the first time, and a turn is lost in 36 of 100 cases.
-    const std::string obeyed = relay ? "station: 1 of 1 orders obeyed" : "station: 0 of 1 orders obeyed";
-    EXPECT_THAT(text_of_file(results + "/station.log"), HasSubstr(obeyed));
-    EXPECT_THAT(text_of_file(results + "/auv.log"), HasSubstr(relay ? "1 orders obeyed" : "0 orders obeyed"));
+    const std::string executed = relay ? "station: 1 of 1 orders executed" : "station: 0 of 1 orders executed";
+    EXPECT_THAT(text_of_file(results + "/station.log"), HasSubstr(executed));
+    EXPECT_THAT(text_of_file(results + "/auv.log"), HasSubstr(relay ? "1 orders executed" : "0 orders executed"));
   }
 }
 
@@ -151,19 +151,19 @@ TEST(CoopRelay, ARefusedOrderComesBackToTheStationByTheRelay) {
   // The first order is for 15 m.
   const std::string change = "processes.auv.args.order_depth_max_m=12";
   const Ended ended = run_shoal({"run", source("worlds/coop_relay.yaml"), "--launch", "--duration", "300", "--lcm-url",
-                                 own_url(6), "--results", folder.file("out"), "--no-pictures", "--set", change});
+                                 own_url(6), "--results", folder.file("out"), "--no-plots", "--set", change});
   EXPECT_EQ(ended.exit_code, 1) << ended.errors;  // its rules fail
-  const std::string said = text_of_file(folder.file("out/station.log"));
-  EXPECT_THAT(said, HasSubstr("station: order 1 was refused: too deep, 15 m\n"));
-  EXPECT_THAT(said, HasSubstr("station: 0 of 1 orders obeyed, 1 refused"));
-  EXPECT_THAT(text_of_file(folder.file("out/auv.log")), HasSubstr("0 orders obeyed, 1 refused"));
+  const std::string reported = text_of_file(folder.file("out/station.log"));
+  EXPECT_THAT(reported, HasSubstr("station: order 1 was refused: too deep, 15 m\n"));
+  EXPECT_THAT(reported, HasSubstr("station: 0 of 1 orders executed, 1 refused"));
+  EXPECT_THAT(text_of_file(folder.file("out/auv.log")), HasSubstr("0 orders executed, 1 refused"));
 }
 
 /// The summary of the first minutes of a world with its programs.
 nlohmann::json summary_of(const std::string& world, const std::string& results, int url, const std::string& threads) {
   const Ended ended =
       run_shoal({"run", source(world), "--launch", "--duration", "300", "--threads", threads, "--speed",
-                 threads == "1" ? "max" : "200", "--lcm-url", own_url(url), "--results", results, "--no-pictures"});
+                 threads == "1" ? "max" : "200", "--lcm-url", own_url(url), "--results", results, "--no-plots"});
   EXPECT_EQ(ended.exit_code, 1) << ended.errors;  // too short for its rules
   return nlohmann::json::parse(text_of_file(results + "/summary.json"));
 }

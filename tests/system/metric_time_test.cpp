@@ -33,7 +33,7 @@ const std::map<std::string, std::vector<TimeCase>>& cases() {
         {"vehicle: r1, position_m: [1.2, 0, 0], radius_m: 0.3", "time_s"}}},
       {"collisions", {{"", "count"}, {"vehicle: r2, with: ball, from_s: 0.5", "first_s"}}},
       {"messages", {{"channel: r1.lidar", "count"}, {"channel: r1.hello", "first_s"}}},
-      {"lean", {{"vehicle: r2", "fell_s"}, {"vehicle: r2", "max_deg"}, {"vehicle: r1, from_s: 1", "rms_deg"}}},
+      {"tilt", {{"vehicle: r2", "fell_s"}, {"vehicle: r2", "max_deg"}, {"vehicle: r1, from_s: 1", "rms_deg"}}},
   };
   return all;
 }
@@ -79,11 +79,11 @@ class MetricsInTime : public testing::Test {
  protected:
   void SetUp() override { write_file(folder_.file("world.yaml"), world_text()); }
 
-  /// Metrics of a run that nobody touches.
+  /// Metrics of a run that no one touches.
   nlohmann::json straight(const std::string& duration_s) {
     const std::string results = folder_.file("straight" + duration_s);
     const Ended ended = run_shoal({"run", folder_.file("world.yaml"), "--bus", "none", "--duration", duration_s,
-                                   "--results", results, "--no-pictures"});
+                                   "--results", results, "--no-plots"});
     EXPECT_EQ(ended.exit_code, 0) << ended.errors;
     return metrics_in(results);
   }
@@ -91,25 +91,25 @@ class MetricsInTime : public testing::Test {
   std::unique_ptr<Program> live(const std::string& results) {
     auto program = std::make_unique<Program>(std::vector<std::string>{
         built("shoal"), "run", folder_.file("world.yaml"), "--paused", "--speed", "max", "--lcm-url", own_url(),
-        "--snapshots", folder_.file("snaps"), "--overwrite", "--results", results, "--no-pictures"});
-    EXPECT_TRUE(await([] { return control({"where", "--timeout", "0.5"}).exit_code == 0; }, patience));
+        "--snapshots", folder_.file("snaps"), "--overwrite", "--results", results, "--no-plots"});
+    EXPECT_TRUE(await([] { return control({"where", "--timeout", "0.5"}).exit_code == 0; }, timeout));
     return program;
   }
 
   void run_until(const std::string& time_s) {
     const Ended ended = control({"until", "--value", time_s});
     EXPECT_EQ(ended.exit_code, 0) << ended.errors;
-    EXPECT_TRUE(await([] { return control({"where"}).output.find(", paused") != std::string::npos; }, patience));
+    EXPECT_TRUE(await([] { return control({"where"}).output.find(", paused") != std::string::npos; }, timeout));
   }
 
   ScratchFolder folder_;
 };
 
 /// Names each figure that differs.
-void expect_same(const nlohmann::json& got, const nlohmann::json& wanted, const std::string& how) {
+void expect_same(const nlohmann::json& got, const nlohmann::json& desired, const std::string& how) {
   ASSERT_TRUE(got.is_object()) << how;
-  ASSERT_EQ(got.size(), wanted.size()) << how;
-  for (const auto& [name, value] : wanted.items())
+  ASSERT_EQ(got.size(), desired.size()) << how;
+  for (const auto& [name, value] : desired.items())
     EXPECT_EQ(got.value(name, nlohmann::json("absent")), value) << how << ": " << name;
 }
 
@@ -125,34 +125,34 @@ TEST_F(MetricsInTime, OfEveryTypeGoBackWithTheWorld) {
     }
 
   // Back, and not on: what came after 2 s has not happened.
-  for (const std::string way : {"rewind", "restore"}) {
-    const std::string results = folder_.file(way + "_2");
+  for (const std::string distance : {"rewind", "restore"}) {
+    const std::string results = folder_.file(distance + "_2");
     const auto program = live(results);
     run_until("2");
     EXPECT_EQ(control({"snapshot", "two"}).exit_code, 0);
     run_until("4");
-    const Ended back = way == "rewind" ? control({"rewind", "--value", "2"}) : control({"restore", "two"});
+    const Ended back = distance == "rewind" ? control({"rewind", "--value", "2"}) : control({"restore", "two"});
     EXPECT_EQ(back.exit_code, 0) << back.errors;
     control({"quit"});
     EXPECT_EQ(program->wait(), 0) << program->errors();
-    expect_same(metrics_in(results), at2, way + " to 2 s");
-    expect_same(metrics_in(results + "/branch0"), at4, way + ": the branch that was left");
+    expect_same(metrics_in(results), at2, distance + " to 2 s");
+    expect_same(metrics_in(results + "/branch0"), at4, distance + ": the branch that was left");
   }
   // Back, and on to the end.
-  for (const std::string way : {"rewind", "restore"}) {
-    const std::string results = folder_.file(way + "_6");
+  for (const std::string distance : {"rewind", "restore"}) {
+    const std::string results = folder_.file(distance + "_6");
     const auto program = live(results);
     run_until("4");
-    const Ended back = way == "rewind" ? control({"rewind", "--value", "2"}) : control({"restore", "two"});
+    const Ended back = distance == "rewind" ? control({"rewind", "--value", "2"}) : control({"restore", "two"});
     EXPECT_EQ(back.exit_code, 0) << back.errors;
     EXPECT_EQ(control({"resume"}).exit_code, 0);
     EXPECT_EQ(program->wait(), 0) << program->errors();
-    expect_same(metrics_in(results), at6, way + " and on to 6 s");
+    expect_same(metrics_in(results), at6, distance + " and on to 6 s");
   }
   for (const std::string duration_s : {"2", "4", "6"}) {
     const std::string results = folder_.file("from_" + duration_s);
     const Ended ended = run_shoal({"run", "--from", folder_.file("snaps/two.snapshot"), "--bus", "none", "--duration",
-                                   duration_s, "--results", results, "--no-pictures"});
+                                   duration_s, "--results", results, "--no-plots"});
     EXPECT_EQ(ended.exit_code, 0) << ended.errors;
     expect_same(metrics_in(results),
                 duration_s == "2"   ? at2

@@ -16,7 +16,7 @@
 
 namespace system_test {
 
-/// A program with a terminal of its own; 0 columns and lines: of unknown size.
+/// A program with its own terminal; 0 columns and lines: of unknown size.
 class OnTerminal {
  public:
   explicit OnTerminal(std::vector<std::string> arguments, unsigned short columns = 0, unsigned short lines = 0) {
@@ -52,7 +52,7 @@ class OnTerminal {
           read_all();
           return shown_.find(text) != std::string::npos;
         },
-        patience);
+        timeout);
     EXPECT_TRUE(found) << "no '" << text << "' in: " << shown_;
     if (found) shown_.erase(0, shown_.find(text) + text.size());
     return found;
@@ -64,7 +64,7 @@ class OnTerminal {
           read_all();
           return waitpid(pid_, &status, WNOHANG) == pid_;
         },
-        patience);
+        timeout);
     over_ = ended;
     if (!ended) return -1;
     return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
@@ -77,7 +77,7 @@ class OnTerminal {
           int status = 0;
           return waitpid(pid_, &status, WNOHANG | WUNTRACED) == pid_ && WIFSTOPPED(status);
         },
-        patience);
+        timeout);
   }
   /// Keys are given one by one, without echo.
   bool is_raw() const {

@@ -4,10 +4,10 @@
 What a fenced block is follows from its language and from the paragraph before it:
 
     sh        commands, one per line.  With `exit code N` in the paragraph the last one ends with N instead of 0.  With
-              "second terminal" in it they run while the last command of the block before goes on; that one has to end by
+              "second terminal" in it they run while the last command of the block before continues; that one has to end by
               itself soon after them.
     text      lines that the commands before it print, on either output; `...` stands for any text.  With "first
-              terminal" in the paragraph they are printed by the command that goes on beside the second terminal.
+              terminal" in the paragraph they are printed by the command that continues beside the second terminal.
     diff      a change to the file whose name in backticks comes last in the paragraph, else to the one that was changed
               before: lines without `+` are there exactly once, one after the other, and become the lines without `-`.
     any other a file, when the paragraph ends with its name in backticks and a colon; the block is all of it.

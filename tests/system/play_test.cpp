@@ -23,7 +23,7 @@ using testing::Not;
 
 class Play : public testing::Test {
  protected:
-  /// The third rover of coop_land, as its process is started there, but for its way.
+  /// The third rover of coop_land, as its process is started there, except for its way.
   static Program rover3(const std::string& waypoints = "[[-6,28],[0,28],[0,-28],[6,-28],[6,28]]") {
     return Program({built("shoal-coop-rover"), "--name", "rover3", "--start-m", "[-6,-28]", "--start-yaw-deg", "90",
                     "--waypoints-m", waypoints, "--lcm-url", own_url(1)});
@@ -123,10 +123,11 @@ TEST_F(Play, ProgramsThatOnlyListenHearItAtItsSpeed) {
 
 TEST_F(Play, SaysWhatIsWrong) {
   record_minimal();
-  Program nobody = player({"--join-timeout", "0.2"});
-  EXPECT_EQ(nobody.wait(), 5);
-  EXPECT_THAT(nobody.errors(), AllOf(HasSubstr("a program has not joined the lockstep on " + own_url(1)),
-                                     HasSubstr(" within 0.2 s; for programs that only listen: --join-timeout 0")));
+  Program none_of_ours = player({"--join-timeout", "0.2"});
+  EXPECT_EQ(none_of_ours.wait(), 5);
+  EXPECT_THAT(none_of_ours.errors(),
+              AllOf(HasSubstr("a program has not joined the lockstep on " + own_url(1)),
+                    HasSubstr(" within 0.2 s; for programs that only listen: --join-timeout 0")));
   Program awaited = player({"--await", "pilot", "--join-timeout", "0.2"});
   EXPECT_EQ(awaited.wait(), 5);
   EXPECT_THAT(awaited.errors(), HasSubstr("'pilot' has not joined"));
@@ -158,10 +159,10 @@ TEST_F(Play, SaysWhichChannelsTheRecordDoesNotHave) {
   Program play = player({"--join-timeout", "60"});
   shoal::sim_tick_t tick;
   {
-    bridges::LockstepClient stranger(own_url(1), "stranger");
-    stranger.subscribe("rover9.lidar", [](std::span<const std::byte>) {});
+    bridges::LockstepClient other_client(own_url(1), "stranger");
+    other_client.subscribe("rover9.lidar", [](std::span<const std::byte>) {});
     try {
-      stranger.join(0.1, 30s);
+      other_client.join(0.1, 30s);
       FAIL() << "it was let in";
     } catch (const bridges::BusError& error) {
       EXPECT_THAT(error.what(), HasSubstr("the record has no message on any channel that the client asks for, such as "
@@ -183,17 +184,17 @@ TEST_F(Play, AnswersRequestsAboutTimeAndRefusesThoseAboutAWorld) {
   listener.listen("sim.info");
   Program play = player({"--join-timeout", "0", "--speed", "0.01"});
   ASSERT_TRUE(listener.next(10s));  // it serves requests
-  const auto ask = [&](std::vector<std::string> request) {
+  const auto request_reply = [&](std::vector<std::string> request) {
     request.insert(request.begin(), "control");
     request.insert(request.end(), {"--lcm-url", own_url(1)});
     return run_shoal(request);
   };
-  EXPECT_THAT(ask({"where"}).output, HasSubstr(" s of 5 s of a record"));
-  EXPECT_EQ(ask({"pause"}).exit_code, 0);
-  const Ended rewind = ask({"rewind", "--value", "1"});
+  EXPECT_THAT(request_reply({"where"}).output, HasSubstr(" s of 5 s of a record"));
+  EXPECT_EQ(request_reply({"pause"}).exit_code, 0);
+  const Ended rewind = request_reply({"rewind", "--value", "1"});
   EXPECT_NE(rewind.exit_code, 0);
   EXPECT_THAT(rewind.errors, HasSubstr("there is no world"));
-  EXPECT_EQ(ask({"quit"}).exit_code, 0);
+  EXPECT_EQ(request_reply({"quit"}).exit_code, 0);
   EXPECT_EQ(play.wait(), 0) << play.errors();
 }
 

@@ -72,7 +72,7 @@ class Example(unittest.TestCase):
                         os.environ, {"SHOAL_RUN_KEY": file.read().strip()}):
                     return lockstep_client.Pilot("rover1")
 
-            keyed = self.run_world(keyed_pilot, *options, "--control-key", "--results", results, "--no-pictures",
+            keyed = self.run_world(keyed_pilot, *options, "--control-key", "--results", results, "--no-plots",
                                    wait_for=key_file)
             with open(os.path.join(results, "summary.json"), encoding="utf-8") as file:
                 control = json.load(file)["control"]

@@ -4,8 +4,7 @@
     python3 readme_test.py SOURCE BINARY_DIRECTORY
 
 The first two pages run in a copy of the checkout (checkout_copy.py), the third in an empty folder with what the second
-one has installed.  Runs are shortened by documented options (see SHORTER), and happen in a network namespace of their
-own, where there can be one, else on an LCM port of their own.
+one has installed.  Runs are shortened by documented options (see SHORTER), and happen in their own network namespace, where there can be one, else on their own LCM port.
 """
 import glob
 import json

@@ -137,7 +137,7 @@ TEST(Replay, WhatClientsDidToTheWorldIsDoneAgain) {
     EXPECT_EQ(ended.exit_code, 0) << ended.errors;
   };
   const auto vehicles = [](bridges::LcmListener& listener, int count) {
-    const auto deadline = std::chrono::steady_clock::now() + patience;
+    const auto deadline = std::chrono::steady_clock::now() + timeout;
     while (std::chrono::steady_clock::now() < deadline) {
       const auto message = listener.next(100ms);
       if (message && shoal::decode<shoal::sim_state_t>(message->payload, shoal::Finite::any).count == count)

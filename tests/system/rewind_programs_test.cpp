@@ -16,7 +16,7 @@ using testing::IsEmpty;
 std::vector<std::string> mission(const std::string& world, const std::string& duration_s,
                                  const std::vector<std::string>& more = {}) {
   std::vector<std::string> run{"run",        source(world), "--launch",  "--speed", "max",
-                               "--duration", duration_s,    "--lcm-url", own_url(), "--no-pictures"};
+                               "--duration", duration_s,    "--lcm-url", own_url(), "--no-plots"};
   run.insert(run.end(), more.begin(), more.end());
   return run;
 }
@@ -28,10 +28,10 @@ Ended run_with_two_rewinds(const std::string& world, const std::string& duration
   std::vector<std::string> arguments = mission(world, duration_s, {"--paused", "--results", results});
   arguments.insert(arguments.begin(), built("shoal"));
   Program program(arguments);
-  EXPECT_TRUE(await([] { return control({"where", "--timeout", "0.5"}).exit_code == 0; }, patience));
+  EXPECT_TRUE(await([] { return control({"where", "--timeout", "0.5"}).exit_code == 0; }, timeout));
   for (std::size_t i = 0; i < times_s.size(); i += 2) {
-    EXPECT_TRUE(await([&] { return control({"until", "--value", times_s[i]}).exit_code == 0; }, patience));
-    EXPECT_TRUE(await([] { return control({"where"}).output.find(", paused") != std::string::npos; }, patience));
+    EXPECT_TRUE(await([&] { return control({"until", "--value", times_s[i]}).exit_code == 0; }, timeout));
+    EXPECT_TRUE(await([] { return control({"where"}).output.find(", paused") != std::string::npos; }, timeout));
     const Ended back = control({"rewind", "run", "--value", times_s[i + 1]});
     EXPECT_EQ(back.exit_code, 0) << back.errors;
   }
@@ -73,10 +73,10 @@ TEST_P(ProgramsGoBack, ToAFileOfTheirRunAsWell) {
       of.world, of.duration_s, {"--paused", "--results", folder.file("results"), "--snapshots", folder.file("snaps")});
   arguments.insert(arguments.begin(), built("shoal"));
   Program program(arguments);
-  EXPECT_TRUE(await([] { return control({"where", "--timeout", "0.5"}).exit_code == 0; }, patience));
+  EXPECT_TRUE(await([] { return control({"where", "--timeout", "0.5"}).exit_code == 0; }, timeout));
   const auto run_until = [](const std::string& time_s) {
-    EXPECT_TRUE(await([&] { return control({"until", "--value", time_s}).exit_code == 0; }, patience));
-    EXPECT_TRUE(await([] { return control({"where"}).output.find(", paused") != std::string::npos; }, patience));
+    EXPECT_TRUE(await([&] { return control({"until", "--value", time_s}).exit_code == 0; }, timeout));
+    EXPECT_TRUE(await([] { return control({"where"}).output.find(", paused") != std::string::npos; }, timeout));
   };
   run_until(of.times_s[0]);
   EXPECT_EQ(control({"snapshot", "a"}).exit_code, 0);
@@ -116,12 +116,13 @@ TEST(Rewind, AProgramThatIsNotToGoBackEndsAndSaysSo) {
   std::vector<std::string> arguments{built("shoal"), "run", world,      "--launch",  "--speed", "max",
                                      "--duration",   "20",  "--paused", "--lcm-url", own_url()};
   Program program(arguments);
-  EXPECT_TRUE(await([] { return control({"where", "--timeout", "0.5"}).exit_code == 0; }, patience));
-  EXPECT_TRUE(await([] { return control({"until", "--value", "8"}).exit_code == 0; }, patience));
-  EXPECT_TRUE(await([] { return control({"where"}).output.find(", paused") != std::string::npos; }, patience));
+  EXPECT_TRUE(await([] { return control({"where", "--timeout", "0.5"}).exit_code == 0; }, timeout));
+  EXPECT_TRUE(await([] { return control({"until", "--value", "8"}).exit_code == 0; }, timeout));
+  EXPECT_TRUE(await([] { return control({"where"}).output.find(", paused") != std::string::npos; }, timeout));
   EXPECT_EQ(control({"rewind", "run", "--value", "5"}).exit_code, 0);
-  EXPECT_NE(program.wait(), 0);  // nobody balances it any more
-  EXPECT_THAT(program.errors(), HasSubstr("the world went back further than this program can, 2 s (--rewind-s)"));
+  EXPECT_NE(program.wait(), 0);  // no one balances it any more
+  EXPECT_THAT(program.errors(),
+              HasSubstr("the world was rewound further than this program supports, 2 s (--rewind-s)"));
   EXPECT_THAT(program.output(), HasSubstr("process 'balance' exited with code 6"));
 }
 

@@ -31,7 +31,7 @@ std::string heap_of(int boxes) {
   return world;
 }
 
-/// Runs a command in a name space of its own, where `folder` is a disk of so many bytes.
+/// Runs a command in its own name space, where `folder` is a disk of so many bytes.
 std::vector<std::string> on_small_disk(const std::string& folder, int bytes, const std::string& command) {
   return {"unshare", "-rm", "sh", "-c",
           "mount -t tmpfs -o size=" + std::to_string(bytes) + " none " + folder + " && " + command};
@@ -48,7 +48,7 @@ TEST(FullDisk, LosesNeitherScoreNorHash) {
   const std::string disk = folder.file("disk");
   std::filesystem::create_directory(disk);
   const std::string run = built("shoal") + " run " + source("worlds/minimal.yaml") +
-                          " --duration 30 --bus none --speed max --no-pictures --quiet";
+                          " --duration 30 --bus none --speed max --no-plots --quiet";
   Program reference({"sh", "-c", run + " --results " + folder.file("reference")});
   ASSERT_EQ(reference.wait(), 0) << reference.errors();
   const auto expected = nlohmann::json::parse(text_of_file(folder.file("reference") + "/summary.json"));
@@ -76,7 +76,7 @@ TEST(FullDisk, PrintsTheSummaryThatCannotBeSaved) {
   const std::string results = folder.file("results");
   std::filesystem::create_directories(results + "/summary.json/in_the_way");
   Program program({built("shoal"), "run", source("worlds/minimal.yaml"), "--duration", "1", "--bus", "none", "--speed",
-                   "max", "--no-pictures", "--quiet", "--results", results});
+                   "max", "--no-plots", "--quiet", "--results", results});
   EXPECT_EQ(program.wait(), 4);
   EXPECT_THAT(program.errors(), HasSubstr("summary.json"));
   EXPECT_THAT(program.output(), HasSubstr("run hash"));
@@ -104,7 +104,7 @@ TEST(SpecialFiles, AreRefusedAsLogsToo) {
   ASSERT_EQ(mkfifo(folder.file("pipe").c_str(), 0600), 0);
   const Ended ended = run_shoal({"replay", folder.file("pipe")});
   EXPECT_NE(ended.exit_code, 0);
-  EXPECT_THAT(ended.errors, HasSubstr("pipe: is no regular file"));
+  EXPECT_THAT(ended.errors, HasSubstr("pipe: is not a regular file"));
 }
 
 TEST(TwoRuns, CannotShareAResultsFolder) {
@@ -122,8 +122,8 @@ TEST(TwoRuns, CannotShareAResultsFolder) {
   first.send_signal(SIGKILL);
   first.wait();
   std::filesystem::remove(folder.file("results") + "/world.yaml");
-  Program third(run);  // a dead run is no owner
-  ASSERT_TRUE(await([&] { return std::filesystem::exists(folder.file("results") + "/world.yaml"); }, patience));
+  Program third(run);  // a dead run is not an owner
+  ASSERT_TRUE(await([&] { return std::filesystem::exists(folder.file("results") + "/world.yaml"); }, timeout));
   third.send_signal(SIGTERM);
   EXPECT_EQ(third.wait(), 128 + SIGTERM) << third.errors();
   EXPECT_TRUE(std::filesystem::exists(folder.file("results") + "/summary.json"));
@@ -165,11 +165,11 @@ TEST(SpecialFiles, AreRefusedUnlessAskedFor) {
     EXPECT_EQ(program.wait(), 4) << record;
     EXPECT_THAT(program.errors(), HasSubstr(record + ": cannot record: it is"));
   }
-  Program asked({"sh", "-c",
-                 "printf 'shoal: 1\\n' | " + built("shoal") +
-                     " run /dev/stdin --special-files --bus none --duration 1 --speed max --record "
-                     "/dev/null --overwrite"});
-  EXPECT_EQ(asked.wait(), 0) << asked.errors();
+  Program requested({"sh", "-c",
+                     "printf 'shoal: 1\\n' | " + built("shoal") +
+                         " run /dev/stdin --special-files --bus none --duration 1 --speed max --record "
+                         "/dev/null --overwrite"});
+  EXPECT_EQ(requested.wait(), 0) << requested.errors();
 }
 
 double cpu_s(pid_t process) {
@@ -189,9 +189,9 @@ TEST(Signals, ASecondOneEndsAStepThatDoesNotEnd) {
   Program shoal({built("shoal"), "run", folder.file("heap.yaml"), "--bus", "none", "--set", "physics.solver=quick",
                  "--set", "physics.quick_iterations=10000", "--log-level", "error", "--results",
                  folder.file("results")});
-  ASSERT_TRUE(await([&] { return std::filesystem::exists(folder.file("results") + "/world.yaml"); }, patience));
+  ASSERT_TRUE(await([&] { return std::filesystem::exists(folder.file("results") + "/world.yaml"); }, timeout));
   const double begun_s = cpu_s(shoal.pid());
-  ASSERT_TRUE(await([&] { return cpu_s(shoal.pid()) > begun_s + 1; }, patience));
+  ASSERT_TRUE(await([&] { return cpu_s(shoal.pid()) > begun_s + 1; }, timeout));
   int sent = 0;
   EXPECT_TRUE(await(
       [&] {
@@ -200,7 +200,7 @@ TEST(Signals, ASecondOneEndsAStepThatDoesNotEnd) {
         ++sent;
         return false;
       },
-      patience));
+      timeout));
   EXPECT_GT(sent, 1);
   EXPECT_EQ(shoal.wait(), 128 + SIGTERM);
   EXPECT_THAT(shoal.errors(), HasSubstr("ended at once by another signal"));

@@ -67,17 +67,17 @@ TEST(Keys, ChangeTheSpeed) {
   const ScratchFolder folder;
   OnTerminal shoal(endless_run(folder, {"--speed", "1"}));
   shoal.press("+");
-  shoal.shows("goes on 2 x real time");
+  shoal.shows("continues 2 x real time");
   shoal.press("-");
-  shoal.shows("goes on 1 x real time");
+  shoal.shows("continues 1 x real time");
   shoal.press("m");
-  shoal.shows("goes on as fast as possible");
+  shoal.shows("continues as fast as possible");
   shoal.press(" ");
   shoal.shows("; goes as fast as possible");
   shoal.press("1");
   shoal.shows("; goes 1 x real time");
   shoal.press(" ");
-  shoal.shows(", paused; goes on 1 x real time");
+  shoal.shows(", paused; continues 1 x real time");
   shoal.press("q");
   EXPECT_EQ(shoal.wait(), 0);
 }
@@ -127,7 +127,7 @@ TEST(Keys, AJobThatComesToTheForegroundTakesTheTerminal) {
   ASSERT_TRUE(shell.shows("keys: "));
   EXPECT_FALSE(shell.is_raw());
   shell.press("now\r");
-  EXPECT_TRUE(await([&] { return shell.is_raw(); }, patience));
+  EXPECT_TRUE(await([&] { return shell.is_raw(); }, timeout));
   shell.press("N");
   shell.shows("0.10 s");
   shell.press("q");

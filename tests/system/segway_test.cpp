@@ -29,7 +29,7 @@ TEST(SegwayRun, FallsWhenItIsTooLate) {
   const Ended ended = run_segway(
       {"--duration", "12", "--set", "vehicles.segway1.actuator_latency_s=0.14", "--set", "physics.step_s=0.001"});
   EXPECT_EQ(ended.exit_code, 1);
-  EXPECT_THAT(ended.output, testing::ContainsRegex("lean.fell_s +5[.]"));
+  EXPECT_THAT(ended.output, testing::ContainsRegex("tilt.fell_s +5[.]"));
   EXPECT_THAT(ended.output, HasSubstr("FAILED: fallen.count == 0 (left 1, right 0)"));
 }
 
@@ -51,12 +51,12 @@ TEST(SegwayRun, ItsProgramSaysWhatIsWrongWithItsOptions) {
       {{"--name", "s", "--kp-Nm-per-rad", "nan"}, "--kp-Nm-per-rad: must be from 0 to 10000, got 'nan'"},
       {{"--name", "s", "--period-s", "0"}, "--period-s"},
   };
-  for (const auto& [options, says] : mistakes) {
+  for (const auto& [options, reports] : mistakes) {
     std::vector<std::string> arguments{built("shoal-balance")};
     arguments.insert(arguments.end(), options.begin(), options.end());
     system_test::Program program(std::move(arguments));
-    EXPECT_EQ(program.wait(), 2) << says;
-    EXPECT_THAT(program.errors(), HasSubstr(says));
+    EXPECT_EQ(program.wait(), 2) << reports;
+    EXPECT_THAT(program.errors(), HasSubstr(reports));
   }
 }
 

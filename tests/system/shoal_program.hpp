@@ -18,7 +18,7 @@ using lcm_test::own_url;
 using lcm_test::ScratchFolder;
 
 /// Much more than anything here takes: other tests may run at the same time.
-constexpr std::chrono::seconds patience{60};
+constexpr std::chrono::seconds timeout{60};
 
 /// A program of the build tree, such as `shoal`.
 std::string built(const std::string& program);
@@ -39,7 +39,7 @@ class Program {
   pid_t pid() const { return pid_; }
   void send_signal(int signal) const;
   /// The exit code, 128 + signal when one killed it.  Kills it when it does not end in time, and gives -1.
-  int wait(std::chrono::milliseconds limit = patience);
+  int wait(std::chrono::milliseconds limit = timeout);
   bool running();
   std::string output() const { return text_of_file(scratch_.file("out")); }
   std::string errors() const { return text_of_file(scratch_.file("err")); }
@@ -60,7 +60,7 @@ struct Ended {
 };
 
 /// Runs `shoal` with these arguments to its end.
-Ended run_shoal(std::vector<std::string> arguments, std::chrono::milliseconds limit = patience);
+Ended run_shoal(std::vector<std::string> arguments, std::chrono::milliseconds limit = timeout);
 /// `shoal control` on own_url().
 Ended control(std::vector<std::string> arguments);
 /// The 16 digits after `state hash`, or what was said instead.
@@ -74,7 +74,7 @@ bool is_running(pid_t pid);
 /// The value of a key at the top of DIRECTORY/summary.json, as written there.
 std::string summary_value(const std::string& directory, const std::string& key);
 
-/// One rover on flat ground that runs until it is told to quit, with a report of its pose at every step of
+/// One rover on flat ground that runs until it is commanded to quit, with a report of its pose at every step of
 /// 0.01 s. `more`: further keys of the rover, indented by four spaces, and of the world.
 std::string endless_world(const std::string& more = "");
 

@@ -98,7 +98,7 @@ TEST(Snap, SaysWhatIsWrong) {
 
 TEST(Check, FindsATextureThatIsNoPicture) {
   const ScratchFolder folder;
-  write_file(folder.file("t.png"), "no picture");
+  write_file(folder.file("t.png"), "no image");
   write_file(folder.file("w.yaml"),
              "shoal: 1\nmaterials:\n  - {name: poster, texture: {pattern: image, file: t.png}}\n");
   const Ended ended = run_shoal({"check", folder.file("w.yaml")});

@@ -24,7 +24,7 @@ struct StudyFolder {
                "vehicles: [{name: rover1, file: " +
                    source("vehicles/rover.yaml") +
                    "}]\n"
-                   "metrics: [{name: way, type: distance, vehicle: rover1}]\n" +
+                   "metrics: [{name: distance, type: distance, vehicle: rover1}]\n" +
                    world);
     write_study(more);
   }
@@ -46,12 +46,12 @@ const std::string two_cases = "seeds: [1, 2]\ncases: [{name: a}, {name: b, set: 
 
 TEST(Study, RunsAWorldForEverySeedAndCase) {
   const StudyFolder study(two_cases +
-                          "plots: [{name: ways, figure: way.travelled_m}]\n"
-                          "pass: [mean(a.way.travelled_m) < 1]\n");
+                          "plots: [{name: ways, figure: distance.travelled_m}]\n"
+                          "pass: [mean(a.distance.travelled_m) < 1]\n");
   const Ended ended = study.run({"--jobs", "2"});
   EXPECT_EQ(ended.exit_code, 0) << ended.errors;
   EXPECT_THAT(ended.output, HasSubstr("study tiny: 4 runs"));
-  EXPECT_THAT(ended.output, HasSubstr("passed: mean(a.way.travelled_m) < 1 (left "));
+  EXPECT_THAT(ended.output, HasSubstr("passed: mean(a.distance.travelled_m) < 1 (left "));
   EXPECT_THAT(ended.errors, HasSubstr("[4/4] "));
   EXPECT_THAT(study.text("study.csv"), HasSubstr("\na,1,0,,duration,1,"));
   EXPECT_THAT(study.text("study.csv"), HasSubstr("\nb,2,0,,duration,2,"));
@@ -101,22 +101,22 @@ TEST(Study, KeepsRunsThatAreDoneUntilSomethingChanges) {
 }
 
 TEST(Study, ExitCodeIs1WhenARuleFails) {
-  const StudyFolder study("seeds: [1]\npass: [mean(world.way.travelled_m) > 1000]\n");
+  const StudyFolder study("seeds: [1]\npass: [mean(world.distance.travelled_m) > 1000]\n");
   const Ended ended = study.run();
   EXPECT_EQ(ended.exit_code, 1);
-  EXPECT_THAT(ended.output, HasSubstr("FAILED: mean(world.way.travelled_m) > 1000 (left "));
+  EXPECT_THAT(ended.output, HasSubstr("FAILED: mean(world.distance.travelled_m) > 1000 (left "));
 }
 
 TEST(Study, ARunWhoseOwnRulesFailIsAResult) {
-  const StudyFolder study("seeds: [1]\npass: [mean(world.passed) == 0]\n", "pass: [way.travelled_m > 1000]\n");
+  const StudyFolder study("seeds: [1]\npass: [mean(world.passed) == 0]\n", "pass: [distance.travelled_m > 1000]\n");
   const Ended ended = study.run();
   EXPECT_EQ(ended.exit_code, 0) << ended.errors;
   EXPECT_THAT(ended.errors, HasSubstr("done, its rules failed"));
 }
 
 TEST(Study, AProgramThatFailedFailsItsRunAndTheStudy) {
-  const StudyFolder study("seeds: [1, 2]\nlaunch: true\npass: [mean(world.way.travelled_m) < 1e6]\n",
-                          "pass: [way.travelled_m < 1e6]\n"
+  const StudyFolder study("seeds: [1, 2]\nlaunch: true\npass: [mean(world.distance.travelled_m) < 1e6]\n",
+                          "pass: [distance.travelled_m < 1e6]\n"
                           "processes: [{name: pilot, client: pilot, command: [sh, -c, exit 3]}]\n"
                           "lockstep: {join_timeout_s: 1000}\n");
   const Ended ended = study.run();
@@ -127,7 +127,7 @@ TEST(Study, AProgramThatFailedFailsItsRunAndTheStudy) {
 
 TEST(Study, ARunThatWasEndedByHandIsNoResult) {
   const StudyFolder study(
-      "seeds: [1]\nlaunch: true\nduration_s: 1e9\npass: [mean(world.way.travelled_m) < 1e6]\n",
+      "seeds: [1]\nlaunch: true\nduration_s: 1e9\npass: [mean(world.distance.travelled_m) < 1e6]\n",
       "processes: [{name: hand, command: [" + built("shoal") + ", control, quit, --lcm-url, '{lcm_url}']}]\n");
   const Ended ended = study.run();
   EXPECT_EQ(ended.exit_code, 4) << ended.errors;
@@ -153,7 +153,7 @@ TEST(Study, ExitCodeIs2ForAMistake) {
 }
 
 TEST(Study, IsCheckedAsWorldsAre) {
-  const StudyFolder study(two_cases + "pass: [max(b.way.travelled_m) < 1]\n");
+  const StudyFolder study(two_cases + "pass: [max(b.distance.travelled_m) < 1]\n");
   const std::string file = study.folder.file("study.yaml");
   const Ended good = run_shoal({"check", file, "--allow-path", study.folder.file("")});
   EXPECT_EQ(good.exit_code, 0) << good.errors;
@@ -173,12 +173,12 @@ TEST(Study, EndsItsRunsOnASignal) {
   const StudyFolder study("seeds: [1, 2]\nduration_s: 1e9\n");
   Program program(
       {built("shoal"), "study", study.folder.file("study.yaml"), "--output", study.folder.file("out"), "--jobs", "2"});
-  ASSERT_TRUE(await([&] { return program.children().size() == 2; }, patience));
+  ASSERT_TRUE(await([&] { return program.children().size() == 2; }, timeout));
   const auto children = program.children();
   program.send_signal(SIGINT);
   EXPECT_EQ(program.wait(), 130) << program.errors();
   for (const pid_t child : children) EXPECT_FALSE(is_running(child));
-  EXPECT_THAT(program.errors(), HasSubstr("goes on with the runs that are missing"));
+  EXPECT_THAT(program.errors(), HasSubstr("continues with the runs that are missing"));
 }
 
 TEST(Study, RunsOfAWorldWithASerialPortDoNotDisturbEachOther) {
@@ -264,24 +264,24 @@ TEST(Study, ItsRunsAndTheirProgramsEndWhenItIsKilled) {
       "seeds: [1]\nduration_s: 1e9\nlaunch: true\n",
       "processes: [{name: pilot, command: [sh, -c, 'echo $$ > " + marks.file("pid") + "; exec sleep 1000']}]\n");
   Program program({built("shoal"), "study", study.folder.file("study.yaml"), "--output", study.folder.file("out")});
-  ASSERT_TRUE(await([&] { return text_of_file(marks.file("pid")).ends_with('\n'); }, patience)) << program.errors();
+  ASSERT_TRUE(await([&] { return text_of_file(marks.file("pid")).ends_with('\n'); }, timeout)) << program.errors();
   const auto runs = program.children();
   ASSERT_EQ(runs.size(), 1u);
   const pid_t pilot = std::stoi(text_of_file(marks.file("pid")));
   program.send_signal(SIGKILL);
   EXPECT_EQ(program.wait(), 128 + SIGKILL);
-  EXPECT_TRUE(await([&] { return !is_running(runs[0]) && !is_running(pilot); }, patience));
+  EXPECT_TRUE(await([&] { return !is_running(runs[0]) && !is_running(pilot); }, timeout));
 }
 
 TEST(Run, ItsProgramsEndWhenItIsKilled) {
   const ScratchFolder folder;
   write_file(folder.file("world.yaml"), endless_world("processes: [{name: pilot, command: [sleep, '1000']}]\n"));
   Program program({built("shoal"), "run", folder.file("world.yaml"), "--launch", "--lcm-url", own_url(2)});
-  ASSERT_TRUE(await([&] { return program.children().size() == 1; }, patience)) << program.errors();
+  ASSERT_TRUE(await([&] { return program.children().size() == 1; }, timeout)) << program.errors();
   const pid_t pilot = program.children()[0];
   program.send_signal(SIGKILL);
   EXPECT_EQ(program.wait(), 128 + SIGKILL);
-  EXPECT_TRUE(await([&] { return !is_running(pilot); }, patience));
+  EXPECT_TRUE(await([&] { return !is_running(pilot); }, timeout));
 }
 
 TEST(Report, ExitCodesTellWhatIsWrong) {

@@ -73,13 +73,13 @@ TEST_F(Page, AWorkedSessionEndsAsItSays) {
   const std::vector<PageCommand> commands = commands_in(text);
   ASSERT_THAT(commands, SizeIs(5));
   Program run_itself(shell(commands.front().text + " --paused"));  // else the test would race with its 40 s
-  EXPECT_TRUE(await([&] { return run("shoal control where --timeout 0.5").exit_code == 0; }, patience));
+  EXPECT_TRUE(await([&] { return run("shoal control where --timeout 0.5").exit_code == 0; }, timeout));
   for (std::size_t i = 1; i < commands.size(); ++i) {
     const Ended ended = run(commands[i].text);
     EXPECT_EQ(ended.exit_code, 0) << commands[i].text << ended.errors;
     EXPECT_THAT(ended.output, HasSubstr(commands[i].answer));
     const auto stands = [&] { return run("shoal control where").output.find(", paused") != std::string::npos; };
-    EXPECT_TRUE(!commands[i].text.starts_with("shoal control until") || await(stands, patience));
+    EXPECT_TRUE(!commands[i].text.starts_with("shoal control until") || await(stands, timeout));
   }
   EXPECT_EQ(run_itself.wait(), 0) << run_itself.errors();
   for (const char* file : {"out/summary.json", "out/branch0/summary.json", "out.lcm", "out.branch1.lcm"}) {

@@ -50,7 +50,7 @@ struct Folder : ScratchFolder {
 /// A run that people talk to.
 struct Live {
   explicit Live(const Folder& folder, std::vector<std::string> more = {}) : program(arguments(folder, more)) {
-    EXPECT_TRUE(await([] { return control({"where", "--timeout", "0.5"}).exit_code == 0; }, patience));
+    EXPECT_TRUE(await([] { return control({"where", "--timeout", "0.5"}).exit_code == 0; }, timeout));
   }
   static std::vector<std::string> arguments(const Folder& folder, const std::vector<std::string>& more) {
     std::vector<std::string> all{built("shoal"), "run",         folder.world(),       "--paused", "--lcm-url",
@@ -67,7 +67,7 @@ struct Live {
     await_pause();
   }
   void await_pause() {
-    EXPECT_TRUE(await([] { return control({"where"}).output.find(", paused") != std::string::npos; }, patience));
+    EXPECT_TRUE(await([] { return control({"where"}).output.find(", paused") != std::string::npos; }, timeout));
   }
   static std::string where() {
     const std::string text = control({"where"}).output;
@@ -164,12 +164,12 @@ TEST(Snapshot, IsTakenAtTheStepNearestToTheTimeThatWasAskedFor) {
   const Ended early = run_shoal({"run", "--from", folder.file("snaps") + "/branch0_step2.snapshot", "--bus", "none",
                                  "--duration", "1", "--snapshot-at", "0.01", "--snapshots", folder.file("snaps")});
   EXPECT_EQ(early.exit_code, 2);
-  EXPECT_THAT(early.errors, HasSubstr("--snapshot-at: 0.01 s is before the begin of the run at 0.02 s"));
+  EXPECT_THAT(early.errors, HasSubstr("--snapshot-at: 0.01 s is before the start of the run at 0.02 s"));
   // A run that ends before its time.
   write_file(folder.world(), lively_world() + "  - {name: stop, at: 2, do: [{end: {reason: enough, passed: true}}]}\n");
   const Ended short_run = run("1,5");
   EXPECT_EQ(short_run.exit_code, 0);
-  EXPECT_THAT(short_run.errors, HasSubstr("--snapshot-at: no snapshot of 5 s was written: the run did not come there"));
+  EXPECT_THAT(short_run.errors, HasSubstr("--snapshot-at: no snapshot of 5 s was written: the run ended before it"));
   EXPECT_THAT(short_run.errors, Not(HasSubstr("no snapshot of 1 s")));
 }
 
@@ -193,7 +193,7 @@ TEST(Snapshot, NoticesThatAFileOfItsWorldIsAnotherOne) {
     write_file(folder.file(file), text + (text == mesh ? "v 2 2 2\n" : "20,0,0.5,0\n20,10,0.5,0\n"));
     for (const Ended& refused : {from(), run_shoal({"snapshot", snapshot, "--check"})}) {
       EXPECT_EQ(refused.exit_code, 4) << refused.output;
-      EXPECT_THAT(refused.errors, HasSubstr("its world used files that are not as they were then"));
+      EXPECT_THAT(refused.errors, HasSubstr("these input files of its world changed since it was written"));
       EXPECT_THAT(refused.errors, HasSubstr(std::string(file) + ": is another file than in the run"));
     }
     if (text == mesh) {
@@ -213,7 +213,7 @@ TEST(Snapshot, RefusesWhatIsNone) {
   write_file(folder.file("foreign"), "not a snapshot at all");
   const Ended foreign = run_shoal({"snapshot", folder.file("foreign")});
   EXPECT_EQ(foreign.exit_code, 4);
-  EXPECT_THAT(foreign.errors, HasSubstr("foreign: is no snapshot of shoal"));
+  EXPECT_THAT(foreign.errors, HasSubstr("foreign: is not a snapshot of shoal"));
   EXPECT_EQ(run_shoal({"run", "--from", folder.file("foreign"), "--bus", "none"}).exit_code, 4);
   EXPECT_EQ(run_shoal({"run", "--from", folder.file("missing"), "--bus", "none"}).exit_code, 4);
   EXPECT_EQ(run_shoal({"run", folder.world(), "--from", folder.file("foreign")}).exit_code, 2);
@@ -232,7 +232,7 @@ TEST(Rewind, RunAgainIsEqualToARunThatNeverWentBack) {
   const Ended back = control({"rewind", "--value", "4.2"});
   EXPECT_EQ(back.exit_code, 0) << back.errors;
   EXPECT_EQ(back.output, "step 517, 5.17 s, branch 1, paused\n");
-  EXPECT_EQ(back.errors, "paused; go on with `shoal control resume --lcm-url '" + own_url() + "'`\n");
+  EXPECT_EQ(back.errors, "paused; continue with `shoal control resume --lcm-url '" + own_url() + "'`\n");
   live.run_until("12");
   const Ended goes_on = control({"rewind", "run", "--value", "11"});
   EXPECT_EQ(goes_on.exit_code, 0);
@@ -333,7 +333,8 @@ TEST(Rewind, RefusesWhatCannotBeAndSaysSo) {
 TEST(Rewind, FurtherThanTheRunHasComeGoesToItsBegin) {
   const Folder folder;
   Live live(folder);
-  EXPECT_THAT(control({"rewind", "--value", "1"}).errors, HasSubstr("the run is at its begin: it cannot go back"));
+  EXPECT_THAT(control({"rewind", "--value", "1"}).errors,
+              HasSubstr("already at the start of the run: nothing to rewind"));
   live.run_until("4.7");
   EXPECT_EQ(control({"rewind", "--value", "10"}).output, "step 0, 0 s, branch 1, paused\n");
   EXPECT_EQ(live.quit(), 0) << live.program.errors();
@@ -373,7 +374,7 @@ TEST(Time, TheReplyToARewindHasTheTimeThereIs) {
         EXPECT_EQ(reply.utime, 1'767'225'600'000'000 + 1'500'000) << reply.text;  // the usual epoch
         return true;
       },
-      patience));
+      timeout));
   EXPECT_EQ(live.quit(), 0) << live.program.errors();
 }
 
@@ -442,7 +443,7 @@ TEST(Restore, ItsRecordsAreRunAgainFromTheFileOn) {
   }
 }
 
-/// A client that goes back with its world, and hears and commands its vehicle on a bus of the vehicle's own.
+/// A client that goes back with its world, and receives and commands its vehicle on a bus of the vehicle's own.
 TEST(Restore, InTheMiddleOfALockstepMissionOnABusOfItsOwnItsRecordIsRunAgain) {
   const Folder folder;
   write_file(folder.file("world.yaml"), "shoal: 1\nname: lively\nbuses: [{name: own, lcm_url: \"" + own_url(1) +
@@ -486,11 +487,11 @@ TEST(Restore, WithLockstepClientsGoesOnlyWhereTheRunHasBeenAndRemembers) {
   };
   live.run_until("2");
   EXPECT_EQ(control({"snapshot", "early"}).exit_code, 0);
-  EXPECT_THAT(refusal("branch0_step100"), HasSubstr("was not written by this run on its way to step 200, 2 s"));
+  EXPECT_THAT(refusal("branch0_step100"), HasSubstr("was not written by this run before step 200, 2 s"));
   live.run_until("4");
   EXPECT_EQ(control({"snapshot", "later"}).exit_code, 0);
   EXPECT_EQ(control({"rewind", "--value", "1"}).exit_code, 0);
-  EXPECT_THAT(refusal("later"), HasSubstr("was not written by this run on its way to step 300, 3 s"));
+  EXPECT_THAT(refusal("later"), HasSubstr("was not written by this run before step 300, 3 s"));
   EXPECT_EQ(Live::where(), "step 300, 3 s, branch 1, paused");
   EXPECT_EQ(control({"restore", "early"}).output, "step 200, 2 s, branch 2, paused\n");
   live.run_until("12");
@@ -502,7 +503,7 @@ TEST(Restore, WithLockstepClientsGoesOnlyWhereTheRunHasBeenAndRemembers) {
 TEST(Restore, OneThatDoesNotFitLeavesNoBranchBehind) {
   const Folder folder;
   const std::string results = folder.file("results");
-  Live live(folder, {"--results", results, "--no-pictures"});
+  Live live(folder, {"--results", results, "--no-plots"});
   live.run_until("2");
   EXPECT_EQ(control({"snapshot", "good"}).exit_code, 0);
   // Of the same world, with a state that has bytes too many.
@@ -523,7 +524,7 @@ TEST(Restore, OneThatDoesNotFitLeavesNoBranchBehind) {
 TEST(Restore, OfALaterTimeBeginsTheTracksAnew) {
   const Folder folder;
   const std::string results = folder.file("results");
-  Live live(folder, {"--results", results, "--no-pictures"});
+  Live live(folder, {"--results", results, "--no-plots"});
   live.run_until("6");
   EXPECT_EQ(control({"snapshot", "six"}).exit_code, 0);
   EXPECT_EQ(control({"rewind", "--value", "4"}).exit_code, 0);
@@ -587,14 +588,14 @@ TEST(Until, PausesAtATimeAndWhenAnEventFires) {
   // The event fires in the step that begins at 7.25 s.
   EXPECT_EQ(Live::where(), "step 726, 7.26 s, branch 0, paused");
   EXPECT_EQ(control({"step", "--value", "3"}).exit_code, 0);
-  EXPECT_TRUE(await([] { return Live::where().starts_with("step 729,"); }, patience));
+  EXPECT_TRUE(await([] { return Live::where().starts_with("step 729,"); }, timeout));
   EXPECT_EQ(live.quit(), 0) << live.program.errors();
 }
 
 TEST(Branch, KeepsTheResultsOfTheOneThatIsLeft) {
   const Folder folder;
   const std::string results = folder.file("results");
-  Live live(folder, {"--results", results, "--no-pictures"});
+  Live live(folder, {"--results", results, "--no-plots"});
   live.run_until("6");
   EXPECT_EQ(control({"rewind", "--value", "4"}).exit_code, 0);
   EXPECT_EQ(control({"do", "{move: {name: r1, position_m: [5, 5, 0.2]}}"}).exit_code, 0);

@@ -101,7 +101,7 @@ TEST(CheckPrograms, AProgramGetsItsArgumentsAsWords) {
   // --allow-path is where its program may be, too.
   const system_test::Ended ended = system_test::run_shoal(
       {"run", file, "--launch", "--run-name", "seven", "--duration", "1", "--speed", "1", "--lcm-url",
-       system_test::own_url(), "--results", results, "--no-pictures", "--allow-path", folder.file("bin")});
+       system_test::own_url(), "--results", results, "--no-plots", "--allow-path", folder.file("bin")});
   EXPECT_EQ(ended.exit_code, 0) << ended.errors;
   EXPECT_EQ(system_test::text_of_file(results + "/p.log"), "--run-name=a seven\n--start-m=[1,2.5]\n--loop\n");
 }
@@ -128,7 +128,7 @@ TEST(Warnings, TellAtTheEndOfAMetricThatHeardNothing) {
   const system_test::Ended run =
       system_test::run_shoal({"run", file, "--bus", "none", "--duration", "1", "--speed", "max"});
   EXPECT_THAT(run.errors,
-              HasSubstr("metric 'error': no estimate came on 'rover1.estimate': its figures are not numbers"));
+              HasSubstr("metric 'error': no estimate was received on 'rover1.estimate': its figures are not numbers"));
 }
 
 TEST(Warnings, TellOfAFirstContactWhileTheWorldRuns) {

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""tools/build_progress and tools/setup do what their texts say, on a build tree and a list of their own."""
+"""tools/build_progress and tools/setup do what their texts say, on a build tree and their own list."""
 import os
 import shutil
 import signal

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""tools/format finds and mends layout and licence lines, in a project of its own."""
+"""tools/format finds and mends layout and licence lines, in its own project."""
 import os
 import shutil
 import subprocess
@@ -36,7 +36,7 @@ class Format(unittest.TestCase):
         return subprocess.run([self.tool, *words], cwd=self.folder, capture_output=True, text=True,
                               env={**os.environ, "PATH": path})
 
-    @unittest.skipUnless(has_clang_format_14(), "clang-format 14 is not there")
+    @unittest.skipUnless(has_clang_format_14(), "clang-format 14 does not exist")
     def test_check_names_the_files_and_changes_none(self):
         self.write("a.cpp", "// " + LINE + "int  a;\n")
         self.write("b.py", "print()\n")
@@ -46,7 +46,7 @@ class Format(unittest.TestCase):
         self.assertEqual([line.split(":")[0] for line in done.stdout.splitlines()], ["b.py", "a.cpp"])
         self.assertEqual(self.read("b.py"), "print()\n")
 
-    @unittest.skipUnless(has_clang_format_14(), "clang-format 14 is not there")
+    @unittest.skipUnless(has_clang_format_14(), "clang-format 14 does not exist")
     def test_format_mends_what_check_names(self):
         self.write("a.cpp", "int  a;\n")
         self.write("b.sh", "#!/bin/sh\ntrue\n")

@@ -44,7 +44,7 @@ class Reader {
       if (!result_.help) check_complete();
     } catch (const UsageError& error) {
       result_.wrong = error.what();
-      result_.help = result_.help || asks_for_help();
+      result_.help = result_.help || requests_help();
     }
     arrange();
     return std::move(result_);
@@ -169,7 +169,7 @@ class Reader {
       if (option->get_required() && counts_[option] == 0) throw UsageError(option_name(*option) + " is required");
   }
 
-  bool asks_for_help() const {
+  bool requests_help() const {
     return std::any_of(words_.begin() + static_cast<std::ptrdiff_t>(at_), words_.end(),
                        [](const std::string& word) { return word == "--help" || word == "-h"; });
   }

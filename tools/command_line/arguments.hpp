@@ -7,12 +7,12 @@
 
 namespace command_line {
 
-/// What the words of a command line are, found before CLI11 reads them: its errors speak of its own types.
+/// Classifies the words of a command line before CLI11 reads them, as its errors refer to its own types.
 struct Arguments {
   CLI::App* command = nullptr;         ///< the innermost command that was named
   bool help = false;                   ///< --help, -h, or `help COMMAND`
   std::vector<std::string> for_cli11;  ///< in a form that it cannot misread, the last argument first
-  std::string wrong;                   ///< what is wrong with them; empty: nothing
+  std::string wrong;                   ///< the error; empty: none
 };
 
 /// Reads the arguments, without the name of the program, for the commands and options of `app`.

@@ -72,7 +72,7 @@ class DeclaredOptions {
 
   CLI::App& app() { return app_; }
   const sim::ProgramDeclaration& declaration() const { return declaration_; }
-  /// Parses the command line once all is declared.  Nothing: go on; else the exit code, also after `--describe`.
+  /// Parses the command line once all is declared.  Nothing: continue; else the exit code, also after `--describe`.
   std::optional<int> parse(int argc, const char* const* argv);
 
  private:

@@ -102,7 +102,7 @@ std::vector<std::string> pieces_of(const std::string& example) {
   return pieces;
 }
 
-/// A command that can be typed: where it is too long it goes on after a backslash.
+/// A command that can be typed: where it is too long it continues after a backslash.
 std::string example_text(const std::string& example, std::size_t columns) {
   std::string text;
   std::size_t used = 1;

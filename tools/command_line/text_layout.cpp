@@ -13,9 +13,9 @@ namespace command_line {
 
 namespace {
 
-constexpr int least_columns = 40, most_columns = 1000, usual_columns = 80;
+constexpr int min_columns = 40, max_columns = 1000, usual_columns = 80;
 
-bool begins_character(char c) {
+bool starts_character(char c) {
   return (static_cast<unsigned char>(c) & 0xc0) != 0x80;
 }
 
@@ -31,7 +31,7 @@ int text_columns(int file_descriptor) {
   winsize size{};
   if (columns <= 0 && ioctl(file_descriptor, TIOCGWINSZ, &size) == 0) columns = size.ws_col;
   if (columns <= 0) columns = usual_columns;
-  return std::clamp(columns, least_columns, most_columns);
+  return std::clamp(columns, min_columns, max_columns);
 }
 
 bool can_move_cursor(int file_descriptor) {
@@ -45,7 +45,7 @@ bool may_use_colour(int file_descriptor) {
 }
 
 std::size_t column_count(std::string_view text) {
-  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), begins_character));
+  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), starts_character));
 }
 
 std::string cut_to(std::string_view text, std::size_t columns) {
@@ -53,13 +53,13 @@ std::string cut_to(std::string_view text, std::size_t columns) {
   const std::size_t keep = columns > 3 ? columns - 3 : 0;
   std::size_t end = 0, characters = 0;
   for (; end < text.size(); ++end)
-    if (begins_character(text[end]) && characters++ == keep) break;
+    if (starts_character(text[end]) && characters++ == keep) break;
   return std::string(text.substr(0, end)) + std::string("...").substr(0, std::min<std::size_t>(3, columns));
 }
 
-std::string wrapped(std::string_view text, std::size_t columns, std::size_t indent, std::size_t begins_at) {
+std::string wrapped(std::string_view text, std::size_t columns, std::size_t indent, std::size_t starts_at) {
   std::string result;
-  std::size_t used = begins_at;
+  std::size_t used = starts_at;
   bool first_of_line = true;
   for (std::size_t at = 0; at < text.size();) {
     if (text[at] == ' ') {

@@ -23,13 +23,13 @@ namespace tools {
 
 namespace {
 
-/// Without a world file: water, and a wind by which the sea is heard.
+/// Without a world file: water, and a wind by which the sea is received.
 constexpr const char* plain_world = "shoal: 1\nmedium: {water: {}, wind: {velocity_mps: [5, 0, 0]}}\n";
 
 struct AcousticsArguments {
   std::string world;
   sim::LoadOptions load;
-  std::string from, to, ranges, picture, closed_forms;
+  std::string from, to, ranges, image, closed_forms;
   std::vector<std::string> packets;
   bool micromodem = false;
   double range_m = 1000, depth_m = 10;
@@ -86,8 +86,8 @@ LinkEnd find_end(const char* option, const std::string& text, const sim::World& 
     end.group = vehicle->group();
     return end;
   }
-  throw CLI::ValidationError(option,
-                             "is no place such as 4,-3,-2.5, no transducer and no vehicle: '" + text + "'" + known);
+  throw CLI::ValidationError(
+      option, "must be a place such as 4,-3,-2.5, a transducer or a vehicle, got '" + text + "'" + known);
 }
 
 std::vector<AcousticPacket> packets_of(const AcousticsArguments& arguments,
@@ -168,9 +168,9 @@ std::optional<double> water_depth_m(const AcousticLink& link, const sim::World& 
   sim::RayFilter filter;
   filter.kind = sim::RayKind::sound;
   const sim::PhysicsWorld& physics = world.physics();
-  // Vehicles and what floats are no bottom: the ray goes on through them.
-  constexpr int most_hits = 100;
-  for (int i = 0; i < most_hits; ++i) {
+  // Vehicles and what floats are not bottom: the ray continues through them.
+  constexpr int max_hits = 100;
+  for (int i = 0; i < max_hits; ++i) {
     const auto hit = physics.scene().cast(p_W, -sim::Vector3d::UnitZ(), 12000, filter);
     if (!hit) return std::nullopt;
     p_W.z() -= hit->range_m;
@@ -184,10 +184,10 @@ std::optional<double> water_depth_m(const AcousticLink& link, const sim::World& 
 /// A place below terrain or a plane, or inside of something fixed.
 bool in_ground(const sim::Vector3d& p_W, const sim::World& world) {
   constexpr double far_m = 12000;
-  const auto fixed_part = [&](const sim::Vector3d& way_W) -> int {
+  const auto fixed_part = [&](const sim::Vector3d& displacement_W) -> int {
     sim::RayFilter filter;
     filter.kind = sim::RayKind::sound;
-    const auto hit = world.scene().cast(p_W, way_W, far_m, filter);
+    const auto hit = world.scene().cast(p_W, displacement_W, far_m, filter);
     if (!hit) return -1;
     const int body = world.physics().parts()[static_cast<std::size_t>(hit->part)].body;
     return world.physics().bodies()[static_cast<std::size_t>(body)]->fixed() ? hit->part : -1;
@@ -221,7 +221,7 @@ void warn(const AcousticLink& link, const sim::World& world) {
   const int none = -2;  // a group that nothing has
   const auto gain = world.acoustics().propagation().gain(link.from.p_W, link.from.group < 0 ? none : link.from.group,
                                                          link.to.p_W, link.to.group, link.centre_Hz, random);
-  if (gain.blocked) std::cerr << "shoal: something stands between the ends, which the table does not count\n";
+  if (gain.blocked) std::cerr << "shoal: an obstacle blocks the line of sight, which the table ignores\n";
 }
 
 int show_closed_forms(const std::string& file) {
@@ -234,9 +234,9 @@ int show_closed_forms(const std::string& file) {
 
 int show(AcousticsArguments& arguments) {
   if (!arguments.closed_forms.empty()) return show_closed_forms(arguments.closed_forms);
-  if (!arguments.picture.empty()) check_writable(arguments.picture);
+  if (!arguments.image.empty()) check_writable(arguments.image);
   const std::vector<double> ranges_m =
-      arguments.ranges.empty() && arguments.picture.empty()
+      arguments.ranges.empty() && arguments.image.empty()
           ? std::vector<double>()
           : parse_ranges(arguments.ranges.empty() ? "100:10000:100" : arguments.ranges);
   arguments.load.encode_message = shoal::encode_own_message;
@@ -262,13 +262,13 @@ int show(AcousticsArguments& arguments) {
     return exit_ok;
   }
   const std::vector<RangeRow> rows = over_range(link, packets, ranges_m, config.acoustics, world.medium(), depth_m);
-  if (arguments.picture.empty())
+  if (arguments.image.empty())
     std::cout << csv_text(rows, packets);
   else
     draw_over_range(rows, packets,
                     fmt::format("{:g} dB re 1 uPa at 1 m, {:g} Hz, {:g} Hz wide", link.source_level.dB(),
                                 link.centre_Hz, link.bandwidth_Hz),
-                    arguments.picture);
+                    arguments.image);
   return exit_ok;
 }
 
@@ -329,7 +329,7 @@ void add_options(CLI::App& command, AcousticsArguments& arguments) {
   add_link_options(command, arguments);
   add_signal_options(command, arguments);
   command.add_option("--ranges", arguments.ranges, "a table over range, m, as CSV: from:to:step")->type_name("RANGES");
-  command.add_option("--picture", arguments.picture, "PNG file: signal-to-noise ratio and delivery over range")
+  command.add_option("--image", arguments.image, "PNG file: signal-to-noise ratio and delivery over range")
       ->type_name("FILE");
   add_set_option(command, arguments.load.sets);
   add_allow_path_option(command, arguments.load);
@@ -343,7 +343,7 @@ void add_options(CLI::App& command, AcousticsArguments& arguments) {
 }  // namespace
 
 void add_acoustics_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("acoustics", "Show what becomes of a sound between two places under water");
+  CLI::App* command = app.add_subcommand("acoustics", "Show the propagation of sound between two places under water");
   const auto arguments = std::make_shared<AcousticsArguments>();
   add_log_level_option(*command);
   add_options(*command, *arguments);
@@ -353,7 +353,7 @@ void add_acoustics_command(CLI::App& app, int& exit_code) {
                   "shoal acoustics worlds/proving_sea.yaml --from 0,0,-5 --to 900,0,-25 --packet psk:500:64",
                   "shoal acoustics --closed-forms tests/fidelity/reference/closed_forms.csv"},
                  {{0, "success"},
-                  {1, "a closed form is off"},
+                  {1, "a closed form was not met"},
                   {2, "wrong usage, or a mistake in the world"},
                   {4, "file trouble"}},
                  {"docs/models/acoustics.md has the equations."}});

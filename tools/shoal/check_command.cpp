@@ -125,7 +125,7 @@ void add_check_command(CLI::App& app, int& exit_code) {
   command_line::set_help_end(
       *command, {{"shoal check worlds/coop_land.yaml --set run.seed=3", "shoal check worlds/studies/coop_land.yaml",
                   "shoal check pilot.args.yaml"},
-                 {{0, "no mistake was found"}, {2, "wrong usage, or mistakes, each on a line of its own"}},
+                 {{0, "no mistake was found"}, {2, "wrong usage, or mistakes, each on its own line"}},
                  {"Every mistake is printed as file:line:column: who: rule, value.  Warnings have the "
                   "same form and leave the exit code at 0; see docs/reference/warnings.md."}});
   command->callback([path, options, &exit_code] {

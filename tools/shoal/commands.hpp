@@ -21,7 +21,7 @@ enum ExitCode {
   exit_failed = 1,  ///< the experiment's own rule
   exit_usage = 2,   ///< command line or configuration
   exit_physics = 3,
-  exit_bus = 4,  ///< bus or file trouble
+  exit_bus = 4,  ///< bus or file error
   exit_timeout = 5
 };
 

@@ -12,7 +12,7 @@
 #include <thread>
 
 #include "bridges/lcm/lcm_listener.hpp"
-#include "bridges/lockstep_client/wait_notice.hpp"
+#include "bridges/lockstep_client/wait_warning.hpp"
 #include "bridges/signing/signed_message.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/sim_control_reply_t.hpp"
@@ -36,7 +36,7 @@ struct ControlArguments {
   std::string lcm_url;
   std::string run;
   double timeout_s = 5;
-  bool stay = false;
+  bool hold_here = false;
 };
 
 const std::vector<std::string> known_requests = {"pause", "resume", "step",     "speed",   "quit",
@@ -60,13 +60,13 @@ std::string text_of(const std::string& argument) {
   return text.str();
 }
 
-/// Whether a run stands still because of this request, so that somebody has to let it go on.
+/// Whether a run is paused because of this request, so that it must be resumed.
 bool leaves_paused(const std::string& command, const std::string& reply) {
   return (command == "pause" || command == "rewind" || command == "restore") &&
          reply.find(", paused") != std::string::npos;
 }
 
-/// Requests and their answers.  A request is not sent twice, for it might be obeyed twice, unless it was lost: a run
+/// Requests and their answers.  A request is not sent twice, for it might be executed twice, unless it was lost: a run
 /// that has not started yet does not receive it.
 class Session {
  public:
@@ -77,24 +77,26 @@ class Session {
   }
 
   /// The reply; nothing when none came in time.
-  std::optional<shoal::sim_control_reply_t> ask(const std::string& command, const std::string& text, double value) {
+  std::optional<shoal::sim_control_reply_t> send_request(const std::string& command, const std::string& text,
+                                                         double value) {
     const Clock::time_point deadline =
         Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(arguments_.timeout_s));
-    bridges::WaitNotice notice("shoal control: waiting for a simulator to answer on 'sim.control.reply', at " +
-                               lcm_.url());
+    bridges::WaitWarning audit_entry("shoal control: waiting for a simulator to answer on 'sim.control.reply', at " +
+                                     lcm_.url());
     const std::int32_t request = ++id_, question = ++id_;
     send(request, command, text, value);
     // Requests are answered in their order.  Once the question, which changes nothing, is answered and the request is
     // not, the simulator has never received the request.
     while (Clock::now() < deadline && caught_signal() == 0) {
-      auto reply = await_reply(request, question, std::min<Clock::time_point>(deadline, Clock::now() + 1s), notice);
+      auto reply =
+          await_reply(request, question, std::min<Clock::time_point>(deadline, Clock::now() + 1s), audit_entry);
       if (!reply) {
         send(question, "alive", "", 0);
         continue;
       }
       if (reply->id == request) return reply;
       send(request, command, text, value);
-      return await_reply(request, request, deadline, notice);
+      return await_reply(request, request, deadline, audit_entry);
     }
     return std::nullopt;
   }
@@ -115,16 +117,16 @@ class Session {
 
   /// The reply to one of two requests.
   std::optional<shoal::sim_control_reply_t> await_reply(std::int32_t id, std::int32_t other_id,
-                                                        Clock::time_point deadline, bridges::WaitNotice& notice) {
+                                                        Clock::time_point deadline, bridges::WaitWarning& audit_entry) {
     while (Clock::now() < deadline && caught_signal() == 0) {
-      notice.look();
+      audit_entry.look();
       const auto message = lcm_.next(50ms);
       if (!message || message->channel != "sim.control.reply") continue;
       try {
         auto reply = shoal::decode<shoal::sim_control_reply_t>(message->payload, shoal::Finite::any);
         if ((reply.id == id || reply.id == other_id) && reply.client == arguments_.client) return reply;
       } catch (const shoal::MessageError&) {
-        // Somebody else's noise on the channel.
+        // An unrelated message on the channel.
       }
     }
     return std::nullopt;
@@ -145,7 +147,7 @@ int control(const ControlArguments& arguments) {
   const std::string text = text_of(arguments.text);
   catch_signals(false);
   Session session(arguments);
-  const auto reply = session.ask(arguments.command, text, arguments.value);
+  const auto reply = session.send_request(arguments.command, text, arguments.value);
   if (!reply) {
     std::cerr << "shoal control: no simulator answered within " << arguments.timeout_s << " s at " << session.url()
               << "; is one running there? see shoal doctor\n";
@@ -154,15 +156,15 @@ int control(const ControlArguments& arguments) {
   (reply->ok ? std::cout : std::cerr) << reply->text << (reply->text.empty() ? "ok\n" : "\n") << std::flush;
   if (!reply->ok) return exit_failed;
   if (leaves_paused(arguments.command, reply->text))
-    std::cerr << "paused; go on with `shoal control resume"
+    std::cerr << "paused; continue with `shoal control resume"
               << (arguments.lcm_url.empty() ? "" : " --lcm-url '" + arguments.lcm_url + "'")
               << (arguments.run.empty() ? "" : " --run '" + arguments.run + "'") << "`\n";
   // A vehicle that goes with its client stays as long as we say that we live.
-  while (arguments.stay && caught_signal() == 0) {
-    if (!session.ask("alive", "", 0) && caught_signal() == 0) return exit_timeout;
+  while (arguments.hold_here && caught_signal() == 0) {
+    if (!session.send_request("alive", "", 0) && caught_signal() == 0) return exit_timeout;
     std::this_thread::sleep_for(500ms);
   }
-  if (arguments.stay) session.ask("leave", "", 0);
+  if (arguments.hold_here) session.send_request("leave", "", 0);
   return exit_ok;
 }
 
@@ -180,7 +182,7 @@ void add_control_command(CLI::App& app, int& exit_code) {
   command->add_option("--value", arguments->value, "number of the request: steps, speed (or max), seconds")
       ->type_name("NUMBER")
       ->transform(command_line::number_or_word(-1e12, 1e12, "max").description(""));
-  command->add_option("--client", arguments->client, "name of who requests; without it shoal-control-PID")
+  command->add_option("--client", arguments->client, "client name to use in requests; without it shoal-control-PID")
       ->type_name("NAME");
   command
       ->add_option("--run", arguments->run,
@@ -190,21 +192,21 @@ void add_control_command(CLI::App& app, int& exit_code) {
       ->type_name("S")
       ->check(number_from(0.01, 1e6))
       ->capture_default_str();
-  command->add_flag("--stay", arguments->stay, "keep a vehicle spawned with `with_client: true` until Ctrl-C");
+  command->add_flag("--stay", arguments->hold_here, "keep a vehicle spawned with `with_client: true` until Ctrl-C");
   add_lcm_url_option(*command, arguments->lcm_url);
   command_line::set_help_end(
       *command, {{"shoal control pause", "shoal control step --value 10", "shoal control until --value 90",
                   "shoal control until storm  # an event of the world",
                   "shoal control rewind --value 30  # paused then, until `shoal control resume`",
-                  "shoal control rewind run --value 30  # goes on at once", "shoal control snapshot before_dive",
+                  "shoal control rewind run --value 30  # continues immediately", "shoal control snapshot before_dive",
                   "shoal control restore before_dive",
                   "shoal control spawn '{name: rover7, file: rover.yaml, position_m: [2, 0, 0]}'",
                   "shoal control spawn @my_robot.yaml", "shoal control quit --run results/dive1",
                   "shoal control remove rover7", "shoal control do '{fault: {device: rover1/lidar, kind: stuck}}'"},
-                 {{0, "obeyed"},
+                 {{0, "executed"},
                   {1, "refused; the reason is on stderr"},
                   {2, "wrong usage"},
-                  {4, "bus or file trouble"},
+                  {4, "bus or file error"},
                   {5, "no simulator answered in time"}},
                  {}});
   command->callback([arguments, &exit_code] { exit_code = control(*arguments); });

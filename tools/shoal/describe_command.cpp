@@ -27,7 +27,7 @@ std::string unknown_name(const std::string& name) {
   if (const auto folders = sim::program_folders(); !folders.empty())
     for (const std::string& program : sim::declared_programs(folders.front())) known.push_back(program);
   const std::string meant = sim::closest_name(name, known);
-  return "nothing is called '" + sim::shortened(sim::printable(name)) + "'; " +
+  return "unknown name '" + sim::shortened(sim::printable(name)) + "'; " +
          (meant.empty() ? "see `shoal list devices` and `shoal list messages`" : "did you mean '" + meant + "'?");
 }
 
@@ -55,7 +55,7 @@ void add_describe_command(CLI::App& app, int& exit_code) {
       *command, {{"shoal describe lidar", "shoal describe world", "shoal describe metrics", "shoal describe pose_t",
                   "shoal describe shoal-coop-rover", "shoal describe --schema world > world.schema.json",
                   "shoal describe thermometer --plugin build/thermometer.so"},
-                 {{0, "success"}, {2, "wrong usage, or nothing has this name"}},
+                 {{0, "success"}, {2, "wrong usage, or an unknown name"}},
                  {}});
   command->callback([name, page, schema, &exit_code] {
     if (!page->empty() || !schema->empty()) {

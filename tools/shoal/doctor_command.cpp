@@ -39,7 +39,7 @@ int examine(const std::string& url) {
 }  // namespace
 
 void add_doctor_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("doctor", "Check whether LCM works here, and what to type if not");
+  CLI::App* command = app.add_subcommand("doctor", "Check whether LCM works on this machine, and print how to fix it");
   const auto url = std::make_shared<std::string>();
   add_log_level_option(*command);
   add_lcm_url_option(*command, *url);

@@ -31,8 +31,8 @@ int fidelity(const FidelityArguments& arguments) {
   }
   FidelityFile file = read_fidelity_file(arguments.cases);
   std::erase_if(file.cases, [&](const FidelityCase& of) {
-    const auto wanted = [&](const std::string& name) { return name == of.name || name == of.group; };
-    return !arguments.names.empty() && std::none_of(arguments.names.begin(), arguments.names.end(), wanted);
+    const auto desired = [&](const std::string& name) { return name == of.name || name == of.group; };
+    return !arguments.names.empty() && std::none_of(arguments.names.begin(), arguments.names.end(), desired);
   });
   if (file.cases.empty() && arguments.names.empty())
     throw CLI::ValidationError("CASES", "there is no case in " + arguments.cases);

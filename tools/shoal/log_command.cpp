@@ -14,8 +14,8 @@
 #include "shoal/message_codec.hpp"
 #include "shoal/sim_info_t.hpp"
 #include "sim/config/message_text.hpp"
-#include "tools/experiment/pictures/allan_table.hpp"
-#include "tools/experiment/pictures/log_picture.hpp"
+#include "tools/experiment/images/allan_table.hpp"
+#include "tools/experiment/images/log_image.hpp"
 #include "tools/shoal/commands.hpp"
 #include "tools/shoal/output_file.hpp"
 
@@ -136,7 +136,7 @@ void check_png_name(const std::string& png) {
   if (!png.ends_with(".png")) throw CLI::ValidationError("--png", "must end in .png, got '" + png + "'");
 }
 
-/// The Allan deviation of what an instrument at rest reported: as CSV to a file or stdout, and as a picture.
+/// The Allan deviation of what an instrument at rest reported: as CSV to a file or stdout, and as an image.
 int allan(const std::string& path, const std::string& channel, const std::string& out, const std::string& png,
           const shoal::MessageTypes& types) {
   if (!png.empty()) check_png_name(png);
@@ -160,15 +160,15 @@ int allan(const std::string& path, const std::string& channel, const std::string
 struct LogArguments {
   std::string path, channel, out, png;
   std::vector<std::string> lcm_files;
-  PictureChoice choice;
+  ImageChoice choice;
 };
 
-int picture(const LogArguments& arguments) {
+int image(const LogArguments& arguments) {
   check_png_name(arguments.png);
   const std::string& path = arguments.path;
   try {
     check_writable(arguments.png);
-    const LogPicture made = draw_log(path, arguments.channel, arguments.png, arguments.choice);
+    const LogImage made = draw_log(path, arguments.channel, arguments.png, arguments.choice);
     std::cout << arguments.png << ": " << arguments.channel << ", " << made.drawn << '\n';
     for (const std::string& problem : made.problems) std::cerr << path << ": " << problem << '\n';
     if (!made.problems.empty()) return exit_bus;
@@ -182,7 +182,7 @@ int picture(const LogArguments& arguments) {
 }
 
 const std::vector<std::pair<int, std::string>> log_codes = {
-    {0, "success"}, {2, "wrong usage"}, {4, "the log is damaged or has not what was asked for, or file trouble"}};
+    {0, "success"}, {2, "wrong usage"}, {4, "the log is damaged or lacks the requested data, or a file error"}};
 
 void add_common(CLI::App& command, LogArguments& arguments) {
   add_log_level_option(command);
@@ -231,8 +231,8 @@ void add_allan_command(CLI::App& app, int& exit_code) {
   });
 }
 
-void add_picture_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("picture", "What a camera or a range sensor recorded on one channel");
+void add_image_command(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand("image", "Draw the recording of a camera or range sensor on one channel");
   const auto arguments = std::make_shared<LogArguments>();
   add_common(*command, *arguments);
   command->add_option("CHANNEL", arguments->channel, "such as auv1.side_scan or rover1.camera")->required();
@@ -246,12 +246,12 @@ void add_picture_command(CLI::App& app, int& exit_code) {
   add_plugin_option(*command);
   command_line::set_help_end(
       *command,
-      {{"shoal log picture run.lcm auv1.side_scan --png side_scan.png",
-        "shoal log picture run.lcm rover1.camera --at 12.5 --png seen.png"},
+      {{"shoal log image run.lcm auv1.side_scan --png side_scan.png",
+        "shoal log image run.lcm rover1.camera --at 12.5 --png seen.png"},
        log_codes,
        {"Side scans and multibeam pings are drawn all in one; of other sensors one message is drawn.  All but "
         "images of cameras need gnuplot."}});
-  command->callback([arguments, &exit_code] { exit_code = picture(*arguments); });
+  command->callback([arguments, &exit_code] { exit_code = image(*arguments); });
 }
 
 }  // namespace
@@ -262,11 +262,11 @@ void add_log_command(CLI::App& app, int& exit_code) {
   add_info_command(*command, exit_code);
   add_csv_command(*command, exit_code);
   add_allan_command(*command, exit_code);
-  add_picture_command(*command, exit_code);
+  add_image_command(*command, exit_code);
   command_line::set_help_end(*command,
                              {{"shoal log info run.lcm", "shoal log csv run.lcm rover1.odometry > odometry.csv",
                                "shoal log allan run.lcm bench.imu --png allan.png",
-                               "shoal log picture run.lcm auv1.side_scan --png side_scan.png"},
+                               "shoal log image run.lcm auv1.side_scan --png side_scan.png"},
                               log_codes,
                               {}});
 }

@@ -37,10 +37,10 @@ int run(int argc, char** argv) {
         "shoal run worlds/coop_land.yaml --launch --results results/coop_land", "shoal check worlds/coop_land.yaml",
         "shoal snap worlds/coop_land.yaml --at 10 --out coop_land.png", "shoal describe lidar"},
        {{0, "success"},
-        {1, "a rule of the experiment failed, or a comparison found a difference"},
+        {1, "a pass rule failed, or a comparison found a difference"},
         {2, "wrong usage, or a mistake in a file of the user"},
         {3, "physics fault"},
-        {4, "bus or file trouble"},
+        {4, "bus or file error"},
         {5, "time-out"},
         {129, "ended by SIGHUP; 130 by SIGINT; 143 by SIGTERM"}},
        {"`shoal COMMAND --help` has the options and exit codes of a command."}});
@@ -81,13 +81,13 @@ int run(int argc, char** argv) {
 }
 
 /// A full disk shows at the latest now.  What failed before is the more important code.  A reader that has seen enough,
-/// as `head -1` does, is no failure.
+/// as `head -1` does, is not a failure.
 int flush_output(int exit_code) {
   errno = 0;
   const bool flushed = std::cout.flush() && std::fflush(stdout) == 0;
   int error = errno;
   if ((flushed && std::ferror(stdout) == 0) || error == EPIPE || output_was_closed) return exit_code;
-  // Where an earlier write failed nobody has kept the reason: another one fails for the same.
+  // When an earlier write failed its reason is lost: another one fails for the same.
   if (error == 0 && write(STDOUT_FILENO, "\n", 1) < 0) error = errno;
   std::cerr << "shoal: cannot write to stdout: " << std::strerror(error != 0 ? error : EIO) << '\n';
   return exit_code == tools::exit_ok ? tools::exit_bus : exit_code;

@@ -32,13 +32,13 @@ void print(const std::string& file, const sim::Mesh& mesh) {
             << fmt::format("bounds: {} to {} m, size {} m\n", list_text_of(low), list_text_of(high),
                            list_text_of(high - low));
   if (!sim::is_closed(mesh)) {
-    std::cout << "surface: open; it can stand in a world, but has no mass of its own\n";
+    std::cout << "surface: open; it can be used in a world, but has no mass\n";
     return;
   }
   const sim::MeshSolid solid = sim::solid_of(mesh);
   std::cout << fmt::format("surface: closed, volume {:.6g} m3, centroid {} m{}\n", std::abs(solid.volume_m3),
                            list_text_of(solid.centroid_m),
-                           solid.volume_m3 < 0 ? "; inside out, which Shoal turns by itself" : "");
+                           solid.volume_m3 < 0 ? "; inside out, which Shoal corrects" : "");
 }
 
 int describe_and_convert(const MeshOptions& options) {
@@ -78,7 +78,7 @@ void add_mesh_command(CLI::App& app, int& exit_code) {
                    "others")
       ->type_name("AXIS")
       ->check(one_of({"y", "z"}).description(""));
-  command->add_option("--timeout", options->import.timeout_s, "give up on a file that takes longer, s")
+  command->add_option("--timeout", options->import.timeout_s, "time limit for reading the file, s")
       ->type_name("S")
       ->check(number_from(0.01, 86400))
       ->capture_default_str();

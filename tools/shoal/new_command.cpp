@@ -48,7 +48,7 @@ std::string schema_file(const std::string& kind) {
 std::string write_start(const NewArguments& arguments, const std::string& file, const std::string& text) {
   const std::string path = (fs::path(arguments.folder) / file).lexically_normal().string();
   std::error_code error;
-  if (fs::exists(path, error)) throw std::runtime_error(path + ": is there already; take another name or folder");
+  if (fs::exists(path, error)) throw std::runtime_error(path + ": already exists; choose another name or folder");
   check_writable(path);
   std::ofstream out(path, std::ios::binary);
   if (!(out << text << std::flush)) throw std::runtime_error(path + ": cannot be written");
@@ -126,7 +126,7 @@ void add_new_command(CLI::App& app, int& exit_code) {
       ->type_name("FILE");
   world->add_flag("--under-water", arguments->under_water, "an AUV in the sea instead of a rover on land");
   const std::vector<std::pair<int, std::string>> exit_codes = {
-      {0, "written"}, {2, "wrong usage"}, {4, "the file is there already, or cannot be written"}};
+      {0, "written"}, {2, "wrong usage"}, {4, "the file already exists, or cannot be written"}};
   command_line::set_help_end(*world, {{"shoal new world yard", "shoal new world bay --under-water",
                                        "shoal new world pit --vehicle digger.yaml"},
                                       exit_codes,
@@ -150,7 +150,7 @@ void add_new_command(CLI::App& app, int& exit_code) {
   command_line::set_help_end(*command,
                              {{"shoal new world yard", "shoal new vehicle digger", "shoal new program pilot --python"},
                               exit_codes,
-                              {"A file that is there already is not touched."}});
+                              {"Existing files are never overwritten."}});
 }
 
 }  // namespace tools

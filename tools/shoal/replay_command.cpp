@@ -95,7 +95,7 @@ void add_player_options(CLI::App& command, ReplayArguments& arguments) {
 }  // namespace
 
 void add_replay_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("replay", "Run the world of a log again, and compare");
+  CLI::App* command = app.add_subcommand("replay", "Replay the world of a log, and compare");
   const auto arguments = std::make_shared<ReplayArguments>();
   CLI::Option* log_level = add_log_level_option(*command, "error");
   command->add_option("LOG", arguments->replay.log, "of shoal run --record, or of lcm-logger")->required();
@@ -119,7 +119,7 @@ void add_replay_command(CLI::App& app, int& exit_code) {
        {{0, "equal; with --play: played"},
         {1, "different; with --play only when --compare was given"},
         {2, "wrong usage, or a mistake in the world"},
-        {4, "the log has not what a replay needs, or file or bus trouble"},
+        {4, "the log lacks data that a replay needs, or a file or bus error"},
         {5, "with --play: no program came, or one did not answer in time"},
         {130, "ended by Ctrl-C"}},
        {"With --play the messages of a record go to programs as in its run: in lockstep to those that join, and on "

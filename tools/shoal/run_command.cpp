@@ -90,12 +90,13 @@ int run(RunArguments& arguments) {
 }
 
 void add_snapshot_options(CLI::App& command, RunArguments& arguments) {
-  command.add_option("--from", arguments.from, "go on from a snapshot file instead of the start of a WORLD")
+  command.add_option("--from", arguments.from, "continue from a snapshot file instead of the start of a WORLD")
       ->type_name("FILE");
   command
       .add_option("--snapshot-at", arguments.snapshot_at, "write snapshot files at these times in s, such as 10,20.5")
       ->type_name("TIMES");
-  command.add_option("--snapshot-every", arguments.run.snapshot_every_s, "write one every so many simulated seconds")
+  command
+      .add_option("--snapshot-every", arguments.run.snapshot_every_s, "interval between snapshots in simulated seconds")
       ->type_name("S")
       ->check(number_from(0.001, 1e9));
   command
@@ -103,7 +104,7 @@ void add_snapshot_options(CLI::App& command, RunArguments& arguments) {
       ->type_name("DIR");
   command
       .add_option("--rewind-s", arguments.run.rewind_s,
-                  "how far back the run can go, in simulated seconds; without it 60 on a bus or terminal")
+                  "how far the run can be rewound, in simulated seconds; without it 60 on a bus or terminal")
       ->type_name("S")
       ->check(number_from(0, 1e6));
   command.add_option("--rewind-mb", arguments.run.rewind_MB, "memory for that in MB")
@@ -121,7 +122,7 @@ void add_output_options(CLI::App& command, RunArguments& arguments) {
   command.add_option("--results", arguments.run.results, "directory for summary.json, CSV files and plots")
       ->type_name("DIR");
   command.add_flag_callback(
-      "--no-pictures", [&] { arguments.run.pictures = false; }, "results without plots");
+      "--no-plots", [&] { arguments.run.plots = false; }, "results without plots");
   command.add_flag("--quiet", arguments.run.quiet, "no progress and no summary");
 }
 
@@ -131,12 +132,12 @@ void add_bus_options(CLI::App& command, RunArguments& arguments) {
       ->check(one_of({"lcm", "none"}).description(""));
   add_lcm_url_option(command, arguments.run.lcm_url);
   command.add_flag("--lcm-shared", arguments.run.lcm_shared,
-                   "start though another simulator is on the bus; without it the exit code is then 4");
+                   "start even if another simulator is on the bus; without it the exit code is then 4");
   auto* key = command.add_flag("--control-key", arguments.run.control_key,
-                               "control needs the key of the run, also when its bus does not leave this machine");
+                               "require the key of the run for control, even if its bus does not leave this machine");
   command
       .add_flag("--open-control", arguments.run.open_control,
-                "control needs no key, also when a bus leaves this machine: for a network that is trusted")
+                "allow control without a key, even if a bus leaves this machine; for trusted networks only")
       ->excludes(key);
   command.add_flag("--launch", arguments.run.launch, "start the programs that the world names");
   command.add_option("--await", arguments.run.await, "lockstep clients to wait for, started by hand: NAME,NAME,...")
@@ -200,7 +201,7 @@ void add_run_command(CLI::App& app, int& exit_code) {
                   {1, "a rule of the world or one of its programs failed"},
                   {2, "wrong usage, or a mistake in the world"},
                   {3, "physics fault"},
-                  {4, "bus or file trouble"},
+                  {4, "bus or file error"},
                   {5, "a lockstep client did not join or answer in time, or a step took longer than 'limits' allows"},
                   {129, "ended by SIGHUP; 130 by SIGINT; 143 by SIGTERM"}},
                  {}});

@@ -11,8 +11,8 @@ CLI::Option* add_log_level_option(CLI::App& command, const std::string& usual) {
   return command
       .add_option_function<std::string>(
           "--log-level", set,
-          "least of what shoal says on stderr: debug, info (with progress), warn, error, or off "
-          "for nothing but the error that ends the command")
+          "lowest level of messages on stderr: debug, info (with progress), warn, error, or off for only the error "
+          "that ends the command")
       ->type_name("LEVEL")
       ->default_str(usual)
       ->check(one_of({"debug", "info", "warn", "error", "off"}).description(""));
@@ -30,8 +30,7 @@ void add_allow_path_option(CLI::App& command, sim::LoadOptions& load) {
   load.only_own_files = true;
   command
       .add_option("--allow-path", load.allow_paths,
-                  "folder or file outside of the world's folder that the world may name, and where it may make serial "
-                  "ports")
+                  "folder or file outside of the world's folder that the world may use, also for serial ports")
       ->type_name("PATH")
       ->type_size(1)
       ->allow_extra_args(false);

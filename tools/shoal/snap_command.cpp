@@ -15,7 +15,7 @@
 #include "sim/image/image_file.hpp"
 #include "sim/world/world.hpp"
 #include "sim/world_file/load_world.hpp"
-#include "tools/experiment/pictures/overview.hpp"
+#include "tools/experiment/images/overview.hpp"
 #include "tools/experiment/world_files/world_by_name.hpp"
 #include "tools/shoal/commands.hpp"
 #include "tools/shoal/output_file.hpp"
@@ -156,12 +156,12 @@ sim::Image8 take_picture(const sim::World& world, const View& view, sim::Texture
   sim::Renderer renderer(world.physics(), rays, view.options, shared);
   sim::Frame frame;
   renderer.render(view.X_WS, frame);
-  if (view.options.kind == sim::ImageKind::depth) return sim::picture_of_depth(frame.depth_m);
-  if (view.options.kind != sim::ImageKind::color) return sim::picture_of_labels(frame.labels);
+  if (view.options.kind == sim::ImageKind::depth) return sim::depth_image(frame.depth_m);
+  if (view.options.kind != sim::ImageKind::color) return sim::label_image(frame.labels);
   return sim::develop(view.grey ? sim::grey_of(frame.light) : frame.light, view.gain);
 }
 
-/// `picture.png`, or `picture_0003.png` when there are several.
+/// `image.png`, or `picture_0003.png` when there are several.
 std::string numbered(const std::string& path, int number) {
   const std::size_t dot = path.rfind('.');
   return fmt::format("{}_{:04}{}", path.substr(0, dot), number, path.substr(dot));
@@ -171,7 +171,7 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// Of a view that nobody chose, what cannot be seen in it.
+/// What cannot be seen in an automatic view.
 void warn(const View& view) {
   if (!view.overview) return;
   if (!view.overview->hidden.empty())
@@ -187,16 +187,16 @@ void take_one(const SnapArguments& arguments, const sim::World& world, const std
   const View view = make_view(arguments, world);
   warn(view);
   const auto start = std::chrono::steady_clock::now();
-  const sim::Image8 picture = take_picture(world, view, textures);
+  const sim::Image8 output = take_picture(world, view, textures);
   const double render_s = seconds_since(start);
   try {
-    sim::write_image(path, picture, arguments.quality);
+    sim::write_image(path, output, arguments.quality);
   } catch (const sim::ImageError& error) {
     throw std::runtime_error(path + ": " + error.what());  // the main program makes that exit code 4
   }
   const sim::Vector3d p_W = view.X_WS.translation();
   std::cout << fmt::format(
-      "{}: {}x{}, {} at {:.3f} s from {}, rendered in {:.2f} s\n", path, picture.width, picture.height, arguments.world,
+      "{}: {}x{}, {} at {:.3f} s from {}, rendered in {:.2f} s\n", path, output.width, output.height, arguments.world,
       sim::to_seconds(world.now()),
       arguments.from.empty() ? fmt::format("({:.2f}, {:.2f}, {:.2f})", p_W.x(), p_W.y(), p_W.z()) : arguments.from,
       render_s);
@@ -234,10 +234,11 @@ void add_view_options(CLI::App& command, SnapArguments& arguments) {
   CLI::Option* from =
       command.add_option("--from", arguments.from, "a camera of the world")->type_name("VEHICLE.DEVICE");
   CLI::Option* eye =
-      command.add_option("--eye", arguments.eye, "where the camera stands, m; without it all vehicles are in view")
+      command.add_option("--eye", arguments.eye, "position of the camera, m; without it all vehicles are in view")
           ->type_name("X,Y,Z");
   CLI::Option* all = command.add_flag("--all", arguments.all, "all objects are in view, too, apart from planes");
-  CLI::Option* look = command.add_option("--look", arguments.look, "the point that it looks at, m")->type_name("X,Y,Z");
+  CLI::Option* look =
+      command.add_option("--look", arguments.look, "point that the camera looks at, m")->type_name("X,Y,Z");
   CLI::Option* fov =
       command.add_option("--fov", arguments.fov_deg, "horizontal angle of view, degrees")->type_name("DEG");
   CLI::Option* size = command.add_option("--size", arguments.size, "of the image in pixels")->type_name("WIDTHxHEIGHT");
@@ -265,7 +266,7 @@ void add_view_options(CLI::App& command, SnapArguments& arguments) {
 }  // namespace
 
 void add_snap_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("snap", "Run a world without bus or clock and take an image");
+  CLI::App* command = app.add_subcommand("snap", "Run a world as fast as possible, without a bus, and render an image");
   const auto arguments = std::make_shared<SnapArguments>();
   add_log_level_option(*command);
   command->add_option("WORLD", arguments->world, "world file, or the name of a shipped world")->required();
@@ -275,7 +276,8 @@ void add_snap_command(CLI::App& app, int& exit_code) {
       ->check(number_from(0, 1e9))
       ->capture_default_str();
   CLI::Option* every =
-      command->add_option("--every", arguments->every_s, "more images, so many seconds apart: NAME_0000.png and on")
+      command
+          ->add_option("--every", arguments->every_s, "interval of further images in seconds: NAME_0000.png and so on")
           ->type_name("S");
   CLI::Option* until =
       command->add_option("--until", arguments->until_s, "time of the last of them, s")->type_name("S");
@@ -290,7 +292,7 @@ void add_snap_command(CLI::App& app, int& exit_code) {
   add_plugin_option(*command);
   command_line::set_help_end(
       *command, {{"shoal snap worlds/coop_land.yaml --out coop_land.png",
-                  "shoal snap worlds/living_warehouse.yaml --at 12.5 --eye -6,-8,5 --look 4,2,0 --out hall.jpg",
+                  "shoal snap worlds/dynamic_warehouse.yaml --at 12.5 --eye -6,-8,5 --look 4,2,0 --out hall.jpg",
                   "shoal snap worlds/proving_ground.yaml --at 3 --from turntable.camera --out seen.png",
                   "shoal snap worlds/arm_reach.yaml --every 0.5 --until 5 --size 640x480 --out reach.png"},
                  {{0, "success"},

@@ -63,7 +63,7 @@ int show(const SnapshotArguments& arguments) {
 }  // namespace
 
 void add_snapshot_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("snapshot", "Show what is in a snapshot file");
+  CLI::App* command = app.add_subcommand("snapshot", "Show the contents of a snapshot file");
   const auto arguments = std::make_shared<SnapshotArguments>();
   add_log_level_option(*command);
   command->add_option("FILE", arguments->file, "snapshot file")->required();
@@ -77,8 +77,8 @@ void add_snapshot_command(CLI::App& app, int& exit_code) {
         {1, "restored with another hash"},
         {2, "wrong usage"},
         {4,
-         "not a snapshot, damaged, of another build, or a file of its world (mesh, terrain, texture, current) has "
-         "changed"}},
+         "not a snapshot, damaged, from another build, or a changed file of its world (mesh, terrain, texture, "
+         "current)"}},
        {}});
   command->callback([arguments, &exit_code] { exit_code = show(*arguments); });
 }

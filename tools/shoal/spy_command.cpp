@@ -13,7 +13,7 @@
 #include <optional>
 
 #include "bridges/lcm/lcm_listener.hpp"
-#include "bridges/lockstep_client/wait_notice.hpp"
+#include "bridges/lockstep_client/wait_warning.hpp"
 #include "shoal/message_schema.hpp"
 #include "tools/command_line/text_layout.hpp"
 #include "tools/experiment/run/runner.hpp"
@@ -54,7 +54,7 @@ std::string value_text(const shoal::FieldValue& value) {
 }
 
 /// The fields of a message, the long ones cut.
-std::string decoded(const shoal::MessageTypes& types, const sim::Bytes& payload, std::size_t most_fields,
+std::string decoded(const shoal::MessageTypes& types, const sim::Bytes& payload, std::size_t max_fields,
                     const char* separator) {
   const auto fingerprint = static_cast<std::uint64_t>(shoal::fingerprint(payload));
   const shoal::MessageSchema* schema = types.find(fingerprint);
@@ -62,10 +62,10 @@ std::string decoded(const shoal::MessageTypes& types, const sim::Bytes& payload,
   std::string text = schema->name;
   std::size_t fields = 0;
   const auto error = shoal::visit_fields(*schema, payload, [&](std::string_view name, const shoal::FieldValue& value) {
-    if (fields++ < most_fields) text += fmt::format("{}{}={}", separator, name, value_text(value));
+    if (fields++ < max_fields) text += fmt::format("{}{}={}", separator, name, value_text(value));
   });
   if (error) return schema->name + ": " + *error;
-  if (fields > most_fields) text += fmt::format("{}... {} more", separator, fields - most_fields);
+  if (fields > max_fields) text += fmt::format("{}... {} more", separator, fields - max_fields);
   return text;
 }
 
@@ -85,11 +85,11 @@ std::optional<Screen> find_screen() {
 
 /// The name of the channel gets what is left beside the figures, and at least a dozen columns stay for the message.
 std::size_t channel_columns(const std::map<std::string, Seen>& channels, const std::optional<Screen>& screen) {
-  constexpr std::size_t figures = 27, least_of_message = 12, usual = 32;
+  constexpr std::size_t figures = 27, min_of_message = 12, usual = 32;
   if (!screen) return usual;
   std::size_t longest = 8;
   for (const auto& [channel, seen] : channels) longest = std::max(longest, command_line::column_count(channel));
-  const std::size_t room = screen->columns - std::min(screen->columns, figures + 2 + least_of_message);
+  const std::size_t room = screen->columns - std::min(screen->columns, figures + 2 + min_of_message);
   return std::max<std::size_t>(8, std::min(longest, room));
 }
 
@@ -119,7 +119,7 @@ void print_table(std::map<std::string, Seen>& channels, const shoal::MessageType
   std::cout << text << std::flush;
 }
 
-/// True once nobody can read what is printed: the next write would end us, but there may be none for long.
+/// True once the output has no reader: the next write would end us, but there may be none for long.
 bool output_closed() {
   pollfd output{STDOUT_FILENO, 0, 0};
   return !std::cout || (poll(&output, 1, 0) > 0 && (output.revents & POLLERR) != 0);
@@ -143,9 +143,9 @@ int spy(const SpyArguments& arguments) {
   const auto seconds_since = [](Clock::time_point then) {
     return std::chrono::duration<double>(Clock::now() - then).count();
   };
-  bridges::WaitNotice notice("shoal spy: waiting for messages on " +
-                             (arguments.channel.empty() ? "any channel" : "'" + arguments.channel + "'") + ", at " +
-                             listener.url());
+  bridges::WaitWarning audit_entry("shoal spy: waiting for messages on " +
+                                   (arguments.channel.empty() ? "any channel" : "'" + arguments.channel + "'") +
+                                   ", at " + listener.url());
   bool closed = false;
   const auto over = [&] {
     closed = output_closed();
@@ -153,7 +153,7 @@ int spy(const SpyArguments& arguments) {
   };
   bool any_table = false;
   while (!over()) {
-    if (channels.empty()) notice.look();
+    if (channels.empty()) audit_entry.look();
     if (const auto message = listener.next(std::chrono::milliseconds(100))) {
       Seen& seen = channels[message->channel];
       ++seen.messages;
@@ -168,7 +168,8 @@ int spy(const SpyArguments& arguments) {
   }
   if (table && !any_table && !channels.empty() && !closed)
     print_table(channels, types, seconds_since(shown), find_screen());
-  if (channels.empty() && !closed) std::cerr << "shoal spy: no message came; is something running? see shoal doctor\n";
+  if (channels.empty() && !closed)
+    std::cerr << "shoal spy: no message was received; is a simulator running? see shoal doctor\n";
   return exit_ok;
 }
 
@@ -187,7 +188,7 @@ void add_spy_command(CLI::App& app, int& exit_code) {
   add_plugin_option(*command);
   command_line::set_help_end(
       *command, {{"shoal spy", "shoal spy rover1.odometry", "shoal spy --duration 5 > channels.txt"},
-                 {{0, "success, also when no message came"}, {2, "wrong usage"}, {4, "bus trouble"}},
+                 {{0, "success, also when no message was received"}, {2, "wrong usage"}, {4, "bus trouble"}},
                  {"On a terminal the table is drawn again twice a second.  In a pipe or file there is a table every "
                   "second, or with --duration one of all of it; or the fields of each message of CHANNEL."}});
   command->callback([arguments, &exit_code] { exit_code = spy(*arguments); });

@@ -48,10 +48,10 @@ events:
 
 # What is measured, and what is good enough (docs/guides/scoring.md).
 metrics:
-  - {name: way, type: distance, vehicle: rover1}
+  - {name: distance, type: distance, vehicle: rover1}
   - {name: bumps, type: collisions, vehicle: rover1}
 # pass:
-#   - way.travelled_m > 2
+#   - distance.travelled_m > 2
 
 # Programs that --launch starts; one with a `client` name takes part in lockstep (docs/guides/attach_autonomy.md).
 # processes:
@@ -98,9 +98,9 @@ vehicles:
 
 # What is measured, and what is good enough (docs/guides/scoring.md).
 metrics:
-  - {name: way, type: distance, vehicle: auv1}
+  - {name: distance, type: distance, vehicle: auv1}
 # pass:
-#   - way.travelled_m > 100
+#   - distance.travelled_m > 100
 
 # Programs that --launch starts; one with a `client` name takes part in lockstep (docs/guides/attach_autonomy.md).
 # processes:
@@ -126,7 +126,7 @@ contacts:
 bodies:
   - name: base
     parts:
-      # 1 cm to the rear, so that it leans on the rear caster.
+      # 1 cm to the rear, so that it tilts on the rear caster.
       - {name: chassis, shape: box, size_m: [0.5, 0.4, 0.12], position_m: [-0.01, 0, 0.14], mass_kg: 17,
          color: "#3070c0"}
       # Half a millimetre above the ground, so that the wheels carry the weight.

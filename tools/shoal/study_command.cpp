@@ -46,7 +46,7 @@ int study(const std::string& path, const StudyChanges& changes, StudyOptions opt
     int exit_code = results.judgement() == Judgement::failed ? exit_failed : exit_ok;
     if (results.failed_runs() > 0) exit_code = exit_bus;
     if (caught_signal() != 0) {
-      std::cerr << "shoal: stopped; the same command goes on with the runs that are missing\n";
+      std::cerr << "shoal: stopped; the same command continues with the missing runs\n";
       return 128 + caught_signal();
     }
     write_study(options.output, loaded, runs, results, exit_code);
@@ -94,9 +94,9 @@ void add_study_command(CLI::App& app, int& exit_code) {
                                         {{0, "no rule of the study failed"},
                                          {1, "a rule of the study failed"},
                                          {2, "wrong usage, or a mistake in the study or its world"},
-                                         {4, "a run has no result, or file trouble"},
+                                         {4, "a run has no result, or a file error"},
                                          {130, "ended by Ctrl-C"}},
-                                        {"After Ctrl-C the same command goes on with the runs that are missing."}});
+                                        {"After Ctrl-C the same command continues with the missing runs."}});
   command->callback([arguments, log_level, &exit_code] {
     if (log_level->count() > 0 && !spdlog::should_log(spdlog::level::info)) arguments->options.quiet = true;
     try {

@@ -83,7 +83,7 @@ void add_upgrade_command(CLI::App& app, int& exit_code) {
        {{0, "every file is in the format of this version"},
         {1, "a file was left as it is, because of an error; with --check: or would change"},
         {2, "wrong usage"}},
-       {"Only what has changed in the format is written anew; comments, blank lines, quotes and layout stay.  The new "
+       {"Only what has changed in the format is written again; comments, blank lines, quotes and layout stay.  The new "
         "text is parsed and compared with what was meant before it takes the place of the old one in one step.  A file "
         "that cannot be rewritten with certainty is left as it is, with an error line."}});
   command->callback([arguments, &exit_code] { exit_code = upgrade(*arguments); });

@@ -31,21 +31,21 @@ class ClientError : public std::runtime_error {
 ///     client.join(0.1);
 ///     while (client.next_tick()) client.publish("auv1.autopilot.cmd", command);
 ///
-/// Handlers are called in next_tick() and wait_until() only: in lockstep for all messages up to the tick, in the order
-/// in which they were published, whatever the network lost or repeated; else in the order in which they came.  A
-/// payload that is not what its channel should carry is counted, told once for each channel on standard error, and not
-/// handled; so is one whose handler throws MessageError.  Any other exception of a handler leaves the call that waited.
+/// Handlers are called in next_tick() and wait_until() only: in lockstep for all messages up to the tick, in the
+/// order in which they were published, independent of losses and duplicates in the network; otherwise in the order of
+/// arrival.  An invalid payload is counted, reported once per channel on standard error, and not handled; the same
+/// holds for one whose handler throws MessageError.  Any other exception of a handler leaves the call that waited.
 /// Handlers may publish and subscribe.
 class Client {
  public:
   /// Reason why next_tick() returned nothing.
   enum class End {
-    none,       ///< the run goes on
+    none,       ///< the run continues
     last_tick,  ///< the simulator ended the run
     stopped,    ///< stop() was called
-    silence,    ///< nothing came for as long as the silence limit
-    rewound,    ///< the world went back in time, and there is no on_rewind()
-    dropped,    ///< the world went on without this client, which had not answered in time: reason() says more
+    silence,    ///< no message arrived within the silence limit
+    rewound,    ///< the world was rewound, and there is no on_rewind()
+    dropped,    ///< the world continued without this client, which had not answered in time; see reason()
   };
   /// What is to happen when the client does not answer.
   struct JoinOptions {
@@ -58,7 +58,7 @@ class Client {
     std::uint64_t received = 0;   ///< messages on channels that were subscribed to
     std::uint64_t bad = 0;        ///< of those, refused
     std::uint64_t published = 0;  ///< messages published
-    std::uint64_t asked_for = 0;  ///< in lockstep: messages that were lost, and came when they were asked for
+    std::uint64_t asked_for = 0;  ///< in lockstep: lost messages and received on request
     std::uint64_t repeated = 0;   ///< in lockstep: messages that came twice
   };
   /// Handler of an undecoded payload.
@@ -100,35 +100,35 @@ class Client {
   /// Joins with a policy for the case that this client does not answer in time; see JoinOptions.
   void join(double period_s, const JoinOptions& options);
   /// Free running: the world does not wait.  next_tick() then returns when sim.clock passes a multiple of `period_s`;
-  /// sim.clock comes at `state_rate_hz` of the world, 10 Hz unless it says otherwise.
+  /// sim.clock is published at the world's `state_rate_hz`, 10 Hz by default.
   void follow(double period_s);
 
   /// In lockstep this acknowledges the tick before: what was published since acts in the next step.  Waits for the next
-  /// tick, and gives the simulator's time in microseconds.  Every report up to then has been handled (in free running:
-  /// those that came).  Nothing when the run is over, at once when asked again: see end().  Throws std::logic_error
-  /// before join() and follow().
+  /// tick, and gives the simulator's time in microseconds.  Every report up to then has been handled (when not in
+  /// lockstep: those received so far).  Nothing when the run is over, also on further calls: see end().  Throws
+  /// std::logic_error before join() and follow().
   std::optional<std::int64_t> next_tick();
   /// Goes through the ticks up to the first one at or after `utime`.
   std::optional<std::int64_t> wait_until(std::int64_t utime);
 
   /// Makes next_tick() return, for good.  From a signal handler or another thread.
   void stop() noexcept;
-  /// Reason why the run is over for this client; End::none while it goes on.
+  /// Reason why the run is over for this client; End::none while it continues.
   End end() const;
   /// What the simulator said when it dropped this client.
   const std::string& reason() const;
-  /// `handler(utime)` is called in next_tick() when the world went back in time, before anything else from there is
-  /// handled; what was held is dropped.  Without a handler next_tick() then returns nothing.
+  /// `handler(utime)` is called in next_tick() when the world was rewound, before any message of the new branch is
+  /// handled; held messages are dropped.  Without a handler next_tick() then returns nothing.
   void on_rewind(std::function<void(std::int64_t utime)> handler);
   /// How often the world went back before the present tick.
   std::int32_t branch() const;
-  /// How much wall time may pass without any message; zero: for ever.  10 minutes unless set: somebody may look at the
-  /// world while it is paused.
+  /// How much wall time may pass without any message; zero: forever.  10 minutes by default, as the world may be
+  /// paused.
   void set_silence_limit(std::chrono::milliseconds limit);
   /// While join() waits for an answer, and next_tick() for the first tick or for sim.clock, longer than `after` of wall
-  /// time, one line on standard error says what is waited for, on which channel and LCM URL.  3 s unless set; zero:
-  /// nothing is said.
-  void set_wait_notice(std::chrono::milliseconds after);
+  /// time, one line on standard error says what is waited for, on which channel and LCM URL.  3 s by default; zero:
+  /// no warning.
+  void set_wait_warning(std::chrono::milliseconds after);
   /// Numbers of messages so far.
   Counts counts() const;
 

@@ -103,8 +103,8 @@ TEST(FileWriter, WritesNothingThatWaitedWhileABlockFailed) {
   std::array<int, 2> ends{};
   ASSERT_EQ(socketpair(AF_UNIX, SOCK_STREAM, 0, ends.data()), 0);
   const FileDescriptor reader(ends[1]);
-  const timeval patience{0, 300'000};  // then a write fails
-  ASSERT_EQ(setsockopt(ends[0], SOL_SOCKET, SO_SNDTIMEO, &patience, sizeof patience), 0);
+  const timeval timeout{0, 300'000};  // then a write fails
+  ASSERT_EQ(setsockopt(ends[0], SOL_SOCKET, SO_SNDTIMEO, &timeout, sizeof timeout), 0);
   FileWriter writer{FileDescriptor(ends[0])};
   FileWriter::Block block = block_of(std::string(4'000'000, 'a'));  // more than the socket holds
   ASSERT_TRUE(writer.hand_over(block));

@@ -16,7 +16,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// A descriptor that becomes readable when somebody calls ring().
+/// A descriptor that becomes readable when someone calls ring().
 class Bell {
  public:
   Bell() : fd_(eventfd(0, EFD_NONBLOCK)) {}
@@ -63,7 +63,7 @@ struct BellPort final : Arrivals::Port {
   bool receive() override {
     if (!bell.answer()) return alive;
     received_by = std::this_thread::get_id();
-    if (heard) arrivals.arrived();
+    if (received) arrivals.arrived();
     return alive;
   }
 
@@ -72,7 +72,7 @@ struct BellPort final : Arrivals::Port {
   Arrivals::Place place;
   int asked_to_send = 0;
   std::thread::id received_by;
-  bool heard = true;  ///< somebody subscribed to what comes
+  bool received = true;  ///< someone subscribed to what comes
   bool alive = true;
 };
 
@@ -91,7 +91,7 @@ TEST(Arrivals, WhoWaitsSendsAndReceivesForTheBuses) {
 TEST(Arrivals, AMessageThatNobodyWantsEndsNoWait) {
   Arrivals arrivals;
   BellPort port(arrivals);
-  port.heard = false;
+  port.received = false;
   port.bell.ring();
   EXPECT_FALSE(arrivals.wait(1ms));
   EXPECT_EQ(port.received_by, std::this_thread::get_id());

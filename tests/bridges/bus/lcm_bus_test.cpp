@@ -63,10 +63,11 @@ TEST(LcmUrl, ErrorsSayWhatIsWrong) {
   EXPECT_EQ(url_error("7667"), "LCM URL '7667': must look like udpm://239.255.76.67:7667?ttl=0");
   EXPECT_EQ(url_error("upd://"), "LCM URL 'upd://': unknown kind 'upd'; known kinds: memq, tcpq, udpm");
   EXPECT_EQ(url_error("mpudpm://"),
-            "LCM URL 'mpudpm://': mpudpm is not supported: one datagram of anybody can crash liblcm's receiver; use "
+            "LCM URL 'mpudpm://': mpudpm is not supported: a single datagram from any sender can crash liblcm's "
+            "receiver; use "
             "udpm or tcpq");
   EXPECT_EQ(url_error("udpm://10.0.0.1:7667"),
-            "LCM URL 'udpm://10.0.0.1:7667': '10.0.0.1' is no multicast address (224.0.0.0 to 239.255.255.255)");
+            "LCM URL 'udpm://10.0.0.1:7667': '10.0.0.1' is not a multicast address (224.0.0.0 to 239.255.255.255)");
   EXPECT_EQ(url_error("udpm://239.1.1.1:70000"),
             "LCM URL 'udpm://239.1.1.1:70000': the port must be 1 to 65535, got '70000'");
   EXPECT_EQ(url_error("udpm://?tll=1"),
@@ -111,7 +112,7 @@ class TcpServer {
   void serve() {
     for (int fd = 0; (fd = accept(listener_, nullptr, nullptr)) >= 0; close(fd)) {
       std::array<char, 4096> part{};
-      if (recv(fd, part.data(), 8, MSG_WAITALL) != 8) continue;  // somebody knocked only
+      if (recv(fd, part.data(), 8, MSG_WAITALL) != 8) continue;  // someone knocked only
       const std::array<std::uint32_t, 2> answer{htonl(0x287617fa), htonl(0x0100)};
       if (send(fd, answer.data(), sizeof answer, MSG_NOSIGNAL) < 0) continue;
       for (ssize_t size = 0; (size = read(fd, part.data(), part.size())) > 0;) {
@@ -241,9 +242,9 @@ TEST_P(LcmBusFrom, WaitingEndsAtOnceWhenAMessageCameBefore) {
 }
 
 TEST_P(LcmBusFrom, AClosedMailboxGetsNothing) {
-  auto gone = bus.open_mailbox("a");
+  auto removed = bus.open_mailbox("a");
   const auto stays = bus.open_mailbox("a");
-  gone.reset();
+  removed.reset();
   sender.publish("a", bytes_of("x"), now);
   sender.end_of_step();
   EXPECT_TRUE(take(*stays));
@@ -251,16 +252,16 @@ TEST_P(LcmBusFrom, AClosedMailboxGetsNothing) {
 
 TEST_P(LcmBusFrom, AMailboxThatIsOpenedAgainHearsWhatComesFromThenOn) {
   bus.open_mailbox("a").reset();
-  sender.publish("a", bytes_of("unheard"), now);
+  sender.publish("a", bytes_of("unreceived"), now);
   sender.end_of_step();
   const auto again = bus.open_mailbox("a");
-  sender.publish("a", bytes_of("heard"), now);
+  sender.publish("a", bytes_of("received"), now);
   sender.end_of_step();
   // The first one may still be on its way when the mailbox opens.
   auto message = take(*again);
-  if (message && text_of(message->payload) == "unheard") message = take(*again);
+  if (message && text_of(message->payload) == "unreceived") message = take(*again);
   ASSERT_TRUE(message);
-  EXPECT_EQ(text_of(message->payload), "heard");
+  EXPECT_EQ(text_of(message->payload), "received");
 }
 
 TEST_P(LcmBusFrom, MessagesLeaveAlsoWithoutEndOfStep) {
@@ -324,7 +325,7 @@ TEST(LcmBus, DropsTooLargeMessagesAndCounts) {
   EXPECT_EQ(bus.counts().dropped_outgoing, 1u);
 }
 
-// Nobody listens, and the sender is slower than we are: publishing must not wait for it.
+// No one listens, and the sender is slower than we are: publishing must not wait for it.
 TEST(LcmBus, PublishNeverWaits) {
   LcmBus bus(own_url());
   const sim::Bytes payload(64'000);

@@ -67,7 +67,7 @@ TEST(OutgoingSender, AMessageThatTheNetworkHoldsUpCostsTheHelperOneSendAndThenNo
     sent.threads.clear();
     OutgoingSender sender({}, [&](const OutgoingQueue::Entry& message) {
       if (message.channel == "slow") {
-        const auto end = Clock::now() + 2 * OutgoingSender::longest_help;
+        const auto end = Clock::now() + 2 * OutgoingSender::max_help;
         while (Clock::now() < end) std::this_thread::yield();
       }
       sent(message);
@@ -89,16 +89,16 @@ TEST(OutgoingSender, AMessageThatTheNetworkHoldsUpCostsTheHelperOneSendAndThenNo
 }
 
 TEST(OutgoingSender, HelpDoesNotWaitForAThreadThatIsHeldUp) {
-  std::promise<void> begun, go_on;
+  std::promise<void> started, go_on;
   auto held_up = go_on.get_future().share();
   OutgoingSender sender({}, [&](const OutgoingQueue::Entry& message) {
     if (message.channel != "first") return;
-    begun.set_value();
+    started.set_value();
     held_up.wait();
   });
   sender.push("first", {});
   sender.wake();
-  begun.get_future().wait();
+  started.get_future().wait();
   sender.push("second", {});
   sender.help();  // would never return
   EXPECT_FALSE(sender.wait_until_sent(1ms));

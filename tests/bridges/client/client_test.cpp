@@ -116,7 +116,7 @@ TEST(Client, GivesNothingAtOnceWhenAskedAgainAfterTheEnd) {
 /// What a client that waits longer than its patience says on standard error.
 std::string said_by(const std::function<void(shoal::Client&)>& work) {
   shoal::Client client("pilot", own_url(1));
-  client.set_wait_notice(1ms);
+  client.set_wait_warning(1ms);
   client.set_silence_limit(200ms);
   testing::internal::CaptureStderr();
   work(client);
@@ -132,11 +132,9 @@ TEST(Client, SaysWhatItWaitsForWhenThatTakesLong) {
                 client.follow(0.1);
                 EXPECT_FALSE(client.next_tick());
               }),
-              StartsWith("'pilot' waits for the time on 'sim.clock', which a simulator publishes while its run goes "
-                         "on" +
-                         at));
+              StartsWith("'pilot' waits for the time on 'sim.clock', which a simulator publishes during its run" + at));
   EXPECT_EQ(said_by([](shoal::Client& client) {
-              client.set_wait_notice(0ms);
+              client.set_wait_warning(0ms);
               client.follow(0.1);
               EXPECT_FALSE(client.next_tick());
             }),
@@ -146,15 +144,15 @@ TEST(Client, SaysWhatItWaitsForWhenThatTakesLong) {
 TEST(Client, SaysThatItWaitsForItsFirstTick) {
   FakeSimulator simulator;
   std::thread thread([&] { simulator.reply(simulator.await_request(), true, ""); });
-  const std::string said = said_by([](shoal::Client& client) {
-    client.set_wait_notice(10s);
+  const std::string shown = said_by([](shoal::Client& client) {
+    client.set_wait_warning(10s);
     client.join(0.1, 10s);
-    client.set_wait_notice(1ms);
+    client.set_wait_warning(1ms);
     EXPECT_FALSE(client.next_tick());
     EXPECT_EQ(client.end(), shoal::Client::End::silence);
   });
   thread.join();
-  EXPECT_NE(said.find("'pilot' waits for its first tick on 'sim.tick'"), std::string::npos) << said;
+  EXPECT_NE(shown.find("'pilot' waits for its first tick on 'sim.tick'"), std::string::npos) << shown;
 }
 
 TEST(Client, WaitsForATime) {
@@ -239,11 +237,11 @@ TEST(Client, BadPayloadsAreCountedAndToldOnce) {
   simulator.send("sim.clock", clock_at(1));
   testing::internal::CaptureStderr();
   EXPECT_TRUE(client.next_tick());
-  const std::string told = testing::internal::GetCapturedStderr();
+  const std::string reported = testing::internal::GetCapturedStderr();
   EXPECT_EQ(handled, 1);
   EXPECT_EQ(client.counts().bad, 5u);
   EXPECT_EQ(client.counts().received, 6u);
-  EXPECT_EQ(std::count(told.begin(), told.end(), '\n'), 2) << told;  // one line for each channel
+  EXPECT_EQ(std::count(reported.begin(), reported.end(), '\n'), 2) << reported;  // one line for each channel
 }
 
 TEST(Client, HandlersMayRefuseAMessage) {
@@ -258,7 +256,8 @@ TEST(Client, HandlersMayRefuseAMessage) {
   simulator.send("sim.clock", clock_at(1));
   testing::internal::CaptureStderr();
   EXPECT_THROW(client.next_tick(), std::runtime_error);
-  EXPECT_EQ(testing::internal::GetCapturedStderr(), "auv1.pressure: too deep (ignored; more such are only counted)\n");
+  EXPECT_EQ(testing::internal::GetCapturedStderr(),
+            "auv1.pressure: too deep (ignored; further ones are only counted)\n");
   EXPECT_TRUE(client.next_tick());
 }
 
@@ -281,7 +280,7 @@ TEST(Client, SaysWhyTheSimulatorRefuses) {
     client.join(-1, 10s);
     ADD_FAILURE();
   } catch (const shoal::ClientError& error) {
-    EXPECT_STREQ(error.what(), "the simulator refuses 'pilot': the period must be > 0");
+    EXPECT_STREQ(error.what(), "the simulator rejects 'pilot': the period must be > 0");
   }
   thread.join();
 }

@@ -60,7 +60,7 @@ TEST(OtherSimulators, AreFoundOnAnyBus) {
               Optional(std::string("another simulator answers on there")));
 }
 
-/// A run that starts, and one that goes on when nobody else is there.
+/// A run that starts, and one that continues when no one else is there.
 class StartingRun {
  public:
   /// Looks, and answers others then until `both` have looked.
@@ -70,7 +70,7 @@ class StartingRun {
     while (!found && looked < both) {
       while (const auto message = requests_->take()) {
         const auto request = shoal::decode<shoal::sim_control_request_t>(message->payload, shoal::Finite::any);
-        if (others_.who_asks(request) != OtherSimulators::Asker::another_run) continue;
+        if (others_.requester_of(request) != OtherSimulators::Asker::another_run) continue;
         shoal::sim_control_reply_t reply{};
         reply.id = request.id;
         reply.client = request.client;
@@ -101,7 +101,7 @@ TEST(OtherSimulators, OfTwoThatStartAtTheSameTimeOneStays) {
 TEST(OtherSimulators, OneThatAskedAndStartsAllTheSameIsWarnedOf) {
   test::TestWorld test(world);
   bridges::LcmBus bus(lcm_test::own_url(2)), others_bus(lcm_test::own_url(2));
-  sim::MailGate gate(bus);
+  sim::MessageGate gate(bus);
   sim::RunControl control;
   bridges::LockstepService lockstep(test.world, control, {{bus, gate}});
   OtherSimulators own({}, false);
@@ -119,21 +119,21 @@ TEST(OtherSimulators, OneThatAskedAndStartsAllTheSameIsWarnedOf) {
   service.handle_requests();
   others_bus.publish("sim.info", shoal::encode(shoal::sim_info_t{}), sim::Time(0));
   others_bus.end_of_step();
-  std::string said;
+  std::string reported;
   EXPECT_TRUE(lcm_test::await([&] {
     service.handle_requests();
-    said += testing::internal::GetCapturedStdout();
+    reported += testing::internal::GetCapturedStdout();
     testing::internal::CaptureStdout();
-    return !said.empty();
+    return !reported.empty();
   }));
   testing::internal::GetCapturedStdout();
-  EXPECT_THAT(said, testing::HasSubstr("another simulator publishes on the world's bus of this run"));
+  EXPECT_THAT(reported, testing::HasSubstr("another simulator publishes on the world's bus of this run"));
 }
 
 TEST(OtherSimulators, OneThatWasTooBusyToAnswerIsWarnedOfWhenItPublishes) {
   test::TestWorld test(world);
   bridges::LcmBus bus(lcm_test::own_url(3)), others_bus(lcm_test::own_url(3));
-  sim::MailGate gate(bus);
+  sim::MessageGate gate(bus);
   sim::RunControl control;
   bridges::LockstepService lockstep(test.world, control, {{bus, gate}});
   OtherSimulators own({{"here", &bus}}, false);
@@ -142,15 +142,15 @@ TEST(OtherSimulators, OneThatWasTooBusyToAnswerIsWarnedOfWhenItPublishes) {
   testing::internal::CaptureStdout();
   others_bus.publish("sim.info", shoal::encode(shoal::sim_info_t{}), sim::Time(0));
   others_bus.end_of_step();
-  std::string said;
+  std::string reported;
   EXPECT_TRUE(lcm_test::await([&] {
     service.handle_requests();
-    said += testing::internal::GetCapturedStdout();
+    reported += testing::internal::GetCapturedStdout();
     testing::internal::CaptureStdout();
-    return !said.empty();
+    return !reported.empty();
   }));
   testing::internal::GetCapturedStdout();
-  EXPECT_THAT(said, testing::HasSubstr("another simulator publishes on the world's bus of this run"));
+  EXPECT_THAT(reported, testing::HasSubstr("another simulator publishes on the world's bus of this run"));
 }
 
 TEST(OtherSimulators, OneThatSharesDoesNotLookAndSaysSo) {
@@ -167,11 +167,11 @@ TEST(OtherSimulators, OneThatSharesDoesNotLookAndSaysSo) {
   request.id = -1;
   request.client = "shoal-run";
   request.command = "alive";
-  EXPECT_EQ(own.who_asks(request), OtherSimulators::Asker::another_run);
+  EXPECT_EQ(own.requester_of(request), OtherSimulators::Asker::another_run);
   request.text = "{shared: true}";
-  EXPECT_EQ(own.who_asks(request), OtherSimulators::Asker::another_run_that_shares);
+  EXPECT_EQ(own.requester_of(request), OtherSimulators::Asker::another_run_that_shares);
   request.client = "pilot";
-  EXPECT_EQ(own.who_asks(request), OtherSimulators::Asker::nobody);
+  EXPECT_EQ(own.requester_of(request), OtherSimulators::Asker::none_of_ours);
 }
 
 }  // namespace

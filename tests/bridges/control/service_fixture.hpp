@@ -20,8 +20,8 @@ struct ServedWorld {
         service(test.bus, test.bus, test.world, control, lockstep, {"{}", "test"}, links_of(vehicle_buses)) {}
 
   /// Sends a request, has it answered, and gives the answer.
-  shoal::sim_control_reply_t ask(const std::string& command, double value, const std::string& text,
-                                 const std::string& client = "pilot") {
+  shoal::sim_control_reply_t request_reply(const std::string& command, double value, const std::string& text,
+                                           const std::string& client = "pilot") {
     shoal::sim_control_request_t request{};
     request.id = ++id;
     request.client = client;
@@ -36,7 +36,7 @@ struct ServedWorld {
   test::TestWorld test;
   test::Listener<shoal::sim_control_reply_t> replies{test, "sim.control.reply"};
   sim::RunControl control;
-  sim::MailGate gate{test.bus};
+  sim::MessageGate gate{test.bus};
   bridges::LockstepService lockstep;
   bridges::SimService service;
   bridges::SimService* answering = &service;  ///< another one of this world may answer in its place

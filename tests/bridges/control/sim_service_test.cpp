@@ -14,16 +14,16 @@ struct Service : lcm_test::ServedWorld {
             "[{name: "
             "b, parts: [{shape: box, mass_kg: 1}]}]}}]\n") {}
 
-  using ServedWorld::ask;
-  shoal::sim_control_reply_t ask(const std::string& command, double value) {
-    return ServedWorld::ask(command, value, "");
+  using ServedWorld::request_reply;
+  shoal::sim_control_reply_t request_reply(const std::string& command, double value) {
+    return ServedWorld::request_reply(command, value, "");
   }
 };
 
 TEST(SimService, AnswersEachRequestWithItsNumber) {
   Service s;
-  EXPECT_EQ(s.ask("alive", 0).id, 1);
-  const auto reply = s.ask("quit", 0);
+  EXPECT_EQ(s.request_reply("alive", 0).id, 1);
+  const auto reply = s.request_reply("quit", 0);
   EXPECT_EQ(reply.id, 2);
   EXPECT_EQ(reply.client, "pilot");
   EXPECT_TRUE(reply.ok);
@@ -32,25 +32,26 @@ TEST(SimService, AnswersEachRequestWithItsNumber) {
 
 TEST(SimService, LeavesWhatIsAboutTimeToTheTimeMachine) {
   struct Machine final : bridges::TimeMachine {
-    std::optional<std::string> obey(const std::string& command, const std::string&, double value) override {
+    std::optional<std::string> execute(const std::string& command, const std::string&, double value) override {
       if (command != "speed") return std::nullopt;
       if (value < 0) throw std::runtime_error("'speed' must be 0 or more");
       return "as fast as possible";
     }
   } machine;
   Service s;
-  EXPECT_FALSE(s.ask("speed", 0).ok) << "nobody serves it";
+  EXPECT_FALSE(s.request_reply("speed", 0).ok) << "nobody serves it";
   s.machine = &machine;
-  EXPECT_EQ(s.ask("speed", 0).text, "as fast as possible");
-  EXPECT_THAT(s.ask("speed", -1).text, testing::HasSubstr("'speed' must be 0"));
-  EXPECT_TRUE(s.ask("alive", 0).ok) << "not the machine's";
+  EXPECT_EQ(s.request_reply("speed", 0).text, "as fast as possible");
+  EXPECT_THAT(s.request_reply("speed", -1).text, testing::HasSubstr("'speed' must be 0"));
+  EXPECT_TRUE(s.request_reply("alive", 0).ok) << "not the machine's";
 }
 
 TEST(SimService, SaysWhyItRefuses) {
   Service s;
-  EXPECT_THAT(s.ask("fly", 0).text, testing::HasSubstr("unknown command 'fly'; known commands: alive, describe, do"));
-  EXPECT_THAT(s.ask("join", 0.015).text, testing::HasSubstr("a multiple of the step"));
-  EXPECT_THAT(s.ask("leave", 0).text, testing::HasSubstr("no client of the name 'pilot'"));
+  EXPECT_THAT(s.request_reply("fly", 0).text,
+              testing::HasSubstr("unknown command 'fly'; known commands: alive, describe, do"));
+  EXPECT_THAT(s.request_reply("join", 0.015).text, testing::HasSubstr("a multiple of the step"));
+  EXPECT_THAT(s.request_reply("leave", 0).text, testing::HasSubstr("no client of the name 'pilot'"));
   EXPECT_EQ(s.service.bad_messages(), 3);
 }
 
@@ -62,7 +63,7 @@ TEST(SimService, ItsOwnQuestionForOtherSimulatorsIsNoRequest) {
   s.answering = &service;
   service.handle_requests();
   EXPECT_TRUE(s.replies.take_all().empty());
-  EXPECT_TRUE(s.ask("alive", 0, "", "shoal-run").ok) << "another run's is answered";
+  EXPECT_TRUE(s.request_reply("alive", 0, "", "shoal-run").ok) << "another run's is answered";
 }
 
 TEST(SimService, PublishesTheStateAtItsRate) {

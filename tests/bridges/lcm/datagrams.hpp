@@ -63,7 +63,7 @@ inline sim::Bytes fragment_datagram(const Fragment& fragment) {
   return bytes;
 }
 
-/// Sends datagrams to an address and port, from a port of its own.
+/// Sends datagrams to an address and port, from its own port.
 class DatagramSocket {
  public:
   DatagramSocket(const std::string& address, int port) : fd_(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {

@@ -21,9 +21,9 @@ constexpr DatagramSender sender{0x0a000001, 5000};
 constexpr DatagramSender other{0x0a000001, 5001};
 
 /// "channel=payload", or "" when the datagram completes nothing.
-std::string told(LcmReassembly& reassembly, const sim::Bytes& datagram, const DatagramSender& from = sender,
-                 const std::function<bool(std::string_view)>& wanted = {}) {
-  const auto message = reassembly.add(datagram, from, wanted);
+std::string reported(LcmReassembly& reassembly, const sim::Bytes& datagram, const DatagramSender& from = sender,
+                     const std::function<bool(std::string_view)>& accepts = {}) {
+  const auto message = reassembly.add(datagram, from, accepts);
   if (!message) return "";
   return std::string(message->channel) + "=" +
          std::string(reinterpret_cast<const char*>(message->payload.data()), message->payload.size());
@@ -45,10 +45,10 @@ std::vector<sim::Bytes> three_fragments(std::uint32_t sequence = 7, std::string_
 
 TEST(LcmReassembly, AMessageInOneDatagramComesWithItsChannel) {
   LcmReassembly reassembly;
-  EXPECT_EQ(told(reassembly, short_datagram("rover1.cmd", "hello")), "rover1.cmd=hello");
-  EXPECT_EQ(told(reassembly, short_datagram("a", "")), "a=");
+  EXPECT_EQ(reported(reassembly, short_datagram("rover1.cmd", "hello")), "rover1.cmd=hello");
+  EXPECT_EQ(reported(reassembly, short_datagram("a", "")), "a=");
   const std::string longest(63, 'x');
-  EXPECT_EQ(told(reassembly, short_datagram(longest, "y")), longest + "=y");
+  EXPECT_EQ(reported(reassembly, short_datagram(longest, "y")), longest + "=y");
   EXPECT_EQ(reassembly.counts().bad, 0u);
 }
 
@@ -86,7 +86,7 @@ TEST(LcmReassembly, DatagramsThatBreakTheFormatAreDropped) {
   };
   LcmReassembly reassembly;
   for (std::size_t i = 0; i < bad.size(); ++i) {
-    EXPECT_EQ(told(reassembly, bad[i]), "") << i;
+    EXPECT_EQ(reported(reassembly, bad[i]), "") << i;
     EXPECT_EQ(reassembly.counts().bad, i + 1) << i;
   }
   EXPECT_EQ(reassembly.partial_messages(), 0u);
@@ -98,10 +98,10 @@ TEST(LcmReassembly, FragmentsBecomeAMessageInAnyOrderAfterTheFirst) {
   do {
     LcmReassembly reassembly;
     const auto datagrams = three_fragments();
-    EXPECT_EQ(told(reassembly, datagrams[0]), "");
-    EXPECT_EQ(told(reassembly, datagrams[static_cast<std::size_t>(rest[0])]), "");
-    EXPECT_EQ(told(reassembly, datagrams[static_cast<std::size_t>(rest[0])]), "") << "a repeated one";
-    EXPECT_EQ(told(reassembly, datagrams[static_cast<std::size_t>(rest[1])]), "a=abcdefghi");
+    EXPECT_EQ(reported(reassembly, datagrams[0]), "");
+    EXPECT_EQ(reported(reassembly, datagrams[static_cast<std::size_t>(rest[0])]), "");
+    EXPECT_EQ(reported(reassembly, datagrams[static_cast<std::size_t>(rest[0])]), "") << "a repeated one";
+    EXPECT_EQ(reported(reassembly, datagrams[static_cast<std::size_t>(rest[1])]), "a=abcdefghi");
     EXPECT_EQ(reassembly.partial_bytes(), 0u);
   } while (std::next_permutation(rest.begin(), rest.end()));
 }
@@ -109,10 +109,10 @@ TEST(LcmReassembly, FragmentsBecomeAMessageInAnyOrderAfterTheFirst) {
 TEST(LcmReassembly, FragmentsBeforeTheOneThatNamesTheChannelAreDropped) {
   LcmReassembly reassembly;
   const auto datagrams = three_fragments();
-  EXPECT_EQ(told(reassembly, datagrams[1]), "");
-  EXPECT_EQ(told(reassembly, datagrams[0]), "");
-  EXPECT_EQ(told(reassembly, datagrams[2]), "");
-  EXPECT_EQ(told(reassembly, datagrams[1]), "a=abcdefghi");
+  EXPECT_EQ(reported(reassembly, datagrams[1]), "");
+  EXPECT_EQ(reported(reassembly, datagrams[0]), "");
+  EXPECT_EQ(reported(reassembly, datagrams[2]), "");
+  EXPECT_EQ(reported(reassembly, datagrams[1]), "a=abcdefghi");
   EXPECT_EQ(reassembly.counts().bad, 0u);
 }
 
@@ -123,8 +123,8 @@ TEST(LcmReassembly, SendersAreKeptApartByAddressAndPort) {
   const auto thirds = three_fragments(7, "123456789");
   std::vector<std::string> messages;
   for (std::size_t i = 0; i < 3; ++i) {
-    messages = {told(reassembly, ours[i], sender), told(reassembly, theirs[i], other),
-                told(reassembly, thirds[i], elsewhere)};
+    messages = {reported(reassembly, ours[i], sender), reported(reassembly, theirs[i], other),
+                reported(reassembly, thirds[i], elsewhere)};
   }
   EXPECT_EQ(messages, (std::vector<std::string>{"a=abcdefghi", "a=ABCDEFGHI", "a=123456789"}));
 }
@@ -132,12 +132,12 @@ TEST(LcmReassembly, SendersAreKeptApartByAddressAndPort) {
 TEST(LcmReassembly, ASenderThatStartsAgainBeginsANewMessage) {
   LcmReassembly reassembly;
   const auto before = three_fragments(7, "abcdefghi"), after = three_fragments(0, "ABCDEFGHI");
-  told(reassembly, before[0]);
-  told(reassembly, before[1]);
-  told(reassembly, after[0]);
-  EXPECT_EQ(told(reassembly, before[2]), "") << "of a message that was given up";
-  EXPECT_EQ(told(reassembly, after[1]), "");
-  EXPECT_EQ(told(reassembly, after[2]), "a=ABCDEFGHI");
+  reported(reassembly, before[0]);
+  reported(reassembly, before[1]);
+  reported(reassembly, after[0]);
+  EXPECT_EQ(reported(reassembly, before[2]), "") << "of a message that was given up";
+  EXPECT_EQ(reported(reassembly, after[1]), "");
+  EXPECT_EQ(reported(reassembly, after[2]), "a=ABCDEFGHI");
   EXPECT_EQ(reassembly.counts().dropped, 1u);
 }
 
@@ -147,7 +147,7 @@ TEST(LcmReassembly, PartsWithGapsOrOverlapsMakeNoMessage) {
     auto datagrams = three_fragments();
     datagrams[1] = fragment_datagram(
         {.sequence = 7, .message_bytes = 9, .offset = second_at, .number = 1, .count = 3, .payload = "def"});
-    for (const sim::Bytes& datagram : datagrams) EXPECT_EQ(told(reassembly, datagram), "");
+    for (const sim::Bytes& datagram : datagrams) EXPECT_EQ(reported(reassembly, datagram), "");
     EXPECT_EQ(reassembly.partial_messages(), 0u) << "the message is given up";
     EXPECT_EQ(reassembly.counts().bad, 1u);
   }
@@ -156,21 +156,24 @@ TEST(LcmReassembly, PartsWithGapsOrOverlapsMakeNoMessage) {
 TEST(LcmReassembly, HeadersThatContradictTheFirstOneAreNoPartOfTheMessage) {
   LcmReassembly reassembly;
   const auto datagrams = three_fragments();
-  told(reassembly, datagrams[0]);
-  told(reassembly,
-       fragment_datagram({.sequence = 7, .message_bytes = 8, .offset = 3, .number = 1, .count = 3, .payload = "XYZ"}));
-  told(reassembly,
-       fragment_datagram({.sequence = 7, .message_bytes = 9, .offset = 3, .number = 1, .count = 4, .payload = "XYZ"}));
-  told(reassembly,
-       fragment_datagram({.sequence = 8, .message_bytes = 9, .offset = 3, .number = 1, .count = 3, .payload = "XYZ"}));
-  told(reassembly, datagrams[1]);
-  EXPECT_EQ(told(reassembly, datagrams[2]), "a=abcdefghi");
+  reported(reassembly, datagrams[0]);
+  reported(
+      reassembly,
+      fragment_datagram({.sequence = 7, .message_bytes = 8, .offset = 3, .number = 1, .count = 3, .payload = "XYZ"}));
+  reported(
+      reassembly,
+      fragment_datagram({.sequence = 7, .message_bytes = 9, .offset = 3, .number = 1, .count = 4, .payload = "XYZ"}));
+  reported(
+      reassembly,
+      fragment_datagram({.sequence = 8, .message_bytes = 9, .offset = 3, .number = 1, .count = 3, .payload = "XYZ"}));
+  reported(reassembly, datagrams[1]);
+  EXPECT_EQ(reported(reassembly, datagrams[2]), "a=abcdefghi");
 }
 
 TEST(LcmReassembly, WhatNobodyWantsTakesNoMemory) {
   LcmReassembly reassembly;
   const auto nothing = [](std::string_view) { return false; };
-  for (const sim::Bytes& datagram : three_fragments()) EXPECT_EQ(told(reassembly, datagram, sender, nothing), "");
+  for (const sim::Bytes& datagram : three_fragments()) EXPECT_EQ(reported(reassembly, datagram, sender, nothing), "");
   EXPECT_EQ(reassembly.partial_bytes(), 0u);
 }
 
@@ -181,12 +184,12 @@ TEST(LcmReassembly, TheLargestMessageComesWhole) {
   const auto count = static_cast<std::uint16_t>((size + part - 1) / part);
   std::string message;
   for (std::uint16_t i = 0; i < count; ++i)
-    message = told(reassembly, fragment_datagram({.message_bytes = size,
-                                                  .offset = i * part,
-                                                  .number = i,
-                                                  .count = count,
-                                                  .channel = "a",
-                                                  .payload = std::string_view(text).substr(i * part, part)}));
+    message = reported(reassembly, fragment_datagram({.message_bytes = size,
+                                                      .offset = i * part,
+                                                      .number = i,
+                                                      .count = count,
+                                                      .channel = "a",
+                                                      .payload = std::string_view(text).substr(i * part, part)}));
   EXPECT_EQ(message.size(), size + 2);
 }
 
@@ -198,14 +201,14 @@ TEST(LcmReassembly, MemoryIsBoundedWhateverSendersBegin) {
   // Each claims 16 MiB, and the second fragment comes far too early.
   for (std::uint16_t port = 1; port < 1000; ++port) {
     for (const std::uint16_t number : {0, 200})
-      told(reassembly,
-           fragment_datagram({.message_bytes = 16u << 20,
-                              .offset = number * 60'000u,
-                              .number = number,
-                              .count = 300,
-                              .channel = "a",
-                              .payload = std::string_view("xyz")}),
-           {1, port});
+      reported(reassembly,
+               fragment_datagram({.message_bytes = 16u << 20,
+                                  .offset = number * 60'000u,
+                                  .number = number,
+                                  .count = 300,
+                                  .channel = "a",
+                                  .payload = std::string_view("xyz")}),
+               {1, port});
     EXPECT_LE(reassembly.partial_messages(), 10u);
     EXPECT_LE(reassembly.partial_bytes(), limits.max_partial_bytes);
   }
@@ -217,11 +220,12 @@ TEST(LcmReassembly, FragmentsThatComeTooEarlyAreBounded) {
   limits.max_early_bytes = 10'000;
   LcmReassembly reassembly(limits);
   const std::string part(1000, 'x');
-  told(reassembly, fragment_datagram({.message_bytes = 1'000'000, .count = 1000, .channel = "a", .payload = part}));
+  reported(reassembly, fragment_datagram({.message_bytes = 1'000'000, .count = 1000, .channel = "a", .payload = part}));
   for (std::uint16_t number = 2; number < 1000 && reassembly.partial_messages() > 0; ++number)
-    told(reassembly,
-         fragment_datagram(
-             {.message_bytes = 1'000'000, .offset = number * 1000u, .number = number, .count = 1000, .payload = part}));
+    reported(
+        reassembly,
+        fragment_datagram(
+            {.message_bytes = 1'000'000, .offset = number * 1000u, .number = number, .count = 1000, .payload = part}));
   EXPECT_EQ(reassembly.partial_messages(), 0u);
   EXPECT_EQ(reassembly.partial_bytes(), 0u);
 }
@@ -234,8 +238,8 @@ TEST(LcmReassembly, TheSenderThatIsBusyKeepsItsMessageBesideManyThatAreNot) {
   std::uint16_t port = 1;
   std::string message;
   for (const sim::Bytes& datagram : datagrams) {
-    message = told(reassembly, datagram);
-    for (int i = 0; i < 4; ++i) told(reassembly, three_fragments()[0], {1, port++});
+    message = reported(reassembly, datagram);
+    for (int i = 0; i < 4; ++i) reported(reassembly, three_fragments()[0], {1, port++});
   }
   EXPECT_EQ(message, "a=abcdefghi");
 }

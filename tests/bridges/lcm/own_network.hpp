@@ -17,7 +17,7 @@ inline bool write_file(const char* path, const std::string& text) {
   return !!(std::ofstream(path) << text << std::flush);
 }
 
-/// As `unshare -rn`: a network of its own, with nothing but a loopback interface that is down, and its root.
+/// As `unshare -rn`: its own network, with nothing but a loopback interface that is down, and its root.
 inline bool enter_own_network() {
   const std::string uid = std::to_string(getuid()), gid = std::to_string(getgid());
   if (unshare(CLONE_NEWUSER | CLONE_NEWNET) != 0) return false;
@@ -27,7 +27,7 @@ inline bool enter_own_network() {
 
 inline constexpr int not_permitted = 77;
 
-/// The answer of `judge`, called in a child process in a network of its own: 0 yes, 1 no, or not_permitted.
+/// The answer of `judge`, called in a child process in its own network: 0 yes, 1 no, or not_permitted.
 inline int in_own_network(const std::function<bool()>& judge) {
   const pid_t child = fork();
   if (child == 0) {

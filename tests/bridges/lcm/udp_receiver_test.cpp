@@ -38,7 +38,7 @@ DatagramSocket socket_to(const std::string& url) {
 }
 
 /// How a process that listens to "a" ends when it gets these datagrams, and then the message "after them": 0 when it
-/// hears this one.
+/// receives this one.
 int listener_after(const std::vector<sim::Bytes>& datagrams) {
   const std::string url = own_url();
   const pid_t child = fork();
@@ -56,7 +56,7 @@ int listener_after(const std::vector<sim::Bytes>& datagrams) {
   const DatagramSocket out = socket_to(url);
   const FileDescriptor ended(static_cast<int>(syscall(SYS_pidfd_open, child, 0)));
   pollfd end{ended.number(), POLLIN, 0};
-  // Until it is up the datagrams are lost; it hears them when it hears the last.
+  // Until it is up the datagrams are lost; it receives them when it receives the last.
   for (int i = 0; i < 1000 && poll(&end, 1, 10) == 0; ++i) {
     for (const sim::Bytes& datagram : datagrams) EXPECT_TRUE(out.send(datagram));
     EXPECT_TRUE(out.send(short_datagram("a", "after them")));
@@ -83,7 +83,7 @@ void command(const std::string& line) {
   if (std::system(line.c_str()) != 0) throw std::runtime_error("failed: " + line);
 }
 
-void tell(int fd) {
+void report(int fd) {
   if (write(fd, "x", 1) != 1) throw std::runtime_error("the other process is gone");
 }
 
@@ -96,11 +96,11 @@ constexpr int port = 17'667;
 const std::string group = "239.255.76.67";
 
 /// Another machine, at 10.7.0.2: sends to the bus of 10.7.0.1 by unicast and by multicast until it is killed.
-[[noreturn]] void be_another_machine(int told, int tells) {
+[[noreturn]] void be_another_machine(int reported, int tells) {
   try {
     if (unshare(CLONE_NEWNET) != 0) _exit(1);
-    tell(tells);
-    await_word(told);
+    report(tells);
+    await_word(reported);
     command("ip addr add 10.7.0.2/24 dev v1 && ip link set v1 up && ip route add 224.0.0.0/4 dev v1");
     const DatagramSocket unicast("10.7.0.1", port), multicast(group, port);
     const int ttl = 1;
@@ -116,7 +116,7 @@ const std::string group = "239.255.76.67";
   _exit(1);
 }
 
-/// A socket of an LCM program as they were: it hears whatever comes to the port.
+/// A socket of an LCM program as they were: it receives whatever comes to the port.
 class PlainSocket {
  public:
   PlainSocket() : fd_(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {
@@ -128,7 +128,7 @@ class PlainSocket {
     if (bind(fd_, reinterpret_cast<const sockaddr*>(&any), sizeof any) != 0) throw std::runtime_error("no port");
   }
   ~PlainSocket() { close(fd_); }
-  bool hears(std::string_view text) {
+  bool receives(std::string_view text) {
     std::array<char, 2000> buffer{};
     const auto got = recv(fd_, buffer.data(), buffer.size(), MSG_DONTWAIT);
     return got > 0 && std::string_view(buffer.data(), static_cast<std::size_t>(got)).find(text) != text.npos;
@@ -138,7 +138,7 @@ class PlainSocket {
   int fd_;
 };
 
-bool only_what_is_sent_here_is_heard() {
+bool accepts_only_own_address() {
   std::array<int, 2> there{}, back{};
   if (pipe(there.data()) != 0 || pipe(back.data()) != 0) return false;
   const pid_t other = fork();
@@ -151,15 +151,15 @@ bool only_what_is_sent_here_is_heard() {
   PlainSocket plain;
   here.listen("a");
   network.listen("a");
-  tell(there[1]);
-  // That both kinds arrive is seen by those who hear them.
-  bool unicast_came = false, multicast_came = false, unicast_heard = false;
+  report(there[1]);
+  // That both kinds arrive is seen by those who receive them.
+  bool unicast_came = false, multicast_came = false, unicast_received = false;
   const auto deadline = std::chrono::steady_clock::now() + 20s;
   while (!(unicast_came && multicast_came) && std::chrono::steady_clock::now() < deadline) {
-    unicast_came |= plain.hears("unicast from outside");
+    unicast_came |= plain.receives("unicast from outside");
     while (const auto message = network.next(5ms)) {
       multicast_came |= text_of(message->payload) == "multicast from outside";
-      unicast_heard |= text_of(message->payload) == "unicast from outside";
+      unicast_received |= text_of(message->payload) == "unicast from outside";
       if (multicast_came) break;
     }
   }
@@ -168,14 +168,14 @@ bool only_what_is_sent_here_is_heard() {
   kill(other, SIGKILL);
   waitpid(other, nullptr, 0);
   if (!unicast_came || !multicast_came) std::fputs("nothing came from the other machine\n", stderr);
-  if (unicast_heard) std::fputs("with ttl=1 unicast is heard\n", stderr);
-  if (!first) std::fputs("with ttl=0 not even what is sent here is heard\n", stderr);
+  if (unicast_received) std::fputs("with ttl=1 unicast is received\n", stderr);
+  if (!first) std::fputs("with ttl=0 not even what is sent here is received\n", stderr);
   if (first) std::fprintf(stderr, "with ttl=0, first: %s\n", text_of(first->payload).c_str());
-  return unicast_came && multicast_came && !unicast_heard && first && text_of(first->payload) == "from here";
+  return unicast_came && multicast_came && !unicast_received && first && text_of(first->payload) == "from here";
 }
 
 TEST(UdpReceiver, WhileTtlIsZeroOnlyThisMachineIsHeardAndUnicastNever) {
-  const int result = lcm_test::in_own_network(only_what_is_sent_here_is_heard);
+  const int result = lcm_test::in_own_network(accepts_only_own_address);
   if (result == lcm_test::not_permitted) GTEST_SKIP() << "user and network namespaces are not permitted here";
   EXPECT_EQ(result, 0);
 }
@@ -205,16 +205,16 @@ TEST(UdpReceiver, ThreeSendersLargeMessagesComeWholeAndApart) {
         sender.publish("image", sim::Bytes(150'000 + static_cast<std::size_t>(i), static_cast<std::byte>(i)));
     });
   for (std::thread& sender : senders) sender.join();
-  std::array<int, 3> heard{};
+  std::array<int, 3> received{};
   for (int k = 0; k < 15; ++k) {
     const auto message = listener.next(10s);
     ASSERT_TRUE(message) << k;
     const auto from = static_cast<std::size_t>(message->payload[0]);
     ASSERT_LT(from, 3u);
     EXPECT_EQ(message->payload, sim::Bytes(150'000 + from, static_cast<std::byte>(from)));
-    ++heard[from];
+    ++received[from];
   }
-  EXPECT_EQ(heard, (std::array<int, 3>{5, 5, 5}));
+  EXPECT_EQ(received, (std::array<int, 3>{5, 5, 5}));
 }
 
 TEST(UdpReceiver, WhatComesWhileTheProgramComputesIsNotLost) {
@@ -222,7 +222,7 @@ TEST(UdpReceiver, WhatComesWhileTheProgramComputesIsNotLost) {
   LcmListener listener(own_url());
   listener.listen("image");
   LcmListener sender(own_url());
-  // Ten times what the kernel keeps; nobody calls next() meanwhile.
+  // Ten times what the kernel keeps; no one calls next() meanwhile.
   for (int i = 0; i < 400; ++i) {
     sender.publish("image", sim::Bytes(100'000, static_cast<std::byte>(i)));
     std::this_thread::sleep_for(1ms);
@@ -238,11 +238,11 @@ TEST(UdpInbox, LetsTheKernelDropWhatNobodyWantsUntilSomebodyDoes) {
   const LcmEndpoint endpoint = lcm_endpoint(resolve_lcm_url(own_url()));
   UdpInbox inbox(
       {.group = endpoint.address, .port = endpoint.port, .buffer_bytes = 1 << 20, .this_machine_only = true});
-  int heard = 0;
-  const UdpInbox::Subscription wanted{"wanted", [](const LcmMessage&, void* count) { ++*static_cast<int*>(count); },
-                                      &heard};
-  const UdpInbox::Subscription late{"late", wanted.handler, &heard};
-  inbox.add(wanted);
+  int received = 0;
+  const UdpInbox::Subscription accepts{"wanted", [](const LcmMessage&, void* count) { ++*static_cast<int*>(count); },
+                                       &received};
+  const UdpInbox::Subscription late{"late", accepts.handler, &received};
+  inbox.add(accepts);
   const DatagramSocket out = socket_to(own_url());
   const auto send_and_handle = [&](const char* channel) {
     ASSERT_TRUE(out.send(short_datagram(channel, "payload.")));
@@ -253,19 +253,19 @@ TEST(UdpInbox, LetsTheKernelDropWhatNobodyWantsUntilSomebodyDoes) {
     return inbox.filters();
   }));
   const auto before = inbox.counts();
-  EXPECT_GE(before.unwanted, 64u);
+  EXPECT_GE(before.unmatched, 64u);
   for (int i = 0; i < 100; ++i) send_and_handle("unwanted");
   send_and_handle("late");
   EXPECT_EQ(inbox.counts().datagrams, before.datagrams);
   send_and_handle("wanted");
-  EXPECT_EQ(heard, 1);
+  EXPECT_EQ(received, 1);
   inbox.add(late);
   EXPECT_FALSE(inbox.filters());
   send_and_handle("late");
-  EXPECT_EQ(heard, 2);
+  EXPECT_EQ(received, 2);
   inbox.remove(late);
   send_and_handle("late");
-  EXPECT_EQ(heard, 2);
+  EXPECT_EQ(received, 2);
 }
 
 }  // namespace

@@ -25,8 +25,8 @@ TEST(LockstepAnswers, SaysThatWhatAnAnswerNamesHasNotCome) {
   } catch (const bridges::LockstepTimeout& timeout) {
     // zlib.crc32(b"1") is 83dcefb7
     EXPECT_STREQ(timeout.what(),
-                 "lockstep: client 'liar' acknowledged step 0, but 2 of the 3 messages that it names have not come, "
-                 "first 'cmd' with CRC-32 83dcefb7 within 0.02 s");
+                 "lockstep: client 'liar' acknowledged step 0, but 2 of the 3 messages that it lists were not "
+                 "received, first 'cmd' with CRC-32 83dcefb7 within 0.02 s");
   }
 }
 
@@ -59,8 +59,8 @@ TEST(LockstepAnswers, WhatALeavingClientSendsTwiceIsNoBadMessage) {
   Service s;
   ASSERT_TRUE(s.join("pilot", "{session: 5}").ok);
   s.synchronize([&] { s.acknowledge(0, "pilot", 5, 1); });
-  EXPECT_TRUE(s.ask("leave", 0, "{session: 5, acknowledged: 1}", "pilot").ok);
-  EXPECT_TRUE(s.ask("leave", 0, "{session: 5, acknowledged: 1}", "pilot").ok) << "its reply was late";
+  EXPECT_TRUE(s.request_reply("leave", 0, "{session: 5, acknowledged: 1}", "pilot").ok);
+  EXPECT_TRUE(s.request_reply("leave", 0, "{session: 5, acknowledged: 1}", "pilot").ok) << "its reply was late";
   s.acknowledge(0, "pilot", 5, 1);  // the tick was late, and it answered once more
   shoal::sim_resend_t question{};
   question.client = "pilot";
@@ -75,8 +75,8 @@ TEST(LockstepAnswers, WhatCameWithAnAnswerAfterTheMailWasLookedAtIsNotAskedFor) 
   Service s("{timeout_s: 60}");
   const auto reader = s.gate.open_mailbox("cmd");
   ASSERT_TRUE(s.join("pilot", "{session: 5}").ok);
-  // LCM's thread brings a command and the answer behind it between the look at the mail and that at the answers.
-  s.lockstep.set_on_heard([&](const std::string&) { s.test.bus.publish("cmd", bytes_of("1"), sim::Time(0)); });
+  // LCM's thread brings a command and the answer behind it between the collection of messages and that of answers.
+  s.lockstep.set_on_answer([&](const std::string&) { s.test.bus.publish("cmd", bytes_of("1"), sim::Time(0)); });
   bool sent = false;
   s.lockstep.synchronize(
       [&](std::chrono::milliseconds) {

@@ -18,7 +18,7 @@ using Service = lcm_test::LockstepWorld;
 struct OtherBus {
   sim::InProcessBus in_process;
   sim::Bus& other_bus = in_process;
-  sim::MailGate other_gate{in_process};
+  sim::MessageGate other_gate{in_process};
 };
 
 /// A world with another bus.
@@ -52,7 +52,8 @@ TEST(LockstepBuses, AClientOfTheSameNameOnAnotherBusIsRefused) {
   for (const char* text : {"", "{session: 7}", "{session: 8}"}) {
     const auto reply = s.ask_there("join", "pilot", text);
     EXPECT_FALSE(reply.ok);
-    EXPECT_EQ(reply.text, "a client 'pilot' takes part on the world's bus; give this one on bus 'of_a' another name");
+    EXPECT_EQ(reply.text,
+              "a client 'pilot' already takes part on the world's bus; give the one on bus 'of_a' another name");
   }
   EXPECT_TRUE(s.join("pilot", "{session: 7}").ok);
 }
@@ -61,13 +62,13 @@ TEST(LockstepBuses, LeaveLetsGoOfNobodyOnAnotherBus) {
   TwoBuses s;
   ASSERT_TRUE(s.join("pilot", "{session: 7}").ok);
   EXPECT_EQ(s.ask_there("leave", "pilot").text,
-            "the client 'pilot' takes part on the world's bus; a request on bus 'of_a' does not act there");
+            "the client 'pilot' takes part on the world's bus; a request on bus 'of_a' does not affect it");
   EXPECT_TRUE(s.lockstep.has("pilot"));
   ASSERT_TRUE(s.ask_there("join", "other").ok);
-  EXPECT_EQ(s.ask("leave", 0, "", "other").text,
-            "the client 'other' takes part on bus 'of_a'; a request on the world's bus does not act there");
+  EXPECT_EQ(s.request_reply("leave", 0, "", "other").text,
+            "the client 'other' takes part on bus 'of_a'; a request on the world's bus does not affect it");
   testing::internal::CaptureStdout();
-  EXPECT_TRUE(s.ask("leave", 0, "", "pilot").ok);
+  EXPECT_TRUE(s.request_reply("leave", 0, "", "pilot").ok);
   EXPECT_THAT(testing::internal::GetCapturedStdout(),
               HasSubstr("a request without its session at 0.00 s on the world's bus let go of client 'pilot'"));
   EXPECT_FALSE(s.lockstep.has("pilot"));
@@ -75,7 +76,7 @@ TEST(LockstepBuses, LeaveLetsGoOfNobodyOnAnotherBus) {
 
 TEST(LockstepBuses, AnswersCountOnTheirOwnBusOnly) {
   TwoBuses s;
-  ASSERT_TRUE(s.join("pilot").ok);  // without a session: anybody can know what it answers
+  ASSERT_TRUE(s.join("pilot").ok);  // without a session: anyone can know what it answers
   shoal::sim_ack_t ack{};
   ack.client = "pilot";
   s.send_there("sim.ack", ack);
@@ -97,9 +98,9 @@ TEST(LockstepBuses, AnswersCountOnTheirOwnBusOnly) {
 TEST(LockstepBuses, TheEndIsForThoseWhoAreListed) {
   TwoBuses s;
   ASSERT_TRUE(s.join("simple").ok);
-  EXPECT_FALSE(s.ask("follow", 0, "", "watcher").ok) << "without a session";
-  ASSERT_TRUE(s.ask("follow", 0, "{session: 3}", "watcher").ok);
-  EXPECT_EQ(s.ask("follow", 0, "{session: 3}", "watcher").session, 3) << "asked again";
+  EXPECT_FALSE(s.request_reply("follow", 0, "", "watcher").ok) << "without a session";
+  ASSERT_TRUE(s.request_reply("follow", 0, "{session: 3}", "watcher").ok);
+  EXPECT_EQ(s.request_reply("follow", 0, "{session: 3}", "watcher").session, 3) << "asked again";
   ASSERT_TRUE(s.ask_there("follow", "there", "{session: 4}").ok);
   const auto ticks_there = s.other_bus.open_mailbox("sim.tick");
   s.lockstep.publish_end([](std::chrono::milliseconds) { ADD_FAILURE() << "simple clients are not waited for"; },
@@ -124,7 +125,7 @@ TEST(LockstepBuses, OneThatWasDroppedIsToldWhenTheRunEnds) {
   s.lockstep.publish_end([](std::chrono::milliseconds) {}, std::chrono::minutes(1));
   const auto reply = s.replies.last();
   EXPECT_EQ(reply.session, 5);
-  EXPECT_THAT(reply.text, HasSubstr("the world went on without it"));
+  EXPECT_THAT(reply.text, HasSubstr("the world continued without it"));
 }
 
 }  // namespace

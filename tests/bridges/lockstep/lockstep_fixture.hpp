@@ -26,7 +26,7 @@ struct LockstepWorld : ServedWorld {
                     vehicle_buses) {}
 
   shoal::sim_control_reply_t join(const std::string& client, const std::string& text = "", double period_s = 0.01) {
-    return ask("join", period_s, text, client);
+    return request_reply("join", period_s, text, client);
   }
   void send_request(const std::string& command, double value, const std::string& client = "",
                     const std::string& text = "") {
@@ -59,7 +59,7 @@ struct LockstepWorld : ServedWorld {
     ack.count = static_cast<std::int32_t>(published.size());
     test.send("sim.ack", ack);
   }
-  /// `while_waiting` is called each time that the world waits for somebody.
+  /// `while_waiting` is called each time that the world waits for someone.
   bridges::LockstepOutcome synchronize(const std::function<void()>& while_waiting = [] {}) {
     return lockstep.synchronize([&](std::chrono::milliseconds) { while_waiting(); },
                                 [&] {
@@ -69,8 +69,8 @@ struct LockstepWorld : ServedWorld {
   }
   std::string admitted() {
     std::string all;
-    for (const sim::MailGate::Mail& mail : gate.admit())
-      all.append(reinterpret_cast<const char*>(mail.payload.data()), mail.payload.size());
+    for (const sim::MessageGate::Delivery& inputs : gate.admit())
+      all.append(reinterpret_cast<const char*>(inputs.payload.data()), inputs.payload.size());
     return all;
   }
 

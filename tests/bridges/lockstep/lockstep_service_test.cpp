@@ -55,9 +55,9 @@ TEST(LockstepService, ATickNamesWhatTheClientMustHaveAndSendsItAgain) {
   ASSERT_TRUE(s.join("pilot", "{session: 5, receives: [x, y], timeout_s: 60}").ok);
   s.gate.publish("y", bytes_of("one"), sim::Time(0));
   s.gate.publish("x", bytes_of("two"), sim::Time(0));
-  int asked = 0;
+  int requested = 0;
   s.synchronize([&] {
-    if (++asked == 1) {
+    if (++requested == 1) {
       const auto tick = s.ticks.last();
       ASSERT_EQ(tick.client.size(), 1u);
       const shoal::sim_due_t& due = tick.client[0];
@@ -72,7 +72,7 @@ TEST(LockstepService, ATickNamesWhatTheClientMustHaveAndSendsItAgain) {
       question.sequence = 1;
       question.first = 1;
       s.test.send("sim.resend", question);
-    } else if (asked == 2) {
+    } else if (requested == 2) {
       const auto bundle = s.bundles.last();
       EXPECT_EQ(bundle.first, 1);
       ASSERT_EQ(bundle.message.size(), 1u);
@@ -90,15 +90,15 @@ TEST(LockstepService, BundlesThatAreTooLargeComeInParts) {
   ASSERT_TRUE(s.join("pilot", "{session: 5, receives: [x], timeout_s: 60}").ok);
   for (int i = 0; i < 5; ++i) s.gate.publish("x", sim::Bytes(25'000, static_cast<std::byte>(i)), sim::Time(0));
   s.gate.publish("x", sim::Bytes(200'000), sim::Time(0));  // more than a datagram holds
-  int asked = 0;
+  int requested = 0;
   s.synchronize([&] {
-    if (++asked == 1) {
+    if (++requested == 1) {
       shoal::sim_resend_t question{};
       question.client = "pilot";
       question.session = 5;
       question.sequence = 1;
       s.test.send("sim.resend", question);
-    } else if (asked == 2) {
+    } else if (requested == 2) {
       std::vector<std::int32_t> first;
       for (const auto& bundle : s.bundles.take_all()) first.push_back(bundle.first);
       EXPECT_EQ(first, (std::vector<std::int32_t>{0, 2, 4, 5}));  // two of 25 kB fit in 60 kB
@@ -142,11 +142,11 @@ TEST(LockstepService, WhatOneClientPublishesIsOnTheListOfAnotherInOrder) {
   ASSERT_TRUE(s.join("b", "{session: 5, receives: [note]}").ok);
   ASSERT_TRUE(s.join("a", "{session: 6}").ok);
   s.synchronize([&] {
-    s.acknowledge(0, "a", 6, 1, {{"note", "1"}, {"other", "x"}});  // nobody in the world reads `note`
+    s.acknowledge(0, "a", 6, 1, {{"note", "1"}, {"other", "x"}});  // no one in the world reads `note`
     s.test.bus.publish("note", bytes_of("1"), sim::Time(0));
     s.acknowledge(0, "b", 5, 1);
     for (const auto& question : s.questions.take_all()) {
-      EXPECT_EQ(question.client, "a");  // it came before anybody listened
+      EXPECT_EQ(question.client, "a");  // it came before anyone listened
       s.test.bus.publish("note", bytes_of("1"), sim::Time(0));
     }
   });
@@ -196,7 +196,7 @@ TEST(LockstepService, ASecondClientIsRefusedAlsoWhileTheFirstIsAtWork) {
 TEST(LockstepService, ASecondClientTakesThePlaceOfAFirstThatIsGone) {
   Service s;
   ASSERT_TRUE(s.join("pilot", "{session: 5, on_timeout: wait, timeout_s: 60}").ok);
-  s.lockstep.client_gone("pilot");
+  s.lockstep.client_exited("pilot");
   EXPECT_TRUE(s.lockstep.has("pilot"));  // that is what was agreed
   ASSERT_TRUE(s.join("pilot", "{session: 6, timeout_s: 60}").ok);
   s.synchronize([&] { s.acknowledge(0, "pilot", 6, 1); });
@@ -213,7 +213,7 @@ TEST(LockstepService, ALeaveWaitsForTheAcknowledgementBeforeIt) {
     s.acknowledge(0, "pilot", 5, 1);
     left = true;
   });
-  EXPECT_TRUE(s.ask("leave", 0, "{session: 5}").ok);
+  EXPECT_TRUE(s.request_reply("leave", 0, "{session: 5}").ok);
   EXPECT_FALSE(s.lockstep.has("pilot"));
   EXPECT_EQ(s.lockstep.summaries().at(0).ended, "left");
 }
@@ -225,8 +225,9 @@ TEST(LockstepService, ALeaveIsGrantedThoughTheNextTickHasGoneOut) {
   s.test.world.step();
   s.synchronize([&] {
     EXPECT_TRUE(s.is_undecided("leave", "pilot", "{session: 5, acknowledged: 2}"));  // its answer is on its way
-    EXPECT_THAT(s.ask("leave", 0, "{session: 5, acknowledged: 3}").text, HasSubstr("after tick 3, which it was not"));
-    EXPECT_TRUE(s.ask("leave", 0, "{session: 5, acknowledged: 1}").ok);
+    EXPECT_THAT(s.request_reply("leave", 0, "{session: 5, acknowledged: 3}").text,
+                HasSubstr("after tick 3, which it was not"));
+    EXPECT_TRUE(s.request_reply("leave", 0, "{session: 5, acknowledged: 1}").ok);
   });
   EXPECT_FALSE(s.lockstep.has("pilot"));
 }
@@ -264,7 +265,7 @@ TEST(LockstepService, WithoutALateClientTheWorldGoesOnAndTellsItSo) {
   s.synchronize();
   const auto reply = s.replies.last();
   EXPECT_FALSE(reply.ok);
-  EXPECT_THAT(reply.text, HasSubstr("the world went on without it: join again"));
+  EXPECT_THAT(reply.text, HasSubstr("the world continued without it: join again"));
 }
 
 TEST(LockstepService, ALateClientPausesTheWorldUntilItAnswers) {
@@ -277,7 +278,7 @@ TEST(LockstepService, ALateClientPausesTheWorldUntilItAnswers) {
   EXPECT_TRUE(s.lockstep.has("pilot"));
   s.test.world.step();
   s.synchronize([&] {
-    if (s.control.paused) s.control.paused = false;  // somebody resumes
+    if (s.control.paused) s.control.paused = false;  // someone resumes
   });
   EXPECT_FALSE(s.lockstep.has("pilot"));
 }
@@ -332,7 +333,7 @@ TEST(LockstepService, AClientCannotMakeAWorldWaitLongerThanItsFileSays) {
 TEST(LockstepService, AJoinThatComesLateDoesNotTakeInAgainWhoHasLeft) {
   Service s;
   ASSERT_TRUE(s.join("guest", "{session: 77}").ok);
-  ASSERT_TRUE(s.ask("leave", 0, "", "guest").ok);
+  ASSERT_TRUE(s.request_reply("leave", 0, "", "guest").ok);
   EXPECT_THAT(s.join("guest", "{session: 77}").text, HasSubstr("the session 77 of client 'guest' is over (left)"));
   EXPECT_FALSE(s.lockstep.has("guest"));
   EXPECT_TRUE(s.join("guest", "{session: 78}").ok);
@@ -350,8 +351,8 @@ TEST(LockstepService, AReplyNamesTheSessionThatItIsFor) {
   const auto refused = s.join("pilot", "{session: 6}");
   EXPECT_FALSE(refused.ok);
   EXPECT_EQ(refused.session, 6);
-  EXPECT_EQ(s.ask("leave", 0, "{session: 5}", "pilot").session, 5);
-  EXPECT_EQ(s.ask("alive", 0, "", "pilot").session, 0);
+  EXPECT_EQ(s.request_reply("leave", 0, "{session: 5}", "pilot").session, 5);
+  EXPECT_EQ(s.request_reply("alive", 0, "", "pilot").session, 0);
 }
 
 TEST(LockstepService, WhileTheWorldIsPausedASecondClientIsRefusedWhenTheFirstLives) {
@@ -371,7 +372,7 @@ TEST(LockstepService, WhileTheWorldIsPausedASecondClientIsRefusedWhenTheFirstLiv
     EXPECT_THAT(s.join(name, "{session: 6}").text, HasSubstr("takes part, and answers"));
     EXPECT_EQ(s.lockstep.bad_messages(), 0);
     s.control.paused = false;
-    ASSERT_TRUE(s.ask("leave", 0, "", name).ok);
+    ASSERT_TRUE(s.request_reply("leave", 0, "", name).ok);
   }
 }
 
@@ -400,11 +401,11 @@ TEST(LockstepService, AnOperatorsMessageThatEqualsOneOfAClientIsAdmitted) {
     s.acknowledge(0, "pilot", 5, 1, {{"cmd", "stop"}});
   });
   EXPECT_EQ(s.admitted(), "stop");
-  // The network may have repeated the first; the second is somebody else's.
+  // The network may have repeated the first; the second is someone else's.
   for (int i = 0; i < 2; ++i) s.test.bus.publish("cmd", bytes_of("stop"), sim::Time(0));
   EXPECT_EQ(s.admitted(), "stop");
   EXPECT_EQ(s.lockstep.summaries().at(0).messages_repeated, 1);
-  // After a moment it can only be somebody else's, also when the world does not step meanwhile.
+  // After a moment it can only be someone else's, also when the world does not step meanwhile.
   s.test.world.step();
   s.synchronize([&] {
     s.test.bus.publish("cmd", bytes_of("stop"), sim::Time(0));
@@ -526,7 +527,7 @@ TEST(LockstepService, OnlySoManyClientsOfThePastAreListed) {
   for (int i = 0; i < 2500; ++i) {
     const std::string name = "client" + std::to_string(i);
     ASSERT_TRUE(s.join(name, "", 100).ok);
-    ASSERT_TRUE(s.ask("leave", 0, "", name).ok);
+    ASSERT_TRUE(s.request_reply("leave", 0, "", name).ok);
   }
   EXPECT_EQ(s.lockstep.summaries().size(), 2000u);
 }

@@ -138,7 +138,7 @@ TEST(ClientInbox, AfterGoingBackTheSameMessageIsHandledAgain) {
     ASSERT_TRUE(inbox.name({{0, "1"}}));
     ASSERT_TRUE(inbox.complete());
     EXPECT_THAT(inbox.handled(), ElementsAre("a:1")) << branch;
-    inbox.forget();
+    inbox.discard();
   }
   EXPECT_EQ(inbox.counts().repeated, 0u);
 }

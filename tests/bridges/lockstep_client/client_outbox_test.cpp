@@ -77,14 +77,14 @@ TEST(ClientOutbox, SendsAgainFromAPlaceOfTheList) {
 TEST(ClientOutbox, RefusesMoreThanAnAnswerMayName) {
   Outbox box;
   box.outbox.open();
-  for (std::size_t i = 0; i < sim::most_named_messages; ++i) box.outbox.publish("a", {});
+  for (std::size_t i = 0; i < sim::max_named_messages; ++i) box.outbox.publish("a", {});
   try {
     box.outbox.publish("a", {});
     FAIL();
   } catch (const BusError& error) {
     EXPECT_STREQ(error.what(), "'pilot' publishes more than 10000 messages between two ticks");
   }
-  EXPECT_EQ(box.sent.size(), sim::most_named_messages);
+  EXPECT_EQ(box.sent.size(), sim::max_named_messages);
 }
 
 TEST(ClientOutbox, StartsAnewAndKeepsWhatWaitsForATick) {

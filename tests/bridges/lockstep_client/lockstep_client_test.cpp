@@ -189,7 +189,7 @@ TEST(LockstepClient, SaysWhyTheSimulatorRefuses) {
     client.join(-1, 10s);
     ADD_FAILURE();
   } catch (const BusError& error) {
-    EXPECT_STREQ(error.what(), "the simulator refuses 'pilot': the period must be > 0");
+    EXPECT_STREQ(error.what(), "the simulator rejects 'pilot': the period must be > 0");
   }
   thread.join();
 }
@@ -252,7 +252,7 @@ TEST(LockstepClient, InvalidPayloadsAreIgnored) {
   LockstepClient client(own_url(1), "pilot");
   join(simulator, client);
   simulator.bus().publish("sim.tick", bytes_of(""), sim::Time(0));
-  simulator.bus().publish("sim.tick", bytes_of("garbage that is no tick"), sim::Time(0));
+  simulator.bus().publish("sim.tick", bytes_of("garbage that is not a tick"), sim::Time(0));
   sim::Bytes cut = shoal::encode(shoal::sim_tick_t{});
   cut.pop_back();
   simulator.bus().publish("sim.tick", cut, sim::Time(0));
@@ -410,7 +410,7 @@ TEST(LockstepClient, EndsWhenTheWorldGoesBackUnlessItGoesWithIt) {
   test.simulator.tick(1, {"pilot"}, false, 2);
   EXPECT_FALSE(test.client.next_tick(test.tick));
   EXPECT_EQ(test.client.end(), LockstepClient::End::rewound);
-  // It joins again, and goes on with the tick that told of it.
+  // It joins again, and continues with the tick that reported it.
   std::thread thread([&] {
     test.simulator.reply(test.simulator.await_request(), true, "");
     test.simulator.repeat_tick();

@@ -74,7 +74,7 @@ TEST(RecordBranch, ACopyThatDoesNotFitOnTheDiskIsRefused) {
   sim::InProcessBus network;
   bridges::RecordingBus bus(network, folder.file("a.lcm"), 0);
   bus.publish("x", bytes_of("one"), sim::Time{10});
-  // A link, as what was prepared in vain is removed.
+  // A link, as what was prepared without success is removed.
   std::filesystem::create_symlink("/dev/full", folder.file("full"));
   EXPECT_THROW(bus.prepare(folder.file("full"), bus.recorded(), bus.bytes(), bridges::Existing::overwrite),
                bridges::BusError);

@@ -153,7 +153,7 @@ TEST(RecordingBus, RecordsWhatIsAdmittedAndNotWhatIsTaken) {
   inner.incoming.push({"a.cmd", bytes_of("handed over"), true});
   {
     RecordingBus bus(inner, folder.file("log"), epoch);
-    sim::MailGate gate(bus);
+    sim::MessageGate gate(bus);
     const auto first = gate.open_mailbox("a.cmd");
     const auto second = gate.open_mailbox("a.cmd");
     gate.collect();
@@ -223,7 +223,7 @@ TEST(RecordingBus, OverwritesOnlyWhenTold) {
     FAIL();
   } catch (const BusError& error) {
     EXPECT_EQ(std::string(error.what()),
-              folder.file("log") + ": exists already; choose another name or pass --overwrite");
+              folder.file("log") + ": already exists; choose another name or pass --overwrite");
   }
   EXPECT_EQ(contents(folder.file("log")), "precious");
   { RecordingBus bus(inner, folder.file("log"), epoch, Existing::overwrite); }
@@ -256,7 +256,7 @@ TEST(EventLog, SkipsGarbageAndReportsIt) {
   EventLogReader reader(folder.file("bad"));
   EXPECT_EQ(read_all(reader).size(), 1000u);
   ASSERT_EQ(reader.problems().size(), 1u);
-  EXPECT_EQ(reader.problems()[0], "byte 63: 7 bytes that are no event were skipped");
+  EXPECT_EQ(reader.problems()[0], "byte 63: 7 bytes between events were skipped");
 }
 
 TEST(EventLog, ADamagedLengthCostsOneEvent) {

@@ -28,14 +28,14 @@ struct Journalled {
     test.world.step();
     journal.after_step();
   }
-  /// `step:bus:channel:text` of every letter that was published.
-  std::vector<std::string> letters() {
+  /// `step:bus:channel:text` of every input that was published.
+  std::vector<std::string> inputs() {
     std::vector<std::string> all;
-    for (const shoal::sim_mail_t& message : mail.take_all()) {
+    for (const shoal::sim_inputs_t& message : input_record.take_all()) {
       sequences.push_back(message.sequence);
-      for (const shoal::sim_letter_t& letter : message.letter)
-        all.push_back(std::to_string(letter.step) + ":" + letter.bus + ":" + letter.channel + ":" +
-                      std::string(letter.data.begin(), letter.data.end()));
+      for (const shoal::sim_input_t& input : message.input)
+        all.push_back(std::to_string(input.step) + ":" + input.bus + ":" + input.channel + ":" +
+                      std::string(input.data.begin(), input.data.end()));
     }
     return all;
   }
@@ -43,28 +43,28 @@ struct Journalled {
   test::TestWorld test;
   bridges::JournalPorts ports;
   RunJournal journal{test.bus, test.world, ports};
-  test::Listener<shoal::sim_mail_t> mail{test, "sim.mail"};
+  test::Listener<shoal::sim_inputs_t> input_record{test, "sim.inputs"};
   test::Listener<shoal::sim_hash_t> hashes{test, "sim.hash"};
   std::vector<std::int64_t> sequences;
 };
 
 TEST(RunJournal, LettersKnowTheStepThatBeginsWhenTheyAreHandedOver) {
   Journalled run;
-  run.journal.letter("", "a", bytes_of("early"));
+  run.journal.input("", "a", bytes_of("early"));
   run.journal.start();
   run.journal.after_step();
-  EXPECT_THAT(run.letters(), ElementsAre("-1::a:early"));
-  run.journal.letter("", "a", bytes_of("one"));
-  const std::vector<sim::MailGate::Mail> mail{{"b", bytes_of("two")}, {"c", bytes_of("")}};
-  run.journal.admitted("reef", mail);
-  EXPECT_THAT(run.letters(), IsEmpty());
+  EXPECT_THAT(run.inputs(), ElementsAre("-1::a:early"));
+  run.journal.input("", "a", bytes_of("one"));
+  const std::vector<sim::MessageGate::Delivery> input_record{{"b", bytes_of("two")}, {"c", bytes_of("")}};
+  run.journal.admitted("reef", input_record);
+  EXPECT_THAT(run.inputs(), IsEmpty());
   run.step();
-  EXPECT_THAT(run.letters(), ElementsAre("0::a:one", "0:reef:b:two", "0:reef:c:"));
+  EXPECT_THAT(run.inputs(), ElementsAre("0::a:one", "0:reef:b:two", "0:reef:c:"));
   run.step();
-  EXPECT_THAT(run.letters(), IsEmpty());
-  run.journal.letter("", "a", bytes_of("last"));
+  EXPECT_THAT(run.inputs(), IsEmpty());
+  run.journal.input("", "a", bytes_of("last"));
   run.journal.finish();
-  EXPECT_THAT(run.letters(), ElementsAre("2::a:last"));
+  EXPECT_THAT(run.inputs(), ElementsAre("2::a:last"));
   EXPECT_THAT(run.sequences, ElementsAre(0, 1, 2));
 }
 
@@ -72,9 +72,9 @@ TEST(RunJournal, MuchMailIsSpreadOverSeveralMessages) {
   Journalled run;
   run.journal.start();
   const sim::Bytes large(600'000);
-  for (int i = 0; i < 3; ++i) run.journal.letter("", "image", large);
+  for (int i = 0; i < 3; ++i) run.journal.input("", "image", large);
   run.step();
-  EXPECT_EQ(run.letters().size(), 3u);
+  EXPECT_EQ(run.inputs().size(), 3u);
   EXPECT_THAT(run.sequences, ElementsAre(0, 1, 2));
 }
 
@@ -122,17 +122,17 @@ TEST(RunJournal, NoneAreAskedFor) {
 
 TEST(RunJournal, AListenerHearsOfEveryLetter) {
   Journalled run;
-  std::vector<std::string> heard;
-  run.journal.set_listener([&](std::int64_t step, const RunJournal::Letter& letter) {
-    heard.push_back(std::to_string(step) + ":" + letter.bus + ":" + letter.channel);
+  std::vector<std::string> received;
+  run.journal.set_listener([&](std::int64_t step, const RunJournal::Input& input) {
+    received.push_back(std::to_string(step) + ":" + input.bus + ":" + input.channel);
   });
   run.journal.start();
   run.step();
-  run.journal.letter("reef", "a", bytes_of("x"));
+  run.journal.input("reef", "a", bytes_of("x"));
   shoal::sim_control_request_t request{};
   request.command = "remove";
   run.journal.request(request);
-  EXPECT_THAT(heard, ElementsAre("1:reef:a", "1::sim.control"));
+  EXPECT_THAT(received, ElementsAre("1:reef:a", "1::sim.control"));
 }
 
 TEST(RunJournal, MutedItWritesNothingAndItsPortsReadWhatTheyReadBefore) {
@@ -145,56 +145,56 @@ TEST(RunJournal, MutedItWritesNothingAndItsPortsReadWhatTheyReadBefore) {
   end->to_world = "hello";
   EXPECT_EQ(port->read(), bytes_of("hello"));
   run.step();
-  EXPECT_THAT(run.letters(), ElementsAre("0:serial:/nowhere/a:hello"));
+  EXPECT_THAT(run.inputs(), ElementsAre("0:serial:/nowhere/a:hello"));
   run.hashes.take_all();
 
   run.journal.mute(true);
-  run.journal.serial_mail().add(1, "/nowhere/a", bytes_of("again"));
+  run.journal.serial_inputs().add(1, "/nowhere/a", bytes_of("again"));
   end->to_world = "later";
   EXPECT_EQ(port->read(), bytes_of("again"));
-  port->write(bytes_of("unheard"));
-  run.journal.letter("", "a", bytes_of("x"));
+  port->write(bytes_of("unreceived"));
+  run.journal.input("", "a", bytes_of("x"));
   run.step();
-  EXPECT_THAT(run.letters(), IsEmpty());
+  EXPECT_THAT(run.inputs(), IsEmpty());
   EXPECT_THAT(run.hashes.take_all(), IsEmpty());
   EXPECT_EQ(end->from_world, "");
 
   run.journal.mute(false);
   EXPECT_EQ(port->read(), bytes_of("later"));
   run.step();
-  EXPECT_THAT(run.letters(), ElementsAre("2:serial:/nowhere/a:later"));
+  EXPECT_THAT(run.inputs(), ElementsAre("2:serial:/nowhere/a:later"));
 }
 
 TEST(RunJournal, ABranchCountsOnFromWhereItBegan) {
   Journalled run;
   run.journal.start();
   for (int i = 0; i < 3; ++i) {
-    run.journal.letter("", "a", bytes_of("x"));
+    run.journal.input("", "a", bytes_of("x"));
     run.step();
   }
-  run.letters();
-  run.journal.begin_branch(1, 2);
-  run.journal.letter("", "a", bytes_of("x"));
+  run.inputs();
+  run.journal.start_branch(1, 2);
+  run.journal.input("", "a", bytes_of("x"));
   run.step();
-  const auto messages = run.mail.take_all();
+  const auto messages = run.input_record.take_all();
   ASSERT_EQ(messages.size(), 1u);
   EXPECT_EQ(messages[0].sequence, 2);
   EXPECT_EQ(messages[0].branch, 1);
 }
 
-TEST(SerialMail, IsReadAtItsStepOnly) {
-  bridges::SerialMail mail;
-  mail.add(3, "a", bytes_of("three"));
-  mail.add(5, "a", bytes_of("five"));
-  mail.add(5, "a", bytes_of("more"));
-  mail.add(7, "a", bytes_of("seven"));
-  EXPECT_EQ(mail.read("b", 3), bytes_of(""));
-  EXPECT_EQ(mail.read("a", 2), bytes_of(""));
-  EXPECT_EQ(mail.read("a", 3), bytes_of("three"));
-  EXPECT_EQ(mail.read("a", 3), bytes_of(""));
-  EXPECT_EQ(mail.read("a", 5), bytes_of("five"));
-  EXPECT_EQ(mail.read("a", 5), bytes_of("more"));
-  EXPECT_EQ(mail.read("a", 8), bytes_of(""));
+TEST(SerialInputs, IsReadAtItsStepOnly) {
+  bridges::SerialInputs input_record;
+  input_record.add(3, "a", bytes_of("three"));
+  input_record.add(5, "a", bytes_of("five"));
+  input_record.add(5, "a", bytes_of("more"));
+  input_record.add(7, "a", bytes_of("seven"));
+  EXPECT_EQ(input_record.read("b", 3), bytes_of(""));
+  EXPECT_EQ(input_record.read("a", 2), bytes_of(""));
+  EXPECT_EQ(input_record.read("a", 3), bytes_of("three"));
+  EXPECT_EQ(input_record.read("a", 3), bytes_of(""));
+  EXPECT_EQ(input_record.read("a", 5), bytes_of("five"));
+  EXPECT_EQ(input_record.read("a", 5), bytes_of("more"));
+  EXPECT_EQ(input_record.read("a", 8), bytes_of(""));
 }
 
 }  // namespace

@@ -106,11 +106,12 @@ TEST_F(MicromodemPty, ASessionOfTwoHosts) {
   EXPECT_THAT(two.lines(), testing::ElementsAre("CACYC,0,2,1,0,0,1", StartsWith("CADRQ,")));
   two.type("$CCTXD,2,1,0,68656c6c6f\n");
   run_for(6);
-  const auto heard = one.lines();
-  EXPECT_THAT(heard, Contains("CARXP,0"));
-  EXPECT_THAT(heard, Contains("CARXD,2,1,0,1,68656c6c6f"));
-  EXPECT_EQ(std::count_if(heard.begin(), heard.end(), [](const auto& line) { return line.starts_with("CACST,0,"); }),
-            2);
+  const auto received = one.lines();
+  EXPECT_THAT(received, Contains("CARXP,0"));
+  EXPECT_THAT(received, Contains("CARXD,2,1,0,1,68656c6c6f"));
+  EXPECT_EQ(
+      std::count_if(received.begin(), received.end(), [](const auto& line) { return line.starts_with("CACST,0,"); }),
+      2);
 }
 
 /// A command, what the modem says to it first, and how long it is busy then.
@@ -163,9 +164,9 @@ TEST_F(MicromodemCommandsOnAPty, EveryCommandOfThePageIsAnsweredWithAndWithoutAC
   for (const bool with_checksum : {true, false})
     for (const Step& step : all_commands()) {
       tried.insert(step.body.substr(0, 5));
-      const auto said = answers(with_checksum ? devices::nmea_sentence(step.body) : "$" + step.body);
-      ASSERT_FALSE(said.empty()) << step.body;
-      EXPECT_THAT(said.front(), StartsWith(step.answer)) << step.body;
+      const auto reported = answers(with_checksum ? devices::nmea_sentence(step.body) : "$" + step.body);
+      ASSERT_FALSE(reported.empty()) << step.body;
+      EXPECT_THAT(reported.front(), StartsWith(step.answer)) << step.body;
       run_for(step.busy_s);
       one.lines();
     }
@@ -214,7 +215,7 @@ TEST_F(MicromodemPty, NoiseAndAReaderThatNeverReadsDoNoHarm) {
     one.type("\r\n");
     run_for(0.02);
   }
-  EXPECT_GT(world.counts().bad_messages, 0);  // the world was told that bytes were dropped
+  EXPECT_GT(world.counts().bad_messages, 0);  // the world was notified that bytes were dropped
   one.lines();
   run_for(0.02);
   while (!one.lines().empty()) run_for(0.02);

@@ -126,7 +126,7 @@ TEST(SerialPort, MakesTheDirectory) {
   const auto port = open_serial_port(PortKind::pty, folder.file("a/b/modem"));
   EXPECT_TRUE(fs::is_symlink(folder.file("a/b/modem")));
   EXPECT_THAT(error_of(PortKind::pty, "/proc/nowhere/modem"),
-              testing::StartsWith("serial port '/proc/nowhere/modem': cannot make its directory: "));
+              testing::StartsWith("serial port '/proc/nowhere/modem': cannot create its directory: "));
 }
 
 TEST(SerialPort, ReplacesWhatADeadRunLeft) {
@@ -151,7 +151,7 @@ TEST(SerialPort, SaysThatItReplacedALinkOfADeadRun) {
   fs::create_symlink("/dev/pts/./99999", folder.file("modem"));
   const auto pty = open_serial_port(PortKind::pty, folder.file("modem"));
   EXPECT_THAT(log.text(), testing::HasSubstr("serial port '" + folder.file("modem") +
-                                             "': replaced the link that a killed run left"));
+                                             "': replaced a link left behind by a killed run"));
 }
 
 /// The system gives the number of a terminal that is gone to the next one: here the terminal of another port.
@@ -180,7 +180,7 @@ TEST(SerialPort, RefusesALinkThatAnotherProgramMadeToALiveTerminal) {
   ASSERT_EQ(openpty(&master, &slave, name, nullptr, nullptr), 0);
   fs::create_symlink(name, folder.file("modem"));
   EXPECT_THAT(error_of(PortKind::pty, folder.file("modem")),
-              testing::HasSubstr("is in use: File exists; when no run has it, remove the link"));
+              testing::HasSubstr("is in use: File exists; if no run uses it, remove the link"));
   EXPECT_EQ(fs::read_symlink(folder.file("modem")), name);
   close(master);
   close(slave);
@@ -190,16 +190,16 @@ TEST(SerialPort, RefusesToReplaceAnyOtherFile) {
   const ScratchFolder folder;
   for (const char* name : {"modem", "fifo.in", "fifo2.out"}) std::ofstream(folder.file(name)) << "precious";
   EXPECT_EQ(error_of(PortKind::pty, folder.file("modem")),
-            "serial port '" + folder.file("modem") + "': cannot make the link: File exists");
+            "serial port '" + folder.file("modem") + "': cannot create the link: File exists");
   EXPECT_EQ(error_of(PortKind::fifo, folder.file("fifo")),
-            "serial port '" + folder.file("fifo.in") + "': cannot make the FIFO: File exists");
+            "serial port '" + folder.file("fifo.in") + "': cannot create the FIFO: File exists");
   EXPECT_EQ(error_of(PortKind::fifo, folder.file("fifo2")),
-            "serial port '" + folder.file("fifo2.out") + "': cannot make the FIFO: File exists");
+            "serial port '" + folder.file("fifo2.out") + "': cannot create the FIFO: File exists");
   EXPECT_FALSE(fs::exists(folder.file("fifo2.in")));  // nothing half made is left
   EXPECT_EQ(fs::file_size(folder.file("modem")), 8u);
 }
 
-/// Before: dangling links and FIFOs of anybody were removed.
+/// Before: dangling links and FIFOs of anyone were removed.
 TEST(SerialPort, LeavesWhatOthersMade) {
   const ScratchFolder folder;
   for (const char* target : {"/dev/pts/no-such-terminal", "/nowhere/at/all", "gone"}) {
@@ -210,7 +210,7 @@ TEST(SerialPort, LeavesWhatOthersMade) {
   }
   ASSERT_EQ(mkfifo(folder.file("fifo.in").c_str(), 0600), 0);
   EXPECT_EQ(error_of(PortKind::fifo, folder.file("fifo")),
-            "serial port '" + folder.file("fifo.in") + "': cannot make the FIFO: File exists");
+            "serial port '" + folder.file("fifo.in") + "': cannot create the FIFO: File exists");
   EXPECT_TRUE(fs::is_fifo(folder.file("fifo.in")));
 }
 

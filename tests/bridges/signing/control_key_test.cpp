@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "bridges/signing/signed_message.hpp"
-#include "shoal/sim_notice_t.hpp"
+#include "shoal/sim_audit_t.hpp"
 #include "tests/bridges/lockstep/lockstep_fixture.hpp"
 
 // Who may control a run: with the key of the run, by whom, how often.
@@ -61,7 +61,7 @@ struct KeyedWorld : LockstepWorld {
   }
 
   bridges::MessageSigner signer{run_key, "pilot-program"};
-  test::Listener<shoal::sim_notice_t> notices{test, "sim.notice"};
+  test::Listener<shoal::sim_audit_t> audit{test, "sim.audit"};
 };
 
 TEST(ControlKey, RefusesARequestWithoutItAndSaysTheRule) {
@@ -72,7 +72,7 @@ TEST(ControlKey, RefusesARequestWithoutItAndSaysTheRule) {
   EXPECT_EQ(reply->text, needs_key);
   EXPECT_FALSE(w.control.quit);
   EXPECT_EQ(w.service.refused_requests(), 1);
-  EXPECT_THAT(w.service.notices().all(), IsEmpty());
+  EXPECT_THAT(w.service.audit().all(), IsEmpty());
 }
 
 TEST(ControlKey, ObeysASignedRequestOnce) {
@@ -164,34 +164,34 @@ TEST(WhoAsked, StandsInTheRecordAndForTheSummary) {
   w.answer_to(w.signed_payload("sim.control", w.request("where", "", 0, "operator")));
   w.answer_to(w.signed_payload("sim.control", w.request("quit", "", 0, "operator")));
   std::vector<std::string> recorded;
-  for (const auto& notice : w.notices.take_all())
-    recorded.push_back(notice.kind + " " + notice.text + " " + notice.client + " " + notice.signer);
+  for (const auto& audit_entry : w.audit.take_all())
+    recorded.push_back(audit_entry.kind + " " + audit_entry.text + " " + audit_entry.client + " " + audit_entry.signer);
   EXPECT_THAT(recorded, ElementsAre("remove a operator pilot-program", "quit  operator pilot-program"));
-  ASSERT_EQ(w.service.notices().all().size(), 2u);
-  EXPECT_EQ(w.service.notices().all()[1].kind, "quit");
+  ASSERT_EQ(w.service.audit().all().size(), 2u);
+  EXPECT_EQ(w.service.audit().all()[1].kind, "quit");
 }
 
 TEST(WhoAsked, IsToldOfWhoLetsGoOfAClientAndNotOfOneThatLeavesItself) {
   LockstepWorld w;
   for (const std::string client : {"own", "hanging"}) w.join(client, "{session: 5}");
-  w.ask("leave", 0, "{session: 5}", "own");
-  w.ask("leave", 0, "", "hanging");
-  ASSERT_EQ(w.service.notices().all().size(), 1u);
-  EXPECT_EQ(w.service.notices().all()[0].kind, "leave");
-  EXPECT_EQ(w.service.notices().all()[0].client, "hanging");
-  EXPECT_EQ(w.service.notices().all()[0].signer, "");
+  w.request_reply("leave", 0, "{session: 5}", "own");
+  w.request_reply("leave", 0, "", "hanging");
+  ASSERT_EQ(w.service.audit().all().size(), 1u);
+  EXPECT_EQ(w.service.audit().all()[0].kind, "leave");
+  EXPECT_EQ(w.service.audit().all()[0].client, "hanging");
+  EXPECT_EQ(w.service.audit().all()[0].signer, "");
 }
 
 TEST(WhoAsked, KeepsTheFirstOfManyAndCountsTheRest) {
   LockstepWorld w;
-  for (int i = 0; i < 150; ++i) w.ask("quit", 0, "");
-  EXPECT_EQ(w.service.notices().all().size(), bridges::RunNotices::max_kept);
-  EXPECT_EQ(w.service.notices().count(), 150);
+  for (int i = 0; i < 150; ++i) w.request_reply("quit", 0, "");
+  EXPECT_EQ(w.service.audit().all().size(), bridges::RunAudit::max_kept);
+  EXPECT_EQ(w.service.audit().count(), 150);
 }
 
 TEST(TwoAnswers, ToOneTickAreReportedByName) {
   LockstepWorld w("{timeout_s: 20}");
-  test::Listener<shoal::sim_notice_t> notices{w.test, "sim.notice"};
+  test::Listener<shoal::sim_audit_t> audit{w.test, "sim.audit"};
   w.join("pilot", "{session: 5}");
   w.test.world.step();
   w.synchronize([&] { w.acknowledge(1, "pilot", 5, 1, {{"a.cmd", "forged"}}); });
@@ -200,7 +200,7 @@ TEST(TwoAnswers, ToOneTickAreReportedByName) {
   w.test.world.step();
   w.synchronize([&] { w.acknowledge(2, "pilot", 5, 2); });
   EXPECT_EQ(w.lockstep.summaries().at(0).contradictions, 2);
-  const auto all = notices.take_all();
+  const auto all = audit.take_all();
   ASSERT_FALSE(all.empty());
   EXPECT_EQ(all[0].kind, "contradiction");
   EXPECT_EQ(all[0].client, "pilot");
@@ -241,10 +241,11 @@ struct LimitedWorld : lcm_test::ServedWorld {
   LimitedWorld() : ServedWorld("shoal: 1\nphysics: {step_s: 0.01}\nlimits: {spawns_per_client: 2}\n") {}
   std::string spawn(const std::string& name, const std::string& client) {
     const std::string at_m = std::to_string(3 * ++places);
-    const auto reply = ask("spawn", 0,
-                           "{name: " + name + ", position_m: [" + at_m +
-                               ", 0, 0], model: {shoal: 1, bodies: [{name: b, parts: [{shape: box, mass_kg: 1}]}]}}",
-                           client);
+    const auto reply =
+        request_reply("spawn", 0,
+                      "{name: " + name + ", position_m: [" + at_m +
+                          ", 0, 0], model: {shoal: 1, bodies: [{name: b, parts: [{shape: box, mass_kg: 1}]}]}}",
+                      client);
     return reply.ok ? "ok" : reply.text;
   }
   int places = 0;
@@ -255,7 +256,8 @@ TEST(Limits, OnSpawnsAreOfEachClientAndOfAllTogether) {
   EXPECT_EQ(w.spawn("a1", "a"), "ok");
   EXPECT_NE(w.spawn("a1", "a"), "ok");  // the name is taken: it does not count
   EXPECT_EQ(w.spawn("a2", "a"), "ok");
-  EXPECT_EQ(w.spawn("a3", "a"), "client 'a' has made its 2 spawn requests; see limits.spawns_per_client of the world");
+  EXPECT_EQ(w.spawn("a3", "a"),
+            "client 'a' has used up its 2 spawn requests; see limits.spawns_per_client of the world");
   for (int i = 0; i < 9; ++i)
     for (const std::string n : {"1", "2"}) EXPECT_EQ(w.spawn("b" + std::to_string(i) + n, std::to_string(i)), "ok");
   EXPECT_EQ(w.spawn("c", "c"),

@@ -127,7 +127,7 @@ TEST(SignedMessage, ThatWasCapturedIsRefusedWhenItComesAgain) {
   const sim::Bytes second = signer.sign("sim.control", bytes_of("quit"));
   EXPECT_NE(first, second);
   EXPECT_THAT(refusal_of(guard, "sim.control", first), IsEmpty());
-  EXPECT_THAT(refusal_of(guard, "sim.control", first), HasSubstr("it was sent before, and came once more"));
+  EXPECT_THAT(refusal_of(guard, "sim.control", first), HasSubstr("it was sent before, and was received again"));
   EXPECT_THAT(refusal_of(guard, "sim.control", second), IsEmpty());
   EXPECT_THAT(refusal_of(guard, "sim.control", first), HasSubstr("is not above the last one"));
 }

@@ -11,14 +11,14 @@ namespace {
 struct Plant {
   double x = 0, v = 0, fastest = 0;
 
-  double run(devices::AxisHold& hold, double time_s, double disturbance, double wanted) {
+  double run(devices::AxisHold& hold, double time_s, double disturbance, double desired) {
     const double dt_s = 0.01;
     for (double t = 0; t < time_s; t += dt_s) {
-      v += (hold.step(wanted - x, v, dt_s, false) + disturbance) * dt_s;
+      v += (hold.step(desired - x, v, dt_s, false) + disturbance) * dt_s;
       x += v * dt_s;
       fastest = std::max(fastest, std::abs(v));
     }
-    return wanted - x;
+    return desired - x;
   }
 };
 

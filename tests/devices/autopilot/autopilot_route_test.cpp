@@ -17,7 +17,7 @@ devices::Waypoint at(double x, double y) {
   return point;
 }
 
-/// A craft that heads at once where it is told, through water that flows.  Its cross-track error in the end.
+/// A craft that heads at once where it is commanded, through water that flows.  Its cross-track error in the end.
 double drive(devices::Route& route, Vector2d p, double speed, const Vector2d& current, double time_s) {
   devices::Aim aim;
   for (double t = 0; t < time_s && !route.finished(); t += 0.1) {

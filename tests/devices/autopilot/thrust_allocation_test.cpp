@@ -70,11 +70,11 @@ TEST(ThrustAllocation, TwoPropellersSideBySidePushAndTurn) {
   const std::vector<ThrusterPlace> two{thruster({-1, 0.395, -0.1}, {0, 0, 0}), thruster({-1, -0.395, -0.1}, {0, 0, 0})};
   const ThrustAllocation allocation(two, {});
   EXPECT_EQ(allocation.axes(), (std::vector<int>{0, 5}));
-  Wrench wanted = Wrench::Zero();
-  wanted[0] = 20;
-  wanted[5] = 3.95;
+  Wrench desired = Wrench::Zero();
+  desired[0] = 20;
+  desired[5] = 3.95;
   Eigen::VectorXd forces;
-  allocation.allocate(wanted, forces);
+  allocation.allocate(desired, forces);
   EXPECT_NEAR(forces[0], 5, 1e-12);  // port
   EXPECT_NEAR(forces[1], 15, 1e-12);
 }
@@ -83,10 +83,10 @@ TEST(ThrustAllocation, AsternHasALimitOfItsOwn) {
   std::vector<ThrusterPlace> one{thruster({0, 0, 0}, {0, 0, 0})};
   one[0].min_N = -10;
   const ThrustAllocation allocation(one, {0});
-  Wrench wanted = Wrench::Zero();
-  wanted[0] = -20;
+  Wrench desired = Wrench::Zero();
+  desired[0] = -20;
   Eigen::VectorXd forces;
-  EXPECT_DOUBLE_EQ(allocation.allocate(wanted, forces), 0.5);
+  EXPECT_DOUBLE_EQ(allocation.allocate(desired, forces), 0.5);
   EXPECT_DOUBLE_EQ(forces[0], -10);
 }
 
@@ -98,27 +98,27 @@ std::vector<ThrusterPlace> two_that_push_ahead_only() {
 
 TEST(ThrustAllocation, WhatAOneWayThrusterCannotGiveDoesNotStopTheOthers) {
   const ThrustAllocation allocation(two_that_push_ahead_only(), {});
-  Wrench wanted = Wrench::Zero();
-  wanted[0] = 10;
-  wanted[5] = 8;
+  Wrench desired = Wrench::Zero();
+  desired[0] = 10;
+  desired[5] = 8;
   Eigen::VectorXd forces;
   // With both ways port would give -5 N and starboard 15 N.  Starboard alone gives f ahead and 0.4 m f about z; the
   // errors, the torque over its arm, are least at f = (10 + 8 / 0.4) / 2, and the share given is 2 f^2 / (10^2 + 20^2).
-  EXPECT_NEAR(allocation.allocate(wanted, forces), 0.9, 1e-12);
+  EXPECT_NEAR(allocation.allocate(desired, forces), 0.9, 1e-12);
   EXPECT_EQ(forces[0], 0);
   EXPECT_NEAR(forces[1], 15, 1e-12);
 }
 
 TEST(ThrustAllocation, ADemandBelowZeroByRoundingTakesNothingAway) {
   const ThrustAllocation allocation(two_that_push_ahead_only(), {});
-  Wrench wanted = Wrench::Zero();
-  wanted[0] = 10;
-  wanted[5] = 4 * (1 + 1e-15);  // port: 5 - 5 (1 + 1e-15)
+  Wrench desired = Wrench::Zero();
+  desired[0] = 10;
+  desired[5] = 4 * (1 + 1e-15);  // port: 5 - 5 (1 + 1e-15)
   Eigen::VectorXd forces;
-  EXPECT_NEAR(allocation.allocate(wanted, forces), 1, 1e-12);
+  EXPECT_NEAR(allocation.allocate(desired, forces), 1, 1e-12);
   EXPECT_NEAR(forces[1], 10, 1e-12);
-  wanted[0] = -10;
-  EXPECT_NEAR(allocation.allocate(wanted, forces), 0, 1e-12) << "nobody pushes astern";
+  desired[0] = -10;
+  EXPECT_NEAR(allocation.allocate(desired, forces), 0, 1e-12) << "nobody pushes astern";
   EXPECT_NEAR(forces.norm(), 0, 1e-12);
 }
 
@@ -127,29 +127,29 @@ TEST(ThrustAllocation, OthersTakeOverWhatAOneWayThrusterCannotGive) {
                                    thruster({0, 0, 0}, {0, 0, 0})};
   three[0].min_N = 0;
   const ThrustAllocation allocation(three, {0});
-  Wrench wanted = Wrench::Zero();
-  wanted[0] = -30;
+  Wrench desired = Wrench::Zero();
+  desired[0] = -30;
   Eigen::VectorXd forces;
-  EXPECT_NEAR(allocation.allocate(wanted, forces), 1, 1e-12);
+  EXPECT_NEAR(allocation.allocate(desired, forces), 1, 1e-12);
   EXPECT_NEAR((forces - Eigen::Vector3d(0, -15, -15)).norm(), 0, 1e-12);
 }
 
 TEST(ThrustAllocation, NoForceForAWrenchThatIsNoNumber) {
   const ThrustAllocation allocation(heavy(), {});
-  Wrench wanted = some_wrench();
-  wanted[2] = std::numeric_limits<double>::quiet_NaN();
+  Wrench desired = some_wrench();
+  desired[2] = std::numeric_limits<double>::quiet_NaN();
   Eigen::VectorXd forces;
-  EXPECT_EQ(allocation.allocate(wanted, forces), 0);
+  EXPECT_EQ(allocation.allocate(desired, forces), 0);
   EXPECT_TRUE(forces.isZero());
 }
 
 TEST(ThrustAllocation, AThrusterThatPushesNowhereIsLeftOut) {
   std::vector<ThrusterPlace> two{thruster({0, 0, 0}, {0, 0, 0}), thruster({0, 0, 0}, {0, 0, 0}, 0)};
   const ThrustAllocation allocation(two, {0});
-  Wrench wanted = Wrench::Zero();
-  wanted[0] = 10;
+  Wrench desired = Wrench::Zero();
+  desired[0] = 10;
   Eigen::VectorXd forces;
-  EXPECT_NEAR(allocation.allocate(wanted, forces), 1, 1e-12);
+  EXPECT_NEAR(allocation.allocate(desired, forces), 1, 1e-12);
   EXPECT_NEAR(forces[0], 10, 1e-12);
   EXPECT_EQ(forces[1], 0);
 }

@@ -61,7 +61,7 @@ TEST(AcousticModem, PacketsLastAsLongAsTheTableSays) {
       test::TestWorld test(three(", preset: micromodem_rate" + std::to_string(rate.number)));
       const auto& modem = test::device_of<devices::AcousticModem>(test, "a/modem");
       const auto bytes = static_cast<std::size_t>(form.at("frames") * form.at("frame_bytes"));
-      EXPECT_EQ(modem.longest_message_bytes(), bytes);
+      EXPECT_EQ(modem.message_limit_bytes(), bytes);
       // Less the probe, which the table leaves out.
       EXPECT_NEAR(modem.duration_s(bytes) - devices::micromodem_probe_s, form.expected, 1e-6);
       EXPECT_EQ(modem.duration_s(1), modem.duration_s(static_cast<std::size_t>(form.at("frame_bytes"))));
@@ -72,16 +72,16 @@ TEST(AcousticModem, PacketsLastAsLongAsTheTableSays) {
 }
 
 TEST(AcousticModem, GoesToOneVehicleUnlessAskedOtherwise) {
-  const auto heard = [](const std::string& keys, const std::string& vehicle) {
+  const auto reception = [](const std::string& keys, const std::string& vehicle) {
     test::TestWorld test(three(keys));
     test::Listener<Received> received(test, vehicle + ".modem");
     test.send("a.modem.cmd", test::bytes_to("x", "c"));
     test.run_for(5);
     return received.take_all().size();
   };
-  EXPECT_EQ(heard("", "b"), 0u);
-  EXPECT_EQ(heard("", "c"), 1u);
-  EXPECT_EQ(heard(", promiscuous: true", "b"), 1u);
+  EXPECT_EQ(reception("", "b"), 0u);
+  EXPECT_EQ(reception("", "c"), 1u);
+  EXPECT_EQ(reception(", promiscuous: true", "b"), 1u);
 }
 
 TEST(AcousticModem, SendsAtWholeSecondsWhenItIsSynchronous) {
@@ -108,7 +108,7 @@ TEST(AcousticModem, OneWayTimesAreByTheTwoClocks) {
   test.send("a.modem.cmd", test::bytes_to("x"));
   test.run_for(6);
   const Received b = at_b.last(), really = truth.last();
-  EXPECT_EQ(b.sent_utime, test.world.epoch_us() + 1'000'000);  // a whole second of its own
+  EXPECT_EQ(b.sent_utime, test.world.epoch_us() + 1'000'000);  // its own whole second
   EXPECT_NEAR(b.travel_time_s, 0.2 - 0.01 - 0.25, 2e-6);
   EXPECT_EQ(really.sent_utime, test.world.epoch_us() + 750'000);
   EXPECT_NEAR(really.travel_time_s, 0.2, 2e-6);

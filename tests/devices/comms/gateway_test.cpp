@@ -57,7 +57,7 @@ TEST(Gateway, TwoOfThemDoNotPlayPingPong) {
   };
   EXPECT_EQ(sent(""), 2);
   EXPECT_EQ(sent(", name_source: true"), 2);  // although each of them puts a name before it
-  EXPECT_GT(sent(", repeat_s: 0"), 5);        // for ever
+  EXPECT_GT(sent(", repeat_s: 0"), 5);        // forever
 }
 
 TEST(Gateway, RefusesWhatIsTooLongForTheOtherSideAndWhatHasNotItsPrefix) {

@@ -26,9 +26,9 @@ using test::field;
 std::string clock_mode(Modem& modem) {
   MicromodemPacket packet;
   packet.source = 9, packet.destination = 1;
-  modem.protocol.heard(packet, {});
-  for (const std::string& said : modem.recorder.take())
-    if (said.starts_with("CACST")) return field(said, 3);
+  modem.protocol.receive(packet, {});
+  for (const std::string& reported : modem.recorder.take())
+    if (reported.starts_with("CACST")) return field(reported, 3);
   return "no statistics";
 }
 
@@ -46,7 +46,7 @@ TEST(MicromodemCommands, ConfigurationOfAllGivesFactorySettings) {
   EXPECT_EQ(all, factory);
   EXPECT_THAT(all, Contains("CACFG,SNV,0"));
   EXPECT_THAT(modem.host("$CCCFG,ALL,1"), ElementsAre(StartsWith("CAERR,050607,NMEA,3,")));
-  EXPECT_THAT(modem.host("$CCCFG,SRC,5"), ElementsAre("CACFG,SRC,5"));  // as a driver goes on
+  EXPECT_THAT(modem.host("$CCCFG,SRC,5"), ElementsAre("CACFG,SRC,5"));  // as a driver continues
 }
 
 TEST(MicromodemCommands, EveryTransponderPingIsEchoedAndReported) {
@@ -59,10 +59,10 @@ TEST(MicromodemCommands, EveryTransponderPingIsEchoedAndReported) {
     modem.protocol.beacon_answered(0, modem.now + sim::from_seconds(0.45));
     modem.protocol.beacon_answered(1, modem.now + sim::from_seconds(0.55));  // was not asked
     modem.protocol.beacon_answered(3, modem.now + sim::from_seconds(0.65));
-    const auto said = modem.wait(2.01);
-    ASSERT_FALSE(said.empty());
+    const auto reported = modem.wait(2.01);
+    ASSERT_FALSE(reported.empty());
     // One way, without the turnaround of 50 ms.
-    EXPECT_THAT(said.back(), StartsWith("SNTTA,0.2000,,,0.3000,0506")) << fields;
+    EXPECT_THAT(reported.back(), StartsWith("SNTTA,0.2000,,,0.3000,0506")) << fields;
   }
 }
 
@@ -199,8 +199,8 @@ TEST(MicromodemCommands, SynchronousPacketsAndPingsWaitForTheSecondButAnswersDoN
   ping.kind = MicromodemPacket::Kind::ping;
   ping.source = 2, ping.destination = 1;
   devices::MicromodemArrival arrival;
-  arrival.begun = modem.now, arrival.ended = modem.now + sim::from_seconds(0.7);
-  modem.protocol.heard(ping, arrival);
+  arrival.started = modem.now, arrival.ended = modem.now + sim::from_seconds(0.7);
+  modem.protocol.receive(ping, arrival);
   EXPECT_THAT(modem.recorder.seconds, ElementsAre(false));
 }
 

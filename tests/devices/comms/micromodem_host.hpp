@@ -15,13 +15,13 @@ using devices::MicromodemProtocol;
 /// Keeps what is said and sent; a sound begins when it is asked for.
 class MicromodemRecorder final : public devices::MicromodemSide {
  public:
-  void say(const std::string& body) override { said.push_back(body); }
+  void emit(const std::string& body) override { reported.push_back(body); }
   Sound transmit(const MicromodemPacket& packet, sim::Time at, bool on_the_second) override {
     sent.push_back(packet);
     seconds.push_back(on_the_second);
     return {at, at + sim::from_seconds(1)};
   }
-  Sound ask_beacons(sim::Time at, bool on_the_second) override {
+  Sound interrogate_beacons(sim::Time at, bool on_the_second) override {
     beacons_on_the_second.push_back(on_the_second);
     return {at, at + sim::from_seconds(0.005)};
   }
@@ -33,9 +33,9 @@ class MicromodemRecorder final : public devices::MicromodemSide {
   std::int64_t utc_us(sim::Time at) const override { return 1'772'600'767'000'000 + stepped_us + at.count(); }
   double elapsed_s(sim::Time from, sim::Time to) const override { return sim::to_seconds(to - from); }
 
-  std::vector<std::string> take() { return std::exchange(said, {}); }
+  std::vector<std::string> take() { return std::exchange(reported, {}); }
 
-  std::vector<std::string> said;
+  std::vector<std::string> reported;
   std::vector<MicromodemPacket> sent;
   std::vector<bool> seconds, beacons_on_the_second;
   int called_back = 0;

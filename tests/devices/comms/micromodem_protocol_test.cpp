@@ -38,26 +38,26 @@ TEST(MicromodemProtocol, RateZeroSendsItsCycleInitAsAPacketOfItsOwn) {
   ASSERT_EQ(modem.recorder.sent.size(), 2u);
   EXPECT_EQ(modem.recorder.sent[0].kind, MicromodemPacket::Kind::cycle_init);
   EXPECT_EQ(modem.recorder.sent[1].kind, MicromodemPacket::Kind::data);
-  const auto said = modem.wait(5);
-  EXPECT_EQ(std::count_if(said.begin(), said.end(), [](const auto& s) { return s.starts_with("CAXST"); }), 2);
+  const auto reported = modem.wait(5);
+  EXPECT_EQ(std::count_if(reported.begin(), reported.end(), [](const auto& s) { return s.starts_with("CAXST"); }), 2);
 }
 
 TEST(MicromodemProtocol, TellsTheHostWhatItDoesNotTake) {
   Modem modem;
   const auto error = [&](const std::string& line) {
-    const auto said = modem.host(line);
-    return said.size() == 1 ? said[0] : std::string("not one sentence");
+    const auto reported = modem.host(line);
+    return reported.size() == 1 ? reported[0] : std::string("not one sentence");
   };
   EXPECT_EQ(error("$CCXYZ,1"), "CAERR,050607,NMEA,1,unknown sentence CCXYZ");
   EXPECT_EQ(error("$CCMPC,1,2*00"), "CAERR,050607,NMEA,2,bad checksum");
   EXPECT_EQ(error("$CCMPC,1,200"), "CAERR,050607,NMEA,3,address must be 0 to 126, or 127 as destination");
-  EXPECT_EQ(error("$CCMPC,2,1"), "CAERR,050607,MPC,3,a ping goes from this modem to another one");
+  EXPECT_EQ(error("$CCMPC,2,1"), "CAERR,050607,MPC,3,a ping must be sent from this modem to another");
   EXPECT_EQ(error("$CCCYC,0,1,2,7,0,1"), "CAERR,050607,CYC,3,rate must be 0 to 6");
   EXPECT_EQ(error("$CCCYC,0,1,2,0,0,2"), "CAERR,050607,CYC,3,frames must be 1 to 1");
   EXPECT_EQ(error("$CCCYC,0,1,2,0,2,1"), "CAERR,050607,CYC,3,ack must be 0 or 1");
-  EXPECT_EQ(error("$CCTXD,1,2,0,00"), "CAERR,050607,TXD,6,no data was asked for");
+  EXPECT_EQ(error("$CCTXD,1,2,0,00"), "CAERR,050607,TXD,6,no data was requested");
   EXPECT_EQ(error("$CCMUC,1,2,2000"), "CAERR,050607,MUC,3,data must be 0000 to 1fff");
-  EXPECT_EQ(error("$CCCFG,SRC,127"), "CAERR,050607,NMEA,3,value of SRC out of range");  // everybody is nobody
+  EXPECT_EQ(error("$CCCFG,SRC,127"), "CAERR,050607,NMEA,3,value of SRC out of range");  // everyone is not an one
   EXPECT_EQ(error("$CCCFG,ABC,1"), "CAERR,050607,NMEA,3,unknown setting ABC");
   EXPECT_EQ(error("$CCCLK,2026,2,30,0,0,0"), "CAERR,050607,NMEA,3,no such day");
   modem.protocol.take_line({"$CCTXD,1,2,0", true}, modem.now);
@@ -113,7 +113,7 @@ TEST(MicromodemProtocol, AFreshStartEndsWhatItWasAbout) {
   modem.host("$CCCYC,0,1,2,0,0,1");
   modem.protocol.restart(modem.now);  // the power was off
   EXPECT_THAT(modem.wait(0), ElementsAre("CAREV,050608,INIT,0.93.0.48"));
-  EXPECT_THAT(modem.wait(5), ElementsAre());  // nobody misses the data of the cycle
+  EXPECT_THAT(modem.wait(5), ElementsAre());  // no one misses the data of the cycle
   EXPECT_THAT(modem.host("$CCMPC,1,2"), ElementsAre("CAMPC,1,2"));
 }
 
@@ -130,7 +130,7 @@ TEST(MicromodemProtocol, StartsOnceHoweverOftenItIsTold) {
 TEST(MicromodemProtocol, TakesNoNoticeOfWhatModemsSay) {
   // A terminal that echoes gives it all back.
   Modem modem;
-  for (const std::string& said : modem.host("$CCXYZ")) EXPECT_THAT(modem.host("$" + said), ElementsAre());
+  for (const std::string& reported : modem.host("$CCXYZ")) EXPECT_THAT(modem.host("$" + reported), ElementsAre());
   EXPECT_THAT(modem.host("$SNTTA,,0.2000,,,000000.05"), ElementsAre());
   EXPECT_EQ(modem.protocol.errors(), 1);
 }
@@ -165,15 +165,15 @@ TEST(MicromodemProtocol, AnswersAPingAfterItsTurnaroundAndTakesItOff) {
   asker.host("$CCMPC,1,2");
   asker.recorder.stepped_us = -400'000;  // GPS sets the clock right meanwhile
   devices::MicromodemArrival there;
-  there.begun = sim::from_seconds(0.5), there.ended = sim::from_seconds(1.2);
+  there.started = sim::from_seconds(0.5), there.ended = sim::from_seconds(1.2);
   target.now = there.ended;
-  target.protocol.heard(asker.recorder.sent.back(), there);
+  target.protocol.receive(asker.recorder.sent.back(), there);
   EXPECT_THAT(target.recorder.take(), ElementsAre("CAMPA,1,2", StartsWith("CACST,0,050607.5000,0,")));
   ASSERT_EQ(target.recorder.sent.size(), 1u);
   devices::MicromodemArrival back;  // it went at 1.5 s
-  back.begun = sim::from_seconds(2.0124), back.ended = sim::from_seconds(2.7);
+  back.started = sim::from_seconds(2.0124), back.ended = sim::from_seconds(2.7);
   asker.now = back.ended;
-  asker.protocol.heard(target.recorder.sent.back(), back);
+  asker.protocol.receive(target.recorder.sent.back(), back);
   EXPECT_THAT(asker.recorder.take(), testing::Contains("CAMPR,2,1,0.5062"));
 }
 
@@ -182,11 +182,11 @@ TEST(MicromodemProtocol, ReportsThePingsOfOthersAndTheirAnswers) {
   MicromodemPacket packet;
   packet.kind = MicromodemPacket::Kind::ping;
   packet.source = 1, packet.destination = 2;
-  third.protocol.heard(packet, {});
+  third.protocol.receive(packet, {});
   EXPECT_THAT(third.recorder.take(), ElementsAre("CAMPA,1,2", StartsWith("CACST,0,")));
   packet.kind = MicromodemPacket::Kind::ping_reply;
   packet.source = 2, packet.destination = 1;
-  third.protocol.heard(packet, {});
+  third.protocol.receive(packet, {});
   EXPECT_THAT(third.recorder.take(), ElementsAre("CAMPR,2,1", StartsWith("CACST,0,")));
   EXPECT_TRUE(third.recorder.sent.empty());
 }
@@ -206,13 +206,13 @@ TEST(MicromodemProtocol, ReportsABadFrameAndAMissingPacket) {
   packet.frames.push_back({false, sim::Bytes(3)});
   devices::MicromodemArrival arrival;
   arrival.good = false;
-  modem.protocol.heard(packet, arrival);
+  modem.protocol.receive(packet, arrival);
   EXPECT_THAT(modem.recorder.take(), ElementsAre("CACYC,0,1,2,2,0,1", "CAMSG,BAD_CRC,2", StartsWith("CACST,1,")));
   packet.kind = MicromodemPacket::Kind::cycle_init;
   packet.rate = 0;
   packet.frames.clear();
   arrival.good = true;
-  modem.protocol.heard(packet, arrival);
+  modem.protocol.receive(packet, arrival);
   modem.recorder.take();
   EXPECT_THAT(modem.wait(15), testing::Contains("CAMSG,PACKET_TIMEOUT,0"));
 }
@@ -239,7 +239,7 @@ TEST(MicromodemProtocol, SurvivesNoiseAndMutatedSentences) {
   std::mt19937 random(1);
   Modem modem;
   devices::NmeaLines lines;
-  std::size_t most_said = 0;
+  std::size_t max_said = 0;
   for (int i = 0; i < 20000; ++i) {
     std::string text;
     if (random() % 3 == 0) {
@@ -252,12 +252,12 @@ TEST(MicromodemProtocol, SurvivesNoiseAndMutatedSentences) {
     }
     for (const auto& line : lines.add(std::as_bytes(std::span(text.data(), text.size()))))
       modem.protocol.take_line(line, modem.now);
-    most_said = std::max(most_said, modem.recorder.take().size());
+    max_said = std::max(max_said, modem.recorder.take().size());
     if (random() % 4 == 0) modem.wait(0.3);
     modem.recorder.sent.clear();
     modem.recorder.seconds.clear();
   }
-  EXPECT_LT(most_said, 500u);  // some $CCCFQ,ALL
+  EXPECT_LT(max_said, 500u);  // some $CCCFQ,ALL
   modem.wait(20);
   modem.wait(20);
   modem.protocol.take_line({"$CCCFG,SRC,1", false}, modem.now);

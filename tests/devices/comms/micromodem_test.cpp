@@ -35,7 +35,7 @@ class Hosts : public test::TestWorld {
  public:
   explicit Hosts(const std::string& yaml) : TestWorld(yaml) {}
 
-  void say(const std::string& vehicle, const std::string& sentence) {
+  void emit(const std::string& vehicle, const std::string& sentence) {
     shoal::nmea_sentence_t message{};
     message.sentence = sentence;
     send(vehicle + ".modem.cmd", message);
@@ -55,9 +55,9 @@ class Hosts : public test::TestWorld {
 };
 
 /// The sentences with these names.
-std::vector<std::string> only(const std::vector<std::string>& said, const std::string& names) {
+std::vector<std::string> only(const std::vector<std::string>& reported, const std::string& names) {
   std::vector<std::string> some;
-  for (const auto& line : said)
+  for (const auto& line : reported)
     if (names.find(line.substr(0, 5)) != std::string::npos) some.push_back(line);
   return some;
 }
@@ -68,9 +68,9 @@ TEST(Micromodem, CarriesDataOfRateZeroAsTheRealOneSays) {
   Hosts hosts(three_micromodems());
   hosts.run_for(0.05);
   hosts.take("a"), hosts.take("b");
-  hosts.say("a", "$CCCYC,0,1,2,0,1,1");
+  hosts.emit("a", "$CCCYC,0,1,2,0,1,1");
   hosts.run_for(0.05);
-  hosts.say("a", "$CCTXD,1,2,1,0102ff");
+  hosts.emit("a", "$CCTXD,1,2,1,0102ff");
   hosts.run_for(8);
   const auto a = hosts.take("a"), b = hosts.take("b"), c = hosts.take("c");
   // Asked, sent in two packets, acknowledged.
@@ -84,7 +84,7 @@ TEST(Micromodem, CarriesDataOfRateZeroAsTheRealOneSays) {
   EXPECT_THAT(order, testing::ElementsAre("CACYC", "CACST", "CARXD", "CACST"));
   EXPECT_THAT(b, Contains("CACYC,0,1,2,0,1,1"));
   EXPECT_THAT(b, Contains("CARXD,1,2,1,1,0102ff"));
-  // Another one hears it as well, and does not acknowledge.
+  // Another one receives it as well, and does not acknowledge.
   EXPECT_THAT(c, Contains("CARXD,1,2,1,1,0102ff"));
   EXPECT_THAT(c, Not(Contains(StartsWith("CATXP"))));
 }
@@ -111,9 +111,9 @@ TEST(Micromodem, EveryRateCarriesItsFrames) {
   for (const auto& rate : devices::micromodem_rates()) {
     Hosts hosts(three_micromodems());
     hosts.run_for(0.05);
-    hosts.say("a", "$CCCYC,0,1,2," + std::to_string(rate.number) + ",0," + std::to_string(rate.frames));
+    hosts.emit("a", "$CCCYC,0,1,2," + std::to_string(rate.number) + ",0," + std::to_string(rate.frames));
     const std::string hex(static_cast<std::size_t>(2 * rate.frame_bytes), 'a');
-    for (int i = 0; i < rate.frames; ++i) hosts.say("a", "$CCTXD,1,2,0," + hex);
+    for (int i = 0; i < rate.frames; ++i) hosts.emit("a", "$CCTXD,1,2,0," + hex);
     hosts.run_for(8);
     const auto b = hosts.take("b");
     const auto data = only(b, "CARXD");
@@ -128,12 +128,12 @@ TEST(Micromodem, APingMeasuresTheTravelTime) {
   Hosts hosts(three_micromodems());
   hosts.run_for(0.05);
   hosts.take("a");
-  hosts.say("a", "$CCMPC,1,2");
+  hosts.emit("a", "$CCMPC,1,2");
   hosts.run_for(4);
   EXPECT_THAT(hosts.take("a"), Contains("CAMPR,2,1,0.5000"));  // 750 m at 1500 m/s
   EXPECT_THAT(hosts.take("b"), Contains("CAMPA,1,2"));
-  // One that is not there does not answer, and the modem says so in the end.
-  hosts.say("a", "$CCMPC,1,77");
+  // One that does not exist does not answer, and the modem says so in the end.
+  hosts.emit("a", "$CCMPC,1,77");
   hosts.run_for(9);
   EXPECT_THAT(hosts.take("a"), Contains("CAMPR,77,1"));
 }
@@ -145,7 +145,7 @@ TEST(Micromodem, APingOfAMovingOneMeasuresTheMeanOfBothWays) {
   for (const auto& [name, body] : hosts.world.find_vehicle("b")->bodies())
     body->set_velocity_W(v_W, sim::Vector3d::Zero());
   hosts.run_for(1);
-  hosts.say("a", "$CCMPC,1,2");
+  hosts.emit("a", "$CCMPC,1,2");
   hosts.run_for(4);
   // Sent at 1 s, when b is at 751.5 m: the ping takes t = 751.5 / (1500 - 1.5); the reply starts 1 s later and comes
   // from 751.5 + 1.5 (t + 1) m.
@@ -159,7 +159,7 @@ TEST(Micromodem, ASynchronousPacketTellsItsOneWayTravelTime) {
   Hosts hosts(three_micromodems(", synchronous: true"));
   hosts.run_for(0.35);
   hosts.take("b");
-  hosts.say("a", "$CCMUC,1,2,1fab");
+  hosts.emit("a", "$CCMUC,1,2,1fab");
   hosts.run_for(3);
   const auto b = hosts.take("b");
   EXPECT_THAT(b, Contains("CAMUA,1,2,1fab"));
@@ -178,7 +178,7 @@ TEST(Micromodem, SynchronousPingsBeginAtAWholeSecondAndMeasureTheSame) {
   Hosts hosts(three_micromodems(", synchronous: true"));
   hosts.run_for(0.35);
   hosts.take("a");
-  hosts.say("a", "$CCMPC,1,2");
+  hosts.emit("a", "$CCMPC,1,2");
   hosts.run_for(5);
   const auto a = hosts.take("a");
   EXPECT_THAT(a, Contains("CAMPR,2,1,0.5000"));  // 750 m at 1500 m/s
@@ -198,7 +198,7 @@ TEST(Micromodem, TimesOfArrivalAreByItsOwnClock) {
                                {"b", "[750, 0, -20]", modem_at(2, keys), "clock: {offset_s: 0.125}"},
                                {"c", "[-300, 0, -20]", modem_at(3, keys), "clock: {offset_s: -2}"}}));
   hosts.run_for(0.35);
-  hosts.say("a", "$CCMUC,1,2,1fab");
+  hosts.emit("a", "$CCMUC,1,2,1fab");
   hosts.run_for(3);
   const auto b = only(hosts.take("b"), "CACST"), c = only(hosts.take("c"), "CACST");
   ASSERT_EQ(b.size(), 1u);
@@ -206,7 +206,7 @@ TEST(Micromodem, TimesOfArrivalAreByItsOwnClock) {
   EXPECT_EQ(field(b[0], 2).substr(6), ".6250");  // 0.5 s of way, and the clock
   EXPECT_EQ(field(c[0], 2).substr(6), ".2000");  // whole seconds do not show
   // A two-way ping does not care.
-  hosts.say("a", "$CCMPC,1,2");
+  hosts.emit("a", "$CCMPC,1,2");
   hosts.run_for(4);
   EXPECT_THAT(hosts.take("a"), Contains("CAMPR,2,1,0.5000"));
 }
@@ -219,21 +219,21 @@ TEST(Micromodem, AsksTransponders) {
                                {"d", "[0, 300, -20]", "{name: beacon, type: transponder, network: other}"}}));
   hosts.run_for(0.05);
   hosts.take("a");
-  hosts.say("a", "$CCPDT,1,1,0,0,3000,1,1,1,0");
+  hosts.emit("a", "$CCPDT,1,1,0,0,3000,1,1,1,0");
   hosts.run_for(4);
   // 750 m and 300 m at 1500 m/s; the third does not answer, the fourth was not asked for.
   EXPECT_THAT(hosts.take("a"), testing::ElementsAre("SNPDT,1,1,0,0,3000,1,1,1,0", "SNTTA,0.5000,0.2000,,,000000.05"));
-  hosts.say("a", "$CCPNT,26000,5,5,3000,0,29000,0,0,0");  // by the pulse, and the second one only
+  hosts.emit("a", "$CCPNT,26000,5,5,3000,0,29000,0,0,0");  // by the pulse, and the second one only
   hosts.run_for(5);
   EXPECT_THAT(hosts.take("a"), Contains("SNTTA,,0.2000,,,000005.00"));
-  hosts.say("a", "$CCPNT,26000,5,5,3000,25000,29000,0,0,1");  // at once
+  hosts.emit("a", "$CCPNT,26000,5,5,3000,25000,29000,0,0,1");  // at once
   hosts.run_for(4);
   EXPECT_THAT(hosts.take("a"), Contains("SNTTA,0.5000,0.2000,,,000009.05"));
-  hosts.say("a", "$CCPGT,26000,28,3E5A,3000,27000,0,1f,0,0,2000,0");
+  hosts.emit("a", "$CCPGT,26000,28,3E5A,3000,27000,0,1f,0,0,2000,0");
   hosts.run_for(4);
   EXPECT_THAT(hosts.take("a"),
               testing::ElementsAre("SNPGT,26000,28,3E5A,3000,27000,0,1f,0,0,2000,0", "SNTTA,,0.2000,,,000013.05"));
-  hosts.say("a", "$CCPDT,1,1,0,0,0,1,1,1,0");
+  hosts.emit("a", "$CCPDT,1,1,0,0,0,1,1,1,0");
   hosts.run_for(0.1);
   EXPECT_THAT(hosts.take("a"), Contains(HasSubstr("NMEA,3,PDT has a field out of range")));
 }
@@ -242,10 +242,10 @@ TEST(Micromodem, AThirdModemMayAskForTheCycle) {
   Hosts hosts(three_micromodems());
   hosts.run_for(0.05);
   hosts.take("a"), hosts.take("b");
-  hosts.say("c", "$CCCYC,0,1,2,2,0,1");  // 3 asks 1 to send to 2
+  hosts.emit("c", "$CCCYC,0,1,2,2,0,1");  // 3 asks 1 to send to 2
   hosts.run_for(1);
   EXPECT_THAT(only(hosts.take("a"), "CADRQ"), testing::ElementsAre(StartsWith("CADRQ,")));
-  hosts.say("a", "$CCTXD,1,2,0,77");
+  hosts.emit("a", "$CCTXD,1,2,0,77");
   hosts.run_for(5);
   EXPECT_THAT(hosts.take("b"), Contains("CARXD,1,2,0,1,77"));
 }
@@ -255,12 +255,12 @@ TEST(Micromodem, WithoutTheCoprocessorItHearsRateZeroOnly) {
                                {"b", "[750, 0, -20]", modem_at(2, ", psk: false")},
                                {"c", "[-300, 0, -20]", modem_at(3)}}));
   hosts.run_for(0.05);
-  hosts.say("a", "$CCCYC,0,1,2,1,0,1");
-  hosts.say("a", "$CCTXD,1,2,0,77");
+  hosts.emit("a", "$CCCYC,0,1,2,1,0,1");
+  hosts.emit("a", "$CCTXD,1,2,0,77");
   hosts.run_for(6);
   EXPECT_THAT(hosts.take("b"), Not(Contains(StartsWith("CARXD"))));
   EXPECT_THAT(hosts.take("c"), Contains("CARXD,1,2,0,1,77"));
-  hosts.say("b", "$CCCYC,0,2,1,1,0,1");
+  hosts.emit("b", "$CCCYC,0,2,1,1,0,1");
   hosts.run_for(0.1);
   EXPECT_THAT(hosts.take("b"), Contains(HasSubstr("CYC,3,rate must be 0 to 0")));
 }
@@ -268,10 +268,10 @@ TEST(Micromodem, WithoutTheCoprocessorItHearsRateZeroOnly) {
 TEST(Micromodem, RefusesBadSentencesAndGoesOn) {
   Hosts hosts(three_micromodems());
   for (const char* bad : {"", "$", "noise", "$CCCYC", "$CCTXD,,,,", "$CCMPC,1,2*00", "$CCCYC,0,1,2,9,0,1"})
-    hosts.say("a", bad);
+    hosts.emit("a", bad);
   hosts.run_for(0.1);
   EXPECT_EQ(only(hosts.take("a"), "CAERR").size(), 4u);
-  hosts.say("a", "$CCMUC,1,127,0001");
+  hosts.emit("a", "$CCMUC,1,127,0001");
   hosts.run_for(3);
   EXPECT_THAT(hosts.take("b"), Contains("CAMUA,1,127,0001"));
   EXPECT_THAT(hosts.take("c"), Contains("CAMUA,1,127,0001"));
@@ -297,10 +297,10 @@ TEST(Micromodem, SaysNothingOfAPacketThatItDidNotNotice) {
       {{"a", "[0, 0, -20]", modem_at(1)}, {"b", "[750, 0, -20]", modem_at(2)}, {"c", "[760, 0, -20]", din}}));
   hosts.run_for(1);
   hosts.take("b");
-  hosts.say("a", "$CCMUC,1,2,1fab");
+  hosts.emit("a", "$CCMUC,1,2,1fab");
   hosts.run_for(5);
-  hosts.say("a", "$CCCYC,0,1,2,1,0,1");
-  hosts.say("a", "$CCTXD,1,2,0,77");
+  hosts.emit("a", "$CCCYC,0,1,2,1,0,1");
+  hosts.emit("a", "$CCTXD,1,2,0,77");
   hosts.run_for(6);
   EXPECT_THAT(hosts.take("b"), testing::ElementsAre(StartsWith("CAREV")));
   const auto& lost = test::device_of<devices::Micromodem>(hosts, "b/modem").transducer().counts().lost;
@@ -310,8 +310,8 @@ TEST(Micromodem, SaysNothingOfAPacketThatItDidNotNotice) {
 TEST(Micromodem, StartsAnewWhenItsPowerComesBack) {
   Hosts hosts(three_micromodems());
   hosts.run_for(0.05);
-  hosts.say("a", "$CCMUC,1,2,1fab");
-  hosts.say("b", "$CCCYC,0,2,1,0,0,1");
+  hosts.emit("a", "$CCMUC,1,2,1fab");
+  hosts.emit("b", "$CCCYC,0,2,1,0,0,1");
   hosts.run_for(0.1);
   hosts.take("a"), hosts.take("b");
   for (const char* name : {"a/modem", "b/modem"})
@@ -327,14 +327,14 @@ TEST(Micromodem, AFreshStartTakesBackWhatItHasNotBegun) {
   Hosts hosts(three_micromodems());
   hosts.run_for(0.05);
   for (const char* line : {"$CCCYC,0,1,2,0,0,1", "$CCTXD,1,2,0,abcd", "$CCMSC,1,1,0"}) {
-    hosts.say("a", line);
+    hosts.emit("a", line);
     hosts.run_for(0.1);  // the cycle init sounds, the data has not begun
   }
   hosts.take("b");
   hosts.run_for(8);
-  const auto said = hosts.take("b");
-  EXPECT_THAT(said, Contains("CACYC,0,1,2,0,0,1"));
-  EXPECT_THAT(only(said, "CARXD"), testing::IsEmpty());
+  const auto reported = hosts.take("b");
+  EXPECT_THAT(reported, Contains("CACYC,0,1,2,0,0,1"));
+  EXPECT_THAT(only(reported, "CARXD"), testing::IsEmpty());
   const auto& modem = test::device_of<devices::Micromodem>(hosts, "a/modem");
   EXPECT_EQ(modem.transducer().counts().sent, 1);
 }
@@ -347,7 +347,7 @@ TEST(Micromodem, APingKnowsNothingOfAClockThatIsSet) {
                                {"c", "[-300, 0, -5]", modem_at(3)}}));
   hosts.world.editor().set_fault("a/gps", {.kind = sim::FaultKind::silent});
   hosts.run_for(9.5);
-  hosts.say("a", "$CCMPC,1,2");
+  hosts.emit("a", "$CCMPC,1,2");
   hosts.run_for(0.4);
   hosts.world.editor().clear_faults("a/gps");
   hosts.run_for(4);
@@ -362,13 +362,13 @@ TEST(Micromodem, CountsPacketsForItsAddressAndForEverybody) {
     return test::device_of<devices::Micromodem>(hosts, vehicle + "/modem").transducer().counts().understood;
   };
   for (const char* line : {"$CCMUC,1,2,0001", "$CCMUC,1,127,0002", "$CCMUC,1,5,0003"}) {
-    hosts.say("a", line);
+    hosts.emit("a", line);
     hosts.run_for(4);
   }
   EXPECT_EQ(understood("b"), 2);
   EXPECT_EQ(understood("c"), 1);
-  hosts.say("c", "$CCCFG,SRC,5");
-  hosts.say("a", "$CCMUC,1,5,0004");
+  hosts.emit("c", "$CCCFG,SRC,5");
+  hosts.emit("a", "$CCMUC,1,5,0004");
   hosts.run_for(4);
   EXPECT_EQ(understood("c"), 2);
 }
@@ -385,8 +385,8 @@ TEST(Micromodem, TheSameWorldGivesTheSameHashes) {
     Hosts hosts(three_micromodems(", synchronous: true"));
     std::vector<std::uint64_t> all;
     for (int i = 0; i < 10; ++i) {
-      hosts.say("a", "$CCMPC,1,2");
-      hosts.say("c", "$CCMUC,3,1,0123");
+      hosts.emit("a", "$CCMPC,1,2");
+      hosts.emit("c", "$CCMUC,3,1,0123");
       hosts.run_for(0.7);
       all.push_back(hosts.world.state().hash());
     }
@@ -405,7 +405,7 @@ TEST(Micromodem, WarnsOfTwoWithOneAddressAndNotOfOneThatComesBack) {
     hosts.run_for(0.1);
   }
   EXPECT_EQ(log.text(), "");
-  hosts.say("a", "$CCCFG,SRC,2");
+  hosts.emit("a", "$CCCFG,SRC,2");
   hosts.run_for(0.1);
   EXPECT_THAT(log.text(), HasSubstr("'b/modem' and 'a/modem' have the same address 2 in network 'micromodem'"));
 }

@@ -54,8 +54,8 @@ TEST(Modem, DeliversAfterAirTimeAndPropagation) {
   EXPECT_EQ(c[0].utime - c[0].sent_utime, 300000);
 }
 
-/// What r1 at 10 m depth sends and a modem at `z_m` hears.
-std::size_t heard(const std::string& through, double z_m, const std::string& medium) {
+/// What r1 at 10 m depth sends and a modem at `z_m` receives.
+std::size_t reception(const std::string& through, double z_m, const std::string& medium) {
   const std::string modem = "type: modem, range_m: 1000, through: " + through;
   const std::string other = "  - {name: b, position_m: [100, 0, " + std::to_string(z_m) +
                             "], model: {shoal: 1, vehicle: box, bodies: [{name: hull, hydrodynamics: {model: none}, "
@@ -70,14 +70,14 @@ std::size_t heard(const std::string& through, double z_m, const std::string& med
 
 TEST(Modem, RadioDoesNotPassWaterAndSoundDoesNotPassAir) {
   const char* sea = "{water: {surface_m: 0}}";
-  EXPECT_EQ(heard("radio", -10, sea), 0u);
-  EXPECT_EQ(heard("radio", 1, sea), 0u);
-  EXPECT_EQ(heard("acoustic", -10, sea), 1u);
-  EXPECT_EQ(heard("acoustic", 1, sea), 0u);
-  EXPECT_EQ(heard("any", 1, sea), 1u);
-  EXPECT_EQ(heard("radio", 1, "{water: {surface_m: -20}}"), 1u);
-  EXPECT_EQ(heard("radio", 1, "{}"), 1u);
-  EXPECT_EQ(heard("any", 1, "{}"), 1u);
+  EXPECT_EQ(reception("radio", -10, sea), 0u);
+  EXPECT_EQ(reception("radio", 1, sea), 0u);
+  EXPECT_EQ(reception("acoustic", -10, sea), 1u);
+  EXPECT_EQ(reception("acoustic", 1, sea), 0u);
+  EXPECT_EQ(reception("any", 1, sea), 1u);
+  EXPECT_EQ(reception("radio", 1, "{water: {surface_m: -20}}"), 1u);
+  EXPECT_EQ(reception("radio", 1, "{}"), 1u);
+  EXPECT_EQ(reception("any", 1, "{}"), 1u);
 }
 
 TEST(Modem, SoundTakesTheSpeedOfTheWaterAtItsSender) {
@@ -111,7 +111,7 @@ TEST(Modem, IsNotHeardBeyondItsRangeOrInAnotherNetwork) {
 }
 
 TEST(Modem, AWallHidesWhereALineOfSightIsNeeded) {
-  const auto heard = [](const std::string& keys) {
+  const auto reception = [](const std::string& keys) {
     std::string yaml = modem_world("range_m: 1000" + keys);
     // Between b and c, 5 m high; the boxes themselves hide nothing.
     yaml.insert(yaml.find("vehicles:"),
@@ -123,8 +123,8 @@ TEST(Modem, AWallHidesWhereALineOfSightIsNeeded) {
     test.run_for(0.5);
     return std::pair{b.take_all().size(), c.take_all().size()};
   };
-  EXPECT_EQ(heard(""), (std::pair<std::size_t, std::size_t>{1, 1}));
-  EXPECT_EQ(heard(", line_of_sight: true"), (std::pair<std::size_t, std::size_t>{1, 0}));
+  EXPECT_EQ(reception(""), (std::pair<std::size_t, std::size_t>{1, 1}));
+  EXPECT_EQ(reception(", line_of_sight: true"), (std::pair<std::size_t, std::size_t>{1, 0}));
 }
 
 TEST(Modem, SendsToOneVehicleWhenADestinationIsGiven) {

@@ -57,15 +57,15 @@ const sim::Vehicle& car(const test::TestWorld& test) {
 
 /// Radius of the circle of the rear axle's middle, by its way and turn in 3 s.
 double radius_m(test::TestWorld& test) {
-  double way_m = 0, turned_rad = 0;
+  double distance_m = 0, turned_rad = 0;
   for (int i = 0; i < 300; ++i) {
     const sim::Pose before = car(test).X_WV();
     test.run_for(0.01);
     const sim::Pose moved = before.inverse() * car(test).X_WV();
-    way_m += moved.translation().head<2>().norm();
+    distance_m += moved.translation().head<2>().norm();
     turned_rad += sim::yaw_of(moved.linear());
   }
-  return way_m / turned_rad;
+  return distance_m / turned_rad;
 }
 
 TEST(AckermannDrive, DrivesTheCircleOfItsWheelbaseAndSteering) {

@@ -178,7 +178,7 @@ TEST_F(NaiveDrive, SaysWhatIsWrongWithItsParameters) {
   EXPECT_THAT(test::error_of_world(naive_world("", "", "kinematic: false")),
               ::testing::HasSubstr("its body must have 'kinematic: true'"));
   EXPECT_THAT(test::error_of_world(naive_world("}, {name: second, type: naive_drive")),
-              ::testing::HasSubstr("its body is moved by device 'second' already"));
+              ::testing::HasSubstr("its body is already moved by device 'second'"));
   EXPECT_THAT(test::error_of_world(naive_world(", heading_gain_per_s: 10, turn_time_constant_s: 0.5")),
               ::testing::HasSubstr("'heading_gain_per_s' times 'turn_time_constant_s' must be <= 4, got 5"));
 }

@@ -25,7 +25,7 @@ constexpr double wheel_m = 0.236, platform_over_axle_m = -0.074;
 
 /// A Segway on a plane, leaning forward by an angle about the ground under its axle.
 struct Setting {
-  double lean_rad = 0;
+  double tilt_rad = 0;
   std::string overrides = "";  ///< of its file, such as `, joints.left.low_stop: -1`
   std::string joints = "";     ///< lines of a `joints:` list that it has besides
   std::string physics = "{step_s: 0.005}";
@@ -50,13 +50,13 @@ struct Segway : test::TestWorld {
     text << "shoal: 1\nphysics: " << setting.physics
          << "\nobjects: [{name: ground, fixed: true, parts: [{shape: plane}]}]\n"
          << "vehicles:\n  - name: s\n    file: " << scratch.file("segway.yaml") << "\n    position_m: [0, 0, "
-         << wheel_m * (1 - std::cos(setting.lean_rad)) + 1e-4 << "]\n    rpy_deg: [0, " << setting.lean_rad * degrees
+         << wheel_m * (1 - std::cos(setting.tilt_rad)) + 1e-4 << "]\n    rpy_deg: [0, " << setting.tilt_rad * degrees
          << ", 0]\n    overrides: {actuator_latency_s: 0, devices.camera.rate_hz: 0.1" << setting.overrides << "}\n";
     return sim::to_yaml(sim::load_world_text(text.str(), "worlds/test.yaml").resolved);
   }
   const sim::Vehicle& vehicle() { return *world.find_vehicle("s"); }
   const sim::Body& base() { return vehicle().body("base"); }
-  double lean_rad() {
+  double tilt_rad() {
     const Vector3d up_B = base().X_WB().linear().row(2).transpose();
     return std::atan2(-up_B.x(), up_B.z());
   }
@@ -90,26 +90,26 @@ double balanced_rad() {
 }
 
 TEST(Segway, StandsBalancedWhereItsMassIsOverItsAxle) {
-  Segway test({.lean_rad = balanced_rad(), .joints = locked_wheels});
+  Segway test({.tilt_rad = balanced_rad(), .joints = locked_wheels});
   test.run_for(1);
-  // Whatever it is off grows as cosh(3.8 t), by 22; the demand on the lean is 0.02 degrees.
-  EXPECT_NEAR(test.lean_rad() * degrees, balanced_rad() * degrees, 0.02 * 22);
+  // Whatever it is off grows as cosh(3.8 t), by 22; the demand on the tilt is 0.02 degrees.
+  EXPECT_NEAR(test.tilt_rad() * degrees, balanced_rad() * degrees, 0.02 * 22);
 }
 
 TEST(Segway, FallsAtTheRateOfTheClosedForm) {
   const ClosedForm rate = closed_form("segway_ubersim", "", "fall_rate_wheels_locked");
   constexpr double start_rad = 0.25 / degrees, time_s = 0.8;
-  double lean_rad[2] = {};
+  double tilt_rad[2] = {};
   for (const int forward : {0, 1}) {
-    Segway test({.lean_rad = balanced_rad() + (forward == 1 ? start_rad : -start_rad),
+    Segway test({.tilt_rad = balanced_rad() + (forward == 1 ? start_rad : -start_rad),
                  .joints = locked_wheels,
                  .physics = "{step_s: 0.001}"});
     test.run_for(time_s);
-    lean_rad[forward] = test.lean_rad();
+    tilt_rad[forward] = test.tilt_rad();
   }
   // Half the difference of a fall to each side: where exactly it balances does not matter.  It comes to 2.6 degrees,
   // where a sine is 0.03 % less than its angle.
-  const double grown = (lean_rad[1] - lean_rad[0]) / 2 / start_rad;
+  const double grown = (tilt_rad[1] - tilt_rad[0]) / 2 / start_rad;
   EXPECT_NEAR(std::acosh(grown) / time_s, rate.expected, rate.tolerance);
 }
 
@@ -117,18 +117,18 @@ TEST(Segway, FallsAtTheRateOfTheClosedForm) {
 struct Wobble {
   double axis_deg = 0;   ///< largest angle between the wheel's axle and the body's
   double centre_mm = 0;  ///< largest way of its middle on the body
-  double lean_deg = 0;   ///< largest lean from the balanced one: it was kept up
+  double tilt_deg = 0;   ///< largest tilt from the balanced one: it was kept up
 };
 
 /// Balanced by the truth, it speeds up, is pushed from the side, and slows down.
 Wobble wobble_of(const std::string& overrides, const std::string& solver = "auto", const std::string& joints = "",
                  double step_s = 0.005) {
-  Segway test({.lean_rad = balanced_rad(),
+  Segway test({.tilt_rad = balanced_rad(),
                .overrides = overrides,
                .joints = joints,
                .physics = "{step_s: " + std::to_string(step_s) + ", solver: " + solver + "}"});
   Wobble worst;
-  double way = 0;
+  double distance = 0;
   for (int step = 0; step * step_s < 20; ++step) {
     const double t = step * step_s;
     const auto& wheels = {std::pair{"left", 0.285}, std::pair{"right", -0.285}};
@@ -136,11 +136,11 @@ Wobble wobble_of(const std::string& overrides, const std::string& solver = "auto
     const double speed =
         wheel_m * (test.vehicle().joint("left").velocity(1) + test.vehicle().joint("right").velocity(1) + 2 * rate) / 2;
     const double slow = (t < 1 ? 0 : t < 12 ? 1.5 : 0) - speed;
-    way += std::clamp(slow, -0.5, 0.5) * step_s;
-    const double wanted = balanced_rad() + std::clamp(0.12 * slow + 0.02 * way, -0.15, 0.15);
-    const double torque = 300 * (test.lean_rad() - wanted) + 60 * rate;
+    distance += std::clamp(slow, -0.5, 0.5) * step_s;
+    const double desired = balanced_rad() + std::clamp(0.12 * slow + 0.02 * distance, -0.15, 0.15);
+    const double torque = 300 * (test.tilt_rad() - desired) + 60 * rate;
     for (const auto& [name, y] : wheels) test.vehicle().joint(name).add_effort(std::clamp(torque / 2, -50.0, 50.0), 1);
-    // 20 N s, as somebody who bumps into it.
+    // 20 N s, as someone who bumps into it.
     if (t >= 8 && t < 8.2)
       test.vehicle().body("base").add_force_W({0, 100, 0}, test.base().X_WB() * test.base().p_BC());
     test.world.step();
@@ -153,7 +153,7 @@ Wobble wobble_of(const std::string& overrides, const std::string& solver = "auto
       worst.centre_mm =
           std::max(worst.centre_mm, 1e3 * (X_BR.translation() - Vector3d(0, y, -platform_over_axle_m)).norm());
     }
-    worst.lean_deg = std::max(worst.lean_deg, std::abs(test.lean_rad() - balanced_rad()) * degrees);
+    worst.tilt_deg = std::max(worst.tilt_deg, std::abs(test.tilt_rad() - balanced_rad()) * degrees);
   }
   return worst;
 }
@@ -175,7 +175,7 @@ TEST(Segway, ItsWheelsStayOnTheirAxles) {
   const Wobble wobble = wobble_of("");
   EXPECT_LT(wobble.axis_deg, 1e-3);  // the softness of the constraints, cfm 1e-9, and their errors of second order
   EXPECT_LT(wobble.centre_mm, 0.02);
-  EXPECT_LT(wobble.lean_deg, 15);
+  EXPECT_LT(wobble.tilt_deg, 15);
 }
 
 TEST(Segway, WheelsWithAnchorsBesideThemAndSteeringThatGivesWayWobble) {
@@ -183,7 +183,7 @@ TEST(Segway, WheelsWithAnchorsBesideThemAndSteeringThatGivesWayWobble) {
   EXPECT_GT(with_slack.axis_deg, 0.5);  // from stop to stop: 0.01 rad
   const Wobble without_stops = wobble_of(anchors_of_the_paper + free_steering);
   EXPECT_GT(without_stops.axis_deg, 90) << "the drive turns the wheels around";
-  EXPECT_GT(without_stops.lean_deg, 45) << "and it falls";
+  EXPECT_GT(without_stops.tilt_deg, 45) << "and it falls";
 }
 
 TEST(Segway, EachOfTheTwoCausesIsEnoughToTakeAway) {

@@ -118,7 +118,7 @@ TEST(WheelGeometry, IsThatOfACar) {
   EXPECT_THAT(warnings_of(car(ackermann + ", wheelbase_m: 0.3")),
               HasSubstr("'wheelbase_m' is 0.3, but its joints and wheels make it 0.4: it turns 0.75 times as fast"));
   EXPECT_THAT(warnings_of(car(ackermann + ", track_m: 0.2")),
-              HasSubstr("its front wheels do not point to one centre of turn"));
+              HasSubstr("the axes of its front wheels do not meet in one centre of turn"));
   EXPECT_THAT(warnings_of(car(ackermann + ", wheel_radius_m: 0.05")), HasSubstr("it drives 1.2 times as fast"));
 }
 
@@ -139,7 +139,7 @@ TEST(WheelGeometry, GivesTheTrackOfWheelsThatScrub) {
   test::TestWorld test(car(skid));
   // 2 (b + a^2 / b) with a = 0.2 m, b = 0.15 m.
   EXPECT_NEAR(drive_of(test).track_m(), 2 * (0.15 + 0.04 / 0.15), 1e-12);
-  EXPECT_EQ(warnings_of(car(skid + ", track_m: 0.5")), "") << "as somebody measured it";
+  EXPECT_EQ(warnings_of(car(skid + ", track_m: 0.5")), "") << "as someone measured it";
   EXPECT_THAT(warnings_of(car(skid + ", track_m: 0.2")), HasSubstr("'track_m' is 0.2, but")) << "narrower than it is";
 }
 

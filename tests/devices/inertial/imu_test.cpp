@@ -42,12 +42,12 @@ TEST(Imu, FeelsTheGroundAtRestInItsOwnAxes) {
   test::TestWorld test(test::rover_world(imu(", rpy_deg: [0, 30, 0]")));
   test::Listener<shoal::imu_t> reports(test, "r1.imu");
   test.run_for(2);
-  // Nose down by 30 degrees: upwards is (-1/2, 0, sqrt(3)/2).  The rover leans on its casters by less than 0.01 rad.
+  // Nose down by 30 degrees: upwards is (-1/2, 0, sqrt(3)/2).  The rover tilts on its casters by less than 0.01 rad.
   const Vector3d f = accel_of(reports.last());
   EXPECT_NEAR(f.x(), -0.5 * 9.80665, 0.1);
   EXPECT_NEAR(f.y(), 0, 0.1);
   EXPECT_NEAR(f.z(), std::sqrt(0.75) * 9.80665, 0.1);
-  EXPECT_NEAR(f.norm(), 9.80665, 1e-3);  // at rest, whichever way it leans
+  EXPECT_NEAR(f.norm(), 9.80665, 1e-3);  // at rest, whichever way it tilts
 }
 
 TEST(Imu, FeelsTheGravityOfTheMoment) {

@@ -20,7 +20,7 @@ TEST(Inclinometer, ReadsItsMountingOnALevelRover) {
   test::Listener<shoal::inclination_t> truths(test, "r1.tilt.truth");
   test.run_for(3);
   const auto report = reports.last();
-  EXPECT_NEAR(report.roll_rad, sim::degrees_to_radians(20), 0.01);  // the rover leans on its casters by less
+  EXPECT_NEAR(report.roll_rad, sim::degrees_to_radians(20), 0.01);  // the rover tilts on its casters by less
   EXPECT_NEAR(report.pitch_rad, sim::degrees_to_radians(-10), 0.01);
   const auto truth = truths.last();  // at rest both agree
   EXPECT_NEAR(report.roll_rad, truth.roll_rad, 1e-4);

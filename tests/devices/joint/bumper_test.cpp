@@ -9,8 +9,8 @@
 
 namespace {
 
-/// A sled of 10 kg that slides without friction at what it is told, with a bumper in front (x = 0.25 to 0.3), and a
-/// wall at x = 1.
+/// A sled of 10 kg that slides without friction at what it is commanded, with a bumper in front (x = 0.25 to 0.3), and
+/// a wall at x = 1.
 std::string sled_world(const std::string& bumper, const std::string& objects = "") {
   return R"(
 shoal: 1

@@ -121,7 +121,7 @@ TEST_P(EveryDrivenAxis, GivesNoMoreThanItsForce) {
   EXPECT_NEAR(rig.joint().position(axis), 0.7 * 1.001 / 2, 1e-5);
   rig.set(axis, nan_, 0);
   rig.run_for(1);
-  EXPECT_NEAR(rig.joint().velocity(axis), 0.7, 1e-5) << "without force it goes on";
+  EXPECT_NEAR(rig.joint().velocity(axis), 0.7, 1e-5) << "without force it continues";
 }
 
 TEST_P(EveryAxisWithStops, HoldsThemAndMovesThemWhileItRuns) {
@@ -151,7 +151,7 @@ TEST_P(EveryAxisWithStops, AStopThatIsSetBehindItPushesItBack) {
   rig.run_for(0.001);
   EXPECT_NEAR(rig.joint().position(axis), -0.04, 1e-4);  // a fifth of the error in a step: the world's erp
   rig.run_for(0.01);
-  EXPECT_LT(rig.joint().position(axis), -0.2);  // without a motor it goes on with the speed it got
+  EXPECT_LT(rig.joint().position(axis), -0.2);  // without a motor it continues with the speed it got
 }
 
 TEST(JointDrive, TurnsABallAboutThreeAxesAtOnce) {
@@ -240,7 +240,7 @@ TEST(JointDrive, BrakesOrCoastsWhenItsCommandsEnd) {
     rig.run_for(1);
     EXPECT_NEAR(rig.joint().velocity(), coast ? 2 : 0, 1e-6);
     EXPECT_EQ(rig.joint().motor_max_force(), coast ? 0 : 100);
-    rig.set(0, 1, 0.5);  // and it obeys again
+    rig.set(0, 1, 0.5);  // and it executes again
     rig.run_for(0.15);
     EXPECT_NEAR(rig.joint().velocity(), 1, 1e-6);
   }

@@ -44,7 +44,7 @@ TEST(JointServo, MovesAtExactlyItsLimitsAndStopsAtItsTarget) {
   // 1e-4 for the motor's softness and the error that it then takes back.
   for (std::size_t n = 1; n <= 500; ++n) ASSERT_NEAR(velocities[n - 1], 0.001 * static_cast<double>(n), 1e-4) << n;
   for (std::size_t n = 501; n <= 1990; ++n) ASSERT_NEAR(velocities[n - 1], 0.5, 1e-4) << n;
-  EXPECT_NEAR(velocities[2250 - 1], 0.25, 1e-2);  // half way down, but for the rounding to whole steps
+  EXPECT_NEAR(velocities[2250 - 1], 0.25, 1e-2);  // half way down, except for the rounding to whole steps
   EXPECT_NEAR(velocities[2510], 0, 1e-3);
   EXPECT_NEAR(shoulder(test).position(), 1, 1e-5);
 }
@@ -213,9 +213,9 @@ TEST(JointServo, GoesToItsSafeStateWhenCommandsStopComing) {
     return shoulder(test).position();
   };
   // 0.25 s up to 0.5 rad/s are not over after 0.201 s: then at 0.402 rad/s after 0.0404 rad.
-  const double way = 0.201 * 0.202;
-  EXPECT_NEAR(end("hold"), way, 2e-3);
-  EXPECT_NEAR(end("stop"), way + 0.402 * 0.402 / 4, 2e-3);
+  const double distance = 0.201 * 0.202;
+  EXPECT_NEAR(end("hold"), distance, 2e-3);
+  EXPECT_NEAR(end("stop"), distance + 0.402 * 0.402 / 4, 2e-3);
   EXPECT_NEAR(end("park"), -0.5, 1e-5);
   EXPECT_GT(std::abs(end("coast")), 0.5);  // it swings
 }

@@ -25,10 +25,10 @@ class CurrentBorder : public ::testing::Test {
         body + "}]\n      devices: [" + devices + "]\n");
     testing::internal::CaptureStdout();
     test.run_for(10);
-    const std::string said = testing::internal::GetCapturedStdout();
+    const std::string reported = testing::internal::GetCapturedStdout();
     EXPECT_GT(test.world.vehicles()[0]->X_WV().translation().x(), 10.5);
     EXPECT_EQ(test.world.counts().bad_messages, 0) << "nobody sent a message";
-    return said;
+    return reported;
   }
   const test_support::ScratchFolder folder;
 };
@@ -36,21 +36,21 @@ class CurrentBorder : public ::testing::Test {
 const std::string left = "body 'a/hull': has left the file of the current at 10";
 
 TEST_F(CurrentBorder, ABodyInWaterThatLeavesItIsToldOfWithTheTime) {
-  const std::string said = said_by(
+  const std::string reported = said_by(
       "parts: [{shape: sphere, radius_m: 0.1, density_kgpm3: 1025}], hydrodynamics: {mass_kg: 4, inertia_kgm2: [1, 1, "
       "1], linear_damping: [40, 40, 40, 1, 1, 1]}",
       "");
-  EXPECT_THAT(said, HasSubstr(left));
-  EXPECT_THAT(said, HasSubstr("(at 1."));
-  EXPECT_EQ(said.find("ignored"), std::string::npos) << said;
-  EXPECT_EQ(said.find(left), said.rfind(left)) << "once";
+  EXPECT_THAT(reported, HasSubstr(left));
+  EXPECT_THAT(reported, HasSubstr("(at 1."));
+  EXPECT_EQ(reported.find("ignored"), std::string::npos) << reported;
+  EXPECT_EQ(reported.find(left), reported.rfind(left)) << "once";
 }
 
 TEST_F(CurrentBorder, ANaiveVehicleThatLeavesItIsToldOfToo) {
   const std::string body = "kinematic: true, parts: [{shape: sphere, radius_m: 0.1}]";
-  const std::string said = said_by(body, "{name: drive, type: naive_drive}");
-  EXPECT_THAT(said, HasSubstr(left));
-  EXPECT_EQ(said.find(left), said.rfind(left)) << "once";
+  const std::string reported = said_by(body, "{name: drive, type: naive_drive}");
+  EXPECT_THAT(reported, HasSubstr(left));
+  EXPECT_EQ(reported.find(left), reported.rfind(left)) << "once";
   EXPECT_EQ(said_by(body, "{name: drive, type: naive_drive, drifts: false, start_speed_mps: 1}"), "");
 }
 

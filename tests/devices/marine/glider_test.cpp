@@ -55,16 +55,16 @@ TEST(Glider, GlidesDownAndUpAsItsLiftAndDragBalance) {
   const SteadyGlide glide(angle, 0.3);
   EXPECT_NEAR(glide.mass_at_m, 0.0198, 0.0002);  // as printed for this glide
   const double volume = glide.net_weight_N / (1025 * 9.81);
-  for (const double way : {1.0, -1.0}) {
+  for (const double distance : {1.0, -1.0}) {
     DriftingVehicle test("glider.yaml", ", position_m: [0, 0, -500]");
-    test.command("engine", -way * volume);
-    test.command("battery", way * glide.mass_at_m);
+    test.command("engine", -distance * volume);
+    test.command("battery", distance * glide.mass_at_m);
     test.run_for(700);
     const sim::Vector3d v = test.body.v_WB_W();
     // What is missing falls to a tenth in 90 s: after 700 s it is 1e-8 of the speed.
     EXPECT_NEAR(v.norm(), 0.3, 1e-6);
-    EXPECT_NEAR(sim::radians_to_degrees(std::atan2(-way * v.z(), v.x())), 25, 1e-4);
-    EXPECT_NEAR(test.pitch_deg(), way * sim::radians_to_degrees(glide.pitch_rad), 1e-4);
+    EXPECT_NEAR(sim::radians_to_degrees(std::atan2(-distance * v.z(), v.x())), 25, 1e-4);
+    EXPECT_NEAR(test.pitch_deg(), distance * sim::radians_to_degrees(glide.pitch_rad), 1e-4);
     EXPECT_NEAR(v.y(), 0, 1e-9);
   }
 }

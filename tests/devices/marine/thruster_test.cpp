@@ -138,15 +138,15 @@ TEST(Thruster, OfSecondOrderOvershootsAsItsDampingSays) {
   WetBox box(
       wet_device("type: thruster, command: thrust_N, max: 100, natural_frequency_radps: 20, damping_ratio: 0.3"));
   box.command(10);
-  double most = 0;
+  double max = 0;
   for (int i = 1; i <= 400; ++i) {
     box.world.step();
     const double t = i * 1e-3;
     const double x = 10 * (1 - std::exp(-z * w * t) * (std::cos(damped * t) + z * w / damped * std::sin(damped * t)));
     ASSERT_NEAR(box.device<Thruster>().level(), x, 1e-10) << t;
-    most = std::max(most, box.device<Thruster>().level());
+    max = std::max(max, box.device<Thruster>().level());
   }
-  EXPECT_NEAR(most, 10 * (1 + std::exp(-std::numbers::pi * z / std::sqrt(1 - z * z))), 1e-3);
+  EXPECT_NEAR(max, 10 * (1 + std::exp(-std::numbers::pi * z / std::sqrt(1 - z * z))), 1e-3);
 }
 
 TEST(Thruster, OfSecondOrderFollowsTheClosedFormsWithMuchDamping) {

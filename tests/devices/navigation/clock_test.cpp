@@ -92,14 +92,14 @@ TEST(Clock, OneWayTravelTimeIsDistanceOverSoundSpeedAndTheDifferenceOfTheClocks)
       "800, "
       "truth: true}\n";
   test::TestWorld test(two_boats("{offset_s: 0.2}", "{offset_s: -0.3, drift_ppm: 100}", modem));
-  test::Listener<shoal::modem_received_t> heard(test, "r2.modem"), truths(test, "r2.modem.truth");
+  test::Listener<shoal::modem_received_t> reception(test, "r2.modem"), truths(test, "r2.modem.truth");
   test.run_for(10);
   shoal::modem_send_t message{};
   message.size = 10;
   message.data.assign(10, 1);
   test.send("r1.modem.cmd", message);
   test.run_for(5);
-  const auto received = heard.last();
+  const auto received = reception.last();
   const auto truth = truths.last();
   // 1500 m at 1500 m/s, and 80 bits at 800 bit/s.
   EXPECT_EQ(truth.sent_utime, test.world.epoch_us() + 10'000'000);

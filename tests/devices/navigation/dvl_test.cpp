@@ -38,7 +38,7 @@ TEST(Dvl, MeasuresFlatBottomAsTheClosedFormSays) {
 }
 
 TEST(Dvl, MeasuresInItsOwnAxesOverASlopeWhenItIsPitched) {
-  // Nose down by 10 deg, over a bottom that leans by 15 deg.
+  // Nose down by 10 deg, over a bottom that tilts by 15 deg.
   const auto report = truth_at_speed(marine_world("type: dvl, first_azimuth_deg: 0", "[0, 0, -10]", bottom_at(-30, 15),
                                                   "", "{water: {surface_m: 0}}", "[0, 10, 0]"),
                                      {1, 0.5, 0});

@@ -35,7 +35,7 @@ inline std::string held_in_place(std::string yaml) {
   return yaml;
 }
 
-/// A bottom through (0, 0, z_m), turned by the pitch about y: its normal leans towards +x.
+/// A bottom through (0, 0, z_m), turned by the pitch about y: its normal tilts towards +x.
 inline std::string bottom_at(double z_m, double pitch_deg = 0) {
   const double pitch_rad = sim::degrees_to_radians(pitch_deg);
   return "[{name: bottom, fixed: true, position_m: [" + std::to_string(-std::sin(pitch_rad)) + ", 0, " +

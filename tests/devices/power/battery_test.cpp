@@ -51,9 +51,9 @@ TEST(Battery, EmptyTheMotorsStopAndTheSensorsFallSilent) {
   test.run_for(3);  // 72 J: at 36 W and what the motors take it lasts less than 2 s
   const sim::Vehicle& rover = *test.world.find_vehicle("r1");
   EXPECT_EQ(rover.joint("left").motor_max_force(), 0);
-  const auto heard = odometry.take_all();
-  ASSERT_FALSE(heard.empty());
-  EXPECT_LT(static_cast<double>(heard.back().utime - test.world.epoch_us()) * 1e-6, 2.0);
+  const auto received = odometry.take_all();
+  ASSERT_FALSE(received.empty());
+  EXPECT_LT(static_cast<double>(received.back().utime - test.world.epoch_us()) * 1e-6, 2.0);
   EXPECT_EQ(reports.last().empty, 1);  // it needs no power to say so
   test.send("r1.drive.cmd", command);
   test.run_for(0.5);
@@ -131,7 +131,7 @@ TEST(Battery, ThereIsOneInAVehicle) {
     test::TestWorld test(test::rover_world(battery("") + "        - {name: spare, type: battery}\n"));
     FAIL();
   } catch (const sim::ConfigError& error) {
-    EXPECT_THAT(error.what(), testing::HasSubstr("vehicle 'r1': device 'spare': the vehicle has a battery already"));
+    EXPECT_THAT(error.what(), testing::HasSubstr("vehicle 'r1': device 'spare': the vehicle already has a battery"));
   }
 }
 

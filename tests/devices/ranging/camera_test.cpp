@@ -231,8 +231,8 @@ TEST(Camera, RollingShutterLeansAPoleByTheAngleOfTheReadout) {
   EXPECT_NEAR(std::abs(angle_first - angle_last), 0.1, 1.0 / 200);  // a pixel
 }
 
-/// By how much the camera turned from the first row to the last one, as the pole shows it.
-double lean_rad(const shoal::image_t& image, double focal_px) {
+/// Angle by which the camera turned from the first row to the last one, as the pole shows it.
+double tilt_rad(const shoal::image_t& image, double focal_px) {
   const auto angle_rad = [&](int row) { return std::atan((middle_of_pole(image, row) - 100) / focal_px); };
   return std::abs(angle_rad(100) - angle_rad(0));
 }
@@ -241,7 +241,7 @@ TEST(Camera, RollingShutterTakesItsTimeAtARateThatDoesNotDivideTheStep) {
   // 33.3 ms in steps of 10 ms: the image at 0.2 s follows the one at 0.17 s, and its first row is at 0.167 s.
   const auto image =
       image_from_a_turntable(labels + ", rate_hz: 30, phase_s: 0, focal_px: [800], readout_s: 0.033", 0.01);
-  EXPECT_NEAR(lean_rad(image, 800), 2 * 0.033, 1.0 / 800);  // a pixel
+  EXPECT_NEAR(tilt_rad(image, 800), 2 * 0.033, 1.0 / 800);  // a pixel
 }
 
 TEST(Camera, RollingShutterTakesItsTimeAfterAChangeOfTheRate) {
@@ -255,7 +255,7 @@ TEST(Camera, RollingShutterTakesItsTimeAfterAChangeOfTheRate) {
   ASSERT_EQ(test.change("r1/camera", "{rate_hz: 19.9}"), "");
   images.take_all();
   test.run_for(0.0015);
-  EXPECT_NEAR(lean_rad(images.last(), 400), 2 * 0.05, 1.0 / 400);
+  EXPECT_NEAR(tilt_rad(images.last(), 400), 2 * 0.05, 1.0 / 400);
 }
 
 /// Columns of the middle row that are not like the sky at its ends.

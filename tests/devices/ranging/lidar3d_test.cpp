@@ -54,7 +54,7 @@ TEST(Lidar3d, AWallIsSkewedByATurningBodyAsTheClosedFormSays) {
   EXPECT_NEAR(rate_radps, 1, 1e-4);
   const auto cloud = clouds.last();
   ASSERT_GT(cloud.count, 300);
-  double largest_skew_m = 0;
+  double max_skew_m = 0;
   for (int i = 0; i < cloud.count; ++i) {
     const double yaw = rate_radps * (0.5 + cloud.time_offsets_us[i] * 1e-6);
     const double azimuth = std::atan2(cloud.y_m[i], cloud.x_m[i]);
@@ -63,10 +63,9 @@ TEST(Lidar3d, AWallIsSkewedByATurningBodyAsTheClosedFormSays) {
     EXPECT_NEAR(std::hypot(cloud.x_m[i], cloud.y_m[i]), range_m, 2e-6 * range_m * range_m);
     // Seen from the frame at the end of the turn without regard to time, the wall would be off.
     if (range_m < 10)
-      largest_skew_m =
-          std::max(largest_skew_m, std::abs(cloud.x_m[i] * std::cos(0.5) - cloud.y_m[i] * std::sin(0.5) - 5));
+      max_skew_m = std::max(max_skew_m, std::abs(cloud.x_m[i] * std::cos(0.5) - cloud.y_m[i] * std::sin(0.5) - 5));
   }
-  EXPECT_GT(largest_skew_m, 0.3);
+  EXPECT_GT(max_skew_m, 0.3);
 }
 
 TEST(Lidar3d, DarkSurfacesDropOut) {

@@ -124,7 +124,7 @@ TEST(Altimeter, MeasuresItsHeightAboveTheGround) {
   const auto report = first_truth<sonar_range_t>(ranging_world("type: altimeter", ground));
   EXPECT_EQ(report.valid, 1);
   EXPECT_NEAR(report.range_m, 7, 7 * 2e-4);  // the ray nearest to the axis of 64 in 20 deg is 0.9 deg off it
-  // Rolled by less than half its beam it still hears the nearest point: 64 rays are 2 deg apart.
+  // Rolled by less than half its beam it still receives the nearest point: 64 rays are 2 deg apart.
   const auto rolled = first_truth<sonar_range_t>(ranging_world("type: altimeter, rpy_deg: [8, 0, 0]", ground));
   EXPECT_NEAR(rolled.range_m, 7, 7 * 1e-3);
   EXPECT_THAT(test::error_of_world(ranging_world("type: altimeter, beam_deg: 200", ground)),

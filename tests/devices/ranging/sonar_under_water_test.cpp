@@ -93,7 +93,7 @@ TEST(SonarUnderWater, RaysEndAtTheSurface) {
 }
 
 TEST(SonarUnderWater, LooksUpAtTheWaves) {
-  // 10 m under still water: it hears the surface as far above as the wave lifts it.  A beam of 2 degrees sees 0.35 m
+  // 10 m under still water: it receives the surface as far above as the wave lifts it.  A beam of 2 degrees sees 0.35 m
   // of a wave 39 m long, whose slope is at most 0.08: the nearest of it is 14 mm off at most.
   test::TestWorld test(test::held_in_place(
       marine_world(std::string(down) + ", surface_echo: true", "[0, 0, -10]", "[]", "",

@@ -10,14 +10,14 @@
 
 namespace test {
 
-/// A transducer on a vehicle that is no device: it listens to everything and keeps what it hears.  Ends before the
-/// world.
+/// A transducer on a vehicle that is not a device: it listens to everything and keeps what it receives.  Ends before
+/// the world.
 class AcousticProbe final : public sim::AcousticListener {
  public:
-  struct Heard {
+  struct Received {
     sim::Signal signal;
     std::string source;
-    sim::Time sent{0}, begun{0}, ended{0};
+    sim::Time sent{0}, started{0}, ended{0};
     double travel_time_s = 0, closing_mps = 0;
     sim::Vector3d p_sent_W = sim::Vector3d::Zero(), p_begun_W = sim::Vector3d::Zero();
     double level_dB = 0, snr_dB = 0, sinr_dB = 0;
@@ -28,10 +28,10 @@ class AcousticProbe final : public sim::AcousticListener {
       : world_(test.world), transducer(*this, receiver, site(vehicle)) {}
 
   bool listens_to(const sim::Signal&) const override { return listening; }
-  void heard(const sim::Reception& heard) override {
-    all.push_back({heard.signal, heard.source, heard.sent, heard.begun, heard.ended, heard.travel_time_s,
-                   heard.closing_mps, heard.p_sent_W, heard.p_begun_W, heard.level.dB(), heard.snr.dB(),
-                   heard.sinr.dB(), heard.loss});
+  void receive(const sim::Reception& received) override {
+    all.push_back({received.signal, received.source, received.sent, received.started, received.ended,
+                   received.travel_time_s, received.closing_mps, received.p_sent_W, received.p_begun_W,
+                   received.level.dB(), received.snr.dB(), received.sinr.dB(), received.loss});
   }
   /// A signal to be noticed, from now on.
   static sim::Signal tone(double source_level_dB = 180, double duration_s = 0.01) {
@@ -43,7 +43,7 @@ class AcousticProbe final : public sim::AcousticListener {
   void send(const sim::Signal& signal) { transducer.transmit(signal, world_.now()); }
   std::size_t understood() const {
     return static_cast<std::size_t>(
-        std::count_if(all.begin(), all.end(), [](const Heard& each) { return each.loss == sim::SignalLoss::none; }));
+        std::count_if(all.begin(), all.end(), [](const Received& each) { return each.loss == sim::SignalLoss::none; }));
   }
 
  private:
@@ -62,7 +62,7 @@ class AcousticProbe final : public sim::AcousticListener {
  public:
   sim::Transducer transducer;
   bool listening = true;
-  std::vector<Heard> all;
+  std::vector<Received> all;
 };
 
 /// A vehicle that only is in the water: a box of 0.2 m.  An entry of the list of vehicles, indented by two spaces.

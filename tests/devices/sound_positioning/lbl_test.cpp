@@ -39,7 +39,7 @@ TEST(Lbl, AsksANetOfTransponders) {
     EXPECT_NEAR(all[0].range_m[i], distances_m[i], 1e-3);
     EXPECT_NEAR(truth.range_m[i], distances_m[i], 1e-9);
   }
-  // Beyond 3000 m it does not hear.
+  // Beyond 3000 m it does not receive.
   EXPECT_TRUE(std::isnan(all[0].travel_time_s[3]) && std::isnan(all[0].range_m[3]));
 }
 
@@ -59,11 +59,12 @@ TEST(Lbl, ATransponderThatLeavesOrIsBlockedIsNaN) {
                                  mooring("a", "[150, 0, -10]") + mooring("b", "[0, 90, -10]")));
   test::Listener<lbl_t> reports(test, "r1.s");
   test.run_for(0.15);
-  test.world.editor().remove_vehicle("a");  // before it answers at 0.13 s its ping was heard; its answer is on its way
+  test.world.editor().remove_vehicle(
+      "a");  // before it answers at 0.13 s its ping was received; its answer is on its way
   test.run_for(0.3);
   const lbl_t first = reports.last();
   ASSERT_EQ(first.n, 2);
-  EXPECT_NEAR(first.range_m[0], 150, 1e-3);  // what was sent goes on
+  EXPECT_NEAR(first.range_m[0], 150, 1e-3);  // what was sent continues
   EXPECT_NEAR(first.range_m[1], 90, 1e-3);
   test.run_for(0.5);
   const lbl_t second = reports.last();

@@ -76,7 +76,7 @@ TEST(RangeBeacon, AWallHidesWhatIsBehindIt) {
 }
 
 TEST(RangeBeacon, TheMediumDecidesWhatIsHeard) {
-  const auto heard = [](const std::string& through, const std::string& medium) {
+  const auto received = [](const std::string& through, const std::string& medium) {
     test::TestWorld test("medium: " + medium + "\n" +
                          boxes(", beacons: [{name: wet, position_m: [0, 5, -1]}, {name: dry, position_m: [0, 5, 1]}]"
                                ", through: " +
@@ -86,12 +86,12 @@ TEST(RangeBeacon, TheMediumDecidesWhatIsHeard) {
     return reports.last().beacon;
   };
   const std::string above = "{water: {surface_m: -0.5}}", below = "{water: {surface_m: 0.5}}";
-  EXPECT_THAT(heard("radio", above), ElementsAre("dry"));
-  EXPECT_THAT(heard("radio", below), ElementsAre());
-  EXPECT_THAT(heard("acoustic", above), ElementsAre());
-  EXPECT_THAT(heard("acoustic", below), ElementsAre("wet"));
-  EXPECT_THAT(heard("any", below), ElementsAre("wet", "dry"));
-  EXPECT_THAT(heard("radio", "{}"), ElementsAre("wet", "dry"));
+  EXPECT_THAT(received("radio", above), ElementsAre("dry"));
+  EXPECT_THAT(received("radio", below), ElementsAre());
+  EXPECT_THAT(received("acoustic", above), ElementsAre());
+  EXPECT_THAT(received("acoustic", below), ElementsAre("wet"));
+  EXPECT_THAT(received("any", below), ElementsAre("wet", "dry"));
+  EXPECT_THAT(received("radio", "{}"), ElementsAre("wet", "dry"));
 }
 
 TEST(RangeBeacon, BeaconsComeAndGoWithTheirVehicles) {
@@ -149,9 +149,9 @@ TEST(RangeBeacon, MissesTheShareAskedFor) {
   test.run_for(20);
   const auto all = reports.take_all();
   const double n = 2.0 * static_cast<double>(all.size());
-  double heard = 0;
-  for (const auto& report : all) heard += report.count;
-  EXPECT_NEAR(heard / n, 0.7, 4 * std::sqrt(0.3 * 0.7 / n));
+  double received = 0;
+  for (const auto& report : all) received += report.count;
+  EXPECT_NEAR(received / n, 0.7, 4 * std::sqrt(0.3 * 0.7 / n));
 }
 
 TEST(RangeBeacon, RefusesTwoBeaconsOfOneName) {

@@ -52,13 +52,13 @@ TEST(Usbl, AnswersTakeTheTimeOfSoundThereAndBack) {
   ASSERT_GE(all.size(), 3u);
   // Times are whole microseconds: that of the ping's arrival, and of the answer's.
   EXPECT_NEAR(all[0].travel_time_s, 1200 / sound_mps, 1.1e-6);
-  // The first ping is at the first sample, at 10 ms; an answer is heard when its 10 ms are over, and reported at the
+  // The first ping is at the first sample, at 10 ms; an answer is received when its 10 ms are over, and reported at the
   // next sample.
   const double first_s = static_cast<double>(all[0].utime - test.world.epoch_us()) * 1e-6;
-  const double heard_s = 1200 / sound_mps + 0.05 + 0.01;
-  EXPECT_NEAR(first_s, 0.01 + heard_s + 0.005, 0.0051);
+  const double received_s = 1200 / sound_mps + 0.05 + 0.01;
+  EXPECT_NEAR(first_s, 0.01 + received_s + 0.005, 0.0051);
   // The next ping is sent when the answer is in: at the same sample.
-  EXPECT_NEAR(static_cast<double>(all[1].utime - all[0].utime) * 1e-6, heard_s + 0.005, 0.0051);
+  EXPECT_NEAR(static_cast<double>(all[1].utime - all[0].utime) * 1e-6, received_s + 0.005, 0.0051);
 }
 
 TEST(Usbl, BothMayMoveWhileTheSoundIsUnderWay) {
@@ -90,7 +90,7 @@ TEST(Usbl, TellsTheDirectionInItsAxesWhenTheAnswerArrives) {
     body->set_velocity_W(sim::Vector3d::Zero(), {0, 0, turn_radps});
   test::Listener<usbl_t> truths(test, "r1.s.truth");
   test.run_for(0.5);
-  // Ping after 10 ms, 0.2 s there, 20 ms of turnaround, 0.2 s back; it turned all the while, with the error of the
+  // Ping after 10 ms, 0.2 s there, 20 ms of turnaround, 0.2 s back; it turned continuously, with the error of the
   // integration of a turn in steps of 10 ms: (w dt)^2 / 12 of the angle.
   const double turned_rad = turn_radps * (0.01 + 0.2 + 0.02 + 0.2);
   EXPECT_NEAR(truths.last().azimuth_rad, -turned_rad, turned_rad * 2e-5 + 2e-6);
@@ -151,16 +151,16 @@ TEST(Transponder, SeveralAnswerAtATimeUnlessTheyShareABand) {
 }
 
 TEST(Transponder, HearsPingsOnItsFrequencyThatAreLoudEnough) {
-  const auto heard = [](const std::string& keys, const std::string& more) {
+  const auto received = [](const std::string& keys, const std::string& more) {
     return !first_targets(usbl_world(keys, transponder("t", "[100, 0, -10]", more))).empty();
   };
-  EXPECT_TRUE(heard(", frequency_Hz: 20000", ", frequency_Hz: 20000"));
-  EXPECT_FALSE(heard(", frequency_Hz: 20000", ""));
-  EXPECT_FALSE(heard("", ", code: A, network: lbl"));
+  EXPECT_TRUE(received(", frequency_Hz: 20000", ", frequency_Hz: 20000"));
+  EXPECT_FALSE(received(", frequency_Hz: 20000", ""));
+  EXPECT_FALSE(received("", ", code: A, network: lbl"));
   // 100 m take 15 log10(100) = 30 dB and 0.6 dB; the noise at 26 kHz in 1 kHz is some 60 dB, and 6 dB are needed.
-  EXPECT_FALSE(heard(", source_level_dB: 80", ""));
-  EXPECT_FALSE(heard("", ", source_level_dB: 80"));
-  EXPECT_TRUE(heard(", source_level_dB: 120", ", source_level_dB: 120"));
+  EXPECT_FALSE(received(", source_level_dB: 80", ""));
+  EXPECT_FALSE(received("", ", source_level_dB: 80"));
+  EXPECT_TRUE(received(", source_level_dB: 120", ", source_level_dB: 120"));
 }
 
 TEST(Usbl, ErrorsHaveTheSpreadAskedFor) {

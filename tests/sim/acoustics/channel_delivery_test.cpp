@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Who hears a signal, what overlaps, and what is counted.
+// Who receives a signal, what overlaps, and what is counted.
 
 #include "sim/world/world_editor.hpp"
 #include "tests/sim/acoustics/sea_of_hydrophones.hpp"
@@ -17,7 +17,7 @@ using test::TestWorld;
 using test::vehicle;
 
 TEST(AcousticChannel, IsHeardAsFarAsTheWaterCarriesItWhereTheTransducersAre) {
-  // At 25 kHz the sea absorbs 5 dB/km near the surface and 1.3 in its depths: nobody is there.
+  // At 25 kHz the sea absorbs 5 dB/km near the surface and 1.3 in its depths: no one is there.
   std::string vehicles = vehicle("a", "[0, 0, -20]");
   for (int i = 1; i <= 10; ++i)
     vehicles += vehicle("b" + std::to_string(i), "[" + std::to_string(15000 * i) + ", 0, -20]");
@@ -27,7 +27,7 @@ TEST(AcousticChannel, IsHeardAsFarAsTheWaterCarriesItWhereTheTransducersAre) {
   EXPECT_EQ(shallow.world.acoustics().flights(), 0);
   EXPECT_EQ(lost(shallow, "b1", SignalLoss::range), 1);
 
-  // One that is down there is heard from afar, as far as it can be by anybody on the way.
+  // One that is down there is received from afar, as far as it can be by anyone on the way.
   TestWorld deep(sea("{noise: {wind_mps: 10}}", vehicles + vehicle("diver", "[0, 9000, -6000]")));
   phone(deep, "a").transducer().transmit(message(), 0ms);
   deep.run_for(12);
@@ -72,7 +72,7 @@ TEST(AcousticChannel, CountsMessagesForThoseTheyAreFor) {
   for (int i = 0; i < 3; ++i) phone(test, "a").transducer().transmit(i == 0 ? to_b : i == 1 ? to_d : to_all, i * 4s);
   test.run_for(13);
   const auto understood = [&](const char* name) { return phone(test, name).transducer().counts().understood; };
-  EXPECT_EQ(phone(test, "c").all().size(), 3u);  // all are heard
+  EXPECT_EQ(phone(test, "c").all().size(), 3u);  // all are received
   EXPECT_EQ(understood("a"), 0);
   EXPECT_EQ(understood("b"), 2);
   EXPECT_EQ(understood("c"), 1);
@@ -98,11 +98,11 @@ TEST(AcousticChannel, ForgetsTheMessagesForThoseWhoHaveLeft) {
   const auto& acoustics = test.world.acoustics();
   test.world.editor().remove_vehicle("b");
   EXPECT_EQ(acoustics.messages_for({"modems", "x"}), 1) << "c has the same address";
-  EXPECT_EQ(acoustics.counts_of_those_gone().understood, 1);
+  EXPECT_EQ(acoustics.counts_of_removed().understood, 1);
   test.world.editor().remove_vehicle("c");
   EXPECT_EQ(acoustics.messages_for({"modems", "x"}), 0);
-  EXPECT_EQ(acoustics.counts_of_those_gone().understood, 2);
-  EXPECT_EQ(acoustics.counts_of_those_gone().lost[static_cast<std::size_t>(SignalLoss::range)], 0);
+  EXPECT_EQ(acoustics.counts_of_removed().understood, 2);
+  EXPECT_EQ(acoustics.counts_of_removed().lost[static_cast<std::size_t>(SignalLoss::range)], 0);
 }
 
 TEST(AcousticChannel, WhatHasNotBegunCanBeCalledBack) {

@@ -16,7 +16,7 @@ namespace {
 using sim::SignalLoss;
 using sim::Vector3d;
 using test::AcousticProbe;
-using Probed = AcousticProbe::Heard;
+using Probed = AcousticProbe::Received;
 
 double number_between(double low, double high) {
   return low + (high - low) * *rc::gen::inRange(0, 100001) / 100000.0;
@@ -24,8 +24,8 @@ double number_between(double low, double high) {
 Vector3d place_within(double across_m, double deepest_m) {
   return {number_between(-across_m, across_m), number_between(-across_m, across_m), number_between(-deepest_m, -5)};
 }
-Vector3d any_velocity(double most_mps) {
-  return {number_between(-most_mps, most_mps), number_between(-most_mps, most_mps), number_between(-1, 1)};
+Vector3d any_velocity(double max_mps) {
+  return {number_between(-max_mps, max_mps), number_between(-max_mps, max_mps), number_between(-1, 1)};
 }
 std::string text(const Vector3d& v) {
   return "[" + std::to_string(v.x()) + ", " + std::to_string(v.y()) + ", " + std::to_string(v.z()) + "]";
@@ -69,16 +69,17 @@ bool all_apart(const std::vector<Vector3d>& places) {
   return true;
 }
 
-/// The bits of all that a probe heard.
+/// The bits of all that a probe received.
 std::uint64_t fingerprint(const std::vector<Probed>& all) {
   sim::StateHash hash;
-  for (const Probed& heard : all) {
-    hash.add(std::string_view(heard.source));
-    hash.add(static_cast<std::int64_t>(heard.begun.count()));
-    hash.add(static_cast<std::int64_t>(heard.ended.count()));
-    for (const double value : {heard.travel_time_s, heard.level_dB, heard.snr_dB, heard.sinr_dB, heard.closing_mps})
+  for (const Probed& received : all) {
+    hash.add(std::string_view(received.source));
+    hash.add(static_cast<std::int64_t>(received.started.count()));
+    hash.add(static_cast<std::int64_t>(received.ended.count()));
+    for (const double value :
+         {received.travel_time_s, received.level_dB, received.snr_dB, received.sinr_dB, received.closing_mps})
       hash.add(value);
-    hash.add(static_cast<int>(heard.loss));
+    hash.add(static_cast<int>(received.loss));
   }
   return hash.value();
 }
@@ -109,19 +110,19 @@ RC_GTEST_PROP(AcousticChannel, NeitherOutrunsTheSpeedsOfSoundOnTheWayNorLagsThem
   a.send(AcousticProbe::tone());
   test.run_for(4);
   RC_ASSERT(b.all.size() == 1u);
-  const Probed& heard = b.all[0];
+  const Probed& received = b.all[0];
   double slowest_mps = 1e9, fastest_mps = 0;
   for (int i = 0; i <= 100; ++i) {
     const double share = i / 100.0;
-    const double c = test.world.medium().sound_speed_mps((1 - share) * heard.p_sent_W + share * heard.p_begun_W);
+    const double c = test.world.medium().sound_speed_mps((1 - share) * received.p_sent_W + share * received.p_begun_W);
     slowest_mps = std::min(slowest_mps, c);
     fastest_mps = std::max(fastest_mps, c);
   }
-  const double way_m = (heard.p_begun_W - heard.p_sent_W).norm();
+  const double distance_m = (received.p_begun_W - received.p_sent_W).norm();
   // The places are those at whole microseconds: 20 um; between two samples of 100 the speed bends by less than 1e-4.
-  RC_ASSERT(heard.travel_time_s > way_m / fastest_mps * (1 - 1e-4) - 2e-6);
-  RC_ASSERT(heard.travel_time_s < way_m / slowest_mps * (1 + 1e-4) + 2e-6);
-  RC_ASSERT(heard.begun == heard.sent + sim::from_seconds(heard.travel_time_s));
+  RC_ASSERT(received.travel_time_s > distance_m / fastest_mps * (1 - 1e-4) - 2e-6);
+  RC_ASSERT(received.travel_time_s < distance_m / slowest_mps * (1 + 1e-4) + 2e-6);
+  RC_ASSERT(received.started == received.sent + sim::from_seconds(received.travel_time_s));
 }
 
 RC_GTEST_PROP(AcousticChannel, ReachesTheNearerFirstAndKeepsTheOrderOfSending, ()) {
@@ -148,7 +149,7 @@ RC_GTEST_PROP(AcousticChannel, ReachesTheNearerFirstAndKeepsTheOrderOfSending, (
     RC_ASSERT(others[i]->all[0].signal.code == "first" && others[i]->all[1].signal.code == "second");
     for (std::size_t j = 0; j < 4; ++j)
       if ((places[i] - p_a).norm() < (places[j] - p_a).norm())
-        RC_ASSERT(others[i]->all[0].begun <= others[j]->all[0].begun);
+        RC_ASSERT(others[i]->all[0].started <= others[j]->all[0].started);
   }
 }
 
@@ -172,23 +173,23 @@ RC_GTEST_PROP(AcousticChannel, WhoSendsHearsNothing, ()) {
   test::TestWorld test(test::sound_world(test::float_at("a", "[0, 0, -20]") +
                                          test::float_at("b", "[" + std::to_string(range_m) + ", 0, -20]")));
   AcousticProbe a(test, "a"), b(test, "b");
-  const sim::Signal heard = frame(185, 20), sent = frame(185, *rc::gen::inRange(1, 40));
+  const sim::Signal received = frame(185, 20), sent = frame(185, *rc::gen::inRange(1, 40));
   const sim::Time travel = sim::from_seconds(range_m / 1500);
-  // b begins at any time while it would hear, or up to the length of its own before.
+  // b begins at any time while it would receive, or up to the length of its own before.
   const auto at =
-      travel + sim::Time{*rc::gen::inRange<std::int64_t>(-sent.duration.count() + 2, heard.duration.count() - 2)};
+      travel + sim::Time{*rc::gen::inRange<std::int64_t>(-sent.duration.count() + 2, received.duration.count() - 2)};
   RC_PRE(at.count() >= 0);
-  a.transducer.transmit(heard, sim::Time{0});
+  a.transducer.transmit(received, sim::Time{0});
   b.transducer.transmit(sent, at);
   test.run_for(3);
   RC_ASSERT(b.all.size() == 1u);
   RC_ASSERT(b.all[0].loss == SignalLoss::half_duplex);
 }
 
-/// Ten vehicles that drift and send at random for a while: the state of the world at the end, and what each heard.
+/// Ten vehicles that drift and send at random for a while: the state of the world at the end, and what each received.
 struct Chatter {
   std::uint64_t state = 0;
-  std::array<std::uint64_t, 10> heard{};
+  std::array<std::uint64_t, 10> received{};
   std::int64_t understood = 0;
 };
 Chatter chatter(int seed, int threads, bool with_deaf) {
@@ -221,7 +222,7 @@ Chatter chatter(int seed, int threads, bool with_deaf) {
   Chatter result;
   result.state = test.world.state().hash();
   for (std::size_t i = 0; i < 10; ++i) {
-    result.heard[i] = fingerprint(probes[i]->all);
+    result.received[i] = fingerprint(probes[i]->all);
     result.understood += static_cast<std::int64_t>(probes[i]->understood());
   }
   return result;
@@ -231,13 +232,14 @@ TEST(AcousticChannelProperties, ARunIsTheSameWithOneAndEightThreads) {
   for (int seed = 1; seed <= 5; ++seed) {
     const Chatter one = chatter(seed, 1, false), eight = chatter(seed, 8, false);
     EXPECT_EQ(one.state, eight.state) << seed;
-    EXPECT_EQ(one.heard, eight.heard) << seed;
+    EXPECT_EQ(one.received, eight.received) << seed;
     EXPECT_GT(one.understood, 20) << seed;  // so that there is something to compare
   }
 }
 
 TEST(AcousticChannelProperties, ADeafOneFarAwayChangesNothingForTheOthers) {
-  for (int seed = 1; seed <= 5; ++seed) EXPECT_EQ(chatter(seed, 1, false).heard, chatter(seed, 1, true).heard) << seed;
+  for (int seed = 1; seed <= 5; ++seed)
+    EXPECT_EQ(chatter(seed, 1, false).received, chatter(seed, 1, true).received) << seed;
 }
 
 std::string pair_at(double range_m) {
@@ -255,7 +257,7 @@ TEST(AcousticChannelProperties, WhatWasSentGoesOnWhenItsSenderIsRemoved) {
   test.run_for(1);
   ASSERT_EQ(b.all.size(), 1u);
   EXPECT_EQ(b.all[0].loss, SignalLoss::none);
-  EXPECT_EQ(b.all[0].begun, sim::from_seconds(1));
+  EXPECT_EQ(b.all[0].started, sim::from_seconds(1));
   EXPECT_EQ(b.all[0].source, "a/probe");
 }
 
@@ -272,12 +274,12 @@ TEST(AcousticChannelProperties, ASignalIsCutOffWhenItsSenderIsRemovedWhileSendin
 }
 
 TEST(AcousticChannelProperties, ReceiversMayBeRemovedAtAnyTimeOfAFlight) {
-  // Before it comes near, while it is near, while it is heard, and after.
+  // Before it comes near, while it is near, while it is received, and after.
   for (const double removed_s : {0.05, 0.97, 1.05, 1.2}) {
     test::TestWorld test(test::sound_world(pair_at(1500) + test::float_at("c", "[0, 1500, -20]")));
     AcousticProbe a(test, "a"), c(test, "c");
     auto b = std::make_unique<AcousticProbe>(test, "b");
-    a.send(frame(185, 12));  // 0.096 s, heard from 1 s on
+    a.send(frame(185, 12));  // 0.096 s, received from 1 s on
     test.run_for(removed_s);
     b.reset();
     test.world.editor().remove_vehicle("b");
@@ -311,7 +313,7 @@ TEST(AcousticChannelProperties, WhoComesWhileASignalIsUnderWayHearsTheNextOne) {
   EXPECT_EQ(b.understood(), 2u);
   ASSERT_FALSE(guest.all.empty());
   EXPECT_EQ(guest.all.back().signal.code, "second");
-  EXPECT_EQ(guest.all.back().begun - guest.all.back().sent, sim::from_seconds(0.6));
+  EXPECT_EQ(guest.all.back().started - guest.all.back().sent, sim::from_seconds(0.6));
 }
 
 RC_GTEST_PROP(AcousticChannel, SomebodyWhoIsPutElsewhereHearsNoSoonerThanSoundGetsThere, ()) {
@@ -326,9 +328,10 @@ RC_GTEST_PROP(AcousticChannel, SomebodyWhoIsPutElsewhereHearsNoSoonerThanSoundGe
   test.world.editor().move_vehicle("b", X_WV);
   test.run_for(5);
   RC_ASSERT(b.all.size() <= 1u);
-  for (const Probed& heard : b.all)
-    RC_ASSERT(sim::to_seconds(heard.begun - heard.sent) > (heard.p_begun_W - heard.p_sent_W).norm() / 1500 - 1e-6);
-  // And the next one is heard as if nothing had happened.
+  for (const Probed& received : b.all)
+    RC_ASSERT(sim::to_seconds(received.started - received.sent) >
+              (received.p_begun_W - received.p_sent_W).norm() / 1500 - 1e-6);
+  // And the next one is received as if nothing had happened.
   b.all.clear();
   a.send(AcousticProbe::tone());
   test.run_for(4);

@@ -10,11 +10,11 @@ using namespace std::chrono_literals;
 using sim::Decibels;
 using sim::Signal;
 using sim::SignalLoss;
-using test::Heard;
 using test::Hydrophone;
 using test::lost;
 using test::message;
 using test::phone;
+using test::Received;
 using test::sea;
 using test::TestWorld;
 using test::vehicle;
@@ -26,14 +26,14 @@ TEST(AcousticChannel, ASignalArrivesAfterDistanceBySpeedAndLastsItsDuration) {
   phone(test, "a").transducer().transmit(message(), 5ms);
   test.run_for(4);
   ASSERT_EQ(phone(test, "b").all().size(), 1u);
-  const Heard& heard = phone(test, "b").all()[0];
-  EXPECT_TRUE(heard.understood());
-  EXPECT_EQ(heard.source, "a/phone");
-  EXPECT_EQ(heard.sent, 5ms);
-  EXPECT_EQ(heard.begun, 505ms);  // 750 m / 1500 m/s, inside of a step
-  EXPECT_EQ(heard.ended, 505ms + 3200ms);
-  EXPECT_NEAR(heard.travel_time_s, 0.5, 1e-9);
-  EXPECT_EQ(heard.closing_mps, 0);
+  const Received& received = phone(test, "b").all()[0];
+  EXPECT_TRUE(received.understood());
+  EXPECT_EQ(received.source, "a/phone");
+  EXPECT_EQ(received.sent, 5ms);
+  EXPECT_EQ(received.started, 505ms);  // 750 m / 1500 m/s, inside of a step
+  EXPECT_EQ(received.ended, 505ms + 3200ms);
+  EXPECT_NEAR(received.travel_time_s, 0.5, 1e-9);
+  EXPECT_EQ(received.closing_mps, 0);
 }
 
 TEST(AcousticChannel, LevelAndSnrAreThoseOfTheLinkBudget) {
@@ -56,15 +56,15 @@ TEST(AcousticChannel, BothEndsMoveWhileASignalIsUnderWay) {
   phone(test, "a").transducer().transmit(message(), 10s);
   test.run_for(6);
   ASSERT_EQ(phone(test, "b").all().size(), 1u);
-  const Heard& heard = phone(test, "b").all()[0];
+  const Received& received = phone(test, "b").all()[0];
   // (d + 3 s)^2 + y^2 = (1500 s)^2
   const double a = 1500.0 * 1500.0 - 9, b = 3 * d_m, c = d_m * d_m + y_m * y_m;
   const double s = (b + std::sqrt(b * b + a * c)) / a;
-  EXPECT_NEAR(heard.travel_time_s, s, 2e-9);
+  EXPECT_NEAR(received.travel_time_s, s, 2e-9);
   const double length_m = 1500 * s;
   const double closing_mps = (-3 * (d_m + 3 * s) + 2 * y_m) / length_m;
-  EXPECT_NEAR(heard.closing_mps, closing_mps, 1e-9);
-  EXPECT_NEAR(sim::to_seconds(heard.ended - heard.begun),
+  EXPECT_NEAR(received.closing_mps, closing_mps, 1e-9);
+  EXPECT_NEAR(sim::to_seconds(received.ended - received.started),
               3.2 * (1500 - 2 * y_m / length_m) / (1500 - 3 * (d_m + 3 * s) / length_m), 2e-6);
 }
 
@@ -127,7 +127,7 @@ TEST(AcousticChannel, AnAnswerBeginsWhenTheListenerSaysSo) {
   phone(test, "a").transducer().transmit(ping, 3ms);
   test.run_for(2);
   ASSERT_EQ(phone(test, "a").all().size(), 1u);
-  EXPECT_EQ(phone(test, "a").all()[0].begun, 3ms + 500ms + 10ms + 20ms + 500ms);
+  EXPECT_EQ(phone(test, "a").all()[0].started, 3ms + 500ms + 10ms + 20ms + 500ms);
 }
 
 TEST(AcousticChannel, WhoIsRemovedNeitherHearsNorIsMissed) {
@@ -140,7 +140,7 @@ TEST(AcousticChannel, WhoIsRemovedNeitherHearsNorIsMissed) {
   test.run_for(0.1);
   test.world.editor().remove_vehicle("a");
   test.run_for(6);
-  // What a began is heard; its end is missing.
+  // What a began is received; its end is missing.
   ASSERT_EQ(test.world.acoustics().flights(), 2);
   ASSERT_EQ(phone(test, "c").all().size(), 1u);
   EXPECT_FALSE(phone(test, "c").all()[0].understood());
@@ -181,7 +181,7 @@ TEST(AcousticChannel, FadingDiffersFromSignalToSignalAndFromRunToRunOnlyBySeed) 
       test.run_for(4);
     }
     std::vector<double> dB;
-    for (const Heard& heard : phone(test, "b").all()) dB.push_back(heard.level.dB());
+    for (const Received& received : phone(test, "b").all()) dB.push_back(received.level.dB());
     return dB;
   };
   const std::vector<double> one = levels(1);
@@ -275,7 +275,7 @@ TEST(AcousticChannel, WhoIsOutOfTheWaterForAWhileWhileSendingOrTakingIsNotUnders
     test.run_for(5);
     EXPECT_EQ(phone(test, "b").transducer().counts().understood, 0) << who;
     EXPECT_EQ(phone(test, "b").transducer().counts().lost[static_cast<std::size_t>(SignalLoss::out_of_water)], 1);
-    // A receiver in the water is told that something came, one that was out itself is not.
+    // A receiver in the water is commanded that something came, one that was out itself is not.
     EXPECT_EQ(phone(test, "b").all().size(), std::string(who) == "a" ? 1u : 0u);
   }
 }
@@ -315,7 +315,7 @@ TEST(AcousticChannel, BeyondTheLargestRangeNothingIsHeard) {
 
 TEST(AcousticChannel, InFreshWaterSoundIsHeardFarther) {
   // Francois and Garrison: at 100 kHz 33 dB/km in the sea, 3 in fresh water; at 6 km both noise limits are far apart.
-  const auto heard = [](double salinity_psu) {
+  const auto received = [](double salinity_psu) {
     std::string world = sea("{}", vehicle("a", "[0, 0, -10]") + vehicle("b", "[6000, 0, -10]"));
     const std::string water = "sound_speed_mps: 1500";
     world.replace(world.find(water), water.size(), water + ", salinity_psu: " + std::to_string(salinity_psu));
@@ -326,8 +326,8 @@ TEST(AcousticChannel, InFreshWaterSoundIsHeardFarther) {
     test.run_for(9);
     return phone(test, "b").transducer().counts().understood;
   };
-  EXPECT_EQ(heard(0), 1);
-  EXPECT_EQ(heard(35), 0);
+  EXPECT_EQ(received(0), 1);
+  EXPECT_EQ(received(35), 0);
 }
 
 TEST(AcousticChannel, WhereOnlyAnEchoComesItComesLater) {
@@ -345,7 +345,7 @@ TEST(AcousticChannel, AWorldWithoutWaterCannotCarrySound) {
   const std::string rest =
       ": device 'phone': a device of type 'test_hydrophone' needs water to carry its sound: the world has no "
       "'medium: {water: ...}'";
-  // Every one is told of, not the first alone.
+  // Every one is notified of, not the first alone.
   EXPECT_EQ(
       test::error_of_world("shoal: 1\nname: dry\nvehicles:\n" + vehicle("a", "[0, 0, 0]") + vehicle("b", "[9, 0, 0]")),
       "worlds/test.yaml:13:11: vehicle 'a'" + rest + "\nworlds/test.yaml:23:11: vehicle 'b'" + rest);

@@ -42,7 +42,7 @@ TEST(Echoes, KeepThePhasesOfTheLengthsWhenTheseAreAsked) {
   MultipathConfig config = mirror();
   config.phases = MultipathConfig::Phases::geometric;
   config.window_s = 1;
-  // A wavelength of the difference in length: silence but for the difference in spreading.
+  // A wavelength of the difference in length: silence except for the difference in spreading.
   const double longer_m = 40 * (std::sqrt(2.0) - 1);
   EXPECT_NEAR(sim::echoes(config, clear(1500 / longer_m), {20, 20, 40, no_bottom}, nullptr).signal.linear(),
               std::pow(1 - 1 / std::sqrt(2.0), 2), 1e-9);

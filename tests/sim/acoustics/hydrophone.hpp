@@ -12,18 +12,18 @@
 
 namespace test {
 
-/// What a Hydrophone heard, with a copy of the signal.
-struct Heard {
+/// What a Hydrophone received, with a copy of the signal.
+struct Received {
   sim::Signal signal;
   std::string source;
-  sim::Time sent, begun, ended;
+  sim::Time sent, started, ended;
   double travel_time_s, closing_mps;
   sim::Decibels level, snr, sinr;
   sim::SignalLoss loss;
   bool understood() const { return loss == sim::SignalLoss::none; }
 };
 
-/// A device of type `test_hydrophone`: sends what a test tells it to, keeps what it hears.
+/// A device of type `test_hydrophone`: sends what a test tells it to, keeps what it receives.
 class Hydrophone final : public sim::Sensor, public sim::AcousticListener {
  public:
   static constexpr const char* meaning = "For tests of the acoustic channel.";
@@ -37,23 +37,23 @@ class Hydrophone final : public sim::Sensor, public sim::AcousticListener {
   void measure(const sim::SenseContext&) override {}
   void disturb(double, sim::Random&) override {}
   void visit_state(sim::StateArchive& archive) override {
-    auto count = static_cast<std::uint64_t>(heard_.size());
+    auto count = static_cast<std::uint64_t>(received_.size());
     archive(count);
-    if (archive.restoring()) heard_.resize(count);
+    if (archive.restoring()) received_.resize(count);
   }
   bool listens_to(const sim::Signal& signal) const override { return signal.kind != sim::Signal::Kind::noise; }
-  void heard(const sim::Reception& r) override {
-    heard_.push_back(
-        {r.signal, r.source, r.sent, r.begun, r.ended, r.travel_time_s, r.closing_mps, r.level, r.snr, r.sinr, r.loss});
+  void receive(const sim::Reception& r) override {
+    received_.push_back({r.signal, r.source, r.sent, r.started, r.ended, r.travel_time_s, r.closing_mps, r.level, r.snr,
+                         r.sinr, r.loss});
     if (answer) answer(r);
   }
   sim::Transducer& transducer() { return transducer_; }
-  const std::vector<Heard>& all() const { return heard_; }
+  const std::vector<Received>& all() const { return received_; }
   std::function<void(const sim::Reception&)> answer;
 
  private:
   sim::Transducer transducer_;
-  std::vector<Heard> heard_;
+  std::vector<Received> received_;
 };
 
 /// The hydrophone `phone` of a vehicle.

@@ -18,19 +18,19 @@ using sim::to_power;
 constexpr SignalReceiver::Rules rules{6, 6};
 
 /// Of one second, in noise of 0 dB.
-TakenSignal signal(std::int64_t flight, double level_dB, sim::Time begun = 0s) {
+TakenSignal signal(std::int64_t flight, double level_dB, sim::Time started = 0s) {
   TakenSignal taken;
-  taken.sound = {flight, 25000, 4000, to_power(Decibels{level_dB}), begun + 1s};
+  taken.sound = {flight, 25000, 4000, to_power(Decibels{level_dB}), started + 1s};
   taken.noise = PowerRatio{1};
   taken.bit_rate_bps = 4000;  // Eb/N0 is the SNR
   taken.bits = 100;
-  taken.begun = begun;
-  taken.ended = begun + 1s;
+  taken.started = started;
+  taken.ended = started + 1s;
   return taken;
 }
 
 SignalLoss arrive(SignalReceiver& receiver, const TakenSignal& taken, std::int64_t& displaced) {
-  receiver.begin(taken.sound, taken.begun);
+  receiver.begin(taken.sound, taken.started);
   return receiver.take(taken, rules, displaced);
 }
 
@@ -189,8 +189,8 @@ TEST(SignalReceiver, WhatIsDroppedIsNotTakenAnyMore) {
 
 }  // namespace
 namespace {
-TakenSignal in_band(std::int64_t flight, double centre_Hz, double level_dB, sim::Time begun = 0s) {
-  TakenSignal taken = signal(flight, level_dB, begun);
+TakenSignal in_band(std::int64_t flight, double centre_Hz, double level_dB, sim::Time started = 0s) {
+  TakenSignal taken = signal(flight, level_dB, started);
   taken.sound.centre_Hz = centre_Hz;
   return taken;
 }

@@ -13,7 +13,7 @@ std::vector<std::string>& remembered() {
   return lines;
 }
 
-/// An action in a file of its own, as a plugin brings one.
+/// An action in its own file, as a plugin brings one.
 class RememberAction final : public sim::Action {
  public:
   static constexpr const char* meaning = "keeps a text for the test";

@@ -9,7 +9,7 @@
 
 namespace {
 
-// As operator new promises; 24 bytes are no multiple of it.
+// As operator new promises; 24 bytes are not multiple of it.
 TEST(StepMemory, EveryPieceIsAlignedForAnyObject) {
   for (const std::size_t bytes : {std::size_t{1}, std::size_t{8}, std::size_t{24}, std::size_t{40}, std::size_t{200}}) {
     std::vector<void*> pieces;

@@ -150,9 +150,9 @@ TEST(Optics, SaysWhatIsWrongWithALensOnce) {
       {"{principal_px: [3]}", "'principal_px' must have 2 numbers, got 1"},
       {"{lens: mirror}", "'lens' must be one of: pinhole, fisheye"}};
   for (const auto& [yaml, error] : cases) {
-    const std::string said = error_of(yaml);
-    EXPECT_THAT(said, HasSubstr(error)) << yaml;
-    EXPECT_EQ(said.find("lens.yaml", said.find("lens.yaml") + 1), std::string::npos) << said;
+    const std::string reported = error_of(yaml);
+    EXPECT_THAT(reported, HasSubstr(error)) << yaml;
+    EXPECT_EQ(reported.find("lens.yaml", reported.find("lens.yaml") + 1), std::string::npos) << reported;
   }
   EXPECT_EQ(error_of("{lens: fisheye, fov_deg: 220}"), "");
   EXPECT_EQ(error_of("{focal_px: [458.654, 457.296], principal_px: [367.2, 248.4], width: 752, height: 480, "

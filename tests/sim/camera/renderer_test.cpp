@@ -198,9 +198,9 @@ TEST(Renderer, CheckersHaveTheirCornersAtWholeFields) {
 TEST(Renderer, AnImageLiesUprightOnAWall) {
   const test_support::ScratchFolder folder;
   const std::string file = folder.file("poster.png");
-  sim::Image8 picture(2, 2, 3);
-  picture.data = {255, 0, 0, 0, 255, 0, 0, 0, 255, 255, 255, 255};  // red green / blue white
-  sim::write_image(file, picture);
+  sim::Image8 image(2, 2, 3);
+  image.data = {255, 0, 0, 0, 255, 0, 0, 0, 255, 255, 255, 255};  // red green / blue white
+  sim::write_image(file, image);
   MaterialConfig poster;
   poster.name = "poster";
   poster.texture.pattern = sim::TextureConfig::Pattern::image;
@@ -229,7 +229,7 @@ TEST(Renderer, AnImageLiesUprightOnAWall) {
 TEST(Renderer, SaysWhichTextureCannotBeRead) {
   const test_support::ScratchFolder folder;
   const std::string file = folder.file("broken.png");
-  std::ofstream(file) << "no picture";
+  std::ofstream(file) << "no image";
   MaterialConfig poster;
   poster.name = "poster";
   poster.texture.pattern = sim::TextureConfig::Pattern::image;

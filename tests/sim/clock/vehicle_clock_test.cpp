@@ -296,7 +296,7 @@ TEST(ClockDiscipline, ThePresetsCoastAsTheyClaim) {
     config.temperature_ppm_per_C = 0;
     for (const int coast_s : {10, 600, 3600}) {
       const double ratio = rms_over_claim(config, 300, coast_s, 50e-9);
-      // What flicker noise does after a fix is a rule of thumb, and what is left of the drift that two fixes told of
+      // What flicker noise does after a fix is a rule of thumb, and what is left of the drift that two fixes reported
       // is a bound.
       EXPECT_LT(ratio, 1.2) << preset << coast_s;
       EXPECT_GT(ratio, 0.6) << preset << coast_s;

@@ -79,7 +79,7 @@ TEST(SetConfigPath, ReportsAPathThroughAScalar) {
 TEST(SetConfigPath, ReportsABadPath) {
   for (const char* path : {"", ".", "a.", ".a", "a..b"})
     EXPECT_EQ(set(world, path, "1").errors, Lines{std::string("--set ") + path + ": bad path '" + path +
-                                                  "'; a path is keys and names with dots between"});
+                                                  "'; a path is keys and names joined by dots"});
   std::string deep = "a";
   for (int i = 0; i < 100000; ++i) deep += ".a";
   EXPECT_EQ(set(world, deep, "1").errors.size(), 1u);
@@ -147,7 +147,7 @@ TEST(SubstituteParameters, CannotFillTheMemory) {
   for (int i = 0; i < 100; ++i) file += "- ${text}\n- ${list}\n";
   const Lines errors = substitute(file, {{"text", text}, {"list", list}}).errors;
   ASSERT_EQ(errors.size(), 1u);
-  EXPECT_NE(errors[0].find("the parameters put in make the file too large"), std::string::npos);
+  EXPECT_NE(errors[0].find("the substituted parameters make the file too large"), std::string::npos);
 }
 
 }  // namespace

@@ -400,10 +400,10 @@ TEST(ParamReader, OwnErrorsStandAtTheValueOrTheMap) {
                       [](ParamReader& in) {
                         in.child("a");
                         in.error("a", "is odd");
-                        in.error("b", "is not there");
+                        in.error("b", "does not exist");
                         in.error("is wrong");
                       }),
-            (Lines{"2:4 is odd", "2:1 is not there", "2:1 is wrong"}));
+            (Lines{"2:4 is odd", "2:1 does not exist", "2:1 is wrong"}));
 }
 
 // Maps in maps
@@ -633,7 +633,7 @@ struct AllKinds {
     EXPECT_EQ(in.node(), nullptr);
     in.declare("body", "x");
     in.declare("body", "x");
-    in.error("flag", "no one hears this");
+    in.error("flag", "no one receives this");
     in.error("nor this");
     EXPECT_TRUE(in.diagnostics().ok());
   }

@@ -19,8 +19,8 @@ TEST(SharedByDevices, HasOneThingOfEachKindFromTheStart) {
   shared.of(names) = "x";
   EXPECT_EQ(shared.of(networks).members, 3);
   EXPECT_EQ(shared.of(other_networks).members, 0) << "a kind is a constant, not a type";
-  const sim::SharedByDevices& asked = shared;
-  EXPECT_EQ(asked.of(names), "x");
+  const sim::SharedByDevices& requested = shared;
+  EXPECT_EQ(requested.of(names), "x");
 }
 
 TEST(SharedByDevices, AreNotSharedBetweenWorlds) {

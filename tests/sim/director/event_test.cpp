@@ -15,7 +15,7 @@ namespace {
 
 using testing::ElementsAre;
 
-/// A ball that falls for ever beside what the events say.
+/// A ball that falls forever beside what the events say.
 std::string event_world(const std::string& events, const std::string& more = "") {
   return "shoal: 1\nphysics: {step_s: 0.01, gravity_mps2: 0}\n"
          "objects:\n"
@@ -136,7 +136,7 @@ TEST(Events, AddMoveAndRemoveObjects) {
   test.run_for(0.15);
   EXPECT_EQ(test.world.find_object("crate")->body->X_WB().translation(), sim::Vector3d(4, 4, 4));
   EXPECT_EQ(test.world.find_object("barrel"), nullptr);
-  // The second removal and the second crate fail, are told and change nothing.
+  // The second removal and the second crate fail, are reported and change nothing.
   EXPECT_EQ(test.world.counts().bad_messages, 2);
 }
 
@@ -149,12 +149,12 @@ TEST(Events, ChangeGravity) {
 }
 
 TEST(Events, HearMessagesAndSeeTouches) {
-  test::TestWorld heard(event_world("  - {name: a, when: message on bell, " + tick));
-  const auto mailbox = heard.bus.open_mailbox("tick", 10);
-  heard.run_for(0.1);
+  test::TestWorld received(event_world("  - {name: a, when: message on bell, " + tick));
+  const auto mailbox = received.bus.open_mailbox("tick", 10);
+  received.run_for(0.1);
   EXPECT_FALSE(mailbox->take());
-  heard.bus.publish("bell", {}, heard.world.now());
-  heard.world.step();
+  received.bus.publish("bell", {}, received.world.now());
+  received.world.step();
   EXPECT_TRUE(mailbox->take());
 
   // The ball is 0.1 m above the table and falls: sqrt(2 * 0.1 / 9.80665) = 0.1428 s.
@@ -271,13 +271,13 @@ TEST(Zones, DenyRadioToSenderAndReceiver) {
                          "  - name: b\n    position_m: [5, 0, 0]\n" + model +
                          "zones:\n  - {name: cave, shape: sphere, radius_m: 1, radio_denied: true, position_m: [" +
                          std::to_string(zone_x) + ", 0, 0]}\n");
-    test::Listener<shoal::modem_received_t> heard(test, "b.modem");
+    test::Listener<shoal::modem_received_t> received(test, "b.modem");
     shoal::modem_send_t message{};
     message.size = 3;
     message.data = {1, 2, 3};
     test.send("a.modem.cmd", message);
     test.run_for(1);
-    EXPECT_EQ(heard.take_all().size(), zone_x == 20.0 ? 1u : 0u) << zone_x;
+    EXPECT_EQ(received.take_all().size(), zone_x == 20.0 ? 1u : 0u) << zone_x;
   }
 }
 

@@ -65,7 +65,7 @@ TEST(EventQueue, GivesWhatASortedListGives) {
     ASSERT_TRUE(expected.empty() || expected.begin()->first.first > now);
     ASSERT_EQ(queue.size(), expected.size());
     if (random.integer_below(10) == 0) {
-      queue.forget_device(3);
+      queue.drop_device(3);
       std::erase_if(expected, [](const auto& each) { return each.second.device == 3; });
     }
     if (random.integer_below(10) == 0) {

@@ -143,7 +143,7 @@ TEST(Mesh, ErrorsSayWhatIsWrong) {
               const std::string whole = ascii_stl_of(box_mesh({1, 1, 1}, {0, 0, 0}));
               sim::parse_stl(whole.substr(0, whole.rfind("endsolid")));
             }),
-            "is cut off: it ends without 'endsolid'");
+            "is truncated: it ends without 'endsolid'");
   EXPECT_EQ(error_of([] {
               const std::string whole = binary_stl_of(box_mesh({1, 1, 1}, {0, 0, 0}));
               sim::parse_stl(whole.substr(0, whole.size() - 20));

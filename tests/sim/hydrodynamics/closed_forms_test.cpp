@@ -127,7 +127,7 @@ Vector6d forces_at(const Vector6d& nu, const Vector6d& added_mass) {
   state.depth_m = 100;
   state.density_kgpm3 = 1025;
   Vector6d force = model.mass() * model.acceleration(state, Vector6d::Zero());
-  force.head<3>() += 10 * nu.tail<3>().cross(nu.head<3>());  // but for those of the rigid body
+  force.head<3>() += 10 * nu.tail<3>().cross(nu.head<3>());  // except for those of the rigid body
   return force;
 }
 

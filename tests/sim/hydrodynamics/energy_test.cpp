@@ -72,13 +72,13 @@ TEST_P(Swings, ABallHeavesNoHigherThanItDid) {
       "[0, 0, 0.1]", GetParam()));
   const Body& ball = test::body_of(test);
   const auto highest_m = [&](double time_s) {
-    double most = 0;
+    double max = 0;
     const sim::Time end = test.world.now() + sim::from_seconds(time_s);
     while (test.world.now() < end) {
       test.world.step();
-      most = std::max(most, std::abs(ball.X_WB().translation().z()));
+      max = std::max(max, std::abs(ball.X_WB().translation().z()));
     }
-    return most;
+    return max;
   };
   const double first = highest_m(60);
   for (int minute = 2; minute <= 6; ++minute) EXPECT_LT(highest_m(60), 1.01 * first) << minute;  // a sample may miss it
@@ -138,16 +138,16 @@ TEST_P(ShippedVehicle, OnlyLosesEnergyWhenLetGo) {
   sim::Pose upright = body.X_WB();
   upright.linear().setIdentity();
   const double start_J = energy_J(model, body), swing_J = start_J - potential_J(model, upright);
-  double least_J = start_J, rise_J = 0;
+  double min_J = start_J, rise_J = 0;
   while (test.world.now() < sim::from_seconds(60)) {
     test.world.step();
     const double now_J = energy_J(model, body);
-    least_J = std::min(least_J, now_J);
-    rise_J = std::max(rise_J, now_J - least_J);
+    min_J = std::min(min_J, now_J);
+    rise_J = std::max(rise_J, now_J - min_J);
   }
   // Drag takes more in each step than the step adds, so that nothing but rounding is left to rise.
   EXPECT_LE(rise_J, 1e-9 * swing_J);
-  EXPECT_GT(start_J - least_J, 0.5 * swing_J);
+  EXPECT_GT(start_J - min_J, 0.5 * swing_J);
 }
 
 std::vector<Release> releases() {

@@ -135,12 +135,12 @@ RC_GTEST_PROP(ImmersedVolume, IsContinuousThroughTheSurface, ()) {
     ImmersedVolume last = shape({normal, -0.8});
     RC_ASSERT(last.volume_m3 == 0);
     // The largest cut is the capsule's, 0.6 x 1.4; moments are of points within 0.8 m.
-    constexpr double step = 0.001, largest_cut = 0.85;
+    constexpr double step = 0.001, max_cut = 0.85;
     for (double level = -0.8; level < 0.8; level += step) {
       const ImmersedVolume now = shape({normal, level});
       RC_ASSERT(now.volume_m3 - last.volume_m3 > -1e-6);
-      RC_ASSERT(now.volume_m3 - last.volume_m3 < largest_cut * step * 1.01);
-      RC_ASSERT((now.volume_m3 * now.centroid_m - last.volume_m3 * last.centroid_m).norm() < 0.8 * largest_cut * step);
+      RC_ASSERT(now.volume_m3 - last.volume_m3 < max_cut * step * 1.01);
+      RC_ASSERT((now.volume_m3 * now.centroid_m - last.volume_m3 * last.centroid_m).norm() < 0.8 * max_cut * step);
       last = now;
     }
     RC_ASSERT(std::abs(last.volume_m3 - shape({normal, 10}).volume_m3) < 1e-9);

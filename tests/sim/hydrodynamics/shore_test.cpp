@@ -72,7 +72,7 @@ vehicles:
   TestWorld open(without_beach.replace(without_beach.find("X, 0"), 1, "0"));
   const auto warnings = sim::bottom_warnings(open.world);
   ASSERT_EQ(warnings.size(), 1u);
-  EXPECT_EQ(warnings[0], "there is no bottom below vehicle 'auv1': what looks down from there sees nothing");
+  EXPECT_EQ(warnings[0], "there is no bottom below vehicle 'auv1': downward-looking sensors there detect nothing");
 }
 
 TEST(Shore, SaysThatThereIsNoBottomBelowANewcomerToo) {

@@ -89,12 +89,12 @@ TEST(ImageFile, JpegIsNearlyThePicture) {
 TEST(ImageFile, GoesThroughFiles) {
   const test_support::ScratchFolder folder;
   const Image8 image = colors(20, 10, 3);
-  sim::write_image(folder.file("picture.PNG"), image);
-  EXPECT_EQ(sim::read_image(folder.file("picture.PNG")).data, image.data);
-  sim::write_image(folder.file("picture.jpg"), image);
-  EXPECT_EQ(sim::read_image(folder.file("picture.jpg")).width, 20);
-  EXPECT_THROW(sim::write_image(folder.file("picture.gif"), image), sim::ImageError);
-  EXPECT_THROW(sim::write_image(folder.file("no/such/picture.png"), image), sim::ImageError);
+  sim::write_image(folder.file("image.PNG"), image);
+  EXPECT_EQ(sim::read_image(folder.file("image.PNG")).data, image.data);
+  sim::write_image(folder.file("image.jpg"), image);
+  EXPECT_EQ(sim::read_image(folder.file("image.jpg")).width, 20);
+  EXPECT_THROW(sim::write_image(folder.file("image.gif"), image), sim::ImageError);
+  EXPECT_THROW(sim::write_image(folder.file("no/such/image.png"), image), sim::ImageError);
   EXPECT_THROW(sim::read_image(folder.file("nothing.png")), sim::ImageError);
   EXPECT_THROW(sim::read_image(folder.file("")), sim::ImageError);
 }
@@ -115,7 +115,7 @@ TEST(ImageFile, RefusesAHugePngBeforeItTakesMemory) {
 
 /// Every cut and many damaged bytes: an error or an image, never a crash.
 void batter(const sim::Bytes& good) {
-  // The last bytes of a PNG say no more than that it ends here: libpng has the picture by then.
+  // The last bytes of a PNG say no more than that it ends here: libpng has the image by then.
   for (std::size_t size = 0; size + 24 < good.size(); size += 1 + size / 20)
     EXPECT_NE(error_of(std::span(good).first(size)), "") << size;
   sim::Random random(1, "damage");
@@ -143,10 +143,10 @@ TEST(Pictures, EachLabelHasAColorOfItsOwn) {
 TEST(Pictures, NearIsBrightAndNothingIsBlack) {
   sim::FloatImage depth(3, 1, 1);
   depth.data = {1, 10, INFINITY};
-  const Image8 picture = sim::picture_of_depth(depth);
-  EXPECT_EQ(picture.data[0], 255);
-  EXPECT_EQ(picture.data[1], 40);
-  EXPECT_EQ(picture.data[2], 0);
+  const Image8 shown = sim::depth_image(depth);
+  EXPECT_EQ(shown.data[0], 255);
+  EXPECT_EQ(shown.data[1], 40);
+  EXPECT_EQ(shown.data[2], 0);
 }
 
 }  // namespace

@@ -197,7 +197,7 @@ TEST(Current, ABadFileIsSaidOfItsEntry) {
     return error_of("{water: {}, current: [{velocity_mps: [1, 0, 0]}, {type: grid, file: " + name + "}]}",
                     folder.file("world.yaml"));
   };
-  EXPECT_THAT(error("flow"), HasSubstr(":1:50: medium: current 2: file '" + folder.file("flow") + "' is no file"));
+  EXPECT_THAT(error("flow"), HasSubstr(":1:50: medium: current 2: file '" + folder.file("flow") + "' is not a file"));
   EXPECT_THAT(error("none.csv"), HasSubstr("medium: current 2: file '" + folder.file("none.csv") + "' does not exist"));
 }
 

@@ -300,7 +300,7 @@ TEST(IrregularWaves, SeedChoosesTheSea) {
 TEST(Waves, ThatWouldBreakAreRefused) {
   // 0.142 of 39.02 m; g 4^2 / (2 pi 15); 0.6 of 2 m.
   EXPECT_THAT(error_of("{water: {}, waves: {type: regular, height_m: 6, period_s: 5}}"),
-              HasSubstr("'height_m' 6 is more than a wave of 5 s can have before it breaks, 5.54 m"));
+              HasSubstr("'height_m' 6 is above the breaking limit of a wave of 5 s, 5.54 m"));
   EXPECT_THAT(error_of("{water: {}, waves: {hs_m: 2, tp_s: 4}}"), HasSubstr("can have before it breaks, 1.664 m"));
   EXPECT_THAT(error_of("{water: {}, waves: {hs_m: 2, tp_s: 8, water_depth_m: 2}}"), HasSubstr("0.6 of the depth"));
   EXPECT_THAT(error_of("{water: {}, waves: {tp_s: 0}}"), HasSubstr("'tp_s' must be >= 0.2"));

@@ -197,7 +197,7 @@ TEST(StepCounts, CountsContactsAndRowsOfTheLargestIsland) {
   for (int i = 0; i < 100; ++i) world->step(i);
   // A rover: two wheels and the caster touch; two hinges of 6 rows at most, two contacts of 3 rows, one of 1.
   EXPECT_EQ(world->last_step().contacts, 6);
-  EXPECT_EQ(world->last_step().largest_island_rows, 2 * 6 + 2 * 3 + 1);
+  EXPECT_EQ(world->last_step().max_island_rows, 2 * 6 + 2 * 3 + 1);
   EXPECT_FALSE(world->last_step().quick);
 }
 

@@ -107,13 +107,13 @@ TEST(QuickFallback, IsTakenForLargeIslandsOnlyAndCounted) {
   for (int i = 0; i < 8; ++i)
     add(*world, body("box" + std::to_string(i), {box({0.5, 0.5, 0.5}, 1)}), translation(i, 0, 0.2495));
   for (int i = 0; i < 10; ++i) world->step(i);
-  EXPECT_EQ(world->last_step().largest_island_rows, 12);
+  EXPECT_EQ(world->last_step().max_island_rows, 12);
   EXPECT_EQ(world->quick_steps(), 0);
   // One stack of 8: at least 4 contacts, so 12 rows, under each.
   for (int i = 0; i < 8; ++i)
     add(*world, body("stacked" + std::to_string(i), {box({0.5, 0.5, 0.5}, 1)}), translation(0, 5, 0.2495 + 0.4995 * i));
   for (int i = 10; i < 20; ++i) world->step(i);
-  EXPECT_GE(world->last_step().largest_island_rows, 96);
+  EXPECT_GE(world->last_step().max_island_rows, 96);
   EXPECT_TRUE(world->last_step().quick);
   EXPECT_EQ(world->quick_steps(), 10);
 }
@@ -145,7 +145,7 @@ TEST(QuickFallback, NeverHappensWithSolverStep) {
   add_ground(*world);
   add(*world, body("box", {box({0.5, 0.5, 0.5}, 1)}), translation(0, 0, 0.2495));
   world->step(0);
-  EXPECT_GT(world->last_step().largest_island_rows, 0);
+  EXPECT_GT(world->last_step().max_island_rows, 0);
   EXPECT_FALSE(world->last_step().quick);
 }
 

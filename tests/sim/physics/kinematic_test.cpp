@@ -137,7 +137,7 @@ TEST(KinematicBody, MakesOneIslandOfAllThatStandsOnIt) {
     add(*world, body("ball" + std::to_string(x), {sphere(0.5, 1)}), translation(x, 0, 0.9999));
   world->step(0);
   EXPECT_EQ(world->last_step().contacts, 2);
-  EXPECT_EQ(world->last_step().largest_island_rows, 6);
+  EXPECT_EQ(world->last_step().max_island_rows, 6);
 }
 
 TEST(KinematicBody, OdeWakesBodiesAcrossIt) {

@@ -58,7 +58,7 @@ TEST_P(RemovalInEachSpace, ContactsVanishAndWhatStoodOnItFalls) {
   world->remove_group(shelf.group());
   world->step(50);
   EXPECT_EQ(world->last_step().contacts, 0);
-  EXPECT_EQ(world->last_step().largest_island_rows, 0);
+  EXPECT_EQ(world->last_step().max_island_rows, 0);
   for (int i = 51; i < 150; ++i) world->step(i);
   EXPECT_NEAR(ball.X_WB().translation().z(), 0.25, 0.002);
 }
@@ -200,10 +200,10 @@ TEST(Removal, OfTheLargestIslandLowersTheRowCount) {
   Rover rover = add_rover(*world, "rover", translation(0, 0, 5));
   add(*world, body("box", {box({1, 1, 1}, 1)}), translation(3, 0, 5));
   world->step(0);
-  EXPECT_EQ(world->last_step().largest_island_rows, 12);  // two hinges
+  EXPECT_EQ(world->last_step().max_island_rows, 12);  // two hinges
   world->remove_group(rover.chassis->group());
   world->step(1);
-  EXPECT_EQ(world->last_step().largest_island_rows, 0);
+  EXPECT_EQ(world->last_step().max_island_rows, 0);
 }
 
 TEST(Removal, IsSeenInTheHash) {
@@ -216,7 +216,7 @@ TEST(Removal, IsSeenInTheHash) {
 }
 
 TEST(LateSurfaces, LoseAgainstThoseOfTheConstructorAndKeepNumbers) {
-  // A box on a plane that leans by 0.3 rad slides below a friction of tan 0.3 = 0.31.
+  // A box on a plane that tilts by 0.3 rad slides below a friction of tan 0.3 = 0.31.
   const auto slides = [](const std::string& material, const std::vector<ContactConfig>& late) {
     const auto world = make_world({}, {slippery()});
     sim::PartConfig floor = plane();

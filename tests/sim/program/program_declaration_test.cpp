@@ -42,7 +42,7 @@ TEST(ProgramDeclaration, IsRead) {
   EXPECT_EQ(pilot.find("slot"), &pilot.args[3]);
   EXPECT_EQ(pilot.find("slop"), nullptr);
   EXPECT_THAT(*pilot.publishes, ElementsAre("{name}.cmd"));
-  EXPECT_FALSE(pilot.subscribes) << "nobody knows";
+  EXPECT_FALSE(pilot.subscribes) << "unknown";
 }
 
 TEST(ProgramDeclaration, ReadsBackAsItIsWritten) {

@@ -168,7 +168,7 @@ bool grazes(const sim::Scene& scene, const Ray& ray, double range_m, double asid
 
 TEST(EmbreeScene, SeesWhatOdeSees) {
   int rays_cast = 0, hit = 0, grazing = 0, in_capsule = 0;
-  double largest_of_shapes_m = 0, largest_of_meshes_m = 0;
+  double max_of_shapes_m = 0, max_of_meshes_m = 0;
   for (unsigned seed = 1; seed <= 20; ++seed) {
     const Heap embree(RayLibrary::embree, seed), ode(RayLibrary::ode, seed);
     Uniform uniform(1000 + seed);
@@ -185,7 +185,7 @@ TEST(EmbreeScene, SeesWhatOdeSees) {
                                     : infinity;
       const bool mesh = embree.is_mesh(ours[i].part) || ode.is_mesh(theirs[i].part);
       if (difference <= 1e-5) {
-        double& largest = mesh ? largest_of_meshes_m : largest_of_shapes_m;
+        double& largest = mesh ? max_of_meshes_m : max_of_shapes_m;
         largest = std::max(largest, difference);
         if (ours[i].hit() && ours[i].part == theirs[i].part) {
           EXPECT_NEAR((ours[i].normal_W - theirs[i].normal_W).norm(), 0, mesh ? 1e-4 : 1e-5) << seed << " " << i;
@@ -201,12 +201,12 @@ TEST(EmbreeScene, SeesWhatOdeSees) {
       }
     }
   }
-  RecordProperty("largest_of_shapes_nm", static_cast<int>(1e9 * largest_of_shapes_m));
-  RecordProperty("largest_of_meshes_nm", static_cast<int>(1e9 * largest_of_meshes_m));
+  RecordProperty("largest_of_shapes_nm", static_cast<int>(1e9 * max_of_shapes_m));
+  RecordProperty("largest_of_meshes_nm", static_cast<int>(1e9 * max_of_meshes_m));
   EXPECT_GT(hit, rays_cast / 3);  // the test saw something
   EXPECT_LT(grazing, rays_cast / 1000);
   EXPECT_LT(in_capsule, rays_cast / 1000);
-  EXPECT_LT(largest_of_shapes_m, 1e-9);
+  EXPECT_LT(max_of_shapes_m, 1e-9);
 }
 
 TEST(EmbreeScene, SeesTerrainAsOdeDoes) {
@@ -356,7 +356,7 @@ TEST(EmbreeScene, TellsTheSameWhateverHappenedBefore) {
     cast(moved.scene(), {rays[0]});
     move(arrived, 0.0625);
   }
-  // Someone came and went.
+  // A group was added and removed.
   const int guest = arrived.world->add_group("guest");
   arrived.world->add_body(guest, body("guest", {box({1, 1, 1}, 1)}), Pose::Identity(), Motion::free);
   arrived.world->close_group(guest);
@@ -374,7 +374,7 @@ TEST(EmbreeScene, TellsSeveralThreadsAtOnce) {
   const std::vector<Ray> rays = random_rays(uniform, 10000);
   std::array<std::vector<RayHit>, 4> hits;
   std::vector<std::thread> threads;
-  for (auto& mine : hits) threads.emplace_back([&heap, &rays, &mine] { mine = cast(heap.scene(), rays); });
+  for (auto& own : hits) threads.emplace_back([&heap, &rays, &own] { own = cast(heap.scene(), rays); });
   for (std::thread& thread : threads) thread.join();
   for (const auto& each : hits)
     for (std::size_t i = 0; i < rays.size(); ++i) ASSERT_TRUE(equal_bits(each[i], hits[0][i])) << i;

@@ -49,7 +49,7 @@ TEST(Lockstep, MissesOnlyThoseWhoHaveNotAnswered) {
   Lockstep lockstep;
   lockstep.join("a", {}, 1, 0);
   lockstep.join("b", session(7), 1, 0);
-  lockstep.ask(3);
+  lockstep.request_reply(3);
   answer(lockstep, {"a", 3, 0, 0}, 3);
   EXPECT_EQ(missing(lockstep, 3), (Names{"b"}));
   answer(lockstep, {"b", 3, 7, 1}, 3);
@@ -60,7 +60,7 @@ TEST(Lockstep, MissesOnlyThoseWhoHaveNotAnswered) {
 TEST(Lockstep, RefusesWrongAnswersAndSaysWhy) {
   Lockstep lockstep;
   lockstep.join("a", session(7), 1, 0);
-  lockstep.ask(3);
+  lockstep.request_reply(3);
   const auto refused = Lockstep::Verdict::refused;
   EXPECT_THAT(answer(lockstep, {"b", 3, 0, 0}, 3, refused), HasSubstr("'b' acknowledges a tick, but takes no part"));
   EXPECT_THAT(answer(lockstep, {"a", 4, 7, 1}, 3, refused), HasSubstr("step 4, which is still to come"));
@@ -70,7 +70,7 @@ TEST(Lockstep, RefusesWrongAnswersAndSaysWhy) {
   EXPECT_EQ(missing(lockstep, 3), (Names{"a"}));
   answer(lockstep, {"a", 3, 7, 1}, 3);
   answer(lockstep, {"a", 3, 7, 1}, 3, Lockstep::Verdict::repeated);
-  lockstep.ask(4);
+  lockstep.request_reply(4);
   answer(lockstep, {"a", 3, 7, 1}, 4, Lockstep::Verdict::repeated);  // late and twice
   EXPECT_EQ(missing(lockstep, 4), (Names{"a"}));
 }
@@ -79,23 +79,23 @@ TEST(Lockstep, ListsWhatAClientMustHaveInTheOrderOfPublishing) {
   Lockstep lockstep;
   lockstep.join("a", session(7, {"x", "y"}), 2, 0);
   lockstep.join("b", session(8, {"x"}), 1, 0, 1);  // on another line
-  lockstep.ask(0);
+  lockstep.request_reply(0);
   lockstep.post(0, "y", bytes_of("1"));
   lockstep.post(0, "x", bytes_of("2"));
   lockstep.post(0, "z", bytes_of("3"));
   lockstep.post(1, "y", bytes_of("4"));
   EXPECT_TRUE(lockstep.find("a")->list.empty());
-  lockstep.ask(1);
+  lockstep.request_reply(1);
   EXPECT_TRUE(lockstep.find("a")->list.empty());  // not due
-  lockstep.ask(2);
+  lockstep.request_reply(2);
   const auto& list = lockstep.find("a")->list;
   ASSERT_EQ(list.size(), 2u);
   EXPECT_EQ(list[0].channel, 1);
   EXPECT_EQ(list[1].channel, 0);
   EXPECT_EQ(*list[1].payload, bytes_of("2"));
   EXPECT_EQ(list[0].crc, 0x83dcefb7u);  // CRC-32 of "1"
-  EXPECT_TRUE(lockstep.somebody_receives(0, "y"));
-  EXPECT_FALSE(lockstep.somebody_receives(1, "y"));
+  EXPECT_TRUE(lockstep.has_receiver(0, "y"));
+  EXPECT_FALSE(lockstep.has_receiver(1, "y"));
 }
 
 TEST(Lockstep, JoiningTwiceMovesNoTick) {
@@ -112,7 +112,7 @@ TEST(Lockstep, ChannelsKeepTheirPlaces) {
   Lockstep lockstep;
   lockstep.join("a", session(7, {"x"}), 1, 0);
   lockstep.join("a", session(7, {"x", "y"}), 1, 0);
-  EXPECT_TRUE(lockstep.somebody_receives(0, "y"));
+  EXPECT_TRUE(lockstep.has_receiver(0, "y"));
   EXPECT_THROW(lockstep.join("a", session(7, {"y", "x"}), 1, 0), std::invalid_argument);
   EXPECT_THROW(lockstep.join("a", session(7, {"x"}), 1, 0), std::invalid_argument);
 }
@@ -131,12 +131,12 @@ TEST(Lockstep, AfterGoingBackEverybodyIsAskedByItsPeriod) {
   lockstep.join("a", session(7, {"x"}), 10, 0);
   lockstep.join("late", session(8), 10, 55);
   lockstep.post(0, "x", bytes_of("1"));
-  lockstep.ask(60);
+  lockstep.request_reply(60);
   answer(lockstep, {"a", 60, 7, 1}, 60);
   lockstep.rewound(20);
   EXPECT_EQ(missing(lockstep, 20), (Names{"a"}));
   EXPECT_EQ(missing(lockstep, 25), (Names{"late"}));
-  lockstep.ask(20);
+  lockstep.request_reply(20);
   EXPECT_TRUE(lockstep.find("a")->list.empty());
   EXPECT_EQ(lockstep.find("a")->sequence, 2);
 }
@@ -151,12 +151,12 @@ TEST(Lockstep, WhatIsPostedAgainIsOnTheListOfTheFirstTickAfterGoingBack) {
   EXPECT_EQ(lockstep.needed_from(33, 7), 30);     // late was due too long ago
   EXPECT_EQ(lockstep.needed_from(33, 2), 33);
   EXPECT_EQ(lockstep.needed_from(3, 1000), 0);
-  lockstep.begin_again();
+  lockstep.restart_replay();
   for (std::int64_t step = 16; step <= 30; ++step) {  // the world is simulated again up to step 30
     lockstep.post(0, "x", bytes_of(std::to_string(step)));
     if (step < 30) lockstep.pass(step);
   }
-  lockstep.end_again();
+  lockstep.end_replay();
   lockstep.rewound(30);
   lockstep.post(0, "x", bytes_of("31"));
   const auto list = [&](const std::string& name) {
@@ -165,20 +165,20 @@ TEST(Lockstep, WhatIsPostedAgainIsOnTheListOfTheFirstTickAfterGoingBack) {
       text += std::string(reinterpret_cast<const char*>(message.payload->data()), message.payload->size()) + " ";
     return text;
   };
-  lockstep.ask(30);
+  lockstep.request_reply(30);
   EXPECT_EQ(list("a"), "21 22 23 24 25 26 27 28 29 30 31 ");
-  lockstep.ask(35);
+  lockstep.request_reply(35);
   EXPECT_EQ(list("late"), "26 27 28 29 30 31 ");
 }
 
 TEST(Lockstep, AListThatHadNoRoomWhileGoingBackIsNotWhole) {
   Lockstep lockstep;
   lockstep.join("a", session(7, {"x"}), 10, 0);
-  const sim::Bytes half(Lockstep::most_pending_bytes / 2);
+  const sim::Bytes half(Lockstep::max_pending_bytes / 2);
   for (const bool too_much : {true, false}) {
-    lockstep.begin_again();
+    lockstep.restart_replay();
     for (int i = 0; i < (too_much ? 2 : 1); ++i) lockstep.post(0, "x", half);
-    lockstep.end_again();
+    lockstep.end_replay();
     lockstep.rewound(0);
     EXPECT_EQ(lockstep.find("a")->too_much, too_much);
     EXPECT_EQ(lockstep.find("a")->pending.size(), too_much ? 0u : 1u);
@@ -190,11 +190,11 @@ TEST(Lockstep, ATickThatWasOpenBeforeGoingBackIsAnsweredFirst) {
   lockstep.join("a", session(7, {"x"}), 10, 0);
   lockstep.join("simple", {}, 10, 0);
   lockstep.post(0, "x", bytes_of("1"));
-  lockstep.ask(60);
+  lockstep.request_reply(60);
   lockstep.rewound(20);
   lockstep.rewound(10);
   EXPECT_EQ(lockstep.abandoned().size(), 2u);
-  lockstep.ask(10);
+  lockstep.request_reply(10);
   EXPECT_EQ(lockstep.find("a")->sequence, 1);  // still the same
   EXPECT_EQ(lockstep.find("a")->list.size(), 1u);
   lockstep.rewound(20);
@@ -204,7 +204,7 @@ TEST(Lockstep, ATickThatWasOpenBeforeGoingBackIsAnsweredFirst) {
   EXPECT_TRUE(lockstep.abandoned().empty());
   answer(lockstep, {"a", 60, 7, 1}, 20, Lockstep::Verdict::repeated);
   answer(lockstep, {"simple", 60, 0, 0}, 20, Lockstep::Verdict::repeated);
-  lockstep.ask(20);
+  lockstep.request_reply(20);
   EXPECT_EQ(lockstep.find("a")->list.size(), 0u);
   answer(lockstep, {"a", 60, 7, 1}, 20, Lockstep::Verdict::repeated);
   answer(lockstep, {"simple", 60, 0, 0}, 20, Lockstep::Verdict::repeated);
@@ -218,11 +218,11 @@ TEST(Lockstep, JoiningAgainWithAnotherPeriodLeavesAnOpenTickOpen) {
   Lockstep lockstep;
   lockstep.join("a", session(7), 10, 0);
   lockstep.join("simple", {}, 10, 0);
-  lockstep.ask(20);
+  lockstep.request_reply(20);
   lockstep.join("a", session(7), 4, 20);
   lockstep.join("simple", {}, 4, 20);
   EXPECT_EQ(missing(lockstep, 20), (Names{"a", "simple"}));
-  lockstep.ask(20);
+  lockstep.request_reply(20);
   answer(lockstep, {"a", 20, 7, 1}, 20);
   answer(lockstep, {"simple", 20, 0, 0}, 20);
   EXPECT_EQ(missing(lockstep, 20), (Names{}));

@@ -23,11 +23,11 @@ enum class Gear : unsigned char { neutral, first };
 struct Engine {
   double speed = 0;
   Gear gear = Gear::neutral;
-  int told = 0;  ///< how often something was said: changes nothing
+  int reported = 0;  ///< how often something was said: changes nothing
   bool operator==(const Engine&) const = default;
   void visit_state(StateArchive& archive) {
     archive(speed, gear);
-    archive.unhashed(told);
+    archive.unhashed(reported);
   }
 };
 
@@ -157,7 +157,7 @@ TEST(StateArchive, WhatIsUnhashedIsSavedAllTheSame) {
   EXPECT_EQ(hash_of(Engine{1, Gear::first, 5}), hash_of(Engine{1, Gear::first, 6}));
   Engine back;
   restore(back, saved(Engine{1, Gear::first, 6}));
-  EXPECT_EQ(back.told, 6);
+  EXPECT_EQ(back.reported, 6);
 }
 
 TEST(StateArchive, IsRefusedWhereverItIsCutOff) {
@@ -233,7 +233,7 @@ TEST(StateArchive, ExpectedCountsAreCompared) {
   const std::vector<std::byte> bytes = saver.take_bytes();
   EXPECT_EQ(error_of(bytes, [](StateArchive& archive) { archive.expect_count(3, "wheels"); }), "");
   EXPECT_EQ(error_of(bytes, [](StateArchive& archive) { archive.expect_count(4, "wheels"); }),
-            "snapshot: the begin: the snapshot has 3 wheels, this world 4");
+            "snapshot: the start: the snapshot has 3 wheels, this world 4");
 }
 
 TEST(StateArchive, HashesByPartTellWhichPartDiffers) {
@@ -280,9 +280,9 @@ struct Counted {
 
 TEST(StateArchive, AListIsNotLongerThanWhatWasRead) {
   StateArchive saver = StateArchive::saver();
-  std::uint64_t says = 800;
+  std::uint64_t reports = 800;
   std::vector<double> numbers(100);
-  saver(says);
+  saver(reports);
   saver.raw(numbers.data(), numbers.size() * sizeof(double));
   const std::vector<std::byte> bytes = saver.take_bytes();
   std::vector<Counted> list;
@@ -313,15 +313,13 @@ std::string error_of_restoring(Bits bits) {
 TEST(StateArchive, RestoresNoValueThatAnEnumerationDoesNotHave) {
   EXPECT_EQ(error_of_restoring<Mode>(2), "");
   for (const int number : {3, 31, 32, 1 << 20, -1})
-    EXPECT_EQ(error_of_restoring<Mode>(number), "snapshot: the begin: a value that is none of those it can have")
-        << number;
+    EXPECT_EQ(error_of_restoring<Mode>(number), "snapshot: the start: a value out of range") << number;
 }
 
 TEST(StateArchive, RestoresNoNumberThatIsNotFiniteUnlessItMeansSomething) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   EXPECT_EQ(error_of_restoring<double>(1e100), "");
-  EXPECT_EQ(error_of_restoring<double>(-1e300),
-            "snapshot: the begin: the snapshot has the number -1e+300, which cannot be");
+  EXPECT_EQ(error_of_restoring<double>(-1e300), "snapshot: the start: the snapshot has the invalid number -1e+300");
   EXPECT_NE(error_of_restoring<double>(infinity), "");
   EXPECT_NE(error_of_restoring<sim::Vector3d>(std::array{0.0, std::nan(""), 0.0}), "");
   struct Target {
@@ -333,11 +331,11 @@ TEST(StateArchive, RestoresNoNumberThatIsNotFiniteUnlessItMeansSomething) {
 }
 
 TEST(StateArchive, RestoresNoTimeThatIsFurtherThanARunCanBe) {
-  const std::int64_t most_us = StateArchive::max_time.count();
-  EXPECT_EQ(error_of_restoring<std::chrono::microseconds>(most_us), "");
-  EXPECT_EQ(error_of_restoring<std::chrono::microseconds>(-most_us), "");
-  EXPECT_EQ(error_of_restoring<std::chrono::microseconds>(most_us + 1),
-            "snapshot: the begin: the snapshot has a time that cannot be");
+  const std::int64_t max_us = StateArchive::max_time.count();
+  EXPECT_EQ(error_of_restoring<std::chrono::microseconds>(max_us), "");
+  EXPECT_EQ(error_of_restoring<std::chrono::microseconds>(-max_us), "");
+  EXPECT_EQ(error_of_restoring<std::chrono::microseconds>(max_us + 1),
+            "snapshot: the start: the snapshot has an invalid value: a time");
   EXPECT_NE(error_of_restoring<std::chrono::microseconds>(std::numeric_limits<std::int64_t>::min()), "");
 }
 

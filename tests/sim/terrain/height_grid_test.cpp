@@ -103,8 +103,10 @@ TEST(HeightGrid, RefusesWhatIsNoGround) {
     for (int j = 0; j < 4; ++j) grid.at(i, j) = 100 * ((i + j) % 2);
   EXPECT_EQ(error_of([&] { sim::check_heights(grid); }),
             "is steeper than 89 degrees nearly everywhere: heights and cells in one unit, metres?");
-  EXPECT_EQ(error_of([] { sim::check_grid_size(1, 5); }), "is no grid: it has 1 x 5 points, and needs 2 x 2");
-  EXPECT_EQ(error_of([] { sim::check_grid_size(-4, -5); }), "is no grid: it has -4 x -5 points, and needs 2 x 2");
+  EXPECT_EQ(error_of([] { sim::check_grid_size(1, 5); }),
+            "is not a grid: it has 1 x 5 points and needs at least 2 x 2");
+  EXPECT_EQ(error_of([] { sim::check_grid_size(-4, -5); }),
+            "is not a grid: it has -4 x -5 points and needs at least 2 x 2");
   EXPECT_EQ(error_of([] { sim::check_grid_size(4001, 4001); }),
             "is too large: it has 4001 x 4001 points, and may have 16 million");
 }

@@ -21,11 +21,10 @@ class Ground {
   explicit Ground(const PartConfig& part) : terrain_((sim::start_ode(), part), "ground", table_, meshes_) {
     geom_ = sim::make_terrain_geom(terrain_);
   }
-  std::vector<dContactGeom> touch(dGeomID other, int most = 8) const {
-    std::vector<dContactGeom> contacts(static_cast<std::size_t>(most));
+  std::vector<dContactGeom> touch(dGeomID other, int max = 8) const {
+    std::vector<dContactGeom> contacts(static_cast<std::size_t>(max));
     // As the world's collider asks: the ground may be the first or the second.
-    contacts.resize(
-        static_cast<std::size_t>(dCollide(geom_.get(), other, most, contacts.data(), sizeof(dContactGeom))));
+    contacts.resize(static_cast<std::size_t>(dCollide(geom_.get(), other, max, contacts.data(), sizeof(dContactGeom))));
     return contacts;
   }
   dGeomID geom() const { return geom_.get(); }

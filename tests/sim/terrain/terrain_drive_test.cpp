@@ -229,8 +229,8 @@ TEST(GroundCheck, WarnsOfPairsThatAreKnownToBeBad) {
   EXPECT_EQ(warnings(level_ground(0.1), cylinder, {}), "");
   EXPECT_EQ(
       warnings(level_ground(0.02), cylinder, {}),
-      "terrain 'hill/hill/1' under 'rover/left_wheel/1' and 3 more: cells of 0.02 m are much smaller than a wheel "
-      "of radius 0.1 m, which meets the ground in one place: bumps may be missed\n");
+      "terrain 'hill/hill/1' under 'rover/left_wheel/1' and 3 more: cells of 0.02 m are much smaller than a wheel of "
+      "radius 0.1 m, which touches the ground at one point: bumps may be missed\n");
   EXPECT_EQ(warnings(level_ground(0.1, TerrainCollision::facets), ball, {soft}),
             "terrain 'hill/hill/1' under 'rover/left_wheel/1' and 3 more: facets of 0.1 m are smaller than a wheel of "
             "0.2 m, which costs their square: use collision: smooth\n");

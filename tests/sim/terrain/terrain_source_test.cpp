@@ -64,11 +64,11 @@ TEST(AsciiGrid, HolesAreAnErrorOrFilled) {
               sim::parse_ascii_grid("ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\n-9999 -9999 -9999 -9999",
                                     1, Holes::nearest);
             }),
-            "has nothing but holes");
+            "has no heights, only NODATA");
 }
 
 TEST(AsciiGrid, ErrorsSayTheLineAndWhatIsWrong) {
-  EXPECT_EQ(error_of_ascii(""), "line 1: is no ESRI ASCII grid: 'ncols' is missing before the heights");
+  EXPECT_EQ(error_of_ascii(""), "line 1: is not an ESRI ASCII grid: 'ncols' is missing before the heights");
   EXPECT_EQ(error_of_ascii("solid hill\n"), "line 1: unknown key of an ESRI ASCII grid");
   EXPECT_EQ(error_of_ascii("ncols 3\nncols 3\n"), "line 2: 'ncols' comes twice");
   EXPECT_EQ(error_of_ascii("ncols three\n"), "line 1: ncols is not a number");
@@ -99,7 +99,7 @@ class Picture {
  public:
   Picture(int width, int height, int bits, int color_type, const std::vector<unsigned char>& bytes,
           const PictureExtra& extra = {})
-      : path_(folder_.file("picture.png")) {
+      : path_(folder_.file("image.png")) {
     std::FILE* file = std::fopen(path_.c_str(), "wb");
     png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
     png_infop info = png_create_info_struct(png);
@@ -149,7 +149,7 @@ TEST(PngGrid, ColorsAndBrokenFilesAreErrors) {
   std::filesystem::resize_file(whole.path(), std::filesystem::file_size(whole.path()) - 20);
   EXPECT_THAT(error_of([&] { sim::read_png_grid(whole.path(), 1, 0, 1); }),
               HasSubstr("cannot be read as heights: PNG: "));
-  std::ofstream(whole.path()) << "no picture at all";
+  std::ofstream(whole.path()) << "no image at all";
   EXPECT_THAT(error_of([&] { sim::read_png_grid(whole.path(), 1, 0, 1); }),
               HasSubstr("cannot be read as heights: PNG: "));
 }
@@ -157,10 +157,10 @@ TEST(PngGrid, ColorsAndBrokenFilesAreErrors) {
 /// Before: 134 or 139, for each row had a channel more than there was room for.
 TEST(PngGrid, AGreyPictureWithATransparentLevelIsRefused) {
   for (const int bits : {8, 16}) {
-    const Picture picture(16, 16, bits, PNG_COLOR_TYPE_GRAY,
-                          std::vector<unsigned char>(static_cast<std::size_t>(16 * 16 * bits / 8), 7),
-                          {.transparent_level = 7});
-    EXPECT_EQ(error_of([&] { sim::read_png_grid(picture.path(), 1, 0, 1); }),
+    const Picture image(16, 16, bits, PNG_COLOR_TYPE_GRAY,
+                        std::vector<unsigned char>(static_cast<std::size_t>(16 * 16 * bits / 8), 7),
+                        {.transparent_level = 7});
+    EXPECT_EQ(error_of([&] { sim::read_png_grid(image.path(), 1, 0, 1); }),
               "cannot be read as heights: PNG: has colors or transparency, must be plain grey");
   }
 }
@@ -168,8 +168,8 @@ TEST(PngGrid, AGreyPictureWithATransparentLevelIsRefused) {
 TEST(PngGrid, APaletteAndGreyWithAlphaAreRefused) {
   const Picture indexed(4, 4, 8, PNG_COLOR_TYPE_PALETTE, std::vector<unsigned char>(16, 1), {.palette = 4});
   const Picture alpha(4, 4, 16, PNG_COLOR_TYPE_GRAY_ALPHA, std::vector<unsigned char>(64, 1));
-  for (const Picture* picture : {&indexed, &alpha})
-    EXPECT_EQ(error_of([&] { sim::read_png_grid(picture->path(), 1, 0, 1); }),
+  for (const Picture* image : {&indexed, &alpha})
+    EXPECT_EQ(error_of([&] { sim::read_png_grid(image->path(), 1, 0, 1); }),
               "cannot be read as heights: PNG: has colors or transparency, must be plain grey");
 }
 
@@ -209,12 +209,12 @@ TEST(PngGrid, AHugeSizeIsRefusedBeforeMemoryIsTakenForIt) {
 }
 
 TEST(PngGrid, ADamagedCheckSumAndANamedPipeAreRefused) {
-  const Picture picture(64, 64, 8, PNG_COLOR_TYPE_GRAY, std::vector<unsigned char>(4096, 7));
-  std::fstream file(picture.path(), std::ios::in | std::ios::out | std::ios::binary);
+  const Picture image(64, 64, 8, PNG_COLOR_TYPE_GRAY, std::vector<unsigned char>(4096, 7));
+  std::fstream file(image.path(), std::ios::in | std::ios::out | std::ios::binary);
   file.seekp(30);  // within the check sum of the header
   file.put('\x55');
   file.close();
-  EXPECT_THAT(error_of([&] { sim::read_png_grid(picture.path(), 1, 0, 1); }),
+  EXPECT_THAT(error_of([&] { sim::read_png_grid(image.path(), 1, 0, 1); }),
               HasSubstr("cannot be read as heights: PNG: "));
   const test_support::ScratchFolder folder;
   ASSERT_EQ(mkfifo(folder.file("pipe.png").c_str(), 0600), 0);

@@ -39,9 +39,9 @@ TEST(RunHash, TellsRunsApartThatDifferOnTheirWayAndEndInOneState) {
     test::Listener<shoal::acoustic_received_t> at_b(test, "b.modem");
     test.send("a.modem.cmd", test::bytes_to("hello"));
     test.run_for(6);
-    const auto heard = at_b.take_all();
-    ASSERT_EQ(heard.size(), 1u) << fading;
-    snrs.insert(heard[0].snr_db);
+    const auto received = at_b.take_all();
+    ASSERT_EQ(received.size(), 1u) << fading;
+    snrs.insert(received[0].snr_db);
     run_hashes.insert(test.world.state().run_hash());
     state_hashes.insert(test.world.state().hash());
   }

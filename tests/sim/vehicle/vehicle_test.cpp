@@ -81,18 +81,18 @@ TEST(AckermannCar, DrivesTheCircleOfItsSteering) {
   command.speed_mps = 0.8;
   command.steering_rad = 0.35;
   command_for(driven, "car1.drive.cmd", command, 1);
-  double way_m = 0, turned_rad = 0;
+  double distance_m = 0, turned_rad = 0;
   for (int i = 0; i < 50; ++i) {
     driven.send("car1.drive.cmd", command);
     const sim::Pose before = driven.vehicle().X_WV();
     driven.run_for(0.05);
     const sim::Pose moved = before.inverse() * driven.vehicle().X_WV();
-    way_m += moved.translation().head<2>().norm();
+    distance_m += moved.translation().head<2>().norm();
     turned_rad += sim::yaw_of(moved.linear());
   }
   const double radius_m = 0.33 / std::tan(0.35);
-  EXPECT_NEAR(way_m / turned_rad, radius_m, 0.005 * radius_m);  // 0.5 %: creep of the tyres
-  EXPECT_NEAR(way_m, 0.8 * 2.5, 0.005 * 2);
+  EXPECT_NEAR(distance_m / turned_rad, radius_m, 0.005 * radius_m);  // 0.5 %: creep of the tyres
+  EXPECT_NEAR(distance_m, 0.8 * 2.5, 0.005 * 2);
 }
 
 TEST(AckermannCar, StopsWithoutCommandsAndWhenItHitsAWall) {
@@ -126,7 +126,7 @@ TEST(RoverArm, ReachesAPoseAndWeighsItsHand) {
     EXPECT_NEAR(report.joint_position[i], pose[i].second, 0.002) << pose[i].first;  // steps of 0.0015 rad
   }
   EXPECT_LT(driven.position().head<2>().norm(), 0.01);  // the rover stands still
-  // The arm leans forward by 1.6 rad: palm and fingers, 0.16 kg, weigh on the wrist.
+  // The arm tilts forward by 1.6 rad: palm and fingers, 0.16 kg, weigh on the wrist.
   const auto wrench = load.last();
   const sim::Vector3d force_N(wrench.force_N[0], wrench.force_N[1], wrench.force_N[2]);
   EXPECT_NEAR(force_N.norm(), 0.16 * 9.80665, 4 * 0.05);  // four standard deviations of its noise

@@ -83,13 +83,13 @@ TEST(StartCheck, TellsOfAWheelInTheGround) {
 TEST(StartCheck, IsSilentWhenAWorldIsBuiltAgain) {
   const test_support::LogCapture log;
   test::TestWorld built(spheres({"[1.7, 0, 0]"}, rock));
-  const std::string said = log.text();
+  const std::string reported = log.text();
   const sim::Bytes start = built.world.state().snapshot();
   built.run_for(0.1);
   built.world.editor().remove_object("rock");
   built.world.state().restore(start);
   EXPECT_NE(built.world.find_object("rock"), nullptr);
-  EXPECT_EQ(log.text(), said);
+  EXPECT_EQ(log.text(), reported);
 }
 
 }  // namespace

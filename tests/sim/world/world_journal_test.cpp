@@ -13,14 +13,14 @@
 #include "sim/world_file/vehicle_loader.hpp"
 #include "tests/devices/state_fixture.hpp"
 
-// What came and went is told by who is there: a world that is restored must be the same in all bits.
+// Additions and removals follow from what is present: a world that is restored must be the same in all bits.
 
 namespace {
 
 using test::SavedRun;
 using test::TappedWorld;
 
-/// Weightless, under water: nothing falls, and everything that floats can be heard.
+/// Weightless, under water: nothing falls, and everything that floats can be received.
 const char* const sea = R"(
 shoal: 1
 physics: {step_s: 0.01, gravity_mps2: 0}
@@ -77,7 +77,7 @@ std::string guest(int place) {
   return "g" + std::to_string(place);
 }
 
-/// Each has a place of its own, so that nobody comes where another stands.
+/// Each has its own place, so that no one comes where another stands.
 sim::Vector3d home_m(int place) {
   return {20.0 * (place % 4) - 30, 20.0 * (place / 4), -20};
 }
@@ -157,7 +157,7 @@ TEST_P(MeddledWorld, WhoCameAndWentAtRandomLeavesAWorldThatGoesOnAlike) {
 }
 INSTANTIATE_TEST_SUITE_P(Seeds, MeddledWorld, testing::Range(1u, 9u));
 
-/// Always three are there, so that nobody ever comes into the world as it began.
+/// Always three are there, so that no one ever comes into the world as it began.
 TEST(WorldJournal, RollingSpawnsKeepItsSize) {
   TappedWorld test(sea);
   sim::World& world = test.world;

@@ -133,7 +133,7 @@ TEST(WorldSnapshot, GravityIsThatOfTheWorldItIsRestoredInUnlessItWasSet) {
   EXPECT_EQ(moon.world.physics().gravity_mps2(), 1.6);
 }
 
-/// Each comes and goes often, alone or while others are there; values are changed again and again.
+/// Each is added and removed often, alone or while others are there; values are changed again and again.
 TEST(WorldSnapshot, WhatLeavesNoTraceIsNotKept) {
   TappedWorld test(busy_world);
   const auto bytes_after = [&](int rounds) {
@@ -207,7 +207,7 @@ physics: {step_s: 0.01}
 objects: [{name: ball, position_m: [0, 0, 100], parts: [{shape: sphere, radius_m: 0.1, mass_kg: 1}]}]
 events:
   - {name: ask, every: 0.05, do: [{publish: {channel: bell, type: shoal.twist_command_t, value: {}}}]}
-  - {name: hear, when: message on bell, do: [{move: {name: ball, position_m: [0, 0, 10], area_m: [4, 4, 4]}}]}
+  - {name: receive, when: message on bell, do: [{move: {name: ball, position_m: [0, 0, 10], area_m: [4, 4, 4]}}]}
 )";
   std::vector<int> each;
   for (int step = 20; step < 30; ++step) each.push_back(step);
@@ -419,7 +419,7 @@ TEST_F(ForgedSnapshot, WithAClockThatIsLateIsRefused) {
   const std::array<std::int64_t, 5> clock{300'000, 2 * 25, 0, 0, 100'000};
   const std::size_t at = behind(good, clock) - sizeof clock;
   put(good, at, std::int64_t{200'000});
-  EXPECT_THAT(error_of(world(), good), HasSubstr("a clock that stands at another time than the world"));
+  EXPECT_THAT(error_of(world(), good), HasSubstr("a clock whose time does not match that of the world"));
 }
 
 TEST(WorldSnapshot, WithAnEventThatIsLateIsRefused) {
@@ -433,13 +433,13 @@ TEST(WorldSnapshot, WithAnEventThatIsLateIsRefused) {
   const auto at = std::search(snapshot.begin(), snapshot.end(), next.begin(), next.end());
   ASSERT_NE(at, snapshot.end());
   std::memcpy(&*at + 1, &long_ago_us, sizeof long_ago_us);
-  EXPECT_THAT(error_of(test.world, snapshot), HasSubstr("an event that should have fired long ago"));
+  EXPECT_THAT(error_of(test.world, snapshot), HasSubstr("an event that is overdue"));
 }
 
 TEST_F(ForgedSnapshot, WithEventsOfNobodyIsRefused) {
-  const std::pair<int, const char*> forged[] = {{999, "an event of a device that is not there"},
-                                                {-1, "events: an event of nobody"},
-                                                {-2, "a signal that is not there"}};
+  const std::pair<int, const char*> forged[] = {{999, "an event of a device that does not exist"},
+                                                {-1, "events: an event without a device"},
+                                                {-2, "a signal that does not exist"}};
   // Behind the length of the part come the slice that was reached, the next number, how many events there are, and of
   // the first one when it is due, the device and the kind.
   const std::size_t count = behind(good, std::string("events")) + 3 * 8;
@@ -459,7 +459,7 @@ TEST_F(ForgedSnapshot, WithAnEventThatFiredLessThanNeverIsRefused) {
   // Behind the length of the part come the actor (two of 8 bytes, 4, 1, a pose) and how often the event has fired.
   const std::size_t script = behind(bad, std::string("script")) + 8;
   put(bad, script + 2 * 8 + 4 + 1 + 16 * 8 + 8, std::int64_t{-1});
-  EXPECT_THAT(error_of(world(), bad), HasSubstr("script: the snapshot has a count of firings that cannot be"));
+  EXPECT_THAT(error_of(world(), bad), HasSubstr("script: the snapshot has an invalid value: a count of firings"));
 }
 
 /// The next sample was looked for step by step from wherever a snapshot said, for years.
@@ -486,7 +486,7 @@ TEST(WorldSnapshot, WithANextSampleFarAwayIsRefused) {
     sim::Bytes bad = good;
     std::memcpy(&bad[at], &samples, sizeof samples);
     std::memcpy(&bad[at + 8], &next, sizeof next);
-    EXPECT_THAT(error_of(test.world, bad), HasSubstr("v/imu: the snapshot has a next sample that cannot be"))
+    EXPECT_THAT(error_of(test.world, bad), HasSubstr("v/imu: the snapshot has an invalid value: a next sample"))
         << samples << " " << next;
     EXPECT_EQ(test.world.state().snapshot(), good);
   }
@@ -498,7 +498,7 @@ TEST_F(ForgedSnapshot, WithAHistoryAfterItsEndIsRefused) {
   put(bad, behind(bad, std::string("make")) + 8 + 4 + 8 + 8, std::int64_t{1});
   TappedWorld fresh(busy_world);
   EXPECT_THAT(error_of(fresh.world, bad), HasSubstr("changes in an order that cannot be"));
-  EXPECT_THAT(error_of(world(), bad), HasSubstr("its step is not the one it begins with"));
+  EXPECT_THAT(error_of(world(), bad), HasSubstr("its step is not the one with which it starts"));
 }
 
 }  // namespace

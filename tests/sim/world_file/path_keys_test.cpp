@@ -87,7 +87,7 @@ std::vector<std::string> errors_of(const Owner& owner, const ConfigNode& tree, c
   for (const std::string& line : diagnostics.lines())
     if (line.find("'" + key + "' must lie") != std::string::npos ||
         line.find("'" + key + "' must be relative") != std::string::npos ||
-        line.find("'" + key + "' cannot be used in what comes over the bus") != std::string::npos)
+        line.find("'" + key + "' cannot be used in a request from the bus") != std::string::npos)
       lines.push_back(line);
   return lines;
 }

@@ -49,10 +49,10 @@ class Filter(unittest.TestCase):
             ekf.predict(t, measured)
             reckoned = [reckoned[i] + measured[i] for i in (0, 1)]
             if t % 10 == 0 and t > 5:
-                heard = t - 3.2  # the packet is complete later
+                received = t - 3.2  # the packet is complete later
                 beacon = beacons[t // 10 % 2]
-                slant = math.hypot(1.5 * heard - beacon[0], beacon[1], 19)
-                ekf.update_range(heard, slant + clock_m + dice.gauss(0, 1), 1, beacon, (0.01, 0, 0.01), -20)
+                slant = math.hypot(1.5 * received - beacon[0], beacon[1], 19)
+                ekf.update_range(received, slant + clock_m + dice.gauss(0, 1), 1, beacon, (0.01, 0, 0.01), -20)
         self.assertGreater(math.hypot(reckoned[0] - 1200, reckoned[1]), 75)
         self.assertLess(math.hypot(ekf.x[0] - 1200, ekf.x[1]), 4)
         self.assertAlmostEqual(ekf.x[4], clock_m, delta=3)
@@ -171,7 +171,7 @@ class Navigator(unittest.TestCase):
         def place_after(*packets):
             auv = self.started()
             auv.ekf.time_s = sent * 1e-6
-            auv.ekf.way[0] = (auv.ekf.time_s, 0.0, 0.0)
+            auv.ekf.distance[0] = (auv.ekf.time_s, 0.0, 0.0)
             before = list(auv.ekf.x)
             for source, later_s in packets:
                 auv.on_modem(report(utime=sent + later_s * 10**6, sent_utime=sent + later_s * 10**6, source=source,

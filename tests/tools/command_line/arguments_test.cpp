@@ -17,7 +17,7 @@ struct App {
   double number = 0;
   std::string place, file, out, title = "none";
   std::vector<std::string> sets;
-  bool quiet = false, pictures = true;
+  bool quiet = false, plots = true;
 
   App() {
     app.require_subcommand(1);
@@ -29,7 +29,7 @@ struct App {
     run->add_option("--set", sets, "a value")->type_size(1)->allow_extra_args(false);
     run->add_flag("--quiet", quiet, "no words");
     run->add_flag_callback(
-        "--no-pictures", [this] { pictures = false; }, "no pictures");
+        "--no-plots", [this] { plots = false; }, "no images");
     CLI::App* log = app.add_subcommand("log", "Look into it");
     log->require_subcommand(1);
     log->add_subcommand("info", "What it is")->add_option("LOG", place, "log")->required();
@@ -103,9 +103,9 @@ TEST(Arguments, ReachTheOptionsAsTheyWereGiven) {
     EXPECT_FALSE(app.quiet);
   });
   parsed({"run", "++"}, [](const App& app) { EXPECT_EQ(app.place, "++"); });
-  parsed({"run", "run", "--no-pictures"}, [](const App& app) {
+  parsed({"run", "run", "--no-plots"}, [](const App& app) {
     EXPECT_EQ(app.place, "run");
-    EXPECT_FALSE(app.pictures);
+    EXPECT_FALSE(app.plots);
   });
 }
 
@@ -158,7 +158,7 @@ TEST(Help, HasNothingOfTheLibraryInside) {
             "  --title TITLE  of the run\n"
             "  --set TEXT     a value (repeatable)\n"
             "  --quiet        no words\n"
-            "  --no-pictures  no pictures\n"
+            "  --no-plots  no images\n"
             "\n"
             "Example:\n"
             "  prog run a.yaml --duration 10 \\\n"

@@ -29,7 +29,7 @@ class Pilot {
     options.publishes({"{name}.cmd"});
   }
 
-  /// The exit code; -1: go on.  What is printed is in `out` and `err`.
+  /// The exit code; -1: continue.  What is printed is in `out` and `err`.
   int parse(std::vector<const char*> words) {
     words.insert(words.begin(), "pilot");
     testing::internal::CaptureStdout();
@@ -81,10 +81,10 @@ TEST(DeclaredOptions, SayWhatIsWrong) {
       {{"--name=a", "--describe"}, "--describe takes no other options"},
       {{"--name=a", "--orderss=1"}, "unknown option '--orderss'; did you mean '--orders'?"},
   };
-  for (const auto& [words, says] : mistakes) {
+  for (const auto& [words, reports] : mistakes) {
     Pilot pilot;
-    EXPECT_EQ(pilot.parse(words), 2) << says;
-    EXPECT_THAT(pilot.err, HasSubstr(says));
+    EXPECT_EQ(pilot.parse(words), 2) << reports;
+    EXPECT_THAT(pilot.err, HasSubstr(reports));
   }
   Pilot one;
   one.options.exactly_one({"loop", "orders"});

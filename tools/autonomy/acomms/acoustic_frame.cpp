@@ -81,7 +81,7 @@ std::int64_t saturated_up(double value) {
   return static_cast<std::int64_t>(std::min(std::ceil(value - 1e-9), 65535.0));
 }
 
-constexpr double most_m = 2.1e7;
+constexpr double max_m = 2.1e7;
 constexpr double deepest_m = 167'000;
 
 bool is_byte(int number) {
@@ -94,14 +94,14 @@ bool fits(const AcousticState& s) {
     if (!std::isfinite(number)) return false;
   const int reason = static_cast<int>(s.refusal);
   if (!is_byte(s.refused_order) || !is_byte(reason) || (s.refused_order == 0) != (reason == 0)) return false;
-  return is_byte(s.sender) && is_byte(s.order) && std::abs(s.east_m) < most_m && std::abs(s.north_m) < most_m &&
+  return is_byte(s.sender) && is_byte(s.order) && std::abs(s.east_m) < max_m && std::abs(s.north_m) < max_m &&
          s.depth_m > -0.005 && s.depth_m < deepest_m && s.east_std_m >= 0 && s.north_std_m >= 0 && s.speed_mps >= 0 &&
          std::abs(s.correlation) <= 1;
 }
 
 bool fits(const AcousticOrder& o) {
-  return is_byte(o.sender) && is_byte(o.receiver) && is_byte(o.number) && o.number > 0 && std::abs(o.east_m) < most_m &&
-         std::abs(o.north_m) < most_m && o.depth_m > -0.005 && o.depth_m < deepest_m && o.speed_mps >= 0.01 &&
+  return is_byte(o.sender) && is_byte(o.receiver) && is_byte(o.number) && o.number > 0 && std::abs(o.east_m) < max_m &&
+         std::abs(o.north_m) < max_m && o.depth_m > -0.005 && o.depth_m < deepest_m && o.speed_mps >= 0.01 &&
          o.speed_mps <= 655.35;
 }
 
@@ -154,7 +154,7 @@ std::optional<Bytes> encode(const AcousticState& state) {
   out.put(centimetres(state.east_m), 4);
   out.put(centimetres(state.north_m), 4);
   out.put(std::max<std::int64_t>(0, centimetres(state.depth_m)), 3);
-  // Never zero: nobody knows so well where it is.
+  // Never zero: no position is known exactly.
   out.put(std::max<std::int64_t>(1, saturated_up(100 * state.east_std_m)), 2);
   out.put(std::max<std::int64_t>(1, saturated_up(100 * state.north_std_m)), 2);
   out.put(std::llround(127 * state.correlation), 1);

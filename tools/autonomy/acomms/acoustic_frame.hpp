@@ -9,7 +9,7 @@
 
 namespace autonomy {
 
-/// Why a vehicle does not do what it was told.
+/// Why a vehicle does not execute an order.
 enum class OrderRefusal {
   none = 0,
   too_deep = 1,
@@ -18,7 +18,7 @@ enum class OrderRefusal {
 /// Such as `too deep`; of a number that this program does not know: `reason 7`.
 std::string to_text(OrderRefusal refusal);
 
-/// What a vehicle tells the others of its state over an acoustic modem.
+/// State that a vehicle sends to the others over an acoustic modem.
 struct AcousticState {
   int sender = 0;          ///< 0 to 255
   std::int64_t utime = 0;  ///< of the state, by the sender's clock, us
@@ -30,7 +30,7 @@ struct AcousticState {
   double correlation = 0;
   double speed_mps = 0;   ///< over ground
   double course_rad = 0;  ///< direction of the speed, counter-clockwise from east
-  int order = 0;          ///< number of the last order that it obeyed, 1 to 255; 0: none
+  int order = 0;          ///< number of the last order that it executed, 1 to 255; 0: none
   /// Of a later order that it refused; 0: none since.
   int refused_order = 0;
   OrderRefusal refusal = OrderRefusal::none;  ///< why; set just when `refused_order` is
@@ -39,7 +39,7 @@ struct AcousticState {
 /// Where a vehicle is to go.
 struct AcousticOrder {
   int sender = 0;          ///< 0 to 255
-  int receiver = 0;        ///< who is to go there, 0 to 255
+  int receiver = 0;        ///< receiver of the order, 0 to 255
   int number = 1;          ///< 1 to 255; a later order has a larger one
   std::int64_t utime = 0;  ///< when it was said, by the sender's clock, us
   double east_m = 0;       ///< of the place, in the frame of the world
@@ -49,7 +49,7 @@ struct AcousticOrder {
 };
 
 /// Frames for acoustic modems, big-endian.  An AcousticState in 28 bytes (kind 0), in 29 (kind 2) when there is an
-/// order to tell of, or in 31 (kind 3) when there is one that was refused:
+/// order to report, or in 31 (kind 3) when there is one that was refused:
 ///
 ///     0      version (high four bits) and kind (low four)
 ///     1      sender
@@ -59,7 +59,7 @@ struct AcousticOrder {
 ///     17-18  east_std, cm, rounded up  19-20  north_std
 ///     21     correlation, 1/127, signed
 ///     22-23  speed, cm/s               24-25  course, 1/65536 of a turn
-///     26     kinds 2, 3: last order obeyed; kind 3: 0 for none
+///     26     kinds 2, 3: last order executed; kind 3: 0 for none
 ///     27     kind 3: order refused     28     kind 3: OrderRefusal
 ///     the last two  checksum of the bytes before
 ///
@@ -89,7 +89,7 @@ using Bytes = std::vector<std::uint8_t>;
 
 /// Nothing when the state does not fit: a sender outside of 0 to 255, a depth outside of -0.005 m to 167 km (a small
 /// negative one is 0), a position beyond 21 000 km, a standard deviation or speed below 0, an order outside of 0 to
-/// 255, a refused one without a reason or a reason without one, or what is no number.
+/// 255, a refused one without a reason or a reason without one, or what is not a number.
 std::optional<Bytes> encode(const AcousticState& state);
 
 /// Nothing when it is no such frame: the length, version, kind or checksum is another, the standard deviations are
@@ -98,7 +98,7 @@ std::optional<Bytes> encode(const AcousticState& state);
 std::optional<AcousticState> decode(std::span<const std::uint8_t> bytes, std::int64_t near_utime);
 
 /// Nothing when the order does not fit: sender, receiver, number, position or depth are out of their ranges as above, a
-/// speed is not within 0.01 to 655.35 m/s, or what is no number.
+/// speed is not within 0.01 to 655.35 m/s, or what is not a number.
 std::optional<Bytes> encode(const AcousticOrder& order);
 
 /// As decode(), for orders.

@@ -9,7 +9,7 @@ namespace autonomy {
 
 namespace {
 
-/// Nobody drives quite as it said for as long as the report travels: the speed may have changed by this.
+/// A rover deviates from its reported motion over the time that the report travels: the speed may have changed by this.
 constexpr double speed_change_std_mps = 0.3;
 
 }  // namespace
@@ -31,9 +31,9 @@ void PositionReports::receive(const shoal::modem_received_t& packet) {
     throw shoal::MessageError("'" + packet.source + "' sent a position report in the name of '" + report.vehicle + "'");
   if (!(report.position_std_m > 0)) throw shoal::MessageError("a position report must have position_std_m > 0");
   if (std::hypot(report.velocity_mps[0], report.velocity_mps[1]) > max_speed_mps)
-    throw shoal::MessageError("a position report says its rover is faster than any rover");
+    throw shoal::MessageError("a position report has an implausible speed");
   // Both by the clock of the sender.
-  if (report.utime > packet.sent_utime) throw shoal::MessageError("a position report is from the future");
+  if (report.utime > packet.sent_utime) throw shoal::MessageError("a position report has a time stamp in the future");
   unused_[report.vehicle] = std::move(report);
 }
 

@@ -16,10 +16,10 @@
 
 namespace autonomy {
 
-/// What to give a modem, so that everybody hears the report.
+/// Message for a modem that broadcasts the report.
 shoal::modem_send_t broadcast(const shoal::position_report_t& report);
 
-/// The last report of each other rover, as it came over the modem.
+/// The last report of each other rover, as received over the modem.
 class PositionReports {
  public:
   static constexpr double oldest_s = 3.0;
@@ -30,7 +30,7 @@ class PositionReports {
     double std_m;
   };
 
-  /// Throws shoal::MessageError when the bytes are no report that can be believed: anybody may send anything.
+  /// Throws shoal::MessageError when the bytes are not a plausible report: any program may send anything.
   void receive(const shoal::modem_received_t& packet);
   /// Where a rover is at `utime` by its last report, and that report is used up: its error would count again
   /// and again with every sighting, though it is the same.  Nothing when there is no unused report or it is

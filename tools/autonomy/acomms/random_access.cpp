@@ -14,8 +14,8 @@ RandomAccess::RandomAccess(double mean_s, double jitter, std::uint64_t seed, std
 
 bool RandomAccess::take_turn(std::int64_t utime) {
   // Farther ahead than the longest interval: the clock was set back.
-  const std::int64_t longest_us = std::llround(1e6 * mean_s_ * (1 + jitter_));
-  if (next_utime_ && *next_utime_ - utime > longest_us) next_utime_.reset();
+  const std::int64_t max_us = std::llround(1e6 * mean_s_ * (1 + jitter_));
+  if (next_utime_ && *next_utime_ - utime > max_us) next_utime_.reset();
   if (next_utime_ && utime < *next_utime_) return false;
   random_.begin_step(turns_++);
   const double interval_s = mean_s_ * (next_utime_ ? 1 + jitter_ * (2 * random_.uniform() - 1) : random_.uniform());

@@ -13,21 +13,21 @@
 
 namespace autonomy {
 
-/// What to give an acoustic modem, so that everybody hears the state.  Nothing when it does not fit into a frame.
+/// Message for an acoustic modem that broadcasts the state.  Nothing when it does not fit into a frame.
 std::optional<shoal::modem_send_t> to_everybody(const AcousticState& state);
 std::optional<shoal::modem_send_t> to_everybody(const AcousticOrder& order);
 
-/// The state in a packet.  Nothing when it is no good frame, or when it is of more than a minute before or after the
-/// sending: such a one helps nobody.
+/// The state in a packet.  Nothing when it is not a valid frame, or when its time differs by more than a minute from
+/// that of sending: it would be useless.
 std::optional<AcousticState> state_in(const shoal::acoustic_received_t& packet);
 std::optional<AcousticState> state_in(const shoal::modem_received_t& packet);
 
 /// As state_in(), for orders.
 std::optional<AcousticOrder> order_in(const shoal::acoustic_received_t& packet);
 
-/// Tells states that came from their sender from those that a gateway passed on: the sound of such a one began
-/// elsewhere, and its travel time says nothing of the sender.  Direct is what was sent within `newest_s` of the time of
-/// the state, by whoever was first heard with this sender's number.  A relayed state is older: its packet was whole
+/// Distinguishes states received directly from their sender from those forwarded by a gateway, whose travel time is
+/// unrelated to the sender.  Direct means sent within `newest_s` of the time of the state, by the vehicle first
+/// received with this sender's number.  A relayed state is older: its packet was whole
 /// before it was passed on, which takes seconds under water.
 class DirectStates {
  public:

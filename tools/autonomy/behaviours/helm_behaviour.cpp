@@ -17,7 +17,7 @@ double direction_of(const Vector2d& v) {
 }
 
 /// Slower than this a vehicle has no course, only noise.
-constexpr double least_speed_mps = 0.2;
+constexpr double min_speed_mps = 0.2;
 
 }  // namespace
 
@@ -57,30 +57,30 @@ Course CircleBehaviour::steer(const Motion& own) {
 }
 
 HoldBehaviour::HoldBehaviour(const CircleBehaviour::Params& hold)
-    : way_({hold.centre_W}, {.speed_mps = hold.speed_mps, .lookahead_m = hold.lookahead_m}), circle_(hold) {}
+    : path_({hold.centre_W}, {.speed_mps = hold.speed_mps, .lookahead_m = hold.lookahead_m}), circle_(hold) {}
 
 Course HoldBehaviour::steer(const Motion& own) {
-  const Course course = way_.steer(own);
-  return way_.finished() ? circle_.steer(own) : course;
+  const Course course = path_.steer(own);
+  return path_.finished() ? circle_.steer(own) : course;
 }
 
-void FollowBehaviour::hear(const std::string& vehicle, const Motion& other) {
+void FollowBehaviour::receive_state(const std::string& vehicle, const Motion& other) {
   if (vehicle != params_.vehicle) return;
   // Much older: the other's clock was set back.
   constexpr std::int64_t oldest_us = 60'000'000;
   if (other_ && other.utime <= other_->utime && other.utime > other_->utime - oldest_us) return;
   other_ = other;
-  if (other.v_W.norm() > least_speed_mps) other_course_rad_ = direction_of(other.v_W);
+  if (other.v_W.norm() > min_speed_mps) other_course_rad_ = direction_of(other.v_W);
 }
 
 std::string FollowBehaviour::remark() const {
-  return other_ ? "" : "it was to follow '" + params_.vehicle + "', and never heard of it";
+  return other_ ? "" : "it has not received any message from '" + params_.vehicle + "', which it was to follow";
 }
 
 std::optional<Vector2d> FollowBehaviour::place_W(std::int64_t utime) const {
   if (!other_) return std::nullopt;
   const double age_s = static_cast<double>(utime - other_->utime) * 1e-6;
-  if (std::abs(age_s) > params_.forget_s) return std::nullopt;
+  if (std::abs(age_s) > params_.discard_after_s) return std::nullopt;
   return Vector2d(other_->p_W + other_->v_W * age_s + turned({params_.ahead_m, params_.left_m}, other_course_rad_));
 }
 
@@ -89,23 +89,23 @@ Course FollowBehaviour::steer(const Motion& own) {
   if (!goal_W) return {0, direction_of(own.v_W)};
   const Vector2d error_W = *goal_W - own.p_W;
   const double other_mps = other_->v_W.norm();
-  const double near_m = (other_mps > least_speed_mps ? 4 : 1) * params_.lookahead_m;
+  const double near_m = (other_mps > min_speed_mps ? 4 : 1) * params_.lookahead_m;
   // From far away it goes straight there.
   if (error_W.norm() > near_m) return {params_.speed_max_mps, direction_of(error_W)};
   // It falls in beside the place, along the other's course; when it is ahead it waits, and does not turn round.
   const Vector2d error_C = turned(error_W, -other_course_rad_);
   const Vector2d aim_C(std::max(error_C.x(), 0.0) + params_.lookahead_m, error_C.y());
-  const double wanted_mps = other_mps + params_.catch_up_per_s * error_C.x();
-  return {std::clamp(wanted_mps, 0.0, params_.speed_max_mps), direction_of(turned(aim_C, other_course_rad_))};
+  const double desired_mps = other_mps + params_.catch_up_per_s * error_C.x();
+  return {std::clamp(desired_mps, 0.0, params_.speed_max_mps), direction_of(turned(aim_C, other_course_rad_))};
 }
 
 std::vector<Vector2d> zigzag(const Vector2d& from_W, const Vector2d& to_W, double amplitude_m, int legs) {
   if (legs < 1 || legs > 10'000) throw std::invalid_argument("a zigzag has 1 to 10000 legs");
-  const Vector2d way_W = to_W - from_W;
-  const Vector2d left_W = turned({0, amplitude_m}, direction_of(way_W));
+  const Vector2d displacement_W = to_W - from_W;
+  const Vector2d left_W = turned({0, amplitude_m}, direction_of(displacement_W));
   std::vector<Vector2d> waypoints;
   for (int i = 0; i < legs; ++i)
-    waypoints.push_back(from_W + (i + 0.5) / legs * way_W + (i % 2 == 0 ? 1 : -1) * left_W);
+    waypoints.push_back(from_W + (i + 0.5) / legs * displacement_W + (i % 2 == 0 ? 1 : -1) * left_W);
   waypoints.push_back(to_W);
   return waypoints;
 }

@@ -33,13 +33,13 @@ class HelmBehaviour {
   /// A copy, as it is now: a program goes back with the world.
   virtual std::unique_ptr<HelmBehaviour> clone() const = 0;
   /// What another vehicle said of itself.
-  virtual void hear(const std::string& /*vehicle*/, const Motion& /*other*/) {}
+  virtual void receive_state(const std::string& /*vehicle*/, const Motion& /*other*/) {}
   virtual bool finished() const { return false; }
-  /// What is to be said of it at the end of a run; empty: nothing.
+  /// Remark for the end of a run; empty: none.
   virtual std::string remark() const { return {}; }
 };
 
-/// Along the legs of a route, the first of which begins where it is first asked.  A leg is followed by line of sight:
+/// Follows the legs of a route, the first of which starts at the first position.  A leg is followed by line of sight:
 /// towards the point on it that is `lookahead_m` ahead.  A current across leaves an offset of lookahead * tan(drift
 /// angle).
 class RouteBehaviour final : public HelmBehaviour {
@@ -93,11 +93,11 @@ class HoldBehaviour final : public HelmBehaviour {
   std::unique_ptr<HelmBehaviour> clone() const override { return std::make_unique<HoldBehaviour>(*this); }
 
  private:
-  RouteBehaviour way_;
+  RouteBehaviour path_;
   CircleBehaviour circle_;
 };
 
-/// At a place beside or behind another vehicle, as that one last said where it is and how it moves.
+/// Keeps a place relative to another vehicle, by the last position and motion that it reported.
 class FollowBehaviour final : public HelmBehaviour {
  public:
   struct Params {
@@ -107,12 +107,13 @@ class FollowBehaviour final : public HelmBehaviour {
     double speed_max_mps = 2;
     double lookahead_m = 15;
     double catch_up_per_s = 0.05;  ///< of the distance along the course, added to the other's speed
-    double forget_s = 300;         ///< without news for so long it stands still; also when they are so far ahead
+    double discard_after_s =
+        300;  ///< maximum age of the other's state, after which it stops; also for states this far ahead
   };
   explicit FollowBehaviour(const Params& params) : params_(params) {}
-  /// News of the other; older ones than it has are of no use, unless by more than a minute: then its clock was set.
-  void hear(const std::string& vehicle, const Motion& other) override;
-  /// Stands still until it has heard of the other.
+  /// A state of the other; older ones than the last are ignored, unless by more than a minute: then its clock was set.
+  void receive_state(const std::string& vehicle, const Motion& other) override;
+  /// Stands still until it has received a state of the other.
   Course steer(const Motion& own) override;
   std::unique_ptr<HelmBehaviour> clone() const override { return std::make_unique<FollowBehaviour>(*this); }
   std::string remark() const override;

@@ -17,7 +17,7 @@ std::unique_ptr<HelmBehaviour> make_route(std::vector<Vector2d> waypoints_W, dou
 /// Round a point, counter-clockwise.
 std::unique_ptr<HelmBehaviour> make_circle(const Vector2d& centre_W, double radius_m, double speed_mps);
 
-/// To and fro across the line between two points.
+/// Back and forth across the line between two points.
 std::unique_ptr<HelmBehaviour> make_zigzag(const Vector2d& from_W, const Vector2d& to_W, double amplitude_m, int legs,
                                            double speed_mps, bool loop);
 

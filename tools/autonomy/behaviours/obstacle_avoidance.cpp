@@ -16,7 +16,7 @@ constexpr int directions_each_side = 16;  // up to 80 degrees; the fan ends at 9
 
 }  // namespace
 
-double ObstacleAvoidance::free_way_m(const Scan& scan, double direction_rad) const {
+double ObstacleAvoidance::free_distance_m(const Scan& scan, double direction_rad) const {
   double free_m = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < scan.ranges_m.size(); ++i) {
     const double range_m = scan.ranges_m[i];
@@ -37,7 +37,7 @@ bool ObstacleAvoidance::choose_direction(const Vector2d& goal_B, const Scan& sca
   double lowest = std::numeric_limits<double>::infinity();
   for (int i = -directions_each_side; i <= directions_each_side; ++i) {
     const double candidate = i * direction_step_rad;
-    if (free_way_m(scan, candidate) < needed_m) continue;
+    if (free_distance_m(scan, candidate) < needed_m) continue;
     const double cost = std::abs(sim::wrap_angle(candidate - goal_rad)) +
                         habit * std::abs(candidate - last_direction_rad_) + (candidate > 0 ? keep_right_rad : 0.0);
     if (cost >= lowest) continue;
@@ -62,14 +62,14 @@ Twist ObstacleAvoidance::turn_out(const Scan& scan) {
 
 Twist ObstacleAvoidance::steer(const Vector2d& goal_B, const Scan& scan) {
   double direction_rad = 0;
-  // Once it turns on the spot it goes on in that sense until the way ahead is free; otherwise the two sides
-  // of a corner would send it to and fro.
-  const bool out = turning_out_ == 0 || free_way_m(scan, 0) >= params_.slow_m;
+  // Once it turns on the spot it continues in that sense until the way ahead is free; otherwise the two sides
+  // of a corner would send it back and forth.
+  const bool out = turning_out_ == 0 || free_distance_m(scan, 0) >= params_.slow_m;
   if (!out || !choose_direction(goal_B, scan, direction_rad)) return turn_out(scan);
   turning_out_ = 0;
   last_direction_rad_ = direction_rad;
   const double turn = std::clamp(1.5 * direction_rad, -params_.max_turn_radps, params_.max_turn_radps);
-  const double ahead_m = free_way_m(scan, 0);
+  const double ahead_m = free_distance_m(scan, 0);
   const double room = std::clamp((ahead_m - params_.stop_m) / (params_.slow_m - params_.stop_m), 0.0, 1.0);
   // Slow in a sharp turn: the wheels must not slip, and what is beside the lane comes near.
   const double straightness = std::max(0.0, std::cos(direction_rad));

@@ -24,7 +24,7 @@ class ObstacleAvoidance {
 
   Twist steer(const Vector2d& goal_B, const Scan& scan);
   /// How far the lane in a direction is free.
-  double free_way_m(const Scan& scan, double direction_rad) const;
+  double free_distance_m(const Scan& scan, double direction_rad) const;
 
  private:
   /// The free direction that costs least; false when there is none.

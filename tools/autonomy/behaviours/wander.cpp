@@ -9,11 +9,11 @@ Twist Wander::step(const Scan& scan) {
   const bool blocked = nearest_m(scan, beams / 3, beams - beams / 3) < turn_below_m;
   const bool close = nearest_m(scan, 0, beams) < stop_below_m;
   if (turn_left_ == 0 && (blocked || close))
-    turn_left_ = shortest_turn + static_cast<int>(random_.integer_below(longest_turn - shortest_turn + 1));
+    turn_left_ = shortest_turn + static_cast<int>(random_.integer_below(max_turn - shortest_turn + 1));
   const bool turning = turn_left_ > 0;
   if (turning) --turn_left_;
   Twist twist{turning ? turning_forward_mps : forward_mps, turning ? turn_radps : 0.0};
-  // It still turns when it has stopped, or it would stand there for ever.
+  // It still turns when it has stopped, or it would stand there forever.
   if (close) twist.forward_mps = 0;
   return twist;
 }

@@ -20,7 +20,7 @@ class Wander {
   static constexpr double turn_below_m = 1.0;  ///< of the middle third of the scan
   static constexpr double stop_below_m = 0.3;  ///< of the whole scan
   static constexpr int shortest_turn = 10;     ///< steps
-  static constexpr int longest_turn = 19;
+  static constexpr int max_turn = 19;
 
   /// `name`: of the vehicle; each has its own random stream.
   Wander(std::uint64_t seed, std::string_view name) : random_(seed, name) {}

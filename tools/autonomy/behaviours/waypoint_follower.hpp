@@ -12,7 +12,7 @@ class WaypointFollower {
  public:
   struct Params {
     double reached_m = 1.0;   ///< nearer than this a waypoint counts as reached
-    double give_up_s = 30.0;  ///< a waypoint that came no nearer for so long is skipped: something stands on it
+    double give_up_s = 30.0;  ///< a waypoint without progress for this time is skipped: it may be occupied
   };
 
   /// Throws std::invalid_argument without waypoints.

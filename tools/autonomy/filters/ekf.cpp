@@ -25,10 +25,11 @@ void Ekf::predict(const Increment& move) {
   Eigen::Matrix3d R_WB = Eigen::Matrix3d::Identity();
   R_WB.topLeftCorner<2, 2>() << c, -s, s, c;
 
-  const double way_m = std::hypot(move.forward_m, move.left_m);
+  const double distance_m = std::hypot(move.forward_m, move.left_m);
   Eigen::Matrix3d Q_B = Eigen::Matrix3d::Zero();
-  Q_B.diagonal() << squared(params_.along_std_m) * way_m, squared(params_.across_std_m) * way_m,
-      squared(params_.yaw_per_turn_std_rad) * std::abs(move.turn_rad) + squared(params_.yaw_per_metre_std_rad) * way_m;
+  Q_B.diagonal() << squared(params_.along_std_m) * distance_m, squared(params_.across_std_m) * distance_m,
+      squared(params_.yaw_per_turn_std_rad) * std::abs(move.turn_rad) +
+          squared(params_.yaw_per_metre_std_rad) * distance_m;
 
   pose_.p_W += moved_W;
   pose_.yaw_rad = sim::wrap_angle(pose_.yaw_rad + move.turn_rad);
@@ -74,8 +75,8 @@ bool Ekf::update(const Vector2d& innovation, const Jacobian& H, const Eigen::Mat
 }
 
 void Ekf::count_refusal() {
-  if (++refusals_ < params_.most_refusals) return;
-  // So many outliers in a row are none: a filter that is sure and wrong would refuse for ever.
+  if (++refusals_ < params_.max_refusals) return;
+  // So many outliers in a row are none: a filter that is sure and wrong would refuse forever.
   refusals_ = 0;
   P_.diagonal() += Eigen::Vector3d(squared(5.0), squared(5.0), squared(0.5));
 }

@@ -18,7 +18,7 @@ class Ekf {
     double yaw_per_turn_std_rad = 0.04;    ///< after a turn of 1 rad
     double yaw_per_metre_std_rad = 0.015;  ///< after 1 m
     double gate = 13.82;                   ///< Mahalanobis distance squared: 99.9 % of chi-square with 2 degrees
-    int most_refusals = 10;                ///< in a row, before the estimate is held to be the wrong one
+    int max_refusals = 10;                 ///< in a row, before the estimate is held to be the wrong one
   };
 
   Ekf(const Pose2& start, double position_std_m, double yaw_std_rad)

@@ -10,7 +10,7 @@ namespace autonomy {
 
 namespace {
 
-constexpr double longest_memory_s = 60;
+constexpr double max_memory_s = 60;
 constexpr double bad_clock_mps = 0.15;  ///< 100 ppm, the worst of usual quartz clocks, by the speed of sound
 
 Vector2d left_of(const Vector2d& v) {
@@ -31,8 +31,8 @@ MarineEkf::MarineEkf(std::int64_t utime, const Vector2d& p_W, double position_st
   marks_.push_back({utime, Vector2d::Zero()});
 }
 
-Vector2d MarineEkf::corrected(const Vector2d& way_W) const {
-  return (1 + x_[3]) * turned(way_W, x_[2]);
+Vector2d MarineEkf::corrected(const Vector2d& displacement_W) const {
+  return (1 + x_[3]) * turned(displacement_W, x_[2]);
 }
 
 Vector2d MarineEkf::velocity() const {
@@ -42,11 +42,11 @@ Vector2d MarineEkf::velocity() const {
 void MarineEkf::predict(std::int64_t utime, const Vector2d& v_measured_W, double more_noise_mpsprtHz) {
   if (utime <= utime_ || !v_measured_W.allFinite()) return;
   const double dt_s = seconds(utime - utime_);
-  const Vector2d way_W = v_measured_W * dt_s;
-  const Vector2d moved_W = corrected(way_W);
+  const Vector2d displacement_W = v_measured_W * dt_s;
+  const Vector2d moved_W = corrected(displacement_W);
   Covariance F = Covariance::Identity();
   F.block<2, 1>(0, 2) = left_of(moved_W);
-  F.block<2, 1>(0, 3) = turned(way_W, x_[2]);
+  F.block<2, 1>(0, 3) = turned(displacement_W, x_[2]);
   F(4, 5) = dt_s;
 
   const double speed_mps = v_measured_W.norm();
@@ -69,8 +69,8 @@ void MarineEkf::predict(std::int64_t utime, const Vector2d& v_measured_W, double
   P_ = F * P_ * F.transpose() + Q * dt_s;
   v_measured_W_ = v_measured_W;
   utime_ = utime;
-  marks_.push_back({utime, marks_.back().way_W + way_W});
-  while (seconds(utime - marks_[1].utime) > longest_memory_s) marks_.pop_front();
+  marks_.push_back({utime, marks_.back().displacement_W + displacement_W});
+  while (seconds(utime - marks_[1].utime) > max_memory_s) marks_.pop_front();
 }
 
 void MarineEkf::shift_clock(std::int64_t by_us, double range_m, double range_std_m) {
@@ -85,34 +85,36 @@ void MarineEkf::shift_clock(std::int64_t by_us, double range_m, double range_std
   P_(4, 4) = squared(range_std_m);
 }
 
-std::optional<Vector2d> MarineEkf::way_since(std::int64_t utime) const {
+std::optional<Vector2d> MarineEkf::distance_since(std::int64_t utime) const {
   if (utime >= utime_) return Vector2d(-v_measured_W_ * seconds(utime - utime_));
   if (utime < marks_.front().utime) return std::nullopt;
   const auto after = std::upper_bound(marks_.begin(), marks_.end(), utime,
                                       [](std::int64_t time, const Mark& mark) { return time < mark.utime; });
   const auto before = std::prev(after);
   const double part = seconds(utime - before->utime) / seconds(after->utime - before->utime);
-  return Vector2d(marks_.back().way_W - before->way_W - part * (after->way_W - before->way_W));
+  return Vector2d(marks_.back().displacement_W - before->displacement_W -
+                  part * (after->displacement_W - before->displacement_W));
 }
 
 Vector2d MarineEkf::position_at(std::int64_t utime) const {
-  const auto way_W = way_since(std::max(utime, marks_.front().utime));
-  return position() - corrected(*way_W);
+  const auto displacement_W = distance_since(std::max(utime, marks_.front().utime));
+  return position() - corrected(*displacement_W);
 }
 
-Eigen::Matrix<double, 2, MarineEkf::max_states> MarineEkf::earlier_position_jacobian(const Vector2d& way_W) const {
+Eigen::Matrix<double, 2, MarineEkf::max_states> MarineEkf::earlier_position_jacobian(
+    const Vector2d& displacement_W) const {
   Eigen::Matrix<double, 2, max_states> J = Eigen::Matrix<double, 2, max_states>::Zero();
   J.leftCols<2>().setIdentity();
-  J.col(2) = -left_of(corrected(way_W));
-  J.col(3) = -turned(way_W, x_[2]);
+  J.col(2) = -left_of(corrected(displacement_W));
+  J.col(3) = -turned(displacement_W, x_[2]);
   return J;
 }
 
 MarineEkf::Outcome MarineEkf::update_position(std::int64_t utime, const Vector2d& p_W, double std_m) {
-  const auto way_W = way_since(utime);
-  if (!way_W) return Outcome::too_old;
-  const Vector2d innovation = p_W - (position() - corrected(*way_W));
-  const Eigen::Matrix<double, 2, max_states> H = earlier_position_jacobian(*way_W);
+  const auto displacement_W = distance_since(utime);
+  if (!displacement_W) return Outcome::too_old;
+  const Vector2d innovation = p_W - (position() - corrected(*displacement_W));
+  const Eigen::Matrix<double, 2, max_states> H = earlier_position_jacobian(*displacement_W);
   const Eigen::Matrix2d R = squared(std_m) * Eigen::Matrix2d::Identity();
   const Eigen::Matrix2d S = H * P_ * H.transpose() + R;
   last_nis_ = innovation.dot(S.inverse() * innovation);
@@ -120,8 +122,8 @@ MarineEkf::Outcome MarineEkf::update_position(std::int64_t utime, const Vector2d
   // Written so that NaN is refused.
   if (!(last_nis_ <= params_.position_gate)) {
     ++refused_;
-    if (!innovation.allFinite() || ++refused_positions_ < params_.most_refusals) return Outcome::refused;
-    // So many outliers in a row are none: a filter that is sure and wrong would refuse for ever.
+    if (!innovation.allFinite() || ++refused_positions_ < params_.max_refusals) return Outcome::refused;
+    // So many outliers in a row are none: a filter that is sure and wrong would refuse forever.
     P_.topLeftCorner<2, 2>() += innovation.squaredNorm() * Eigen::Matrix2d::Identity();
     ++inflated_;
     outcome = Outcome::inflated;
@@ -132,15 +134,15 @@ MarineEkf::Outcome MarineEkf::update_position(std::int64_t utime, const Vector2d
 }
 
 MarineEkf::Outcome MarineEkf::update_range(const Range& range, const MarineEkf* without_ranges) {
-  const auto way_W = way_since(range.utime);
-  if (!way_W) return Outcome::too_old;
-  const Vector2d then_W = position() - corrected(*way_W);
+  const auto displacement_W = distance_since(range.utime);
+  if (!displacement_W) return Outcome::too_old;
+  const Vector2d then_W = position() - corrected(*displacement_W);
   const Vector2d d_W = then_W - range.p_WS.head<2>();
   const double distance_m = std::hypot(d_W.x(), d_W.y(), range.own_z_m - range.p_WS.z());
   const Vector2d u = d_W / std::max(distance_m, 1.0);  // of a unit vector in space, the part in the plane
   const double since_s = seconds(utime_ - range.utime);
 
-  Row H = u.transpose() * earlier_position_jacobian(*way_W);
+  Row H = u.transpose() * earlier_position_jacobian(*displacement_W);
   const double position_variance = H * P_ * H.transpose();
   H(0, 4) = 1;
   H(0, 5) = -since_s;
@@ -180,25 +182,25 @@ MarineEkf::Outcome MarineEkf::update_range(const Range& range, const MarineEkf* 
 
 MarineEkf::Opinion MarineEkf::opinion_of(int beacon, double innovation_m, double variance_m2) {
   Trust& trust = trust_[beacon];
-  // A filter that hears nobody else grows unsure, which is no reason to believe who was wrong when it was sure.
+  // A filter without other messages becomes uncertain, which is not a reason to believe who was wrong when it was sure.
   const bool in_doubt = trust.doubted_at_m2 > 0;
   const double variance_now_m2 = in_doubt ? std::min(variance_m2, trust.doubted_at_m2) : variance_m2;
   if (squared(innovation_m) > params_.range_gate * variance_now_m2) {
     trust.agreements = 0;
-    if (++trust.refusals >= params_.most_refusals && !in_doubt) trust.doubted_at_m2 = variance_m2;
+    if (++trust.refusals >= params_.max_refusals && !in_doubt) trust.doubted_at_m2 = variance_m2;
     return Opinion::contradicts;
   }
   trust.refusals = 0;
-  if (in_doubt && ++trust.agreements < params_.most_refusals) return Opinion::agrees_in_doubt;
+  if (in_doubt && ++trust.agreements < params_.max_refusals) return Opinion::agrees_in_doubt;
   trust = {};
   return Opinion::agrees;
 }
 
-std::optional<MarineEkf::ClockError> MarineEkf::error_behind(const Contradiction& last, bool can_start_anew) {
+std::optional<MarineEkf::ClockError> MarineEkf::error_behind(const Contradiction& last, bool can_restart) {
   contradictions_.push_back(last);
-  if (contradictions_.size() > 2 * static_cast<std::size_t>(params_.most_refusals)) contradictions_.pop_front();
+  if (contradictions_.size() > 2 * static_cast<std::size_t>(params_.max_refusals)) contradictions_.pop_front();
   auto error = common_error();
-  return error || !can_start_anew ? error : anything_but_the_ranges();
+  return error || !can_restart ? error : error_besides_ranges();
 }
 
 bool MarineEkf::several_beacons_contradict() const {
@@ -206,8 +208,8 @@ bool MarineEkf::several_beacons_contradict() const {
                      [&](const Contradiction& each) { return each.beacon != contradictions_.front().beacon; });
 }
 
-std::optional<MarineEkf::ClockError> MarineEkf::anything_but_the_ranges() const {
-  const auto many = 2 * static_cast<std::size_t>(params_.most_refusals);
+std::optional<MarineEkf::ClockError> MarineEkf::error_besides_ranges() const {
+  const auto many = 2 * static_cast<std::size_t>(params_.max_refusals);
   if (ranges_used_ == 0 || contradictions_.size() < many || !several_beacons_contradict()) return std::nullopt;
   ClockError error;
   for (const Contradiction& each : contradictions_)
@@ -217,7 +219,7 @@ std::optional<MarineEkf::ClockError> MarineEkf::anything_but_the_ranges() const 
 
 std::optional<MarineEkf::ClockError> MarineEkf::common_error() const {
   const auto& all = contradictions_;
-  if (params_.states <= 4 || all.size() < static_cast<std::size_t>(params_.most_refusals) ||
+  if (params_.states <= 4 || all.size() < static_cast<std::size_t>(params_.max_refusals) ||
       !several_beacons_contradict())
     return std::nullopt;
   // A weighted straight line through them, over the time before the last.

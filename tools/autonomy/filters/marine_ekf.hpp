@@ -19,7 +19,7 @@ namespace autonomy {
 ///     4     range bias c (m): speed of sound times how far the own clock is ahead of the beacons'
 ///     5     drift of c (m/s)
 ///
-/// `states` of Params says how many of them it estimates; the others stay 0.  Times are by the vehicle's own clock.  A
+/// `states` of Params is the number of estimated states; the others stay 0.  Times are by the vehicle's own clock.  A
 /// measurement may be older than the last prediction: a packet is complete seconds after its first sound.
 class MarineEkf {
  public:
@@ -49,7 +49,7 @@ class MarineEkf {
 
     double range_gate = 10.83;     ///< innovation squared over its variance: 99.9 % of chi-square with 1 degree
     double position_gate = 13.82;  ///< the same with 2 degrees
-    int most_refusals = 5;         ///< in a row, before something is held to be wrong, and not only a measurement
+    int max_refusals = 5;          ///< in a row, before something is held to be wrong, and not only a measurement
   };
   struct Range {
     int beacon = 0;          ///< whose
@@ -70,14 +70,15 @@ class MarineEkf {
   MarineEkf(std::int64_t utime, const Vector2d& p_W, double position_std_m, const Params& params);
 
   /// Moves on to `utime` with a velocity over ground as DVL and compass measure it, in the axes of the world.
-  /// `more_noise_mpsprtHz`: what a worse source of velocity adds.  A time that is not later changes nothing.
+  /// `more_noise_mpsprtHz`: what a worse source of velocity adds.  A time that is not later has no effect.
   void predict(std::int64_t utime, const Vector2d& v_measured_W, double more_noise_mpsprtHz = 0);
   /// A position by GPS.
   Outcome update_position(std::int64_t utime, const Vector2d& p_W, double std_m);
-  /// A range that contradicts never makes the position less sure: it is the clock that is wrong when two beacons or
-  /// more contradict by the same amount, or by one that grows evenly; else the beacon, which is then in doubt until it
-  /// agrees again for a while.  Ranges that were used with a wrong clock have taught wrong things: `without_ranges`,
-  /// when it is given, is a filter of the same vehicle that used none, and from which this one starts anew.
+  /// A contradicting range never increases the uncertainty of the position: the clock is wrong when two or more
+  /// beacons contradict by the same amount, or by one that grows linearly; otherwise the beacon, which is then in
+  /// doubt until it has agreed again for a while.  Ranges that were used with a wrong clock have taught wrong things:
+  /// `without_ranges`, when it is given, is a filter of the same vehicle that used none, and from which this one starts
+  /// again.
   Outcome update_range(const Range& range, const MarineEkf* without_ranges = nullptr);
 
   /// The own clock was set: what was at `utime` is now at `utime + by_us`, and ranges are longer by `range_m`, which is
@@ -105,14 +106,14 @@ class MarineEkf {
   /// Way made by the measured velocity, since the beginning.
   struct Mark {
     std::int64_t utime;
-    Vector2d way_W;
+    Vector2d displacement_W;
   };
-  /// Measured way from `utime` to now.  Nothing when that is too long ago.
-  std::optional<Vector2d> way_since(std::int64_t utime) const;
-  /// The estimated way that belongs to a measured one.
-  Vector2d corrected(const Vector2d& way_W) const;
+  /// Measured way from `utime` to now.  Nothing when that is too old.
+  std::optional<Vector2d> distance_since(std::int64_t utime) const;
+  /// The estimated displacement that corresponds to a measured one.
+  Vector2d corrected(const Vector2d& displacement_W) const;
   /// Rows of the derivative of the position at an earlier time, by the state now.
-  Eigen::Matrix<double, 2, max_states> earlier_position_jacobian(const Vector2d& way_W) const;
+  Eigen::Matrix<double, 2, max_states> earlier_position_jacobian(const Vector2d& displacement_W) const;
 
   /// What is known of a beacon.
   struct Trust {
@@ -127,7 +128,7 @@ class MarineEkf {
     double innovation_m;
     double variance_m2;  ///< without what the clock's states add
   };
-  /// By how much the own clock is ahead of what it was taken for, and gains, in range.
+  /// Correction of the own clock's lead, and gains, in range.
   struct ClockError {
     double now_m = 0;
     double rate_mps = 0;
@@ -136,13 +137,13 @@ class MarineEkf {
   enum class Opinion { agrees, agrees_in_doubt, contradicts, nonsense };
 
   Opinion opinion_of(int beacon, double innovation_m, double variance_m2);
-  /// What the last contradiction and those before it say of the clock; nothing: they may be the beacons' fault.
-  std::optional<ClockError> error_behind(const Contradiction& last, bool can_start_anew);
+  /// Clock error that explains the last contradictions; nothing: the beacons may be at fault.
+  std::optional<ClockError> error_behind(const Contradiction& last, bool can_restart);
   /// What all contradictions say alike, when they are of two beacons or more.
   std::optional<ClockError> common_error() const;
   /// When none of the last ranges of several beacons fits, though some did before: what those have taught is wrong.
   /// The clock may be off by as much as the ranges are.
-  std::optional<ClockError> anything_but_the_ranges() const;
+  std::optional<ClockError> error_besides_ranges() const;
   bool several_beacons_contradict() const;
   void open_clock(const ClockError& error);
   void take_motion_of(const MarineEkf& other);

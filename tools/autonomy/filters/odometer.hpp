@@ -12,7 +12,7 @@ struct Increment {
   double turn_rad = 0;
 };
 
-/// Turns the sums that odometry reports into the moves between them, and into a pose of its own.
+/// Converts the accumulated odometry to increments, and to its own pose frame.
 class Odometer {
  public:
   explicit Odometer(const Pose2& start) : start_(start) {}

@@ -29,7 +29,7 @@ inline Vector2d turned(const Vector2d& v, double angle_rad) {
   return {c * v.x() - s * v.y(), s * v.x() + c * v.y()};
 }
 
-/// What nobody knows, in messages and estimates.
+/// Unknown value in messages and estimates.
 inline constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
 inline double squared(double x) {

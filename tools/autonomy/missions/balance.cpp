@@ -11,10 +11,10 @@ namespace autonomy {
 
 namespace {
 
-/// A lean that is later than this does not belong to the same clock.
-constexpr double most_late_s = 0.1;
-/// From one lean to the next; after more than this their difference is no rate.
-constexpr double lean_gap_s = 1;
+/// A tilt that is later than this does not belong to the same clock.
+constexpr double max_late_s = 0.1;
+/// From one tilt to the next; after more than this their difference is not a rate.
+constexpr double tilt_gap_s = 1;
 
 /// The share of the way to a new value that a low pass goes in a time.
 double share(double time_s, double time_constant_s) {
@@ -36,17 +36,17 @@ Balance::Balance(const Params& params) : params_(params) {
 
 void Balance::receive(const shoal::inclination_t& message) {
   // As floating point numbers: the difference of any two whole ones may be too large for one.
-  const double dt_s = (static_cast<double>(message.utime) - static_cast<double>(lean_utime_)) * 1e-6;
-  const bool late = dt_s <= 0 && dt_s > -most_late_s;
-  if (lean_known_ && late) return;
-  // Other times: the clock was set, or the last message had a time of its own.  The rate stays what it was.
-  if (lean_known_ && dt_s > 0 && dt_s < lean_gap_s) {
-    const double rate_radps = (message.pitch_rad - lean_rad_) / dt_s;
+  const double dt_s = (static_cast<double>(message.utime) - static_cast<double>(tilt_utime_)) * 1e-6;
+  const bool late = dt_s <= 0 && dt_s > -max_late_s;
+  if (tilt_known_ && late) return;
+  // Other times: the clock was set, or the last message had its own time.  The rate stays what it was.
+  if (tilt_known_ && dt_s > 0 && dt_s < tilt_gap_s) {
+    const double rate_radps = (message.pitch_rad - tilt_rad_) / dt_s;
     rate_radps_ += share(dt_s, params_.rate_filter_s) * (rate_radps - rate_radps_);
   }
-  lean_rad_ = message.pitch_rad;
-  lean_utime_ = message.utime;
-  lean_known_ = true;
+  tilt_rad_ = message.pitch_rad;
+  tilt_utime_ = message.utime;
+  tilt_known_ = true;
 }
 
 void Balance::receive(const shoal::wheel_encoder_t& message) {
@@ -67,9 +67,9 @@ void Balance::drive(double forward_mps, double turn_radps) {
 }
 
 std::optional<Balance::Torques> Balance::step() {
-  if (!lean_known_ || !wheels_known_) return std::nullopt;
+  if (!tilt_known_ || !wheels_known_) return std::nullopt;
   const Params& p = params_;
-  if (std::abs(lean_rad_ - p.balanced_lean_rad) > p.fallen_rad) fallen_ = true;
+  if (std::abs(tilt_rad_ - p.balanced_tilt_rad) > p.fallen_rad) fallen_ = true;
   if (fallen_) return Torques{};
 
   // The encoders count how the wheels turn on the body, which turns itself.
@@ -78,20 +78,20 @@ std::optional<Balance::Torques> Balance::step() {
   speed_mps_ += part * (rolled_mps - speed_mps_);
   turn_radps_ += part * (p.wheel_radius_m * (right_radps_ - left_radps_) / p.track_m - turn_radps_);
 
-  const double most_change = p.max_acceleration_mps2 * p.period_s;
-  wanted_mps_ += std::clamp(asked_mps_ - wanted_mps_, -most_change, most_change);
-  const double slow_mps = wanted_mps_ - speed_mps_;
+  const double max_change = p.max_acceleration_mps2 * p.period_s;
+  desired_mps_ += std::clamp(asked_mps_ - desired_mps_, -max_change, max_change);
+  const double slow_mps = desired_mps_ - speed_mps_;
   const double by_speed_rad = p.kv_rad_per_mps * slow_mps;
-  const double by_way_rad = p.ki_rad_per_m * (way_m_ + slow_mps * p.period_s);
-  // The integral stands still while the lean is cut.
-  if (std::abs(by_speed_rad + by_way_rad) < p.max_lean_rad) way_m_ += slow_mps * p.period_s;
-  const double wanted_rad =
-      p.balanced_lean_rad + std::clamp(by_speed_rad + by_way_rad, -p.max_lean_rad, p.max_lean_rad);
+  const double by_distance_rad = p.ki_rad_per_m * (distance_m_ + slow_mps * p.period_s);
+  // The integral stands still while the tilt is cut.
+  if (std::abs(by_speed_rad + by_distance_rad) < p.max_tilt_rad) distance_m_ += slow_mps * p.period_s;
+  const double desired_rad =
+      p.balanced_tilt_rad + std::clamp(by_speed_rad + by_distance_rad, -p.max_tilt_rad, p.max_tilt_rad);
 
-  const double both_Nm = p.kp_Nm_per_rad * (lean_rad_ - wanted_rad) + p.kd_Nms_per_rad * rate_radps_;
+  const double both_Nm = p.kp_Nm_per_rad * (tilt_rad_ - desired_rad) + p.kd_Nms_per_rad * rate_radps_;
   const double slow_radps = asked_turn_radps_ - turn_radps_;
-  const double most_rad = p.turn_ki_Nm_per_rad > 0 ? p.max_torque_Nm / p.turn_ki_Nm_per_rad : 0;
-  turned_rad_ = std::clamp(turned_rad_ + slow_radps * p.period_s, -most_rad, most_rad);
+  const double max_rad = p.turn_ki_Nm_per_rad > 0 ? p.max_torque_Nm / p.turn_ki_Nm_per_rad : 0;
+  turned_rad_ = std::clamp(turned_rad_ + slow_radps * p.period_s, -max_rad, max_rad);
   const double between_Nm = p.turn_gain_Nms_per_rad * slow_radps + p.turn_ki_Nm_per_rad * turned_rad_;
   const auto cut = [&p](double torque_Nm) { return std::clamp(torque_Nm, -p.max_torque_Nm, p.max_torque_Nm); };
   return Torques{cut((both_Nm - between_Nm) / 2), cut((both_Nm + between_Nm) / 2)};

@@ -22,32 +22,32 @@ struct SpeedPoint {
 /// Throws std::invalid_argument when the times do not grow.
 void check_speeds(const std::vector<SpeedPoint>& points);
 
-/// Keeps a two-wheeled inverted pendulum upright and drives it: a PD law from lean to torque of the wheels, and around
-/// it a PI law from speed to lean.  A pure function of the messages in their order: it knows no clock and no bus.
+/// Keeps a two-wheeled inverted pendulum upright and drives it: a PD law from tilt to torque of the wheels, and around
+/// it a PI law from speed to tilt.  A pure function of the messages in their order: it knows no clock and no bus.
 ///
-///     torque = kp (lean - wanted) + kd rate
-///     wanted = balanced lean + kv (wanted speed - speed) + ki * integral of that
+///     torque = kp (tilt - wanted) + kd rate
+///     wanted = balanced tilt + kv (desired speed - speed) + ki * integral of that
 ///
-/// Lean and rate are positive forwards.  To go faster it must lean forwards, so at first it rolls back a little.
+/// Lean and rate are positive forwards.  To go faster it must tilt forwards, so at first it rolls back a little.
 class Balance {
  public:
   struct Params {
     double period_s = 0.01;               ///< between two calls of step()
-    double balanced_lean_rad = -0.17323;  ///< where the centre of mass is over the axle
+    double balanced_tilt_rad = -0.17323;  ///< where the centre of mass is over the axle
     double kp_Nm_per_rad = 300;           ///< both wheels together; less than m g l = 129 cannot hold it
     double kd_Nms_per_rad = 60;
     double kv_rad_per_mps = 0.12;
     double ki_rad_per_m = 0.02;
-    double max_lean_rad = 0.2;  ///< of the wanted lean, from the balanced one
+    double max_tilt_rad = 0.2;  ///< of the desired tilt, from the balanced one
     double max_acceleration_mps2 = 0.5;
     double turn_gain_Nms_per_rad = 40;  ///< torque between the wheels for the error of the turn rate
     double turn_ki_Nm_per_rad = 120;    ///< and for its integral: wide wheels scrub on the ground
-    double rate_filter_s = 0.005;       ///< low pass on the rate of the lean
+    double rate_filter_s = 0.005;       ///< low pass on the rate of the tilt
     double speed_filter_s = 0.05;       ///< low pass on speed and turn rate
     double wheel_radius_m = 0.236;
     double track_m = 0.481;     ///< between the inner edges of its wheels, on which they turn
     double max_torque_Nm = 50;  ///< of each wheel
-    double fallen_rad = 0.8;    ///< so far from the balanced lean it gives up
+    double fallen_rad = 0.8;    ///< tilt from the balanced one at which it gives up
   };
   struct Torques {
     double left_Nm = 0, right_Nm = 0;
@@ -61,25 +61,25 @@ class Balance {
   void receive(const shoal::twist_command_t& message);
   void drive(double forward_mps, double turn_radps);
 
-  /// All reports up to now are in.  Nothing until lean and wheels are known.
+  /// All reports up to now are in.  Nothing until tilt and wheels are known.
   std::optional<Torques> step();
   /// Since it fell it gives no torque.
   bool fallen() const { return fallen_; }
-  double lean_rad() const { return lean_rad_; }
+  double tilt_rad() const { return tilt_rad_; }
   double rate_radps() const { return rate_radps_; }
   double speed_mps() const { return speed_mps_; }
 
  private:
   Params params_;
-  bool lean_known_ = false, wheels_known_ = false, fallen_ = false;
-  std::int64_t lean_utime_ = 0;
-  double lean_rad_ = 0, rate_radps_ = 0;
+  bool tilt_known_ = false, wheels_known_ = false, fallen_ = false;
+  std::int64_t tilt_utime_ = 0;
+  double tilt_rad_ = 0, rate_radps_ = 0;
   double left_radps_ = 0, right_radps_ = 0;  // of the wheels relative to the body
   double speed_mps_ = 0, turn_radps_ = 0;
   double asked_mps_ = 0, asked_turn_radps_ = 0;
-  double wanted_mps_ = 0;  // follows what is asked with a limited acceleration
-  double way_m_ = 0;       // integral of the error of the speed
-  double turned_rad_ = 0;  // integral of the error of the turn rate
+  double desired_mps_ = 0;  // follows what is asked with a limited acceleration
+  double distance_m_ = 0;   // integral of the error of the speed
+  double turned_rad_ = 0;   // integral of the error of the turn rate
 };
 
 }  // namespace autonomy

@@ -12,31 +12,31 @@ using Complex = std::complex<double>;
 BalanceModel::Response BalanceModel::response(Complex s) const {
   const double M = wheels_kg + wheels_kgm2 / (wheel_radius_m * wheel_radius_m), ml = mass_kg * height_m;
   const double determinant = (M + mass_kg) * inertia_kgm2 - ml * ml;
-  const double stiffness = ml * gravity_mps2;  // torque of gravity for a lean
+  const double stiffness = ml * gravity_mps2;  // torque of gravity for a tilt
   const double lean_by_lean = (M + mass_kg) * stiffness / determinant;
-  const double lean_by_torque = -(M + mass_kg + ml / wheel_radius_m) / determinant;
-  const double way_by_lean = -ml * stiffness / determinant;
-  const double way_by_torque = (inertia_kgm2 / wheel_radius_m + ml) / determinant;
-  const Complex lean = lean_by_torque / (s * s - lean_by_lean);
-  return {lean, (way_by_lean * lean + way_by_torque) / s};
+  const double tilt_by_torque = -(M + mass_kg + ml / wheel_radius_m) / determinant;
+  const double distance_by_tilt = -ml * stiffness / determinant;
+  const double distance_by_torque = (inertia_kgm2 / wheel_radius_m + ml) / determinant;
+  const Complex tilt = tilt_by_torque / (s * s - lean_by_lean);
+  return {tilt, (distance_by_tilt * tilt + distance_by_torque) / s};
 }
 
 Complex open_loop(const Balance::Params& law, const BalanceModel& model, double w_radps) {
   const double h = law.period_s;
   const Complex s(0, w_radps), late = std::exp(-s * h);  // one sample later
-  const auto [lean, speed] = model.response(s);
+  const auto [tilt, speed] = model.response(s);
   const auto low_pass = [&](double time_constant_s) {
     const double part = h / (h + time_constant_s);
     return part / (1.0 - (1 - part) * late);
   };
   const Complex difference = (1.0 - late) / h;
-  const Complex rate = difference * low_pass(law.rate_filter_s) * lean;
+  const Complex rate = difference * low_pass(law.rate_filter_s) * tilt;
   // The encoders give the mean rate of the wheels on the body over a period.
-  const Complex rolled = difference * (speed / s - law.wheel_radius_m * lean) + law.wheel_radius_m * rate;
+  const Complex rolled = difference * (speed / s - law.wheel_radius_m * tilt) + law.wheel_radius_m * rate;
   const Complex measured = rolled * low_pass(law.speed_filter_s);
   const Complex sum = h / (1.0 - late);
   const Complex torque =
-      law.kp_Nm_per_rad * (lean + (law.kv_rad_per_mps + law.ki_rad_per_m * sum) * measured) + law.kd_Nms_per_rad * rate;
+      law.kp_Nm_per_rad * (tilt + (law.kv_rad_per_mps + law.ki_rad_per_m * sum) * measured) + law.kd_Nms_per_rad * rate;
   const Complex hold = (1.0 - late) / (s * h);
   return -torque * hold;
 }

@@ -8,7 +8,7 @@
 namespace autonomy {
 
 /// An inverted pendulum on two wheels that roll without slip, linear about its balance.  With the way of the axle x and
-/// the lean a from balance, both forwards, and the torque T of both motors (Lagrange's equations of body and wheels):
+/// the tilt a from balance, both forwards, and the torque T of both motors (Lagrange's equations of body and wheels):
 ///
 ///     (M + m) x'' + m l a'' = T / r        M = mass of the wheels + their inertia / r^2
 ///     m l x'' + J a'' = m g l a - T
@@ -23,7 +23,7 @@ struct BalanceModel {
 
   /// Lean (rad) and speed (m/s) for a torque (N m), at a complex frequency (1/s).
   struct Response {
-    std::complex<double> lean, speed;
+    std::complex<double> tilt, speed;
   };
   Response response(std::complex<double> s) const;
 };
@@ -32,7 +32,7 @@ struct BalanceModel {
 /// the hold of the torque between two samples.  It is stable while 1 + loop has no zero to the right.
 std::complex<double> open_loop(const Balance::Params& law, const BalanceModel& model, double w_radps);
 
-/// How late torque may come after the lean that it answers: the smallest phase margin over its frequency.  For a loop
+/// How late torque may come after the tilt that it answers: the smallest phase margin over its frequency.  For a loop
 /// that is stable without delay.
 struct DelayMargin {
   double delay_s = 0;

@@ -17,7 +17,7 @@ constexpr double coasting_mpsprtHz = 0.5;
 constexpr double pressure_std_m = 0.1;
 /// A stamp may be older than the newest by so much, and newer by that.
 constexpr double late_s = 2;
-constexpr double longest_gap_s = 5;
+constexpr double max_gap_s = 5;
 /// Longer without a velocity, it coasts on the last one.
 constexpr double coast_after_s = 1;
 /// An AHRS, or all that tells a heading, that has been silent for so long is gone.
@@ -25,9 +25,9 @@ constexpr double oldest_attitude_s = 2;
 /// The error of a heading that is not known any more lasts for so long.
 constexpr double lost_heading_s = 60;
 /// All devices together say something more often.
-constexpr double longest_quiet_s = 1;
+constexpr double max_quiet_s = 1;
 /// Sound comes 90 km far in that: no modem does.
-constexpr double longest_travel_s = 60;
+constexpr double max_travel_s = 60;
 
 }  // namespace
 
@@ -35,19 +35,19 @@ CoopAuv::CoopAuv(const Params& params, std::unique_ptr<HelmBehaviour> behaviour)
     : params_(params),
       behaviour_(std::move(behaviour)),
       access_(params.access, params.name),
-      wanted_depth_m_(params.depth_m) {
+      desired_depth_m_(params.depth_m) {
   const MarineEkf checked(0, Vector2d::Zero(), 1, params.filter);
 }
 
 void CoopAuv::note_time(std::int64_t utime) {
-  // Reports come in order but for their latencies, many each second.  After a jump of their stamps, time that passed
-  // for step() too was silence, as when the power failed; the rest means that somebody set the clock.
+  // Reports come in order except for their latencies, many each second.  After a jump of their stamps, time that passed
+  // for step() too was silence, as when the power failed; the rest means that the clock was set.
   const double silence_s = steps_in_silence_ * params_.period_s;
   steps_in_silence_ = 0;
   if (utime_ != 0) {
     const double set_s = seconds(utime - utime_) - silence_s;
-    if (set_s < -late_s || set_s > longest_gap_s) set_clock(std::llround(1e6 * set_s));
-    if (seconds(utime - utime_) > longest_gap_s) coast_over_silence(utime);
+    if (set_s < -late_s || set_s > max_gap_s) set_clock(std::llround(1e6 * set_s));
+    if (seconds(utime - utime_) > max_gap_s) coast_over_silence(utime);
   }
   utime_ = std::max(utime_, utime);
 }
@@ -93,7 +93,7 @@ Eigen::Vector3d CoopAuv::turned_into_world(const Eigen::Vector3d& point_B) const
 
 bool CoopAuv::is_silent() const {
   // Of the steps that are counted, the first ends the period in which something was said.
-  return (steps_in_silence_ - 1) * params_.period_s > longest_quiet_s;
+  return (steps_in_silence_ - 1) * params_.period_s > max_quiet_s;
 }
 
 void CoopAuv::receive(const shoal::dvl_t& dvl) {
@@ -155,7 +155,7 @@ void CoopAuv::receive(const shoal::gps_data_t& fix) {
 void CoopAuv::receive(const shoal::acoustic_received_t& packet) {
   if (const auto order = order_in(packet)) {
     ++counts_.frames;
-    obey(*order);
+    execute(*order);
     return;
   }
   const auto state = state_in(packet);
@@ -168,7 +168,7 @@ void CoopAuv::receive(const shoal::acoustic_received_t& packet) {
     ++counts_.relayed;
     return;
   }
-  behaviour_->hear(packet.source, motion_of(*state));
+  behaviour_->receive_state(packet.source, motion_of(*state));
   if (cooperative_ && params_.use_ranges) use_range(packet, *state);
 }
 
@@ -178,8 +178,8 @@ OrderRefusal CoopAuv::refusal_of(const AcousticOrder& order) const {
   return OrderRefusal::none;
 }
 
-void CoopAuv::obey(const AcousticOrder& order) {
-  if (!params_.obey || order.receiver != params_.id || order.number <= std::max(order_, refused_order_)) return;
+void CoopAuv::execute(const AcousticOrder& order) {
+  if (!params_.execute || order.receiver != params_.id || order.number <= std::max(order_, refused_order_)) return;
   refusal_ = refusal_of(order);
   refused_order_ = refusal_ == OrderRefusal::none ? 0 : order.number;
   if (refused_order_ != 0) {
@@ -191,14 +191,14 @@ void CoopAuv::obey(const AcousticOrder& order) {
   hold.radius_m = params_.hold_radius_m;
   hold.speed_mps = order.speed_mps;
   behaviour_ = std::make_unique<HoldBehaviour>(hold);
-  wanted_depth_m_ = order.depth_m;
+  desired_depth_m_ = order.depth_m;
   order_ = order.number;
   ++counts_.orders;
   if (phase_ == Phase::done) phase_ = Phase::under_way;
 }
 
 void CoopAuv::use_range(const shoal::acoustic_received_t& packet, const AcousticState& beacon) {
-  if (!(std::abs(packet.travel_time_s) < longest_travel_s)) {
+  if (!(std::abs(packet.travel_time_s) < max_travel_s)) {
     ++counts_.refused;
     return;
   }
@@ -250,7 +250,7 @@ shoal::helm_command_t CoopAuv::helm() {
   const Course course = behaviour_->steer({utime_, filter.position_at(utime_), filter.velocity()});
   helm.speed_mps = course.speed_mps;
   helm.heading_rad = course.heading_rad;
-  helm.depth_m = wanted_depth_m_;
+  helm.depth_m = desired_depth_m_;
   return helm;
 }
 

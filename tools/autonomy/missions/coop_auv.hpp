@@ -25,10 +25,10 @@
 
 namespace autonomy {
 
-/// An AUV that finds its place by DVL, heading and depth, and by one-way ranges to those who say by acoustic modem
-/// where they are.  Beside that estimate it keeps one of dead reckoning alone.  It waits at the surface for GPS, dives,
-/// follows its behaviour, and comes up.  A pure function of its reports in their order; its time is that of their
-/// stamps, the vehicle's own clock.
+/// An AUV that localises itself by DVL, heading and depth, and by one-way ranges to vehicles that report their
+/// positions by acoustic modem.  In addition it keeps an estimate by dead reckoning alone.  It waits at the surface for
+/// GPS, dives, follows its behaviour, and comes up.  A pure function of its reports in their order; its time is that of
+/// their stamps, the vehicle's own clock.
 class CoopAuv {
  public:
   struct Params {
@@ -50,8 +50,8 @@ class CoopAuv {
     double start_std_m = 1;
     ChannelAccess::Params access;    ///< for its own state
     double period_s = 0.5;           ///< between two calls of step()
-    bool obey = false;               ///< orders for its id: it goes to the place and circles there
-    double order_depth_max_m = 100;  ///< deeper and faster orders are refused
+    bool execute = false;            ///< orders for its id: it goes to the place and circles there
+    double order_depth_max_m = 100;  ///< deeper and maximum speed of an order
     double order_speed_max_mps = 2.5;
     double hold_radius_m = 30;
   };
@@ -65,12 +65,12 @@ class CoopAuv {
     int frames = 0;
     int bad_frames = 0;
     int ranges = 0;   ///< used
-    int refused = 0;  ///< by the filter, or came too late, or took longer than sound takes anywhere
+    int refused = 0;  ///< by the filter, or too late, or with an impossible travel time
     int sent = 0;
     int clock_steps = 0;
     int silences = 0;        ///< of all devices
     int relayed = 0;         ///< states that did not come from their sender: no ranges
-    int orders = 0;          ///< obeyed
+    int orders = 0;          ///< executed
     int orders_refused = 0;  ///< each once
   };
   enum class Phase { waiting_for_fix, at_surface, under_way, done };
@@ -102,7 +102,7 @@ class CoopAuv {
   bool is_silent() const;
   /// A point of the vehicle relative to that whose place is estimated.
   Eigen::Vector3d turned_into_world(const Eigen::Vector3d& point_B) const;
-  void obey(const AcousticOrder& order);
+  void execute(const AcousticOrder& order);
   OrderRefusal refusal_of(const AcousticOrder& order) const;
   void use_range(const shoal::acoustic_received_t& packet, const AcousticState& beacon);
   void update_phase();
@@ -114,10 +114,10 @@ class CoopAuv {
   Cloned<HelmBehaviour> behaviour_;
   ChannelAccess access_;
   DirectStates direct_;
-  int order_ = 0;          ///< number of the last one obeyed
+  int order_ = 0;          ///< number of the last one executed
   int refused_order_ = 0;  ///< number of the last one refused, when later than that
   OrderRefusal refusal_ = OrderRefusal::none;
-  double wanted_depth_m_ = 0;  ///< when under way
+  double desired_depth_m_ = 0;  ///< when under way
   std::optional<MarineEkf> cooperative_;
   std::optional<MarineEkf> dead_reckoning_;
 

@@ -32,9 +32,9 @@ void CoopCraft::receive(const shoal::acoustic_received_t& packet) {
     ++(order_in(packet) ? counts_.orders : counts_.bad_frames);
     return;
   }
-  ++counts_.heard;
+  ++counts_.received;
   if (direct_.is_direct(packet, *state))
-    behaviour_->hear(packet.source, motion_of(*state));
+    behaviour_->receive_state(packet.source, motion_of(*state));
   else
     ++counts_.relayed;
 }
@@ -42,7 +42,7 @@ void CoopCraft::receive(const shoal::acoustic_received_t& packet) {
 CoopCraft::Decision CoopCraft::step() {
   Decision decision;
   shoal::helm_command_t helm{utime_, 0, unknown, unknown, unknown};
-  // The time is that of GPS: when it is silent there is none, but for the calls of this.
+  // The time is that of GPS: when it is silent there is none, except for the calls of this.
   const bool is_recent = steps_since_fix_++ * params_.period_s <= params_.oldest_fix_s;
   const bool has_fix = is_recent && motion_ && std::abs(seconds(utime_ - motion_->utime)) <= params_.oldest_fix_s;
   if (!motion_) return decision;
@@ -63,7 +63,7 @@ std::string CoopCraft::remark() {
   if (!patient_since_ || utime_ < *patient_since_) patient_since_ = utime_;
   const double waited_s = seconds(utime_ - *patient_since_);
   const std::string text = behaviour_->remark();
-  if (remarked_ || text.empty() || waited_s < params_.patience_s) return {};
+  if (remarked_ || text.empty() || waited_s < params_.timeout_s) return {};
   remarked_ = true;
   return "after " + std::to_string(std::llround(waited_s)) + " s: " + text;
 }

@@ -18,7 +18,7 @@
 
 namespace autonomy {
 
-/// A surface craft that knows by GPS where it is, and tells those below by acoustic modem.  A pure function of its
+/// A surface craft that broadcasts its GPS position by acoustic modem.  A pure function of its
 /// reports in their order; its time is that of the reports' stamps, the vehicle's own clock.
 class CoopCraft {
  public:
@@ -26,9 +26,9 @@ class CoopCraft {
     std::string name;
     int id = 1;                       ///< in its frames
     double transducer_depth_m = 0.5;  ///< of the modem, below the surface
-    double oldest_fix_s = 3;          ///< an older one says nothing of where it is
+    double oldest_fix_s = 3;          ///< an older one is outdated
     double period_s = 0.5;            ///< between two calls of step()
-    double patience_s = 60;           ///< after which it remarks what its behaviour waits for
+    double timeout_s = 60;            ///< after which it remarks what its behaviour waits for
     ChannelAccess::Params access;
   };
   struct Decision {
@@ -39,7 +39,7 @@ class CoopCraft {
   };
   struct Counts {
     int sent = 0;
-    int heard = 0;
+    int received = 0;
     int relayed = 0;  ///< states that did not come from their sender, and are not used
     int orders = 0;   ///< for others
     int bad_frames = 0;

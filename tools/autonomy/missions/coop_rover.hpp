@@ -19,8 +19,8 @@
 
 namespace autonomy {
 
-/// The autonomy of one rover of the cooperative experiment.  A rover with GPS tells the others where it is; a
-/// rover without finds its place from odometry and from sightings of those that told.  A pure function of the
+/// The autonomy of one rover of the cooperative experiment.  A rover with GPS reports its position to the others; a
+/// rover without localises itself by odometry and sightings of those that report.  A pure function of the
 /// messages in their order: it knows no clock and no bus.
 class CoopRover {
  public:
@@ -42,7 +42,7 @@ class CoopRover {
   /// Throws std::invalid_argument without waypoints.
   explicit CoopRover(const Params& params);
 
-  /// The devices whose reports it wants, on NAME.DEVICE.
+  /// The devices whose reports it subscribes to, on NAME.DEVICE.
   static std::span<const std::string_view> devices();
   /// A report of one of those.  Throws shoal::MessageError on bytes it cannot use.
   void receive(std::string_view device, std::span<const std::byte> payload);

@@ -14,7 +14,7 @@ namespace autonomy {
 
 namespace {
 
-constexpr std::size_t most_orders = 255;
+constexpr std::size_t max_orders = 255;
 
 std::string decimal(double number) {
   char text[32];
@@ -46,10 +46,10 @@ shoal::estimate_t estimate_of(const AcousticState& state) {
 
 CoopStation::CoopStation(const Params& params) : params_(params), access_(params.access, params.name) {
   const auto& orders = params_.orders;
-  if (orders.size() > most_orders) throw std::invalid_argument("there may be up to 255 orders");
+  if (orders.size() > max_orders) throw std::invalid_argument("there may be up to 255 orders");
   for (std::size_t i = 0; i < orders.size(); ++i) {
     if (!(orders[i].at_s >= (i == 0 ? 0 : orders[i - 1].at_s)))
-      throw std::invalid_argument("the times of the orders must be >= 0 and must not go back");
+      throw std::invalid_argument("the times of the orders must be >= 0 and must not decrease");
     if (!acoustic_frame::encode(order(static_cast<int>(i + 1))))
       throw std::invalid_argument("order " + std::to_string(i + 1) +
                                   " does not fit into a frame: depth >= 0 m, speed 0.01 to 655 m/s, ids 0 to 255");
@@ -75,21 +75,21 @@ void CoopStation::receive(const shoal::modem_received_t& packet) {
   if (state->sender != params_.to_id || (state_ && state->utime <= state_->utime)) return;
   ++counts_.states;
   state_ = state;
-  has_news_ = true;
+  has_update_ = true;
   note_answer(*state);
 }
 
 void CoopStation::note_answer(const AcousticState& state) {
   answered_ = std::max(state.order, state.refused_order);
-  last_obeyed_ = std::max(last_obeyed_, state.order);
+  last_executed_ = std::max(last_executed_, state.order);
   if (state.refused_order <= (refused_.empty() ? 0 : refused_.back())) return;
   refused_.push_back(state.refused_order);
   ++counts_.refused;
-  news_ = "order " + std::to_string(state.refused_order) + " was refused: " + to_text(state.refusal);
+  status_ = "order " + std::to_string(state.refused_order) + " was refused: " + to_text(state.refusal);
   if (static_cast<std::size_t>(state.refused_order) > params_.orders.size()) return;
   const TimedOrder& refused = params_.orders[static_cast<std::size_t>(state.refused_order) - 1];
-  if (state.refusal == OrderRefusal::too_deep) news_ += ", " + decimal(refused.depth_m) + " m";
-  if (state.refusal == OrderRefusal::too_fast) news_ += ", " + decimal(refused.speed_mps) + " m/s";
+  if (state.refusal == OrderRefusal::too_deep) status_ += ", " + decimal(refused.depth_m) + " m";
+  if (state.refusal == OrderRefusal::too_fast) status_ += ", " + decimal(refused.speed_mps) + " m/s";
 }
 
 AcousticOrder CoopStation::order(int number) const {
@@ -104,11 +104,12 @@ CoopStation::Decision CoopStation::step() {
   const auto& orders = params_.orders;
   counts_.orders = static_cast<int>(
       std::count_if(orders.begin(), orders.end(), [&](const TimedOrder& each) { return each.at_s <= since_s; }));
-  const auto refused_before = std::upper_bound(refused_.begin(), refused_.end(), last_obeyed_) - refused_.begin();
-  counts_.obeyed = std::max(counts_.obeyed, std::min(last_obeyed_, counts_.orders) - static_cast<int>(refused_before));
-  std::swap(decision.news, news_);
-  if (has_news_) decision.knowledge = estimate_of(*state_);
-  has_news_ = false;
+  const auto refused_before = std::upper_bound(refused_.begin(), refused_.end(), last_executed_) - refused_.begin();
+  counts_.executed =
+      std::max(counts_.executed, std::min(last_executed_, counts_.orders) - static_cast<int>(refused_before));
+  std::swap(decision.status, status_);
+  if (has_update_) decision.knowledge = estimate_of(*state_);
+  has_update_ = false;
   if (access_.take_turn(utime_) && counts_.orders > answered_) {
     decision.send = to_everybody(order(counts_.orders));
     if (decision.send) ++counts_.sent;

@@ -17,10 +17,9 @@
 
 namespace autonomy {
 
-/// A station that sends a vehicle out of its hearing to places, by radio and whoever passes its messages on.  It says
-/// an order in each of its turns until a state of the vehicle tells that it was obeyed or refused, or the next one is
-/// due.  A pure
-/// function of its reports in their order; its time is that of their stamps, the station's own clock.
+/// A station that sends a vehicle out of its receiving to places, by radio and whoever passes its messages on.  It
+/// sends an order in each of its turns until a state of the vehicle confirms or refuses it, or the next one is due.  A
+/// pure function of its reports in their order; its time is that of their stamps, the station's own clock.
 class CoopStation {
  public:
   struct TimedOrder {
@@ -39,14 +38,14 @@ class CoopStation {
   struct Decision {
     std::optional<shoal::estimate_t> knowledge;  ///< for NAME.knowledge: where the vehicle was, by its newest state
     std::optional<shoal::modem_send_t> send;     ///< for NAME.radio.cmd
-    std::string news;                            ///< to be said; empty: nothing
+    std::string status;                          ///< text for the user; empty: none
   };
   struct Counts {
     int sent = 0;
     int states = 0;  ///< of its vehicle
     int bad_frames = 0;
     int orders = 0;  ///< that were due
-    int obeyed = 0;
+    int executed = 0;
     int refused = 0;
   };
 
@@ -71,11 +70,11 @@ class CoopStation {
   std::int64_t utime_ = 0;  ///< newest stamp
   std::optional<std::int64_t> first_utime_;
   std::optional<AcousticState> state_;  ///< newest
-  bool has_news_ = false;
-  int answered_ = 0;          ///< number of the order that the vehicle obeyed or refused last
-  int last_obeyed_ = 0;       ///< the largest number that was
+  bool has_update_ = false;
+  int answered_ = 0;          ///< number of the order that the vehicle executed or refused last
+  int last_executed_ = 0;     ///< the largest number that was
   std::vector<int> refused_;  ///< numbers, rising
-  std::string news_;
+  std::string status_;
   Counts counts_;
 };
 

@@ -7,14 +7,14 @@ void Memory::keep(std::int64_t utime) {
   if (keep_us_ <= 0) return;
   copies_.push_back({utime, copy_()});
   // The one that holds at the oldest time stays.
-  while (copies_.size() > 1 && (copies_[1].utime <= utime - keep_us_ || copies_.size() > most_copies))
+  while (copies_.size() > 1 && (copies_[1].utime <= utime - keep_us_ || copies_.size() > max_copies))
     copies_.pop_front();
 }
 
-bool Memory::go_back(std::int64_t utime) {
+bool Memory::rewinds(std::int64_t utime) {
   if (copies_.empty() || copies_.front().utime >= utime) return false;
   while (copies_.back().utime >= utime) copies_.pop_back();
-  put_back_(copies_.back().state.get());
+  restore_saved_(copies_.back().state.get());
   return true;
 }
 

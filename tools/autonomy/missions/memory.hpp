@@ -10,39 +10,39 @@
 
 namespace autonomy {
 
-/// Copies of what a program knows, one after each of its decisions, so that it can go back when the world does.
+/// Copies of a program's state, one after each of its decisions, so that it can be rewound with the world.
 class Memory {
  public:
   /// Never more copies than this.
-  static constexpr std::size_t most_copies = 100'000;
+  static constexpr std::size_t max_copies = 100'000;
 
-  /// `state` is what the program knows: a value that holds all that its decisions depend on.  It must outlive this.
+  /// `state` is the state of the program: a value that holds everything its decisions depend on.  It must outlive this.
   /// Copies are kept for `seconds` of simulated time; 0: none.
   template <class State>
   Memory(State& state, double seconds)
       : keep_us_(static_cast<std::int64_t>(seconds * 1e6)),
         copy_([&state] { return std::make_shared<const State>(state); }),
-        put_back_([&state](const void* kept) { state = *static_cast<const State*>(kept); }) {
+        restore_saved_([&state](const void* kept) { state = *static_cast<const State*>(kept); }) {
     if (keep_us_ > 0) copies_.push_back({std::numeric_limits<std::int64_t>::min(), copy_()});
   }
 
   /// Call after the decision of the tick `utime`, which is later than the last one.
   void keep(std::int64_t utime);
   /// The world went back, and the tick `utime` is the first one there.  Makes the state what it was after the last
-  /// decision before it.  False when there is no copy of that; the state is then left alone.
-  bool go_back(std::int64_t utime);
+  /// decision before it.  False when there is no copy of that; the state is then unchanged.
+  bool rewinds(std::int64_t utime);
   std::size_t size() const { return copies_.size(); }
 
  private:
-  struct Kept {
+  struct Saved {
     std::int64_t utime;  ///< the smallest number: before the first decision
     std::shared_ptr<const void> state;
   };
 
   std::int64_t keep_us_;
   std::function<std::shared_ptr<const void>()> copy_;
-  std::function<void(const void*)> put_back_;
-  std::deque<Kept> copies_;
+  std::function<void(const void*)> restore_saved_;
+  std::deque<Saved> copies_;
 };
 
 }  // namespace autonomy

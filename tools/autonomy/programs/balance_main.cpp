@@ -13,7 +13,7 @@ namespace {
 struct Options {
   std::string name;
   std::vector<autonomy::SpeedPoint> speeds;
-  double balanced_lean_deg = -9.926;
+  double balanced_tilt_deg = -9.926;
   autonomy::Balance::Params balance;
   autonomy::Participation participation;
 };
@@ -21,7 +21,7 @@ struct Options {
 /// What it knows: all of it goes back with the world.
 struct State {
   autonomy::Balance balance;
-  std::optional<std::int64_t> began_utime = {}, fell_utime = {};
+  std::optional<std::int64_t> started_utime = {}, fell_utime = {};
   std::size_t next_speed = 0;
 };
 
@@ -38,8 +38,8 @@ int balance(const Options& options) {
   client.subscribe<shoal::twist_command_t>(prefix + "balance.cmd", take, shoal::Finite::required);
 
   const int exit_code = autonomy::take_part(client, options.participation, state, [&](std::int64_t utime) {
-    if (!state.began_utime) state.began_utime = utime;
-    const double now_s = static_cast<double>(utime - *state.began_utime) * 1e-6;
+    if (!state.started_utime) state.started_utime = utime;
+    const double now_s = static_cast<double>(utime - *state.started_utime) * 1e-6;
     for (std::size_t& next = state.next_speed; next < speeds.size() && speeds[next].from_s <= now_s; ++next)
       balance.drive(speeds[next].forward_mps, speeds[next].turn_radps);
 
@@ -67,19 +67,19 @@ int balance(const Options& options) {
 
 void declare_gains(command_line::DeclaredOptions& declared, Options& options) {
   autonomy::Balance::Params& gains = options.balance;
-  declared.number("balanced_lean_deg", options.balanced_lean_deg, -45, 45,
-                  "lean, positive forward, at which its centre of mass is over its axle");
-  declared.number("kp_Nm_per_rad", gains.kp_Nm_per_rad, 0, 1e4, "torque of both wheels for the error of the lean");
-  declared.number("kd_Nms_per_rad", gains.kd_Nms_per_rad, 0, 1e4, "torque for the rate of the lean");
-  declared.number("kv_rad_per_mps", gains.kv_rad_per_mps, 0, 10, "lean setpoint for the error of the speed");
-  declared.number("ki_rad_per_m", gains.ki_rad_per_m, 0, 10, "lean setpoint for the integral of that error");
-  declared.number("max_lean_rad", gains.max_lean_rad, 0.01, 0.7, "limit of the lean setpoint, from the balanced lean");
+  declared.number("balanced_tilt_deg", options.balanced_tilt_deg, -45, 45,
+                  "tilt, positive forward, at which its centre of mass is over its axle");
+  declared.number("kp_Nm_per_rad", gains.kp_Nm_per_rad, 0, 1e4, "torque of both wheels for the error of the tilt");
+  declared.number("kd_Nms_per_rad", gains.kd_Nms_per_rad, 0, 1e4, "torque for the rate of the tilt");
+  declared.number("kv_rad_per_mps", gains.kv_rad_per_mps, 0, 10, "tilt setpoint for the error of the speed");
+  declared.number("ki_rad_per_m", gains.ki_rad_per_m, 0, 10, "tilt setpoint for the integral of that error");
+  declared.number("max_tilt_rad", gains.max_tilt_rad, 0.01, 0.7, "limit of the tilt setpoint, from the balanced tilt");
   declared.number("max_acceleration_mps2", gains.max_acceleration_mps2, 0.01, 10, "limit of the speed setpoint");
   declared.number("turn_gain_Nms_per_rad", gains.turn_gain_Nms_per_rad, 0, 1e4,
                   "torque between the wheels for the error of the turn rate");
   declared.number("turn_ki_Nm_per_rad", gains.turn_ki_Nm_per_rad, 0, 1e4,
                   "torque between the wheels for the integral of that error");
-  declared.number("rate_filter_s", gains.rate_filter_s, 0, 1, "time constant of the low pass on the rate of the lean");
+  declared.number("rate_filter_s", gains.rate_filter_s, 0, 1, "time constant of the low pass on the rate of the tilt");
   declared.number("speed_filter_s", gains.speed_filter_s, 0, 1, "time constant of the low pass on speed and turn rate");
   declared.number("wheel_radius_m", gains.wheel_radius_m, 0.01, 10, "radius of its wheels");
   declared.number("track_m", gains.track_m, 0.01, 10, "distance between the wheels");
@@ -115,11 +115,10 @@ int run(int argc, char** argv) {
   command_line::DeclaredOptions declared(app);
   declare(declared, options);
   bool print_margin = false;
-  app.add_flag("--delay-margin", print_margin,
-               "print how late the torque of a Segway RMP may come with these gains, and end");
+  app.add_flag("--delay-margin", print_margin, "print the delay margin of a Segway RMP with these gains, and exit");
   if (const auto exit_code = declared.parse(argc, argv)) return *exit_code;
   options.balance.period_s = options.participation.period_s;
-  options.balance.balanced_lean_rad = sim::degrees_to_radians(options.balanced_lean_deg);
+  options.balance.balanced_tilt_rad = sim::degrees_to_radians(options.balanced_tilt_deg);
   if (print_margin) {
     const autonomy::DelayMargin margin = autonomy::delay_margin(options.balance);
     std::cout << "it swings at " << margin.frequency_radps << " rad/s when the torque comes " << 1e3 * margin.delay_s

@@ -44,13 +44,13 @@ int drive(const Options& options) {
     if (decision.send) client.publish(name + ".modem.cmd", *decision.send);
   });
   const autonomy::CoopAuv::Counts& counts = auv.counts();
-  std::cerr << name << ": " << counts.frames << " frames heard, " << counts.bad_frames << " bad; " << counts.ranges
+  std::cerr << name << ": " << counts.frames << " frames received, " << counts.bad_frames << " bad; " << counts.ranges
             << " ranges used, " << counts.refused << " refused; " << counts.sent << " frames sent\n";
-  if (options.auv.obey)
-    std::cerr << name << ": " << counts.orders << " orders obeyed, " << counts.orders_refused << " refused\n";
+  if (options.auv.execute)
+    std::cerr << name << ": " << counts.orders << " orders executed, " << counts.orders_refused << " refused\n";
   if (counts.relayed > 0) std::cerr << name << ": " << counts.relayed << " states came by relay\n";
   if (counts.clock_steps > 0) std::cerr << name << ": its clock was set " << counts.clock_steps << " times\n";
-  if (counts.silences > 0) std::cerr << name << ": all its devices fell silent " << counts.silences << " times\n";
+  if (counts.silences > 0) std::cerr << name << ": all its devices stopped reporting " << counts.silences << " times\n";
   return exit_code;
 }
 
@@ -96,9 +96,9 @@ void declare(command_line::DeclaredOptions& declared, Options& options) {
   declare_position(declared, "modem_position_m", auv.modem_B, "position of the modem on the vehicle");
   declare_position(declared, "gps_position_m", auv.gps_B, "position of the GPS antenna on the vehicle");
   declared.number("surface_s", auv.surface_s, 0, 3600, "time at the surface after the first fix");
-  declared.flag("accept_orders", auv.obey, "follow orders for its id: go to the position and circle there");
-  declared.number("order_depth_max_m", auv.order_depth_max_m, 0, 10'000, "deeper orders are refused");
-  declared.number("order_speed_max_mps", auv.order_speed_max_mps, 0.01, 10, "faster orders are refused");
+  declared.flag("accept_orders", auv.execute, "follow orders for its id: go to the position and circle there");
+  declared.number("order_depth_max_m", auv.order_depth_max_m, 0, 10'000, "maximum depth of an order");
+  declared.number("order_speed_max_mps", auv.order_speed_max_mps, 0.01, 10, "maximum speed of an order");
   declared.number("hold_radius_m", auv.hold_radius_m, 1, 10'000, "radius of the circle at an ordered position");
   options.marine.declare(declared);
   declared.at_most_one({"slot", "random_s"});

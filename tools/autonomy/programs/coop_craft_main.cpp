@@ -24,8 +24,8 @@ int drive(const autonomy::CoopCraft::Params& params, const autonomy::MarineOptio
     if (decision.send) client.publish(params.name + ".modem.cmd", *decision.send);
   });
   const autonomy::CoopCraft::Counts& counts = craft.counts();
-  std::cerr << params.name << ": " << counts.sent << " frames sent, " << counts.heard << " heard, " << counts.bad_frames
-            << " bad\n";
+  std::cerr << params.name << ": " << counts.sent << " frames sent, " << counts.received << " received, "
+            << counts.bad_frames << " bad\n";
   if (counts.relayed > 0) std::cerr << params.name << ": " << counts.relayed << " states came by relay\n";
   if (const std::string remark = craft.behaviour().remark(); !remark.empty())
     std::cerr << params.name << ": " << remark << '\n';

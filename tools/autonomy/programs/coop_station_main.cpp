@@ -16,14 +16,14 @@ int drive(const autonomy::CoopStation::Params& params, const autonomy::Participa
                                             [&](const shoal::modem_received_t& packet) { station.receive(packet); });
   const int exit_code = autonomy::take_part(client, participation, station, [&](std::int64_t) {
     const autonomy::CoopStation::Decision decision = station.step();
-    if (!decision.news.empty()) std::cerr << params.name << ": " << decision.news << std::endl;
+    if (!decision.status.empty()) std::cerr << params.name << ": " << decision.status << std::endl;
     if (decision.knowledge) client.publish(params.name + ".knowledge", *decision.knowledge);
     if (decision.send) client.publish(params.name + ".radio.cmd", *decision.send);
   });
   const autonomy::CoopStation::Counts& counts = station.counts();
-  std::cerr << params.name << ": " << counts.obeyed << " of " << counts.orders << " orders obeyed, " << counts.refused
-            << " refused, sent " << counts.sent << " times; " << counts.states << " states heard, " << counts.bad_frames
-            << " bad frames\n";
+  std::cerr << params.name << ": " << counts.executed << " of " << counts.orders << " orders executed, "
+            << counts.refused << " refused, sent " << counts.sent << " times; " << counts.states << " states received, "
+            << counts.bad_frames << " bad frames\n";
   return exit_code;
 }
 
@@ -34,8 +34,7 @@ int run(int argc, char** argv) {
   participation.period_s = 0.5;
   std::vector<std::vector<double>> orders;
   double speed_mps = 1.5;
-  CLI::App app{"Sends orders to a submerged vehicle, by radio and by whoever relays its messages.",
-               "shoal-coop-station"};
+  CLI::App app{"Sends orders to a submerged vehicle by radio, relayed by other vehicles.", "shoal-coop-station"};
   command_line::DeclaredOptions options(app);
   options.publishes({"{name}.radio.cmd", "{name}.knowledge"});
   options.subscribes({"{name}.gps", "{name}.radio"});

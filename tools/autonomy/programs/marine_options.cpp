@@ -27,7 +27,7 @@ void MarineOptions::declare(command_line::DeclaredOptions& options) {
           [this](const auto& numbers) { follow_offset_m = numbers; }, "place beside that vehicle, by its course")
       .needs({"follow"});
   options.exactly_one({"waypoints_m", "circle_m", "zigzag_m", "follow"});
-  options.flag("loop", loop, "begin the route again after its last waypoint; without it the vehicle stops there");
+  options.flag("loop", loop, "restart the route after its last waypoint; without it the vehicle stops there");
   options.number("speed_mps", speed_mps, 0.05, 10, "speed through the water; when it follows, the largest");
   sending.declare(options, "its state");
 }
@@ -50,8 +50,8 @@ void AccessOptions::declare(command_line::DeclaredOptions& options, const std::s
   options.integer("slots", slots, 1, 1000, "slots in a cycle").needs({"slot"});
   options.number("slot_s", slot_s, 0.1, 3600, "length of a slot");
   options.number("guard_s", guard_s, 0, 3600,
-                 "the end of a slot in which nothing is begun; without it all but its first second, or the second half "
-                 "of a short one");
+                 "guard time at the end of a slot; without it all but the first second, or the second half of a short "
+                 "slot");
   options.number("random_s", random_s, 0, 3600, "sends " + what + " at random, so often on average; 0: never");
   options.seed("seed", seed, "seed of the random times");
 }

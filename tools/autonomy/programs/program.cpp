@@ -45,8 +45,8 @@ void set_help_end(command_line::DeclaredOptions& options, const std::vector<std:
                                              {{0, "the run ended"},
                                               {2, "wrong usage"},
                                               {4, "bus trouble"},
-                                              {5, "the simulator fell silent or dropped the program"},
-                                              {6, "the world went further back than --rewind-s"},
+                                              {5, "the simulator stopped responding or dropped the program"},
+                                              {6, "the world was rewound further than --rewind-s"},
                                               {130, "ended by SIGINT; 143 by SIGTERM"}},
                                              {channels}});
 }
@@ -54,7 +54,7 @@ void set_help_end(command_line::DeclaredOptions& options, const std::vector<std:
 void Participation::declare(command_line::DeclaredOptions& options) {
   options.number("period_s", period_s, 0.001, 10, "simulated seconds between decisions");
   options.number("rewind_s", rewind_s, 0, 1e6,
-                 "how far the program can go back with the world, in simulated seconds; 0: not at all");
+                 "how far the program can be rewound with the world, in simulated seconds; 0: not at all");
   options.number("join_timeout_s", join_timeout_s, 0.1, 3600, "wall seconds to wait for the simulator");
   options.text("lcm_url", "URL", lcm_url, "instead of LCM_DEFAULT_URL and the default");
 }
@@ -74,7 +74,7 @@ int take_part(shoal::Client& client, const Participation& participation, Memory 
   const StopBySignal stop(client);
   bool lost = false;
   client.on_rewind([&](std::int64_t utime) {
-    if (memory.go_back(utime)) return;
+    if (memory.rewinds(utime)) return;
     lost = true;
     client.stop();
   });
@@ -85,7 +85,7 @@ int take_part(shoal::Client& client, const Participation& participation, Memory 
     memory.keep(*utime);
   }
   if (lost) {
-    std::cerr << "the world went back further than this program can, " << participation.rewind_s
+    std::cerr << "the world was rewound further than this program supports, " << participation.rewind_s
               << " s (--rewind-s); it ends\n";
     return exit_rewound;
   }

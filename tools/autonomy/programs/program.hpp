@@ -48,7 +48,7 @@ int take_part(shoal::Client& client, const Participation& participation, State& 
   return take_part(client, participation, Memory(state, participation.rewind_s), decide);
 }
 
-/// Runs a program: what std::invalid_argument says is wrong usage, any other exception is bus trouble.
+/// Runs a program: std::invalid_argument is wrong usage, any other exception a bus error.
 int run_program(const char* name, const std::function<int()>& program);
 
 }  // namespace autonomy

@@ -84,16 +84,16 @@ std::vector<AcousticPacket> micromodem_packets() {
 LinkBudget link_budget(const AcousticLink& link, const sim::AcousticsConfig& acoustics, const sim::Medium& medium,
                        std::optional<double> water_depth_m) {
   LinkBudget budget;
-  const sim::Vector3d way_W = link.to.p_W - link.from.p_W;
-  budget.range_m = way_W.norm();
+  const sim::Vector3d displacement_W = link.to.p_W - link.from.p_W;
+  budget.range_m = displacement_W.norm();
   budget.travel_time_s = sim::travel_time_s(medium, link.from.p_W, link.to.p_W);
   budget.absorption_dBpkm =
       sim::absorption_dBpkm(acoustics.absorption, link.centre_Hz, medium, link.from.p_W, link.to.p_W);
   const double c_mps = medium.sound_speed_mps(link.to.p_W);
   budget.from_gain =
-      sim::directivity_gain(link.from.directivity, link.from.R_WS.transpose() * way_W, link.centre_Hz, c_mps);
+      sim::directivity_gain(link.from.directivity, link.from.R_WS.transpose() * displacement_W, link.centre_Hz, c_mps);
   budget.to_gain =
-      sim::directivity_gain(link.to.directivity, -(link.to.R_WS.transpose() * way_W), link.centre_Hz, c_mps);
+      sim::directivity_gain(link.to.directivity, -(link.to.R_WS.transpose() * displacement_W), link.centre_Hz, c_mps);
   budget.spreading = -sim::spreading_loss(budget.range_m, acoustics.spreading);
   budget.absorption = -sim::absorption_loss(budget.range_m, budget.absorption_dBpkm);
   budget.level = link.source_level + budget.from_gain + budget.spreading + budget.absorption + budget.to_gain;
@@ -136,14 +136,14 @@ std::vector<RangeRow> over_range(const AcousticLink& link, const std::vector<Aco
                                  const std::vector<double>& ranges_m, const sim::AcousticsConfig& acoustics,
                                  const sim::Medium& medium, std::optional<double> water_depth_m) {
   std::vector<RangeRow> rows;
-  const sim::Vector3d way_W = link.to.p_W - link.from.p_W;
-  sim::Vector3d side_W(way_W.x(), way_W.y(), 0);
+  const sim::Vector3d displacement_W = link.to.p_W - link.from.p_W;
+  sim::Vector3d side_W(displacement_W.x(), displacement_W.y(), 0);
   side_W = side_W.norm() > 0 ? sim::Vector3d(side_W.normalized()) : sim::Vector3d::UnitX();
   for (const double range_m : ranges_m) {
-    const double level_m2 = range_m * range_m - way_W.z() * way_W.z();
+    const double level_m2 = range_m * range_m - displacement_W.z() * displacement_W.z();
     if (level_m2 < 0) continue;
     AcousticLink at = link;
-    at.to.p_W = link.from.p_W + side_W * std::sqrt(level_m2) + sim::Vector3d(0, 0, way_W.z());
+    at.to.p_W = link.from.p_W + side_W * std::sqrt(level_m2) + sim::Vector3d(0, 0, displacement_W.z());
     RangeRow row{link_budget(at, acoustics, medium, water_depth_m), {}};
     for (const AcousticPacket& packet : packets)
       row.delivered.push_back(delivery_probability(at, packet, acoustics, medium, water_depth_m));

@@ -83,8 +83,7 @@ struct RangeRow {
   LinkBudget budget;
   std::vector<double> delivered;  ///< by packet
 };
-/// The receiver goes away from the sender on its side, at its own depth; ranges that the difference in depth alone
-/// exceeds are left out.
+/// The receiver moves away from the sender at constant depth; ranges below the difference in depth are left out.
 std::vector<RangeRow> over_range(const AcousticLink& link, const std::vector<AcousticPacket>& packets,
                                  const std::vector<double>& ranges_m, const sim::AcousticsConfig& acoustics,
                                  const sim::Medium& medium, std::optional<double> water_depth_m = {});

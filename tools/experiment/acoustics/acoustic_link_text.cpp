@@ -10,7 +10,7 @@
 #include "tools/experiment/files/gnuplot.hpp"
 #include "tools/experiment/files/scratch_directory.hpp"
 
-// How a link is shown: tables for people, CSV for programs, pictures.
+// How a link is shown: tables for people, CSV for programs, images.
 
 namespace tools {
 
@@ -114,9 +114,9 @@ void draw_over_range(const std::vector<RangeRow>& rows, const std::vector<Acoust
                                                    packets[i].bit_rate_bps, packets[i].bytes)));
   std::ofstream(scratch.path / "plot.gp") << script << "\nunset multiplot\n";
   if (run_gnuplot(scratch.path.string(), "plot.gp", std::chrono::seconds(30), [] { return false; })) return;
-  std::ifstream said(scratch.path / "plot.log");
+  std::ifstream reported(scratch.path / "plot.log");
   std::string line;
-  std::getline(said, line);
+  std::getline(reported, line);
   throw std::runtime_error("gnuplot did not draw " + png + (line.empty() ? "" : ": " + line));
 }
 

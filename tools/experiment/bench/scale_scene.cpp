@@ -189,9 +189,9 @@ void ScaleScene::run_for(double time_s) {
 ScaleFigures measure_scale(int robots, const ScaleOptions& options) {
   ScaleFigures figures;
   figures.robots = robots;
-  const double begin_s = wall_seconds();
+  const double start_s = wall_seconds();
   ScaleScene scene(robots, options.sets, options.threads);
-  figures.load_s = wall_seconds() - begin_s;
+  figures.load_s = wall_seconds() - start_s;
   scene.run_for(options.warm_up_s);
   const double cpu_s = cpu_seconds();
   const double wall_s = wall_seconds();

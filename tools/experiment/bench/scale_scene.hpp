@@ -15,7 +15,7 @@ namespace tools {
 /// 100: 10 x 10; 1000: 40 x 25; otherwise as square as possible), walls 0.1 m thick and 0.5 m high just outside,
 /// robots / 4 fixed 0.5 m boxes of random yaw on cell corners, a rover in each cell (offset up to 0.4 m, random yaw).
 /// A rover: body 0.4 x 0.5 m and 20 kg, wheels 0.2 m in diameter, 180 rays over 180 degrees, 8 m, 10 Hz, 1 cm noise.
-/// `one_entry_each`: every rover an entry of its own in the file, instead of one with a count.
+/// `one_entry_each`: every rover its own entry in the file, instead of one with a count.
 std::string scale_scene_text(int robots, bool one_entry_each = false);
 
 /// The scale scene as it runs: rovers that wander in process at 10 Hz, all reports published on the in-process bus.

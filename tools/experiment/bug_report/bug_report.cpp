@@ -126,9 +126,8 @@ class BugPacker {
   }
 
   void add_texts() {
-    const std::pair<const char*, const char*> texts[] = {{"summary.json", "what came of the run"},
-                                                         {"metrics.csv", "its figures"},
-                                                         {"world.yaml", "the world as it ran"}};
+    const std::pair<const char*, const char*> texts[] = {
+        {"summary.json", "outcome of the run"}, {"metrics.csv", "its figures"}, {"world.yaml", "the world as it ran"}};
     for (const auto& [name, what] : texts) {
       const std::string path = directory_ + "/" + name;
       std::error_code error;
@@ -158,7 +157,7 @@ class BugPacker {
       std::ifstream in(log, std::ios::binary);
       if (size > max_log_bytes) in.seekg(static_cast<std::streamoff>(size - max_log_bytes));
       const std::string text{std::istreambuf_iterator<char>(in), {}};
-      if (size > max_log_bytes) left_out(fmt::format("{}: all but its last {}", name, size_text(max_log_bytes)));
+      if (size > max_log_bytes) left_out(fmt::format("{}: truncated to its last {}", name, size_text(max_log_bytes)));
       if (!text.empty()) add("logs/" + name, text.substr(0, max_log_bytes), "output of a program");
     }
   }
@@ -215,13 +214,13 @@ class BugPacker {
       throw std::runtime_error(
           fmt::format("{}: is of world '{}' with seed {}, but the run in {} is of '{}' with seed {}", record,
                       tail_->info.world, tail_->info.seed, directory_, run_->world, run_->seed));
-    if (!tail_->whole) left_out(fmt::format("{}: what is before {:.3f} s of simulated time", record, tail_->begin_s));
+    if (!tail_->whole) left_out(fmt::format("{}: what is before {:.3f} s of simulated time", record, tail_->start_s));
     if (!tail_->short_of.empty()) left_out(tail_->short_of);
   }
 
   std::string tail_text() const {
     return fmt::format("{} from {:.3f} to {:.3f} s of simulated time; {}",
-                       tail_->whole ? "all of the record," : "the record", tail_->begin_s, tail_->end_s,
+                       tail_->whole ? "all of the record," : "the record", tail_->start_s, tail_->end_s,
                        tail_->snapshot.empty() ? "no snapshot" : "begins with " + tail_->snapshot);
   }
 
@@ -232,7 +231,7 @@ class BugPacker {
     return text + "\nPacked by:\n" + version_text() + build_text() + "\n";
   }
 
-  std::string how_to_look() const {
+  std::string search_hint() const {
     std::string text = "\nHow to look at it:\n";
     if (run_)
       text += fmt::format(
@@ -242,7 +241,7 @@ class BugPacker {
     if (!tail_) return text;
     text += tail_->replayable()
                 ? "  shoal replay record_tail.lcm    its end again, by the same build of shoal\n"
-                : "  record_tail.lcm begins with no snapshot: it cannot be run again, but be looked at.\n";
+                : "  record_tail.lcm has no snapshot at its start: it can be inspected, but not replayed.\n";
     return text +
            "  shoal log info record_tail.lcm    its channels\n"
            "  shoal log csv record_tail.lcm CHANNEL    the messages of one\n";
@@ -257,7 +256,7 @@ class BugPacker {
     for (const std::string& line : report_.inside) text += "  " + line + "\n";
     if (!report_.left_out.empty()) text += "\nLeft out:\n";
     for (const std::string& line : report_.left_out) text += "  " + line + "\n";
-    return text + how_to_look();
+    return text + search_hint();
   }
 
   const BugOptions& options_;

@@ -132,7 +132,7 @@ void compare(FidelityResult& result) {
   result.turn_rms_degps = std::sqrt(turn / count) / degree_rad;
   result.heading_rms_deg = std::sqrt(heading / count) / degree_rad;
   const auto check = [&](const char* name, double value, const std::optional<double>& bar) {
-    // Not `value > bar`: a value that is no number has missed it.
+    // Not `value > bar`: a value that is not a number has missed it.
     if (bar && !(value <= *bar))
       result.missed.push_back(std::string(name) + " " + sim::number_text(value) + " > " + sim::number_text(*bar));
   };

@@ -32,7 +32,7 @@ struct FidelityBars {
   void read(sim::ParamReader& in);
 };
 
-/// One trajectory of somebody else, and how to run the same here.
+/// A published trajectory, and how to run the same here.
 struct FidelityCase {
   std::string name;
   std::string text;           ///< a sentence for the report
@@ -94,11 +94,11 @@ struct FidelityResult {
   std::vector<std::string> missed;  ///< bars, as `position_rms_m 0.3 > 0.1`
 };
 
-/// The world of a case.  Its values know their places in the file of cases, those of `options` the option.
+/// The world of a case.  Its values localise themselves in the file of cases, those of `options` the option.
 sim::ConfigNode fidelity_world(const FidelityCase& of, const FidelityReference& reference,
                                const FidelityOptions& options = {});
 
-/// Runs the vehicle of a case in a world of its own, its devices commanded over the in-process bus with what the
+/// Runs the vehicle of a case in its own world, its devices commanded over the in-process bus with what the
 /// reference's inputs were; row k holds from its time to that of row k + 1.  Throws ConfigError, which names the case,
 /// and PhysicsFault.
 FidelityResult run_fidelity_case(const FidelityCase& of, const FidelityOptions& options = {});

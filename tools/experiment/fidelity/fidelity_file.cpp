@@ -31,7 +31,7 @@ struct CaseEntry {
     in.read_raw("world", world, "dotted path: value, changes of the world, beside those of the group");
     in.read_raw("overrides", overrides, "dotted path: value, changes of the vehicle, beside those of the group");
     in.read("bars", bars, "instead of the group's");
-    in.read("trim", trim, "where the reference counts heave and pitch from, when its level at rest is not 0");
+    in.read("trim", trim, "offset of heave and pitch in the reference, when its level at rest is not 0");
   }
 };
 
@@ -96,7 +96,7 @@ void FidelityInput::read(sim::ParamReader& in) {
   in.require("device");
   in.read_name("device", device, "of the vehicle");
   in.read("message", message, "type of its commands");
-  in.read("column", column, "column that becomes `value`");
+  in.read("column", column, "column that gives `value`");
   in.read_raw("fields", fields, "of the message, with names of columns for numbers; instead of `column`");
   in.read("scale", scale, sim::any_number(), "times the columns: 57.29577951308232 makes degrees of radians");
   if (!in.describing() && in.has("column") == in.has("fields")) in.error("one of 'column' and 'fields' must be given");

@@ -47,7 +47,7 @@ std::ifstream opened(const std::string& path) {
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(path, error);
   if (!std::filesystem::exists(status)) fail(path, 0, "does not exist");
-  if (!std::filesystem::is_regular_file(status)) fail(path, 0, "is no file");
+  if (!std::filesystem::is_regular_file(status)) fail(path, 0, "is not a file");
   std::ifstream in(path);
   if (!in) fail(path, 0, "cannot be read");
   return in;

@@ -76,13 +76,13 @@ std::string digits(double value) {
   return text == "-0.0000" ? "0.0000" : text;
 }
 
-void plot(const std::filesystem::path& picture, const FidelityResult& result) {
+void plot(const std::filesystem::path& image, const FidelityResult& result) {
   const ScratchDirectory scratch;
   write(scratch.path / "theirs", rows_of(result, result.theirs, ' ', true));
   write(scratch.path / "ours", rows_of(result, result.ours, ' ', true));
   write(scratch.path / "plot.gp",
         "set terminal pngcairo size 840,440 font ',8'\nset output " +
-            gnuplot_text(std::filesystem::absolute(picture).string()) +
+            gnuplot_text(std::filesystem::absolute(image).string()) +
             "\nset key samplen 1 spacing 0.9\nset multiplot layout 2,3 title " +
             gnuplot_text(result.of.name + ": reference grey, ours coloured") + " noenhanced\nset xlabel 'east (m)'\n" +
             "set ylabel 'north (m)'\nset size ratio -1\n" + fmt::format("set xtics {:g}\n", tics_of(result)) +
@@ -97,7 +97,7 @@ void plot(const std::filesystem::path& picture, const FidelityResult& result) {
     std::ifstream log(scratch.path / "plot.log");
     std::string line;
     std::getline(log, line);
-    throw std::runtime_error("gnuplot did not draw " + picture.string() + (line.empty() ? "" : ": " + line));
+    throw std::runtime_error("gnuplot did not draw " + image.string() + (line.empty() ? "" : ": " + line));
   }
 }
 
@@ -154,8 +154,8 @@ std::string fidelity_line(const FidelityResult& result, std::size_t number, std:
 
 void write_fidelity_report(const std::string& folder, const std::string& text,
                            const std::vector<FidelityResult>& results, bool csv) {
-  const std::filesystem::path pictures = std::filesystem::path(folder) / "fidelity";
-  std::filesystem::create_directories(pictures);
+  const std::filesystem::path plots = std::filesystem::path(folder) / "fidelity";
+  std::filesystem::create_directories(plots);
   std::string page =
       "# Fidelity\n\nWritten by `shoal fidelity`.\n\n" + text + "\n## The table\n\n" + fidelity_table(results) + "\n";
   std::string group;
@@ -163,8 +163,8 @@ void write_fidelity_report(const std::string& folder, const std::string& text,
     if (result.of.group != group) page += "## " + result.of.title + "\n\n";
     group = result.of.group;
     page += section_of(result);
-    plot(pictures / (result.of.name + ".png"), result);
-    if (csv) write(pictures / (result.of.name + ".csv"), states_header() + rows_of(result, result.ours, ',', false));
+    plot(plots / (result.of.name + ".png"), result);
+    if (csv) write(plots / (result.of.name + ".csv"), states_header() + rows_of(result, result.ours, ',', false));
   }
   write(std::filesystem::path(folder) / "fidelity.md", page);
 }

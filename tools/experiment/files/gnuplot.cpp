@@ -17,7 +17,7 @@ namespace tools {
 
 namespace {
 
-/// A shell in a process group of its own: Ctrl-C on the terminal must not reach gnuplot.
+/// A shell in its own process group: Ctrl-C on the terminal must not reach gnuplot.
 pid_t start(std::string directory, std::string script) {
   std::string shell = "sh";
   std::string option = "-c";
@@ -52,13 +52,13 @@ std::string gnuplot_text(const std::string& text) {
 
 std::string axis_of_errors(const std::vector<double>& errors_m) {
   constexpr double very_different = 5;
-  double least = std::numeric_limits<double>::infinity(), most = 0;
+  double min = std::numeric_limits<double>::infinity(), max = 0;
   for (const double error_m : errors_m) {
-    least = std::min(least, error_m);
-    most = std::max(most, error_m);
+    min = std::min(min, error_m);
+    max = std::max(max, error_m);
   }
-  if (!(least > 0) || !(most > very_different * least)) return "set yrange [0:*]\n";
-  return fmt::format("set logscale y\nset yrange [{:.3g}:*]\n", 0.05 * least);
+  if (!(min > 0) || !(max > very_different * min)) return "set yrange [0:*]\n";
+  return fmt::format("set logscale y\nset yrange [{:.3g}:*]\n", 0.05 * min);
 }
 
 bool run_gnuplot(const std::string& directory, const std::string& script, std::chrono::milliseconds limit,

@@ -7,8 +7,8 @@
 
 namespace tools {
 
-/// Text as HTML text or as an attribute in double quotes.  Whatever the bytes are, they stay text: what HTML means by
-/// them is written as entities, control characters and what is no UTF-8 become U+FFFD.
+/// Text as HTML text or as an attribute in double quotes.  Any bytes stay text: markup is written as entities;
+/// control characters and invalid UTF-8 become U+FFFD.
 std::string html_text(std::string_view text);
 
 std::string base64(std::string_view bytes);

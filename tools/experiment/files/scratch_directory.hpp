@@ -9,13 +9,13 @@
 
 namespace tools {
 
-/// A directory for files that another program reads; it goes away with all that is in it.
+/// A temporary directory for files that another program reads; it is removed with its content.
 class ScratchDirectory {
  public:
   /// Throws std::runtime_error.
   ScratchDirectory() {
     std::string name = (std::filesystem::temp_directory_path() / "shoal_XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no directory can be made at " + name);
+    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("cannot create a directory at " + name);
     path = name;
   }
   ~ScratchDirectory() {

@@ -36,7 +36,7 @@ void TarFile::fail() const {
   throw std::runtime_error(path_ + ": cannot be written: " + (reason != nullptr ? reason : "unknown error"));
 }
 
-void TarFile::begin_entry(const std::string& name, std::uint64_t size) {
+void TarFile::start_entry(const std::string& name, std::uint64_t size) {
   archive_entry* entry = archive_entry_new();
   archive_entry_set_pathname(entry, name.c_str());
   archive_entry_set_size(entry, static_cast<la_int64_t>(size));
@@ -58,7 +58,7 @@ void TarFile::write(const char* bytes, std::size_t size) {
 }
 
 void TarFile::add(const std::string& name, const std::string& bytes) {
-  begin_entry(name, bytes.size());
+  start_entry(name, bytes.size());
   write(bytes.data(), bytes.size());
 }
 
@@ -66,12 +66,12 @@ void TarFile::add_file(const std::string& name, const std::string& path) {
   std::ifstream in(path, std::ios::binary);
   if (!in) throw std::runtime_error(path + ": cannot be read: " + std::strerror(errno));
   std::uint64_t left = std::filesystem::file_size(path);
-  begin_entry(name, left);
+  start_entry(name, left);
   std::vector<char> block(std::size_t{1} << 20);
   while (left > 0) {
     in.read(block.data(), static_cast<std::streamsize>(std::min<std::uint64_t>(left, block.size())));
     const auto got = static_cast<std::size_t>(in.gcount());
-    if (got == 0) throw std::runtime_error(path + ": became shorter while it was read");
+    if (got == 0) throw std::runtime_error(path + ": was truncated while it was read");
     write(block.data(), got);
     left -= got;
   }

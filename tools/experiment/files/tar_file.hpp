@@ -25,7 +25,7 @@ class TarFile {
   void finish();
 
  private:
-  void begin_entry(const std::string& name, std::uint64_t size);
+  void start_entry(const std::string& name, std::uint64_t size);
   void write(const char* bytes, std::size_t size);
   [[noreturn]] void fail() const;
 

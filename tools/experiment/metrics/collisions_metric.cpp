@@ -14,9 +14,9 @@ namespace {
 /// Contacts that began between vehicles, or a vehicle and an object.
 class CollisionMetric final : public Metric {
  public:
-  static constexpr const char* meaning = "contacts that began";
+  static constexpr const char* meaning = "number of contacts";
   static std::vector<sim::FigureKind> figures() {
-    return {{"count", "contacts", "contacts that began; again after the two were apart for more than 0.5 s", true},
+    return {{"count", "contacts", "contacts; counted again after the two were apart for more than 0.5 s", true},
             {"first_s", "s", "simulated time of the first one; none: there was no contact"}};
   }
   struct Params final : sim::MetricParams {

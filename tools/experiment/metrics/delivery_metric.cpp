@@ -43,7 +43,7 @@ std::string meaning_of(sim::SignalLoss loss) {
 /// Packets of modems, and what became of them.
 class DeliveryMetric final : public Metric {
  public:
-  static constexpr const char* meaning = "packets of modems, and what became of them";
+  static constexpr const char* meaning = "packets of modems and their delivery";
   static std::vector<sim::FigureKind> figures() {
     std::vector<sim::FigureKind> figures{
         {"sent", "packets", "packets that its modems sent", true},

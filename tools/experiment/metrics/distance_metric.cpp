@@ -8,7 +8,7 @@ namespace {
 /// How far a vehicle travelled.
 class DistanceMetric final : public Metric {
  public:
-  static constexpr const char* meaning = "how far a vehicle went";
+  static constexpr const char* meaning = "distance travelled by a vehicle";
   static std::vector<sim::FigureKind> figures() {
     return {{"travelled_m", "m", "length of the true path, in three dimensions"}};
   }

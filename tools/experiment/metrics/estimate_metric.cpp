@@ -18,10 +18,10 @@ namespace tools {
 namespace {
 
 /// How far ahead of the truth an estimate may be: the clock of a vehicle is not perfect.
-constexpr sim::Time most_ahead{1'000'000};
+constexpr sim::Time max_ahead{1'000'000};
 
 /// Of one metric; the count of bad messages is in the summary.
-constexpr int most_warnings = 100;
+constexpr int max_warnings = 100;
 
 /// error^T P^-1 error in the first `size` dimensions; NaN when P is none that a covariance can be.
 template <int size>
@@ -52,8 +52,8 @@ EstimateMetric::EstimateMetric(const MetricContext& context, const Params& param
       mailbox_(vehicle().bus().open_mailbox(params.channel)) {}
 
 EstimateMetric::~EstimateMetric() {
-  say_how_many();
-  if (warnings_ > most_warnings)
+  report_sample_count();
+  if (warnings_ > max_warnings)
     spdlog::warn("metric '{}': {} messages were ignored in all", config().name, bad_messages_);
 }
 
@@ -63,21 +63,21 @@ void EstimateMetric::after_step() {
   while (const auto message = mailbox_->take()) {
     try {
       take(decode(message->payload));
-      say_how_many();
+      report_sample_count();
     } catch (const std::runtime_error& error) {
       ++bad_messages_;
-      complain(message->channel, error.what());
+      warn_once(message->channel, error.what());
     }
   }
 }
 
 std::string EstimateMetric::why_none(const std::string& figure) const {
   if (!samples_.empty() && figure == "per_distance_percent")
-    return fmt::format("the vehicle had travelled less than {} m", shortest_way_m);
+    return fmt::format("the vehicle had travelled less than {} m", min_distance_m);
   if (bad_messages_ > 0)
     return fmt::format("none of {} message{} on '{}' could be used", bad_messages_, bad_messages_ == 1 ? "" : "s",
                        params_.channel);
-  return "no estimate came on '" + params_.channel + "'" + since_from_s();
+  return "no estimate was received on '" + params_.channel + "'" + since_from_s();
 }
 
 void EstimateMetric::visit_state(sim::StateArchive& archive, History history) {
@@ -105,22 +105,22 @@ EstimateMetric::Estimate EstimateMetric::decode(const sim::Bytes& payload) {
   return estimate;
 }
 
-void EstimateMetric::complain(const std::string& channel, const std::string& what) {
-  if (what != complaint_) {
-    say_how_many();
-    complaint_ = what;
+void EstimateMetric::warn_once(const std::string& channel, const std::string& what) {
+  if (what != warning_text_) {
+    report_sample_count();
+    warning_text_ = what;
     warn(fmt::format("{}: {} (ignored, as are all more of this)", channel, what));
   }
   ++ignored_;
 }
 
-void EstimateMetric::say_how_many() {
+void EstimateMetric::report_sample_count() {
   if (ignored_ > 1) warn(fmt::format("{} messages in a row were ignored", ignored_));
   ignored_ = 0;
 }
 
 void EstimateMetric::warn(const std::string& text) {
-  if (warnings_ < most_warnings) spdlog::warn("metric '{}': {}", config().name, text);
+  if (warnings_ < max_warnings) spdlog::warn("metric '{}': {}", config().name, text);
   ++warnings_;
 }
 
@@ -128,7 +128,7 @@ void EstimateMetric::take(const Estimate& estimate) {
   check(estimate);
   const sim::Time time = true_time_of(world_, vehicle(), estimate.utime);
   const bool forgotten = time.count() < 0 || time < world_.now() - sim::from_seconds(TruthHistory::memory_s);
-  if (forgotten || time > world_.now() + most_ahead)
+  if (forgotten || time > world_.now() + max_ahead)
     throw std::runtime_error(
         fmt::format("'utime' is not within the last {} s of simulated time", TruthHistory::memory_s));
   if (sim::to_seconds(time) < params_.from_s) return;
@@ -161,7 +161,7 @@ double EstimateMetric::nees(const Estimate& estimate, const sim::Vector3d& error
                                  : nees_of<3>(*estimate.covariance_m2, error);
 }
 
-double EstimateMetric::longest_gap_s() const {
+double EstimateMetric::max_gap_s() const {
   const double now_s = sim::to_seconds(world_.now());
   double last_s = std::max(params_.from_s, begun_s_.value_or(now_s));
   double gap_s = 0;

@@ -43,10 +43,10 @@ class EstimateMetric : public Metric {
   double nees(const Estimate& estimate, const sim::Vector3d& error) const;
   const Params& params() const { return params_; }
   /// Between two estimates, before the first or since the last.
-  double longest_gap_s() const;
+  double max_gap_s() const;
 
  private:
-  /// An estimate whose time has not come yet.
+  /// An estimate with a time in the future.
   struct Early {
     sim::Time time{0};
     Estimate estimate;
@@ -56,11 +56,11 @@ class EstimateMetric : public Metric {
   };
 
   static Estimate decode(const sim::Bytes& payload);
-  /// A restored world may have built it anew.
+  /// A restored world may have built it again.
   const sim::Vehicle& vehicle() const { return *world_.find_vehicle(params_.vehicle); }
-  /// Says once what is wrong, however often it comes.
-  void complain(const std::string& channel, const std::string& what);
-  void say_how_many();
+  /// Warns of an error once.
+  void warn_once(const std::string& channel, const std::string& what);
+  void report_sample_count();
   void warn(const std::string& text);
   void take(const Estimate& estimate);
   /// False when the truth at that time is not known yet.
@@ -74,7 +74,7 @@ class EstimateMetric : public Metric {
   std::vector<ErrorSample> samples_;
   std::optional<double> begun_s_;  ///< when it began to listen
   std::int64_t bad_messages_ = 0;
-  std::string complaint_;     ///< the last one
+  std::string warning_text_;  ///< the last one
   std::int64_t ignored_ = 0;  ///< messages in a row
   int warnings_ = 0;
 };

@@ -10,9 +10,9 @@ class MessagesMetric final : public Metric {
  public:
   static constexpr const char* meaning = "messages on a channel";
   static std::vector<sim::FigureKind> figures() {
-    return {{"count", "messages", "messages that came on the channel", true},
+    return {{"count", "messages", "messages received on the channel", true},
             {"bytes", "bytes", "their payload, with the fingerprint", true},
-            {"first_s", "s", "simulated time of the first one; none: no message came"}};
+            {"first_s", "s", "simulated time of the first one; none: no message was received"}};
   }
   struct Params final : sim::MetricParams {
     void read(sim::ParamReader& in) override {
@@ -43,7 +43,7 @@ class MessagesMetric final : public Metric {
     add(figures, "first_s", first_s_);
   }
   std::string why_none(const std::string&) const override {
-    return "no message came on '" + params_.channel + "'" + since_from_s();
+    return "no message was received on '" + params_.channel + "'" + since_from_s();
   }
   void visit_state(sim::StateArchive& archive, History) override {
     archive(count_, bytes_, first_s_);

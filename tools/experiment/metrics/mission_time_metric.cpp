@@ -11,7 +11,7 @@ namespace {
 /// When something became true for the first time.
 class MissionTimeMetric final : public Metric {
  public:
-  static constexpr const char* meaning = "when something became true for the first time";
+  static constexpr const char* meaning = "time at which a condition first became true";
   static std::vector<sim::FigureKind> figures() {
     return {{"time_s", "s", "simulated time; none: it never became true"}};
   }
@@ -36,7 +36,7 @@ class MissionTimeMetric final : public Metric {
   std::string why_none(const std::string&) const override { return "it did not happen"; }
   void visit_state(sim::StateArchive& archive, History) override {
     archive(time_s_);
-    // A restored world may have built anew what the watch looks at.
+    // A restored world may have built again what the watch looks at.
     if (watch_ && archive.restoring()) watch_ = sim::make_watch(params_.when, world_.editor(), world_.zones());
     if (watch_) watch_->visit_state(archive);
   }
@@ -56,8 +56,8 @@ class MissionTimeMetric final : public Metric {
 void MissionTimeMetric::Params::read(sim::ParamReader& in) {
   when = sim::parse_condition(in, "when");
   read_vehicle(in);
-  in.read("position_m", position_m, sim::any_place(), "the vehicle's place to reach, instead of `when`");
-  in.read("radius_m", radius_m, sim::above(0), "so near to `position_m`");
+  in.read("position_m", position_m, sim::any_place(), "target position of the vehicle, instead of `when`");
+  in.read("radius_m", radius_m, sim::above(0), "within this distance of `position_m`");
   if (in.describing()) return;
   if (when.kind == sim::Condition::Kind::fires) in.error("when", "a metric cannot wait for an event to fire");
   const bool all_of_place = in.has("vehicle") && in.has("position_m") && in.has("radius_m");

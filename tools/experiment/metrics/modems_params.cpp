@@ -14,7 +14,7 @@ namespace {
 /// By what it takes: messages to send, or sentences of a host.
 bool is_modem(const sim::DeviceConfig& device) {
   const sim::DeviceType* type = sim::DeviceRegistry::instance().find(device.type);
-  if (type == nullptr) return true;  // that is told elsewhere
+  if (type == nullptr) return true;  // reported elsewhere
   return type->command_messages == "shoal.modem_send_t" || type->command_messages == "shoal.nmea_sentence_t";
 }
 
@@ -43,8 +43,9 @@ void ModemsParams::check(const sim::MetricConfig& metric, const sim::WorldConfig
     if (meant == nullptr)
       diagnostics.error(metric.place, who, "vehicle '" + vehicle + "' has no " + which + rest);
     else if (!is_modem(*meant))
-      diagnostics.error(metric.place, who,
-                        which + " of vehicle '" + vehicle + "' is no modem but of type '" + meant->type + "'" + rest);
+      diagnostics.error(
+          metric.place, who,
+          which + " of vehicle '" + vehicle + "' must be a modem, is of type '" + meant->type + "'" + rest);
   }
 }
 

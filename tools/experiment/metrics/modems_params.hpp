@@ -7,7 +7,7 @@
 
 namespace tools {
 
-/// Parameters of a metric that looks at one modem or all of them, of one vehicle or all.
+/// Parameters of a metric of one modem or all of them, of one vehicle or all.
 class ModemsParams : public sim::MetricParams {
  public:
   /// `device` must be a modem of `vehicle`.

@@ -20,7 +20,7 @@ class PositionErrorMetric final : public EstimateMetric {
         {"final_m", "m", "position error of the last estimate"},
         {"max_m", "m", "largest position error"},
         {"per_distance_percent", "%", "last error over the distance travelled until then, when that is at least 1 m"},
-        {"longest_gap_s", "s", "longest time without an estimate, from `from_s` to the end"},
+        {"max_gap_s", "s", "longest time without an estimate, from `from_s` to the end"},
         {"samples", "estimates", "estimates that were compared with the truth", true}};
   }
   using EstimateMetric::EstimateMetric;
@@ -34,12 +34,13 @@ class PositionErrorMetric final : public EstimateMetric {
     }
     const bool any = !samples()->empty();
     const auto count = static_cast<double>(samples()->size());
-    const double way_m = any ? samples()->back().travelled_m : 0;
+    const double distance_m = any ? samples()->back().travelled_m : 0;
     add(figures, "rms_m", any ? std::sqrt(squares / count) : no_figure);
     add(figures, "final_m", any ? samples()->back().error_m : no_figure);
     add(figures, "max_m", any ? largest : no_figure);
-    add(figures, "longest_gap_s", longest_gap_s());
-    add(figures, "per_distance_percent", way_m >= shortest_way_m ? 100 * samples()->back().error_m / way_m : no_figure);
+    add(figures, "max_gap_s", max_gap_s());
+    add(figures, "per_distance_percent",
+        distance_m >= min_distance_m ? 100 * samples()->back().error_m / distance_m : no_figure);
     add(figures, "samples", count);
   }
 };

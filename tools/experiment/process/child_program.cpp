@@ -68,8 +68,8 @@ int start_child(const ChildProgram& program, pid_t& pid) {
   if (pid == 0) {
     become(program, arguments.data(), environment.data(), parent);
     const int error = errno;
-    const ssize_t told = write(ends[1], &error, sizeof error);
-    _exit(told < 0 ? 126 : 127);
+    const ssize_t reported = write(ends[1], &error, sizeof error);
+    _exit(reported < 0 ? 126 : 127);
   }
   const int fork_error = errno;
   close(ends[1]);

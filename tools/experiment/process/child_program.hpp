@@ -16,7 +16,7 @@ struct ChildProgram {
   std::string log;                       ///< file for its output; empty: where ours goes
 };
 
-/// Starts it in a process group of its own, with nothing on its standard input and the usual signals.  It gets SIGTERM
+/// Starts it in its own process group, with empty standard input and default signal handling.  It gets SIGTERM
 /// when the thread that starts it ends, however that ends.  Returns 0, or the error as in errno.
 int start_child(const ChildProgram& program, pid_t& pid);
 

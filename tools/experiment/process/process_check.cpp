@@ -23,11 +23,11 @@ namespace {
 
 /// The slots of a sender, in microseconds.
 struct Slots {
-  std::int64_t begin_us, length_us, cycle_us;
+  std::int64_t start_us, length_us, cycle_us;
   /// A slot of one meets a slot of the other, sooner or later.
   bool meets(const Slots& other) const {
     const std::int64_t common_us = std::gcd(cycle_us, other.cycle_us);
-    const std::int64_t apart_us = ((other.begin_us - begin_us) % common_us + common_us) % common_us;
+    const std::int64_t apart_us = ((other.start_us - start_us) % common_us + common_us) % common_us;
     return apart_us < length_us || common_us - apart_us < other.length_us;
   }
 };
@@ -59,7 +59,7 @@ class Program {
   }
   /// The vehicle that it drives, which is its name in the lockstep too.
   std::string vehicle() const { return value_of("name"); }
-  /// The channels that it publishes on; nothing: nobody knows.
+  /// The channels that it publishes on; empty: unknown.
   std::optional<std::vector<std::string>> channels() const {
     if (!declaration_ || !declaration_->publishes) return std::nullopt;
     std::vector<std::string> channels;

@@ -11,7 +11,7 @@
 
 namespace tools {
 
-/// The external programs of an experiment.  Each gets a process group of its own, so that its children end with it, and
+/// The external programs of an experiment.  Each gets its own process group, so that its children end with it, and
 /// SIGTERM when we are killed.
 class ProcessGroup {
  public:
@@ -31,13 +31,14 @@ class ProcessGroup {
   ProcessGroup(const ProcessGroup&) = delete;
   ProcessGroup& operator=(const ProcessGroup&) = delete;
 
-  /// Starts a program; its output goes where ours goes, or to LOG_DIRECTORY/NAME.log when that is not empty.
+  /// Starts a program; it inherits our output, or writes to LOG_DIRECTORY/NAME.log when that is not empty.
   /// `{lcm_url}` in the arguments is replaced, and LCM_DEFAULT_URL is set.  A program without a slash is looked up
   /// beside the running program, then in PATH.  Throws std::runtime_error when it cannot be started.
   void start(const sim::ProcessConfig& config, const std::string& lcm_url, const std::string& log_directory);
   /// Programs that ended since the last call.
   std::vector<Exit> reap();
-  /// Lets those that take part in the lockstep end by themselves, for up to 2 s: they were told that the run is over.
+  /// Lets those that take part in the lockstep end by themselves, for up to 2 s: they were notified of the end of the
+  /// run.
   void await_clients();
   /// Asks all and their children to end, and waits; SIGKILL after 2 s.  Exit codes of programs that were asked do not
   /// matter.

@@ -28,8 +28,8 @@ long long now_ms() {
 
 /// Without another instruction of what hangs.
 [[noreturn]] void end_at_once(int signal) {
-  TerminalKeys::put_back();
-  constexpr char text[] = "\nshoal: ended at once by another signal: what was not written yet is lost\n";
+  TerminalKeys::restore_saved();
+  constexpr char text[] = "\nshoal: ended by another signal: unwritten data is lost\n";
   [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, text, sizeof text - 1);
   _exit(128 + signal);
 }

@@ -8,7 +8,7 @@ namespace tools {
 /// program unless it is ignored.
 void catch_signals(bool ignore_pipe);
 
-/// While this lives the run is ending and says so itself: it takes two more signals to end the program at once.
+/// While this object exists the run is ending and reports it: two more signals are needed to end the program at once.
 struct OrderlyEnd {
   OrderlyEnd();
   ~OrderlyEnd();

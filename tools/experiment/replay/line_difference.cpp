@@ -31,7 +31,7 @@ std::vector<std::vector<std::uint32_t>> common_lengths(const Lines& a, const Lin
 
 }  // namespace
 
-std::vector<std::string> line_difference(const std::string& first, const std::string& second, std::size_t most) {
+std::vector<std::string> line_difference(const std::string& first, const std::string& second, std::size_t max) {
   Lines a = lines_of(first), b = lines_of(second);
   std::size_t begin = 0;
   while (begin < a.size() && begin < b.size() && a[begin] == b[begin]) ++begin;
@@ -44,8 +44,8 @@ std::vector<std::string> line_difference(const std::string& first, const std::st
   b = middle(b);
   std::vector<std::string> result;
   std::size_t count = 0;
-  const auto tell = [&](char sign, std::size_t line, const std::string& text) {
-    if (++count <= most) result.push_back(fmt::format("{} {:>5}  {}", sign, begin + line + 1, text));
+  const auto report = [&](char sign, std::size_t line, const std::string& text) {
+    if (++count <= max) result.push_back(fmt::format("{} {:>5}  {}", sign, begin + line + 1, text));
   };
   std::size_t i = 0, j = 0;
   if (a.size() * b.size() <= 25'000'000) {
@@ -54,15 +54,15 @@ std::vector<std::string> line_difference(const std::string& first, const std::st
       if (a[i] == b[j]) {
         ++i, ++j;
       } else if (lengths[i + 1][j] >= lengths[i][j + 1]) {
-        tell('-', i, a[i]), ++i;
+        report('-', i, a[i]), ++i;
       } else {
-        tell('+', j, b[j]), ++j;
+        report('+', j, b[j]), ++j;
       }
     }
   }
-  for (; i < a.size(); ++i) tell('-', i, a[i]);
-  for (; j < b.size(); ++j) tell('+', j, b[j]);
-  if (count > most) result.push_back(fmt::format("and {} more lines", count - most));
+  for (; i < a.size(); ++i) report('-', i, a[i]);
+  for (; j < b.size(); ++j) report('+', j, b[j]);
+  if (count > max) result.push_back(fmt::format("and {} more lines", count - max));
   return result;
 }
 

@@ -15,7 +15,7 @@
 #include "messages/yaml/message_writer.hpp"
 #include "shoal/message_codec.hpp"
 #include "sim/bus/in_process_bus.hpp"
-#include "sim/bus/mail_gate.hpp"
+#include "sim/bus/message_gate.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/world_file/load_world.hpp"
 #include "tools/experiment/process/signals.hpp"
@@ -39,7 +39,7 @@ ReplayLog read_record(const std::string& path) {
   if (!log.own_stamps)
     throw RunError(4, "record",
                    path + ": is not stamped with simulated time; --play needs a record of shoal run --record");
-  if (log.goes_back)
+  if (log.is_rewound)
     throw RunError(4, "record", path + ": holds several branches of a run; --play needs the record of one");
   if (log.first_step > log.begin_step())
     throw RunError(4, "record",
@@ -94,7 +94,7 @@ class Player {
       throw RunError(4, "bus",
                      *other + "; its messages and those of the record would mix: choose another port with --lcm-url");
     // The world is empty, so this is quick; a damaged record may name a step that is far away.
-    while (world_.step_number() < log_.begin_step() && wanted()) world_.step();
+    while (world_.step_number() < log_.begin_step() && desired()) world_.step();
     shoal::encode_into(log_.info, buffer_);
     publish("sim.info", buffer_);
     gate_.end_of_step();
@@ -114,10 +114,10 @@ class Player {
     return std::min(log_.last_step, static_cast<std::int64_t>(std::min(steps, 1e15)));
   }
 
-  bool wanted() const { return caught_signal() == 0 && !control_.quit; }
+  bool desired() const { return caught_signal() == 0 && !control_.quit; }
 
-  void obey() {
-    requests_.look_at_joins();
+  void execute() {
+    requests_.check_joins();
     service_.handle_requests(&requests_);
     if (!bus_.connected()) throw RunError(4, "bus", "the connection to " + bus_.url() + " was lost");
   }
@@ -133,19 +133,19 @@ class Player {
   void await_programs() {
     if (options_.join_timeout_s <= 0 && options_.await.empty()) return;
     const auto begin = Clock::now();
-    bool said = options_.quiet;
-    for (std::string missing = missing_programs(); !missing.empty() && wanted(); missing = missing_programs()) {
+    bool reported = options_.quiet;
+    for (std::string missing = missing_programs(); !missing.empty() && desired(); missing = missing_programs()) {
       const double waited_s = std::chrono::duration<double>(Clock::now() - begin).count();
       if (waited_s > options_.join_timeout_s)
         throw RunError(5, "timeout",
                        fmt::format("{} has not joined the lockstep on {} within {:g} s{}", missing, bus_.url(),
                                    options_.join_timeout_s,
                                    options_.await.empty() ? "; for programs that only listen: --join-timeout 0" : ""));
-      if (!said && waited_s > 1) {
-        progress_.say(fmt::format("waiting for {} to join the lockstep on {}", missing, bus_.url()));
-        said = true;
+      if (!reported && waited_s > 1) {
+        progress_.report(fmt::format("waiting for {} to join the lockstep on {}", missing, bus_.url()));
+        reported = true;
       }
-      obey();
+      execute();
       bus_.wait_for_message(milliseconds(20));
     }
   }
@@ -156,8 +156,8 @@ class Player {
       throw RunError(2, "configuration",
                      fmt::format("{}: begins at {:.6g} s, after --until", log_.path, sim::to_seconds(world_.now())));
     end_step();
-    while (wanted() && world_.step_number() < last) {
-      obey();
+    while (desired() && world_.step_number() < last) {
+      execute();
       if (!synchronized_) {
         synchronize();
         continue;
@@ -174,8 +174,8 @@ class Player {
       end_step();
       progress_.update(world_.now(), played_, control_, false);
     }
-    while (wanted() && !synchronized_) {
-      obey();
+    while (desired() && !synchronized_) {
+      execute();
       synchronize();
     }
     if (synchronized_) take_answers();
@@ -198,10 +198,10 @@ class Player {
   void synchronize() {
     const auto outcome = lockstep_.synchronize([this](milliseconds time) { bus_.wait_for_message(time); },
                                                [this] {
-                                                 obey();
+                                                 execute();
                                                  if (control_.paused)
                                                    progress_.update(world_.now(), played_, control_, true);
-                                                 return wanted();
+                                                 return desired();
                                                });
     synchronized_ = outcome == bridges::LockstepOutcome::done;
   }
@@ -209,9 +209,9 @@ class Player {
   /// What programs said to this step, and in its place what they or others said in the run.
   void take_answers() {
     answers_.came(world_.step_number(), gate_.admit());
-    steps_.mail_after(world_.step_number(), [this](std::string_view channel, std::span<const std::byte> payload) {
-      // Who speaks here himself need not hear what was said in the run, and nobody should hear both.
-      if (!answers_.is_spoken(channel) || lockstep_.somebody_receives(channel)) publish(channel, payload);
+    steps_.inputs_after(world_.step_number(), [this](std::string_view channel, std::span<const std::byte> payload) {
+      // Who speaks here himself need not receive what was published in the run, and no client should receive both.
+      if (!answers_.is_spoken(channel) || lockstep_.has_receiver(channel)) publish(channel, payload);
     });
     for (const auto& mailbox : mailboxes_)
       while (mailbox->take()) {
@@ -220,14 +220,14 @@ class Player {
 
   void pace() {
     const sim::Time next = world_.now() + world_.step_time();
-    for (auto wait = pacer_.until(next, control_); wait.count() > 0 && wanted() && control_.may_step();
+    for (auto wait = pacer_.until(next, control_); wait.count() > 0 && desired() && control_.may_step();
          wait = pacer_.until(next, control_)) {
       if (wait > milliseconds(2))
         bus_.wait_for_message(
             std::min(std::chrono::duration_cast<milliseconds>(wait) - milliseconds(1), milliseconds(20)));
       else
         std::this_thread::sleep_for(wait);
-      obey();
+      execute();
     }
   }
 
@@ -262,7 +262,7 @@ class Player {
   sim::LoadedWorld empty_;
   bridges::LcmBus bus_;
   bridges::OtherSimulators others_;
-  sim::MailGate gate_;
+  sim::MessageGate gate_;
   sim::InProcessBus inner_;  // of the empty world, which has nothing to say
   sim::RunControl control_;
   sim::World world_;

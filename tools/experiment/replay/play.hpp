@@ -12,8 +12,8 @@ namespace tools {
 struct PlayOptions {
   std::string log;                 ///< a record of shoal run --record
   std::string lcm_url;             ///< empty: LCM_DEFAULT_URL, then the default
-  std::vector<std::string> await;  ///< lockstep clients to wait for; empty: whoever comes first
-  double join_timeout_s = 30;      ///< wall time to wait for them; 0: nobody is waited for
+  std::vector<std::string> await;  ///< lockstep clients to wait for; empty: any
+  double join_timeout_s = 30;      ///< wall time to wait for them; 0: none
   std::optional<double> until_s;   ///< simulated time; without it to the end of the record
   double speed = 0;                ///< times real time; 0: as fast as possible
   bool compare = false;            ///< answers that differ from the record are an error
@@ -28,8 +28,8 @@ struct PlayOutcome {
 
 /// Gives the messages of a record to programs as its run did, without a world: in lockstep to those that join, each at
 /// its own period, and on the bus to those that only listen.  What they publish changes nothing and is compared with
-/// the record.  Throws RunError: 2 options, 4 bus (also another simulator on it) or record, 5 nobody came, or a client
-/// did not answer.
+/// the record.  Throws RunError: 2 options, 4 bus (also another simulator on it) or record, 5 no client joined, or
+/// one did not answer.
 PlayOutcome play(const PlayOptions& options);
 
 }  // namespace tools

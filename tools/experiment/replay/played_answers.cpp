@@ -13,15 +13,15 @@ namespace tools {
 
 namespace {
 
-bool is_answer(const ReplayLog::Letter& letter) {
-  return letter.bus != bridges::RunJournal::serial_bus && !is_of_the_handshake(letter.channel);
+bool is_answer(const ReplayLog::Input& input) {
+  return input.bus != bridges::RunJournal::serial_bus && !is_of_the_handshake(input.channel);
 }
 
 }  // namespace
 
 PlayedAnswers::PlayedAnswers(const ReplayLog& log) : log_(log) {
-  for (const ReplayLog::Letter& letter : log.letters)
-    if (is_answer(letter)) ++channels_[letter.channel].recorded;
+  for (const ReplayLog::Input& input : log.inputs)
+    if (is_answer(input)) ++channels_[input.channel].recorded;
 }
 
 bool PlayedAnswers::is_spoken(std::string_view channel) const {
@@ -29,13 +29,13 @@ bool PlayedAnswers::is_spoken(std::string_view channel) const {
   return known != channels_.end() && known->second.spoken;
 }
 
-void PlayedAnswers::came(std::int64_t step, std::span<const sim::MailGate::Mail> mail) {
+void PlayedAnswers::came(std::int64_t step, std::span<const sim::MessageGate::Delivery> input_record) {
   std::map<std::string_view, std::vector<const sim::Bytes*>> there, here;
-  for (; next_ < log_.letters.size() && log_.letters[next_].step <= step; ++next_) {
-    const ReplayLog::Letter& letter = log_.letters[next_];
-    if (is_answer(letter)) there[letter.channel].push_back(&letter.payload);
+  for (; next_ < log_.inputs.size() && log_.inputs[next_].step <= step; ++next_) {
+    const ReplayLog::Input& input = log_.inputs[next_];
+    if (is_answer(input)) there[input.channel].push_back(&input.payload);
   }
-  for (const sim::MailGate::Mail& each : mail) here[each.channel].push_back(&each.payload);
+  for (const sim::MessageGate::Delivery& each : input_record) here[each.channel].push_back(&each.payload);
   for (auto& [name, channel] : channels_) {
     const auto published = here.find(name);
     if (published != here.end()) channel.spoken = true;
@@ -98,7 +98,7 @@ std::vector<std::string> PlayedAnswers::to_lines(double step_s) const {
   if (lines.empty())
     lines.push_back("nothing was published here on a channel on which the world of the log received messages");
   else if (silent > 0)
-    lines.push_back(fmt::format("{} more channels of the log: nothing was published here on them", silent));
+    lines.push_back(fmt::format("{} more channels of the log without messages from this world", silent));
   return lines;
 }
 

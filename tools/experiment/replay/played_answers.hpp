@@ -10,13 +10,13 @@
 #include <string_view>
 #include <vector>
 
-#include "sim/bus/mail_gate.hpp"
+#include "sim/bus/message_gate.hpp"
 #include "tools/experiment/replay/replay_log.hpp"
 
 namespace tools {
 
-/// Compares what programs publish while a record is played to them with what came to the world in its run: step by
-/// step, channel by channel, in order.  Channels on which no program has spoken yet are another program's.
+/// Compares what programs publish during the playback of a record with the inputs of the world in its run: by step
+/// and channel, in order.  Channels on which no program has spoken yet are another program's.
 class PlayedAnswers {
  public:
   struct Channel {
@@ -34,8 +34,8 @@ class PlayedAnswers {
 
   /// Channels on which something came to the world from outside.
   const std::map<std::string, Channel, std::less<>>& channels() const { return channels_; }
-  /// What came after `step`, in order.  Call it for each step once; steps must not go back.
-  void came(std::int64_t step, std::span<const sim::MailGate::Mail> mail);
+  /// What came after `step`, in order.  To be called once for each step, in ascending order.
+  void came(std::int64_t step, std::span<const sim::MessageGate::Delivery> input_record);
   /// A program has published on this channel.
   bool is_spoken(std::string_view channel) const;
 
@@ -48,7 +48,7 @@ class PlayedAnswers {
                const std::vector<const sim::Bytes*>& here);
 
   const ReplayLog& log_;
-  std::size_t next_ = 0;  // of the letters
+  std::size_t next_ = 0;  // of the inputs
   std::map<std::string, Channel, std::less<>> channels_;
 };
 

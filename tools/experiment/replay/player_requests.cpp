@@ -47,7 +47,7 @@ void PlayerRequests::check_channels(const std::string& text) const {
                            sim::shortened(sim::printable(terms.receives.front())) + "'");
 }
 
-void PlayerRequests::look_at_joins() {
+void PlayerRequests::check_joins() {
   while (const auto message = joins_->take()) {
     try {
       const auto request =
@@ -64,7 +64,7 @@ void PlayerRequests::look_at_joins() {
   }
 }
 
-std::optional<std::string> PlayerRequests::obey(const std::string& command, const std::string& text, double value) {
+std::optional<std::string> PlayerRequests::execute(const std::string& command, const std::string& text, double value) {
   if (command == "join") {
     check_channels(text);
   } else if (command == "pause" || command == "resume") {
@@ -83,7 +83,7 @@ std::optional<std::string> PlayerRequests::obey(const std::string& command, cons
   } else if (command == "where") {
     return where_();
   } else if (needs_a_world(command)) {
-    throw std::runtime_error("a record is played, and there is no world: '" + command + "' is not possible");
+    throw std::runtime_error("a record is being played, so there is no world: '" + command + "' is not possible");
   }
   return std::nullopt;
 }

@@ -15,17 +15,16 @@
 
 namespace tools {
 
-/// What programs and people ask on sim.control while a record is played: pause, resume, step, speed and where are
-/// served, what would change a world is refused, and so is a client that asks only for channels that the record does
-/// not have.
+/// Requests on sim.control during the playback of a record: pause, resume, step, speed and where are served; requests
+/// that would change a world are rejected, and so is a client that only requests channels that the record lacks.
 class PlayerRequests final : public bridges::TimeMachine {
  public:
   /// All must outlive this.  `where` says where the record is.
   PlayerRequests(const ReplayLog& log, sim::RunControl& control, sim::Bus& network, std::function<std::string()> where);
 
-  std::optional<std::string> obey(const std::string& command, const std::string& text, double value) override;
+  std::optional<std::string> execute(const std::string& command, const std::string& text, double value) override;
   /// Warns of channels that a client asks for and the record does not have.  Call it before requests are handled.
-  void look_at_joins();
+  void check_joins();
 
  private:
   bool has(const std::string& channel) const;

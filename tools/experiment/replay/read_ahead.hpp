@@ -14,7 +14,7 @@
 
 namespace tools {
 
-/// Reads an LCM event log in a thread of its own, a few blocks ahead of who looks at the events.
+/// Reads an LCM event log in its own thread, a few blocks ahead of the reader of the events.
 class ReadAhead {
  public:
   /// Throws bridges::BusError when the file cannot be opened.

@@ -11,42 +11,42 @@ namespace tools {
 
 namespace {
 
-bool is_message(const ReplayLog::Letter& letter) {
-  return letter.bus != bridges::RunJournal::serial_bus && letter.channel != bridges::RunJournal::request_channel;
+bool is_message(const ReplayLog::Input& input) {
+  return input.bus != bridges::RunJournal::serial_bus && input.channel != bridges::RunJournal::request_channel;
 }
 
 }  // namespace
 
 bool is_of_the_handshake(std::string_view channel) {
   static constexpr std::array<std::string_view, 10> names{
-      "sim.ack",    "sim.control", "sim.control.reply", "sim.hash",     "sim.mail",
-      "sim.notice", "sim.resend",  "sim.resent",        "sim.snapshot", "sim.tick"};
+      "sim.ack",   "sim.control", "sim.control.reply", "sim.hash",     "sim.inputs",
+      "sim.audit", "sim.resend",  "sim.resent",        "sim.snapshot", "sim.tick"};
   return std::find(names.begin(), names.end(), channel) != names.end();
 }
 
 RecordedSteps::RecordedSteps(const ReplayLog& log) : log_(log), file_(log.path) {}
 
-void RecordedSteps::mail_after(std::int64_t step, const Use& use) {
-  for (; next_mail_ < log_.letters.size() && log_.letters[next_mail_].step <= step; ++next_mail_) {
-    const ReplayLog::Letter& letter = log_.letters[next_mail_];
-    if (is_message(letter)) use(letter.channel, letter.payload);
+void RecordedSteps::inputs_after(std::int64_t step, const Use& use) {
+  for (; next_input_ < log_.inputs.size() && log_.inputs[next_input_].step <= step; ++next_input_) {
+    const ReplayLog::Input& input = log_.inputs[next_input_];
+    if (is_message(input)) use(input.channel, input.payload);
   }
 }
 
-/// A record holds mail twice: as it came, with the stamp of the step before, and in sim.mail.
-bool RecordedSteps::is_copy_of_mail() {
-  const auto utime_of = [this](const ReplayLog::Letter& letter) {
-    return log_.info.epoch_utime + letter.step * log_.info.step_us;
+/// A record holds inputs twice: as received, with the stamp of the previous step, and in sim.inputs.
+bool RecordedSteps::is_copy_of_input() {
+  const auto utime_of = [this](const ReplayLog::Input& input) {
+    return log_.info.epoch_utime + input.step * log_.info.step_us;
   };
-  // The copy of a letter whose time is over is not in the record: it begins after it.
-  while (next_copy_ < log_.letters.size() &&
-         (!is_message(log_.letters[next_copy_]) || utime_of(log_.letters[next_copy_]) < event_.utime))
+  // The copy of an input whose time is over is not in the record: it begins after it.
+  while (next_copy_ < log_.inputs.size() &&
+         (!is_message(log_.inputs[next_copy_]) || utime_of(log_.inputs[next_copy_]) < event_.utime))
     ++next_copy_;
-  if (next_copy_ == log_.letters.size()) return false;
-  const ReplayLog::Letter& letter = log_.letters[next_copy_];
+  if (next_copy_ == log_.inputs.size()) return false;
+  const ReplayLog::Input& input = log_.inputs[next_copy_];
   const bool same =
-      letter.channel == event_.channel && event_.utime == utime_of(letter) &&
-      std::equal(letter.payload.begin(), letter.payload.end(), event_.payload.begin(), event_.payload.end());
+      input.channel == event_.channel && event_.utime == utime_of(input) &&
+      std::equal(input.payload.begin(), input.payload.end(), event_.payload.begin(), event_.payload.end());
   if (same) ++next_copy_;
   return same;
 }
@@ -60,7 +60,7 @@ void RecordedSteps::published_at(std::int64_t step, const Use& use) {
     has_event_ = false;
     if (is_of_the_handshake(event_.channel)) continue;
     if (event_.channel == "sim.info" && !std::exchange(skipped_info_, true)) continue;
-    if (!is_copy_of_mail()) use(event_.channel, event_.payload);
+    if (!is_copy_of_input()) use(event_.channel, event_.payload);
   }
 }
 

@@ -13,9 +13,9 @@
 
 namespace tools {
 
-/// Gives the messages of a record step by step, in the order in which the run had them: what came to the world from
-/// outside before a step, then what the simulator published at its end.  Messages of the run itself (lockstep,
-/// requests, sim.mail, sim.hash, sim.snapshot) are left out, and so is the first sim.info.
+/// Gives the messages of a record step by step, in the order in which the run had them: the inputs of the world
+/// before a step, then what the simulator published at its end.  Messages of the run itself (lockstep,
+/// requests, sim.inputs, sim.hash, sim.snapshot) are left out, and so is the first sim.info.
 class RecordedSteps {
  public:
   /// The payload is readable until the call returns.
@@ -25,19 +25,19 @@ class RecordedSteps {
   explicit RecordedSteps(const ReplayLog& log);
 
   /// What came from outside after `step` and before the next one.
-  void mail_after(std::int64_t step, const Use& use);
+  void inputs_after(std::int64_t step, const Use& use);
   /// What the simulator published up to the end of `step`; steps must not go back.
   void published_at(std::int64_t step, const Use& use);
 
  private:
-  bool is_copy_of_mail();
+  bool is_copy_of_input();
 
   const ReplayLog& log_;
   bridges::EventLogReader file_;
   bridges::LogEventView event_;
   bool has_event_ = false;  // that is not yet given
   bool skipped_info_ = false;
-  std::size_t next_mail_ = 0, next_copy_ = 0;  // of the letters
+  std::size_t next_input_ = 0, next_copy_ = 0;  // of the inputs
 };
 
 /// A message by which a run is run, not one of the world: programs are not given those of a record.

@@ -16,7 +16,7 @@
 #include "messages/yaml/message_writer.hpp"
 #include "shoal/message_codec.hpp"
 #include "sim/bus/in_process_bus.hpp"
-#include "sim/bus/mail_gate.hpp"
+#include "sim/bus/message_gate.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/world/world_state.hpp"
 #include "tools/experiment/replay/line_difference.hpp"
@@ -32,12 +32,12 @@ namespace tools {
 namespace {
 
 using bridges::RunJournal;
-using Letter = ReplayLog::Letter;
+using Input = ReplayLog::Input;
 
-/// A bus that nobody else is on.
+/// A bus without other participants.
 struct Line {
   std::unique_ptr<sim::InProcessBus> network = std::make_unique<sim::InProcessBus>();
-  std::unique_ptr<sim::MailGate> gate = std::make_unique<sim::MailGate>(*network);
+  std::unique_ptr<sim::MessageGate> gate = std::make_unique<sim::MessageGate>(*network);
 };
 
 /// The world that is run: that of the log, or another one in its place.
@@ -53,7 +53,7 @@ sim::LoadedWorld load(const ReplayLog& log, const ReplayOptions& options) {
   }
   const std::vector<std::string> changed = changed_files(log.info.files);
   if (!changed.empty()) {
-    std::string text = log.path + ": the run used files that are not as they were then:";
+    std::string text = log.path + ": these input files changed since the run was recorded:";
     for (const std::string& file : changed) text += "\n  " + sim::printable(file);
     throw std::runtime_error(text);
   }
@@ -79,8 +79,8 @@ class Replay {
     check_times();
     restore();
     world_.use_threads(options.threads);
-    for (const Letter& letter : log_.letters)
-      if (letter.bus == RunJournal::serial_bus) serial_.add(letter);
+    for (const Input& input : log_.inputs)
+      if (input.bus == RunJournal::serial_bus) serial_.add(input);
   }
 
   ReplayOutcome run() {
@@ -140,10 +140,10 @@ class Replay {
       throw std::runtime_error(fmt::format("{}: its run has the epoch {}, the world here {}: all stamps would differ",
                                            log_.path, log_.info.epoch_utime, world_.epoch_us()));
     if (!log_.bad_snapshot.empty() && !log_.snapshot && log_.usable_step() < log_.last_step)
-      throw std::runtime_error(log_.path + ": cannot be run again: " + log_.bad_snapshot);
+      throw std::runtime_error(log_.path + ": cannot be replayed: " + log_.bad_snapshot);
     if (log_.proven_step && *log_.proven_step <= log_.begin_step() && log_.usable_step() < log_.last_step)
-      throw std::runtime_error(log_.path + ": cannot be run again from the start: " + log_.holes.front() +
-                               "; the log begins later than the run");
+      throw std::runtime_error(log_.path + ": cannot be replayed from the start: " + log_.holes.front() +
+                               "; the log starts later than the run");
     if (log_.last_step == log_.begin_step() && !log_.hashes.contains(log_.begin_step()))
       throw std::runtime_error(log_.path + ": ends before the first step");
   }
@@ -163,7 +163,7 @@ class Replay {
       throw std::runtime_error(who + ": " + error.what());
     }
     if (world_.state().hash() != log_.snapshot->state_hash && options_.load.sets.empty() && options_.world.empty())
-      throw std::runtime_error(who + ": restored here it has another state hash than where it was written");
+      throw std::runtime_error(who + ": its state hash after restoring differs from the one that was written");
   }
 
   std::int64_t last_step() {
@@ -183,35 +183,35 @@ class Replay {
 
   /// What came to the world before this step.
   void hand_over(std::int64_t step) {
-    for (; next_letter_ < log_.letters.size() && log_.letters[next_letter_].step <= step; ++next_letter_) {
-      const Letter& letter = log_.letters[next_letter_];
-      if (letter.bus == RunJournal::serial_bus) continue;
-      if (letter.bus.empty() && letter.channel == RunJournal::request_channel) {
-        obey(letter);
+    for (; next_input_ < log_.inputs.size() && log_.inputs[next_input_].step <= step; ++next_input_) {
+      const Input& input = log_.inputs[next_input_];
+      if (input.bus == RunJournal::serial_bus) continue;
+      if (input.bus.empty() && input.channel == RunJournal::request_channel) {
+        execute(input);
         continue;
       }
-      const auto other = letter.bus.empty() ? others_.end() : others_.find(letter.bus);
-      if (!letter.bus.empty() && other == others_.end()) {
-        note("the world here has no bus '" + sim::printable(sim::shortened(letter.bus)) +
-             "': its mail is not delivered");
+      const auto other = input.bus.empty() ? others_.end() : others_.find(input.bus);
+      if (!input.bus.empty() && other == others_.end()) {
+        note("the world here has no bus '" + sim::printable(sim::shortened(input.bus)) +
+             "': its inputs are not delivered");
         continue;
       }
-      sim::MailGate& gate = letter.bus.empty() ? *main_.gate : *other->second.gate;
-      gate.waiting().push_back({letter.channel, letter.payload});
+      sim::MessageGate& gate = input.bus.empty() ? *main_.gate : *other->second.gate;
+      gate.waiting().push_back({input.channel, input.payload});
     }
   }
 
   /// What was asked for after the last step.
   void finish() {
     hand_over(world_.step_number());
-    if (!outcome_.first) tell_first_messages();
+    if (!outcome_.first) report_first_messages();
     const auto last = log_.hashes.find(world_.step_number());
-    if (last != log_.hashes.end() && last->second.after_letters) compare_hashes(last->second);
+    if (last != log_.hashes.end() && last->second.after_inputs) compare_hashes(last->second);
   }
 
-  void obey(const Letter& letter) {
+  void execute(const Input& input) {
     try {
-      service_.obey_again(shoal::decode<shoal::sim_control_request_t>(letter.payload, shoal::Finite::any));
+      service_.execute_again(shoal::decode<shoal::sim_control_request_t>(input.payload, shoal::Finite::any));
     } catch (const shoal::MessageError& error) {
       note(std::string("a request in the log cannot be read: ") + error.what());
     } catch (const std::exception&) {
@@ -226,19 +226,19 @@ class Replay {
 
   void after_step() {
     service_.publish_step();
-    if (!outcome_.first) tell_first_messages();
+    if (!outcome_.first) report_first_messages();
     while (next_hash_ != log_.hashes.end() && next_hash_->first < world_.step_number()) ++next_hash_;
     const bool due = next_hash_ != log_.hashes.end() && next_hash_->first == world_.step_number();
-    if (due && !next_hash_->second.after_letters) compare_hashes(next_hash_->second);
+    if (due && !next_hash_->second.after_inputs) compare_hashes(next_hash_->second);
   }
 
   /// All that differ by now differ since this step.
-  void tell_first_messages() {
-    constexpr std::size_t most = 8;
+  void report_first_messages() {
+    constexpr std::size_t max = 8;
     if (messages_.first() == nullptr) return;
     differ(who(messages_.first()->channel), messages_.first()->what);
     for (const auto& [channel, difference] : messages_.by_channel())
-      if (channel != messages_.first()->channel && outcome_.first->what.size() < most)
+      if (channel != messages_.first()->channel && outcome_.first->what.size() < max)
         differ(who(channel), difference.what);
   }
 
@@ -295,9 +295,9 @@ class Replay {
   }
 
   static std::vector<std::string> few(const std::vector<std::string>& all) {
-    constexpr std::size_t most = 12;
-    std::vector<std::string> some(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(std::min(all.size(), most)));
-    if (all.size() > most) some.push_back(fmt::format("and {} more", all.size() - most));
+    constexpr std::size_t max = 12;
+    std::vector<std::string> some(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(std::min(all.size(), max)));
+    if (all.size() > max) some.push_back(fmt::format("and {} more", all.size() - max));
     return some;
   }
 
@@ -318,19 +318,19 @@ class Replay {
     outcome_.sim_time_s = static_cast<double>(outcome_.steps) * outcome_.step_s;
     outcome_.messages = messages_.equal();
     outcome_.missing_messages = messages_.missing();
-    if (!outcome_.first) tell_first_messages();
+    if (!outcome_.first) report_first_messages();
     outcome_.interrupted = caught_signal() != 0;
     outcome_.complete = cut_ || (log_.usable_step() >= log_.last_step && !outcome_.interrupted);
     if (outcome_.hashes + outcome_.messages == 0 && !outcome_.first)
       throw std::runtime_error(log_.path + ": holds neither hashes nor messages to compare with");
-    tell_of_log();
+    report_log();
     if (!options_.world.empty() || !options_.load.sets.empty()) compare_worlds();
     if (outcome_.first) outcome_.motion = motion();
     if (outcome_.first) write_report();
   }
 
   void compare_worlds() {
-    constexpr std::size_t most_lines = 12;
+    constexpr std::size_t max_lines = 12;
     std::vector<std::string>& world = outcome_.world;
     try {
       sim::LoadOptions load = options_.load;
@@ -340,13 +340,14 @@ class Replay {
       load.encode_message = shoal::encode_own_message;
       const sim::WorldConfig logged =
           sim::load_world_text(log_.info.resolved_config, log_.path + ": sim.info", load).config;
-      for (const std::string& thing : things_only_in(logged, loaded_.config))
-        world.push_back("only in the log: " + thing);
-      for (const std::string& thing : things_only_in(loaded_.config, logged)) world.push_back("only here: " + thing);
+      for (const std::string& entity : entities_only_in(logged, loaded_.config))
+        world.push_back("only in the log: " + entity);
+      for (const std::string& entity : entities_only_in(loaded_.config, logged))
+        world.push_back("only here: " + entity);
     } catch (const std::exception&) {
       // A mesh of the log may be gone; its lines can be compared all the same.
     }
-    for (std::string& line : line_difference(log_.info.resolved_config, sim::to_yaml(loaded_.resolved), most_lines))
+    for (std::string& line : line_difference(log_.info.resolved_config, sim::to_yaml(loaded_.resolved), max_lines))
       world.push_back(std::move(line));
   }
 
@@ -359,19 +360,19 @@ class Replay {
     return "";
   }
 
-  void tell_of_log() {
+  void report_log() {
     if (!log_.cut.empty()) note(log_.cut);
     for (const std::string& hole : log_.holes) note(hole);
     if (!outcome_.complete && !log_.holes.empty())
       note(
-          fmt::format("what came to the world after step {} is not all in the log, which goes on to step {}: nothing "
-                      "after step {} can be proved",
+          fmt::format("the log lacks inputs after step {}, although it extends to step {}: nothing after step {} can "
+                      "be verified",
                       log_.usable_step(), log_.last_step, log_.usable_step()));
     const std::string wrote = log_.info.versions.substr(0, log_.info.versions.find('\n'));
     if (wrote != "shoal " + short_version())
       note("written by " + sim::shortened(sim::printable(wrote)) + "; this is shoal " + short_version());
     if (outcome_.interrupted) note("interrupted");
-    if (log_.goes_back) note("the log holds several branches; only hashes are compared");
+    if (log_.is_rewound) note("the log holds several branches; only hashes are compared");
     if (!log_.bad_snapshot.empty()) note(log_.bad_snapshot);
     if (log_.first_step > log_.begin_step()) note(fmt::format("the log begins at step {}", log_.first_step));
     if (log_.hashes.empty()) note("the log holds no hashes: only messages are compared");
@@ -380,7 +381,7 @@ class Replay {
                        outcome_.missing_messages, at(messages_.first_missing()->step),
                        messages_.first_missing()->channel));
     for (const std::string& problem : log_.problems) note("the log: " + problem);
-    for (const std::string& notice : log_.notices) note("in the run: " + notice);
+    for (const std::string& audit_entry : log_.audit) note("in the run: " + audit_entry);
   }
 
   std::string at(std::int64_t step) const {
@@ -400,7 +401,7 @@ class Replay {
     std::vector<std::string> lines;
     for (const auto& [vehicle, distance] : messages_.distances())
       lines.push_back(fmt::format("{}: from {} on, at most {:.6g} m at {}", vehicle, at(distance.first_step),
-                                  distance.largest_m, at(distance.largest_step)));
+                                  distance.max_m, at(distance.max_step)));
     section("True positions", lines);
     lines.clear();
     std::vector<const ReplayMessages::Difference*> channels;
@@ -421,9 +422,9 @@ class Replay {
   std::map<std::string, Line> others_;
   sim::RunControl control_;
   sim::World world_;
-  bridges::LockstepService lockstep_{world_, control_};  // nobody joins
+  bridges::LockstepService lockstep_{world_, control_};  // no client joins
   bridges::SimService service_;
-  std::size_t next_letter_ = 0;
+  std::size_t next_input_ = 0;
   std::map<std::int64_t, ReplayLog::Hashes>::const_iterator next_hash_ = log_.hashes.begin();
   bool cut_ = false;
   std::vector<std::string> parts_;

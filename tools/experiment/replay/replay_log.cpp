@@ -14,17 +14,17 @@
 #include <utility>
 #include <vector>
 
-#include "bridges/control/run_notices.hpp"
+#include "bridges/control/run_audit.hpp"
 #include "bridges/log/event_log.hpp"
 #include "bridges/log/run_journal.hpp"
 #include "shoal/message_codec.hpp"
+#include "shoal/sim_audit_t.hpp"
 #include "shoal/sim_hash_t.hpp"
-#include "shoal/sim_mail_t.hpp"
-#include "shoal/sim_notice_t.hpp"
+#include "shoal/sim_inputs_t.hpp"
 #include "shoal/sim_snapshot_t.hpp"
 #include "shoal/sim_state_t.hpp"
 #include "sim/config/message_text.hpp"
-#include "tools/experiment/results/notice_text.hpp"
+#include "tools/experiment/results/audit_text.hpp"
 #include "tools/experiment/run/runner.hpp"
 #include "tools/experiment/snapshot/snapshot_pieces.hpp"
 
@@ -32,9 +32,9 @@ namespace tools {
 
 namespace {
 
-constexpr std::size_t most_problems = 20;
-/// Where nothing comes for so long, nobody looks for what was lost.
-constexpr std::size_t most_since_mail = 1'000'000;
+constexpr std::size_t max_problems = 20;
+/// Without messages for this long, losses are not searched for.
+constexpr std::size_t max_since_inputs = 1'000'000;
 
 /// The big-endian number behind the fingerprint and `index` others.
 std::int64_t number_at(std::span<const std::byte> payload, std::size_t index) {
@@ -76,14 +76,14 @@ class Reader {
     bridges::LogEventView event;
     while (file_.next(event)) {
       count(event.channel);
-      if (event.channel != "sim.notice") {  // which may stand behind the end of a step
+      if (event.channel != "sim.audit") {  // which may stand behind the end of a step
         last_stamp_ = event.utime;
         ends_whole_ = false;
       }
       if (!informed_ && event.channel == "sim.info") version_ = version_in(event.payload);
       if (!event.channel.starts_with("sim.")) {
-        if (informed_ && log_.own_stamps && since_mail_.size() < most_since_mail)
-          since_mail_.push_back({last_, step_of(event.utime)});
+        if (informed_ && log_.own_stamps && since_inputs_.size() < max_since_inputs)
+          since_inputs_.push_back({last_, step_of(event.utime)});
         continue;
       }
       try {
@@ -96,23 +96,23 @@ class Reader {
     for (const std::string& text : file_.problems()) problem(text);
     if (!informed_) fail_without_info();
     note_missing_pieces();
-    leave_out_what_is_not_whole();
+    leave_out_incomplete();
     narrow_holes();
-    for (const Hole& hole : holes_) tell(hole);
+    for (const Hole& hole : holes_) report(hole);
     return std::move(log_);
   }
 
  private:
   /// A message, by the place of its channel in counts_.
-  struct Came {
+  struct Arrival {
     std::size_t channel;
     std::int64_t step;
   };
-  /// Numbers of sim.mail that are missing, and the steps between which they were published.
+  /// Numbers of sim.inputs that are missing, and the steps between which they were published.
   struct Hole {
     std::int64_t first, last;
     std::int64_t from_step, to_step;
-    std::vector<Came> came = {};  ///< of a record: all messages in it since the sim.mail before
+    std::vector<Arrival> came = {};  ///< of a record: all messages in it since the sim.inputs before
   };
 
   /// In microseconds.  Without signs on the way: a damaged stamp may overflow.
@@ -122,35 +122,35 @@ class Reader {
   }
   std::int64_t step_of(std::int64_t utime) const { return since_start(utime) / log_.info.step_us; }
 
-  /// A record holds what came from outside beside sim.mail: where a channel has just as many messages more than letters
-  /// as came in the holes, those tell of the steps that the holes are about.
+  /// A record holds messages from outside beside sim.inputs: where a channel has just as many messages more than inputs
+  /// as came in the holes, those report the steps that the holes are about.
   void narrow_holes() {
     if (!log_.own_stamps) return;
-    std::map<std::string, std::int64_t, std::less<>> unknown;  // of the channels that letters came on
-    std::set<std::pair<std::string, std::int64_t>> letters;
-    for (const ReplayLog::Letter& letter : log_.letters) {
-      if (!log_.events.contains(letter.channel)) continue;
-      unknown.try_emplace(letter.channel, log_.events.at(letter.channel)).first->second -= 1;
-      letters.emplace(letter.channel, letter.step);
+    std::map<std::string, std::int64_t, std::less<>> unknown;  // of the channels that inputs came on
+    std::set<std::pair<std::string, std::int64_t>> inputs;
+    for (const ReplayLog::Input& input : log_.inputs) {
+      if (!log_.events.contains(input.channel)) continue;
+      unknown.try_emplace(input.channel, log_.events.at(input.channel)).first->second -= 1;
+      inputs.emplace(input.channel, input.step);
     }
     for (Hole& hole : holes_)
-      std::erase_if(hole.came, [&](const Came& came) {
+      std::erase_if(hole.came, [&](const Arrival& came) {
         const std::string& channel = counts_[came.channel].channel;
-        return !unknown.contains(channel) || letters.contains({channel, came.step});
+        return !unknown.contains(channel) || inputs.contains({channel, came.step});
       });
     for (const Hole& hole : holes_)
-      for (const Came& came : hole.came) unknown.at(counts_[came.channel].channel) -= 1;
+      for (const Arrival& came : hole.came) unknown.at(counts_[came.channel].channel) -= 1;
     for (Hole& hole : holes_) {
-      std::erase_if(hole.came, [&](const Came& came) { return unknown.at(counts_[came.channel].channel) != 0; });
+      std::erase_if(hole.came, [&](const Arrival& came) { return unknown.at(counts_[came.channel].channel) != 0; });
       if (hole.came.empty() || hole.last - hole.first + 1 > static_cast<std::int64_t>(hole.came.size())) continue;
       hole.from_step = hole.came.front().step;
       hole.to_step = hole.came.back().step;
     }
   }
 
-  /// The last events are of a step whose letters come behind its messages: where the log breaks off between the two the
+  /// The last events are of a step whose inputs come behind its messages: where the log breaks off between the two the
   /// step cannot be run again.
-  void leave_out_what_is_not_whole() {
+  void leave_out_incomplete() {
     // In a record all of a step stands before anything of a later one.
     std::int64_t stamped = step_of(last_stamp_);
     // There is a sim.info every 10 s: a stamp that is far beyond is damaged.
@@ -160,33 +160,37 @@ class Reader {
     log_.last_step = std::max(whole_step_, log_.begin_step());
     // Behind the end of a step may stand what came for the next.
     if (known > log_.last_step || (log_.own_stamps && !ends_whole_))
-      log_.cut = fmt::format("the log breaks off in step {}: what stands behind step {} is left out",
+      log_.cut = fmt::format("the log ends in the middle of step {}: everything after step {} is left out",
                              std::max(known, log_.last_step + 1), log_.last_step);
   }
 
-  void tell(const Hole& hole) {
+  void report(const Hole& hole) {
     const auto& [first, last, from, to, came] = hole;
     log_.holes.push_back(
-        first == last && from == to ? fmt::format("sim.mail {} (of step {}) is missing", first, from)
-        : first == last             ? fmt::format("sim.mail {} (of a step from {} to {}) is missing", first, from, to)
-                        : fmt::format("sim.mail {} to {} (of steps from {} to {}) are missing", first, last, from, to));
+        first == last && from == to ? fmt::format("sim.inputs {} (of step {}) is missing", first, from)
+        : first == last
+            ? fmt::format("sim.inputs {} (of a step from {} to {}) is missing", first, from, to)
+            : fmt::format("sim.inputs {} to {} (of steps from {} to {}) are missing", first, last, from, to));
     log_.proven_step = std::min({log_.proven_step.value_or(from), from, log_.last_step});
   }
 
   [[noreturn]] void fail(const std::string& what) const { throw std::runtime_error(log_.path + ": " + what); }
 
   [[noreturn]] void fail_without_info() const {
-    if (log_.events.empty()) fail("holds no event that can be read");
+    if (log_.events.empty()) fail("contains no readable event");
     if (!version_.empty())
-      fail(fmt::format("was written by {}, whose sim.info this one, shoal {}, cannot read", version_, short_version()));
+      fail(
+          fmt::format("was written by {}; this is shoal {}, which cannot read its sim.info: replay it with the version "
+                      "that wrote it",
+                      version_, short_version()));
     if (log_.events.contains("sim.info"))
       fail("its sim.info cannot be read: another version of Shoal wrote it, or it is damaged" +
            (log_.problems.empty() ? std::string() : " (" + log_.problems.front() + ")"));
-    fail("holds no sim.info, which tells of the world: it is no log of a run, or covers less than 10 s of one");
+    fail("contains no sim.info, which describes the world: it is not a log of a run, or covers less than 10 s of one");
   }
 
   void problem(const std::string& text) {
-    if (log_.problems.size() < most_problems) log_.problems.push_back(text);
+    if (log_.problems.size() < max_problems) log_.problems.push_back(text);
   }
 
   struct Count {
@@ -211,25 +215,26 @@ class Reader {
 
   void take(const bridges::LogEventView& event) {
     if (event.channel == "sim.info") return take_info(event);
-    if (event.channel == "sim.mail") return take_mail(event);
+    if (event.channel == "sim.inputs") return take_messages(event);
     if (event.channel == "sim.hash") return take_hash(event);
     if (event.channel == "sim.snapshot") return take_snapshot(event);
     if (event.channel == "sim.state") take_state(event);
-    if (event.channel == "sim.notice") take_notice(event);
+    if (event.channel == "sim.audit") take_audit(event);
   }
 
-  void take_notice(const bridges::LogEventView& event) {
-    if (log_.notices.size() >= bridges::RunNotices::max_kept) return;
-    const auto notice = shoal::decode<shoal::sim_notice_t>(event.payload, shoal::Finite::any);
-    const double time_s = informed_ ? 1e-6 * static_cast<double>(since_start(notice.utime)) : 0;
-    log_.notices.push_back(sim::shortened(
-        sim::printable(notice_text({time_s, notice.kind, notice.client, notice.signer, notice.text})), 300));
+  void take_audit(const bridges::LogEventView& event) {
+    if (log_.audit.size() >= bridges::RunAudit::max_kept) return;
+    const auto audit_entry = shoal::decode<shoal::sim_audit_t>(event.payload, shoal::Finite::any);
+    const double time_s = informed_ ? 1e-6 * static_cast<double>(since_start(audit_entry.utime)) : 0;
+    log_.audit.push_back(sim::shortened(sim::printable(audit_text({time_s, audit_entry.kind, audit_entry.client,
+                                                                   audit_entry.signer, audit_entry.text})),
+                                        300));
   }
 
   void take_state(const bridges::LogEventView& event) {
     if (shoal::fingerprint(event.payload) != shoal::sim_state_t::getHash() || event.payload.size() < 24) return;
     const std::int64_t step = number_at(event.payload, 1);
-    if (!informed_ || !is_time_of(step, number_at(event.payload, 0))) return;  // of somebody else
+    if (!informed_ || !is_time_of(step, number_at(event.payload, 0))) return;  // of another run
     note_step(step);
     published_ = true;
     if (event.utime != number_at(event.payload, 0)) log_.own_stamps = false;
@@ -254,16 +259,16 @@ class Reader {
     const shoal::sim_info_t& info = log_.info;
     if (snapshot.step != message.step || snapshot.seed != info.seed || snapshot.step_us != info.step_us ||
         snapshot.epoch_us != info.epoch_utime || snapshot.resolved_world != info.resolved_config)
-      throw SnapshotFileError("sim.snapshot: is of another world, seed, epoch or step than sim.info tells of");
-    log_.goes_back = log_.goes_back || published_;
+      throw SnapshotFileError("sim.snapshot: is of another world, seed, epoch or step than sim.info reports");
+    log_.is_rewound = log_.is_rewound || published_;
     whole_step_ = message.step - 1;
     log_.snapshot = std::move(snapshot);
     log_.bad_snapshot.clear();
-    log_.letters.clear();
+    log_.inputs.clear();
     log_.hashes.clear();
     holes_.clear();
-    next_sequence_ = message.mail_sequence;
-    mail_step_ = log_.last_step = message.step;
+    next_sequence_ = message.input_sequence;
+    input_step_ = log_.last_step = message.step;
   }
 
   void note_missing_pieces() {
@@ -273,7 +278,7 @@ class Reader {
 
   void note_step(std::int64_t step) {
     if (!std::exchange(stepped_, true)) log_.first_step = step;
-    if (step < log_.last_step) log_.goes_back = true;
+    if (step < log_.last_step) log_.is_rewound = true;
     log_.last_step = std::max(log_.last_step, step);
   }
 
@@ -289,7 +294,7 @@ class Reader {
     if (!informed_) return;
     const shoal::sim_info_t& info = log_.info;
     if (!is_time_of(step, utime))
-      fail(fmt::format("byte {}: {} is stamped {} at step {}, which is no time of this run (epoch {}, step {} us)",
+      fail(fmt::format("byte {}: {} is stamped {} at step {}, which is not a time of this run (epoch {}, step {} us)",
                        event.offset, event.channel, utime, step, info.epoch_utime, info.step_us));
   }
 
@@ -303,9 +308,9 @@ class Reader {
       branch_ = info.branch;
       log_.info = std::move(info);
       check_stamp(event, log_.info.utime, log_.info.step);
-      check_sequence(log_.info.mail_sequence, log_.info.step);
+      check_sequence(log_.info.input_sequence, log_.info.step);
       note_step(log_.info.step);
-      whole_step_ = log_.info.step - 1;  // its own letters come behind it
+      whole_step_ = log_.info.step - 1;  // its own inputs come behind it
       return;
     }
     const shoal::sim_info_t& first = log_.info;
@@ -315,74 +320,74 @@ class Reader {
       fail(fmt::format("holds two runs: another begins at byte {} (world '{}', seed {}); cut it in two", event.offset,
                        info.world, info.seed));
     check_stamp(event, info.utime, info.step);
-    const bool goes_back = info.branch > branch_;
-    if (goes_back) begin_branch(info);
-    check_sequence(info.mail_sequence, info.step);
-    mail_step_ = std::max(mail_step_, info.step - 1);
+    const bool is_rewound = info.branch > branch_;
+    if (is_rewound) start_branch(info);
+    check_sequence(info.input_sequence, info.step);
+    input_step_ = std::max(input_step_, info.step - 1);
     note_step(info.step);
-    whole_step_ = goes_back ? info.step : std::max(whole_step_, info.step - 1);
+    whole_step_ = is_rewound ? info.step : std::max(whole_step_, info.step - 1);
   }
 
   /// The run went back: what came later on the branch before is not part of this one.
-  void begin_branch(const shoal::sim_info_t& info) {
+  void start_branch(const shoal::sim_info_t& info) {
     branch_ = info.branch;
-    if (log_.last_step > info.step) log_.goes_back = true;
-    std::erase_if(log_.letters, [&](const ReplayLog::Letter& letter) { return letter.step >= info.step; });
+    if (log_.last_step > info.step) log_.is_rewound = true;
+    std::erase_if(log_.inputs, [&](const ReplayLog::Input& input) { return input.step >= info.step; });
     log_.hashes.erase(log_.hashes.upper_bound(info.step), log_.hashes.end());
     const bool before_snapshot = info.step < log_.begin_step();
     if (before_snapshot) {
       log_.snapshot.reset();
-      log_.bad_snapshot = fmt::format("sim.snapshot: the log goes back to step {}, before its snapshot", info.step);
+      log_.bad_snapshot = fmt::format("sim.snapshot: the log is rewound to step {}, before its snapshot", info.step);
     }
     log_.last_step = info.step;
-    mail_step_ = std::min(mail_step_, info.step);
+    input_step_ = std::min(input_step_, info.step);
     // What is missing of the part that was left is not missed.
-    std::erase_if(holes_, [&](const Hole& hole) { return hole.first >= info.mail_sequence; });
-    if (!holes_.empty()) holes_.back().last = std::min(holes_.back().last, info.mail_sequence - 1);
-    next_sequence_ = std::min(next_sequence_, info.mail_sequence);  // a larger one is a hole
-    if (before_snapshot) holes_.push_back({0, std::max<std::int64_t>(info.mail_sequence - 1, 0), 0, info.step});
+    std::erase_if(holes_, [&](const Hole& hole) { return hole.first >= info.input_sequence; });
+    if (!holes_.empty()) holes_.back().last = std::min(holes_.back().last, info.input_sequence - 1);
+    next_sequence_ = std::min(next_sequence_, info.input_sequence);  // a larger one is a hole
+    if (before_snapshot) holes_.push_back({0, std::max<std::int64_t>(info.input_sequence - 1, 0), 0, info.step});
   }
 
-  /// `next`: the number of the first sim.mail that may still come.
+  /// `next`: the number of the first sim.inputs that may still come.
   void check_sequence(std::int64_t next, std::int64_t step) {
     if (next > next_sequence_) {
-      holes_.push_back({next_sequence_, next - 1, mail_step_, step, since_mail_});
+      holes_.push_back({next_sequence_, next - 1, input_step_, step, since_inputs_});
       next_sequence_ = next;
     }
   }
 
-  void take_mail(const bridges::LogEventView& event) {
-    auto mail = shoal::decode<shoal::sim_mail_t>(event.payload, shoal::Finite::any);
-    check_stamp(event, mail.utime, mail.step);
-    if (mail.branch != branch_ && informed_)
-      throw shoal::MessageError(fmt::format("is of branch {}, but the log is of branch {}", mail.branch, branch_));
-    if (mail.sequence < next_sequence_)
-      throw shoal::MessageError(fmt::format("number {} comes a second time", mail.sequence));
-    check_sequence(mail.sequence, mail.step);
-    next_sequence_ = mail.sequence + 1;
-    since_mail_.clear();
-    for (shoal::sim_letter_t& letter : mail.letter) {
-      if (letter.step > mail.step || (!log_.letters.empty() && letter.step < log_.letters.back().step))
-        throw shoal::MessageError(fmt::format("a letter of step {} is out of order", letter.step));
-      const auto* begin = reinterpret_cast<const std::byte*>(letter.data.data());
-      log_.letters.push_back({letter.step, std::move(letter.bus), std::move(letter.channel),
-                              sim::Bytes(begin, begin + letter.data.size())});
+  void take_messages(const bridges::LogEventView& event) {
+    auto input_record = shoal::decode<shoal::sim_inputs_t>(event.payload, shoal::Finite::any);
+    check_stamp(event, input_record.utime, input_record.step);
+    if (input_record.branch != branch_ && informed_)
+      throw shoal::MessageError(
+          fmt::format("is of branch {}, but the log is of branch {}", input_record.branch, branch_));
+    if (input_record.sequence < next_sequence_)
+      throw shoal::MessageError(fmt::format("number {} occurs twice", input_record.sequence));
+    check_sequence(input_record.sequence, input_record.step);
+    next_sequence_ = input_record.sequence + 1;
+    since_inputs_.clear();
+    for (shoal::sim_input_t& input : input_record.input) {
+      if (input.step > input_record.step || (!log_.inputs.empty() && input.step < log_.inputs.back().step))
+        throw shoal::MessageError(fmt::format("an input of step {} is out of order", input.step));
+      const auto* begin = reinterpret_cast<const std::byte*>(input.data.data());
+      log_.inputs.push_back(
+          {input.step, std::move(input.bus), std::move(input.channel), sim::Bytes(begin, begin + input.data.size())});
     }
-    mail_step_ = mail.step;
-    note_whole(mail.step);
+    input_step_ = input_record.step;
+    note_whole(input_record.step);
   }
 
   void take_hash(const bridges::LogEventView& event) {
     auto message = shoal::decode<shoal::sim_hash_t>(event.payload, shoal::Finite::any);
     check_stamp(event, message.utime, message.step);
-    check_sequence(message.mail_sequence, message.step);
-    since_mail_.clear();
+    check_sequence(message.input_sequence, message.step);
+    since_inputs_.clear();
     ReplayLog::Hashes& hashes = log_.hashes[message.step];
     hashes.whole = static_cast<std::uint64_t>(message.hash);
-    hashes.after_letters =
-        std::any_of(log_.letters.rbegin(), log_.letters.rend(), [&](const ReplayLog::Letter& letter) {
-          return letter.step == message.step && letter.bus != bridges::RunJournal::serial_bus;
-        });
+    hashes.after_inputs = std::any_of(log_.inputs.rbegin(), log_.inputs.rend(), [&](const ReplayLog::Input& input) {
+      return input.step == message.step && input.bus != bridges::RunJournal::serial_bus;
+    });
     hashes.parts.clear();
     hashes.run.reset();
     for (std::size_t i = 0; i < message.part.size(); ++i) {
@@ -392,7 +397,7 @@ class Reader {
       else
         hashes.parts.push_back({std::move(message.part[i]), hash});
     }
-    mail_step_ = std::max(mail_step_, message.step);  // all that came up to here was in those before
+    input_step_ = std::max(input_step_, message.step);  // all that came up to here was in those before
     note_whole(message.step);
     published_ = true;
   }
@@ -411,12 +416,12 @@ class Reader {
   std::unordered_map<std::string_view, std::size_t> by_name_;
   std::size_t last_ = 0;  // in counts_
   std::vector<Hole> holes_;
-  std::vector<Came> since_mail_;
+  std::vector<Arrival> since_inputs_;
   bool informed_ = false, stepped_ = false, published_ = false;
   std::int32_t branch_ = 0;
   std::int64_t next_sequence_ = 0;
-  std::int64_t mail_step_ = 0;    // up to which no sim.mail is missing behind the last one
-  std::int64_t whole_step_ = -1;  // up to which all letters and messages are there
+  std::int64_t input_step_ = 0;   // up to which no sim.inputs is missing behind the last one
+  std::int64_t whole_step_ = -1;  // up to which all inputs and messages are there
   std::int64_t last_stamp_ = 0;   // of the last event
   bool ends_whole_ = false;       // that event ended a step
   std::string version_;           // that wrote a sim.info which cannot be read; empty: none did

@@ -20,7 +20,7 @@ namespace tools {
 namespace {
 
 /// Of messages that were read and not yet compared, where stamps do not tell how far to look.
-constexpr std::size_t most_queued_bytes = std::size_t{256} << 20;
+constexpr std::size_t max_queued_bytes = std::size_t{256} << 20;
 /// A record has what is published in a step with the stamp of this step or the next.
 constexpr std::int64_t steps_ahead = 2;
 
@@ -28,8 +28,8 @@ constexpr std::int64_t steps_ahead = 2;
 bool is_of_the_run(std::string_view channel) {
   if (!channel.starts_with("sim.")) return false;
   static constexpr std::array<std::string_view, 11> names{
-      "sim.ack",    "sim.control", "sim.control.reply", "sim.hash",     "sim.info", "sim.mail",
-      "sim.notice", "sim.resend",  "sim.resent",        "sim.snapshot", "sim.tick"};
+      "sim.ack",   "sim.control", "sim.control.reply", "sim.hash",     "sim.info", "sim.inputs",
+      "sim.audit", "sim.resend",  "sim.resent",        "sim.snapshot", "sim.tick"};
   return std::find(names.begin(), names.end(), channel) != names.end();
 }
 
@@ -109,8 +109,8 @@ std::string message_difference(std::span<const std::byte> logged, std::span<cons
 ReplayMessages::ReplayMessages(const ReplayLog& log) : log_(log), file_(log.path) {
   for (const auto& [name, count] : log.events)
     if (!is_of_the_run(name)) add(name).left = count;
-  for (const ReplayLog::Letter& letter : log.letters) {
-    if (Channel* channel = find(letter.channel)) channel->mail.insert(hash_of(letter.payload));
+  for (const ReplayLog::Input& input : log.inputs) {
+    if (Channel* channel = find(input.channel)) channel->input_record.insert(hash_of(input.payload));
   }
 }
 
@@ -136,7 +136,7 @@ std::optional<ReplayMessages::Payload> ReplayMessages::head(Channel& channel) {
   if (current_ == &channel) return event_.payload;
   while (channel.queue.empty() && !at_end_) {
     if (current_ != nullptr) {
-      if (log_.own_stamps ? event_.utime > look_until_ : queued_bytes_ > most_queued_bytes) return std::nullopt;
+      if (log_.own_stamps ? event_.utime > look_until_ : queued_bytes_ > max_queued_bytes) return std::nullopt;
       queued_bytes_ += event_.payload.size();
       current_->queue.emplace_back(event_.payload.begin(), event_.payload.end());
     }
@@ -161,16 +161,16 @@ void ReplayMessages::pop(Channel& channel) {
   channel.queue.pop_front();
 }
 
-bool ReplayMessages::is_mail(Channel& channel, Payload payload) {
-  if (channel.mail.empty()) return false;
-  const auto found = channel.mail.find(hash_of(payload));
-  if (found == channel.mail.end()) return false;
-  channel.mail.erase(found);
+bool ReplayMessages::is_input(Channel& channel, Payload payload) {
+  if (channel.input_record.empty()) return false;
+  const auto found = channel.input_record.find(hash_of(payload));
+  if (found == channel.input_record.end()) return false;
+  channel.input_record.erase(found);
   return true;
 }
 
 void ReplayMessages::published(std::string_view name, std::span<const std::byte> payload, std::int64_t step) {
-  if (log_.goes_back) return;
+  if (log_.is_rewound) return;
   Channel* known = find_next(name, last_published_, &Channel::next_published);
   if (known == nullptr && is_of_the_run(name)) return;
   Channel& channel = known != nullptr ? *known : add(name);
@@ -181,7 +181,7 @@ void ReplayMessages::published(std::string_view name, std::span<const std::byte>
       ++equal_;
       return pop(channel);
     }
-    if (is_mail(channel, *logged)) {
+    if (is_input(channel, *logged)) {
       pop(channel);
       continue;
     }
@@ -242,23 +242,24 @@ void ReplayMessages::compare_states(Payload logged, Payload here, std::int64_t s
     const double apart_m = std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
     if (apart_m == 0) continue;
     Distance& distance = distances_.try_emplace(own.vehicle[i], Distance{0, step, step}).first->second;
-    if (apart_m <= distance.largest_m) continue;
-    distance.largest_m = apart_m;
-    distance.largest_step = step;
+    if (apart_m <= distance.max_m) continue;
+    distance.max_m = apart_m;
+    distance.max_step = step;
   }
   if (what != "differs" && !first_motion_) first_motion_ = Difference{step, "sim.state", what};
   differ("sim.state", step, what);
 }
 
 void ReplayMessages::finish(std::int64_t step) {
-  // In a record every message is either mail or the simulator's.
-  if (!log_.own_stamps || log_.goes_back || !log_.cut.empty() || log_.usable_step() < log_.last_step ||
+  // In a record every message is either an input or the simulator's.
+  if (!log_.own_stamps || log_.is_rewound || !log_.cut.empty() || log_.usable_step() < log_.last_step ||
       step < log_.last_step)
     return;
   for (auto& [name, channel] : channels_)
-    if (!channel.published && channel.left > channel.mail.size())
+    if (!channel.published && channel.left > channel.input_record.size())
       differ(name, step,
-             fmt::format("the log has {} messages that were not published here", channel.left - channel.mail.size()));
+             fmt::format("the log has {} messages that were not published here",
+                         channel.left - channel.input_record.size()));
 }
 
 }  // namespace tools

@@ -30,8 +30,8 @@ class ReplayMessages {
     std::string what;  ///< such as `velocity_mps[0] is 1.25 in the log and 1.26 here`
   };
   struct Distance {
-    double largest_m = 0;
-    std::int64_t largest_step = 0;
+    double max_m = 0;
+    std::int64_t max_step = 0;
     std::int64_t first_step = 0;
   };
 
@@ -62,11 +62,11 @@ class ReplayMessages {
   using Payload = std::span<const std::byte>;
   struct Channel {
     std::string_view name;
-    std::deque<sim::Bytes> queue;     // read from the log and not yet compared
-    std::uint64_t left = 0;           // in the log, also those in the queue
-    std::multiset<std::size_t> mail;  // hashes of what came from outside on it
+    std::deque<sim::Bytes> queue;             // read from the log and not yet compared
+    std::uint64_t left = 0;                   // in the log, also those in the queue
+    std::multiset<std::size_t> input_record;  // hashes of messages from outside on it
     bool published = false;
-    /// Which came after this one the last time: steps are like each other, and the name need not be looked for.
+    /// Successor of this one the last time: steps are similar, which saves a search for the name.
     Channel *next_published = nullptr, *next_read = nullptr;
   };
 
@@ -74,13 +74,13 @@ class ReplayMessages {
     const auto known = by_name_.find(name);
     return known == by_name_.end() ? nullptr : known->second;
   }
-  /// Tries the one that came after `last` before.  The one that is found is the last one then.
+  /// Tries the previous successor of `last`.  The one that is found is the last one then.
   Channel* find_next(std::string_view name, Channel*& last, Channel* Channel::*next);
   Channel& add(std::string_view name);
   /// Null: the log has no more of them, or not before what is compared now.
   std::optional<Payload> head(Channel& channel);
   void pop(Channel& channel);
-  bool is_mail(Channel& channel, Payload payload);
+  bool is_input(Channel& channel, Payload payload);
   void differ(std::string_view channel, std::int64_t step, const std::string& what);
   void compare_states(Payload logged, Payload here, std::int64_t step);
 
@@ -91,7 +91,7 @@ class ReplayMessages {
   std::size_t queued_bytes_ = 0;  // of all channels
   bridges::LogEventView event_;   // the last one that was read
   Channel *last_published_ = nullptr, *last_read_ = nullptr;
-  Channel* current_ = nullptr;  // whose event it is while it is not yet compared; null: it is, or nobody's
+  Channel* current_ = nullptr;  // owner of the event until it is compared; null: compared, or without owner
   std::map<std::string, Channel, std::less<>> channels_;
   std::unordered_map<std::string_view, Channel*> by_name_;  // asked, never iterated
   std::uint64_t equal_ = 0, different_ = 0, missing_ = 0;

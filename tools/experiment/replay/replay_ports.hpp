@@ -15,7 +15,7 @@ namespace tools {
 /// Ports that read what was read in the run.
 class ReplayPorts {
  public:
-  void add(const ReplayLog::Letter& letter) { mail_.add(letter.step, letter.channel, letter.payload); }
+  void add(const ReplayLog::Input& input) { inputs_.add(input.step, input.channel, input.payload); }
   sim::PortOpener opener() {
     return [this](sim::PortKind, const std::string& path) { return std::make_unique<Port>(*this, path); };
   }
@@ -26,7 +26,7 @@ class ReplayPorts {
   class Port final : public sim::BytePort {
    public:
     Port(ReplayPorts& ports, std::string path) : ports_(ports), path_(std::move(path)) {}
-    sim::Bytes read() override { return ports_.mail_.read(path_, ports_.step_); }
+    sim::Bytes read() override { return ports_.inputs_.read(path_, ports_.step_); }
     void write(std::span<const std::byte>) override {}
     std::uint64_t dropped_bytes() const override { return 0; }
 
@@ -36,7 +36,7 @@ class ReplayPorts {
   };
 
   std::int64_t step_ = 0;
-  bridges::SerialMail mail_;
+  bridges::SerialInputs inputs_;
 };
 
 }  // namespace tools

@@ -7,7 +7,7 @@
 #include "tools/experiment/files/html.hpp"
 #include "tools/experiment/report/report_figures.hpp"
 #include "tools/experiment/report/report_page.hpp"
-#include "tools/experiment/report/report_pictures.hpp"
+#include "tools/experiment/report/report_plots.hpp"
 
 namespace tools {
 
@@ -58,7 +58,7 @@ std::string comparison_report(const std::vector<RunRecord>& runs) {
   const std::string title = fmt::format("{} runs", runs.size());
   std::string body = "<h1>" + html_text(title) + "</h1>\n" + overview(runs);
   for (const RunRecord& run : runs)
-    body += "<h2>" + html_text(run.directory) + "</h2>\n" + outcome_html(run, metrics_of(run)) + run_pictures_html(run);
+    body += "<h2>" + html_text(run.directory) + "</h2>\n" + outcome_html(run, metrics_of(run)) + run_plots_html(run);
   return html_page(title, body + figures_of(runs) + made_by_html());
 }
 

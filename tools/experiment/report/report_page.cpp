@@ -12,7 +12,7 @@
 
 #include "tools/experiment/files/html.hpp"
 #include "tools/experiment/report/report_figures.hpp"
-#include "tools/experiment/report/report_pictures.hpp"
+#include "tools/experiment/report/report_plots.hpp"
 #include "tools/experiment/report/run_words.hpp"
 #include "tools/experiment/report/study_report.hpp"
 #include "tools/experiment/run/runner.hpp"
@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 
 /// Lines at the end of a program's log that the page shows.
 constexpr std::size_t log_lines = 30;
-constexpr std::size_t most_log_bytes = 20000;
+constexpr std::size_t max_log_bytes = 20000;
 /// Without an estimate for longer a score says less than it seems to.
 constexpr double long_gap_s = 30;
 
@@ -75,7 +75,7 @@ std::string facts_html(const RunRecord& run) {
 }
 
 std::string tail_of(const std::string& text) {
-  std::size_t from = text.size() > most_log_bytes ? text.size() - most_log_bytes : 0;
+  std::size_t from = text.size() > max_log_bytes ? text.size() - max_log_bytes : 0;
   std::size_t lines = 0;
   for (std::size_t at = text.size(); at > from; --at)
     if (text[at - 1] == '\n' && at != text.size() && ++lines == log_lines) from = at;
@@ -113,12 +113,12 @@ std::string warnings_html(const RunRecord& run) {
   warn(run.dropped_messages, "messages were lost in full queues or refused by LCM.");
   warn(run.modem_dropped_messages, "messages were dropped from full queues of modems.");
   warn(run.bad_messages, "messages were received and not usable.");
-  warn(run.quick_steps, "steps used QuickStep, for an island of bodies was too large.");
+  warn(run.quick_steps, "steps used QuickStep because an island of bodies was too large.");
   const auto failed = [](const RunRecord::Process& process) { return process.failed; };
   if (run.judgement == Judgement::not_judged && std::any_of(run.processes.begin(), run.processes.end(), failed))
     warnings.emplace_back("Programs of the world failed.");
   for (const auto& [name, value] : run.metrics)
-    if (name.ends_with(".longest_gap_s") && value.value_or(0) > long_gap_s)
+    if (name.ends_with(".max_gap_s") && value.value_or(0) > long_gap_s)
       warnings.push_back(fmt::format("For {:.1f} s there was no estimate: {}.", *value, name));
   for (const auto& [name, value] : run.metrics)
     if (!value && (name.ends_with(".rms_m") || name.ends_with(".nees_mean")))
@@ -188,7 +188,7 @@ std::string run_report(const RunRecord& run) {
   const std::vector<RunMetric> metrics = metrics_of(run);
   return html_page(title_of(run), "<h1>" + html_text(title_of(run)) + "</h1>\n" +
                                       (run.description.empty() ? "" : paragraph(html_text(run.description))) +
-                                      outcome_html(run, metrics) + run_pictures_html(run) + warnings_html(run) +
+                                      outcome_html(run, metrics) + run_plots_html(run) + warnings_html(run) +
                                       figures_html(metrics, run.rules) + processes_html(run) + facts_html(run) +
                                       made_by_html());
 }

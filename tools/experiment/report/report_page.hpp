@@ -18,7 +18,7 @@ std::string report_page(const std::vector<std::string>& directories);
 
 /// The page of one run.
 std::string run_report(const RunRecord& run);
-/// Runs beside each other.
+/// Compares runs side by side.
 std::string comparison_report(const std::vector<RunRecord>& runs);
 
 /// Verdict, rules, and what came out in words.
@@ -28,7 +28,7 @@ std::string judgement_html(Judgement judgement, const std::string& why = "");
 std::string verdict_html(bool passed);
 /// Rules with their outcome: those that failed, then those that hold folded away.
 std::string rules_html(const std::vector<RunRecord::Rule>& rules);
-/// A box with a coloured edge; `html` is what it says.
+/// A box with a coloured edge and the content `html`.
 std::string verdict_box(Judgement judgement, const std::string& html);
 /// Texts as a list; empty: nothing.
 std::string list_html(const std::vector<std::string>& texts);

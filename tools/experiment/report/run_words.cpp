@@ -86,7 +86,7 @@ std::string position_sentence(const std::string& vehicle, Metrics metrics) {
 
 /// The best of each of many vehicles.
 std::string many_vehicles_sentence(const std::vector<std::pair<std::string, Metrics>>& by_vehicle) {
-  double least_m = std::numeric_limits<double>::infinity(), max_m = 0;
+  double min_m = std::numeric_limits<double>::infinity(), max_m = 0;
   std::size_t located = 0;
   std::string worst;
   for (const auto& [vehicle, metrics] : by_vehicle) {
@@ -94,13 +94,13 @@ std::string many_vehicles_sentence(const std::vector<std::pair<std::string, Metr
     for (const RunMetric* metric : metrics) best_m = std::min(best_m, rms_of(*metric));
     if (!std::isfinite(best_m)) continue;
     ++located;
-    least_m = std::min(least_m, best_m);
+    min_m = std::min(min_m, best_m);
     if (best_m >= max_m) worst = vehicle;
     max_m = std::max(max_m, best_m);
   }
   if (located == 0) return fmt::format("None of {} vehicles published a position.", by_vehicle.size());
   return fmt::format("{} of {} vehicles localise themselves to {} to {} rms, {} worst.", located, by_vehicle.size(),
-                     length_text(least_m), length_text(max_m), worst);
+                     length_text(min_m), length_text(max_m), worst);
 }
 
 std::vector<std::string> position_sentences(const std::vector<RunMetric>& metrics) {
@@ -121,7 +121,7 @@ std::vector<std::string> position_sentences(const std::vector<RunMetric>& metric
 
 std::string consistency_sentence(const RunMetric& metric) {
   const auto share = metric.value("inside_95_share"), nees = metric.value("nees_mean");
-  if (!share || !nees) return metric.name + ": no estimate with a covariance came.";
+  if (!share || !nees) return metric.name + ": no estimate with a covariance was received.";
   std::string text = fmt::format("{}: {} of the errors lie within their own 95 % bound, mean NEES {}", metric.name,
                                  percent_text(*share), rounded(*nees));
   if (metric.dimensions > 0) text += fmt::format(" ({} when consistent)", metric.dimensions);
@@ -179,11 +179,11 @@ std::string message_sentence(const RunMetric& metric) {
                      bytes_text(metric.value("bytes").value_or(0)), at_time(metric.value("first_s")));
 }
 
-std::string lean_sentence(const RunMetric& metric) {
+std::string tilt_sentence(const RunMetric& metric) {
   const auto max_deg = metric.value("max_deg"), fell_s = metric.value("fell_s");
   const std::string who = metric.vehicle.empty() ? metric.name : metric.vehicle;
-  if (!max_deg) return who + ": its lean was not measured.";
-  const std::string text = fmt::format("{} leans by at most {} degrees", who, rounded(*max_deg));
+  if (!max_deg) return who + ": its tilt was not measured.";
+  const std::string text = fmt::format("{} tilts by at most {} degrees", who, rounded(*max_deg));
   return text + (fell_s ? " and falls " + at_time(fell_s) : " and does not fall") + ".";
 }
 
@@ -202,7 +202,7 @@ std::string sentence_of(const RunMetric& metric) {
                                                             {"mission_time", time_sentence},
                                                             {"collisions", contact_sentence},
                                                             {"messages", message_sentence},
-                                                            {"lean", lean_sentence}};
+                                                            {"tilt", tilt_sentence}};
   const bool counts = metric.kind->figures.front().is_count || metric.kind->word == "bytes_per_metre";
   if (counts && has_nothing(metric)) return metric.name + ": nothing was measured.";
   const auto found = sentences.find(metric.kind->word);
@@ -229,12 +229,12 @@ std::string rules_in_words(const std::vector<RunRecord::Rule>& rules) {
 
 std::vector<std::string> findings_in_words(const std::vector<RunMetric>& metrics) {
   std::vector<std::string> sentences = position_sentences(metrics);
-  std::set<std::string> told;
+  std::set<std::string> reported;
   for (const RunMetric* metric : of_type(metrics, "position_error"))
-    if (!after_distance(*metric).empty()) told.insert(metric->vehicle);
+    if (!after_distance(*metric).empty()) reported.insert(metric->vehicle);
   Metrics distances;
   for (const RunMetric* metric : of_type(metrics, "distance"))
-    if (metric->vehicle.empty() || !told.contains(metric->vehicle)) distances.push_back(metric);
+    if (metric->vehicle.empty() || !reported.contains(metric->vehicle)) distances.push_back(metric);
   for (const RunMetric* metric : distances) sentences.push_back(distance_sentence(*metric));
   for (const RunMetric& metric : metrics) {
     if (metric.kind == nullptr) continue;

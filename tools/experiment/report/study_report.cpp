@@ -12,7 +12,7 @@
 #include "tools/experiment/files/json_reader.hpp"
 #include "tools/experiment/report/report_figures.hpp"
 #include "tools/experiment/report/report_page.hpp"
-#include "tools/experiment/report/report_pictures.hpp"
+#include "tools/experiment/report/report_plots.hpp"
 #include "tools/experiment/report/run_words.hpp"
 
 namespace tools {
@@ -224,7 +224,7 @@ std::string study_report(const std::string& directory) {
   const std::string title = in.text("study"), description = in.text("description");
   std::string body = "<h1>" + html_text(title) + "</h1>\n";
   if (!description.empty()) body += "<p>" + html_text(description) + "</p>\n";
-  body += outcome_html(in, cases) + pictures_html(directory, texts_of(in, "pictures"), {}) + failed_runs_html(in) +
+  body += outcome_html(in, cases) + plots_html(directory, texts_of(in, "plots"), {}) + failed_runs_html(in) +
           figures_html(in, cases) + cases_html(cases) + "<h2>This study</h2>\n" +
           facts_table({{"World", in.text("world")},
                        {"Runs", fmt::format("{}", in.whole("runs"))},

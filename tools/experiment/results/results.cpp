@@ -15,9 +15,9 @@
 #include <utility>
 
 #include "tools/experiment/files/gnuplot.hpp"
-#include "tools/experiment/results/notice_text.hpp"
+#include "tools/experiment/results/audit_text.hpp"
 #include "tools/experiment/results/results_world.hpp"
-#include "tools/experiment/results/run_pictures.hpp"
+#include "tools/experiment/results/run_plots.hpp"
 #include "tools/experiment/results/verdict_json.hpp"
 
 namespace tools {
@@ -90,8 +90,8 @@ void Summary::judge_clients() {
   for (const bridges::LockstepSummary& client : clients)
     if (client.contradictions > 0)
       verdicts.push_back(
-          {fmt::format("client '{}' must give one answer to each tick; another program gave {} different "
-                       "one{} in its name",
+          {fmt::format("client '{}' must give one answer to each tick; another program gave {} different one{} under "
+                       "its name",
                        client.client, client.contradictions, client.contradictions == 1 ? "" : "s"),
            false});
 }
@@ -106,9 +106,9 @@ namespace {
 
 /// Of the first hundred pairs: a swarm in a heap has thousands.
 nlohmann::ordered_json contacts_json(const std::vector<FirstContacts::Contact>& contacts) {
-  constexpr std::size_t most = 100;
+  constexpr std::size_t max = 100;
   auto json = nlohmann::ordered_json::array();
-  for (std::size_t i = 0; i < std::min(most, contacts.size()); ++i)
+  for (std::size_t i = 0; i < std::min(max, contacts.size()); ++i)
     json.push_back({{"vehicle", contacts[i].first},
                     {"with", contacts[i].second},
                     {"first_s", contacts[i].first_s},
@@ -155,8 +155,8 @@ std::string Summary::to_json() const {
                                {"timeouts", client.timeouts},
                                {"contradictions", client.contradictions},
                                {"ended", client.ended.empty() ? "with the run" : client.ended}});
-  json["control"] = {{"needs_key", needs_key}, {"refused_requests", refused_requests}, {"notice_count", notice_count}};
-  json["control"]["notices"] = notices_json(notices);
+  json["control"] = {{"needs_key", needs_key}, {"refused_requests", refused_requests}, {"audit_count", audit_count}};
+  json["control"]["audit"] = audit_json(audit);
   for (const auto& [vehicle, record] : zones) {
     auto& entry = json["zones"][vehicle];
     entry["finish_s"] = record.finish_s ? nlohmann::ordered_json(*record.finish_s) : nlohmann::ordered_json();
@@ -194,9 +194,9 @@ std::string Summary::to_text() const {
       world, seed, steps, sim_time_s, wall_s, real_time_factor(), messages, dropped_messages, bad_messages);
   if (!snapshot.empty())
     text += fmt::format("  {:.2f} s of it here, from {}; metrics count from {:.2f} s\n", stepped_s, snapshot, from_s);
-  if (branch > 0) text += fmt::format("  branch {}: the run went back\n", branch);
+  if (branch > 0) text += fmt::format("  branch {}: the run was rewound\n", branch);
   if (quick_steps > 0)
-    text += fmt::format("  {} steps used QuickStep, for an island of bodies was too large\n", quick_steps);
+    text += fmt::format("  {} steps used QuickStep because an island of bodies was too large\n", quick_steps);
   if (acoustics) {
     text += fmt::format("  acoustic packets: {} sent, {} received", acoustics->sent, acoustics->received);
     for (const auto& [cause, count] : acoustics->lost)
@@ -206,7 +206,7 @@ std::string Summary::to_text() const {
   }
   if (modem_dropped_messages > 0)
     text += fmt::format("  {} messages were dropped from full queues of modems\n", modem_dropped_messages);
-  if (serial_dropped_bytes > 0) text += fmt::format("  {} bytes were fetched from no port\n", serial_dropped_bytes);
+  if (serial_dropped_bytes > 0) text += fmt::format("  {} bytes of serial ports were not read\n", serial_dropped_bytes);
   text += contacts_text(contacts);
   std::size_t width = 28;
   for (const auto& [name, value] : metrics) width = std::max(width, name.size());
@@ -216,9 +216,9 @@ std::string Summary::to_text() const {
     text += fmt::format("  {}: {}\n", verdict.passed ? "passed" : "FAILED", verdict.text());
   for (const Process& process : processes)
     text += fmt::format("  process '{}' {} at {:.2f} s\n", process.name, process.how, process.sim_time_s);
-  for (const bridges::RunNotice& notice : notices) text += "  " + notice_text(notice) + "\n";
+  for (const bridges::AuditEntry& audit_entry : audit) text += "  " + audit_text(audit_entry) + "\n";
   if (refused_requests > 0)
-    text += fmt::format("  {} requests without the key of the run were refused\n", refused_requests);
+    text += fmt::format("  {} requests without the key of the run were rejected\n", refused_requests);
   for (const auto& [vehicle, record] : zones) {
     if (record.finish_s) text += fmt::format("  {} finished at {:.2f} s\n", vehicle, *record.finish_s);
     if (record.speeding_s > 0) text += fmt::format("  {} was too fast for {:.2f} s\n", vehicle, record.speeding_s);
@@ -238,7 +238,7 @@ std::size_t room_for_summary(const sim::World& world) {
   return (std::size_t{256} << 10) + 512 * world.vehicles().size();
 }
 
-/// The folder, made where it is not there.
+/// The folder, made where it does not exist.
 std::string made(const std::string& directory) {
   std::error_code error;
   std::filesystem::create_directories(directory, error);
@@ -271,18 +271,15 @@ void write_results_world(const std::string& directory, const sim::ConfigNode& re
   write_file(directory + "/world.yaml", sim::to_yaml(resolved));
 }
 
-Results::Results(const std::string& directory, const sim::World& world, bool pictures)
-    : directory_(made(directory)),
-      summary_file_(directory, room_for_summary(world)),
-      world_(world),
-      pictures_(pictures) {
+Results::Results(const std::string& directory, const sim::World& world, bool plots)
+    : directory_(made(directory)), summary_file_(directory, room_for_summary(world)), world_(world), plots_(plots) {
   std::error_code error;
   const std::string path = directory + "/tracks.csv";
   remove_link(path);
   tracks_ = error ? nullptr : std::fopen(path.c_str(), "w");
   if (tracks_ == nullptr) throw cannot_write(path, error ? error.message() : std::strerror(errno));
   // What an earlier run left would be taken for this one's, which may be killed.
-  for (const char* picture : run_pictures) std::filesystem::remove(directory + "/" + picture, error);
+  for (const char* image : run_plots) std::filesystem::remove(directory + "/" + image, error);
   for (const char* file : {"summary.json", "metrics.csv", "errors.csv"})
     if (!std::filesystem::is_directory(directory + "/" + file, error))
       std::filesystem::remove(directory + "/" + file, error);
@@ -346,7 +343,7 @@ void Results::drop_branch() {
   kept_.clear();
 }
 
-void Results::begin_branch(sim::Time back_to, bool ours) {
+void Results::start_branch(sim::Time back_to, bool ours) {
   kept_.clear();
   const std::string path = directory_ + "/tracks.csv";
   const auto cannot_cut = [&] { return cannot_write(path, std::strerror(errno)); };
@@ -407,12 +404,12 @@ void Results::finish(const Summary& summary, const Scoring& scoring, const sim::
 }
 
 void Results::plot(const Summary& summary, const Scoring& scoring, const std::function<bool()>& give_up) const {
-  if (summary.steps == 0 || error_ || !pictures_) return;
+  if (summary.steps == 0 || error_ || !plots_) return;
   // The script names its files without a directory, so that the folder can be moved and plotted again.
-  write("plot.gp", run_pictures_script(world_, scoring));
+  write("plot.gp", run_plots_script(world_, scoring));
   const bool plotted = run_gnuplot(directory_, "plot.gp", std::chrono::seconds(30), give_up);
   if (!plotted && !give_up() && summary.ended != "signal")
-    spdlog::warn("no pictures: gnuplot failed, see {}/plot.log", directory_);
+    spdlog::warn("no plots: gnuplot failed, see {}/plot.log", directory_);
 }
 
 }  // namespace tools

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "bridges/control/run_notices.hpp"
+#include "bridges/control/run_audit.hpp"
 #include "bridges/lockstep/lockstep_summary.hpp"
 #include "sim/config/config_node.hpp"
 #include "sim/director/script.hpp"
@@ -36,7 +36,7 @@ struct Summary {
   std::int64_t seed = 0;
   std::int64_t steps = 0;
   double sim_time_s = 0;
-  double duration_s = 0;  ///< asked for; 0: until somebody ends it
+  double duration_s = 0;  ///< requested; 0: until a request to quit
   double wall_s = 0;
   std::uint64_t state_hash = 0;  ///< of the last state
   std::uint64_t run_hash = 0;    ///< of the whole run: WorldState::run_hash()
@@ -52,8 +52,8 @@ struct Summary {
   std::vector<bridges::LockstepSummary> clients;  ///< that took part in the lockstep, by name
   bool needs_key = false;                         ///< control of the run needed its key
   std::int64_t refused_requests = 0;              ///< for want of the key
-  std::vector<bridges::RunNotice> notices;        ///< who made it quit, go back, ...: the first ones
-  std::int64_t notice_count = 0;                  ///< of all
+  std::vector<bridges::AuditEntry> audit;         ///< interventions such as quit or rewind: the first ones
+  std::int64_t audit_count = 0;                   ///< of all
   std::map<std::string, sim::ZoneRecord> zones;   ///< by vehicle, when the world has zones with rules
   std::optional<LinkCounts> acoustics;            ///< of all modems under water, when there are any
   std::int64_t modem_dropped_messages = 0;        ///< that waited in queues of modems that were full
@@ -76,11 +76,11 @@ struct Summary {
   bool judged() const { return judgement() != Judgement::not_judged; }
   /// Of a run that was not judged: `the world has no rules`, `ended by quit at 23 of 150 s`.
   std::string why_not_judged() const;
-  /// By a request, a key or a signal, or by going back to another branch: nobody knows what its rest would have been.
+  /// By a request, a key or a signal, or by a rewind to another branch: its remainder is unknown.
   bool ended_by_hand() const { return ended == "quit" || ended == "signal" || ended == "rewound"; }
   /// Each program that failed is a rule that failed.
   void judge_processes();
-  /// Each client in whose name two different answers came to one tick is a rule that failed.
+  /// Each client with two different answers to one tick under its name counts as a failed rule.
   void judge_clients();
   void fail(int code, const std::string& how_ended, const std::string& why);
   std::string to_json() const;
@@ -91,31 +91,31 @@ struct Summary {
 /// Writes DIRECTORY/summary.json; a reader finds it whole or not at all.  Makes the directory.  Throws
 /// std::runtime_error.
 void write_summary(const std::string& directory, const Summary& summary);
-/// The same when there is a worse error to tell of already.
+/// The same when there already is a more severe error.
 void try_to_write_summary(const std::string& directory, const Summary& summary);
 
 /// Writes the results directory: tracks while the run goes, the rest at its end.
 class Results {
  public:
   /// Makes the directory.  Throws std::runtime_error with path and reason.
-  Results(const std::string& directory, const sim::World& world, bool pictures = true);
+  Results(const std::string& directory, const sim::World& world, bool plots = true);
   ~Results();
   const std::string& directory() const { return directory_; }
   /// Adds a sample of every vehicle's true pose when one is due.
   void after_step();
   /// Why tracks cannot be written; looked at once a simulated second.
   std::optional<std::string> error() const { return error_; }
-  /// The world is about to go back: keeps what there is of the branch that is left in DIRECTORY/branchK, without
-  /// pictures.  Throws std::runtime_error.
+  /// Before a rewind: keeps the results of the abandoned branch in DIRECTORY/branchK, without plots.
+  ///   Throws std::runtime_error.
   void keep_branch(const Summary& left, const Scoring& scoring, const sim::ConfigNode& resolved);
-  /// It has not gone back after all: nothing of keep_branch() stays.
+  /// Undoes keep_branch() when the rewind failed.
   void drop_branch();
-  /// It has gone back: drops what the tracks know of later.  `ours`: it has been there in this run; else the tracks
-  /// begin anew, for what they hold is of another branch.  Throws std::runtime_error.
-  void begin_branch(sim::Time back_to, bool ours);
+  /// It has gone back: drops what the tracks know of later.  `ours`: the step is from this run; otherwise the tracks
+  /// restart, as they hold those of another branch.  Throws std::runtime_error.
+  void start_branch(sim::Time back_to, bool ours);
   /// summary.json once more, where something else could not be written.  Throws std::runtime_error.
   void write_summary_again(const Summary& summary) { summary_file_.write(summary.to_json()); }
-  /// summary.json, metrics.csv, errors.csv, world.yaml and the pictures.  Plotting ends once `give_up` says so.
+  /// summary.json, metrics.csv, errors.csv, world.yaml and the plots.  Plotting ends once `give_up` returns true.
   /// What cannot be written does not keep the rest from being written.  Throws std::runtime_error about the first.
   void finish(const Summary& summary, const Scoring& scoring, const sim::ConfigNode& resolved,
               const std::function<bool()>& give_up);
@@ -131,9 +131,9 @@ class Results {
   std::string directory_;
   SummaryFile summary_file_;
   const sim::World& world_;
-  bool pictures_;
+  bool plots_;
   std::FILE* tracks_ = nullptr;
-  std::string kept_;  ///< the directory that keep_branch() made for the branch that goes on so far; empty: none
+  std::string kept_;  ///< the directory that keep_branch() created for the present branch; empty: none
   std::int64_t every_steps_ = 1;
   std::int64_t steps_per_second_ = 1;
   std::optional<std::string> error_;

@@ -41,7 +41,7 @@ std::string text_at(const sim::ConfigNode& map, const char* key) {
 }
 
 /// What the world of the run says of its metrics.  The file may be anything, and is only looked at.
-void look_into_world(const std::string& path, std::vector<RunMetric>& metrics) {
+void read_world(const std::string& path, std::vector<RunMetric>& metrics) {
   sim::Diagnostics problems;
   sim::ConfigNode world;
   try {
@@ -88,7 +88,7 @@ std::vector<RunMetric> metrics_of(const RunRecord& run) {
           run.metrics.at(figure.name.empty() ? metric.name : metric.name + "." + figure.name);
       if (value && std::isfinite(*value)) figure.value = value;
     }
-  look_into_world(run.directory + "/world.yaml", metrics);
+  read_world(run.directory + "/world.yaml", metrics);
   return metrics;
 }
 

@@ -20,7 +20,7 @@ struct RunMetric {
 
   std::string name;
   const sim::MetricKind* kind = nullptr;  ///< null: this version knows no metric of such figures
-  std::string vehicle, channel;           ///< as the world says; empty: not said, or the world is not known
+  std::string vehicle, channel;           ///< as in the world; empty: unset, or the world is unknown
   int dimensions = 0;                     ///< of an error; 0: not known
   std::vector<Figure> figures;            ///< the most important one first
 

@@ -13,7 +13,7 @@ namespace tools {
 
 namespace {
 
-constexpr std::uintmax_t most_bytes = std::uintmax_t{64} << 20;
+constexpr std::uintmax_t max_bytes = std::uintmax_t{64} << 20;
 
 std::map<std::string, std::optional<double>> read_figures(const JsonReader& in) {
   std::map<std::string, std::optional<double>> figures;
@@ -42,7 +42,7 @@ std::string read_whole_file(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
   if (!in) throw std::runtime_error(path + ": cannot be read: " + std::strerror(errno));
   const auto size = std::filesystem::file_size(path, error);
-  if (!error && size > most_bytes) throw std::runtime_error(path + ": is larger than 64 MB");
+  if (!error && size > max_bytes) throw std::runtime_error(path + ": is larger than 64 MB");
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
@@ -50,7 +50,7 @@ nlohmann::ordered_json read_json_file(const std::string& path) {
   try {
     return nlohmann::ordered_json::parse(read_whole_file(path));
   } catch (const nlohmann::json::exception& error) {
-    throw std::runtime_error(path + ": is no JSON: " + error.what());
+    throw std::runtime_error(path + ": is not a JSON: " + error.what());
   }
 }
 

@@ -12,7 +12,7 @@
 
 namespace tools {
 
-/// What a results directory tells of its run, read again.
+/// What a results directory reports its run, read again.
 struct RunRecord {
   struct Rule {
     std::string rule;
@@ -50,11 +50,11 @@ struct RunRecord {
   std::string not_judged;  ///< why it was not; empty when it was
   std::string ended, error;
   int exit_code = 0;
-  std::string version;  ///< of shoal; empty: an older one that did not tell
+  std::string version;  ///< of shoal; empty: an older one without this field
 };
 
-/// Reads DIRECTORY/summary.json.  Throws std::runtime_error with file and reason: it is not there, no JSON, or a value
-/// is of a wrong type.
+/// Reads DIRECTORY/summary.json.  Throws std::runtime_error with file and reason: it does not exist, no JSON, or a
+/// value is of a wrong type.
 RunRecord read_run(const std::string& directory);
 
 /// A file of at most 64 MB.  Throws std::runtime_error.

@@ -8,7 +8,7 @@
 
 namespace tools {
 
-/// Before a file is written: a link that somebody left at its place would lead elsewhere.  Other files stay,
+/// Before a file is written: an existing link in its place would lead elsewhere.  Other files stay,
 /// and links to terminals and the like.
 void remove_link(const std::string& path);
 

@@ -24,13 +24,13 @@ void BranchLog::prepare(std::int32_t branch, std::int64_t step, bool ours) {
   if (record_.empty()) return;
   std::error_code error;
   if (!overwrite_ && std::filesystem::exists(file_of(branch), error))
-    throw bridges::BusError(file_of(branch) + ": exists already; the record of the branch would go there");
+    throw bridges::BusError(file_of(branch) + ": already exists; the record of the branch would be written there");
   buses_.prepare_record(file_of(branch), next_.record, overwrite_);
 }
 
 void BranchLog::branch(std::int32_t branch) {
   while (!marks_.empty() && (!next_is_ours_ || marks_.back().step > next_.step)) marks_.pop_back();
-  journal_.begin_branch(branch, next_.sequence);
+  journal_.start_branch(branch, next_.sequence);
   buses_.branch_record();
 }
 

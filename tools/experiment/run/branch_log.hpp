@@ -10,23 +10,23 @@
 
 namespace tools {
 
-/// The records of a run's branches: each branch has a file of its own, which begins with what its parent wrote up to
-/// the step where they part.
+/// The records of a run's branches: each branch has its own file, which starts with a copy of its parent's up to the
+/// step where they part.
 class BranchLog {
  public:
   /// `record`: of branch 0; empty: there is none.  All must outlive this.
   BranchLog(RunBuses& buses, bridges::RunJournal& journal, const std::string& record, bool overwrite)
       : buses_(buses), journal_(journal), record_(record), overwrite_(overwrite) {}
 
-  /// Call after each step whose messages are out.  `oldest`: nobody goes back further.
+  /// Call after each step whose messages are out.  `oldest`: the earliest step of a rewind.
   void mark(std::int64_t step, std::int64_t oldest);
-  /// The world is about to go to `step` and begin a branch.  `ours`: it has been there in this run, else the log begins
-  /// anew.  Throws BusError when the file cannot be made, or is there already and may not be replaced; nothing has
+  /// Prepares a branch that starts at `step`.  `ours`: the step is from this run; otherwise the log restarts.
+  ///   Throws BusError when the file cannot be made, or is there already and may not be replaced; nothing has
   /// changed then.
   void prepare(std::int32_t branch, std::int64_t step, bool ours);
   /// It has gone there.
   void branch(std::int32_t branch);
-  /// It has not.
+  /// Discards the prepared branch; the run stays on the current one.
   void give_up();
   /// `coop.lcm` becomes `coop.branch2.lcm`.
   std::string file_of(std::int32_t branch) const;

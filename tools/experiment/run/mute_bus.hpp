@@ -5,7 +5,7 @@
 
 namespace tools {
 
-/// Between a world and its network: while it is muted nothing goes out, and what comes in is thrown away.
+/// Between a world and its network: while it is muted nothing is sent, and incoming messages are discarded.
 class MuteBus final : public sim::Bus {
  public:
   /// `inner` must outlive this.

@@ -20,7 +20,7 @@ class Pacer {
     const auto ahead = std::chrono::duration_cast<Clock::duration>(
         std::chrono::duration<double>(sim::to_seconds(next - sim_start_) / control.speed));
     const auto wait = std::chrono::duration_cast<std::chrono::microseconds>(wall_start_ + ahead - now);
-    // Too slow a machine: go on from here rather than race to catch up.
+    // Too slow a machine: continue from here rather than race to catch up.
     if (wait < std::chrono::milliseconds(-500)) start(next, now, control);
     return std::max(wait, std::chrono::microseconds{0});
   }

@@ -31,15 +31,16 @@ Run::Run(const sim::LoadedWorld& loaded, const RunOptions& options)
       world_(loaded.config, buses_.outer(),
              options.serial_ports ? ports_.wrap(serial_ports_of(loaded.config, options)) : sim::PortOpener(),
              [this](const std::string& name) -> sim::Bus& { return buses_.of(name); }),
-      journal_(buses_.outer(), world_, ports_, [this] { return heard() || buses_.gate().reads("sim.hash"); }),
+      journal_(buses_.outer(), world_, ports_, [this] { return has_listeners() || buses_.gate().reads("sim.hash"); }),
       lockstep_(world_, control_, lockstep_buses()),
       service_(buses_.outer(), buses_.network(), world_, control_, lockstep_,
                {sim::to_yaml(loaded.resolved), version_text(), build_text(), files_}, service_links()),
       scoring_(
-          world_, options.quiet ? FirstContacts::Say() : [this](const std::string& line) { progress_.say(line); }),
-      mail_(buses_, journal_, service_, lockstep_),
+          world_,
+          options.quiet ? FirstContacts::Report() : [this](const std::string& line) { progress_.report(line); }),
+      inputs_(buses_, journal_, service_, lockstep_),
       branch_log_(buses_, journal_, options.record, options.overwrite),
-      time_(world_, control_, scoring_, service_, mail_, time_options(), *this),
+      time_(world_, control_, scoring_, service_, inputs_, time_options(), *this),
       duration_s_(options.duration_s.value_or(loaded.config.run.duration_s)),
       progress_(duration_s_, options.quiet || !spdlog::should_log(spdlog::level::info)),
       key_file_(make_key()),
@@ -54,19 +55,19 @@ Run::Run(const sim::LoadedWorld& loaded, const RunOptions& options)
       throw RunError(2, "configuration", options.from_file + ": " + error.what());
     }
     // What came before is not in this run's log, and a gap says so.
-    journal_.begin_branch(control_.branch, 1);
+    journal_.start_branch(control_.branch, 1);
   }
   if (!options.results.empty()) {
-    results_ = std::make_unique<Results>(options.results, world_, options.pictures);
+    results_ = std::make_unique<Results>(options.results, world_, options.plots);
     write_results_world(options.results, loaded.resolved);
   }
   progress_.restart(world_.now());
   plan_snapshots();
   if (options.keys && !options.quiet && TerminalKeys::possible()) {
     keys_ = std::make_unique<RunKeys>(
-        time_, control_, [this](const std::string& text) { progress_.say(text); },
-        [this](const std::string& text) { progress_.ask(text); });
-    progress_.say(RunKeys::help());
+        time_, control_, [this](const std::string& text) { progress_.report(text); },
+        [this](const std::string& text) { progress_.send_request(text); });
+    progress_.report(RunKeys::help());
   }
 }
 
@@ -86,7 +87,7 @@ bridges::ServiceLinks Run::service_links() {
 std::unique_ptr<RunKeyFile> Run::make_key() {
   const bool from_elsewhere = buses_.over_lcm() && buses_.leave_machine();
   if (from_elsewhere && options_.open_control)
-    spdlog::warn("--open-control: whoever reaches the network of this run may control it");
+    spdlog::warn("--open-control: any program that reaches the network of this run can control it");
   if (!buses_.over_lcm() || options_.open_control || (!from_elsewhere && !options_.control_key)) return nullptr;
   auto file = std::make_unique<RunKeyFile>(options_.results);
   lockstep_.guard().require(file->key());
@@ -96,11 +97,11 @@ std::unique_ptr<RunKeyFile> Run::make_key() {
 
 TimeControl::Options Run::time_options() const {
   constexpr double usual_rewind_s = 60;
-  const bool somebody_can_ask =
+  const bool accepts_requests =
       options_.bus != "none" || (options_.keys && !options_.quiet && TerminalKeys::possible());
   TimeControl::Options time;
-  time.rewind_s = options_.rewind_s.value_or(somebody_can_ask ? usual_rewind_s : 0);
-  time.most_bytes = static_cast<std::size_t>(options_.rewind_MB * 1e6);
+  time.rewind_s = options_.rewind_s.value_or(accepts_requests ? usual_rewind_s : 0);
+  time.max_bytes = static_cast<std::size_t>(options_.rewind_MB * 1e6);
   time.directory = options_.snapshots;
   if (time.directory.empty() && !options_.results.empty()) time.directory = options_.results + "/snapshots";
   time.overwrite = options_.overwrite;
@@ -110,7 +111,7 @@ TimeControl::Options Run::time_options() const {
   return time;
 }
 
-void Run::obey() {
+void Run::execute() {
   service_.handle_requests(&time_);
   if (keys_) keys_->read();
   if (!time_.broken().empty()) throw RunError(3, "fault", time_.broken());
@@ -145,7 +146,7 @@ std::string Run::how_ended() const {
   return control_.quit ? "quit" : "duration";
 }
 
-bool Run::wanted() const {
+bool Run::desired() const {
   return caught_signal() == 0 && !control_.quit;
 }
 
@@ -154,10 +155,10 @@ void Run::start_clients() {
     alone_ = false;
     throw RunError(4, "bus",
                    *other +
-                       "; clients and reports of the two would mix: choose another port with --lcm-url, or share "
+                       "; clients and reports of the two runs would mix: choose another port with --lcm-url, or share "
                        "this one with --lcm-shared");
   }
-  service_.publish_info();  // a log tells of its run from the first event
+  service_.publish_info();  // a log reports its run from the first event
   if (options_.from) publish_snapshot();
   buses_.end_of_step();
   await(programs_.start());
@@ -167,8 +168,8 @@ void Run::await(const std::vector<std::string>& clients) {
   const auto begin = Clock::now();
   const auto deadline = begin + std::chrono::duration<double>(loaded_.config.lockstep.join_timeout_s);
   for (const std::string& client : clients) {
-    bool said = false;
-    while (!lockstep_.has(client) && wanted()) {
+    bool reported = false;
+    while (!lockstep_.has(client) && desired()) {
       service_.handle_requests(&time_);
       check_programs();
       check_bus();
@@ -178,9 +179,9 @@ void Run::await(const std::vector<std::string>& clients) {
             5, "timeout",
             fmt::format("lockstep: client '{}' has not joined within {:g} s; clients that have: {}", client,
                         loaded_.config.lockstep.join_timeout_s, lockstep_.empty() ? "none" : lockstep_.names()));
-      if (!said && Clock::now() - begin > std::chrono::seconds(1)) {
+      if (!reported && Clock::now() - begin > std::chrono::seconds(1)) {
         spdlog::info("waiting for '{}' to join the lockstep", client);
-        said = true;
+        reported = true;
       }
       buses_.wait(std::chrono::milliseconds(20));
     }
@@ -191,8 +192,8 @@ void Run::loop() {
   journal_.start();
   end_of_step();
   const sim::Time end = duration_s_ > 0 ? sim::from_seconds(duration_s_) : sim::Time::max();
-  while (wanted() && !world_.ended() && world_.now() < end) {
-    obey();
+  while (desired() && !world_.ended() && world_.now() < end) {
+    execute();
     if (time_.take_moved()) synchronized_ = false;
     if (!control_.may_step()) {
       progress_.update(world_.now(), messages(), control_, true);
@@ -212,7 +213,7 @@ void Run::loop() {
 }
 
 void Run::step() {
-  admit_mail();
+  admit_messages();
   watch_.begin();
   world_.step();
   watch_.end();
@@ -237,10 +238,11 @@ void Run::check_step_time() {
   if (const auto why = watch_.beyond_limit()) throw RunError(5, "limit", *why);
 }
 
-void Run::admit_mail() {
+void Run::admit_messages() {
   buses_.set_time(world_.now());
-  buses_.admit(
-      [this](const std::string& bus, std::span<const sim::MailGate::Mail> mail) { journal_.admitted(bus, mail); });
+  buses_.admit([this](const std::string& bus, std::span<const sim::MessageGate::Delivery> inputs) {
+    journal_.admitted(bus, inputs);
+  });
 }
 
 void Run::end_of_step() {
@@ -259,7 +261,7 @@ void Run::end_of_step() {
 void Run::synchronize() {
   const auto outcome = lockstep_.synchronize([this](std::chrono::milliseconds time) { buses_.wait(time); },
                                              [this] {
-                                               obey();
+                                               execute();
                                                if (control_.paused)
                                                  progress_.update(world_.now(), messages(), control_, true);
                                                check_programs();
@@ -272,7 +274,7 @@ void Run::synchronize() {
 
 void Run::pace() {
   const sim::Time next = world_.now() + world_.step_time();
-  for (auto wait = pacer_.until(next, control_); wait.count() > 0 && wanted() && control_.may_step();
+  for (auto wait = pacer_.until(next, control_); wait.count() > 0 && desired() && control_.may_step();
        wait = pacer_.until(next, control_)) {
     if (wait > std::chrono::milliseconds(2)) {
       buses_.hand_over_record();
@@ -281,7 +283,7 @@ void Run::pace() {
     } else {
       std::this_thread::sleep_for(wait);
     }
-    obey();
+    execute();
     if (time_.has_moved()) return;
   }
 }
@@ -297,7 +299,7 @@ RunPrograms::Clients Run::clients(bool goes_on) {
           },
           [this](const std::string& client) {
             progress_.clear();
-            service_.client_gone(client);
+            service_.client_exited(client);
             return !lockstep_.has(client);
           }};
 }

@@ -14,9 +14,9 @@
 #include "tools/experiment/run/branch_log.hpp"
 #include "tools/experiment/run/pacer.hpp"
 #include "tools/experiment/run/run_buses.hpp"
+#include "tools/experiment/run/run_inputs.hpp"
 #include "tools/experiment/run/run_key_file.hpp"
 #include "tools/experiment/run/run_keys.hpp"
-#include "tools/experiment/run/run_mail.hpp"
 #include "tools/experiment/run/run_programs.hpp"
 #include "tools/experiment/run/runner.hpp"
 #include "tools/experiment/run/step_watch.hpp"
@@ -42,23 +42,23 @@ class Run final : private Timeline {
   void loop();
   void step();
   /// Hands what has come from outside to the world, and writes it down.
-  void admit_mail();
+  void admit_messages();
   void end_of_step();
   TimeControl::Options time_options() const;
   void leave_branch(std::int64_t to_step, bool ours) override;
-  void stay() override;
-  void begin_branch(bool ours) override;
+  void hold_here() override;
+  void start_branch(bool ours) override;
   std::vector<bridges::LockstepBus> lockstep_buses();
   bridges::ServiceLinks service_links();
-  /// What the run goes on from: a log that begins here can be run again.
+  /// The state from which the run continues: a log that starts here can be replayed.
   void publish_snapshot();
-  bool heard();
-  /// Which steps are nearest to the times of --snapshot-at.  Throws RunError for one that the run cannot come to.
+  bool has_listeners();
+  /// Which steps are nearest to the times of --snapshot-at.  Throws RunError for one that the run cannot reach.
   void plan_snapshots();
   void take_snapshots();
-  void tell_missed_snapshots() const;
+  void report_missed_snapshots() const;
   /// Requests and keys.
-  void obey();
+  void execute();
   void synchronize();
   /// Waits until the next step is due, answering requests meanwhile.
   void pace();
@@ -68,7 +68,7 @@ class Run final : private Timeline {
   /// `goes_on`: requests may still change the world.
   RunPrograms::Clients clients(bool goes_on);
   void check_programs();
-  bool wanted() const;
+  bool desired() const;
   std::string how_ended() const;
   std::uint64_t messages() const;
   void finish(Summary& summary);
@@ -87,7 +87,7 @@ class Run final : private Timeline {
   bridges::LockstepService lockstep_;
   bridges::SimService service_;
   Scoring scoring_;
-  RunMail mail_;
+  RunInputs inputs_;
   BranchLog branch_log_;
   TimeControl time_;
   double duration_s_;

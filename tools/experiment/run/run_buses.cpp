@@ -12,7 +12,7 @@ namespace tools {
 
 namespace {
 
-/// A pipe without a reader would stop the run for good, a terminal or a disk would get a log that nobody wants there.
+/// A pipe without a reader would stop the run for good, a terminal or a disk would get an unwanted log.
 void check_record(const std::string& path) {
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
@@ -34,61 +34,61 @@ RunBuses::RunBuses(const sim::WorldConfig& world, const RunOptions& options) {
   main_.close_gate();
   std::map<std::string, std::string> names{{main_.lcm ? main_.lcm->url() : "", "the world's"}};
   for (const sim::BusConfig& bus : world.buses) {
-    Line line = open(bus.lcm_url, options);
-    if (line.lcm) {
-      const auto [other, fresh] = names.emplace(line.lcm->url(), "bus '" + bus.name + "'");
+    Link link = open(bus.lcm_url, options);
+    if (link.lcm) {
+      const auto [other, fresh] = names.emplace(link.lcm->url(), "bus '" + bus.name + "'");
       if (!fresh)
         throw bridges::BusError("bus '" + bus.name + "' and " + other->second + " have the same LCM URL " +
-                                line.lcm->url());
+                                link.lcm->url());
     }
-    if (main_.recorder) line.recorder = std::make_unique<bridges::RecordingBus>(*line.network, *main_.recorder);
-    line.close_gate();
-    others_.emplace(bus.name, std::move(line));
+    if (main_.recorder) link.recorder = std::make_unique<bridges::RecordingBus>(*link.network, *main_.recorder);
+    link.close_gate();
+    others_.emplace(bus.name, std::move(link));
   }
 }
 
-RunBuses::Line RunBuses::open(const std::string& url, const RunOptions& options) {
-  Line line;
+RunBuses::Link RunBuses::open(const std::string& url, const RunOptions& options) {
+  Link link;
   if (options.bus == "none") {
-    line.network = std::make_unique<sim::InProcessBus>();
-    return line;
+    link.network = std::make_unique<sim::InProcessBus>();
+    return link;
   }
   bridges::LcmBusOptions lcm_options;
   lcm_options.arrivals = arrivals_;
   auto lcm = std::make_unique<bridges::LcmBus>(url, lcm_options);
-  line.lcm = lcm.get();
-  line.network = std::move(lcm);
-  return line;
+  link.lcm = lcm.get();
+  link.network = std::move(lcm);
+  return link;
 }
 
 std::string RunBuses::url(const std::string& name) const {
-  const Line& line = name.empty() ? main_ : others_.at(name);
-  return line.lcm ? line.lcm->url() : "";
+  const Link& link = name.empty() ? main_ : others_.at(name);
+  return link.lcm ? link.lcm->url() : "";
 }
 
 bool RunBuses::leave_machine() const {
   bool leave = false;
-  for_each([&](const Line& line) { leave = leave || (line.lcm && bridges::leaves_machine(line.lcm->url())); });
+  for_each([&](const Link& link) { leave = leave || (link.lcm && bridges::leaves_machine(link.lcm->url())); });
   return leave;
 }
 
 std::vector<bridges::OtherSimulators::BusToAsk> RunBuses::networks() const {
   std::vector<bridges::OtherSimulators::BusToAsk> networks;
-  for_each([&](const Line& line) {
-    if (line.lcm) networks.push_back({line.lcm->url(), line.lcm});
+  for_each([&](const Link& link) {
+    if (link.lcm) networks.push_back({link.lcm->url(), link.lcm});
   });
   return networks;
 }
 
 void RunBuses::admit(const Admitted& admitted) {
-  const auto hand_over = [&](const std::string& name, Line& line) {
-    const std::vector<sim::MailGate::Mail>& mail = line.gate->admit();
-    if (mail.empty()) return;
-    if (line.recorder && !muted_) line.recorder->admitted(mail);
-    admitted(name, mail);
+  const auto hand_over = [&](const std::string& name, Link& link) {
+    const std::vector<sim::MessageGate::Delivery>& inputs = link.gate->admit();
+    if (inputs.empty()) return;
+    if (link.recorder && !muted_) link.recorder->admitted(inputs);
+    admitted(name, inputs);
   };
   hand_over("", main_);
-  for (auto& [name, line] : others_) hand_over(name, line);
+  for (auto& [name, link] : others_) hand_over(name, link);
 }
 
 void RunBuses::wait(std::chrono::milliseconds time) {
@@ -100,7 +100,7 @@ void RunBuses::wait(std::chrono::milliseconds time) {
 
 void RunBuses::end_of_step() {
   outer().end_of_step();
-  for (auto& [name, line] : others_) line.outer().end_of_step();
+  for (auto& [name, link] : others_) link.outer().end_of_step();
 }
 
 void RunBuses::set_time(sim::Time at) {
@@ -109,8 +109,8 @@ void RunBuses::set_time(sim::Time at) {
 
 std::optional<std::string> RunBuses::lost_connection() const {
   std::optional<std::string> lost;
-  for_each([&](const Line& line) {
-    if (line.lcm && !line.lcm->connected() && !lost) lost = "the connection to " + line.lcm->url() + " was lost";
+  for_each([&](const Link& link) {
+    if (link.lcm && !link.lcm->connected() && !lost) lost = "the connection to " + link.lcm->url() + " was lost";
   });
   return lost;
 }
@@ -147,18 +147,18 @@ void RunBuses::give_up_record() {
 
 void RunBuses::set_muted(bool muted) {
   muted_ = muted;
-  for_each([&](const Line& line) {
-    line.mute->set_muted(true);  // what waits in the network goes as well
-    line.gate->collect();
-    line.gate->waiting().clear();
-    line.mute->set_muted(muted);
+  for_each([&](const Link& link) {
+    link.mute->set_muted(true);  // what waits in the network goes as well
+    link.gate->collect();
+    link.gate->waiting().clear();
+    link.mute->set_muted(muted);
   });
 }
 
 sim::BusCounts RunBuses::counts() const {
   sim::BusCounts sum;
-  for_each([&](const Line& line) {
-    const sim::BusCounts counts = line.gate->counts();
+  for_each([&](const Link& link) {
+    const sim::BusCounts counts = link.gate->counts();
     sum.published += counts.published;
     sum.received += counts.received;
     sum.dropped_outgoing += counts.dropped_outgoing;

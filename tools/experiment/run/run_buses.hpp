@@ -14,7 +14,7 @@
 #include "bridges/control/other_simulators.hpp"
 #include "bridges/log/recording_bus.hpp"
 #include "sim/bus/bus.hpp"
-#include "sim/bus/mail_gate.hpp"
+#include "sim/bus/message_gate.hpp"
 #include "sim/world_file/world_config.hpp"
 #include "tools/experiment/run/mute_bus.hpp"
 #include "tools/experiment/run/runner.hpp"
@@ -35,13 +35,14 @@ class RunBuses {
   /// The bus of a name in `buses:`, recorded, behind its gate; empty: the world's.
   sim::Bus& of(const std::string& name) { return name.empty() ? main_.outer() : others_.at(name).outer(); }
   /// The gate of a bus; empty: the world's.
-  sim::MailGate& gate(const std::string& name = {}) { return name.empty() ? *main_.gate : *others_.at(name).gate; }
-  /// The begin of a step: hands over what has come on every bus, the world's first, then by name, and tells of it.
-  using Admitted = std::function<void(const std::string& bus, std::span<const sim::MailGate::Mail> mail)>;
+  sim::MessageGate& gate(const std::string& name = {}) { return name.empty() ? *main_.gate : *others_.at(name).gate; }
+  /// Start of a step: delivers the messages that have arrived on every bus, the world's first, then by name, and
+  /// reports them.
+  using Admitted = std::function<void(const std::string& bus, std::span<const sim::MessageGate::Delivery> inputs)>;
   void admit(const Admitted& admitted);
 
   bool over_lcm() const { return main_.lcm != nullptr; }
-  /// Whether other machines can be heard on any of them.
+  /// Whether messages of other machines can arrive on any of them.
   bool leave_machine() const;
   /// LCM URL of a bus; empty when it is none.
   std::string url(const std::string& name) const;
@@ -65,39 +66,39 @@ class RunBuses {
   RecordMark record_mark() const;
   /// Makes another record, which begins with the present one's up to a mark.  Throws BusError.
   void prepare_record(const std::string& path, const RecordMark& mark, bool overwrite);
-  /// Goes on with the record that was prepared, or removes it.
+  /// Continues with the record that was prepared, or removes it.
   void branch_record();
   void give_up_record();
-  /// While muted nothing goes to the networks and into the record, and what comes in is thrown away.  What waits at the
+  /// While muted nothing is sent to the networks or recorded, and incoming messages are discarded.  What waits at the
   /// gates is thrown away at both calls.
   void set_muted(bool muted);
   /// Of all buses.
   sim::BusCounts counts() const;
 
  private:
-  struct Line {
+  struct Link {
     std::unique_ptr<sim::Bus> network;
     bridges::LcmBus* lcm = nullptr;  ///< the same, when it is LCM
     std::unique_ptr<bridges::RecordingBus> recorder;
     std::unique_ptr<MuteBus> mute;
-    std::unique_ptr<sim::MailGate> gate;
+    std::unique_ptr<sim::MessageGate> gate;
     sim::Bus& outer() { return *gate; }
     void close_gate() {
       mute = std::make_unique<MuteBus>(recorder ? static_cast<sim::Bus&>(*recorder) : *network);
-      gate = std::make_unique<sim::MailGate>(*mute);
+      gate = std::make_unique<sim::MessageGate>(*mute);
     }
   };
-  Line open(const std::string& url, const RunOptions& options);
+  Link open(const std::string& url, const RunOptions& options);
   template <typename Use>
   void for_each(Use&& use) const {
     use(main_);
-    for (const auto& [name, line] : others_) use(line);
+    for (const auto& [name, link] : others_) use(link);
   }
 
   std::shared_ptr<bridges::Arrivals> arrivals_ = std::make_shared<bridges::Arrivals>();
   bool muted_ = false;
-  Line main_;
-  std::map<std::string, Line, std::less<>> others_;  // destroyed before the main one, whose log they write
+  Link main_;
+  std::map<std::string, Link, std::less<>> others_;  // destroyed before the main one, whose log they write
 };
 
 }  // namespace tools

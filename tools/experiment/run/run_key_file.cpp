@@ -22,7 +22,7 @@ std::string make_folder() {
   const bool usable = runtime != nullptr && std::filesystem::is_directory(runtime, error);
   std::string path = (usable ? std::string(runtime) : "/tmp") + "/shoal-run-XXXXXX";
   if (mkdtemp(path.data()) == nullptr)  // with mode 0700
-    throw bridges::BusError(path + ": cannot be made for the key of the run: " + std::strerror(errno));
+    throw bridges::BusError(path + ": cannot be created for the key of the run: " + std::strerror(errno));
   return path;
 }
 
@@ -40,7 +40,7 @@ void RunKeyFile::write() const {
   const auto fail = [&] {
     throw bridges::BusError(path + ": cannot write the key of the run: " + std::strerror(errno));
   };
-  // Not into a file or behind a link that somebody else put there.
+  // Not into a file or through a link of another user.
   if (unlink(path.c_str()) != 0 && errno != ENOENT) fail();
   const bridges::FileDescriptor file(open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0600));
   if (file.number() < 0) fail();

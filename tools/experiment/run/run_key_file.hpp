@@ -7,7 +7,7 @@
 
 namespace tools {
 
-/// The key of a run, new and in a file that only its user can read, as long as the run goes on.
+/// The key of a run, new and in a file that only its user can read, as long as the run continues.
 class RunKeyFile {
  public:
   /// Writes `folder`/run.key; without a folder it makes one for this run alone, in XDG_RUNTIME_DIR or /tmp.  A key that

@@ -17,8 +17,8 @@ constexpr double slowest = 1e-3, fastest = 1e6;
 
 }  // namespace
 
-RunKeys::RunKeys(TimeControl& time, sim::RunControl& control, Show say, Show ask)
-    : time_(time), control_(control), say_(std::move(say)), ask_(std::move(ask)) {}
+RunKeys::RunKeys(TimeControl& time, sim::RunControl& control, Show report, Show send_request)
+    : time_(time), control_(control), report_(std::move(report)), request_(std::move(send_request)) {}
 
 std::string RunKeys::help() {
   return "keys: space pause, n step, N 10 steps, + - faster slower, 1 real time, m as fast as possible,\n"
@@ -26,8 +26,8 @@ std::string RunKeys::help() {
 }
 
 void RunKeys::read() {
-  constexpr int most_at_once = 50;
-  for (int i = 0; i < most_at_once; ++i) {
+  constexpr int max_at_once = 50;
+  for (int i = 0; i < max_at_once; ++i) {
     const auto now = KeySequences::Clock::now();
     const auto byte = keys_.next();
     for (const char key : byte ? sequences_.next(*byte, now) : sequences_.alone(now)) press(key);
@@ -40,17 +40,17 @@ void RunKeys::press(char key) {
     if (asking_)
       answer(key);
     else
-      obey(key);
+      execute(key);
   } catch (const std::exception& error) {
-    say_(error.what());
+    report_(error.what());
   }
 }
 
-void RunKeys::obey(char key) {
+void RunKeys::execute(char key) {
   switch (key) {
     case ' ':
       control_.set_paused(!control_.paused);
-      return say_(run_state());
+      return report_(run_state());
     case 'n':
     case '.':
     case 'N':
@@ -62,25 +62,25 @@ void RunKeys::obey(char key) {
       return change_speed(0.5);
     case '1':
       control_.set_speed(1);
-      return say_(run_state());
+      return report_(run_state());
     case 'm':
       control_.set_speed(0);
-      return say_(run_state());
+      return report_(run_state());
     case 'r':
     case 'R':
-      return say_(time_.rewind(key == 'r' ? 10 : 30, false));
+      return report_(time_.rewind(key == 'r' ? 10 : 30, false));
     case 's':
-      return say_(time_.write_snapshot(""));
+      return report_(time_.write_snapshot(""));
     case 'u':
       asking_ = true;
       answer_.clear();
-      return ask_(question);
+      return request_(question);
     case 'q':
       control_.quit = true;
       return;
     case '?':
     case 'h':
-      return say_(help());
+      return report_(help());
     default:
       return;
   }
@@ -94,31 +94,31 @@ void RunKeys::answer(char key) {
     const char* end = answer_.data() + answer_.size();
     const auto [at, error] = std::from_chars(answer_.data(), end, time_s);
     const bool number = error == std::errc{} && at == end;
-    if (answer_.empty()) return say_("not");
-    return say_(number ? time_.run_until(time_s) : time_.run_until_event(answer_));
+    if (answer_.empty()) return report_("not");
+    return report_(number ? time_.run_until(time_s) : time_.run_until_event(answer_));
   }
   if (key == escape) {
     asking_ = false;
-    return say_("not");
+    return report_("not");
   }
   if ((key == backspace || key == erase) && !answer_.empty())
     answer_.pop_back();
   else if (std::isprint(static_cast<unsigned char>(key)) != 0 && answer_.size() < 100)
     answer_ += key;
-  ask_(question + answer_);
+  request_(question + answer_);
 }
 
 void RunKeys::change_speed(double factor) {
-  if (control_.speed <= 0 && factor > 1) return say_(run_state());
+  if (control_.speed <= 0 && factor > 1) return report_(run_state());
   const double speed = control_.speed <= 0 ? slower_than_most : control_.speed * factor;
   control_.set_speed(std::clamp(speed, slowest, fastest));
-  say_(run_state());
+  report_(run_state());
 }
 
 std::string RunKeys::run_state() const {
   const std::string speed =
       control_.speed > 0 ? fmt::format("{:g} x real time", control_.speed) : "as fast as possible";
-  return time_.place() + (control_.paused ? "; goes on " : "; goes ") + speed;
+  return time_.place() + (control_.paused ? "; continues " : "; goes ") + speed;
 }
 
 }  // namespace tools

@@ -14,25 +14,25 @@ namespace tools {
 /// What each key does to a run.
 class RunKeys {
  public:
-  /// `say` shows a line of words, `ask` an unfinished line.  All must outlive this.
+  /// `say` shows a line of text, `ask` an unfinished line.  All must outlive this.
   using Show = std::function<void(const std::string& text)>;
-  RunKeys(TimeControl& time, sim::RunControl& control, Show say, Show ask);
+  RunKeys(TimeControl& time, sim::RunControl& control, Show report, Show send_request);
 
   /// One or two lines that name all keys.
   static std::string help();
-  /// Obeys the keys that were pressed.
+  /// Executes the keys that were pressed.
   void read();
   void press(char key);
 
  private:
-  void obey(char key);
+  void execute(char key);
   void answer(char key);
   void change_speed(double factor);
   std::string run_state() const;
 
   TimeControl& time_;
   sim::RunControl& control_;
-  Show say_, ask_;
+  Show report_, request_;
   TerminalKeys keys_;
   KeySequences sequences_;
   bool asking_ = false;

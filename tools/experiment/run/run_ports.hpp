@@ -11,7 +11,7 @@ namespace tools {
 struct PortFolder {
   std::string folder, world;
 };
-/// Throws std::runtime_error when the folder belongs to somebody else.
+/// Throws std::runtime_error when the folder belongs to another user.
 PortFolder temporary_port_folder(const std::string& world_name);
 
 /// Opens the serial ports of a run.  A relative path lies below `serial` in the results, else below

@@ -46,14 +46,13 @@ void RunPrograms::check(sim::Time now, const Clients& clients) {
   for (const ProcessGroup::Exit& exit : reap(clients)) {
     const std::string text = "process '" + exit.name + "' " + exit.how;
     note(exit, now);
-    if (exit.ends_run) throw RunError(1, "process", text + "; the world says the run ends with it");
-    const bool goes_on = clients.gone(exit.client);
+    if (exit.ends_run) throw RunError(1, "process", text + "; the run ends with it, as the world requires");
+    const bool goes_on = clients.removed(exit.client);
     if (exit.failed && !exit.ignored)
-      spdlog::error("{}; {}", text,
-                    goes_on ? "the run goes on without it, and fails" : "its `on_timeout` decides what follows");
+      spdlog::error("{}; {}", text, goes_on ? "the run continues without it, and fails" : "its `on_timeout` applies");
     else
       spdlog::info("{}", text);
-    gone_.insert(exit.client);
+    removed_.insert(exit.client);
   }
 }
 

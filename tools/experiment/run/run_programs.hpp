@@ -23,19 +23,19 @@ class RunPrograms {
   std::vector<std::string> start();
   /// What the lockstep knows of its clients, by name.
   struct Clients {
-    /// It asked to leave, and takes no part any more.
+    /// It has left the lockstep.
     std::function<bool(const std::string& client)> has_left;
-    /// Its process is gone.  Says whether the run goes on without it at once; else its `on_timeout` decides.
-    std::function<bool(const std::string& client)> gone;
+    /// Its process is gone.  Returns whether the run continues without it at once; otherwise its `on_timeout` applies.
+    std::function<bool(const std::string& client)> removed;
   };
 
   /// Looks for programs that have ended.  A client that ended before its last tick and did not leave has failed,
   /// whatever its exit code.  Throws RunError when the world says that the run ends with one.
   void check(sim::Time now, const Clients& clients);
-  /// The run is about to end, and to tell the programs: notes those that have ended by themselves.
+  /// Before the end of the run is announced: notes the programs that have already ended.
   void note_last(sim::Time now, const Clients& clients);
-  bool is_gone(const std::string& client) const { return gone_.contains(client); }
-  /// Lets those that take part in the lockstep end by themselves.
+  bool is_gone(const std::string& client) const { return removed_.contains(client); }
+  /// Waits for the lockstep clients to end by themselves.
   void await_clients() { processes_.await_clients(); }
   void stop() { processes_.stop(); }
   /// Those that ended before the run did.
@@ -50,7 +50,7 @@ class RunPrograms {
   RunBuses& buses_;
   ProcessGroup processes_;
   std::vector<Summary::Process> ended_;
-  std::set<std::string, std::less<>> gone_;
+  std::set<std::string, std::less<>> removed_;
 };
 
 }  // namespace tools

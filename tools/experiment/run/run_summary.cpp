@@ -17,7 +17,7 @@ void note_signal(Summary& summary) {
     summary.fail(128 + caught_signal(), "signal", "");
 }
 
-/// All that the world names, or somebody who was started by hand.
+/// All processes of the world, or a client that was started by hand.
 bool programs_take_part(const sim::WorldConfig& world, const RunOptions& options) {
   return world.processes.empty() || options.launch || !options.await.empty();
 }
@@ -27,8 +27,8 @@ bool programs_take_part(const sim::WorldConfig& world, const RunOptions& options
 void Run::finish(Summary& summary) {
   const OrderlyEnd orderly;
   programs_.note_last(world_.now(), clients(false));
-  if (alone_) {    // else the bus is another simulator's
-    admit_mail();  // what came after the last step is in the log: the journal says that it came from outside
+  if (alone_) {        // else the bus is another simulator's
+    admit_messages();  // what came after the last step is in the log: the journal says that it came from outside
     journal_.finish(summary.ended != "fault" && summary.ended != "error");
     lockstep_.publish_end([this](std::chrono::milliseconds time) { buses_.wait(time); },
                           std::chrono::milliseconds(caught_signal() == 0 ? 1000 : 200));
@@ -44,7 +44,7 @@ void Run::finish(Summary& summary) {
   if (summary.exit_code == 0 && summary.judgement() == Judgement::failed) summary.exit_code = 1;
   note_signal(summary);
   if (results_) write_results(summary);
-  tell_missed_snapshots();
+  report_missed_snapshots();
 }
 
 void Run::add_figures(Summary& summary) {
@@ -77,8 +77,8 @@ void Run::add_figures(Summary& summary) {
   summary.clients = lockstep_.summaries();
   summary.needs_key = lockstep_.guard().requires_key();
   summary.refused_requests = service_.refused_requests();
-  summary.notices = service_.notices().all();
-  summary.notice_count = service_.notices().count();
+  summary.audit = service_.audit().all();
+  summary.audit_count = service_.audit().count();
   summary.event = world_.ended();
   for (const auto& [vehicle, record] : world_.zone_records()) summary.zones[vehicle] = record;
   // Without the programs that a world names there is nothing to judge.

@@ -24,17 +24,17 @@ void Run::leave_branch(std::int64_t to_step, bool ours) {
   results_->keep_branch(left, scoring_, loaded_.resolved);
 }
 
-void Run::stay() {
+void Run::hold_here() {
   branch_log_.give_up();
   if (results_) results_->drop_branch();
 }
 
-bool Run::heard() {
+bool Run::has_listeners() {
   return buses_.over_lcm() || !options_.record.empty();
 }
 
 void Run::publish_snapshot() {
-  if (!heard()) return;
+  if (!has_listeners()) return;
   sim::Bytes buffer;
   for (const shoal::sim_snapshot_t& piece : in_pieces(time_.snapshot(), control_.branch, journal_.sequence())) {
     shoal::encode_into(piece, buffer);
@@ -42,13 +42,13 @@ void Run::publish_snapshot() {
   }
 }
 
-void Run::begin_branch(bool ours) {
+void Run::start_branch(bool ours) {
   branch_log_.branch(control_.branch);
   lockstep_.set_branch(control_.branch);
   buses_.set_time(world_.now());
-  service_.tell_changes();
+  service_.report_changes();
   service_.publish_info();
-  if (!ours) {  // nobody has seen this step
+  if (!ours) {  // this step was not observed
     publish_snapshot();
     service_.publish_step();
     journal_.after_step();
@@ -56,7 +56,7 @@ void Run::begin_branch(bool ours) {
   buses_.end_of_step();
   branch_log_.mark(world_.step_number(), time_.oldest_step().value_or(world_.step_number()));
   progress_.restart(world_.now());
-  if (results_) results_->begin_branch(world_.now(), ours);
+  if (results_) results_->start_branch(world_.now(), ours);
 }
 
 void Run::plan_snapshots() {
@@ -68,15 +68,15 @@ void Run::plan_snapshots() {
           fmt::format("--snapshot-at: {:.6g} s is after the end of the run at {:.6g} s", time_s, duration_s_));
     if (std::llround(time_s / step_s) < world_.step_number())
       throw RunError(2, "configuration",
-                     fmt::format("--snapshot-at: {:.6g} s is before the begin of the run at {:.6g} s", time_s,
+                     fmt::format("--snapshot-at: {:.6g} s is before the start of the run at {:.6g} s", time_s,
                                  sim::to_seconds(world_.now())));
     snapshot_steps_.insert(std::llround(time_s / step_s));
   }
 }
 
-void Run::tell_missed_snapshots() const {
+void Run::report_missed_snapshots() const {
   for (const std::int64_t step : snapshot_steps_)
-    spdlog::warn("--snapshot-at: no snapshot of {:.6g} s was written: the run did not come there",
+    spdlog::warn("--snapshot-at: no snapshot of {:.6g} s was written: the run ended before it",
                  sim::to_seconds(world_.step_time() * step));
 }
 

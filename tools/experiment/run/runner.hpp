@@ -26,20 +26,20 @@ struct RunOptions {
   bool special_files = false;        ///< the record may be a pipe or a device
   std::string results;               ///< directory; empty: none
   std::string name = "run";          ///< what {run} stands for in paths of serial ports and in commands of processes
-  bool pictures = true;              ///< in the results
+  bool plots = true;                 ///< in the results
   bool paused = false;
   bool launch = false;
   std::vector<std::string> await;  ///< lockstep clients, started by hand, to wait for
   bool serial_ports = true;        ///< pseudo-terminals and FIFOs of devices are opened
   int threads = 0;                 ///< that follow rays; 0: one for each processor
   bool quiet = false;
-  bool keys = true;                        ///< keys of the terminal are obeyed, when there is one
-  std::optional<Snapshot> from;            ///< the run goes on from there
+  bool keys = true;                        ///< keys of the terminal are executed, when there is one
+  std::optional<Snapshot> from;            ///< the run continues from there
   std::string from_file;                   ///< its name
   std::string snapshots;                   ///< directory of snapshot files; empty: `snapshots` in the results
   std::vector<double> snapshot_at_s;       ///< when to write one, in simulated time
   std::optional<double> snapshot_every_s;  ///< and how often
-  std::optional<double> rewind_s;          ///< how far back a run can go; without it 60 s when somebody can ask for it
+  std::optional<double> rewind_s;          ///< how far a run can be rewound; without it 60 s when requests are possible
   double rewind_MB = 64;                   ///< memory for that
 };
 

@@ -8,8 +8,8 @@
 
 namespace tools {
 
-/// Measures the CPU time of each step in the thread that simulates.  Physics that nearly stands still - many bodies
-/// that overlap - is reported once, with the bodies; a step beyond `limits: step_cpu_s` ends the run.  What a step
+/// Measures the CPU time of each step in the thread that simulates.  Very slow physics (many overlapping bodies) is
+/// reported once, with the bodies; a step beyond `limits: step_cpu_s` ends the run.  What a step
 /// comes to does not depend on either.
 class StepWatch {
  public:
@@ -29,7 +29,7 @@ class StepWatch {
   const sim::World& world_;
   double begun_s_ = 0, last_s_ = 0;
   int slow_steps_ = 0;          ///< one after the other
-  double said_times_ = 0;       ///< how many times its length a step took when that was said
+  double reported_times_ = 0;   ///< how many times its length a step took when that was said
   std::optional<double> warn_;  ///< how many times its length the last step took
 };
 

@@ -18,15 +18,15 @@ namespace tools {
 
 namespace {
 
-constexpr int most_files = 1000;
+constexpr int max_files = 1000;
 constexpr const char* suffix = ".snapshot";
 /// Between two snapshots for going back at least this many times what the last one cost (the steps after it take
 /// longer too, for their memory is not in the caches any more): in a run that is much faster
-/// than real time they are further apart, and the steps between them take the less time to work out again.
+/// than real time they are further apart, and the steps between them take the less time to computes again.
 constexpr int rest_per_snapshot = 80;
 /// A client whose last tick is further before the step that the world goes back to gets a list that is not whole:
 /// running all that again would take too long.
-constexpr std::int64_t longest_lead_s = 60;
+constexpr std::int64_t max_lead_s = 60;
 
 /// One run of bytes that the ring can compare part by part, and back.  Its last bytes tell the three sizes.
 constexpr std::size_t trailer_bytes = 3 * sizeof(std::uint64_t);
@@ -72,17 +72,17 @@ std::string first_difference(const std::string& there, const std::string& here) 
 }  // namespace
 
 TimeControl::TimeControl(sim::World& world, sim::RunControl& control, Scoring& scoring, bridges::SimService& service,
-                         RunMail& mail, Options options, Timeline& timeline)
+                         RunInputs& inputs, Options options, Timeline& timeline)
     : world_(world),
       control_(control),
       scoring_(scoring),
       service_(service),
-      mail_(mail),
+      inputs_(inputs),
       options_(std::move(options)),
       timeline_(timeline),
       steps_per_second_(std::max<std::int64_t>(1, std::llround(1e6 / static_cast<double>(world.step_time().count())))),
-      ring_(std::llround(options_.rewind_s * static_cast<double>(steps_per_second_)), options_.most_bytes) {
-  if (options_.rewind_s > 0) mail_.keep(options_.most_bytes, [this] { forget_all(); });
+      ring_(std::llround(options_.rewind_s * static_cast<double>(steps_per_second_)), options_.max_bytes) {
+  if (options_.rewind_s > 0) inputs_.keep(options_.max_bytes, [this] { discard_all(); });
 }
 
 TimeControl::Saved TimeControl::save(History history) const {
@@ -124,20 +124,20 @@ void TimeControl::after_step() {
   if (ring_.size() > 0 && begin < not_before_) return;
   try {
     const Saved saved = save(History::length);
-    ring_.add(step, joined(saved.state, saved.scores, saved.owners), mail_.bytes());
+    ring_.add(step, joined(saved.state, saved.scores, saved.owners), inputs_.bytes());
   } catch (const sim::SnapshotError& error) {
-    spdlog::warn("this run cannot go back: {}", error.what());
+    spdlog::warn("this run cannot be rewound: {}", error.what());
     options_.rewind_s = 0;
-    return forget_all();
+    return discard_all();
   }
-  mail_.forget_before(*ring_.oldest());
+  inputs_.discard_before(*ring_.oldest());
   const auto end = Clock::now();
   not_before_ = end + rest_per_snapshot * (end - begin);
 }
 
-void TimeControl::forget_all() {
-  ring_.forget_after(-1);
-  mail_.forget_from(-1);
+void TimeControl::discard_all() {
+  ring_.discard_after(-1);
+  inputs_.discard_from(-1);
 }
 
 bool TimeControl::stop_when_there() {
@@ -145,12 +145,12 @@ bool TimeControl::stop_when_there() {
   const bool fired =
       !control_.until_event.empty() && world_.event_firings(control_.until_event).value_or(0) > control_.until_firings;
   if (!there && !fired) return false;
-  control_.forget_until();
+  control_.clear_until();
   control_.set_paused(true);
   return true;
 }
 
-std::optional<std::string> TimeControl::obey(const std::string& command, const std::string& text, double value) {
+std::optional<std::string> TimeControl::execute(const std::string& command, const std::string& text, double value) {
   const auto run_on = [&] {
     if (!text.empty() && text != "run")
       throw std::runtime_error("'rewind' takes the text 'run' or none, got '" + sim::shortened(sim::printable(text)) +
@@ -197,15 +197,15 @@ std::string TimeControl::place() const {
 std::string TimeControl::what_is_kept() const {
   const auto oldest = ring_.oldest();
   if (!oldest) return "";
-  return fmt::format("; can go back to {:.6g} s, which takes {:.2f} MB", sim::to_seconds(world_.step_time() * *oldest),
-                     static_cast<double>(bytes()) / 1e6);
+  return fmt::format("; can be rewound to {:.6g} s, which takes {:.2f} MB",
+                     sim::to_seconds(world_.step_time() * *oldest), static_cast<double>(bytes()) / 1e6);
 }
 
 std::string TimeControl::run_until(double time_s) {
   if (!(time_s > sim::to_seconds(world_.now()) && time_s <= 1e9))
     throw std::runtime_error(fmt::format("'until' needs a time after now ({:.6g} s) and at most 1e9 s, got {}",
                                          sim::to_seconds(world_.now()), time_s));
-  control_.forget_until();
+  control_.clear_until();
   control_.until = sim::from_seconds(time_s);
   control_.set_paused(false);
   return place() + fmt::format(", runs until {:.6g} s", time_s);
@@ -216,7 +216,7 @@ std::string TimeControl::run_until_event(const std::string& name) {
   if (!firings)
     throw std::runtime_error("'until' needs a time or the name of an event of the world, got '" +
                              sim::shortened(sim::printable(name)) + "'");
-  control_.forget_until();
+  control_.clear_until();
   control_.until_event = name;
   control_.until_firings = *firings;
   control_.set_paused(false);
@@ -224,28 +224,29 @@ std::string TimeControl::run_until_event(const std::string& name) {
 }
 
 std::string TimeControl::rewind(double seconds, bool run_on) {
-  if (options_.rewind_s <= 0) throw std::runtime_error("this run keeps no snapshots to go back to: see --rewind-s");
+  if (options_.rewind_s <= 0) throw std::runtime_error("this run keeps no snapshots for a rewind: see --rewind-s");
   if (!(seconds > 0 && seconds <= 1e9))
     throw std::runtime_error(fmt::format("'rewind' needs a value above 0, in seconds, got {}", seconds));
   const double steps = seconds * 1e6 / static_cast<double>(world_.step_time().count());
   if (std::llround(steps) < 1)
     throw std::runtime_error(fmt::format("'rewind' by {} s is less than half a step of {:.6g} s", seconds,
                                          sim::to_seconds(world_.step_time())));
-  if (world_.step_number() == first_step_) throw std::runtime_error("the run is at its begin: it cannot go back");
-  // Who wants to go back further than it has come goes to the begin.
+  if (world_.step_number() == first_step_)
+    throw std::runtime_error("already at the start of the run: nothing to rewind");
+  // Who wants to go back further than it has come goes to the start.
   const std::int64_t target = std::max<std::int64_t>(world_.step_number() - std::llround(steps), first_step_);
-  auto base = ring_.newest_until(mail_.needed_from(target, longest_lead_s * steps_per_second_));
+  auto base = ring_.newest_until(inputs_.needed_from(target, max_lead_s * steps_per_second_));
   if (!base) base = ring_.newest_until(target);  // some client will lack reports
   if (!base) {
     const double oldest_s = sim::to_seconds(sim::Time{ring_.oldest().value_or(0) * world_.step_time().count()});
-    throw std::runtime_error(fmt::format("cannot go back {:.6g} s from {:.6g} s: what is kept begins at {:.6g} s",
+    throw std::runtime_error(fmt::format("cannot rewind {:.6g} s from {:.6g} s: the history starts at {:.6g} s",
                                          seconds, sim::to_seconds(world_.now()), oldest_s));
   }
-  go_back(*base, target, run_on);
+  rewinds(*base, target, run_on);
   return place();
 }
 
-void TimeControl::go_back(std::int64_t base, std::int64_t target, bool run_on) {
+void TimeControl::rewinds(std::int64_t base, std::int64_t target, bool run_on) {
   travel(
       [&] {
         const sim::Bytes all = ring_.get(base);
@@ -257,21 +258,21 @@ void TimeControl::go_back(std::int64_t base, std::int64_t target, bool run_on) {
               {at(sizes[0] + sizes[1]), at(sizes[0] + sizes[1] + sizes[2])}},
              History::length);
         simulate_again(target);
-        ring_.forget_after(target);
-        mail_.forget_from(target);
+        ring_.discard_after(target);
+        inputs_.discard_from(target);
         written_.erase(written_.upper_bound(target), written_.end());
       },
       target, run_on, true);
 }
 
 void TimeControl::simulate_again(std::int64_t to_step) {
-  mail_.begin_again(world_.step_number());
+  inputs_.restart_replay(world_.step_number());
   while (world_.step_number() < to_step) {
-    mail_.deliver(world_.step_number());
+    inputs_.deliver(world_.step_number());
     world_.step();
-    service_.publish_step();  // metrics may count it; nobody else hears it
+    service_.publish_step();  // metrics may count it; no other program receives it
     scoring_.after_step();
-    if (world_.step_number() < to_step) mail_.pass(world_.step_number());
+    if (world_.step_number() < to_step) inputs_.pass(world_.step_number());
   }
 }
 
@@ -280,37 +281,37 @@ void TimeControl::travel(const std::function<void()>& work, std::int64_t to_step
   try {
     timeline_.leave_branch(to_step, ours);
   } catch (const std::exception&) {
-    timeline_.stay();
+    timeline_.hold_here();
     throw;
   }
-  mail_.begin_again(world_.step_number());
+  inputs_.restart_replay(world_.step_number());
   try {
     work();
   } catch (const std::exception&) {
-    put_back(before);
+    restore_saved(before);
     throw;
   }
-  mail_.end_again();
+  inputs_.end_replay();
   ++control_.branch;
-  control_.forget_until();
+  control_.clear_until();
   control_.set_paused(!run_on);
   moved_ = true;
   try {
-    timeline_.begin_branch(ours);
-  } catch (const std::exception& error) {  // half of the run is there: it cannot go on
+    timeline_.start_branch(ours);
+  } catch (const std::exception& error) {  // half of the run is there: it cannot continue
     broken_ = error.what();
     throw;
   }
 }
 
-void TimeControl::put_back(const Saved& before) {
+void TimeControl::restore_saved(const Saved& before) {
   try {
     load(before, History::whole);
   } catch (const std::exception& error) {
     broken_ = error.what();
   }
-  mail_.end_again();
-  timeline_.stay();
+  inputs_.end_replay();
+  timeline_.hold_here();
 }
 
 void TimeControl::go_on_from(const Snapshot& snapshot) {
@@ -324,7 +325,8 @@ void TimeControl::go_on_from(const Snapshot& snapshot) {
   try {
     load_beside({{}, snapshot.scores, snapshot.owners}, History::whole);
   } catch (const sim::SnapshotError&) {
-    throw std::runtime_error("the metrics of the snapshot are others than this world's: `metrics` cannot be changed");
+    throw std::runtime_error(
+        "the metrics of the snapshot differ from those of this world: `metrics` cannot be changed");
   }
 }
 
@@ -358,14 +360,15 @@ std::string TimeControl::path_of(const std::string& name) const {
       });
   if (!good)
     throw std::runtime_error(
-        "a snapshot has a file name of 1 to 100 letters, digits, '.', '-' and '_', not beginning with '.', got '" +
+        "a snapshot has a file name of 1 to 100 inputs, digits, '.', '-' and '_', not beginning with '.', got '" +
         sim::shortened(sim::printable(name)) + "'");
   return options_.directory + "/" + name + (name.ends_with(suffix) ? "" : suffix);
 }
 
 std::string TimeControl::write_snapshot(const std::string& name) {
-  if (files_ >= most_files)
-    throw std::runtime_error(fmt::format("this run wrote {} snapshots that were asked for already", most_files));
+  if (files_ >= max_files)
+    throw std::runtime_error(
+        fmt::format("this run already wrote {} requested snapshots, which is the maximum", max_files));
   const std::string text = write_file(name);
   ++files_;
   return text;
@@ -377,7 +380,7 @@ std::string TimeControl::write_file(const std::string& name) {
   std::error_code error;
   std::filesystem::create_directories(options_.directory, error);
   if (!options_.overwrite && std::filesystem::exists(path, error))
-    throw std::runtime_error(path + ": exists already; choose another name");
+    throw std::runtime_error(path + ": already exists; choose another name");
   const Snapshot written = snapshot();
   tools::write_snapshot(path, written);
   written_[written.step] = hash_of(written.state);
@@ -398,7 +401,7 @@ std::string TimeControl::restore(const std::string& name, bool run_on) {
   if (snapshot.files != options_.files)
     throw std::runtime_error(
         path + ": its world used other files than this run: " + first_difference(snapshot.files, options_.files));
-  if (!mail_.clients().empty()) {
+  if (!inputs_.clients().empty()) {
     restore_with_clients(snapshot, path, run_on);
     return place();
   }
@@ -406,7 +409,7 @@ std::string TimeControl::restore(const std::string& name, bool run_on) {
       [&] {
         load({snapshot.state, snapshot.scores, snapshot.owners}, History::whole);
         options_.scores_from_s = snapshot.from_s;
-        forget_all();
+        discard_all();
         after_step();
         first_step_ = std::min(first_step_, snapshot.step);
         written_ = {{snapshot.step, hash_of(snapshot.state)}};
@@ -419,22 +422,21 @@ std::string TimeControl::restore(const std::string& name, bool run_on) {
 void TimeControl::restore_with_clients(const Snapshot& snapshot, const std::string& path, bool run_on) {
   const auto refuse = [&](const std::string& why) {
     throw std::runtime_error(
-        fmt::format("{}: {}, and the lockstep clients ({}) cannot go where they have not been or "
-                    "what is forgotten: use 'rewind', or go on from the file in a new run, with "
-                    "'shoal run --from'",
-                    path, why, sim::shortened(mail_.clients())));
+        fmt::format("{}: {}, and the lockstep clients ({}) cannot be restored to a state that they never had or that "
+                    "was discarded: use 'rewind', or continue from the file in a new run, with 'shoal run --from'",
+                    path, why, sim::shortened(inputs_.clients())));
   };
   const auto written = written_.find(snapshot.step);
   if (written == written_.end() || written->second != hash_of(snapshot.state))
-    refuse("was not written by this run on its way to " + place());
-  // Unlike rewind(): from later on some client would lack reports.  At the start of the run nobody had any.
-  const std::int64_t needed = mail_.needed_from(snapshot.step, longest_lead_s * steps_per_second_);
+    refuse("was not written by this run before " + place());
+  // Unlike rewind(): from later on some client would lack reports.  At the start of the run no client had any.
+  const std::int64_t needed = inputs_.needed_from(snapshot.step, max_lead_s * steps_per_second_);
   const auto base = ring_.newest_until(std::max(needed, first_step_));
   if (!base)
-    refuse(ring_.oldest() ? fmt::format("its {:.6g} s are too early for what this run remembers, from {:.6g} s on",
+    refuse(ring_.oldest() ? fmt::format("its {:.6g} s are before the history of this run, which starts at {:.6g} s",
                                         snapshot.time_s(), sim::to_seconds(world_.step_time() * *ring_.oldest()))
-                          : "this run remembers nothing (see --rewind-s)");
-  go_back(*base, snapshot.step, run_on);
+                          : "this run keeps no history (see --rewind-s)");
+  rewinds(*base, snapshot.step, run_on);
 }
 
 }  // namespace tools

@@ -13,7 +13,7 @@
 #include "bridges/control/time_machine.hpp"
 #include "sim/run/run_control.hpp"
 #include "sim/world/world.hpp"
-#include "tools/experiment/run/run_mail.hpp"
+#include "tools/experiment/run/run_inputs.hpp"
 #include "tools/experiment/run/timeline.hpp"
 #include "tools/experiment/score/scoring.hpp"
 #include "tools/experiment/snapshot/snapshot_file.hpp"
@@ -21,15 +21,15 @@
 
 namespace tools {
 
-/// Moves a running world in time: keeps snapshots of the last seconds and the mail since then, goes back to any step
-/// of them, writes snapshot files and goes on from them, and stops the run at a time or event.
+/// Controls the time of a running world: keeps snapshots of the last seconds and the inputs since then, rewinds to
+/// any step of them, writes and restores snapshot files, and stops the run at a time or event.
 ///
 /// Going back begins a new branch: RunControl::branch grows by one.
 class TimeControl final : public bridges::TimeMachine {
  public:
   struct Options {
     double rewind_s = 0;  ///< how far back a run can go; 0: not at all
-    std::size_t most_bytes = std::size_t{64} << 20;
+    std::size_t max_bytes = std::size_t{64} << 20;
     std::string directory;       ///< of snapshot files; empty: none can be asked for
     bool overwrite = false;      ///< snapshot files may replace others
     std::string resolved_world;  ///< YAML
@@ -39,32 +39,32 @@ class TimeControl final : public bridges::TimeMachine {
   };
   /// All must outlive this.
   TimeControl(sim::World& world, sim::RunControl& control, Scoring& scoring, bridges::SimService& service,
-              RunMail& mail, Options options, Timeline& timeline);
+              RunInputs& inputs, Options options, Timeline& timeline);
 
   /// Call before the first step, and after each.
   void after_step();
-  /// Pauses a run that has come where `until` said.  True: it did so now.
+  /// Pauses a run that has reached its `until`.  True: it did so now.
   bool stop_when_there();
 
   /// All that concerns time: pause, resume, step, speed, until, rewind, snapshot, restore and where.  Throws
   /// std::runtime_error that says why it was refused.
-  std::optional<std::string> obey(const std::string& command, const std::string& text, double value) override;
-  /// Takes so many steps, a whole number, and stands still.
+  std::optional<std::string> execute(const std::string& command, const std::string& text, double value) override;
+  /// Takes this number of steps, a whole number, and pauses.
   std::string step(double count);
   /// Times real time; 0: as fast as possible.
   std::string set_speed(double times);
-  /// Goes back by so many seconds, at most to where this run began.
+  /// Rewinds by this number of seconds, at most to the start of this run.
   std::string rewind(double seconds, bool run_on);
   /// Runs to a time, or up to the next time an event fires, and pauses there.
   std::string run_until(double time_s);
   std::string run_until_event(const std::string& name);
-  /// Writes a file into the directory of snapshots; an empty name makes one of the step.  Whoever talks to the run can
-  /// ask for 1000 of them.
+  /// Writes a file into the directory of snapshots; an empty name makes one of the step.  Clients can request up to
+  /// 1000 of them.
   std::string write_snapshot(const std::string& name);
   /// The same for what the command line asked for, without a limit.
   std::string write_planned_snapshot();
-  /// Goes on from a file in the directory of snapshots.  With lockstep clients it goes back there as rewind() does, so
-  /// that they are where they were: to files that this run wrote on its way here, and while it remembers that step.
+  /// Continues from a file in the directory of snapshots.  With lockstep clients it rewinds to that step as rewind()
+  /// does, so that they are restored too: only to files that this run wrote, and within its history.
   std::string restore(const std::string& name, bool run_on);
 
   /// Begins a run with a snapshot.  Throws std::runtime_error when it does not fit.
@@ -77,9 +77,9 @@ class TimeControl final : public bridges::TimeMachine {
   /// True once after each move in time.
   bool has_moved() const { return moved_; }
   bool take_moved() { return std::exchange(moved_, false); }
-  /// Why the world cannot go on.
+  /// Why the world cannot continue.
   const std::string& broken() const { return broken_; }
-  std::size_t bytes() const { return ring_.bytes() + mail_.bytes(); }
+  std::size_t bytes() const { return ring_.bytes() + inputs_.bytes(); }
   std::optional<std::int64_t> oldest_step() const { return ring_.oldest(); }
 
  private:
@@ -91,13 +91,13 @@ class TimeControl final : public bridges::TimeMachine {
   Saved save(History history) const;
   void load(const Saved& saved, History history);
   void load_beside(const Saved& saved, History history);
-  void forget_all();
+  void discard_all();
   void simulate_again(std::int64_t to_step);
   /// Carries out `work`, which moves the world; puts the world back when that fails.
   void travel(const std::function<void()>& work, std::int64_t to_step, bool run_on, bool ours);
-  void put_back(const Saved& before);
+  void restore_saved(const Saved& before);
   /// To a step of this branch, from the snapshot in memory of an earlier one on.
-  void go_back(std::int64_t base, std::int64_t target, bool run_on);
+  void rewinds(std::int64_t base, std::int64_t target, bool run_on);
   void restore_with_clients(const Snapshot& snapshot, const std::string& path, bool run_on);
   std::string what_is_kept() const;
   std::string write_file(const std::string& name);
@@ -107,7 +107,7 @@ class TimeControl final : public bridges::TimeMachine {
   sim::RunControl& control_;
   Scoring& scoring_;
   bridges::SimService& service_;
-  RunMail& mail_;
+  RunInputs& inputs_;
   Options options_;
   Timeline& timeline_;
   std::int64_t steps_per_second_;

@@ -32,7 +32,7 @@ bool has_wheels(const sim::VehicleConfig& vehicle) {
 
 }  // namespace
 
-FirstContacts::FirstContacts(sim::World& world, Say say) : world_(world), say_(std::move(say)) {
+FirstContacts::FirstContacts(sim::World& world, Report report) : world_(world), report_(std::move(report)) {
   choose_groups();
 }
 
@@ -71,18 +71,18 @@ void FirstContacts::look_at(const sim::ContactReport& contact) {
   const Group &a = groups_[first], &b = groups_[second];
   if (a.ground || b.ground) return;
   const bool up = contact.normal_W.z() > carries, down = contact.normal_W.z() < -carries;
-  if (stands_on(a, b, up) || stands_on(b, a, down)) return;
+  if (rests_on(a, b, up) || rests_on(b, a, down)) return;
   touch(a, b);
 }
 
-bool FirstContacts::stands_on(const Group& vehicle, const Group& other, bool up) {
+bool FirstContacts::rests_on(const Group& vehicle, const Group& other, bool up) {
   if (!vehicle.is_vehicle) return false;
   if (up && vehicle.drives && other.fixed) return true;
   const Pair pair{vehicle.who, other.who};
   const auto came = since_s_.find(vehicle.who);
   const double since_s = came == since_s_.end() ? 0 : came->second;
-  if (up && sim::to_seconds(world_.now()) <= since_s + settled_after_s) standing_.insert(pair);
-  return !standing_.empty() && standing_.contains(pair);
+  if (up && sim::to_seconds(world_.now()) <= since_s + settled_after_s) resting_.insert(pair);
+  return !resting_.empty() && resting_.contains(pair);
 }
 
 void FirstContacts::touch(const Group& a, const Group& b) {
@@ -96,16 +96,16 @@ void FirstContacts::touch(const Group& a, const Group& b) {
   }
   if (fresh || now_s - contact.last_s > parted_after_s) ++contact.count;
   contact.last_s = now_s;
-  if (fresh) say(pair, contact);
+  if (fresh) report(pair, contact);
 }
 
 /// Once, also when the run goes back and comes there again.
-void FirstContacts::say(const Pair& pair, const Contact& contact) {
-  if (!say_ || said_.size() > max_lines || !said_.emplace(pair, contact.first_s).second) return;
+void FirstContacts::report(const Pair& pair, const Contact& contact) {
+  if (!report_ || said_.size() > max_lines || !said_.emplace(pair, contact.first_s).second) return;
   if (said_.size() > max_lines)
-    say_("more first contacts are counted only: the summary has them");
+    report_("further first contacts are only counted; see the summary");
   else
-    say_(fmt::format("{:.1f} s: {} hits {}", contact.first_s, contact.first, contact.second));
+    report_(fmt::format("{:.1f} s: {} hits {}", contact.first_s, contact.first, contact.second));
 }
 
 std::vector<FirstContacts::Contact> FirstContacts::all() const {
@@ -116,18 +116,18 @@ std::vector<FirstContacts::Contact> FirstContacts::all() const {
 }
 
 void FirstContacts::visit_state(sim::StateArchive& archive) {
-  archive(since_s_, standing_, contacts_);
+  archive(since_s_, resting_, contacts_);
   // At once, not after the next step: a world that was built again watches no contacts yet.
   if (archive.restoring()) choose_groups();
 }
 
 std::string contacts_text(const std::vector<FirstContacts::Contact>& contacts) {
-  constexpr std::size_t most = 10;
+  constexpr std::size_t max = 10;
   std::string text;
-  for (std::size_t i = 0; i < std::min(most, contacts.size()); ++i)
+  for (std::size_t i = 0; i < std::min(max, contacts.size()); ++i)
     text += fmt::format("  {} hit {}: {} {}, first at {:.2f} s\n", contacts[i].first, contacts[i].second,
                         contacts[i].count, contacts[i].count == 1 ? "contact" : "contacts", contacts[i].first_s);
-  if (contacts.size() > most) text += fmt::format("  and {} more pairs hit each other\n", contacts.size() - most);
+  if (contacts.size() > max) text += fmt::format("  and {} more pairs hit each other\n", contacts.size() - max);
   return text;
 }
 

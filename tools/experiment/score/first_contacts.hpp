@@ -20,7 +20,7 @@ inline constexpr double parted_after_s = 0.5;
 /// Which vehicles hit which vehicles and objects, and how often.  Watching does not change the run.
 ///
 /// Not counted: planes and terrain; the fixed things that a vehicle with wheels drives on (contacts from below); what a
-/// vehicle stands on in its first 0.1 s.  A contact begins anew when the two were apart for 0.5 s.
+/// vehicle stands on in its first 0.1 s.  A contact counts again when the two were apart for 0.5 s.
 class FirstContacts {
  public:
   struct Contact {
@@ -31,12 +31,12 @@ class FirstContacts {
     void visit_state(sim::StateArchive& archive) { archive(first, second, first_s, count, last_s); }
   };
 
-  /// Gets a line such as `105.7 s: auv4 hits rock` at the first contact of a pair; at most 20 lines, and one that says
-  /// that more are counted only.
-  using Say = std::function<void(const std::string&)>;
+  /// Gets a line such as `105.7 s: auv4 hits rock` at the first contact of a pair; at most 20 lines, and one that
+  /// says that further ones are only counted.
+  using Report = std::function<void(const std::string&)>;
 
   /// `world` must outlive this.  `say` may be empty.
-  explicit FirstContacts(sim::World& world, Say say = {});
+  explicit FirstContacts(sim::World& world, Report report = {});
   /// Call after every step.
   void after_step();
   /// In the order of the first contacts.
@@ -57,18 +57,18 @@ class FirstContacts {
   void choose_groups();
   void look_at(const sim::ContactReport& contact);
   /// `up`: the contact pushes `vehicle` upwards.
-  bool stands_on(const Group& vehicle, const Group& other, bool up);
+  bool rests_on(const Group& vehicle, const Group& other, bool up);
   void touch(const Group& a, const Group& b);
-  void say(const Pair& pair, const Contact& contact);
+  void report(const Pair& pair, const Contact& contact);
 
   sim::World& world_;
   std::uint64_t generation_ = ~std::uint64_t{0};
   std::vector<Group> groups_;               ///< by group number
   std::map<std::int64_t, double> since_s_;  ///< when vehicles came that were not there at the start
-  std::set<Pair> standing_;                 ///< a vehicle on what it stood on when it came
+  std::set<Pair> resting_;                  ///< a vehicle on what it stood on when it came
   std::map<Pair, Contact> contacts_;
   // Of the terminal, which does not go back.
-  Say say_;
+  Report report_;
   std::set<std::pair<Pair, double>> said_;
 };
 

@@ -17,8 +17,8 @@ double student_t_975(std::size_t degrees);
 /// for normal, which that of a skewed figure is from some 30 runs on.
 Interval mean_interval_95(double mean, double std, std::size_t count);
 
-/// Of a share, `hits` of `count` runs, by Wilson's score: it stays within 0 and 1, and is no point when all or none
-/// hit.  `count` is at least 1.
+/// Of a share, `hits` of `count` runs, by Wilson's score: it stays within 0 and 1, and has a non-zero width when all
+/// or none hit.  `count` is at least 1.
 Interval share_interval_95(std::size_t hits, std::size_t count);
 
 }  // namespace tools

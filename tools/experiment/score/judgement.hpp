@@ -6,7 +6,7 @@
 
 namespace tools {
 
-/// What the rules say of a run or a study.  Where nothing was judged nothing has passed.
+/// What the rules say of a run or a study.  A run that was not judged has not passed.
 enum class Judgement { passed, failed, not_judged };
 
 /// For people: `passed`, `FAILED` or `not judged`.

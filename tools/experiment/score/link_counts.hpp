@@ -13,7 +13,7 @@ namespace tools {
 /// The words of the sim::SignalLoss, as in `NAME.lost_CAUSE`.
 const std::vector<std::string>& loss_causes();
 
-/// What modems sent, and what came of the messages that were for them: to their address, or to all of their kind.
+/// Messages sent by modems, and the delivery of those addressed to them or to all of their kind.
 struct LinkCounts {
   bool acoustic = false;                     ///< there are some that are: not transponders and the like
   std::int64_t sent = 0;                     ///< packets

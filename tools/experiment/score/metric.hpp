@@ -22,7 +22,7 @@ using Figures = std::map<std::string, double>;
 inline constexpr double no_figure = std::numeric_limits<double>::quiet_NaN();
 
 /// Errors are compared with the way travelled when that is at least so long: what stands may creep.
-inline constexpr double shortest_way_m = 1;
+inline constexpr double min_distance_m = 1;
 
 /// One estimate beside the truth at the estimate's own time.
 struct ErrorSample {
@@ -73,7 +73,7 @@ class Metric {
   /// Why a figure is NaN, in a few words for the rule that fails by it.  `figure`: without the name of the metric.
   virtual std::string why_none(const std::string& figure) const = 0;
   /// Names every member that is state, so that the metric goes back with the world; a metric without state says so.
-  /// Mail that it has not read yet is thrown away when restoring.
+  /// Messages that it has not read yet is thrown away when restoring.
   virtual void visit_state(sim::StateArchive& archive, History history) = 0;
   const sim::MetricConfig& config() const { return config_; }
 

@@ -16,7 +16,7 @@ struct RuleVerdict {
   std::string result = {};    ///< what the two sides came to, or why there is none; empty: `rule` says all
   double left = no_figure;    ///< value of the left side
   double right = no_figure;   ///< value of the right side
-  double margin = no_figure;  ///< by how much the rule holds; NaN for == and !=
+  double margin = no_figure;  ///< distance to the limit; NaN for == and !=
 
   /// `RULE (RESULT)`.
   std::string text() const;

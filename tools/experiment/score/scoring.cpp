@@ -9,7 +9,7 @@
 
 namespace tools {
 
-Scoring::Scoring(sim::World& world, FirstContacts::Say say) : world_(world), contacts_(world, std::move(say)) {
+Scoring::Scoring(sim::World& world, FirstContacts::Report report) : world_(world), contacts_(world, std::move(report)) {
   const auto truth = [this](const std::string& vehicle) -> const TruthHistory& { return truth_of(vehicle); };
   for (const sim::MetricConfig& config : world.config().metrics)
     metrics_.push_back(make_metric({config, world, truth}));

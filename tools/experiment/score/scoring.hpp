@@ -30,7 +30,7 @@ class Scoring {
   using Verdict = RuleVerdict;
 
   /// `world` must outlive this.  `say`: see FirstContacts.
-  explicit Scoring(sim::World& world, FirstContacts::Say say = {});
+  explicit Scoring(sim::World& world, FirstContacts::Report report = {});
   ~Scoring();
   /// Call after every step.
   void after_step();

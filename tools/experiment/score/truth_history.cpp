@@ -24,9 +24,9 @@ void TruthHistory::after_step() {
   const sim::Vector3d position_m = world_.find_vehicle(vehicle_)->X_WV().translation();
   // Who is put elsewhere has not travelled there.
   constexpr double fastest_mps = 200;
-  const double way_m = (position_m - before.position_m).norm();
-  const bool travelled = way_m <= fastest_mps * sim::to_seconds(world_.step_time());
-  recent_[slot_of(world_.step_number())] = {position_m, before.travelled_m + (travelled ? way_m : 0)};
+  const double distance_m = (position_m - before.position_m).norm();
+  const bool travelled = distance_m <= fastest_mps * sim::to_seconds(world_.step_time());
+  recent_[slot_of(world_.step_number())] = {position_m, before.travelled_m + (travelled ? distance_m : 0)};
 }
 
 void TruthHistory::visit_state(sim::StateArchive& archive) {

@@ -37,7 +37,7 @@ class TruthHistory {
   std::size_t slot_of(std::int64_t step) const { return static_cast<std::size_t>(step) % recent_.size(); }
 
   const sim::World& world_;
-  std::string vehicle_;        ///< a restored world may have built it anew
+  std::string vehicle_;        ///< a restored world may have built it again
   std::vector<Truth> recent_;  ///< ring by step number
 };
 

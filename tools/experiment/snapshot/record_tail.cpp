@@ -16,7 +16,7 @@
 #include "bridges/log/event_log.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/sim_hash_t.hpp"
-#include "shoal/sim_mail_t.hpp"
+#include "shoal/sim_inputs_t.hpp"
 #include "tools/experiment/snapshot/snapshot_file.hpp"
 #include "tools/experiment/snapshot/snapshot_pieces.hpp"
 
@@ -49,7 +49,7 @@ std::optional<Message> decoded(const bridges::LogEventView& event) {
   try {
     return shoal::decode<Message>(event.payload, shoal::Finite::any);
   } catch (const shoal::MessageError&) {
-    return std::nullopt;  // of somebody else, or damaged: `shoal replay` says more
+    return std::nullopt;  // of another program, or damaged: `shoal replay` says more
   }
 }
 
@@ -124,14 +124,14 @@ class Writer {
     bridges::EventLogReader from(record_);
     bridges::LogEventView event;
     std::uint64_t copied = 0;
-    for (bool begun = false; from.next(event);) {
+    for (bool started = false; from.next(event);) {
       if (event.offset < start.offset) {
         look_at(event);
         if (snapshot && event.utime == snapshot->utime()) keep_state(event);
         continue;
       }
-      if (!begun) begin(snapshot);
-      begun = true;
+      if (!started) begin(snapshot);
+      started = true;
       write(event.utime, event.channel, event.payload);
       ++copied;
     }
@@ -151,19 +151,20 @@ class Writer {
     throw std::runtime_error(out_ + ": cannot be written: " + std::strerror(errno != 0 ? errno : EIO));
   }
 
-  /// What was before the part that is kept: the world, and the number of the next sim.mail.
+  /// What was before the part that is kept: the world, and the number of the next sim.inputs.
   void look_at(const bridges::LogEventView& event) {
     if (event.channel == "sim.info") {
       if (const auto info = decoded<shoal::sim_info_t>(event)) {
         info_.assign(event.payload.begin(), event.payload.end());
         info_utime_ = event.utime;
         branch_ = info->branch;
-        sequence_ = std::max(sequence_, info->mail_sequence);
+        sequence_ = std::max(sequence_, info->input_sequence);
       }
-    } else if (event.channel == "sim.mail") {
-      if (const auto mail = decoded<shoal::sim_mail_t>(event)) sequence_ = std::max(sequence_, mail->sequence + 1);
+    } else if (event.channel == "sim.inputs") {
+      if (const auto inputs = decoded<shoal::sim_inputs_t>(event))
+        sequence_ = std::max(sequence_, inputs->sequence + 1);
     } else if (event.channel == "sim.hash") {
-      if (const auto hash = decoded<shoal::sim_hash_t>(event)) sequence_ = std::max(sequence_, hash->mail_sequence);
+      if (const auto hash = decoded<shoal::sim_hash_t>(event)) sequence_ = std::max(sequence_, hash->input_sequence);
     }
   }
 
@@ -193,7 +194,7 @@ class Writer {
   sim::Bytes info_;
   std::int64_t info_utime_ = 0;
   std::int32_t branch_ = 0;
-  std::int64_t sequence_ = 0;  // of the next sim.mail
+  std::int64_t sequence_ = 0;  // of the next sim.inputs
 };
 
 }  // namespace
@@ -238,7 +239,7 @@ RecordTail write_record_tail(const std::string& record, const std::string& out, 
     tail.snapshot.clear();
     tail.short_of = fmt::format("more of the record is larger than {} MB", options.max_bytes >> 20);
   }
-  tail.begin_s = in_s(start.utime);
+  tail.start_s = in_s(start.utime);
   tail.events = Writer(record, out).copy(start, snapshot);
   return tail;
 }

@@ -8,10 +8,10 @@
 
 namespace tools {
 
-/// The end of a record as a log of its own.
+/// The end of a record as its own log.
 struct RecordTail {
   shoal::sim_info_t info{};  ///< of the run
-  double begin_s = 0;        ///< simulated time of the first event that was kept
+  double start_s = 0;        ///< simulated time of the first event that was kept
   double end_s = 0;          ///< of the last one
   std::uint64_t events = 0;  ///< beside sim.info and the snapshot
   bool whole = false;        ///< all of the record is in it

@@ -36,7 +36,7 @@ std::string processor_class() {
 /// As for every file of a world.
 constexpr std::uintmax_t max_file_bytes = 1'000'000'000;
 
-/// `path` may come from a stranger's record: a pipe or a device would be read for ever, and so would some files of the
+/// `path` may come from a stranger's record: a pipe or a device would be read forever, and so would some files of the
 /// kernel, which say that they are empty.
 std::string hash_of_file(const std::string& path) {
   std::error_code error;

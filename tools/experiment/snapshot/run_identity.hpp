@@ -17,7 +17,7 @@ std::string build_text();
 /// path.  A file that cannot be read has 16 dashes.
 std::string files_text(const sim::ConfigNode& resolved);
 
-/// A line for each file of `text` (from files_text) that is not there now, or is another one.
+/// A line for each file of `text` (from files_text) that does not exist now, or is another one.
 std::vector<std::string> changed_files(const std::string& text);
 
 /// Lets a world of a record or snapshot name the files of such a list that are as they were: whoever wrote the list

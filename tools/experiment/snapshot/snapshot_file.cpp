@@ -26,7 +26,7 @@ constexpr char magic[8] = {'S', 'H', 'O', 'A', 'L', 'S', 'N', 'P'};
 constexpr std::uint32_t format_version = 2;
 constexpr std::size_t head_bytes = sizeof magic + sizeof format_version;
 constexpr std::size_t checksum_bytes = sizeof(std::uint32_t);
-constexpr std::intmax_t most_bytes = std::intmax_t{4} << 30;
+constexpr std::intmax_t max_bytes = std::intmax_t{4} << 30;
 
 template <typename T>
 T number_at(const sim::Bytes& bytes, std::size_t at) {
@@ -52,7 +52,8 @@ std::string written_by(const sim::Bytes& bytes) {
   } catch (const sim::SnapshotError&) {
     return "";
   }
-  return ": shoal " + sim::shortened(sim::printable(version)) + " wrote it, and only the same build can go on from it";
+  return ": shoal " + sim::shortened(sim::printable(version)) +
+         " wrote it, and only the same build can continue from it";
 }
 
 SnapshotFileError cannot(const std::string& doing, const std::string& path, int error_number) {
@@ -87,7 +88,7 @@ sim::Bytes to_bytes(const Snapshot& snapshot) {
 Snapshot snapshot_from_bytes(const sim::Bytes& bytes, const std::string& path) {
   const auto fail = [&](const std::string& what) -> SnapshotFileError { return SnapshotFileError(path + ": " + what); };
   if (bytes.size() < sizeof magic || std::memcmp(bytes.data(), magic, sizeof magic) != 0)
-    throw fail("is no snapshot of shoal: it must begin with 'SHOALSNP'");
+    throw fail("is not a Shoal snapshot: it must start with 'SHOALSNP'");
   if (bytes.size() < head_bytes + checksum_bytes) throw fail(fmt::format("is cut off after {} bytes", bytes.size()));
   const auto version = number_at<std::uint32_t>(bytes, sizeof magic);
   if (version != format_version)
@@ -105,7 +106,7 @@ Snapshot snapshot_from_bytes(const sim::Bytes& bytes, const std::string& path) {
     throw fail(error.what());
   }
   const bool possible = snapshot.step >= 0 && snapshot.step_us > 0 && snapshot.step < INT64_MAX / 4 / snapshot.step_us;
-  if (!possible) throw fail(fmt::format("step {} of {} us is none", snapshot.step, snapshot.step_us));
+  if (!possible) throw fail(fmt::format("step {} of {} us is invalid", snapshot.step, snapshot.step_us));
   if (snapshot.epoch_us < -INT64_MAX / 2 || snapshot.epoch_us > INT64_MAX / 2)
     throw fail(fmt::format("the epoch {} us is too far away", snapshot.epoch_us));
   return snapshot;
@@ -131,8 +132,8 @@ void write_snapshot(const std::string& path, const Snapshot& snapshot) {
 Snapshot read_snapshot(const std::string& path) {
   struct stat status {};
   if (stat(path.c_str(), &status) != 0) throw cannot("read", path, errno);
-  if (!S_ISREG(status.st_mode)) throw SnapshotFileError(path + ": is no regular file");
-  if (status.st_size > most_bytes) throw SnapshotFileError(path + ": is larger than 4 GB");
+  if (!S_ISREG(status.st_mode)) throw SnapshotFileError(path + ": is not a regular file");
+  if (status.st_size > max_bytes) throw SnapshotFileError(path + ": is larger than 4 GB");
   std::ifstream in(path, std::ios::binary);
   if (!in) throw cannot("read", path, errno);
   sim::Bytes bytes(static_cast<std::size_t>(status.st_size));
@@ -144,13 +145,13 @@ Snapshot read_snapshot(const std::string& path) {
 void check_version(const Snapshot& snapshot, const std::string& path, const std::string& own_version) {
   if (snapshot.version == own_version) return;
   throw SnapshotFileError(path + ": was written by shoal " + sim::shortened(sim::printable(snapshot.version)) +
-                          ", this is " + own_version + ": only the same build can go on from it");
+                          ", this is " + own_version + ": only the same build can continue from it");
 }
 
 void check_files(const Snapshot& snapshot, const std::string& path) {
   const std::vector<std::string> changed = changed_files(snapshot.files);
   if (changed.empty()) return;
-  std::string text = path + ": its world used files that are not as they were then:";
+  std::string text = path + ": these input files of its world changed since it was written:";
   for (const std::string& file : changed) text += "\n  " + sim::printable(file);
   throw SnapshotFileError(text);
 }

@@ -10,7 +10,7 @@
 
 namespace tools {
 
-/// A file that is no snapshot, or none that this program can go on from.  what() says file, rule and value.
+/// A file that is not a snapshot, or none that this program can continue from.  what() says file, rule and value.
 class SnapshotFileError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

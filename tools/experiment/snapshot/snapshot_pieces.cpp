@@ -16,7 +16,7 @@ constexpr std::size_t piece_bytes = 60'000;
 }  // namespace
 
 std::vector<shoal::sim_snapshot_t> in_pieces(const Snapshot& snapshot, std::int32_t branch,
-                                             std::int64_t mail_sequence) {
+                                             std::int64_t input_sequence) {
   Snapshot without_scores = snapshot;
   without_scores.scores.clear();
   const sim::Bytes bytes = to_bytes(without_scores);
@@ -28,7 +28,7 @@ std::vector<shoal::sim_snapshot_t> in_pieces(const Snapshot& snapshot, std::int3
     piece.utime = snapshot.utime();
     piece.step = snapshot.step;
     piece.branch = branch;
-    piece.mail_sequence = mail_sequence;
+    piece.input_sequence = input_sequence;
     piece.piece = static_cast<std::int32_t>(i);
     piece.pieces = static_cast<std::int32_t>(pieces.size());
     piece.bytes = static_cast<std::int64_t>(bytes.size());
@@ -40,7 +40,7 @@ std::vector<shoal::sim_snapshot_t> in_pieces(const Snapshot& snapshot, std::int3
 
 bool SnapshotPieces::continues(const shoal::sim_snapshot_t& piece) const {
   return first_ && piece.step == first_->step && piece.branch == first_->branch && piece.pieces == first_->pieces &&
-         piece.bytes == first_->bytes && piece.mail_sequence == first_->mail_sequence;
+         piece.bytes == first_->bytes && piece.input_sequence == first_->input_sequence;
 }
 
 std::optional<sim::Bytes> SnapshotPieces::add(const shoal::sim_snapshot_t& piece) {

@@ -14,9 +14,10 @@ namespace tools {
 
 /// A snapshot as messages for `sim.snapshot`, each of at most 60 kB, so that one is one datagram.  The scores stay
 /// behind: they change nothing that happens.
-std::vector<shoal::sim_snapshot_t> in_pieces(const Snapshot& snapshot, std::int32_t branch, std::int64_t mail_sequence);
+std::vector<shoal::sim_snapshot_t> in_pieces(const Snapshot& snapshot, std::int32_t branch,
+                                             std::int64_t input_sequence);
 
-/// Puts the pieces together again.  They come from a log: some may be missing, twice, or anybody's.
+/// Puts the pieces together again.  They come from a log: some may be missing, duplicated or forged.
 class SnapshotPieces {
  public:
   /// The bytes of the snapshot file when this was the last piece.  Throws shoal::MessageError for one that cannot be,

@@ -16,7 +16,7 @@ namespace tools {
 
 namespace {
 
-constexpr std::size_t most_in_family = 30;
+constexpr std::size_t max_in_family = 30;
 
 /// Where the content of each named part of a snapshot is (sim::StateArchive: length and text of the name, length of
 /// the content, content).
@@ -164,7 +164,7 @@ SnapshotRing::Packed SnapshotRing::pack(std::int64_t step, std::span<const std::
   const std::int64_t apart = count_ == 0 ? 1 : std::max<std::int64_t>(1, step - newest());
   const double all =
       static_cast<double>(packed.bytes.size()) * static_cast<double>(steps_) / static_cast<double>(apart);
-  packed.deflated = all > static_cast<double>(most_bytes_) / 2;
+  packed.deflated = all > static_cast<double>(max_bytes_) / 2;
   if (packed.deflated)
     packed.bytes = deflated(packed.bytes);
   else
@@ -186,9 +186,9 @@ std::size_t SnapshotRing::Family::bytes() const {
 void SnapshotRing::add(std::int64_t step, const sim::Bytes& snapshot, std::size_t bytes_beside) {
   assert(families_.empty() || step > newest());
   const bool full =
-      !families_.empty() && (families_.back().others.size() + 1 >= most_in_family ||
+      !families_.empty() && (families_.back().others.size() + 1 >= max_in_family ||
                              step - families_.back().whole.step >= std::max<std::int64_t>(steps_ / 2, 1) ||
-                             families_.back().bytes() > most_bytes_ / 4);
+                             families_.back().bytes() > max_bytes_ / 4);
   if (families_.empty() || full || whole_.empty()) {
     families_.push_back({pack(step, snapshot), {}});
     whole_ = snapshot;
@@ -201,7 +201,7 @@ void SnapshotRing::add(std::int64_t step, const sim::Bytes& snapshot, std::size_
   }
   ++count_;
   // A family goes when even its last is not needed any more, or when there is no room for it.
-  while (families_.size() > 1 && (families_[1].whole.step <= step - steps_ || bytes() + bytes_beside > most_bytes_)) {
+  while (families_.size() > 1 && (families_[1].whole.step <= step - steps_ || bytes() + bytes_beside > max_bytes_)) {
     bytes_ -= families_.front().bytes();
     count_ -= 1 + families_.front().others.size();
     families_.pop_front();
@@ -237,7 +237,7 @@ sim::Bytes SnapshotRing::get(std::int64_t step) const {
   throw std::logic_error("there is no snapshot of step " + std::to_string(step));
 }
 
-void SnapshotRing::forget_after(std::int64_t step) {
+void SnapshotRing::discard_after(std::int64_t step) {
   while (!families_.empty() && families_.back().whole.step > step) families_.pop_back();
   if (!families_.empty())
     std::erase_if(families_.back().others, [&](const Packed& other) { return other.step > step; });

@@ -14,11 +14,11 @@ namespace tools {
 
 /// Snapshots of the last seconds in memory.  Every few are kept whole; of those between, what differs from the whole
 /// one before is kept.  Compressed where there is no room without.  Bounded in number and bytes: the oldest go first,
-/// together with the whole one that they lean on.
+/// together with the whole one that they tilt on.
 class SnapshotRing {
  public:
-  /// Snapshots are kept for `steps` steps, but never more than `most_bytes` of them; the newest one always is.
-  SnapshotRing(std::int64_t steps, std::size_t most_bytes) : steps_(steps), most_bytes_(most_bytes) {}
+  /// Snapshots are kept for `steps` steps, but never more than `max_bytes` of them; the newest one always is.
+  SnapshotRing(std::int64_t steps, std::size_t max_bytes) : steps_(steps), max_bytes_(max_bytes) {}
 
   /// `step` must be larger than that of the newest.  `bytes_beside` count as well.
   void add(std::int64_t step, const sim::Bytes& snapshot, std::size_t bytes_beside = 0);
@@ -27,7 +27,7 @@ class SnapshotRing {
   /// The snapshot of a step that newest_until() gave.
   sim::Bytes get(std::int64_t step) const;
   /// Drops all that are later than `step`.
-  void forget_after(std::int64_t step);
+  void discard_after(std::int64_t step);
   /// The step of the oldest one.
   std::optional<std::int64_t> oldest() const;
   std::size_t size() const { return count_; }
@@ -42,7 +42,7 @@ class SnapshotRing {
     bool deflated;
     sim::Bytes unpacked() const;
   };
-  /// A whole snapshot, and those that lean on it.
+  /// A whole snapshot, and those that tilt on it.
   struct Family {
     Packed whole;
     std::vector<Packed> others;
@@ -54,7 +54,7 @@ class SnapshotRing {
   const Family* family_of(std::int64_t step) const;
 
   std::int64_t steps_;
-  std::size_t most_bytes_;
+  std::size_t max_bytes_;
   std::deque<Family> families_;
   sim::Bytes whole_;       // the newest family's, not packed
   sim::Bytes difference_;  // memory that is used again

@@ -23,17 +23,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t most_seeds = 100000;
-constexpr double largest_seed = 9007199254740992.0;  // 2^53
+constexpr std::size_t max_seeds = 100000;
+constexpr double max_seed = 9007199254740992.0;  // 2^53
 
 /// The first seed and how many.
 struct SeedRange {
   std::int64_t first = 1;
   std::int64_t count = 0;
   void read(sim::ParamReader& in) {
-    in.read("first", first, sim::between(0, largest_seed), "the first seed");
+    in.read("first", first, sim::between(0, max_seed), "the first seed");
     in.require("count");
-    in.read("count", count, sim::between(1, static_cast<double>(most_seeds)), "how many");
+    in.read("count", count, sim::between(1, static_cast<double>(max_seeds)), "how many");
   }
 };
 
@@ -41,7 +41,7 @@ std::optional<std::int64_t> whole_seed(std::string_view text) {
   std::int64_t seed = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
   const bool good = error == std::errc{} && end == text.data() + text.size() && !text.empty() && text[0] != '-' &&
-                    static_cast<double>(seed) <= largest_seed;
+                    static_cast<double>(seed) <= max_seed;
   return good ? std::optional(seed) : std::nullopt;
 }
 
@@ -68,8 +68,8 @@ std::string add_seeds(std::string_view text, std::vector<std::int64_t>& seeds) {
   const auto range = first_and_last(text);
   if (!range) return "must be whole numbers from 0 to 2^53 or ranges such as 1-10" + got;
   if (range->second < range->first) return "must be ranges from the lower to the higher seed" + got;
-  if (range->second - range->first >= static_cast<std::int64_t>(most_seeds))
-    return "must be at most " + std::to_string(most_seeds) + got;
+  if (range->second - range->first >= static_cast<std::int64_t>(max_seeds))
+    return "must be at most " + std::to_string(max_seeds) + got;
   for (std::int64_t seed = range->first; seed <= range->second; ++seed) seeds.push_back(seed);
   return {};
 }
@@ -78,7 +78,7 @@ bool differ_from_each_other(const std::vector<std::int64_t>& seeds) {
   return std::set<std::int64_t>(seeds.begin(), seeds.end()).size() == seeds.size();
 }
 
-/// Whether a text such as `1-10` is among the seeds, so that they are no list of numbers.
+/// Whether a text such as `1-10` is among the seeds, so that they are not list of numbers.
 bool has_range(const sim::ConfigNode& node) {
   if (node.kind == sim::ConfigNode::Kind::scalar) return first_and_last(node.scalar).has_value();
   return std::any_of(node.items.begin(), node.items.end(), has_range);
@@ -126,7 +126,7 @@ std::vector<std::int64_t> read_seeds(sim::ParamReader& in) {
     return seeds;
   }
   std::vector<double> numbers;
-  in.read("seeds", numbers, sim::between(0, largest_seed), "seeds of the runs");
+  in.read("seeds", numbers, sim::between(0, max_seed), "seeds of the runs");
   for (const double number : numbers) {
     if (number != std::trunc(number))
       in.error("seeds", "'seeds' must be whole numbers, got " + sim::number_text(number));
@@ -210,7 +210,7 @@ std::vector<std::string> StudyCase::sets() const {
 void StudyPlot::read(sim::ParamReader& in) {
   if (in.node() != nullptr) place = in.node()->place;
   in.require("name");
-  in.read_name("name", name, "name of the picture, NAME.png");
+  in.read_name("name", name, "name of the plot, NAME.png");
   in.read("figure", figure, "figure that is drawn for each case");
   in.read("metrics", metrics, "metrics whose errors are drawn, instead of `figure`");
   in.read_references("cases", cases, "case", "those that are drawn; unset: all");
@@ -243,7 +243,7 @@ void StudyConfig::read(sim::ParamReader& in) {
   for (const StudyCase& each : cases) in.declare("case", each.name);
   in.read("figures", figures, "figures of the table; unset: all");
   if (in.has("figures")) figures_place = in.child("figures")->place;
-  in.read_list("plots", plots, "plot", "pictures");
+  in.read_list("plots", plots, "plot", "plots");
   for (const StudyPlot& plot : plots) in.declare("plot", plot.name);
   if (in.describing())
     return sim::describe_rules(in, "the study passes when every rule holds; else exit code 1",
@@ -280,7 +280,7 @@ void check_world_file(const std::string& world, const std::string& study, const 
                           "lie below a folder given with --allow-path");
 }
 
-/// Loads the world of a case.  What is wrong with a value of `set:` is told where the study has it.
+/// Loads the world of a case.  Errors in a value of `set:` name its place in the study.
 sim::LoadedWorld world_of_case(const std::string& world, const StudyCase& in_case, sim::LoadOptions options) {
   const std::vector<std::string> sets = in_case.sets();
   options.sets.insert(options.sets.end(), sets.begin(), sets.end());

@@ -21,7 +21,7 @@ struct StudyCase {
   std::vector<std::string> sets() const;
 };
 
-/// A picture of a study: one figure by case, or errors along the way.
+/// A plot of a study: one figure by case, or errors along the way.
 struct StudyPlot {
   enum class Over { cases, distance, time };
   std::string name;

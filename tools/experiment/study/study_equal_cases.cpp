@@ -62,10 +62,11 @@ std::vector<EqualCases> equal_cases(const LoadedStudy& study, const std::vector<
 std::string equal_cases_text(const EqualCases& group) {
   std::vector<std::string> quoted;
   for (const std::string& name : group.cases) quoted.push_back("'" + name + "'");
-  const std::string what = group.same_state ? "every run came out the same" : "every figure is the same for every seed";
+  const std::string what =
+      group.same_state ? "all runs gave the same result" : "every figure is the same for every seed";
   return "cases " + sim::list_text(quoted) + " do not differ: " + what + ", " +
          (group.same_settings ? "as they have the same settings"
-                              : "though their settings differ: check that what they set has an effect");
+                              : "although their settings differ: check that the settings have an effect");
 }
 
 }  // namespace tools

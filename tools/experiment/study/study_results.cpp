@@ -125,7 +125,7 @@ FigureValue StudyResults::value_of(const sim::RuleExpression::Figure& figure) co
   const Statistics statistics = of(in_case, name);
   const std::size_t runs = runs_of(in_case);
   const std::size_t lacking = runs - static_cast<std::size_t>(statistics.count);
-  // A figure that nothing could be made of in some of the runs is no good figure.
+  // A figure that nothing could be made of in some of the runs is not a good figure.
   if (lacking > 0)
     return {no_figure, fmt::format("{} of {} runs {} no such figure", lacking, runs, lacking == 1 ? "has" : "have")};
   const double value = statistics.by_word(figure.function);
@@ -246,7 +246,7 @@ std::string StudyResults::to_json(int exit_code) const {
   json["runs"] = runs_.size();
   json["rules"] = nlohmann::ordered_json::array();
   for (const Scoring::Verdict& verdict : verdicts()) json["rules"].push_back(json_of(verdict));
-  json["pictures"] = study_pictures(config);
+  json["plots"] = study_plots(config);
   json["judged"] = judgement() != Judgement::not_judged;
   json["passed"] = nullptr;
   if (const auto flag = as_flag(judgement())) json["passed"] = *flag && exit_code == 0;

@@ -62,10 +62,10 @@ class StudyResults {
   std::vector<std::string> figures_;
 };
 
-/// The files of a study that are its pictures, in order.
-std::vector<std::string> study_pictures(const StudyConfig& config);
+/// The files of a study that are its plots, in order.
+std::vector<std::string> study_plots(const StudyConfig& config);
 
-/// Writes study.csv, study.json, plot.gp, the data of the plots and their pictures into a folder.  Throws
+/// Writes study.csv, study.json, plot.gp, the data of the plots and their plots into a folder.  Throws
 /// std::runtime_error.
 void write_study(const std::string& directory, const LoadedStudy& study, const std::vector<StudyRun>& runs,
                  const StudyResults& results, int exit_code);

@@ -29,9 +29,9 @@ namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
 /// How long children that were asked may take to end: they end their own programs and draw.
-constexpr std::chrono::seconds patience{20};
+constexpr std::chrono::seconds timeout{20};
 /// Another program may have the ports.
-constexpr int most_attempts = 3;
+constexpr int max_attempts = 3;
 
 std::uint64_t fnv1a(const std::string& text) {
   std::uint64_t hash = 0xcbf29ce484222325u;
@@ -52,7 +52,7 @@ std::string stamp_file(const StudyRun& run) {
   return run.directory + "/study_stamp.txt";
 }
 
-/// Reads what a run left.  Unset, with the reason: it is not there or did not come to its end.
+/// Reads what a run left.  Unset, with the reason: it does not exist or did not come to its end.
 void read_record(StudyRun& run) {
   run.record.reset();
   try {
@@ -77,7 +77,7 @@ class StudyChildren {
     for (std::size_t i = 0; i < runs.size(); ++i)
       if (options.fresh || !is_done(runs[i])) waiting_.push_back({i, 0});
     done_ = runs.size() - waiting_.size();
-    if (done_ > 0) say(fmt::format("{} of {} runs were done already", done_, runs.size()));
+    if (done_ > 0) report(fmt::format("{} of {} runs were already done", done_, runs.size()));
   }
 
   void run() {
@@ -99,7 +99,7 @@ class StudyChildren {
     pid_t pid;
     Waiting what;
     int slot;
-    Clock::time_point begun;
+    Clock::time_point started;
   };
 
   static bool is_same(const std::string& path, const std::string& text) {
@@ -114,7 +114,7 @@ class StudyChildren {
     return run.record.has_value();
   }
 
-  void say(const std::string& text) const {
+  void report(const std::string& text) const {
     if (!options_.quiet) std::cerr << text << std::endl;
   }
 
@@ -135,10 +135,9 @@ class StudyChildren {
 
   std::vector<std::string> arguments_of(const StudyRun& run, int slot, int attempt) const {
     const StudyConfig& config = study_.config;
-    std::vector<std::string> arguments{
-        "shoal",     "run",         config.world, "--seed",        std::to_string(run.seed),
-        "--results", run.directory, "--quiet",    "--no-pictures", "--threads",
-        "1",         "--log-level", "warn",       "--speed",       "max"};
+    std::vector<std::string> arguments{"shoal",     "run",         config.world, "--seed",     std::to_string(run.seed),
+                                       "--results", run.directory, "--quiet",    "--no-plots", "--threads",
+                                       "1",         "--log-level", "warn",       "--speed",    "max"};
     const auto add = [&](const std::string& option, const std::string& value) {
       arguments.push_back(option);
       arguments.push_back(value);
@@ -148,7 +147,7 @@ class StudyChildren {
     if (config.duration_s) add("--duration", fmt::format("{}", *config.duration_s));
     if (!config.launch) {
       add("--bus", "none");
-      arguments.emplace_back("--no-serial-ports");  // nobody talks through them, and two runs cannot have the same
+      arguments.emplace_back("--no-serial-ports");  // they are not used, and two runs cannot have the same
       return arguments;
     }
     arguments.emplace_back("--launch");
@@ -175,11 +174,11 @@ class StudyChildren {
         {spawn(arguments_of(run, slot, what.attempt), run.directory + "/run.log"), what, slot, Clock::now()});
   }
 
-  // In a group of its own: Ctrl-C reaches it through us.
+  // In its own group: Ctrl-C reaches it through us.
   static pid_t spawn(const std::vector<std::string>& arguments, const std::string& log) {
     pid_t pid = 0;
     const int error = start_child({"/proc/self/exe", arguments, own_environment(), log}, pid);
-    if (error != 0) throw std::runtime_error(std::string("a run cannot be started: ") + std::strerror(error));
+    if (error != 0) throw std::runtime_error(std::string("cannot start a run: ") + std::strerror(error));
     return pid;
   }
 
@@ -208,7 +207,7 @@ class StudyChildren {
       run.failure = fmt::format("was killed by signal {} ({})", WTERMSIG(status), strsignal(WTERMSIG(status)));
     }
     const bool taken = run.failure.find(bridges::another_simulator) != std::string::npos;
-    if (!run.record && taken && ended.what.attempt + 1 < most_attempts)
+    if (!run.record && taken && ended.what.attempt + 1 < max_attempts)
       return waiting_.push_front({ended.what.run, ended.what.attempt + 1});
     ++done_;
     std::string outcome = "failed: " + run.failure + "; see " + run.directory + "/run.log";
@@ -219,14 +218,14 @@ class StudyChildren {
                 : judgement == Judgement::passed ? "passed"
                                                  : "done, not judged";
     }
-    const double wall_s = std::chrono::duration<double>(Clock::now() - ended.begun).count();
-    say(fmt::format("[{}/{}] {}, seed {}: {} ({:.1f} s)", done_, runs_.size(), study_.config.cases[run.in_case].name,
-                    run.seed, outcome, wall_s));
+    const double wall_s = std::chrono::duration<double>(Clock::now() - ended.started).count();
+    report(fmt::format("[{}/{}] {}, seed {}: {} ({:.1f} s)", done_, runs_.size(), study_.config.cases[run.in_case].name,
+                       run.seed, outcome, wall_s));
   }
 
   void stop() {
     for (const Running& running : running_) kill(running.pid, SIGTERM);
-    const auto deadline = Clock::now() + patience;
+    const auto deadline = Clock::now() + timeout;
     while (!running_.empty() && Clock::now() < deadline)
       if (!reap()) std::this_thread::sleep_for(std::chrono::milliseconds(10));
     for (const Running& running : running_) {

@@ -13,14 +13,14 @@ std::string KeySequences::next(char byte, Clock::time_point now) {
   const State before = state_;
   state_ = State::none;
   if (byte == escape) {
-    state_ = State::begun;
+    state_ = State::started;
     begun_ = now;
-    return before == State::begun ? std::string{escape} : std::string{};
+    return before == State::started ? std::string{escape} : std::string{};
   }
   switch (before) {
     case State::none:
       return {byte};
-    case State::begun:
+    case State::started:
       if (byte == '[') state_ = State::first_parameter;
       if (byte == 'O') state_ = State::one_more;
       return state_ == State::none ? std::string{escape, byte} : std::string{};
@@ -40,7 +40,7 @@ std::string KeySequences::next(char byte, Clock::time_point now) {
 }
 
 std::string KeySequences::alone(Clock::time_point now) {
-  if (state_ != State::begun || now - begun_ < patience) return {};
+  if (state_ != State::started || now - begun_ < timeout) return {};
   state_ = State::none;
   return {escape};
 }

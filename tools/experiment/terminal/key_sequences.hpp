@@ -12,8 +12,8 @@ namespace tools {
 class KeySequences {
  public:
   using Clock = std::chrono::steady_clock;
-  /// A key alone is told from the begin of a sequence by what does not follow for so long.
-  static constexpr std::chrono::milliseconds patience{50};
+  /// A single key is distinguished from the start of a sequence by a pause of this length.
+  static constexpr std::chrono::milliseconds timeout{50};
 
   /// The keys that the bytes of a terminal, given one by one, turn out to be.  None: this one belongs to a sequence, or
   /// may.
@@ -22,7 +22,7 @@ class KeySequences {
   std::string alone(Clock::time_point now);
 
  private:
-  enum class State { none, begun, one_more, parameters, first_parameter };
+  enum class State { none, started, one_more, parameters, first_parameter };
 
   State state_ = State::none;
   Clock::time_point begun_{};

@@ -27,7 +27,7 @@ void Progress::update(sim::Time now, std::uint64_t messages, const sim::RunContr
                         static_cast<double>(messages - last_messages_) / since_s);
   if (control.branch > 0) line += fmt::format("  branch {}", control.branch);
   if (control.paused)
-    line += "  paused; space, or `shoal control resume`, goes on";
+    line += "  paused; space or `shoal control resume` continues";
   else if (waits)
     line += "  paused";
   show(line);
@@ -60,13 +60,13 @@ void Progress::clear() {
   width_ = 0;
 }
 
-void Progress::say(const std::string& text) {
+void Progress::report(const std::string& text) {
   clear();
   std::fprintf(stderr, "%s\n", text.c_str());
   std::fflush(stderr);
 }
 
-void Progress::ask(const std::string& text) {
+void Progress::send_request(const std::string& text) {
   asking_ = true;
   show(text);
 }

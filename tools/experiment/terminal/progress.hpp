@@ -19,9 +19,9 @@ class Progress {
   /// Clears the live line, so that other output starts on a fresh one.
   void clear();
   /// Words for people, on lines of their own.
-  void say(const std::string& text);
+  void report(const std::string& text);
   /// A question takes the place of the live line until something is said.
-  void ask(const std::string& text);
+  void send_request(const std::string& text);
   /// Time went back.
   void restart(sim::Time now);
 

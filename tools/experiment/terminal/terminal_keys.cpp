@@ -23,7 +23,7 @@ termios raw{};
 std::atomic<bool> active{false};
 
 /// From one look at the settings of the terminal to the next.
-constexpr std::chrono::milliseconds between_looks{50};
+constexpr std::chrono::milliseconds check_interval{50};
 
 bool in_foreground() {
   return tcgetpgrp(STDIN_FILENO) == getpgrp();
@@ -93,15 +93,15 @@ TerminalKeys::~TerminalKeys() {
   use_before();
 }
 
-void TerminalKeys::put_back() {
+void TerminalKeys::restore_saved() {
   if (active) use_before();
 }
 
 std::optional<char> TerminalKeys::next() {
   if (!active) return std::nullopt;
   // A shell gives the terminal to a job that comes to the foreground, with settings of its own, and need not say so.
-  if (const auto now = Clock::now(); now >= look_at_) {
-    look_at_ = now + between_looks;
+  if (const auto now = Clock::now(); now >= check_at_) {
+    check_at_ = now + check_interval;
     if (in_foreground()) take_over();
   }
   pollfd waiting{STDIN_FILENO, POLLIN, 0};

@@ -18,7 +18,7 @@ class TerminalKeys {
   TerminalKeys();
   ~TerminalKeys();
   /// The settings as they were, if they were changed; for signal handlers.
-  static void put_back();
+  static void restore_saved();
   TerminalKeys(const TerminalKeys&) = delete;
   TerminalKeys& operator=(const TerminalKeys&) = delete;
 
@@ -26,7 +26,7 @@ class TerminalKeys {
   std::optional<char> next();
 
  private:
-  std::chrono::steady_clock::time_point look_at_{};  ///< at the settings
+  std::chrono::steady_clock::time_point check_at_{};  ///< at the settings
 };
 
 }  // namespace tools

@@ -76,7 +76,7 @@ void replace_file(const std::string& path, const std::string& before, const std:
   std::error_code error;
   const std::string target = fs::canonical(path, error).string();
   struct stat status {};
-  if (error || stat(target.c_str(), &status) != 0) fail(path, "it is not there any more");
+  if (error || stat(target.c_str(), &status) != 0) fail(path, "it does not exist any more");
   if (status.st_nlink > 1) fail(path, "it has more than one hard link");
   if (access(target.c_str(), W_OK) != 0) fail(path, std::generic_category().message(errno));
   NewFile file(path, target);

@@ -30,7 +30,7 @@ constexpr OldOption old_options[] = {
     {"shoal-coop-auv", "--modem-at", "modem_position_m", OptionForm::numbers},
     {"shoal-coop-auv", "--gps-at", "gps_position_m", OptionForm::numbers},
     {"shoal-coop-auv", "--surface-s", "surface_s", OptionForm::same},
-    {"shoal-coop-auv", "--obey", "accept_orders", OptionForm::flag},
+    {"shoal-coop-auv", "--execute", "accept_orders", OptionForm::flag},
     {"shoal-coop-auv", "--order-depth-max", "order_depth_max_m", OptionForm::same},
     {"shoal-coop-auv", "--order-speed-max", "order_speed_max_mps", OptionForm::same},
     {"shoal-coop-auv", "--hold-radius", "hold_radius_m", OptionForm::same},
@@ -75,12 +75,12 @@ constexpr OldOption old_options[] = {
     {"shoal-coop-station", "--random-s", "random_s", OptionForm::same},
     {"shoal-coop-station", "--seed", "seed", OptionForm::same},
     {"shoal-balance", "--speeds", "speeds", OptionForm::speeds},
-    {"shoal-balance", "--balanced-lean", "balanced_lean_deg", OptionForm::same},
+    {"shoal-balance", "--balanced-tilt", "balanced_tilt_deg", OptionForm::same},
     {"shoal-balance", "--kp", "kp_Nm_per_rad", OptionForm::same},
     {"shoal-balance", "--kd", "kd_Nms_per_rad", OptionForm::same},
     {"shoal-balance", "--kv", "kv_rad_per_mps", OptionForm::same},
     {"shoal-balance", "--ki", "ki_rad_per_m", OptionForm::same},
-    {"shoal-balance", "--max-lean", "max_lean_rad", OptionForm::same},
+    {"shoal-balance", "--max-tilt", "max_tilt_rad", OptionForm::same},
     {"shoal-balance", "--max-acceleration", "max_acceleration_mps2", OptionForm::same},
     {"shoal-balance", "--turn-gain", "turn_gain_Nms_per_rad", OptionForm::same},
     {"shoal-balance", "--turn-ki", "turn_ki_Nm_per_rad", OptionForm::same},
@@ -115,8 +115,8 @@ bool are_numbers(std::span<const std::string> texts) {
 }
 
 /// `[x, y, z]` of numbers, from `least` to `most` of them.
-std::optional<std::string> tuple(const Texts& numbers, std::size_t least, std::size_t most) {
-  if (numbers.size() < least || numbers.size() > most || !are_numbers(numbers)) return std::nullopt;
+std::optional<std::string> tuple(const Texts& numbers, std::size_t min, std::size_t max) {
+  if (numbers.size() < min || numbers.size() > max || !are_numbers(numbers)) return std::nullopt;
   return flow_list(numbers);
 }
 

@@ -26,7 +26,7 @@ struct Rename {
 std::span<const Rename> renames();
 
 /// Applies `table` at a node: the keys of a map, also within dotted keys, and the text of a scalar.  In a list of
-/// strings each item is a node of its own.  Where a text is a channel or a type, all of it must be `before`.
+/// strings each item is its own node.  Where a text is a channel or a type, all of it must be `before`.
 void apply_renames(Site& site, std::span<const Rename> table);
 
 }  // namespace tools

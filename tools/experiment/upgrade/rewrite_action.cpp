@@ -14,7 +14,7 @@ using Kind = SourceNode::Kind;
 
 constexpr std::size_t indentation_step = 2;
 
-/// Writes an action of version 0.1 anew.
+/// Writes an action of version 0.1 again.
 class ActionRewriting {
  public:
   ActionRewriting(Site& site, const SourceNode::Entry& word, const OldAction& action)
@@ -85,7 +85,7 @@ class ActionRewriting {
     site_.edits->replace({after_comma, last.key.start}, site_.text.line_break() + std::string(column, ' '));
   }
 
-  /// The word gets a line of its own; the keys move to the right.
+  /// The word gets its own line; the keys move to the right.
   void nest_in_block() {
     const SourceNode::Entry& first = map_.entries.front();
     const std::string indentation = indentation_of(site_, map_);

@@ -46,7 +46,7 @@ std::vector<Group> groups_of(const SourceNode& list) {
       group.span.end = list.items[i].span.end;
     }
     const auto arguments = arguments_of(*option, value);
-    if (!arguments) throw Doubt(at, who + "'" + sim::shortened(value) + "' is no value of '" + name + "'");
+    if (!arguments) throw Doubt(at, who + "'" + sim::shortened(value) + "' is not a value of '" + name + "'");
     group.arguments = *arguments;
     groups.push_back(std::move(group));
   }

@@ -43,7 +43,7 @@ const char* word_at(const KeyPath& path) {
   return nullptr;
 }
 
-/// Whether the value is `${NAME}`, and the parameter of this file is 0 when nobody gives it another value.
+/// Whether the value is `${NAME}`, and the parameter of this file is 0 by default.
 bool is_zero_by_parameter(const Site& site) {
   const std::string& text = site.source.scalar;
   if (!text.starts_with("${") || !text.ends_with("}")) return false;

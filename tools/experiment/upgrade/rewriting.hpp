@@ -9,7 +9,7 @@
 
 namespace tools {
 
-/// Lines that are written anew are filled up to this many characters.
+/// Lines that are written again are filled up to this many characters.
 inline constexpr std::size_t max_line_length = 120;
 
 /// A node that rewritings look at, after all nodes inside it.
@@ -29,7 +29,7 @@ struct Rewriting {
   void (*apply)(Site& site);
 };
 
-/// All of them, in the order in which they look at a node.  A new one is a file of its own and a line in
+/// All of them, in the order in which they look at a node.  A new one is its own file and a line in
 /// rewriting.cpp.
 std::span<const Rewriting> rewritings();
 

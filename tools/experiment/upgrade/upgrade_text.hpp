@@ -18,7 +18,7 @@ struct UpgradedText {
 };
 
 /// Brings the text of a world, vehicle or study file to the format of this version.  Only what has changed is written
-/// anew; comments, quotes and layout stay.  The result is parsed and compared with what was meant.  Where anything is
+/// again; comments, quotes and layout stay.  The result is parsed and compared with what was meant.  Where anything is
 /// in doubt an error goes to `diagnostics`, and the result is nothing.
 std::optional<UpgradedText> upgrade_text(const std::string& text, FileKind kind, const std::string& file_name,
                                          sim::Diagnostics& diagnostics,

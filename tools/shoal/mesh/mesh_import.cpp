@@ -41,7 +41,7 @@ void add_triangles(const aiMesh& from, double scale, bool y_up, sim::Mesh& mesh,
     const aiFace& face = from.mFaces[i];
     if (face.mNumIndices != 3) continue;  // points and lines
     for (unsigned k = 0; k < 3; ++k)
-      if (face.mIndices[k] >= number_of.size()) throw sim::MeshError("has a face of a vertex that is not there");
+      if (face.mIndices[k] >= number_of.size()) throw sim::MeshError("has a face with a vertex that does not exist");
     const std::uint32_t a = number_of[face.mIndices[0]], b = number_of[face.mIndices[1]],
                         c = number_of[face.mIndices[2]];
     if (a != b && b != c && c != a) mesh.triangles.push_back({a, b, c});
@@ -64,7 +64,7 @@ sim::Mesh read_with_assimp(const std::string& path, const MeshImportOptions& opt
   Assimp::Importer importer;
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, options.up.has_value());
   const aiScene* scene = importer.ReadFile(path, aiProcess_Triangulate | aiProcess_PreTransformVertices);
-  if (scene == nullptr) throw sim::MeshError(fmt::format("is no mesh that can be read: {}", importer.GetErrorString()));
+  if (scene == nullptr) throw sim::MeshError(fmt::format("is not a readable mesh: {}", importer.GetErrorString()));
   sim::Mesh mesh;
   std::map<std::array<double, 3>, std::uint32_t> numbers;
   for (unsigned i = 0; i < scene->mNumMeshes; ++i)
@@ -116,7 +116,7 @@ std::string binary_stl(const sim::Mesh& mesh) {
     for (const sim::Vector3d& v : {normal, a, b, c})
       for (int i = 0; i < 3; ++i) {
         const auto value = static_cast<float>(v[i]);
-        if (!std::isfinite(value)) throw sim::MeshError("cannot hold so large numbers; scale it, or write .obj");
+        if (!std::isfinite(value)) throw sim::MeshError("cannot hold numbers this large; scale it, or write .obj");
         put(value);
       }
     put(std::uint16_t{0});

@@ -131,16 +131,16 @@ std::string messages_page() {
                      "| `sim.clock` | `shoal.utime_t` | simulated time |\n"
                      "| `sim.state` | `shoal.sim_state_t` | true poses of all vehicles |\n"
                      "| `sim.info` | `shoal.sim_info_t` | world, seed, resolved configuration, versions |\n"
-                     "| `sim.mail` | `shoal.sim_mail_t` | what came to the world from outside, to run a log again |\n"
+                     "| `sim.inputs` | `shoal.sim_inputs_t` | inputs of the world from outside, for replaying a log |\n"
                      "| `sim.hash` | `shoal.sim_hash_t` | hashes of the state, whole and by part |\n"
                      "| `sim.control` | `shoal.sim_control_request_t` | requests to the simulator |\n"
                      "| `sim.control.reply` | `shoal.sim_control_reply_t` | their answers |\n"
                      "| `sim.tick` | `shoal.sim_tick_t` | lockstep: the world waits for the named clients |\n"
                      "| `sim.ack` | `shoal.sim_ack_t` | lockstep: a client is done |\n"
-                     "| `sim.resend` | `shoal.sim_resend_t` | lockstep: asks for messages that did not arrive |\n"
-                     "| `sim.resent` | `shoal.sim_resent_t` | lockstep: messages that were asked for |\n"
-                     "| `sim.snapshot` | `shoal.sim_snapshot_t` | what a run began with that began with a snapshot |\n"
-                     "| `sim.vehicle` | `shoal.sim_vehicle_t` | a vehicle came, went, or was asked for |\n\n"
+                     "| `sim.resend` | `shoal.sim_resend_t` | lockstep: requests messages that did not arrive |\n"
+                     "| `sim.resent` | `shoal.sim_resent_t` | lockstep: messages that were requested |\n"
+                     "| `sim.snapshot` | `shoal.sim_snapshot_t` | snapshot with which a run started, if any |\n"
+                     "| `sim.vehicle` | `shoal.sim_vehicle_t` | a vehicle was added, removed, or requested |\n\n"
                      "Types that are equal on the wire to those of `bot_core` say so.\n";
   for (const auto& [name, schema] : shoal::embedded_types().all())
     page += fmt::format("\n## {}\n\n```\n{}```\n", name, message_text(schema));

@@ -120,7 +120,7 @@ TEST(AcousticFrame, ComesBackWithinItsQuantisation) {
     EXPECT_NEAR(received->east_m, sent.east_m, half_cm);
     EXPECT_NEAR(received->north_m, sent.north_m, half_cm);
     EXPECT_NEAR(received->depth_m, sent.depth_m, half_cm);
-    // Nobody is told to be surer than it is.
+    // No one is commanded to be surer than it is.
     EXPECT_GE(received->east_std_m, sent.east_std_m - 1e-9);
     EXPECT_LE(received->east_std_m, sent.east_std_m + 0.01 + 1e-9);
     EXPECT_NEAR(received->north_std_m, sent.north_std_m, 0.01 + 1e-9);

@@ -30,7 +30,7 @@ using autonomy::Vector2d;
 using std::numbers::pi;
 using test::second;
 
-/// A craft that turns at 0.3 rad/s at most, and takes the speed it is told.
+/// A craft that turns at 0.3 rad/s at most, and takes the speed it is commanded.
 class Craft {
  public:
   explicit Craft(const Vector2d& p_W, double yaw_rad = 0) : yaw_rad_(yaw_rad) { motion_.p_W = p_W; }
@@ -154,13 +154,13 @@ TEST(FollowBehaviour, KeepsItsPlaceBesideTheOther) {
   params.left_m = 30;
   FollowBehaviour follow(params);
   Craft craft({-150, -80});
-  EXPECT_EQ(follow.steer(craft.motion()).speed_mps, 0);  // it has heard nothing
+  EXPECT_EQ(follow.steer(craft.motion()).speed_mps, 0);  // it has received nothing
   Motion auv;
   auv.v_W = {0, 1.2};
   for (int i = 0; i < 1200; ++i) {
     auv.utime = craft.motion().utime;
-    if (i % 60 == 0) follow.hear("auv", auv);  // twice a minute
-    follow.hear("boat2", craft.motion());
+    if (i % 60 == 0) follow.receive_state("auv", auv);  // twice a minute
+    follow.receive_state("boat2", craft.motion());
     craft.go(follow.steer(craft.motion()));
     auv.p_W += 0.5 * auv.v_W;
   }
@@ -173,7 +173,7 @@ TEST(FollowBehaviour, GoesToAPlaceBesideOneThatStandsStill) {
   FollowBehaviour::Params params;
   params.vehicle = "auv";
   FollowBehaviour follow(params);
-  follow.hear("auv", {});
+  follow.receive_state("auv", {});
   Craft craft({100, 0});
   for (int i = 0; i < 300; ++i) craft.go(follow.steer(craft.motion()));
   EXPECT_LT((craft.motion().p_W - Vector2d(0, 30)).norm(), 16);
@@ -186,11 +186,11 @@ TEST(FollowBehaviour, ForgetsWhatIsOld) {
   Motion auv;
   auv.utime = 10 * second;
   auv.v_W = {1, 0};
-  follow.hear("auv", auv);
+  follow.receive_state("auv", auv);
   Motion older = auv;
   older.utime = 5 * second;
   older.p_W = {1000, 1000};
-  follow.hear("auv", older);
+  follow.receive_state("auv", older);
   EXPECT_NEAR((*follow.place_W(20 * second) - Vector2d(10, 30)).norm(), 0, 1e-9);
   EXPECT_FALSE(follow.place_W(311 * second));
 }
@@ -199,9 +199,9 @@ TEST(FollowBehaviour, SaysWhomItNeverHeardOf) {
   FollowBehaviour::Params params;
   params.vehicle = "nobody";
   FollowBehaviour follow(params);
-  follow.hear("auv", {});
-  EXPECT_EQ(follow.remark(), "it was to follow 'nobody', and never heard of it");
-  follow.hear("nobody", {});
+  follow.receive_state("auv", {});
+  EXPECT_EQ(follow.remark(), "it has not received any message from 'nobody', which it was to follow");
+  follow.receive_state("nobody", {});
   EXPECT_EQ(follow.remark(), "");
 }
 
@@ -212,11 +212,11 @@ TEST(FollowBehaviour, ListensToOneWhoseClockWasSetBack) {
   Motion auv;
   auv.utime = 3700 * second;
   auv.v_W = {1, 0};
-  follow.hear("auv", auv);
+  follow.receive_state("auv", auv);
   EXPECT_FALSE(follow.place_W(100 * second));  // its own clock was set back, and the news are of the old time
   auv.utime = 100 * second;
   auv.p_W = {50, 0};
-  follow.hear("auv", auv);
+  follow.receive_state("auv", auv);
   EXPECT_NEAR((*follow.place_W(110 * second) - Vector2d(60, 30)).norm(), 0, 1e-9);
 }
 

@@ -31,9 +31,9 @@ TEST(ObstacleAvoidance, TurnsToAGoalOnTheLeft) {
 TEST(ObstacleAvoidance, MeasuresTheLane) {
   const ObstacleAvoidance avoidance;
   const auto scan = flat_room::scan({{{3, -1}, {3, 0.2}}}, {});  // stands 3 m ahead, mostly to the right
-  EXPECT_NEAR(avoidance.free_way_m(scan, 0), 3, 1e-6);
+  EXPECT_NEAR(avoidance.free_distance_m(scan, 0), 3, 1e-6);
   // Beside the lane; what nothing was hit by reports the maximum range of 20 m.
-  EXPECT_GT(avoidance.free_way_m(flat_room::scan({{{3, 1}, {3, 2}}}, {}), 0), 19);
+  EXPECT_GT(avoidance.free_distance_m(flat_room::scan({{{3, 1}, {3, 2}}}, {}), 0), 19);
 }
 
 TEST(ObstacleAvoidance, TurnsAwayFromWhatStandsInTheWay) {

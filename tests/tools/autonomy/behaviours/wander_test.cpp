@@ -63,7 +63,7 @@ TEST(Wander, StopsBeforeWhatIsClose) {
   for (const std::size_t beam : {0u, 90u, 179u}) {
     const Twist twist = wander.step(scan_with(0.29F, beam));
     EXPECT_DOUBLE_EQ(twist.forward_mps, 0);
-    EXPECT_DOUBLE_EQ(twist.turn_radps, 0.5);  // or it would stand there for ever
+    EXPECT_DOUBLE_EQ(twist.turn_radps, 0.5);  // or it would stand there forever
   }
 }
 

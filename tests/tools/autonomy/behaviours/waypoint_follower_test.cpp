@@ -34,11 +34,11 @@ TEST(WaypointFollower, GoesRoundAndRound) {
 
 TEST(WaypointFollower, GivesUpAWaypointThatComesNoNearer) {
   WaypointFollower follower({{5, 0}, {0, 5}});
-  const double patience_s = WaypointFollower::Params().give_up_s;
+  const double timeout_s = WaypointFollower::Params().give_up_s;
   follower.goal_B({{0, 0}, 0}, 0);
-  follower.goal_B({{0.1, 0}, 0}, patience_s - 0.1);  // a few centimetres are no progress
+  follower.goal_B({{0.1, 0}, 0}, timeout_s - 0.1);  // a few centimetres are not progress
   EXPECT_EQ(follower.current(), 0u);
-  follower.goal_B({{0.1, 0}, 0}, patience_s + 0.1);
+  follower.goal_B({{0.1, 0}, 0}, timeout_s + 0.1);
   EXPECT_EQ(follower.current(), 1u);
   EXPECT_EQ(follower.given_up(), 1);
 }

@@ -128,7 +128,7 @@ TEST(Ekf, FindsBackWhenItWasSureAndWrong) {
   Ekf ekf({{0, 0}, 0}, 0.1, 0.01);  // in truth it was carried to (4, 3)
   int refused = 0;
   while (refused < 100 && !ekf.update_position({4, 3}, 0.5)) ++refused;
-  EXPECT_EQ(refused, Ekf::Params().most_refusals);
+  EXPECT_EQ(refused, Ekf::Params().max_refusals);
   EXPECT_LT((ekf.pose().p_W - Vector2d(4, 3)).norm(), 0.1);
 }
 
@@ -144,19 +144,19 @@ double nees_of_run(std::uint64_t seed) {
           start_std_m, start_std_rad, params);
   const Vector2d neighbour_W(15, 5);
   for (int i = 1; i <= 600; ++i) {
-    const Increment told = arc(0.05, i % 200 < 100 ? 0.01 : -0.005);
-    const double way = std::hypot(told.forward_m, told.left_m);
-    const double yaw_std = std::sqrt(std::pow(params.yaw_per_turn_std_rad, 2) * std::abs(told.turn_rad) +
-                                     std::pow(params.yaw_per_metre_std_rad, 2) * way);
-    const Vector2d moved_B(told.forward_m + params.along_std_m * std::sqrt(way) * random.gaussian(),
-                           told.left_m + params.across_std_m * std::sqrt(way) * random.gaussian());
+    const Increment reported = arc(0.05, i % 200 < 100 ? 0.01 : -0.005);
+    const double distance = std::hypot(reported.forward_m, reported.left_m);
+    const double yaw_std = std::sqrt(std::pow(params.yaw_per_turn_std_rad, 2) * std::abs(reported.turn_rad) +
+                                     std::pow(params.yaw_per_metre_std_rad, 2) * distance);
+    const Vector2d moved_B(reported.forward_m + params.along_std_m * std::sqrt(distance) * random.gaussian(),
+                           reported.left_m + params.across_std_m * std::sqrt(distance) * random.gaussian());
     truth.p_W += turned(moved_B, truth.yaw_rad);
-    truth.yaw_rad += told.turn_rad + yaw_std * random.gaussian();
-    ekf.predict(told);
+    truth.yaw_rad += reported.turn_rad + yaw_std * random.gaussian();
+    ekf.predict(reported);
     if (i % 20 != 0) continue;
     const Vector2d noise(0.15 * random.gaussian(), 0.15 * random.gaussian());
-    const Vector2d told_W = neighbour_W + 0.5 * Vector2d(random.gaussian(), random.gaussian());
-    ekf.update_relative(turned(neighbour_W - truth.p_W, -truth.yaw_rad) + noise, 0.15, told_W, 0.5);
+    const Vector2d reported_W = neighbour_W + 0.5 * Vector2d(random.gaussian(), random.gaussian());
+    ekf.update_relative(turned(neighbour_W - truth.p_W, -truth.yaw_rad) + noise, 0.15, reported_W, 0.5);
   }
   Eigen::Vector3d error;
   error << truth.p_W - ekf.pose().p_W, sim::wrap_angle(truth.yaw_rad - ekf.pose().yaw_rad);

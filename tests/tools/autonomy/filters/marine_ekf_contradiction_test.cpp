@@ -80,7 +80,7 @@ TEST(MarineEkfContradiction, WhatAllBeaconsSayAlikeIsTheClock) {
     EXPECT_EQ(ekf.update_range(range_of(2, 50 + error_m)), Outcome::accepted);
     EXPECT_NEAR(ekf.range_bias_m(), error_m, 3);
     EXPECT_NEAR((ekf.position() - Vector2d(100, 50)).norm(), 0, 0.1);
-    // It knows its place as before, or better by the two ranges.
+    // It localises itself as before, or better by the two ranges.
     EXPECT_LT(ekf.position_covariance()(0, 0), 1.01);
     EXPECT_LT(ekf.position_covariance()(1, 1), 1.01);
   }
@@ -116,16 +116,16 @@ TEST(MarineEkfContradiction, BeaconInDoubtIsNotBelievedBecauseTheFilterGrewUnsur
 TEST(MarineEkfContradiction, AnErrorOfTheClockThatGrowsEvenlyIsItsDrift) {
   MarineEkf ekf = with_a_clock();
   const auto late_by_m = [](int t) { return 750 + 0.15 * t; };  // 0.5 s ahead and 100 ppm fast
-  const auto hear = [&](int t) {
+  const auto receive_state = [&](int t) {
     ekf.predict(t * second, {0, 0});
     const int beacon = t / 10 % 2 + 1;
     MarineEkf::Range range = range_of(beacon, (beacon == 1 ? 100 : 50) + late_by_m(t));
     range.utime = t * second;
     return ekf.update_range(range);
   };
-  for (const int t : {0, 10, 20, 30}) EXPECT_EQ(hear(t), Outcome::refused) << t;
-  EXPECT_EQ(hear(40), Outcome::inflated);
-  for (int t = 50; t <= 300; t += 10) EXPECT_EQ(hear(t), Outcome::accepted) << t;
+  for (const int t : {0, 10, 20, 30}) EXPECT_EQ(receive_state(t), Outcome::refused) << t;
+  EXPECT_EQ(receive_state(40), Outcome::inflated);
+  for (int t = 50; t <= 300; t += 10) EXPECT_EQ(receive_state(t), Outcome::accepted) << t;
   EXPECT_NEAR(ekf.range_bias_m(), late_by_m(300), 2);
   EXPECT_NEAR(ekf.state()[5], 0.15, 0.02);
   EXPECT_LT((ekf.position() - Vector2d(100, 50)).norm(), 1);
@@ -141,11 +141,11 @@ TEST(MarineEkfContradiction, WhatWrongRangesTaughtIsForgotten) {
   while (refused < 20 &&
          ekf.update_range(range_of(refused % 2 + 1, refused % 2 == 0 ? 150 : 20), &reckoned) == Outcome::refused)
     ++refused;
-  EXPECT_EQ(refused, 9);  // with the tenth it starts anew
+  EXPECT_EQ(refused, 9);  // with the tenth it starts again
   EXPECT_EQ(ekf.position(), reckoned.position());
   EXPECT_EQ(ekf.position_covariance(), reckoned.position_covariance());
   EXPECT_GT(ekf.covariance()(4, 4), 30 * 30);
-  // Nothing that ranges taught is left: it does not start anew again.
+  // Nothing that ranges taught is left: it does not start again again.
   for (int i = 0; i < 30; ++i)
     EXPECT_EQ(ekf.update_range(range_of(i % 2 + 1, i % 2 == 0 ? 3000 : -5000), &reckoned), Outcome::refused) << i;
   EXPECT_EQ(ekf.inflated(), 1);

@@ -142,10 +142,10 @@ TEST(MarineEkf, StatesThatAreNotEstimatedStayZero) {
 
 /// The lawn of the published simulations: legs of 400 m, 40 m apart, at 1.5 m/s for an hour.
 struct Lawn {
-  static Vector2d velocity(double way_m) {
+  static Vector2d velocity(double distance_m) {
     constexpr double leg_m = 400;
     constexpr double step_m = 40;
-    const double in_pair_m = std::fmod(way_m, 2 * (leg_m + step_m));
+    const double in_pair_m = std::fmod(distance_m, 2 * (leg_m + step_m));
     if (in_pair_m < leg_m) return {1.5, 0};
     if (in_pair_m < leg_m + step_m) return {0, 1.5};
     if (in_pair_m < 2 * leg_m + step_m) return {-1.5, 0};
@@ -306,7 +306,7 @@ struct Envelope {
 };
 
 // Bands of 100 runs of such a lawn (range error 3 m each 10 s from two beacons in turn, GPS 1 m, heading noise 2
-// degrees), worked out apart from this filter for biases of 3 degrees and 3 %, and of 5 degrees and 5 %.
+// degrees), computed apart from this filter for biases of 3 degrees and 3 %, and of 5 degrees and 5 %.
 TEST(MarineEkf, LawnIsWithinTheEnvelope) {
   for (const Envelope& expected : {Envelope{Sea(), {22, 25}, {28, 30}, {4.7, 5.5}, {1.3, 1.5}},
                                    Envelope{five_degrees(), {37, 45}, {45, 55}, {6.0, 6.7}, {1.3, 1.5}}}) {

@@ -36,10 +36,10 @@ struct Balanced : test::LoadedTestWorld {
     const sim::Time end = world.now() + sim::from_seconds(time_s);
     while (world.now() < end && !law.fallen()) {
       world.step();
-      const auto leans = inclination_.take_all();
+      const auto tilts = inclination_.take_all();
       for (const auto& wheels : encoder_.take_all()) law.receive(wheels);
-      for (const auto& lean : leans) law.receive(lean);
-      if (leans.empty()) continue;
+      for (const auto& tilt : tilts) law.receive(tilt);
+      if (tilts.empty()) continue;
       const auto torques = law.step();
       if (!torques) continue;
       command("left", torques->left_Nm);
@@ -65,7 +65,7 @@ TEST(Balance, TenMinutesStanding) {
   Balanced test({});
   test.balance_for(600);
   EXPECT_FALSE(test.law.fallen());
-  EXPECT_NEAR(test.law.lean_rad() * degrees, -9.93, 0.1);
+  EXPECT_NEAR(test.law.tilt_rad() * degrees, -9.93, 0.1);
   EXPECT_NEAR(test.law.speed_mps(), 0, 0.01);
 }
 
@@ -112,8 +112,8 @@ Swing swing_at(const Balance::Params& params, double latency_ms) {
     double low = 100, high = -100;
     for (double t = 0; t < time_s - 1e-9; t += 0.01) {
       test.balance_for(0.01);
-      low = std::min(low, test.law.lean_rad() * degrees);
-      high = std::max(high, test.law.lean_rad() * degrees);
+      low = std::min(low, test.law.tilt_rad() * degrees);
+      high = std::max(high, test.law.tilt_rad() * degrees);
     }
     return high - low;
   };
@@ -157,21 +157,21 @@ TEST(Balance, TorqueIsThatOfThePdLaw) {
   shoal::wheel_encoder_t wheels{};
   wheels.rate_radps = {0, 0};
   law.receive(wheels);
-  shoal::inclination_t lean{};
-  lean.utime = 1'000'000;
-  lean.pitch_rad = params.balanced_lean_rad + 0.02;
-  law.receive(lean);
+  shoal::inclination_t tilt{};
+  tilt.utime = 1'000'000;
+  tilt.pitch_rad = params.balanced_tilt_rad + 0.02;
+  law.receive(tilt);
   EXPECT_NEAR(law.step()->left_Nm, 300 * 0.02 / 2, 1e-9);
-  lean.utime += 10'000;
-  lean.pitch_rad += 0.001;
-  law.receive(lean);
-  law.receive(lean);  // twice the same: the second is not new
+  tilt.utime += 10'000;
+  tilt.pitch_rad += 0.001;
+  law.receive(tilt);
+  law.receive(tilt);  // twice the same: the second is not new
   const auto torques = law.step();
   EXPECT_NEAR(torques->left_Nm, (300 * 0.021 + 60 * 0.1) / 2, 1e-9);
   EXPECT_EQ(torques->left_Nm, torques->right_Nm);
-  lean.utime += 10'000;
-  lean.pitch_rad += 1;
-  law.receive(lean);
+  tilt.utime += 10'000;
+  tilt.pitch_rad += 1;
+  law.receive(tilt);
   EXPECT_EQ(law.step()->left_Nm, 0);
   EXPECT_TRUE(law.fallen());
 }
@@ -180,16 +180,16 @@ TEST(Balance, AMessageOfAnotherTimeDoesNotMakeItDeaf) {
   constexpr std::int64_t latest = std::numeric_limits<std::int64_t>::max(), first = -latest - 1;
   for (const std::int64_t strange : {latest, first, std::int64_t{3'000'000}, std::int64_t{1}}) {
     Balance law({});
-    shoal::inclination_t lean{};
+    shoal::inclination_t tilt{};
     for (int i = 0; i < 100; ++i) {
-      lean.utime = 2'000'000 + 10'000 * i;
-      lean.pitch_rad = 0.001 * i;
-      law.receive(lean);
-      shoal::inclination_t other = lean;
+      tilt.utime = 2'000'000 + 10'000 * i;
+      tilt.pitch_rad = 0.001 * i;
+      law.receive(tilt);
+      shoal::inclination_t other = tilt;
       other.utime = strange;
       if (i == 50) law.receive(other);
     }
-    EXPECT_EQ(law.lean_rad(), lean.pitch_rad) << strange;
+    EXPECT_EQ(law.tilt_rad(), tilt.pitch_rad) << strange;
     EXPECT_NEAR(law.rate_radps(), 0.1, 1e-6) << strange;  // the low pass has seen 0.49 s of it since
   }
 }

@@ -60,12 +60,12 @@ TEST(CoopAuv, RangesAreThoseOfItsModem) {
   params.range_std_m = 0.1;
   params.sound_speed_std = 0;
   double errors_m[2];
-  for (const bool told : {false, true}) {
-    if (told) params.modem_B = {20, 0, 0};  // a long vehicle, so that it counts
+  for (const bool reported : {false, true}) {
+    if (reported) params.modem_B = {20, 0, 0};  // a long vehicle, so that it counts
     Voyage voyage(params);
     voyage.modem_W = {20, 0};  // it goes east
     voyage.run(600);
-    errors_m[told ? 1 : 0] = voyage.error_m();
+    errors_m[reported ? 1 : 0] = voyage.error_m();
   }
   EXPECT_LT(errors_m[1], 4);
   EXPECT_GT(errors_m[0], 10);

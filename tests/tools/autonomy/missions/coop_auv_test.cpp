@@ -203,7 +203,7 @@ shoal::acoustic_received_t order_packet(int number, const Vector2d& p_W, double 
 
 CoopAuv::Params obeying_params() {
   CoopAuv::Params params = auv_params();
-  params.obey = true;
+  params.execute = true;
   params.access.slot.emplace();
   return params;
 }
@@ -213,7 +213,7 @@ TEST(CoopAuv, ObeysAnOrderAndSaysSoInItsState) {
   voyage.run(30);
   const int ranges = voyage.auv.counts().ranges + voyage.auv.counts().refused;
   voyage.auv.receive(order_packet(3, {0, 1000}, 35, voyage.t));
-  EXPECT_EQ(voyage.auv.counts().ranges + voyage.auv.counts().refused, ranges);  // an order is no range
+  EXPECT_EQ(voyage.auv.counts().ranges + voyage.auv.counts().refused, ranges);  // an order is not a range
   const auto decision = voyage.auv.step();
   EXPECT_EQ(decision.helm->speed_mps, 1.2);
   EXPECT_NEAR(decision.helm->heading_rad, 0.5 * pi, 0.1);  // it is some 30 m east of its start
@@ -231,25 +231,25 @@ TEST(CoopAuv, ObeysAnOrderAndSaysSoInItsState) {
 }
 
 TEST(CoopAuv, ObeysOnlyNewOrdersThatAreForItAndCanBeDone) {
-  const auto obeyed = [](auto change, const CoopAuv::Params& params = obeying_params()) {
+  const auto executed = [](auto change, const CoopAuv::Params& params = obeying_params()) {
     CoopAuv auv(params, make_route({{100, 0}}, 1.5, false));
     auv.receive(order_packet(2, {0, 100}, 10, epoch));
     auv.receive(change(order_packet(3, {0, 100}, 10, epoch + second)));
     return auv.counts().orders;
   };
   const auto as_it_is = [](const shoal::acoustic_received_t& packet) { return packet; };
-  EXPECT_EQ(obeyed(as_it_is), 2);
-  EXPECT_EQ(obeyed(as_it_is, auv_params()), 0);  // without --obey
-  EXPECT_EQ(obeyed([](const auto&) { return order_packet(2, {0, 200}, 10, epoch + second); }), 1);
-  EXPECT_EQ(obeyed([](const auto&) { return order_packet(1, {0, 200}, 10, epoch + second); }), 1);
-  EXPECT_EQ(obeyed([](const auto&) { return order_packet(3, {0, 200}, 10, epoch + second, 99); }), 1);
-  EXPECT_EQ(obeyed([](const auto&) { return order_packet(3, {0, 200}, 100.1, epoch + second); }), 1);
-  EXPECT_EQ(obeyed([](auto packet) {
-              packet.sent_utime += 61 * second;  // an old order that somebody says again
+  EXPECT_EQ(executed(as_it_is), 2);
+  EXPECT_EQ(executed(as_it_is, auv_params()), 0);  // without --execute
+  EXPECT_EQ(executed([](const auto&) { return order_packet(2, {0, 200}, 10, epoch + second); }), 1);
+  EXPECT_EQ(executed([](const auto&) { return order_packet(1, {0, 200}, 10, epoch + second); }), 1);
+  EXPECT_EQ(executed([](const auto&) { return order_packet(3, {0, 200}, 10, epoch + second, 99); }), 1);
+  EXPECT_EQ(executed([](const auto&) { return order_packet(3, {0, 200}, 100.1, epoch + second); }), 1);
+  EXPECT_EQ(executed([](auto packet) {
+              packet.sent_utime += 61 * second;  // an old order that someone says again
               return packet;
             }),
             1);
-  EXPECT_EQ(obeyed([](auto packet) {
+  EXPECT_EQ(executed([](auto packet) {
               packet.data[9] ^= 1;
               return packet;
             }),
@@ -275,7 +275,7 @@ TEST(CoopAuv, SaysInItsStateThatItRefusedAnOrderUntilItObeysALaterOne) {
   EXPECT_EQ(state().order, 1);
   EXPECT_EQ(state().refused_order, 2);
   EXPECT_EQ(state().refusal, autonomy::OrderRefusal::too_deep);
-  EXPECT_EQ(voyage.auv.step().helm->depth_m, 35) << "it goes on as it was told before";
+  EXPECT_EQ(voyage.auv.step().helm->depth_m, 35) << "it continues with the previous order";
   voyage.auv.receive(order_packet(3, {0, 900}, 30, voyage.t));
   const AcousticState obeying = state();
   EXPECT_EQ(obeying.order, 3);

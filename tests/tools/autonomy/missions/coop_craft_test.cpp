@@ -60,7 +60,7 @@ TEST(CoopCraft, RemarksOnceThatItNeverHeardOfWhomItFollows) {
   }
   ASSERT_EQ(remarks.size(), 1u);
   EXPECT_EQ(remarks.front().first, 60);
-  EXPECT_EQ(remarks.front().second, "after 60 s: it was to follow 'auv', and never heard of it");
+  EXPECT_EQ(remarks.front().second, "after 60 s: it has not received any message from 'auv', which it was to follow");
 }
 
 TEST(CoopCraft, StopsAndSaysNothingWithoutAFix) {
@@ -113,7 +113,7 @@ TEST(CoopCraft, FollowsWhatItHears) {
   shoal::acoustic_received_t bad = packet({500, 0}, epoch, epoch + second);
   bad.data[5] ^= 1;
   craft.receive(bad);
-  EXPECT_EQ(craft.counts().heard, 1);
+  EXPECT_EQ(craft.counts().received, 1);
   EXPECT_EQ(craft.counts().bad_frames, 1);
 }
 

@@ -100,7 +100,7 @@ TEST(CoopStation, SaysAnOrderInEachOfItsTurnsUntilItWasObeyed) {
   }
   station.receive(by_radio(state_of(7, epoch + 60 * second, 1), epoch + 66 * second));
   EXPECT_TRUE(run(station, 66, 100).empty());
-  EXPECT_EQ(station.counts().obeyed, 1);
+  EXPECT_EQ(station.counts().executed, 1);
 
   const std::vector<Sent> second_order = run(station, 100, 112);
   ASSERT_EQ(second_order.size(), 1u);
@@ -123,19 +123,19 @@ TEST(CoopStation, TellsOnceThatAnOrderWasRefusedAndSaysItNoMore) {
   state.refused_order = 1;
   state.refusal = autonomy::OrderRefusal::too_deep;
   station.receive(by_radio(state, epoch + 30 * second));
-  EXPECT_EQ(station.step().news, "order 1 was refused: too deep, 15 m");
+  EXPECT_EQ(station.step().status, "order 1 was refused: too deep, 15 m");
   EXPECT_EQ(station.counts().refused, 1);
-  EXPECT_EQ(station.counts().obeyed, 0);
+  EXPECT_EQ(station.counts().executed, 0);
   EXPECT_TRUE(run(station, 31, 100).empty());
   state.utime = epoch + 44 * second;  // its next state says so, too
   station.receive(by_radio(state, epoch + 100 * second));
-  EXPECT_EQ(station.step().news, "");
+  EXPECT_EQ(station.step().status, "");
   EXPECT_EQ(station.counts().refused, 1);
 
   EXPECT_EQ(run(station, 100, 112).size(), 1u);  // the second order
   station.receive(by_radio(state_of(7, epoch + 112 * second, 2), epoch + 115 * second));
-  EXPECT_EQ(station.step().news, "");
-  EXPECT_EQ(station.counts().obeyed, 1) << "of two, for the first was refused";
+  EXPECT_EQ(station.step().status, "");
+  EXPECT_EQ(station.counts().executed, 1) << "of two, for the first was refused";
 }
 
 TEST(CoopStation, StateOfAnotherVehicleObeysNothing) {
@@ -186,7 +186,7 @@ TEST(CoopStation, DamagedAndStaleStatesAreCountedAndForgotten) {
   station.receive(by_radio(state_of(7, epoch - 60 * second, 1), epoch + 30 * second));
   EXPECT_EQ(station.counts().bad_frames, 2);
   EXPECT_FALSE(station.step().knowledge);
-  EXPECT_EQ(station.counts().obeyed, 0);
+  EXPECT_EQ(station.counts().executed, 0);
 }
 
 TEST(CoopStation, SaysNothingBeforeItKnowsTheTime) {

@@ -97,7 +97,7 @@ struct Voyage {
       auv.receive(depth_at(own, submerged ? 20 : 0));
       auv.receive(dvl_at(own, submerged ? 1.5 : 0));
       if (!submerged && i % 5 == 0) auv.receive(fix_at(own, p_W));
-      if (i % 50 == 0) hear(beacons[static_cast<std::size_t>(i / 50 % 2)], own, random.gaussian());
+      if (i % 50 == 0) receive_state(beacons[static_cast<std::size_t>(i / 50 % 2)], own, random.gaussian());
       while (!waiting.empty() && waiting.front().utime + 3 * second <= own) {
         auv.receive(waiting.front());
         waiting.erase(waiting.begin());
@@ -105,7 +105,7 @@ struct Voyage {
       if (i % 2 == 0) decision = auv.step();
     }
   }
-  void hear(const Vector2d& beacon_W, std::int64_t own, double noise_m) {
+  void receive_state(const Vector2d& beacon_W, std::int64_t own, double noise_m) {
     const double depth_m = decision.helm && decision.helm->depth_m > 0 ? 19 : -1;
     const double range_m = std::hypot((p_W + modem_W - beacon_W).norm(), depth_m) + noise_m;
     const bool first = beacon_W == beacons[0];

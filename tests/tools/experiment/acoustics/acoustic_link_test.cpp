@@ -57,7 +57,7 @@ TEST(AcousticLink, CountsTheDirectionsOfBothEnds) {
   const tools::LinkBudget budget = tools::link_budget(link, thorp(), sea());
   EXPECT_EQ(budget.from_gain.dB(), 0);
   EXPECT_EQ(budget.to_gain.dB(), -30);
-  // Half of the noise is heard, and a thousandth of the other half.
+  // Half of the noise is received, and a thousandth of the other half.
   EXPECT_NEAR((tools::link_budget(link_over(800), thorp(), sea()).noise - budget.noise).dB(),
               -10 * std::log10(0.5 * 1.001), 1e-6);
   link.to.R_WS = Eigen::AngleAxisd(3.14159265358979, Vector3d::UnitZ()).toRotationMatrix();

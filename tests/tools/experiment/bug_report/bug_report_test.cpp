@@ -37,13 +37,13 @@ class BugReportTest : public testing::Test {
   BugReportTest() {
     auto loaded = sim::load_world_text(test::rover_world("        - {name: lidar, type: lidar}\n", "", "",
                                                          "run: {duration_s: 1, seed: 7}\n"
-                                                         "metrics: [{name: way, type: distance, vehicle: r1}]\n"),
+                                                         "metrics: [{name: distance, type: distance, vehicle: r1}]\n"),
                                        "small.yaml", test::LoadedTestWorld::with_messages({}));
     loaded.config.name = "small";
     tools::RunOptions run;
     run.bus = "none";
     run.quiet = true;
-    run.pictures = false;
+    run.plots = false;
     run.results = options.directory = folder.file("run");
     run.record = record = folder.file("run.lcm");
     EXPECT_EQ(tools::run_world(loaded, run).exit_code, 0);
@@ -116,19 +116,20 @@ TEST_F(BugReportTest, TakesNothingFromOutsideOfTheFolder) {
 }
 
 TEST_F(BugReportTest, CopiesSmallFilesOfTheWorldAndHashesOfAll) {
-  const std::string small = folder.file("rock.stl"), large = folder.file("hills.asc"), gone = folder.file("gone.stl");
+  const std::string small = folder.file("rock.stl"), large = folder.file("hills.asc"),
+                    removed = folder.file("gone.stl");
   write(small, "solid rock");
   write(large, std::string((1 << 20) + 1, 'x'));
   write(options.directory + "/world.yaml",
-        "objects:\n  - {parts: [{mesh: " + small + "}, {terrain: {file: " + large + "}}, {mesh: " + gone + "}]}\n");
+        "objects:\n  - {parts: [{mesh: " + small + "}, {terrain: {file: " + large + "}}, {mesh: " + removed + "}]}\n");
   std::string in = packed();
   const std::string hashes = text_of(in + "files.txt");
-  EXPECT_THAT(hashes, AllOf(HasSubstr(" " + small), HasSubstr(" " + large), HasSubstr("---------------- " + gone)));
+  EXPECT_THAT(hashes, AllOf(HasSubstr(" " + small), HasSubstr(" " + large), HasSubstr("---------------- " + removed)));
   std::vector<std::string> copies;
   for (const auto& entry : fs::directory_iterator(in + "files")) copies.push_back(text_of(entry.path().string()));
   EXPECT_THAT(copies, testing::ElementsAre("solid rock"));
   EXPECT_THAT(report.left_out, Contains(AllOf(HasSubstr(large), HasSubstr("its hash is in files.txt"))));
-  EXPECT_THAT(report.left_out, Contains(gone + ": cannot be read"));
+  EXPECT_THAT(report.left_out, Contains(removed + ": cannot be read"));
   fs::remove_all(folder.file("out"));
   options.files = false;
   in = packed();

@@ -107,7 +107,7 @@ TEST(ProcessGroup, HandsOverTheLcmUrlAndKeepsALog) {
 }
 
 TEST(ProcessGroup, GivesProgramsTheUsualSignals) {
-  // shoal itself ignores SIGPIPE; `yes` must not inherit that, or it would complain.
+  // shoal itself ignores SIGPIPE; `yes` must not inherit that, or it would warn.
   const ScratchFolder folder;
   const auto before = signal(SIGPIPE, SIG_IGN);
   tools::ProcessGroup group;

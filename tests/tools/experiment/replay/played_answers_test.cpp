@@ -28,8 +28,8 @@ sim::Bytes command(double forward_mps) {
 ReplayLog log_of_two_rovers() {
   ReplayLog log;
   for (const int step : {0, 10, 20})
-    for (const char* channel : {"a.cmd", "b.cmd"}) log.letters.push_back({step, "", channel, command(step)});
-  log.letters.insert(log.letters.begin() + 2, {5, "serial", "/tmp/port", sim::Bytes(3)});
+    for (const char* channel : {"a.cmd", "b.cmd"}) log.inputs.push_back({step, "", channel, command(step)});
+  log.inputs.insert(log.inputs.begin() + 2, {5, "serial", "/tmp/port", sim::Bytes(3)});
   return log;
 }
 
@@ -37,10 +37,10 @@ std::vector<std::string> lines_of(const ReplayLog& log, const std::vector<std::p
                                   bool* all_equal = nullptr) {
   PlayedAnswers answers(log);
   for (int step = 0; step <= 20; ++step) {
-    std::vector<sim::MailGate::Mail> mail;
+    std::vector<sim::MessageGate::Delivery> input_record;
     for (const auto& [at, forward_mps] : said_on_a)
-      if (at == step) mail.push_back({"a.cmd", command(forward_mps)});
-    answers.came(step, mail);
+      if (at == step) input_record.push_back({"a.cmd", command(forward_mps)});
+    answers.came(step, input_record);
   }
   if (all_equal != nullptr) *all_equal = answers.all_equal();
   return answers.to_lines(0.01);
@@ -98,13 +98,13 @@ TEST(RecordedSteps, GiveMailBeforeTheStepThatItCameTo) {
     publish("sim.info", 'i', 0);
     publish("lidar", 'a', 0);
     bus.set_time(sim::Time(0));
-    bus.admitted(std::vector<sim::MailGate::Mail>{{"cmd", bytes('c')}});  // after step 0
+    bus.admitted(std::vector<sim::MessageGate::Delivery>{{"cmd", bytes('c')}});  // after step 0
     publish("lidar", 'b', 1);
-    publish("sim.mail", 'm', 1);
+    publish("sim.inputs", 'm', 1);
     publish("cmd", 'c', 2);  // an event says the same
     publish("sim.info", 'j', 2);
   }
-  log.letters.push_back({0, "", "cmd", bytes('c')});
+  log.inputs.push_back({0, "", "cmd", bytes('c')});
 
   tools::RecordedSteps steps(log);
   const auto texts = [&](auto&& give) {
@@ -115,11 +115,11 @@ TEST(RecordedSteps, GiveMailBeforeTheStepThatItCameTo) {
     return all;
   };
   const auto published = [&](int step) { return texts([&](const auto& use) { steps.published_at(step, use); }); };
-  const auto mail = [&](int step) { return texts([&](const auto& use) { steps.mail_after(step, use); }); };
+  const auto input_record = [&](int step) { return texts([&](const auto& use) { steps.inputs_after(step, use); }); };
   EXPECT_THAT(published(0), ElementsAre("lidar a"));  // the first sim.info is the player's
-  EXPECT_THAT(mail(0), ElementsAre("cmd c"));
+  EXPECT_THAT(input_record(0), ElementsAre("cmd c"));
   EXPECT_THAT(published(1), ElementsAre("lidar b"));
-  EXPECT_THAT(mail(1), IsEmpty());
+  EXPECT_THAT(input_record(1), IsEmpty());
   EXPECT_THAT(published(2), ElementsAre("cmd c", "sim.info j"));
   EXPECT_THAT(published(3), IsEmpty());
 }

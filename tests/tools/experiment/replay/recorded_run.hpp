@@ -44,7 +44,7 @@ class RecordedRun {
       owners.section("owners");
       service.visit_state(owners);
       owners.end();
-      journal.begin_branch(0, 1);
+      journal.start_branch(0, 1);
     }
     service.publish_info();
     if (from != nullptr)
@@ -70,7 +70,7 @@ class RecordedRun {
     return s;
   }
 
-  /// `clients` act before each step, `after` after the last; then requests are obeyed.
+  /// `clients` act before each step, `after` after the last; then requests are executed.
   void run(std::int64_t steps, const std::function<void(std::int64_t step)>& clients = {},
            const std::function<void()>& after = {}) {
     service.handle_requests();
@@ -81,9 +81,9 @@ class RecordedRun {
       if (clients) clients(world.step_number());
       service.handle_requests();
       recorder.set_time(world.now());
-      const auto& mail = gate.admit();
-      recorder.admitted(mail);
-      journal.admitted("", mail);
+      const auto& input_record = gate.admit();
+      recorder.admitted(input_record);
+      journal.admitted("", input_record);
       world.step();
       service.publish_step();
       journal.after_step();
@@ -110,7 +110,7 @@ class RecordedRun {
   sim::LoadedWorld loaded;
   sim::InProcessBus network;
   bridges::RecordingBus recorder;
-  sim::MailGate gate;
+  sim::MessageGate gate;
   bridges::JournalPorts ports;
   sim::RunControl control;
   sim::World world;

@@ -89,7 +89,7 @@ TEST_F(ReplayFromASnapshot, APieceThatIsMissingIsTold) {
 
 TEST_F(ReplayFromASnapshot, WithoutItsSnapshotTheLogCannotBeRun) {
   change_pieces([](const shoal::sim_snapshot_t&) { return false; });
-  EXPECT_THAT(error(), HasSubstr("cannot be run again from the start: sim.mail 0"));
+  EXPECT_THAT(error(), HasSubstr("cannot be run again from the start: sim.inputs 0"));
 }
 
 TEST_F(ReplayFromASnapshot, PiecesThatComeTwiceDoNoHarm) {
@@ -115,7 +115,7 @@ TEST_F(ReplayFromASnapshot, ADamagedOneIsTold) {
 TEST_F(ReplayFromASnapshot, OneOfAnotherWorldOrBuildIsTold) {
   begin.seed = 4;
   write();
-  EXPECT_THAT(error(), HasSubstr("sim.snapshot: is of another world, seed, epoch or step than sim.info tells of"));
+  EXPECT_THAT(error(), HasSubstr("sim.snapshot: is of another world, seed, epoch or step than sim.info reports"));
   begin.seed = 3;
   begin.version = "0.0.1";
   write();
@@ -127,7 +127,7 @@ TEST_F(ReplayFromASnapshot, ForgedPiecesArePassedOver) {
     piece.pieces = 0;
     return true;
   });
-  EXPECT_THAT(error(), HasSubstr("sim.mail 0"));
+  EXPECT_THAT(error(), HasSubstr("sim.inputs 0"));
 }
 
 TEST_F(ReplayFromASnapshot, UntilBeforeItsBeginIsRefused) {

@@ -8,14 +8,14 @@
 #include "bridges/log/recording_bus.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/sim_hash_t.hpp"
-#include "shoal/sim_mail_t.hpp"
+#include "shoal/sim_inputs_t.hpp"
 #include "shoal/sim_state_t.hpp"
 #include "sim/bus/in_process_bus.hpp"
 #include "tests/scratch_folder.hpp"
 #include "tools/experiment/replay/replay_messages.hpp"
 #include "tools/experiment/snapshot/snapshot_pieces.hpp"
 
-// What a log tells of its run, from logs made by hand.
+// What a log reports its run, from logs made by hand.
 
 namespace {
 
@@ -27,27 +27,27 @@ constexpr std::int64_t step_us = 10'000;
 /// A log of a run with steps of 0.01 s from epoch 0.
 class HandMade {
  public:
-  void info(std::int32_t branch, std::int64_t step, std::int64_t mail_sequence) {
+  void info(std::int32_t branch, std::int64_t step, std::int64_t input_sequence) {
     shoal::sim_info_t info{};
     info.world = "w";
     info.step_us = step_us;
     info.utime = step * step_us;
     info.step = step;
     info.branch = branch;
-    info.mail_sequence = mail_sequence;
+    info.input_sequence = input_sequence;
     publish("sim.info", info, step);
   }
-  void mail(std::int32_t branch, std::int64_t step, std::int64_t sequence) {
-    shoal::sim_mail_t mail{};
-    mail.utime = step * step_us;
-    mail.step = step;
-    mail.branch = branch;
-    mail.sequence = sequence;
-    mail.count = 1;
-    mail.letter.resize(1);
-    mail.letter[0].step = step - 1;
-    mail.letter[0].channel = "a.cmd";
-    publish("sim.mail", mail, step);
+  void input_record(std::int32_t branch, std::int64_t step, std::int64_t sequence) {
+    shoal::sim_inputs_t input_record{};
+    input_record.utime = step * step_us;
+    input_record.step = step;
+    input_record.branch = branch;
+    input_record.sequence = sequence;
+    input_record.count = 1;
+    input_record.input.resize(1);
+    input_record.input[0].step = step - 1;
+    input_record.input[0].channel = "a.cmd";
+    publish("sim.inputs", input_record, step);
   }
   void state(std::int64_t step) {
     shoal::sim_state_t state{};
@@ -55,22 +55,22 @@ class HandMade {
     state.step = step;
     publish("sim.state", state, step);
   }
-  void hash(std::int32_t branch, std::int64_t step, std::int64_t mail_sequence) {
+  void hash(std::int32_t branch, std::int64_t step, std::int64_t input_sequence) {
     shoal::sim_hash_t hash{};
     hash.utime = step * step_us;
     hash.step = step;
     hash.branch = branch;
-    hash.mail_sequence = mail_sequence;
+    hash.input_sequence = input_sequence;
     publish("sim.hash", hash, step);
   }
   /// All pieces but those of the numbers in `lost`.
-  void snapshot(std::int32_t branch, std::int64_t step, std::int64_t mail_sequence,
+  void snapshot(std::int32_t branch, std::int64_t step, std::int64_t input_sequence,
                 const std::set<std::int32_t>& lost = {}) {
     tools::Snapshot snapshot;
     snapshot.step = step;
     snapshot.step_us = step_us;
     snapshot.state = sim::Bytes(150'000, std::byte{1});
-    for (const auto& piece : tools::in_pieces(snapshot, branch, mail_sequence))
+    for (const auto& piece : tools::in_pieces(snapshot, branch, input_sequence))
       if (!lost.contains(piece.piece)) publish("sim.snapshot", piece, step);
   }
   template <typename Message>
@@ -95,36 +95,36 @@ class HandMade {
 TEST(ReplayLog, WhatIsMissingOfAPartThatWasLeftIsNotMissed) {
   HandMade log;
   log.info(0, 0, 0);
-  log.mail(0, 5, 0);
-  log.mail(0, 30, 2);  // 1 is missing, and came after step 10: the branch there begins with 1
+  log.input_record(0, 5, 0);
+  log.input_record(0, 30, 2);  // 1 is missing, and came after step 10: the branch there begins with 1
   log.info(1, 10, 1);
-  log.mail(1, 20, 1);
+  log.input_record(1, 20, 1);
   const tools::ReplayLog read = log.read();
   EXPECT_THAT(read.holes, IsEmpty());
   EXPECT_EQ(read.usable_step(), 20);
-  EXPECT_EQ(read.letters.size(), 2u);
+  EXPECT_EQ(read.inputs.size(), 2u);
 }
 
 TEST(ReplayLog, WhatIsMissingOfThePartThatIsKeptEndsTheProof) {
   HandMade log;
   log.info(0, 0, 0);
-  log.mail(0, 5, 0);
-  log.mail(0, 30, 3);  // 1 and 2 are missing: 1 came up to step 10
+  log.input_record(0, 5, 0);
+  log.input_record(0, 30, 3);  // 1 and 2 are missing: 1 came up to step 10
   log.info(1, 10, 2);
-  log.mail(1, 20, 2);
+  log.input_record(1, 20, 2);
   const tools::ReplayLog read = log.read();
-  EXPECT_THAT(read.holes, ElementsAre("sim.mail 1 (of a step from 5 to 30) is missing"));
+  EXPECT_THAT(read.holes, ElementsAre("sim.inputs 1 (of a step from 5 to 30) is missing"));
   EXPECT_EQ(read.usable_step(), 5);
 }
 
 TEST(ReplayLog, MailThatWasLostJustBeforeABranchEndsTheProof) {
   HandMade log;
   log.info(0, 0, 0);
-  log.mail(0, 5, 0);
+  log.input_record(0, 5, 0);
   log.info(1, 10, 2);
-  log.mail(1, 20, 2);
+  log.input_record(1, 20, 2);
   const tools::ReplayLog read = log.read();
-  EXPECT_THAT(read.holes, ElementsAre("sim.mail 1 (of a step from 5 to 10) is missing"));
+  EXPECT_THAT(read.holes, ElementsAre("sim.inputs 1 (of a step from 5 to 10) is missing"));
   EXPECT_EQ(read.usable_step(), 5);
 }
 
@@ -133,13 +133,13 @@ TEST(ReplayLog, BeginsWithTheSnapshotOfARun) {
   log.info(0, 100, 1);
   log.snapshot(0, 100, 1);
   log.state(100);
-  log.mail(0, 110, 1);
+  log.input_record(0, 110, 1);
   log.hash(0, 120, 2);
   const tools::ReplayLog read = log.read();
   EXPECT_EQ(read.begin_step(), 100);
   EXPECT_EQ(read.usable_step(), 120);
-  EXPECT_EQ(read.letters.size(), 1u);
-  EXPECT_FALSE(read.goes_back);
+  EXPECT_EQ(read.inputs.size(), 1u);
+  EXPECT_FALSE(read.is_rewound);
   EXPECT_THAT(read.holes, IsEmpty());
   EXPECT_THAT(read.problems, IsEmpty());
 }
@@ -150,18 +150,18 @@ TEST(ReplayLog, BeginsWithTheLastSnapshotOfALogOverARestore) {
     HandMade log;
     log.info(0, 0, 0);
     log.state(0);
-    log.mail(0, 30, 2);
+    log.input_record(0, 30, 2);
     log.state(40);
     log.info(1, to, 5);
     log.snapshot(1, to, 5);
     log.state(to);
-    log.mail(1, to + 10, 5);
+    log.input_record(1, to + 10, 5);
     log.hash(1, to + 20, 6);
     const tools::ReplayLog read = log.read();
     EXPECT_EQ(read.begin_step(), to);
     EXPECT_EQ(read.usable_step(), to + 20);
-    EXPECT_EQ(read.letters.size(), 1u);
-    EXPECT_TRUE(read.goes_back);
+    EXPECT_EQ(read.inputs.size(), 1u);
+    EXPECT_TRUE(read.is_rewound);
     EXPECT_THAT(read.holes, IsEmpty());
     EXPECT_EQ(read.bad_snapshot, "");
   }
@@ -171,11 +171,11 @@ TEST(ReplayLog, ASnapshotThatLacksAPieceEndsTheProof) {
   HandMade log;
   log.info(0, 0, 0);
   log.state(0);
-  log.mail(0, 30, 0);
+  log.input_record(0, 30, 0);
   log.state(40);
   log.info(1, 300, 2);  // number 1 was skipped
   log.snapshot(1, 300, 2, {1});
-  log.mail(1, 310, 2);
+  log.input_record(1, 310, 2);
   const tools::ReplayLog read = log.read();
   EXPECT_EQ(read.begin_step(), 0);
   EXPECT_EQ(read.usable_step(), 30);
@@ -188,24 +188,24 @@ TEST(ReplayLog, GoesBackBehindItsSnapshotOnlyWithAnother) {
   log.snapshot(0, 100, 1);
   log.state(120);
   log.info(1, 50, 1);
-  log.mail(1, 60, 1);
+  log.input_record(1, 60, 1);
   const tools::ReplayLog read = log.read();
   EXPECT_FALSE(read.snapshot);
   EXPECT_EQ(read.bad_snapshot, "sim.snapshot: the log goes back to step 50, before its snapshot");
-  EXPECT_EQ(read.usable_step(), 0);  // nobody knows what came before
+  EXPECT_EQ(read.usable_step(), 0);  // no one knows what came before
 }
 
-/// Letters of a step come behind its messages.
+/// Inputs of a step come behind its messages.
 TEST(ReplayLog, EndsWithTheLastStepOfWhichAllIsThere) {
   HandMade record;
   record.info(0, 0, 0);
-  record.mail(0, 5, 0);
+  record.input_record(0, 5, 0);
   record.raw("r1.odometry", sim::Bytes(8), 40);
   record.state(41);
   const tools::ReplayLog read = record.read();
   EXPECT_EQ(read.usable_step(), 40) << "in a record all of a step stands before anything of the next";
   EXPECT_EQ(read.cut, "the log breaks off in step 41: what stands behind step 40 is left out");
-  // As lcm-logger stamps: the sim.mail of any step behind the last one may have been lost.
+  // As lcm-logger stamps: the sim.inputs of any step behind the last one may have been lost.
   HandMade logged;
   logged.info(0, 0, 0);
   logged.raw("sim.state", shoal::encode([] {
@@ -215,20 +215,20 @@ TEST(ReplayLog, EndsWithTheLastStepOfWhichAllIsThere) {
                return state;
              }()),
              2);
-  logged.mail(0, 5, 0);
+  logged.input_record(0, 5, 0);
   logged.state(40);
   logged.info(0, 60, 1);
   logged.state(61);
   const tools::ReplayLog other = logged.read();
   EXPECT_FALSE(other.own_stamps);
-  EXPECT_EQ(other.usable_step(), 59) << "the letters of step 60 come behind its sim.info";
+  EXPECT_EQ(other.usable_step(), 59) << "the inputs of step 60 come behind its sim.info";
   EXPECT_EQ(other.cut, "the log breaks off in step 61: what stands behind step 59 is left out");
 }
 
 TEST(ReplayLog, ADamagedStampAtItsEndProvesNothing) {
   HandMade log;
   log.info(0, 0, 0);
-  log.mail(0, 5, 0);
+  log.input_record(0, 5, 0);
   log.raw("r1.odometry", sim::Bytes(8), 1'000'000'000);
   EXPECT_EQ(log.read().usable_step(), 5);
 }

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "shoal/sim_mail_t.hpp"
+#include "shoal/sim_inputs_t.hpp"
 #include "shoal/twist_command_t.hpp"
 #include "tests/project_paths.hpp"
 #include "tests/scratch_folder.hpp"
@@ -49,8 +49,8 @@ TEST_F(ReplayTest, TheMailIsNeeded) {
   record(driven_world());
   const std::string whole = log;
   log = folder.file("without.lcm");
-  test::copy_log(whole, log, [](const auto& event) { return event.channel == "sim.mail"; });
-  EXPECT_THAT(error(), HasSubstr("cannot be run again from the start: sim.mail 0"));
+  test::copy_log(whole, log, [](const auto& event) { return event.channel == "sim.inputs"; });
+  EXPECT_THAT(error(), HasSubstr("cannot be run again from the start: sim.inputs 0"));
 }
 
 TEST_F(ReplayTest, MailThatIsThrownAwayIsNoDifference) {
@@ -107,9 +107,9 @@ TEST_F(ReplayTest, BytesOfSerialPortsAreReadAgain) {
   EXPECT_EQ(run.ends["/nowhere/b"]->from_world, "hello\npart of a line\n");
   const ReplayOutcome outcome = again();
   EXPECT_EQ(outcome.exit_code(), 0) << outcome.to_text();
-  test::copy_log(log, folder.file("quiet.lcm"), [](const auto& event) { return event.channel == "sim.mail"; });
+  test::copy_log(log, folder.file("quiet.lcm"), [](const auto& event) { return event.channel == "sim.inputs"; });
   log = folder.file("quiet.lcm");
-  EXPECT_THAT(error(), HasSubstr("sim.mail 0"));
+  EXPECT_THAT(error(), HasSubstr("sim.inputs 0"));
 }
 
 TEST_F(ReplayTest, APlantedDifferenceIsFoundWithStepVehicleAndQuantity) {
@@ -164,17 +164,17 @@ TEST_F(ReplayTest, ALetterThatIsMissingEndsTheProof) {
   const std::string whole = log;
   log = folder.file("hole.lcm");
   test::copy_log(whole, log, [](const bridges::LogEvent& event) {
-    if (event.channel != "sim.mail") return false;
-    const auto mail = shoal::decode<shoal::sim_mail_t>(event.payload, shoal::Finite::any);
-    return mail.sequence == 12 || mail.sequence == 13;
+    if (event.channel != "sim.inputs") return false;
+    const auto input_record = shoal::decode<shoal::sim_inputs_t>(event.payload, shoal::Finite::any);
+    return input_record.sequence == 12 || input_record.sequence == 13;
   });
   const ReplayOutcome outcome = again();
   EXPECT_EQ(outcome.exit_code(), 4);
   EXPECT_FALSE(outcome.first) << outcome.to_text();
-  // The client speaks every 10 steps, from step 0 on, and the record has its messages beside sim.mail.
+  // The client speaks every 10 steps, from step 0 on, and the record has its messages beside sim.inputs.
   EXPECT_EQ(outcome.steps, 120);
   EXPECT_THAT(outcome.to_text(),
-              AllOf(HasSubstr("equal for 120 steps"), HasSubstr("sim.mail 12 to 13 (of steps from 120 to 130)"),
+              AllOf(HasSubstr("equal for 120 steps"), HasSubstr("sim.inputs 12 to 13 (of steps from 120 to 130)"),
                     HasSubstr("nothing after step 120 can be proved")));
 }
 
@@ -185,7 +185,7 @@ TEST_F(ReplayTest, MessagesThatALoggerLostAreCountedOnly) {
   int odometry = 0;
   test::copy_log(whole, log,
                  [&](const bridges::LogEvent& event) { return event.channel == "r1.odometry" && ++odometry % 5 == 2; });
-  // lcm-logger stamps by the wall clock: in a record of our own nothing can be lost.
+  // lcm-logger stamps by the wall clock: in our own record nothing can be lost.
   EXPECT_EQ(again().exit_code(), 1);
   std::string bytes;
   {
@@ -237,7 +237,7 @@ TEST_F(ReplayTest, UntilEndsEarlier) {
 TEST_F(ReplayTest, RefusesWhatIsNoLogOfARun) {
   EXPECT_THAT(error(), HasSubstr("No such file"));
   std::ofstream(log) << "this is text";
-  EXPECT_THAT(error(), HasSubstr("holds no event that can be read"));
+  EXPECT_THAT(error(), HasSubstr("contains no readable event"));
   std::filesystem::remove(log);
   record(driven_world());
   const std::string whole = log;
@@ -262,13 +262,13 @@ TEST_F(ReplayTest, HostileMessagesAreToldOfAndPassedOver) {
   bridges::RecordingBus out(std::make_unique<sim::InProcessBus>(), log, 0);
   for (int i = 0; const auto event = reader.next(); ++i) {
     out.publish(event->channel, event->payload, sim::Time(event->utime));
-    if (i == 20) out.publish("sim.mail", shoal::encode(forward(1)), sim::Time(event->utime));
+    if (i == 20) out.publish("sim.inputs", shoal::encode(forward(1)), sim::Time(event->utime));
     if (i == 21) out.publish("sim.hash", sim::Bytes(3), sim::Time(event->utime));
   }
   out.close();
   const ReplayOutcome outcome = again();
   EXPECT_EQ(outcome.exit_code(), 0) << outcome.to_text();
-  EXPECT_THAT(outcome.to_text(), AllOf(HasSubstr("sim.mail: "), HasSubstr("sim.hash: ")));
+  EXPECT_THAT(outcome.to_text(), AllOf(HasSubstr("sim.inputs: "), HasSubstr("sim.hash: ")));
 }
 
 TEST_F(ReplayTest, AWorldWithAnotherStepCannotBeCompared) {
@@ -297,7 +297,7 @@ TEST_F(ReplayTest, AMeshThatIsAnotherOneIsTold) {
 }
 
 /// At the end of events, in the middle of them, and in a log of few states: what a step left in the log before its
-/// letters came is left out.
+/// inputs came is left out.
 TEST_F(ReplayTest, ARecordIsUsedAsFarAsItGoesWhereverItIsCut) {
   int cuts = 0, used = 0;
   for (const char* more : {"", "state_rate_hz: 2\n", "run: {seed: 3, hash_every_steps: never}\n"}) {
@@ -339,9 +339,9 @@ TEST_F(ReplayTest, WhatIsCutOffIsTold) {
   const std::string whole = log;
   bridges::EventLogReader reader(whole);
   std::uintmax_t end = 0;
-  // The messages of step 121 tell of a letter that is not there any more; the last stamp is that of the letter itself.
+  // The messages of step 121 report an input that does not exist any more; the last stamp is that of the input itself.
   while (const auto event = reader.next())
-    if (event->channel == "sim.mail" && event->utime == 121 * 10'000 + 1'767'225'600'000'000) end = event->offset;
+    if (event->channel == "sim.inputs" && event->utime == 121 * 10'000 + 1'767'225'600'000'000) end = event->offset;
   ASSERT_GT(end, 0u);
   cut(whole, end);
   const ReplayOutcome outcome = again();
@@ -365,17 +365,17 @@ TEST_F(ReplayTest, OneLostMessageNamesItsStep) {
       SCOPED_TRACE(channel + ", number " + std::to_string(number));
       std::size_t count = 0;
       test::copy_log(whole, log, [&](const auto& event) { return event.channel == channel && count++ == number; });
-      if (channel == "sim.mail" && number == 0) {
-        EXPECT_THAT(error(), HasSubstr("cannot be run again from the start: sim.mail 0 (of step 0) is missing"));
+      if (channel == "sim.inputs" && number == 0) {
+        EXPECT_THAT(error(), HasSubstr("cannot be run again from the start: sim.inputs 0 (of step 0) is missing"));
         continue;
       }
       const ReplayOutcome outcome = again();
-      if (channel == "sim.mail") {
+      if (channel == "sim.inputs") {
         EXPECT_EQ(outcome.exit_code(), 4);
-        // Published at the end of the step that began with the letter.
+        // Published at the end of the step that began with the input.
         EXPECT_THAT(outcome.to_text(),
-                    HasSubstr(fmt::format("sim.mail {} (of step {}) is missing", number, steps_of[number] - 1)));
-      } else if (channel == "sim.hash" || channel == "r1.drive.cmd") {  // nothing is lost with it: letters have it
+                    HasSubstr(fmt::format("sim.inputs {} (of step {}) is missing", number, steps_of[number] - 1)));
+      } else if (channel == "sim.hash" || channel == "r1.drive.cmd") {  // nothing is lost with it: inputs have it
         EXPECT_EQ(outcome.exit_code(), 0) << outcome.to_text();
       } else {
         EXPECT_EQ(outcome.exit_code(), 1) << outcome.to_text();
@@ -405,7 +405,7 @@ TEST_F(ReplayTest, TheRunHashTellsOfMessagesThatTheLogLost) {
 }
 
 TEST_F(ReplayTest, WhatIsAskedForAfterTheLastStepIsDoneAgain) {
-  for (const int last : {steps, steps + 7}) {  // with a hash of its own before, and without
+  for (const int last : {steps, steps + 7}) {  // with its own hash before, and without
     log = folder.file(std::to_string(last) + ".lcm");
     RecordedRun run(driven_world(), log);
     run.run(last, {}, [&] {

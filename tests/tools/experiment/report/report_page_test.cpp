@@ -86,11 +86,11 @@ print("; ".join(checker.problems), end="")
   const std::string command =
       "/usr/bin/python3 -B " + folder.file("check.py") + " " + folder.file("page.html") + " 2>&1";
   FILE* pipe = popen(command.c_str(), "r");
-  std::string said;
+  std::string reported;
   char block[4096];
-  for (std::size_t size = 0; (size = fread(block, 1, sizeof block, pipe)) > 0;) said.append(block, size);
-  if (pclose(pipe) != 0) said += " (python failed)";
-  return said;
+  for (std::size_t size = 0; (size = fread(block, 1, sizeof block, pipe)) > 0;) reported.append(block, size);
+  if (pclose(pipe) != 0) reported += " (python failed)";
+  return reported;
 }
 
 TEST(Html, TextStaysText) {
@@ -121,17 +121,17 @@ TEST(Report, OfARunIsOnePageWithVerdictsFirst) {
   const ScratchFolder folder;
   const std::string directory = folder.file("run");
   const tools::Summary summary = run_into(directory,
-                                          "metrics: [{name: way, type: distance, vehicle: r1}]\n"
-                                          "pass: [way.travelled_m < 1, "
-                                          "way.travelled_m > 1]\n");
+                                          "metrics: [{name: distance, type: distance, vehicle: r1}]\n"
+                                          "pass: [distance.travelled_m < 1, "
+                                          "distance.travelled_m > 1]\n");
   ASSERT_EQ(summary.exit_code, 1);
   const std::string page = tools::report_page({directory});
   EXPECT_EQ(problems_of_page(page), "");
   EXPECT_THAT(page, HasSubstr("<title>small</title>"));
   EXPECT_THAT(page, HasSubstr("<th scope=\"row\">Seed</th><td>7</td>"));
   EXPECT_THAT(page, HasSubstr(tools::short_version()));
-  EXPECT_THAT(page, HasSubstr("<span class=\"bad\">FAILED</span> way.travelled_m"));
-  EXPECT_THAT(page, HasSubstr("<span class=\"good\">passed</span> way.travelled_m"));
+  EXPECT_THAT(page, HasSubstr("<span class=\"bad\">FAILED</span> distance.travelled_m"));
+  EXPECT_THAT(page, HasSubstr("<span class=\"good\">passed</span> distance.travelled_m"));
   EXPECT_THAT(page, HasSubstr("1 of 2 rules holds, 1 failed."));
   EXPECT_LT(page.find("FAILED"), page.find("r1 travelled"));
   EXPECT_LT(page.find("r1 travelled"), page.find("<img"));
@@ -159,7 +159,7 @@ TEST(Report, NamesPicturesThatAreMissingOrNone) {
   write(directory + "/errors.png", "GIF89a");
   const std::string page = tools::report_page({directory});
   EXPECT_THAT(page, HasSubstr("tracks.png is missing."));
-  EXPECT_THAT(page, HasSubstr("errors.png is not a whole PNG file."));
+  EXPECT_THAT(page, HasSubstr("errors.png is not a complete PNG file."));
   EXPECT_EQ(problems_of_page(page), "");
 }
 
@@ -175,7 +175,7 @@ TEST(Report, TakesNoPictureThatIsCutOffOrDamaged) {
     EXPECT_FALSE(tools::is_whole_png(bad));
     write(directory + "/tracks.png", bad);
     const std::string page = tools::report_page({directory});
-    EXPECT_THAT(page, HasSubstr("tracks.png is not a whole PNG file."));
+    EXPECT_THAT(page, HasSubstr("tracks.png is not a complete PNG file."));
     EXPECT_THAT(page, Not(HasSubstr("<img")));
   }
 }
@@ -188,8 +188,8 @@ TEST(Report, SaysWhatTheWorldIsAndThatNothingWasJudged) {
   EXPECT_THAT(page, HasSubstr("not judged</span>: the world has no rules"));
   EXPECT_THAT(page, Not(HasSubstr("passed</span>")));
   run_into(folder.file("b"),
-           "metrics: [{name: way, type: distance, vehicle: r1}]\n"
-           "pass: [way.travelled_m < 1]\n");
+           "metrics: [{name: distance, type: distance, vehicle: r1}]\n"
+           "pass: [distance.travelled_m < 1]\n");
   EXPECT_THAT(tools::report_page({folder.file("a"), folder.file("b")}),
               HasSubstr("<tr><td>verdict</td><td>not judged</td><td>passed</td></tr>"));
 }
@@ -212,23 +212,23 @@ TEST(Report, TellsOfProgramsThatFailedAndOfAnOutage) {
   const tools::Summary run = run_into(directory, "");
   tools::Summary summary = run;
   summary.processes = {{"pilot", "was killed by signal 9 (Killed)", 2, true}};
-  summary.metrics["place.longest_gap_s"] = 60;
+  summary.metrics["place.max_gap_s"] = 60;
   tools::write_summary(directory, summary);
   const std::string page = tools::report_page({directory});
   EXPECT_THAT(page, HasSubstr("Programs of the world failed."));
-  EXPECT_THAT(page, HasSubstr("For 60.0 s there was no estimate: place.longest_gap_s."));
+  EXPECT_THAT(page, HasSubstr("For 60.0 s there was no estimate: place.max_gap_s."));
 }
 
 TEST(Report, OfSeveralRunsComparesThem) {
   const ScratchFolder folder;
-  const std::string metrics = "metrics: [{name: way, type: distance, vehicle: r1}]\n";
+  const std::string metrics = "metrics: [{name: distance, type: distance, vehicle: r1}]\n";
   run_into(folder.file("a"), metrics);
   run_into(folder.file("b"), "metrics: [{name: other, type: collisions}]\n", "large");
   const std::string page = tools::report_page({folder.file("a"), folder.file("b")});
   EXPECT_EQ(problems_of_page(page), "");
   EXPECT_THAT(page, HasSubstr("<tr><td>world</td><td>small</td><td>large</td></tr>"));
   EXPECT_THAT(page, HasSubstr("<td></td><td>0</td></tr>"));
-  EXPECT_THAT(page, HasSubstr("<summary>Figures that are 0</summary>"));  // nobody moved, nothing touched
+  EXPECT_THAT(page, HasSubstr("<summary>Figures that are 0</summary>"));  // no one moved, nothing touched
 }
 
 /// A results folder of the figures alone, with the world that they are of.
@@ -253,7 +253,7 @@ std::map<std::string, double> sea_figures() {
   std::map<std::string, double> figures;
   const auto error = [&](const std::string& name, double rms_m, double final_m, double percent) {
     figures[name + ".rms_m"] = rms_m, figures[name + ".final_m"] = final_m, figures[name + ".max_m"] = 2 * final_m;
-    figures[name + ".samples"] = 1951, figures[name + ".longest_gap_s"] = 1;
+    figures[name + ".samples"] = 1951, figures[name + ".max_gap_s"] = 1;
     figures[name + ".per_distance_percent"] = percent;
   };
   error("cooperative", 0.912, 0.7, 0.025);
@@ -272,7 +272,7 @@ TEST(Report, SaysInWordsWhatCameOut) {
   EXPECT_THAT(page, HasSubstr("auv localises itself to 0.91 m rms (cooperative); alone: 61.2 m rms, 138 m at the end, "
                               "after 2.80 km."));
   EXPECT_THAT(page, HasSubstr("link: 130 packets sent by auv; 75 % of 100 addressed to auv arrived."));
-  // Without the world nobody knows whose they are; a world that is not YAML is not known.
+  // Without the world no one knows whose they are; a world that is not YAML is not known.
   const std::string unknown = tools::report_page({folder_of(folder, sea_figures(), "}{")});
   EXPECT_THAT(unknown, HasSubstr("cooperative: 0.91 m rms; alone: 61.2 m rms, 138 m at the end, after 2.80 km."));
 }
@@ -331,7 +331,7 @@ TEST(Report, TellsWhatIsNoResultsFolder) {
 TEST(Report, TellsWhatIsWrongWithASummary) {
   const ScratchFolder folder;
   const std::string directory = folder.file("run");
-  run_into(directory, "metrics: [{name: way, type: distance, vehicle: r1}]\n");
+  run_into(directory, "metrics: [{name: distance, type: distance, vehicle: r1}]\n");
   const std::string good = text_of_file(directory + "/summary.json");
   const auto error_with = [&](const std::string& text) {
     write(directory + "/summary.json", text);
@@ -343,8 +343,8 @@ TEST(Report, TellsWhatIsWrongWithASummary) {
     EXPECT_NE(at, text.npos) << from;
     return text.replace(at, from.size(), to);
   };
-  EXPECT_THAT(error_with(good.substr(0, good.size() / 2)), HasSubstr("summary.json: is no JSON"));
-  EXPECT_THAT(error_with(""), HasSubstr("summary.json: is no JSON"));
+  EXPECT_THAT(error_with(good.substr(0, good.size() / 2)), HasSubstr("summary.json: is not a JSON"));
+  EXPECT_THAT(error_with(""), HasSubstr("summary.json: is not a JSON"));
   EXPECT_THAT(error_with("[1, 2]"), HasSubstr("must be an object, got array"));
   EXPECT_THAT(error_with("{}"), HasSubstr("has no 'world'"));
   EXPECT_THAT(error_with(changed("\"seed\": 7", "\"seed\": \"x\"")),
@@ -352,8 +352,8 @@ TEST(Report, TellsWhatIsWrongWithASummary) {
   EXPECT_THAT(error_with(changed("\"rules\": []", "\"rules\": 3")), HasSubstr("'rules' must be a list, got number"));
   EXPECT_THAT(error_with(changed("\"rules\": []", "\"rules\": [{\"rule\": 1}]")),
               HasSubstr("rules: 'rule' must be text"));
-  EXPECT_THAT(error_with(changed("\"way.travelled_m\": ", "\"way.travelled_m\": \"far\", \"x\": ")),
-              HasSubstr("'way.travelled_m' must be a number or null, got string"));
+  EXPECT_THAT(error_with(changed("\"distance.travelled_m\": ", "\"distance.travelled_m\": \"far\", \"x\": ")),
+              HasSubstr("'distance.travelled_m' must be a number or null, got string"));
   write(directory + "/summary.json", good);
   EXPECT_EQ(error_of_report({directory}), "");
 }

@@ -186,7 +186,7 @@ TEST(Summary, WithoutRulesNothingHasPassed) {
 
 TEST(RunWorld, WithoutItsProgramsIsNotJudged) {
   const auto world = small_world(
-      "metrics: [{name: way, type: distance, vehicle: r1}]\npass: [way.travelled_m > 1000]\n"
+      "metrics: [{name: distance, type: distance, vehicle: r1}]\npass: [distance.travelled_m > 1000]\n"
       "processes: [{name: pilot, command: [sleep, '1000']}]\n");
   const tools::Summary summary = tools::run_world(world, quiet_run());
   EXPECT_EQ(summary.exit_code, 0);
@@ -247,9 +247,9 @@ TEST(Results, ShowErrorsWithWhatTheEstimateSaysOfThem) {
                                           "estimate_z_m,truth_z_m,travelled_m,sigma_m,nees\n"));
   EXPECT_THAT(errors, testing::HasSubstr(",5.000000,"));  // sigma: the root of 9 + 16
   EXPECT_THAT(errors, testing::HasSubstr(",2.000"));
-  for (const char* picture : {"tracks.png", "errors.png", "nees.png"})
-    EXPECT_THAT(text_of_file(options.results + "/" + picture), testing::StartsWith("\x89PNG")) << picture;
-  options.pictures = false;
+  for (const char* image : {"tracks.png", "errors.png", "nees.png"})
+    EXPECT_THAT(text_of_file(options.results + "/" + image), testing::StartsWith("\x89PNG")) << image;
+  options.plots = false;
   EXPECT_EQ(tools::run_world(loaded, options).exit_code, 0);
   EXPECT_FALSE(fs::exists(options.results + "/nees.png"));
 }
@@ -403,10 +403,10 @@ TEST(Results, DoNotChangeTheRun) {
 TEST(Summary, IsWrittenWhateverAClientCallsItself) {
   tools::Summary summary;
   summary.clients.push_back({.client = "pilot\xff"});
-  summary.notices.push_back({1, "quit", "operator\xff", "", ""});
+  summary.audit.push_back({1, "quit", "operator\xff", "", ""});
   const auto json = nlohmann::json::parse(summary.to_json());
   EXPECT_EQ(json["clients"][0]["name"], "pilot\xef\xbf\xbd");  // U+FFFD, the replacement character
-  EXPECT_EQ(json["control"]["notices"][0]["client"], "operator\xef\xbf\xbd");
+  EXPECT_EQ(json["control"]["audit"][0]["client"], "operator\xef\xbf\xbd");
 }
 
 TEST(Summary, DoesNotPassWhenAClientGaveTwoAnswersToOneTick) {

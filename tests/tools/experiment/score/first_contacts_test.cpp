@@ -110,7 +110,7 @@ TEST(FirstContacts, GoBackWithTheWorld) {
   watched.contacts.visit_state(saver);
   saver.end();
   const sim::Bytes before = saver.take_bytes();
-  const auto go_back = [&] {
+  const auto rewinds = [&] {
     watched.test.world.state().restore(world);
     auto restorer = sim::StateArchive::restorer(before);
     watched.contacts.visit_state(restorer);
@@ -119,7 +119,7 @@ TEST(FirstContacts, GoBackWithTheWorld) {
   watched.run_for(3);
   const auto straight = watched.pairs();
   ASSERT_EQ(straight.size(), 2u);  // the first passes its speed on to the second, and that to the third
-  go_back();
+  rewinds();
   EXPECT_THAT(watched.pairs(), IsEmpty());
   watched.run_for(3);
   EXPECT_EQ(watched.pairs(), straight);

@@ -164,14 +164,14 @@ TEST(PositionError, TakesAnEstimateWithoutAUsableCovariance) {
 TEST(PositionError, ShowsHowLongThereWasNoEstimate) {
   MetricWorld world("  - {name: e, type: position_error, vehicle: r1, channel: est, from_s: 0.5}\n");
   world.run_for(1.5);
-  EXPECT_NEAR(world.figure("e.longest_gap_s"), 1, 1e-9);  // none yet
+  EXPECT_NEAR(world.figure("e.max_gap_s"), 1, 1e-9);  // none yet
   for (const double pause_s : {0.4, 1.6, 0.2}) {
     world.estimate({1, 0, 0}, some_covariance());
     world.run_for(pause_s);
   }
-  EXPECT_NEAR(world.figure("e.longest_gap_s"), 1.6, 1e-9);
+  EXPECT_NEAR(world.figure("e.max_gap_s"), 1.6, 1e-9);
   world.run_for(2);
-  EXPECT_NEAR(world.figure("e.longest_gap_s"), 2.2, 1e-9);  // since the last
+  EXPECT_NEAR(world.figure("e.max_gap_s"), 2.2, 1e-9);  // since the last
 }
 
 TEST(PositionError, SaysOnceWhatIsWrongAndThenHowOften) {
@@ -184,19 +184,19 @@ TEST(PositionError, SaysOnceWhatIsWrongAndThenHowOften) {
   }
   world.estimate({1, 0, 0}, some_covariance());
   world.run_for(0.01);
-  const std::string said = log.text();
+  const std::string reported = log.text();
   EXPECT_EQ(world.scoring.bad_messages(), 300);
-  EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 2) << said;
-  EXPECT_NE(said.find("metric 'e': est: 'utime' is not within the last 10 s"), said.npos) << said;
-  EXPECT_NE(said.find("metric 'e': 300 messages in a row were ignored"), said.npos) << said;
+  EXPECT_EQ(std::count(reported.begin(), reported.end(), '\n'), 2) << reported;
+  EXPECT_NE(reported.find("metric 'e': est: 'utime' is not within the last 10 s"), reported.npos) << reported;
+  EXPECT_NE(reported.find("metric 'e': 300 messages in a row were ignored"), reported.npos) << reported;
 }
 
 TEST(PositionError, SaysOnceWhatIsWrongBetweenGoodOnesAndStopsAtAHundred) {
   const test_support::LogCapture log;
   std::ptrdiff_t of_the_world = 0;  // that no device of it publishes on 'est'
   const auto lines = [&] {
-    const std::string said = log.text();
-    return std::count(said.begin(), said.end(), '\n') - of_the_world;
+    const std::string reported = log.text();
+    return std::count(reported.begin(), reported.end(), '\n') - of_the_world;
   };
   {
     MetricWorld world("  - {name: e, type: position_error, vehicle: r1, channel: est}\n");
@@ -229,7 +229,7 @@ TEST(PositionError, WarnsAtTheEndThatNothingCame) {
   };
   world.run_for(0.1);
   ASSERT_EQ(warnings().size(), 2u);
-  EXPECT_NE(warnings()[0].find("metric 'e': no estimate came on 'est': its figures are not numbers"),
+  EXPECT_NE(warnings()[0].find("metric 'e': no estimate was received on 'est': its figures are not numbers"),
             std::string::npos);
   EXPECT_NE(warnings()[1].find("metric 'late': the run ended at 0.1 s, before from_s, 5 s"), std::string::npos);
   world.estimate({1, 0, 0}, some_covariance(), -20);
@@ -256,10 +256,10 @@ TEST(PositionError, PerDistanceIsOfTheWayThatWasTravelled) {
   world.drive(0.5);
   world.run_for(3);
   world.estimate({0, 0.1, 0}, some_covariance());
-  const double way_m = world.position_m().x() - 1;  // it goes straight
+  const double distance_m = world.position_m().x() - 1;  // it goes straight
   world.run_for(0.001);
-  EXPECT_GT(way_m, 1);
-  EXPECT_NEAR(world.figure("e.per_distance_percent"), 100 * 0.1 / way_m, 0.01);
+  EXPECT_GT(distance_m, 1);
+  EXPECT_NEAR(world.figure("e.per_distance_percent"), 100 * 0.1 / distance_m, 0.01);
 }
 
 TEST(PositionError, OfAClockThatIsAheadWaitsForItsTime) {
@@ -379,7 +379,7 @@ TEST(Collisions, CountContactsThatBeginButNotWithTheGround) {
 
 TEST(Collisions, DoNotChangeTheRun) {
   MetricWorld with("  - {name: all, type: collisions}\n");
-  MetricWorld without("  - {name: way, type: distance, vehicle: r1}\n");
+  MetricWorld without("  - {name: distance, type: distance, vehicle: r1}\n");
   for (MetricWorld* world : {&with, &without}) {
     world->drive(1);
     world->run_for(4);
@@ -446,7 +446,7 @@ TEST(Delivery, CountsWhatModemsSentAndWhatTheOthersHeard) {
   EXPECT_EQ(figures.at("all.ratio"), figures.at("all.received") / (figures.at("all.received") + lost));
 }
 
-/// far cannot hear a, near can.
+/// far cannot receive a, near can.
 TEST(Delivery, IsOfWhatWasSentToAModem) {
   const std::string modem = "{name: modem, type: acoustic_modem}";
   test::TestWorld test(test::modem_sea(
@@ -570,10 +570,10 @@ TEST(Delivery, OfModemsThatHaveLeftIsStillAboutThem) {
 }
 
 /// A box that turns about its y axis at 1 rad/s, its nose going down, without gravity.
-TEST(Lean, TellsMeanSpreadAndFallOfASteadyTurn) {
+TEST(Tilt, TellsMeanSpreadAndFallOfASteadyTurn) {
   test::TestWorld test(test::box_world(
       "        - {name: clock, type: clock}\n", "{step_s: 0.001, gravity_mps2: 0}",
-      "metrics:\n  - {name: all, type: lean, vehicle: r1}\n  - {name: late, type: lean, vehicle: r1, from_s: 5}\n"));
+      "metrics:\n  - {name: all, type: tilt, vehicle: r1}\n  - {name: late, type: tilt, vehicle: r1, from_s: 5}\n"));
   tools::Scoring scoring(test.world);
   sim::Body& body = *test.world.find_vehicle("r1")->bodies().front().second;
   body.set_velocity_W({0, 0, 0}, {0, 1, 0});
@@ -607,7 +607,7 @@ TEST(BytesPerMetre, NeedsAnErrorThatBecameSmaller) {
   world.test.send("est2", pose);
   world.run_for(0.01);
   EXPECT_NEAR(world.figure("cost.reduction_m"), 5, creep_m);
-  EXPECT_EQ(world.figure("cost.bytes_per_metre"), 0);  // nobody sent anything
+  EXPECT_EQ(world.figure("cost.bytes_per_metre"), 0);  // no one sent anything
   for (int i = 0; i < 9; ++i) world.estimate({30, 0, 0}, some_covariance());
   world.run_for(0.01);
   EXPECT_LT(world.figure("cost.reduction_m"), 0);
@@ -625,7 +625,7 @@ TEST(Figures, OfAMetricAreThoseThatItsTypeNames) {
       "  - {name: g, type: mission_time, when: any faster than 1}\n"
       "  - {name: h, type: collisions}\n"
       "  - {name: i, type: messages, channel: hello}\n"
-      "  - {name: j, type: lean, vehicle: r1}\n");
+      "  - {name: j, type: tilt, vehicle: r1}\n");
   std::vector<std::string> named, given;
   for (const sim::MetricConfig& metric : world.test.world.config().metrics)
     for (const std::string& figure : metric.figures()) named.push_back(figure);

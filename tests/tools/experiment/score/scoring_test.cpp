@@ -49,7 +49,7 @@ struct ScoredWorld {
 };
 
 /// What `save` saved goes back into `scoring`.
-void put_back(tools::Scoring& scoring, const sim::Bytes& bytes, tools::History history) {
+void restore_saved(tools::Scoring& scoring, const sim::Bytes& bytes, tools::History history) {
   auto archive = sim::StateArchive::restorer(bytes);
   scoring.visit_state(archive, history);
   archive.end();
@@ -75,11 +75,11 @@ TEST(Scoring, GoesBackToWhatWasSaved) {
     world.run_for(0.1);
     world.estimate("good", 5, 6);  // still in the mailbox
     EXPECT_EQ(world.scoring.figures().at("good.samples"), 2);
-    put_back(world.scoring, saved, history);
+    restore_saved(world.scoring, saved, history);
     EXPECT_EQ(world.scoring.figures().at("good.samples"), 1);
     EXPECT_EQ(world.scoring.figures().at("good.rms_m"), figures.at("good.rms_m"));
     world.run_for(0.01);
-    EXPECT_EQ(world.scoring.figures().at("good.samples"), 1) << "mail of another time was read";
+    EXPECT_EQ(world.scoring.figures().at("good.samples"), 1) << "a message of another branch was read";
   }
 }
 
@@ -88,11 +88,11 @@ TEST(Scoring, OnlyAWholeHistoryGoesIntoAnotherRun) {
   world.run_for(0.1);
   world.estimate("good", 1 + 3, 2 + 4);
   world.run_for(0.1);
-  put_back(other.scoring, save(world.scoring, tools::History::whole), tools::History::whole);
+  restore_saved(other.scoring, save(world.scoring, tools::History::whole), tools::History::whole);
   EXPECT_EQ(other.scoring.figures().at("good.rms_m"), world.scoring.figures().at("good.rms_m"));
   ScoredWorld third;
   const sim::Bytes length = save(world.scoring, tools::History::length);
-  EXPECT_THROW(put_back(third.scoring, length, tools::History::length), sim::SnapshotError);
+  EXPECT_THROW(restore_saved(third.scoring, length, tools::History::length), sim::SnapshotError);
 }
 
 TEST(Scoring, SumsUpTheErrors) {
@@ -214,12 +214,13 @@ TEST(Scoring, FailsARuleWhenNoEstimateCame) {
   world.run_for(0.1);
   EXPECT_TRUE(std::isnan(world.scoring.figures().at("good.rms_m")));
   for (const auto& verdict : world.scoring.verdicts()) EXPECT_FALSE(verdict.passed) << verdict.rule;
-  EXPECT_EQ(world.scoring.verdicts()[0].text(), "good.rms_m < 1000 (good.rms_m is none: no estimate came on 'good')");
+  EXPECT_EQ(world.scoring.verdicts()[0].text(),
+            "good.rms_m < 1000 (good.rms_m is none: no estimate was received on 'good')");
 }
 
 TEST(Scoring, ARuleOnAFigureThatIsNotThereSaysWhy) {
   ScoredWorld world(
-      "  - {name: way, type: distance, vehicle: r1, from_s: 100}\n"
+      "  - {name: distance, type: distance, vehicle: r1, from_s: 100}\n"
       "  - {name: bumps, type: collisions, from_s: 100}\n"
       "  - {name: talk, type: messages, channel: nothing, from_s: 100}\n"
       "  - {name: gap, type: position_error, vehicle: r1, channel: good, from_s: 100}\n"
@@ -228,10 +229,10 @@ TEST(Scoring, ARuleOnAFigureThatIsNotThereSaysWhy) {
       "  - {name: first, type: messages, channel: nothing}\n"
       "  - {name: cost, type: bytes_per_metre, metric: good, against: late}\n"
       "pass:\n"
-      "  - way.travelled_m < 10\n"
+      "  - distance.travelled_m < 10\n"
       "  - bumps.count == 0\n"
       "  - talk.count == 0\n"
-      "  - gap.longest_gap_s < 10\n"
+      "  - gap.max_gap_s < 10\n"
       "  - link.ratio > 0\n"
       "  - home.time_s < 100\n"
       "  - first.first_s < 100\n"
@@ -249,15 +250,16 @@ TEST(Scoring, ARuleOnAFigureThatIsNotThereSaysWhy) {
   const std::string early = " is none: the run ended at 1.01 s, before from_s, 100 s";
   EXPECT_THAT(
       rules, testing::ElementsAre(
-                 "way.travelled_m < 10 (way.travelled_m" + early + ")", "bumps.count == 0 (bumps.count" + early + ")",
-                 "talk.count == 0 (talk.count" + early + ")", "gap.longest_gap_s < 10 (gap.longest_gap_s" + early + ")",
+                 "distance.travelled_m < 10 (distance.travelled_m" + early + ")",
+                 "bumps.count == 0 (bumps.count" + early + ")", "talk.count == 0 (talk.count" + early + ")",
+                 "gap.max_gap_s < 10 (gap.max_gap_s" + early + ")",
                  "link.ratio > 0 (link.ratio is none: nothing was sent to these modems)",
                  "home.time_s < 100 (home.time_s is none: it did not happen)",
-                 "first.first_s < 100 (first.first_s is none: no message came on 'nothing')",
+                 "first.first_s < 100 (first.first_s is none: no message was received on 'nothing')",
                  "cost.bytes_per_metre < 100 (cost.bytes_per_metre is none: the error of 'good' is not known to be the "
                  "smaller "
                  "one)",
-                 "late.samples < late.rms_m (late.rms_m is none: no estimate came on 'late' from 0.5 s on)",
+                 "late.samples < late.rms_m (late.rms_m is none: no estimate was received on 'late' from 0.5 s on)",
                  "good.rms_m > 0 (good.rms_m is none: none of 1 message on 'good' could be used)"));
 }
 

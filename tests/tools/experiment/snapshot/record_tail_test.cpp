@@ -112,7 +112,7 @@ TEST_F(RecordTailTest, IsBoundedInSize) {
   // The world comes on top.
   EXPECT_LT(fs::file_size(log), all / 10 + tail.info.resolved_config.size() + 4000);
   EXPECT_FALSE(tail.replayable());
-  EXPECT_GT(tail.begin_s, 2);
+  EXPECT_GT(tail.start_s, 2);
   EXPECT_GT(tail.events, 0u);
   EXPECT_NE(tail.short_of, "");
 }

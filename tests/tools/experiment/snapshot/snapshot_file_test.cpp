@@ -89,13 +89,12 @@ TEST(SnapshotFile, RefusesOneWithAnyByteChanged) {
 
 TEST(SnapshotFile, RefusesForeignFilesAndOtherFormats) {
   EXPECT_EQ(error_of_bytes(sim::Bytes(100, std::byte{'x'})),
-            "a.snapshot: is no snapshot of shoal: it must begin with 'SHOALSNP'");
+            "a.snapshot: is not a Shoal snapshot: it must start with 'SHOALSNP'");
   sim::Bytes other = tools::to_bytes(example());
   other[8] = std::byte{3};
-  EXPECT_EQ(
-      error_of_bytes(other),
-      "a.snapshot: its format version must be 2, got 3: shoal 1.2.3 (abc) wrote it, and only the same build can go "
-      "on from it");
+  EXPECT_EQ(error_of_bytes(other),
+            "a.snapshot: its format version must be 2, got 3: shoal 1.2.3 (abc) wrote it, and only the same build can "
+            "continue from it");
   other.resize(40);
   EXPECT_EQ(error_of_bytes(other), "a.snapshot: its format version must be 2, got 3");
 }
@@ -110,8 +109,9 @@ TEST(SnapshotFile, RefusesTimesThatAreNone) {
 }
 
 TEST(SnapshotFile, RefusesWhatAnotherBuildWrote) {
-  EXPECT_EQ(error_of([] { tools::check_version(example(), "a.snapshot", "1.2.4 (abd)"); }),
-            "a.snapshot: was written by shoal 1.2.3 (abc), this is 1.2.4 (abd): only the same build can go on from it");
+  EXPECT_EQ(
+      error_of([] { tools::check_version(example(), "a.snapshot", "1.2.4 (abd)"); }),
+      "a.snapshot: was written by shoal 1.2.3 (abc), this is 1.2.4 (abd): only the same build can continue from it");
   EXPECT_NO_THROW(tools::check_version(example(), "a.snapshot", "1.2.3 (abc)"));
 }
 
@@ -121,8 +121,8 @@ TEST(SnapshotFile, SaysWhichFileCannotBeReadOrWritten) {
   EXPECT_EQ(error_of([&] { tools::read_snapshot(missing); }), missing + ": cannot be read: No such file or directory");
   EXPECT_EQ(error_of([&] { tools::write_snapshot(missing, example()); }),
             missing + ": cannot be written: No such file or directory");
-  EXPECT_EQ(error_of([&] { tools::read_snapshot(folder.file(".")); }), folder.file(".") + ": is no regular file");
-  EXPECT_EQ(error_of([&] { tools::read_snapshot("/dev/zero"); }), "/dev/zero: is no regular file");
+  EXPECT_EQ(error_of([&] { tools::read_snapshot(folder.file(".")); }), folder.file(".") + ": is not a regular file");
+  EXPECT_EQ(error_of([&] { tools::read_snapshot("/dev/zero"); }), "/dev/zero: is not a regular file");
 }
 
 }  // namespace

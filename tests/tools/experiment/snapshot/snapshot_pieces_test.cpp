@@ -30,7 +30,7 @@ TEST(SnapshotPieces, MakeTheSnapshotAgainWithoutItsScores) {
     EXPECT_LE(shoal::encode(pieces[i]).size(), 65'000u);
     EXPECT_EQ(pieces[i].utime, 10'000'000);
     EXPECT_EQ(pieces[i].branch, 2);
-    EXPECT_EQ(pieces[i].mail_sequence, 7);
+    EXPECT_EQ(pieces[i].input_sequence, 7);
     const auto bytes = together.add(pieces[i]);
     ASSERT_EQ(bytes.has_value(), i == 3) << i;
     if (!bytes) continue;

@@ -41,32 +41,32 @@ TEST(SnapshotRing, GivesBackWhatWasAddedBitForBit) {
 TEST(SnapshotRing, KeepsNoMoreStepsThanAskedForButAFamily) {
   SnapshotRing ring(2'000, 1 << 24);
   for (std::int64_t step = 0; step <= 100'000; step += 100) ring.add(step, state_at(step));
-  // 2000 steps, and at most 30 snapshots that lean on the same whole one.
+  // 2000 steps, and at most 30 snapshots that tilt on the same whole one.
   EXPECT_LE(*ring.oldest(), 98'000);
   EXPECT_GT(*ring.oldest(), 98'000 - 3'000);
   EXPECT_EQ(ring.get(*ring.oldest()), state_at(*ring.oldest()));
 }
 
 TEST(SnapshotRing, KeepsNoMoreBytesThanAskedFor) {
-  constexpr std::size_t most = 200'000;
-  SnapshotRing ring(1'000'000, most);
+  constexpr std::size_t max = 200'000;
+  SnapshotRing ring(1'000'000, max);
   for (std::int64_t step = 0; step <= 100'000; step += 100) {
     ring.add(step, state_at(step));
-    EXPECT_LE(ring.bytes(), most);
+    EXPECT_LE(ring.bytes(), max);
   }
   EXPECT_GT(*ring.oldest(), 0);
 }
 
 TEST(SnapshotRing, KeepsNoMoreBytesThanAskedForThoughNothingCanBeCompressed) {
   // A tenth of the room for each: with one whole and its differences only, 30 of them would stay.
-  constexpr std::size_t most = 1'000'000;
-  SnapshotRing ring(1'000'000, most);
+  constexpr std::size_t max = 1'000'000;
+  SnapshotRing ring(1'000'000, max);
   for (std::int64_t step = 0; step < 60; ++step) {
     std::mt19937_64 draw(static_cast<std::uint64_t>(step));
     sim::Bytes noise(100'000);
     for (std::byte& byte : noise) byte = static_cast<std::byte>(draw());
     ring.add(step, noise);
-    EXPECT_LE(ring.bytes(), most);
+    EXPECT_LE(ring.bytes(), max);
     EXPECT_EQ(ring.get(step), noise);
   }
   EXPECT_GE(ring.size(), 3u);
@@ -85,26 +85,26 @@ TEST(SnapshotRing, ForgetsTheFutureAndGoesOnFromThere) {
   SnapshotRing ring(10'000, 1 << 24);
   for (std::int64_t step = 0; step <= 10'000; step += 100) ring.add(step, state_at(step));
   const std::size_t all = ring.bytes();
-  ring.forget_after(4'250);
+  ring.discard_after(4'250);
   EXPECT_LT(ring.bytes(), all);
   EXPECT_EQ(ring.size(), 43u);
   EXPECT_EQ(ring.newest_until(9'999), 4'200);
   for (std::int64_t step = 4'300; step <= 10'000; step += 100) ring.add(step, state_at(step + 1));
   EXPECT_EQ(ring.get(4'200), state_at(4'200));
   EXPECT_EQ(ring.get(9'000), state_at(9'001));
-  ring.forget_after(-1);
+  ring.discard_after(-1);
   EXPECT_EQ(ring.size(), 0u);
   EXPECT_EQ(ring.bytes(), 0u);
   ring.add(5, state_at(5));
   EXPECT_EQ(ring.get(5), state_at(5));
 }
 
-/// Zeros alone, among others, in pairs, at the begin and at the end, and lengths that are no multiple of a word.
+/// Zeros alone, among others, in pairs, at the start and at the end, and lengths that are not multiple of a word.
 TEST(SnapshotRing, GivesBackZerosWhereverTheyAre) {
-  for (const std::size_t most : {std::size_t{1} << 24, std::size_t{100}}) {  // as they are, and deflated
+  for (const std::size_t max : {std::size_t{1} << 24, std::size_t{100}}) {  // as they are, and deflated
     std::mt19937_64 draw(7);
     for (int round = 0; round < 300; ++round) {
-      SnapshotRing ring(1'000, most);
+      SnapshotRing ring(1'000, max);
       sim::Bytes bytes(draw() % 200);
       for (std::size_t i = 0; i < bytes.size(); ++i)
         bytes[i] = draw() % 3 == 0 || i / 8 % (2 + round % 5) == 0 ? std::byte{0} : static_cast<std::byte>(draw());

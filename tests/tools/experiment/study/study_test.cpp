@@ -93,10 +93,10 @@ TEST(Curves, AreReadFromTheErrorsOfARun) {
   const ScratchFolder folder;
   write(folder.file("errors.csv"),
         "time_s,metric,error_m,travelled_m\n1,a,0.5,10\n2,b,9,11\n3,a,1.5,20\nrubbish\n4,a,x,30\n5,a,nan,30\n");
-  const tools::Curve by_way = tools::read_error_curve(folder.file("errors.csv"), "a", "travelled_m");
-  ASSERT_EQ(by_way.size(), 2u);
-  EXPECT_EQ(by_way[1].x, 20);
-  EXPECT_EQ(by_way[1].error_m, 1.5);
+  const tools::Curve by_distance = tools::read_error_curve(folder.file("errors.csv"), "a", "travelled_m");
+  ASSERT_EQ(by_distance.size(), 2u);
+  EXPECT_EQ(by_distance[1].x, 20);
+  EXPECT_EQ(by_distance[1].error_m, 1.5);
   EXPECT_EQ(tools::read_error_curve(folder.file("errors.csv"), "a", "time_s")[1].x, 3);
   EXPECT_TRUE(tools::read_error_curve(folder.file("errors.csv"), "a", "depth_m").empty());
   EXPECT_TRUE(tools::read_error_curve(folder.file("none.csv"), "a", "time_s").empty());
@@ -117,7 +117,7 @@ TEST(Curves, BandsLieWhereHalfOfTheRunsAre) {
   EXPECT_EQ(bands[8].runs, 2u);
   EXPECT_DOUBLE_EQ(bands[8].median, 12);
   curves.pop_back();
-  curves[1].resize(1);  // one of two runs goes on: half
+  curves[1].resize(1);  // one of two runs continues: half
   EXPECT_EQ(tools::bands_of(curves, 11).size(), 11u);
   curves.push_back(curves[1]);
   EXPECT_EQ(tools::bands_of(curves, 11).size(), 1u);
@@ -155,8 +155,8 @@ TEST(StudyResults, SayWhenCasesDoNotDifferThoughTheirSettingsDo) {
   const tools::LoadedStudy study = tools::load_study(folder.path());
   auto runs = made_up_runs(study, {{1, 2}, {1, 2}});
   const std::string note =
-      "cases 'plain', 'quick' do not differ: every run came out the same, though their settings differ: check that "
-      "what they set has an effect";
+      "cases 'plain', 'quick' do not differ: every run came out the same, although their settings differ: check that "
+      "the settings have an effect";
   EXPECT_THAT(tools::StudyResults(study, runs).to_text(), HasSubstr("note: " + note + "\n"));
   const auto json = nlohmann::json::parse(tools::StudyResults(study, runs).to_json(0));
   EXPECT_EQ(json["notes"], nlohmann::json::array({note}));
@@ -211,9 +211,8 @@ TEST(StudyConfig, TellsWhatIsWrong) {
   EXPECT_THAT(error("cases: [{name: a, set: {physics.step_s: -1}}]\n"), HasSubstr("'step_s' must be"));
   EXPECT_THAT(error("cases: [{name: a, set: {run.duration_s: forever}}]\n"),
               HasSubstr("case 'a': its world runs without end"));
-  EXPECT_THAT(error("figures: [e.rms]\n"),
-              HasSubstr("study.yaml:5:10: 'figures' names nothing of this world: 'e.rms'; "
-                        "known: e.final_m, e.longest_gap_s, e.max_m, e.per_distance_percent"));
+  EXPECT_THAT(error("figures: [e.rms]\n"), HasSubstr("study.yaml:5:10: 'figures' names nothing of this world: 'e.rms'; "
+                                                     "known: e.final_m, e.max_gap_s, e.max_m, e.per_distance_percent"));
   EXPECT_THAT(error("plots: [{name: p}]\n"), HasSubstr("plot 'p': needs either 'figure' or 'metrics'"));
   EXPECT_THAT(error("plots: [{name: p, metrics: [e]}]\n"), HasSubstr("'metrics' are drawn over 'distance' or 'time'"));
   EXPECT_THAT(error("plots: [{name: p, metrics: [f], over: time}]\n"), HasSubstr("names nothing of this world: 'f'"));
@@ -291,7 +290,7 @@ TEST(StudyResults, JudgeStatisticsOfCases) {
                            "  - mean(plain.e.rms_m) < mean(plain.e.rms_m)\n"        // 2 < 2
                            "  - mean(plain.passed) == 0.5\n"                        // 1 < 3, not 3 < 3
                            "  - std(quick.e.rms_m) > 0\n"                           // equal ones
-                           "  - mean(quick.e.final_m) > -1\n");                     // nobody has it
+                           "  - mean(quick.e.final_m) > -1\n");                     // no one has it
   const tools::LoadedStudy study = tools::load_study(folder.path());
   const auto runs = made_up_runs(study, {{1, 3}, {6, 6}});
   const tools::StudyResults results(study, runs);

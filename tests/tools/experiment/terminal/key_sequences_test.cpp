@@ -15,7 +15,7 @@ std::string keys_of(const std::string& bytes) {
   const KeySequences::Clock::time_point now{};
   std::string keys;
   for (const char byte : bytes) keys += sequences.next(byte, now);
-  return keys + sequences.alone(now + KeySequences::patience);
+  return keys + sequences.alone(now + KeySequences::timeout);
 }
 
 TEST(KeySequences, ArrowsAndFunctionKeysAreSwallowedWhole) {
@@ -34,8 +34,8 @@ TEST(KeySequences, EscapeAloneIsAKey) {
   const KeySequences::Clock::time_point now{};
   EXPECT_EQ(sequences.next('\033', now), "");
   EXPECT_EQ(sequences.alone(now), "");  // more may come
-  EXPECT_EQ(sequences.alone(now + KeySequences::patience), "\033");
-  EXPECT_EQ(sequences.alone(now + KeySequences::patience), "");
+  EXPECT_EQ(sequences.alone(now + KeySequences::timeout), "\033");
+  EXPECT_EQ(sequences.alone(now + KeySequences::timeout), "");
   EXPECT_EQ(sequences.next('O', now), "O");
   EXPECT_EQ(keys_of("\033?"), "\033?");  // one quickly after the other
   EXPECT_EQ(keys_of("\033\033OA"), "\033");

@@ -73,7 +73,7 @@ TEST_F(MeshImport, YCanBeUp) {
 TEST_F(MeshImport, ErrorsSayWhatIsWrong) {
   EXPECT_EQ(error_of([&] { tools::import_mesh("/nowhere/hull.dae", {}); }), "does not exist");
   EXPECT_THAT(error_of([&] { tools::import_mesh(file("text.txt", "hello"), {}); }),
-              testing::StartsWith("is no mesh that can be read: "));
+              testing::StartsWith("is not a mesh that can be read: "));
   EXPECT_EQ(error_of([&] { tools::import_mesh(file("cut.ply", ply.substr(0, ply.size() - 30)), {}); }),
             "has no triangles");
   EXPECT_EQ(error_of([&] { tools::save_mesh({}, (folder_ / "hull.dae").string()); }), "must end in .stl or .obj");
@@ -86,12 +86,12 @@ TEST_F(MeshImport, FilesThatCrashTheImporterAreErrors) {
   const std::string wrong_index = ply.substr(0, ply.size() - 2) + "9999999\n";
   EXPECT_THAT(
       error_of([&] { tools::import_mesh(file("index.ply", wrong_index), {.timeout_s = 20}); }),
-      testing::AnyOf("cannot be read: the importer failed on this file", "has a face of a vertex that is not there",
-                     testing::StartsWith("is no mesh that can be read: ")));
+      testing::AnyOf("cannot be read: the importer failed on this file", "has a face with a vertex that does not exist",
+                     testing::StartsWith("is not a mesh that can be read: ")));
 }
 
 TEST_F(MeshImport, AFileThatTakesTooLongIsAnError) {
-  // Assimp 5.2 looks for the end of this header for ever.
+  // Assimp 5.2 looks for the end of this header forever.
   EXPECT_EQ(error_of([&] { tools::import_mesh(file("cut.PLY", ply.substr(0, 150)), {.timeout_s = 0.3}); }),
             "cannot be read: the importer took longer than 0.3 s");
 }
@@ -99,7 +99,7 @@ TEST_F(MeshImport, AFileThatTakesTooLongIsAnError) {
 TEST_F(MeshImport, StlOfNumbersThatFloatCannotHoldIsAnError) {
   const sim::Mesh mesh = tools::import_mesh(file("t.ply", ply), {.scale = 1e39});
   const std::string out = (folder_ / "t.stl").string();
-  EXPECT_EQ(error_of([&] { tools::save_mesh(mesh, out); }), "cannot hold so large numbers; scale it, or write .obj");
+  EXPECT_EQ(error_of([&] { tools::save_mesh(mesh, out); }), "cannot hold numbers this large; scale it, or write .obj");
   EXPECT_FALSE(fs::exists(out));
 }
 

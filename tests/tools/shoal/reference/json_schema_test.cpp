@@ -106,7 +106,7 @@ TEST(JsonSchema, CarriesRangeDefaultAndMeaning) {
   EXPECT_EQ(erp["minimum"], 0);
   EXPECT_EQ(erp["maximum"], 1);
   EXPECT_TRUE(erp["default"].is_number());
-  EXPECT_THAT(erp["description"].get<std::string>(), HasSubstr("put right"));
+  EXPECT_THAT(erp["description"].get<std::string>(), HasSubstr("corrected"));
 }
 
 TEST(JsonSchema, AnActionIsAMapOfOneKeyWithTheKeysOfTheActionBelow) {

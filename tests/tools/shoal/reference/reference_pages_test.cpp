@@ -19,7 +19,7 @@ TEST(ReferencePages, InDocsAreUpToDate) {
   for (const std::string name : {"devices", "world_format", "messages", "metrics", "programs"}) {
     std::ifstream in(test_support::source_path("docs/reference/") + name + ".md", std::ios::binary);
     const std::string text{std::istreambuf_iterator<char>(in), {}};
-    // Not EXPECT_EQ: nobody wants to read two whole pages.
+    // Not EXPECT_EQ: no one wants to read two whole pages.
     EXPECT_TRUE(text == tools::reference_page(name))
         << "docs/reference/" << name << ".md is stale; type\n  build/bin/shoal describe --page " << name
         << " > docs/reference/" << name << ".md";

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <chrono>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "shoal/sim_vehicle_t.hpp"
+#include "sim/bus/bus.hpp"
+#include "sim/world/world.hpp"
+
+namespace sim {
+struct SpawnRequest;
+}
+
+namespace bridges {
+
+class RunJournal;
+
+/// The vehicles that clients spawn over `sim.control`, and their owners. Every vehicle that is added or removed, by
+/// any client, is reported on `sim.vehicle`.
+class SpawnedVehicles {
+ public:
+  /// `journal` gets every request that is about to change the world, from any client, and descriptions; may be null.
+  SpawnedVehicles(sim::World& world, sim::Bus& bus, RunJournal* journal);
+
+  /// Adds the vehicle that `text` describes (an entry of `vehicles:` in YAML); returns one line that names it, its
+  /// channels and rates.  Throws sim::ConfigError, with the same lines as for files.
+  std::string spawn(const std::string& client, const std::string& text);
+  /// The same with a text from a journal.
+  std::string spawn_again(const std::string& client, const std::string& text);
+  /// A vehicle or an object.  Throws sim::WorldError.
+  void remove(const std::string& client, const std::string& name);
+  /// Returns the same text as spawn() did.  Throws sim::WorldError.
+  std::string describe(const std::string& client, const std::string& vehicle);
+  /// An action as in `events:`, in YAML.  Throws sim::ConfigError.
+  void act(const std::string& client, const std::string& text);
+
+  /// Reports the vehicles that were added or removed since the last call.
+  void report_changes();
+  /// After visit_state() restored: reports the vehicles that were added or removed by it to programs outside. The
+  /// world and its record do not receive it, as they have one timeline only.
+  void report_to_other_timeline(sim::Bus& network);
+  /// Notes that the client is alive.
+  void client_alive(const std::string& client);
+  /// Removes the vehicles of clients that were silent longer than their time-out (wall time).
+  void remove_timed_out();
+  /// Removes the vehicles that this client spawned with `with_client`.
+  void remove_vehicles_of(const std::string& client);
+  bool has(const std::string& client) const { return clients_.contains(client); }
+  /// The owners of the vehicles.  Restoring, which must follow that of the world, restarts the time-outs.
+  void visit_state(sim::StateArchive& archive);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  struct Client {
+    Clock::time_point last_seen;
+    std::chrono::duration<double> timeout{0};
+    void visit_state(sim::StateArchive& archive);
+  };
+  struct Owner {
+    std::string client;
+    bool with_client = false;
+    void visit_state(sim::StateArchive& archive);
+  };
+
+  using Known = std::map<std::string, shoal::sim_vehicle_t, std::less<>>;
+
+  std::string add(const std::string& client, const sim::SpawnRequest& request);
+  void record_all();
+  void report_difference(Known& known, sim::Bus& bus);
+  void report(sim::Bus& bus, shoal::sim_vehicle_t& message, bool present);
+  void write_down(const std::string& client, const std::string& command, const std::string& text);
+
+  sim::World& world_;
+  sim::Bus& bus_;
+  RunJournal* const journal_;
+  std::map<std::string, Owner, std::less<>> owners_;    // by vehicle
+  std::map<std::string, Client, std::less<>> clients_;  // those with vehicles that are removed with them
+  Known known_;                                         // the reported vehicles, or those present from the start
+  std::optional<Known> known_to_others_;                // known before a rewind; unset: the same as for the world
+  std::uint64_t generation_ = 0;
+  sim::Bytes buffer_;
+};
+
+}  // namespace bridges

@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sim/bus/message_gate.hpp"
+
+#include <algorithm>
+#include <deque>
+#include <iterator>
+#include <utility>
+
+namespace sim {
+
+/// A channel with readers, and its one mailbox at the network.
+struct MessageGate::Channel {
+  std::string name;
+  std::size_t slot = 0;
+  std::shared_ptr<std::atomic<bool>> flag;
+  std::unique_ptr<Mailbox> inner;
+  std::vector<GateMailbox*> mailboxes;
+  std::size_t capacity = 0;  ///< of the largest mailbox
+  std::size_t waiting = 0;   ///< at most: waiting() may be changed by its user
+};
+
+class MessageGate::GateMailbox final : public Mailbox {
+ public:
+  GateMailbox(MessageGate& gate, Channel& channel, std::size_t capacity)
+      : gate_(gate), channel_(channel), capacity_(std::max<std::size_t>(capacity, 1)) {}
+  ~GateMailbox() override { gate_.close(*this); }
+  GateMailbox(const GateMailbox&) = delete;
+  GateMailbox& operator=(const GateMailbox&) = delete;
+
+  std::optional<Message> take() override {
+    if (messages_.empty()) return std::nullopt;
+    std::optional<Message> oldest = std::move(messages_.front());
+    messages_.pop_front();
+    return oldest;
+  }
+  std::uint64_t dropped() const override { return dropped_; }
+  void raise_on_arrival(std::shared_ptr<std::atomic<bool>> flag) override {
+    if (!messages_.empty()) flag->store(true, std::memory_order_relaxed);
+    flag_ = std::move(flag);
+  }
+  std::vector<Message> unread() const override { return {messages_.begin(), messages_.end()}; }
+  void set_unread(std::vector<Message> messages) override {
+    messages_.assign(std::make_move_iterator(messages.begin()), std::make_move_iterator(messages.end()));
+    if (flag_ && !messages_.empty()) flag_->store(true, std::memory_order_relaxed);
+  }
+
+  /// False: the oldest had to make room.
+  bool add(Message message) {
+    messages_.push_back(std::move(message));
+    if (flag_) flag_->store(true, std::memory_order_relaxed);
+    if (messages_.size() <= capacity_) return true;
+    messages_.pop_front();
+    ++dropped_;
+    return false;
+  }
+  Channel& channel() { return channel_; }
+  std::size_t capacity() const { return capacity_; }
+
+ private:
+  MessageGate& gate_;
+  Channel& channel_;
+  const std::size_t capacity_;
+  std::deque<Message> messages_;
+  std::shared_ptr<std::atomic<bool>> flag_;  // may be null
+  std::uint64_t dropped_ = 0;
+};
+
+MessageGate::MessageGate(Bus& network) : network_(network) {}
+
+MessageGate::~MessageGate() = default;
+
+void MessageGate::publish(std::string_view channel, std::span<const std::byte> payload, Time at) {
+  if (watch_) watch_(channel, payload);
+  if (!may_be_read(channel)) return network_.publish(channel, payload, at);
+  const auto known = by_name_.find(channel);
+  if (known == by_name_.end()) return network_.publish(channel, payload, at);
+  Channel& read = *known->second;
+  if (something_came(read)) collect_from(read);  // what came before keeps its place
+  network_.publish(channel, payload, at);
+  // The network has echoed this by now, and this process cannot have published in between.
+  if (something_came(read)) take_from(read, [](const Message& message) { return message.from_outside; });
+  give(read, payload, false);
+}
+
+bool MessageGate::something_came(Channel& channel) {
+  return channel.flag->load(std::memory_order_relaxed) && channel.flag->exchange(false, std::memory_order_acquire);
+}
+
+/// Channels of one bit are asked for by name; most have a bit that no channel that is read has.
+std::size_t MessageGate::bit_of(std::string_view channel) {
+  const auto letter = [&](std::size_t i) { return static_cast<std::size_t>(static_cast<unsigned char>(channel[i])); };
+  if (channel.empty()) return 0;
+  const std::size_t last = channel.size() - 1;
+  return (channel.size() * 131 + letter(last) * 31 + letter(last - last / 4) * 17 + letter(last / 2) * 7 + letter(0)) %
+         max_bits;
+}
+
+std::unique_ptr<Mailbox> MessageGate::open_mailbox(const std::string& channel, std::size_t capacity) {
+  const auto known = by_name_.find(channel);
+  Channel* read = known == by_name_.end() ? nullptr : known->second;
+  if (read == nullptr) {
+    auto inner = network_.open_mailbox(channel, default_mailbox_capacity);  // checks the name
+    const std::size_t slot = free_slots_.empty() ? channels_.size() : free_slots_.back();
+    if (free_slots_.empty())
+      channels_.emplace_back();
+    else
+      free_slots_.pop_back();
+    channels_[slot] = std::make_unique<Channel>();
+    read = channels_[slot].get();
+    read->name = channel;
+    read->slot = slot;
+    read->flag = flags_.of(static_cast<int>(slot));
+    read->flag->store(false, std::memory_order_relaxed);
+    read->inner = std::move(inner);
+    read->inner->raise_on_arrival(read->flag);
+    by_name_.emplace(channel, read);
+    bits_.set(bit_of(channel));
+  }
+  auto mailbox = std::make_unique<GateMailbox>(*this, *read, capacity);
+  read->mailboxes.push_back(mailbox.get());
+  read->capacity = std::max(read->capacity, mailbox->capacity());
+  return mailbox;
+}
+
+void MessageGate::close(GateMailbox& mailbox) {
+  Channel& channel = mailbox.channel();
+  std::erase(channel.mailboxes, &mailbox);
+  channel.capacity = 0;
+  for (const GateMailbox* other : channel.mailboxes) channel.capacity = std::max(channel.capacity, other->capacity());
+  if (!channel.mailboxes.empty()) return;
+  const std::size_t slot = channel.slot;
+  by_name_.erase(channel.name);
+  channels_[slot].reset();
+  free_slots_.push_back(slot);
+}
+
+bool MessageGate::collect() {
+  for (const auto& channel : channels_)
+    if (channel && something_came(*channel)) collect_from(*channel);
+  return !waiting_.empty();
+}
+
+void MessageGate::collect_from(Channel& channel) {
+  take_from(channel, [](const Message&) { return true; });
+}
+
+/// As many as the mailbox at the network held at the call: who continues sending meanwhile cannot hold up the step.
+template <typename Accepts>
+void MessageGate::take_from(Channel& channel, const Accepts& accepts) {
+  std::size_t left = default_mailbox_capacity;
+  for (; left > 0; --left) {
+    auto message = channel.inner->take();
+    if (!message) break;
+    if (!accepts(*message)) continue;
+    waiting_.push_back({std::move(message->channel), std::move(message->payload)});
+    ++channel.waiting;
+  }
+  if (left == 0) channel.flag->store(true, std::memory_order_relaxed);  // there may be more
+  if (channel.waiting > channel.capacity) drop_oldest(channel);
+}
+
+/// All that are too many, in one pass.
+void MessageGate::drop_oldest(Channel& channel) {
+  const auto is_of_channel = [&](const Delivery& arrivals) { return arrivals.channel == channel.name; };
+  // The user of waiting() may have taken some out.
+  channel.waiting = static_cast<std::size_t>(std::count_if(waiting_.begin(), waiting_.end(), is_of_channel));
+  if (channel.waiting <= channel.capacity) return;
+  std::size_t too_many = channel.waiting - channel.capacity;
+  channel.waiting = channel.capacity;
+  dropped_ += std::erase_if(waiting_, [&](const Delivery& arrivals) {
+    if (too_many == 0 || !is_of_channel(arrivals)) return false;
+    --too_many;
+    return true;
+  });
+}
+
+const std::vector<MessageGate::Delivery>& MessageGate::admit() {
+  collect();
+  admitted_.clear();
+  admitted_.swap(waiting_);
+  if (order_) order_(admitted_);
+  if (admitted_.empty()) return admitted_;
+  std::erase_if(admitted_, [&](const Delivery& arrivals) {
+    const auto known = by_name_.find(arrivals.channel);
+    if (known == by_name_.end()) return true;
+    known->second->waiting = 0;
+    give(*known->second, arrivals.payload, true);
+    return false;
+  });
+  return admitted_;
+}
+
+void MessageGate::give(Channel& channel, std::span<const std::byte> payload, bool from_outside) {
+  for (GateMailbox* mailbox : channel.mailboxes)
+    if (!mailbox->add({channel.name, Bytes(payload.begin(), payload.end()), from_outside})) ++dropped_;
+}
+
+BusCounts MessageGate::counts() const {
+  BusCounts counts = network_.counts();
+  counts.dropped_incoming += dropped_;
+  return counts;
+}
+
+}  // namespace sim

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <bitset>
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+#include "sim/bus/arrival_flags.hpp"
+#include "sim/bus/bus.hpp"
+
+namespace sim {
+
+/// A bus between a network and a world.  Messages from outside wait here until admit(), which the run calls once at
+/// the start of each step: all readers of a channel see a message in the same step, and the order is known.  A
+/// message published through the gate is in its mailboxes immediately, and is not delivered again when the network
+/// echoes it.
+///
+/// Everything published on the network past the gate counts as coming from outside, also when this process publishes
+/// it.  For one thread.
+class MessageGate final : public Bus {
+ public:
+  /// `network` must outlive the gate.
+  explicit MessageGate(Bus& network);
+  ~MessageGate() override;
+  MessageGate(const MessageGate&) = delete;
+  MessageGate& operator=(const MessageGate&) = delete;
+
+  struct Delivery {
+    std::string channel;
+    Bytes payload;
+  };
+
+  void publish(std::string_view channel, std::span<const std::byte> payload, Time at) override;
+  std::unique_ptr<Mailbox> open_mailbox(const std::string& channel,
+                                        std::size_t capacity = default_mailbox_capacity) override;
+  void end_of_step() override { network_.end_of_step(); }
+  /// What the network counts, and what was dropped here.
+  BusCounts counts() const override;
+
+  /// Collects the messages from outside on channels that have a reader.  True: something waits.  Of a channel
+  /// at most as many wait as its largest mailbox holds; then the oldest is dropped and counted.
+  bool collect();
+  /// Collected and not admitted: by channel in the order in which the channels were first read, within a channel in
+  /// the order of arrival.  May be put in another order, and added to.
+  std::vector<Delivery>& waiting() { return waiting_; }
+  /// Collects, and gives all that waits to the mailboxes of its channels.  What was given stays readable until the
+  /// next call.  Messages on channels without a reader are dropped.
+  const std::vector<Delivery>& admit();
+
+  /// admit() calls it after collecting and before giving: it may reorder, add and remove messages.
+  using Order = std::function<void(std::vector<Delivery>& messages)>;
+  void set_order(Order order) { order_ = std::move(order); }
+  /// Whether this channel has a reader here.
+  bool reads(std::string_view channel) const { return by_name_.contains(channel); }
+
+  /// `watch` is called for every publication, before the network; empty: none.
+  using Watch = std::function<void(std::string_view channel, std::span<const std::byte> payload)>;
+  void set_watch(Watch watch) { watch_ = std::move(watch); }
+
+ private:
+  class GateMailbox;
+  struct Channel;
+  struct NameHash {
+    using is_transparent = void;
+    std::size_t operator()(std::string_view name) const { return std::hash<std::string_view>()(name); }
+  };
+
+  void collect_from(Channel& channel);
+  template <typename Accepts>
+  void take_from(Channel& channel, const Accepts& accepts);
+  /// True when a message may have arrived since the previous call.
+  static bool something_came(Channel& channel);
+  static constexpr std::size_t max_bits = 1024;
+  static std::size_t bit_of(std::string_view channel);
+  bool may_be_read(std::string_view channel) const { return bits_[bit_of(channel)]; }
+  void drop_oldest(Channel& channel);
+  void give(Channel& channel, std::span<const std::byte> payload, bool from_outside);
+  void close(GateMailbox& mailbox);
+
+  Bus& network_;
+  Watch watch_;
+  Order order_;
+  ArrivalFlags flags_;                              // one for each slot: something may have come
+  std::vector<std::unique_ptr<Channel>> channels_;  // by slot; null: the slot is free
+  std::vector<std::size_t> free_slots_;
+  std::unordered_map<std::string, Channel*, NameHash, std::equal_to<>> by_name_;  // asked, never iterated
+  std::bitset<max_bits> bits_;                                                    // of the names that are or were read
+  std::vector<Delivery> waiting_, admitted_;
+  std::uint64_t dropped_ = 0;
+};
+
+}  // namespace sim
