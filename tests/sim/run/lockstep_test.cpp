@@ -49,7 +49,7 @@ TEST(Lockstep, MissesOnlyThoseWhoHaveNotAnswered) {
   Lockstep lockstep;
   lockstep.join("a", {}, 1, 0);
   lockstep.join("b", session(7), 1, 0);
-  lockstep.request_reply(3);
+  lockstep.send_request(3);
   answer(lockstep, {"a", 3, 0, 0}, 3);
   EXPECT_EQ(missing(lockstep, 3), (Names{"b"}));
   answer(lockstep, {"b", 3, 7, 1}, 3);
@@ -60,7 +60,7 @@ TEST(Lockstep, MissesOnlyThoseWhoHaveNotAnswered) {
 TEST(Lockstep, RefusesWrongAnswersAndSaysWhy) {
   Lockstep lockstep;
   lockstep.join("a", session(7), 1, 0);
-  lockstep.request_reply(3);
+  lockstep.send_request(3);
   const auto refused = Lockstep::Verdict::refused;
   EXPECT_THAT(answer(lockstep, {"b", 3, 0, 0}, 3, refused), HasSubstr("'b' acknowledges a tick, but takes no part"));
   EXPECT_THAT(answer(lockstep, {"a", 4, 7, 1}, 3, refused), HasSubstr("step 4, which is still to come"));
@@ -70,7 +70,7 @@ TEST(Lockstep, RefusesWrongAnswersAndSaysWhy) {
   EXPECT_EQ(missing(lockstep, 3), (Names{"a"}));
   answer(lockstep, {"a", 3, 7, 1}, 3);
   answer(lockstep, {"a", 3, 7, 1}, 3, Lockstep::Verdict::repeated);
-  lockstep.request_reply(4);
+  lockstep.send_request(4);
   answer(lockstep, {"a", 3, 7, 1}, 4, Lockstep::Verdict::repeated);  // late and twice
   EXPECT_EQ(missing(lockstep, 4), (Names{"a"}));
 }
@@ -79,15 +79,15 @@ TEST(Lockstep, ListsWhatAClientMustHaveInTheOrderOfPublishing) {
   Lockstep lockstep;
   lockstep.join("a", session(7, {"x", "y"}), 2, 0);
   lockstep.join("b", session(8, {"x"}), 1, 0, 1);  // on another line
-  lockstep.request_reply(0);
+  lockstep.send_request(0);
   lockstep.post(0, "y", bytes_of("1"));
   lockstep.post(0, "x", bytes_of("2"));
   lockstep.post(0, "z", bytes_of("3"));
   lockstep.post(1, "y", bytes_of("4"));
   EXPECT_TRUE(lockstep.find("a")->list.empty());
-  lockstep.request_reply(1);
+  lockstep.send_request(1);
   EXPECT_TRUE(lockstep.find("a")->list.empty());  // not due
-  lockstep.request_reply(2);
+  lockstep.send_request(2);
   const auto& list = lockstep.find("a")->list;
   ASSERT_EQ(list.size(), 2u);
   EXPECT_EQ(list[0].channel, 1);
@@ -131,12 +131,12 @@ TEST(Lockstep, AfterGoingBackEverybodyIsAskedByItsPeriod) {
   lockstep.join("a", session(7, {"x"}), 10, 0);
   lockstep.join("late", session(8), 10, 55);
   lockstep.post(0, "x", bytes_of("1"));
-  lockstep.request_reply(60);
+  lockstep.send_request(60);
   answer(lockstep, {"a", 60, 7, 1}, 60);
   lockstep.rewound(20);
   EXPECT_EQ(missing(lockstep, 20), (Names{"a"}));
   EXPECT_EQ(missing(lockstep, 25), (Names{"late"}));
-  lockstep.request_reply(20);
+  lockstep.send_request(20);
   EXPECT_TRUE(lockstep.find("a")->list.empty());
   EXPECT_EQ(lockstep.find("a")->sequence, 2);
 }
@@ -165,9 +165,9 @@ TEST(Lockstep, WhatIsPostedAgainIsOnTheListOfTheFirstTickAfterGoingBack) {
       text += std::string(reinterpret_cast<const char*>(message.payload->data()), message.payload->size()) + " ";
     return text;
   };
-  lockstep.request_reply(30);
+  lockstep.send_request(30);
   EXPECT_EQ(list("a"), "21 22 23 24 25 26 27 28 29 30 31 ");
-  lockstep.request_reply(35);
+  lockstep.send_request(35);
   EXPECT_EQ(list("late"), "26 27 28 29 30 31 ");
 }
 
@@ -190,11 +190,11 @@ TEST(Lockstep, ATickThatWasOpenBeforeGoingBackIsAnsweredFirst) {
   lockstep.join("a", session(7, {"x"}), 10, 0);
   lockstep.join("simple", {}, 10, 0);
   lockstep.post(0, "x", bytes_of("1"));
-  lockstep.request_reply(60);
+  lockstep.send_request(60);
   lockstep.rewound(20);
   lockstep.rewound(10);
   EXPECT_EQ(lockstep.abandoned().size(), 2u);
-  lockstep.request_reply(10);
+  lockstep.send_request(10);
   EXPECT_EQ(lockstep.find("a")->sequence, 1);  // still the same
   EXPECT_EQ(lockstep.find("a")->list.size(), 1u);
   lockstep.rewound(20);
@@ -204,7 +204,7 @@ TEST(Lockstep, ATickThatWasOpenBeforeGoingBackIsAnsweredFirst) {
   EXPECT_TRUE(lockstep.abandoned().empty());
   answer(lockstep, {"a", 60, 7, 1}, 20, Lockstep::Verdict::repeated);
   answer(lockstep, {"simple", 60, 0, 0}, 20, Lockstep::Verdict::repeated);
-  lockstep.request_reply(20);
+  lockstep.send_request(20);
   EXPECT_EQ(lockstep.find("a")->list.size(), 0u);
   answer(lockstep, {"a", 60, 7, 1}, 20, Lockstep::Verdict::repeated);
   answer(lockstep, {"simple", 60, 0, 0}, 20, Lockstep::Verdict::repeated);
@@ -218,11 +218,11 @@ TEST(Lockstep, JoiningAgainWithAnotherPeriodLeavesAnOpenTickOpen) {
   Lockstep lockstep;
   lockstep.join("a", session(7), 10, 0);
   lockstep.join("simple", {}, 10, 0);
-  lockstep.request_reply(20);
+  lockstep.send_request(20);
   lockstep.join("a", session(7), 4, 20);
   lockstep.join("simple", {}, 4, 20);
   EXPECT_EQ(missing(lockstep, 20), (Names{"a", "simple"}));
-  lockstep.request_reply(20);
+  lockstep.send_request(20);
   answer(lockstep, {"a", 20, 7, 1}, 20);
   answer(lockstep, {"simple", 20, 0, 0}, 20);
   EXPECT_EQ(missing(lockstep, 20), (Names{}));

@@ -1,15 +1,36 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/experiment/upgrade/renames.hpp"
 
+#include <utility>
+
 namespace tools {
 
-// A line such as
-//   {Rename::What::key, FileKind::vehicle, "devices.*", "old_key", "new_key"},
-//   {Rename::What::word, FileKind::vehicle, "devices.*.type", "old_word", "new_word"},
-//   {Rename::What::word, FileKind::world, "events.*.do.*.publish.type", "shoal.old_t", "shoal.new_t"},
-//   {Rename::What::part, FileKind::world, "events.*.when", "sim.old", "sim.new"},
+using What = Rename::What;
+
+constexpr Rename table[] = {
+    {What::word, FileKind::world, "metrics.*.type", "lean", "tilt"},
+    {What::word, FileKind::world, "metrics.*.channel", "sim.mail", "sim.inputs"},
+    {What::word, FileKind::world, "metrics.*.channel", "sim.notice", "sim.audit"},
+    {What::part, FileKind::world, "events.*.when", "sim.mail", "sim.inputs"},
+    {What::part, FileKind::world, "events.*.when", "sim.notice", "sim.audit"},
+    {What::figure, FileKind::world, "pass.*", "longest_gap_s", "max_gap_s"},
+    {What::figure, FileKind::study, "pass.*", "longest_gap_s", "max_gap_s"},
+    {What::figure, FileKind::study, "figures.*", "longest_gap_s", "max_gap_s"},
+    {What::figure, FileKind::study, "plots.*.figure", "longest_gap_s", "max_gap_s"},
+    {What::figure, FileKind::study, "pictures.*.figure", "longest_gap_s", "max_gap_s"},
+    {What::key, FileKind::study, "", "pictures", "plots"},
+    {What::word, FileKind::study, "world", "living_warehouse", "dynamic_warehouse"},
+};
+
 std::span<const Rename> renames() {
-  return {};
+  return table;
+}
+
+std::string renamed_rule(std::string rule, FileKind kind) {
+  for (const Rename& rename : table)
+    if (rename.what == What::figure && rename.kind == kind && rename.path == "pass.*")
+      rule = renamed_figure(std::move(rule), rename.before, rename.after);
+  return rule;
 }
 
 }  // namespace tools

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "tools/experiment/upgrade/rewriting.hpp"
@@ -11,9 +12,10 @@ namespace tools {
 /// What has another name since version 0.2.
 struct Rename {
   enum class What {
-    key,   ///< `path` leads to the map that has the key
-    word,  ///< `path` leads to the text: a word, a channel or a message type
-    part   ///< `path` leads to a text with spaces between its words, such as a condition `message on CHANNEL`
+    key,    ///< `path` leads to the map that has the key
+    word,   ///< `path` leads to the text: a word, a channel or a message type
+    part,   ///< `path` leads to a text with spaces between its words, such as a condition `message on CHANNEL`
+    figure  ///< `path` leads to a text with figures, such as `METRIC.FIGURE < 1`; `before` follows the last dot
   };
   What what;
   FileKind kind;
@@ -24,6 +26,13 @@ struct Rename {
 /// All names of keys, words, channels and message types that have changed.  The word of an action is not renamed here:
 /// it decides which keys rewrite_action() moves.
 std::span<const Rename> renames();
+
+/// `text`, such as a rule, with the present name of a figure: `before` is replaced where it is a whole name after a
+/// dot.
+std::string renamed_figure(std::string text, std::string_view before, std::string_view after);
+
+/// A rule in the form of this version with the present names of figures.
+std::string renamed_rule(std::string rule, FileKind kind);
 
 /// Applies `table` at a node: the keys of a map, also within dotted keys, and the text of a scalar.  In a list of
 /// strings each item is its own node.  Where a text is a channel or a type, all of it must be `before`.

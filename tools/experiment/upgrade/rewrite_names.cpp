@@ -39,6 +39,7 @@ std::string renamed_text(const Site& site, std::span<const Rename> table) {
   for (const Rename& rename : table) {
     if (rename.what == Rename::What::key || !site.path.is(rename.kind, rename.path)) continue;
     if (rename.what == Rename::What::word && text == rename.before) return std::string(rename.after);
+    if (rename.what == Rename::What::figure) text = renamed_figure(std::move(text), rename.before, rename.after);
     if (rename.what != Rename::What::part) continue;
     for (std::size_t begin = 0; begin < text.size();) {
       const std::size_t end = std::min(text.find(' ', begin), text.size());
@@ -69,6 +70,19 @@ void rename_key(Site& site, const SourceNode::Entry& entry, const std::string& n
 }
 
 }  // namespace
+
+std::string renamed_figure(std::string text, std::string_view before, std::string_view after) {
+  const auto is_name = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+  };
+  for (std::size_t at = text.find(before); at != std::string::npos; at = text.find(before, at)) {
+    const std::size_t end = at + before.size();
+    const bool whole = at > 0 && text[at - 1] == '.' && (end == text.size() || !is_name(text[end]));
+    if (whole) text.replace(at, before.size(), after);
+    at += whole ? after.size() : before.size();
+  }
+  return text;
+}
 
 void apply_renames(Site& site, std::span<const Rename> table) {
   if (table.empty()) return;

@@ -5,6 +5,7 @@
 #include "sim/config/message_text.hpp"
 #include "tools/experiment/upgrade/entry_edits.hpp"
 #include "tools/experiment/upgrade/number_text.hpp"
+#include "tools/experiment/upgrade/renames.hpp"
 #include "tools/experiment/upgrade/rewriting.hpp"
 
 // Since version 0.2 a rule is a comparison, `a.rms_m < 0.4 * b.rms_m`; before, it was a map with a key for each part.
@@ -119,7 +120,7 @@ class OldRule {
 void rewrite_rule(Site& site) {
   const bool is_rule = site.path.is(FileKind::world, "pass.*") || site.path.is(FileKind::study, "pass.*");
   if (!is_rule || site.source.kind != Kind::map) return;
-  replace_by_scalar(site, OldRule(site.source, site.path.kind()).expression());
+  replace_by_scalar(site, renamed_rule(OldRule(site.source, site.path.kind()).expression(), site.path.kind()));
 }
 
 }  // namespace tools

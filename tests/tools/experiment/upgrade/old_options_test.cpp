@@ -39,7 +39,7 @@ TEST(OldOptions, ListsOfPointsBecomeLists) {
             "orders: [[120, 500, 200, 15], [700, 600, -300, 20, 1.8]]");
   EXPECT_EQ(arguments("shoal-balance", "--speeds", "1:0.5;3:4:5"), "speeds: [[1, 0.5], [3, 4, 5]]");
   EXPECT_EQ(arguments("shoal-coop-auv", "--slot", "2/3"), "slot: 2, slots: 3");
-  EXPECT_EQ(arguments("shoal-coop-auv", "--execute", ""), "accept_orders: true");
+  EXPECT_EQ(arguments("shoal-coop-auv", "--obey", ""), "accept_orders: true");
 }
 
 TEST(OldOptions, ABehaviourBecomesTheKeysOfItsKind) {

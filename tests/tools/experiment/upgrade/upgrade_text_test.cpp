@@ -262,7 +262,7 @@ TEST(UpgradeOfCommands, KeepsComments) {
                      "      # its name\n"
                      "      - --name\n"
                      "      - auv   # here\n"
-                     "      - --execute\n"
+                     "      - --obey\n"
                      "    name: a\n"
                      "  - command: [shoal-coop-auv,  # the program\n"
                      "      --name, auv,  # here\n"
@@ -308,7 +308,7 @@ TEST(UpgradeOfCommands, RefusesWhatTheProgramDidNotHave) {
   EXPECT_EQ(error("shoal-balance, --name, a, --name=b"),
             "old.yaml:1:50: shoal-balance: '--name' is given twice; the file is left as it is");
   EXPECT_EQ(error("shoal-coop-auv, --slot, first"),
-            "old.yaml:1:40: shoal-coop-auv: 'first' is not a value of '--slot'; the file is left as it is");
+            "old.yaml:1:40: shoal-coop-auv: 'first' is no value of '--slot'; the file is left as it is");
 }
 
 TEST(UpgradeOfMetrics, AddsTheType) {
@@ -370,6 +370,22 @@ TEST(UpgradeOfNames, RenamesAWordOfAText) {
   EXPECT_EQ(
       renamed("events: [{when: message on sim.old}, {when: 'message on sim.old'}, {when: message on sim.older}]\n"),
       "events: [{when: message on sim.new}, {when: 'message on sim.new'}, {when: message on sim.older}]\n");
+}
+
+TEST(UpgradeOfNames, RenamesMetricsFiguresChannelsAndKeysOfVersion01) {
+  EXPECT_EQ(upgraded("metrics: [{name: lean, type: lean, vehicle: v}, {name: m, type: messages, channel: sim.mail}]\n"
+                     "events: [{when: message on sim.notice, do: [{log: lean}]}]\n"
+                     "pass: [lean.max_deg < 30, c.longest_gap_s < 1, {metric: c.longest_gap_s, below: 1}]\n"),
+            "metrics: [{name: lean, type: tilt, vehicle: v}, {name: m, type: messages, channel: sim.inputs}]\n"
+            "events: [{when: message on sim.audit, do: [{log: lean}]}]\n"
+            "pass: [lean.max_deg < 30, c.max_gap_s < 1, c.max_gap_s < 1]\n");
+  EXPECT_EQ(upgraded("world: living_warehouse\nfigures: [passed, c.longest_gap_s, c.longest_gap_s_too]\n"
+                     "pictures: [{name: gap, figure: c.longest_gap_s}]\n"
+                     "pass: [max(a.c.longest_gap_s) < 2, {case: a, figure: c.longest_gap_s, statistic: max, below: 2}]\n",
+                     FileKind::study),
+            "world: dynamic_warehouse\nfigures: [passed, c.max_gap_s, c.longest_gap_s_too]\n"
+            "plots: [{name: gap, figure: c.max_gap_s}]\n"
+            "pass: [max(a.c.max_gap_s) < 2, max(a.c.max_gap_s) < 2]\n");
 }
 
 TEST(UpgradeOfNames, RefusesAKeyThatIsThereUnderBothNames) {
