@@ -94,8 +94,8 @@ class Writer {
     for (const ConfigNode::Entry& entry : value.entries)
       if (std::find(known.begin(), known.end(), entry.key) == known.end())
         diagnostics_.error(entry.place, who,
-                           schema.name + " has no member '" + sim::shortened(sim::printable(entry.key)) +
-                               "'; its members: " + sim::list_text(known));
+                           "unknown member '" + sim::shortened(sim::printable(entry.key)) +
+                               "'; members: " + sim::list_text(known) + sim::did_you_mean(entry.key, known));
   }
 
   /// The length of each array, from the first list that has it; a length that is given itself must be the same.
@@ -228,10 +228,10 @@ std::vector<std::byte> encode_message(const MessageTypes& types, const std::stri
   if (schema == nullptr) {
     std::vector<std::string> known;
     for (const auto& [name, each] : types.all()) known.push_back(name);
-    const std::string meant = sim::closest_name(type, known);
+    const std::string meant = sim::did_you_mean(type, known);
     diagnostics.error(value.place, "",
                       "unknown message type '" + sim::shortened(sim::printable(type)) + "'" +
-                          (meant.empty() ? "; `shoal list messages` shows them" : "; did you mean '" + meant + "'?"));
+                          (meant.empty() ? "; `shoal list messages` shows them" : meant));
     return {};
   }
   const std::size_t errors_before = diagnostics.lines().size();

@@ -43,6 +43,11 @@ class OneOfAction final : public Action {
       for (const ActionEntry& entry : choice)
         if (entry.action) entry.action->add_channels(channels);
   }
+  void add_triggered(std::set<std::string>& events) const override {
+    for (const std::vector<ActionEntry>& choice : choices_)
+      for (const ActionEntry& entry : choice)
+        if (entry.action) entry.action->add_triggered(events);
+  }
 
  private:
   const std::vector<ActionEntry>& choose(Random& random) const {

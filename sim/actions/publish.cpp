@@ -36,7 +36,7 @@ class PublishAction final : public Action {
   void check(const ActionCheck& check) override {
     const EncodeMessage& encode = check.world().encode_message;
     if (!encode) return check.error("messages cannot be encoded here");
-    Diagnostics found;
+    Diagnostics found(check.entry().who);
     payload_ = encode(type_, value_, found);
     for (const std::string& line : found.lines()) check.diagnostics().error({}, "", line);
     if (found.ok() && value_.find("utime") == nullptr) stamp_utime_ = starts_with_utime(encode, check.entry().place);

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <set>
+
 #include "sim/director/action_run.hpp"
 #include "sim/director/script.hpp"
 #include "sim/script/action_registry.hpp"
@@ -18,6 +20,7 @@ class TriggerAction final : public Action {
     in.read_reference(main, event_, "event", "the event");
   }
   void carry_out(const ActionRun& run) const override { run.script.trigger(event_, run.depth + 1); }
+  void add_triggered(std::set<std::string>& events) const override { events.insert(event_); }
 
  private:
   std::string event_;

@@ -49,7 +49,7 @@ void Diagnostics::error(const SourcePlace& place, const std::string& who, const 
   if (lines_.size() > max_lines) return;
   const bool hides = hides_files_ && place.origin == Origin::file && place.file != nullptr && !is_free_of_quotes(text);
   std::string line = place.text();
-  for (const std::string& part : {who, text})
+  for (const std::string& part : {subject_, who, text})
     if (!part.empty()) line += (line.empty() ? "" : ": ") + part;
   if (hides) {
     hidden_.push_back(printable(line));

@@ -52,6 +52,8 @@ class Diagnostics {
   Diagnostics() = default;
   /// `files`: which files may be named in what is read with these diagnostics; null: any.
   explicit Diagnostics(std::shared_ptr<const FileAccess> files) : files_(std::move(files)) {}
+  /// `subject` precedes `who` in every error: `subject: who: text`.
+  explicit Diagnostics(std::string subject) : subject_(std::move(subject)) {}
 
   /// Adds `place: who: text` (who may be empty).  The same text at the same place is kept once, independent of `who`.
   void error(const SourcePlace& place, const std::string& who, const std::string& text);
@@ -68,6 +70,7 @@ class Diagnostics {
 
  private:
   std::shared_ptr<const FileAccess> files_;
+  std::string subject_;
   bool hides_files_ = false;
   std::vector<std::string> hidden_;
   std::vector<std::string> lines_;

@@ -5,7 +5,9 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
 #include <numeric>
+#include <utility>
 
 #include "sim/config/yaml_writer.hpp"
 
@@ -14,6 +16,22 @@ namespace sim {
 namespace {
 
 constexpr std::size_t shown_length = 60;
+
+/// Units with which names end, those of the format and those that are written in their place.
+constexpr std::string_view units[] = {
+    "A",   "Ah",  "C",       "Hz",    "J",   "N",  "Nm",  "Pa",    "V",      "W",   "Wh",  "bps", "cm",
+    "dB",  "deg", "degC",    "degps", "dps", "ft", "g",   "h",     "hz",     "kHz", "kPa", "kg",  "km",
+    "kmh", "kn",  "knots",   "kph",   "lx",  "m",  "m2",  "m3",    "min",    "mm",  "mph", "mps", "mps2",
+    "ms",  "ns",  "percent", "ppm",   "psu", "px", "rad", "radps", "radps2", "rpm", "s",   "uT",  "us"};
+
+/// A name without the unit at its end, and the unit; empty: it has none.
+std::pair<std::string_view, std::string_view> split_unit(std::string_view name) {
+  const std::size_t line = name.rfind('_');
+  if (line == std::string_view::npos || line == 0) return {name, {}};
+  const std::string_view unit = name.substr(line + 1);
+  if (std::find(std::begin(units), std::end(units), unit) == std::end(units)) return {name, {}};
+  return {name.substr(0, line), unit};
+}
 
 std::string escaped(unsigned char c) {
   switch (c) {
@@ -140,6 +158,18 @@ std::string closest_name(std::string_view misspelt, const std::vector<std::strin
     closest = name;
   }
   return closest;
+}
+
+std::string did_you_mean(std::string_view misspelt, const std::vector<std::string>& names) {
+  const auto [stem, unit] = split_unit(misspelt);
+  for (const std::string& name : names) {
+    const auto [other_stem, other_unit] = split_unit(name);
+    if (other_stem != stem || other_unit == unit) continue;
+    const std::string in_unit = unit.empty() || other_unit.empty() ? "" : ", in " + std::string(other_unit);
+    return "; did you mean '" + name + "'" + in_unit + "?";
+  }
+  const std::string meant = closest_name(misspelt, names);
+  return meant.empty() ? "" : "; did you mean '" + meant + "'?";
 }
 
 }  // namespace sim

@@ -36,4 +36,8 @@ std::string list_text(const std::vector<std::string>& names, std::size_t max = 4
 /// The name a misspelt one most likely meant; empty when none is close.
 std::string closest_name(std::string_view misspelt, const std::vector<std::string>& names);
 
+/// `; did you mean 'NAME'?` for the name that a misspelt one most likely meant; empty when none is close.  Names that
+/// end with a unit are found without it and with another one: `speed_kmh` gives `; did you mean 'speed_mps', in mps?`
+std::string did_you_mean(std::string_view misspelt, const std::vector<std::string>& names);
+
 }  // namespace sim

@@ -139,10 +139,8 @@ void ParamReader::finish() {
   for (const ConfigNode::Entry& entry : node_->entries) {
     if (std::binary_search(known_.begin(), known_.end(), entry.key)) continue;
     if (++unknown > max_unknown_keys) return error_at(entry.place, "more unknown keys are not shown");
-    std::string text = "unknown key " + quoted_name(entry.key) + "; known keys: " + list_text(known_, known_.size());
-    if (const std::string meant = closest_name(entry.key, known_); !meant.empty())
-      text += "; did you mean '" + meant + "'?";
-    error_at(entry.place, text);
+    error_at(entry.place, "unknown key " + quoted_name(entry.key) +
+                              "; known keys: " + list_text(known_, known_.size()) + did_you_mean(entry.key, known_));
   }
 }
 
@@ -493,7 +491,9 @@ std::size_t ParamReader::take_choice(const char* key, const std::vector<std::str
   if (node == nullptr) return choices.size();
   const auto end = choices.end();
   const auto chosen = node->kind == Kind::scalar ? std::find(choices.begin(), end, node->scalar) : end;
-  if (chosen == end) error_at(node->place, quoted_name(key) + " must be " + rule + "; got " + shown(*node));
+  if (chosen == end)
+    error_at(node->place, quoted_name(key) + " must be " + rule + "; got " + shown(*node) +
+                              (node->kind == Kind::scalar ? did_you_mean(node->scalar, choices) : ""));
   return static_cast<std::size_t>(chosen - choices.begin());
 }
 

@@ -45,9 +45,8 @@ void DeviceConfig::read(ParamReader& in) {
     if (device_type == nullptr) {
       std::vector<std::string> known;
       for (const DeviceType* each : DeviceRegistry::instance().all()) known.push_back(each->name);
-      const std::string meant = closest_name(node->scalar, known);
       in.error("type", "unknown device type '" + node->scalar + "'; known types: " + list_text(known, known.size()) +
-                           (meant.empty() ? "" : "; did you mean '" + meant + "'?"));
+                           did_you_mean(node->scalar, known));
       in.read("name", name, "");
       // The other keys belong to an unknown type; calling them unknown too would bury the mistake.
       for (const ConfigNode::Entry& entry : in.node()->entries) in.child(entry.key.c_str());

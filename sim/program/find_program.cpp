@@ -33,9 +33,7 @@ FoundProgram read_found(const std::string& path, const std::string& file, bool q
   if (quoted)
     for (const std::string& line : own.lines()) diagnostics.error({}, "", line);
   else
-    diagnostics.error(place, who,
-                      "the declaration '" + file + "' has " + std::to_string(own.lines().size()) +
-                          " errors; `shoal check " + file + "` shows them");
+    diagnostics.error(place, who, "the declaration '" + file + "' has errors; `shoal check " + file + "` shows them");
   return {path, nullptr, true};
 }
 
@@ -106,7 +104,15 @@ ProgramDeclaration read_declaration_file(const std::string& path, Diagnostics& d
   std::string text(max_bytes + 1, '\0');
   in.read(text.data(), static_cast<std::streamsize>(text.size()));
   text.resize(static_cast<std::size_t>(in.gcount()));  // it may have grown since
-  return read_declaration(text, path, diagnostics);
+  ProgramDeclaration declaration = read_declaration(text, path, diagnostics);
+  const std::string name = fs::path(path).filename().string();
+  const std::string program =
+      name.substr(0, name.size() - std::min(name.size(), std::string_view(declaration_ending).size()));
+  if (diagnostics.ok() && name == program + declaration_ending && declaration.program != program)
+    diagnostics.error(whole, "",
+                      "'program' must be '" + shortened(printable(program)) + "', as the file is called, got '" +
+                          shortened(printable(declaration.program)) + "'");
+  return declaration;
 }
 
 }  // namespace sim

@@ -65,11 +65,10 @@ void check_unknown(const ProgramDeclaration& declaration, const ConfigNode& args
   for (const ConfigNode::Entry& entry : args.entries) {
     if (declaration.find(entry.key) != nullptr) continue;
     if (++unknown > max_unknown) return diagnostics.error(entry.place, who, "more unknown arguments are not shown");
-    const std::string meant = closest_name(entry.key, known);
+    const std::string meant = did_you_mean(entry.key, known);
     diagnostics.error(entry.place, who,
                       "unknown argument '" + shortened(printable(entry.key)) + "'" +
-                          (meant.empty() ? "; known arguments: " + list_text(known, known.size())
-                                         : "; did you mean '" + meant + "'?"));
+                          (meant.empty() ? "; known arguments: " + list_text(known, known.size()) : meant));
   }
 }
 

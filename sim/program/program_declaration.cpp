@@ -17,6 +17,7 @@ namespace {
 using Kind = ConfigNode::Kind;
 
 constexpr std::size_t max_args = 256;
+constexpr std::size_t max_channel_length = 63;  // of LCM
 constexpr std::size_t max_columns = 16;
 
 bool has_numbers(ArgType type) {
@@ -113,6 +114,14 @@ void read_groups(ParamReader& in, const char* key, std::vector<std::vector<std::
   }
 }
 
+/// Reports patterns that cannot be names of channels.
+void check_channels(ParamReader& in, const char* key, const std::optional<std::vector<std::string>>& channels) {
+  if (!channels) return;
+  for (const std::string& channel : *channels)
+    if (channel.empty() || channel.size() > max_channel_length || printable(channel) != channel)
+      in.error(key, "a channel must have 1 to 63 printable characters, got '" + shortened(printable(channel)) + "'");
+}
+
 /// Names in `needs` and in groups are those of arguments, and each argument is declared once.
 void check_names(ParamReader& in, const ProgramDeclaration& declaration) {
   const auto check = [&](const char* key, const std::string& name, const std::string& by) {
@@ -199,7 +208,7 @@ void ProgramDeclaration::read(ParamReader& in) {
   in.require("shoal_args");
   in.read("shoal_args", shoal_args, between(1, 1), "version of the format");
   in.require("program");
-  in.read("program", program, "file name of the program");
+  in.read("program", program, "file name of the program; the declaration is NAME.args.yaml");
   in.read("meaning", meaning, "one sentence for people");
   const auto read_channels = [&in](const char* key, std::optional<std::vector<std::string>>& channels, const char* of) {
     std::vector<std::string> list;
@@ -214,7 +223,10 @@ void ProgramDeclaration::read(ParamReader& in) {
              "'args' must have at most " + std::to_string(max_args) + " arguments, got " + std::to_string(args.size()));
   read_groups(in, "exactly_one", exactly_one, "groups of arguments of which exactly one must be given");
   read_groups(in, "at_most_one", at_most_one, "groups of arguments of which at most one may be given");
-  if (!in.describing()) check_names(in, *this);
+  if (in.describing()) return;
+  check_channels(in, "publishes", publishes);
+  check_channels(in, "subscribes", subscribes);
+  check_names(in, *this);
 }
 
 const ArgDeclaration* ProgramDeclaration::find(const std::string& name) const {
@@ -225,8 +237,9 @@ const ArgDeclaration* ProgramDeclaration::find(const std::string& name) const {
 
 ProgramDeclaration read_declaration(const std::string& text, const std::string& file, Diagnostics& diagnostics) {
   ProgramDeclaration declaration;
-  const ConfigNode node = parse_config_text(text, file, diagnostics);
+  ConfigNode node = parse_config_text(text, file, diagnostics);
   if (!diagnostics.ok()) return declaration;
+  if (node.place.file == nullptr) node.place = {intern_file_name(file), 0, 0};  // an empty file
   ParamReader in(node, "", diagnostics);
   declaration.read(in);
   in.finish();

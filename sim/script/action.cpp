@@ -21,9 +21,8 @@ struct ActionKeys {
 
 std::string unknown_action(const std::string& word) {
   const std::vector<std::string> words = ActionRegistry::instance().words();
-  const std::string meant = closest_name(word, words);
   return "unknown action '" + shortened(printable(word)) + "'; known actions: " + list_text(words) +
-         (meant.empty() ? "" : "; did you mean '" + meant + "'?");
+         did_you_mean(word, words);
 }
 
 /// What to write instead of a map with keys beside the word of the action.

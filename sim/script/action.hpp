@@ -33,6 +33,8 @@ class Action {
   virtual void carry_out(const ActionRun& run) const = 0;
   /// Adds the channels that it publishes on.
   virtual void add_channels(std::set<std::string>& /*channels*/) const {}
+  /// Adds the names of the events that it triggers.
+  virtual void add_triggered(std::set<std::string>& /*events*/) const {}
 };
 
 /// An action in the list of an event.  In YAML a map of one key, the action's word, whose value is a map with the keys

@@ -43,6 +43,8 @@ struct EventConfig {
   SourcePlace place;
 
   void read(ParamReader& in);
+  /// Whether a time or a condition lets it fire; otherwise only `trigger` and requests do.
+  bool fires_by_itself() const { return !at_s.empty() || every_s > 0 || when.kind != Condition::Kind::none; }
 
  private:
   void read_times(ParamReader& in);

@@ -52,7 +52,16 @@ class ConfigCheck {
   }
 
   void check_events() const {
+    std::set<std::string> triggered;
+    for (const EventConfig& event : world_.events)
+      for (const ActionEntry& entry : event.actions)
+        if (entry.action) entry.action->add_triggered(triggered);
     for (const EventConfig& event : world_.events) {
+      if (!event.fires_by_itself() && !triggered.contains(event.name))
+        warnings_.warn(
+            event.place, "event '" + event.name + "'",
+            "it has no 'at', 'every' or 'when', and no event triggers it: only a request can, `shoal control "
+            "do`");
       const bool late = !event.at_s.empty() &&
                         std::all_of(event.at_s.begin(), event.at_s.end(), [&](double at_s) { return at_s > end_s_; });
       if (end_s_ > 0 && late)
@@ -115,6 +124,19 @@ std::set<std::string> channels_of(const WorldConfig& world) {
   for (const EventConfig& event : world.events)
     for (const ActionEntry& entry : event.actions)
       if (entry.action) entry.action->add_channels(channels);
+  return channels;
+}
+
+std::set<std::string> subscribed_channels_of(const WorldConfig& world) {
+  std::set<std::string> channels;
+  for (const VehicleInstance& vehicle : world.vehicles)
+    for (const DeviceConfig& device : vehicle.config->devices)
+      if (device.device_type != nullptr && device.device_type->takes_commands())
+        channels.insert(device_channel(world.channels, vehicle.name, device, ChannelKind::command));
+  for (const MetricConfig& metric : world.metrics)
+    if (metric.params && !metric.params->channel.empty()) channels.insert(metric.params->channel);
+  for (const EventConfig& event : world.events)
+    if (event.when.kind == Condition::Kind::message) channels.insert(event.when.subject);
   return channels;
 }
 

@@ -20,4 +20,7 @@ void warn_of_config(const WorldConfig& world, const ConfigNode& root, Warnings& 
 /// The channels on which the world itself speaks: reports and truths of its devices, and what its events publish.
 std::set<std::string> channels_of(const WorldConfig& world);
 
+/// The channels to which the world itself subscribes: commands of its devices, and what metrics and conditions name.
+std::set<std::string> subscribed_channels_of(const WorldConfig& world);
+
 }  // namespace sim

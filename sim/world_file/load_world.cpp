@@ -18,6 +18,7 @@
 #include "sim/world_file/check_script.hpp"
 #include "sim/world_file/config_warnings.hpp"
 #include "sim/world_file/data_files.hpp"
+#include "sim/world_file/file_kind.hpp"
 #include "sim/world_file/vehicle_loader.hpp"
 
 namespace sim {
@@ -142,7 +143,7 @@ bool set_override(ConfigNode& root, const std::string& path, const ConfigNode& v
 void apply_sets(ConfigNode& root, const LoadOptions& options, Diagnostics& diagnostics) {
   for (const std::string& set : options.sets) {
     const std::size_t equals = set.find('=');
-    const SourcePlace place{intern_file_name("--set " + set), 0, 0};
+    const SourcePlace place{intern_file_name("--set " + shortened(set, 240)), 0, 0};
     if (equals == std::string::npos || equals == 0) {
       diagnostics.error(place, "", "must be of the form path=value");
       continue;
@@ -274,6 +275,7 @@ void check_buses(const WorldConfig& world, const ConfigNode& root, const LoadOpt
 
 LoadedWorld load(ConfigNode root, const SourcePlace& file, const LoadOptions& options, Diagnostics& diagnostics) {
   diagnostics.throw_if_any();
+  require_file_kind(root, FileKind::world, file);
   LoadedWorld loaded;
   loaded.config.encode_message = options.encode_message;
   loaded.config.files = diagnostics.files();

@@ -33,11 +33,6 @@ class WorldRuleNames final : public RuleNames {
   const std::vector<MetricConfig>& metrics_;
 };
 
-std::string suggestion(std::string_view misspelt, const std::vector<std::string>& names) {
-  const std::string meant = closest_name(misspelt, names);
-  return meant.empty() ? "" : "; did you mean '" + meant + "'?";
-}
-
 }  // namespace
 
 void MetricConfig::read(ParamReader& in) {
@@ -63,7 +58,10 @@ void MetricConfig::read(ParamReader& in) {
     return;
   }
   kind = registry.find(type);
-  if (kind == nullptr) return;
+  if (kind == nullptr) {
+    for (const ConfigNode::Entry& entry : in.node()->entries) in.child(entry.key.c_str());
+    return;
+  }
   const std::shared_ptr<MetricParams> own = kind->make_params();
   own->read(in);
   params = own;
@@ -87,7 +85,7 @@ std::optional<RuleProblem> figure_problem(const std::vector<MetricConfig>& metri
     const std::string shown_name = "'" + shortened(metric_name) + "'";
     const std::string what = dot < name.size() ? "unknown metric " + shown_name
                                                : shown_name + " is neither a number nor a figure, METRIC.FIGURE";
-    return RuleProblem{0, what + "; known metrics: " + list_text(known) + suggestion(metric_name, known)};
+    return RuleProblem{0, what + "; known metrics: " + list_text(known) + did_you_mean(metric_name, known)};
   }
   if (metric->kind == nullptr) return std::nullopt;  // its type is wrong, which has been reported
   std::vector<std::string> figures;
@@ -97,13 +95,8 @@ std::optional<RuleProblem> figure_problem(const std::vector<MetricConfig>& metri
                               "." + figures.front() + "; figures: " + list_text(figures)};
   const std::string figure = name.substr(dot + 1);
   if (metric->kind->find(figure) != nullptr) return std::nullopt;
-  // The unit is what is forgotten most.
-  const auto with_unit = std::find_if(figures.begin(), figures.end(),
-                                      [&](const std::string& each) { return each.starts_with(figure + "_"); });
-  const std::string meant =
-      with_unit != figures.end() ? "; did you mean '" + *with_unit + "'?" : suggestion(figure, figures);
   return RuleProblem{dot + 1, "metric '" + metric_name + "' has no figure '" + shortened(figure) +
-                                  "'; figures: " + list_text(figures) + meant};
+                                  "'; figures: " + list_text(figures) + did_you_mean(figure, figures)};
 }
 
 void read_rules(ParamReader& in, std::vector<RuleExpression>& rules, const std::vector<MetricConfig>& metrics) {

@@ -32,6 +32,16 @@ std::string find_file(const std::string& file, const SourcePlace& named_in) {
   return {};
 }
 
+std::vector<std::string> shipped_vehicle_files() {
+  std::vector<std::string> names;
+  std::error_code error;
+  if (!shipped_folder().empty())
+    for (const fs::directory_entry& entry : fs::directory_iterator(fs::path(shipped_folder()) / "vehicles", error))
+      names.push_back(entry.path().filename().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
 bool mentions(const ConfigNode& node, std::string_view text) {
   if (node.scalar.find(text) != std::string::npos) return true;
   return std::any_of(node.items.begin(), node.items.end(),
@@ -124,9 +134,10 @@ const ConfigNode* VehicleLoader::model_of(const VehicleEntry& entry, const std::
   if (entry.file.empty()) return model_of_node(entry.model, who);
   const std::string path = find_file(entry.file, entry.beside.file != nullptr ? entry.beside : entry.place);
   if (path.empty()) {
-    diagnostics_.error(entry.place, who,
-                       "there is no vehicle file '" + entry.file +
-                           "' beside the world file, in ../vehicles or among the shipped ones");
+    diagnostics_.error(entry.file_place, who,
+                       "there is no vehicle file '" + shortened(entry.file) +
+                           "' beside the world file, in ../vehicles or among the shipped ones" +
+                           did_you_mean(entry.file, shipped_vehicle_files()));
     return nullptr;
   }
   if (!may_read(entry, path, who)) return nullptr;

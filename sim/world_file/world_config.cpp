@@ -77,6 +77,9 @@ void read_command(ParamReader& in, std::vector<std::string>& command) {
     if (in.has("command") && command.empty()) in.error("command", "'command' must name a program");
     return;
   }
+  const bool has_quotes = node->scalar.find_first_of("\"'\\") != std::string::npos;  // words would be split wrongly
+  if (has_quotes)
+    return in.error("command", "'command' must be a list of a program and its arguments, got " + shown(*node));
   ConfigNode list;
   list.kind = ConfigNode::Kind::list;
   std::istringstream words(node->scalar);
@@ -103,6 +106,9 @@ void ProcessConfig::read(ParamReader& in) {
       "with exit code 1; ignore: the run continues, and a failure does not count");
   if (in.describing()) return;
   if (in.has("program") && program.empty()) in.error("program", "'program' must not be empty");
+  if (program.find(' ') != std::string::npos)
+    in.error("program", "'program' must be the name or path of a program alone, got '" + shortened(printable(program)) +
+                            "'; its arguments go below 'args'");
   if (in.has("program") == in.has("command"))
     in.error(in.has("program") ? "needs either 'program' or 'command', not both"
                                : "needs either 'program' with 'args' or 'command'");

@@ -229,7 +229,7 @@ TEST(ActuatorFault, StuckKeepsItsLastCommandWhateverComes) {
   for (const double velocity : targets(test, 200)) ASSERT_EQ(velocity, 1);
 }
 
-TEST(ActuatorFault, SilentHearsNothingSoThatItsWatchdogStopsIt) {
+TEST(ActuatorFault, SilentReceivesNothingSoThatItsWatchdogStopsIt) {
   test::TestWorld test(test::arm_world(motor(", watchdog_s: 0.05"), 0));
   turn(test, 1);
   test.run_for(0.02);

@@ -74,7 +74,7 @@ TEST_P(DamagedState, IsRefusedWhenItIsCutOff) {
   }
 }
 
-TEST_P(DamagedState, IsRefusedOrTheWorldGoesOn) {
+TEST_P(DamagedState, IsRefusedOrTheWorldContinues) {
   int refused = 0, taken = 0;
   for (int round = 0; round < 25; ++round) {
     for (std::size_t i = 0; i < sensors.size(); ++i) {

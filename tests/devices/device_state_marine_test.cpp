@@ -23,7 +23,7 @@ void command(test::TappedWorld& to, const std::string& device, double value) {
   to.send(device + ".cmd", message);
 }
 
-TEST(DeviceState, ARoverAndWhatItSeesGoOnAfterARestore) {
+TEST(DeviceState, ARoverAndWhatItSeesContinueAfterARestore) {
   const std::string devices =
       "        - {name: drive, type: differential_drive, left_joint: left, right_joint: right, wheel_radius_m: 0.1, "
       "track_m: 0.5, max_acceleration_mps2: 0.5}\n"
@@ -85,7 +85,7 @@ TEST(DeviceState, ASonarThatHasLeftTheWaterKnowsWhatTheWaterWasLike) {
   run.expect_restored_worlds_go_on_alike({33, 77}, 60);
 }
 
-TEST(DeviceState, ASonarThatIsChangedBetweenPingsHasAnEmptyPicture) {
+TEST(DeviceState, ASonarThatIsChangedBetweenPingsHasAnEmptyImage) {
   const std::string yaml =
       "shoal: 1\nphysics: {step_s: 0.01, gravity_mps2: 0}\nobjects: [{name: bottom, fixed: true, position_m: [0, 0, "
       "-5], parts: [{shape: plane}]}]\nmedium: {water: {}}\nvehicles:\n  - {name: v, position_m: [0, 0, -2], model: "
@@ -133,7 +133,7 @@ TEST(DeviceState, MessagesInTheQueuesOfModemsAreSentAfterARestore) {
   run.expect_restored_worlds_go_on_alike({6, 100, 333, 402}, 300);
 }
 
-TEST(DeviceState, AMicromodemGoesOnInTheMiddleOfACycle) {
+TEST(DeviceState, AMicromodemContinuesInTheMiddleOfACycle) {
   const auto modem = [](int address) {
     return "{name: modem, type: micromodem, rate_hz: 10, address: " + std::to_string(address) + "}";
   };
@@ -158,7 +158,7 @@ TEST(DeviceState, AMicromodemGoesOnInTheMiddleOfACycle) {
   run.expect_restored_worlds_go_on_alike({25, 35, 130, 420, 1550}, 900);
 }
 
-TEST(DeviceState, AMicromodemGoesOnWithAnotherAddressAndATimeThatWaitsForThePulse) {
+TEST(DeviceState, AMicromodemContinuesWithAnotherAddressAndATimeThatWaitsForThePulse) {
   const std::string modem = "{name: modem, type: micromodem, rate_hz: 10, revision: 2.0.26038, address: ";
   const std::string yaml = test::modem_sea({{"a", "[0, 0, -20]", modem + "1, lbl: {transponders: [b]}}"},
                                             {"b", "[750, 0, -20]", modem + "2}, {name: beacon, type: transponder}"}});
@@ -178,7 +178,7 @@ TEST(DeviceState, AMicromodemGoesOnWithAnotherAddressAndATimeThatWaitsForThePuls
   run.expect_restored_worlds_go_on_alike({20, 150, 420}, 900);
 }
 
-TEST(DeviceState, MarineActuatorsGoOnAfterARestore) {
+TEST(DeviceState, MarineActuatorsContinueAfterARestore) {
   const std::string yaml = R"(shoal: 1
 physics: {step_s: 0.01}
 medium: {water: {surface_m: 0}, wind: {speed_mps: 6, from_compass_deg: 250}}

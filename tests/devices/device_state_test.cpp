@@ -36,7 +36,7 @@ TEST(DeviceState, OfEveryDeviceAtSeaOutlastsASnapshot) {
 /// The images are taken in pieces over most of the time between two samples, so that every snapshot cuts one in two.
 /// The third image of depth is sampled after 216 steps and the next after 323, 107.5 ms before which the camera was
 /// where it was half a step before the snapshot.
-TEST(DeviceState, CamerasGoOnWithAHalfDoneImage) {
+TEST(DeviceState, CamerasContinueWithAHalfDoneImage) {
   SavedRun run(
       test::rover_world(
           "        - {name: drive, type: differential_drive, left_joint: left, right_joint: right}\n"
@@ -118,7 +118,7 @@ TEST(DeviceState, MarineActuatorsAreOnTheirWay) {
   run.expect_restored_worlds_go_on_alike({40, 135, 300}, 200);
 }
 
-TEST(DeviceState, AnAutopilotGoesOnWithItsRouteItsStationAndItsSums) {
+TEST(DeviceState, AnAutopilotContinuesWithItsRouteItsStationAndItsSums) {
   const auto yaml = [](const std::string& file, const std::string& overrides) {
     return "shoal: 1\nphysics: {step_s: 0.01}\nmedium: {water: {}, current: [{type: constant, velocity_mps: [0, 0.3, "
            "0]}]}\nvehicles:\n  - name: v\n    file: " +

@@ -89,7 +89,7 @@ vehicles:
 class EveryDevice : public testing::TestWithParam<const sim::DeviceType*> {};
 
 /// It works from what it says of itself, and all that it keeps goes back with the world.
-TEST_P(EveryDevice, GoesOnAlikeAfterASnapshot) {
+TEST_P(EveryDevice, ContinuesAlikeAfterASnapshot) {
   test::SavedRun(world_with(*GetParam())).expect_restored_worlds_go_on_alike({0, 61, 300}, 150);
 }
 

@@ -111,7 +111,7 @@ class EveryWorld : public testing::TestWithParam<std::string> {
   std::vector<StepResult> results;
 };
 
-TEST_P(EveryWorld, GoesOnFromASnapshotBitForBit) {
+TEST_P(EveryWorld, ContinuesFromASnapshotBitForBit) {
   SteppedWorld original(loaded);
   for (int step = 0; step < saved_at.back() + more_steps; ++step) {
     for (const int at : saved_at)
@@ -132,7 +132,7 @@ TEST_P(EveryWorld, GoesOnFromASnapshotBitForBit) {
 }
 
 /// To before a value was set, and to after it: both times the world is built again.
-TEST_P(EveryWorld, GoesOnFromBeforeAndAfterAValueWasSet) {
+TEST_P(EveryWorld, ContinuesFromBeforeAndAfterAValueWasSet) {
   SteppedWorld original(loaded);
   saved_at = {20, 60};
   const int set_at = 40;

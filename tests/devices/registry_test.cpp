@@ -24,7 +24,7 @@ TEST(DeviceRegistry, NoDeviceTypeTakesAKeyThatAllDevicesHave) {
       EXPECT_FALSE(common.contains(info.key)) << type->name << ": " << info.key;
 }
 
-TEST(DeviceRegistry, EveryTypeSaysWhatItIsAndWhatItSpeaks) {
+TEST(DeviceRegistry, EveryTypeSaysWhatItIsAndWhatItPublishes) {
   const auto all = sim::DeviceRegistry::instance().all();
   EXPECT_GE(all.size(), 7u);
   for (const sim::DeviceType* type : all) {

@@ -155,7 +155,7 @@ TEST_F(FidelityFiles, ATrajectoryOfOnesOwnIsComparedWithItsStart) {
   EXPECT_THAT(result.missed, testing::ElementsAre(testing::StartsWith("position_max_m ")));
 }
 
-TEST_F(FidelityFiles, TheReportHasTheTableThePicturesAndOurStates) {
+TEST_F(FidelityFiles, TheReportHasTheTableTheImagesAndOurStates) {
   write("c.csv", header + "0,1,2,3,0,0,0.5,0,0,0,0,0,0,0\n0.1,1,2,3,0,0,0.5,0,0,0,0,0,0,0\n");
   const tools::FidelityFile file = tools::read_fidelity_file(cases("    title: Mine\n"));
   tools::write_fidelity_report(folder_.file("report"), "A word before.\n",
@@ -255,7 +255,7 @@ TEST_F(FidelityFiles, ThereIsABottomFarBelowAndTheVehicleHasTheNameOfItsFile) {
   EXPECT_TRUE(world.scene().cast(vehicle.X_WV().translation(), -sim::Vector3d::UnitZ(), 12000, others));
 }
 
-TEST_F(FidelityFiles, ALineTellsHowACaseWent) {
+TEST_F(FidelityFiles, ALineReportsHowACaseWent) {
   tools::FidelityResult result;
   result.of.name = "turn";
   result.position_rms_m = 0.03125;

@@ -69,7 +69,7 @@ TEST(AcousticsCommand, PrintsATableOverRange) {
   for (const char* row : {"\n500,", "\n1000,", "\n1500,", "\n2000,"}) EXPECT_THAT(ended.output, HasSubstr(row));
 }
 
-TEST(AcousticsCommand, DrawsAPicture) {
+TEST(AcousticsCommand, DrawsAnImage) {
   const ScratchFolder folder;
   const Ended ended = acoustics({"--ranges", "500:2000:500", "--image", folder.file("link.png")});
   ASSERT_EQ(ended.exit_code, 0) << ended.errors;

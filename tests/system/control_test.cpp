@@ -70,7 +70,7 @@ TEST(Control, AVehicleGoesWithTheProgramThatBroughtIt) {
   EXPECT_EQ(shoal.wait(), 0) << shoal.errors();
 }
 
-TEST(Control, SaysThatNobodyAnswers) {
+TEST(Control, SaysThatNoOneAnswers) {
   const Ended ended = control({"pause", "--timeout", "0.2"});
   EXPECT_EQ(ended.exit_code, 5);
   EXPECT_THAT(ended.errors, HasSubstr("no simulator answered within 0.2 s"));

@@ -197,7 +197,7 @@ TEST_F(LiveRun, AnotherSimulatorIsFoundOnTheBusOfAVehicle) {
   quit();
 }
 
-TEST_F(LiveRun, GoesOnWithoutAProcessThatDiedAndFails) {
+TEST_F(LiveRun, ContinuesWithoutAProcessThatDiedAndFails) {
   start("processes: [{name: pilot, command: [sh, -c, exit 3]}]\n", {"--launch"});
   EXPECT_TRUE(
       await([&] { return shoal_->errors().find("the run continues without it, and fails") != std::string::npos; }));
@@ -207,7 +207,7 @@ TEST_F(LiveRun, GoesOnWithoutAProcessThatDiedAndFails) {
   EXPECT_THAT(shoal_->output(), HasSubstr("FAILED: process 'pilot' must not fail; it exited with code 3"));
 }
 
-TEST_F(LiveRun, GoesOnWithoutAProcessWhoseEndDoesNotMatter) {
+TEST_F(LiveRun, ContinuesWithoutAProcessWhoseEndDoesNotMatter) {
   start("processes: [{name: pilot, command: [sh, -c, exit 3], on_exit: ignore}]\n", {"--launch"});
   EXPECT_TRUE(await([&] { return shoal_->errors().find("process 'pilot' exited with code 3") != std::string::npos; }));
   quit();

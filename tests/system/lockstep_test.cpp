@@ -133,7 +133,7 @@ TEST(LockstepMission, IsTheSameOverANetworkThatLosesAThird) {
   EXPECT_GT(relay.swapped(), 30);
 }
 
-TEST(LockstepMission, GoesOnAtOnceWithoutAClientThatLeavesOverANetworkThatLosesAThird) {
+TEST(LockstepMission, ContinuesAtOnceWithoutAClientThatLeavesOverANetworkThatLosesAThird) {
   LossyRelay relay(own_url(0), own_url(1), 0.3, 7);
   Mission mission;
   mission.client_url = own_url(1);
@@ -292,7 +292,7 @@ TEST_F(Policy, AnotherSimulatorOnTheBusDoesNotEndTheClients) {
   EXPECT_THAT(text_of_file(folder_.file("results") + "/pilot.log"), HasSubstr(" end 1"));
 }
 
-TEST_F(Policy, AKilledClientFailsARunThatIsJudgedThoughTheWorldGoesOn) {
+TEST_F(Policy, AKilledClientFailsARunThatIsJudgedThoughTheWorldContinues) {
   start("--die-at, '5', --on-timeout, continue, --timeout, '1000'",
         "metrics: [{name: distance, type: distance, vehicle: rover2}]\npass: [distance.travelled_m < 1e6]\n");
   EXPECT_EQ(shoal_->wait(), 1) << shoal_->errors();
@@ -307,13 +307,13 @@ TEST_F(Policy, EndThatWasAgreedEndsTheRunWithAKilledClientAtOnce) {
   EXPECT_THAT(shoal_->errors(), HasSubstr("; its `on_timeout` applies"));
 }
 
-TEST_F(Policy, KilledClientThatAgreedNothingIsGoneAndTheRunGoesOn) {
+TEST_F(Policy, KilledClientThatAgreedNothingIsGoneAndTheRunContinues) {
   start("--die-at, '5'", "lockstep: {timeout_s: 1000}\n");
   EXPECT_EQ(shoal_->wait(), 1) << shoal_->errors();
   EXPECT_THAT(summary(), HasSubstr("\"ended\": \"its process ended\""));
 }
 
-TEST_F(Policy, PauseHoldsTheWorldUntilSomebodyResumesIt) {
+TEST_F(Policy, PauseHoldsTheWorldUntilSomeOneResumesIt) {
   start("--stop-at, '5', --on-timeout, pause, --timeout, '0.1'");
   await_error("the world pauses");
   const auto before = request("alive").utime;
@@ -370,7 +370,7 @@ TEST_F(Policy, ASecondClientOfANameIsRefusedWhileTheFirstAnswers) {
   EXPECT_EQ(shoal_->wait(), 0) << shoal_->errors();
 }
 
-TEST_F(Policy, AClientThatAnswersTooLateIsToldAndMayJoinAgain) {
+TEST_F(Policy, AClientThatAnswersTooLateIsNotifiedAndMayJoinAgain) {
   duration_s_ = "forever";
   start("--period, '0.01', --slow-ms, '2', --on-timeout, continue, --timeout, '0.3'");
   while (const auto message = listener_.next(timeout))

@@ -129,7 +129,7 @@ TEST(MarinePrograms, SignalWhileItWaitsForTheSimulatorIsSaid) {
   EXPECT_THAT(program.errors(), HasSubstr("'a' was stopped while it waited for a simulator"));
 }
 
-TEST(CoopRelay, OrderComesToTheAuvByTheRelayAndNotWithoutIt) {
+TEST(CoopRelay, OrderReachesTheAuvByTheRelayAndNotWithoutIt) {
   const ScratchFolder folder;
   for (const bool relay : {true, false}) {
     const std::string results = folder.file(relay ? "relay" : "no_relay");

@@ -106,7 +106,7 @@ TEST_F(Play, EachTickHasTheMessagesOfItsTime) {
   }
 }
 
-TEST_F(Play, ProgramsThatOnlyListenHearItAtItsSpeed) {
+TEST_F(Play, ProgramsThatOnlyListenReceiveItAtItsSpeed) {
   record_minimal();
   bridges::LcmListener listener(own_url(1));
   listener.listen("sim.clock");

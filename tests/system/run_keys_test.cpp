@@ -118,7 +118,7 @@ TEST(Keys, AJobInTheBackgroundIsNotStopped) {
   EXPECT_EQ(shell.wait(), 0);
 }
 
-TEST(Keys, AJobThatComesToTheForegroundTakesTheTerminal) {
+TEST(Keys, AJobThatReachesTheForegroundTakesTheTerminal) {
   const ScratchFolder folder;
   write_file(folder.file("world.yaml"), endless_world());
   // Such a shell gives a job that runs on its terminal, and no signal.

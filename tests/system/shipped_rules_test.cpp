@@ -47,9 +47,9 @@ TEST(ShippedRules, OfCoopLandFailWithOneMuteRoverOrWithoutEstimates) {
   EXPECT_EQ(whole_run("coop_land", {minute}).exit_code, 0);
   const Ended unheard = whole_run("coop_land", {minute, "vehicles.rover2.devices.modem.loss_probability=1"});
   EXPECT_EQ(unheard.exit_code, 1) << unheard.errors;
-  EXPECT_THAT(unheard.output, HasSubstr("FAILED: link.received"));
+  EXPECT_THAT(unheard.output, HasSubstr("FAILED: rover3_link.received"));
   const Ended mute = whole_run("coop_land", {minute, silent("rover1/modem")});
-  EXPECT_THAT(mute.output, HasSubstr("FAILED: link.received")) << mute.errors;
+  EXPECT_THAT(mute.output, HasSubstr("FAILED: rover3_link.received")) << mute.errors;
   const Ended blind = whole_run("coop_land", {minute, silent("rover3/odometry")});
   EXPECT_THAT(blind.output, HasSubstr("FAILED: cooperative.max_gap_s")) << blind.errors;
 }

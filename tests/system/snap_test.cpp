@@ -17,7 +17,7 @@ Ended snap(std::vector<std::string> arguments) {
   return run_shoal(arguments);
 }
 
-TEST(Snap, MakesThePictureItMadeBefore) {
+TEST(Snap, MakesTheImageItMadeBefore) {
   const ScratchFolder folder;
   const Ended ended = snap({source("tests/golden/yard.yaml"), "--eye=-4,-5,3", "--look", "0.5,0,0.4", "--size",
                             "320x240", "--out", folder.file("yard.png")});
@@ -38,7 +38,7 @@ TEST(Snap, MakesThePictureItMadeBefore) {
   EXPECT_LT(other / static_cast<double>(now.data.size()), 0.01) << "see tests/golden/yard.yaml";
 }
 
-TEST(Snap, TakesPicturesOfEveryKind) {
+TEST(Snap, TakesImagesOfEveryKind) {
   const ScratchFolder folder;
   const std::string world = source("worlds/proving_ground.yaml");
   for (const char* image : {"rgb", "grey", "depth", "segmentation_parts", "segmentation_vehicles"}) {
@@ -54,7 +54,7 @@ TEST(Snap, TakesPicturesOfEveryKind) {
   EXPECT_EQ(down.exit_code, 0) << down.errors;
 }
 
-TEST(Snap, TakesOnePictureAfterTheOther) {
+TEST(Snap, TakesOneImageAfterTheOther) {
   const ScratchFolder folder;
   const Ended ended = snap({source("worlds/minimal.yaml"), "--at", "0.1", "--every", "0.1", "--until", "0.3", "--size",
                             "40x30", "--out", folder.file("film.png")});
@@ -96,7 +96,7 @@ TEST(Snap, SaysWhatIsWrong) {
   EXPECT_THAT(unwritable.errors, HasSubstr("folder.png: cannot be written"));
 }
 
-TEST(Check, FindsATextureThatIsNoPicture) {
+TEST(Check, FindsATextureThatIsNoImage) {
   const ScratchFolder folder;
   write_file(folder.file("t.png"), "no image");
   write_file(folder.file("w.yaml"),

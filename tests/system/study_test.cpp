@@ -239,7 +239,7 @@ TEST(Study, GivesEachRunASerialPortOfItsOwnWhereThePathNamesTheRun) {
   EXPECT_TRUE(study.all_saw_their_port());
 }
 
-TEST(Study, OfTheCooperativeWorldGoesOnWhereItWasStopped) {
+TEST(Study, OfTheCooperativeWorldContinuesWhereItWasStopped) {
   const ScratchFolder folder;
   const auto study = [&](const std::string& seeds) {
     write_file(folder.file("study.yaml"), "shoal: 1\nstudy: sea\nworld: " + source("worlds/coop_underwater.yaml") +
@@ -284,7 +284,7 @@ TEST(Run, ItsProgramsEndWhenItIsKilled) {
   EXPECT_TRUE(await([&] { return !is_running(pilot); }, timeout));
 }
 
-TEST(Report, ExitCodesTellWhatIsWrong) {
+TEST(Report, ExitCodesReportWhatIsWrong) {
   const ScratchFolder folder;
   EXPECT_EQ(run_shoal({"report"}).exit_code, 2);
   EXPECT_EQ(run_shoal({"report", folder.file("a"), folder.file("b")}).exit_code, 4);

@@ -94,7 +94,7 @@ TEST_F(Page, AWorkedSessionEndsAsItSays) {
   }
 }
 
-TEST_F(Page, SnapshotFilesGoOnAsItSays) {
+TEST_F(Page, SnapshotFilesContinueAsItSays) {
   const std::vector<PageCommand> commands = commands_in(section("Snapshot files"));
   ASSERT_THAT(commands, SizeIs(4));
   std::vector<Ended> ended;

@@ -87,7 +87,7 @@ std::string hash_of_snapshot(const std::string& path) {
   return found[1];
 }
 
-TEST(Snapshot, AFreshProcessGoesOnBitForBit) {
+TEST(Snapshot, AFreshProcessContinuesBitForBit) {
   const Folder folder;
   const std::vector<std::string> run{"run",           folder.world(), "--bus",       "none",
                                      "--snapshot-at", "10,3.33",      "--snapshots", folder.file("snaps")};
@@ -133,7 +133,7 @@ TEST(Snapshot, ValuesCanBeSetAndStructureCannot) {
   EXPECT_THAT(step.errors, HasSubstr("a step of 10000 us"));
 }
 
-TEST(Snapshot, WhatTheCommandLineAsksForHasNoLimit) {
+TEST(Snapshot, WhatTheCommandLineRequestsHasNoLimit) {
   const ScratchFolder folder;
   write_file(folder.file("world.yaml"), "shoal: 1\nname: empty\nphysics: {step_s: 0.01}\n");
   const Ended ended = run_shoal({"run", folder.file("world.yaml"), "--bus", "none", "--duration", "10.1",
@@ -248,7 +248,7 @@ TEST(Rewind, RunAgainIsEqualToARunThatNeverWentBack) {
   }
 }
 
-TEST(Rewind, MailAndRequestsComeInAgainAtTheSameSteps) {
+TEST(Rewind, InputsAndRequestsComeInAgainAtTheSameSteps) {
   const Folder folder;
   Live live(folder);
   bridges::LcmListener listener(own_url());
@@ -270,7 +270,7 @@ TEST(Rewind, MailAndRequestsComeInAgainAtTheSameSteps) {
   EXPECT_EQ(live.quit(), 0) << live.program.errors();
 }
 
-TEST(Rewind, TellsOfVehiclesThatAreGone) {
+TEST(Rewind, ReportsVehiclesThatAreGone) {
   const Folder folder;
   Live live(folder);
   bridges::LcmListener listener(own_url());
@@ -542,7 +542,7 @@ TEST(Restore, OfALaterTimeBeginsTheTracksAnew) {
   EXPECT_LT(first_time(results + "/branch1"), 1);
 }
 
-TEST(Restore, GoesOnFromAFileAndRefusesAnotherWorldsOne) {
+TEST(Restore, ContinuesFromAFileAndRefusesAnotherWorldsOne) {
   const Folder folder;
   Live live(folder);
   live.run_until("3");

@@ -60,7 +60,7 @@ TEST(Upgrade, RewritesOnce) {
   EXPECT_EQ(upgrade({"--check", path}).exit_code, 0);
 }
 
-TEST(Upgrade, LeavesAFileInDoubtAloneAndGoesOnWithTheOthers) {
+TEST(Upgrade, LeavesAFileInDoubtAloneAndContinuesWithTheOthers) {
   const ScratchFolder folder;
   const std::string doubtful = folder.file("doubtful.yaml"), good = folder.file("good.yaml");
   write_file(doubtful, "shoal: 1\nrun: {speed: &z 0, seed: *z}\n");

@@ -119,7 +119,7 @@ TEST(CheckPrograms, ADeclarationIsCheckedToo) {
   EXPECT_THAT(good.output, testing::HasSubstr("declaration of program 'coop_auv.py': 3 arguments"));
 }
 
-TEST(Warnings, TellAtTheEndOfAMetricThatHeardNothing) {
+TEST(Warnings, ReportAtTheEndOfAMetricThatReceivedNothing) {
   const system_test::ScratchFolder scratch;
   const std::string file = scratch.file("mute.yaml");
   system_test::write_file(
@@ -131,7 +131,7 @@ TEST(Warnings, TellAtTheEndOfAMetricThatHeardNothing) {
               HasSubstr("metric 'error': no estimate was received on 'rover1.estimate': its figures are not numbers"));
 }
 
-TEST(Warnings, TellOfAFirstContactWhileTheWorldRuns) {
+TEST(Warnings, ReportAFirstContactWhileTheWorldRuns) {
   const system_test::ScratchFolder scratch;
   const std::string file = scratch.file("fall.yaml");
   system_test::write_file(

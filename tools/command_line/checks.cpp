@@ -91,8 +91,7 @@ CLI::Validator one_of(std::vector<std::string> words) {
   const std::string known = alternatives(words);
   const auto check = [words = std::move(words), known](const std::string& text) -> std::string {
     if (std::find(words.begin(), words.end(), text) != words.end()) return "";
-    const std::string meant = sim::closest_name(text, words);
-    return "must be " + known + ", got " + quoted(text) + (meant.empty() ? "" : "; did you mean '" + meant + "'?");
+    return "must be " + known + ", got " + quoted(text) + sim::did_you_mean(text, words);
   };
   return CLI::Validator(check, known);
 }

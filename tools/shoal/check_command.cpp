@@ -8,6 +8,7 @@
 #include "sim/config/message_text.hpp"
 #include "sim/program/find_program.hpp"
 #include "sim/world/world.hpp"
+#include "sim/world_file/file_kind.hpp"
 #include "sim/world_file/load_world.hpp"
 #include "sim/world_file/vehicle_loader.hpp"
 #include "tools/experiment/process/process_check.hpp"
@@ -23,10 +24,6 @@ namespace {
 sim::ConfigNode keys_of(const std::string& path, const sim::LoadOptions& options) {
   sim::Diagnostics ignored(sim::files_of(path, options));
   return sim::load_config_file(path, ignored);
-}
-
-bool is_vehicle_file(const sim::ConfigNode& node) {
-  return node.find("vehicle") != nullptr || (node.find("bodies") != nullptr && node.find("vehicles") == nullptr);
 }
 
 /// Decodes every texture, as the first camera would.
@@ -88,9 +85,10 @@ void check_declaration(const std::string& path) {
 
 void check(const std::string& path, const sim::LoadOptions& options) {
   if (path.ends_with(sim::declaration_ending)) return check_declaration(path);
-  const sim::ConfigNode keys = keys_of(path, options);
-  if (keys.find("study") != nullptr) return check_study(path, options);
-  if (is_vehicle_file(keys)) {
+  const sim::FileKind kind = sim::kind_of_file(keys_of(path, options));
+  if (kind == sim::FileKind::declaration) return check_declaration(path);
+  if (kind == sim::FileKind::study) return check_study(path, options);
+  if (kind == sim::FileKind::vehicle) {
     const sim::VehicleConfig vehicle = sim::load_vehicle(path, options);
     std::cout << path << ": vehicle '" << vehicle.vehicle << "': " << counted(vehicle.bodies.size(), "body") << ", "
               << counted(vehicle.joints.size(), "joint") << ", " << counted(vehicle.devices.size(), "device") << '\n';

@@ -41,7 +41,8 @@ void add_describe_command(CLI::App& app, int& exit_code) {
   const auto schema = std::make_shared<std::string>();
   CLI::Option* name_option = command->add_option(
       "NAME", *name,
-      "a device type, a message type, a program, or one of: device, noise, world, vehicle, study, metrics");
+      "a device type, a message type, a program, a key of world or vehicle files, or one of: device, noise, world, "
+      "vehicle, study, metrics");
   CLI::Option* page_option = command->add_option("--page", *page, "print a whole page of docs/ in Markdown")
                                  ->type_name("PAGE")
                                  ->check(one_of({"devices", "messages", "metrics", "programs", "world_format"}));
@@ -52,11 +53,12 @@ void add_describe_command(CLI::App& app, int& exit_code) {
   page_option->excludes(schema_option);
   add_plugin_option(*command);
   command_line::set_help_end(
-      *command, {{"shoal describe lidar", "shoal describe world", "shoal describe metrics", "shoal describe pose_t",
-                  "shoal describe shoal-coop-rover", "shoal describe --schema world > world.schema.json",
-                  "shoal describe thermometer --plugin build/thermometer.so"},
-                 {{0, "success"}, {2, "wrong usage, or an unknown name"}},
-                 {}});
+      *command,
+      {{"shoal describe lidar", "shoal describe world", "shoal describe metrics", "shoal describe processes",
+        "shoal describe pose_t", "shoal describe shoal-coop-rover", "shoal describe --schema world > world.schema.json",
+        "shoal describe thermometer --plugin build/thermometer.so"},
+       {{0, "success"}, {2, "wrong usage, or an unknown name"}},
+       {}});
   command->callback([name, page, schema, &exit_code] {
     if (!page->empty() || !schema->empty()) {
       if (!page->empty())

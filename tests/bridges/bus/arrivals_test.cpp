@@ -88,7 +88,7 @@ TEST(Arrivals, WhoWaitsSendsAndReceivesForTheBuses) {
   EXPECT_FALSE(arrivals.wait(0ms));
 }
 
-TEST(Arrivals, AMessageThatNobodyWantsEndsNoWait) {
+TEST(Arrivals, AMessageThatNoOneWantsEndsNoWait) {
   Arrivals arrivals;
   BellPort port(arrivals);
   port.received = false;

@@ -250,7 +250,7 @@ TEST_P(LcmBusFrom, AClosedMailboxGetsNothing) {
   EXPECT_TRUE(take(*stays));
 }
 
-TEST_P(LcmBusFrom, AMailboxThatIsOpenedAgainHearsWhatComesFromThenOn) {
+TEST_P(LcmBusFrom, AMailboxThatIsOpenedAgainReceivesWhatComesFromThenOn) {
   bus.open_mailbox("a").reset();
   sender.publish("a", bytes_of("unreceived"), now);
   sender.end_of_step();
@@ -294,7 +294,7 @@ TEST_P(LcmBusFrom, RefusesBadChannelNames) {
   EXPECT_NO_THROW(bus.open_mailbox(std::string(63, 'a')));
 }
 
-TEST(LcmBus, TwoProcessesWorthOfBusesHearEachOther) {
+TEST(LcmBus, TwoProcessesWorthOfBusesReceiveEachOther) {
   LcmBus one(own_url()), two(own_url());
   const auto mailbox = two.open_mailbox("a");
   one.publish("a", bytes_of("x"), now);
@@ -354,7 +354,7 @@ TEST(LcmBus, TheDestructorSendsWhatIsQueued) {
   }
 }
 
-TEST(LcmListener, HearsAllChannelsInOrder) {
+TEST(LcmListener, ReceivesAllChannelsInOrder) {
   LcmListener listener(own_url());
   listener.listen_to_all();
   LcmBus bus(own_url());

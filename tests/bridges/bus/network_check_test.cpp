@@ -85,7 +85,7 @@ TEST(NetworkCheck, SaysWhenThePortOfAPrivateBusIsOpenToTheNetwork) {
       open, "iptables -I INPUT -p udp --dport " + std::to_string(port) + " -m addrtype ! --src-type LOCAL -j DROP"));
 }
 
-TEST(NetworkCheck, TellsOpenSocketsFromThoseOfLoopbackAndMulticast) {
+TEST(NetworkCheck, ReportsOpenSocketsFromThoseOfLoopbackAndMulticast) {
   // As the kernel writes them on a little-endian machine: 0.0.0.0, 127.0.0.1, 192.0.2.7, 239.255.76.67; port 7667.
   const std::string table =
       "  sl  local_address rem_address   st\n"

@@ -23,13 +23,13 @@ constexpr const char* world =
     "shoal: 1\nphysics: {step_s: 0.01, gravity_mps2: 0}\nvehicles: [{name: a, model: {shoal: 1, bodies: [{name: b, "
     "parts: [{shape: box, mass_kg: 1}]}]}}]\n";
 
-TEST(OtherSimulators, NobodyIsThere) {
+TEST(OtherSimulators, NoOneIsThere) {
   test::TestWorld quiet(world);
   OtherSimulators others({{"here", &quiet.bus}}, false);
   EXPECT_EQ(others.look([](milliseconds) {}), std::nullopt);
 }
 
-TEST(OtherSimulators, NobodyIsAskedWithoutABusAndNothingIsWaitedFor) {
+TEST(OtherSimulators, NoOneIsAskedWithoutABusAndNothingIsWaitedFor) {
   OtherSimulators others({}, false);
   EXPECT_EQ(others.look([](milliseconds) { ADD_FAILURE(); }), std::nullopt);
 }
@@ -42,7 +42,7 @@ TEST(OtherSimulators, OneThatIsPausedAndPublishesNothingAnswers) {
               Optional(std::string("another simulator answers on here")));
 }
 
-TEST(OtherSimulators, OneThatAnswersNothingIsHeard) {
+TEST(OtherSimulators, OneThatAnswersNothingIsReceived) {
   test::TestWorld first(world);
   OtherSimulators others({{"here", &first.bus}}, false);
   EXPECT_THAT(others.look([&](milliseconds) { first.send("sim.tick", shoal::sim_tick_t{}); }),

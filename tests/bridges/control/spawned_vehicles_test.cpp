@@ -182,7 +182,7 @@ TEST(Spawn, ADeviceOnTheWorldIsRefused) {
       HasSubstr("'body' must be a body of the vehicle, got 'world'"));
 }
 
-TEST(Spawn, WhatAnActionTakesAwayIsToldToo) {
+TEST(Spawn, WhatAnActionTakesAwayIsNotifiedToo) {
   Host host;
   ASSERT_TRUE(host.request_reply("do", "{remove: a}").ok);
   const auto reported = host.vehicles.last();
@@ -270,7 +270,7 @@ struct Moment {
   sim::Bytes world, owners;
 };
 
-TEST(Rewind, TheWorldHearsOfVehiclesAsItDidTheFirstTime) {
+TEST(Rewind, TheWorldReceivesOfVehiclesAsItDidTheFirstTime) {
   Host host;
   const Moment before(host);
   const std::string guest =
@@ -300,7 +300,7 @@ TEST(Rewind, TheWorldHearsOfVehiclesAsItDidTheFirstTime) {
   EXPECT_THAT(host.vehicles.take_all(), testing::IsEmpty());  // others know all that
 }
 
-TEST(Rewind, OthersAreToldWhatIsGoneByIt) {
+TEST(Rewind, OthersAreNotifiedOfWhatIsGoneByIt) {
   Host host;
   const Moment before(host);
   ASSERT_TRUE(host.request_reply("spawn", "{name: r1, file: rover_small.yaml, position_m: [3, 0, 0]}").ok);

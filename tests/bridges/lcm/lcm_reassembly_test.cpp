@@ -170,7 +170,7 @@ TEST(LcmReassembly, HeadersThatContradictTheFirstOneAreNoPartOfTheMessage) {
   EXPECT_EQ(reported(reassembly, datagrams[2]), "a=abcdefghi");
 }
 
-TEST(LcmReassembly, WhatNobodyWantsTakesNoMemory) {
+TEST(LcmReassembly, WhatNoOneWantsTakesNoMemory) {
   LcmReassembly reassembly;
   const auto nothing = [](std::string_view) { return false; };
   for (const sim::Bytes& datagram : three_fragments()) EXPECT_EQ(reported(reassembly, datagram, sender, nothing), "");

@@ -174,13 +174,13 @@ bool accepts_only_own_address() {
   return unicast_came && multicast_came && !unicast_received && first && text_of(first->payload) == "from here";
 }
 
-TEST(UdpReceiver, WhileTtlIsZeroOnlyThisMachineIsHeardAndUnicastNever) {
+TEST(UdpReceiver, WhileTtlIsZeroOnlyThisMachineIsReceivedAndUnicastNever) {
   const int result = lcm_test::in_own_network(accepts_only_own_address);
   if (result == lcm_test::not_permitted) GTEST_SKIP() << "user and network namespaces are not permitted here";
   EXPECT_EQ(result, 0);
 }
 
-TEST(UdpReceiver, OtherGroupsOnItsPortAreNotHeard) {
+TEST(UdpReceiver, OtherGroupsOnItsPortAreNotReceived) {
   const std::string url = own_url();
   const auto colon = url.rfind(':');
   const std::string other = "udpm://239.255.76.68" + url.substr(colon);
@@ -234,7 +234,7 @@ TEST(UdpReceiver, WhatComesWhileTheProgramComputesIsNotLost) {
   }
 }
 
-TEST(UdpInbox, LetsTheKernelDropWhatNobodyWantsUntilSomebodyDoes) {
+TEST(UdpInbox, LetsTheKernelDropWhatNoOneWantsUntilSomeOneDoes) {
   const LcmEndpoint endpoint = lcm_endpoint(resolve_lcm_url(own_url()));
   UdpInbox inbox(
       {.group = endpoint.address, .port = endpoint.port, .buffer_bytes = 1 << 20, .this_machine_only = true});

@@ -71,7 +71,7 @@ TEST(LockstepAnswers, WhatALeavingClientSendsTwiceIsNoBadMessage) {
   EXPECT_EQ(s.lockstep.bad_messages() + s.service.bad_messages(), 0);
 }
 
-TEST(LockstepAnswers, WhatCameWithAnAnswerAfterTheMailWasLookedAtIsNotAskedFor) {
+TEST(LockstepAnswers, WhatCameWithAnAnswerAfterTheInputsWasLookedAtIsNotAskedFor) {
   Service s("{timeout_s: 60}");
   const auto reader = s.gate.open_mailbox("cmd");
   ASSERT_TRUE(s.join("pilot", "{session: 5}").ok);

@@ -58,7 +58,7 @@ TEST(LockstepBuses, AClientOfTheSameNameOnAnotherBusIsRefused) {
   EXPECT_TRUE(s.join("pilot", "{session: 7}").ok);
 }
 
-TEST(LockstepBuses, LeaveLetsGoOfNobodyOnAnotherBus) {
+TEST(LockstepBuses, LeaveLetsGoOfNoOneOnAnotherBus) {
   TwoBuses s;
   ASSERT_TRUE(s.join("pilot", "{session: 7}").ok);
   EXPECT_EQ(s.ask_there("leave", "pilot").text,
@@ -117,7 +117,7 @@ TEST(LockstepBuses, TheEndIsForThoseWhoAreListed) {
   EXPECT_EQ(there.client[0].name, "there");
 }
 
-TEST(LockstepBuses, OneThatWasDroppedIsToldWhenTheRunEnds) {
+TEST(LockstepBuses, OneThatWasDroppedIsNotifiedWhenTheRunEnds) {
   Service s("{on_timeout: continue, timeout_s: 0.001}");
   ASSERT_TRUE(s.join("pilot", "{session: 5}").ok);
   s.synchronize([] { std::this_thread::sleep_for(std::chrono::milliseconds(2)); });

@@ -107,7 +107,7 @@ TEST(LockstepService, BundlesThatAreTooLargeComeInParts) {
   });
 }
 
-TEST(LockstepService, AsksForWhatAClientPublishedUntilItIsThere) {
+TEST(LockstepService, RequestsWhatAClientPublishedUntilItIsThere) {
   Service s;
   const auto reader = s.gate.open_mailbox("cmd");
   ASSERT_TRUE(s.join("pilot", "{session: 5, timeout_s: 60}").ok);
@@ -255,7 +255,7 @@ TEST(LockstepService, JoiningAgainLeavesTheOpenTickOpen) {
   EXPECT_EQ(s.lockstep.bad_messages(), 0);
 }
 
-TEST(LockstepService, WithoutALateClientTheWorldGoesOnAndTellsItSo) {
+TEST(LockstepService, WithoutALateClientTheWorldContinuesAndReportsItSo) {
   Service s;
   ASSERT_TRUE(s.join("pilot", "{session: 5, on_timeout: continue, timeout_s: 0.001}").ok);
   s.synchronize();
@@ -298,7 +298,7 @@ TEST(LockstepService, AStepWhileALateClientPausesTheWorldDoesNotDropIt) {
   EXPECT_EQ(s.control.single_steps, 2);
 }
 
-TEST(LockstepService, TimeOutsRestWhileSomebodyHasPausedTheWorld) {
+TEST(LockstepService, TimeOutsRestWhileSomeOneHasPausedTheWorld) {
   Service s;
   ASSERT_TRUE(s.join("pilot", "{session: 5, on_timeout: continue, timeout_s: 0.05}").ok);
   const auto begin = std::chrono::steady_clock::now();
@@ -426,7 +426,7 @@ TEST(LockstepService, AFloodOfJoinsLeavesTheClientsThatAreThere) {
   EXPECT_TRUE(s.lockstep.has("client999"));
 }
 
-TEST(LockstepService, KeepsThePauseThatSomebodyAskedForWhileAClientWasLate) {
+TEST(LockstepService, KeepsThePauseThatSomeOneAskedForWhileAClientWasLate) {
   Service s;
   ASSERT_TRUE(s.join("pilot", "{session: 5, on_timeout: pause, timeout_s: 0.001}").ok);
   s.synchronize([&] {
@@ -522,7 +522,7 @@ TEST(LockstepService, AnAcknowledgementMayNameTenThousandMessages) {
   EXPECT_EQ(s.lockstep.bad_messages(), 1);
 }
 
-TEST(LockstepService, OnlySoManyClientsOfThePastAreListed) {
+TEST(LockstepService, OnlyManyClientsOfThePastAreListed) {
   Service s;
   for (int i = 0; i < 2500; ++i) {
     const std::string name = "client" + std::to_string(i);
@@ -532,7 +532,7 @@ TEST(LockstepService, OnlySoManyClientsOfThePastAreListed) {
   EXPECT_EQ(s.lockstep.summaries().size(), 2000u);
 }
 
-TEST(LockstepService, TellsTheEndUntilAllKnow) {
+TEST(LockstepService, ReportsTheEndUntilAllKnow) {
   Service s;
   ASSERT_TRUE(s.join("pilot", "{session: 5, receives: [x]}", 1).ok);
   s.gate.publish("x", bytes_of("last"), sim::Time(0));

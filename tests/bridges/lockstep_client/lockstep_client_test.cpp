@@ -60,7 +60,7 @@ TEST(LockstepClient, RunsInStepWithTheSimulator) {
   EXPECT_EQ(client.end(), LockstepClient::End::last_tick);
 }
 
-TEST(LockstepClient, IsNotToldOfWhatAnotherClientOfItsNameIs) {
+TEST(LockstepClient, IsNotNotifiedOfWhatAnotherClientOfItsNameIs) {
   FakeSimulator simulator;
   LockstepClient client(own_url(1), "pilot");
   std::thread thread([&] {
@@ -90,7 +90,7 @@ TEST(LockstepClient, IsNotToldOfWhatAnotherClientOfItsNameIs) {
   EXPECT_EQ(client.end(), LockstepClient::End::last_tick);
 }
 
-TEST(LockstepClient, AsksWithANumberThatNobodyElseHas) {
+TEST(LockstepClient, RequestsWithANumberThatNoOneElseHas) {
   FakeSimulator simulator;
   std::vector<std::int32_t> ids;
   for (int i = 0; i < 3; ++i) {
@@ -133,7 +133,7 @@ TEST(LockstepClient, SaysThatItLivesBeforeItsFirstTick) {
   thread.join();
 }
 
-TEST(LockstepClient, GoesOnWhenALastTickThatDoesNotListItEndsAnotherRun) {
+TEST(LockstepClient, ContinuesWhenALastTickThatDoesNotListItEndsAnotherRun) {
   FakeSimulator simulator;
   LockstepClient client(own_url(1), "pilot");
   std::thread thread([&] {
@@ -168,7 +168,7 @@ TEST(LockstepClient, GoesOnWhenALastTickThatDoesNotListItEndsAnotherRun) {
   EXPECT_EQ(client.end(), LockstepClient::End::last_tick);
 }
 
-TEST(LockstepClient, AsksAgainUntilItIsAnswered) {
+TEST(LockstepClient, RequestsAgainUntilItIsAnswered) {
   FakeSimulator simulator;
   LockstepClient client(own_url(1), "pilot");
   std::thread thread([&] {
@@ -319,7 +319,7 @@ TEST(LockstepClient, WhatWasHandledBeforeATickNamedItIsNotHandledAgain) {
   EXPECT_EQ(test.client.counts().unnamed, 1u);
 }
 
-TEST(LockstepClient, AsksForWhatIsMissingUntilItHasAll) {
+TEST(LockstepClient, RequestsWhatIsMissingUntilItHasAll) {
   Listening test({"a"});
   test.simulator.publish("a", bytes_of("1"));
   test.simulator.name("a", bytes_of("2"));
@@ -380,7 +380,7 @@ TEST(LockstepClient, NamesWhatItPublishedAndSendsItAgain) {
   EXPECT_EQ(test.simulator.await_ack().count, 0);
 }
 
-TEST(LockstepClient, TellsTheSimulatorOfChannelsItSubscribesToLater) {
+TEST(LockstepClient, ReportsTheSimulatorOfChannelsItSubscribesToLater) {
   Listening test({"a"});
   test.simulator.tick(1, {"pilot"});
   ASSERT_TRUE(test.client.next_tick(test.tick));

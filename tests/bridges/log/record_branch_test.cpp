@@ -25,7 +25,7 @@ std::vector<std::string> events_of(const std::string& path) {
   return events;
 }
 
-TEST(RecordBranch, BeginsWithACopyAndGoesOnFromThere) {
+TEST(RecordBranch, BeginsWithACopyAndContinuesFromThere) {
   const ScratchFolder folder;
   sim::InProcessBus network;
   bridges::RecordingBus bus(network, folder.file("a.lcm"), 1'000);
@@ -42,7 +42,7 @@ TEST(RecordBranch, BeginsWithACopyAndGoesOnFromThere) {
   EXPECT_THAT(events_of(folder.file("b.lcm")), ElementsAre("0 at 1010: one", "1 at 1015: other"));
 }
 
-TEST(RecordBranch, TheOldRecordGoesOnWhenTheNewOneCannotBeMade) {
+TEST(RecordBranch, TheOldRecordContinuesWhenTheNewOneCannotBeMade) {
   const ScratchFolder folder;
   sim::InProcessBus network;
   bridges::RecordingBus bus(network, folder.file("a.lcm"), 0);
@@ -54,7 +54,7 @@ TEST(RecordBranch, TheOldRecordGoesOnWhenTheNewOneCannotBeMade) {
   EXPECT_THAT(events_of(folder.file("a.lcm")), ElementsAre("0 at 10: one", "1 at 20: two"));
 }
 
-TEST(RecordBranch, TheOldRecordGoesOnWhenTheNewOneIsNotWanted) {
+TEST(RecordBranch, TheOldRecordContinuesWhenTheNewOneIsNotWanted) {
   const ScratchFolder folder;
   sim::InProcessBus network;
   bridges::RecordingBus bus(network, folder.file("a.lcm"), 0);

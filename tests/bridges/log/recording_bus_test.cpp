@@ -179,7 +179,7 @@ TEST(RecordingBus, AMessageThatComesBackFromTheNetworkIsRecordedOnce) {
   EXPECT_EQ(bus.recorded(), 1u);
 }
 
-TEST(RecordingBus, AFullDiskIsReportedOnceAndTheRunGoesOn) {
+TEST(RecordingBus, AFullDiskIsReportedOnceAndTheRunContinues) {
   ScriptedBus inner;
   RecordingBus bus(inner, "/dev/full", epoch, Existing::overwrite);
   const sim::Bytes payload(100'000);

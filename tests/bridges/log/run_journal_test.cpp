@@ -48,7 +48,7 @@ struct Journalled {
   std::vector<std::int64_t> sequences;
 };
 
-TEST(RunJournal, LettersKnowTheStepThatBeginsWhenTheyAreHandedOver) {
+TEST(RunJournal, InputsKnowTheStepThatBeginsWhenTheyAreHandedOver) {
   Journalled run;
   run.journal.input("", "a", bytes_of("early"));
   run.journal.start();
@@ -68,7 +68,7 @@ TEST(RunJournal, LettersKnowTheStepThatBeginsWhenTheyAreHandedOver) {
   EXPECT_THAT(run.sequences, ElementsAre(0, 1, 2));
 }
 
-TEST(RunJournal, MuchMailIsSpreadOverSeveralMessages) {
+TEST(RunJournal, ManyInputsAreSpreadOverSeveralMessages) {
   Journalled run;
   run.journal.start();
   const sim::Bytes large(600'000);
@@ -120,7 +120,7 @@ TEST(RunJournal, NoneAreAskedFor) {
   EXPECT_THAT(run.hashes.take_all(), IsEmpty());
 }
 
-TEST(RunJournal, AListenerHearsOfEveryLetter) {
+TEST(RunJournal, AListenerReceivesEveryInput) {
   Journalled run;
   std::vector<std::string> received;
   run.journal.set_listener([&](std::int64_t step, const RunJournal::Input& input) {

@@ -121,7 +121,7 @@ TEST(ControlKey, RefusesAnAnswerToATickWithoutItAndTakesTheSignedOne) {
   EXPECT_EQ(w.lockstep.bad_messages(), 1);
 }
 
-TEST(ControlKey, LetsTheTimeOutDecideWhenNobodySignsTheAnswers) {
+TEST(ControlKey, LetsTheTimeOutDecideWhenNoOneSignsTheAnswers) {
   KeyedWorld w;
   w.answer_to(w.signed_payload("sim.control", w.request("join", "{session: 5}", 0.01)));
   w.test.world.step();
@@ -171,7 +171,7 @@ TEST(WhoAsked, StandsInTheRecordAndForTheSummary) {
   EXPECT_EQ(w.service.audit().all()[1].kind, "quit");
 }
 
-TEST(WhoAsked, IsToldOfWhoLetsGoOfAClientAndNotOfOneThatLeavesItself) {
+TEST(WhoAsked, IsNotifiedOfWhoLetsGoOfAClientAndNotOfOneThatLeavesItself) {
   LockstepWorld w;
   for (const std::string client : {"own", "hanging"}) w.join(client, "{session: 5}");
   w.request_reply("leave", 0, "{session: 5}", "own");

@@ -116,7 +116,7 @@ TEST(Autopilot, AnAuvHoldsACircleAroundItsLastWaypointInACurrent) {
   EXPECT_TRUE(east && north && west && south) << "it went all the way around";
 }
 
-TEST(Autopilot, ABoatCirclesWhereItIsToldTo) {
+TEST(Autopilot, ABoatCirclesWhereItIsCommandedTo) {
   AutopilotWorld test(world_with("otter_autopilot.yaml",
                                  "      devices.autopilot.hold: {speed_mps: 1.2, heading_deg: 0}\n", across, 0));
   test.run_for(20);
@@ -130,7 +130,7 @@ TEST(Autopilot, ABoatCirclesWhereItIsToldTo) {
   EXPECT_EQ(test.state_after(1).mode, 1) << "a heading ends the circle";
 }
 
-TEST(Autopilot, GoesOnWithItsCircleFromASnapshot) {
+TEST(Autopilot, ContinuesWithItsCircleFromASnapshot) {
   const std::string yaml =
       world_with("otter_autopilot.yaml", "      devices.autopilot.hold: {speed_mps: 1.2, heading_deg: 0}\n", across, 0);
   AutopilotWorld test(yaml);
@@ -282,7 +282,7 @@ TEST(Autopilot, AnEventThatGivesADepthAloneIsAboutTheDepth) {
   EXPECT_TRUE(std::isnan(state.altitude_m));
 }
 
-TEST(Autopilot, TakesARouteAStationAndGoesOn) {
+TEST(Autopilot, TakesARouteAStationAndContinues) {
   AutopilotWorld test(world_with("bluerov2_station.yaml", "      devices.autopilot.mode: hold\n"));
   shoal::waypoints_command_t route{};
   route.n = 2;
@@ -358,7 +358,7 @@ TEST(Autopilot, SwitchedOffItLeavesTheActuatorsToOthers) {
   EXPECT_TRUE(commands.take_all().empty());
 }
 
-TEST(Autopilot, RefusesBadCommandsAndGoesOn) {
+TEST(Autopilot, RefusesBadCommandsAndContinues) {
   AutopilotWorld test(world_with("remus100_survey.yaml", "      devices.autopilot.hold: {speed_mps: 1}\n"));
   test.run_for(1);
   test.helm(std::numeric_limits<double>::infinity(), nothing, nothing);

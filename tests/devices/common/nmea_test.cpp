@@ -55,7 +55,7 @@ TEST(Nmea, LinesComeInPiecesAndEndAsTheyLike) {
   EXPECT_EQ(all[2].text, "$B");
 }
 
-TEST(Nmea, ALineThatIsTooLongIsCutAndToldOf) {
+TEST(Nmea, ALineThatIsTooLongIsCutAndReported) {
   NmeaLines lines;
   for (int i = 0; i < 1000; ++i) EXPECT_EQ(add(lines, std::string(1000, 'x')).size(), 0u);
   const auto all = add(lines, "\n$A\n");

@@ -114,7 +114,7 @@ TEST(AcousticModem, OneWayTimesAreByTheTwoClocks) {
   EXPECT_NEAR(really.travel_time_s, 0.2, 2e-6);
 }
 
-TEST(AcousticModem, HearsNothingWhileItSends) {
+TEST(AcousticModem, ReceivesNothingWhileItSends) {
   test::TestWorld test(three());
   test::Listener<Received> at_a(test, "a.modem"), at_b(test, "b.modem"), at_c(test, "c.modem");
   test.send("a.modem.cmd", test::bytes_to("from a"));
@@ -298,7 +298,7 @@ TEST(AcousticModem, AChangedLengthHoldsForItsSerialPortToo) {
   EXPECT_EQ(test.world.counts().bad_messages, 2);
 }
 
-TEST(AcousticModem, TellsWhatItsClockShowedThenHoweverLateItReports) {
+TEST(AcousticModem, ReportsWhatItsClockShowedThenHoweverLateItReports) {
   // The clock of b is 10 s ahead and was set right after 5 s; what came then is reported 90 s later.
   const std::string modem = "{name: modem, type: acoustic_modem, preset: high_rate, rate_hz: 0.01, phase_s: 95}";
   test::TestWorld test(

@@ -17,7 +17,7 @@ using testing::StartsWith;
 
 using Modem = test::HostedMicromodem;
 
-TEST(MicromodemProtocol, AsksForEachFrameAndSendsThemTogether) {
+TEST(MicromodemProtocol, RequestsEachFrameAndSendsThemTogether) {
   Modem modem;
   EXPECT_THAT(modem.host("$CCCYC,0,1,2,2,0,3"), ElementsAre("CACYC,0,1,2,2,0,3", "CADRQ,050607,1,2,0,64,1"));
   EXPECT_THAT(modem.host("$CCTXD,1,2,0,aabb"), ElementsAre("CATXD,1,2,0,2", "CADRQ,050607,1,2,0,64,2"));
@@ -42,7 +42,7 @@ TEST(MicromodemProtocol, RateZeroSendsItsCycleInitAsAPacketOfItsOwn) {
   EXPECT_EQ(std::count_if(reported.begin(), reported.end(), [](const auto& s) { return s.starts_with("CAXST"); }), 2);
 }
 
-TEST(MicromodemProtocol, TellsTheHostWhatItDoesNotTake) {
+TEST(MicromodemProtocol, ReportsTheHostWhatItDoesNotTake) {
   Modem modem;
   const auto error = [&](const std::string& line) {
     const auto reported = modem.host(line);

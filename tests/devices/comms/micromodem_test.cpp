@@ -155,7 +155,7 @@ TEST(Micromodem, APingOfAMovingOneMeasuresTheMeanOfBothWays) {
   EXPECT_NEAR(std::stod(field(replies[0], 3)), (there_s + back_s) / 2, 0.51e-4);  // four digits
 }
 
-TEST(Micromodem, ASynchronousPacketTellsItsOneWayTravelTime) {
+TEST(Micromodem, ASynchronousPacketReportsItsOneWayTravelTime) {
   Hosts hosts(three_micromodems(", synchronous: true"));
   hosts.run_for(0.35);
   hosts.take("b");
@@ -211,7 +211,7 @@ TEST(Micromodem, TimesOfArrivalAreByItsOwnClock) {
   EXPECT_THAT(hosts.take("a"), Contains("CAMPR,2,1,0.5000"));
 }
 
-TEST(Micromodem, AsksTransponders) {
+TEST(Micromodem, RequestsTransponders) {
   const std::string beacon = "{name: beacon, type: transponder}";
   Hosts hosts(test::modem_sea({{"a", "[0, 0, -20]", modem_at(1, ", lbl: {transponders: [b, c/beacon, d]}")},
                                {"b", "[750, 0, -20]", modem_at(2) + ", " + beacon},
@@ -250,7 +250,7 @@ TEST(Micromodem, AThirdModemMayAskForTheCycle) {
   EXPECT_THAT(hosts.take("b"), Contains("CARXD,1,2,0,1,77"));
 }
 
-TEST(Micromodem, WithoutTheCoprocessorItHearsRateZeroOnly) {
+TEST(Micromodem, WithoutTheCoprocessorItReceivesRateZeroOnly) {
   Hosts hosts(test::modem_sea({{"a", "[0, 0, -20]", modem_at(1)},
                                {"b", "[750, 0, -20]", modem_at(2, ", psk: false")},
                                {"c", "[-300, 0, -20]", modem_at(3)}}));
@@ -265,7 +265,7 @@ TEST(Micromodem, WithoutTheCoprocessorItHearsRateZeroOnly) {
   EXPECT_THAT(hosts.take("b"), Contains(HasSubstr("CYC,3,rate must be 0 to 0")));
 }
 
-TEST(Micromodem, RefusesBadSentencesAndGoesOn) {
+TEST(Micromodem, RefusesBadSentencesAndContinues) {
   Hosts hosts(three_micromodems());
   for (const char* bad : {"", "$", "noise", "$CCCYC", "$CCTXD,,,,", "$CCMPC,1,2*00", "$CCCYC,0,1,2,9,0,1"})
     hosts.emit("a", bad);

@@ -95,7 +95,7 @@ TEST(Modem, SoundTakesTheSpeedOfTheWaterAtItsSender) {
   EXPECT_NEAR(static_cast<double>(report.utime - report.sent_utime) * 1e-6, expected_s, 2e-6);
 }
 
-TEST(Modem, IsNotHeardBeyondItsRangeOrInAnotherNetwork) {
+TEST(Modem, IsNotReceivedBeyondItsRangeOrInAnotherNetwork) {
   test::TestWorld near(modem_world("range_m: 200"));
   test::Listener<shoal::modem_received_t> b(near, "b.modem"), c(near, "c.modem");
   near.send("a.modem.cmd", message("x"));
@@ -195,7 +195,7 @@ TEST(Modem, RefusesWhatItCannotSend) {
   EXPECT_EQ(test.world.counts().bad_messages, 3);
 }
 
-TEST(Modem, SpeaksLinesThroughItsSerialPort) {
+TEST(Modem, PublishesLinesThroughItsSerialPort) {
   test::WorldWithPorts test(modem_world("range_m: 1000, serial: {path: \"/nowhere/{vehicle}\"}"));
   test.ends["/nowhere/a"]->to_world = "hello\nworld\npart of a li";
   test.run_for(0.5);
@@ -214,7 +214,7 @@ TEST(Modem, ALineThatIsTooLongIsABadMessage) {
   EXPECT_EQ(test.world.counts().bad_messages, 1);
 }
 
-TEST(Modem, CountsWhatNobodyFetchesFromItsSerialPort) {
+TEST(Modem, CountsWhatNoOneFetchesFromItsSerialPort) {
   test::WorldWithPorts test(modem_world("range_m: 1000, serial: {path: \"/nowhere/{vehicle}\"}"));
   EXPECT_EQ(devices::serial_dropped_bytes(test.world), 0u);
   test.ends["/nowhere/b"]->room_bytes = 8;

@@ -73,7 +73,7 @@ TEST(DifferentialDrive, StandsStillUntilTheFirstCommand) {
   EXPECT_LT(pose_of(test).translation().head<2>().norm(), 1e-6);
 }
 
-TEST(DifferentialDrive, IgnoresBadCommandsAndGoesOn) {
+TEST(DifferentialDrive, IgnoresBadCommandsAndContinues) {
   test::TestWorld test(test::rover_world(drive));
   test.send("r1.drive.cmd", twist(0.5, 0));
   test.run_for(0.5);

@@ -84,7 +84,7 @@ TEST_F(NaiveDrive, GoesDownNoSteeperThanItsPitchAllows) {
   EXPECT_NEAR(std::asin(pose().linear()(2, 0)), -sim::degrees_to_radians(30), 1e-9) << "nose down";
 }
 
-TEST_F(NaiveDrive, DriftsWithTheCurrentAndOnlyWhenItIsToldTo) {
+TEST_F(NaiveDrive, DriftsWithTheCurrentAndOnlyWhenItIsCommandedTo) {
   const std::string flow = "medium: {water: {}, current: {velocity_mps: [0.5, -0.25, 0]}}\n";
   start("", flow);
   test->run_for(10);
@@ -94,7 +94,7 @@ TEST_F(NaiveDrive, DriftsWithTheCurrentAndOnlyWhenItIsToldTo) {
   EXPECT_NEAR((pose().translation() - sim::Vector3d(0, 0, -10)).norm(), 0, 1e-12);
 }
 
-TEST_F(NaiveDrive, RisesWhenNobodyAsksForADepthAndStaysAtTheSurface) {
+TEST_F(NaiveDrive, RisesWhenNoOneRequestsADepthAndStaysAtTheSurface) {
   start(", rise_mps: 0.5");
   test->run_for(4);
   EXPECT_NEAR(pose().translation().z(), -8, 1e-9);
@@ -155,7 +155,7 @@ TEST_F(NaiveDrive, ASurfaceCraftLiesInTheSurface) {
   EXPECT_EQ(test->world.counts().bad_messages, 2) << "neither a depth nor an altitude";
 }
 
-TEST_F(NaiveDrive, GoesOnFromWhereSomebodyPutIt) {
+TEST_F(NaiveDrive, ContinuesFromWhereSomeOnePutIt) {
   start(", start_speed_mps: 1");
   test->run_for(1);
   test->world.editor().move_vehicle("a", sim::make_pose({100, 0, -5}, {0, 0, std::numbers::pi / 2}));

@@ -74,7 +74,7 @@ TEST(Bumper, SaysAtOnceWhenATouchBeginsAndWhenItEnds) {
   EXPECT_EQ(all[0].count, 0);
 }
 
-TEST(Bumper, TellsWhereWithWhomAndHowHard) {
+TEST(Bumper, ReportsWhereWithWhomAndHowHard) {
   test::TestWorld test(sled_world(", parts: [base/front], report: always"));
   test::Listener<shoal::bumper_t> reports(test, "s1.bumper");
   test.run_for(0.1);

@@ -201,7 +201,7 @@ TEST(JointDrive, ABallToTheWorldCountsTheMovingBody) {
   EXPECT_NEAR(test.world.find_vehicle("rig")->joint("j").position(2), 0.25, 1e-6);
 }
 
-TEST(JointDrive, TellsTheTorqueOfABallsMotor) {
+TEST(JointDrive, ReportsTheTorqueOfABallsMotor) {
   Rig rig("type: ball, motor: true", "}\n        - {name: state, type: joint_state, rate_hz: 100, phase_s: 0");
   test::Listener<shoal::joint_state_t> state(rig, "rig.state");
   rig.set(1, 1000, 0.02);
@@ -246,7 +246,7 @@ TEST(JointDrive, BrakesOrCoastsWhenItsCommandsEnd) {
   }
 }
 
-TEST(JointDrive, RefusesBadCommandsAndGoesOn) {
+TEST(JointDrive, RefusesBadCommandsAndContinues) {
   Rig rig("type: hinge");
   rig.set(0, 0.5, 3, -1, 1);
   rig.run_for(0.01);

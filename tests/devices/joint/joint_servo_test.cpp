@@ -49,7 +49,7 @@ TEST(JointServo, MovesAtExactlyItsLimitsAndStopsAtItsTarget) {
   EXPECT_NEAR(shoulder(test).position(), 1, 1e-5);
 }
 
-TEST(JointServo, SetPointComesToRestExactlyFromAnyDistance) {
+TEST(JointServo, SetPointReachesRestExactlyFromAnyDistance) {
   for (const double target : {1e-7, 1e-3, 0.1, -2.345, 50.0}) {
     devices::SetPoint point;
     double last = 0;

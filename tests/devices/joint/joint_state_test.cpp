@@ -6,7 +6,7 @@
 
 namespace {
 
-TEST(JointState, TellsPositionsVelocitiesAndEfforts) {
+TEST(JointState, ReportsPositionsVelocitiesAndEfforts) {
   // A motor without a command holds the arm level, against m g l = 9.80665 N m.
   test::TestWorld test(
       test::arm_world("        - {name: servo, type: joint_motor, joint: shoulder, max_force: 50}\n"

@@ -35,7 +35,7 @@ class CurrentBorder : public ::testing::Test {
 
 const std::string left = "body 'a/hull': has left the file of the current at 10";
 
-TEST_F(CurrentBorder, ABodyInWaterThatLeavesItIsToldOfWithTheTime) {
+TEST_F(CurrentBorder, ABodyInWaterThatLeavesItIsReportedWithTheTime) {
   const std::string reported = said_by(
       "parts: [{shape: sphere, radius_m: 0.1, density_kgpm3: 1025}], hydrodynamics: {mass_kg: 4, inertia_kgm2: [1, 1, "
       "1], linear_damping: [40, 40, 40, 1, 1, 1]}",
@@ -46,7 +46,7 @@ TEST_F(CurrentBorder, ABodyInWaterThatLeavesItIsToldOfWithTheTime) {
   EXPECT_EQ(reported.find(left), reported.rfind(left)) << "once";
 }
 
-TEST_F(CurrentBorder, ANaiveVehicleThatLeavesItIsToldOfToo) {
+TEST_F(CurrentBorder, ANaiveVehicleThatLeavesItIsReportedToo) {
   const std::string body = "kinematic: true, parts: [{shape: sphere, radius_m: 0.1}]";
   const std::string reported = said_by(body, "{name: drive, type: naive_drive}");
   EXPECT_THAT(reported, HasSubstr(left));

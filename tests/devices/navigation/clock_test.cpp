@@ -44,7 +44,7 @@ const sim::VehicleClock& clock_of(const test::LoadedTestWorld& test, const std::
   return test.world.find_vehicle(vehicle)->clock();
 }
 
-TEST(Clock, TellsItsErrorOnTheTruthChannelOnly) {
+TEST(Clock, ReportsItsErrorOnTheTruthChannelOnly) {
   test::TestWorld test(two_boats("{offset_s: 0.25, drift_ppm: 10}", "{}", clock_device));
   test::Listener<shoal::clock_status_t> reports(test, "r1.clock"), truths(test, "r1.clock.truth");
   test.run_for(100.5);
@@ -74,7 +74,7 @@ TEST(Clock, IsSteeredByTheFixesAndCoastsWithoutThem) {
   EXPECT_EQ(fixes.last().gps_lock, 0);
 }
 
-TEST(Clock, SatellitesTellTheTrueTimeWithAFix) {
+TEST(Clock, SatellitesReportTheTrueTimeWithAFix) {
   test::TestWorld test(
       two_boats("{offset_s: 7}", "{offset_s: 7}",
                 "        - {name: gps, type: gps, position_m: [0, 0, 6], rate_hz: 1, phase_s: 0.5}\n"));
@@ -109,7 +109,7 @@ TEST(Clock, OneWayTravelTimeIsDistanceOverSoundSpeedAndTheDifferenceOfTheClocks)
   EXPECT_EQ(received.utime - received.sent_utime, 1'100'000 - 500'000 + 1110);
 }
 
-TEST(Clock, AStuckSensorGoesOnByIt) {
+TEST(Clock, AStuckSensorContinuesByIt) {
   test::TestWorld test(
       two_boats("{offset_s: 2}", "{}", "        - {name: imu, type: imu, rate_hz: 100, phase_s: 0}\n"));
   test::Listener<shoal::imu_t> reports(test, "r1.imu");

@@ -19,7 +19,7 @@ TEST(Ctd, StandardSeaWaterHasTheStandardConductivity) {
   EXPECT_NEAR(report.conductivity_Spm, 4.2914, 1e-5);
 }
 
-TEST(Ctd, TellsTheSpeedOfSoundOfTheMedium) {
+TEST(Ctd, ReportsTheSpeedOfSoundOfTheMedium) {
   // closed_forms.csv: Mackenzie at 10 C and 35 psu 1489.80 m/s, UNESCO 1489.82; 10 m deeper 0.16 m/s more.
   const auto report = test::first_truth<ctd_t>(marine_world(
       "type: ctd", "[0, 0, -10]", "[]", "", "{water: {surface_m: 0, temperature_C: 10, salinity_psu: 35}}"));

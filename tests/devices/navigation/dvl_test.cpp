@@ -107,7 +107,7 @@ TEST(Dvl, TracksALayerOfWaterWithoutABottom) {
   EXPECT_EQ(low.water_lock, 0);
 }
 
-TEST(Dvl, HearsNothingInAirAndInADryWorld) {
+TEST(Dvl, ReceivesNothingInAirAndInADryWorld) {
   for (const char* medium : {"{water: {surface_m: -20}}", "{}"}) {
     const auto report = truth_at_speed(marine_world("type: dvl", "[0, 0, -10]", bottom_at(-30), "", medium), {1, 0, 0});
     EXPECT_EQ(report.bottom_lock, 0) << medium;

@@ -95,7 +95,7 @@ TEST(Camera, LabelsCoverTheFaceOfABox) {
   EXPECT_THAT(metadata(parts, "labels"), HasSubstr("box/body/b\n"));
 }
 
-TEST(Camera, EncodingsHoldTheSamePicture) {
+TEST(Camera, EncodingsHoldTheSameImage) {
   const auto raw = image_of(small, wall_ahead);
   const auto png = image_of(std::string(small) + ", encoding: png", wall_ahead);
   EXPECT_EQ(png.pixelformat, 0x20474e50);  // `PNG `
@@ -218,7 +218,7 @@ double middle_of_pole(const shoal::image_t& image, int row) {
   return pixels > 0 ? sum / pixels : NAN;
 }
 
-TEST(Camera, RollingShutterLeansAPoleByTheAngleOfTheReadout) {
+TEST(Camera, RollingShutterTiltsAPoleByTheAngleOfTheReadout) {
   const auto global = image_from_a_turntable(at_5_hz + labels);
   const double middle = middle_of_pole(global, 50);
   ASSERT_FALSE(std::isnan(middle));

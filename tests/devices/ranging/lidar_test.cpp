@@ -50,7 +50,7 @@ TEST(Lidar, DoesNotSeeItsOwnVehicleUnlessAsked) {
   EXPECT_NEAR(ahead(", sees_own_vehicle: true"), 0.3, 1e-3);  // the hull's rear face at x = -0.2
 }
 
-TEST(Lidar, LooksThroughTheCategoriesItIsToldTo) {
+TEST(Lidar, LooksThroughTheCategoriesItIsCommandedTo) {
   const std::string glass =
       "  - {name: pane, fixed: true, position_m: [2, 0, 1], parts: [{shape: box, size_m: [0.02, 4, 2], category: "
       "glass}]}\n";

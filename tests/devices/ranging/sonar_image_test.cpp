@@ -59,7 +59,7 @@ TEST(Multibeam, NoiseHasTheMeanAndTheSpreadAskedFor) {
   EXPECT_NEAR(std, 0.1, 4 * 0.1 / std::sqrt(2 * count));
 }
 
-TEST(Multibeam, BeamsThatHearNothingSaySo) {
+TEST(Multibeam, BeamsThatReceiveNothingSaySo) {
   const auto ping =
       first_truth<multibeam_t>(ranging_world("type: multibeam, beams: 3, swath_deg: 120, range_max_m: 30", bottom(0)));
   EXPECT_THAT(ping.valid, testing::ElementsAre(0, 1, 0));  // 40 m at 60 deg

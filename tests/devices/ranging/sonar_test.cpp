@@ -12,7 +12,7 @@ using test::first_truth;
 using test::ranging_world;
 using test::wall_at;
 
-TEST(Sonar, HearsTheNearestPointOfAWallOffItsAxis) {
+TEST(Sonar, ReceivesTheNearestPointOfAWallOffItsAxis) {
   const auto range = [](double yaw_deg) {
     return first_truth<sonar_range_t>(
                ranging_world("type: sonar, beam_deg: 60, rays: 4000, rpy_deg: [0, 0, " + std::to_string(yaw_deg) + "]",
@@ -54,7 +54,7 @@ TEST(Sonar, WhatIsSmallerThanItsBeamFallsWithTheFourthPower) {
   EXPECT_NEAR(level(10) - level(20), 40 * std::log10(2.0), 1);
 }
 
-TEST(Sonar, HearsNothingBelowItsThresholdAndOutOfRange) {
+TEST(Sonar, ReceivesNothingBelowItsThresholdAndOutOfRange) {
   const auto deaf = first_truth<sonar_range_t>(ranging_world("type: sonar, threshold_dB: 190", wall_at(5)));
   EXPECT_EQ(deaf.valid, 0);
   EXPECT_EQ(deaf.range_m, 50);

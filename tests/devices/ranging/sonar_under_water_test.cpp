@@ -63,7 +63,7 @@ TEST(SonarUnderWater, MultibeamRangesAreScaledToo) {
   for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(report.ranges_m[i], truth.ranges_m[i] * 1.02, 1e-4);
 }
 
-TEST(SonarUnderWater, HearsNothingInAirUnlessItIsMadeForIt) {
+TEST(SonarUnderWater, ReceivesNothingInAirUnlessItIsMadeForIt) {
   const auto valid = [](const std::string& works_in, const std::string& medium) {
     return first_truth<sonar_range_t>(marine_world(down + works_in, "[0, 0, -10]", bottom_at(-30), "", medium)).valid;
   };

@@ -21,7 +21,7 @@ std::string lbl_world(const std::string& keys, const std::string& others) {
   return test::sound_world(test::float_at("r1", "[0, 0, -10]", lbl_device(keys)) + others);
 }
 
-TEST(Lbl, AsksANetOfTransponders) {
+TEST(Lbl, RequestsANetOfTransponders) {
   test::TestWorld test(lbl_world("", mooring("a", "[300, 400, -10]", ", turnaround_s: 0.1") +
                                          mooring("b", "[-500, 0, -10]", ", turnaround_s: 0.2") +
                                          mooring("c", "[0, 0, -1510]") + mooring("far", "[4000, 0, -10]") +

@@ -54,7 +54,7 @@ TEST(RangeBeacon, WithoutDirectionsTheyAreNan) {
   EXPECT_TRUE(std::isnan(report.elevation_rad[0]));
 }
 
-TEST(RangeBeacon, HearsItsNetworkWithinItsRangeOnly) {
+TEST(RangeBeacon, ReceivesItsNetworkWithinItsRangeOnly) {
   test::TestWorld test(boxes(", range_max_m: 6", other("near", "[3, 4, 0]") + other("far", "[0, 6.1, 0]") +
                                                      other("strange", "[0, 1, 0]", ", network: other")));
   test::Listener<shoal::range_beacon_t> reports(test, "r1.b");
@@ -75,7 +75,7 @@ TEST(RangeBeacon, AWallHidesWhatIsBehindIt) {
   EXPECT_THAT(all.last().beacon, ElementsAre("on_wall", "r2/b", "r3/b"));
 }
 
-TEST(RangeBeacon, TheMediumDecidesWhatIsHeard) {
+TEST(RangeBeacon, TheMediumDecidesWhatIsReceived) {
   const auto received = [](const std::string& through, const std::string& medium) {
     test::TestWorld test("medium: " + medium + "\n" +
                          boxes(", beacons: [{name: wet, position_m: [0, 5, -1]}, {name: dry, position_m: [0, 5, 1]}]"

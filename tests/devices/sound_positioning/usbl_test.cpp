@@ -82,7 +82,7 @@ TEST(Usbl, BothMayMoveWhileTheSoundIsUnderWay) {
   EXPECT_NEAR(fix.azimuth_rad, 0, 1e-9);
 }
 
-TEST(Usbl, TellsTheDirectionInItsAxesWhenTheAnswerArrives) {
+TEST(Usbl, ReportsTheDirectionInItsAxesWhenTheAnswerArrives) {
   test::TestWorld test(
       usbl_world("", transponder("t", "[300, 0, -10]"), "[]", "{water: {surface_m: 0, sound_speed_mps: 1500}}"));
   const double turn_radps = 1.5;
@@ -150,7 +150,7 @@ TEST(Transponder, SeveralAnswerAtATimeUnlessTheyShareABand) {
   EXPECT_EQ(first_targets(usbl_world("", ring(", answer_frequency_Hz: 30000"))).size(), 1u);
 }
 
-TEST(Transponder, HearsPingsOnItsFrequencyThatAreLoudEnough) {
+TEST(Transponder, ReceivesPingsOnItsFrequencyThatAreLoudEnough) {
   const auto received = [](const std::string& keys, const std::string& more) {
     return !first_targets(usbl_world(keys, transponder("t", "[100, 0, -10]", more))).empty();
   };

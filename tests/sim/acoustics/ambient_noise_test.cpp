@@ -47,7 +47,7 @@ TEST(AmbientNoise, IsTheWatersHeatAtHighFrequencies) {
   EXPECT_NEAR(calm.spectral_level(500).dB(), -15 + 20 * std::log10(500.0), 0.1);
 }
 
-TEST(AmbientNoise, GrowsWithShipsAndWindWhereTheseAreHeard) {
+TEST(AmbientNoise, GrowsWithShipsAndWindWhereTheseAreReceived) {
   const auto level = [](double shipping, double wind_mps, double f_kHz) {
     return AmbientNoise{shipping, wind_mps, {}}.spectral_level(f_kHz).dB();
   };

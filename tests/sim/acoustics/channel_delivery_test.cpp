@@ -16,7 +16,7 @@ using test::sea;
 using test::TestWorld;
 using test::vehicle;
 
-TEST(AcousticChannel, IsHeardAsFarAsTheWaterCarriesItWhereTheTransducersAre) {
+TEST(AcousticChannel, IsReceivedAsFarAsTheWaterCarriesItWhereTheTransducersAre) {
   // At 25 kHz the sea absorbs 5 dB/km near the surface and 1.3 in its depths: no one is there.
   std::string vehicles = vehicle("a", "[0, 0, -20]");
   for (int i = 1; i <= 10; ++i)
@@ -52,7 +52,7 @@ TEST(AcousticChannel, LooksForASignalOnlyAtThoseWhoAreNear) {
   }
 }
 
-TEST(AcousticChannel, WhatNobodyCouldNoticeIsLostInTheNoiseWhateverTheReceiverDoes) {
+TEST(AcousticChannel, WhatNoOneCouldNoticeIsLostInTheNoiseWhateverTheReceiverDoes) {
   TestWorld test(sea("{noise: {wind_mps: 10}}", vehicle("a", "[0, 0, -10]") + vehicle("b", "[150, 0, -10]")));
   phone(test, "b").transducer().transmit(message(), 0ms);
   phone(test, "a").transducer().transmit(message(110), 100ms);  // some 30 dB are lost; the noise has 78
@@ -136,7 +136,7 @@ TEST(AcousticChannel, TheSoundOfASenderStopsWithItsPower) {
   }
 }
 
-TEST(AcousticChannel, AModemThatSendsHearsNothing) {
+TEST(AcousticChannel, AModemThatSendsReceivesNothing) {
   TestWorld test(sea("{}", vehicle("a", "[0, 0, -10]") + vehicle("b", "[150, 0, -10]")));
   // a's message is at b from 0.1 to 3.3 s; b sends from 3.15 s on, when a has nearly ended.
   phone(test, "a").transducer().transmit(message(), 0ms);
@@ -168,7 +168,7 @@ TEST(AcousticChannel, TwoSignalsOfOneStrengthDestroyEachOther) {
   EXPECT_EQ(phone(test, "b").all()[1].loss, SignalLoss::busy);
 }
 
-TEST(AcousticChannel, AReceiverThatTellsCodesApartTakesOneOfTwoSignals) {
+TEST(AcousticChannel, AReceiverThatDistinguishesCodesTakesOneOfTwoSignals) {
   TestWorld test(sea("{}", vehicle("a", "[-750, 0, -10]") +
                                vehicle("b", "[0, 0, -10]", ", receiver: {protection_dB: -20}") +
                                vehicle("c", "[750, 0, -10]")));

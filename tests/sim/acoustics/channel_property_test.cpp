@@ -168,7 +168,7 @@ RC_GTEST_PROP(AcousticChannel, APacketAloneOnACleanLinkAlwaysGetsThrough, ()) {
   RC_ASSERT(b.all[0].snr_dB > 40);
 }
 
-RC_GTEST_PROP(AcousticChannel, WhoSendsHearsNothing, ()) {
+RC_GTEST_PROP(AcousticChannel, WhoSendsReceivesNothing, ()) {
   const double range_m = number_between(50, 1000);
   test::TestWorld test(test::sound_world(test::float_at("a", "[0, 0, -20]") +
                                          test::float_at("b", "[" + std::to_string(range_m) + ", 0, -20]")));
@@ -246,7 +246,7 @@ std::string pair_at(double range_m) {
   return test::float_at("a", "[0, 0, -20]") + test::float_at("b", "[" + std::to_string(range_m) + ", 0, -20]");
 }
 
-TEST(AcousticChannelProperties, WhatWasSentGoesOnWhenItsSenderIsRemoved) {
+TEST(AcousticChannelProperties, WhatWasSentContinuesWhenItsSenderIsRemoved) {
   test::TestWorld test(test::sound_world(pair_at(1500)));
   AcousticProbe b(test, "b");
   auto a = std::make_unique<AcousticProbe>(test, "a");
@@ -293,7 +293,7 @@ TEST(AcousticChannelProperties, ReceiversMayBeRemovedAtAnyTimeOfAFlight) {
   }
 }
 
-TEST(AcousticChannelProperties, WhoComesWhileASignalIsUnderWayHearsTheNextOne) {
+TEST(AcousticChannelProperties, WhoComesWhileASignalIsUnderWayReceivesTheNextOne) {
   test::TestWorld test(test::sound_world(pair_at(1500)));
   AcousticProbe a(test, "a"), b(test, "b");
   sim::Signal first = AcousticProbe::tone(), second = AcousticProbe::tone();
@@ -316,7 +316,7 @@ TEST(AcousticChannelProperties, WhoComesWhileASignalIsUnderWayHearsTheNextOne) {
   EXPECT_EQ(guest.all.back().started - guest.all.back().sent, sim::from_seconds(0.6));
 }
 
-RC_GTEST_PROP(AcousticChannel, SomebodyWhoIsPutElsewhereHearsNoSoonerThanSoundGetsThere, ()) {
+RC_GTEST_PROP(AcousticChannel, SomeOneWhoIsPutElsewhereReceivesNoSoonerThanSoundGetsThere, ()) {
   const double range_m = number_between(100, 1500), moved_s = 0.01 * *rc::gen::inRange(1, 120);
   test::TestWorld test(test::sound_world(pair_at(range_m)));
   AcousticProbe a(test, "a"), b(test, "b");

@@ -130,7 +130,7 @@ TEST(AcousticChannel, AnAnswerBeginsWhenTheListenerSaysSo) {
   EXPECT_EQ(phone(test, "a").all()[0].started, 3ms + 500ms + 10ms + 20ms + 500ms);
 }
 
-TEST(AcousticChannel, WhoIsRemovedNeitherHearsNorIsMissed) {
+TEST(AcousticChannel, WhoIsRemovedNeitherReceivesNorIsMissed) {
   TestWorld test(
       sea("{}", vehicle("a", "[0, 0, -10]") + vehicle("b", "[750, 0, -10]") + vehicle("c", "[0, 750, -10]")));
   phone(test, "a").transducer().transmit(message(), 0ms);
@@ -147,7 +147,7 @@ TEST(AcousticChannel, WhoIsRemovedNeitherHearsNorIsMissed) {
   EXPECT_EQ(phone(test, "c").transducer().counts().lost[static_cast<std::size_t>(SignalLoss::sender_off)], 1);
 }
 
-TEST(AcousticChannel, WhoTakesThePlaceOfOneThatLeftDoesNotHearWhatWasForThatOne) {
+TEST(AcousticChannel, WhoTakesThePlaceOfOneThatLeftDoesNotReceiveWhatWasForThatOne) {
   TestWorld test(sea("{}", vehicle("a", "[0, 0, -10]") + vehicle("b", "[750, 0, -10]")));
   phone(test, "a").transducer().transmit(message(), 0ms);
   test.run_for(0.1);
@@ -244,7 +244,7 @@ TEST(AcousticChannel, ALinkCanBeMadeWorse) {
               7 + 10 * 1.5 * std::log10(std::sqrt(2.0)), 0.5);
 }
 
-TEST(AcousticChannel, NobodyHearsWhoSendsOutOfTheWater) {
+TEST(AcousticChannel, NoOneReceivesWhoSendsOutOfTheWater) {
   TestWorld test(sea("{}", vehicle("a", "[0, 0, 1]") + vehicle("b", "[150, 0, -10]")));
   phone(test, "a").transducer().transmit(message(), 0ms);
   test.run_for(5);
@@ -280,7 +280,7 @@ TEST(AcousticChannel, WhoIsOutOfTheWaterForAWhileWhileSendingOrTakingIsNotUnders
   }
 }
 
-TEST(AcousticChannel, WhoHasLostItsPowerIsToldNothing) {
+TEST(AcousticChannel, WhoHasLostItsPowerIsNotifiedNothing) {
   TestWorld test(sea("{}", vehicle("a", "[0, 0, -10]") + vehicle("b", "[150, 0, -10]")));
   Signal blip = message();
   blip.duration = 50ms;
@@ -304,7 +304,7 @@ TEST(AcousticChannel, ShortSignalsOneAfterTheOtherAllComeThrough) {
   EXPECT_EQ(phone(test, "b").transducer().counts().understood, 20);
 }
 
-TEST(AcousticChannel, BeyondTheLargestRangeNothingIsHeard) {
+TEST(AcousticChannel, BeyondTheLargestRangeNothingIsReceived) {
   TestWorld test(sea("{range_max_m: 500}",
                      vehicle("a", "[0, 0, -10]") + vehicle("b", "[499, 0, -10]") + vehicle("c", "[0, 501, -10]")));
   phone(test, "a").transducer().transmit(message(), 0ms);
@@ -313,7 +313,7 @@ TEST(AcousticChannel, BeyondTheLargestRangeNothingIsHeard) {
   EXPECT_TRUE(phone(test, "c").all().empty());
 }
 
-TEST(AcousticChannel, InFreshWaterSoundIsHeardFarther) {
+TEST(AcousticChannel, InFreshWaterSoundIsReceivedFarther) {
   // Francois and Garrison: at 100 kHz 33 dB/km in the sea, 3 in fresh water; at 6 km both noise limits are far apart.
   const auto received = [](double salinity_psu) {
     std::string world = sea("{}", vehicle("a", "[0, 0, -10]") + vehicle("b", "[6000, 0, -10]"));

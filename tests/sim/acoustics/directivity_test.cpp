@@ -86,7 +86,7 @@ RC_GTEST_PROP(Directivity, IsBetweenTheFloorAndTheAxis, ()) {
   RC_ASSERT(gain >= config.floor_dB);
 }
 
-TEST(Directivity, TellsOfKeysOfAnotherPattern) {
+TEST(Directivity, ReportsKeysOfAnotherPattern) {
   using test_support::config_error;
   EXPECT_THAT(config_error<DirectivityConfig>("{pattern: omni, diameter_m: 0.1}"),
               testing::HasSubstr("'diameter_m' is for pattern piston"));

@@ -55,7 +55,7 @@ TEST(Fading, NoneDrawsNothing) {
   EXPECT_EQ(random.bits(), untouched.bits());
 }
 
-TEST(Fading, TellsOfAKeyOfAnotherType) {
+TEST(Fading, ReportsAKeyOfAnotherType) {
   EXPECT_THAT(config_error<FadingConfig>("{type: rayleigh, std_dB: 3}"),
               testing::HasSubstr("'std_dB' is for type log_normal"));
 }

@@ -197,7 +197,7 @@ TEST(Multipath, ABottomWithoutLossAndASmoothSurfaceGiveACylindricalFieldOnAverag
   EXPECT_NEAR(sum, pi / (depth * r), 0.01 * pi / (depth * r));
 }
 
-TEST(Multipath, TellsOfKeysThatDoNotGoTogether) {
+TEST(Multipath, ReportsKeysThatDoNotGoTogether) {
   using test_support::config_error;
   EXPECT_THAT(config_error<MultipathConfig>("{surface_loss_dB: 1, surface_roughness_m: 0.1}"),
               testing::HasSubstr("exclude each other"));

@@ -39,7 +39,7 @@ TEST(Neighbourhood, FindsAllWhoAreNearAndFewOthers) {
   EXPECT_LE(static_cast<double>(found), 2.5 * static_cast<double>(near_enough));
 }
 
-TEST(Neighbourhood, OfNobodyFindsNobody) {
+TEST(Neighbourhood, OfNoOneFindsNoOne) {
   Neighbourhood neighbours;
   neighbours.build({}, 100);
   std::vector<int> numbers{1};

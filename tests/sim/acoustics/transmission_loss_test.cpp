@@ -84,7 +84,7 @@ water:
                    sim::absorption_dBpkm({}, 25000, medium, top, bottom));
 }
 
-TEST(TransmissionLoss, TellsOfKeysThatDoNotGoTogether) {
+TEST(TransmissionLoss, ReportsKeysThatDoNotGoTogether) {
   EXPECT_THAT(config_error<SpreadingConfig>("{factor: 2, transition_range_m: 10}"), HasSubstr("exclude each other"));
   EXPECT_THAT(config_error<SpreadingConfig>("{factor: -1}"), HasSubstr("'factor' must be >= 0 and <= 4, got -1"));
   EXPECT_THAT(config_error<AbsorptionConfig>("{model: thorp, dBpkm: 1}"), HasSubstr("'dBpkm' is for model constant"));

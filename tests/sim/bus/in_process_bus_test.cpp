@@ -80,7 +80,7 @@ TEST_F(InProcessBusTest, AMailboxWithoutRoomDropsEverything) {
   EXPECT_EQ(mailbox->dropped(), 1u);
 }
 
-TEST_F(InProcessBusTest, CountsWhatNobodyHears) {
+TEST_F(InProcessBusTest, CountsWhatNoOneReceives) {
   publish("a", "x");
   const auto late = bus.open_mailbox("a", 10);
   EXPECT_EQ(bus.counts().published, 1u);

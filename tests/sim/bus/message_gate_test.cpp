@@ -142,7 +142,7 @@ TEST_F(MessageGateTest, WhatWaitsCanBeOrderedAndAddedTo) {
   EXPECT_FALSE(gate.collect());
 }
 
-TEST_F(MessageGateTest, WhoOrdersTheMailHasTheLastWordBeforeItIsGiven) {
+TEST_F(MessageGateTest, WhoOrdersTheInputsHasTheLastWordBeforeItIsGiven) {
   const auto mailbox = gate.open_mailbox("a");
   EXPECT_TRUE(gate.reads("a"));
   EXPECT_FALSE(gate.reads("b"));
@@ -178,7 +178,7 @@ TEST_F(MessageGateTest, AFloodThatIsNeverAdmittedIsBounded) {
   EXPECT_EQ(gate.counts().dropped_incoming, 95u);
 }
 
-TEST_F(MessageGateTest, AChannelThatNobodyReadsAnyMoreIsLeft) {
+TEST_F(MessageGateTest, AChannelThatNoOneReadsAnyMoreIsLeft) {
   auto mailbox = gate.open_mailbox("a");
   from_afar("a", "one");
   gate.collect();
@@ -268,7 +268,7 @@ class FloodedBus final : public sim::Bus {
   };
 };
 
-TEST(FloodedMessageGate, TakesNoMoreThanAMailboxHoldsAtOnceAndGoesOnLater) {
+TEST(FloodedMessageGate, TakesNoMoreThanAMailboxHoldsAtOnceAndContinuesLater) {
   FloodedBus network;
   MessageGate gate(network);
   const auto mailbox = gate.open_mailbox("a", 5);

@@ -151,7 +151,7 @@ sim::ClockConfig wild() {
           .update_s = 0.01};
 }
 
-TEST(VehicleClock, NeverGoesBackByItselfAndTellsWhenItShowedAReading) {
+TEST(VehicleClock, NeverGoesBackByItselfAndReportsWhenItShowedAReading) {
   VehicleClock clock = made(wild());
   sim::Random random(1, "test");
   Time before = clock.reading(Time{0});

@@ -517,7 +517,7 @@ TEST(ParamReader, WithoutWhoAMessageStartsWithTheKey) {
 
 // Names
 
-TEST(ParamReader, ReportsANameThatNobodyHas) {
+TEST(ParamReader, ReportsANameThatNoOneHas) {
   Outer outer;
   EXPECT_EQ(outer_errors("joints: [{name: right}, {name: left}]\ninner: {joint: lft}\n", outer),
             Lines{"w.yaml:2:16: vehicle 'auv1': inner: 'joint' names no joint 'lft'; known joints: left, right"});

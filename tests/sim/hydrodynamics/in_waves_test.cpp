@@ -54,7 +54,7 @@ TEST(InWaves, ABoxRidesALongWave) {
   EXPECT_LT(worst, 0.03) << "it stays where the surface is, crest and trough";
 }
 
-TEST(InWaves, ABoxLeansWithTheSlopeOfALongWave) {
+TEST(InWaves, ABoxTiltsWithTheSlopeOfALongWave) {
   const char* box = "position_m: [0, 0, 0.55], parts: [{shape: box, size_m: [2, 1, 0.5], density_kgpm3: 410}]";
   TestWorld test(in_waves("height_m: 1, period_s: 8", box));
   test.run_for(80);

@@ -80,7 +80,7 @@ std::vector<Body*> all_bodies(TestWorld& test) {
   return bodies;
 }
 
-TEST(Surface, ACraftOverTheWaterFallsLikeAStoneAndComesToRestInIt) {
+TEST(Surface, ACraftOverTheWaterFallsLikeAStoneAndReachesRestInIt) {
   std::string world = still_world(0.01) + crafts;
   for (const auto& [from, to] :
        {std::pair{"[0, 0, -5]", "[0, 0, 20]"}, {"[0, 5, -5]", "[0, 5, 20]"}, {"[0, 10, 0]", "[0, 10, 20]"}})

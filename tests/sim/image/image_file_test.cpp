@@ -75,7 +75,7 @@ TEST(ImageFile, APngOf16BitsKeepsEveryBit) {
   EXPECT_EQ(sim::decode_png16(bytes).data, image.data);
 }
 
-TEST(ImageFile, JpegIsNearlyThePicture) {
+TEST(ImageFile, JpegIsNearlyTheImage) {
   const Image8 image = colors(40, 40, 3);
   sim::Bytes bytes;
   sim::encode_jpeg(image, 95, bytes);

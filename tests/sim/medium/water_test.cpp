@@ -56,7 +56,7 @@ TEST(Water, StandsAtTheHeightOfItsSurface) {
   EXPECT_DOUBLE_EQ(medium.pressure_Pa({0, 0, -5}), 101325 + 2000 * 9.80665);
 }
 
-TEST(Water, ProfileIsLinearBetweenItsRowsAndGoesOnAtItsEnds) {
+TEST(Water, ProfileIsLinearBetweenItsRowsAndContinuesAtItsEnds) {
   const sim::Medium medium = make_medium(R"(
 water:
   profile:

@@ -68,7 +68,7 @@ TEST(Body, ForceBesideTheCentreOfMassTurnsIt) {
   EXPECT_NEAR(cube.w_WB_W().z(), 0.5 * 1 / (6.0 / 6) * 0.01, 1e-15);  // I = m a^2 / 6
 }
 
-TEST(Body, SpeaksOfItsOwnFrameNotOfTheCentreOfMass) {
+TEST(Body, PublishesOfItsOwnFrameNotOfTheCentreOfMass) {
   const auto world = make_world(with_step(0.01, 0));
   sim::Body& hull = add(*world, body("hull", {at(box({1, 1, 1}, 4), {0.5, 0, 0.25})}), Pose::Identity());
   const Pose X_WB = sim::make_pose({1, 2, 3}, {0.1, 0.2, 0.3});

@@ -115,7 +115,7 @@ TEST(HingeJoint, ToTheWorldCountsTheMovingBody) {
   EXPECT_NEAR(fan.w_WB_W().z(), 3, 1e-6);
 }
 
-TEST(HingeJoint, PositionGoesOnBeyondPi) {
+TEST(HingeJoint, PositionContinuesBeyondPi) {
   Pair rig(joint("wheel", JointType::hinge, {1, 0, 0}, Vector3d::UnitY()));
   rig.joint->set_motor(10, 1000);
   rig.run(1000);

@@ -74,7 +74,7 @@ TEST(ContactReport, BetweenTwoBodiesIsEqualAndOpposite) {
   EXPECT_NEAR(world->contacts()[0].force_W_N.z(), -2 * g, 1e-3 * 2 * g);
 }
 
-TEST(ContactReport, TellsOnlyOfWatchedGroupsAndCountsTheWatchers) {
+TEST(ContactReport, ReportsOnlyOfWatchedGroupsAndCountsTheWatchers) {
   const auto world = make_world();
   add_ground(*world);
   const sim::Body& a = add(*world, body("a", {sphere(0.5, 2)}), translation(0, 0, 0.5));
@@ -243,7 +243,7 @@ TEST(JointLoad, OfASliderIsTheForceAlongIt) {
   }
 }
 
-TEST(JointLoad, OfAUniversalJointIsToldForEachAxis) {
+TEST(JointLoad, OfAUniversalJointIsReportedForEachAxis) {
   for (const bool to_world : {true, false}) {
     JointConfig config = joint("wrist", JointType::universal, {0, 0, 0}, Vector3d::UnitY());
     config.axis2.axis = Vector3d::UnitZ();

@@ -63,7 +63,7 @@ TEST(EmbreeMesh, HasNoGapsAtEdgesAndCorners) {
     }
 }
 
-TEST(EmbreeMesh, TellsTheMaterialOfTheTriangle) {
+TEST(EmbreeMesh, ReportsTheMaterialOfTheTriangle) {
   const Mesh mesh = field(4, {0, 0, 0}, 0);
   std::vector<int> materials;
   for (int i = 0; i < static_cast<int>(mesh.triangles.size()); ++i) materials.push_back(i);

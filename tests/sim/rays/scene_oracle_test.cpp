@@ -302,7 +302,7 @@ TEST(EmbreeScene, SeesFromFarOutsideTheHeap) {
 }
 
 /// As a list, alone, and backwards, which packs the rays another way.
-TEST(EmbreeScene, OfOneRayTellsTheSameWhateverRaysAreCastWithIt) {
+TEST(EmbreeScene, OfOneRayReportsTheSameWhateverRaysAreCastWithIt) {
   const Heap heap(RayLibrary::embree, 7);
   Uniform uniform(8);
   std::vector<Ray> rays = random_rays(uniform, 20000);
@@ -318,7 +318,7 @@ TEST(EmbreeScene, OfOneRayTellsTheSameWhateverRaysAreCastWithIt) {
   }
 }
 
-TEST(EmbreeScene, OfAFanTellsWhatItTellsOfEachRay) {
+TEST(EmbreeScene, OfAFanReportsWhatItReportsEachRay) {
   const Heap heap(RayLibrary::embree, 7);
   Uniform uniform(18);
   for (int k = 0; k < 50; ++k) {
@@ -341,7 +341,7 @@ TEST(EmbreeScene, OfAFanTellsWhatItTellsOfEachRay) {
 }
 
 /// The tree of one scene was widened as the bodies moved, that of the other was built when they had arrived.
-TEST(EmbreeScene, TellsTheSameWhateverHappenedBefore) {
+TEST(EmbreeScene, ReportsTheSameWhateverHappenedBefore) {
   Heap moved(RayLibrary::embree, 4), arrived(RayLibrary::embree, 4);
   Uniform uniform(6);
   const std::vector<Ray> rays = random_rays(uniform, 5000);
@@ -366,7 +366,7 @@ TEST(EmbreeScene, TellsTheSameWhateverHappenedBefore) {
   for (std::size_t i = 0; i < rays.size(); ++i) ASSERT_TRUE(equal_bits(a[i], b[i])) << i;
 }
 
-TEST(EmbreeScene, TellsSeveralThreadsAtOnce) {
+TEST(EmbreeScene, ReportsSeveralThreadsAtOnce) {
   const Heap heap(RayLibrary::embree, 3);
   heap.scene().prepare();
   ASSERT_TRUE(heap.scene().concurrent());

@@ -81,7 +81,7 @@ TEST(ClientMessages, DropsWhatComesASecondTimeOnce) {
   EXPECT_EQ(test.admitted(), "11");
 }
 
-TEST(ClientMessages, AMessageLikeOneOfAClientThatComesLaterIsSomebodyElses) {
+TEST(ClientMessages, AMessageLikeOneOfAClientThatComesLaterIsSomeOneElses) {
   Sorted test;
   test.arrive("1");
   test.inputs.expect("a", {named("cmd", "1")});
@@ -117,7 +117,7 @@ TEST(ClientMessages, AfterClearingOnlyWhatIsOnItsWayIsDropped) {
   EXPECT_FALSE(test.inputs.take_repeated());
 }
 
-TEST(ClientMessages, OfOneChannelOnlySoManyWaitAndTheOthersStay) {
+TEST(ClientMessages, OfOneChannelOnlyManyWaitAndTheOthersStay) {
   Sorted test;
   const auto other = test.gate.open_mailbox("other");
   test.network.publish("other", bytes_of("o"), sim::Time(0));
@@ -142,7 +142,7 @@ TEST(ClientMessages, DropsWhatWasNamedForATickThatCountsNoMore) {
   EXPECT_TRUE(test.inputs.repeated().empty());
 }
 
-TEST(ClientMessages, CountsWhatIsRepeatedForSoManyClients) {
+TEST(ClientMessages, CountsWhatIsRepeatedForManyClients) {
   Sorted test;
   const auto repeat = [&](std::size_t client) {
     const std::string name = std::to_string(client);

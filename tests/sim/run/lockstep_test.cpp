@@ -35,7 +35,7 @@ std::string answer(Lockstep& lockstep, const sim::LockstepAck& ack, std::int64_t
   return why;
 }
 
-TEST(Lockstep, AsksEachClientInItsOwnPeriod) {
+TEST(Lockstep, RequestsEachClientInItsOwnPeriod) {
   Lockstep lockstep;
   lockstep.join("slow", {}, 10, 0);
   lockstep.join("fast", {}, 5, 0);
@@ -249,7 +249,7 @@ TEST(LockstepTerms, CannotAskForMorePatienceThanTheWorldHas) {
   EXPECT_EQ(sim::read_lockstep_terms("{timeout_s: 0.1}", defaults).timeout_s, 0.1);
 }
 
-TEST(LockstepTerms, TellTheSessionAlsoOfTextThatIsWrong) {
+TEST(LockstepTerms, ReportTheSessionAlsoOfTextThatIsWrong) {
   EXPECT_EQ(sim::session_in("{session: 12, receives: [a]}", "join"), 12);
   EXPECT_EQ(sim::session_in("{session: 12, acknowledged: 3}", "leave"), 12);
   EXPECT_EQ(sim::session_in("{sesion: 12}", "join"), 0);

@@ -245,7 +245,7 @@ TEST_P(Ray, AlongTheAxisOfARoundPartHitsItsEnd) {
   EXPECT_FALSE(look_at(round(PartShape::cylinder, 1, 4, 0), {6.5, 0, -9}, {0, 0, 1}).has_value());
 }
 
-TEST_P(Ray, TellsTheMaterialAndPassesWhatLetsItThrough) {
+TEST_P(Ray, ReportsTheMaterialAndPassesWhatLetsItThrough) {
   PhysicsConfig config;
   config.rays = GetParam();
   sim::MaterialConfig glass{"glass"}, wood{"wood"};

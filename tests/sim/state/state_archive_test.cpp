@@ -236,7 +236,7 @@ TEST(StateArchive, ExpectedCountsAreCompared) {
             "snapshot: the start: the snapshot has 3 wheels, this world 4");
 }
 
-TEST(StateArchive, HashesByPartTellWhichPartDiffers) {
+TEST(StateArchive, HashesByPartReportWhichPartDiffers) {
   const auto parts = [](double imu, double dvl) {
     StateArchive archive = StateArchive::hasher();
     archive.section("auv1/imu");

@@ -58,7 +58,7 @@ TEST(HeightGrid, AParaboloidHasItsDerivativesAndLiesAnEighthOfTheBendBelow) {
   }
 }
 
-TEST(HeightGrid, SurfaceAndSlopeGoOnAcrossCellsAndNeverLeaveTheHeights) {
+TEST(HeightGrid, SurfaceAndSlopeContinueAcrossCellsAndNeverLeaveTheHeights) {
   sim::TerrainConfig config;
   config.source = sim::TerrainConfig::Source::fractal;
   config.size_m = {10, 10};

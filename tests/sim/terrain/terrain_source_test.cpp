@@ -155,7 +155,7 @@ TEST(PngGrid, ColorsAndBrokenFilesAreErrors) {
 }
 
 /// Before: 134 or 139, for each row had a channel more than there was room for.
-TEST(PngGrid, AGreyPictureWithATransparentLevelIsRefused) {
+TEST(PngGrid, AGreyImageWithATransparentLevelIsRefused) {
   for (const int bits : {8, 16}) {
     const Picture image(16, 16, bits, PNG_COLOR_TYPE_GRAY,
                         std::vector<unsigned char>(static_cast<std::size_t>(16 * 16 * bits / 8), 7),

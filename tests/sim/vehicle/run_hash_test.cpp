@@ -31,7 +31,7 @@ std::string two_modems(const std::string& fading, const std::string& keys = "") 
                          "acoustics: {fading: " + fading + "}\n");
 }
 
-TEST(RunHash, TellsRunsApartThatDifferOnTheirWayAndEndInOneState) {
+TEST(RunHash, ReportsRunsApartThatDifferOnTheirWayAndEndInOneState) {
   std::set<std::uint64_t> run_hashes, state_hashes;
   std::set<double> snrs;
   for (const char* fading : {"{type: none}", "{type: log_normal, std_dB: 3}", "{type: log_normal, std_dB: 6}"}) {
@@ -119,7 +119,7 @@ TEST(RunHash, IsTheSameWhoeverObserves) {
   EXPECT_EQ(run_of(sensed_world("false", "run: {hash_every_steps: 1, track_rate_hz: 50}\n")), plain);
 }
 
-TEST(RunHash, IsTheSameWhenSomebodyBeginsToObserve) {
+TEST(RunHash, IsTheSameWhenSomeOneBeginsToObserve) {
   const Hashes plain = run_of(sensed_world("false"));
   test::TestWorld test(sensed_world("false"));
   test::Listener<shoal::imu_t> truth(test, "r1.imu.truth");

@@ -32,13 +32,13 @@ std::string spheres(const std::vector<std::string>& places, const std::string& o
 const std::string ground = "  - {name: ground, fixed: true, parts: [{shape: plane}]}\n";
 const std::string rock = "  - {name: rock, fixed: true, parts: [{shape: box, size_m: [2, 2, 2]}]}\n";
 
-TEST(StartCheck, TellsOfAVehicleInAnObject) {
+TEST(StartCheck, ReportsAVehicleInAnObject) {
   // The sphere reaches from 1.7 to 3.7 m, the rock to 1 m on its side: 0.3 m of the first are in the second.
   EXPECT_EQ(warnings_of_start(spheres({"[1.7, 0, 0]"}, rock)),
             "worlds/test.yaml:5:5: vehicle 'v1': it starts 0.3 m deep in 'rock'\n");
 }
 
-TEST(StartCheck, TellsOfAVehicleBelowTheGround) {
+TEST(StartCheck, ReportsAVehicleBelowTheGround) {
   EXPECT_EQ(warnings_of_start(spheres({"[0, 0, -5]"}, ground)),
             "worlds/test.yaml:5:5: vehicle 'v1': it starts 6 m deep in 'ground'\n");
 }
@@ -47,12 +47,12 @@ TEST(StartCheck, IsSilentAboutWhatStandsOrIsAMillimetreDeep) {
   EXPECT_EQ(warnings_of_start(spheres({"[0, 0, 1]", "[0, 3, 0.999]", "[0, 6, 5]"}, ground)), "");
 }
 
-TEST(StartCheck, TellsOnceOfTwoVehiclesInEachOther) {
+TEST(StartCheck, ReportsOnceOfTwoVehiclesInEachOther) {
   EXPECT_EQ(warnings_of_start(spheres({"[9, 0, 0]", "[9, 0, 1.5]"}, rock)),
             "worlds/test.yaml:5:5: vehicle 'v1': it starts 0.5 m deep in 'v2'\n");
 }
 
-TEST(StartCheck, TellsOfAFreeObjectAndNotOfFixedOnes) {
+TEST(StartCheck, ReportsAFreeObjectAndNotOfFixedOnes) {
   const std::string box = "parts: [{shape: box, mass_kg: 1}]}\n";
   const std::string crate = "  - {name: crate, position_m: [0, 0, 1.25], " + box;
   const std::string wall = "  - {name: wall, fixed: true, position_m: [0, 0, 0.5], " + box;
@@ -60,7 +60,7 @@ TEST(StartCheck, TellsOfAFreeObjectAndNotOfFixedOnes) {
             "worlds/test.yaml:4:5: object 'crate': it starts 0.25 m deep in 'rock'\n");
 }
 
-TEST(StartCheck, TellsOfAVehicleBelowTerrain) {
+TEST(StartCheck, ReportsAVehicleBelowTerrain) {
   const std::string hills =
       "  - {name: hills, fixed: true, parts: [{shape: terrain, terrain: {source: slope, size_m: [100, 100], cell_m: "
       "1}}]}\n";
@@ -74,7 +74,7 @@ TEST(StartCheck, CountsTheOthersOfAnEntry) {
             "worlds/test.yaml:5:5: vehicle 'v11': it starts 1 m deep in 'ground' (and 4 more of this entry)\n");
 }
 
-TEST(StartCheck, TellsOfAWheelInTheGround) {
+TEST(StartCheck, ReportsAWheelInTheGround) {
   const std::string rover = test::rover_world("        []\n", "", "    position_m: [0, 0, -0.03]\n");
   EXPECT_THAT(warnings_of_start(rover), HasSubstr("vehicle 'r1': it starts 0.03 m deep in 'ground'"));
 }

@@ -152,7 +152,7 @@ class Meddler {
 
 class MeddledWorld : public testing::TestWithParam<unsigned> {};
 
-TEST_P(MeddledWorld, WhoCameAndWentAtRandomLeavesAWorldThatGoesOnAlike) {
+TEST_P(MeddledWorld, WhoCameAndWentAtRandomLeavesAWorldThatContinuesAlike) {
   SavedRun(sea, Meddler(GetParam())).expect_restored_worlds_go_on_alike({0, 7, 60, 121, 200}, 60);
 }
 INSTANTIATE_TEST_SUITE_P(Seeds, MeddledWorld, testing::Range(1u, 9u));

@@ -85,7 +85,7 @@ std::string error_of(sim::World& world, std::span<const std::byte> snapshot) {
   }
 }
 
-TEST(WorldSnapshot, AWorldGoesOnThoughThingsComeAndGo) {
+TEST(WorldSnapshot, AWorldContinuesThoughThingsComeAndGo) {
   SavedRun(busy_world).expect_restored_worlds_go_on_alike({0, 1, 150, 399}, 300);
 }
 
@@ -200,7 +200,7 @@ vehicles:
 }
 
 /// What the world sends in its last step waits in mailboxes when the snapshot is taken.
-TEST(WorldSnapshot, MailOnItsWayWithinTheWorldIsKept) {
+TEST(WorldSnapshot, InputsOnTheirWayWithinTheWorldAreKept) {
   const std::string yaml = R"(
 shoal: 1
 physics: {step_s: 0.01}
@@ -240,7 +240,7 @@ TEST_F(DamagedSnapshot, LeavesTheWorldAsItWasWhenItIsCutOff) {
   EXPECT_EQ(error_of(world(), good), "");
 }
 
-TEST_F(DamagedSnapshot, IsRefusedOrTheWorldGoesOnWhenBitsAreFlipped) {
+TEST_F(DamagedSnapshot, IsRefusedOrTheWorldContinuesWhenBitsAreFlipped) {
   sim::Random random(1, "flip");
   random.begin_step(0);
   int refused = 0;
@@ -295,7 +295,7 @@ TEST(WorldSnapshot, PartsHaveHashesInAnOrderThatStays) {
                                              "events", "acoustics", "script"}));
 }
 
-TEST(WorldSnapshot, ThePartThatDiffersIsToldByItsHash) {
+TEST(WorldSnapshot, ThePartThatDiffersIsNotifiedByItsHash) {
   TappedWorld one(busy_world), other(busy_world);
   sim::FaultConfig fault;
   fault.kind = sim::FaultKind::silent;
@@ -436,7 +436,7 @@ TEST(WorldSnapshot, WithAnEventThatIsLateIsRefused) {
   EXPECT_THAT(error_of(test.world, snapshot), HasSubstr("an event that is overdue"));
 }
 
-TEST_F(ForgedSnapshot, WithEventsOfNobodyIsRefused) {
+TEST_F(ForgedSnapshot, WithEventsOfNoOneIsRefused) {
   const std::pair<int, const char*> forged[] = {{999, "an event of a device that does not exist"},
                                                 {-1, "events: an event without a device"},
                                                 {-2, "a signal that does not exist"}};

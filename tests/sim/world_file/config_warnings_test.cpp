@@ -25,7 +25,7 @@ std::string world(const std::string& devices, const std::string& more = "") {
          devices + more;
 }
 
-TEST(ConfigWarnings, TellOfARateAboveThatOfTheSteps) {
+TEST(ConfigWarnings, ReportARateAboveThatOfTheSteps) {
   EXPECT_EQ(warnings_of_file(world("        - {name: imu, type: imu, rate_hz: 300}\n")),
             "worlds/test.yaml:11:43: vehicle 'r1': device 'imu': 'rate_hz' of 300 Hz is above that of the steps: it "
             "becomes 100 Hz with 'step_s' 0.01\n");
@@ -36,34 +36,34 @@ TEST(ConfigWarnings, AreSilentAboutTheRateOfTheSteps) {
   EXPECT_EQ(warnings_of_file(world("        - {name: imu, type: imu, rate_hz: every_step}\n")), "");
 }
 
-TEST(ConfigWarnings, TellOfAUsualRateAboveThatOfTheSteps) {
+TEST(ConfigWarnings, ReportAUsualRateAboveThatOfTheSteps) {
   std::string yaml = world("        - {name: imu, type: imu}\n");
   yaml.replace(yaml.find("0.01"), 4, "0.02");
   EXPECT_THAT(warnings_of_file(yaml),
               HasSubstr("worlds/test.yaml:11:11: vehicle 'r1': device 'imu': its usual rate of 100 Hz is above"));
 }
 
-TEST(ConfigWarnings, TellOfRatesOfTheWorldAboveThatOfTheSteps) {
+TEST(ConfigWarnings, ReportRatesOfTheWorldAboveThatOfTheSteps) {
   std::string yaml = world("        []\n", "state_rate_hz: 200\n");
   yaml.replace(yaml.find("duration_s: 300"), 15, "track_rate_hz: 1000");
   EXPECT_THAT(warnings_of_file(yaml), HasSubstr("worlds/test.yaml:12:16: 'state_rate_hz' of 200 Hz is above"));
   EXPECT_THAT(warnings_of_file(yaml), HasSubstr("worlds/test.yaml:3:22: run: 'track_rate_hz' of 1000 Hz is above"));
 }
 
-TEST(ConfigWarnings, TellOnceOfAKindOfVehicle) {
+TEST(ConfigWarnings, ReportOnceOfAKindOfVehicle) {
   std::string yaml = world("        - {name: imu, type: imu, rate_hz: 300}\n");
   yaml.replace(yaml.find("    model:"), 10, "    count: 20\n    model:");
   const std::string text = warnings_of_file(yaml);
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1);
 }
 
-TEST(ConfigWarnings, TellOfKeysOfReportsOfADeviceThatReportsNothing) {
+TEST(ConfigWarnings, ReportKeysOfReportsOfADeviceThatReportsNothing) {
   EXPECT_EQ(warnings_of_file(world("        - {name: push, type: body_wrench, rate_hz: 10}\n")),
             "worlds/test.yaml:11:52: vehicle 'r1': device 'push': 'rate_hz' has no effect: a device of type "
             "'body_wrench' publishes no reports\n");
 }
 
-TEST(ConfigWarnings, TellOfAMetricOfAChannelOnWhichNobodySpeaks) {
+TEST(ConfigWarnings, ReportAMetricOfAChannelOnWhichNoOnePublishes) {
   const std::string gps = "        - {name: gps, type: gps}\n";
   const auto metric = [&](const std::string& channel, const std::string& more = "") {
     return warnings_of_file(world(
@@ -81,7 +81,7 @@ TEST(ConfigWarnings, TellOfAMetricOfAChannelOnWhichNobodySpeaks) {
       "");
 }
 
-TEST(ConfigWarnings, TellOfMetricsAndEventsAfterTheEnd) {
+TEST(ConfigWarnings, ReportMetricsAndEventsAfterTheEnd) {
   const std::string gps = "        - {name: gps, type: gps}\n";
   EXPECT_THAT(warnings_of_file(world(
                   gps, "metrics: [{name: error, type: position_error, vehicle: r1, channel: r1.gps, from_s: 300}]\n")),
@@ -89,6 +89,16 @@ TEST(ConfigWarnings, TellOfMetricsAndEventsAfterTheEnd) {
   EXPECT_THAT(warnings_of_file(world(gps, "events: [{name: late, at: [310, 320], do: [{log: late}]}]\n")),
               HasSubstr("event 'late': it is for 310 s, and the run ends at 300 s"));
   EXPECT_EQ(warnings_of_file(world(gps, "events: [{name: some, at: [10, 320], do: [{log: late}]}]\n")), "");
+}
+
+TEST(ConfigWarnings, ReportAnEventThatNothingTriggers) {
+  const std::string gps = "        - {name: gps, type: gps}\n";
+  EXPECT_THAT(warnings_of_file(world(gps, "events: [{name: idle, do: [{log: x}]}]\n")),
+              HasSubstr("event 'idle': it has no 'at', 'every' or 'when', and no event triggers it"));
+  EXPECT_EQ(warnings_of_file(world(gps,
+                                   "events: [{name: idle, do: [{log: x}]}, {name: go, at: 1, do: [{one_of: {choices: "
+                                   "[[{trigger: idle}]]}}]}]\n")),
+            "");
 }
 
 TEST(ConfigWarnings, AreOfWhatComesAfterTheEndOfTheFileAndOfTheCommandLine) {

@@ -83,7 +83,7 @@ TEST(RuleExpression, CalculatesAsOnPaper) {
   EXPECT_EQ(outcome_of("a.x_m\n  < 1e-3\t").right, 0.001);
 }
 
-TEST(RuleExpression, TellsAMinusFromADashInAName) {
+TEST(RuleExpression, ReportsAMinusFromADashInAName) {
   EXPECT_EQ(outcome_of("a-b.x_m < 0").left, 5);
   EXPECT_EQ(outcome_of("a.x_m-b.x_m < 0").left, 6 - 2);
   EXPECT_EQ(outcome_of("a.x_m-a-b.x_m < 0").left, 6 - 5);

@@ -60,12 +60,12 @@ class Program {
   /// The vehicle that it drives, which is its name in the lockstep too.
   std::string vehicle() const { return value_of("name"); }
   /// The channels that it publishes on; empty: unknown.
-  std::optional<std::vector<std::string>> channels() const {
-    if (!declaration_ || !declaration_->publishes) return std::nullopt;
-    std::vector<std::string> channels;
-    for (const std::string& pattern : *declaration_->publishes)
-      channels.push_back(sim::channel_of(*declaration_, *written_.args, pattern));
-    return channels;
+  std::optional<std::vector<std::string>> published() const {
+    return declaration_ ? channels(declaration_->publishes) : std::nullopt;
+  }
+  /// The channels that it subscribes to; empty: unknown.
+  std::optional<std::vector<std::string>> subscribed() const {
+    return declaration_ ? channels(declaration_->subscribes) : std::nullopt;
   }
   bool sends() const { return has("slot") || has("random_s"); }
   std::string slot_text() const { return value_of("slot") + "/" + value_of("slots"); }
@@ -84,6 +84,14 @@ class Program {
   }
 
  private:
+  std::optional<std::vector<std::string>> channels(const std::optional<std::vector<std::string>>& patterns) const {
+    if (!patterns) return std::nullopt;
+    std::vector<std::string> channels;
+    for (const std::string& pattern : *patterns)
+      channels.push_back(sim::channel_of(*declaration_, *written_.args, pattern));
+    return channels;
+  }
+
   const sim::ProcessConfig& config_;
   WrittenProcess written_;
   std::optional<sim::ProgramDeclaration> declaration_;
@@ -168,17 +176,36 @@ void check_metrics(const sim::WorldConfig& world, const std::vector<Program>& pr
   if (programs.empty()) return;  // the loader looked at those
   std::set<std::string> spoken = sim::channels_of(world);
   for (const Program& program : programs) {
-    const auto channels = program.channels();
+    const auto channels = program.published();
     if (!channels) return;
     spoken.insert(channels->begin(), channels->end());
   }
   for (const sim::MetricConfig& metric : world.metrics) {
     const std::string& channel = metric.params->channel;
     if (channel.empty() || channel.starts_with("sim.") || spoken.contains(channel)) continue;
-    const std::string meant = sim::closest_name(channel, {spoken.begin(), spoken.end()});
     warnings.warn(metric.place, "metric '" + metric.name + "'",
                   "no device and no program of this world publishes on '" + channel + "'" +
-                      (meant.empty() ? "" : "; did you mean '" + meant + "'?"));
+                      sim::did_you_mean(channel, {spoken.begin(), spoken.end()}));
+  }
+}
+
+/// Warns of events that publish where no device, metric, condition or program subscribes.
+void check_events(const sim::WorldConfig& world, const std::vector<Program>& programs, sim::Warnings& warnings) {
+  std::set<std::string> subscribed = sim::subscribed_channels_of(world);
+  for (const Program& program : programs) {
+    const auto channels = program.subscribed();
+    if (!channels) return;
+    subscribed.insert(channels->begin(), channels->end());
+  }
+  for (const sim::EventConfig& event : world.events) {
+    std::set<std::string> published;
+    for (const sim::ActionEntry& entry : event.actions)
+      if (entry.action) entry.action->add_channels(published);
+    for (const std::string& channel : published)
+      if (!subscribed.contains(channel))
+        warnings.warn(event.place, "event '" + event.name + "'",
+                      "no device and no program of this world subscribes to '" + channel + "'" +
+                          sim::did_you_mean(channel, {subscribed.begin(), subscribed.end()}));
   }
 }
 
@@ -190,6 +217,7 @@ void warn_of_processes(const sim::LoadedWorld& loaded, sim::Warnings& warnings) 
   check_follow(loaded.config, programs, warnings);
   check_names(programs, warnings);
   check_metrics(loaded.config, programs, warnings);
+  check_events(loaded.config, programs, warnings);
 }
 
 void warn_of_missing_programs(const sim::LoadedWorld& loaded, sim::Warnings& warnings) {

@@ -94,7 +94,7 @@ class Player {
       throw RunError(4, "bus",
                      *other + "; its messages and those of the record would mix: choose another port with --lcm-url");
     // The world is empty, so this is quick; a damaged record may name a step that is far away.
-    while (world_.step_number() < log_.begin_step() && desired()) world_.step();
+    while (world_.step_number() < log_.begin_step() && may_continue()) world_.step();
     shoal::encode_into(log_.info, buffer_);
     publish("sim.info", buffer_);
     gate_.end_of_step();
@@ -114,7 +114,7 @@ class Player {
     return std::min(log_.last_step, static_cast<std::int64_t>(std::min(steps, 1e15)));
   }
 
-  bool desired() const { return caught_signal() == 0 && !control_.quit; }
+  bool may_continue() const { return caught_signal() == 0 && !control_.quit; }
 
   void execute() {
     requests_.check_joins();
@@ -134,7 +134,7 @@ class Player {
     if (options_.join_timeout_s <= 0 && options_.await.empty()) return;
     const auto begin = Clock::now();
     bool reported = options_.quiet;
-    for (std::string missing = missing_programs(); !missing.empty() && desired(); missing = missing_programs()) {
+    for (std::string missing = missing_programs(); !missing.empty() && may_continue(); missing = missing_programs()) {
       const double waited_s = std::chrono::duration<double>(Clock::now() - begin).count();
       if (waited_s > options_.join_timeout_s)
         throw RunError(5, "timeout",
@@ -156,7 +156,7 @@ class Player {
       throw RunError(2, "configuration",
                      fmt::format("{}: begins at {:.6g} s, after --until", log_.path, sim::to_seconds(world_.now())));
     end_step();
-    while (desired() && world_.step_number() < last) {
+    while (may_continue() && world_.step_number() < last) {
       execute();
       if (!synchronized_) {
         synchronize();
@@ -174,7 +174,7 @@ class Player {
       end_step();
       progress_.update(world_.now(), played_, control_, false);
     }
-    while (desired() && !synchronized_) {
+    while (may_continue() && !synchronized_) {
       execute();
       synchronize();
     }
@@ -201,7 +201,7 @@ class Player {
                                                  execute();
                                                  if (control_.paused)
                                                    progress_.update(world_.now(), played_, control_, true);
-                                                 return desired();
+                                                 return may_continue();
                                                });
     synchronized_ = outcome == bridges::LockstepOutcome::done;
   }
@@ -220,7 +220,7 @@ class Player {
 
   void pace() {
     const sim::Time next = world_.now() + world_.step_time();
-    for (auto wait = pacer_.until(next, control_); wait.count() > 0 && desired() && control_.may_step();
+    for (auto wait = pacer_.until(next, control_); wait.count() > 0 && may_continue() && control_.may_step();
          wait = pacer_.until(next, control_)) {
       if (wait > milliseconds(2))
         bus_.wait_for_message(

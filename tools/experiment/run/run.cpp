@@ -146,17 +146,18 @@ std::string Run::how_ended() const {
   return control_.quit ? "quit" : "duration";
 }
 
-bool Run::desired() const {
+bool Run::may_continue() const {
   return caught_signal() == 0 && !control_.quit;
 }
 
 void Run::start_clients() {
   if (const auto other = others_.look([this](std::chrono::milliseconds time) { buses_.wait(time); })) {
     alone_ = false;
-    throw RunError(4, "bus",
-                   *other +
-                       "; clients and reports of the two runs would mix: choose another port with --lcm-url, or share "
-                       "this one with --lcm-shared");
+    throw RunError(
+        4, "bus",
+        *other +
+            "; clients and reports of the two runs would mix: end the other one with `shoal control quit`, choose "
+            "another port with --lcm-url, or share this one with --lcm-shared");
   }
   service_.publish_info();  // a log reports its run from the first event
   if (options_.from) publish_snapshot();
@@ -169,7 +170,7 @@ void Run::await(const std::vector<std::string>& clients) {
   const auto deadline = begin + std::chrono::duration<double>(loaded_.config.lockstep.join_timeout_s);
   for (const std::string& client : clients) {
     bool reported = false;
-    while (!lockstep_.has(client) && desired()) {
+    while (!lockstep_.has(client) && may_continue()) {
       service_.handle_requests(&time_);
       check_programs();
       check_bus();
@@ -192,7 +193,7 @@ void Run::loop() {
   journal_.start();
   end_of_step();
   const sim::Time end = duration_s_ > 0 ? sim::from_seconds(duration_s_) : sim::Time::max();
-  while (desired() && !world_.ended() && world_.now() < end) {
+  while (may_continue() && !world_.ended() && world_.now() < end) {
     execute();
     if (time_.take_moved()) synchronized_ = false;
     if (!control_.may_step()) {
@@ -274,7 +275,7 @@ void Run::synchronize() {
 
 void Run::pace() {
   const sim::Time next = world_.now() + world_.step_time();
-  for (auto wait = pacer_.until(next, control_); wait.count() > 0 && desired() && control_.may_step();
+  for (auto wait = pacer_.until(next, control_); wait.count() > 0 && may_continue() && control_.may_step();
        wait = pacer_.until(next, control_)) {
     if (wait > std::chrono::milliseconds(2)) {
       buses_.hand_over_record();

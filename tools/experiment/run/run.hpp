@@ -68,7 +68,7 @@ class Run final : private Timeline {
   /// `goes_on`: requests may still change the world.
   RunPrograms::Clients clients(bool goes_on);
   void check_programs();
-  bool desired() const;
+  bool may_continue() const;
   std::string how_ended() const;
   std::uint64_t messages() const;
   void finish(Summary& summary);

@@ -13,6 +13,7 @@
 #include "sim/config/message_text.hpp"
 #include "sim/config/shipped_files.hpp"
 #include "sim/config/yaml_writer.hpp"
+#include "sim/world_file/file_kind.hpp"
 #include "sim/world_file/rule_list.hpp"
 #include "tools/experiment/process/world_programs.hpp"
 #include "tools/experiment/study/study_rules.hpp"
@@ -310,6 +311,7 @@ LoadedStudy load_study(const std::string& path, const StudyChanges& changes) {
   sim::Diagnostics diagnostics;
   const sim::ConfigNode root = sim::load_config_file(path, diagnostics);
   diagnostics.throw_if_any();
+  sim::require_file_kind(root, sim::FileKind::study, {sim::intern_file_name(path), 0, 0});
   sim::ParamReader in(root, "", diagnostics);
   study.config.read(in);
   in.finish();

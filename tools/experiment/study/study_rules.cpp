@@ -10,15 +10,6 @@
 
 namespace tools {
 
-namespace {
-
-std::string suggestion(const std::string& misspelt, const std::vector<std::string>& names) {
-  const std::string meant = sim::closest_name(misspelt, names);
-  return meant.empty() ? "" : "; did you mean '" + meant + "'?";
-}
-
-}  // namespace
-
 const std::vector<std::string>& statistic_words() {
   static const std::vector<std::string> words{"mean", "std", "min", "max", "median"};
   return words;
@@ -38,7 +29,7 @@ std::string StudyRuleNames::function_problem(const std::string& function) const 
   const std::vector<std::string>& words = statistic_words();
   if (std::find(words.begin(), words.end(), function) != words.end()) return {};
   return "unknown statistic '" + sim::shortened(function) + "'; known statistics: " + sim::list_text(words) +
-         suggestion(function, words);
+         sim::did_you_mean(function, words);
 }
 
 std::optional<sim::RuleProblem> StudyRuleNames::name_problem(const std::string& function,
@@ -55,7 +46,7 @@ std::optional<sim::RuleProblem> StudyRuleNames::name_problem(const std::string& 
   }
   if (found == cases_.end())
     return sim::RuleProblem{0, "unknown case '" + sim::shortened(in_case) +
-                                   "'; known cases: " + sim::list_text(cases_) + suggestion(in_case, cases_)};
+                                   "'; known cases: " + sim::list_text(cases_) + sim::did_you_mean(in_case, cases_)};
   if (figure.empty())
     return sim::RuleProblem{0, "case '" + in_case + "' needs one of its figures, such as " + in_case + ".passed"};
   if (figure == passed_figure) return std::nullopt;

@@ -7,7 +7,7 @@ namespace tools {
 
 using What = Rename::What;
 
-constexpr Rename table[] = {
+constexpr Rename name_changes[] = {
     {What::word, FileKind::world, "metrics.*.type", "lean", "tilt"},
     {What::word, FileKind::world, "metrics.*.channel", "sim.mail", "sim.inputs"},
     {What::word, FileKind::world, "metrics.*.channel", "sim.notice", "sim.audit"},
@@ -23,11 +23,11 @@ constexpr Rename table[] = {
 };
 
 std::span<const Rename> renames() {
-  return table;
+  return name_changes;
 }
 
 std::string renamed_rule(std::string rule, FileKind kind) {
-  for (const Rename& rename : table)
+  for (const Rename& rename : name_changes)
     if (rename.what == What::figure && rename.kind == kind && rename.path == "pass.*")
       rule = renamed_figure(std::move(rule), rename.before, rename.after);
   return rule;

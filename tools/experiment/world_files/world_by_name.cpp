@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 
 #include "sim/config/config_node.hpp"
 #include "sim/config/message_text.hpp"
@@ -63,6 +64,14 @@ std::vector<ShippedFile> named_files(ShippedKind kind) {
                               " of this name; " + (meant.empty() ? "see " + lists : "did you mean '" + meant + "'?"));
 }
 
+/// A shipped file by its path in the sources, such as `worlds/coop_land.yaml`.
+std::optional<std::string> shipped_path(std::initializer_list<ShippedKind> kinds, const std::string& given) {
+  for (const ShippedKind kind : kinds)
+    for (const ShippedFile& file : named_files(kind))
+      if (given == std::string(words_of(kind).folder) + "/" + file.name + ending) return file.path;
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::vector<ShippedFile> shipped_files(ShippedKind kind) {
@@ -78,7 +87,8 @@ std::vector<ShippedFile> shipped_files(ShippedKind kind) {
 std::string file_by_name(std::initializer_list<ShippedKind> kinds, const std::string& given) {
   std::error_code error;
   const bool bare = !given.empty() && given.find('/') == std::string::npos && !fs::path(given).has_extension();
-  if (!bare || fs::is_regular_file(given, error)) return given;
+  if (fs::is_regular_file(given, error)) return given;
+  if (!bare) return shipped_path(kinds, given).value_or(given);
   if (fs::is_regular_file(given + ending, error)) return given + ending;
   for (const ShippedKind kind : kinds)
     for (const ShippedFile& file : named_files(kind))

@@ -21,8 +21,8 @@ enum class ShippedKind { world, vehicle, study };
 std::vector<ShippedFile> shipped_files(ShippedKind kind);
 
 /// The file that a command line means by `given`: a file of that name, else NAME.yaml here, else the shipped one of
-/// this name.  What has a folder or an ending is a file name, and is given back as it is, also when there is no such
-/// file.  Throws sim::ConfigError when a bare name means nothing.
+/// this name, which may also be given as `worlds/NAME.yaml`.  Another path is returned unchanged, also when there is no
+/// such file.  Throws sim::ConfigError when a bare name means nothing.
 /// Of several kinds the first that has the name counts.
 std::string file_by_name(std::initializer_list<ShippedKind> kinds, const std::string& given);
 inline std::string world_file(const std::string& given) {

@@ -258,6 +258,19 @@ std::string describe_keys(const std::string& title, const std::vector<sim::Param
   return command_line::wrapped(title, columns) + "\n\n" + keys_text(params, columns);
 }
 
+namespace {
+
+/// A key of the top level of a world or vehicle file with the keys below it; empty: there is no such key.
+std::string section_text(const std::string& key, std::size_t columns) {
+  for (const auto& [file, params] :
+       {std::pair("world", params_of<sim::WorldConfig>()), std::pair("vehicle", params_of<sim::VehicleConfig>())})
+    for (const sim::ParamInfo& info : params)
+      if (info.key == key) return describe_keys("'" + key + "' of a " + file + " file.", {info}, columns);
+  return {};
+}
+
+}  // namespace
+
 std::string describe_text(const std::string& name, std::size_t columns) {
   const auto keys = [columns](const std::string& title, const std::vector<sim::ParamInfo>& params) {
     return describe_keys(title, params, columns);
@@ -276,7 +289,8 @@ std::string describe_text(const std::string& name, std::size_t columns) {
   const shoal::MessageTypes& types = shoal::embedded_types();
   for (const std::string& full : {name, "shoal." + name})
     if (const shoal::MessageSchema* schema = types.find(std::string_view(full))) return message_text(*schema, columns);
-  return program_text(name, columns);
+  if (const std::string text = program_text(name, columns); !text.empty()) return text;
+  return section_text(name, columns);
 }
 
 }  // namespace tools

@@ -190,7 +190,7 @@ TEST(AcousticFrame, AnOrderIsNoStateAndAStateIsNoOrder) {
   }
 }
 
-TEST(AcousticFrame, StateTellsOfAnOrderInOneByteMore) {
+TEST(AcousticFrame, StateReportsAnOrderInOneByteMore) {
   sim::Random random(8, "frame");
   random.begin_step(0);
   AcousticState state = some_state(random);
@@ -204,7 +204,7 @@ TEST(AcousticFrame, StateTellsOfAnOrderInOneByteMore) {
   }
 }
 
-TEST(AcousticFrame, StateTellsOfARefusedOrderInThreeBytesMore) {
+TEST(AcousticFrame, StateReportsARefusedOrderInThreeBytesMore) {
   sim::Random random(9, "frame");
   random.begin_step(0);
   AcousticState state = some_state(random);

@@ -195,7 +195,7 @@ TEST(FollowBehaviour, ForgetsWhatIsOld) {
   EXPECT_FALSE(follow.place_W(311 * second));
 }
 
-TEST(FollowBehaviour, SaysWhomItNeverHeardOf) {
+TEST(FollowBehaviour, SaysWhomItNeverReceived) {
   FollowBehaviour::Params params;
   params.vehicle = "nobody";
   FollowBehaviour follow(params);

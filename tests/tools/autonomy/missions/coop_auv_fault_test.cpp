@@ -90,7 +90,7 @@ TEST(CoopAuv, SaysNothingOfItsPlaceWhileAllItsDevicesAreSilent) {
   EXPECT_TRUE(voyage.decision.estimate);
 }
 
-TEST(CoopAuv, SpeaksHoweverSeldomItDecides) {
+TEST(CoopAuv, PublishesHoweverSeldomItDecides) {
   for (const int period_s : {2, 5}) {
     CoopAuv::Params params = auv_params();
     params.period_s = period_s;

@@ -324,7 +324,7 @@ TEST(CoopAuv, StateThatCameByRelayIsNoRange) {
             0);
 }
 
-TEST(CoopAuv, TellsItsStateInItsSlotWithItsCovariance) {
+TEST(CoopAuv, ReportsItsStateInItsSlotWithItsCovariance) {
   CoopAuv::Params params = auv_params();
   params.access.slot.emplace();
   Voyage voyage(params);

@@ -23,7 +23,7 @@ CoopCraft::Params craft_params() {
   return params;
 }
 
-TEST(CoopCraft, TellsItsPlaceInItsSlotsByItsOwnClock) {
+TEST(CoopCraft, ReportsItsPlaceInItsSlotsByItsOwnClock) {
   CoopCraft craft(craft_params(), make_circle({0, 0}, 30, 1.5));
   std::vector<std::int64_t> sent;
   for (std::int64_t t = epoch; t < epoch + 60 * second; t += second / 2) {
@@ -50,7 +50,7 @@ TEST(CoopCraft, TellsItsPlaceInItsSlotsByItsOwnClock) {
   EXPECT_EQ(craft.counts().sent, 3);
 }
 
-TEST(CoopCraft, RemarksOnceThatItNeverHeardOfWhomItFollows) {
+TEST(CoopCraft, RemarksOnceThatItNeverReceivedTheVehicleItFollows) {
   CoopCraft craft(craft_params(), make_follow("auv", 0, 30, 1.5));
   std::vector<std::pair<std::int64_t, std::string>> remarks;
   for (std::int64_t t = epoch; t < epoch + 200 * second; t += second) {
@@ -89,7 +89,7 @@ TEST(CoopCraft, StopsAndSaysNothingWhenItsGpsFallsSilent) {
   EXPECT_EQ(craft.step().helm->speed_mps, 1.5);
 }
 
-TEST(CoopCraft, SpeaksHoweverSeldomItDecides) {
+TEST(CoopCraft, PublishesHoweverSeldomItDecides) {
   for (const int period_s : {2, 5}) {
     CoopCraft::Params params = craft_params();
     params.period_s = period_s;
@@ -104,7 +104,7 @@ TEST(CoopCraft, SpeaksHoweverSeldomItDecides) {
   }
 }
 
-TEST(CoopCraft, FollowsWhatItHears) {
+TEST(CoopCraft, FollowsWhatItReceives) {
   CoopCraft craft(craft_params(), make_follow("boat1", 0, 0, 2));
   craft.receive(fix_at(epoch, {0, 0}));
   EXPECT_EQ(craft.step().helm->speed_mps, 0);
@@ -117,7 +117,7 @@ TEST(CoopCraft, FollowsWhatItHears) {
   EXPECT_EQ(craft.counts().bad_frames, 1);
 }
 
-TEST(CoopCraft, FollowsNobodyByARelayedStateAndTakesNoOrders) {
+TEST(CoopCraft, FollowsNoOneByARelayedStateAndTakesNoOrders) {
   CoopCraft craft(craft_params(), make_follow("boat1", 0, 0, 2));
   craft.receive(fix_at(epoch, {0, 0}));
   craft.receive(packet({500, 0}, epoch, epoch + second));

@@ -100,7 +100,7 @@ TEST(CoopRover, EstimatesCarryTheTimeOfTheMeasurement) {
   }
 }
 
-TEST(CoopRover, TellsItsPlaceOnceASecondWhenItHasGps) {
+TEST(CoopRover, ReportsItsPlaceOnceASecondWhenItHasGps) {
   CoopRover rover(params_of("rover1"));
   int reports = 0;
   for (int i = 1; i <= 100; ++i) {
@@ -112,7 +112,7 @@ TEST(CoopRover, TellsItsPlaceOnceASecondWhenItHasGps) {
   EXPECT_EQ(reports, 10);
 }
 
-TEST(CoopRover, TellsNothingWithoutAFix) {
+TEST(CoopRover, ReportsNothingWithoutAFix) {
   CoopRover rover(params_of("rover1"));
   for (int i = 1; i <= 30; ++i) {
     rover.receive("odometry", odometry(i * second / 10, 0));

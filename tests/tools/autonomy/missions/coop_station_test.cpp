@@ -116,7 +116,7 @@ TEST(CoopStation, LaterOrderTakesThePlaceOfOneThatWasNotObeyed) {
   EXPECT_TRUE(run(station, 200, 260).empty());
 }
 
-TEST(CoopStation, TellsOnceThatAnOrderWasRefusedAndSaysItNoMore) {
+TEST(CoopStation, ReportsOnceThatAnOrderWasRefusedAndSaysItNoMore) {
   CoopStation station(station_params());
   run(station, 0, 30);
   AcousticState state = state_of(7, epoch + 29 * second);

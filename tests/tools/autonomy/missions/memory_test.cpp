@@ -31,7 +31,7 @@ TEST(Memory, PutsBackWhatWasKnownAfterTheLastDecisionBefore) {
   EXPECT_EQ(state, 0) << "before its first decision";
 }
 
-TEST(Memory, KeepsAsLongAsItIsToldAndNoLonger) {
+TEST(Memory, KeepsAsLongAsItIsConfiguredAndNoLonger) {
   int state = 0;
   Memory memory(state, 2);
   for (std::int64_t tick = 1; tick <= 1000; ++tick) {

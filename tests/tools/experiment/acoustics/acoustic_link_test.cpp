@@ -140,7 +140,7 @@ TEST(AcousticLink, TableOverRangeFallsAndKeepsTheDepths) {
   EXPECT_EQ(std::count(csv.begin(), csv.end(), ','), 5 * (4 + 7));
 }
 
-TEST(AcousticLink, DrawsAPicture) {
+TEST(AcousticLink, DrawsAnImage) {
   const ScratchFolder folder;
   const std::vector<tools::AcousticPacket> packets{*tools::parse_packet("fsk:80:32")};
   const auto rows = tools::over_range(link_over(500), packets, {100, 500, 2000}, thorp(), sea());

@@ -153,7 +153,7 @@ TEST_F(BugReportTest, OfARunThatWasKilledHoldsWhatThereIs) {
   EXPECT_THAT(report.inside, Contains(HasSubstr("world.yaml")));
 }
 
-TEST_F(BugReportTest, TellsWhatItCannotUse) {
+TEST_F(BugReportTest, ReportsWhatItCannotUse) {
   const std::string run = options.directory;
   options.record = folder.file("nowhere.lcm");
   EXPECT_THAT(error(), HasSubstr("nowhere.lcm"));

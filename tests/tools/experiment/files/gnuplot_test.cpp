@@ -33,7 +33,7 @@ TEST(Gnuplot, AxisOfErrorsIsLogarithmicWhereTheyAreVeryDifferent) {
     EXPECT_EQ(tools::axis_of_errors(errors_m), "set yrange [0:*]\n");
 }
 
-TEST(Gnuplot, TellsWhetherTheScriptRan) {
+TEST(Gnuplot, ReportsWhetherTheScriptRan) {
   const ScratchFolder folder;
   EXPECT_TRUE(run(folder, "x = 1\n", 30s, never));
   EXPECT_FALSE(run(folder, "nonsense\n", 30s, never));
@@ -44,7 +44,7 @@ TEST(Gnuplot, IsKilledWhenItTakesTooLong) {
   EXPECT_FALSE(run(folder, "pause 1000\n", 200ms, never));
 }
 
-TEST(Gnuplot, IsKilledWhenNobodyWaits) {
+TEST(Gnuplot, IsKilledWhenNoOneWaits) {
   const ScratchFolder folder;
   const auto begin = std::chrono::steady_clock::now();
   EXPECT_FALSE(run(folder, "pause 1000\n", 30s, [&] { return std::chrono::steady_clock::now() - begin > 100ms; }));

@@ -52,14 +52,14 @@ std::string sender(const std::string& name, int slot, int slots, const std::stri
 
 const std::string auv = "program: shoal-coop-auv, args: {name: auv, waypoints_m: [[1, 1]]";
 
-TEST(ProcessCheck, TellsOfTwoInOneSlot) {
+TEST(ProcessCheck, ReportsTwoInOneSlot) {
   EXPECT_EQ(warnings_of({{"boat1", sender("boat1", 0, 2)}, {"boat2", sender("boat2", 0, 2)}}),
             "worlds/test.yaml:4:110: process 'boat2': its slot 0/2 is also that of process 'boat1': their packets "
             "collide\n");
   EXPECT_EQ(warnings_of({{"boat1", sender("boat1", 0, 2)}, {"boat2", sender("boat2", 1, 2)}}), "");
 }
 
-TEST(ProcessCheck, TellsOfSlotsOfCyclesThatRunThroughEachOther) {
+TEST(ProcessCheck, ReportsSlotsOfCyclesThatRunThroughEachOther) {
   // Cycles of 10 and 15 s have 5 s in common: slots of 5 s meet, wherever they begin.
   EXPECT_THAT(
       warnings_of({{"boat1", sender("boat1", 0, 2, ", slot_s: 5")}, {"boat2", sender("boat2", 1, 3, ", slot_s: 5")}}),
@@ -70,12 +70,12 @@ TEST(ProcessCheck, TellsOfSlotsOfCyclesThatRunThroughEachOther) {
       "");
 }
 
-TEST(ProcessCheck, TellsOfSomebodyToFollowWhoIsNotThere) {
+TEST(ProcessCheck, ReportsSomeOneToFollowWhoIsNotThere) {
   EXPECT_THAT(warnings_of({{"boat1", craft("boat1", "follow: auw, follow_offset_m: [0, 30]")}}),
               HasSubstr("process 'boat1': it is to follow 'auw', and there is no such vehicle"));
 }
 
-TEST(ProcessCheck, TellsOfSomebodyToFollowWhoNeverSends) {
+TEST(ProcessCheck, ReportsSomeOneToFollowWhoNeverSends) {
   const std::string follower = craft("boat1", "follow: auv, follow_offset_m: [0, 30]");
   EXPECT_THAT(warnings_of({{"auv", auv + "}"}, {"boat1", follower}}),
               HasSubstr("it is to follow 'auv', whose program sends nothing: it has neither 'slot' nor 'random_s'"));
@@ -84,12 +84,12 @@ TEST(ProcessCheck, TellsOfSomebodyToFollowWhoNeverSends) {
   EXPECT_EQ(warnings_of({{"auv", "command: [another_program]"}, {"boat1", follower}}), "") << "it may well speak";
 }
 
-TEST(ProcessCheck, TellsOfAClientThatJoinsByAnotherName) {
+TEST(ProcessCheck, ReportsAClientThatJoinsByAnotherName) {
   EXPECT_THAT(warnings_of({{"boat1", sender("boat2", 0, 2)}}),
               HasSubstr("process 'boat1': the run waits for client 'boat1', and it joins as 'boat2'"));
 }
 
-TEST(ProcessCheck, TellsOfAMetricOfAChannelOnWhichNoneOfThemSpeaks) {
+TEST(ProcessCheck, ReportsAMetricOfAChannelOnWhichNoneOfThemPublishes) {
   const std::string metric = "metrics: [{name: error, type: position_error, vehicle: auv, channel: auv.estimat}]\n";
   EXPECT_THAT(
       warnings_of({{"auv", auv + "}"}}, metric),
@@ -98,7 +98,19 @@ TEST(ProcessCheck, TellsOfAMetricOfAChannelOnWhichNoneOfThemSpeaks) {
   EXPECT_EQ(warnings_of({{"auv", auv + "}"}, {"other", "command: [another_program]"}}, metric), "");
 }
 
-TEST(ProcessCheck, TellsOfAProgramThatIsNotThere) {
+TEST(ProcessCheck, ReportsAnEventOnAChannelWithoutSubscriber) {
+  const auto event = [](const std::string& channel) {
+    return "events: [{name: go, at: 1, do: [{one_of: {choices: [[{publish: {channel: " + channel +
+           ", type: shoal.twist_command_t}}]]}}]}]\n";
+  };
+  EXPECT_THAT(warnings_of({{"auv", auv + "}"}}, event("auv.estimat")),
+              HasSubstr("event 'go': no device and no program of this world subscribes to 'auv.estimat'"));
+  EXPECT_THAT(warnings_of({}, event("nothing")), HasSubstr("event 'go': no device and no program"));
+  EXPECT_EQ(warnings_of({{"auv", auv + "}"}, {"other", "command: [another_program]"}}, event("nothing")), "");
+  EXPECT_EQ(warnings_of({}, event("heard") + "metrics: [{name: m, type: messages, channel: heard}]\n"), "");
+}
+
+TEST(ProcessCheck, ReportsAProgramThatIsNotThere) {
   const auto missing = [](const std::string& program) {
     const sim::LoadedWorld loaded = world({{"auv", "command: [" + program + "]"}});
     const test_support::LogCapture log;

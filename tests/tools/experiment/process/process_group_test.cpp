@@ -47,7 +47,7 @@ bool is_running(pid_t pid) {
   return name_end != std::string::npos && status[name_end + 2] != 'Z';
 }
 
-TEST(ProcessGroup, TellsHowAProgramEnded) {
+TEST(ProcessGroup, ReportsHowAProgramEnded) {
   tools::ProcessGroup group;
   sim::ProcessConfig config = shell("exit 3", "pilot");
   config.client = "auv1";
@@ -63,7 +63,7 @@ TEST(ProcessGroup, TellsHowAProgramEnded) {
   EXPECT_TRUE(group.empty());
 }
 
-TEST(ProcessGroup, TellsWhatKilledAProgram) {
+TEST(ProcessGroup, ReportsWhatKilledAProgram) {
   tools::ProcessGroup group;
   group.start(shell("kill -9 $$"), "memq://", "");
   const auto exits = await_exit(group);

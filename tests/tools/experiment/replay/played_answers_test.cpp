@@ -82,7 +82,7 @@ TEST(PlayedAnswers, WhoSaysNothingIsNotEqual) {
   EXPECT_FALSE(equal);
 }
 
-TEST(RecordedSteps, GiveMailBeforeTheStepThatItCameTo) {
+TEST(RecordedSteps, GiveInputsBeforeTheStepThatTheyCameTo) {
   const test_support::ScratchFolder folder;
   ReplayLog log;
   log.path = folder.file("run.lcm");

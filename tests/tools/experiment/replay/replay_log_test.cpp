@@ -117,7 +117,7 @@ TEST(ReplayLog, WhatIsMissingOfThePartThatIsKeptEndsTheProof) {
   EXPECT_EQ(read.usable_step(), 5);
 }
 
-TEST(ReplayLog, MailThatWasLostJustBeforeABranchEndsTheProof) {
+TEST(ReplayLog, InputsThatWereLostJustBeforeABranchEndTheProof) {
   HandMade log;
   log.info(0, 0, 0);
   log.input_record(0, 5, 0);

@@ -45,7 +45,7 @@ TEST_F(ReplayTest, ARunWithAClientIsEqualWithoutIt) {
   EXPECT_THAT(outcome.to_text(), HasSubstr("equal for 300 steps (7 hashes, "));
 }
 
-TEST_F(ReplayTest, TheMailIsNeeded) {
+TEST_F(ReplayTest, TheInputsAreNeeded) {
   record(driven_world());
   const std::string whole = log;
   log = folder.file("without.lcm");
@@ -53,7 +53,7 @@ TEST_F(ReplayTest, TheMailIsNeeded) {
   EXPECT_THAT(error(), HasSubstr("cannot be run again from the start: sim.inputs 0"));
 }
 
-TEST_F(ReplayTest, MailThatIsThrownAwayIsNoDifference) {
+TEST_F(ReplayTest, InputsThatAreDiscardedAreNoDifference) {
   // As a rewind does, a second copy of a datagram, a gate that is full, or a run that ends before its next step.
   record(driven_world(), [](RecordedRun& run, std::int64_t step) {
     if (step != steps - 5) return;
@@ -159,7 +159,7 @@ TEST_F(ReplayTest, AnotherWorldIsComparedByItsNamesAndByItsMotion) {
   EXPECT_THAT(outcome.to_text(), testing::StartsWith("World (- in the log, + here):\n  only here: object 'box'\n"));
 }
 
-TEST_F(ReplayTest, ALetterThatIsMissingEndsTheProof) {
+TEST_F(ReplayTest, AnInputThatIsMissingEndsTheProof) {
   record(driven_world());
   const std::string whole = log;
   log = folder.file("hole.lcm");
@@ -254,7 +254,7 @@ TEST_F(ReplayTest, RefusesTwoRunsInOneLog) {
   EXPECT_THAT(error(), HasSubstr("holds two runs"));
 }
 
-TEST_F(ReplayTest, HostileMessagesAreToldOfAndPassedOver) {
+TEST_F(ReplayTest, HostileMessagesAreReportedAndSkipped) {
   record(driven_world());
   const std::string whole = log;
   log = folder.file("hostile.lcm");
@@ -389,7 +389,7 @@ TEST_F(ReplayTest, OneLostMessageNamesItsStep) {
 }
 
 /// The state does not tell on which channel a device spoke, and what a logger lost cannot be compared.
-TEST_F(ReplayTest, TheRunHashTellsOfMessagesThatTheLogLost) {
+TEST_F(ReplayTest, TheRunHashReportsMessagesThatTheLogLost) {
   record(driven_world());
   const std::string whole = log;
   log = folder.file("lossy.lcm");

@@ -151,7 +151,7 @@ TEST(Report, NamesInAWorldAreNoHtml) {
   EXPECT_THAT(page, HasSubstr("&lt;img src=x onerror=y&gt;"));
 }
 
-TEST(Report, NamesPicturesThatAreMissingOrNone) {
+TEST(Report, NamesImagesThatAreMissingOrNone) {
   const ScratchFolder folder;
   const std::string directory = folder.file("run");
   run_into(directory, "");
@@ -163,7 +163,7 @@ TEST(Report, NamesPicturesThatAreMissingOrNone) {
   EXPECT_EQ(problems_of_page(page), "");
 }
 
-TEST(Report, TakesNoPictureThatIsCutOffOrDamaged) {
+TEST(Report, TakesNoImageThatIsCutOffOrDamaged) {
   const ScratchFolder folder;
   const std::string directory = folder.file("run");
   run_into(directory, "");
@@ -206,7 +206,7 @@ TEST(Report, ARunThatWasEndedByHandIsNotJudged) {
   EXPECT_THAT(page, Not(HasSubstr("FAILED</span>")));
 }
 
-TEST(Report, TellsOfProgramsThatFailedAndOfAnOutage) {
+TEST(Report, ReportsProgramsThatFailedAndOfAnOutage) {
   const ScratchFolder folder;
   const std::string directory = folder.file("run");
   const tools::Summary run = run_into(directory, "");
@@ -319,7 +319,7 @@ TEST(Report, TakesFiguresOfAnyName) {
   EXPECT_THAT(page, HasSubstr("<td>none</td>"));
 }
 
-TEST(Report, TellsWhatIsNoResultsFolder) {
+TEST(Report, ReportsWhatIsNoResultsFolder) {
   const ScratchFolder folder;
   EXPECT_THAT(error_of_report({folder.file("nowhere")}), HasSubstr("nowhere: is not a folder"));
   fs::create_directory(folder.file("empty"));
@@ -328,7 +328,7 @@ TEST(Report, TellsWhatIsNoResultsFolder) {
   EXPECT_THAT(error_of_report({folder.file("file")}), HasSubstr("is not a folder"));
 }
 
-TEST(Report, TellsWhatIsWrongWithASummary) {
+TEST(Report, ReportsWhatIsWrongWithASummary) {
   const ScratchFolder folder;
   const std::string directory = folder.file("run");
   run_into(directory, "metrics: [{name: distance, type: distance, vehicle: r1}]\n");

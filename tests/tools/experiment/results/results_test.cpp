@@ -131,7 +131,7 @@ TEST(Summary, AProgramThatFailedIsARuleThatFailedAlsoWithoutOtherRules) {
   EXPECT_EQ(json["processes"][1]["failed"], true);
 }
 
-TEST(Summary, TellsWhatBecameOfAcousticPackets) {
+TEST(Summary, ReportsWhatBecameOfAcousticPackets) {
   tools::Summary summary;
   EXPECT_FALSE(nlohmann::json::parse(summary.to_json()).contains("acoustics"));
   summary.acoustics.emplace();
@@ -316,7 +316,7 @@ TEST(Results, NamesInAWorldAreNoCommands) {
   EXPECT_THAT(text_of_file(options.results + "/tracks.png"), testing::StartsWith("\x89PNG"));
 }
 
-TEST(Results, TellOfARunThatCouldNotBeBuilt) {
+TEST(Results, ReportARunThatCouldNotBeBuilt) {
   const ScratchFolder folder;
   const auto loaded = small_world();
   auto options = quiet_run();

@@ -55,7 +55,7 @@ std::string balls(int count, double apart_m) {
   return yaml;
 }
 
-TEST(FirstContacts, TellOfAVehicleThatHitsAnObject) {
+TEST(FirstContacts, ReportAVehicleThatHitsAnObject) {
   WatchedWorld watched(balls(1, 0));
   watched.push("v1", -1);  // the ball's edge is at -0.5 m, the rock's at -2.5 m
   watched.run_for(3);

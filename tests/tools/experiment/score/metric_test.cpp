@@ -410,7 +410,7 @@ TEST(Delivery, OfAWorldWithoutModemsHasNoRatio) {
   for (const std::string& cause : tools::loss_causes()) EXPECT_EQ(world.figure("d.lost_" + cause), 0);
 }
 
-TEST(Delivery, CountsWhatModemsSentAndWhatTheOthersHeard) {
+TEST(Delivery, CountsWhatModemsSentAndWhatTheOthersReceived) {
   const std::string modem = "{name: modem, type: acoustic_modem}";
   test::TestWorld test(
       test::modem_sea({{"a", "[0, 0, -20]", modem}, {"b", "[300, 0, -20]", modem}, {"c", "[0, 600, -20]", modem}},
@@ -570,7 +570,7 @@ TEST(Delivery, OfModemsThatHaveLeftIsStillAboutThem) {
 }
 
 /// A box that turns about its y axis at 1 rad/s, its nose going down, without gravity.
-TEST(Tilt, TellsMeanSpreadAndFallOfASteadyTurn) {
+TEST(Tilt, ReportsMeanSpreadAndFallOfASteadyTurn) {
   test::TestWorld test(test::box_world(
       "        - {name: clock, type: clock}\n", "{step_s: 0.001, gravity_mps2: 0}",
       "metrics:\n  - {name: all, type: tilt, vehicle: r1}\n  - {name: late, type: tilt, vehicle: r1, from_s: 5}\n"));

@@ -126,7 +126,7 @@ TEST_F(RecordTailTest, SnapshotsOfAnotherRunAreNotUsed) {
   EXPECT_EQ(cut(1).snapshot, "");
 }
 
-TEST_F(RecordTailTest, TellsWhatIsNotARecord) {
+TEST_F(RecordTailTest, ReportsWhatIsNotARecord) {
   std::ofstream(folder.file("text")) << "no log at all";
   EXPECT_THAT(error_of(folder.file("text")), HasSubstr("is not a log of a run: it has no sim.info"));
   EXPECT_THAT(error_of(folder.file("nowhere.lcm")), HasSubstr("nowhere.lcm"));

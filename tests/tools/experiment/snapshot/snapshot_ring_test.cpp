@@ -81,7 +81,7 @@ TEST(SnapshotRing, WhatStandsStillCostsNextToNothing) {
   EXPECT_LT(ring.bytes(), 3 * state.size() + 29 * 300);
 }
 
-TEST(SnapshotRing, ForgetsTheFutureAndGoesOnFromThere) {
+TEST(SnapshotRing, ForgetsTheFutureAndContinuesFromThere) {
   SnapshotRing ring(10'000, 1 << 24);
   for (std::int64_t step = 0; step <= 10'000; step += 100) ring.add(step, state_at(step));
   const std::size_t all = ring.bytes();

@@ -189,7 +189,7 @@ TEST(StudyConfig, ThoseThatAreShippedCanBeRead) {
   EXPECT_GT(read, 0);
 }
 
-TEST(StudyConfig, TellsWhatIsWrong) {
+TEST(StudyConfig, ReportsWhatIsWrong) {
   const auto error = [](const std::string& more, const std::string& seeds = "[1]") {
     return StudyFolder(more, seeds).error();
   };
@@ -264,7 +264,7 @@ TEST(StudyConfig, RefusesRulesAsMapsWithTheirNewForm) {
   EXPECT_THAT(StudyFolder("pass: passed\n").error(), HasSubstr("'pass' must be a list of rules, got 'passed'"));
 }
 
-TEST(StudyConfig, TellsWhatIsWrongWithASettingWhereItStands) {
+TEST(StudyConfig, ReportsWhatIsWrongWithASettingWhereItStands) {
   EXPECT_THAT(StudyFolder("cases:\n  - {name: a, set: {physics.step_s: -1}}\n").error(),
               HasSubstr("study.yaml:6:37: case 'a': 'physics.step_s': physics: 'step_s' must be"));
 }
@@ -356,7 +356,7 @@ TEST(StudyResults, WithoutRulesNothingHasPassed) {
   EXPECT_THAT(page, testing::Not(HasSubstr("passed</span>")));
 }
 
-TEST(StudyResults, ARunThatNobodyJudgedHasNotPassed) {
+TEST(StudyResults, ARunThatNoOneJudgedHasNotPassed) {
   const StudyFolder folder("launch: false\npass: [mean(world.passed) == 1]\n");
   const tools::LoadedStudy study = tools::load_study(folder.path());
   auto runs = tools::plan_study(study, "out");

@@ -87,7 +87,7 @@ TEST(UpgradeFile, AFileWithTwoNamesIsLeftAlone) {
   EXPECT_EQ(text_of(folder.file("a.yaml")), old_text);
 }
 
-TEST(UpgradeFile, AFileThatSomebodyElseChangedIsLeftAlone) {
+TEST(UpgradeFile, AFileThatSomeOneElseChangedIsLeftAlone) {
   const ScratchFolder folder;
   write(folder.file("a.yaml"), old_text);
   const FileUpgrade file = plan(folder.file("a.yaml"));
@@ -106,7 +106,7 @@ TEST(UpgradeFile, AFileThatMayNotBeWrittenIsLeftAlone) {
   EXPECT_THAT(write_error(plan(folder.file("a.yaml"))), HasSubstr("cannot be written: Permission denied"));
 }
 
-TEST(UpgradeFile, GoesOnToWhatAFileIncludes) {
+TEST(UpgradeFile, ContinuesToWhatAFileIncludes) {
   const ScratchFolder folder;
   fs::create_directory(folder.file("b"));
   write(folder.file("a.yaml"), "include: [b/c.yaml, b/d.yaml]\nshoal: 1\n");

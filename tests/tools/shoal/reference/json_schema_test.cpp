@@ -233,7 +233,7 @@ TEST(JsonSchema, KnowsARuleByItsForm) {
   EXPECT_TRUE(refused("study", "study: s\nworld: w.yaml\nseeds: 3-\n", "mean(a.passed) == 1"));
 }
 
-TEST(JsonSchema, AsksForNothingThatAnIncludedFileMayBring) {
+TEST(JsonSchema, RequestsNothingThatAnIncludedFileMayBring) {
   const ScratchTree tree;
   const std::string text = "devices: [{name: lidar, beams: 9}]\n";
   EXPECT_TRUE(

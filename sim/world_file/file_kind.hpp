@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "sim/config/config_node.hpp"
+
+namespace sim {
+
+/// What a YAML file describes, by the keys of its top level.
+enum class FileKind { world, vehicle, study, declaration };
+
+/// Kind of the file with this top level; a world when no key decides.
+FileKind kind_of_file(const ConfigNode& root);
+
+/// Throws ConfigError when the file is of another kind than `expected`, with the command for its own kind.  `file`: the
+/// place of the file as a whole.
+void require_file_kind(const ConfigNode& root, FileKind expected, const SourcePlace& file);
+
+}  // namespace sim
