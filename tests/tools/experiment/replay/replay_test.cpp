@@ -434,4 +434,9 @@ TEST_F(ReplayTest, ALogOfAnotherVersionIsRefusedByItsName) {
   EXPECT_THAT(error(), HasSubstr("was written by shoal 0.3.0 (abc), whose sim.info this one, shoal "));
 }
 
+TEST_F(ReplayTest, ARecordOfVersion010IsRefusedByItsName) {
+  log = test_support::source_path("tests/golden/records/version_0_1_0.lcm");
+  EXPECT_THAT(error(), HasSubstr("version_0_1_0.lcm: sim.info: was written by shoal 0.1.0 ("));
+}
+
 }  // namespace
