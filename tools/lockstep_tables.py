@@ -108,7 +108,7 @@ def killed(options):
                 run.request(*then.split())
         code, summary = run.finish()
         shown = "<br>".join(line.split("lockstep: ")[1].strip() for line in run.shown if "lockstep: " in line)
-        print(f"| {policy} | {'killed' if how == signal.SIGKILL else 'stalled'} | {said} | {then} "
+        print(f"| {policy} | {'killed' if how == signal.SIGKILL else 'stalled'} | {shown} | {then} "
               f"| {summary['sim_time_s']:g} | {code} | {summary['run_hash']} |", flush=True)
     return 0
 

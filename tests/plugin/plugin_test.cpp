@@ -250,7 +250,7 @@ TEST_F(Plugin, ThatIsNoneSaysWhy) {
 TEST_F(Plugin, OfAnotherShoalIsNotEvenInitialised) {
   const std::string other = library("other", info_symbol("shoal-plugin|other|1.0|shoal 0.0.1") +
                                                  "#include <cstdlib>\nstatic int ended = (std::abort(), 0);\n");
-  expect_refused(other, "was built against another Shoal and must be built again; it has 'shoal 0.0.1'");
+  expect_refused(other, "was built for another version of Shoal and must be rebuilt; it has 'shoal 0.0.1'");
 }
 
 TEST_F(Plugin, ThatLacksAFunctionSaysWhich) {

@@ -64,7 +64,7 @@ TEST_F(ControlKey, IsNeededToQuitARunWhoseBusLeavesTheMachine) {
   EXPECT_EQ(control({"quit", "--run", results(), "--client", "operator"}).exit_code, 0);
   EXPECT_EQ(shoal->wait(), 0) << shoal->errors();
 
-  EXPECT_THAT(shoal->errors(), HasSubstr("is refused: this run is controlled with its key only"));
+  EXPECT_THAT(shoal->errors(), HasSubstr("is refused: this run can only be controlled with its key"));
   EXPECT_THAT(shoal->errors(), HasSubstr("client 'operator' requests 'quit'"));
   const std::string summary = text_of_file(results() + "/summary.json");
   EXPECT_THAT(summary, HasSubstr("\"refused_requests\": 1"));
@@ -163,7 +163,7 @@ TEST_F(ControlKey, IsInAFolderOfItsOwnWithoutResults) {
   EXPECT_FALSE(std::filesystem::exists(place));
   const Ended late = control({"quit", "--run", place});
   EXPECT_NE(late.exit_code, 0);
-  EXPECT_THAT(late.errors, HasSubstr("run.key: No such file or directory; the run has ended, needs no key"));
+  EXPECT_THAT(late.errors, HasSubstr("run.key: No such file or directory; the run has ended, does not need a key"));
 }
 
 TEST_F(ControlKey, IsReadFromTheEnvironment) {

@@ -112,7 +112,7 @@ TEST(New, TouchesNoFileThatIsThere) {
   write_file(folder.file("yard.yaml"), "mine\n");
   const Ended ended = shoal_in(folder.file(""), "new vehicle yard");
   EXPECT_EQ(ended.exit_code, 4);
-  EXPECT_THAT(ended.errors, HasSubstr("yard.yaml: is there already"));
+  EXPECT_THAT(ended.errors, HasSubstr("yard.yaml: already exists"));
   EXPECT_EQ(text_of_file(folder.file("yard.yaml")), "mine\n");
   EXPECT_EQ(shoal_in(folder.file(""), "new world 'a b'").exit_code, 2);
   EXPECT_EQ(shoal_in(folder.file(""), "new").exit_code, 2);

@@ -31,7 +31,7 @@ def text_of(page):
 
 def files_before(text):
     """File and Change steps of the lesson whose files this one continues with."""
-    earlier = re.search(r"goes\s+on\s+with\s+the\s+files\s+of\s+\[[^\]]*\]\(([\w.]+)\)", text)
+    earlier = re.search(r"continues\s+with\s+the\s+files\s+of\s+\[[^\]]*\]\(([\w.]+)\)", text)
     return [step for step in steps_of(text_of(earlier[1])) if isinstance(step, (File, Change))] if earlier else []
 
 

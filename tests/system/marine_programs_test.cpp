@@ -99,7 +99,7 @@ TEST(MarinePrograms, WrongUsageIsExitCodeTwoAndSaysWhat) {
        "--orders: 'orders[1]' must be 4 to 5 numbers, got 2"},
       {"shoal-coop-station",
        {"--name", "s", "--to", "0", "--orders", "[[2,0,0,1],[1,0,0,1]]", "--slot", "0", "--slots", "1"},
-       "must not go back"},
+       "must not decrease"},
   };
   for (const Mistake& mistake : mistakes) {
     const Ended ended = run(mistake.program, mistake.arguments);

@@ -84,7 +84,7 @@ class Example(unittest.TestCase):
     def test_is_refused_where_it_has_no_key(self):
         import lockstep_client
         pilot = lockstep_client.Pilot("rover1")
-        with self.assertRaisesRegex(SystemExit, "is controlled with its key only"):
+        with self.assertRaisesRegex(SystemExit, "can only be controlled with its key"):
             self.run_world(pilot.client, "minimal.yaml", "--await", "pilot", "--control-key")
 
     @unittest.skipUnless(shutil.which("javac"), "there is no Java compiler")

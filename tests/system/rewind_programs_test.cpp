@@ -57,7 +57,7 @@ TEST_P(ProgramsGoBack, AndTheRunEndsAsOneThatNeverWentBack) {
   const Ended ended = run_with_two_rewinds(of.world, of.duration_s, of.times_s, folder.file("results"));
   EXPECT_EQ(ended.exit_code, straight.exit_code) << ended.output << ended.errors;
   EXPECT_EQ(run_hash_in(ended), run_hash_in(straight));
-  EXPECT_THAT(ended.output, HasSubstr("branch 2: the run went back"));
+  EXPECT_THAT(ended.output, HasSubstr("branch 2: the run was rewound"));
   const auto summary = nlohmann::json::parse(text_of_file(folder.file("results/summary.json")));
   EXPECT_THAT(summary["processes"], IsEmpty()) << "a program ended before the run did";
   ASSERT_FALSE(summary["clients"].empty());

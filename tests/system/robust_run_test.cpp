@@ -203,7 +203,7 @@ TEST(Signals, ASecondOneEndsAStepThatDoesNotEnd) {
       timeout));
   EXPECT_GT(sent, 1);
   EXPECT_EQ(shoal.wait(), 128 + SIGTERM);
-  EXPECT_THAT(shoal.errors(), HasSubstr("ended at once by another signal"));
+  EXPECT_THAT(shoal.errors(), HasSubstr("ended by another signal"));
 }
 
 TEST(SlowPhysics, IsReportedWithTheBodiesThatCauseIt) {

@@ -81,7 +81,7 @@ TEST(Study, SaysThatACaseWhoseSettingDoesNothingDoesNotDiffer) {
   const StudyFolder study("seeds: [1, 2]\ncases: [{name: a}, {name: b, set: {description: other}}]\n");
   const Ended ended = study.run();
   EXPECT_EQ(ended.exit_code, 0) << ended.errors;
-  EXPECT_THAT(ended.output, HasSubstr("note: cases 'a', 'b' do not differ: every run came out the same, though their "
+  EXPECT_THAT(ended.output, HasSubstr("note: cases 'a', 'b' do not differ: all runs gave the same result, although their "
                                       "settings differ"));
   EXPECT_EQ(run_shoal({"report", study.folder.file("out")}).exit_code, 0);
   EXPECT_THAT(study.text("report.html"), HasSubstr("do not differ"));
@@ -92,7 +92,7 @@ TEST(Study, KeepsRunsThatAreDoneUntilSomethingChanges) {
   ASSERT_EQ(study.run().exit_code, 0);
   const auto runs = [](const Ended& ended) { return std::count(ended.errors.begin(), ended.errors.end(), '['); };
   EXPECT_EQ(runs(study.run()), 0);
-  EXPECT_THAT(study.run().errors, HasSubstr("4 of 4 runs were done already"));
+  EXPECT_THAT(study.run().errors, HasSubstr("4 of 4 runs were already done"));
   fs::remove(study.folder.file("out/runs/b/seed_2/summary.json"));
   EXPECT_EQ(runs(study.run()), 1);
   study.write_study("seeds: [1, 2, 3]\ncases: [{name: a}, {name: b, set: {run.duration_s: 3}}]\n");
@@ -159,10 +159,10 @@ TEST(Study, IsCheckedAsWorldsAre) {
   EXPECT_EQ(good.exit_code, 0) << good.errors;
   EXPECT_THAT(good.output, HasSubstr("study.yaml: study 'tiny' of "));
   EXPECT_THAT(good.output, HasSubstr(": 2 cases, 2 seeds, 4 runs, 1 rule\n"));
-  study.write_study(two_cases + "pass: [max(b.way.travelled) < 1]\n");
+  study.write_study(two_cases + "pass: [max(b.distance.travelled) < 1]\n");
   const Ended bad = run_shoal({"check", file, "--allow-path", study.folder.file("")});
   EXPECT_EQ(bad.exit_code, 2);
-  EXPECT_THAT(bad.errors, HasSubstr("study.yaml:6:18: rule 1: metric 'way' has no figure 'travelled'; figures: "
+  EXPECT_THAT(bad.errors, HasSubstr("study.yaml:6:23: rule 1: metric 'distance' has no figure 'travelled'; figures: "
                                     "travelled_m; did you mean 'travelled_m'?"));
   EXPECT_FALSE(fs::exists(study.folder.file("out")));
   for (const auto& entry : fs::directory_iterator(source("worlds/studies")))
@@ -178,7 +178,7 @@ TEST(Study, EndsItsRunsOnASignal) {
   program.send_signal(SIGINT);
   EXPECT_EQ(program.wait(), 130) << program.errors();
   for (const pid_t child : children) EXPECT_FALSE(is_running(child));
-  EXPECT_THAT(program.errors(), HasSubstr("continues with the runs that are missing"));
+  EXPECT_THAT(program.errors(), HasSubstr("continues with the missing runs"));
 }
 
 TEST(Study, RunsOfAWorldWithASerialPortDoNotDisturbEachOther) {
@@ -251,7 +251,7 @@ TEST(Study, OfTheCooperativeWorldContinuesWhereItWasStopped) {
   ASSERT_EQ(study("[1]").exit_code, 0);
   const Ended second = study("[1, 2]");
   EXPECT_EQ(second.exit_code, 0) << second.errors << second.output;
-  EXPECT_THAT(second.errors, HasSubstr("1 of 2 runs were done already"));
+  EXPECT_THAT(second.errors, HasSubstr("1 of 2 runs were already done"));
   const auto hash = [&](const char* seed) {
     return summary_value(folder.file("out/runs/world/seed_" + std::string(seed)), "state_hash");
   };

@@ -213,7 +213,7 @@ TEST(Snapshot, RefusesWhatIsNone) {
   write_file(folder.file("foreign"), "not a snapshot at all");
   const Ended foreign = run_shoal({"snapshot", folder.file("foreign")});
   EXPECT_EQ(foreign.exit_code, 4);
-  EXPECT_THAT(foreign.errors, HasSubstr("foreign: is not a snapshot of shoal"));
+  EXPECT_THAT(foreign.errors, HasSubstr("foreign: is not a Shoal snapshot"));
   EXPECT_EQ(run_shoal({"run", "--from", folder.file("foreign"), "--bus", "none"}).exit_code, 4);
   EXPECT_EQ(run_shoal({"run", "--from", folder.file("missing"), "--bus", "none"}).exit_code, 4);
   EXPECT_EQ(run_shoal({"run", folder.world(), "--from", folder.file("foreign")}).exit_code, 2);
@@ -308,7 +308,7 @@ TEST(Rewind, RefusesWhatCannotBeAndSaysSo) {
   EXPECT_THAT(refused({"speed", "--value", "1e-4"}),
               HasSubstr("'speed' must be 0 (as fast as possible) or from 0.001"));
   EXPECT_THAT(refused({"rewind", "--value", "49"}),
-              HasSubstr("cannot go back 49 s from 50 s: what is kept begins at 50 s"));
+              HasSubstr("cannot rewind 49 s from 50 s: the history starts at 50 s"));
   EXPECT_THAT(refused({"rewind", "--value", "-1"}), HasSubstr("'rewind' needs a value above 0, in seconds, got -1"));
   EXPECT_THAT(refused({"rewind"}), HasSubstr("'rewind' needs a value above 0"));
   for (const char* value : {"nan", "inf"}) {
@@ -323,7 +323,7 @@ TEST(Rewind, RefusesWhatCannotBeAndSaysSo) {
   EXPECT_THAT(refused({"snapshot", "../escape"}), HasSubstr("a snapshot has a file name of"));
   EXPECT_THAT(refused({"restore", "missing"}), HasSubstr("missing.snapshot: cannot be read"));
   EXPECT_EQ(control({"snapshot", "once"}).exit_code, 0);
-  EXPECT_THAT(refused({"snapshot", "once"}), HasSubstr("exists already"));
+  EXPECT_THAT(refused({"snapshot", "once"}), HasSubstr("already exists"));
   write_file(folder.file("snaps/bad.snapshot"), "SHOALSNP");
   EXPECT_THAT(refused({"restore", "bad"}), HasSubstr("bad.snapshot: is cut off after 8 bytes"));
   EXPECT_EQ(Live::where(), "step 5000, 50 s, branch 1, paused");
@@ -482,7 +482,7 @@ TEST(Restore, WithLockstepClientsGoesOnlyWhereTheRunHasBeenAndRemembers) {
     const Ended ended = control({"restore", name});
     EXPECT_EQ(ended.exit_code, 1) << ended.output;
     EXPECT_EQ(std::count(ended.errors.begin(), ended.errors.end(), '\n'), 1) << ended.errors;
-    EXPECT_THAT(ended.errors, HasSubstr("the lockstep clients (pilot) cannot go where they have not been"));
+    EXPECT_THAT(ended.errors, HasSubstr("the lockstep clients (pilot) cannot be restored to a state that they never had"));
     return ended.errors;
   };
   live.run_until("2");
@@ -495,7 +495,7 @@ TEST(Restore, WithLockstepClientsGoesOnlyWhereTheRunHasBeenAndRemembers) {
   EXPECT_EQ(Live::where(), "step 300, 3 s, branch 1, paused");
   EXPECT_EQ(control({"restore", "early"}).output, "step 200, 2 s, branch 2, paused\n");
   live.run_until("12");
-  EXPECT_THAT(refusal("early"), HasSubstr("its 2 s are too early for what this run remembers, from "));
+  EXPECT_THAT(refusal("early"), HasSubstr("its 2 s are before the history of this run"));
   EXPECT_EQ(live.quit(), 0) << live.program.errors();
   EXPECT_EQ(pilot.wait(), 0) << pilot.output() << pilot.errors();
 }
@@ -531,7 +531,7 @@ TEST(Restore, OfALaterTimeBeginsTheTracksAnew) {
   EXPECT_EQ(control({"do", "{move: {name: r1, position_m: [5, 5, 0.2]}}"}).exit_code, 0);
   live.run_until("3");
   EXPECT_EQ(control({"restore", "six"}).exit_code, 0);
-  EXPECT_THAT(control({"rewind", "--value", "1"}).errors, HasSubstr("what is kept begins at 6 s"));
+  EXPECT_THAT(control({"rewind", "--value", "1"}).errors, HasSubstr("the history starts at 6 s"));
   live.run_until("8");
   EXPECT_EQ(live.quit(), 0) << live.program.errors();
   const auto first_time = [](const std::string& directory) {

@@ -51,7 +51,7 @@ TEST(SimService, SaysWhyItRefuses) {
   EXPECT_THAT(s.request_reply("fly", 0).text,
               testing::HasSubstr("unknown command 'fly'; known commands: alive, describe, do"));
   EXPECT_THAT(s.request_reply("join", 0.015).text, testing::HasSubstr("a multiple of the step"));
-  EXPECT_THAT(s.request_reply("leave", 0).text, testing::HasSubstr("no client of the name 'pilot'"));
+  EXPECT_THAT(s.request_reply("leave", 0).text, testing::HasSubstr("no client named 'pilot'"));
   EXPECT_EQ(s.service.bad_messages(), 3);
 }
 

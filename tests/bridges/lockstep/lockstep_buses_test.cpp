@@ -70,7 +70,7 @@ TEST(LockstepBuses, LeaveLetsGoOfNoOneOnAnotherBus) {
   testing::internal::CaptureStdout();
   EXPECT_TRUE(s.request_reply("leave", 0, "", "pilot").ok);
   EXPECT_THAT(testing::internal::GetCapturedStdout(),
-              HasSubstr("a request without its session at 0.00 s on the world's bus let go of client 'pilot'"));
+              HasSubstr("a request without its session at 0.00 s on the world's bus released client 'pilot'"));
   EXPECT_FALSE(s.lockstep.has("pilot"));
 }
 

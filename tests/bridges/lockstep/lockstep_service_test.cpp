@@ -176,7 +176,7 @@ TEST(LockstepService, ASecondClientOfANameIsRefusedWhenTheFirstAnswers) {
   ASSERT_TRUE(s.join("pilot", "{session: 5, timeout_s: 60}").ok);
   EXPECT_TRUE(s.is_undecided("join", "pilot", "{session: 6}"));
   s.synchronize([&] { s.acknowledge(0, "pilot", 5, 1); });
-  EXPECT_THAT(s.join("pilot", "{session: 6}").text, HasSubstr("another client of the name 'pilot' takes part"));
+  EXPECT_THAT(s.join("pilot", "{session: 6}").text, HasSubstr("another client named 'pilot' takes part"));
 }
 
 TEST(LockstepService, ASecondClientIsRefusedAlsoWhileTheFirstIsAtWork) {
@@ -188,7 +188,7 @@ TEST(LockstepService, ASecondClientIsRefusedAlsoWhileTheFirstIsAtWork) {
   });
   s.test.world.step();
   s.synchronize([&] {
-    EXPECT_THAT(s.join("pilot", "{session: 6}").text, HasSubstr("another client of the name 'pilot' takes part"));
+    EXPECT_THAT(s.join("pilot", "{session: 6}").text, HasSubstr("another client named 'pilot' takes part"));
     s.acknowledge(1, "pilot", 5, 2);
   });
 }
@@ -226,7 +226,7 @@ TEST(LockstepService, ALeaveIsGrantedThoughTheNextTickHasGoneOut) {
   s.synchronize([&] {
     EXPECT_TRUE(s.is_undecided("leave", "pilot", "{session: 5, acknowledged: 2}"));  // its answer is on its way
     EXPECT_THAT(s.request_reply("leave", 0, "{session: 5, acknowledged: 3}").text,
-                HasSubstr("after tick 3, which it was not"));
+                HasSubstr("after tick 3, which was not"));
     EXPECT_TRUE(s.request_reply("leave", 0, "{session: 5, acknowledged: 1}").ok);
   });
   EXPECT_FALSE(s.lockstep.has("pilot"));
@@ -369,7 +369,7 @@ TEST(LockstepService, WhileTheWorldIsPausedASecondClientIsRefusedWhenTheFirstLiv
     EXPECT_EQ(tick.client[0].session, 5);
     EXPECT_EQ(tick.client[0].sequence, asked_before ? 1 : 0);
     s.acknowledge(tick.step, name, 5, tick.client[0].sequence);
-    EXPECT_THAT(s.join(name, "{session: 6}").text, HasSubstr("takes part, and answers"));
+    EXPECT_THAT(s.join(name, "{session: 6}").text, HasSubstr("takes part and is responding"));
     EXPECT_EQ(s.lockstep.bad_messages(), 0);
     s.control.paused = false;
     ASSERT_TRUE(s.request_reply("leave", 0, "", name).ok);

@@ -96,7 +96,7 @@ TEST(SignedMessage, IsOpenedByTheKeyItWasSignedWith) {
 
 TEST(SignedMessage, IsRefusedWithoutTheKeyAndOnAnotherChannel) {
   ControlGuard guard = guard_of(some_key());
-  EXPECT_THAT(refusal_of(guard, "sim.ack", bytes_of("content")), HasSubstr("is controlled with its key only"));
+  EXPECT_THAT(refusal_of(guard, "sim.ack", bytes_of("content")), HasSubstr("can only be controlled with its key"));
   MessageSigner other_run(some_key('b'), "pilot");
   EXPECT_THAT(refusal_of(guard, "sim.ack", other_run.sign("sim.ack", bytes_of("content"))),
               HasSubstr("signed by 'pilot', but not with the key of this run"));
@@ -151,7 +151,7 @@ TEST(SignedMessage, ThatWasCapturedIsRefusedAlsoWhenItsSenderHadToMakeRoom) {
     ASSERT_THAT(refusal_of(guard, "sim.control", last), IsEmpty());
   }
   EXPECT_THAT(refusal_of(guard, "sim.control", captured), HasSubstr("start from the wall clock in microseconds"));
-  EXPECT_THAT(refusal_of(guard, "sim.control", last), HasSubstr("came once more"));
+  EXPECT_THAT(refusal_of(guard, "sim.control", last), HasSubstr("was received again"));
 }
 
 TEST(SignedMessage, IsOpenedUncheckedWhereARunHasNoKey) {

@@ -53,7 +53,7 @@ TEST(WheelGeometry, IsWhatAGivenTrackIsComparedWith) {
   EXPECT_THAT(
       warnings_of(rover(", track_m: 0.4")),
       HasSubstr("vehicle 'r1': device 'drive': 'track_m' is 0.4, but its joints and wheels make it 0.5: it turns "
-                "0.8 times as fast as asked"));
+                "0.8 times as fast as commanded"));
   EXPECT_EQ(warnings_of(rover(", track_m: 0.49")), "");
   EXPECT_EQ(warnings_of(rover("")), "");
 }
@@ -87,8 +87,8 @@ TEST(WheelGeometry, IsWhatOdometryBelievesIn) {
   // Worn tyres and an eighth of a track: the first is usual, the second a mistake.
   EXPECT_EQ(warnings_of(yaml("")), "");
   EXPECT_EQ(warnings_of(yaml(", wheel_radius_m: 0.105, track_m: 0.48")), "");
-  EXPECT_THAT(warnings_of(yaml(", track_m: 0.4")), HasSubstr("it reckons 1.25 times the turn"));
-  EXPECT_THAT(warnings_of(yaml(", wheel_radius_m: 0.2")), HasSubstr("it reckons 2 times the distance"));
+  EXPECT_THAT(warnings_of(yaml(", track_m: 0.4")), HasSubstr("it estimates 1.25 times the turn"));
+  EXPECT_THAT(warnings_of(yaml(", wheel_radius_m: 0.2")), HasSubstr("it estimates 2 times the distance"));
 }
 
 /// Six bodies at places of one's choice: a car with a wheelbase of 0.4 m, a track of 0.3 m and wheels of 0.06 m.

@@ -264,7 +264,7 @@ TEST(Clock, SaysWhatIsWrongWithItsParameters) {
                                              clock_device + gps_device +
                                                  "        - {name: gps2, type: gps, disciplines_clock: "
                                                  "true}\n")),
-              testing::HasSubstr("disciplines the clock of this vehicle already"));
+              testing::HasSubstr("already disciplines the clock of this vehicle"));
 }
 
 }  // namespace

@@ -114,11 +114,11 @@ TEST(Water, ADryWorldHasNone) {
 }
 
 TEST(Water, BadColumnsAreRefused) {
-  EXPECT_THAT(error_of("water: {profile: [{depth_m: 5}, {depth_m: 5}]}"), HasSubstr("must grow from row to row"));
+  EXPECT_THAT(error_of("water: {profile: [{depth_m: 5}, {depth_m: 5}]}"), HasSubstr("must increase from row to row"));
   EXPECT_THAT(error_of("water: {profile: [{depth_m: -5}]}"), HasSubstr("'depth_m' must be >= 0"));
   EXPECT_THAT(error_of("water: {profile: [{depth_m: 0, density_kgpm3: 1000}, {depth_m: 5}]}"),
               HasSubstr("'density_kgpm3' must be in all rows"));
-  EXPECT_THAT(error_of("water: {density: eos80, density_kgpm3: 1000}"), HasSubstr("leave 'density_kgpm3' out"));
+  EXPECT_THAT(error_of("water: {density: eos80, density_kgpm3: 1000}"), HasSubstr("leave out 'density_kgpm3'"));
   EXPECT_THAT(error_of("water: {temperature_C: 4, profile: [{depth_m: 0}]}"),
               HasSubstr("not for water with a 'profile'"));
   EXPECT_THAT(error_of("waves: {type: jonswap}"), HasSubstr("'waves' needs 'water'"));

@@ -51,7 +51,7 @@ TEST(HydrodynamicsChecks, DampingBrakesEveryMotion) {
   };
   // Half of 4 + 3 beside 2 and 2: 2 - 3.5.
   EXPECT_THAT(error_of(couplings(4, 3)),
-              HasSubstr("the symmetric part of 'linear_damping' has a negative eigenvalue, -1.5: there are motions"));
+              HasSubstr("the symmetric part of 'linear_damping' has a negative eigenvalue, -1.5: it would accelerate some motions"));
   // What has opposite signs takes no energy and brings none, however large.
   EXPECT_EQ(error_of(couplings(40, -40)), "");
 }
@@ -77,7 +77,7 @@ TEST(HydrodynamicsChecks, InertiaIsPositiveDefinite) {
 
 TEST(HydrodynamicsChecks, DampingBrakes) {
   EXPECT_THAT(error_of(inertia + ", linear_damping: [-1, 2, 3, 1, 1, 1]"),
-              HasSubstr("'linear_damping' must be >= 0 in surge, got -1: negative, it would push the vehicle on"));
+              HasSubstr("'linear_damping' must be >= 0 in surge, got -1: a negative value would accelerate the vehicle"));
   EXPECT_THAT(error_of(inertia + ", quadratic_damping: [1, 2, 3, 1, -4, 1]"),
               HasSubstr("'quadratic_damping' must be >= 0 in pitch"));
   EXPECT_THAT(error_of(inertia + ", derivatives: {X_uu: 1.62}"),

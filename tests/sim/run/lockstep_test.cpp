@@ -62,10 +62,10 @@ TEST(Lockstep, RefusesWrongAnswersAndSaysWhy) {
   lockstep.join("a", session(7), 1, 0);
   lockstep.send_request(3);
   const auto refused = Lockstep::Verdict::refused;
-  EXPECT_THAT(answer(lockstep, {"b", 3, 0, 0}, 3, refused), HasSubstr("'b' acknowledges a tick, but takes no part"));
-  EXPECT_THAT(answer(lockstep, {"a", 4, 7, 1}, 3, refused), HasSubstr("step 4, which is still to come"));
+  EXPECT_THAT(answer(lockstep, {"b", 3, 0, 0}, 3, refused), HasSubstr("'b' acknowledges a tick, but is not a lockstep client"));
+  EXPECT_THAT(answer(lockstep, {"a", 4, 7, 1}, 3, refused), HasSubstr("step 4, which is in the future"));
   EXPECT_THAT(answer(lockstep, {"a", 3, 8, 1}, 3, refused), HasSubstr("in session 8, which is not the one"));
-  EXPECT_THAT(answer(lockstep, {"a", 3, 7, 2}, 3, refused), HasSubstr("tick 2, which it was not sent"));
+  EXPECT_THAT(answer(lockstep, {"a", 3, 7, 2}, 3, refused), HasSubstr("tick 2, which was not sent to it"));
   EXPECT_THAT(answer(lockstep, {"a", 2, 7, 1}, 3, refused), HasSubstr("step 2 for the tick of step 3"));
   EXPECT_EQ(missing(lockstep, 3), (Names{"a"}));
   answer(lockstep, {"a", 3, 7, 1}, 3);
@@ -281,7 +281,7 @@ TEST(LockstepTerms, AreReadWithClearErrors) {
   EXPECT_THAT(error("{session: -1}"), HasSubstr("'session' must be"));
   EXPECT_THAT(error("{receives: [a]}"), HasSubstr("'receives' needs a 'session'"));
   EXPECT_THAT(error("{session: 1, on_timeout: never}"), HasSubstr("on_timeout"));
-  EXPECT_THAT(error("{session: 1, receives: ['']}"), HasSubstr("a channel has 1 to 63 characters"));
+  EXPECT_THAT(error("{session: 1, receives: ['']}"), HasSubstr("a channel must have 1 to 63 characters"));
 }
 
 }  // namespace

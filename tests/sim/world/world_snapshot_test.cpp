@@ -497,7 +497,7 @@ TEST_F(ForgedSnapshot, WithAHistoryAfterItsEndIsRefused) {
   // Behind the length of the part come version, seed and the length of a step.
   put(bad, behind(bad, std::string("make")) + 8 + 4 + 8 + 8, std::int64_t{1});
   TappedWorld fresh(busy_world);
-  EXPECT_THAT(error_of(fresh.world, bad), HasSubstr("changes in an order that cannot be"));
+  EXPECT_THAT(error_of(fresh.world, bad), HasSubstr("changes in an invalid order"));
   EXPECT_THAT(error_of(world(), bad), HasSubstr("its step is not the one with which it starts"));
 }
 

@@ -40,7 +40,7 @@ TEST(ConfigWarnings, ReportAUsualRateAboveThatOfTheSteps) {
   std::string yaml = world("        - {name: imu, type: imu}\n");
   yaml.replace(yaml.find("0.01"), 4, "0.02");
   EXPECT_THAT(warnings_of_file(yaml),
-              HasSubstr("worlds/test.yaml:11:11: vehicle 'r1': device 'imu': its usual rate of 100 Hz is above"));
+              HasSubstr("worlds/test.yaml:11:11: vehicle 'r1': device 'imu': its default rate of 100 Hz is above"));
 }
 
 TEST(ConfigWarnings, ReportRatesOfTheWorldAboveThatOfTheSteps) {

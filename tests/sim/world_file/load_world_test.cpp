@@ -184,7 +184,7 @@ TEST(LoadWorld, NamesAnUnknownParameter) {
 
 TEST(LoadWorld, NamesAMissingVehicleFile) {
   EXPECT_THAT(errors_of("shoal: 1\nvehicles:\n  - {name: a, file: no_such.yaml}\n"),
-              HasSubstr("worlds/test.yaml:3:5: vehicle 'a': there is no vehicle file 'no_such.yaml'"));
+              HasSubstr("worlds/test.yaml:3:21: vehicle 'a': there is no vehicle file 'no_such.yaml'"));
 }
 
 TEST(LoadWorld, RefusesTwoVehiclesOfOneName) {

@@ -171,7 +171,7 @@ class Navigator(unittest.TestCase):
         def place_after(*packets):
             auv = self.started()
             auv.ekf.time_s = sent * 1e-6
-            auv.ekf.distance[0] = (auv.ekf.time_s, 0.0, 0.0)
+            auv.ekf.motion[0] = (auv.ekf.time_s, 0.0, 0.0)
             before = list(auv.ekf.x)
             for source, later_s in packets:
                 auv.on_modem(report(utime=sent + later_s * 10**6, sent_utime=sent + later_s * 10**6, source=source,

@@ -158,7 +158,7 @@ TEST(Help, HasNothingOfTheLibraryInside) {
             "  --title TITLE  of the run\n"
             "  --set TEXT     a value (repeatable)\n"
             "  --quiet        no words\n"
-            "  --no-plots  no images\n"
+            "  --no-plots     no images\n"
             "\n"
             "Example:\n"
             "  prog run a.yaml --duration 10 \\\n"

@@ -202,7 +202,7 @@ TEST(CoopStation, OrdersThatCannotBeSaidAreRefused) {
   };
   EXPECT_NO_THROW(with({{0, {1, 1}, 1, 1.5}, {0, {2, 2}, 2, 1.5}})());
   EXPECT_THAT(with({{10, {1, 1}, 1, 1.5}, {5, {2, 2}, 2, 1.5}}),
-              ThrowsMessage<std::invalid_argument>(HasSubstr("must not go back")));
+              ThrowsMessage<std::invalid_argument>(HasSubstr("must not decrease")));
   EXPECT_THAT(with({{-1, {1, 1}, 1, 1.5}}), ThrowsMessage<std::invalid_argument>(HasSubstr("must be >= 0")));
   EXPECT_THAT(with({{1, {1, 1}, -3, 1.5}}), ThrowsMessage<std::invalid_argument>(HasSubstr("order 1 does not fit")));
   EXPECT_THAT(with({{1, {1, 1}, 3, 1.5}, {2, {1, 1}, 3, 0}}),

@@ -142,7 +142,7 @@ TEST_F(BugReportTest, KeepsTheEndOfALongLog) {
   const std::string log = text_of(packed() + "logs/pilot.log");
   EXPECT_EQ(log.size(), std::size_t{1} << 20);
   EXPECT_TRUE(log.ends_with("the end"));
-  EXPECT_THAT(report.left_out, Contains(HasSubstr("pilot.log: all but its last 1048 kB")));
+  EXPECT_THAT(report.left_out, Contains(HasSubstr("pilot.log: truncated to its last 1048 kB")));
 }
 
 TEST_F(BugReportTest, OfARunThatWasKilledHoldsWhatThereIs) {

@@ -200,7 +200,7 @@ TEST_F(LogImage, SaysWhatIsWrongWithAnImage) {
   image.row_stride = 1;
   EXPECT_EQ(problem([&] { drawn(image); }), "the image of 2 x 1 pixels has 2 bytes in rows of 1");
   image.width = 100'000;
-  EXPECT_EQ(problem([&] { drawn(image); }), "the image has no sensible size: 100000 x 1");
+  EXPECT_EQ(problem([&] { drawn(image); }), "the image has an invalid size: 100000 x 1");
   image = grey(0, 0);
   image.pixelformat = 7;
   EXPECT_THAT(problem([&] { drawn(image); }), HasSubstr("pixel format 7 cannot be drawn"));

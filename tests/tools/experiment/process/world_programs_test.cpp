@@ -27,7 +27,7 @@ class WorldPrograms : public testing::Test {
   ~WorldPrograms() override { fs::remove_all(folder_); }
 
   void write(const std::string& name, const std::string& args) {
-    std::ofstream(folder_ / (name + ".args.yaml")) << "shoal_args: 1\nprogram: " << name << "\n" << args;
+    std::ofstream(folder_ / (name + ".args.yaml")) << "shoal_args: 1\nprogram: " << fs::path(name).filename().string() << "\n" << args;
   }
   sim::LoadedWorld load(const std::string& processes, const std::vector<std::string>& sets = {}) {
     return sim::load_world_text("shoal: 1\nprocesses:\n" + processes, "worlds/test.yaml", {sets, {}});

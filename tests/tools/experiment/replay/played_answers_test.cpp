@@ -46,7 +46,7 @@ std::vector<std::string> lines_of(const ReplayLog& log, const std::vector<std::p
   return answers.to_lines(0.01);
 }
 
-const std::string other_rover = "1 more channels of the log: nothing was published here on them";
+const std::string other_rover = "1 more channels of the log without messages from this world";
 
 TEST(PlayedAnswers, CountsWhatIsEqualChannelByChannel) {
   bool equal = false;

@@ -84,12 +84,12 @@ TEST_F(ReplayFromASnapshot, ADifferenceIsFound) {
 
 TEST_F(ReplayFromASnapshot, APieceThatIsMissingIsTold) {
   change_pieces([](const shoal::sim_snapshot_t& piece) { return piece.piece != 0; });
-  EXPECT_THAT(error(), HasSubstr("cannot be run again: sim.snapshot: piece 1 of "));
+  EXPECT_THAT(error(), HasSubstr("cannot be replayed: sim.snapshot: piece 1 of "));
 }
 
 TEST_F(ReplayFromASnapshot, WithoutItsSnapshotTheLogCannotBeRun) {
   change_pieces([](const shoal::sim_snapshot_t&) { return false; });
-  EXPECT_THAT(error(), HasSubstr("cannot be run again from the start: sim.inputs 0"));
+  EXPECT_THAT(error(), HasSubstr("cannot be replayed from the start: sim.inputs 0"));
 }
 
 TEST_F(ReplayFromASnapshot, PiecesThatComeTwiceDoNoHarm) {
@@ -109,7 +109,7 @@ TEST_F(ReplayFromASnapshot, ADamagedOneIsTold) {
     piece.data[piece.data.size() / 2] ^= 1;
     return true;
   });
-  EXPECT_THAT(error(), HasSubstr("cannot be run again: sim.snapshot: is damaged or cut off: its checksum must be "));
+  EXPECT_THAT(error(), HasSubstr("cannot be replayed: sim.snapshot: is damaged or cut off: its checksum must be "));
 }
 
 TEST_F(ReplayFromASnapshot, OneOfAnotherWorldOrBuildIsTold) {

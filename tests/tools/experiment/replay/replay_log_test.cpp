@@ -191,7 +191,7 @@ TEST(ReplayLog, GoesBackBehindItsSnapshotOnlyWithAnother) {
   log.input_record(1, 60, 1);
   const tools::ReplayLog read = log.read();
   EXPECT_FALSE(read.snapshot);
-  EXPECT_EQ(read.bad_snapshot, "sim.snapshot: the log goes back to step 50, before its snapshot");
+  EXPECT_EQ(read.bad_snapshot, "sim.snapshot: the log is rewound to step 50, before its snapshot");
   EXPECT_EQ(read.usable_step(), 0);  // no one knows what came before
 }
 
@@ -204,7 +204,7 @@ TEST(ReplayLog, EndsWithTheLastStepOfWhichAllIsThere) {
   record.state(41);
   const tools::ReplayLog read = record.read();
   EXPECT_EQ(read.usable_step(), 40) << "in a record all of a step stands before anything of the next";
-  EXPECT_EQ(read.cut, "the log breaks off in step 41: what stands behind step 40 is left out");
+  EXPECT_EQ(read.cut, "the log ends in the middle of step 41: everything after step 40 is left out");
   // As lcm-logger stamps: the sim.inputs of any step behind the last one may have been lost.
   HandMade logged;
   logged.info(0, 0, 0);
@@ -222,7 +222,7 @@ TEST(ReplayLog, EndsWithTheLastStepOfWhichAllIsThere) {
   const tools::ReplayLog other = logged.read();
   EXPECT_FALSE(other.own_stamps);
   EXPECT_EQ(other.usable_step(), 59) << "the inputs of step 60 come behind its sim.info";
-  EXPECT_EQ(other.cut, "the log breaks off in step 61: what stands behind step 59 is left out");
+  EXPECT_EQ(other.cut, "the log ends in the middle of step 61: everything after step 59 is left out");
 }
 
 TEST(ReplayLog, ADamagedStampAtItsEndProvesNothing) {

@@ -50,7 +50,7 @@ TEST_F(ReplayTest, TheInputsAreNeeded) {
   const std::string whole = log;
   log = folder.file("without.lcm");
   test::copy_log(whole, log, [](const auto& event) { return event.channel == "sim.inputs"; });
-  EXPECT_THAT(error(), HasSubstr("cannot be run again from the start: sim.inputs 0"));
+  EXPECT_THAT(error(), HasSubstr("cannot be replayed from the start: sim.inputs 0"));
 }
 
 TEST_F(ReplayTest, InputsThatAreDiscardedAreNoDifference) {
@@ -175,7 +175,7 @@ TEST_F(ReplayTest, AnInputThatIsMissingEndsTheProof) {
   EXPECT_EQ(outcome.steps, 120);
   EXPECT_THAT(outcome.to_text(),
               AllOf(HasSubstr("equal for 120 steps"), HasSubstr("sim.inputs 12 to 13 (of steps from 120 to 130)"),
-                    HasSubstr("nothing after step 120 can be proved")));
+                    HasSubstr("nothing after step 120 can be verified")));
 }
 
 TEST_F(ReplayTest, MessagesThatALoggerLostAreCountedOnly) {
@@ -243,7 +243,7 @@ TEST_F(ReplayTest, RefusesWhatIsNoLogOfARun) {
   const std::string whole = log;
   log = folder.file("other.lcm");
   test::copy_log(whole, log, [](const auto& event) { return event.channel.starts_with("sim."); });
-  EXPECT_THAT(error(), HasSubstr("holds no sim.info"));
+  EXPECT_THAT(error(), HasSubstr("contains no sim.info"));
 }
 
 TEST_F(ReplayTest, RefusesTwoRunsInOneLog) {
@@ -348,7 +348,7 @@ TEST_F(ReplayTest, WhatIsCutOffIsTold) {
   EXPECT_EQ(outcome.exit_code(), 0);
   EXPECT_EQ(outcome.steps, 119);
   EXPECT_THAT(outcome.to_text(),
-              HasSubstr("note: the log breaks off in step 120: what stands behind step 119 is left out"));
+              HasSubstr("note: the log ends in the middle of step 120: everything after step 119 is left out"));
 }
 
 TEST_F(ReplayTest, OneLostMessageNamesItsStep) {
@@ -366,7 +366,7 @@ TEST_F(ReplayTest, OneLostMessageNamesItsStep) {
       std::size_t count = 0;
       test::copy_log(whole, log, [&](const auto& event) { return event.channel == channel && count++ == number; });
       if (channel == "sim.inputs" && number == 0) {
-        EXPECT_THAT(error(), HasSubstr("cannot be run again from the start: sim.inputs 0 (of step 0) is missing"));
+        EXPECT_THAT(error(), HasSubstr("cannot be replayed from the start: sim.inputs 0 (of step 0) is missing"));
         continue;
       }
       const ReplayOutcome outcome = again();
@@ -431,12 +431,12 @@ TEST_F(ReplayTest, ALogOfAnotherVersionIsRefusedByItsName) {
     event.payload.resize(event.payload.size() - 20);
     return true;
   });
-  EXPECT_THAT(error(), HasSubstr("was written by shoal 0.3.0 (abc), whose sim.info this one, shoal "));
+  EXPECT_THAT(error(), HasSubstr("was written by shoal 0.3.0 (abc); this is shoal "));
 }
 
 TEST_F(ReplayTest, ARecordOfVersion010IsRefusedByItsName) {
   log = test_support::source_path("tests/golden/records/version_0_1_0.lcm");
-  EXPECT_THAT(error(), HasSubstr("version_0_1_0.lcm: sim.info: was written by shoal 0.1.0 ("));
+  EXPECT_THAT(error(), HasSubstr("version_0_1_0.lcm: was written by shoal 0.1.0 ("));
 }
 
 }  // namespace

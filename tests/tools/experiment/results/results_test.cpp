@@ -149,7 +149,7 @@ TEST(Summary, ReportsWhatBecameOfAcousticPackets) {
   EXPECT_EQ(json["modem_dropped_messages"], 4);
   EXPECT_THAT(summary.to_text(),
               testing::HasSubstr("acoustic packets: 5 sent, 3 received, 2 lost (noise), 1 not sent\n"));
-  EXPECT_THAT(summary.to_text(), testing::HasSubstr("  7 bytes were fetched from no port\n"));
+  EXPECT_THAT(summary.to_text(), testing::HasSubstr("  7 bytes of serial ports were not read\n"));
   EXPECT_THAT(summary.to_text(), testing::HasSubstr("  4 messages were dropped from full queues of modems\n"));
 }
 
@@ -419,7 +419,7 @@ TEST(Summary, DoesNotPassWhenAClientGaveTwoAnswersToOneTick) {
   summary.judge_clients();
   EXPECT_EQ(summary.judgement(), tools::Judgement::failed);
   EXPECT_EQ(summary.verdicts.back().rule,
-            "client 'pilot' must give one answer to each tick; another program gave 2 different ones in its name");
+            "client 'pilot' must give one answer to each tick; another program gave 2 different ones under its name");
 }
 
 }  // namespace

@@ -172,7 +172,7 @@ TEST(FirstContacts, FloodNoTerminal) {
   watched.run_for(2);
   EXPECT_EQ(watched.contacts.all().size(), 39u);
   ASSERT_EQ(watched.lines.size(), 21u);
-  EXPECT_THAT(watched.lines.back(), HasSubstr("more first contacts are counted only"));
+  EXPECT_THAT(watched.lines.back(), HasSubstr("further first contacts are only counted"));
 }
 
 TEST(FirstContacts, AreTenLinesAtTheEndAtMost) {

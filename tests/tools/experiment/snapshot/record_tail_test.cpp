@@ -78,7 +78,7 @@ TEST_F(RecordTailTest, WithoutASnapshotHoldsTheWorldAndTheLastSeconds) {
   }
   EXPECT_EQ(events, tail.events);
   EXPECT_THAT(in.problems(), IsEmpty());
-  EXPECT_THAT(error(), HasSubstr("cannot be run again"));
+  EXPECT_THAT(error(), HasSubstr("cannot be replayed"));
 }
 
 TEST_F(RecordTailTest, OfAShortRecordIsAllOfIt) {

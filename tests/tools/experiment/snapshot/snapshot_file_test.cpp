@@ -105,7 +105,7 @@ TEST(SnapshotFile, RefusesTimesThatAreNone) {
   EXPECT_EQ(error_of_bytes(tools::to_bytes(far)), "a.snapshot: the epoch 9223372036854775802 us is too far away");
   Snapshot early = example();
   early.step = -1;
-  EXPECT_EQ(error_of_bytes(tools::to_bytes(early)), "a.snapshot: step -1 of 10000 us is none");
+  EXPECT_EQ(error_of_bytes(tools::to_bytes(early)), "a.snapshot: step -1 of 10000 us is invalid");
 }
 
 TEST(SnapshotFile, RefusesWhatAnotherBuildWrote) {

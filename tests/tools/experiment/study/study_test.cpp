@@ -155,7 +155,7 @@ TEST(StudyResults, SayWhenCasesDoNotDifferThoughTheirSettingsDo) {
   const tools::LoadedStudy study = tools::load_study(folder.path());
   auto runs = made_up_runs(study, {{1, 2}, {1, 2}});
   const std::string note =
-      "cases 'plain', 'quick' do not differ: every run came out the same, although their settings differ: check that "
+      "cases 'plain', 'quick' do not differ: all runs gave the same result, although their settings differ: check that "
       "the settings have an effect";
   EXPECT_THAT(tools::StudyResults(study, runs).to_text(), HasSubstr("note: " + note + "\n"));
   const auto json = nlohmann::json::parse(tools::StudyResults(study, runs).to_json(0));

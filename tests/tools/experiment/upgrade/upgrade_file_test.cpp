@@ -95,7 +95,7 @@ TEST(UpgradeFile, AFileThatSomeOneElseChangedIsLeftAlone) {
   EXPECT_THAT(write_error(file), HasSubstr("it has changed since it was read"));
   EXPECT_EQ(text_of(folder.file("a.yaml")), old_text + "# mine\n");
   fs::remove(folder.file("a.yaml"));
-  EXPECT_THAT(write_error(file), HasSubstr("it is not there any more"));
+  EXPECT_THAT(write_error(file), HasSubstr("it does not exist any more"));
 }
 
 TEST(UpgradeFile, AFileThatMayNotBeWrittenIsLeftAlone) {

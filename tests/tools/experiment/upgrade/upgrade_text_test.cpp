@@ -308,7 +308,7 @@ TEST(UpgradeOfCommands, RefusesWhatTheProgramDidNotHave) {
   EXPECT_EQ(error("shoal-balance, --name, a, --name=b"),
             "old.yaml:1:50: shoal-balance: '--name' is given twice; the file is left as it is");
   EXPECT_EQ(error("shoal-coop-auv, --slot, first"),
-            "old.yaml:1:40: shoal-coop-auv: 'first' is no value of '--slot'; the file is left as it is");
+            "old.yaml:1:40: shoal-coop-auv: 'first' is not a value of '--slot'; the file is left as it is");
 }
 
 TEST(UpgradeOfMetrics, AddsTheType) {

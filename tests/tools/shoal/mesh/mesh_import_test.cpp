@@ -73,7 +73,7 @@ TEST_F(MeshImport, YCanBeUp) {
 TEST_F(MeshImport, ErrorsSayWhatIsWrong) {
   EXPECT_EQ(error_of([&] { tools::import_mesh("/nowhere/hull.dae", {}); }), "does not exist");
   EXPECT_THAT(error_of([&] { tools::import_mesh(file("text.txt", "hello"), {}); }),
-              testing::StartsWith("is not a mesh that can be read: "));
+              testing::StartsWith("is not a readable mesh: "));
   EXPECT_EQ(error_of([&] { tools::import_mesh(file("cut.ply", ply.substr(0, ply.size() - 30)), {}); }),
             "has no triangles");
   EXPECT_EQ(error_of([&] { tools::save_mesh({}, (folder_ / "hull.dae").string()); }), "must end in .stl or .obj");
@@ -87,7 +87,7 @@ TEST_F(MeshImport, FilesThatCrashTheImporterAreErrors) {
   EXPECT_THAT(
       error_of([&] { tools::import_mesh(file("index.ply", wrong_index), {.timeout_s = 20}); }),
       testing::AnyOf("cannot be read: the importer failed on this file", "has a face with a vertex that does not exist",
-                     testing::StartsWith("is not a mesh that can be read: ")));
+                     testing::StartsWith("is not a readable mesh: ")));
 }
 
 TEST_F(MeshImport, AFileThatTakesTooLongIsAnError) {
