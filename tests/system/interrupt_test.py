@@ -124,7 +124,7 @@ class Interrupt(unittest.TestCase):
             print(f"{i}: {at_s:.2f} s: exit code {code}, {len(left)} left", flush=True)
             # Before it catches signals it ends by this one; it may also have been over before.
             if left or code not in (130, -signal.SIGINT, 0, 1):
-                wrong.append(f"{i}: {at_s:.3f} of {length_s:.3f} s, again after {again_s}: exit code {code}, {left}\n{output}")
+                wrong.append(f"{i}: {at_s:.3f} of {length_s:.3f} s, again after {again_s}: exit code {code}, {left}\n{shown}")
         print(f"{HOW_MANY} runs of {length_s:.2f} s, exit codes {codes}")
         self.assertEqual("\n".join(wrong), "")
 
