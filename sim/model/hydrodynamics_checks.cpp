@@ -3,6 +3,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
+#include <cstdio>
 
 #include "sim/config/message_text.hpp"
 
@@ -28,6 +29,13 @@ double smallest_eigenvalue(const Matrix& matrix) {
 }
 
 /// False: below zero by more than the rounding of its numbers.
+/// A computed value without the digits of rounding.
+std::string computed_text(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", value);
+  return text;
+}
+
 bool not_negative(double eigenvalue, const Matrix6d& matrix) {
   return eigenvalue >= -1e-9 * matrix.cwiseAbs().maxCoeff();
 }
@@ -51,7 +59,7 @@ void check_added_mass(const Matrix6d& A, ParamReader& in) {
     }
   const double min = smallest_eigenvalue(A);
   if (!not_negative(min, A))
-    in.error(key, "the matrix of added mass has a negative eigenvalue, " + number_text(min) +
+    in.error(key, "the matrix of added mass has a negative eigenvalue, " + computed_text(min) +
                       ": its couplings are too large for its diagonal");
 }
 
@@ -65,7 +73,7 @@ void check_inertia(const HydrodynamicsConfig& config, ParamReader& in) {
   if (!(min > 0))
     in.error("inertia_kgm2",
              "'inertia_kgm2' about the centre of mass must be positive definite, its smallest eigenvalue is " +
-                 number_text(min) + "; see 'inertia_about'");
+                 computed_text(min) + "; see 'inertia_about'");
 }
 
 void check_damping(const char* key, const Matrix6d& damping, ParamReader& in) {
@@ -82,8 +90,8 @@ void check_damping_couplings(const HydrodynamicsConfig& config, ParamReader& in)
   if (!(D.diagonal().minCoeff() >= 0)) return;  // was said
   const double min = smallest_eigenvalue(Matrix6d((D + D.transpose()) / 2));
   if (!not_negative(min, D))
-    in.error("linear_damping", "the symmetric part of 'linear_damping' has a negative eigenvalue, " + number_text(min) +
-                                   ": it would accelerate some motions");
+    in.error("linear_damping", "the symmetric part of 'linear_damping' has a negative eigenvalue, " +
+                                   computed_text(min) + ": it would accelerate some motions");
 }
 
 void check_waterline(const WaterlineConfig& plane, ParamReader& in) {

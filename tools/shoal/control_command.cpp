@@ -150,7 +150,7 @@ int control(const ControlArguments& arguments) {
   const auto reply = session.send_request(arguments.command, text, arguments.value);
   if (!reply) {
     std::cerr << "shoal control: no simulator answered within " << arguments.timeout_s << " s at " << session.url()
-              << "; is one running there? see shoal doctor\n";
+              << "; is one running there? see `shoal doctor`\n";
     return exit_timeout;
   }
   (reply->ok ? std::cout : std::cerr) << reply->text << (reply->text.empty() ? "ok\n" : "\n") << std::flush;

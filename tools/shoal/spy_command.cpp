@@ -169,7 +169,7 @@ int spy(const SpyArguments& arguments) {
   if (table && !any_table && !channels.empty() && !closed)
     print_table(channels, types, seconds_since(shown), find_screen());
   if (channels.empty() && !closed)
-    std::cerr << "shoal spy: no message was received; is a simulator running? see shoal doctor\n";
+    std::cerr << "shoal spy: no message was received; is a simulator running? see `shoal doctor`\n";
   return exit_ok;
 }
 

@@ -177,7 +177,7 @@ class Reader {
   [[noreturn]] void fail(const std::string& what) const { throw std::runtime_error(log_.path + ": " + what); }
 
   [[noreturn]] void fail_without_info() const {
-    if (log_.events.empty()) fail("contains no readable event");
+    if (log_.events.empty()) fail("is not an LCM log: it contains no readable event");
     if (!version_.empty())
       fail(
           fmt::format("was written by {}; this is shoal {}, which cannot read its sim.info: replay it with the version "

@@ -263,9 +263,12 @@ namespace {
 /// A key of the top level of a world or vehicle file with the keys below it; empty: there is no such key.
 std::string section_text(const std::string& key, std::size_t columns) {
   for (const auto& [file, params] :
-       {std::pair("world", params_of<sim::WorldConfig>()), std::pair("vehicle", params_of<sim::VehicleConfig>())})
+       {std::pair("world", params_of<sim::WorldConfig>()), std::pair("vehicle", params_of<sim::VehicleConfig>())}) {
+    std::vector<sim::ParamInfo> found;
     for (const sim::ParamInfo& info : params)
-      if (info.key == key) return describe_keys("'" + key + "' of a " + file + " file.", {info}, columns);
+      if (info.key == key || info.key.starts_with(key + ".") || info.key.starts_with(key + "[]")) found.push_back(info);
+    if (!found.empty()) return describe_keys("'" + key + "' of a " + file + " file.", found, columns);
+  }
   return {};
 }
 

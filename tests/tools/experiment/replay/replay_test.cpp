@@ -237,7 +237,7 @@ TEST_F(ReplayTest, UntilEndsEarlier) {
 TEST_F(ReplayTest, RefusesWhatIsNoLogOfARun) {
   EXPECT_THAT(error(), HasSubstr("No such file"));
   std::ofstream(log) << "this is text";
-  EXPECT_THAT(error(), HasSubstr("contains no readable event"));
+  EXPECT_THAT(error(), HasSubstr("is not an LCM log: it contains no readable event"));
   std::filesystem::remove(log);
   record(driven_world());
   const std::string whole = log;
