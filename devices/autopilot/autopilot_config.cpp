@@ -41,9 +41,9 @@ void AutopilotParams::read(sim::ParamReader& in) {
                  {{"station", AtEnd::station}, {"stop", AtEnd::stop}, {"hold", AtEnd::hold}, {"circle", AtEnd::circle}},
                  "after the last waypoint: hold station there, stop, keep the last heading, or circle around it");
   in.read("circle_radius_m", circle_radius_m, sim::above_to(0, 1e6),
-          "of the circle; at least the turning radius of the craft at its speed");
+          "radius of the circle; at least the turning radius of the craft at its speed");
   in.read("guidance", guidance, "how the route is followed");
-  in.read("gains", gains, "of the controllers");
+  in.read("gains", gains, "gains of the controllers");
   in.read("altitude_range_m", altitude_range_m, sim::above(0),
           "maximum distance below at which the bottom is detected");
   if (in.describing()) return;

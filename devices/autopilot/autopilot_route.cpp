@@ -39,8 +39,8 @@ void Waypoint::read(sim::ParamReader& in) {
 void Lawnmower::read(sim::ParamReader& in) {
   read_point(in, "corner_m", corner_m, "[east, north] where the first track begins");
   in.read_deg("direction_deg", direction_rad, sim::between(-360, 360),
-              "of the first track, counter-clockwise from east");
-  in.read("length_m", length_m, sim::above_to(0, 1e6), "of a track");
+              "direction of the first track, counter-clockwise from east");
+  in.read("length_m", length_m, sim::above_to(0, 1e6), "length of a track");
   in.read("width_m", width_m, sim::between(-1e6, 1e6), "to the left of the first track; negative: to its right");
   in.read("spacing_m", spacing_m, sim::above_to(0, 1e6), "between tracks");
   in.read("depth_m", depth_m, sim::any_place(), "below the still surface; unset: as before");

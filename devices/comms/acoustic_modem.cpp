@@ -86,19 +86,20 @@ void AcousticModem::Params::read(sim::ParamReader& in) {
   in.read("network", network, "only modems of the same network understand each other; others act as noise");
   in.read("source_level_dB", source_level_dB, sim::between(0, 300), "re 1 uPa at 1 m, on its axis");
   in.read("frequency_Hz", frequency_Hz, sim::between(100, 1e6), "middle of its band");
-  in.read("bandwidth_Hz", bandwidth_Hz, sim::between(1, 1e6), "of its band");
+  in.read("bandwidth_Hz", bandwidth_Hz, sim::between(1, 1e6), "bandwidth");
   in.read_choice("modulation", modulation,
                  {{"fsk", sim::Modulation::fsk}, {"psk", sim::Modulation::psk}, {"dpsk", sim::Modulation::dpsk}},
                  "frequency shift keying, non-coherent; phase shift keying, coherent; differential phase shift keying");
   in.read("bit_rate_bps", bit_rate_bps, sim::between(1e-3, 1e9), "bits per second while it sends");
   in.read("coding_gain_dB", coding_gain_dB, sim::between(0, 60), "coding gain on Eb/N0");
   in.read("frame_bytes", frame_bytes, sim::between(1, 1 << 16), "bytes of a frame");
-  in.read("frames", frames, sim::between(1, 256), "of a packet, at most");
+  in.read("frames", frames, sim::between(1, 256), "maximum number of frames of a packet");
   in.read("whole_frames", whole_frames, "a packet always takes the time of full frames, however few bytes they hold");
   in.read_or_word("max_message_bytes", max_message_bytes, sim::between(1, 1 << 20), {"all_frames"},
                   "longer messages are refused; all_frames: frames x frame_bytes");
-  in.read("preamble_s", preamble_s, sim::between(0, 100), "of each packet, before its bits");
-  in.read("header_bits", header_bits, sim::between(0, 1 << 16), "of each packet, beside those of the message");
+  in.read("preamble_s", preamble_s, sim::between(0, 100), "preamble of each packet, before its bits");
+  in.read("header_bits", header_bits, sim::between(0, 1 << 16),
+          "header bits of each packet, beside those of the message");
   in.read("queue_messages", queue_messages, sim::at_least(1), "messages waiting to be sent; the oldest is dropped");
   in.read_or_word("synchronous_s", synchronous_s, sim::between(1e-3, 3600), {"at_once"},
                   "sending begins at a whole multiple of this (in UTC) by the vehicle's clock");

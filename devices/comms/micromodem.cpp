@@ -39,13 +39,13 @@ struct Micromodem::Addresses {
 const sim::SharedKind<Micromodem::Addresses> Micromodem::addresses_of_world;
 
 void MicromodemBeaconParams::read(sim::ParamReader& in) {
-  in.read("network", network, "of the transponders");
+  in.read("network", network, "network of the transponders");
   in.read("transponders", transponders, "up to four, distinguished by their answers: vehicle, or vehicle/device");
   in.read("turnaround_s", turnaround_s, sim::between(0, 10),
           "turnaround time of the transponders, subtracted from the travel times");
-  in.read("ping_s", ping_s, sim::between(1e-4, 1), "of the interrogation ping");
-  in.read("frequency_Hz", frequency_Hz, sim::between(100, 1e6), "of the interrogation ping");
-  in.read("bandwidth_Hz", bandwidth_Hz, sim::between(1, 1e6), "of the interrogation ping");
+  in.read("ping_s", ping_s, sim::between(1e-4, 1), "duration of the interrogation ping");
+  in.read("frequency_Hz", frequency_Hz, sim::between(100, 1e6), "frequency of the interrogation ping");
+  in.read("bandwidth_Hz", bandwidth_Hz, sim::between(1, 1e6), "bandwidth of the interrogation ping");
   if (!in.describing() && transponders.size() > micromodem_beacons)
     in.error("transponders", "'transponders' must be at most 4, got " + std::to_string(transponders.size()));
 }
@@ -56,7 +56,7 @@ void Micromodem::Params::read(sim::ParamReader& in) {
   in.read("synchronous", synchronous,
           "sends at whole seconds of the vehicle's clock from the start (setting SNV), for one-way travel times");
   in.read("network", network, "only modems of the same network understand each other; others act as noise");
-  in.read("revision", revision, "of its software, in $CAREV; from 2 on it takes $CCTMS beside $CCCLK");
+  in.read("revision", revision, "revision of its software, in $CAREV; from 2 on it takes $CCTMS beside $CCCLK");
   in.read("source_level_dB", source_level_dB, sim::between(0, 300), "re 1 uPa at 1 m, on its axis");
   in.read("frequency_Hz", frequency_Hz, sim::between(2500, 1e6), "middle of its band");
   in.read("coding_gain_dB", coding_gain_dB, sim::between(0, 60), "coding gain on Eb/N0");

@@ -32,7 +32,8 @@ void Modem::Params::read(sim::ParamReader& in) {
   in.read("data_rate_bps", data_rate_bps, sim::between(1e-3, 1e12), "bits per second");
   in.read("propagation_mps", propagation_mps, sim::between(1, 1e12),
           "speed of the signal; unset: 299792458, for an acoustic one that of sound at the sender");
-  in.read("loss_probability", loss_probability, sim::between(0, 1), "of each message at each receiver");
+  in.read("loss_probability", loss_probability, sim::between(0, 1),
+          "loss probability of each message at each receiver");
   in.read("line_of_sight", line_of_sight,
           "objects between the antennas block the signal; the two vehicles themselves do not");
   in.read("queue_messages", queue_messages, sim::at_least(1), "messages waiting to be sent; the oldest is dropped");

@@ -38,7 +38,7 @@ void AckermannDrive::Params::read(sim::ParamReader& in) {
   in.read("differential", differential,
           "each driven wheel turns at the speed of its own path; false: all at the same speed");
   in.read("max_speed_mps", max_speed_mps, sim::above(0), "maximum speed");
-  in.read("max_acceleration_mps2", max_acceleration_mps2, sim::above(0), "of the speed");
+  in.read("max_acceleration_mps2", max_acceleration_mps2, sim::above(0), "maximum acceleration of the speed");
   in.read("max_torque_Nm", max_torque_Nm, sim::above(0), "maximum torque of the motor of each driven wheel");
   in.read_deg("max_steering_deg", max_steering_rad, sim::above_to(0, 80), "maximum steering angle");
   in.read("max_steering_rate_radps", max_steering_rate_radps, sim::above(0), "maximum rate of the steering angle");

@@ -23,7 +23,8 @@ void TwoSidedDrive::Params::read(sim::ParamReader& in, const char* meaning_of_tr
   in.read("track_m", track_m, sim::above(0), meaning_of_track);
   in.read("max_speed_mps", max_speed_mps, sim::above(0), "ground speed a wheel can reach");
   in.read("max_turn_radps", max_turn_radps, sim::above(0), "maximum turn rate");
-  in.read("max_acceleration_mps2", max_acceleration_mps2, sim::above(0), "of a wheel's ground speed");
+  in.read("max_acceleration_mps2", max_acceleration_mps2, sim::above(0),
+          "maximum acceleration of a wheel's ground speed");
   in.read("max_torque_Nm", max_torque_Nm, sim::above(0), "maximum torque of each motor");
   power.read(in);
 }

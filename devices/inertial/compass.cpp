@@ -29,7 +29,8 @@ sim::Vector3d field_W_uT(const Compass::Params& p) {
 
 void Compass::Params::read(sim::ParamReader& in) {
   in.read_deg("declination_deg", declination_rad, sim::between(-180, 180), "magnetic north from true north, + is east");
-  in.read_deg("inclination_deg", inclination_rad, sim::between(-90, 90), "of the earth's field, + is downwards");
+  in.read_deg("inclination_deg", inclination_rad, sim::between(-90, 90),
+              "inclination of the earth's field, + is downwards");
   in.read("field_uT", field_uT, sim::above(0), "strength of the earth's field, microtesla");
   in.read_deg("declination_correction_deg", declination_correction_rad, sim::between(-180, 180),
               "configured declination, added to the heading for heading_true");

@@ -75,7 +75,7 @@ void Imu::Params::read(sim::ParamReader& in) {
     accel = unit.accel;
   }
   in.read_or_word("bandwidth_hz", bandwidth_hz, sim::above(0), {"unlimited"},
-                  "of a first-order low pass on the true values");
+                  "bandwidth of a first-order low pass on the true values");
   in.read("gyro_noise", gyro_noise, "further error of each axis, rad/s");
   read_gyro(in, gyro);
   in.read("accel_noise", accel_noise, "further error of each axis, m/s^2");

@@ -15,7 +15,8 @@ Tilt tilt_of(const sim::Vector3d& up_S) {
 
 void Inclinometer::Params::read(sim::ParamReader& in) {
   in.read("ideal", ideal, "measure the attitude, whatever the acceleration");
-  in.read("time_constant_s", time_constant_s, sim::at_least(0), "of a first-order low pass on the force; 0: none");
+  in.read("time_constant_s", time_constant_s, sim::at_least(0),
+          "time constant of a first-order low pass on the force; 0: none");
   in.read("noise", noise, "error of roll and of pitch, rad");
 }
 

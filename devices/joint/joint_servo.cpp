@@ -62,8 +62,10 @@ void JointServo::Params::read(sim::ParamReader& in) {
   in.read("integral_limit", integral_limit, sim::at_least(0), "pid: maximum effort of the integral term");
   in.read("low", low, sim::any_number(), "lower limit of the position, rad or m; unset: the joint's stop");
   in.read("high", high, sim::any_number(), "upper limit of the position; unset: the joint's stop");
-  in.read("max_velocity", max_velocity, sim::above(0), "of the set point, and beyond which an effort no longer acts");
-  in.read("max_acceleration", max_acceleration, sim::above(0), "of the set point; unset: no limit");
+  in.read("max_velocity", max_velocity, sim::above(0),
+          "maximum velocity of the set point, and beyond which an effort no longer acts");
+  in.read("max_acceleration", max_acceleration, sim::above(0),
+          "maximum acceleration of the set point; unset: no limit");
   in.read("max_effort", max_effort, sim::above(0), "maximum effort, N m or N");
   in.read("park_position", park_position, sim::any_number(), "position of the safe state 'park', rad or m");
   power.read(in);

@@ -9,7 +9,7 @@ namespace devices {
 void MovingMass::Params::read(sim::ParamReader& in) {
   in.read_choice("motion", motion, {{"slide", MassMotion::slide}, {"turn", MassMotion::turn}},
                  "slide: along x of the device's frame; turn: about it, hanging along -z");
-  in.read("mass_kg", mass_kg, sim::above_to(0, 1e6), "of what moves; part of the vehicle's mass");
+  in.read("mass_kg", mass_kg, sim::above_to(0, 1e6), "mass of what moves; part of the vehicle's mass");
   in.read("max_m", max_m, sim::between(0, 1000), "slide: maximum forward travel");
   in.read("min_m", min_m, sim::between(-1000, 0), "slide: maximum backward travel; absent: -max_m");
   in.read("rate_mps", rate_mps, sim::above(0), "slide: maximum speed");

@@ -12,7 +12,7 @@ void BuoyancyEngine::Params::read(sim::ParamReader& in) {
                  "unit of a command: m^3, or a fraction of max_m3 (above 0) or min_m3");
   in.read("max_m3", max_m3, sim::between(0, 1e6), "largest volume");
   in.read("min_m3", min_m3, sim::between(-1e6, 0), "smallest volume");
-  in.read("rate_m3ps", rate_m3ps, sim::above(0), "of the pump, m^3/s");
+  in.read("rate_m3ps", rate_m3ps, sim::above(0), "rate of the pump, m^3/s");
   in.read("initial_m3", initial_m3, sim::between(-1e6, 1e6), "volume at the start");
   in.read("park_m3", park_m3, sim::between(-1e6, 1e6),
           "volume of the safe state park; absent: max_m3, so that it surfaces");

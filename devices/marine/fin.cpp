@@ -26,13 +26,13 @@ void Fin::Params::read(sim::ParamReader& in) {
   in.read_choice("flow", flow, {{"local", Flow::local}, {"body", Flow::body}},
                  "local: as it is at the fin; body: lift by the angle of the fin alone and the speed of the body's "
                  "origin, as MSS remus100 has it");
-  in.read("area_m2", area_m2, sim::above_to(0, 1000), "of the fin, one side; of both fins for a pair on one servo");
+  in.read("area_m2", area_m2, sim::above_to(0, 1000),
+          "area of the fin, one side; of both fins for a pair on one servo");
   foil.read(in);
   in.read("density_kgpm3", density_kgpm3, sim::above(0), "instead of the water's");
-  in.read("coefficients", coefficients,
-          "of model coefficients: about the body's origin, times angle and speed squared");
+  in.read("coefficients", coefficients, "model coefficients: about the body's origin, times angle and speed squared");
   in.read_deg("limit_deg", limit_rad, sim::above_to(0, 90), "maximum deflection to each side");
-  in.read("rate_limit_degps", rate_limit_degps, sim::above(0), "of its servo; absent: no limit");
+  in.read("rate_limit_degps", rate_limit_degps, sim::above(0), "rate limit of its servo; absent: no limit");
   lag.read(in);
   if (in.describing()) return;
   if (model == Model::coefficients && !coefficients)

@@ -7,11 +7,11 @@
 namespace devices {
 
 void Sail::Params::read(sim::ParamReader& in) {
-  in.read("area_m2", area_m2, sim::above_to(0, 1e5), "of the sail");
+  in.read("area_m2", area_m2, sim::above_to(0, 1e5), "area of the sail");
   foil.read(in);
   in.read_deg("limit_deg", limit_rad, sim::above_to(0, 180), "maximum angle of the sheet");
   in.read_deg("initial_deg", initial_rad, sim::between(0, 180), "angle of the sheet at the start");
-  in.read("rate_degps", rate_degps, sim::above(0), "of the winch");
+  in.read("rate_degps", rate_degps, sim::above(0), "rate of the winch");
   lag.read(in);
   if (!in.describing() && initial_rad > limit_rad && in.has("initial_deg"))
     in.error("initial_deg", "'initial_deg' must be at most 'limit_deg'");

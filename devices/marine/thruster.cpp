@@ -48,7 +48,7 @@ void Thruster::Params::read(sim::ParamReader& in) {
   in.read("astern", astern, sim::between(0, 1e6), "quadratic, at levels below 0; absent: as ahead");
   in.read("inflow_loss", inflow_loss, sim::between(0, 1e6), "quadratic: N lost per level and m/s of inflow");
   in.read("table", table, sim::between(-1e6, 1e6), "table: pairs of level and thrust in N, by growing level");
-  in.read("diameter_m", diameter_m, sim::above_to(0, 100), "of the propeller");
+  in.read("diameter_m", diameter_m, sim::above_to(0, 100), "diameter of the propeller");
   in.read("density_kgpm3", density_kgpm3, sim::above(0), "kt_kq: instead of the water's");
   in.read("k_t0", k_t0, sim::between(0, 10), "kt_kq: thrust coefficient without inflow");
   in.read("k_t_slope", k_t_slope, sim::between(0, 10), "kt_kq: loss of the thrust coefficient per advance ratio");

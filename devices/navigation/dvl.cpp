@@ -57,7 +57,7 @@ void Dvl::Params::read(sim::ParamReader& in) {
   }
   in.read_deg("beam_angle_deg", beam_angle_rad, sim::between(5, 60), "between each beam and -z");
   in.read_deg("first_azimuth_deg", first_azimuth_rad, sim::between(-360, 360),
-              "of the first beam, from x towards y; the others follow every 90 deg");
+              "azimuth of the first beam, from x towards y; the others follow every 90 deg");
   in.read("altitude_min_m", altitude_min_m, sim::at_least(0),
           "minimum distance along -z at which a beam detects the bottom");
   in.read("altitude_max_m", altitude_max_m, sim::above_to(0, 10000),
@@ -70,7 +70,8 @@ void Dvl::Params::read(sim::ParamReader& in) {
   in.read("layer_to_m", layer_to_m, sim::above(0), "end of that layer along -z");
   in.read("beam_std_mps", beam_std_mps, sim::at_least(0), "white noise of each beam, standard deviation");
   in.read("beam_std_per_mps", beam_std_per_mps, sim::at_least(0), "its increase per m/s of speed");
-  in.read("scale_std", scale_std, sim::at_least(0), "of a relative error of all velocities, drawn once in a run");
+  in.read("scale_std", scale_std, sim::at_least(0),
+          "standard deviation of a relative error of all velocities, drawn once in a run");
   in.read("assumed_sound_speed_mps", assumed_sound_speed_mps, sim::between(100, 10000),
           "velocities and ranges are off by its ratio to the true speed; unset: the true speed");
   in.read_references("see_through", see_through, "category", "categories of parts that sound passes through");

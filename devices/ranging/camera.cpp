@@ -69,8 +69,8 @@ void Camera::Params::read(sim::ParamReader& in) {
   optics.read(in);
   in.read_choice("encoding", encoding,
                  {{"raw", Encoding::raw}, {"raw16", Encoding::raw16}, {"png", Encoding::png}, {"jpeg", Encoding::jpeg}},
-                 "of the message; raw16: depth in mm, 0 where there is none; png of depth too");
-  in.read("jpeg_quality", jpeg_quality, sim::between(1, 100), "of jpeg");
+                 "encoding of the message; raw16: depth in mm, 0 where there is none; png of depth too");
+  in.read("jpeg_quality", jpeg_quality, sim::between(1, 100), "quality of JPEG images");
   in.read("range_max_m", range_max_m, sim::above_to(0, 100'000), "maximum range along the ray");
   in.read_choice("depth_along", depth_along, depth_along_words,
                  "depth: distance along the optical axis, or range of the ray");

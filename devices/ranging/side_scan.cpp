@@ -18,7 +18,8 @@ SideScan::Params::Params() {
 void SideScan::Params::read(sim::ParamReader& in) {
   in.read_deg("along_deg", along_rad, sim::above_to(0, 30), "width of the beams along the track, at -3 dB");
   in.read_deg("vertical_deg", vertical_rad, sim::above_to(0, 90), "height of the beams, at -3 dB");
-  in.read_deg("depression_deg", depression_rad, sim::between(0, 90), "of the middle of the beams, below the xy-plane");
+  in.read_deg("depression_deg", depression_rad, sim::between(0, 90),
+              "depression of the middle of the beams, below the xy-plane");
   in.read("rays", rays, sim::between(1, 20000), "rays over the height of each beam");
   in.read("along_rays", along_rays, sim::between(1, 20), "rays over the width of a beam");
   sonar.read(in);

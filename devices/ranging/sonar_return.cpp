@@ -42,9 +42,11 @@ void SonarParams::read(sim::ParamReader& in) {
           "speed of sound with which the sonar converts times to ranges; unset: the true speed");
   in.read("absorption_dBpkm", absorption_dBpkm, sim::at_least(0),
           "absorption of sound, dB per km; unset: that of the water for frequency_kHz, else 0");
-  in.read("frequency_kHz", frequency_kHz, sim::between(0.1, 10000), "of the sound, for the absorption of the water");
+  in.read("frequency_kHz", frequency_kHz, sim::between(0.1, 10000),
+          "frequency of the sound, for the absorption of the water");
   in.read("surface_echo", surface_echo, "the water surface returns an echo; otherwise rays that reach it are lost");
-  in.read("surface_backscatter_dB", surface_backscatter_dB, sim::between(-100, 0), "of the surface of the water");
+  in.read("surface_backscatter_dB", surface_backscatter_dB, sim::between(-100, 0),
+          "backscatter strength of the water surface");
   in.read("source_level_dB", source_level_dB, sim::between(0, 300), "re 1 uPa at 1 m");
   in.read("pulse_s", pulse_s, sim::above_to(0, 1), "length of the ping; c pulse / 2 is the resolution in range");
   in.read_choice("tvg", tvg, {{"none", Gain::none}, {"20log", Gain::log20}, {"40log", Gain::log40}},

@@ -19,9 +19,9 @@ constexpr double slowest_mps = 1400;
 void InterrogatorParams::read(sim::ParamReader& in) {
   in.read("network", network, "transponders of this network answer");
   in.read("range_max_m", range_max_m, sim::above_to(0, 20000), "maximum range to a transponder");
-  in.read("source_level_dB", source_level_dB, sim::between(0, 260), "of the ping, re 1 uPa at 1 m");
-  in.read("frequency_Hz", frequency_Hz, sim::between(100, 1e6), "of the ping");
-  in.read("bandwidth_Hz", bandwidth_Hz, sim::between(1, 1e5), "of the ping");
+  in.read("source_level_dB", source_level_dB, sim::between(0, 260), "source level of the ping, re 1 uPa at 1 m");
+  in.read("frequency_Hz", frequency_Hz, sim::between(100, 1e6), "frequency of the ping");
+  in.read("bandwidth_Hz", bandwidth_Hz, sim::between(1, 1e5), "bandwidth of the ping");
   in.read("ping_s", ping_s, sim::between(1e-4, 1), "length of the ping");
   in.read("receiver", receiver, "properties of its receiver");
 }

@@ -11,7 +11,7 @@ void NoiseSource::Params::read(sim::ParamReader& in) {
   in.read("on", on, "at the start; a command of 0 turns it off, any other on");
   in.read("level_dB", level_dB, sim::between(0, 280), "over its band, re 1 uPa at 1 m");
   in.read("frequency_Hz", frequency_Hz, sim::between(1, 1e6), "middle of its band");
-  in.read("bandwidth_Hz", bandwidth_Hz, sim::between(1, 1e6), "of its band, which it fills evenly");
+  in.read("bandwidth_Hz", bandwidth_Hz, sim::between(1, 1e6), "bandwidth, which it fills evenly");
   in.read("period_s", period_s, sim::between(1e-3, 1e6), "it sounds once per period; unset: all the time (continuous)");
   in.read("sound_s", sound_s, sim::between(1e-4, 1e6), "duration of the sound in each period");
   if (in.describing()) return;

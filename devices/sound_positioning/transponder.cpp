@@ -16,8 +16,8 @@ void Transponder::Params::read(sim::ParamReader& in) {
   in.read("code", code, "it answers pings with this code and pings without a code");
   in.read("turnaround_s", turnaround_s, sim::between(0, 10),
           "turnaround time, from the start of the ping to the start of the answer");
-  in.read("source_level_dB", source_level_dB, sim::between(0, 260), "of the answer, re 1 uPa at 1 m");
-  in.read("frequency_Hz", frequency_Hz, sim::between(100, 1e6), "of the pings that it receives");
+  in.read("source_level_dB", source_level_dB, sim::between(0, 260), "source level of the answer, re 1 uPa at 1 m");
+  in.read("frequency_Hz", frequency_Hz, sim::between(100, 1e6), "frequency of the pings that it receives");
   in.read(
       "answer_frequency_Hz", answer_frequency_Hz, sim::between(100, 1e6),
       "frequency of its answer; unset: the lowest of 28000, 29000, ... that no other transponder of its network uses");

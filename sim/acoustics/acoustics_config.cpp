@@ -7,14 +7,15 @@ void LinkConfig::read(ParamReader& in) {
   in.read("from", from, "sender: a vehicle, or vehicle/device; absent: any");
   in.read("to", to, "receiver: a vehicle, or vehicle/device; absent: any");
   in.read("both_ways", both_ways, "also from `to` to `from`");
-  in.read("loss_probability", loss_probability, between(0, 1), "of each signal that would be understood");
+  in.read("loss_probability", loss_probability, between(0, 1),
+          "loss probability of each signal that would be understood");
   in.read("extra_loss_dB", extra_loss_dB, between(-200, 200), "taken from the level");
 }
 
 void AcousticsConfig::read(ParamReader& in) {
   in.read("spreading", spreading, "spreading loss of sound with range");
   in.read("absorption", absorption, "absorption of sound with range");
-  in.read("noise", noise, "of the sea");
+  in.read("noise", noise, "noise of the sea");
   in.read("multipath", multipath, "echoes of surface and bottom; absent: the direct path alone");
   in.read("fading", fading, "fading of the level");
   in.read("occlusion", occlusion, "terrain, objects and hulls block sound of sound");

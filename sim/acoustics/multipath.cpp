@@ -43,9 +43,11 @@ void image_paths(double source_depth_m, double receiver_depth_m, double horizont
 }
 
 void BottomConfig::read(ParamReader& in) {
-  in.read("loss_dB", loss_dB, between(0, 200), "of each bounce, at any angle; absent: by the sediment below");
-  in.read("density_ratio", density_ratio, above_to(0, 10), "of sediment over water; sand 1.9, silt 1.5, clay 1.3");
-  in.read("speed_ratio", speed_ratio, between(0.5, 5), "of sound in sediment over water; sand 1.1, clay 0.99");
+  in.read("loss_dB", loss_dB, between(0, 200), "loss of each bounce, at any angle; absent: by the sediment below");
+  in.read("density_ratio", density_ratio, above_to(0, 10),
+          "density ratio of sediment over water; sand 1.9, silt 1.5, clay 1.3");
+  in.read("speed_ratio", speed_ratio, between(0.5, 5),
+          "speed ratio of sound in sediment over water; sand 1.1, clay 0.99");
   in.read("attenuation_dB_per_wavelength", attenuation_dB_per_wavelength, between(0, 20), "in the sediment");
   if (in.has("loss_dB"))
     for (const char* key : {"density_ratio", "speed_ratio", "attenuation_dB_per_wavelength"})
@@ -58,7 +60,7 @@ void MultipathConfig::read(ParamReader& in) {
   in.read("water_depth_m", water_depth_m, above_to(0, 12000),
           "depth of a flat bottom; absent: the terrain below the middle of the path; without terrain there is no "
           "bottom echo");
-  in.read("surface_loss_dB", surface_loss_dB, between(0, 200), "of each bounce; absent: by the roughness");
+  in.read("surface_loss_dB", surface_loss_dB, between(0, 200), "surface loss of each bounce; absent: by the roughness");
   in.read("surface_roughness_m", surface_roughness_m, between(0, 20),
           "rms height of the waves; absent: that of a fully developed sea under the wind");
   in.read("bottom", bottom, "reflection of sound by the bottom");

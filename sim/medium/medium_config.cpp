@@ -47,9 +47,9 @@ void keep_place(ParamReader& in, SourcePlace& place) {
 void WaterLayerConfig::read(ParamReader& in) {
   in.require("depth_m");
   in.read("depth_m", depth_m, between(0, 12000), "depth below the surface; must increase from row to row");
-  in.read("temperature_C", temperature_C, between(-5, 100), "of the water there");
-  in.read("salinity_psu", salinity_psu, between(0, 400), "of the water there");
-  in.read("density_kgpm3", density_kgpm3, between(1, 20000), "of the water there; in all rows or in none");
+  in.read("temperature_C", temperature_C, between(-5, 100), "temperature of the water there");
+  in.read("salinity_psu", salinity_psu, between(0, 400), "salinity of the water there");
+  in.read("density_kgpm3", density_kgpm3, between(1, 20000), "density of the water there; in all rows or in none");
   in.read("sound_speed_mps", sound_speed_mps, between(100, 10000), "there; in all rows or in none");
 }
 
@@ -57,9 +57,9 @@ void WaterConfig::read(ParamReader& in) {
   in.read("surface_m", surface_m, between(-1e6, 1e6), "height of the still surface in the world");
   in.read_choice("density", density, {{"constant", Density::constant}, {"eos80", Density::eos80}},
                  "constant: density_kgpm3; eos80: from temperature, salinity and pressure");
-  in.read("density_kgpm3", density_kgpm3, between(1, 20000), "of the water; sea 1025, fresh 1000");
-  in.read("temperature_C", temperature_C, between(-5, 100), "of the water");
-  in.read("salinity_psu", salinity_psu, between(0, 400), "of the water");
+  in.read("density_kgpm3", density_kgpm3, between(1, 20000), "density of the water; sea 1025, fresh 1000");
+  in.read("temperature_C", temperature_C, between(-5, 100), "temperature of the water");
+  in.read("salinity_psu", salinity_psu, between(0, 400), "salinity of the water");
   in.read_list("profile", profile, "row", "temperature and salinity by depth, linear in between");
   in.read_choice("sound_speed", sound,
                  {{"mackenzie", SoundSpeed::mackenzie}, {"medwin", SoundSpeed::medwin}, {"unesco", SoundSpeed::unesco}},
@@ -170,8 +170,10 @@ void GustConfig::read(ParamReader& in) {
   in.read("std_mps", std_mps, between(0, 50), "along the wind");
   in.read("across_std_mps", across_std_mps, between(0, 50), "across, level");
   in.read("vertical_std_mps", vertical_std_mps, between(0, 50), "up and down");
-  in.read("correlation_time_s", correlation_time_s, between(0.05, 1e6), "of the gusts; 10 when 'length_m' is absent");
-  in.read("length_m", length_m, above_to(0, 1e6), "of the gusts along the wind: the time is this by the mean speed");
+  in.read("correlation_time_s", correlation_time_s, between(0.05, 1e6),
+          "correlation time of the gusts; 10 when 'length_m' is absent");
+  in.read("length_m", length_m, above_to(0, 1e6),
+          "length of the gusts along the wind: the time is this by the mean speed");
   if (correlation_time_s && length_m) in.error("length_m", "'length_m' and 'correlation_time_s' exclude each other");
 }
 
@@ -180,9 +182,9 @@ void WindConfig::read(ParamReader& in) {
   in.read("velocity_mps", velocity_mps, between(-120, 120), "east, north, up, at the reference height");
   in.read("speed_mps", speed_mps, between(0, 120), "instead of 'velocity_mps'");
   in.read_deg("direction_deg", direction_rad, between(-360, 360),
-              "of 'speed_mps': direction towards which it blows, counter-clockwise from east");
+              "direction towards which it blows, counter-clockwise from east");
   in.read("from_compass_deg", from_compass_deg, between(-360, 360),
-          "of 'speed_mps': direction from which it blows, clockwise from north, as in forecasts");
+          "direction from which it blows, clockwise from north, as in forecasts");
   in.read_choice("profile", profile, {{"uniform", Profile::uniform}, {"power", Profile::power}, {"log", Profile::log}},
                  "profile of the mean over the height");
   in.read("reference_height_m", reference_height_m, above_to(0.001, 1000),
@@ -258,7 +260,8 @@ void WavesConfig::read(ParamReader& in) {
           "exponent s of the spreading cos^2s of half the angle; absent: long-crested");
   in.read_deg("direction_deg", direction_rad, between(-360, 360),
               "direction towards which they travel, counter-clockwise from east");
-  in.read("water_depth_m", water_depth_m, above_to(0.01, 12000), "of the bottom, for the waves; absent: deep");
+  in.read("water_depth_m", water_depth_m, above_to(0.01, 12000),
+          "water depth of the bottom, for the waves; absent: deep");
   if (in.describing()) return;
   check_keys_of_waves(in, type);
   if (in.has("sea_state")) take_sea_state(*this);

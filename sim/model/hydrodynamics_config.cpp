@@ -45,8 +45,8 @@ struct SpheroidConfig {
     in.require("half_length_m");
     in.read("half_length_m", half_length_m, above_to(0, 1000), "half the length of the hull");
     in.require("radius_m");
-    in.read("radius_m", radius_m, above_to(0, 1000), "of the hull, at most half its length");
-    in.read("density_kgpm3", density_kgpm3, above(0), "of the water");
+    in.read("radius_m", radius_m, above_to(0, 1000), "radius of the hull, at most half its length");
+    in.read("density_kgpm3", density_kgpm3, above(0), "density of the water");
     if (half_length_m < radius_m)
       in.error("radius_m", "'radius_m' must be <= 'half_length_m' " + number_text(half_length_m) + ", got " +
                                number_text(radius_m));
@@ -91,12 +91,12 @@ bool parse_derivative(std::string_view name, DerivativeTerm& term) {
 
 void CrossFlowConfig::read(ParamReader& in) {
   in.require("length_m");
-  in.read("length_m", length_m, above_to(0, 1000), "of the hull, half of it before the origin");
+  in.read("length_m", length_m, above_to(0, 1000), "length of the hull, half of it before the origin");
   in.require("height_m");
   in.read("height_m", height_m, above_to(0, 1000), "diameter of a round hull, draft of a boat");
   in.read("density_kgpm3", density_kgpm3, above(0), "instead of the water's");
   in.read("drag_coefficient", drag_coefficient, at_least(0),
-          "of a strip: one number, or pairs of Reynolds number and coefficient");
+          "drag coefficient of a strip: one number, or pairs of Reynolds number and coefficient");
   const std::size_t count = drag_coefficient.size();
   if (count == 0 || (count > 1 && count % 2 != 0))
     in.error("drag_coefficient", "'drag_coefficient' must be one number or pairs, got " + std::to_string(count));
@@ -106,7 +106,8 @@ void CrossFlowConfig::read(ParamReader& in) {
                                        number_text(drag_coefficient[i - 2]) + " before " +
                                        number_text(drag_coefficient[i]));
   in.read("reynolds_length_m", reynolds_length_m, above(0), "length in the Reynolds number");
-  in.read("kinematic_viscosity_m2ps", kinematic_viscosity_m2ps, above(0), "of the water, for the Reynolds number");
+  in.read("kinematic_viscosity_m2ps", kinematic_viscosity_m2ps, above(0),
+          "kinematic viscosity of the water, for the Reynolds number");
   in.read_or_word("strips", strips, between(2, 1000), {"exact"},
                   "a sum over so many points, both ends with full weight, as some references do; exact: the integral");
 }
@@ -121,8 +122,8 @@ void HullLiftConfig::read(ParamReader& in) {
 }
 
 void WaterlineConfig::read(ParamReader& in) {
-  in.read("length_m", length_m, above(0), "of the water plane: the waves are felt at its ends");
-  in.read("beam_m", beam_m, above(0), "of the water plane");
+  in.read("length_m", length_m, above(0), "length of the water plane: the waves are felt at its ends");
+  in.read("beam_m", beam_m, above(0), "beam of the water plane");
   in.require("heave_Npm");
   in.read("heave_Npm", heave_Npm, above(0), "stiffness in heave: density, gravity and area of the water plane");
   in.read("heave_pitch_N", heave_pitch_N, any_number(), "couples heave and pitch: force per rad, moment per m");
@@ -137,11 +138,13 @@ void WindageConfig::read(ParamReader& in) {
   in.read("frontal_area_m2", frontal_area_m2, at_least(0), "over the water, seen from ahead");
   in.require("lateral_area_m2");
   in.read("lateral_area_m2", lateral_area_m2, at_least(0), "over the water, seen from the side");
-  in.read("surge_coefficient", surge_coefficient, between(0, 5), "of the force ahead; 0.5 to 0.9 for ships");
-  in.read("sway_coefficient", sway_coefficient, between(0, 5), "of the force sideways; 0.7 to 0.95 for ships");
+  in.read("surge_coefficient", surge_coefficient, between(0, 5),
+          "surge coefficient of the force ahead; 0.5 to 0.9 for ships");
+  in.read("sway_coefficient", sway_coefficient, between(0, 5),
+          "sway coefficient of the force sideways; 0.7 to 0.95 for ships");
   in.read("yaw_coefficient", yaw_coefficient, between(-1, 1),
-          "of the moment about the vertical; 0.05 to 0.2 for ships");
-  in.read("height_m", height_m, between(-100, 100), "of the middle of the lateral area over the origin");
+          "yaw coefficient of the moment about the vertical; 0.05 to 0.2 for ships");
+  in.read("height_m", height_m, between(-100, 100), "height of the middle of the lateral area over the origin");
   in.read("length_m", length_m, above(0), "over all");
 }
 
@@ -164,7 +167,7 @@ void HydrodynamicsConfig::read(ParamReader& in) {
                  "coefficients: as published for this vehicle; none: water does nothing to this body");
   in.read_choice("frame", frame, axes_frame_words, "axes of the numbers: frd as papers print them, flu as bodies have");
   if (model == Model::coefficients) in.require("mass_kg");
-  in.read("mass_kg", mass_kg, between(1e-9, 1e12), "of the body, instead of that of its parts");
+  in.read("mass_kg", mass_kg, between(1e-9, 1e12), "mass of the body, instead of that of its parts");
   in.read("center_of_mass_m", center_of_mass_m, between(-1000, 1000), "in the body's frame");
   if (model == Model::coefficients) in.require("inertia_kgm2");
   read_matrix<3>(in, "inertia_kgm2", inertia_kgm2,
@@ -174,8 +177,8 @@ void HydrodynamicsConfig::read(ParamReader& in) {
                  {{"center_of_mass", InertiaAbout::center_of_mass}, {"origin", InertiaAbout::origin}},
                  "point that the inertia is about");
   in.read("weight_N", weight_N, above(0), "instead of mass times gravity");
-  in.read("buoyancy_N", buoyancy_N, at_least(0), "of the whole vehicle under water; absent: of volume_m3");
-  in.read("volume_m3", volume_m3, above(0), "of displaced water; absent: it floats in balance");
+  in.read("buoyancy_N", buoyancy_N, at_least(0), "buoyancy of the whole vehicle under water; absent: of volume_m3");
+  in.read("volume_m3", volume_m3, above(0), "volume of displaced water; absent: it floats in balance");
   if (buoyancy_N && volume_m3) in.error("volume_m3", "needs either 'buoyancy_N' or 'volume_m3', not both");
   in.read("center_of_buoyancy_m", center_of_buoyancy_m, between(-1000, 1000), "in the body's frame");
   in.read("hull_height_m", hull_height_m, above(0), "over which it emerges; absent: of a ball of its volume");
@@ -231,7 +234,7 @@ void HydrodynamicsConfig::read(ParamReader& in) {
   }
   in.read("cross_flow", cross_flow, "drag of a slender hull across its axis");
   in.read("hull_lift", hull_lift, "lift and drag of the hull by its angle of attack");
-  in.read("waterline", waterline, "of a surface craft: restoring forces against the surface");
+  in.read("waterline", waterline, "waterline of a surface craft: restoring forces against the surface");
   if (frame == AxesFrame::flu && waterline) {
     waterline->load_at_m = to_frd(waterline->load_at_m);
   }

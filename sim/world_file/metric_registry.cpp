@@ -21,7 +21,7 @@ void MetricParams::read_vehicle(ParamReader& in) {
 
 void MetricParams::read_channel(ParamReader& in) {
   in.read("channel", channel,
-          "of the estimate, shoal.pose_t or shoal.estimate_t; messages: whose messages are counted");
+          "channel of the estimate, shoal.pose_t or shoal.estimate_t; messages: whose messages are counted");
   if (in.has("channel") && (channel.empty() || channel.size() > Bus::max_channel_length))
     in.error("channel", "'channel' must have 1 to 63 characters, got " + std::to_string(channel.size()));
 }

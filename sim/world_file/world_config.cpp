@@ -24,16 +24,16 @@ void RunConfig::read(ParamReader& in) {
   in.read_or_word("duration_s", duration_s, above_to(0, 1e9), {"forever"},
                   "simulated time of the run; forever: until a request to quit");
   in.read_or_word("speed", speed, between(1e-3, 1e6), {"max"}, "times real time; max: as fast as possible");
-  in.read("seed", seed, at_least(0), "of every random stream");
+  in.read("seed", seed, at_least(0), "seed of every random stream");
   in.read("track_rate_hz", track_rate_hz, between(1e-3, 1e6), "samples per second of the tracks in the results");
   in.read_or_word("hash_every_steps", hash_every_steps, between(1, 1e9), {"never"},
                   "steps from hash to hash on sim.hash");
 }
 
 void ChannelConfig::read(ParamReader& in) {
-  in.read("report", report, "of a device's reports; {vehicle} {device} {VEHICLE} {DEVICE} are replaced");
-  in.read("command", command, "of a device's commands");
-  in.read("truth", truth, "of a device's readings without errors");
+  in.read("report", report, "channel of a device's reports; {vehicle} {device} {VEHICLE} {DEVICE} are replaced");
+  in.read("command", command, "channel of a device's commands");
+  in.read("truth", truth, "channel of a device's readings without errors");
 }
 
 void VehicleEntry::read(ParamReader& in) {
@@ -131,9 +131,9 @@ void LimitsConfig::read(ParamReader& in) {
   in.read("vehicles", vehicles, between(0, 1000000), "vehicles at any one time, including spawned ones");
   in.read("objects", objects, between(0, 10000000),
           "objects at any one time, including those that scripts or clients add");
-  in.read("bodies_per_vehicle", bodies_per_vehicle, between(1, 100000), "of a vehicle that a client spawns");
-  in.read("devices_per_vehicle", devices_per_vehicle, between(0, 100000), "of a vehicle that a client spawns");
-  in.read("parts", parts, between(1, 100000), "of one vehicle or object that is added during the run");
+  in.read("bodies_per_vehicle", bodies_per_vehicle, between(1, 100000), "bodies of a vehicle that a client spawns");
+  in.read("devices_per_vehicle", devices_per_vehicle, between(0, 100000), "devices of a vehicle that a client spawns");
+  in.read("parts", parts, between(1, 100000), "parts of one vehicle or object that is added during the run");
   in.read("spawns_per_client", spawns_per_client, between(0, 100000000),
           "spawn requests of one client in a run; of all clients together ten times as many");
   in.read("rewinds_per_client", rewinds_per_client, between(0, 100000000),
@@ -216,7 +216,7 @@ void WorldConfig::read(ParamReader& in) {
   in.read("light", light, "sun and sky, for images; see docs/models/cameras.md");
   in.read("channels", channels, "names of the channels");
   in.read("run", run, "defaults of a run, which the command line can override");
-  in.read_or_word("state_rate_hz", state_rate_hz, above_to(0, 1e6), {"never"}, "of sim.state and sim.clock");
+  in.read_or_word("state_rate_hz", state_rate_hz, above_to(0, 1e6), {"never"}, "rate of sim.state and sim.clock");
   in.read_paths("plugins", plugins,
                 "libraries with devices, beside this file or installed; only with --launch or --plugin");
   in.read_list("objects", objects, "object", "objects: bodies without devices");

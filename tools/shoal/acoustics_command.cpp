@@ -276,17 +276,17 @@ void add_link_options(CLI::App& command, AcousticsArguments& arguments) {
   command.add_option("--from", arguments.from, "sender: vehicle/device, a vehicle, or a place X,Y,Z in metres")
       ->type_name("END");
   command.add_option("--to", arguments.to, "receiver: the same")->type_name("END");
-  command.add_option("--range", arguments.range_m, "m, without --from and --to")
+  command.add_option("--range", arguments.range_m, "distance, m, without --from and --to")
       ->type_name("M")
       ->check(number_from(0, 1e7))
       ->capture_default_str();
-  command.add_option("--depth", arguments.depth_m, "of both ends, m, without --from and --to")
+  command.add_option("--depth", arguments.depth_m, "depth of both ends, m, without --from and --to")
       ->type_name("M")
       ->check(number_from(0, 12000))
       ->capture_default_str();
   command
       .add_option("--water-depth", arguments.water_depth_m,
-                  "of a flat bottom for echoes, m; without it that of the world below the middle of the link")
+                  "depth of a flat bottom for echoes, m; without it that of the world below the middle of the link")
       ->type_name("M")
       ->check(number_from(0.1, 12000));
 }
@@ -299,12 +299,12 @@ void add_signal_options(CLI::App& command, AcousticsArguments& arguments) {
       ->check(number_from(-100, 300));
   command
       .add_option("--frequency", arguments.frequency_Hz,
-                  "middle of the band, Hz; without it that of the sending modem, else 25000")
+                  "centre of the band, Hz; without it that of the sending modem, else 25000")
       ->type_name("HZ")
       ->check(number_from(10, 1e6));
   command
       .add_option("--bandwidth", arguments.bandwidth_Hz,
-                  "of the signal, Hz; without it that of the sending modem, else 4000")
+                  "bandwidth of the signal, Hz; without it that of the sending modem, else 4000")
       ->type_name("HZ")
       ->check(number_from(0.1, 1e6));
   command.add_option("--packet", arguments.packets, "modulation:bit/s:bytes, such as fsk:80:32")
@@ -343,7 +343,8 @@ void add_options(CLI::App& command, AcousticsArguments& arguments) {
 }  // namespace
 
 void add_acoustics_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("acoustics", "Show the propagation of sound between two places under water");
+  CLI::App* command =
+      app.add_subcommand("acoustics", "Show the propagation of sound between two positions under water");
   const auto arguments = std::make_shared<AcousticsArguments>();
   add_log_level_option(*command);
   add_options(*command, *arguments);
@@ -355,7 +356,7 @@ void add_acoustics_command(CLI::App& app, int& exit_code) {
                  {{0, "success"},
                   {1, "a closed form was not met"},
                   {2, "wrong usage, or a mistake in the world"},
-                  {4, "file trouble"}},
+                  {4, "file error"}},
                  {"docs/models/acoustics.md has the equations."}});
   command->callback([arguments, &exit_code] { exit_code = show(*arguments); });
 }

@@ -79,7 +79,7 @@ void add_fidelity_command(CLI::App& app, int& exit_code) {
                               {{0, "all cases are within their bounds"},
                                {1, "a bound of a case was missed"},
                                {2, "wrong usage, or a mistake in a file"},
-                               {4, "file trouble"}},
+                               {4, "file error"}},
                               {"docs/models/fidelity.md says how to add cases."}});
   command->callback([arguments, &exit_code] { exit_code = fidelity(*arguments); });
 }

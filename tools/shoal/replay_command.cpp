@@ -98,7 +98,7 @@ void add_replay_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("replay", "Replay the world of a log, and compare");
   const auto arguments = std::make_shared<ReplayArguments>();
   CLI::Option* log_level = add_log_level_option(*command, "error");
-  command->add_option("LOG", arguments->replay.log, "of shoal run --record, or of lcm-logger")->required();
+  command->add_option("LOG", arguments->replay.log, "log of shoal run --record, or of lcm-logger")->required();
   command->add_option("--world", arguments->replay.world, "a world file instead of the log's world")->type_name("FILE");
   add_set_option(*command, arguments->replay.load.sets);
   add_allow_path_option(*command, arguments->replay.load);

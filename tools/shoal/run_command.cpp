@@ -107,7 +107,7 @@ void add_snapshot_options(CLI::App& command, RunArguments& arguments) {
                   "how far the run can be rewound, in simulated seconds; without it 60 on a bus or terminal")
       ->type_name("S")
       ->check(number_from(0, 1e6));
-  command.add_option("--rewind-mb", arguments.run.rewind_MB, "memory for that in MB")
+  command.add_option("--rewind-mb", arguments.run.rewind_MB, "memory for the rewind history, MB")
       ->type_name("MB")
       ->check(number_from(1, 1e5))
       ->capture_default_str();
@@ -178,7 +178,7 @@ void add_run_command(CLI::App& app, int& exit_code) {
       ->type_name("S")
       ->transform(command_line::number_or_word(1e-6, 1e9, "forever"));
   command->add_option("--speed", arguments->speed, "times real time, from 0.001 to 1e6, or max")->type_name("FACTOR");
-  command->add_option("--seed", arguments->load.seed, "of every random stream")
+  command->add_option("--seed", arguments->load.seed, "seed of every random stream")
       ->type_name("N")
       ->check(command_line::seed());
   add_set_option(*command, arguments->load.sets);

@@ -37,7 +37,7 @@ void add_allow_path_option(CLI::App& command, sim::LoadOptions& load) {
 }
 
 CLI::Option* add_lcm_url_option(CLI::App& command, std::string& url) {
-  return command.add_option("--lcm-url", url, "instead of LCM_DEFAULT_URL and the default")->type_name("URL");
+  return command.add_option("--lcm-url", url, "LCM URL; overrides LCM_DEFAULT_URL")->type_name("URL");
 }
 
 void add_threads_option(CLI::App& command, int& threads) {

@@ -284,7 +284,7 @@ void add_snap_command(CLI::App& app, int& exit_code) {
   every->check(number_from(1e-6, 1e9))->needs(until);
   until->check(number_from(0, 1e9))->needs(every);
   add_view_options(*command, *arguments);
-  command->add_option("--seed", arguments->load.seed, "of every random stream")
+  command->add_option("--seed", arguments->load.seed, "seed of every random stream")
       ->type_name("N")
       ->check(command_line::seed());
   add_set_option(*command, arguments->load.sets);

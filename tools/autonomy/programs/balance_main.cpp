@@ -96,7 +96,7 @@ void declare(command_line::DeclaredOptions& declared, Options& options) {
         for (const auto& numbers : lists)
           options.speeds.push_back({numbers[0], numbers[1], numbers.size() > 2 ? numbers[2] : 0});
       },
-      "from a time on a speed and a turn rate, which is 0 when it is left out");
+      "forward speed and turn rate from a time on; a missing turn rate is 0");
   declare_gains(declared, options);
   options.participation.declare(declared);
   autonomy::set_help_end(

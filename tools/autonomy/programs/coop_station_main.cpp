@@ -52,12 +52,12 @@ int run(int argc, char** argv) {
   sending.declare(options, "its order");
   options.exactly_one({"slot", "random_s"});
   participation.declare(options);
-  autonomy::set_help_end(
-      options,
-      {"shoal-coop-station --name station --to 0 --slot 1 --slots 3 --orders "
-       "'[[120,500,200,15],[600,900,-100,20,1.2]]'"},
-      "It reads NAME.gps and NAME.radio; it publishes NAME.radio.cmd and NAME.knowledge, where the vehicle was by its "
-      "newest state.");
+  autonomy::set_help_end(options,
+                         {"shoal-coop-station --name station --to 0 --slot 1 --slots 3 --orders "
+                          "'[[120,500,200,15],[600,900,-100,20,1.2]]'"},
+                         "It reads NAME.gps and NAME.radio; it publishes NAME.radio.cmd and NAME.knowledge, the "
+                         "position of the vehicle by its "
+                         "newest state.");
   if (const auto exit_code = options.parse(argc, argv)) return *exit_code;
   station.access = sending.access();
   if (!station.access.slot && station.access.random_mean_s <= 0)

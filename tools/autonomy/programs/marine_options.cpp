@@ -52,7 +52,7 @@ void AccessOptions::declare(command_line::DeclaredOptions& options, const std::s
   options.number("guard_s", guard_s, 0, 3600,
                  "guard time at the end of a slot; without it all but the first second, or the second half of a short "
                  "slot");
-  options.number("random_s", random_s, 0, 3600, "sends " + what + " at random, so often on average; 0: never");
+  options.number("random_s", random_s, 0, 3600, "sends " + what + " at random times with this mean interval; 0: never");
   options.seed("seed", seed, "seed of the random times");
 }
 

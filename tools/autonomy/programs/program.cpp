@@ -44,7 +44,7 @@ void set_help_end(command_line::DeclaredOptions& options, const std::vector<std:
   command_line::set_help_end(options.app(), {examples,
                                              {{0, "the run ended"},
                                               {2, "wrong usage"},
-                                              {4, "bus trouble"},
+                                              {4, "bus error"},
                                               {5, "the simulator stopped responding or dropped the program"},
                                               {6, "the world was rewound further than --rewind-s"},
                                               {130, "ended by SIGINT; 143 by SIGTERM"}},
@@ -56,7 +56,7 @@ void Participation::declare(command_line::DeclaredOptions& options) {
   options.number("rewind_s", rewind_s, 0, 1e6,
                  "how far the program can be rewound with the world, in simulated seconds; 0: not at all");
   options.number("join_timeout_s", join_timeout_s, 0.1, 3600, "wall seconds to wait for the simulator");
-  options.text("lcm_url", "URL", lcm_url, "instead of LCM_DEFAULT_URL and the default");
+  options.text("lcm_url", "URL", lcm_url, "LCM URL; overrides LCM_DEFAULT_URL");
 }
 
 command_line::DeclaredOptions::Added add_id(command_line::DeclaredOptions& options, const char* key, int& id,

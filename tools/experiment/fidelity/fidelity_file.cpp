@@ -24,7 +24,7 @@ struct CaseEntry {
   void read(sim::ParamReader& in) {
     if (!in.describing()) place = in.node()->place;
     in.require("name");
-    in.read_name("name", name, "of the case");
+    in.read_name("name", name, "name of the case");
     in.read("text", text, "a sentence for the report");
     in.require("reference");
     in.read("reference", reference, "CSV file, from the folder of this file");
@@ -45,7 +45,7 @@ struct GroupEntry {
   sim::SourcePlace vehicle_place;
   void read(sim::ParamReader& in) {
     in.require("name");
-    in.read_name("name", name, "of the group");
+    in.read_name("name", name, "name of the group");
     in.read("title", title, "heading in the report");
     in.require("vehicle");
     in.read("vehicle", vehicle, "vehicle file, from the folder of this file");
@@ -94,10 +94,10 @@ FidelityBars over(const FidelityBars& bars, const FidelityBars& usual) {
 void FidelityInput::read(sim::ParamReader& in) {
   if (!in.describing()) place = in.node()->place;
   in.require("device");
-  in.read_name("device", device, "of the vehicle");
+  in.read_name("device", device, "device of the vehicle");
   in.read("message", message, "type of its commands");
   in.read("column", column, "column that gives `value`");
-  in.read_raw("fields", fields, "of the message, with names of columns for numbers; instead of `column`");
+  in.read_raw("fields", fields, "fields of the message, with names of columns for numbers; instead of `column`");
   in.read("scale", scale, sim::any_number(), "times the columns: 57.29577951308232 makes degrees of radians");
   if (!in.describing() && in.has("column") == in.has("fields")) in.error("one of 'column' and 'fields' must be given");
 }

@@ -41,7 +41,7 @@ void EstimateMetric::Params::read(sim::ParamReader& in) {
   in.require("channel");
   read_channel(in);
   read_from_s(in);
-  in.read("dimensions", dimensions, sim::between(2, 3), "of the error; 2: horizontal");
+  in.read("dimensions", dimensions, sim::between(2, 3), "dimensions of the error; 2: horizontal");
 }
 
 EstimateMetric::EstimateMetric(const MetricContext& context, const Params& params)
