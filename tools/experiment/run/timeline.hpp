@@ -12,7 +12,7 @@ class Timeline {
   /// Prepares a move; the branch is still the old one.  `ours`: the new one starts at a step of this run.  The world is
   /// not moved when this throws.
   virtual void leave_branch(std::int64_t to_step, bool ours) = 0;
-  /// Instead of start_branch(): the world is where it was after all.
+  /// Replaces start_branch() when the move failed and the world was restored.
   virtual void hold_here() = 0;
   /// Completes a move.
   virtual void start_branch(bool ours) = 0;
