@@ -110,6 +110,7 @@ class Reader {
     CLI::Option* option = find_option(name);
     if (option == nullptr) throw UsageError(unknown_option(name));
     const std::string shown = option_name(*option);
+    // Help and flags take no value.
     if (option == command().get_help_ptr()) {
       result_.help = true;
       return;
@@ -120,6 +121,7 @@ class Reader {
       if (counts_[option]++ == 0) options_.push_back(shown);
       return;
     }
+    // Value after `=`, or in the next argument.
     std::string value;
     if (equals != std::string::npos)
       value = word.substr(equals + 1);
@@ -129,10 +131,11 @@ class Reader {
       throw UsageError(
           shown + " needs a value: " + shown + " " + value_name(*option) +
           (at_ < words_.size() && words_[at_].starts_with("-") ? "; " + quoted(words_[at_]) + " follows it" : ""));
+    // Checks of the value.
     if (counts_[option]++ > 0 && !is_repeatable(*option)) throw UsageError(shown + " is given twice");
     const std::string kind = value_name(*option);
     if (value.empty() && (kind == "FILE" || kind == "DIR")) throw UsageError(shown + " must not be empty");
-    if (value.empty()) {  // CLI11 would take the next argument for the value of `--name=`
+    if (value.empty()) {  // CLI11 would take the next argument as the value of `--name=`
       options_.push_back(shown);
       options_.push_back("");
     } else {

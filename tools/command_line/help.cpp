@@ -76,6 +76,7 @@ std::vector<std::string> pieces_of(const std::string& example) {
   std::vector<std::string> pieces;
   std::string piece;
   char quote = 0;
+  // Join a value to its option.
   const auto finish = [&] {
     const bool is_value =
         !pieces.empty() && pieces.back().starts_with("--") && pieces.back().find(' ') == std::string::npos;
@@ -85,6 +86,7 @@ std::vector<std::string> pieces_of(const std::string& example) {
       pieces.push_back(piece);
     piece.clear();
   };
+  // Split at spaces outside of quotes; the remark is the last piece.
   for (std::size_t i = 0; i < example.size(); ++i) {
     const char c = example[i];
     if (quote == 0 && c == '#') {
@@ -116,7 +118,7 @@ std::string example_text(const std::string& example, std::size_t columns) {
     used += 1 + width;
   };
   for (const std::string& piece : pieces_of(example)) {
-    // A value that does not fit beside its option goes below it.
+    // A value that does not fit beside its option is placed below it.
     const std::size_t space = piece.starts_with("--") ? piece.find(' ') : std::string::npos;
     if (space != std::string::npos && 6 + column_count(piece) > columns - 2) {
       add(piece.substr(0, space));

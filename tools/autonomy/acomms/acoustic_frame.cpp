@@ -169,10 +169,12 @@ std::optional<Bytes> encode(const AcousticState& state) {
 }
 
 std::optional<AcousticState> decode(std::span<const std::uint8_t> bytes, std::int64_t near_utime) {
+  // Check kind, version and checksum.
   const std::optional<int> kind = kind_of_state(bytes.size());
   if (!kind) return std::nullopt;
   Reader in(bytes);
   if (in.unsigned_number(1) != (version << 4 | *kind) || !has_good_checksum(bytes)) return std::nullopt;
+  // Scale the fields to SI units.
   AcousticState state;
   state.sender = static_cast<int>(in.unsigned_number(1));
   const std::int64_t time_of_week_ms = in.unsigned_number(4);
@@ -190,6 +192,7 @@ std::optional<AcousticState> decode(std::span<const std::uint8_t> bytes, std::in
     state.refusal = static_cast<OrderRefusal>(in.unsigned_number(1));
     if (state.refused_order == 0 || state.refusal == OrderRefusal::none) return std::nullopt;
   }
+  // Reject values out of range.
   if (time_of_week_ms >= week_ms || state.east_std_m <= 0 || state.north_std_m <= 0 ||
       std::abs(state.correlation) > 1 || (*kind == obeying_state_kind && state.order == 0))
     return std::nullopt;

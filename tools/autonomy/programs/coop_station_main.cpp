@@ -36,6 +36,7 @@ int run(int argc, char** argv) {
   double speed_mps = 1.5;
   CLI::App app{"Sends orders to a submerged vehicle by radio, relayed by other vehicles.", "shoal-coop-station"};
   command_line::DeclaredOptions options(app);
+  // Channels and options.
   options.publishes({"{name}.radio.cmd", "{name}.knowledge"});
   options.subscribes({"{name}.gps", "{name}.radio"});
   autonomy::add_name(options, station.name, "vehicle that is the station").required();
@@ -58,6 +59,7 @@ int run(int argc, char** argv) {
        "'[[120,500,200,15],[600,900,-100,20,1.2]]'"},
       "It reads NAME.gps and NAME.radio; it publishes NAME.radio.cmd and NAME.knowledge, where the vehicle was by its "
       "newest state.");
+  // Parse the command line, check the orders and run.
   if (const auto exit_code = options.parse(argc, argv)) return *exit_code;
   station.access = sending.access();
   if (!station.access.slot && station.access.random_mean_s <= 0)

@@ -164,12 +164,14 @@ class BugPacker {
 
   /// Meshes, terrain, textures and currents: hashes of all, copies of small ones.
   void add_world_files() {
+    // Hash the files that the world names.
     const std::string path = directory_ + "/world.yaml";
     if (!is_plain(path) || size_of(path) > max_text_bytes) return;
     sim::Diagnostics problems;
     const std::string hashes = files_text(sim::parse_config_text(read_whole_file(path), path, problems));
     if (hashes.empty()) return;
     add("files.txt", hashes, "hashes of the files that the world names");
+    // Copy small files.
     std::istringstream lines(hashes);
     std::uintmax_t copied = 0;
     for (std::string line; std::getline(lines, line);) {

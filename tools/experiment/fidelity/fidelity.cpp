@@ -115,6 +115,7 @@ double norm_of(const FidelityState& a, const FidelityState& b, std::size_t from)
 }
 
 void compare(FidelityResult& result) {
+  // Sums of squared differences over the rows.
   double position = 0, velocity = 0, turn = 0, heading = 0;
   for (std::size_t i = 0; i < result.t.size(); ++i) {
     const FidelityState &a = result.theirs[i], &b = result.ours[i];
@@ -126,13 +127,15 @@ void compare(FidelityResult& result) {
     heading += std::pow(std::remainder(a[5] - b[5], 2 * std::numbers::pi), 2);
     if (i > 0) result.path_m += norm_of(a, result.theirs[i - 1], 0);
   }
+  // Root mean squares.
   const auto count = static_cast<double>(result.t.size());
   result.position_rms_m = std::sqrt(position / count);
   result.velocity_rms_mps = std::sqrt(velocity / count);
   result.turn_rms_degps = std::sqrt(turn / count) / degree_rad;
   result.heading_rms_deg = std::sqrt(heading / count) / degree_rad;
+  // Comparison with the limits.
   const auto check = [&](const char* name, double value, const std::optional<double>& bar) {
-    // Not `value > bar`: a value that is not a number has missed it.
+    // Not `value > bar`, so that NaN exceeds the limit.
     if (bar && !(value <= *bar))
       result.missed.push_back(std::string(name) + " " + sim::number_text(value) + " > " + sim::number_text(*bar));
   };
@@ -202,6 +205,7 @@ sim::ConfigNode overrides_of(const FidelityCase& of, const FidelityOptions& opti
 }
 
 FidelityResult run(const FidelityCase& of, const FidelityOptions& options) {
+  // Build the world of the case.
   if (std::error_code error; !std::filesystem::is_regular_file(of.vehicle, error))
     sim::throw_config_error(of.vehicle_place, "", "there is no vehicle file '" + of.vehicle + "'");
   const FidelityReference reference = read_fidelity_reference(of.reference);
@@ -213,6 +217,7 @@ FidelityResult run(const FidelityCase& of, const FidelityOptions& options) {
   check_inputs(of, vehicle);
   set_velocity(vehicle, state_of(of, reference, reference.rows.front()));
 
+  // Step through the rows of the reference.
   FidelityResult result;
   result.of = of;
   result.step_s = options.step_s.value_or(of.step_s);

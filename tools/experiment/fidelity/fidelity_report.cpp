@@ -78,6 +78,7 @@ std::string digits(double value) {
 
 void plot(const std::filesystem::path& image, const FidelityResult& result) {
   const ScratchDirectory scratch;
+  // Data and script of the plot.
   write(scratch.path / "theirs", rows_of(result, result.theirs, ' ', true));
   write(scratch.path / "ours", rows_of(result, result.ours, ' ', true));
   write(scratch.path / "plot.gp",
@@ -93,6 +94,7 @@ void plot(const std::filesystem::path& image, const FidelityResult& result) {
             panel("speed", "1", {{"8", "surge"}}) + panel("speed across", "1", {{"9", "sway"}, {"10", "heave"}}) +
             "set ylabel 'deg/s'\n" + panel("turn rates", "1", {{"11", "p"}, {"12", "q"}, {"13", "r"}}) +
             "unset multiplot\n");
+  // Run gnuplot.
   if (!run_gnuplot(scratch.path.string(), "plot.gp", std::chrono::seconds(60), [] { return false; })) {
     std::ifstream log(scratch.path / "plot.log");
     std::string line;

@@ -84,16 +84,19 @@ bool drawable(const AllanCurve& curve) {
 }
 
 std::string script(const AllanTable& table, const std::string& csv, const std::string& png) {
+  // One panel for each array with drawable curves.
   std::vector<std::string> arrays;
   for (const AllanCurve& curve : table.curves)
     if (drawable(curve) && (arrays.empty() || arrays.back() != array_of(curve.field)))
       arrays.push_back(array_of(curve.field));
   if (arrays.empty()) throw std::runtime_error("nothing to draw: every Allan deviation is zero or NaN");
+  // Settings common to all panels.
   std::string text = fmt::format(
       "set datafile separator ','\nset terminal pngcairo size 1000,{}\nset output {}\n"
       "set logscale xy\nset format y '10^{{%T}}'\nset grid\nset key top right\nset xlabel 'averaging time (s)'\n"
       "set multiplot layout {},1 title {} noenhanced\n",
       60 + 440 * arrays.size(), gnuplot_text(png), arrays.size(), gnuplot_text("Allan deviation of " + table.channel));
+  // Curves of each panel.
   for (const std::string& array : arrays) {
     text += fmt::format("set ylabel {} noenhanced\nplot ", gnuplot_text(array + unit_of(array)));
     std::string separator;

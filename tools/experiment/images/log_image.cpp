@@ -24,9 +24,11 @@ class Chosen {
   Chosen(const std::string& channel, const ImageChoice& choice) : channel_(channel), choice_(choice) {}
 
   void take(const bridges::LogEvent& event) {
+    // Start of simulated time.
     if (event.channel == "sim.info" && !start_known_) learn_start(event);
     if (!first_utime_) first_utime_ = event.utime;
     if (event.channel != channel_) return;
+    // Type and time of the message.
     const std::int64_t type = shoal::fingerprint(event.payload);
     if (count_ == 0) type_ = type;
     if (type != type_) throw std::runtime_error("messages of several types");
@@ -37,6 +39,7 @@ class Chosen {
       payloads_.emplace_back(event.payload);
       return;
     }
+    // Keep the message nearest to the choice.
     const double away_s = choice_.at_s ? std::abs(last_s_ - *choice_.at_s) : 0;
     const bool desired = choice_.number ? number == *choice_.number
                          : choice_.at_s ? payloads_.empty() || away_s < away_s_

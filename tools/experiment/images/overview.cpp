@@ -107,9 +107,9 @@ sim::Pose look_at(const sim::Vector3d& eye_W, const sim::Vector3d& look_W) {
 Overview overview_of(const sim::World& world, const sim::OpticsConfig& optics, bool everything) {
   std::vector<Subject> subjects = subjects_of(world, everything);
   const Eigen::AlignedBox3d box = framed(subjects);
-  // Of objects it is enough that they are framed.
+  // Objects only need to be framed.
   std::erase_if(subjects, [](const Subject& each) { return !each.is_vehicle; });
-  // Clockwise from the south-west, and higher when that does not help.
+  // Clockwise from the south-west, and from other heights when vehicles are hidden.
   const double south_west_rad = std::atan2(-0.75, -0.5);
   std::optional<Overview> best;
   for (const double height_rad : {0.6, 1.0, 0.3, 1.4})
@@ -124,6 +124,7 @@ Overview overview_of(const sim::World& world, const sim::OpticsConfig& optics, b
       if (best && view.hidden.size() >= best->hidden.size()) continue;
       best = std::move(view);
     }
+  // Vehicles that are too small to see.
   constexpr double tiny_px = 6;
   for (const Subject& subject : subjects)
     if (pixels_of(subject, best->X_WS.translation(), optics) < tiny_px) best->tiny.push_back(subject.name);

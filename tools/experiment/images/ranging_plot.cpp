@@ -62,19 +62,21 @@ std::string image_command(int width, int height, double x, double y, double dx, 
 }
 
 Drawing draw(const shoal::sonar_image_t& image) {
+  // Check the dimensions.
   check_count("bytes", image.data.size(), image.size);
   if (image.nbins < 1 || image.nbeams < 1 || image.size != std::int64_t{image.nbins} * image.nbeams ||
       !(image.range_max_m > image.range_min_m) || !(image.range_min_m >= 0))
     throw std::runtime_error("the image has an invalid size");
   // A single beam is drawn as a narrow wedge.
   const double half_rad = std::clamp(0.5 * std::abs(image.radstep) * image.nbeams, 0.05, std::numbers::pi);
+  // Extent and resolution of the raster.
   const double half_width_m = image.range_max_m * (half_rad < std::numbers::pi / 2 ? std::sin(half_rad) : 1);
   const double low_m = half_rad < std::numbers::pi / 2 ? 0 : -image.range_max_m;
   const double cell_m = 2 * half_width_m / 500;
   const int width = 500, height = static_cast<int>((image.range_max_m - low_m) / cell_m);
   const double bin_m = (image.range_max_m - image.range_min_m) / image.nbins;
   Drawing drawing;
-  // x of the image is to the right, that is -y of the sensor; up is forward.
+  // x of the image points to the right, which is -y of the sensor; up is forward.
   for (int row = 0; row < height; ++row)
     for (int column = 0; column < width; ++column) {
       const double right_m = -half_width_m + (column + 0.5) * cell_m, forward_m = low_m + (row + 0.5) * cell_m;
@@ -91,6 +93,7 @@ Drawing draw(const shoal::sonar_image_t& image) {
 }
 
 Drawing draw(const std::vector<shoal::side_scan_t>& lines) {
+  // Width of a line with the gap between the sides.
   const int bins = lines.front().nbins;
   const double range_m = lines.front().range_max_m, near_m = lines.front().range_min_m;
   if (bins < 1 || !(range_m > near_m) || !(near_m >= 0)) throw std::runtime_error("the lines have an invalid size");
@@ -99,6 +102,7 @@ Drawing draw(const std::vector<shoal::side_scan_t>& lines) {
   const double width = 2.0 * bins + unheard;
   if (unheard > 10000 || width * static_cast<double>(lines.size()) > max_raster_bytes)
     throw std::runtime_error("the lines have an invalid size");
+  // Append each line, port mirrored.
   Drawing drawing;
   for (const auto& line : lines) {
     if (line.nbins != bins) throw std::runtime_error("the number of bins changes");

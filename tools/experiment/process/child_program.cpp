@@ -61,8 +61,9 @@ std::vector<std::string> own_environment() {
 int start_child(const ChildProgram& program, pid_t& pid) {
   const std::vector<char*> arguments = pointers_to(program.arguments);
   const std::vector<char*> environment = pointers_to(program.environment);
-  int ends[2];  // it tells why it could not start; a start closes it
+  int ends[2];  // pipe for the error of a failed start; closed by a successful one
   if (pipe2(ends, O_CLOEXEC) != 0) return errno;
+  // Child: execute the program, or send the error.
   const pid_t parent = getpid();
   pid = fork();
   if (pid == 0) {
@@ -71,6 +72,7 @@ int start_child(const ChildProgram& program, pid_t& pid) {
     const ssize_t reported = write(ends[1], &error, sizeof error);
     _exit(reported < 0 ? 126 : 127);
   }
+  // Parent: wait for the error or the end of the pipe.
   const int fork_error = errno;
   close(ends[1]);
   int error = 0;

@@ -100,10 +100,10 @@ std::vector<ProcessGroup::Exit> ProcessGroup::reap() {
     exits.push_back({process.config.name, describe_status(status), process.config.client,
                      process.config.on_exit == sim::OnExit::end_run, failed,
                      process.config.on_exit == sim::OnExit::ignore});
-    if (kill(-process.pid, SIGTERM) == 0) left_behind_.push_back(process.pid);  // its children live on
+    if (kill(-process.pid, SIGTERM) == 0) left_behind_.push_back(process.pid);  // its children still run
     return true;
   });
-  // The number of a group without members may be given to another one.
+  // The number of a group without members may be reused by another one.
   std::erase_if(left_behind_, [](pid_t group) { return kill(-group, 0) != 0; });
   return exits;
 }

@@ -32,6 +32,7 @@ std::vector<std::vector<std::uint32_t>> common_lengths(const Lines& a, const Lin
 }  // namespace
 
 std::vector<std::string> line_difference(const std::string& first, const std::string& second, std::size_t max) {
+  // Remove the common start and end.
   Lines a = lines_of(first), b = lines_of(second);
   std::size_t begin = 0;
   while (begin < a.size() && begin < b.size() && a[begin] == b[begin]) ++begin;
@@ -42,6 +43,7 @@ std::vector<std::string> line_difference(const std::string& first, const std::st
   };
   a = middle(a);
   b = middle(b);
+  // Follow the longest common subsequence.
   std::vector<std::string> result;
   std::size_t count = 0;
   const auto report = [&](char sign, std::size_t line, const std::string& text) {
@@ -60,6 +62,7 @@ std::vector<std::string> line_difference(const std::string& first, const std::st
       }
     }
   }
+  // Remaining lines.
   for (; i < a.size(); ++i) report('-', i, a[i]);
   for (; j < b.size(); ++j) report('+', j, b[j]);
   if (count > max) result.push_back(fmt::format("and {} more lines", count - max));

@@ -156,6 +156,7 @@ class Player {
       throw RunError(2, "configuration",
                      fmt::format("{}: begins at {:.6g} s, after --until", log_.path, sim::to_seconds(world_.now())));
     end_step();
+    // Serve requests, wait for clients, keep the pace, step.
     while (desired() && world_.step_number() < last) {
       execute();
       if (!synchronized_) {
@@ -174,6 +175,7 @@ class Player {
       end_step();
       progress_.update(world_.now(), played_, control_, false);
     }
+    // Wait for the answers to the last step.
     while (desired() && !synchronized_) {
       execute();
       synchronize();
@@ -206,11 +208,11 @@ class Player {
     synchronized_ = outcome == bridges::LockstepOutcome::done;
   }
 
-  /// What programs said to this step, and in its place what they or others said in the run.
+  /// Compares the messages of programs for this step, and publishes the recorded ones in their place.
   void take_answers() {
     answers_.came(world_.step_number(), gate_.admit());
     steps_.inputs_after(world_.step_number(), [this](std::string_view channel, std::span<const std::byte> payload) {
-      // Who speaks here himself need not receive what was published in the run, and no client should receive both.
+      // A program that publishes here does not receive the recorded messages, and no client receives both.
       if (!answers_.is_spoken(channel) || lockstep_.has_receiver(channel)) publish(channel, payload);
     });
     for (const auto& mailbox : mailboxes_)

@@ -65,6 +65,7 @@ void PlayerRequests::check_joins() {
 }
 
 std::optional<std::string> PlayerRequests::execute(const std::string& command, const std::string& text, double value) {
+  // Served requests.
   if (command == "join") {
     check_channels(text);
   } else if (command == "pause" || command == "resume") {
@@ -82,6 +83,7 @@ std::optional<std::string> PlayerRequests::execute(const std::string& command, c
     return where_();
   } else if (command == "where") {
     return where_();
+    // Requests that require a world.
   } else if (needs_a_world(command)) {
     throw std::runtime_error("a record is being played, so there is no world: '" + command + "' is not possible");
   }

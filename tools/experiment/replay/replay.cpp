@@ -89,6 +89,7 @@ class Replay {
     const std::int64_t last = last_step();
     outcome_.begin_step = world_.step_number();
     Progress progress(static_cast<double>(last) * outcome_.step_s, options_.quiet);
+    // Deliver the inputs and step, as in the run.
     hand_over(RunJournal::before_first_reports);
     after_step();
     try {
@@ -103,6 +104,7 @@ class Replay {
     } catch (const sim::PhysicsFault& error) {
       differ("the world", std::string("physics fault here: ") + error.what());
     }
+    // Compare the end of the run.
     progress.clear();
     if (!cut_ && log_.cut.empty() && world_.step_number() == log_.last_step) finish();
     messages_.finish(world_.step_number());
@@ -148,7 +150,7 @@ class Replay {
       throw std::runtime_error(log_.path + ": ends before the first step");
   }
 
-  /// The run, or the branch, began with a snapshot.
+  /// Restores the snapshot with which the run, or the branch, started.
   void restore() {
     if (!log_.snapshot) return;
     const std::string who = log_.path + ": sim.snapshot";
@@ -361,6 +363,7 @@ class Replay {
   }
 
   void report_log() {
+    // Gaps of the log.
     if (!log_.cut.empty()) note(log_.cut);
     for (const std::string& hole : log_.holes) note(hole);
     if (!outcome_.complete && !log_.holes.empty())
@@ -368,6 +371,7 @@ class Replay {
           fmt::format("the log lacks inputs after step {}, although it extends to step {}: nothing after step {} can "
                       "be verified",
                       log_.usable_step(), log_.last_step, log_.usable_step()));
+    // Properties of the log.
     const std::string wrote = log_.info.versions.substr(0, log_.info.versions.find('\n'));
     if (wrote != "shoal " + short_version())
       note("written by " + sim::shortened(sim::printable(wrote)) + "; this is shoal " + short_version());
@@ -376,10 +380,12 @@ class Replay {
     if (!log_.bad_snapshot.empty()) note(log_.bad_snapshot);
     if (log_.first_step > log_.begin_step()) note(fmt::format("the log begins at step {}", log_.first_step));
     if (log_.hashes.empty()) note("the log holds no hashes: only messages are compared");
+    // Messages that the log lacks.
     if (outcome_.missing_messages > 0 && !(log_.own_stamps && outcome_.first))
       note(fmt::format("{} messages that were published here are not in the log, the first at {}: {}",
                        outcome_.missing_messages, at(messages_.first_missing()->step),
                        messages_.first_missing()->channel));
+    // Problems and interventions.
     for (const std::string& problem : log_.problems) note("the log: " + problem);
     for (const std::string& audit_entry : log_.audit) note("in the run: " + audit_entry);
   }
@@ -395,14 +401,17 @@ class Replay {
       report.push_back(title + ":");
       for (const std::string& line : lines) report.push_back("  " + line);
     };
+    // Versions and state.
     section("Versions (- in the log, + here)", line_difference(log_.info.versions, version_text()));
     section("Machine (- in the log, + here)", line_difference(log_.info.build, build_text()));
     if (!parts_.empty()) section("State that differs at the first hash that does, " + at(parts_step_), few(parts_));
+    // True positions.
     std::vector<std::string> lines;
     for (const auto& [vehicle, distance] : messages_.distances())
       lines.push_back(fmt::format("{}: from {} on, at most {:.6g} m at {}", vehicle, at(distance.first_step),
                                   distance.max_m, at(distance.max_step)));
     section("True positions", lines);
+    // Channels in order of their first difference.
     lines.clear();
     std::vector<const ReplayMessages::Difference*> channels;
     for (const auto& [channel, difference] : messages_.by_channel()) channels.push_back(&difference);

@@ -73,10 +73,11 @@ class Reader {
   explicit Reader(const std::string& path) : file_(path) { log_.path = path; }
 
   ReplayLog read() {
+    // Read all events.
     bridges::LogEventView event;
     while (file_.next(event)) {
       count(event.channel);
-      if (event.channel != "sim.audit") {  // which may stand behind the end of a step
+      if (event.channel != "sim.audit") {  // it may follow the end of a step
         last_stamp_ = event.utime;
         ends_whole_ = false;
       }
@@ -92,6 +93,7 @@ class Reader {
         problem(fmt::format("byte {}: {}: {}", event.offset, event.channel, error.what()));
       }
     }
+    // Check that the log is complete.
     for (const Count& count : counts_) log_.events.emplace(count.channel, count.events);
     for (const std::string& text : file_.problems()) problem(text);
     if (!informed_) fail_without_info();
@@ -126,13 +128,15 @@ class Reader {
   /// as came in the holes, those report the steps that the holes are about.
   void narrow_holes() {
     if (!log_.own_stamps) return;
-    std::map<std::string, std::int64_t, std::less<>> unknown;  // of the channels that inputs came on
+    std::map<std::string, std::int64_t, std::less<>> unknown;  // by channel of the inputs
+    // Count the events that are not known to be inputs.
     std::set<std::pair<std::string, std::int64_t>> inputs;
     for (const ReplayLog::Input& input : log_.inputs) {
       if (!log_.events.contains(input.channel)) continue;
       unknown.try_emplace(input.channel, log_.events.at(input.channel)).first->second -= 1;
       inputs.emplace(input.channel, input.step);
     }
+    // Remove arrivals that are known.
     for (Hole& hole : holes_)
       std::erase_if(hole.came, [&](const Arrival& came) {
         const std::string& channel = counts_[came.channel].channel;
@@ -140,6 +144,7 @@ class Reader {
       });
     for (const Hole& hole : holes_)
       for (const Arrival& came : hole.came) unknown.at(counts_[came.channel].channel) -= 1;
+    // Narrow each hole to the steps of its arrivals.
     for (Hole& hole : holes_) {
       std::erase_if(hole.came, [&](const Arrival& came) { return unknown.at(counts_[came.channel].channel) != 0; });
       if (hole.came.empty() || hole.last - hole.first + 1 > static_cast<std::int64_t>(hole.came.size())) continue;
@@ -301,6 +306,7 @@ class Reader {
   void take_info(const bridges::LogEventView& event) {
     auto info = shoal::decode<shoal::sim_info_t>(event.payload, shoal::Finite::any);
     if (event.utime != info.utime) log_.own_stamps = false;
+    // First message: start of the run.
     if (!informed_) {
       if (info.step_us < 1 || info.step_us > 10'000'000)
         throw shoal::MessageError("step_us must be from 1 to 10000000, got " + std::to_string(info.step_us));
@@ -310,9 +316,10 @@ class Reader {
       check_stamp(event, log_.info.utime, log_.info.step);
       check_sequence(log_.info.input_sequence, log_.info.step);
       note_step(log_.info.step);
-      whole_step_ = log_.info.step - 1;  // its own inputs come behind it
+      whole_step_ = log_.info.step - 1;  // its own inputs follow it
       return;
     }
+    // Later message: the same run, or another branch of it.
     const shoal::sim_info_t& first = log_.info;
     const bool same_run = info.world == first.world && info.seed == first.seed && info.step_us == first.step_us &&
                           info.epoch_utime == first.epoch_utime && info.resolved_config == first.resolved_config;
@@ -380,9 +387,11 @@ class Reader {
 
   void take_hash(const bridges::LogEventView& event) {
     auto message = shoal::decode<shoal::sim_hash_t>(event.payload, shoal::Finite::any);
+    // Check the position in the log.
     check_stamp(event, message.utime, message.step);
     check_sequence(message.input_sequence, message.step);
     since_inputs_.clear();
+    // Store the hash of the state and of its parts.
     ReplayLog::Hashes& hashes = log_.hashes[message.step];
     hashes.whole = static_cast<std::uint64_t>(message.hash);
     hashes.after_inputs = std::any_of(log_.inputs.rbegin(), log_.inputs.rend(), [&](const ReplayLog::Input& input) {
@@ -397,7 +406,7 @@ class Reader {
       else
         hashes.parts.push_back({std::move(message.part[i]), hash});
     }
-    input_step_ = std::max(input_step_, message.step);  // all that came up to here was in those before
+    input_step_ = std::max(input_step_, message.step);  // all earlier inputs were in messages before this one
     note_whole(message.step);
     published_ = true;
   }

@@ -60,6 +60,7 @@ std::string after_distance(const RunMetric& metric) {
 
 /// A vehicle's position errors, the smallest first.
 std::string position_sentence(const std::string& vehicle, Metrics metrics) {
+  // Best estimate first.
   std::stable_sort(metrics.begin(), metrics.end(),
                    [](const RunMetric* a, const RunMetric* b) { return rms_of(*a) < rms_of(*b); });
   const RunMetric& best = *metrics.front();
@@ -72,8 +73,10 @@ std::string position_sentence(const std::string& vehicle, Metrics metrics) {
     text = fmt::format("{} localises itself to {} rms ({})", vehicle, length_text(rms_of(best)), best.name);
   else
     text = fmt::format("{} is located to {} rms ({})", vehicle, length_text(rms_of(best)), best.name);
+  // Final error of a single estimate.
   if (metrics.size() == 1 && best.value("final_m"))
     text += fmt::format(", {} at the end", length_text(*best.value("final_m"))) + after_distance(best);
+  // Other estimates.
   for (std::size_t i = 1; i < metrics.size(); ++i) {
     const RunMetric& other = *metrics[i];
     text += "; " + other.name + ": ";

@@ -152,11 +152,13 @@ std::vector<std::string> findings(const std::vector<std::string>& names, const s
   const std::vector<RunMetric> metrics = metrics_named(all_figures(cases));
   std::vector<std::string> sentences;
   for (const std::string& name : names) {
+    // Unit of the figure.
     std::string unit;
     for (const RunMetric& metric : metrics)
       for (const RunMetric::Figure& figure : metric.figures)
         if (name == metric.name + "." + figure.name && figure.kind != nullptr && figure.kind->unit != "1")
           unit = " " + figure.kind->unit;
+    // Mean and deviation by case.
     std::string text;
     for (const StudyCaseRecord& each : cases) {
       const auto found = each.figures.find(name);

@@ -42,6 +42,7 @@ std::string text_at(const sim::ConfigNode& map, const char* key) {
 
 /// What the world of the run says of its metrics.  The file may be anything, and is only looked at.
 void read_world(const std::string& path, std::vector<RunMetric>& metrics) {
+  // Read the world of the run.
   sim::Diagnostics problems;
   sim::ConfigNode world;
   try {
@@ -51,6 +52,7 @@ void read_world(const std::string& path, std::vector<RunMetric>& metrics) {
   }
   const sim::ConfigNode* entries = world.find("metrics");
   if (entries == nullptr) return;
+  // Vehicle, channel and dimensions of each metric.
   std::map<std::string, std::size_t> places;
   for (const sim::ConfigNode& entry : entries->items) {
     const std::string name = text_at(entry, "name");
@@ -62,6 +64,7 @@ void read_world(const std::string& path, std::vector<RunMetric>& metrics) {
     metric->channel = text_at(entry, "channel");
     metric->dimensions = text_at(entry, "dimensions") == "3" ? 3 : 2;
   }
+  // Order of the world.
   const auto place = [&](const RunMetric& metric) {
     const auto known = places.find(metric.name);
     return known == places.end() ? places.size() : known->second;

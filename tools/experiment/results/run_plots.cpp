@@ -94,6 +94,7 @@ std::string tracks_script(const sim::World& world, const Tracks& tracks) {
   std::size_t vehicles = 0, estimates = 0;
   std::vector<std::string> curves{
       "'outlines.dat' using (real(word(strcol(1),1))):(real(word(strcol(1),2))) with lines lc 'gray40' notitle"};
+  // True tracks.
   if (world.vehicles().size() > max_named_tracks) {
     curves.emplace_back("'tracks.csv' every ::1 using 3:4 with dots lc 'blue' title 'vehicles'");
   } else {
@@ -103,12 +104,14 @@ std::string tracks_script(const sim::World& world, const Tracks& tracks) {
                       "noenhanced",
                       gnuplot_text(vehicle->name()), cycled(pale_colors, vehicles++)));
   }
+  // Estimates.
   std::set<std::string> drawn;
   for (const Scoring::Track& track : tracks)
     if (drawn.insert(track.metric).second)
       curves.push_back(curve(track.metric, 4, "5",
                              fmt::format("lw 1.5 dt 2 lc '{}' title {} noenhanced", cycled(strong_colors, estimates++),
                                          gnuplot_text(track.metric + " estimate of " + track.vehicle))));
+  // Final positions.
   if (!world.vehicles().empty())
     curves.emplace_back("$ends using 1:2 with points pt 7 ps 1 lc 'gray20' title 'at the end'");
   return canvas_for_tracks + end_positions(world) + title_of(world, "tracks from above") +

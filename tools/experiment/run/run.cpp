@@ -169,11 +169,13 @@ void Run::await(const std::vector<std::string>& clients) {
   const auto deadline = begin + std::chrono::duration<double>(loaded_.config.lockstep.join_timeout_s);
   for (const std::string& client : clients) {
     bool reported = false;
+    // Wait for the client, serving requests.
     while (!lockstep_.has(client) && desired()) {
       service_.handle_requests(&time_);
       check_programs();
       check_bus();
       if (programs_.is_gone(client)) break;
+      // Report a timeout or a long wait.
       if (Clock::now() > deadline)
         throw RunError(
             5, "timeout",
@@ -193,6 +195,7 @@ void Run::loop() {
   end_of_step();
   const sim::Time end = duration_s_ > 0 ? sim::from_seconds(duration_s_) : sim::Time::max();
   while (desired() && !world_.ended() && world_.now() < end) {
+    // Requests and pauses.
     execute();
     if (time_.take_moved()) synchronized_ = false;
     if (!control_.may_step()) {
@@ -203,6 +206,7 @@ void Run::loop() {
       buses_.wait(std::chrono::milliseconds(20));
       continue;
     }
+    // Pace, then step or wait for clients.
     if (synchronized_) pace();
     if (!control_.may_step() || time_.has_moved()) continue;
     if (synchronized_)
