@@ -235,10 +235,12 @@ int show_closed_forms(const std::string& file) {
 int show(AcousticsArguments& arguments) {
   if (!arguments.closed_forms.empty()) return show_closed_forms(arguments.closed_forms);
   if (!arguments.image.empty()) check_writable(arguments.image);
+  // Ranges of the table or plot.
   const std::vector<double> ranges_m =
       arguments.ranges.empty() && arguments.image.empty()
           ? std::vector<double>()
           : parse_ranges(arguments.ranges.empty() ? "100:10000:100" : arguments.ranges);
+  // World, link and packets.
   arguments.load.encode_message = shoal::encode_own_message;
   const sim::WorldConfig config =
       (arguments.world.empty() ? sim::load_world_text(plain_world, "plain sea", arguments.load)
@@ -253,6 +255,7 @@ int show(AcousticsArguments& arguments) {
   check_end(arguments.to.empty() ? "--depth" : "--to", link.to, world);
   warn(link, world);
   const std::optional<double> depth_m = arguments.water_depth_m ? arguments.water_depth_m : water_depth_m(link, world);
+  // Budget of a single link.
   if (ranges_m.empty()) {
     const LinkBudget budget = link_budget(link, config.acoustics, world.medium(), depth_m);
     std::vector<double> delivered;
@@ -261,6 +264,7 @@ int show(AcousticsArguments& arguments) {
     std::cout << budget_text(link, budget, config.acoustics) << '\n' << packets_text(link, budget, packets, delivered);
     return exit_ok;
   }
+  // Table or plot over range.
   const std::vector<RangeRow> rows = over_range(link, packets, ranges_m, config.acoustics, world.medium(), depth_m);
   if (arguments.image.empty())
     std::cout << csv_text(rows, packets);
@@ -292,6 +296,7 @@ void add_link_options(CLI::App& command, AcousticsArguments& arguments) {
 }
 
 void add_signal_options(CLI::App& command, AcousticsArguments& arguments) {
+  // Level and band.
   command
       .add_option("--level", arguments.level_dB,
                   "source level, dB re 1 uPa at 1 m; without it that of the sending modem, else 185")
@@ -307,11 +312,13 @@ void add_signal_options(CLI::App& command, AcousticsArguments& arguments) {
                   "of the signal, Hz; without it that of the sending modem, else 4000")
       ->type_name("HZ")
       ->check(number_from(0.1, 1e6));
+  // Packets.
   command.add_option("--packet", arguments.packets, "modulation:bit/s:bytes, such as fsk:80:32")
       ->type_name("PACKET")
       ->type_size(1)
       ->allow_extra_args(false);
   command.add_flag("--micromodem", arguments.micromodem, "a frame of each rate of the WHOI Micro-Modem");
+  // Receiver.
   command
       .add_option("--detection", arguments.detection_dB,
                   "signal-to-noise ratio that the receiver needs, dB; without it that of the transducer, else 6")

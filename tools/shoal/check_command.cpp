@@ -115,6 +115,7 @@ void add_check_command(CLI::App& app, int& exit_code) {
   const auto path = std::make_shared<std::string>();
   const auto options = std::make_shared<sim::LoadOptions>();
   add_log_level_option(*command);
+  // Options.
   command
       ->add_option("FILE", *path,
                    "world, vehicle or study file, the name of a shipped one, or a declaration NAME.args.yaml")
@@ -122,6 +123,7 @@ void add_check_command(CLI::App& app, int& exit_code) {
   add_set_option(*command, options->sets);
   add_allow_path_option(*command, *options);
   add_plugin_option(*command);
+  // End of the help and action.
   command_line::set_help_end(
       *command, {{"shoal check worlds/coop_land.yaml --set run.seed=3", "shoal check worlds/studies/coop_land.yaml",
                   "shoal check pilot.args.yaml"},

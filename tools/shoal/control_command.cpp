@@ -140,10 +140,11 @@ class Session {
 
 int control(const ControlArguments& arguments) {
   const bool known = std::find(known_requests.begin(), known_requests.end(), arguments.command) != known_requests.end();
-  // Whatever else it is, the simulator decides.
+  // Reject a misspelt request; the simulator decides about unknown ones.
   if (const std::string meant = sim::closest_name(arguments.command, known_requests); !known && !meant.empty())
     throw command_line::UsageError("unknown request '" + sim::shortened(sim::printable(arguments.command)) +
                                    "'; did you mean '" + meant + "'?");
+  // Send the request and print the reply.
   const std::string text = text_of(arguments.text);
   catch_signals(false);
   Session session(arguments);
@@ -159,7 +160,7 @@ int control(const ControlArguments& arguments) {
     std::cerr << "paused; continue with `shoal control resume"
               << (arguments.lcm_url.empty() ? "" : " --lcm-url '" + arguments.lcm_url + "'")
               << (arguments.run.empty() ? "" : " --run '" + arguments.run + "'") << "`\n";
-  // A vehicle that goes with its client stays as long as we say that we live.
+  // A vehicle that depends on its client remains as long as the client reports that it is alive.
   while (arguments.hold_here && caught_signal() == 0) {
     if (!session.send_request("alive", "", 0) && caught_signal() == 0) return exit_timeout;
     std::this_thread::sleep_for(500ms);
@@ -174,6 +175,7 @@ void add_control_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("control", "Send a request to a running simulator and print its answer");
   const auto arguments = std::make_shared<ControlArguments>();
   add_log_level_option(*command);
+  // Request.
   command
       ->add_option("COMMAND", arguments->command,
                    command_line::alternatives(known_requests) + " (docs/reference/messages.md)")
@@ -182,6 +184,7 @@ void add_control_command(CLI::App& app, int& exit_code) {
   command->add_option("--value", arguments->value, "number of the request: steps, speed (or max), seconds")
       ->type_name("NUMBER")
       ->transform(command_line::number_or_word(-1e12, 1e12, "max").description(""));
+  // Client and connection.
   command->add_option("--client", arguments->client, "client name to use in requests; without it shoal-control-PID")
       ->type_name("NAME");
   command
@@ -194,6 +197,7 @@ void add_control_command(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   command->add_flag("--stay", arguments->hold_here, "keep a vehicle spawned with `with_client: true` until Ctrl-C");
   add_lcm_url_option(*command, arguments->lcm_url);
+  // End of the help and action.
   command_line::set_help_end(
       *command, {{"shoal control pause", "shoal control step --value 10", "shoal control until --value 90",
                   "shoal control until storm  # an event of the world",

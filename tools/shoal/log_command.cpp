@@ -58,6 +58,7 @@ int info(const std::string& path, const shoal::MessageTypes& types) {
   std::int64_t first_us = 0;
   std::int64_t last_us = 0;
   bool run_shown = false;
+  // Count the events of each channel.
   while (const auto event = log.next()) {
     if (events++ == 0) first_us = event->utime;
     last_us = event->utime;
@@ -71,6 +72,7 @@ int info(const std::string& path, const shoal::MessageTypes& types) {
       run_shown = true;
     }
   }
+  // Print the table.
   fmt::print("{}: {} events, {} bytes, {:.3f} s\n", path, events, log.file_bytes(),
              static_cast<double>(last_us - first_us) * 1e-6);
   std::size_t width = 7;
@@ -108,6 +110,7 @@ int csv(const std::string& path, const std::string& channel, const shoal::Messag
   std::uint64_t bad = 0;
   while (const auto event = log.next()) {
     if (event->channel != channel) continue;
+    // Decode the message into a row.
     const shoal::MessageSchema* schema = types.find(static_cast<std::uint64_t>(shoal::fingerprint(event->payload)));
     std::string names = "log_utime";
     std::string row = std::to_string(event->utime);
@@ -124,9 +127,10 @@ int csv(const std::string& path, const std::string& channel, const shoal::Messag
     }
     if (!header) std::cout << names << '\n';
     header = true;
-    if (!(std::cout << row << '\n')) return exit_ok;  // main() knows what it means
+    if (!(std::cout << row << '\n')) return exit_ok;  // main() handles the closed output
     ++rows;
   }
+  // Report problems.
   if (bad > 1) std::cerr << bad << " events of " << channel << " could not be decoded\n";
   if (rows == 0 && bad == 0) std::cerr << path << ": no event on channel '" << channel << "'; see shoal log info\n";
   return rows == 0 || bad > 0 ? exit_bus : show_problems(log);

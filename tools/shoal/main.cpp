@@ -28,6 +28,7 @@ volatile std::sig_atomic_t output_was_closed = 0;
 
 int run(int argc, char** argv) {
   CLI::App app{"Shoal simulates many vehicles and their devices on LCM channels.", "shoal"};
+  // General options and help.
   app.set_help_flag("-h,--help", "print this help");
   app.set_version_flag("--version", tools::version_text, "print the versions of Shoal and its libraries");
   app.require_subcommand(1);
@@ -46,6 +47,7 @@ int run(int argc, char** argv) {
        {"`shoal COMMAND --help` has the options and exit codes of a command."}});
   for (const std::string& problem : sim::DeviceRegistry::instance().take_problems())
     throw std::logic_error("this program was built wrong: " + problem);
+  // Commands.
   int exit_code = tools::exit_ok;
   tools::add_run_command(app, exit_code);
   tools::add_replay_command(app, exit_code);
@@ -68,6 +70,7 @@ int run(int argc, char** argv) {
   tools::add_bug_command(app, exit_code);
   tools::add_study_command(app, exit_code);
   tools::add_upgrade_command(app, exit_code);
+  // Parse and run.
   try {
     if (const auto ended = command_line::parse(app, argc, argv)) return *ended;
   } catch (const sim::ConfigError& error) {

@@ -203,17 +203,20 @@ void take_one(const SnapArguments& arguments, const sim::World& world, const std
 }
 
 int snap(SnapArguments& arguments) {
+  // Check the options.
   if (!sim::is_image_name(arguments.out))
     throw CLI::ValidationError("--out", "must end in .png, .jpg or .jpeg, got '" + arguments.out + "'");
   if (arguments.every_s && arguments.until_s < arguments.at_s)
     throw CLI::ValidationError("--until", "must not be before --at");
+  // Load the world.
   arguments.load.encode_message = shoal::encode_own_message;
   const sim::LoadedWorld loaded = sim::load_world(world_file(arguments.world), arguments.load);
   sim::InProcessBus bus;
   sim::World world(loaded.config, bus);
   world.use_threads(0);
-  make_view(arguments, world);  // what is wrong with it shows before a long run
+  make_view(arguments, world);  // reports errors of the view before a long run
   check_writable(arguments.every_s ? numbered(arguments.out, 0) : arguments.out);
+  // Take the images.
   sim::TextureLibrary textures;
   try {
     int number = 0;

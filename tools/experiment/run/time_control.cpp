@@ -157,6 +157,7 @@ std::optional<std::string> TimeControl::execute(const std::string& command, cons
                                "'");
     return text == "run";
   };
+  // Snapshots and moves in time.
   if (command == "snapshot") return write_snapshot(text);
   if (command == "restore") return restore(text, value == 1);
   if (command == "rewind") return rewind(value, run_on());
@@ -165,6 +166,7 @@ std::optional<std::string> TimeControl::execute(const std::string& command, cons
     const std::string waits = service_.waits_for();
     return place() + (waits.empty() ? "" : ", " + waits) + what_is_kept();
   }
+  // Pause, step and speed.
   if (command == "pause" || command == "resume") {
     control_.set_paused(command == "pause");
     return place();
@@ -278,12 +280,14 @@ void TimeControl::simulate_again(std::int64_t to_step) {
 
 void TimeControl::travel(const std::function<void()>& work, std::int64_t to_step, bool run_on, bool ours) {
   const Saved before = save(History::whole);
+  // Leave the present branch.
   try {
     timeline_.leave_branch(to_step, ours);
   } catch (const std::exception&) {
     timeline_.hold_here();
     throw;
   }
+  // Move the world; restore it on failure.
   inputs_.restart_replay(world_.step_number());
   try {
     work();
@@ -291,6 +295,7 @@ void TimeControl::travel(const std::function<void()>& work, std::int64_t to_step
     restore_saved(before);
     throw;
   }
+  // Start the new branch.
   inputs_.end_replay();
   ++control_.branch;
   control_.clear_until();
@@ -298,7 +303,7 @@ void TimeControl::travel(const std::function<void()>& work, std::int64_t to_step
   moved_ = true;
   try {
     timeline_.start_branch(ours);
-  } catch (const std::exception& error) {  // half of the run is there: it cannot continue
+  } catch (const std::exception& error) {  // the run is partly restored: it cannot continue
     broken_ = error.what();
     throw;
   }
@@ -393,6 +398,7 @@ std::string TimeControl::write_planned_snapshot() {
 
 std::string TimeControl::restore(const std::string& name, bool run_on) {
   const std::string path = path_of(name);
+  // Check that the snapshot is of this world.
   const Snapshot snapshot = read_snapshot(path);
   check_version(snapshot, path, options_.version);
   if (snapshot.resolved_world != options_.resolved_world)
@@ -401,6 +407,7 @@ std::string TimeControl::restore(const std::string& name, bool run_on) {
   if (snapshot.files != options_.files)
     throw std::runtime_error(
         path + ": its world used other files than this run: " + first_difference(snapshot.files, options_.files));
+  // Clients must be rewound with the world.
   if (!inputs_.clients().empty()) {
     restore_with_clients(snapshot, path, run_on);
     return place();

@@ -67,12 +67,14 @@ LinkCounts link_counts(const sim::World& world, const std::string& vehicle, cons
   };
   if (vehicle.empty()) add(world.acoustics().counts_of_removed());
   const bool any_lost = std::any_of(sum.lost.begin(), sum.lost.end(), [](const auto& lost) { return lost.second > 0; });
-  sum.acoustic = sum.sent > 0 || sum.received > 0 || any_lost;  // modems that have left
+  sum.acoustic = sum.sent > 0 || sum.received > 0 || any_lost;  // modems that were removed
+  // Acoustic transducers.
   for (const sim::Transducer* transducer : world.acoustics().transducers()) {
     if (transducer == nullptr || !is_asked(transducer->full_name(), vehicle, device)) continue;
     add(transducer->counts());
     sum.acoustic = sum.acoustic || transducer->has_owner();
   }
+  // Queues of modems.
   for (const auto& mounted : world.devices()) {
     const auto* modem = mounted ? dynamic_cast<const devices::AcousticModem*>(mounted->sensor()) : nullptr;
     if (modem != nullptr && is_asked(mounted->full_name(), vehicle, device)) sum.dropped += modem->dropped_from_queue();

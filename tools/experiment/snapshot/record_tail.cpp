@@ -201,6 +201,7 @@ class Writer {
 
 RecordTail write_record_tail(const std::string& record, const std::string& out, const TailOptions& options) {
   const Survey found = survey(record);
+  // Extent of the record.
   const shoal::sim_info_t& info = *found.info;
   const auto in_s = [&](std::int64_t utime) { return static_cast<double>(utime - info.epoch_utime) * 1e-6; };
   const double before_s = static_cast<double>(found.last_utime - found.first.utime) * 1e-6;
@@ -211,7 +212,7 @@ RecordTail write_record_tail(const std::string& record, const std::string& out, 
   tail.info = info;
   tail.end_s = in_s(found.last_utime);
 
-  // Where it begins: with all of the record, with a snapshot, or just so many seconds before the end.
+  // Start of the tail: the whole record, a snapshot, or a number of seconds before the end.
   Start start = found.first;
   std::optional<Snapshot> snapshot;
   tail.whole = before_s <= options.last_s;
@@ -231,7 +232,7 @@ RecordTail write_record_tail(const std::string& record, const std::string& out, 
     }
   }
 
-  // What is too large begins later, and then with no snapshot.
+  // Start later, without a snapshot, if the tail is too large.
   if (found.bytes - start.offset > options.max_bytes) {
     start = find_start(record, start.utime - 1, found.bytes - options.max_bytes);
     snapshot.reset();

@@ -185,6 +185,7 @@ std::size_t SnapshotRing::Family::bytes() const {
 
 void SnapshotRing::add(std::int64_t step, const sim::Bytes& snapshot, std::size_t bytes_beside) {
   assert(families_.empty() || step > newest());
+  // Store a full snapshot, or the difference from the last full one.
   const bool full =
       !families_.empty() && (families_.back().others.size() + 1 >= max_in_family ||
                              step - families_.back().whole.step >= std::max<std::int64_t>(steps_ / 2, 1) ||
@@ -200,7 +201,7 @@ void SnapshotRing::add(std::int64_t step, const sim::Bytes& snapshot, std::size_
     bytes_ += families_.back().others.back().bytes.size();
   }
   ++count_;
-  // A family goes when even its last is not needed any more, or when there is no room for it.
+  // Remove a family when even its last snapshot is too old, or when space is short.
   while (families_.size() > 1 && (families_[1].whole.step <= step - steps_ || bytes() + bytes_beside > max_bytes_)) {
     bytes_ -= families_.front().bytes();
     count_ -= 1 + families_.front().others.size();

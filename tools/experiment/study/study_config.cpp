@@ -114,17 +114,20 @@ std::vector<std::int64_t> read_seeds(sim::ParamReader& in) {
   }
   const sim::ConfigNode* node = in.child("seeds");
   std::vector<std::int64_t> seeds;
+  // Range as a map.
   if (node != nullptr && node->kind == sim::ConfigNode::Kind::map) {
     SeedRange range;
     in.read("seeds", range, "seeds of the runs");
     for (std::int64_t i = 0; i < range.count; ++i) seeds.push_back(range.first + i);
     return seeds;
   }
+  // Ranges as text.
   if (node != nullptr && has_range(*node)) {
     seeds = read_seed_ranges(in, *node);
     if (!differ_from_each_other(seeds)) in.error("seeds", "'seeds' must differ from each other");
     return seeds;
   }
+  // List of numbers.
   std::vector<double> numbers;
   in.read("seeds", numbers, sim::between(0, max_seed), "seeds of the runs");
   for (const double number : numbers) {
@@ -227,12 +230,14 @@ void StudyPlot::read(sim::ParamReader& in) {
 }
 
 void StudyConfig::read(sim::ParamReader& in) {
+  // Version and name.
   int version = 1;
   in.require("shoal");
   in.read("shoal", version, sim::between(1, 1), "version of the file format");
   in.require("study");
   in.read_name("study", name, "name of the study");
   in.read("description", description, "one sentence for people");
+  // World, seeds and cases.
   in.require("world");
   in.read("world", world, "world file, from the folder of this file");
   in.read("launch", launch, "start the programs that the world names");
@@ -241,6 +246,7 @@ void StudyConfig::read(sim::ParamReader& in) {
   in.read_list("cases", cases, "case", "ways of running the world; unset: as it is");
   if (cases.empty()) cases.emplace_back().name = "world";
   for (const StudyCase& each : cases) in.declare("case", each.name);
+  // Figures, plots and rules.
   in.read("figures", figures, "figures of the table; unset: all");
   if (in.has("figures")) figures_place = in.child("figures")->place;
   in.read_list("plots", plots, "plot", "plots");
@@ -307,6 +313,7 @@ sim::LoadedWorld world_of_case(const std::string& world, const StudyCase& in_cas
 
 LoadedStudy load_study(const std::string& path, const StudyChanges& changes) {
   LoadedStudy study;
+  // Read the file.
   sim::Diagnostics diagnostics;
   const sim::ConfigNode root = sim::load_config_file(path, diagnostics);
   diagnostics.throw_if_any();
@@ -314,12 +321,14 @@ LoadedStudy load_study(const std::string& path, const StudyChanges& changes) {
   study.config.read(in);
   in.finish();
   diagnostics.throw_if_any();
+  // Apply the settings of the command line.
   study.config.file = path;
   if (!changes.seeds.empty()) study.config.seeds = changes.seeds;
   if (changes.duration_s) study.config.duration_s = changes.duration_s;
   const fs::path world_file = fs::path(path).parent_path() / study.config.world;
   study.config.world = world_file.lexically_normal().string();
   check_world_file(study.config.world, path, root, changes.load);
+  // Load the world of each case.
   sim::Warnings warnings;
   for (const StudyCase& each : study.config.cases) {
     sim::LoadOptions options = changes.load;

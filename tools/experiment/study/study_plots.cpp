@@ -100,6 +100,7 @@ class StudyPainter {
     const auto cases = cases_of(plot, study_.config);
     for (const std::string& name : cases)
       for (const std::string& metric : plot.metrics) {
+        // Data of the band.
         const std::vector<Band> bands = bands_of(curves(plot, name, metric));
         if (bands.empty()) continue;
         reached_m.push_back(0);
@@ -107,6 +108,7 @@ class StudyPainter {
         for (const Band& band : bands)
           data += fmt::format("{:.6g} {:.6g} {:.6g} {:.6g} {}\n", band.x, band.low, band.median, band.high, band.runs);
         data += "\n\n";
+        // Curve and title.
         std::string title = metric;
         if (cases.size() > 1) title = plot.metrics.size() > 1 ? name + ": " + metric : name;
         plots += fmt::format(
@@ -115,6 +117,7 @@ class StudyPainter {
             plots.empty() ? "plot " : ", ", file, index, index + 1, gnuplot_text(title));
         ++index;
       }
+    // Axes.
     if (plots.empty()) return {};
     write_file(directory_ + "/" + plot.name + ".dat", data);
     const bool distance = plot.over == StudyPlot::Over::distance;

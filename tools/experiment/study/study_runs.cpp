@@ -142,14 +142,17 @@ class StudyChildren {
       arguments.push_back(option);
       arguments.push_back(value);
     };
+    // Settings of the case.
     for (const std::string& set : config.cases[run.in_case].sets()) add("--set", set);
     for (const std::string& path : options_.allow_paths) add("--allow-path", path);
     if (config.duration_s) add("--duration", fmt::format("{}", *config.duration_s));
+    // Without programs no bus is used.
     if (!config.launch) {
       add("--bus", "none");
-      arguments.emplace_back("--no-serial-ports");  // they are not used, and two runs cannot have the same
+      arguments.emplace_back("--no-serial-ports");  // they are not used, and two runs cannot share one
       return arguments;
     }
+    // Each concurrent run has its own buses.
     arguments.emplace_back("--launch");
     add("--run-name", fmt::format("{}-seed_{}", config.cases[run.in_case].name, run.seed));
     add("--lcm-url", url(slot, attempt, 0));
@@ -202,14 +205,17 @@ class StudyChildren {
   void finish(const Running& ended, int status) {
     StudyRun& run = runs_[ended.what.run];
     read_record(run);
+    // Result, or the signal that killed the run.
     if (WIFSIGNALED(status)) {
       run.record.reset();
       run.failure = fmt::format("was killed by signal {} ({})", WTERMSIG(status), strsignal(WTERMSIG(status)));
     }
+    // Repeat a run whose bus was occupied.
     const bool taken = run.failure.find(bridges::another_simulator) != std::string::npos;
     if (!run.record && taken && ended.what.attempt + 1 < max_attempts)
       return waiting_.push_front({ended.what.run, ended.what.attempt + 1});
     ++done_;
+    // Report the outcome.
     std::string outcome = "failed: " + run.failure + "; see " + run.directory + "/run.log";
     if (run.record) {
       std::ofstream(stamp_file(run), std::ios::binary) << stamp_of(study_, run);

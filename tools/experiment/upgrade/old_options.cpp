@@ -177,6 +177,7 @@ Values behaviour(const std::string& value) {
 Values values_of(OptionForm form, const std::string& value) {
   const Texts parts = split(value, ',');
   switch (form) {
+    // Single values.
     case OptionForm::flag:
       return Texts{"true"};
     case OptionForm::same:
@@ -186,6 +187,7 @@ Values values_of(OptionForm form, const std::string& value) {
       std::replace(word.begin(), word.end(), '-', '_');
       return Texts{scalar(word)};
     }
+    // Lists and tables.
     case OptionForm::numbers:
       return one(tuple(parts, 1, 100));
     case OptionForm::points:
@@ -194,6 +196,7 @@ Values values_of(OptionForm form, const std::string& value) {
       return one(table(value, order));
     case OptionForm::speeds:
       return one(table(value, [](const std::string& part) { return tuple(split(part, ':'), 2, 3); }));
+    // Values of two keys.
     case OptionForm::pose:
       if (parts.size() != 3 || !are_numbers(parts)) return std::nullopt;
       return Texts{flow_list({parts[0], parts[1]}), parts[2]};

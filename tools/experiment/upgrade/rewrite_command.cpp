@@ -29,12 +29,14 @@ std::vector<Group> groups_of(const SourceNode& list) {
   for (std::size_t i = 1; i < list.items.size(); ++i) {
     const SourceNode& item = *list.items[i].target;
     const std::size_t at = list.items[i].start;
+    // Find the option.
     const std::size_t equals = item.scalar.find('=');
     const std::string name = item.scalar.substr(0, equals);
     const std::string who = program + ": ";
     const OldOption* option = item.kind == Kind::scalar ? find_old_option(program, name) : nullptr;
     if (option == nullptr) throw Doubt(at, who + "'" + sim::shortened(item.scalar) + "' was no option of this program");
     if (!seen.insert(name).second) throw Doubt(at, who + "'" + name + "' is given twice");
+    // Read its value.
     Group group{list.items[i].span, {}};
     const bool is_flag = option->form == OptionForm::flag;
     if (is_flag && equals != std::string::npos) throw Doubt(at, who + "'" + name + "' has no value");
@@ -45,6 +47,7 @@ std::vector<Group> groups_of(const SourceNode& list) {
       value = list.items[i].target->scalar;
       group.span.end = list.items[i].span.end;
     }
+    // Convert it to arguments.
     const auto arguments = arguments_of(*option, value);
     if (!arguments) throw Doubt(at, who + "'" + sim::shortened(value) + "' is not a value of '" + name + "'");
     group.arguments = *arguments;
@@ -80,6 +83,7 @@ class ArgumentsText {
     std::size_t comment = 0;
     bool first = true;
     bool after_comment = false;
+    // Comments up to a byte of the source.
     const auto add_comments = [&](std::size_t before) {
       for (; comment < comments_.size() && comments_[comment].begin < before; ++comment) {
         const bool stays = !after_comment && !first && is_trailing(comments_[comment]);
@@ -87,6 +91,7 @@ class ArgumentsText {
         after_comment = true;
       }
     };
+    // Entries, filled into lines.
     for (const Group& group : groups_)
       for (const Argument& argument : group.arguments) {
         const std::string entry = argument.key + ": " + argument.value;
@@ -120,7 +125,7 @@ class ArgumentsText {
       }
     };
     for (const Group& group : groups_) {
-      // Those between an option and its value stand before the key.
+      // Comments between an option and its value precede the key.
       if (!after_comment) add_comments(group.span.begin);
       add_comments(group.span.end);
       for (const Argument& argument : group.arguments) {
@@ -146,9 +151,11 @@ class ArgumentsText {
 
 void write(Site& site, const SourceNode::Entry& entry, const std::string& prefix, const std::vector<Group>& groups) {
   const SourceNode& list = entry.value;
+  // Check the form of the command.
   const bool is_plain = !site.source.pair && !list.properties && !entry.key.properties && list.kind != Kind::alias &&
                         entry.key.span.end - entry.key.span.begin == entry.key.scalar.size();
   if (!is_plain) throw Doubt(list.start, "a command that is written like this is not rewritten");
+  // Texts of the program and its arguments.
   const TextSpan all{entry.key.span.begin, list.span.end};
   const ArgumentsText arguments(site, groups, {entry.after_colon, list.span.end}, list.items.front().span.end);
   const std::size_t column = site.text.column(all.begin);
@@ -157,6 +164,7 @@ void write(Site& site, const SourceNode::Entry& entry, const std::string& prefix
   const std::string comments = arguments.of_program(line);
   const std::string args = prefix + "args: ";
   const std::string on_new_line = comments + line + args + arguments.in_braces(column + args.size());
+  // Write them in the style of the file.
   if (groups.empty()) {
     site.edits->replace(all, program + comments);
   } else if (site.source.brackets) {
@@ -171,6 +179,7 @@ void write(Site& site, const SourceNode::Entry& entry, const std::string& prefix
 }
 
 void rewrite(Site& site, const SourceNode::Entry& entry) {
+  // Find a command of an old program.
   const SourceNode& list = *entry.value.target;
   const bool is_text = list.kind == Kind::scalar;
   const bool is_list =
@@ -182,6 +191,7 @@ void rewrite(Site& site, const SourceNode::Entry& entry) {
   const std::string prefix = key.substr(0, key.size() - std::string_view("command").size());
   const std::vector<Group> groups = is_list ? groups_of(list) : std::vector<Group>();
 
+  // Change the meaning.
   sim::Diagnostics problems;
   auto& entries = site.meaning.entries;
   const auto at = std::find_if(entries.begin(), entries.end(), [&](const auto& each) { return each.key == key; });
@@ -194,6 +204,7 @@ void rewrite(Site& site, const SourceNode::Entry& entry) {
     for (const Argument& argument : group.arguments)
       args.entries.push_back({argument.key, place, sim::parse_config_text(argument.value, "args", problems)});
   if (!groups.empty()) entries.insert(std::next(at), {prefix + "args", place, std::move(args)});
+  // Change the text.
   if (site.edits == nullptr) return;
   if (is_text)
     site.edits->replace(entry.key.span, prefix + "program");

@@ -56,6 +56,7 @@ std::vector<ChangedLines> TextEdits::changed_lines(const SourceText& source) con
     TextSpan lines;
     TextEdits edits;
   };
+  // Group edits that share lines.
   std::vector<Block> blocks;
   for (const Edit& edit : sorted()) {
     const TextSpan lines{source.line_begin(edit.span.begin),
@@ -65,6 +66,7 @@ std::vector<ChangedLines> TextEdits::changed_lines(const SourceText& source) con
     block.lines.end = std::max(block.lines.end, lines.end);
     block.edits.replace({edit.span.begin - block.lines.begin, edit.span.end - block.lines.begin}, edit.text);
   }
+  // Apply the edits of each group to its lines.
   std::vector<ChangedLines> changes;
   std::size_t counted = 0;
   int line = 1;

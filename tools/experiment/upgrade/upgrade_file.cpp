@@ -39,10 +39,12 @@ std::optional<std::string> read_text(const Accepts& file, sim::Diagnostics& diag
     diagnostics.error(file.asked_at, "", "cannot read " + subject + ": " + why);
     return std::nullopt;
   };
+  // Check the kind of file.
   std::error_code error;
   const fs::file_status status = fs::status(file.path, error);
   if (fs::is_directory(status)) return fail("it is a directory");
   if (fs::exists(status) && !fs::is_regular_file(status)) return fail("it is not a regular file");
+  // Read up to the limit.
   errno = 0;
   std::ifstream stream(file.path, std::ios::binary);
   std::string text;

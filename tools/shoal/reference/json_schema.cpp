@@ -262,10 +262,12 @@ Json device_type_schema(const SchemaWriter& writer, const sim::DeviceType& type,
 
 /// An item of `devices:`.  Its keys depend on its type.
 Special device_special(Json& definitions) {
+  // Keys of all devices.
   const SchemaWriter writer(true, {}, definitions);
   const Table common = common_params();
   Json device = writer.keys(common);
   Json any_type = writer.required(common);
+  // Keys of each type.
   std::vector<std::string> names;
   for (const sim::DeviceType* type : sim::DeviceRegistry::instance().all()) {
     names.push_back(type->name);
@@ -274,10 +276,11 @@ Special device_special(Json& definitions) {
     if (const Json own = writer.required(params_of(*type)); !own.empty())
       any_type["allOf"].push_back(when_type_is(type->name, own));
   }
+  // Words of the key `type`.
   Json& type_key = device["properties"]["type"];
   type_key = {{"description", type_key["description"]}};
   type_key.update(writer.words(names));
-  // Which keys there are is for the type to say.
+  // The permitted keys depend on the type.
   device.erase("additionalProperties");
   device["type"] = {"object", "string"};
   device["pattern"] = parameter;
