@@ -234,6 +234,7 @@ int snap(SnapArguments& arguments) {
 }
 
 void add_view_options(CLI::App& command, SnapArguments& arguments) {
+  // View.
   CLI::Option* from =
       command.add_option("--from", arguments.from, "a camera of the world")->type_name("VEHICLE.DEVICE");
   CLI::Option* eye =
@@ -251,6 +252,7 @@ void add_view_options(CLI::App& command, SnapArguments& arguments) {
   size->capture_default_str();
   for (CLI::Option* option : {eye, fov, size, all}) option->excludes(from);
   all->excludes(eye);
+  // Kind of image.
   command
       .add_option(
           "--image", arguments.image,
@@ -272,6 +274,7 @@ void add_snap_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("snap", "Run a world as fast as possible, without a bus, and render an image");
   const auto arguments = std::make_shared<SnapArguments>();
   add_log_level_option(*command);
+  // Output and times.
   command->add_option("WORLD", arguments->world, "world file, or the name of a shipped world")->required();
   command->add_option("--out", arguments->out, "file of the image: .png, .jpg or .jpeg")->type_name("FILE")->required();
   command->add_option("--at", arguments->at_s, "simulated time, s")
@@ -286,6 +289,7 @@ void add_snap_command(CLI::App& app, int& exit_code) {
       command->add_option("--until", arguments->until_s, "time of the last of them, s")->type_name("S");
   every->check(number_from(1e-6, 1e9))->needs(until);
   until->check(number_from(0, 1e9))->needs(every);
+  // View and world.
   add_view_options(*command, *arguments);
   command->add_option("--seed", arguments->load.seed, "of every random stream")
       ->type_name("N")
@@ -293,6 +297,7 @@ void add_snap_command(CLI::App& app, int& exit_code) {
   add_set_option(*command, arguments->load.sets);
   add_allow_path_option(*command, arguments->load);
   add_plugin_option(*command);
+  // End of the help and action.
   command_line::set_help_end(
       *command, {{"shoal snap worlds/coop_land.yaml --out coop_land.png",
                   "shoal snap worlds/dynamic_warehouse.yaml --at 12.5 --eye -6,-8,5 --look 4,2,0 --out hall.jpg",

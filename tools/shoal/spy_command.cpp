@@ -69,7 +69,7 @@ std::string decoded(const shoal::MessageTypes& types, const sim::Bytes& payload,
   return text;
 }
 
-/// The screen that the table must fit; nothing in a pipe or file, where lines are as long as they are.
+/// Screen that the table must fit; nothing for a pipe or file, where lines are not shortened.
 struct Screen {
   std::size_t columns = 80, lines = 24;
 };
@@ -83,7 +83,7 @@ std::optional<Screen> find_screen() {
   return screen;
 }
 
-/// The name of the channel gets what is left beside the figures, and at least a dozen columns stay for the message.
+/// Returns the columns for the name of a channel: those left beside the figures, less at least a dozen for the message.
 std::size_t channel_columns(const std::map<std::string, Seen>& channels, const std::optional<Screen>& screen) {
   constexpr std::size_t figures = 27, min_of_message = 12, usual = 32;
   if (!screen) return usual;
@@ -126,6 +126,7 @@ bool output_closed() {
 }
 
 int spy(const SpyArguments& arguments) {
+  // Subscribe.
   const shoal::MessageTypes types = shoal::types_with(arguments.lcm_files);
   bridges::LcmListener listener(arguments.lcm_url);
   if (arguments.channel.empty())
@@ -135,7 +136,7 @@ int spy(const SpyArguments& arguments) {
   catch_signals(false);
   const bool table = arguments.channel.empty();
   const bool terminal = isatty(STDOUT_FILENO) != 0;
-  // In a pipe, rates over whole seconds; with a duration one table, of all of it.
+  // In a pipe, rates over whole seconds; with a duration a single table for all of it.
   const double every_s = terminal ? 0.5 : arguments.duration_s > 0 ? arguments.duration_s : 1;
   std::map<std::string, Seen> channels;
   const Clock::time_point begin = Clock::now();
@@ -152,6 +153,7 @@ int spy(const SpyArguments& arguments) {
     return closed || caught_signal() != 0 || (arguments.duration_s > 0 && seconds_since(begin) > arguments.duration_s);
   };
   bool any_table = false;
+  // Count the messages and print the table regularly.
   while (!over()) {
     if (channels.empty()) audit_entry.look();
     if (const auto message = listener.next(std::chrono::milliseconds(100))) {

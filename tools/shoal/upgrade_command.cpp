@@ -33,6 +33,7 @@ void print_lines(const FileUpgrade& file) {
 
 /// Whether all is well with the file.
 bool finish(const FileUpgrade& file, bool check) {
+  // States without a change.
   switch (file.state) {
     case FileUpgrade::State::refused:
       for (const std::string& line : file.errors) std::cerr << line << '\n';
@@ -43,6 +44,7 @@ bool finish(const FileUpgrade& file, bool check) {
     case FileUpgrade::State::changes:
       break;
   }
+  // Print or write the change.
   const std::size_t places = file.upgraded.lines.size();
   if (check) {
     print_lines(file);

@@ -24,7 +24,7 @@ namespace {
 using sim::Decibels;
 using sim::Modulation;
 
-/// The numbers of `T=5;depth=10`.
+/// Numbers of `T=5;depth=10`.
 class Parameters {
  public:
   explicit Parameters(const std::string& text) {

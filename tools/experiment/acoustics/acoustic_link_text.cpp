@@ -10,7 +10,7 @@
 #include "tools/experiment/files/gnuplot.hpp"
 #include "tools/experiment/files/scratch_directory.hpp"
 
-// How a link is shown: tables for people, CSV for programs, images.
+// Output of a link: readable tables, CSV for programs, plots.
 
 namespace tools {
 

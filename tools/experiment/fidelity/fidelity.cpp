@@ -42,7 +42,7 @@ FidelityState state_of(const sim::Body& body) {
           w.x(), w.y(), w.z()};
 }
 
-/// The velocity that a row starts with.  Vehicles of several bodies start as one solid.
+/// Sets the initial velocity of a row.  Vehicles of several bodies start as one rigid body.
 void set_velocity(const sim::Vehicle& vehicle, const FidelityState& start) {
   const sim::Body& first = vehicle.base();
   const sim::Matrix3d R = first.X_WB().linear();
@@ -53,7 +53,7 @@ void set_velocity(const sim::Vehicle& vehicle, const FidelityState& start) {
     body->set_velocity_W(v + w.cross(body->X_WB().translation() - origin), w);
 }
 
-/// `fields` with the numbers of a row in place of the names of columns.
+/// Returns `fields` with the names of columns replaced by the numbers of a row.
 void fill_in(sim::ConfigNode& node, const FidelityReference& reference, const std::vector<double>& row, double scale) {
   for (sim::ConfigNode& item : node.items) fill_in(item, reference, row, scale);
   for (sim::ConfigNode::Entry& entry : node.entries) fill_in(entry.value, reference, row, scale);
@@ -63,7 +63,7 @@ void fill_in(sim::ConfigNode& node, const FidelityReference& reference, const st
     node = sim::scalar_node(sim::number_text(scale * row[reference.column(node.scalar)]), node.place);
 }
 
-/// `a, b, c`
+/// Returns `a, b, c`.
 std::vector<std::string> words_of(const std::string& text) {
   std::vector<std::string> words(1);
   for (const char c : text) {
@@ -75,7 +75,7 @@ std::vector<std::string> words_of(const std::string& text) {
   return words;
 }
 
-/// Devices of the inputs are there and take their messages.  Throws ConfigError.
+/// Checks that the devices of the inputs exist and accept their messages.  Throws ConfigError.
 void check_inputs(const FidelityCase& of, const sim::Vehicle& vehicle) {
   const std::string who = "vehicle '" + vehicle.name() + "'";
   for (const FidelityInput& input : of.inputs) {
@@ -162,7 +162,7 @@ FidelityState state_of(const FidelityCase& of, const FidelityReference& referenc
   return state;
 }
 
-/// All of the tree as if it were written there.
+/// Sets the source place of the whole tree.
 void set_places(sim::ConfigNode& node, const sim::SourcePlace& place) {
   node.place = place;
   for (sim::ConfigNode& item : node.items) set_places(item, place);
@@ -172,7 +172,7 @@ void set_places(sim::ConfigNode& node, const sim::SourcePlace& place) {
   }
 }
 
-/// Of the vehicle in its world: that of its file.
+/// Returns the vehicle's entry in the world, with its file.
 std::string vehicle_name(const FidelityCase& of) {
   std::string name = std::filesystem::path(of.vehicle).stem().string();
   for (char& c : name)
@@ -180,7 +180,7 @@ std::string vehicle_name(const FidelityCase& of) {
   return name;
 }
 
-/// What the case and the options change of the vehicle, those of the options last.
+/// Returns the changes of the vehicle by the case and the options, those of the options last.
 sim::ConfigNode overrides_of(const FidelityCase& of, const FidelityOptions& options, sim::Diagnostics& diagnostics) {
   sim::ConfigNode overrides = of.overrides;
   overrides.kind = sim::ConfigNode::Kind::map;
@@ -194,7 +194,7 @@ sim::ConfigNode overrides_of(const FidelityCase& of, const FidelityOptions& opti
   return overrides;
 }
 
-/// The same errors, with the case behind the place that each begins with.
+/// Returns the same errors, with the case after the source place that each starts with.
 [[noreturn]] void throw_for_case(const FidelityCase& of, const sim::ConfigError& error) {
   std::vector<std::string> lines = error.lines();
   for (std::string& line : lines) {
@@ -238,7 +238,7 @@ FidelityResult run(const FidelityCase& of, const FidelityOptions& options) {
 sim::ConfigNode fidelity_world(const FidelityCase& of, const FidelityReference& reference,
                                const FidelityOptions& options) {
   const FidelityState start = state_of(of, reference, reference.rows.front());
-  // No bottom is near; that there is none at all would be said of every case.
+  // The bottom is far away; without any bottom, every case would cause a warning.
   const std::string text =
       "shoal: 1\nname: " + of.name + "\nphysics: {step_s: " + sim::number_text(options.step_s.value_or(of.step_s)) +
       "}\nmedium: {water: {}}\nobjects:\n  - name: far_bottom\n    fixed: true\n    position_m: " +

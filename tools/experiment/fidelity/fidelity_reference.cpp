@@ -12,7 +12,7 @@ namespace tools {
 
 namespace {
 
-constexpr double largest = 1e9;  ///< number in a reference
+constexpr double largest = 1e9;  ///< limit of the numbers in a reference
 
 [[noreturn]] void fail(const std::string& file, int line, const std::string& text) {
   sim::throw_config_error({sim::intern_file_name(file), line, line > 0 ? 1 : 0}, "", text);

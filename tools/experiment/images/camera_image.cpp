@@ -21,7 +21,7 @@ std::string metadata_of(const shoal::image_t& message, const std::string& key) {
   return {};
 }
 
-/// Rows of `row_stride` bytes, without what pads them.
+/// Copies rows of `row_stride` bytes, without their padding.
 template <typename T>
 sim::Image<T> raw_image(const shoal::image_t& message, int channels) {
   sim::Image<T> image(message.width, message.height, channels);

@@ -18,7 +18,7 @@ namespace tools {
 
 namespace {
 
-/// The messages of one channel: all of them where all are drawn, else the one that is drawn.
+/// Messages of one channel: all of them where all are drawn, else the selected one.
 class Chosen {
  public:
   Chosen(const std::string& channel, const ImageChoice& choice) : channel_(channel), choice_(choice) {}
@@ -82,7 +82,7 @@ class Chosen {
       first_utime_ = shoal::decode<shoal::sim_info_t>(event.payload, shoal::Finite::any).epoch_utime;
       start_known_ = true;
     } catch (const shoal::MessageError&) {
-      // A log of something else that uses the name.
+      // The channel belongs to another program that uses the name.
     }
   }
 
@@ -90,7 +90,7 @@ class Chosen {
     return static_cast<double>(event.utime - *first_utime_) * 1e-6;
   }
 
-  /// A time may lie beyond the first and the last message by one period, or by a second where there is one message.
+  /// Permits a time up to one period before the first and after the last message, or one second for a single message.
   double slack_s() const { return count_ > 1 ? (last_s_ - first_s_) / (count_ - 1) : 1; }
 
   const std::string& channel_;

@@ -31,10 +31,10 @@ constexpr const char* depth_palette =
     "set palette defined (0 '#30123b', 0.25 '#4686fb', 0.5 '#1ae4b6', 0.75 '#faba39', "
     "1 '#7a0403')\nset rmargin at screen 0.8\n";
 
-/// What gnuplot gets: a file of bytes or of text, and the commands that draw it.
+/// Input of gnuplot: a file of bytes or of text, and the commands that draw it.
 struct Drawing {
   std::string data;
-  std::string commands;  ///< `data` is the file's name
+  std::string commands;  ///< `data` is the file name
 };
 
 template <typename Message>
@@ -49,13 +49,13 @@ Message only(const std::vector<sim::Bytes>& payloads) {
   return shoal::decode<Message>(payloads.front(), shoal::Finite::required);
 }
 
-/// Counts that a message gives must be those of its data: a log may come from anywhere.
+/// Checks that the counts in a message match its data, because a log may have any origin.
 void check_count(const char* what, std::size_t has, std::int64_t reports) {
   if (reports < 0 || has != static_cast<std::size_t>(reports))
     throw std::runtime_error(fmt::format("a message says it has {} {}, but has {}", reports, what, has));
 }
 
-/// A raster of bytes with its lower left corner at (x, y).
+/// Returns the command for a raster of bytes with its lower left corner at (x, y).
 std::string image_command(int width, int height, double x, double y, double dx, double dy) {
   return fmt::format("plot 'data' binary array=({},{}) format='%uchar' origin=({},{}) dx={} dy={} with image notitle\n",
                      width, height, x + dx / 2, y + dy / 2, dx, dy);
@@ -98,7 +98,7 @@ Drawing draw(const std::vector<shoal::side_scan_t>& lines) {
   const double range_m = lines.front().range_max_m, near_m = lines.front().range_min_m;
   if (bins < 1 || !(range_m > near_m) || !(near_m >= 0)) throw std::runtime_error("the lines have an invalid size");
   const double bin_m = (range_m - near_m) / bins;
-  const double unheard = std::round(2 * near_m / bin_m);  // between the two sides
+  const double unheard = std::round(2 * near_m / bin_m);  // gap between the two sides
   const double width = 2.0 * bins + unheard;
   if (unheard > 10000 || width * static_cast<double>(lines.size()) > max_raster_bytes)
     throw std::runtime_error("the lines have an invalid size");

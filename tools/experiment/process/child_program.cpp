@@ -27,7 +27,7 @@ bool open_as(int target, const char* path, int flags) {
   return file >= 0 && (file == target || (dup2(file, target) >= 0 && close(file) == 0));
 }
 
-/// The signals that the parent caught or ignored, and its mask, would be inherited.
+/// Resets the signal handlers and the mask, which would be inherited from the parent.
 void take_usual_signals() {
   struct sigaction usual {};
   usual.sa_handler = SIG_DFL;
@@ -37,10 +37,10 @@ void take_usual_signals() {
   sigprocmask(SIG_SETMASK, &none, nullptr);
 }
 
-/// In the child, where nothing may be allocated: other threads may have held locks.  Returns when it failed.
+/// Runs in the child, where nothing may be allocated, because other threads may have held locks.  Returns on failure.
 void become(const ChildProgram& program, char* const* arguments, char* const* environment, pid_t parent) {
   if (setpgid(0, 0) != 0 || prctl(PR_SET_PDEATHSIG, SIGTERM) != 0) return;
-  if (getppid() != parent) _exit(128 + SIGTERM);  // it ended before it could be watched
+  if (getppid() != parent) _exit(128 + SIGTERM);  // it ended before it could be monitored
   if (!open_as(STDIN_FILENO, "/dev/null", O_RDONLY)) return;
   if (!program.log.empty()) {
     if (!open_as(STDOUT_FILENO, program.log.c_str(), O_WRONLY | O_CREAT | O_TRUNC)) return;

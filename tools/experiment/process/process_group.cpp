@@ -27,7 +27,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::seconds time_to_end{2};
 
-/// A program beside the running one is preferred, so that a build tree works without being installed.
+/// Prefers a program in the folder of the running one, so that a build tree works without installation.
 std::string find_program(const std::string& name) {
   if (name.find('/') != std::string::npos) return name;
   std::error_code error;

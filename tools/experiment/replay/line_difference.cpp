@@ -20,7 +20,7 @@ Lines lines_of(const std::string& text) {
   return lines;
 }
 
-/// lengths[i][j]: of the longest common sub-sequence of a from i and b from j.
+/// lengths[i][j]: length of the longest common subsequence of a from i and b from j.
 std::vector<std::vector<std::uint32_t>> common_lengths(const Lines& a, const Lines& b) {
   std::vector<std::vector<std::uint32_t>> lengths(a.size() + 1, std::vector<std::uint32_t>(b.size() + 1));
   for (std::size_t i = a.size(); i-- > 0;)

@@ -59,7 +59,7 @@ void PlayerRequests::check_joins() {
           spdlog::warn("client '{}' asks for '{}', of which the record has no message",
                        sim::shortened(sim::printable(request.client)), sim::shortened(sim::printable(channel)));
     } catch (const std::exception&) {
-      // Who answers the request says what is wrong with it.
+      // The reply to the request contains the error.
     }
   }
 }

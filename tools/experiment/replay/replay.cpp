@@ -34,13 +34,13 @@ namespace {
 using bridges::RunJournal;
 using Input = ReplayLog::Input;
 
-/// A bus without other participants.
+/// Bus without other participants.
 struct Line {
   std::unique_ptr<sim::InProcessBus> network = std::make_unique<sim::InProcessBus>();
   std::unique_ptr<sim::MessageGate> gate = std::make_unique<sim::MessageGate>(*network);
 };
 
-/// The world that is run: that of the log, or another one in its place.
+/// Returns the world to run: that of the log, or a replacement.
 sim::LoadedWorld load(const ReplayLog& log, const ReplayOptions& options) {
   sim::LoadOptions load = options.load;
   load.serial_ports = false;
@@ -48,7 +48,7 @@ sim::LoadedWorld load(const ReplayLog& log, const ReplayOptions& options) {
   if (!options.world.empty()) {
     sim::LoadedWorld loaded = sim::load_world(options.world, load);
     if (static_cast<std::int64_t>(loaded.config.run.seed) == log.info.seed) return loaded;
-    load.seed = log.info.seed;  // the resolved world then says so
+    load.seed = log.info.seed;  // it is then part of the resolved world
     return sim::load_world(options.world, load);
   }
   const std::vector<std::string> changed = changed_files(log.info.files);
@@ -183,7 +183,7 @@ class Replay {
     return last;
   }
 
-  /// What came to the world before this step.
+  /// Delivers the inputs of the world before this step.
   void hand_over(std::int64_t step) {
     for (; next_input_ < log_.inputs.size() && log_.inputs[next_input_].step <= step; ++next_input_) {
       const Input& input = log_.inputs[next_input_];
@@ -203,7 +203,7 @@ class Replay {
     }
   }
 
-  /// What was asked for after the last step.
+  /// Executes the requests after the last step.
   void finish() {
     hand_over(world_.step_number());
     if (!outcome_.first) report_first_messages();
@@ -217,7 +217,7 @@ class Replay {
     } catch (const shoal::MessageError& error) {
       note(std::string("a request in the log cannot be read: ") + error.what());
     } catch (const std::exception&) {
-      // It was refused then as well, or the state will tell.
+      // It was rejected in the run as well, or the state will differ.
     }
   }
 
@@ -234,7 +234,7 @@ class Replay {
     if (due && !next_hash_->second.after_inputs) compare_hashes(next_hash_->second);
   }
 
-  /// All that differ by now differ since this step.
+  /// Records the step as the first difference of all parts that differ now.
   void report_first_messages() {
     constexpr std::size_t max = 8;
     if (messages_.first() == nullptr) return;
@@ -255,14 +255,15 @@ class Replay {
       return;
     }
     if (!outcome_.first || outcome_.first->step == world_.step_number()) differ("the world", "its state hash differs");
-    if (!parts_.empty() && motion_step_) return;  // later on nearly all differ
+    if (!parts_.empty() && motion_step_) return;  // at later steps nearly all parts differ
     std::map<std::string, std::uint64_t> here;
     for (const auto& part : world_.state().part_hashes()) here[part.part] = part.hash;
     compare_motion(logged, here);
     compare_parts(logged, here);
   }
 
-  /// Of vehicles and objects that were equal at an earlier hash: those that are made otherwise differ from the start.
+  /// Finds the first motion that differs, of vehicles and objects that were equal at an earlier hash: those with
+  /// different definitions differ from the start.
   void compare_motion(const ReplayLog::Hashes& logged, const std::map<std::string, std::uint64_t>& here) {
     if (motion_step_) return;
     for (const sim::PartHash& part : logged.parts) {
@@ -308,7 +309,7 @@ class Replay {
     if (outcome_.first->step == world_.step_number()) outcome_.first->what.push_back(subject + ": " + what);
   }
 
-  /// The device that reports on a channel, else the channel.
+  /// Returns the device that reports on a channel, else the channel.
   std::string who(const std::string& channel) const {
     for (const auto& device : world_.devices())
       if (device && device->report_channel() == channel) return device->full_name() + " (" + channel + ")";
@@ -347,7 +348,7 @@ class Replay {
       for (const std::string& entity : entities_only_in(loaded_.config, logged))
         world.push_back("only here: " + entity);
     } catch (const std::exception&) {
-      // A mesh of the log may be gone; its lines can be compared all the same.
+      // A mesh of the log may be missing; its lines can be compared nevertheless.
     }
     for (std::string& line : line_difference(log_.info.resolved_config, sim::to_yaml(loaded_.resolved), max_lines))
       world.push_back(std::move(line));
@@ -438,9 +439,9 @@ class Replay {
   bool cut_ = false;
   std::vector<std::string> parts_;
   std::int64_t parts_step_ = 0;
-  std::set<std::string> equal_parts_;        // that move, and were equal at a hash
-  std::vector<std::string> moved_parts_;     // that differ at the first hash at which one of those does
-  std::optional<std::int64_t> motion_step_;  // of that hash
+  std::set<std::string> equal_parts_;        // moving parts that were equal at a hash
+  std::vector<std::string> moved_parts_;     // parts that differ at the first hash at which one of those does
+  std::optional<std::int64_t> motion_step_;  // step of that hash
 };
 
 }  // namespace

@@ -19,12 +19,12 @@ namespace tools {
 
 namespace {
 
-/// Of messages that were read and not yet compared, where stamps do not tell how far to look.
+/// Limit of messages that are read but not yet compared, where time stamps do not limit the search.
 constexpr std::size_t max_queued_bytes = std::size_t{256} << 20;
-/// A record has what is published in a step with the stamp of this step or the next.
+/// In a record, messages published in a step have the time stamp of this step or the next.
 constexpr std::int64_t steps_ahead = 2;
 
-/// Those of the run itself: another run has others.
+/// Returns whether a channel belongs to the run itself: another run has other messages on it.
 bool is_of_the_run(std::string_view channel) {
   if (!channel.starts_with("sim.")) return false;
   static constexpr std::array<std::string_view, 11> names{
@@ -82,7 +82,7 @@ Fields fields_of(const shoal::MessageSchema& schema, std::span<const std::byte> 
   return fields;
 }
 
-/// Which member differs first, and how.
+/// Describes the first member that differs.
 std::string difference_of(const shoal::MessageSchema* schema, std::span<const std::byte> logged,
                           std::span<const std::byte> here) {
   if (shoal::fingerprint(logged) != shoal::fingerprint(here)) return "is of another type in the log";
@@ -258,7 +258,7 @@ void ReplayMessages::compare_states(Payload logged, Payload here, std::int64_t s
 }
 
 void ReplayMessages::finish(std::int64_t step) {
-  // In a record every message is either an input or the simulator's.
+  // In a record every message is either an input or published by the simulator.
   if (!log_.own_stamps || log_.is_rewound || !log_.cut.empty() || log_.usable_step() < log_.last_step ||
       step < log_.last_step)
     return;

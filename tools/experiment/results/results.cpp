@@ -24,7 +24,7 @@ namespace tools {
 
 namespace {
 
-/// Corners of a box, or a circle, as a closed line on the ground.
+/// Returns the corners of a box, or a circle, as a closed line on the ground.
 std::string outline_of(const sim::PartConfig& part, const sim::Pose& X_WB) {
   const sim::Pose X_WP = X_WB * sim::make_pose(part.position_m, part.rpy_rad);
   std::string text;
@@ -104,7 +104,7 @@ void Summary::fail(int code, const std::string& how_ended, const std::string& wh
 
 namespace {
 
-/// Of the first hundred pairs: a swarm in a heap has thousands.
+/// Lists the first hundred pairs: a dense swarm has thousands.
 nlohmann::ordered_json contacts_json(const std::vector<FirstContacts::Contact>& contacts) {
   constexpr std::size_t max = 100;
   auto json = nlohmann::ordered_json::array();
@@ -243,12 +243,12 @@ std::string Summary::to_text() const {
 
 namespace {
 
-/// Rules and metrics come in dozens, zones and contacts with vehicles.
+/// The number of rules and metrics is small, that of zones and contacts grows with the vehicles.
 std::size_t room_for_summary(const sim::World& world) {
   return (std::size_t{256} << 10) + 512 * world.vehicles().size();
 }
 
-/// The folder, made where it does not exist.
+/// Creates the folder if it does not exist.
 std::string made(const std::string& directory) {
   std::error_code error;
   std::filesystem::create_directories(directory, error);

@@ -15,14 +15,14 @@ namespace tools {
 
 namespace {
 
-/// `cooperative.rms_m` as metric and figure.  Names of metrics have no dot.
+/// Splits `cooperative.rms_m` into metric and figure.  Names of metrics have no dot.
 std::pair<std::string, std::string> parts_of(const std::string& name) {
   const auto dot = name.find('.');
   const bool whole = dot == std::string::npos || dot + 1 == name.size();
   return whole ? std::pair(name, std::string()) : std::pair(name.substr(0, dot), name.substr(dot + 1));
 }
 
-/// Figures in the order of their kind, unknown ones last.
+/// Orders figures as their kind does, unknown ones last.
 void sort_figures(RunMetric& metric) {
   std::set<std::string> names;
   for (const RunMetric::Figure& figure : metric.figures) names.insert(figure.name);
@@ -40,7 +40,7 @@ std::string text_at(const sim::ConfigNode& map, const char* key) {
   return node != nullptr ? node->scalar : "";
 }
 
-/// What the world of the run says of its metrics.  The file may be anything, and is only looked at.
+/// Reads the metrics in the world of the run.  The file is untrusted, and is only parsed.
 void read_world(const std::string& path, std::vector<RunMetric>& metrics) {
   // Read the world of the run.
   sim::Diagnostics problems;

@@ -26,7 +26,7 @@ std::map<std::string, std::optional<double>> read_figures(const JsonReader& in) 
   return figures;
 }
 
-/// Older versions wrote that a run had passed though nothing was judged.
+/// Older versions recorded a run without rules as passed.
 Judgement judgement_in(const JsonReader& in, bool has_rules) {
   if (in.at("passed").is_null()) return Judgement::not_judged;
   const bool passed = in.boolean("passed");

@@ -54,7 +54,7 @@ Run::Run(const sim::LoadedWorld& loaded, const RunOptions& options)
     } catch (const std::runtime_error& error) {
       throw RunError(2, "configuration", options.from_file + ": " + error.what());
     }
-    // What came before is not in this run's log, and a gap says so.
+    // Earlier messages are not in this run's log, which a gap indicates.
     journal_.start_branch(control_.branch, 1);
   }
   if (!options.results.empty()) {
@@ -158,7 +158,7 @@ void Run::start_clients() {
                        "; clients and reports of the two runs would mix: choose another port with --lcm-url, or share "
                        "this one with --lcm-shared");
   }
-  service_.publish_info();  // a log reports its run from the first event
+  service_.publish_info();  // so that the first event of a log describes its run
   if (options_.from) publish_snapshot();
   buses_.end_of_step();
   await(programs_.start());
@@ -229,7 +229,7 @@ void Run::step() {
   if (results_)
     if (const auto error = results_->error()) throw RunError(4, "bus", *error);
   if (world_.step_number() % 100 == 0) check_bus();
-  // Looking for dead children costs a system call; ten times a simulated second will do.
+  // Checking for ended children costs a system call; ten times per simulated second are sufficient.
   if (world_.step_number() % 10 == 0) check_programs();
   progress_.update(world_.now(), messages(), control_, false);
 }
@@ -298,7 +298,7 @@ void Run::check_bus() const {
 
 RunPrograms::Clients Run::clients(bool goes_on) {
   return {[this, goes_on](const std::string& client) {
-            if (goes_on) service_.handle_requests(&time_);  // its last may be that it leaves
+            if (goes_on) service_.handle_requests(&time_);  // the last request may be to leave
             return lockstep_.has_left(client);
           },
           [this](const std::string& client) {

@@ -12,7 +12,7 @@ namespace tools {
 namespace {
 
 constexpr const char* question = "run until (seconds, or name of an event; Esc: do not): ";
-constexpr double slower_than_most = 32;  ///< times real time, from as fast as possible
+constexpr double slower_than_most = 32;  ///< multiple of real time, from as fast as possible
 constexpr double slowest = 1e-3, fastest = 1e6;
 
 }  // namespace

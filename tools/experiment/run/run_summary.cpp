@@ -11,13 +11,13 @@ namespace tools {
 
 namespace {
 
-/// One that came while the run was ending counts as well.
+/// Returns the signal that ended the run; one during its end counts as well.
 void note_signal(Summary& summary) {
   if (caught_signal() != 0 && summary.exit_code <= 1 && summary.error.empty())
     summary.fail(128 + caught_signal(), "signal", "");
 }
 
-/// All processes of the world, or a client that was started by hand.
+/// Returns whether all processes of the world, or a manually started client, take part.
 bool programs_take_part(const sim::WorldConfig& world, const RunOptions& options) {
   return world.processes.empty() || options.launch || !options.await.empty();
 }
@@ -27,8 +27,8 @@ bool programs_take_part(const sim::WorldConfig& world, const RunOptions& options
 void Run::finish(Summary& summary) {
   const OrderlyEnd orderly;
   programs_.note_last(world_.now(), clients(false));
-  if (alone_) {        // else the bus is another simulator's
-    admit_messages();  // what came after the last step is in the log: the journal says that it came from outside
+  if (alone_) {        // otherwise the bus belongs to another simulator
+    admit_messages();  // record messages after the last step as inputs
     journal_.finish(summary.ended != "fault" && summary.ended != "error");
     lockstep_.publish_end([this](std::chrono::milliseconds time) { buses_.wait(time); },
                           std::chrono::milliseconds(caught_signal() == 0 ? 1000 : 200));
@@ -40,7 +40,7 @@ void Run::finish(Summary& summary) {
   add_figures(summary);
   sim::Warnings warnings;
   if (summary.steps > 0 && programs_take_part(loaded_.config, options_)) scoring_.warn_of_silence(warnings);
-  // A rule, a program, or the event that ended it.
+  // Any failed rule or program, or the event that ended it.
   if (summary.exit_code == 0 && summary.judgement() == Judgement::failed) summary.exit_code = 1;
   note_signal(summary);
   if (results_) write_results(summary);

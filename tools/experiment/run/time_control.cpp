@@ -20,15 +20,16 @@ namespace {
 
 constexpr int max_files = 1000;
 constexpr const char* suffix = ".snapshot";
-/// Between two snapshots for going back at least this many times what the last one cost (the steps after it take
-/// longer too, for their memory is not in the caches any more): in a run that is much faster
-/// than real time they are further apart, and the steps between them take the less time to computes again.
+/// The interval between two snapshots for rewinding is at least this multiple of the cost of the last one (the
+/// following steps are slower too, because their memory is no longer in the caches): in a run that is much faster than
+/// real time they are further apart, and the steps between them take less time to compute again.
 constexpr int rest_per_snapshot = 80;
-/// A client whose last tick is further before the step that the world goes back to gets a list that is not whole:
-/// running all that again would take too long.
+/// A client whose last tick is further before the target of a rewind receives an incomplete list, because simulating
+/// that interval again would take too long.
 constexpr std::int64_t max_lead_s = 60;
 
-/// One run of bytes that the ring can compare part by part, and back.  Its last bytes tell the three sizes.
+/// Concatenates bytes so that the ring can compare them part by part, and splits them again.  The last bytes contain
+/// the three sizes.
 constexpr std::size_t trailer_bytes = 3 * sizeof(std::uint64_t);
 
 sim::Bytes joined(const sim::Bytes& state, const sim::Bytes& scores, const sim::Bytes& owners) {
@@ -53,7 +54,7 @@ std::uint64_t hash_of(const sim::Bytes& bytes) {
   return hash.value();
 }
 
-/// The line where two texts part.
+/// Returns the first line that differs between two texts.
 std::string first_difference(const std::string& there, const std::string& here) {
   std::size_t begin = 0;
   int line = 1;
@@ -235,10 +236,10 @@ std::string TimeControl::rewind(double seconds, bool run_on) {
                                          sim::to_seconds(world_.step_time())));
   if (world_.step_number() == first_step_)
     throw std::runtime_error("already at the start of the run: nothing to rewind");
-  // Who wants to go back further than it has come goes to the start.
+  // A rewind beyond the start goes to the start.
   const std::int64_t target = std::max<std::int64_t>(world_.step_number() - std::llround(steps), first_step_);
   auto base = ring_.newest_until(inputs_.needed_from(target, max_lead_s * steps_per_second_));
-  if (!base) base = ring_.newest_until(target);  // some client will lack reports
+  if (!base) base = ring_.newest_until(target);  // some clients will lack reports
   if (!base) {
     const double oldest_s = sim::to_seconds(sim::Time{ring_.oldest().value_or(0) * world_.step_time().count()});
     throw std::runtime_error(fmt::format("cannot rewind {:.6g} s from {:.6g} s: the history starts at {:.6g} s",
@@ -425,7 +426,7 @@ std::string TimeControl::restore(const std::string& name, bool run_on) {
   return place();
 }
 
-/// A file holds nothing of programs: they can only go where they have been in this run.
+/// A file has no state of the programs, which can only be restored to steps of this run.
 void TimeControl::restore_with_clients(const Snapshot& snapshot, const std::string& path, bool run_on) {
   const auto refuse = [&](const std::string& why) {
     throw std::runtime_error(
@@ -436,7 +437,7 @@ void TimeControl::restore_with_clients(const Snapshot& snapshot, const std::stri
   const auto written = written_.find(snapshot.step);
   if (written == written_.end() || written->second != hash_of(snapshot.state))
     refuse("was not written by this run before " + place());
-  // Unlike rewind(): from later on some client would lack reports.  At the start of the run no client had any.
+  // Unlike in rewind(), a later start would lack reports for some client.  At the start of the run no client had any.
   const std::int64_t needed = inputs_.needed_from(snapshot.step, max_lead_s * steps_per_second_);
   const auto base = ring_.newest_until(std::max(needed, first_step_));
   if (!base)

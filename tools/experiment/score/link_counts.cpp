@@ -33,7 +33,7 @@ void add_losses(LinkCounts& sum, const std::array<std::int64_t, sim::signal_loss
   for (std::size_t i = 0; i < causes.size(); ++i) sum.lost[causes[i]] += lost[i + 1];  // 0: none
 }
 
-/// Of a vehicle (empty: of all) and one of its devices (empty: of all).
+/// Returns whether a name is of a vehicle (empty: any) and one of its devices (empty: any).
 bool is_asked(const std::string& full_name, const std::string& vehicle, const std::string& device) {
   if (vehicle.empty()) return true;
   return device.empty() ? full_name.starts_with(vehicle + "/") : full_name == vehicle + "/" + device;

@@ -42,7 +42,7 @@ void visit(sim::StateArchive& archive, Snapshot& s) {
   archive.end();
 }
 
-/// The first of the content in every format: which shoal wrote it.
+/// First part of the content in every format: the version of shoal that wrote it.
 std::string written_by(const sim::Bytes& bytes) {
   std::string version;
   try {

@@ -22,7 +22,7 @@ std::string number(double value) {
   return std::isfinite(value) ? fmt::format("{:.4g}", value) : "-";
 }
 
-/// A text as a CSV field.
+/// Returns a text as a CSV field.
 std::string field(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
   std::string quoted = "\"";
@@ -176,7 +176,7 @@ std::string StudyResults::to_text() const {
   for (const std::string& figure : table_figures())
     for (const StudyCase& each : config.cases) {
       const Statistics s = of(each.name, figure);
-      // A mean of those that arrived says nothing of those that did not.
+      // A mean over the runs with the figure is not representative of the others.
       const std::size_t runs = runs_of(each.name);
       const bool all = static_cast<std::size_t>(s.count) == runs;
       text += line(figure, each.name, all ? fmt::format("{}", runs) : fmt::format("{}/{}", s.count, runs),

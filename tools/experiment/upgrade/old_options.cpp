@@ -114,13 +114,13 @@ bool are_numbers(std::span<const std::string> texts) {
   return std::all_of(texts.begin(), texts.end(), [](const std::string& text) { return number_of(text).has_value(); });
 }
 
-/// `[x, y, z]` of numbers, from `least` to `most` of them.
+/// Returns `[x, y, z]` of numbers, with a limited count.
 std::optional<std::string> tuple(const Texts& numbers, std::size_t min, std::size_t max) {
   if (numbers.size() < min || numbers.size() > max || !are_numbers(numbers)) return std::nullopt;
   return flow_list(numbers);
 }
 
-/// A list of what `row` makes of each part between semicolons.
+/// Returns a list with the result of `row` for each part between semicolons.
 template <typename Row>
 std::optional<std::string> table(const std::string& value, const Row& row) {
   Texts rows;

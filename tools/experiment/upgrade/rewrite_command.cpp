@@ -16,7 +16,7 @@ namespace {
 
 using Kind = SourceNode::Kind;
 
-/// An option with its value, and the items of the list that it is written in.
+/// Option with its value, and the items of the list in which it is written.
 struct Group {
   TextSpan span;
   std::vector<Argument> arguments;
@@ -56,7 +56,7 @@ std::vector<Group> groups_of(const SourceNode& list) {
   return groups;
 }
 
-/// Writes the keys of `args:` and the comments that stand between the options.
+/// Writer of the keys of `args:` and the comments between the options.
 class ArgumentsText {
  public:
   /// `after_program`: the first byte after the name of the program.
@@ -68,14 +68,14 @@ class ArgumentsText {
     }
   }
 
-  /// Comments on the line of the program, or before it.
+  /// Returns the comments on the line of the program, or before it.
   std::string of_program(const std::string& line) const {
     std::string text;
     for (const TextSpan& comment : of_program_) text += (text.empty() ? "  " : line) + site_.source_of(comment);
     return text;
   }
 
-  /// `{key: value, key: value}`, in lines that begin at `column` and are filled up.
+  /// Returns `{key: value, key: value}`, in lines that start at `column` and are filled up.
   std::string in_braces(std::size_t column) const {
     const std::string pad = site_.text.line_break() + std::string(column + 1, ' ');
     std::string text = "{";
@@ -112,7 +112,7 @@ class ArgumentsText {
     return text + (after_comment ? pad : "") + "}";
   }
 
-  /// A line for each key.
+  /// Returns one line per key.
   std::string in_block(const std::string& line) const {
     std::string text;
     std::size_t comment = 0;
@@ -138,7 +138,7 @@ class ArgumentsText {
   }
 
  private:
-  /// Whether it stands after something on its line.
+  /// Returns whether the comment follows other text on its line.
   bool is_trailing(TextSpan comment) const {
     const std::size_t begin = site_.text.line_begin(comment.begin);
     return site_.source_of({begin, comment.begin}).find_first_not_of(" \t-") != std::string::npos;

@@ -22,7 +22,7 @@ std::vector<std::string> lines_of(std::string_view text) {
 }  // namespace
 
 void TextEdits::indent_inserted_lines(std::size_t node, std::size_t begin, std::size_t spaces) {
-  // Changes inside the node are the last ones that were made.
+  // The last changes are those inside the node.
   for (auto last = edits_.rbegin(); last != edits_.rend() && last->span.begin >= node; ++last) {
     if (last->span.begin < begin) continue;
     Edit& edit = *last;
@@ -33,7 +33,7 @@ void TextEdits::indent_inserted_lines(std::size_t node, std::size_t begin, std::
 
 std::vector<TextEdits::Edit> TextEdits::sorted() const {
   std::vector<Edit> sorted = edits_;
-  // What is inserted where something is replaced stands before it.
+  // An insertion at the start of a replaced span precedes the replacement.
   std::stable_sort(sorted.begin(), sorted.end(), [](const Edit& a, const Edit& b) {
     return a.span.begin != b.span.begin ? a.span.begin < b.span.begin : a.span.end < b.span.end;
   });
