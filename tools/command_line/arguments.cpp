@@ -27,7 +27,7 @@ std::vector<std::string> command_names(const CLI::App& app) {
   return names;
 }
 
-/// A value, though it begins with `-`: standard input, or a negative number such as `-4,2,1`.
+/// Returns whether a word that starts with `-` is a value: standard input, or a negative number such as `-4,2,1`.
 bool looks_like_value(const std::string& text) {
   if (!text.starts_with('-') || text == "-") return true;
   return std::string("0123456789.").find(text[1]) != std::string::npos || text.starts_with("-inf") ||
@@ -62,7 +62,7 @@ class Reader {
       read_option(word);
   }
 
-  /// A command, or an argument by its place.
+  /// Reads a command, or an argument by its position.
   void read_place(const std::string& word) {
     const std::vector<std::string> commands = command_names(command());
     if (commands.empty()) {
@@ -177,7 +177,7 @@ class Reader {
                        [](const std::string& word) { return word == "--help" || word == "-h"; });
   }
 
-  /// Options with their values in one word, then `--` where a place could be taken for something else.
+  /// Returns options with their values in one word, then `--` where a positional argument could be misread.
   void arrange() {
     std::vector<std::string> all = path_;
     all.insert(all.end(), options_.begin(), options_.end());

@@ -23,7 +23,7 @@ namespace tools {
 
 namespace {
 
-/// Without a world file: water, and a wind by which the sea is received.
+/// World without a file: water, and a wind that causes ambient noise.
 constexpr const char* plain_world = "shoal: 1\nmedium: {water: {}, wind: {velocity_mps: [5, 0, 0]}}\n";
 
 struct AcousticsArguments {
@@ -38,7 +38,7 @@ struct AcousticsArguments {
   std::optional<double> water_depth_m;
 };
 
-/// Up to three numbers with `separator` between them; nothing when it is something else.
+/// Parses up to three numbers with `separator` between them; nothing for any other text.
 std::optional<sim::Vector3d> parse_three(const std::string& text, char separator) {
   sim::Vector3d numbers;
   const char* at = text.data();
@@ -66,7 +66,7 @@ std::vector<double> parse_ranges(const std::string& text) {
   return ranges_m;
 }
 
-/// A place `x,y,z`, a transducer `vehicle/device`, or a vehicle.
+/// Parses a position `x,y,z`, a transducer `vehicle/device`, or a vehicle.
 LinkEnd find_end(const char* option, const std::string& text, const sim::World& world) {
   LinkEnd end;
   if (const auto p_W = parse_three(text, ',')) {
@@ -114,7 +114,7 @@ std::vector<AcousticPacket> packets_of(const AcousticsArguments& arguments,
   return packets;
 }
 
-/// The keys of an acoustic modem, or null.
+/// Returns the keys of an acoustic modem, or null.
 const devices::AcousticModem::Params* modem_keys(const std::string& full_name, const sim::World& world) {
   for (const auto& device : world.devices()) {
     if (!device || device->full_name() != full_name) continue;
@@ -125,7 +125,7 @@ const devices::AcousticModem::Params* modem_keys(const std::string& full_name, c
   return nullptr;
 }
 
-/// The signal of the sending modem, where there is one, with what the options say instead.
+/// Returns the link with the signal of the sending modem, if any, and the options that override it.
 void take_signal(AcousticLink& link, const AcousticsArguments& arguments, const devices::AcousticModem::Params* modem) {
   if (modem != nullptr) {
     link.source_level = sim::Decibels(modem->source_level_dB);
@@ -160,7 +160,7 @@ AcousticLink link_of(const AcousticsArguments& arguments, const sim::World& worl
   return link;
 }
 
-/// Of what is fixed below the middle of the link, for echoes; nothing where nothing is.
+/// Returns the depth of the fixed bottom below the middle of the link, for echoes; nothing if there is none.
 std::optional<double> water_depth_m(const AcousticLink& link, const sim::World& world) {
   sim::Vector3d p_W = (link.from.p_W + link.to.p_W) / 2;
   const double surface_m = world.medium().surface_m(p_W.x(), p_W.y());
@@ -168,7 +168,7 @@ std::optional<double> water_depth_m(const AcousticLink& link, const sim::World& 
   sim::RayFilter filter;
   filter.kind = sim::RayKind::sound;
   const sim::PhysicsWorld& physics = world.physics();
-  // Vehicles and what floats are not bottom: the ray continues through them.
+  // Vehicles and floating objects are not bottom: the ray continues through them.
   constexpr int max_hits = 100;
   for (int i = 0; i < max_hits; ++i) {
     const auto hit = physics.scene().cast(p_W, -sim::Vector3d::UnitZ(), 12000, filter);
@@ -181,7 +181,7 @@ std::optional<double> water_depth_m(const AcousticLink& link, const sim::World& 
   return std::nullopt;
 }
 
-/// A place below terrain or a plane, or inside of something fixed.
+/// Returns whether a position is below terrain or a plane, or inside of a fixed object.
 bool in_ground(const sim::Vector3d& p_W, const sim::World& world) {
   constexpr double far_m = 12000;
   const auto fixed_part = [&](const sim::Vector3d& displacement_W) -> int {
@@ -205,7 +205,7 @@ bool in_ground(const sim::Vector3d& p_W, const sim::World& world) {
   return false;
 }
 
-/// Sound needs water at both ends.
+/// Checks that both ends are in water.
 void check_end(const char* option, const LinkEnd& end, const sim::World& world) {
   const sim::Vector3d& p_W = end.p_W;
   const std::string place = fmt::format("{:g},{:g},{:g}", p_W.x(), p_W.y(), p_W.z());
@@ -218,7 +218,7 @@ void check_end(const char* option, const LinkEnd& end, const sim::World& world) 
 void warn(const AcousticLink& link, const sim::World& world) {
   sim::Random random(1, "look");
   random.begin_step(0);
-  const int none = -2;  // a group that nothing has
+  const int none = -2;  // a group that does not exist
   const auto gain = world.acoustics().propagation().gain(link.from.p_W, link.from.group < 0 ? none : link.from.group,
                                                          link.to.p_W, link.to.group, link.centre_Hz, random);
   if (gain.blocked) std::cerr << "shoal: an obstacle blocks the line of sight, which the table ignores\n";

@@ -24,7 +24,7 @@ void bench(const BenchArguments& arguments) {
             << fmt::format("{:>7} {:>9} {:>24} {:>17} {:>17}\n", "robots", "load s", "CPU ms per robot second",
                            "real-time factor", "run hash");
   for (const int robots : arguments.robots) {
-    if (!(std::cout << std::flush)) return;  // the reader is gone
+    if (!(std::cout << std::flush)) return;  // the output was closed
     const ScaleFigures figures = measure_scale(robots, arguments.scale);
     std::cout << fmt::format("{:>7} {:>9.3f} {:>24.3f} {:>17.2f}  {:016x}\n", robots, figures.load_s,
                              figures.cpu_ms_per_robot_second, figures.real_time_factor, figures.run_hash)

@@ -29,7 +29,7 @@ bool is_vehicle_file(const sim::ConfigNode& node) {
   return node.find("vehicle") != nullptr || (node.find("bodies") != nullptr && node.find("vehicles") == nullptr);
 }
 
-/// Decodes every texture, as the first camera would.
+/// Decodes every texture, as the first camera does.
 void check_textures(const sim::WorldConfig& world) {
   sim::TextureLibrary textures;
   const auto check_all = [&](const std::vector<sim::MaterialConfig>& materials) {
@@ -40,7 +40,7 @@ void check_textures(const sim::WorldConfig& world) {
   for (const sim::VehicleInstance& vehicle : world.vehicles) check_all(vehicle.config->materials);
 }
 
-/// `1 body`, `3 bodies`.
+/// Returns `1 body`, `3 bodies`.
 std::string counted(std::size_t count, const std::string& word) {
   return std::to_string(count) + ' ' + (count == 1 ? word : sim::plural_of(word));
 }
@@ -51,7 +51,7 @@ std::size_t device_count(const sim::WorldConfig& world) {
   return count;
 }
 
-/// Builds a world, which finds what reading cannot: mesh files, bodies without mass.
+/// Builds a world, which finds errors that reading cannot: mesh files, bodies without mass.
 std::size_t body_count(sim::LoadedWorld& loaded, sim::Warnings& warnings) {
   loaded.config.bodies_only_of_many = true;
   sim::InProcessBus bus;

@@ -43,7 +43,7 @@ const std::vector<std::string> known_requests = {"pause", "resume", "step",     
                                                  "until", "rewind", "snapshot", "restore", "where",
                                                  "spawn", "remove", "describe", "do",      "leave"};
 
-/// `@FILE` stands for what is in the file, `-` for standard input.
+/// Reads the text: `@FILE` is replaced by the content of the file, `-` by standard input.
 std::string text_of(const std::string& argument) {
   if (argument != "-" && !argument.starts_with("@")) return argument;
   std::ostringstream text;
@@ -60,13 +60,13 @@ std::string text_of(const std::string& argument) {
   return text.str();
 }
 
-/// Whether a run is paused because of this request, so that it must be resumed.
+/// Returns whether a run is paused because of this request, so that it must be resumed.
 bool leaves_paused(const std::string& command, const std::string& reply) {
   return (command == "pause" || command == "rewind" || command == "restore") &&
          reply.find(", paused") != std::string::npos;
 }
 
-/// Requests and their answers.  A request is not sent twice, for it might be executed twice, unless it was lost: a run
+/// Requests and their replies.  A request is sent again only if it was lost, because it might be executed twice: a run
 /// that has not started yet does not receive it.
 class Session {
  public:
@@ -76,7 +76,7 @@ class Session {
     if (key) signer_.emplace(*key, arguments.client);
   }
 
-  /// The reply; nothing when none came in time.
+  /// Returns the reply; nothing when none arrived in time.
   std::optional<shoal::sim_control_reply_t> send_request(const std::string& command, const std::string& text,
                                                          double value) {
     const Clock::time_point deadline =
@@ -85,8 +85,8 @@ class Session {
                                      lcm_.url());
     const std::int32_t request = ++id_, question = ++id_;
     send(request, command, text, value);
-    // Requests are answered in their order.  Once the question, which changes nothing, is answered and the request is
-    // not, the simulator has never received the request.
+    // Requests are answered in order.  When the query, which changes nothing, is answered and the request is not, the
+    // simulator has not received the request.
     while (Clock::now() < deadline && caught_signal() == 0) {
       auto reply =
           await_reply(request, question, std::min<Clock::time_point>(deadline, Clock::now() + 1s), audit_entry);
@@ -115,7 +115,7 @@ class Session {
     lcm_.publish("sim.control", signer_ ? signer_->sign("sim.control", payload) : payload);
   }
 
-  /// The reply to one of two requests.
+  /// Returns the reply to one of two requests.
   std::optional<shoal::sim_control_reply_t> await_reply(std::int32_t id, std::int32_t other_id,
                                                         Clock::time_point deadline, bridges::WaitWarning& audit_entry) {
     while (Clock::now() < deadline && caught_signal() == 0) {

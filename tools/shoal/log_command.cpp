@@ -42,7 +42,7 @@ void print_run(const bridges::LogEvent& event) {
     const auto info = shoal::decode<shoal::sim_info_t>(event.payload, shoal::Finite::any);
     fmt::print("world {}, seed {}, step {} us\n{}", info.world, info.seed, info.step_us, info.versions);
   } catch (const shoal::MessageError&) {
-    // A log of something else that uses the name.
+    // The channel belongs to another program that uses the name.
   }
 }
 
@@ -101,8 +101,8 @@ std::string csv_value(const shoal::FieldValue& value) {
   return quoted + "\"";
 }
 
-/// One table with a row for each event of one channel: the log's time, then every field.  Rows may differ in length
-/// when arrays do; the header is that of the first row.
+/// Prints one table with a row for each event of one channel: the log's time, then every field.  Rows may differ in
+/// length when arrays do; the header is that of the first row.
 int csv(const std::string& path, const std::string& channel, const shoal::MessageTypes& types) {
   bridges::EventLogReader log(path);
   bool header = false;
@@ -140,7 +140,7 @@ void check_png_name(const std::string& png) {
   if (!png.ends_with(".png")) throw CLI::ValidationError("--png", "must end in .png, got '" + png + "'");
 }
 
-/// The Allan deviation of what an instrument at rest reported: as CSV to a file or stdout, and as an image.
+/// Computes the Allan deviation of the reports of an instrument at rest: as CSV to a file or stdout, and as an image.
 int allan(const std::string& path, const std::string& channel, const std::string& out, const std::string& png,
           const shoal::MessageTypes& types) {
   if (!png.empty()) check_png_name(png);
@@ -153,7 +153,7 @@ int allan(const std::string& path, const std::string& channel, const std::string
     if (!png.empty()) plot(table, png);
     if (out.empty() && png.empty()) std::cout << to_csv(table);
   } catch (const bridges::BusError&) {
-    throw;  // names the file itself
+    throw;  // contains the name of the file
   } catch (const std::runtime_error& error) {
     std::cerr << path << ": " << error.what() << '\n';
     return exit_bus;
@@ -177,7 +177,7 @@ int image(const LogArguments& arguments) {
     for (const std::string& problem : made.problems) std::cerr << path << ": " << problem << '\n';
     if (!made.problems.empty()) return exit_bus;
   } catch (const bridges::BusError&) {
-    throw;  // names the file itself
+    throw;  // contains the name of the file
   } catch (const std::runtime_error& error) {
     std::cerr << path << ": " << error.what() << '\n';
     return exit_bus;

@@ -69,14 +69,14 @@ void print_place(const sim::Medium& medium, const sim::Vector3d& p_W) {
     row("wind", vector_text(medium.air_velocity_W(p_W)), "m/s east north up");
 }
 
-/// By depth, from the surface to the depth of the place: rows at 1, 2 and 5 times powers of ten.
+/// Prints a profile from the surface to the depth of the position: rows at 1, 2 and 5 times powers of ten.
 void print_profile(const sim::Medium& medium, const sim::Vector3d& p_W) {
   if (!medium.has_water()) throw CLI::ValidationError("--profile", "this world has no water");
   std::cout
       << "depth_m temperature_C salinity_psu density_kgpm3 sound_speed_mps pressure_Pa east_mps north_mps up_mps\n";
   const double surface_m = medium.surface_m(p_W.x(), p_W.y()), deepest_m = medium.depth_m(p_W);
   const auto print = [&](double depth_m) {
-    // A hair under water at the surface itself, where the air begins.
+    // Slightly below the surface, where the air starts.
     const sim::Vector3d q_W(p_W.x(), p_W.y(), surface_m - std::max(depth_m, 1e-6));
     const sim::Vector3d v_W = medium.water_velocity_W(q_W);
     std::cout << fmt::format("{:g} {:.3f} {:.3f} {:.3f} {:.2f} {:.0f} {:.3f} {:.3f} {:.3f}\n", depth_m,
@@ -90,7 +90,7 @@ void print_profile(const sim::Medium& medium, const sim::Vector3d& p_W) {
   if (deepest_m > 0) print(deepest_m);
 }
 
-/// Statistics of the surface over a place.  The heights are taken at any time; the medium stays where it is.
+/// Prints statistics of the surface at a position.  The heights are evaluated at any time; the medium is not advanced.
 void print_waves(const sim::Medium& medium, const sim::Vector3d& p_W, double from_s, double length_s) {
   if (!medium.has_waves()) throw CLI::ValidationError("--waves", "this world has no waves");
   // Surface elevation over time.

@@ -30,7 +30,7 @@ struct RunArguments {
   std::optional<double> duration_s;
 };
 
-/// `10,20.5`: times in s.
+/// Parses times in s: `10,20.5`.
 std::vector<double> parse_times(const std::string& text) {
   std::vector<double> times;
   std::istringstream in(text);
@@ -44,7 +44,7 @@ std::vector<double> parse_times(const std::string& text) {
   return times;
 }
 
-/// The world of a snapshot, with the values that the command line sets.
+/// Loads the world of a snapshot, with the values that the command line sets.
 sim::LoadedWorld load_from(RunArguments& arguments) {
   if (arguments.load.seed) throw CLI::ValidationError("--seed", "cannot be changed in a snapshot");
   arguments.run.from = read_snapshot(arguments.from);

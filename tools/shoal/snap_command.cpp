@@ -37,7 +37,7 @@ struct SnapArguments {
   int quality = 90;
 };
 
-/// What to look with, and from where.
+/// Camera and its pose.
 struct View {
   sim::OpticsConfig optics;
   sim::Pose X_WS = sim::Pose::Identity();
@@ -50,7 +50,7 @@ struct View {
 
 using Numbers = std::vector<double>;
 
-/// `count` numbers with `separator` between them.
+/// Parses `count` numbers with `separator` between them.
 Numbers parse_numbers(const char* option, const std::string& text, char separator, std::size_t count,
                       const char* form) {
   Numbers numbers;
@@ -93,7 +93,7 @@ const devices::Camera& find_camera(const sim::World& world, const std::string& n
                                  (cameras.empty() ? "; this world has none, see --eye" : "; there are: " + cameras));
 }
 
-/// Through a camera as it stands now: its lens and exposure, without noise, blur and rolling shutter.
+/// Returns the view of a camera at its present pose: its lens and exposure, without noise, blur and rolling shutter.
 View view_of_camera(const sim::World& world, const std::string& name) {
   const sim::MountedDevice* device = nullptr;
   const devices::Camera& camera = find_camera(world, name, device);
@@ -151,7 +151,7 @@ View make_view(const SnapArguments& arguments, const sim::World& world) {
 
 sim::Image8 take_picture(const sim::World& world, const View& view, sim::TextureLibrary& textures) {
   const auto rays = sim::make_pixel_rays(sim::Optics(view.optics), view.antialias);
-  // The library outlives the renderer, which only wants to share it.
+  // The library outlives the renderer, which requires shared ownership.
   const std::shared_ptr<sim::TextureLibrary> shared(&textures, [](sim::TextureLibrary*) {});
   sim::Renderer renderer(world.physics(), rays, view.options, shared);
   sim::Frame frame;
@@ -171,7 +171,7 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// What cannot be seen in an automatic view.
+/// Reports vehicles that cannot be seen in an automatic view.
 void warn(const View& view) {
   if (!view.overview) return;
   if (!view.overview->hidden.empty())
@@ -192,7 +192,7 @@ void take_one(const SnapArguments& arguments, const sim::World& world, const std
   try {
     sim::write_image(path, output, arguments.quality);
   } catch (const sim::ImageError& error) {
-    throw std::runtime_error(path + ": " + error.what());  // the main program makes that exit code 4
+    throw std::runtime_error(path + ": " + error.what());  // the main program returns exit code 4 for it
   }
   const sim::Vector3d p_W = view.X_WS.translation();
   std::cout << fmt::format(

@@ -11,7 +11,7 @@ namespace autonomy {
 namespace {
 
 constexpr double max_memory_s = 60;
-constexpr double bad_clock_mps = 0.15;  ///< 100 ppm, the worst of usual quartz clocks, by the speed of sound
+constexpr double bad_clock_mps = 0.15;  ///< 100 ppm, the worst error of common quartz clocks, times the speed of sound
 
 Vector2d left_of(const Vector2d& v) {
   return {-v.y(), v.x()};
@@ -191,7 +191,7 @@ MarineEkf::Outcome MarineEkf::update_range(const Range& range, const MarineEkf* 
 
 MarineEkf::Opinion MarineEkf::opinion_of(int beacon, double innovation_m, double variance_m2) {
   Trust& trust = trust_[beacon];
-  // A filter without other messages becomes uncertain, which is not a reason to believe who was wrong when it was sure.
+  // A filter without other messages becomes uncertain, which does not make a contradicting beacon trustworthy.
   const bool in_doubt = trust.doubted_at_m2 > 0;
   const double variance_now_m2 = in_doubt ? std::min(variance_m2, trust.doubted_at_m2) : variance_m2;
   if (squared(innovation_m) > params_.range_gate * variance_now_m2) {
@@ -273,7 +273,7 @@ void MarineEkf::open_clock(const ClockError& error) {
   P_(4, 4) = squared(error.now_m) + error.variance_m2;
   if (params_.states <= 5) return;
   P_(5, 5) = std::max(P_(5, 5), squared(error.rate_mps));
-  // It fitted before: the clock is one that runs away.
+  // It was correct before: the clock drifts.
   if (ranges_used_ > 0) P_(5, 5) = std::max(P_(5, 5), squared(bad_clock_mps));
 }
 
@@ -292,7 +292,7 @@ void MarineEkf::use(const Eigen::Matrix<double, n, 1>& innovation, const Eigen::
   const Eigen::Matrix<double, n, n> S = H * P_ * H.transpose() + R;
   const Eigen::Matrix<double, max_states, n> K = P_ * H.transpose() * S.inverse();
   x_ += K * innovation;
-  // Joseph's form stays symmetric and positive under rounding.
+  // Joseph form, which remains symmetric and positive under rounding (Bucy and Joseph 1968).
   const Covariance A = Covariance::Identity() - K * H;
   P_ = A * P_ * A.transpose() + K * R * K.transpose();
 }

@@ -11,12 +11,12 @@ namespace autonomy {
 
 namespace {
 
-/// A tilt that is later than this does not belong to the same clock.
+/// Maximum lead of a tilt; a later one belongs to another clock.
 constexpr double max_late_s = 0.1;
-/// From one tilt to the next; after more than this their difference is not a rate.
+/// Maximum interval between tilts whose difference is used as a rate.
 constexpr double tilt_gap_s = 1;
 
-/// The share of the way to a new value that a low pass goes in a time.
+/// Gain of a first-order low-pass filter for a time step.
 double share(double time_s, double time_constant_s) {
   return time_s / (time_s + time_constant_s);
 }
@@ -35,11 +35,11 @@ Balance::Balance(const Params& params) : params_(params) {
 }
 
 void Balance::receive(const shoal::inclination_t& message) {
-  // As floating point numbers: the difference of any two whole ones may be too large for one.
+  // Floating point, because the difference of two integers may overflow.
   const double dt_s = (static_cast<double>(message.utime) - static_cast<double>(tilt_utime_)) * 1e-6;
   const bool late = dt_s <= 0 && dt_s > -max_late_s;
   if (tilt_known_ && late) return;
-  // Other times: the clock was set, or the last message had its own time.  The rate stays what it was.
+  // Other times: the clock was set, or the last message had its own time.  The rate is kept.
   if (tilt_known_ && dt_s > 0 && dt_s < tilt_gap_s) {
     const double rate_radps = (message.pitch_rad - tilt_rad_) / dt_s;
     rate_radps_ += share(dt_s, params_.rate_filter_s) * (rate_radps - rate_radps_);

@@ -18,7 +18,7 @@ struct Options {
   autonomy::Participation participation;
 };
 
-/// What it knows: all of it goes back with the world.
+/// State of the program, all of which is rewound with the world.
 struct State {
   autonomy::Balance balance;
   std::optional<std::int64_t> started_utime = {}, fell_utime = {};

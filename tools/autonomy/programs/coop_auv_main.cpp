@@ -71,7 +71,7 @@ void declare_filter(command_line::DeclaredOptions& declared, Options& options) {
   declared.number("clock_drift_std_ppm", options.clock_drift_std_ppm, 0, 1e4, "drift of the clock, with 6 states");
 }
 
-/// A position on the vehicle, which is its origin unless it is given.
+/// Declares a position on the vehicle; the default is its origin.
 void declare_position(command_line::DeclaredOptions& declared, const char* key, Eigen::Vector3d& position_B,
                       const std::string& meaning) {
   declared

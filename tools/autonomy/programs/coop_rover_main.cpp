@@ -17,7 +17,7 @@ int drive(const autonomy::CoopRover::Params& params, const autonomy::Participati
   const int exit_code = autonomy::take_part(client, participation, rover, [&](std::int64_t utime) {
     for (const autonomy::CoopRover::Outgoing& out : rover.step(utime)) client.publish_bytes(out.channel, out.payload);
   });
-  // One write: the programs of a run share a terminal.
+  // A single write, because the programs of a run share a terminal.
   std::cerr << params.name + ": " + std::to_string(rover.follower().reached()) + " waypoints reached, " +
                    std::to_string(rover.follower().given_up()) + " given up\n";
   return exit_code;

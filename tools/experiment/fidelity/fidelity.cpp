@@ -172,7 +172,7 @@ void set_places(sim::ConfigNode& node, const sim::SourcePlace& place) {
   }
 }
 
-/// Returns the vehicle's entry in the world, with its file.
+/// Returns the name of the vehicle in its world, from that of its file.
 std::string vehicle_name(const FidelityCase& of) {
   std::string name = std::filesystem::path(of.vehicle).stem().string();
   for (char& c : name)

@@ -11,13 +11,13 @@ namespace tools {
 
 namespace {
 
-/// Returns the signal that ended the run; one during its end counts as well.
+/// Records a signal as the end of the run; a signal during its end counts as well.
 void note_signal(Summary& summary) {
   if (caught_signal() != 0 && summary.exit_code <= 1 && summary.error.empty())
     summary.fail(128 + caught_signal(), "signal", "");
 }
 
-/// Returns whether all processes of the world, or a manually started client, take part.
+/// Returns whether all programs of the world are started here, or a client by hand.
 bool programs_take_part(const sim::WorldConfig& world, const RunOptions& options) {
   return world.processes.empty() || options.launch || !options.await.empty();
 }
