@@ -29,8 +29,8 @@ def turned(v, angle):
 
 class MarineEkf:
     GATE = 10.83  # 99.9 % of chi-square with one degree
-    MAX_REFUSALS = 5  # in a row, before something is held to be wrong, and not only a measurement
-    BAD_CLOCK_MPS = 0.15  # 100 ppm, the worst of usual quartz clocks, by the speed of sound
+    MAX_REFUSALS = 5  # consecutive ones, before a state is considered wrong instead of the measurement
+    BAD_CLOCK_MPS = 0.15  # 100 ppm, the worst error of common quartz clocks, times the speed of sound
 
     def __init__(self, time_s, position_m, position_std_m, states=4, heading_bias_std_rad=0.05, speed_scale_std=0.03,
                  range_bias_std_m=30.0, range_drift_std_mps=0.005, heading_noise=0.035, speed_noise=0.01):
@@ -44,7 +44,7 @@ class MarineEkf:
         self.time_s = time_s
         self.motion = deque([(time_s, 0.0, 0.0)])  # measured, since the start
         self.refused_positions = 0
-        self.trust = {}  # of a beacon: refusals in a row, agreements in doubt, variance when the doubt began
+        self.trust = {}  # of a beacon: consecutive refusals, agreements in doubt, variance when the doubt started
         self.contradictions = deque(maxlen=2 * self.MAX_REFUSALS)  # beacon, time, innovation, its variance
         self.ranges_used = 0
 
@@ -133,7 +133,7 @@ class MarineEkf:
 
     def opinion_of(self, beacon, innovation, variance):
         refusals, agreements, doubted_at = self.trust.get(beacon, (0, 0, None))
-        # A filter without other messages becomes uncertain, which is not a reason to believe who was wrong when it was sure.
+        # A filter without other messages becomes uncertain, which does not make a contradicting beacon trustworthy.
         if not innovation ** 2 <= self.GATE * min(variance, doubted_at or variance):
             refusals += 1
             if refusals >= self.MAX_REFUSALS and not doubted_at:
@@ -171,7 +171,7 @@ class MarineEkf:
         self.x[4] += error
         self.x[5] += rate
         drift_variance = max(self.P[5][5], rate ** 2)
-        if self.ranges_used > 0:  # it fitted before: the clock is one that runs away
+        if self.ranges_used > 0:  # it was correct before: the clock drifts
             drift_variance = max(drift_variance, self.BAD_CLOCK_MPS ** 2)
         for i in range(N):
             self.P[i][4] = self.P[4][i] = self.P[i][5] = self.P[5][i] = 0.0
@@ -189,7 +189,7 @@ class MarineEkf:
             self.refused_positions += 1
             if self.refused_positions < self.MAX_REFUSALS or not all(map(math.isfinite, innovations)):
                 return False
-            for i in (0, 1):  # sure and wrong: open it
+            for i in (0, 1):  # overconfident and wrong: increase the variance
                 self.P[i][i] += sum(e ** 2 for e in innovations)
         self.refused_positions = 0
         for i, h in enumerate(rows):
@@ -205,7 +205,7 @@ class MarineEkf:
         k = [p / (sum(h[i] * Ph[i] for i in range(N)) + variance) for p in Ph]
         self.x = [self.x[i] + k[i] * innovation for i in range(N)]
         A = [[(1.0 if i == j else 0.0) - k[i] * h[j] for j in range(N)] for i in range(N)]
-        self.P = times(times(A, self.P), transposed(A))  # Joseph's form
+        self.P = times(times(A, self.P), transposed(A))  # Joseph form
         for i in range(N):
             for j in range(N):
                 self.P[i][j] += k[i] * k[j] * variance

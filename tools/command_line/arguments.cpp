@@ -177,7 +177,7 @@ class Reader {
                        [](const std::string& word) { return word == "--help" || word == "-h"; });
   }
 
-  /// Returns options with their values in one word, then `--` where a positional argument could be misread.
+  /// Orders the result: options with their values in one word, then `--` where a positional argument could be misread.
   void arrange() {
     std::vector<std::string> all = path_;
     all.insert(all.end(), options_.begin(), options_.end());

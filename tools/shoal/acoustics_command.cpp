@@ -125,7 +125,7 @@ const devices::AcousticModem::Params* modem_keys(const std::string& full_name, c
   return nullptr;
 }
 
-/// Returns the link with the signal of the sending modem, if any, and the options that override it.
+/// Sets the signal of the link: that of the sending modem, if any, overridden by the options.
 void take_signal(AcousticLink& link, const AcousticsArguments& arguments, const devices::AcousticModem::Params* modem) {
   if (modem != nullptr) {
     link.source_level = sim::Decibels(modem->source_level_dB);

@@ -22,7 +22,7 @@ struct BalanceModel {
   double wheel_radius_m = 0.236;  ///< r
   double gravity_mps2 = 9.80665;
 
-  /// Returns tilt (rad) and speed (m/s) for a torque (N m), at a complex frequency (1/s).
+  /// Response of tilt (rad) and speed (m/s) to a torque (N m), at a complex frequency (1/s).
   struct Response {
     std::complex<double> tilt, speed;
   };

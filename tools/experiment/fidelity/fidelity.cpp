@@ -53,7 +53,7 @@ void set_velocity(const sim::Vehicle& vehicle, const FidelityState& start) {
     body->set_velocity_W(v + w.cross(body->X_WB().translation() - origin), w);
 }
 
-/// Returns `fields` with the names of columns replaced by the numbers of a row.
+/// Replaces the names of columns in `node` by the numbers of a row.
 void fill_in(sim::ConfigNode& node, const FidelityReference& reference, const std::vector<double>& row, double scale) {
   for (sim::ConfigNode& item : node.items) fill_in(item, reference, row, scale);
   for (sim::ConfigNode::Entry& entry : node.entries) fill_in(entry.value, reference, row, scale);
@@ -194,7 +194,7 @@ sim::ConfigNode overrides_of(const FidelityCase& of, const FidelityOptions& opti
   return overrides;
 }
 
-/// Returns the same errors, with the case after the source place that each starts with.
+/// Throws the same errors, with the case after the source place that each starts with.
 [[noreturn]] void throw_for_case(const FidelityCase& of, const sim::ConfigError& error) {
   std::vector<std::string> lines = error.lines();
   for (std::string& line : lines) {

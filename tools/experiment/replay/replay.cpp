@@ -234,7 +234,7 @@ class Replay {
     if (due && !next_hash_->second.after_inputs) compare_hashes(next_hash_->second);
   }
 
-  /// Records the step as the first difference of all parts that differ now.
+  /// Reports the messages and channels that differ for the first time at this step.
   void report_first_messages() {
     constexpr std::size_t max = 8;
     if (messages_.first() == nullptr) return;

@@ -190,7 +190,7 @@ std::string tilt_sentence(const RunMetric& metric) {
   return text + (fell_s ? " and falls " + at_time(fell_s) : " and does not fall") + ".";
 }
 
-/// Returns whether the run ended before the metric started to count.
+/// Returns whether a metric has no figures, because the run ended before it started to count.
 bool has_nothing(const RunMetric& metric) {
   return std::none_of(metric.figures.begin(), metric.figures.end(),
                       [](const RunMetric::Figure& figure) { return figure.value.has_value(); });

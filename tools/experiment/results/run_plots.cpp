@@ -53,7 +53,7 @@ std::string joined(const std::vector<std::string>& curves) {
   return text + "\n";
 }
 
-/// Returns a canvas with the aspect ratio of the tracks.
+/// Canvas with the aspect ratio of the tracks.
 constexpr const char* canvas_for_tracks =
     "stats 'tracks.csv' every ::1 using 3 name 'E' nooutput\nstats 'tracks.csv' every ::1 using 4 name 'N' nooutput\n"
     "stats 'outlines.dat' using (real(word(strcol(1),1))) name 'OE' nooutput\n"

@@ -17,7 +17,7 @@ class TerminalKeys {
 
   TerminalKeys();
   ~TerminalKeys();
-  /// Returns the original settings, if they were changed; for signal handlers.
+  /// Restores the original settings, if they were changed; for signal handlers.
   static void restore_saved();
   TerminalKeys(const TerminalKeys&) = delete;
   TerminalKeys& operator=(const TerminalKeys&) = delete;

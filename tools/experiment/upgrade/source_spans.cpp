@@ -91,7 +91,7 @@ class SpanFinder {
     ++cursor_;
   }
 
-  /// Skips words without a value, with an end after them.
+  /// Returns the length of a complete word for null.
   std::size_t null_word_length(std::size_t from) const {
     for (const std::string_view word : {"~", "null", "Null", "NULL"})
       if (text_.compare(from, word.size(), word) == 0) {
