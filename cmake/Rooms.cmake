@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Rooms: every folder of sources is a target, which says what other rooms it uses.  docs/develop/architecture.md has the
-# image; tests/sim/include_direction_test.cpp reads the list that shoal_write_rooms() leaves, and holds includes to it.
+# Rooms: every folder of sources is a target, which declares the rooms that it uses (docs/develop/architecture.md shows
+# them); tests/sim/include_direction_test.cpp reads the list that shoal_write_rooms() writes, and checks includes by it.
 
 # shoal_room(<folder> [MAIN] [USES <room>...] [PUBLIC <library>...] [PRIVATE <library>...] [EXCEPT <file>...])
 # MAIN: one of its sources has main(); linking the program made of its objects tests its dependencies.

@@ -61,7 +61,7 @@ def write_grid(path, rows, cell_m, left_m, bottom_m):
 
 
 def read_grid(path):
-    """What gdal_translate wrote: six lines of header at most, then rows."""
+    """Reads the output of gdal_translate: six lines of header at most, then rows."""
     nodata, rows = None, []
     with open(path) as file:
         for line in file:
@@ -116,7 +116,7 @@ def import_raster(options):
 
 
 def synthetic_m(x, y):
-    """Height of the sea floor; x east, y north, the shore in the south."""
+    """Returns the height of the sea floor; x east, y north, the shore in the south."""
     depth = 14.5 + 0.07 * y
     depth -= 0.35 * math.sin((0.8 * x + 0.6 * y) / 25 * 2 * math.pi)  # sand waves, 25 m long
     depth += 3 * math.exp(-(((x - 40 - 30 * math.sin(y / 60)) / 18) ** 2))  # a channel that winds to the north

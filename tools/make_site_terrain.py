@@ -17,7 +17,7 @@ POINTS, CELL_M, WHITE_M = 401, 5.0, 120.0
 
 
 def noise(lattice, x, y):
-    """Value noise between the points of a lattice, with a smooth fade."""
+    """Returns value noise between the points of a lattice, with a smooth fade."""
     i, j = math.floor(x), math.floor(y)
     s, t = ((d * d * d * (d * (6 * d - 15) + 10)) for d in (x - i, y - j))
     a, b, c, d = (lattice[(i + k) & 63][(j + m) & 63] for m in (0, 1) for k in (0, 1))

@@ -128,7 +128,7 @@ class CoopAuv:
 
 
 def attach(options):
-    """The navigator of a vehicle, and its place in the lockstep, which LockstepClient.run() takes."""
+    """Navigator of a vehicle, as a client of the lockstep for LockstepClient.run()."""
     name = options.name
     auv = CoopAuv(options.sound_speed_mps, options.heading_noise_radprtHz)
     bus = LockstepClient(name + "_python", PERIOD_S)

@@ -27,7 +27,7 @@ NOTICE_S = 3
 
 
 class Signer:
-    """Signs what controls a run, when SHOAL_RUN_KEY has its key: docs/guides/access_control.md."""
+    """Signs requests that control a run, with the key in SHOAL_RUN_KEY: docs/guides/access_control.md."""
 
     def __init__(self, name):
         self.key, self.name = bytes.fromhex(os.environ.get("SHOAL_RUN_KEY", "")), name
@@ -35,7 +35,7 @@ class Signer:
         self.counter = itertools.count(time.time_ns() // 1000)
 
     def __call__(self, channel, data):
-        """The payload to publish instead of `data`."""
+        """Returns the payload to publish instead of `data`."""
         if not self.key:
             return data
         signed = shoal.sim_signed_t()
@@ -49,7 +49,7 @@ class LockstepClient:
     """Subscribe, then run(): it joins, and calls decide(utime) at each tick, when all messages were handled."""
 
     def __init__(self, name, period_s, terms=""):
-        """`terms`: more of what it joins with, such as `, on_timeout: pause, timeout_s: 2`."""
+        """`terms`: further options of the join request, such as `, on_timeout: pause, timeout_s: 2`."""
         self.lc, self.sign = lcm.LCM(), Signer(name)
         self.name, self.period_s, self.terms = name, period_s, terms
         self.session = random.SystemRandom().randrange(1, 1 << 53)
@@ -70,7 +70,7 @@ class LockstepClient:
 
     @staticmethod
     def only_valid(handler):
-        """Any program may publish anything: what is not a message of its type is as if it had not come."""
+        """Handles a message.  Any program may publish anything: messages of another type are ignored."""
         def handle(channel, data):
             try:
                 if shoal.sim_signed_t._get_packed_fingerprint() != data[:8]:  # from another client
@@ -89,7 +89,7 @@ class LockstepClient:
         self.handlers[self.receives.index(channel)].append(lambda data: handler(message.decode(data)))
 
     def publish(self, channel, message):
-        """From a handler or from decide()."""
+        """Publishes a message; to be called from a handler or from decide()."""
         data = message.encode()
         self.published.append((channel, binascii.crc32(data), data))
         self.lc.publish(channel, data)

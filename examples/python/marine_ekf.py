@@ -49,7 +49,7 @@ class MarineEkf:
         self.ranges_used = 0
 
     def predict(self, time_s, velocity_mps):
-        """Moves on with a velocity over ground (east, north) as DVL and compass measure it."""
+        """Predicts with a velocity over ground (east, north) as DVL and compass measure it."""
         dt = time_s - self.time_s
         if dt <= 0:
             return
@@ -82,7 +82,7 @@ class MarineEkf:
             self.motion.popleft()
 
     def distance_since(self, time_s):
-        """Measured way from then to now; None when that is too long ago."""
+        """Returns the measured displacement from then to now; None when that is too long ago."""
         later = self.motion[-1]
         for mark in reversed(self.motion):
             if mark[0] <= time_s:
@@ -167,7 +167,7 @@ class MarineEkf:
         return now, rate, variance
 
     def open_clock(self, error, rate, variance):
-        """The own clock is ahead by so much more than it was taken for, in range, and gains so much more."""
+        """Corrects the lead of the own clock and its rate, both in range."""
         self.x[4] += error
         self.x[5] += rate
         drift_variance = max(self.P[5][5], rate ** 2)
@@ -181,7 +181,7 @@ class MarineEkf:
         self.trust.clear()
 
     def update_position(self, position_m, std_m):
-        """A position by GPS, of now: one coordinate after the other, as their errors are independent."""
+        """Updates with a present GPS position: one coordinate after the other, as their errors are independent."""
         rows = [1.0, 0, 0, 0, 0, 0], [0, 1.0, 0, 0, 0, 0]
         innovations = [position_m[i] - self.x[i] for i in (0, 1)]
         fits = all(e ** 2 <= self.GATE * (self.variance_of(h) + std_m ** 2) for h, e in zip(rows, innovations))
@@ -200,7 +200,7 @@ class MarineEkf:
         return sum(h[i] * h[j] * self.P[i][j] for i in range(N) for j in range(N))
 
     def use(self, h, innovation, variance):
-        """One number measured with the row h."""
+        """Updates with a scalar measurement with the Jacobian h."""
         Ph = [sum(self.P[i][j] * h[j] for j in range(N)) for i in range(N)]
         k = [p / (sum(h[i] * Ph[i] for i in range(N)) + variance) for p in Ph]
         self.x = [self.x[i] + k[i] * innovation for i in range(N)]

@@ -59,7 +59,7 @@ class LCM:
             pass
 
     def message_of(self, datagram, sender):
-        """(channel, payload) that the datagram completes; (None, None): it completes none."""
+        """Returns (channel, payload) of the message that the datagram completes, or (None, None)."""
         magic = struct.unpack(">I", datagram[:4])[0] if len(datagram) >= 8 else None
         if magic == SHORT:
             channel, _, data = datagram[8:].partition(b"\0")

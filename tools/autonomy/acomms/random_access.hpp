@@ -9,7 +9,7 @@
 
 namespace autonomy {
 
-/// Random access (ALOHA, Abramson 1970): sends at intervals that vary about a mean, so that two senders that collided
+/// Random access (ALOHA): sends at intervals that vary about a mean, so that two senders that collided
 /// once do not collide repeatedly.
 class RandomAccess {
  public:

@@ -68,7 +68,7 @@ bool Ekf::update(const Vector2d& innovation, const Jacobian& H, const Eigen::Mat
   const Eigen::Vector3d change = K * innovation;
   pose_.p_W += change.head<2>();
   pose_.yaw_rad = sim::wrap_angle(pose_.yaw_rad + change.z());
-  // Joseph form, which remains symmetric and positive under rounding (Bucy and Joseph 1968).
+  // Joseph form of the covariance, which remains symmetric and positive under rounding.
   const Eigen::Matrix3d A = Eigen::Matrix3d::Identity() - K * H;
   P_ = A * P_ * A.transpose() + K * R * K.transpose();
   return true;

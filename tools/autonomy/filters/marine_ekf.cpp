@@ -292,7 +292,7 @@ void MarineEkf::use(const Eigen::Matrix<double, n, 1>& innovation, const Eigen::
   const Eigen::Matrix<double, n, n> S = H * P_ * H.transpose() + R;
   const Eigen::Matrix<double, max_states, n> K = P_ * H.transpose() * S.inverse();
   x_ += K * innovation;
-  // Joseph form, which remains symmetric and positive under rounding (Bucy and Joseph 1968).
+  // Joseph form of the covariance, which remains symmetric and positive under rounding.
   const Covariance A = Covariance::Identity() - K * H;
   P_ = A * P_ * A.transpose() + K * R * K.transpose();
 }

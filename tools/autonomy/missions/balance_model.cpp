@@ -45,7 +45,7 @@ DelayMargin delay_margin(const Balance::Params& law, const BalanceModel& model) 
   constexpr int points_per_decade = 5000;
   DelayMargin margin{std::numeric_limits<double>::infinity(), 0};
   Complex before = open_loop(law, model, 1e-3);
-  const double highest = std::numbers::pi / law.period_s;  // Nyquist frequency
+  const double highest = std::numbers::pi / law.period_s;  // half of the sampling frequency
   for (int i = 1;; ++i) {
     const double w = 1e-3 * std::pow(10, static_cast<double>(i) / points_per_decade);
     if (w > highest) return margin;

@@ -34,7 +34,8 @@ struct BalanceModel {
 /// half-plane.
 std::complex<double> open_loop(const Balance::Params& law, const BalanceModel& model, double w_radps);
 
-/// Returns the delay margin from tilt to torque: the smallest phase margin over its frequency.  For a loop that is
+/// Delay margin from tilt to torque: the smallest phase margin over its frequency.  For a loop that is stable without
+/// delay.
 /// stable without delay.
 struct DelayMargin {
   double delay_s = 0;

@@ -47,7 +47,7 @@ class EstimateMetric : public Metric {
   double max_gap_s() const;
 
  private:
-  /// An estimate with a time in the future.
+  /// Estimate with a time in the future.
   struct Early {
     sim::Time time{0};
     Estimate estimate;

@@ -13,9 +13,9 @@
 
 namespace tools {
 
-/// Returns the messages of a record step by step, in the order in which the run delivered them: the inputs of the world
-/// before a step, then the messages that the simulator published at its end.  Messages of the run itself (lockstep,
-/// requests, sim.inputs, sim.hash, sim.snapshot) are omitted, and so is the first sim.info.
+/// Reader of the messages of a record step by step, in the order in which the run delivered them: the inputs of the
+/// world before a step, then the messages that the simulator published at its end.  Messages of the run itself
+/// (lockstep, requests, sim.inputs, sim.hash, sim.snapshot) are omitted, and so is the first sim.info.
 class RecordedSteps {
  public:
   /// Receives a message.  The payload is valid until the call returns.

@@ -16,7 +16,7 @@ namespace {
 
 using Metrics = std::vector<const RunMetric*>;
 
-/// More vehicles than this are summarised.
+/// More vehicles than this are described together.
 constexpr std::size_t max_vehicles_by_name = 4;
 constexpr std::size_t max_contacts_by_name = 5;
 

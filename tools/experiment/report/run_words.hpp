@@ -9,7 +9,7 @@
 
 namespace tools {
 
-/// Summarises the outcome of rules in one line: `7 of 8 rules hold, 1 failed.`  Empty when there are none.
+/// Describes the outcome of rules in one line: `7 of 8 rules hold, 1 failed.`  Empty when there are none.
 std::string rules_in_words(const std::vector<RunRecord::Rule>& rules);
 
 /// Describes the results of the metrics, one sentence each:

@@ -9,7 +9,7 @@
 
 namespace tools {
 
-/// The entries of `notices` in summary.json.
+/// Returns the entries of `control.audit` in summary.json.
 nlohmann::ordered_json audit_json(const std::vector<bridges::AuditEntry>& audit);
 
 /// Returns one line: `quit at 12.30 s by client 'shoal-control-4711'`.

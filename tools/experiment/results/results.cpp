@@ -174,7 +174,7 @@ std::string Summary::to_json() const {
   }
   json["modem_dropped_messages"] = modem_dropped_messages;
   json["serial_dropped_bytes"] = serial_dropped_bytes;
-  // Judgement and end.
+  // Verdict and end.
   if (event) json["event"] = {{"text", event->text}, {"passed", event->passed}};
   json["judged"] = judged();
   if (!judged()) json["not_judged"] = why_not_judged();

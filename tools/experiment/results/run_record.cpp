@@ -91,7 +91,7 @@ RunRecord read_run(const std::string& directory) {
       run.contacts.push_back(
           {contact.text("vehicle"), contact.text("with"), contact.number("first_s"), contact.whole("count")});
     }
-  // Judgement and end.
+  // Verdict and end.
   if (in.has("event")) {
     const JsonReader event(in.object("event"), path + ": event");
     run.event = RunRecord::Rule{event.text("text"), event.boolean("passed")};

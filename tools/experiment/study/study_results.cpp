@@ -249,7 +249,7 @@ std::string StudyResults::to_json(int exit_code) const {
     if (!run.record)
       json["failed_runs"].push_back(
           {{"case", config.cases[run.in_case].name}, {"seed", run.seed}, {"why", run.failure}});
-  // Rules and judgement.
+  // Rules and verdict.
   json["runs"] = runs_.size();
   json["rules"] = nlohmann::ordered_json::array();
   for (const Scoring::Verdict& verdict : verdicts()) json["rules"].push_back(json_of(verdict));

@@ -15,8 +15,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// Globals, because signal handlers have no other access.  One copy of the original settings is in use while the other
-// is written.
+// Global variables, because signal handlers have no other access.  One copy of the original settings is in use while
+// the other is written.
 termios before[2]{};
 std::atomic<int> in_use{0};
 termios raw{};

@@ -6,7 +6,7 @@
 namespace tools {
 
 /// Replaces `before`, the content of the file, by `after`.  The new file is written beside the old one, with its owner
-/// and permissions, synchronised to the disk, and renamed.  A symbolic link is kept; its target is replaced. Throws
+/// and permissions, flushed to the disk, and renamed.  A symbolic link is kept; its target is replaced. Throws
 /// sim::ConfigError with the path and the reason, without any change, when the content differs from `before`, the file
 /// has further hard links (which would keep the old text), or it cannot be written.
 void replace_file(const std::string& path, const std::string& before, const std::string& after);
