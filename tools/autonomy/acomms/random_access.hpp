@@ -9,8 +9,8 @@
 
 namespace autonomy {
 
-/// Random access (ALOHA): sends at intervals that vary about a mean, so that two senders that collided
-/// once do not collide repeatedly.
+/// Random access (ALOHA): sends at intervals that vary about a mean, so that two senders that collided once do not
+/// collide repeatedly.
 class RandomAccess {
  public:
   /// Intervals are uniform in `mean_s` (1 - jitter) to `mean_s` (1 + jitter).  Senders with different `name` differ

@@ -89,6 +89,7 @@ std::string html_text(std::string_view text) {
   while (!text.empty()) {
     const std::size_t length = utf8_length(text);
     const char c = text.front();
+    // Replace control characters and invalid bytes, escape markup.
     const bool control = length == 1 && ((c >= 0 && c < 0x20 && c != '\n' && c != '\t') || c == 0x7f);
     if (length == 0 || control)
       out += "\xef\xbf\xbd";

@@ -48,6 +48,7 @@ void RunKeys::press(char key) {
 
 void RunKeys::execute(char key) {
   switch (key) {
+    // Pause, steps and speed.
     case ' ':
       control_.set_paused(!control_.paused);
       return report_(run_state());
@@ -66,15 +67,18 @@ void RunKeys::execute(char key) {
     case 'm':
       control_.set_speed(0);
       return report_(run_state());
+    // Rewind and snapshot.
     case 'r':
     case 'R':
       return report_(time_.rewind(key == 'r' ? 10 : 30, false));
     case 's':
       return report_(time_.write_snapshot(""));
+    // Start of a question.
     case 'u':
       asking_ = true;
       answer_.clear();
       return request_(question);
+    // End and help.
     case 'q':
       control_.quit = true;
       return;

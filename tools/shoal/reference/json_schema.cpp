@@ -146,12 +146,14 @@ class SchemaWriter {
 
   Json plain_value(const ParamInfo& info) const {
     switch (info.kind) {
+      // Scalars.
       case ParamKind::boolean:
         return {{"type", {"boolean"}}};
       case ParamKind::integer:
         return number_schema("integer", info.range);
       case ParamKind::number:
         return number_schema("number", info.range);
+      // Lists of values.
       case ParamKind::vector: {
         Json schema = list_of(number_schema("number", info.range));
         schema["minItems"] = schema["maxItems"] = 3;
@@ -163,6 +165,7 @@ class SchemaWriter {
         return list_of(info.pattern.empty() ? text() : text_like(info));
       case ParamKind::paths:
         return list_of(text());
+      // Maps.
       case ParamKind::map:
         return map_of(info);
       case ParamKind::maps:
