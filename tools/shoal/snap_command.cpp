@@ -161,7 +161,7 @@ sim::Image8 take_picture(const sim::World& world, const View& view, sim::Texture
   return sim::develop(view.grey ? sim::grey_of(frame.light) : frame.light, view.gain);
 }
 
-/// `image.png`, or `picture_0003.png` when there are several.
+/// `image.png`, or `image_0003.png` for one of several.
 std::string numbered(const std::string& path, int number) {
   const std::size_t dot = path.rfind('.');
   return fmt::format("{}_{:04}{}", path.substr(0, dot), number, path.substr(dot));
