@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# A header with all types of messages: SHOAL_ALL_MESSAGE_TYPES(X) makes an X(type) of each, SHOAL_MESSAGE_TYPE_LIST is a
-# list of types.
+# Writes a header with all types of messages: SHOAL_ALL_MESSAGE_TYPES(X) expands to X(type) for each,
+# SHOAL_MESSAGE_TYPE_LIST is a list of types.
 include_guard(GLOBAL)
 file(GLOB lcm_files CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/messages/*/*.lcm)
 set(type_includes "")

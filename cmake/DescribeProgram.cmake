@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # shoal_describe_program(<target> [DESTINATION <folder>] [COMPONENT <component>])
-# After each link of the program <target> writes what `<target> --describe` prints beside it, as NAME.args.yaml, by which
-# `shoal check` checks the `args:` of a process in a world.  With DESTINATION both are installed there.
+# After each link of the program <target>, writes the output of `<target> --describe` beside it, as NAME.args.yaml, by
+# which `shoal check` checks the `args:` of a process in a world.  With DESTINATION both are installed there.
 function(shoal_describe_program target)
   cmake_parse_arguments(ARG "" "DESTINATION;COMPONENT" "" ${ARGN})
   set(declaration $<TARGET_FILE:${target}>.args.yaml)

@@ -22,12 +22,12 @@ install(DIRECTORY ${types_dir}/reporter DESTINATION include/shoal/messages COMPO
 file(GLOB lcm_files CONFIGURE_DEPENDS ${types_dir}/*/*.lcm)
 install(FILES ${lcm_files} DESTINATION share/shoal/types COMPONENT client)
 
-# The first lines of worlds and vehicles name ../docs/reference/schema.
+# The first lines of worlds and vehicles refer to ../docs/reference/schema.
 install(DIRECTORY worlds vehicles DESTINATION share/shoal COMPONENT programs)
 install(DIRECTORY docs/reference/schema DESTINATION share/shoal/docs/reference COMPONENT programs)
 install(FILES LICENSE DESTINATION share/doc/shoal COMPONENT programs)
 
-# What `shoal new program` starts from; in Python with the message types.
+# Templates of `shoal new program`; in Python with the message types.
 install(DIRECTORY examples/client DESTINATION share/shoal/examples COMPONENT programs
         FILES_MATCHING PATTERN "*.cpp" PATTERN CMakeLists.txt PATTERN build EXCLUDE)
 install(DIRECTORY examples/python/ ${PROJECT_BINARY_DIR}/python/ DESTINATION share/shoal/python COMPONENT programs

@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Debian's LCM 1.3.1 ships no CMake package, so lcm-gen is called here.  Works with 1.5 too.
+# Debian's LCM 1.3.1 has no CMake package, so lcm-gen is called here.  Also works with 1.5.
 find_program(LCM_GEN lcm-gen REQUIRED)
 
 # lcm_generate(<headers> FILES <lcm file>... CPP_DIR <dir>)
-# Rules that make one C++ header per type, <dir>/<package>/<type>.hpp; their list is left in <headers>.
+# Adds rules that generate one C++ header per type, <dir>/<package>/<type>.hpp; returns their list in <headers>.
 function(lcm_generate headers)
   cmake_parse_arguments(ARG "" "CPP_DIR" "FILES" ${ARGN})
   set(all_outputs)
   foreach(lcm_file IN LISTS ARG_FILES)
-    # The names of the outputs come from the text, so a changed text configures again.
+    # The names of the outputs depend on the text, so a changed text requires another configuration.
     set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${lcm_file})
     file(STRINGS ${lcm_file} package REGEX "^[ \t]*package[ \t]")
     string(REGEX REPLACE "^[ \t]*package[ \t]+([A-Za-z0-9_.]+).*" "\\1" package "${package}")
@@ -29,7 +29,7 @@ function(lcm_generate headers)
 endfunction()
 
 # lcm_generate_plugin_tables(<sources> FILES <lcm file>... CPP_DIR <dir>)
-# For the types of a plugin: a source that makes them known to the program, and <dir>/<package>/array_lengths.hpp, which
+# For the types of a plugin: a source that registers them with the program, and <dir>/<package>/array_lengths.hpp, which
 # encode_into() of shoal/message_codec.hpp needs.  Shoal_TYPE_TABLES and Shoal_LCM_FILES: from ShoalConfig.cmake.
 function(lcm_generate_plugin_tables sources)
   cmake_parse_arguments(ARG "" "CPP_DIR" "FILES" ${ARGN})
@@ -50,10 +50,10 @@ function(lcm_generate_plugin_tables sources)
 endfunction()
 
 # lcm_generate_python(<target> FILES <lcm file>... DIR <dir>)
-# A target that writes the Python packages into <dir>.
+# Adds a target that writes the Python packages into <dir>.
 function(lcm_generate_python target)
   cmake_parse_arguments(ARG "" "DIR" "FILES" ${ARGN})
-  # lcm-gen appends to __init__.py, so it starts from an empty folder.
+  # lcm-gen appends to __init__.py, so the folder is emptied first.
   set(done ${CMAKE_CURRENT_BINARY_DIR}/${target}.done)
   add_custom_command(OUTPUT ${done}
     COMMAND ${CMAKE_COMMAND} -E rm -rf ${ARG_DIR}

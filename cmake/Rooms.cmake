@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Rooms: every folder of sources is a target, which says what other rooms it uses.  docs/develop/architecture.md has the
-# image; tests/sim/include_direction_test.cpp reads the list that shoal_write_rooms() leaves, and holds includes to it.
+# Rooms: every folder of sources is a target, which declares the rooms that it uses (docs/develop/architecture.md shows
+# them); tests/sim/include_direction_test.cpp reads the list that shoal_write_rooms() writes, and checks includes by it.
 
 # shoal_room(<folder> [MAIN] [USES <room>...] [PUBLIC <library>...] [PRIVATE <library>...] [EXCEPT <file>...])
-# MAIN: one of its sources has main(); the program made of its objects is its test of links.
-# <folder>: from the folder of the calling CMakeLists.txt; `.` is that folder itself.  The target, and the name of the
-# room for USES, is the path from the top with `_` for `/`: sim/physics is sim_physics.
+# MAIN: one of its sources has main(); linking the program made of its objects tests its dependencies.
+# <folder>: relative to the folder of the calling CMakeLists.txt; `.` is that folder itself.  The name of the target,
+# and of the room in USES, is the path from the root with `_` for `/`: sim/physics is sim_physics.
 function(shoal_room folder)
   cmake_parse_arguments(ARG "MAIN" "" "USES;PUBLIC;PRIVATE;EXCEPT" ${ARGN})
   cmake_path(ABSOLUTE_PATH folder NORMALIZE OUTPUT_VARIABLE directory)
@@ -42,7 +42,7 @@ function(shoal_room folder)
   endif()
 endfunction()
 
-# shoal_headers(<name> LIBRARIES <library>... HEADERS <header>... [OPTIONS <option>...]): headers that are parsed once.
+# shoal_headers(<name> LIBRARIES <library>... HEADERS <header>... [OPTIONS <option>...]): precompiled headers.
 function(shoal_headers name)
   cmake_parse_arguments(ARG "" "" "LIBRARIES;HEADERS;OPTIONS" ${ARGN})
   file(CONFIGURE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/${name}.cpp CONTENT "")
@@ -72,14 +72,14 @@ function(shoal_use_headers target path)
   target_precompile_headers(${target} REUSE_FROM ${name})
 endfunction()
 
-# All rooms below a top-level folder, such as sim, in the order in which they were made.
+# All rooms below a top-level folder, such as sim, in the order of their definition.
 function(shoal_rooms_below top result)
   get_property(rooms GLOBAL PROPERTY SHOAL_ROOMS)
   list(FILTER rooms INCLUDE REGEX "^${top}(_|$)")
   set(${result} ${rooms} PARENT_SCOPE)
 endfunction()
 
-# The rooms that <rooms> are built on, themselves included.
+# The rooms that <rooms> depend on, including themselves.
 function(shoal_room_closure rooms result)
   set(todo ${rooms})
   set(closure "")
@@ -94,7 +94,7 @@ function(shoal_room_closure rooms result)
   set(${result} ${closure} PARENT_SCOPE)
 endfunction()
 
-# The objects of rooms, for a library or program that takes them in; those without sources are left out.
+# The objects of rooms, for a library or program that contains them; rooms without sources are omitted.
 function(shoal_room_objects rooms result)
   set(objects "")
   foreach(room IN LISTS rooms)
@@ -106,8 +106,8 @@ function(shoal_room_objects rooms result)
   set(${result} ${objects} PARENT_SCOPE)
 endfunction()
 
-# For each room a program that links it with nothing but what it says it uses: what is missing is an error of the linker.
-# They are part of a build with tests; the target room_links makes them alone.
+# Adds a program for each room that links only its declared dependencies, so that a missing one is a linker error. They
+# are part of a build with tests; the target room_links builds only them.
 function(shoal_check_room_links)
   file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/room_links/main.cpp CONTENT "int main() {}\n")
   get_property(rooms GLOBAL PROPERTY SHOAL_ROOMS)
@@ -133,7 +133,7 @@ function(shoal_check_room_links)
   endforeach()
 endfunction()
 
-# rooms.txt: a line `path: path path ...` for each room.
+# rooms.txt: one line `path: path path ...` for each room.
 function(shoal_write_rooms file)
   get_property(rooms GLOBAL PROPERTY SHOAL_ROOMS)
   set(text "")

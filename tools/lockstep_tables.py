@@ -28,7 +28,7 @@ URL = f"udpm://239.255.76.67:{30000 + os.getpid() % 10000}?ttl=0"
 
 
 class Run:
-    """A run of a world with the programs that it names.  What it says is in `said`."""
+    """A run of a world with the programs that it names.  Its output is in `shown`."""
 
     def __init__(self, options, *more):
         self.shoal, self.results, self.shown = os.path.join(options.bin, "shoal"), tempfile.TemporaryDirectory(), []
@@ -40,7 +40,7 @@ class Run:
         self.reader.start()
 
     def clients(self):
-        """Process ids and command lines."""
+        """Returns process ids and command lines."""
         children = f"/proc/{self.process.pid}/task/{self.process.pid}/children"
         for pid in open(children, encoding="ascii").read().split() if os.path.exists(children) else []:
             with contextlib.suppress(OSError):

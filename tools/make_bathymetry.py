@@ -61,7 +61,7 @@ def write_grid(path, rows, cell_m, left_m, bottom_m):
 
 
 def read_grid(path):
-    """What gdal_translate wrote: six lines of header at most, then rows."""
+    """Reads the output of gdal_translate: six lines of header at most, then rows."""
     nodata, rows = None, []
     with open(path) as file:
         for line in file:
@@ -90,7 +90,7 @@ def import_raster(options):
     if not options.file.startswith(("NETCDF:", "HDF5:")) and not os.path.exists(options.file):
         die(f"there is no file '{options.file}'")
     here = f"+proj=aeqd +lat_0={latitude} +lon_0={longitude} +x_0=0 +y_0=0 +datum=WGS84 +units=m"
-    edge = options.cell / 2  # GDAL's cells have their heights in the middle
+    edge = options.cell / 2  # heights of GDAL's cells are at their centres
     with tempfile.TemporaryDirectory() as folder:
         band, warped, text = (os.path.join(folder, name) for name in ("band.vrt", "warped.tif", "grid.asc"))
         run(["gdal_translate", "-q", "-of", "VRT", "-b", str(options.band), options.file, band])
@@ -116,7 +116,7 @@ def import_raster(options):
 
 
 def synthetic_m(x, y):
-    """Height of the sea floor; x east, y north, the shore in the south."""
+    """Returns the height of the sea floor; x east, y north, the shore in the south."""
     depth = 14.5 + 0.07 * y
     depth -= 0.35 * math.sin((0.8 * x + 0.6 * y) / 25 * 2 * math.pi)  # sand waves, 25 m long
     depth += 3 * math.exp(-(((x - 40 - 30 * math.sin(y / 60)) / 18) ** 2))  # a channel that winds to the north
@@ -139,7 +139,7 @@ def main():
     raster.add_argument("--srs")
     raster.add_argument("--band", type=int, default=1)
     commands.add_parser("synthetic", usage=__doc__).add_argument("out")
-    # `--origin -33.8,151.2` looks like an option to argparse.
+    # `--origin -33.8,151.2` would be read as an option by argparse.
     words, options_with_numbers = [], ("--origin", "--size", "--offset")
     for word in sys.argv[1:]:
         if words and words[-1] in options_with_numbers:

@@ -17,7 +17,7 @@ POINTS, CELL_M, WHITE_M = 401, 5.0, 120.0
 
 
 def noise(lattice, x, y):
-    """Value noise between the points of a lattice, with a smooth fade."""
+    """Returns value noise between the points of a lattice, with a smooth fade."""
     i, j = math.floor(x), math.floor(y)
     s, t = ((d * d * d * (d * (6 * d - 15) + 10)) for d in (x - i, y - j))
     a, b, c, d = (lattice[(i + k) & 63][(j + m) & 63] for m in (0, 1) for k in (0, 1))
@@ -27,7 +27,7 @@ def noise(lattice, x, y):
 def height_m(lattice, x, y):
     hills = sum(0.42**k * noise(lattice, x / (500 / 2**k) + 17 * k, y / (500 / 2**k) + 31 * k) for k in range(6))
     height = 40 + 28 * hills
-    # The river winds along x; its valley is 150 m wide.
+    # The river meanders along x; its valley is 150 m wide.
     away = y + 500 - 120 * math.sin(x / 260)
     height -= 25 * math.exp(-((away / 75) ** 2))
     # A yard of 120 m around the origin is levelled to 40 m, with banks of 100 m.
@@ -46,7 +46,7 @@ def main():
     half = (POINTS - 1) / 2
     rows = bytearray()
     for row in range(POINTS):
-        rows.append(2)  # PNG filter `up`, which packs slopes well
+        rows.append(2)  # PNG filter `up`, which compresses slopes well
         line = [max(0, min(65535, round(65535 / WHITE_M * height_m(lattice, (i - half) * CELL_M, (half - row) * CELL_M))))
                 for i in range(POINTS)]
         now = struct.pack(f">{POINTS}H", *line)

@@ -44,7 +44,7 @@ public class LockstepClient implements LCMSubscriber {
 
   private static final long SILENCE_S = 600;
 
-  /// Signs what controls a run, when SHOAL_RUN_KEY has its key: docs/guides/access_control.md.
+  /// Signs requests that control a run, with the key in SHOAL_RUN_KEY: docs/guides/access_control.md.
   static class Signer {
     private final String name;
     private final String key = System.getenv().getOrDefault("SHOAL_RUN_KEY", "");
@@ -55,7 +55,7 @@ public class LockstepClient implements LCMSubscriber {
       this.name = name;
     }
 
-    /// The payload to publish instead of `data`.
+    /// Returns the payload to publish instead of `data`.
     byte[] sign(String channel, byte[] data) throws IOException {
       if (key.isEmpty()) return data;
       sim_signed_t signed = new sim_signed_t();
@@ -90,12 +90,12 @@ public class LockstepClient implements LCMSubscriber {
   private final Map<String, Consumer<byte[]>> handlers = new HashMap<>();
   private final Map<String, ArrayDeque<byte[]>> held = new HashMap<>();
   private final List<Message> published = new ArrayList<>();
-  private sim_tick_t tick; // that waits for messages
+  private sim_tick_t tick; // waits for messages
   private sim_due_t due;
   private byte[][] messages;
   private long sequence; // of the last tick that was handled
   private int branch;
-  private sim_ack_t ack = new sim_ack_t(); // before the first tick it says no more than that we live
+  private sim_ack_t ack = new sim_ack_t(); // before the first tick it only reports that the client is alive
   private boolean joined, over;
 
   public LockstepClient(String name) throws IOException {
@@ -110,7 +110,7 @@ public class LockstepClient implements LCMSubscriber {
       lcm.subscribe(channel.replace(".", "\\."), this);
   }
 
-  /// LCM calls this in its own thread.
+  /// Called by LCM in its own thread.
   @Override
   public void messageReceived(LCM from, String channel, LCMDataInputStream in) {
     try {
@@ -118,7 +118,7 @@ public class LockstepClient implements LCMSubscriber {
       in.readFully(data);
       arrived.add(new Message(channel, data));
     } catch (IOException error) {
-      // It is as if it had not come.
+      // Ignore the message.
     }
   }
 
@@ -142,7 +142,7 @@ public class LockstepClient implements LCMSubscriber {
 
   /// Joins, and calls `decide` with the time at each tick, after the handlers of all messages.
   public void run(double periodS, LongConsumer decide) throws IOException, InterruptedException {
-    while (!joined) { // the simulator may start later than we
+    while (!joined) { // the simulator may start later than the client
       sim_control_request_t request = new sim_control_request_t();
       request.id = id;
       request.client = name;
@@ -154,7 +154,7 @@ public class LockstepClient implements LCMSubscriber {
       for (long left = 200_000_000; !joined && left > 0; left = again - System.nanoTime())
         take(arrived.poll(left, TimeUnit.NANOSECONDS));
     }
-    held.values().forEach(ArrayDeque::clear); // it was not for a member of the lockstep
+    held.values().forEach(ArrayDeque::clear); // addressed to a client before it joined the lockstep
     long pauseMs = 1;
     long received = System.nanoTime();
     while (!over) {
@@ -179,7 +179,7 @@ public class LockstepClient implements LCMSubscriber {
     try {
       takeValid(message);
     } catch (IOException | IndexOutOfBoundsException | NegativeArraySizeException error) {
-      // Any program may publish anything: what is not a message of its type is as if it had not come.
+      // Any program may publish anything: messages of another type are ignored.
       System.err.println(message.channel() + ": " + error + " (ignored)");
     }
   }
@@ -193,14 +193,14 @@ public class LockstepClient implements LCMSubscriber {
       default -> {
         ArrayDeque<byte[]> waiting = held.get(message.channel());
         waiting.add(message.data());
-        if (waiting.size() > 10_000) waiting.remove(); // if a tick names it, it is asked for
+        if (waiting.size() > 10_000) waiting.remove(); // if a tick lists it, it is requested
       }
     }
   }
 
   private void onReply(sim_control_reply_t reply) {
     if (!reply.client.equals(name) || reply.id != id) return;
-    // A reply to what could not be read has no session; others of our name have another one.
+    // A reply to an unreadable request has no session; other clients of the same name have another one.
     if (reply.session != session && (joined || reply.session != 0)) return;
     if (!reply.ok) throw new IllegalStateException(reply.text);
     joined = true;
@@ -210,11 +210,11 @@ public class LockstepClient implements LCMSubscriber {
     for (sim_due_t each : next.client) {
       if (!each.name.equals(name) || each.session != session) continue;
       if (each.sequence == sequence) {
-        send("sim.ack", ack); // ours was lost, or the simulator checks whether we are alive
-      } else if (each.sequence > (tick == null ? sequence : due.sequence)) { // takes the place of an older one
+        send("sim.ack", ack); // the answer was lost, or the simulator checks whether the client is alive
+      } else if (each.sequence > (tick == null ? sequence : due.sequence)) { // replaces an older one
         if (next.branch != branch && sequence > 0) throw new IllegalStateException("the world went back in time");
         for (int channel : each.channel)
-          if (channel < 0 || channel >= receives.size()) return; // not what we asked for
+          if (channel < 0 || channel >= receives.size()) return; // not a requested message
         branch = next.branch;
         tick = next;
         due = each;
@@ -222,7 +222,7 @@ public class LockstepClient implements LCMSubscriber {
       }
       return;
     }
-    // It does not list us: also a last one is not a concern of ours, but the end of another run.
+    // The client is not listed: the last tick of another run does not matter either.
   }
 
   private boolean hasAll() {
@@ -330,6 +330,6 @@ public class LockstepClient implements LCMSubscriber {
       }
     });
     System.out.printf("the run is over, %.2f m before the wall%n", aheadM[0]);
-    System.exit(0); // LCM's thread would continue
+    System.exit(0); // the thread of LCM would continue
   }
 }

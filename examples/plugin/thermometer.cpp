@@ -8,7 +8,7 @@
 
 namespace {
 
-/// Temperature of a field that changes evenly along each axis of the world.
+/// Temperature of a field with a constant gradient along each axis of the world.
 class Thermometer final : public sim::Sensor {
  public:
   static constexpr const char* meaning = "Temperature of a linear field.";

@@ -107,7 +107,7 @@ class CoopAuv:
         if state is None or self.ekf is None or not abs(packet.travel_time_s) < MAX_TRAVEL_S:
             return
         moved_s = (packet.sent_utime - state["utime"]) * 1e-6
-        # What a gateway passed on is older, and from elsewhere: its travel time says nothing of the sender.
+        # A forwarded message is older, and from another position: its travel time is unrelated to the sender.
         if abs(moved_s) > NEWEST_S or self.senders.setdefault(state["sender"], packet.source) != packet.source:
             return
         east, north, up = state["position_m"]
@@ -128,7 +128,7 @@ class CoopAuv:
 
 
 def attach(options):
-    """The navigator of a vehicle, and its place in the lockstep, which LockstepClient.run() takes."""
+    """Navigator of a vehicle, as a client of the lockstep for LockstepClient.run()."""
     name = options.name
     auv = CoopAuv(options.sound_speed_mps, options.heading_noise_radprtHz)
     bus = LockstepClient(name + "_python", PERIOD_S)

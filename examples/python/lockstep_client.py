@@ -19,7 +19,7 @@ import shoal
 
 try:
     import lcm
-except ImportError:  # Debian 12 has no package of it
+except ImportError:  # Debian 12 has no package for it
     import small_lcm as lcm
 
 SILENCE_S = 600
@@ -27,7 +27,7 @@ NOTICE_S = 3
 
 
 class Signer:
-    """Signs what controls a run, when SHOAL_RUN_KEY has its key: docs/guides/access_control.md."""
+    """Signs requests that control a run, with the key in SHOAL_RUN_KEY: docs/guides/access_control.md."""
 
     def __init__(self, name):
         self.key, self.name = bytes.fromhex(os.environ.get("SHOAL_RUN_KEY", "")), name
@@ -35,7 +35,7 @@ class Signer:
         self.counter = itertools.count(time.time_ns() // 1000)
 
     def __call__(self, channel, data):
-        """The payload to publish instead of `data`."""
+        """Returns the payload to publish instead of `data`."""
         if not self.key:
             return data
         signed = shoal.sim_signed_t()
@@ -49,17 +49,17 @@ class LockstepClient:
     """Subscribe, then run(): it joins, and calls decide(utime) at each tick, when all messages were handled."""
 
     def __init__(self, name, period_s, terms=""):
-        """`terms`: more of what it joins with, such as `, on_timeout: pause, timeout_s: 2`."""
+        """`terms`: further options of the join request, such as `, on_timeout: pause, timeout_s: 2`."""
         self.lc, self.sign = lcm.LCM(), Signer(name)
         self.name, self.period_s, self.terms = name, period_s, terms
         self.session = random.SystemRandom().randrange(1, 1 << 53)
         self.id = self.session & 0x7fffffff
         self.receives, self.handlers = [], []
-        self.held = []  # [channel, CRC, payload] that came, and that no tick named yet
-        self.tick = None  # that waits for messages
+        self.held = []  # [channel, CRC, payload] received, and not yet listed by a tick
+        self.tick = None  # waits for messages
         self.sequence = self.branch = 0  # of the last tick that was handled
         self.published = []
-        self.ack = shoal.sim_ack_t()  # before the first tick it says no more than that we live
+        self.ack = shoal.sim_ack_t()  # before the first tick it only reports that the client is alive
         self.ack.client, self.ack.session, self.ack.listed = name, self.session, True
         self.joined = self.over = False
         self.decide = lambda utime: None
@@ -70,10 +70,10 @@ class LockstepClient:
 
     @staticmethod
     def only_valid(handler):
-        """Any program may publish anything: what is not a message of its type is as if it had not come."""
+        """Handles a message.  Any program may publish anything: messages of another type are ignored."""
         def handle(channel, data):
             try:
-                if shoal.sim_signed_t._get_packed_fingerprint() != data[:8]:  # that is from another client
+                if shoal.sim_signed_t._get_packed_fingerprint() != data[:8]:  # from another client
                     handler(channel, data)
             except (ValueError, struct.error, IndexError) as error:
                 print(f"{channel}: {error!r} (ignored)", file=sys.stderr)
@@ -89,7 +89,7 @@ class LockstepClient:
         self.handlers[self.receives.index(channel)].append(lambda data: handler(message.decode(data)))
 
     def publish(self, channel, message):
-        """From a handler or from decide()."""
+        """Publishes a message; to be called from a handler or from decide()."""
         data = message.encode()
         self.published.append((channel, binascii.crc32(data), data))
         self.lc.publish(channel, data)
@@ -99,7 +99,7 @@ class LockstepClient:
 
     def run(self):
         notice = time.monotonic() + NOTICE_S
-        while not self.joined:  # the simulator may start later than we
+        while not self.joined:  # the simulator may start later than the client
             if notice and time.monotonic() > notice:
                 print(f"'{self.name}' waits for a simulator to answer its join on 'sim.control.reply', at "
                       f"{os.environ.get('LCM_DEFAULT_URL', 'the default LCM URL')}", file=sys.stderr)
@@ -112,7 +112,7 @@ class LockstepClient:
             again = time.monotonic() + 0.2
             while not self.joined and time.monotonic() < again:
                 self.lc.handle_timeout(max(1, round(1000 * (again - time.monotonic()))))
-        self.held.clear()  # it was not for a member of the lockstep
+        self.held.clear()  # addressed to a client before it joined the lockstep
         received, pause_s = time.monotonic(), 0.001
         while not self.over:
             if self.lc.handle_timeout(1000 * pause_s if self.tick else 1000):
@@ -128,10 +128,10 @@ class LockstepClient:
 
     def on_reply(self, channel, data):
         reply = shoal.sim_control_reply_t.decode(data)
-        # A reply to what could not be read has no session; others of our name have another one.
+        # A reply to an unreadable request has no session; other clients of the same name have another one.
         ours = reply.session == self.session or (reply.session == 0 and not self.joined)
         if reply.client == self.name and reply.id == self.id and ours:
-            if not reply.ok:  # refused, or later: the world continued without us
+            if not reply.ok:  # rejected, or later: the world continued without this client
                 raise SystemExit(reply.text)
             self.joined = True
 
@@ -141,12 +141,12 @@ class LockstepClient:
         if not own:
             return  # also a last one: the end of another run
         if own[0].sequence == self.sequence:
-            self.send("sim.ack", self.ack)  # ours was lost, or the simulator checks whether we are alive
-        elif own[0].sequence > (self.due.sequence if self.tick else self.sequence):  # takes the place of an older one
+            self.send("sim.ack", self.ack)  # the answer was lost, or the simulator checks whether the client is alive
+        elif own[0].sequence > (self.due.sequence if self.tick else self.sequence):  # replaces an older one
             if tick.branch != self.branch and self.sequence > 0:
                 raise SystemExit("the world went back in time")
             if any(not 0 <= channel < len(self.receives) for channel in own[0].channel):
-                return  # not what we asked for
+                return  # not a requested message
             self.tick, self.due, self.branch = tick, own[0], tick.branch
             self.messages = [None] * own[0].count
 
@@ -179,7 +179,7 @@ class LockstepClient:
         for channel, data in zip(channels, messages):
             for handler in self.handlers[channel]:
                 handler(data)
-        # What no tick of ours lists was duplicated, or is from a sender that the simulator does not receive.
+        # A message that no tick lists was duplicated, or is from a sender that the simulator does not receive.
         del self.held[:-1000]
         self.over = bool(tick.last)
         if not self.over:

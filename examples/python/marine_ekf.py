@@ -29,8 +29,8 @@ def turned(v, angle):
 
 class MarineEkf:
     GATE = 10.83  # 99.9 % of chi-square with one degree
-    MAX_REFUSALS = 5  # in a row, before something is held to be wrong, and not only a measurement
-    BAD_CLOCK_MPS = 0.15  # 100 ppm, the worst of usual quartz clocks, by the speed of sound
+    MAX_REFUSALS = 5  # consecutive ones, before a state is considered wrong instead of the measurement
+    BAD_CLOCK_MPS = 0.15  # 100 ppm, the worst error of common quartz clocks, times the speed of sound
 
     def __init__(self, time_s, position_m, position_std_m, states=4, heading_bias_std_rad=0.05, speed_scale_std=0.03,
                  range_bias_std_m=30.0, range_drift_std_mps=0.005, heading_noise=0.035, speed_noise=0.01):
@@ -44,12 +44,12 @@ class MarineEkf:
         self.time_s = time_s
         self.motion = deque([(time_s, 0.0, 0.0)])  # measured, since the start
         self.refused_positions = 0
-        self.trust = {}  # of a beacon: refusals in a row, agreements in doubt, variance when the doubt began
+        self.trust = {}  # of a beacon: consecutive refusals, agreements in doubt, variance when the doubt started
         self.contradictions = deque(maxlen=2 * self.MAX_REFUSALS)  # beacon, time, innovation, its variance
         self.ranges_used = 0
 
     def predict(self, time_s, velocity_mps):
-        """Moves on with a velocity over ground (east, north) as DVL and compass measure it."""
+        """Predicts with a velocity over ground (east, north) as DVL and compass measure it."""
         dt = time_s - self.time_s
         if dt <= 0:
             return
@@ -82,7 +82,7 @@ class MarineEkf:
             self.motion.popleft()
 
     def distance_since(self, time_s):
-        """Measured way from then to now; None when that is too long ago."""
+        """Returns the measured displacement from then to now; None when that is too long ago."""
         later = self.motion[-1]
         for mark in reversed(self.motion):
             if mark[0] <= time_s:
@@ -133,7 +133,7 @@ class MarineEkf:
 
     def opinion_of(self, beacon, innovation, variance):
         refusals, agreements, doubted_at = self.trust.get(beacon, (0, 0, None))
-        # A filter without other messages becomes uncertain, which is not a reason to believe who was wrong when it was sure.
+        # A filter without other messages becomes uncertain, which does not make a contradicting beacon trustworthy.
         if not innovation ** 2 <= self.GATE * min(variance, doubted_at or variance):
             refusals += 1
             if refusals >= self.MAX_REFUSALS and not doubted_at:
@@ -167,11 +167,11 @@ class MarineEkf:
         return now, rate, variance
 
     def open_clock(self, error, rate, variance):
-        """The own clock is ahead by so much more than it was taken for, in range, and gains so much more."""
+        """Corrects the lead of the own clock and its rate, both in range."""
         self.x[4] += error
         self.x[5] += rate
         drift_variance = max(self.P[5][5], rate ** 2)
-        if self.ranges_used > 0:  # it fitted before: the clock is one that runs away
+        if self.ranges_used > 0:  # it was correct before: the clock drifts
             drift_variance = max(drift_variance, self.BAD_CLOCK_MPS ** 2)
         for i in range(N):
             self.P[i][4] = self.P[4][i] = self.P[i][5] = self.P[5][i] = 0.0
@@ -181,7 +181,7 @@ class MarineEkf:
         self.trust.clear()
 
     def update_position(self, position_m, std_m):
-        """A position by GPS, of now: one coordinate after the other, as their errors are independent."""
+        """Updates with a present GPS position: one coordinate after the other, as their errors are independent."""
         rows = [1.0, 0, 0, 0, 0, 0], [0, 1.0, 0, 0, 0, 0]
         innovations = [position_m[i] - self.x[i] for i in (0, 1)]
         fits = all(e ** 2 <= self.GATE * (self.variance_of(h) + std_m ** 2) for h, e in zip(rows, innovations))
@@ -189,7 +189,7 @@ class MarineEkf:
             self.refused_positions += 1
             if self.refused_positions < self.MAX_REFUSALS or not all(map(math.isfinite, innovations)):
                 return False
-            for i in (0, 1):  # sure and wrong: open it
+            for i in (0, 1):  # overconfident and wrong: increase the variance
                 self.P[i][i] += sum(e ** 2 for e in innovations)
         self.refused_positions = 0
         for i, h in enumerate(rows):
@@ -200,12 +200,12 @@ class MarineEkf:
         return sum(h[i] * h[j] * self.P[i][j] for i in range(N) for j in range(N))
 
     def use(self, h, innovation, variance):
-        """One number measured with the row h."""
+        """Updates with a scalar measurement with the Jacobian h."""
         Ph = [sum(self.P[i][j] * h[j] for j in range(N)) for i in range(N)]
         k = [p / (sum(h[i] * Ph[i] for i in range(N)) + variance) for p in Ph]
         self.x = [self.x[i] + k[i] * innovation for i in range(N)]
         A = [[(1.0 if i == j else 0.0) - k[i] * h[j] for j in range(N)] for i in range(N)]
-        self.P = times(times(A, self.P), transposed(A))  # Joseph's form
+        self.P = times(times(A, self.P), transposed(A))  # Joseph form
         for i in range(N):
             for j in range(N):
                 self.P[i][j] += k[i] * k[j] * variance

@@ -32,7 +32,7 @@ class LCM:
         self.socket.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, membership)
         self.handlers = []
         self.number = 0
-        self.parts = {}  # of each sender: number of its newest long message, and its parts
+        self.parts = {}  # by sender: number of its newest long message, and its parts
 
     def subscribe(self, pattern, handler):
         self.handlers.append((re.compile(pattern), handler))
@@ -59,7 +59,7 @@ class LCM:
             pass
 
     def message_of(self, datagram, sender):
-        """(channel, payload) that the datagram completes; (None, None): it completes none."""
+        """Returns (channel, payload) of the message that the datagram completes, or (None, None)."""
         magic = struct.unpack(">I", datagram[:4])[0] if len(datagram) >= 8 else None
         if magic == SHORT:
             channel, _, data = datagram[8:].partition(b"\0")
@@ -71,7 +71,7 @@ class LCM:
     def whole(self, datagram, sender):
         number, _, _, part, count = struct.unpack(">IIIHH", datagram[4:20])
         if self.parts.get(sender, (None,))[0] != number:
-            self.parts[sender] = (number, {})  # of each sender the newest message counts
+            self.parts[sender] = (number, {})  # only the newest message of each sender is kept
         parts = self.parts[sender][1]
         parts[part] = datagram[20:]
         if len(parts) < count:

@@ -27,7 +27,7 @@ std::vector<std::string> command_names(const CLI::App& app) {
   return names;
 }
 
-/// A value, though it begins with `-`: standard input, or a negative number such as `-4,2,1`.
+/// Returns whether a word that starts with `-` is a value: standard input, or a negative number such as `-4,2,1`.
 bool looks_like_value(const std::string& text) {
   if (!text.starts_with('-') || text == "-") return true;
   return std::string("0123456789.").find(text[1]) != std::string::npos || text.starts_with("-inf") ||
@@ -62,7 +62,7 @@ class Reader {
       read_option(word);
   }
 
-  /// A command, or an argument by its place.
+  /// Reads a command, or an argument by its position.
   void read_place(const std::string& word) {
     const std::vector<std::string> commands = command_names(command());
     if (commands.empty()) {
@@ -110,6 +110,7 @@ class Reader {
     CLI::Option* option = find_option(name);
     if (option == nullptr) throw UsageError(unknown_option(name));
     const std::string shown = option_name(*option);
+    // Help and flags take no value.
     if (option == command().get_help_ptr()) {
       result_.help = true;
       return;
@@ -120,6 +121,7 @@ class Reader {
       if (counts_[option]++ == 0) options_.push_back(shown);
       return;
     }
+    // Value after `=`, or in the next argument.
     std::string value;
     if (equals != std::string::npos)
       value = word.substr(equals + 1);
@@ -129,10 +131,11 @@ class Reader {
       throw UsageError(
           shown + " needs a value: " + shown + " " + value_name(*option) +
           (at_ < words_.size() && words_[at_].starts_with("-") ? "; " + quoted(words_[at_]) + " follows it" : ""));
+    // Checks of the value.
     if (counts_[option]++ > 0 && !is_repeatable(*option)) throw UsageError(shown + " is given twice");
     const std::string kind = value_name(*option);
     if (value.empty() && (kind == "FILE" || kind == "DIR")) throw UsageError(shown + " must not be empty");
-    if (value.empty()) {  // CLI11 would take the next argument for the value of `--name=`
+    if (value.empty()) {  // CLI11 would take the next argument as the value of `--name=`
       options_.push_back(shown);
       options_.push_back("");
     } else {
@@ -174,7 +177,7 @@ class Reader {
                        [](const std::string& word) { return word == "--help" || word == "-h"; });
   }
 
-  /// Options with their values in one word, then `--` where a place could be taken for something else.
+  /// Orders the result: options with their values in one word, then `--` where a positional argument could be misread.
   void arrange() {
     std::vector<std::string> all = path_;
     all.insert(all.end(), options_.begin(), options_.end());

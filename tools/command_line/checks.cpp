@@ -16,8 +16,8 @@ namespace command_line {
 
 namespace {
 
-/// What was given, safe to print on one line.
-/// The whole text as a number; nothing when it is something else.
+/// Returns the input, safe to print on one line.
+/// Returns the whole text as a number; nothing for any other text.
 template <class Number>
 std::optional<Number> parse_number(const std::string& text) {
   Number number{};
@@ -38,7 +38,7 @@ CLI::Validator make_check(const std::string& description, const std::function<bo
 
 std::string bound_text(double bound) {
   if (std::abs(bound) < 1e6 && std::abs(bound) >= 1e-4) return fmt::format("{:g}", bound);
-  // The exponent without its plus sign and zeros: 1e9, not 1e+09.
+  // Remove the plus sign and zeros of the exponent: 1e9, not 1e+09.
   std::string text = fmt::format("{:g}", bound);
   const std::size_t exponent = text.find('e');
   if (exponent == std::string::npos) return text;

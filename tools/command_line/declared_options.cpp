@@ -31,7 +31,7 @@ void set_initial(ArgDeclaration& arg, const std::string& text) {
   arg.initial = sim::scalar_node(text, {});
 }
 
-/// `[X,Y]` for the columns x and y.
+/// Returns `[X,Y]` for the columns x and y.
 std::string form_of(const std::vector<std::string>& columns) {
   std::string form;
   for (std::string column : columns) {
@@ -42,7 +42,7 @@ std::string form_of(const std::vector<std::string>& columns) {
   return "[" + form + "]";
 }
 
-/// Errors in the tree name the option, not a line of it.
+/// Replaces the source place of errors by the name of the option.
 void set_place(sim::ConfigNode& node, const sim::SourcePlace& place) {
   node.place = place;
   for (sim::ConfigNode& item : node.items) set_place(item, place);

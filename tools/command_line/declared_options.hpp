@@ -12,23 +12,23 @@
 
 namespace command_line {
 
-/// The arguments of a program, each declared once.  From the declaration come the options of its command line with
-/// their help, and what `--describe` prints: the file NAME.args.yaml, by which `shoal check` checks `args:` in a world.
-/// An argument `speed_mps` is the option --speed-mps.
+/// Arguments of a program, each declared once.  A declaration defines the option on the command line with its help, and
+/// the output of `--describe`: the file NAME.args.yaml, by which `shoal check` checks `args:` in a world. An argument
+/// `speed_mps` is the option --speed-mps.
 class DeclaredOptions {
  public:
-  /// Adds to a declared argument.
+  /// Refines the declaration of an argument.
   class Added {
    public:
     Added(DeclaredOptions& options, std::size_t index, CLI::Option* option)
         : options_(options), index_(index), option_(option) {}
-    /// The program cannot do without it.
+    /// Makes the argument mandatory.
     Added& required();
-    /// A world cannot do without it; on the command line the program itself says so, where it wants it.
+    /// Makes the argument mandatory in worlds; on the command line the program itself checks for it where it needs it.
     Added& required_in_worlds();
-    /// Says what a tuple is when it is not given.
+    /// Declares the default of a tuple.
     Added& by_default(const std::vector<double>& numbers);
-    /// These must be given with it.
+    /// Declares arguments that must be given together with this one.
     Added& needs(std::vector<std::string> keys);
 
    private:
@@ -39,32 +39,32 @@ class DeclaredOptions {
   using TakeList = std::function<void(const std::vector<double>&)>;
   using TakeLists = std::function<void(const std::vector<std::vector<double>>&)>;
 
-  /// Program and meaning are those of `app`, which must outlive this.
+  /// Takes the name and the description of the program from `app`, which must outlive this.
   explicit DeclaredOptions(CLI::App& app);
   DeclaredOptions(const DeclaredOptions&) = delete;
   DeclaredOptions& operator=(const DeclaredOptions&) = delete;
 
-  // The present value is the default, except of an argument that is required.
+  // The present value is the default, unless the argument is required.
   Added number(const std::string& key, double& value, double low, double high, const std::string& meaning);
   Added number(const std::string& key, std::optional<double>& value, double low, double high,
                const std::string& meaning);
   Added integer(const std::string& key, int& value, int low, int high, const std::string& meaning);
   Added integer(const std::string& key, std::optional<int>& value, int low, int high, const std::string& meaning);
   Added seed(const std::string& key, std::uint64_t& value, const std::string& meaning);
-  /// `shown` stands for the value in the help.
+  /// Declares a text argument; `shown` is the placeholder of its value in the help.
   Added text(const std::string& key, const char* shown, std::string& value, const std::string& meaning);
   Added flag(const std::string& key, bool& value, const std::string& meaning);
   Added choice(const std::string& key, std::string& value, const std::vector<std::string>& words,
                const std::string& meaning);
   Added choice(const std::string& key, int& value, const std::vector<std::string>& words, const std::string& meaning);
-  /// Numbers in `columns`, each inside `range`.
+  /// Declares a tuple of numbers, one per column, each inside `range`.
   Added tuple(const std::string& key, const std::vector<std::string>& columns, const sim::Rule& range, TakeList take,
               const std::string& meaning);
-  /// A list of such; the columns after the first `min_columns` may be left out.
+  /// Declares a list of tuples; the columns after the first `min_columns` are optional.
   Added tuples(const std::string& key, const std::vector<std::string>& columns, std::size_t min_columns,
                const sim::Rule& range, TakeLists take, const std::string& meaning);
 
-  /// Channels, where {name} stands for the argument `name`.
+  /// Declares channels, in which {name} is replaced by the argument `name`.
   void publishes(std::vector<std::string> channels) { declaration_.publishes = std::move(channels); }
   void subscribes(std::vector<std::string> channels) { declaration_.subscribes = std::move(channels); }
   void exactly_one(std::vector<std::string> keys) { declaration_.exactly_one.push_back(std::move(keys)); }
@@ -72,7 +72,8 @@ class DeclaredOptions {
 
   CLI::App& app() { return app_; }
   const sim::ProgramDeclaration& declaration() const { return declaration_; }
-  /// Parses the command line once all is declared.  Nothing: continue; else the exit code, also after `--describe`.
+  /// Parses the command line after all declarations.  Returns nothing when the program is to continue; otherwise the
+  /// exit code, also after `--describe`.
   std::optional<int> parse(int argc, const char* const* argv);
 
  private:

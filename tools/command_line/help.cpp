@@ -13,7 +13,7 @@ namespace command_line {
 
 namespace {
 
-/// The range of a value, by what its checks call themselves.  CLI11 puts them behind the name of the type.
+/// Returns the range of a value, from the names of its checks.  CLI11 appends them to the name of the type.
 std::string rule_of(const CLI::Option& option) {
   const std::string type = option.get_type_name();
   const std::size_t colon = type.find(':');
@@ -28,7 +28,7 @@ std::string names_of(const CLI::Option& option) {
   return text;
 }
 
-/// What an option means, its range, its default, and with which others it goes.
+/// Returns the description of an option, its range, its default, and the options that it requires.
 std::string meaning_of(const CLI::Option& option) {
   std::vector<std::string> facts;
   const std::string rule = rule_of(option), meaning = option.get_description();
@@ -37,7 +37,7 @@ std::string meaning_of(const CLI::Option& option) {
   if (option.get_items_expected_max() > 1 && !option.get_positional()) facts.push_back("repeatable");
   if (option.get_required() && !option.get_positional()) facts.push_back("required");
   const auto add_names = [&facts](const char* how, const std::set<CLI::Option*>& others) {
-    std::vector<std::string> names;  // the set is in the order of addresses
+    std::vector<std::string> names;  // sorted, because the set is in the order of addresses
     for (const CLI::Option* other : others) names.push_back(option_name(*other));
     std::sort(names.begin(), names.end());
     if (!names.empty()) facts.push_back(how + alternatives(names));
@@ -71,11 +71,12 @@ std::string section(const std::string& title, const Rows& rows, std::size_t colu
   return rows.empty() ? "" : "\n" + title + ":\n" + two_columns(rows, columns);
 }
 
-/// A command in pieces that stay on one line: words, quoted texts, options with their values, the remark.
+/// Splits a command into pieces that stay on one line: words, quoted texts, options with their values, the remark.
 std::vector<std::string> pieces_of(const std::string& example) {
   std::vector<std::string> pieces;
   std::string piece;
   char quote = 0;
+  // Join a value to its option.
   const auto finish = [&] {
     const bool is_value =
         !pieces.empty() && pieces.back().starts_with("--") && pieces.back().find(' ') == std::string::npos;
@@ -85,6 +86,7 @@ std::vector<std::string> pieces_of(const std::string& example) {
       pieces.push_back(piece);
     piece.clear();
   };
+  // Split at spaces outside of quotes; the remark is the last piece.
   for (std::size_t i = 0; i < example.size(); ++i) {
     const char c = example[i];
     if (quote == 0 && c == '#') {
@@ -102,7 +104,7 @@ std::vector<std::string> pieces_of(const std::string& example) {
   return pieces;
 }
 
-/// A command that can be typed: where it is too long it continues after a backslash.
+/// Returns a command that can be typed: a long one continues after a backslash.
 std::string example_text(const std::string& example, std::size_t columns) {
   std::string text;
   std::size_t used = 1;
@@ -116,7 +118,7 @@ std::string example_text(const std::string& example, std::size_t columns) {
     used += 1 + width;
   };
   for (const std::string& piece : pieces_of(example)) {
-    // A value that does not fit beside its option goes below it.
+    // A value that does not fit beside its option is placed below it.
     const std::size_t space = piece.starts_with("--") ? piece.find(' ') : std::string::npos;
     if (space != std::string::npos && 6 + column_count(piece) > columns - 2) {
       add(piece.substr(0, space));
@@ -128,7 +130,8 @@ std::string example_text(const std::string& example, std::size_t columns) {
   return text + "\n";
 }
 
-/// The footer: paragraphs are filled, lines that begin with two spaces are examples or, with a number, exit codes.
+/// Returns the footer: paragraphs are filled, lines that start with two spaces are examples or, with a number, exit
+/// codes.
 std::string end_text(const std::string& footer, std::size_t columns) {
   std::string text;
   Rows codes;

@@ -14,7 +14,7 @@ namespace command_line {
 
 namespace {
 
-/// What CLI11 says, in our words.  read_arguments() leaves it little to say: values of options, and which go together.
+/// Replaces messages of CLI11.  After read_arguments() only errors of option values and combinations are left.
 std::string in_our_words(const CLI::ParseError& error) {
   const std::string text = error.what();
   const auto replaced = [&text](const std::string& what, const std::string& by) {
@@ -42,7 +42,7 @@ int wrong_usage(const std::string& command, const std::string& what) {
 
 std::optional<int> parse(CLI::App& app, int argc, const char* const* argv) {
   Arguments arguments = read_arguments(app, std::vector<std::string>(argv + std::min(argc, 1), argv + argc));
-  // The callback of a command may take it apart from the app's tree.
+  // The callback of a command may remove it from the tree of the app.
   const std::string path = command_path(*arguments.command);
   if (arguments.help) {
     std::cout << help_text(*arguments.command, static_cast<std::size_t>(text_columns(STDOUT_FILENO)));

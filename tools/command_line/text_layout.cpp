@@ -62,10 +62,12 @@ std::string wrapped(std::string_view text, std::size_t columns, std::size_t inde
   std::size_t used = starts_at;
   bool first_of_line = true;
   for (std::size_t at = 0; at < text.size();) {
+    // Skip spaces.
     if (text[at] == ' ') {
       ++at;
       continue;
     }
+    // Append the word, on the next line if it does not fit.
     const std::size_t end = std::min(text.find(' ', at), text.size());
     const std::string_view word = text.substr(at, end - at);
     const std::size_t width = column_count(word);

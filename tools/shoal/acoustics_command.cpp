@@ -23,7 +23,7 @@ namespace tools {
 
 namespace {
 
-/// Without a world file: water, and a wind by which the sea is received.
+/// World without a file: water, and a wind that causes ambient noise.
 constexpr const char* plain_world = "shoal: 1\nmedium: {water: {}, wind: {velocity_mps: [5, 0, 0]}}\n";
 
 struct AcousticsArguments {
@@ -38,7 +38,7 @@ struct AcousticsArguments {
   std::optional<double> water_depth_m;
 };
 
-/// Up to three numbers with `separator` between them; nothing when it is something else.
+/// Parses up to three numbers with `separator` between them; nothing for any other text.
 std::optional<sim::Vector3d> parse_three(const std::string& text, char separator) {
   sim::Vector3d numbers;
   const char* at = text.data();
@@ -66,7 +66,7 @@ std::vector<double> parse_ranges(const std::string& text) {
   return ranges_m;
 }
 
-/// A place `x,y,z`, a transducer `vehicle/device`, or a vehicle.
+/// Parses a position `x,y,z`, a transducer `vehicle/device`, or a vehicle.
 LinkEnd find_end(const char* option, const std::string& text, const sim::World& world) {
   LinkEnd end;
   if (const auto p_W = parse_three(text, ',')) {
@@ -114,7 +114,7 @@ std::vector<AcousticPacket> packets_of(const AcousticsArguments& arguments,
   return packets;
 }
 
-/// The keys of an acoustic modem, or null.
+/// Returns the keys of an acoustic modem, or null.
 const devices::AcousticModem::Params* modem_keys(const std::string& full_name, const sim::World& world) {
   for (const auto& device : world.devices()) {
     if (!device || device->full_name() != full_name) continue;
@@ -125,7 +125,7 @@ const devices::AcousticModem::Params* modem_keys(const std::string& full_name, c
   return nullptr;
 }
 
-/// The signal of the sending modem, where there is one, with what the options say instead.
+/// Sets the signal of the link: that of the sending modem, if any, overridden by the options.
 void take_signal(AcousticLink& link, const AcousticsArguments& arguments, const devices::AcousticModem::Params* modem) {
   if (modem != nullptr) {
     link.source_level = sim::Decibels(modem->source_level_dB);
@@ -160,7 +160,7 @@ AcousticLink link_of(const AcousticsArguments& arguments, const sim::World& worl
   return link;
 }
 
-/// Of what is fixed below the middle of the link, for echoes; nothing where nothing is.
+/// Returns the depth of the fixed bottom below the middle of the link, for echoes; nothing if there is none.
 std::optional<double> water_depth_m(const AcousticLink& link, const sim::World& world) {
   sim::Vector3d p_W = (link.from.p_W + link.to.p_W) / 2;
   const double surface_m = world.medium().surface_m(p_W.x(), p_W.y());
@@ -168,7 +168,7 @@ std::optional<double> water_depth_m(const AcousticLink& link, const sim::World& 
   sim::RayFilter filter;
   filter.kind = sim::RayKind::sound;
   const sim::PhysicsWorld& physics = world.physics();
-  // Vehicles and what floats are not bottom: the ray continues through them.
+  // Vehicles and floating objects are not bottom: the ray continues through them.
   constexpr int max_hits = 100;
   for (int i = 0; i < max_hits; ++i) {
     const auto hit = physics.scene().cast(p_W, -sim::Vector3d::UnitZ(), 12000, filter);
@@ -181,7 +181,7 @@ std::optional<double> water_depth_m(const AcousticLink& link, const sim::World& 
   return std::nullopt;
 }
 
-/// A place below terrain or a plane, or inside of something fixed.
+/// Returns whether a position is below terrain or a plane, or inside of a fixed object.
 bool in_ground(const sim::Vector3d& p_W, const sim::World& world) {
   constexpr double far_m = 12000;
   const auto fixed_part = [&](const sim::Vector3d& displacement_W) -> int {
@@ -205,7 +205,7 @@ bool in_ground(const sim::Vector3d& p_W, const sim::World& world) {
   return false;
 }
 
-/// Sound needs water at both ends.
+/// Checks that both ends are in water.
 void check_end(const char* option, const LinkEnd& end, const sim::World& world) {
   const sim::Vector3d& p_W = end.p_W;
   const std::string place = fmt::format("{:g},{:g},{:g}", p_W.x(), p_W.y(), p_W.z());
@@ -218,7 +218,7 @@ void check_end(const char* option, const LinkEnd& end, const sim::World& world) 
 void warn(const AcousticLink& link, const sim::World& world) {
   sim::Random random(1, "look");
   random.begin_step(0);
-  const int none = -2;  // a group that nothing has
+  const int none = -2;  // a group that does not exist
   const auto gain = world.acoustics().propagation().gain(link.from.p_W, link.from.group < 0 ? none : link.from.group,
                                                          link.to.p_W, link.to.group, link.centre_Hz, random);
   if (gain.blocked) std::cerr << "shoal: an obstacle blocks the line of sight, which the table ignores\n";
@@ -235,10 +235,12 @@ int show_closed_forms(const std::string& file) {
 int show(AcousticsArguments& arguments) {
   if (!arguments.closed_forms.empty()) return show_closed_forms(arguments.closed_forms);
   if (!arguments.image.empty()) check_writable(arguments.image);
+  // Ranges of the table or plot.
   const std::vector<double> ranges_m =
       arguments.ranges.empty() && arguments.image.empty()
           ? std::vector<double>()
           : parse_ranges(arguments.ranges.empty() ? "100:10000:100" : arguments.ranges);
+  // World, link and packets.
   arguments.load.encode_message = shoal::encode_own_message;
   const sim::WorldConfig config =
       (arguments.world.empty() ? sim::load_world_text(plain_world, "plain sea", arguments.load)
@@ -253,6 +255,7 @@ int show(AcousticsArguments& arguments) {
   check_end(arguments.to.empty() ? "--depth" : "--to", link.to, world);
   warn(link, world);
   const std::optional<double> depth_m = arguments.water_depth_m ? arguments.water_depth_m : water_depth_m(link, world);
+  // Budget of a single link.
   if (ranges_m.empty()) {
     const LinkBudget budget = link_budget(link, config.acoustics, world.medium(), depth_m);
     std::vector<double> delivered;
@@ -261,6 +264,7 @@ int show(AcousticsArguments& arguments) {
     std::cout << budget_text(link, budget, config.acoustics) << '\n' << packets_text(link, budget, packets, delivered);
     return exit_ok;
   }
+  // Table or plot over range.
   const std::vector<RangeRow> rows = over_range(link, packets, ranges_m, config.acoustics, world.medium(), depth_m);
   if (arguments.image.empty())
     std::cout << csv_text(rows, packets);
@@ -292,6 +296,7 @@ void add_link_options(CLI::App& command, AcousticsArguments& arguments) {
 }
 
 void add_signal_options(CLI::App& command, AcousticsArguments& arguments) {
+  // Level and band.
   command
       .add_option("--level", arguments.level_dB,
                   "source level, dB re 1 uPa at 1 m; without it that of the sending modem, else 185")
@@ -307,11 +312,13 @@ void add_signal_options(CLI::App& command, AcousticsArguments& arguments) {
                   "bandwidth of the signal, Hz; without it that of the sending modem, else 4000")
       ->type_name("HZ")
       ->check(number_from(0.1, 1e6));
+  // Packets.
   command.add_option("--packet", arguments.packets, "modulation:bit/s:bytes, such as fsk:80:32")
       ->type_name("PACKET")
       ->type_size(1)
       ->allow_extra_args(false);
   command.add_flag("--micromodem", arguments.micromodem, "a frame of each rate of the WHOI Micro-Modem");
+  // Receiver.
   command
       .add_option("--detection", arguments.detection_dB,
                   "signal-to-noise ratio that the receiver needs, dB; without it that of the transducer, else 6")

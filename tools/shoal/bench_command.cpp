@@ -24,7 +24,7 @@ void bench(const BenchArguments& arguments) {
             << fmt::format("{:>7} {:>9} {:>24} {:>17} {:>17}\n", "robots", "load s", "CPU ms per robot second",
                            "real-time factor", "run hash");
   for (const int robots : arguments.robots) {
-    if (!(std::cout << std::flush)) return;  // the reader is gone
+    if (!(std::cout << std::flush)) return;  // the output was closed
     const ScaleFigures figures = measure_scale(robots, arguments.scale);
     std::cout << fmt::format("{:>7} {:>9.3f} {:>24.3f} {:>17.2f}  {:016x}\n", robots, figures.load_s,
                              figures.cpu_ms_per_robot_second, figures.real_time_factor, figures.run_hash)
@@ -38,6 +38,7 @@ void add_bench_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("bench", "Measure the speed of this machine on the scale scene");
   const auto arguments = std::make_shared<BenchArguments>();
   add_log_level_option(*command);
+  // Options.
   command->add_option("--robots", arguments->robots, "how many; several runs one after the other: 1,10,100")
       ->type_name("N,N,...")
       ->delimiter(',')
@@ -57,6 +58,7 @@ void add_bench_command(CLI::App& app, int& exit_code) {
                                          "shoal bench --robots 1000 --threads 2 --set physics.rays=ode"},
                                         {{0, "success"}, {2, "wrong usage"}},
                                         {}});
+  // Action.
   command->callback([arguments, &exit_code] {
     bench(*arguments);
     exit_code = exit_ok;

@@ -36,6 +36,7 @@ void add_bug_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("bug", "Pack a run into one archive for a report to the developers");
   add_log_level_option(*command);
   const auto options = std::make_shared<BugOptions>();
+  // Options.
   command->add_option("RUN", options->directory, "results folder of the run")->required()->type_name("DIR");
   command->add_option("--record", options->record, "record of the run; unset: the one *.lcm file in the folder")
       ->type_name("FILE");
@@ -50,6 +51,7 @@ void add_bug_command(CLI::App& app, int& exit_code) {
   command->add_flag_callback(
       "--no-files", [options] { options->files = false; }, "hashes alone of the files that the world names, no copies");
   command->add_option("--out", options->out, "the archive; unset: RUN/bug.tar.gz")->type_name("FILE");
+  // End of the help and action.
   command_line::set_help_end(
       *command,
       {{"shoal bug results/coop_land --record coop.lcm", "shoal bug results/coop_land --out coop_land_bug.tar.gz"},

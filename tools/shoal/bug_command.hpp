@@ -5,7 +5,7 @@
 
 namespace tools {
 
-/// Adds `shoal bug`, as the functions of commands.hpp add theirs.
+/// Adds `shoal bug`, like the functions of commands.hpp.
 void add_bug_command(CLI::App& app, int& exit_code);
 
 }  // namespace tools

@@ -26,7 +26,7 @@ sim::ConfigNode keys_of(const std::string& path, const sim::LoadOptions& options
   return sim::load_config_file(path, ignored);
 }
 
-/// Decodes every texture, as the first camera would.
+/// Decodes every texture, as the first camera does.
 void check_textures(const sim::WorldConfig& world) {
   sim::TextureLibrary textures;
   const auto check_all = [&](const std::vector<sim::MaterialConfig>& materials) {
@@ -37,7 +37,7 @@ void check_textures(const sim::WorldConfig& world) {
   for (const sim::VehicleInstance& vehicle : world.vehicles) check_all(vehicle.config->materials);
 }
 
-/// `1 body`, `3 bodies`.
+/// Returns `1 body`, `3 bodies`.
 std::string counted(std::size_t count, const std::string& word) {
   return std::to_string(count) + ' ' + (count == 1 ? word : sim::plural_of(word));
 }
@@ -48,7 +48,7 @@ std::size_t device_count(const sim::WorldConfig& world) {
   return count;
 }
 
-/// Builds a world, which finds what reading cannot: mesh files, bodies without mass.
+/// Builds a world, which finds errors that reading cannot: mesh files, bodies without mass.
 std::size_t body_count(sim::LoadedWorld& loaded, sim::Warnings& warnings) {
   loaded.config.bodies_only_of_many = true;
   sim::InProcessBus bus;
@@ -113,6 +113,7 @@ void add_check_command(CLI::App& app, int& exit_code) {
   const auto path = std::make_shared<std::string>();
   const auto options = std::make_shared<sim::LoadOptions>();
   add_log_level_option(*command);
+  // Options.
   command
       ->add_option("FILE", *path,
                    "world, vehicle or study file, the name of a shipped one, or a declaration NAME.args.yaml")
@@ -120,6 +121,7 @@ void add_check_command(CLI::App& app, int& exit_code) {
   add_set_option(*command, options->sets);
   add_allow_path_option(*command, *options);
   add_plugin_option(*command);
+  // End of the help and action.
   command_line::set_help_end(
       *command, {{"shoal check worlds/coop_land.yaml --set run.seed=3", "shoal check worlds/studies/coop_land.yaml",
                   "shoal check pilot.args.yaml"},

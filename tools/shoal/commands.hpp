@@ -18,36 +18,36 @@ using command_line::whole_from;
 /// Exit codes of the shoal program.
 enum ExitCode {
   exit_ok = 0,
-  exit_failed = 1,  ///< the experiment's own rule
+  exit_failed = 1,  ///< a rule of the experiment
   exit_usage = 2,   ///< command line or configuration
   exit_physics = 3,
   exit_bus = 4,  ///< bus or file error
   exit_timeout = 5
 };
 
-/// Adds `--plugin FILE`, which is loaded before the command does anything.
+/// Adds `--plugin FILE`; the plugin is loaded before the command runs.
 void add_plugin_option(CLI::App& command);
 
-/// Adds `--log-level LEVEL`: what goes to stderr, apart from the error that ends the command.  Call it first, so that
-/// it counts for whatever the other options do.
+/// Adds `--log-level LEVEL`, the level of messages on stderr, except for the error that ends the command.  To be called
+/// first, so that it applies to all other options.
 CLI::Option* add_log_level_option(CLI::App& command, const std::string& usual = "info");
 
 /// Adds `--set PATH=VALUE`.
 void add_set_option(CLI::App& command, std::vector<std::string>& sets);
 
-/// Adds `--allow-path PATH`.  From then on a world may name files of its own folders only, and those.
+/// Adds `--allow-path PATH`.  From then on a world may name only files of its own folders, and these.
 void add_allow_path_option(CLI::App& command, sim::LoadOptions& load);
 
 /// Adds `--lcm-url URL`.
 CLI::Option* add_lcm_url_option(CLI::App& command, std::string& url);
 
-/// Adds `--threads N` of worker threads that cast rays.
+/// Adds `--threads N`, the number of worker threads for ray casting.
 void add_threads_option(CLI::App& command, int& threads);
 
-/// Adds `--types FILE`: message types that are not Shoal's.
+/// Adds `--types FILE`: message types that are not part of Shoal.
 void add_types_option(CLI::App& command, std::vector<std::string>& lcm_files);
 
-/// Each adds its sub-command.  When chosen, the command sets `exit_code`.
+/// Each function adds a sub-command.  When chosen, the command sets `exit_code`.
 void add_run_command(CLI::App& app, int& exit_code);
 void add_replay_command(CLI::App& app, int& exit_code);
 void add_check_command(CLI::App& app, int& exit_code);

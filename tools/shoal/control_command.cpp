@@ -43,7 +43,7 @@ const std::vector<std::string> known_requests = {"pause", "resume", "step",     
                                                  "until", "rewind", "snapshot", "restore", "where",
                                                  "spawn", "remove", "describe", "do",      "leave"};
 
-/// `@FILE` stands for what is in the file, `-` for standard input.
+/// Reads the text: `@FILE` is replaced by the content of the file, `-` by standard input.
 std::string text_of(const std::string& argument) {
   if (argument != "-" && !argument.starts_with("@")) return argument;
   std::ostringstream text;
@@ -60,13 +60,13 @@ std::string text_of(const std::string& argument) {
   return text.str();
 }
 
-/// Whether a run is paused because of this request, so that it must be resumed.
+/// Returns whether a run is paused because of this request, so that it must be resumed.
 bool leaves_paused(const std::string& command, const std::string& reply) {
   return (command == "pause" || command == "rewind" || command == "restore") &&
          reply.find(", paused") != std::string::npos;
 }
 
-/// Requests and their answers.  A request is not sent twice, for it might be executed twice, unless it was lost: a run
+/// Requests and their replies.  A request is sent again only if it was lost, because it might be executed twice: a run
 /// that has not started yet does not receive it.
 class Session {
  public:
@@ -76,7 +76,7 @@ class Session {
     if (key) signer_.emplace(*key, arguments.client);
   }
 
-  /// The reply; nothing when none came in time.
+  /// Returns the reply; nothing when none arrived in time.
   std::optional<shoal::sim_control_reply_t> send_request(const std::string& command, const std::string& text,
                                                          double value) {
     const Clock::time_point deadline =
@@ -85,8 +85,8 @@ class Session {
                                      lcm_.url());
     const std::int32_t request = ++id_, question = ++id_;
     send(request, command, text, value);
-    // Requests are answered in their order.  Once the question, which changes nothing, is answered and the request is
-    // not, the simulator has never received the request.
+    // Requests are answered in order.  When the query, which changes nothing, is answered and the request is not, the
+    // simulator has not received the request.
     while (Clock::now() < deadline && caught_signal() == 0) {
       auto reply =
           await_reply(request, question, std::min<Clock::time_point>(deadline, Clock::now() + 1s), audit_entry);
@@ -115,7 +115,7 @@ class Session {
     lcm_.publish("sim.control", signer_ ? signer_->sign("sim.control", payload) : payload);
   }
 
-  /// The reply to one of two requests.
+  /// Returns the reply to one of two requests.
   std::optional<shoal::sim_control_reply_t> await_reply(std::int32_t id, std::int32_t other_id,
                                                         Clock::time_point deadline, bridges::WaitWarning& audit_entry) {
     while (Clock::now() < deadline && caught_signal() == 0) {
@@ -140,10 +140,11 @@ class Session {
 
 int control(const ControlArguments& arguments) {
   const bool known = std::find(known_requests.begin(), known_requests.end(), arguments.command) != known_requests.end();
-  // Whatever else it is, the simulator decides.
+  // Reject a misspelt request; the simulator decides about unknown ones.
   if (const std::string meant = sim::closest_name(arguments.command, known_requests); !known && !meant.empty())
     throw command_line::UsageError("unknown request '" + sim::shortened(sim::printable(arguments.command)) +
                                    "'; did you mean '" + meant + "'?");
+  // Send the request and print the reply.
   const std::string text = text_of(arguments.text);
   catch_signals(false);
   Session session(arguments);
@@ -159,7 +160,7 @@ int control(const ControlArguments& arguments) {
     std::cerr << "paused; continue with `shoal control resume"
               << (arguments.lcm_url.empty() ? "" : " --lcm-url '" + arguments.lcm_url + "'")
               << (arguments.run.empty() ? "" : " --run '" + arguments.run + "'") << "`\n";
-  // A vehicle that goes with its client stays as long as we say that we live.
+  // A vehicle that depends on its client remains as long as the client reports that it is alive.
   while (arguments.hold_here && caught_signal() == 0) {
     if (!session.send_request("alive", "", 0) && caught_signal() == 0) return exit_timeout;
     std::this_thread::sleep_for(500ms);
@@ -174,6 +175,7 @@ void add_control_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("control", "Send a request to a running simulator and print its answer");
   const auto arguments = std::make_shared<ControlArguments>();
   add_log_level_option(*command);
+  // Request.
   command
       ->add_option("COMMAND", arguments->command,
                    command_line::alternatives(known_requests) + " (docs/reference/messages.md)")
@@ -182,6 +184,7 @@ void add_control_command(CLI::App& app, int& exit_code) {
   command->add_option("--value", arguments->value, "number of the request: steps, speed (or max), seconds")
       ->type_name("NUMBER")
       ->transform(command_line::number_or_word(-1e12, 1e12, "max").description(""));
+  // Client and connection.
   command->add_option("--client", arguments->client, "client name to use in requests; without it shoal-control-PID")
       ->type_name("NAME");
   command
@@ -194,6 +197,7 @@ void add_control_command(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   command->add_flag("--stay", arguments->hold_here, "keep a vehicle spawned with `with_client: true` until Ctrl-C");
   add_lcm_url_option(*command, arguments->lcm_url);
+  // End of the help and action.
   command_line::set_help_end(
       *command, {{"shoal control pause", "shoal control step --value 10", "shoal control until --value 90",
                   "shoal control until storm  # an event of the world",

@@ -39,6 +39,7 @@ void add_describe_command(CLI::App& app, int& exit_code) {
   const auto name = std::make_shared<std::string>();
   const auto page = std::make_shared<std::string>();
   const auto schema = std::make_shared<std::string>();
+  // Options that exclude each other.
   CLI::Option* name_option = command->add_option(
       "NAME", *name,
       "a device type, a message type, a program, a key of world or vehicle files, or one of: device, noise, world, "
@@ -60,6 +61,7 @@ void add_describe_command(CLI::App& app, int& exit_code) {
        {{0, "success"}, {2, "wrong usage, or an unknown name"}},
        {}});
   command->callback([name, page, schema, &exit_code] {
+    // Page or schema.
     if (!page->empty() || !schema->empty()) {
       if (!page->empty())
         std::cout << reference_page(*page);
@@ -67,6 +69,7 @@ void add_describe_command(CLI::App& app, int& exit_code) {
         std::cout << (*schema == "study" ? study_schema(params_of<StudyConfig>()) : json_schema(*schema));
       return;
     }
+    // Text about a name.
     if (name->empty()) throw command_line::UsageError("needs a NAME, --page or --schema; see `shoal list devices`");
     const auto columns = static_cast<std::size_t>(command_line::text_columns(STDOUT_FILENO));
     const std::string text = *name == "study"

@@ -21,6 +21,7 @@ struct FidelityArguments {
 };
 
 int fidelity(const FidelityArguments& arguments) {
+  // Options of all cases.
   FidelityOptions options;
   options.step_s = arguments.step_s;
   for (const std::string& change : arguments.overrides) {
@@ -29,6 +30,7 @@ int fidelity(const FidelityArguments& arguments) {
       throw CLI::ValidationError("--override", "must be path=value, got '" + change + "'");
     options.overrides[change.substr(0, equals)] = change.substr(equals + 1);
   }
+  // Cases to run.
   FidelityFile file = read_fidelity_file(arguments.cases);
   std::erase_if(file.cases, [&](const FidelityCase& of) {
     const auto desired = [&](const std::string& name) { return name == of.name || name == of.group; };
@@ -37,6 +39,7 @@ int fidelity(const FidelityArguments& arguments) {
   if (file.cases.empty() && arguments.names.empty())
     throw CLI::ValidationError("CASES", "there is no case in " + arguments.cases);
   if (file.cases.empty()) throw CLI::ValidationError("--case", "no case has this name");
+  // Results.
   std::vector<FidelityResult> results;
   bool passed = true;
   for (const FidelityCase& of : file.cases) {
@@ -57,6 +60,7 @@ void add_fidelity_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("fidelity", "Compare vehicles with published trajectories");
   const auto arguments = std::make_shared<FidelityArguments>();
   add_log_level_option(*command);
+  // Options.
   command->add_option("CASES", arguments->cases, "file of cases")->required();
   command->add_option("--case", arguments->names, "only this case, or the cases of this group")
       ->type_name("NAME")
@@ -74,6 +78,7 @@ void add_fidelity_command(CLI::App& app, int& exit_code) {
       ->type_name("DIR");
   command->add_flag("--csv", arguments->csv, "with the report, the states of Shoal as CSV files");
   add_plugin_option(*command);
+  // End of the help and action.
   command_line::set_help_end(*command,
                              {{"shoal fidelity tests/fidelity/cases.yaml --case otter_turn --results results/otter"},
                               {{0, "all cases are within their bounds"},

@@ -18,7 +18,7 @@ namespace {
 
 using Rows = std::vector<std::pair<std::string, std::string>>;
 
-/// Names and what they mean, in the width of the terminal.
+/// Prints names and descriptions, in the width of the terminal.
 void print_rows(const Rows& rows) {
   std::cout << command_line::two_columns(rows, static_cast<std::size_t>(command_line::text_columns(STDOUT_FILENO)));
 }

@@ -42,7 +42,7 @@ void print_run(const bridges::LogEvent& event) {
     const auto info = shoal::decode<shoal::sim_info_t>(event.payload, shoal::Finite::any);
     fmt::print("world {}, seed {}, step {} us\n{}", info.world, info.seed, info.step_us, info.versions);
   } catch (const shoal::MessageError&) {
-    // A log of something else that uses the name.
+    // The channel belongs to another program that uses the name.
   }
 }
 
@@ -58,6 +58,7 @@ int info(const std::string& path, const shoal::MessageTypes& types) {
   std::int64_t first_us = 0;
   std::int64_t last_us = 0;
   bool run_shown = false;
+  // Count the events of each channel.
   while (const auto event = log.next()) {
     if (events++ == 0) first_us = event->utime;
     last_us = event->utime;
@@ -71,6 +72,7 @@ int info(const std::string& path, const shoal::MessageTypes& types) {
       run_shown = true;
     }
   }
+  // Print the table.
   fmt::print("{}: {} events, {} bytes, {:.3f} s\n", path, events, log.file_bytes(),
              static_cast<double>(last_us - first_us) * 1e-6);
   std::size_t width = 7;
@@ -99,8 +101,8 @@ std::string csv_value(const shoal::FieldValue& value) {
   return quoted + "\"";
 }
 
-/// One table with a row for each event of one channel: the log's time, then every field.  Rows may differ in length
-/// when arrays do; the header is that of the first row.
+/// Prints one table with a row for each event of one channel: the log's time, then every field.  Rows may differ in
+/// length when arrays do; the header is that of the first row.
 int csv(const std::string& path, const std::string& channel, const shoal::MessageTypes& types) {
   bridges::EventLogReader log(path);
   bool header = false;
@@ -108,6 +110,7 @@ int csv(const std::string& path, const std::string& channel, const shoal::Messag
   std::uint64_t bad = 0;
   while (const auto event = log.next()) {
     if (event->channel != channel) continue;
+    // Decode the message into a row.
     const shoal::MessageSchema* schema = types.find(static_cast<std::uint64_t>(shoal::fingerprint(event->payload)));
     std::string names = "log_utime";
     std::string row = std::to_string(event->utime);
@@ -124,9 +127,10 @@ int csv(const std::string& path, const std::string& channel, const shoal::Messag
     }
     if (!header) std::cout << names << '\n';
     header = true;
-    if (!(std::cout << row << '\n')) return exit_ok;  // main() knows what it means
+    if (!(std::cout << row << '\n')) return exit_ok;  // main() handles the closed output
     ++rows;
   }
+  // Report problems.
   if (bad > 1) std::cerr << bad << " events of " << channel << " could not be decoded\n";
   if (rows == 0 && bad == 0) std::cerr << path << ": no event on channel '" << channel << "'; see shoal log info\n";
   return rows == 0 || bad > 0 ? exit_bus : show_problems(log);
@@ -136,7 +140,7 @@ void check_png_name(const std::string& png) {
   if (!png.ends_with(".png")) throw CLI::ValidationError("--png", "must end in .png, got '" + png + "'");
 }
 
-/// The Allan deviation of what an instrument at rest reported: as CSV to a file or stdout, and as an image.
+/// Computes the Allan deviation of the reports of an instrument at rest: as CSV to a file or stdout, and as an image.
 int allan(const std::string& path, const std::string& channel, const std::string& out, const std::string& png,
           const shoal::MessageTypes& types) {
   if (!png.empty()) check_png_name(png);
@@ -149,7 +153,7 @@ int allan(const std::string& path, const std::string& channel, const std::string
     if (!png.empty()) plot(table, png);
     if (out.empty() && png.empty()) std::cout << to_csv(table);
   } catch (const bridges::BusError&) {
-    throw;  // names the file itself
+    throw;  // contains the name of the file
   } catch (const std::runtime_error& error) {
     std::cerr << path << ": " << error.what() << '\n';
     return exit_bus;
@@ -173,7 +177,7 @@ int image(const LogArguments& arguments) {
     for (const std::string& problem : made.problems) std::cerr << path << ": " << problem << '\n';
     if (!made.problems.empty()) return exit_bus;
   } catch (const bridges::BusError&) {
-    throw;  // names the file itself
+    throw;  // contains the name of the file
   } catch (const std::runtime_error& error) {
     std::cerr << path << ": " << error.what() << '\n';
     return exit_bus;

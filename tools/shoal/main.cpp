@@ -28,6 +28,7 @@ volatile std::sig_atomic_t output_was_closed = 0;
 
 int run(int argc, char** argv) {
   CLI::App app{"Shoal simulates many vehicles and their devices on LCM channels.", "shoal"};
+  // General options and help.
   app.set_help_flag("-h,--help", "print this help");
   app.set_version_flag("--version", tools::version_text, "print the versions of Shoal and its libraries");
   app.require_subcommand(1);
@@ -46,6 +47,7 @@ int run(int argc, char** argv) {
        {"`shoal COMMAND --help` has the options and exit codes of a command."}});
   for (const std::string& problem : sim::DeviceRegistry::instance().take_problems())
     throw std::logic_error("this program was built wrong: " + problem);
+  // Commands.
   int exit_code = tools::exit_ok;
   tools::add_run_command(app, exit_code);
   tools::add_replay_command(app, exit_code);
@@ -68,6 +70,7 @@ int run(int argc, char** argv) {
   tools::add_bug_command(app, exit_code);
   tools::add_study_command(app, exit_code);
   tools::add_upgrade_command(app, exit_code);
+  // Parse and run.
   try {
     if (const auto ended = command_line::parse(app, argc, argv)) return *ended;
   } catch (const sim::ConfigError& error) {
@@ -80,14 +83,14 @@ int run(int argc, char** argv) {
   return exit_code;
 }
 
-/// A full disk shows at the latest now.  What failed before is the more important code.  A reader that has seen enough,
-/// as `head -1` does, is not a failure.
+/// Flushes the output and reports a full disk.  An earlier failure has the more important code.  A reader that closes
+/// the output early, such as `head -1`, is not a failure.
 int flush_output(int exit_code) {
   errno = 0;
   const bool flushed = std::cout.flush() && std::fflush(stdout) == 0;
   int error = errno;
   if ((flushed && std::ferror(stdout) == 0) || error == EPIPE || output_was_closed) return exit_code;
-  // When an earlier write failed its reason is lost: another one fails for the same.
+  // The reason of an earlier failed write is lost: another write fails for the same reason.
   if (error == 0 && write(STDOUT_FILENO, "\n", 1) < 0) error = errno;
   std::cerr << "shoal: cannot write to stdout: " << std::strerror(error != 0 ? error : EIO) << '\n';
   return exit_code == tools::exit_ok ? tools::exit_bus : exit_code;
@@ -96,14 +99,15 @@ int flush_output(int exit_code) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  // Data goes to stdout, words for people to stderr.
+  // Data is written to stdout, messages to stderr.
   const bool colour = command_line::may_use_colour(STDERR_FILENO);
   spdlog::set_default_logger(
       spdlog::stderr_color_mt("shoal", colour ? spdlog::color_mode::automatic : spdlog::color_mode::never));
-  // On a terminal a line of words takes the place of the live line of progress.
+  // On a terminal a message replaces the live line of progress.
   const bool clears = command_line::can_move_cursor(STDERR_FILENO);
   spdlog::set_pattern(clears ? "\r\x1b[K%^%l%$: %v" : "%^%l%$: %v");
-  // A closed pipe shows as a failed write.  A handler, as programs that are started would inherit that it is ignored.
+  // A closed pipe is reported as a failed write.  A handler is used, because child programs would inherit an ignored
+  // signal.
   std::signal(SIGPIPE, [](int) { output_was_closed = 1; });
   try {
     return flush_output(run(argc, argv));

@@ -47,6 +47,7 @@ void print_place(const sim::Medium& medium, const sim::Vector3d& p_W) {
   const auto row = [](const char* name, const std::string& value, const char* unit) {
     std::cout << fmt::format("{:<16}{:>24} {}\n", name, value, unit);
   };
+  // Water column.
   if (medium.has_water()) {
     const sim::LocalWater water = medium.water_at(p_W);
     row("surface", fmt::format("{:.3f}", water.surface_m), "m");
@@ -57,6 +58,7 @@ void print_place(const sim::Medium& medium, const sim::Vector3d& p_W) {
     row("acceleration", vector_text(water.acceleration_W), "m/s^2 east north up");
     if (!medium.current_known(p_W)) row("current", "beyond its grid", "");
   }
+  // Medium at the position.
   row("medium", medium.in_water(p_W) ? "water" : "air", "");
   row("density", fmt::format("{:.3f}", medium.density_kgpm3(p_W)), "kg/m^3");
   row("pressure", fmt::format("{:.1f}", medium.pressure_Pa(p_W)), "Pa");
@@ -67,14 +69,14 @@ void print_place(const sim::Medium& medium, const sim::Vector3d& p_W) {
     row("wind", vector_text(medium.air_velocity_W(p_W)), "m/s east north up");
 }
 
-/// By depth, from the surface to the depth of the place: rows at 1, 2 and 5 times powers of ten.
+/// Prints a profile from the surface to the depth of the position: rows at 1, 2 and 5 times powers of ten.
 void print_profile(const sim::Medium& medium, const sim::Vector3d& p_W) {
   if (!medium.has_water()) throw CLI::ValidationError("--profile", "this world has no water");
   std::cout
       << "depth_m temperature_C salinity_psu density_kgpm3 sound_speed_mps pressure_Pa east_mps north_mps up_mps\n";
   const double surface_m = medium.surface_m(p_W.x(), p_W.y()), deepest_m = medium.depth_m(p_W);
   const auto print = [&](double depth_m) {
-    // A hair under water at the surface itself, where the air begins.
+    // Slightly below the surface, where the air starts.
     const sim::Vector3d q_W(p_W.x(), p_W.y(), surface_m - std::max(depth_m, 1e-6));
     const sim::Vector3d v_W = medium.water_velocity_W(q_W);
     std::cout << fmt::format("{:g} {:.3f} {:.3f} {:.3f} {:.2f} {:.0f} {:.3f} {:.3f} {:.3f}\n", depth_m,
@@ -88,9 +90,10 @@ void print_profile(const sim::Medium& medium, const sim::Vector3d& p_W) {
   if (deepest_m > 0) print(deepest_m);
 }
 
-/// Statistics of the surface over a place.  The heights are taken at any time; the medium stays where it is.
+/// Prints statistics of the surface at a position.  The heights are evaluated at any time; the medium is not advanced.
 void print_waves(const sim::Medium& medium, const sim::Vector3d& p_W, double from_s, double length_s) {
   if (!medium.has_waves()) throw CLI::ValidationError("--waves", "this world has no waves");
+  // Surface elevation over time.
   constexpr double step_s = 0.05;
   const auto count = static_cast<std::int64_t>(length_s / step_s) + 1;
   std::vector<double> heights;
@@ -100,6 +103,7 @@ void print_waves(const sim::Medium& medium, const sim::Vector3d& p_W, double fro
     heights.push_back(medium.surface_m(p_W.x(), p_W.y(), sim::from_seconds(t_s)));
     mean += heights.back() / static_cast<double>(count);
   }
+  // Variance, extremes and zero up-crossings.
   double squares = 0, low = heights[0], high = heights[0];
   int rises = 0;
   double first_s = 0, last_s = 0;
@@ -111,6 +115,7 @@ void print_waves(const sim::Medium& medium, const sim::Vector3d& p_W, double fro
     last_s = static_cast<double>(i) * step_s;
     if (rises++ == 0) first_s = last_s;
   }
+  // Significant wave height and zero-crossing period.
   std::cout << fmt::format("mean surface    {:.3f} m\n", mean);
   std::cout << fmt::format("Hs = 4 std      {:.3f} m\n", 4 * std::sqrt(squares / static_cast<double>(count)));
   std::cout << fmt::format("lowest, highest {:.3f} {:.3f} m\n", low, high);
@@ -139,6 +144,7 @@ void add_medium_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("medium", "Show the water and the air of a world at a place and a time");
   const auto arguments = std::make_shared<MediumArguments>();
   add_log_level_option(*command);
+  // Options.
   command->add_option("WORLD", arguments->world, "world file, or the name of a shipped world")->required();
   command->add_option("--at", arguments->at, "the place, m")->type_name("X,Y,Z")->capture_default_str();
   command->add_option("--time", arguments->time_s, "simulated time, s")
@@ -153,6 +159,7 @@ void add_medium_command(CLI::App& app, int& exit_code) {
   add_set_option(*command, arguments->load.sets);
   add_allow_path_option(*command, arguments->load);
   add_plugin_option(*command);
+  // End of the help and action.
   command_line::set_help_end(
       *command,
       {{"shoal medium worlds/minimal.yaml --set 'medium={water: {}, waves: {sea_state: 3}}' --at 0,0,-5 --time 10",

@@ -63,6 +63,7 @@ void add_mesh_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("mesh", "Describe a mesh file, and convert it for worlds and vehicles");
   const auto options = std::make_shared<MeshOptions>();
   add_log_level_option(*command);
+  // Options.
   command->add_option("FILE", options->file, "mesh of any format that Assimp reads: DAE, FBX, GLB, OBJ, PLY, STL, ...")
       ->required();
   command->add_option("--out", options->out, "write it as this file, .stl (binary) or .obj")->type_name("FILE");
@@ -82,6 +83,7 @@ void add_mesh_command(CLI::App& app, int& exit_code) {
       ->type_name("S")
       ->check(number_from(0.01, 86400))
       ->capture_default_str();
+  // End of the help and action.
   command_line::set_help_end(*command,
                              {{"shoal mesh hull.stl", "shoal mesh hull.glb --out hull.stl",
                                "shoal mesh rock_mm.fbx --scale 0.001 --out rock.obj"},

@@ -36,7 +36,7 @@ std::string check_name(const std::string& name) {
   return plain ? "" : "must be made of letters, digits, '_' and '-', got '" + name + "'";
 }
 
-/// Of the shipped schemas; empty: there are none.
+/// Returns the path of a shipped schema; empty: there is none.
 std::string schema_file(const std::string& kind) {
   if (sim::shipped_folder().empty()) return "";
   const fs::path file = fs::path(sim::shipped_folder()) / "docs/reference/schema" / (kind + ".schema.json");
@@ -61,13 +61,13 @@ int write_yaml(const NewArguments& arguments, const std::string& text) {
   return exit_ok;
 }
 
-/// `digger` is digger.yaml, as for other commands.
+/// Completes the name of a vehicle file: `digger` is digger.yaml, as for other commands.
 std::string vehicle_file(const NewArguments& arguments) {
   if (arguments.vehicle.empty()) return arguments.under_water ? "remus100_survey.yaml" : "rover.yaml";
   return fs::path(arguments.vehicle).has_extension() ? arguments.vehicle : arguments.vehicle + ".yaml";
 }
 
-/// A vehicle of digger.yaml is digger1, one of remus100.yaml is remus100_1.
+/// Names a vehicle: one of digger.yaml is digger1, one of remus100.yaml is remus100_1.
 std::string vehicle_name(const NewArguments& arguments) {
   if (arguments.vehicle.empty()) return arguments.under_water ? "auv1" : "rover1";
   const std::string stem = fs::path(arguments.vehicle).stem().string();
@@ -88,7 +88,7 @@ int new_program(const NewArguments& arguments) {
                                             : start_cpp_program(arguments.name, arguments.vehicle);
   if (!arguments.python) {
     std::error_code error;
-    fs::create_directory(fs::path(arguments.folder) / arguments.name, error);  // write_start() says why it cannot
+    fs::create_directory(fs::path(arguments.folder) / arguments.name, error);  // write_start() reports a failure
   }
   std::vector<std::string> paths;
   for (const auto& [file, text] : files) paths.push_back(write_start(arguments, file, text));
@@ -119,6 +119,7 @@ void add_new_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("new", "Write a world, a vehicle or a program to start with");
   command->require_subcommand(1);
   const auto arguments = std::make_shared<NewArguments>();
+  // World.
   CLI::App* world = add_kind(*command, "world", "A world of one vehicle", *arguments);
   world
       ->add_option("--vehicle", arguments->vehicle,
@@ -132,11 +133,13 @@ void add_new_command(CLI::App& app, int& exit_code) {
                                       exit_codes,
                                       {}});
   world->callback([arguments, &exit_code] { exit_code = new_world(*arguments); });
+  // Vehicle.
   CLI::App* vehicle = add_kind(*command, "vehicle", "A rover of two driven wheels with a lidar", *arguments);
   command_line::set_help_end(*vehicle, {{"shoal new vehicle digger"}, exit_codes, {}});
   vehicle->callback([arguments, &exit_code] {
     exit_code = write_yaml(*arguments, start_vehicle(arguments->name, schema_file("vehicle")));
   });
+  // Program.
   CLI::App* program = add_kind(*command, "program", "A program that drives a vehicle in lockstep", *arguments);
   program->add_flag("--python", arguments->python, "in Python, instead of C++");
   program->add_option("--vehicle", arguments->vehicle, "name of the vehicle in its world; unset: rover1")
@@ -147,6 +150,7 @@ void add_new_command(CLI::App& app, int& exit_code) {
     if (arguments->vehicle.empty()) arguments->vehicle = "rover1";
     exit_code = new_program(*arguments);
   });
+  // End of the help.
   command_line::set_help_end(*command,
                              {{"shoal new world yard", "shoal new vehicle digger", "shoal new program pilot --python"},
                               exit_codes,

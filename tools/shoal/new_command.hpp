@@ -5,7 +5,7 @@
 
 namespace tools {
 
-/// Adds `shoal new`, which writes files to begin with.  When chosen, it sets `exit_code`.
+/// Adds `shoal new`, which writes starter files.  When chosen, it sets `exit_code`.
 void add_new_command(CLI::App& app, int& exit_code);
 
 }  // namespace tools

@@ -9,7 +9,7 @@
 
 namespace tools {
 
-/// Tells before the work, not after it, that a file cannot be written: throws std::runtime_error.  Makes nothing.
+/// Throws std::runtime_error when a file cannot be written, so that the error occurs before the work.  Creates nothing.
 inline void check_writable(const std::string& path) {
   namespace fs = std::filesystem;
   std::error_code error;

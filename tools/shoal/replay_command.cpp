@@ -110,6 +110,7 @@ void add_replay_command(CLI::App& app, int& exit_code) {
   add_plugin_option(*command);
   add_player_options(*command, *arguments);
   command->add_flag("--quiet", arguments->replay.quiet, "no progress");
+  // End of the help.
   command_line::set_help_end(
       *command,
       {{"shoal replay run.lcm",
@@ -124,6 +125,7 @@ void add_replay_command(CLI::App& app, int& exit_code) {
         {130, "ended by Ctrl-C"}},
        {"With --play the messages of a record go to programs as in its run: in lockstep to those that join, and on "
         "the bus to those that only listen. What they publish changes nothing; it is compared with the record."}});
+  // Action.
   command->callback([arguments, log_level, &exit_code] {
     if (log_level->count() > 0 && !spdlog::should_log(spdlog::level::info)) arguments->replay.quiet = true;
     if (log_level->count() == 0 && arguments->play) spdlog::set_level(spdlog::level::warn);

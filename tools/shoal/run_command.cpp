@@ -30,7 +30,7 @@ struct RunArguments {
   std::optional<double> duration_s;
 };
 
-/// `10,20.5`: times in s.
+/// Parses times in s: `10,20.5`.
 std::vector<double> parse_times(const std::string& text) {
   std::vector<double> times;
   std::istringstream in(text);
@@ -44,7 +44,7 @@ std::vector<double> parse_times(const std::string& text) {
   return times;
 }
 
-/// The world of a snapshot, with the values that the command line sets.
+/// Loads the world of a snapshot, with the values that the command line sets.
 sim::LoadedWorld load_from(RunArguments& arguments) {
   if (arguments.load.seed) throw CLI::ValidationError("--seed", "cannot be changed in a snapshot");
   arguments.run.from = read_snapshot(arguments.from);
@@ -56,12 +56,14 @@ sim::LoadedWorld load_from(RunArguments& arguments) {
 }
 
 int run(RunArguments& arguments) {
+  // Transfer the options of the command line.
   arguments.load.allow_plugins = arguments.run.launch;
   arguments.load.serial_ports = arguments.run.serial_ports;
   arguments.run.speed = parse_speed(arguments.speed);
   arguments.run.duration_s = arguments.load.duration_s = arguments.duration_s;
   arguments.load.encode_message = shoal::encode_own_message;
   arguments.load.special_files = arguments.run.special_files;
+  // Check combinations of options.
   if (arguments.world.empty() == arguments.from.empty())
     throw command_line::UsageError("needs either a WORLD or --from FILE");
   if (!arguments.run.await.empty() && arguments.run.bus == "none")
@@ -70,13 +72,14 @@ int run(RunArguments& arguments) {
   const bool nowhere = arguments.run.snapshots.empty() && arguments.run.results.empty();
   if (nowhere && (!arguments.snapshot_at.empty() || arguments.run.snapshot_every_s))
     throw CLI::ValidationError("--snapshot-at", "needs --snapshots DIR or --results DIR");
+  // Load and run the world.
   sim::LoadedWorld loaded =
       arguments.from.empty() ? sim::load_world(world_file(arguments.world), arguments.load) : load_from(arguments);
   read_programs(loaded, {arguments.run.launch, arguments.load.allow_paths});
   catch_signals(true);
   const Summary summary = run_world(loaded, arguments.run);
   if (!summary.error.empty()) std::cerr << "shoal: " << summary.error << '\n';
-  // What could not be saved is printed all the same: on stderr where stdout leads to the same full disk.
+  // Print the summary even if it could not be saved: on stderr when stdout leads to the same full disk.
   std::error_code ignored;
   const bool saved = arguments.run.results.empty() ||
                      std::filesystem::is_regular_file(arguments.run.results + "/summary.json", ignored);
@@ -90,6 +93,7 @@ int run(RunArguments& arguments) {
 }
 
 void add_snapshot_options(CLI::App& command, RunArguments& arguments) {
+  // Snapshot files.
   command.add_option("--from", arguments.from, "continue from a snapshot file instead of the start of a WORLD")
       ->type_name("FILE");
   command
@@ -102,6 +106,7 @@ void add_snapshot_options(CLI::App& command, RunArguments& arguments) {
   command
       .add_option("--snapshots", arguments.run.snapshots, "directory of snapshot files; without it RESULTS/snapshots")
       ->type_name("DIR");
+  // Rewinding.
   command
       .add_option("--rewind-s", arguments.run.rewind_s,
                   "how far the run can be rewound, in simulated seconds; without it 60 on a bus or terminal")
@@ -127,6 +132,7 @@ void add_output_options(CLI::App& command, RunArguments& arguments) {
 }
 
 void add_bus_options(CLI::App& command, RunArguments& arguments) {
+  // Buses and control.
   command.add_option("--bus", arguments.run.bus, "lcm, or none for a run within the process only")
       ->type_name("BUS")
       ->check(one_of({"lcm", "none"}).description(""));
@@ -139,6 +145,7 @@ void add_bus_options(CLI::App& command, RunArguments& arguments) {
       .add_flag("--open-control", arguments.run.open_control,
                 "allow control without a key, even if a bus leaves this machine; for trusted networks only")
       ->excludes(key);
+  // Programs and serial ports.
   command.add_flag("--launch", arguments.run.launch, "start the programs that the world names");
   command.add_option("--await", arguments.run.await, "lockstep clients to wait for, started by hand: NAME,NAME,...")
       ->type_name("NAMES")
@@ -173,6 +180,7 @@ void add_run_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("run", "Run a world");
   const auto arguments = std::make_shared<RunArguments>();
   add_log_level_option(*command);
+  // World, time and seed.
   command->add_option("WORLD", arguments->world, "world file, or the name of a shipped world (shoal list)");
   command->add_option("--duration", arguments->duration_s, "simulated seconds; forever: until a request to quit")
       ->type_name("S")
@@ -183,6 +191,7 @@ void add_run_command(CLI::App& app, int& exit_code) {
       ->check(command_line::seed());
   add_set_option(*command, arguments->load.sets);
   add_allow_path_option(*command, arguments->load);
+  // Control, output and snapshots.
   command->add_flag("--paused", arguments->run.paused, "wait for a resume on sim.control");
   command->add_flag_callback(
       "--no-keys", [arguments] { arguments->run.keys = false; }, "ignore the keys of the terminal");
@@ -191,6 +200,7 @@ void add_run_command(CLI::App& app, int& exit_code) {
   add_snapshot_options(*command, *arguments);
   add_threads_option(*command, arguments->run.threads);
   add_plugin_option(*command);
+  // End of the help and action.
   command_line::set_help_end(
       *command, {{"shoal run worlds/minimal.yaml --duration 10 --speed 1",
                   "shoal run worlds/coop_land.yaml --launch --results results/coop_land --record coop.lcm",

@@ -37,7 +37,7 @@ struct SnapArguments {
   int quality = 90;
 };
 
-/// What to look with, and from where.
+/// Camera and its pose.
 struct View {
   sim::OpticsConfig optics;
   sim::Pose X_WS = sim::Pose::Identity();
@@ -50,7 +50,7 @@ struct View {
 
 using Numbers = std::vector<double>;
 
-/// `count` numbers with `separator` between them.
+/// Parses `count` numbers with `separator` between them.
 Numbers parse_numbers(const char* option, const std::string& text, char separator, std::size_t count,
                       const char* form) {
   Numbers numbers;
@@ -93,7 +93,7 @@ const devices::Camera& find_camera(const sim::World& world, const std::string& n
                                  (cameras.empty() ? "; this world has none, see --eye" : "; there are: " + cameras));
 }
 
-/// Through a camera as it stands now: its lens and exposure, without noise, blur and rolling shutter.
+/// Returns the view of a camera at its present pose: its lens and exposure, without noise, blur and rolling shutter.
 View view_of_camera(const sim::World& world, const std::string& name) {
   const sim::MountedDevice* device = nullptr;
   const devices::Camera& camera = find_camera(world, name, device);
@@ -151,7 +151,7 @@ View make_view(const SnapArguments& arguments, const sim::World& world) {
 
 sim::Image8 take_picture(const sim::World& world, const View& view, sim::TextureLibrary& textures) {
   const auto rays = sim::make_pixel_rays(sim::Optics(view.optics), view.antialias);
-  // The library outlives the renderer, which only wants to share it.
+  // The library outlives the renderer, which requires shared ownership.
   const std::shared_ptr<sim::TextureLibrary> shared(&textures, [](sim::TextureLibrary*) {});
   sim::Renderer renderer(world.physics(), rays, view.options, shared);
   sim::Frame frame;
@@ -161,7 +161,7 @@ sim::Image8 take_picture(const sim::World& world, const View& view, sim::Texture
   return sim::develop(view.grey ? sim::grey_of(frame.light) : frame.light, view.gain);
 }
 
-/// `image.png`, or `picture_0003.png` when there are several.
+/// `image.png`, or `image_0003.png` for one of several.
 std::string numbered(const std::string& path, int number) {
   const std::size_t dot = path.rfind('.');
   return fmt::format("{}_{:04}{}", path.substr(0, dot), number, path.substr(dot));
@@ -171,7 +171,7 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// What cannot be seen in an automatic view.
+/// Reports vehicles that cannot be seen in an automatic view.
 void warn(const View& view) {
   if (!view.overview) return;
   if (!view.overview->hidden.empty())
@@ -192,7 +192,7 @@ void take_one(const SnapArguments& arguments, const sim::World& world, const std
   try {
     sim::write_image(path, output, arguments.quality);
   } catch (const sim::ImageError& error) {
-    throw std::runtime_error(path + ": " + error.what());  // the main program makes that exit code 4
+    throw std::runtime_error(path + ": " + error.what());  // the main program returns exit code 4 for it
   }
   const sim::Vector3d p_W = view.X_WS.translation();
   std::cout << fmt::format(
@@ -203,17 +203,20 @@ void take_one(const SnapArguments& arguments, const sim::World& world, const std
 }
 
 int snap(SnapArguments& arguments) {
+  // Check the options.
   if (!sim::is_image_name(arguments.out))
     throw CLI::ValidationError("--out", "must end in .png, .jpg or .jpeg, got '" + arguments.out + "'");
   if (arguments.every_s && arguments.until_s < arguments.at_s)
     throw CLI::ValidationError("--until", "must not be before --at");
+  // Load the world.
   arguments.load.encode_message = shoal::encode_own_message;
   const sim::LoadedWorld loaded = sim::load_world(world_file(arguments.world), arguments.load);
   sim::InProcessBus bus;
   sim::World world(loaded.config, bus);
   world.use_threads(0);
-  make_view(arguments, world);  // what is wrong with it shows before a long run
+  make_view(arguments, world);  // reports errors of the view before a long run
   check_writable(arguments.every_s ? numbered(arguments.out, 0) : arguments.out);
+  // Take the images.
   sim::TextureLibrary textures;
   try {
     int number = 0;
@@ -231,6 +234,7 @@ int snap(SnapArguments& arguments) {
 }
 
 void add_view_options(CLI::App& command, SnapArguments& arguments) {
+  // View.
   CLI::Option* from =
       command.add_option("--from", arguments.from, "a camera of the world")->type_name("VEHICLE.DEVICE");
   CLI::Option* eye =
@@ -248,6 +252,7 @@ void add_view_options(CLI::App& command, SnapArguments& arguments) {
   size->capture_default_str();
   for (CLI::Option* option : {eye, fov, size, all}) option->excludes(from);
   all->excludes(eye);
+  // Kind of image.
   command
       .add_option(
           "--image", arguments.image,
@@ -269,6 +274,7 @@ void add_snap_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("snap", "Run a world as fast as possible, without a bus, and render an image");
   const auto arguments = std::make_shared<SnapArguments>();
   add_log_level_option(*command);
+  // Output and times.
   command->add_option("WORLD", arguments->world, "world file, or the name of a shipped world")->required();
   command->add_option("--out", arguments->out, "file of the image: .png, .jpg or .jpeg")->type_name("FILE")->required();
   command->add_option("--at", arguments->at_s, "simulated time, s")
@@ -283,6 +289,7 @@ void add_snap_command(CLI::App& app, int& exit_code) {
       command->add_option("--until", arguments->until_s, "time of the last of them, s")->type_name("S");
   every->check(number_from(1e-6, 1e9))->needs(until);
   until->check(number_from(0, 1e9))->needs(every);
+  // View and world.
   add_view_options(*command, *arguments);
   command->add_option("--seed", arguments->load.seed, "seed of every random stream")
       ->type_name("N")
@@ -290,6 +297,7 @@ void add_snap_command(CLI::App& app, int& exit_code) {
   add_set_option(*command, arguments->load.sets);
   add_allow_path_option(*command, arguments->load);
   add_plugin_option(*command);
+  // End of the help and action.
   command_line::set_help_end(
       *command, {{"shoal snap worlds/coop_land.yaml --out coop_land.png",
                   "shoal snap worlds/dynamic_warehouse.yaml --at 12.5 --eye -6,-8,5 --look 4,2,0 --out hall.jpg",

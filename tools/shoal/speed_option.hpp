@@ -6,7 +6,8 @@
 
 namespace tools {
 
-/// The value of --speed: `max` (0) or times real time; nothing when it is empty.  Throws CLI::ValidationError.
+/// Parses the value of --speed: `max` (0) or a multiple of real time; nothing when it is empty.  Throws
+/// CLI::ValidationError.
 std::optional<double> parse_speed(const std::string& text);
 
 }  // namespace tools

@@ -27,7 +27,7 @@ using Clock = std::chrono::steady_clock;
 
 struct SpyArguments {
   std::string lcm_url;
-  std::string channel;  ///< decode this one; empty: a table of all
+  std::string channel;  ///< decodes this channel; empty: a table of all channels
   double duration_s = 0;
   std::vector<std::string> lcm_files;
 };
@@ -38,7 +38,7 @@ struct Seen {
   sim::Bytes last;
 };
 
-/// The start of a text on one line.
+/// Returns the start of a text on one line.
 std::string one_line(std::string_view text) {
   std::string line;
   for (const char c : text.substr(0, 200)) line += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? ' ' : c;
@@ -53,7 +53,7 @@ std::string value_text(const shoal::FieldValue& value) {
   return fmt::format("{} bytes", std::get<std::span<const std::byte>>(value).size());
 }
 
-/// The fields of a message, the long ones cut.
+/// Returns the fields of a message; long ones are shortened.
 std::string decoded(const shoal::MessageTypes& types, const sim::Bytes& payload, std::size_t max_fields,
                     const char* separator) {
   const auto fingerprint = static_cast<std::uint64_t>(shoal::fingerprint(payload));
@@ -69,7 +69,7 @@ std::string decoded(const shoal::MessageTypes& types, const sim::Bytes& payload,
   return text;
 }
 
-/// The screen that the table must fit; nothing in a pipe or file, where lines are as long as they are.
+/// Screen that the table must fit; nothing for a pipe or file, where lines are not shortened.
 struct Screen {
   std::size_t columns = 80, lines = 24;
 };
@@ -83,7 +83,7 @@ std::optional<Screen> find_screen() {
   return screen;
 }
 
-/// The name of the channel gets what is left beside the figures, and at least a dozen columns stay for the message.
+/// Returns the columns for the name of a channel: those left beside the figures, less at least a dozen for the message.
 std::size_t channel_columns(const std::map<std::string, Seen>& channels, const std::optional<Screen>& screen) {
   constexpr std::size_t figures = 27, min_of_message = 12, usual = 32;
   if (!screen) return usual;
@@ -99,7 +99,7 @@ void print_table(std::map<std::string, Seen>& channels, const shoal::MessageType
   const auto fitted = [&](const std::string& line) {
     return screen ? command_line::cut_to(line, screen->columns) : line;
   };
-  // A terminal that cannot be cleared gets one table below the other.
+  // On a terminal that cannot be cleared the tables are printed one below the other.
   if (screen && command_line::can_move_cursor(STDOUT_FILENO)) std::cout << "\033[H\033[2J";
   std::string text =
       fitted(fmt::format("{:<{}} {:>8} {:>8} {:>8}  last message", "channel", width, "messages", "Hz", "bytes")) + '\n';
@@ -107,7 +107,7 @@ void print_table(std::map<std::string, Seen>& channels, const shoal::MessageType
   for (auto& [channel, seen] : channels) {
     const double rate_hz = static_cast<double>(seen.messages - seen.messages_before) / since_s;
     seen.messages_before = seen.messages;
-    // Below the last row are the count of what is left out and the cursor.
+    // Space below the last row for the number of omitted rows and the cursor.
     if (screen && lines + 3 > screen->lines && ++left_out > 0) continue;
     const std::string name = one_line(channel);
     text += fitted(fmt::format("{:<{}} {:>8} {:>8.1f} {:>8}  {}", screen ? command_line::cut_to(name, width) : name,
@@ -119,13 +119,14 @@ void print_table(std::map<std::string, Seen>& channels, const shoal::MessageType
   std::cout << text << std::flush;
 }
 
-/// True once the output has no reader: the next write would end us, but there may be none for long.
+/// Returns true once the output is closed: the next write would end the program, but it may be much later.
 bool output_closed() {
   pollfd output{STDOUT_FILENO, 0, 0};
   return !std::cout || (poll(&output, 1, 0) > 0 && (output.revents & POLLERR) != 0);
 }
 
 int spy(const SpyArguments& arguments) {
+  // Subscribe.
   const shoal::MessageTypes types = shoal::types_with(arguments.lcm_files);
   bridges::LcmListener listener(arguments.lcm_url);
   if (arguments.channel.empty())
@@ -135,7 +136,7 @@ int spy(const SpyArguments& arguments) {
   catch_signals(false);
   const bool table = arguments.channel.empty();
   const bool terminal = isatty(STDOUT_FILENO) != 0;
-  // In a pipe, rates over whole seconds; with a duration one table, of all of it.
+  // In a pipe, rates over whole seconds; with a duration a single table for all of it.
   const double every_s = terminal ? 0.5 : arguments.duration_s > 0 ? arguments.duration_s : 1;
   std::map<std::string, Seen> channels;
   const Clock::time_point begin = Clock::now();
@@ -152,6 +153,7 @@ int spy(const SpyArguments& arguments) {
     return closed || caught_signal() != 0 || (arguments.duration_s > 0 && seconds_since(begin) > arguments.duration_s);
   };
   bool any_table = false;
+  // Count the messages and print the table regularly.
   while (!over()) {
     if (channels.empty()) audit_entry.look();
     if (const auto message = listener.next(std::chrono::milliseconds(100))) {

@@ -176,7 +176,7 @@ std::string filled(std::string text, const std::string& word, const std::string&
   return text;
 }
 
-/// An editor with a YAML language server knows every key by this line.
+/// Returns the line by which an editor with a YAML language server finds the schema.
 std::string schema_line(const std::string& schema) {
   return schema.empty() ? "" : "# yaml-language-server: $schema=" + schema + "\n";
 }
@@ -192,7 +192,7 @@ std::string start_sea(const std::string& name, const std::string& vehicle_file, 
 }
 
 std::string start_vehicle(const std::string& name, const std::string& schema) {
-  // The comment about channels says VEHICLE.DEVICE, which stays.
+  // The comment about channels contains VEHICLE.DEVICE, which is not replaced.
   return schema_line(schema) + filled(vehicle_text, "NAME", name);
 }
 

@@ -5,11 +5,12 @@
 
 namespace tools {
 
-/// A commented world of one vehicle.  `vehicle_file`: as in `file:`; `schema`: path of world.schema.json, empty: none.
+/// Returns a commented world of one vehicle.  `vehicle_file`: as in `file:`; `schema`: path of world.schema.json,
+/// empty: none.
 std::string start_world(const std::string& name, const std::string& vehicle_file, const std::string& schema);
-/// The same under water: an AUV with an autopilot.
+/// Returns the same under water: an AUV with an autopilot.
 std::string start_sea(const std::string& name, const std::string& vehicle_file, const std::string& schema);
-/// A commented rover of two driven wheels.  `schema`: path of vehicle.schema.json, empty: none.
+/// Returns a commented rover with two driven wheels.  `schema`: path of vehicle.schema.json, empty: none.
 std::string start_vehicle(const std::string& name, const std::string& schema);
 
 }  // namespace tools

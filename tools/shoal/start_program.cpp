@@ -14,14 +14,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// An example without its licence line, for a program and a vehicle of other names.
+/// Returns an example without its licence line, for a program and a vehicle with other names.
 std::string adapted(const fs::path& file, const std::string& name, const std::string& vehicle) {
   std::ifstream in(file, std::ios::binary);
   if (!in) throw std::runtime_error(file.string() + ": cannot be read; the installation is incomplete");
   std::string text((std::istreambuf_iterator<char>(in)), {});
   if (text.substr(0, text.find('\n')).find("SPDX") != std::string::npos) text.erase(0, text.find('\n') + 1);
   text = replaced(std::move(text), " of worlds/minimal.yaml", "");
-  // The vehicle last: its name may hold the word.
+  // The vehicle last, because its name may contain the word.
   return replaced(replaced(std::move(text), "pilot", name), "rover1", vehicle);
 }
 
@@ -34,7 +34,8 @@ fs::path shipped() {
   return folder;
 }
 
-/// Where Python finds the message types and the client: in an installation, or in a checkout and its build folder.
+/// Returns the folders of the Python message types and the client: in an installation, or in a checkout and its build
+/// folder.
 std::vector<fs::path> python_folders() {
   std::error_code error;
   const fs::path build = fs::read_symlink("/proc/self/exe", error).parent_path().parent_path();
@@ -44,7 +45,7 @@ std::vector<fs::path> python_folders() {
   return found;
 }
 
-/// The file in the first of the folders that has it.
+/// Returns the file in the first folder that contains it.
 fs::path find_in(const std::vector<fs::path>& folders, const std::string& file) {
   std::error_code error;
   for (const fs::path& folder : folders)

@@ -33,13 +33,14 @@ void choose_jobs(const LoadedStudy& study, StudyOptions& options) {
 
 int study(const std::string& path, const StudyChanges& changes, StudyOptions options) {
   const LoadedStudy loaded = load_study(file_by_name({ShippedKind::study}, path), changes);
-  // A first look does not overwrite the runs of the whole study.
+  // A short trial does not overwrite the runs of the whole study.
   const std::string look = changes.duration_s ? fmt::format("_{:g}s", *changes.duration_s) : "";
   if (options.output.empty()) options.output = "results/" + loaded.config.name + look;
   options.allow_paths = changes.load.allow_paths;
   choose_jobs(loaded, options);
   catch_signals(true);
   try {
+    // Run the missing runs.
     std::vector<StudyRun> runs = plan_study(loaded, options.output);
     run_study(loaded, options, runs);
     const StudyResults results(loaded, runs);
@@ -49,6 +50,7 @@ int study(const std::string& path, const StudyChanges& changes, StudyOptions opt
       std::cerr << "shoal: stopped; the same command continues with the missing runs\n";
       return 128 + caught_signal();
     }
+    // Write and print the results.
     write_study(options.output, loaded, runs, results, exit_code);
     std::cout << results.to_text();
     if (!options.quiet) std::cerr << "results in " << options.output << "/ (study.csv, study.json)\n";
@@ -70,6 +72,7 @@ void add_study_command(CLI::App& app, int& exit_code) {
   };
   const auto arguments = std::make_shared<Arguments>();
   arguments->options.jobs = 0;
+  // Options.
   CLI::Option* log_level = add_log_level_option(*command, "warn");
   command->add_option("STUDY", arguments->path, "study file, see docs/guides/scoring.md")->required();
   command->add_option("--seeds", arguments->seeds, "instead of those of the study: 7, 1-10 or 1-3,8")
@@ -88,6 +91,7 @@ void add_study_command(CLI::App& app, int& exit_code) {
   command->add_flag("--quiet", arguments->options.quiet, "no progress");
   add_allow_path_option(*command, arguments->changes.load);
   add_plugin_option(*command);
+  // End of the help and action.
   command_line::set_help_end(*command, {{"shoal study worlds/studies/coop_land.yaml --jobs 2",
                                          "shoal study worlds/studies/coop_underwater.yaml --seeds 1-2 --duration 60",
                                          "shoal report results/coop_land"},

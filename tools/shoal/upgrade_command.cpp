@@ -16,7 +16,7 @@ struct UpgradeArguments {
   bool check = false;
 };
 
-/// NAME, or NAME.yaml here.  Shipped files are up to date, and nobody's to rewrite.
+/// Returns NAME, or NAME.yaml in the current folder.  Shipped files are up to date and not rewritten.
 std::string own_file(const std::string& given) {
   std::error_code error;
   const std::string with_ending = given + ".yaml";
@@ -31,8 +31,9 @@ void print_lines(const FileUpgrade& file) {
   }
 }
 
-/// Whether all is well with the file.
+/// Returns whether the file is up to date or was upgraded.
 bool finish(const FileUpgrade& file, bool check) {
+  // States without a change.
   switch (file.state) {
     case FileUpgrade::State::refused:
       for (const std::string& line : file.errors) std::cerr << line << '\n';
@@ -43,6 +44,7 @@ bool finish(const FileUpgrade& file, bool check) {
     case FileUpgrade::State::changes:
       break;
   }
+  // Print or write the change.
   const std::size_t places = file.upgraded.lines.size();
   if (check) {
     print_lines(file);

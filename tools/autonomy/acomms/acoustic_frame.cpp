@@ -33,12 +33,12 @@ constexpr double turn = 65536;
 class Writer {
  public:
   explicit Writer(int kind) { put(version << 4 | kind, 1); }
-  /// The low `count` bytes of a number, the highest first.
+  /// Appends the low `count` bytes of a number, the highest first.
   void put(std::int64_t value, int count) {
     for (int shift = 8 * (count - 1); shift >= 0; shift -= 8)
       bytes_.push_back(static_cast<std::uint8_t>(static_cast<std::uint64_t>(value) >> shift));
   }
-  /// The whole frame, with its checksum.
+  /// Returns the whole frame, with its checksum.
   Bytes finish() {
     put(checksum(bytes_), 2);
     return std::move(bytes_);
@@ -76,7 +76,7 @@ std::int64_t floor_ms(std::int64_t utime) {
   return (utime - floor_modulo(utime, 1000)) / 1000;
 }
 
-/// The 65535th is also what is too large.
+/// Rounds up, limited to 65535.
 std::int64_t saturated_up(double value) {
   return static_cast<std::int64_t>(std::min(std::ceil(value - 1e-9), 65535.0));
 }
@@ -109,7 +109,7 @@ std::int64_t of_week_ms(std::int64_t utime) {
   return floor_modulo(floor_ms(utime) - first_sunday_ms, week_ms);
 }
 
-/// The full time of a time of the week, within half a week of another.
+/// Completes a time of the week, within half a week of another time.
 std::int64_t full_utime(std::int64_t time_of_week_ms, std::int64_t near_utime) {
   const std::int64_t ahead_ms =
       floor_modulo(time_of_week_ms - of_week_ms(near_utime) + week_ms / 2, week_ms) - week_ms / 2;
@@ -125,7 +125,7 @@ std::int64_t centimetres(double metres) {
   return std::llround(100 * metres);
 }
 
-/// Each length has one kind.
+/// Each length corresponds to one kind.
 std::optional<int> kind_of_state(std::size_t bytes) {
   if (bytes == state_bytes) return state_kind;
   if (bytes == obeying_state_bytes) return obeying_state_kind;
@@ -154,7 +154,7 @@ std::optional<Bytes> encode(const AcousticState& state) {
   out.put(centimetres(state.east_m), 4);
   out.put(centimetres(state.north_m), 4);
   out.put(std::max<std::int64_t>(0, centimetres(state.depth_m)), 3);
-  // Never zero: no position is known exactly.
+  // Never zero, because no position is known exactly.
   out.put(std::max<std::int64_t>(1, saturated_up(100 * state.east_std_m)), 2);
   out.put(std::max<std::int64_t>(1, saturated_up(100 * state.north_std_m)), 2);
   out.put(std::llround(127 * state.correlation), 1);
@@ -169,10 +169,12 @@ std::optional<Bytes> encode(const AcousticState& state) {
 }
 
 std::optional<AcousticState> decode(std::span<const std::uint8_t> bytes, std::int64_t near_utime) {
+  // Check kind, version and checksum.
   const std::optional<int> kind = kind_of_state(bytes.size());
   if (!kind) return std::nullopt;
   Reader in(bytes);
   if (in.unsigned_number(1) != (version << 4 | *kind) || !has_good_checksum(bytes)) return std::nullopt;
+  // Scale the fields to SI units.
   AcousticState state;
   state.sender = static_cast<int>(in.unsigned_number(1));
   const std::int64_t time_of_week_ms = in.unsigned_number(4);
@@ -190,6 +192,7 @@ std::optional<AcousticState> decode(std::span<const std::uint8_t> bytes, std::in
     state.refusal = static_cast<OrderRefusal>(in.unsigned_number(1));
     if (state.refused_order == 0 || state.refusal == OrderRefusal::none) return std::nullopt;
   }
+  // Reject values out of range.
   if (time_of_week_ms >= week_ms || state.east_std_m <= 0 || state.north_std_m <= 0 ||
       std::abs(state.correlation) > 1 || (*kind == obeying_state_kind && state.order == 0))
     return std::nullopt;

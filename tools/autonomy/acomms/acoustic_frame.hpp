@@ -9,19 +9,19 @@
 
 namespace autonomy {
 
-/// Why a vehicle does not execute an order.
+/// Reason why a vehicle refuses an order.
 enum class OrderRefusal {
   none = 0,
   too_deep = 1,
   too_fast = 2,
 };
-/// Such as `too deep`; of a number that this program does not know: `reason 7`.
+/// Returns a phrase such as `too deep`; `reason 7` for a number unknown to this program.
 std::string to_text(OrderRefusal refusal);
 
 /// State that a vehicle sends to the others over an acoustic modem.
 struct AcousticState {
   int sender = 0;          ///< 0 to 255
-  std::int64_t utime = 0;  ///< of the state, by the sender's clock, us
+  std::int64_t utime = 0;  ///< time of the state by the sender's clock, us
   double east_m = 0;       ///< of its transducer, in the frame of the world
   double north_m = 0;
   double depth_m = 0;     ///< below the still surface, positive down
@@ -31,18 +31,18 @@ struct AcousticState {
   double speed_mps = 0;   ///< over ground
   double course_rad = 0;  ///< direction of the speed, counter-clockwise from east
   int order = 0;          ///< number of the last order that it executed, 1 to 255; 0: none
-  /// Of a later order that it refused; 0: none since.
+  /// Later order that was refused; 0: none since.
   int refused_order = 0;
-  OrderRefusal refusal = OrderRefusal::none;  ///< why; set just when `refused_order` is
+  OrderRefusal refusal = OrderRefusal::none;  ///< reason; set only when `refused_order` is
 };
 
-/// Where a vehicle is to go.
+/// Order to move to a position.
 struct AcousticOrder {
   int sender = 0;          ///< 0 to 255
   int receiver = 0;        ///< receiver of the order, 0 to 255
   int number = 1;          ///< 1 to 255; a later order has a larger one
-  std::int64_t utime = 0;  ///< when it was said, by the sender's clock, us
-  double east_m = 0;       ///< of the place, in the frame of the world
+  std::int64_t utime = 0;  ///< time of the order by the sender's clock, us
+  double east_m = 0;       ///< of the position, in the frame of the world
   double north_m = 0;
   double depth_m = 0;    ///< below the still surface, positive down
   double speed_mps = 0;  ///< through the water; above 0
@@ -72,7 +72,7 @@ struct AcousticOrder {
 ///     16-18  depth, cm                 19-20  speed, cm/s
 ///     21-22  checksum of the bytes before
 ///
-/// Standard deviations of more than 655.35 m and speeds of more than 655.35 m/s are sent as these.
+/// Larger standard deviations than 655.35 m and larger speeds than 655.35 m/s are sent as these limits.
 namespace acoustic_frame {
 
 inline constexpr std::size_t state_bytes = 28;
@@ -87,25 +87,25 @@ inline constexpr int refusing_state_kind = 3;
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// Nothing when the state does not fit: a sender outside of 0 to 255, a depth outside of -0.005 m to 167 km (a small
-/// negative one is 0), a position beyond 21 000 km, a standard deviation or speed below 0, an order outside of 0 to
-/// 255, a refused one without a reason or a reason without one, or what is not a number.
+/// Encodes a state.  Returns nothing when the state is out of range: a sender outside of 0 to 255, a depth outside of
+/// -0.005 m to 167 km (a small negative one is 0), a position beyond 21 000 km, a standard deviation or speed below 0,
+/// an order outside of 0 to 255, a refused one without a reason or a reason without one, or NaN or infinity.
 std::optional<Bytes> encode(const AcousticState& state);
 
-/// Nothing when it is no such frame: the length, version, kind or checksum is another, the standard deviations are
-/// zero, or encode() would not send it.  `near_utime`: a time within half a week of the sender's, which makes a full
-/// time of the time of the week.
+/// Decodes a state.  Returns nothing for a wrong length, version, kind or checksum, standard deviations of zero, or
+/// values that encode() would not send.  `near_utime`: a time within half a week of the sender's, which completes the
+/// time of the week.
 std::optional<AcousticState> decode(std::span<const std::uint8_t> bytes, std::int64_t near_utime);
 
-/// Nothing when the order does not fit: sender, receiver, number, position or depth are out of their ranges as above, a
-/// speed is not within 0.01 to 655.35 m/s, or what is not a number.
+/// Encodes an order.  Returns nothing when sender, receiver, number, position or depth are out of their ranges as
+/// above, the speed is outside of 0.01 to 655.35 m/s, or a value is NaN or infinite.
 std::optional<Bytes> encode(const AcousticOrder& order);
 
-/// As decode(), for orders.
+/// Decodes an order, as decode() does a state.
 std::optional<AcousticOrder> decode_order(std::span<const std::uint8_t> bytes, std::int64_t near_utime);
 
-/// CRC-16/CCITT-FALSE: polynomial 0x1021, from 0xffff.  Finds every error of up to three bits in a frame of this
-/// length.
+/// Returns the CRC-16/CCITT-FALSE: polynomial 0x1021, initial value 0xffff.  Detects every error of up to three bits in
+/// a frame of this length.
 std::uint16_t checksum(std::span<const std::uint8_t> bytes);
 
 }  // namespace acoustic_frame

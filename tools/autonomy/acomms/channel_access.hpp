@@ -10,7 +10,7 @@
 
 namespace autonomy {
 
-/// When a vehicle sends its state over the acoustic modem: in its slots, at random, or never.
+/// Decides when a vehicle sends its state over the acoustic modem: in its slots, at random, or never.
 class ChannelAccess {
  public:
   struct Params {
@@ -27,7 +27,7 @@ class ChannelAccess {
       random_.emplace(params.random_mean_s, params.random_jitter, params.seed, vehicle);
   }
 
-  /// Whether to send now, by the vehicle's clock.
+  /// Returns whether to send now, by the vehicle's clock.
   bool take_turn(std::int64_t utime) {
     if (tdma_) return tdma_->take_turn(utime);
     return random_ && random_->take_turn(utime);

@@ -9,7 +9,7 @@ namespace autonomy {
 
 namespace {
 
-/// A rover deviates from its reported motion over the time that the report travels: the speed may have changed by this.
+/// Change of speed during the travel of a report, by which a rover deviates from its reported motion.
 constexpr double speed_change_std_mps = 0.3;
 
 }  // namespace
@@ -42,7 +42,7 @@ std::optional<PositionReports::Neighbour> PositionReports::take(const std::strin
   if (found == unused_.end()) return std::nullopt;
   const shoal::position_report_t report = found->second;
   const double age_s = static_cast<double>(utime - report.utime) * 1e-6;
-  if (age_s < 0) return std::nullopt;  // seen before it was written: it is for the next sighting
+  if (age_s < 0) return std::nullopt;  // detected before it was written: it is for the next detection
   unused_.erase(found);
   if (age_s > oldest_s) return std::nullopt;
   const Vector2d p_W(report.position_m[0], report.position_m[1]);

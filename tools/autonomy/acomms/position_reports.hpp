@@ -16,10 +16,10 @@
 
 namespace autonomy {
 
-/// Message for a modem that broadcasts the report.
+/// Returns the message for a modem that broadcasts the report.
 shoal::modem_send_t broadcast(const shoal::position_report_t& report);
 
-/// The last report of each other rover, as received over the modem.
+/// Last report of each other rover, as received over the modem.
 class PositionReports {
  public:
   static constexpr double oldest_s = 3.0;
@@ -30,11 +30,11 @@ class PositionReports {
     double std_m;
   };
 
-  /// Throws shoal::MessageError when the bytes are not a plausible report: any program may send anything.
+  /// Throws shoal::MessageError for bytes that are not a plausible report, because any program may send anything.
   void receive(const shoal::modem_received_t& packet);
-  /// Where a rover is at `utime` by its last report, and that report is used up: its error would count again
-  /// and again with every sighting, though it is the same.  Nothing when there is no unused report or it is
-  /// too old.
+  /// Returns the position of a rover at `utime` by its last report, and marks that report as used: its error is the
+  /// same at every detection and must not be counted repeatedly.  Nothing when there is no unused report or it is too
+  /// old.
   std::optional<Neighbour> take(const std::string& vehicle, std::int64_t utime);
 
  private:

@@ -13,7 +13,7 @@ RandomAccess::RandomAccess(double mean_s, double jitter, std::uint64_t seed, std
 }
 
 bool RandomAccess::take_turn(std::int64_t utime) {
-  // Farther ahead than the longest interval: the clock was set back.
+  // Further ahead than the longest interval: the clock was set back.
   const std::int64_t max_us = std::llround(1e6 * mean_s_ * (1 + jitter_));
   if (next_utime_ && *next_utime_ - utime > max_us) next_utime_.reset();
   if (next_utime_ && utime < *next_utime_) return false;

@@ -9,16 +9,16 @@
 
 namespace autonomy {
 
-/// Sends when it likes (ALOHA): at intervals that scatter about a mean, so that two senders that met once do not meet
-/// again and again.
+/// Random access (ALOHA): sends at intervals that vary about a mean, so that two senders that collided once do not
+/// collide repeatedly.
 class RandomAccess {
  public:
-  /// Intervals are uniform in `mean_s` (1 - jitter) to `mean_s` (1 + jitter).  Senders of different `name` differ with
-  /// one seed.  Throws std::invalid_argument unless mean_s > 0 and 0 <= jitter <= 1.
+  /// Intervals are uniform in `mean_s` (1 - jitter) to `mean_s` (1 + jitter).  Senders with different `name` differ
+  /// with the same seed.  Throws std::invalid_argument unless mean_s > 0 and 0 <= jitter <= 1.
   RandomAccess(double mean_s, double jitter, std::uint64_t seed, std::string_view name);
 
-  /// Whether to send now.  The first time is within one mean interval of the first call, and so is the next one after
-  /// the clock was set back.
+  /// Returns whether to send now.  The first time is within one mean interval of the first call, and so is the next one
+  /// after the clock was set back.
   bool take_turn(std::int64_t utime);
 
  private:

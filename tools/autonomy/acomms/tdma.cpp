@@ -24,7 +24,7 @@ bool Tdma::take_turn(std::int64_t utime) {
   const std::int64_t since_us = utime - slot_us_ * params_.slot;
   const std::int64_t turn = since_us >= 0 ? since_us / cycle_us : -((-since_us + cycle_us - 1) / cycle_us);
   if (since_us - turn * cycle_us >= slot_us_ - guard_us_) return false;
-  // A clock that is set back a little gives no second turn in the same slot; one set back by more restarts.
+  // A clock that is set back a little causes no second turn in the same slot; one set back by more restarts.
   if (last_turn_ && (turn == *last_turn_ || turn == *last_turn_ - 1)) return false;
   last_turn_ = turn;
   return true;

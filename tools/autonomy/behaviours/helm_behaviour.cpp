@@ -16,7 +16,7 @@ double direction_of(const Vector2d& v) {
   return std::atan2(v.y(), v.x());
 }
 
-/// Slower than this a vehicle has no course, only noise.
+/// Speed below which the course is only noise.
 constexpr double min_speed_mps = 0.2;
 
 }  // namespace
@@ -35,7 +35,7 @@ bool RouteBehaviour::is_reached(const Vector2d& p_W) const {
 
 Course RouteBehaviour::steer(const Motion& own) {
   if (!from_W_) from_W_ = own.p_W;
-  // Each waypoint at most once in a call: on a route of one point, or of equal ones, all are reached at once.
+  // Each waypoint at most once per call: on a route of a single or of equal points, all are reached immediately.
   for (std::size_t i = 0; i < waypoints_W_.size() && !finished() && is_reached(own.p_W); ++i) {
     from_W_ = waypoints_W_[current_++];
     if (finished() && params_.loop) current_ = 0;
@@ -66,7 +66,7 @@ Course HoldBehaviour::steer(const Motion& own) {
 
 void FollowBehaviour::receive_state(const std::string& vehicle, const Motion& other) {
   if (vehicle != params_.vehicle) return;
-  // Much older: the other's clock was set back.
+  // Much older: the clock of the other vehicle was set back.
   constexpr std::int64_t oldest_us = 60'000'000;
   if (other_ && other.utime <= other_->utime && other.utime > other_->utime - oldest_us) return;
   other_ = other;
@@ -90,9 +90,9 @@ Course FollowBehaviour::steer(const Motion& own) {
   const Vector2d error_W = *goal_W - own.p_W;
   const double other_mps = other_->v_W.norm();
   const double near_m = (other_mps > min_speed_mps ? 4 : 1) * params_.lookahead_m;
-  // From far away it goes straight there.
+  // Far away, it moves straight to the position.
   if (error_W.norm() > near_m) return {params_.speed_max_mps, direction_of(error_W)};
-  // It falls in beside the place, along the other's course; when it is ahead it waits, and does not turn round.
+  // Near the position it moves parallel to the other's course; when it is ahead it waits, and does not turn around.
   const Vector2d error_C = turned(error_W, -other_course_rad_);
   const Vector2d aim_C(std::max(error_C.x(), 0.0) + params_.lookahead_m, error_C.y());
   const double desired_mps = other_mps + params_.catch_up_per_s * error_C.x();

@@ -12,43 +12,44 @@
 
 namespace autonomy {
 
-/// Where a vehicle is and how it moves, in the plane.
+/// Pose and velocity of a vehicle in the plane.
 struct Motion {
   std::int64_t utime = 0;
   Vector2d p_W = Vector2d::Zero();
   Vector2d v_W = Vector2d::Zero();  ///< over ground
 };
 
-/// What the helm is asked for.
+/// Setpoints for the helm.
 struct Course {
   double speed_mps = 0;
   double heading_rad = 0;  ///< counter-clockwise from east
 };
 
-/// Decides on course and speed by the vehicle's own estimate of its motion.
+/// Decides on course and speed by the vehicle's own navigation estimate.
 class HelmBehaviour {
  public:
   virtual ~HelmBehaviour() = default;
   virtual Course steer(const Motion& own) = 0;
-  /// A copy, as it is now: a program goes back with the world.
+  /// Returns a copy with the present state, because a program is restored with the world.
   virtual std::unique_ptr<HelmBehaviour> clone() const = 0;
-  /// What another vehicle said of itself.
+  /// Processes a received state of another vehicle.
   virtual void receive_state(const std::string& /*vehicle*/, const Motion& /*other*/) {}
   virtual bool finished() const { return false; }
   /// Remark for the end of a run; empty: none.
   virtual std::string remark() const { return {}; }
 };
 
-/// Follows the legs of a route, the first of which starts at the first position.  A leg is followed by line of sight:
-/// towards the point on it that is `lookahead_m` ahead.  A current across leaves an offset of lookahead * tan(drift
-/// angle).
+/// Follows the legs of a route, the first of which starts at the first position.  A leg is followed by line-of-sight
+/// guidance (Fossen 2021): towards the point on it that is `lookahead_m` ahead.  A cross current causes an offset of
+/// lookahead * tan(drift angle).
 class RouteBehaviour final : public HelmBehaviour {
  public:
   struct Params {
     double speed_mps = 1.5;
     double lookahead_m = 15;
-    double reached_m = 5;  ///< a waypoint counts as reached so near, or when the line across the leg in it is passed
-    bool loop = false;     ///< else it stops after the last one
+    double reached_m = 5;  ///< acceptance radius of a waypoint, which also counts as reached when the line across the
+                           ///< leg in it is passed
+    bool loop = false;     ///< otherwise stops after the last one
   };
   /// Throws std::invalid_argument without waypoints.
   RouteBehaviour(std::vector<Vector2d> waypoints_W, const Params& params);
@@ -67,7 +68,7 @@ class RouteBehaviour final : public HelmBehaviour {
   double heading_rad_ = 0;
 };
 
-/// Round and round a point, counter-clockwise.
+/// Circles a point, counter-clockwise.
 class CircleBehaviour final : public HelmBehaviour {
  public:
   struct Params {
@@ -84,10 +85,10 @@ class CircleBehaviour final : public HelmBehaviour {
   Params params_;
 };
 
-/// Straight to a place, and then round it.
+/// Moves straight to a position, and then circles it.
 class HoldBehaviour final : public HelmBehaviour {
  public:
-  /// `hold`: the circle round the place.
+  /// `hold`: the circle around the position.
   explicit HoldBehaviour(const CircleBehaviour::Params& hold);
   Course steer(const Motion& own) override;
   std::unique_ptr<HelmBehaviour> clone() const override { return std::make_unique<HoldBehaviour>(*this); }
@@ -97,11 +98,11 @@ class HoldBehaviour final : public HelmBehaviour {
   CircleBehaviour circle_;
 };
 
-/// Keeps a place relative to another vehicle, by the last position and motion that it reported.
+/// Keeps a position relative to another vehicle, by the last position and motion that it reported.
 class FollowBehaviour final : public HelmBehaviour {
  public:
   struct Params {
-    std::string vehicle;  ///< name of the other
+    std::string vehicle;  ///< name of the other vehicle
     double ahead_m = 0;   ///< of the other, along its course; negative: behind
     double left_m = 30;
     double speed_max_mps = 2;
@@ -111,13 +112,14 @@ class FollowBehaviour final : public HelmBehaviour {
         300;  ///< maximum age of the other's state, after which it stops; also for states this far ahead
   };
   explicit FollowBehaviour(const Params& params) : params_(params) {}
-  /// A state of the other; older ones than the last are ignored, unless by more than a minute: then its clock was set.
+  /// Processes a state of the other vehicle; older ones than the last are ignored, unless by more than a minute: then
+  /// its clock was set.
   void receive_state(const std::string& vehicle, const Motion& other) override;
-  /// Stands still until it has received a state of the other.
+  /// Holds still until it has received a state of the other vehicle.
   Course steer(const Motion& own) override;
   std::unique_ptr<HelmBehaviour> clone() const override { return std::make_unique<FollowBehaviour>(*this); }
   std::string remark() const override;
-  /// Where it wants to be.
+  /// Returns the desired position.
   std::optional<Vector2d> place_W(std::int64_t utime) const;
 
  private:
@@ -126,8 +128,8 @@ class FollowBehaviour final : public HelmBehaviour {
   double other_course_rad_ = 0;
 };
 
-/// Waypoints that cross the line between two points: `legs` of them, `amplitude_m` to its sides in turn, left first,
-/// evenly spaced, and then the end of the line.
+/// Returns waypoints that cross the line between two points: `legs` of them, `amplitude_m` to its sides in turn, left
+/// first, evenly spaced, and then the end of the line.
 std::vector<Vector2d> zigzag(const Vector2d& from_W, const Vector2d& to_W, double amplitude_m, int legs);
 
 }  // namespace autonomy

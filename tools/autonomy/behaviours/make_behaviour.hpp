@@ -9,19 +9,19 @@
 
 namespace autonomy {
 
-// Behaviours of a marine vehicle; places are east and north in m.  They throw std::invalid_argument with what is wrong.
+// Behaviours of a marine vehicle; positions are east and north in m.  They throw std::invalid_argument with the reason.
 
-/// Along waypoints; with `loop` again and again.
+/// Follows waypoints; repeatedly with `loop`.
 std::unique_ptr<HelmBehaviour> make_route(std::vector<Vector2d> waypoints_W, double speed_mps, bool loop);
 
-/// Round a point, counter-clockwise.
+/// Circles a point, counter-clockwise.
 std::unique_ptr<HelmBehaviour> make_circle(const Vector2d& centre_W, double radius_m, double speed_mps);
 
-/// Back and forth across the line between two points.
+/// Moves back and forth across the line between two points.
 std::unique_ptr<HelmBehaviour> make_zigzag(const Vector2d& from_W, const Vector2d& to_W, double amplitude_m, int legs,
                                            double speed_mps, bool loop);
 
-/// Beside another vehicle, `ahead_m` of it along its course and `left_m` to its left.
+/// Follows another vehicle, `ahead_m` of it along its course and `left_m` to its left.
 std::unique_ptr<HelmBehaviour> make_follow(const std::string& vehicle, double ahead_m, double left_m,
                                            double speed_max_mps);
 

@@ -30,8 +30,8 @@ double ObstacleAvoidance::free_distance_m(const Scan& scan, double direction_rad
 bool ObstacleAvoidance::choose_direction(const Vector2d& goal_B, const Scan& scan, double& direction_rad) const {
   const double goal_rad = std::atan2(goal_B.y(), goal_B.x());
   const double needed_m = std::min(params_.look_ahead_m, goal_B.norm() + params_.half_width_m);
-  // Staying with the last choice keeps the rover from wavering before an obstacle.  The small preference for
-  // the right makes two rovers that meet pass each other on the same hand.
+  // Preferring the last choice prevents oscillation in front of an obstacle.  The small preference for the right makes
+  // two rovers that meet pass each other on the same side.
   constexpr double habit = 0.3;
   constexpr double keep_right_rad = 0.02;
   double lowest = std::numeric_limits<double>::infinity();
@@ -62,8 +62,8 @@ Twist ObstacleAvoidance::turn_out(const Scan& scan) {
 
 Twist ObstacleAvoidance::steer(const Vector2d& goal_B, const Scan& scan) {
   double direction_rad = 0;
-  // Once it turns on the spot it continues in that sense until the way ahead is free; otherwise the two sides
-  // of a corner would send it back and forth.
+  // It turns on the spot in the same sense until the way ahead is free; otherwise the two sides of a corner would make
+  // it oscillate.
   const bool out = turning_out_ == 0 || free_distance_m(scan, 0) >= params_.slow_m;
   if (!out || !choose_direction(goal_B, scan, direction_rad)) return turn_out(scan);
   turning_out_ = 0;
@@ -71,7 +71,7 @@ Twist ObstacleAvoidance::steer(const Vector2d& goal_B, const Scan& scan) {
   const double turn = std::clamp(1.5 * direction_rad, -params_.max_turn_radps, params_.max_turn_radps);
   const double ahead_m = free_distance_m(scan, 0);
   const double room = std::clamp((ahead_m - params_.stop_m) / (params_.slow_m - params_.stop_m), 0.0, 1.0);
-  // Slow in a sharp turn: the wheels must not slip, and what is beside the lane comes near.
+  // Slow in a sharp turn: the wheels must not slip, and obstacles beside the lane come close.
   const double straightness = std::max(0.0, std::cos(direction_rad));
   return {params_.speed_mps * room * straightness, turn};
 }

@@ -10,8 +10,8 @@
 
 namespace autonomy {
 
-/// Drives about without a goal: ahead, and to the left for a random while when something is in the way.  The
-/// brain of the benchmark's rovers; one step for each scan.
+/// Wandering behaviour without a goal: drives ahead, and turns left for a random time when an obstacle is near.  Used
+/// by the rovers of the benchmark; one step for each scan.
 class Wander {
  public:
   static constexpr double forward_mps = 0.4;
@@ -30,7 +30,7 @@ class Wander {
  private:
   sim::Random random_;
   std::int64_t steps_ = 0;
-  int turn_left_ = 0;  ///< steps of the turn still to go
+  int turn_left_ = 0;  ///< remaining steps of the turn
 };
 
 }  // namespace autonomy

@@ -8,7 +8,7 @@ namespace autonomy {
 
 namespace {
 
-/// Less than this is noise, not progress.
+/// A smaller change is noise, not progress.
 constexpr double progress_m = 0.2;
 
 }  // namespace

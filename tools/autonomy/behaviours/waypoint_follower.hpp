@@ -7,19 +7,19 @@
 
 namespace autonomy {
 
-/// Leads through a list of waypoints, over and over.
+/// Follows a list of waypoints in a loop.
 class WaypointFollower {
  public:
   struct Params {
-    double reached_m = 1.0;   ///< nearer than this a waypoint counts as reached
-    double give_up_s = 30.0;  ///< a waypoint without progress for this time is skipped: it may be occupied
+    double reached_m = 1.0;   ///< acceptance radius of a waypoint
+    double give_up_s = 30.0;  ///< a waypoint is skipped after this time without progress, because it may be occupied
   };
 
   /// Throws std::invalid_argument without waypoints.
   WaypointFollower(std::vector<Vector2d> waypoints_W, const Params& params);
   explicit WaypointFollower(std::vector<Vector2d> waypoints_W) : WaypointFollower(std::move(waypoints_W), Params()) {}
 
-  /// Where to go now, seen from the rover: in its body frame.  `now_s` only ever grows.
+  /// Returns the next goal in the body frame of the rover.  `now_s` must not decrease.
   Vector2d goal_B(const Pose2& pose, double now_s);
   std::size_t current() const { return current_; }
   int reached() const { return reached_; }

@@ -47,10 +47,10 @@ bool Ekf::update_relative(const Vector2d& p_BN_B, double seen_std_m, const Vecto
   const Vector2d expected_B = turned(d_W, -pose_.yaw_rad);
   const double c = std::cos(pose_.yaw_rad);
   const double s = std::sin(pose_.yaw_rad);
-  // h = R(yaw)^T (p_WN - p_WB): moving there makes it smaller, turning left turns it right.
+  // h = R(yaw)^T (p_WN - p_WB): a move towards it makes it smaller, a left turn rotates it to the right.
   Jacobian H;
   H << -c, -s, expected_B.y(), s, -c, -expected_B.x();
-  // Both errors are round, so the turn between the frames does not matter.
+  // Both errors are isotropic, so the rotation between the frames does not matter.
   const double variance = squared(seen_std_m) + squared(neighbour_std_m);
   return update(p_BN_B - expected_B, H, variance * Eigen::Matrix2d::Identity());
 }
@@ -58,7 +58,7 @@ bool Ekf::update_relative(const Vector2d& p_BN_B, double seen_std_m, const Vecto
 bool Ekf::update(const Vector2d& innovation, const Jacobian& H, const Eigen::Matrix2d& R) {
   const Eigen::Matrix2d S = H * P_ * H.transpose() + R;
   const Eigen::Matrix2d S_inverse = S.inverse();
-  // Written so that NaN is refused.
+  // This comparison also rejects NaN.
   if (!(innovation.dot(S_inverse * innovation) <= params_.gate)) {
     count_refusal();
     return false;
@@ -68,7 +68,7 @@ bool Ekf::update(const Vector2d& innovation, const Jacobian& H, const Eigen::Mat
   const Eigen::Vector3d change = K * innovation;
   pose_.p_W += change.head<2>();
   pose_.yaw_rad = sim::wrap_angle(pose_.yaw_rad + change.z());
-  // Joseph's form stays symmetric and positive under rounding.
+  // Joseph form of the covariance, which remains symmetric and positive under rounding.
   const Eigen::Matrix3d A = Eigen::Matrix3d::Identity() - K * H;
   P_ = A * P_ * A.transpose() + K * R * K.transpose();
   return true;
@@ -76,7 +76,7 @@ bool Ekf::update(const Vector2d& innovation, const Jacobian& H, const Eigen::Mat
 
 void Ekf::count_refusal() {
   if (++refusals_ < params_.max_refusals) return;
-  // So many outliers in a row are none: a filter that is sure and wrong would refuse forever.
+  // Consecutive rejections are not outliers: an overconfident filter would reject forever.
   refusals_ = 0;
   P_.diagonal() += Eigen::Vector3d(squared(5.0), squared(5.0), squared(0.5));
 }

@@ -11,7 +11,7 @@ namespace autonomy {
 namespace {
 
 constexpr double max_memory_s = 60;
-constexpr double bad_clock_mps = 0.15;  ///< 100 ppm, the worst of usual quartz clocks, by the speed of sound
+constexpr double bad_clock_mps = 0.15;  ///< 100 ppm, the worst error of common quartz clocks, times the speed of sound
 
 Vector2d left_of(const Vector2d& v) {
   return {-v.y(), v.x()};
@@ -23,6 +23,7 @@ MarineEkf::MarineEkf(std::int64_t utime, const Vector2d& p_W, double position_st
     : params_(params), utime_(utime) {
   if (params.states != 2 && (params.states < 4 || params.states > 6))
     throw std::invalid_argument("the filter has 2, 4, 5 or 6 states, not " + std::to_string(params.states));
+  // Initial state and covariance.
   x_.head<2>() = p_W;
   P_.diagonal() << squared(position_std_m), squared(position_std_m), squared(params.heading_bias_std_rad),
       squared(params.speed_scale_std), squared(params.range_bias_std_m), squared(params.range_drift_std_mps);
@@ -41,6 +42,7 @@ Vector2d MarineEkf::velocity() const {
 
 void MarineEkf::predict(std::int64_t utime, const Vector2d& v_measured_W, double more_noise_mpsprtHz) {
   if (utime <= utime_ || !v_measured_W.allFinite()) return;
+  // Jacobian of the motion.
   const double dt_s = seconds(utime - utime_);
   const Vector2d displacement_W = v_measured_W * dt_s;
   const Vector2d moved_W = corrected(displacement_W);
@@ -49,6 +51,7 @@ void MarineEkf::predict(std::int64_t utime, const Vector2d& v_measured_W, double
   F.block<2, 1>(0, 3) = turned(displacement_W, x_[2]);
   F(4, 5) = dt_s;
 
+  // Process noise along and across the track.
   const double speed_mps = v_measured_W.norm();
   double along = squared(params_.speed_noise_mpsprtHz) + squared(more_noise_mpsprtHz);
   double across = squared(speed_mps * params_.heading_noise_radprtHz) + along;
@@ -64,11 +67,13 @@ void MarineEkf::predict(std::int64_t utime, const Vector2d& v_measured_W, double
                               params_.range_drift_walk_mps);
   for (int i = 2; i < params_.states; ++i) Q(i, i) = squared(walks[i - 2]);
 
+  // Prediction of state and covariance (extended Kalman filter).
   x_.head<2>() += moved_W;
   x_[4] += x_[5] * dt_s;
   P_ = F * P_ * F.transpose() + Q * dt_s;
   v_measured_W_ = v_measured_W;
   utime_ = utime;
+  // History of displacements for late measurements.
   marks_.push_back({utime, marks_.back().displacement_W + displacement_W});
   while (seconds(utime - marks_[1].utime) > max_memory_s) marks_.pop_front();
 }
@@ -76,7 +81,7 @@ void MarineEkf::predict(std::int64_t utime, const Vector2d& v_measured_W, double
 void MarineEkf::shift_clock(std::int64_t by_us, double range_m, double range_std_m) {
   utime_ += by_us;
   for (Mark& mark : marks_) mark.utime += by_us;
-  trust_.clear();  // they may have been right
+  trust_.clear();  // the beacons may have been correct
   contradictions_.clear();
   if (params_.states <= 4) return;
   x_[4] += range_m;
@@ -113,17 +118,18 @@ Eigen::Matrix<double, 2, MarineEkf::max_states> MarineEkf::earlier_position_jaco
 MarineEkf::Outcome MarineEkf::update_position(std::int64_t utime, const Vector2d& p_W, double std_m) {
   const auto displacement_W = distance_since(utime);
   if (!displacement_W) return Outcome::too_old;
+  // Innovation and its normalised square.
   const Vector2d innovation = p_W - (position() - corrected(*displacement_W));
   const Eigen::Matrix<double, 2, max_states> H = earlier_position_jacobian(*displacement_W);
   const Eigen::Matrix2d R = squared(std_m) * Eigen::Matrix2d::Identity();
   const Eigen::Matrix2d S = H * P_ * H.transpose() + R;
   last_nis_ = innovation.dot(S.inverse() * innovation);
   Outcome outcome = Outcome::accepted;
-  // Written so that NaN is refused.
+  // This comparison also rejects NaN.
   if (!(last_nis_ <= params_.position_gate)) {
     ++refused_;
     if (!innovation.allFinite() || ++refused_positions_ < params_.max_refusals) return Outcome::refused;
-    // So many outliers in a row are none: a filter that is sure and wrong would refuse forever.
+    // Consecutive rejections are not outliers: an overconfident filter would reject forever.
     P_.topLeftCorner<2, 2>() += innovation.squaredNorm() * Eigen::Matrix2d::Identity();
     ++inflated_;
     outcome = Outcome::inflated;
@@ -136,12 +142,14 @@ MarineEkf::Outcome MarineEkf::update_position(std::int64_t utime, const Vector2d
 MarineEkf::Outcome MarineEkf::update_range(const Range& range, const MarineEkf* without_ranges) {
   const auto displacement_W = distance_since(range.utime);
   if (!displacement_W) return Outcome::too_old;
+  // Predicted range and direction at the time of arrival.
   const Vector2d then_W = position() - corrected(*displacement_W);
   const Vector2d d_W = then_W - range.p_WS.head<2>();
   const double distance_m = std::hypot(d_W.x(), d_W.y(), range.own_z_m - range.p_WS.z());
-  const Vector2d u = d_W / std::max(distance_m, 1.0);  // of a unit vector in space, the part in the plane
+  const Vector2d u = d_W / std::max(distance_m, 1.0);  // horizontal part of the unit vector in space
   const double since_s = seconds(utime_ - range.utime);
 
+  // Jacobian of the range.
   Row H = u.transpose() * earlier_position_jacobian(*displacement_W);
   const double position_variance = H * P_ * H.transpose();
   H(0, 4) = 1;
@@ -157,6 +165,7 @@ MarineEkf::Outcome MarineEkf::update_range(const Range& range, const MarineEkf* 
   const double S = H * P_ * H.transpose() + R;
   last_nis_ = squared(innovation_m) / S;
 
+  // Gate, and the search for the cause of a contradiction.
   const Opinion opinion = std::isfinite(last_nis_) ? opinion_of(range.beacon, innovation_m, S) : Opinion::nonsense;
   Outcome outcome = Outcome::accepted;
   if (opinion != Opinion::agrees) {
@@ -169,7 +178,7 @@ MarineEkf::Outcome MarineEkf::update_range(const Range& range, const MarineEkf* 
     outcome = Outcome::inflated;
     if (without_ranges != nullptr) {
       take_motion_of(*without_ranges);
-      return outcome;  // the next range is looked at from there
+      return outcome;  // the next range is processed from there
     }
     innovation_m -= error->now_m;
   }
@@ -182,7 +191,7 @@ MarineEkf::Outcome MarineEkf::update_range(const Range& range, const MarineEkf* 
 
 MarineEkf::Opinion MarineEkf::opinion_of(int beacon, double innovation_m, double variance_m2) {
   Trust& trust = trust_[beacon];
-  // A filter without other messages becomes uncertain, which is not a reason to believe who was wrong when it was sure.
+  // A filter without other messages becomes uncertain, which does not make a contradicting beacon trustworthy.
   const bool in_doubt = trust.doubted_at_m2 > 0;
   const double variance_now_m2 = in_doubt ? std::min(variance_m2, trust.doubted_at_m2) : variance_m2;
   if (squared(innovation_m) > params_.range_gate * variance_now_m2) {
@@ -222,7 +231,7 @@ std::optional<MarineEkf::ClockError> MarineEkf::common_error() const {
   if (params_.states <= 4 || all.size() < static_cast<std::size_t>(params_.max_refusals) ||
       !several_beacons_contradict())
     return std::nullopt;
-  // A weighted straight line through them, over the time before the last.
+  // Weighted straight line through them, over the time before the last one.
   double w = 0, wt = 0, wtt = 0, we = 0, wte = 0;
   const auto since_last_s = [&](const Contradiction& each) { return seconds(each.utime - all.back().utime); };
   for (const Contradiction& each : all) {
@@ -234,11 +243,13 @@ std::optional<MarineEkf::ClockError> MarineEkf::common_error() const {
     we += weight * each.innovation_m;
     wte += weight * t_s * each.innovation_m;
   }
+  // Constant error, or one that grows linearly if its rate is significant.
   ClockError error{we / w, 0, 1 / w};
   const double spread = wtt - wt * wt / w;  // its inverse is the variance of the rate
   const double rate_mps = spread > 0 ? (wte - wt * we / w) / spread : 0;
   if (params_.states > 5 && squared(rate_mps) * spread > params_.range_gate)
     error = {(we - rate_mps * wt) / w, rate_mps, 1 / w + squared(wt / w) / spread};
+  // Check that all contradictions agree with it.
   const bool agreed = std::all_of(all.begin(), all.end(), [&](const Contradiction& each) {
     const double expected_m = error.now_m + error.rate_mps * since_last_s(each);
     return squared(each.innovation_m - expected_m) <= params_.range_gate * each.variance_m2;
@@ -262,7 +273,7 @@ void MarineEkf::open_clock(const ClockError& error) {
   P_(4, 4) = squared(error.now_m) + error.variance_m2;
   if (params_.states <= 5) return;
   P_(5, 5) = std::max(P_(5, 5), squared(error.rate_mps));
-  // It fitted before: the clock is one that runs away.
+  // It was correct before: the clock drifts.
   if (ranges_used_ > 0) P_(5, 5) = std::max(P_(5, 5), squared(bad_clock_mps));
 }
 
@@ -281,7 +292,7 @@ void MarineEkf::use(const Eigen::Matrix<double, n, 1>& innovation, const Eigen::
   const Eigen::Matrix<double, n, n> S = H * P_ * H.transpose() + R;
   const Eigen::Matrix<double, max_states, n> K = P_ * H.transpose() * S.inverse();
   x_ += K * innovation;
-  // Joseph's form stays symmetric and positive under rounding.
+  // Joseph form of the covariance, which remains symmetric and positive under rounding.
   const Covariance A = Covariance::Identity() - K * H;
   P_ = A * P_ * A.transpose() + K * R * K.transpose();
 }

@@ -5,7 +5,7 @@
 
 namespace autonomy {
 
-/// A move in the body frame at its beginning.
+/// Move in the body frame at its start.
 struct Increment {
   double forward_m = 0;
   double left_m = 0;
@@ -19,7 +19,7 @@ class Odometer {
 
   /// `p_0`, `theta_rad`: pose relative to the start.  Returns the move since the last call.
   Increment update(const Vector2d& p_0, double theta_rad);
-  /// Start pose plus odometry: where the rover would believe to be without any other sensor.
+  /// Returns start pose plus odometry: the pose of the rover by dead reckoning only.
   Pose2 pose() const { return {start_.p_W + turned(p_0_, start_.yaw_rad), start_.yaw_rad + theta_rad_}; }
 
  private:

@@ -10,19 +10,19 @@ namespace autonomy {
 
 using Vector2d = Eigen::Vector2d;
 
-/// A pose in the plane of the world: east, north, and yaw counter-clockwise from east.
+/// Pose in the plane of the world: east, north, and yaw counter-clockwise from east.
 struct Pose2 {
   Vector2d p_W = Vector2d::Zero();
   double yaw_rad = 0;
 };
 
-/// Forward speed and turn rate, as a differential drive takes them.
+/// Forward speed and yaw rate of a differential drive.
 struct Twist {
   double forward_mps = 0;
   double turn_radps = 0;
 };
 
-/// A vector turned counter-clockwise.
+/// Rotates a vector counter-clockwise.
 inline Vector2d turned(const Vector2d& v, double angle_rad) {
   const double c = std::cos(angle_rad);
   const double s = std::sin(angle_rad);
@@ -36,7 +36,7 @@ inline double squared(double x) {
   return x * x;
 }
 
-/// Of a time stamp or a difference of two.
+/// Converts a time stamp or a difference of two.
 inline double seconds(std::int64_t time_us) {
   return static_cast<double>(time_us) * 1e-6;
 }

@@ -13,35 +13,35 @@
 
 namespace autonomy {
 
-/// From a time on, a speed and a turn rate.
+/// Speed and yaw rate from a time on.
 struct SpeedPoint {
   double from_s = 0;
   double forward_mps = 0;
   double turn_radps = 0;
 };
-/// Throws std::invalid_argument when the times do not grow.
+/// Throws std::invalid_argument when the times do not increase.
 void check_speeds(const std::vector<SpeedPoint>& points);
 
-/// Keeps a two-wheeled inverted pendulum upright and drives it: a PD law from tilt to torque of the wheels, and around
-/// it a PI law from speed to tilt.  A pure function of the messages in their order: it knows no clock and no bus.
+/// Balances a two-wheeled inverted pendulum and drives it: a PD law from tilt to torque of the wheels, and an outer PI
+/// law from speed to tilt.  A pure function of the messages in their order, independent of clock and bus.
 ///
-///     torque = kp (tilt - wanted) + kd rate
-///     wanted = balanced tilt + kv (desired speed - speed) + ki * integral of that
+///     torque = kp (tilt - desired) + kd rate
+///     desired = balanced tilt + kv (desired speed - speed) + ki * integral of that
 ///
-/// Lean and rate are positive forwards.  To go faster it must tilt forwards, so at first it rolls back a little.
+/// Tilt and rate are positive forwards.  To accelerate it must tilt forwards, so at first it rolls back a little.
 class Balance {
  public:
   struct Params {
     double period_s = 0.01;               ///< between two calls of step()
     double balanced_tilt_rad = -0.17323;  ///< where the centre of mass is over the axle
-    double kp_Nm_per_rad = 300;           ///< both wheels together; less than m g l = 129 cannot hold it
+    double kp_Nm_per_rad = 300;           ///< both wheels together; less than m g l = 129 cannot balance it
     double kd_Nms_per_rad = 60;
     double kv_rad_per_mps = 0.12;
     double ki_rad_per_m = 0.02;
     double max_tilt_rad = 0.2;  ///< of the desired tilt, from the balanced one
     double max_acceleration_mps2 = 0.5;
     double turn_gain_Nms_per_rad = 40;  ///< torque between the wheels for the error of the turn rate
-    double turn_ki_Nm_per_rad = 120;    ///< and for its integral: wide wheels scrub on the ground
+    double turn_ki_Nm_per_rad = 120;    ///< gain of its integral: wide wheels scrub on the ground
     double rate_filter_s = 0.005;       ///< low pass on the rate of the tilt
     double speed_filter_s = 0.05;       ///< low pass on speed and turn rate
     double wheel_radius_m = 0.236;
@@ -53,17 +53,17 @@ class Balance {
     double left_Nm = 0, right_Nm = 0;
   };
 
-  /// Throws std::invalid_argument for what cannot be.
+  /// Throws std::invalid_argument for invalid parameters.
   explicit Balance(const Params& params);
   void receive(const shoal::inclination_t& message);
-  /// Left wheel first.  Throws shoal::MessageError when there are not two.
+  /// Left wheel first.  Throws shoal::MessageError when the number of wheels is not two.
   void receive(const shoal::wheel_encoder_t& message);
   void receive(const shoal::twist_command_t& message);
   void drive(double forward_mps, double turn_radps);
 
-  /// All reports up to now are in.  Nothing until tilt and wheels are known.
+  /// Computes the torques after all reports up to now.  Nothing until tilt and wheels are known.
   std::optional<Torques> step();
-  /// Since it fell it gives no torque.
+  /// Returns whether it has fallen; from then on it commands no torque.
   bool fallen() const { return fallen_; }
   double tilt_rad() const { return tilt_rad_; }
   double rate_radps() const { return rate_radps_; }
@@ -77,7 +77,7 @@ class Balance {
   double left_radps_ = 0, right_radps_ = 0;  // of the wheels relative to the body
   double speed_mps_ = 0, turn_radps_ = 0;
   double asked_mps_ = 0, asked_turn_radps_ = 0;
-  double desired_mps_ = 0;  // follows what is asked with a limited acceleration
+  double desired_mps_ = 0;  // follows the command with limited acceleration
   double distance_m_ = 0;   // integral of the error of the speed
   double turned_rad_ = 0;   // integral of the error of the turn rate
 };

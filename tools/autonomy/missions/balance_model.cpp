@@ -31,7 +31,7 @@ Complex open_loop(const Balance::Params& law, const BalanceModel& model, double 
   };
   const Complex difference = (1.0 - late) / h;
   const Complex rate = difference * low_pass(law.rate_filter_s) * tilt;
-  // The encoders give the mean rate of the wheels on the body over a period.
+  // The encoders report the mean rate of the wheels relative to the body over a period.
   const Complex rolled = difference * (speed / s - law.wheel_radius_m * tilt) + law.wheel_radius_m * rate;
   const Complex measured = rolled * low_pass(law.speed_filter_s);
   const Complex sum = h / (1.0 - late);
@@ -45,7 +45,7 @@ DelayMargin delay_margin(const Balance::Params& law, const BalanceModel& model) 
   constexpr int points_per_decade = 5000;
   DelayMargin margin{std::numeric_limits<double>::infinity(), 0};
   Complex before = open_loop(law, model, 1e-3);
-  const double highest = std::numbers::pi / law.period_s;  // of what samples can tell
+  const double highest = std::numbers::pi / law.period_s;  // half of the sampling frequency
   for (int i = 1;; ++i) {
     const double w = 1e-3 * std::pow(10, static_cast<double>(i) / points_per_decade);
     if (w > highest) return margin;

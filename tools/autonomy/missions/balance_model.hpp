@@ -7,8 +7,9 @@
 
 namespace autonomy {
 
-/// An inverted pendulum on two wheels that roll without slip, linear about its balance.  With the way of the axle x and
-/// the tilt a from balance, both forwards, and the torque T of both motors (Lagrange's equations of body and wheels):
+/// Inverted pendulum on two wheels that roll without slip, linearised about its balance.  With the displacement of the
+/// axle x and the tilt a from balance, both forwards, and the torque T of both motors (Lagrange's equations of body and
+/// wheels):
 ///
 ///     (M + m) x'' + m l a'' = T / r        M = mass of the wheels + their inertia / r^2
 ///     m l x'' + J a'' = m g l a - T
@@ -21,22 +22,24 @@ struct BalanceModel {
   double wheel_radius_m = 0.236;  ///< r
   double gravity_mps2 = 9.80665;
 
-  /// Lean (rad) and speed (m/s) for a torque (N m), at a complex frequency (1/s).
+  /// Response of tilt (rad) and speed (m/s) to a torque (N m), at a complex frequency (1/s).
   struct Response {
     std::complex<double> tilt, speed;
   };
   Response response(std::complex<double> s) const;
 };
 
-/// The frequency response, at `w` rad/s, of the whole loop cut at the torque: model, sampling, filters, both laws and
-/// the hold of the torque between two samples.  It is stable while 1 + loop has no zero to the right.
+/// Returns the frequency response, at `w` rad/s, of the loop opened at the torque: model, sampling, filters, both laws
+/// and the zero-order hold of the torque.  The closed loop is stable while 1 + loop has no zero in the right
+/// half-plane.
 std::complex<double> open_loop(const Balance::Params& law, const BalanceModel& model, double w_radps);
 
-/// How late torque may come after the tilt that it answers: the smallest phase margin over its frequency.  For a loop
-/// that is stable without delay.
+/// Delay margin from tilt to torque: the smallest phase margin over its frequency.  For a loop that is stable without
+/// delay.
+/// stable without delay.
 struct DelayMargin {
   double delay_s = 0;
-  double frequency_radps = 0;  ///< of the swing at the limit
+  double frequency_radps = 0;  ///< of the oscillation at the limit
 };
 DelayMargin delay_margin(const Balance::Params& law, const BalanceModel& model = {});
 

@@ -6,11 +6,11 @@
 
 namespace autonomy {
 
-/// An object of a derived class that is copied with its owner.  `T` has `std::unique_ptr<T> clone() const`.
+/// Object of a derived class that is copied with its owner.  `T` has `std::unique_ptr<T> clone() const`.
 template <class T>
 class Cloned {
  public:
-  /// Not null.
+  /// Must not be null.
   template <class Derived>
   Cloned(std::unique_ptr<Derived> object) : object_(std::move(object)) {}
   Cloned(const Cloned& other) : object_(other.object_->clone()) {}

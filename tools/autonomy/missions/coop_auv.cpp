@@ -11,22 +11,22 @@ namespace autonomy {
 
 namespace {
 
-// What a velocity is worth that is not over ground: a current is not known, an old one has changed.
+// Noise of a velocity that is not over ground: a current is unknown, an old one has changed.
 constexpr double through_water_mpsprtHz = 0.3;
 constexpr double coasting_mpsprtHz = 0.5;
 constexpr double pressure_std_m = 0.1;
-/// A stamp may be older than the newest by so much, and newer by that.
+/// A time stamp may be older or newer than the newest by these limits.
 constexpr double late_s = 2;
 constexpr double max_gap_s = 5;
-/// Longer without a velocity, it coasts on the last one.
+/// Time without a velocity, after which it extrapolates the last one.
 constexpr double coast_after_s = 1;
-/// An AHRS, or all that tells a heading, that has been silent for so long is gone.
+/// Time after which a silent AHRS, or all sources of heading, count as failed.
 constexpr double oldest_attitude_s = 2;
-/// The error of a heading that is not known any more lasts for so long.
+/// Correlation time of the error of an unknown heading.
 constexpr double lost_heading_s = 60;
-/// All devices together say something more often.
+/// Silence of all devices together, which is longer than their intervals.
 constexpr double max_quiet_s = 1;
-/// Sound comes 90 km far in that: no modem does.
+/// Sound travels 90 km in this time, beyond the range of any modem.
 constexpr double max_travel_s = 60;
 
 }  // namespace
@@ -40,8 +40,8 @@ CoopAuv::CoopAuv(const Params& params, std::unique_ptr<HelmBehaviour> behaviour)
 }
 
 void CoopAuv::note_time(std::int64_t utime) {
-  // Reports come in order except for their latencies, many each second.  After a jump of their stamps, time that passed
-  // for step() too was silence, as when the power failed; the rest means that the clock was set.
+  // Reports arrive in order except for their latencies, many per second.  After a jump of their time stamps, time that
+  // also passed for step() was silence, as after a power failure; the remainder was a change of the clock.
   const double silence_s = steps_in_silence_ * params_.period_s;
   steps_in_silence_ = 0;
   if (utime_ != 0) {
@@ -57,7 +57,7 @@ void CoopAuv::set_clock(std::int64_t by_us) {
   utime_ += by_us;
   for (auto* time : {&attitude_utime_, &heading_utime_, &velocity_utime_, &fix_utime_, &first_fix_utime_})
     if (*time) **time += by_us;
-  // How much of it is true time is not known, so the next range has to tell the clock's error.
+  // The true part of it is unknown, so the next range has to determine the clock error.
   for (auto* filter : {&cooperative_, &dead_reckoning_})
     if (*filter)
       (*filter)->shift_clock(by_us, params_.sound_speed_mps * seconds(by_us), params_.sound_speed_mps * late_s);
@@ -65,7 +65,7 @@ void CoopAuv::set_clock(std::int64_t by_us) {
 
 void CoopAuv::coast_over_silence(std::int64_t utime) {
   ++counts_.silences;
-  // It may have gone on, or stopped at once: the whole way is not known.
+  // It may have continued or stopped: the uncertainty is the entire distance.
   velocity_noise_mpsprtHz_ = std::max(coasting_mpsprtHz, v_B_.norm() * std::sqrt(seconds(utime - utime_)));
   predict(utime);
 }
@@ -92,7 +92,7 @@ Eigen::Vector3d CoopAuv::turned_into_world(const Eigen::Vector3d& point_B) const
 }
 
 bool CoopAuv::is_silent() const {
-  // Of the steps that are counted, the first ends the period in which something was said.
+  // Of the counted steps, the first ends the period that contains the last report.
   return (steps_in_silence_ - 1) * params_.period_s > max_quiet_s;
 }
 
@@ -207,7 +207,7 @@ void CoopAuv::use_range(const shoal::acoustic_received_t& packet, const Acoustic
   range.utime = packet.utime;
   range.range_m = packet.travel_time_s * params_.sound_speed_mps;
   range.std_m = std::hypot(params_.range_std_m, params_.sound_speed_std * range.range_m);
-  // To the vehicle's own point from a beacon that is moved by as much as the modem is from that point.
+  // Moves the beacon by the offset of the modem, which gives the range to the vehicle's reference point.
   const Eigen::Vector3d modem_W = turned_into_world(params_.modem_B);
   range.p_WS.head<2>() = position_at(beacon, packet.sent_utime) - modem_W.head<2>();
   range.p_WS.z() = -beacon.depth_m;
@@ -236,7 +236,7 @@ CoopAuv::Decision CoopAuv::step() {
   }
   update_phase();
   decision.helm = helm();
-  if (!cooperative_ || is_silent()) return decision;  // nothing new is known
+  if (!cooperative_ || is_silent()) return decision;  // no new data
   decision.estimate = estimate(*cooperative_);
   decision.dead_reckoning = estimate(*dead_reckoning_);
   if (access_.take_turn(utime_)) decision.send = state_frame();

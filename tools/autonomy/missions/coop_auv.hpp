@@ -25,10 +25,10 @@
 
 namespace autonomy {
 
-/// An AUV that localises itself by DVL, heading and depth, and by one-way ranges to vehicles that report their
-/// positions by acoustic modem.  In addition it keeps an estimate by dead reckoning alone.  It waits at the surface for
-/// GPS, dives, follows its behaviour, and comes up.  A pure function of its reports in their order; its time is that of
-/// their stamps, the vehicle's own clock.
+/// AUV that localises itself by DVL, heading and depth, and by one-way ranges to vehicles that report their positions
+/// by acoustic modem.  In addition it keeps an estimate by dead reckoning only.  It waits at the surface for GPS,
+/// dives, follows its behaviour, and surfaces.  A pure function of its reports in their order; its time is that of
+/// their stamps, by the vehicle's own clock.
 class CoopAuv {
  public:
   struct Params {
@@ -38,20 +38,20 @@ class CoopAuv {
     MarineEkf::Params filter;
     bool use_ranges = true;
     bool steer_by_dead_reckoning = false;
-    double sound_speed_mps = 1500;   ///< that it takes for a range
+    double sound_speed_mps = 1500;   ///< assumed for ranges
     double range_std_m = 1.0;        ///< of one range
     double sound_speed_std = 0.001;  ///< of the range
-    double yaw_offset_rad = 0;       ///< added to the heading that is measured
-    /// From the point whose place is estimated, in the vehicle's axes.
+    double yaw_offset_rad = 0;       ///< added to the measured heading
+    /// Offsets from the estimated point, in the vehicle's axes.
     Eigen::Vector3d modem_B = Eigen::Vector3d::Zero(), gps_B = Eigen::Vector3d::Zero();
     double surface_s = 10;            ///< at the surface after the first fix
-    double fix_period_s = 5;          ///< errors of GPS last, so more fixes say little more
-    std::optional<Vector2d> start_W;  ///< known: it does not wait for GPS
+    double fix_period_s = 5;          ///< GPS errors are correlated in time, so that more fixes add little
+    std::optional<Vector2d> start_W;  ///< known start: it does not wait for GPS
     double start_std_m = 1;
     ChannelAccess::Params access;    ///< for its own state
     double period_s = 0.5;           ///< between two calls of step()
-    bool execute = false;            ///< orders for its id: it goes to the place and circles there
-    double order_depth_max_m = 100;  ///< deeper and maximum speed of an order
+    bool execute = false;            ///< executes orders for its id: it moves to the position and circles there
+    double order_depth_max_m = 100;  ///< limit of the depth of an order
     double order_speed_max_mps = 2.5;
     double hold_radius_m = 30;
   };
@@ -69,13 +69,13 @@ class CoopAuv {
     int sent = 0;
     int clock_steps = 0;
     int silences = 0;        ///< of all devices
-    int relayed = 0;         ///< states that did not come from their sender: no ranges
+    int relayed = 0;         ///< states that were not sent by their own vehicle: no ranges
     int orders = 0;          ///< executed
-    int orders_refused = 0;  ///< each once
+    int orders_refused = 0;  ///< each counted once
   };
   enum class Phase { waiting_for_fix, at_surface, under_way, done };
 
-  /// Throws std::invalid_argument on a number of states the filter does not know.
+  /// Throws std::invalid_argument for a number of states that the filter does not support.
   CoopAuv(const Params& params, std::unique_ptr<HelmBehaviour> behaviour);
 
   void receive(const shoal::dvl_t& dvl);
@@ -84,10 +84,10 @@ class CoopAuv {
   void receive(const shoal::pressure_t& pressure);
   void receive(const shoal::gps_data_t& fix);
   void receive(const shoal::acoustic_received_t& packet);
-  /// All reports up to now are in: what to do.
+  /// Computes the commands after all reports up to now.
   Decision step();
 
-  /// Null before it knows where it is.
+  /// Null before the position is known.
   const MarineEkf* cooperative() const { return cooperative_ ? &*cooperative_ : nullptr; }
   const MarineEkf* dead_reckoning() const { return dead_reckoning_ ? &*dead_reckoning_ : nullptr; }
   Phase phase() const { return phase_; }
@@ -100,7 +100,7 @@ class CoopAuv {
   void start(std::int64_t utime, const Vector2d& p_W, double std_m);
   void predict(std::int64_t utime);
   bool is_silent() const;
-  /// A point of the vehicle relative to that whose place is estimated.
+  /// Returns a point of the vehicle relative to the estimated one
   Eigen::Vector3d turned_into_world(const Eigen::Vector3d& point_B) const;
   void execute(const AcousticOrder& order);
   OrderRefusal refusal_of(const AcousticOrder& order) const;
@@ -125,9 +125,9 @@ class CoopAuv {
   int steps_in_silence_ = 0;
   std::optional<Eigen::Quaterniond> q_WB_;
   std::optional<std::int64_t> attitude_utime_;  ///< of an AHRS, which counts more than a compass
-  std::optional<std::int64_t> heading_utime_;   ///< of whichever told it
+  std::optional<std::int64_t> heading_utime_;   ///< of the device that reported it last
   Eigen::Vector3d v_B_ = Eigen::Vector3d::Zero();
-  double velocity_noise_mpsprtHz_ = 0;  ///< more than that of a DVL that sees the bottom
+  double velocity_noise_mpsprtHz_ = 0;  ///< noise in addition to that of a DVL with bottom track
   std::optional<std::int64_t> velocity_utime_;
   double depth_m_ = 0;
   std::optional<std::int64_t> fix_utime_;

@@ -14,7 +14,7 @@ CoopCraft::CoopCraft(const Params& params, std::unique_ptr<HelmBehaviour> behavi
     : params_(params), behaviour_(std::move(behaviour)), access_(params.access, params.name) {}
 
 void CoopCraft::receive(const shoal::gps_data_t& fix) {
-  utime_ = fix.utime;  // the stamp counts, fix or no fix: a clock may be set back, too
+  utime_ = fix.utime;  // the time stamp is used with or without a fix: a clock may be set back
   const Vector2d p_W(fix.xyz_pos[0], fix.xyz_pos[1]);
   if (fix.gps_lock < 1 || !p_W.allFinite() || !(fix.horizontal_accuracy > 0)) return;
   Motion motion{fix.utime, p_W, Vector2d::Zero()};
@@ -42,7 +42,7 @@ void CoopCraft::receive(const shoal::acoustic_received_t& packet) {
 CoopCraft::Decision CoopCraft::step() {
   Decision decision;
   shoal::helm_command_t helm{utime_, 0, unknown, unknown, unknown};
-  // The time is that of GPS: when it is silent there is none, except for the calls of this.
+  // The time is that of GPS: without its messages only the calls of this function are counted.
   const bool is_recent = steps_since_fix_++ * params_.period_s <= params_.oldest_fix_s;
   const bool has_fix = is_recent && motion_ && std::abs(seconds(utime_ - motion_->utime)) <= params_.oldest_fix_s;
   if (!motion_) return decision;
@@ -54,11 +54,11 @@ CoopCraft::Decision CoopCraft::step() {
     decision.estimate = estimate();
     if (access_.take_turn(utime_)) decision.send = state_frame();
   }
-  decision.helm = helm;  // blind, it stops
+  decision.helm = helm;  // without a fix it stops
   return decision;
 }
 
-/// Once, when it has waited for long.
+/// Reports once that it has been waiting for a long time.
 std::string CoopCraft::remark() {
   if (!patient_since_ || utime_ < *patient_since_) patient_since_ = utime_;
   const double waited_s = seconds(utime_ - *patient_since_);
@@ -76,7 +76,7 @@ shoal::estimate_t CoopCraft::estimate() const {
     estimate.velocity_mps[i] = motion_->v_W[i];
     estimate.covariance_m2[4 * i] = position_std_m_ * position_std_m_;
   }
-  estimate.covariance_m2[8] = 1;  // it floats; waves and tide are not known
+  estimate.covariance_m2[8] = 1;  // it floats; waves and tide are unknown
   estimate.yaw_rad = std::atan2(motion_->v_W.y(), motion_->v_W.x());
   estimate.clock_error_s = 0;  // GPS sets the clock
   return estimate;

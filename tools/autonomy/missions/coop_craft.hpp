@@ -18,30 +18,30 @@
 
 namespace autonomy {
 
-/// A surface craft that broadcasts its GPS position by acoustic modem.  A pure function of its
-/// reports in their order; its time is that of the reports' stamps, the vehicle's own clock.
+/// Surface craft that broadcasts its GPS position by acoustic modem.  A pure function of its reports in their order;
+/// its time is that of the reports' stamps, the vehicle's own clock.
 class CoopCraft {
  public:
   struct Params {
     std::string name;
     int id = 1;                       ///< in its frames
     double transducer_depth_m = 0.5;  ///< of the modem, below the surface
-    double oldest_fix_s = 3;          ///< an older one is outdated
+    double oldest_fix_s = 3;          ///< maximum age of a fix
     double period_s = 0.5;            ///< between two calls of step()
-    double timeout_s = 60;            ///< after which it remarks what its behaviour waits for
+    double timeout_s = 60;            ///< time after which it reports what its behaviour waits for
     ChannelAccess::Params access;
   };
   struct Decision {
     std::optional<shoal::helm_command_t> helm;  ///< for NAME.autopilot.cmd
     std::optional<shoal::estimate_t> estimate;  ///< for NAME.estimate
     std::optional<shoal::modem_send_t> send;    ///< for NAME.modem.cmd
-    std::string remark;                         ///< for people; empty: nothing
+    std::string remark;                         ///< message for the user; empty: none
   };
   struct Counts {
     int sent = 0;
     int received = 0;
-    int relayed = 0;  ///< states that did not come from their sender, and are not used
-    int orders = 0;   ///< for others
+    int relayed = 0;  ///< states that were not sent by their own vehicle, and are not used
+    int orders = 0;   ///< addressed to others
     int bad_frames = 0;
   };
 
@@ -49,7 +49,7 @@ class CoopCraft {
 
   void receive(const shoal::gps_data_t& fix);
   void receive(const shoal::acoustic_received_t& packet);
-  /// All reports up to now are in: what to do.
+  /// Computes the commands after all reports up to now.
   Decision step();
 
   const Counts& counts() const { return counts_; }

@@ -16,7 +16,7 @@ namespace {
 
 using Payload = std::span<const std::byte>;
 
-/// An older scan says nothing of what stands ahead now.
+/// Maximum age of a scan.
 constexpr double oldest_scan_s = 0.5;
 
 ObstacleAvoidance::Params avoidance_params(const CoopRover::Params& params) {
@@ -42,7 +42,7 @@ std::span<const std::string_view> CoopRover::devices() {
 void CoopRover::receive(std::string_view device, Payload payload) {
   using shoal::Finite;
   if (device == "odometry") receive_odometry(payload);
-  // Without a fix its numbers are NaN, and so are absolute positions that a swarm sensor does not measure.
+  // Without a fix the values are NaN, and so are absolute positions that a swarm sensor does not measure.
   if (device == "gps") receive_gps(shoal::decode<shoal::gps_data_t>(payload, Finite::any));
   if (device == "swarm_position") receive_sightings(shoal::decode<shoal::swarm_position_t>(payload, Finite::any));
   if (device == "lidar") receive_scan(payload);
@@ -65,7 +65,7 @@ Increment CoopRover::since_odometry(std::int64_t utime) const {
 void CoopRover::receive_gps(const shoal::gps_data_t& fix) {
   const Vector2d p_W(fix.xyz_pos[0], fix.xyz_pos[1]);
   if (fix.gps_lock < 1 || !p_W.allFinite() || !(fix.horizontal_accuracy > 0)) return;
-  // The filter stands at the time of the last odometry; the fix is moved back to there.
+  // The filter is at the time of the last odometry; the fix is shifted to that time.
   const Vector2d moved_W = turned({since_odometry(fix.utime).forward_m, 0}, filter_.pose().yaw_rad);
   filter_.update_position(p_W - moved_W, fix.horizontal_accuracy);
   gps_std_m_ = fix.horizontal_accuracy;
@@ -78,7 +78,7 @@ void CoopRover::receive_sightings(const shoal::swarm_position_t& seen) {
     if (!seen_B.allFinite()) continue;
     const auto neighbour = reports_.take(seen.vehicle[i], seen.utime);
     if (!neighbour) continue;
-    // Seen from where the rover was at the last odometry: at 20 m a turn of 3 degrees meanwhile is a metre.
+    // As seen at the last odometry: at 20 m a rotation of 3 degrees in the meantime is a metre.
     const Vector2d p_BN_B = turned(seen_B, moved.turn_rad) + Vector2d(moved.forward_m, 0);
     filter_.update_relative(p_BN_B, params_.seen_std_m, neighbour->p_W, neighbour->std_m);
   }
@@ -109,13 +109,13 @@ std::vector<CoopRover::Outgoing> CoopRover::step(std::int64_t utime) {
 }
 
 Twist CoopRover::drive(std::int64_t utime) {
-  // Blind, it stands still.
+  // Without a scan it stops.
   if (scan_.ranges_m.empty() || seconds(utime - scan_utime_) > oldest_scan_s) return {};
   return avoidance_.steer(follower_.goal_B(filter_.pose(), seconds(utime)), scan_);
 }
 
 bool CoopRover::report_is_due(std::int64_t utime) const {
-  // A rover without GPS has nothing to tell: its place came from the others.
+  // A rover without GPS does not report: its position depends on the others.
   if (!gps_std_m_) return false;
   return !reported_utime_ || seconds(utime - *reported_utime_) >= params_.report_period_s - 1e-9;
 }
@@ -130,7 +130,7 @@ std::vector<std::byte> CoopRover::report() const {
     report.position_m[i] = pose.p_W[i];
     report.velocity_mps[i] = v_W[i];
   }
-  // Errors of GPS wander slowly and do not average out, whatever the filter thinks: never claim to be better.
+  // Errors of GPS drift slowly and do not average out, so the reported deviation has a lower bound.
   report.position_std_m = std::max(filter_.position_std_m(), *gps_std_m_);
   return shoal::encode(broadcast(report));
 }

@@ -19,9 +19,9 @@
 
 namespace autonomy {
 
-/// The autonomy of one rover of the cooperative experiment.  A rover with GPS reports its position to the others; a
-/// rover without localises itself by odometry and sightings of those that report.  A pure function of the
-/// messages in their order: it knows no clock and no bus.
+/// Autonomy of one rover of the cooperative experiment.  A rover with GPS reports its position to the others; a rover
+/// without GPS localises itself by odometry and detections of those that report.  A pure function of the messages in
+/// their order, independent of clock and bus.
 class CoopRover {
  public:
   struct Params {
@@ -31,7 +31,7 @@ class CoopRover {
     double speed_mps = 0.8;
     double start_position_std_m = 0.1;
     double start_yaw_std_rad = 0.03;
-    double seen_std_m = 0.15;  ///< of each coordinate of a sighting
+    double seen_std_m = 0.15;  ///< of each coordinate of a detection
     double report_period_s = 1.0;
   };
   struct Outgoing {
@@ -42,11 +42,11 @@ class CoopRover {
   /// Throws std::invalid_argument without waypoints.
   explicit CoopRover(const Params& params);
 
-  /// The devices whose reports it subscribes to, on NAME.DEVICE.
+  /// Devices whose reports it subscribes to, on NAME.DEVICE.
   static std::span<const std::string_view> devices();
-  /// A report of one of those.  Throws shoal::MessageError on bytes it cannot use.
+  /// Processes a report of one of those.  Throws shoal::MessageError on invalid bytes.
   void receive(std::string_view device, std::span<const std::byte> payload);
-  /// All reports up to `utime` are in: what to publish now.
+  /// Computes the messages to publish after all reports up to `utime`.
   std::vector<Outgoing> step(std::int64_t utime);
 
   const Ekf& filter() const { return filter_; }
@@ -57,7 +57,7 @@ class CoopRover {
   void receive_gps(const shoal::gps_data_t& fix);
   void receive_sightings(const shoal::swarm_position_t& seen);
   void receive_scan(std::span<const std::byte> payload);
-  /// How far the rover drove and turned from the last odometry to `utime`.
+  /// Returns distance and rotation from the last odometry to `utime`.
   Increment since_odometry(std::int64_t utime) const;
 
   Twist drive(std::int64_t utime);

@@ -31,7 +31,7 @@ shoal::estimate_t estimate_of(const AcousticState& state) {
   std::copy(std::begin(position_m), std::end(position_m), estimate.position_m);
   estimate.velocity_mps[0] = motion.v_W.x();
   estimate.velocity_mps[1] = motion.v_W.y();
-  // A correlation of 1 makes no covariance.
+  // A covariance with a correlation of 1 is invalid.
   const double correlation = std::clamp(state.correlation, -0.99, 0.99);
   estimate.covariance_m2[0] = state.east_std_m * state.east_std_m;
   estimate.covariance_m2[1] = estimate.covariance_m2[3] = correlation * state.east_std_m * state.north_std_m;
@@ -62,7 +62,7 @@ void CoopStation::note_time(std::int64_t utime) {
 }
 
 void CoopStation::receive(const shoal::gps_data_t& fix) {
-  note_time(fix.utime);  // for its clock alone: the station knows where it stands
+  note_time(fix.utime);  // only for its clock: the position of the station is known
 }
 
 void CoopStation::receive(const shoal::modem_received_t& packet) {

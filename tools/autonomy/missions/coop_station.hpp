@@ -17,9 +17,9 @@
 
 namespace autonomy {
 
-/// A station that sends a vehicle out of its receiving to places, by radio and whoever passes its messages on.  It
-/// sends an order in each of its turns until a state of the vehicle confirms or refuses it, or the next one is due.  A
-/// pure function of its reports in their order; its time is that of their stamps, the station's own clock.
+/// Station that sends a vehicle beyond its direct reception to positions, by radio and through relays of its messages.
+/// It sends an order in each of its turns until a state of the vehicle confirms or refuses it, or the next one is due.
+/// A pure function of its reports in their order; its time is that of their stamps, the station's own clock.
 class CoopStation {
  public:
   struct TimedOrder {
@@ -31,12 +31,12 @@ class CoopStation {
   struct Params {
     std::string name;
     int id = 200;   ///< in its frames
-    int to_id = 0;  ///< of the vehicle that gets the orders
+    int to_id = 0;  ///< of the vehicle that receives the orders
     std::vector<TimedOrder> orders;
     ChannelAccess::Params access;
   };
   struct Decision {
-    std::optional<shoal::estimate_t> knowledge;  ///< for NAME.knowledge: where the vehicle was, by its newest state
+    std::optional<shoal::estimate_t> knowledge;  ///< for NAME.knowledge: position of the vehicle by its newest state
     std::optional<shoal::modem_send_t> send;     ///< for NAME.radio.cmd
     std::string status;                          ///< text for the user; empty: none
   };
@@ -50,12 +50,12 @@ class CoopStation {
   };
 
   /// Throws std::invalid_argument when there are more than 255 orders, they are not in the order of their times, or one
-  /// does not fit into a frame.
+  /// cannot be encoded in a frame.
   explicit CoopStation(const Params& params);
 
   void receive(const shoal::gps_data_t& fix);
   void receive(const shoal::modem_received_t& packet);
-  /// All reports up to now are in: what to do.
+  /// Computes the commands after all reports up to now.
   Decision step();
 
   const Counts& counts() const { return counts_; }
@@ -72,8 +72,8 @@ class CoopStation {
   std::optional<AcousticState> state_;  ///< newest
   bool has_update_ = false;
   int answered_ = 0;          ///< number of the order that the vehicle executed or refused last
-  int last_executed_ = 0;     ///< the largest number that was
-  std::vector<int> refused_;  ///< numbers, rising
+  int last_executed_ = 0;     ///< largest executed number
+  std::vector<int> refused_;  ///< numbers, ascending
   std::string status_;
   Counts counts_;
 };

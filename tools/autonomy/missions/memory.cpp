@@ -6,7 +6,7 @@ namespace autonomy {
 void Memory::keep(std::int64_t utime) {
   if (keep_us_ <= 0) return;
   copies_.push_back({utime, copy_()});
-  // The one that holds at the oldest time stays.
+  // Keep the copy that is valid at the oldest time.
   while (copies_.size() > 1 && (copies_[1].utime <= utime - keep_us_ || copies_.size() > max_copies))
     copies_.pop_front();
 }

@@ -13,7 +13,7 @@ namespace autonomy {
 /// Copies of a program's state, one after each of its decisions, so that it can be rewound with the world.
 class Memory {
  public:
-  /// Never more copies than this.
+  /// Maximum number of copies.
   static constexpr std::size_t max_copies = 100'000;
 
   /// `state` is the state of the program: a value that holds everything its decisions depend on.  It must outlive this.
@@ -26,10 +26,10 @@ class Memory {
     if (keep_us_ > 0) copies_.push_back({std::numeric_limits<std::int64_t>::min(), copy_()});
   }
 
-  /// Call after the decision of the tick `utime`, which is later than the last one.
+  /// To be called after the decision of the tick `utime`, which is later than the last one.
   void keep(std::int64_t utime);
-  /// The world went back, and the tick `utime` is the first one there.  Makes the state what it was after the last
-  /// decision before it.  False when there is no copy of that; the state is then unchanged.
+  /// Restores the state after a rewind of the world, where the tick `utime` is the first one: the state after the last
+  /// decision before it.  Returns false, with the state unchanged, when there is no such copy.
   bool rewinds(std::int64_t utime);
   std::size_t size() const { return copies_.size(); }
 

@@ -18,7 +18,7 @@ struct Options {
   autonomy::Participation participation;
 };
 
-/// What it knows: all of it goes back with the world.
+/// State of the program, all of which is rewound with the world.
 struct State {
   autonomy::Balance balance;
   std::optional<std::int64_t> started_utime = {}, fell_utime = {};
@@ -31,6 +31,7 @@ int balance(const Options& options) {
   const std::vector<autonomy::SpeedPoint>& speeds = options.speeds;
   shoal::Client client(options.name, options.participation.lcm_url);
 
+  // Subscriptions to sensors and commands.
   const auto take = [&](const auto& message) { balance.receive(message); };
   const std::string prefix = options.name + ".";
   client.subscribe<shoal::inclination_t>(prefix + "inclinometer", take, shoal::Finite::required);
@@ -38,11 +39,13 @@ int balance(const Options& options) {
   client.subscribe<shoal::twist_command_t>(prefix + "balance.cmd", take, shoal::Finite::required);
 
   const int exit_code = autonomy::take_part(client, options.participation, state, [&](std::int64_t utime) {
+    // Apply the speed profile.
     if (!state.started_utime) state.started_utime = utime;
     const double now_s = static_cast<double>(utime - *state.started_utime) * 1e-6;
     for (std::size_t& next = state.next_speed; next < speeds.size() && speeds[next].from_s <= now_s; ++next)
       balance.drive(speeds[next].forward_mps, speeds[next].turn_radps);
 
+    // Publish the torques.
     const auto torques = balance.step();
     if (!torques) return;
     const auto publish = [&](const char* motor, double torque_Nm) {
@@ -54,6 +57,7 @@ int balance(const Options& options) {
     };
     publish("left_motor.cmd", torques->left_Nm);
     publish("right_motor.cmd", torques->right_Nm);
+    // Report a fall once.
     if (!balance.fallen() || state.fell_utime) return;
     state.fell_utime = utime;
     std::cerr << options.name << ": fell after " << now_s << " s\n";

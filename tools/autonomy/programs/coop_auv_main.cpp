@@ -71,7 +71,7 @@ void declare_filter(command_line::DeclaredOptions& declared, Options& options) {
   declared.number("clock_drift_std_ppm", options.clock_drift_std_ppm, 0, 1e4, "drift of the clock, with 6 states");
 }
 
-/// A position on the vehicle, which is its origin unless it is given.
+/// Declares a position on the vehicle; the default is its origin.
 void declare_position(command_line::DeclaredOptions& declared, const char* key, Eigen::Vector3d& position_B,
                       const std::string& meaning) {
   declared
@@ -83,8 +83,10 @@ void declare_position(command_line::DeclaredOptions& declared, const char* key, 
 
 void declare(command_line::DeclaredOptions& declared, Options& options) {
   autonomy::CoopAuv::Params& auv = options.auv;
+  // Channels.
   declared.publishes({"{name}.autopilot.cmd", "{name}.estimate", "{name}.dead_reckoning", "{name}.modem.cmd"});
   declared.subscribes({"{name}.dvl", "{name}.ahrs", "{name}.compass", "{name}.pressure", "{name}.gps", "{name}.modem"});
+  // Options of the mission.
   autonomy::add_name(declared, auv.name, "vehicle to steer").required();
   autonomy::add_id(declared, "id", auv.id, "number of the vehicle in its frames");
   declared.number("depth_m", auv.depth_m, 0, 10'000, "depth to dive to");
@@ -96,6 +98,7 @@ void declare(command_line::DeclaredOptions& declared, Options& options) {
   declare_position(declared, "modem_position_m", auv.modem_B, "position of the modem on the vehicle");
   declare_position(declared, "gps_position_m", auv.gps_B, "position of the GPS antenna on the vehicle");
   declared.number("surface_s", auv.surface_s, 0, 3600, "time at the surface after the first fix");
+  // Options of orders.
   declared.flag("accept_orders", auv.execute, "follow orders for its id: go to the position and circle there");
   declared.number("order_depth_max_m", auv.order_depth_max_m, 0, 10'000, "maximum depth of an order");
   declared.number("order_speed_max_mps", auv.order_speed_max_mps, 0.01, 10, "maximum speed of an order");
@@ -104,6 +107,7 @@ void declare(command_line::DeclaredOptions& declared, Options& options) {
   declared.at_most_one({"slot", "random_s"});
   declare_filter(declared, options);
   options.participation.declare(declared);
+  // End of the help.
   autonomy::set_help_end(
       declared,
       {"shoal-coop-auv --name auv --waypoints-m '[[400,0],[400,40],[0,40],[0,80]]' --depth-m 15 --states 6",

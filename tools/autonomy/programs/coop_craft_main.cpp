@@ -39,6 +39,7 @@ int run(int argc, char** argv) {
   participation.period_s = 0.5;
   CLI::App app{"Steers a surface craft that sends its GPS position by acoustic modem.", "shoal-coop-craft"};
   command_line::DeclaredOptions options(app);
+  // Channels and options.
   options.publishes({"{name}.autopilot.cmd", "{name}.modem.cmd", "{name}.estimate"});
   options.subscribes({"{name}.gps", "{name}.modem"});
   autonomy::add_name(options, craft.name, "vehicle to steer").required();
@@ -52,6 +53,7 @@ int run(int argc, char** argv) {
       {"shoal-coop-craft --name boat1 --circle-m '[100,50,40]' --slot 0 --slots 2",
        "shoal-coop-craft --name boat2 --follow auv --follow-offset-m '[0,-60]' --speed-mps 2 --slot 1 --slots 3"},
       "It reads NAME.gps and NAME.modem; it publishes NAME.autopilot.cmd, .modem.cmd and .estimate.");
+  // Parse the command line and run.
   if (const auto exit_code = options.parse(argc, argv)) return *exit_code;
   craft.period_s = participation.period_s;
   craft.access = marine.access();

@@ -17,7 +17,7 @@ int drive(const autonomy::CoopRover::Params& params, const autonomy::Participati
   const int exit_code = autonomy::take_part(client, participation, rover, [&](std::int64_t utime) {
     for (const autonomy::CoopRover::Outgoing& out : rover.step(utime)) client.publish_bytes(out.channel, out.payload);
   });
-  // One write: the programs of a run share a terminal.
+  // A single write, because the programs of a run share a terminal.
   std::cerr << params.name + ": " + std::to_string(rover.follower().reached()) + " waypoints reached, " +
                    std::to_string(rover.follower().given_up()) + " given up\n";
   return exit_code;
@@ -29,6 +29,7 @@ int run(int argc, char** argv) {
   double start_yaw_deg = 0;
   CLI::App app{"Drives one rover of the cooperative experiment, in lockstep with `shoal run`.", "shoal-coop-rover"};
   command_line::DeclaredOptions options(app);
+  // Channels and options.
   options.publishes({"{name}.drive.cmd", "{name}.modem.cmd", "{name}.estimate", "{name}.odometry_only"});
   options.subscribes({"{name}.odometry", "{name}.lidar", "{name}.modem", "{name}.gps", "{name}.swarm_position"});
   autonomy::add_name(options, rover.name, "vehicle to drive").required();
@@ -57,6 +58,7 @@ int run(int argc, char** argv) {
       "It reads NAME.odometry, .lidar, .modem and, where they exist, .gps and .swarm_position; it publishes "
       "NAME.drive.cmd, .modem.cmd, .estimate and .odometry_only.  Start it beside `shoal run worlds/coop_land.yaml "
       "--await rover1,rover2,rover3`, or let that start it with --launch.");
+  // Parse the command line and run.
   if (const auto exit_code = options.parse(argc, argv)) return *exit_code;
   rover.start.yaw_rad = sim::wrap_angle(sim::degrees_to_radians(start_yaw_deg));
   return drive(rover, participation);

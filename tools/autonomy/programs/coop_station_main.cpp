@@ -36,6 +36,7 @@ int run(int argc, char** argv) {
   double speed_mps = 1.5;
   CLI::App app{"Sends orders to a submerged vehicle by radio, relayed by other vehicles.", "shoal-coop-station"};
   command_line::DeclaredOptions options(app);
+  // Channels and options.
   options.publishes({"{name}.radio.cmd", "{name}.knowledge"});
   options.subscribes({"{name}.gps", "{name}.radio"});
   autonomy::add_name(options, station.name, "vehicle that is the station").required();

@@ -8,6 +8,7 @@
 namespace autonomy {
 
 void MarineOptions::declare(command_line::DeclaredOptions& options) {
+  // Behaviours, of which exactly one is chosen.
   options.tuples(
       "waypoints_m", {"x", "y"}, 2, sim::any_place(), [this](const auto& lists) { waypoints_W = points_of(lists); },
       "route, east and north");
@@ -27,6 +28,7 @@ void MarineOptions::declare(command_line::DeclaredOptions& options) {
           [this](const auto& numbers) { follow_offset_m = numbers; }, "place beside that vehicle, by its course")
       .needs({"follow"});
   options.exactly_one({"waypoints_m", "circle_m", "zigzag_m", "follow"});
+  // Parameters of all behaviours.
   options.flag("loop", loop, "restart the route after its last waypoint; without it the vehicle stops there");
   options.number("speed_mps", speed_mps, 0.05, 10, "speed through the water; when it follows, the largest");
   sending.declare(options, "its state");

@@ -12,7 +12,7 @@
 
 namespace autonomy {
 
-/// When to send.
+/// Options of channel access.
 struct AccessOptions {
   std::optional<int> slot, slots;
   double slot_s = 10;
@@ -20,13 +20,13 @@ struct AccessOptions {
   std::optional<double> random_s;
   std::uint64_t seed = 1;
 
-  /// `what` it sends, for the help.
+  /// `what`: description of the sent data, for the help.
   void declare(command_line::DeclaredOptions& options, const std::string& what);
-  /// Throws std::invalid_argument with what is wrong.
+  /// Throws std::invalid_argument with the reason.
   ChannelAccess::Params access() const;
 };
 
-/// The options that both programs of vehicles have.
+/// Options common to both programs of vehicles.
 struct MarineOptions {
   std::vector<Vector2d> waypoints_W;
   std::vector<double> circle_m, zigzag_m;  ///< columns as declared; empty: not given
@@ -38,12 +38,12 @@ struct MarineOptions {
   AccessOptions sending;
 
   void declare(command_line::DeclaredOptions& options);
-  /// The behaviour of the vehicle `name`.  Throws std::invalid_argument with what is wrong.
+  /// Returns the behaviour of the vehicle `name`.  Throws std::invalid_argument with the reason.
   std::unique_ptr<HelmBehaviour> make(const std::string& name) const;
   ChannelAccess::Params access() const { return sending.access(); }
 };
 
-/// Waypoints of the columns x and y.
+/// Returns the waypoints of the columns x and y.
 std::vector<Vector2d> points_of(const std::vector<std::vector<double>>& lists);
 
 }  // namespace autonomy

@@ -20,7 +20,7 @@ void on_signal(int signal) {
   if (client_to_stop != nullptr) client_to_stop->stop();
 }
 
-/// SIGTERM and SIGINT stop the client as long as this lives.
+/// SIGTERM and SIGINT stop the client during the lifetime of this object.
 class StopBySignal {
  public:
   explicit StopBySignal(shoal::Client& client) {

@@ -24,7 +24,7 @@ namespace {
 using sim::Decibels;
 using sim::Modulation;
 
-/// The numbers of `T=5;depth=10`.
+/// Numbers of `T=5;depth=10`.
 class Parameters {
  public:
   explicit Parameters(const std::string& text) {
@@ -67,6 +67,7 @@ using Compute = std::function<double(const Parameters&, const std::string& quant
 
 const std::map<std::string, Compute>& computations() {
   static const std::map<std::string, Compute> all = {
+      // Speed of sound, absorption and noise.
       {"sound_speed_mackenzie",
        [](const Parameters& p, const auto&) { return sim::mackenzie_mps(p["T"], p["S"], p["depth"]); }},
       {"sound_speed_medwin",
@@ -76,8 +77,10 @@ const std::map<std::string, Compute>& computations() {
       {"absorption_thorp", [](const Parameters& p, const auto&) { return sim::thorp_dBpkm(p["f_kHz"]); }},
       {"ambient_noise_wenz_coates",
        [](const Parameters& p, const auto&) { return noise(p).spectral_level(p["f_kHz"]).dB(); }},
+      // Links.
       {"acoustic_link", link_value},
       {"one_way_travel_time", [](const Parameters& p, const auto&) { return travel_s(p); }},
+      // Bit errors.
       {"ber_bfsk_noncoherent",
        [](const Parameters& p, const auto&) { return sim::bit_error_probability(Modulation::fsk, p.EbN0()); }},
       {"ber_bpsk_coherent",
@@ -85,6 +88,7 @@ const std::map<std::string, Compute>& computations() {
       {"ber_dpsk",
        [](const Parameters& p, const auto&) { return sim::bit_error_probability(Modulation::dpsk, p.EbN0()); }},
       {"ber_bfsk_rayleigh", [](const Parameters& p, const auto&) { return sim::bit_error_rayleigh_fsk(p.EbN0()); }},
+      // Packets.
       {"packet_success_bfsk",
        [](const Parameters& p, const auto&) {
          return sim::packet_success_probability(Modulation::fsk, p.EbN0(), std::llround(8 * p["bytes"]));
@@ -110,17 +114,19 @@ std::vector<ClosedFormRow> acoustic_closed_forms(const std::string& file) {
   if (!in) throw std::runtime_error(file + ": cannot be read");
   if (!std::getline(in, line)) throw std::runtime_error(file + ": is empty, or no file");
   for (int number = 2; std::getline(in, line); ++number) {
+    // Split the row into fields.
     std::istringstream fields(line);
     std::string field[7];
     for (std::string& text : field) std::getline(fields, text, ',');
     const auto compute = computations().find(field[0]);
     if (compute == computations().end()) continue;
+    // Compute the quantity of the row.
     try {
       ClosedFormRow row{field[0], field[1], field[2], field[4], std::stod(field[3])};
       row.tolerance = std::stod(field[5]) * (field[6] == "rel" ? std::abs(row.expected) : 1);
       row.computed = compute->second(Parameters(row.parameters), row.quantity);
       rows.push_back(row);
-    } catch (const std::logic_error&) {  // no number, or a parameter is missing
+    } catch (const std::logic_error&) {  // not a number, or a parameter is missing
       throw std::runtime_error(fmt::format("{}:{}: no closed form of '{}'", file, number, field[0]));
     }
   }

@@ -6,7 +6,7 @@
 
 namespace tools {
 
-/// A row of a file of closed forms, with what the simulator gives.
+/// Row of a file of closed-form results, with the result of the simulator.
 struct ClosedFormRow {
   std::string name, parameters, quantity, unit;
   double expected = 0;
@@ -15,11 +15,11 @@ struct ClosedFormRow {
   bool within() const;
 };
 
-/// The rows about sound of a CSV file `case,parameters,quantity,expected,unit,tolerance,tol_kind,note`, in its order.
-/// Throws std::runtime_error.
+/// Reads the rows about sound of a CSV file `case,parameters,quantity,expected,unit,tolerance,tol_kind,note`, in its
+/// order, and computes their quantities.  Throws std::runtime_error.
 std::vector<ClosedFormRow> acoustic_closed_forms(const std::string& file);
 
-/// As a table in Markdown.
+/// Returns the rows as a table in Markdown.
 std::string closed_forms_text(const std::vector<ClosedFormRow>& rows);
 
 }  // namespace tools

@@ -21,13 +21,13 @@ using sim::Decibels;
 using sim::Modulation;
 using sim::PowerRatio;
 
-constexpr int draws = 2000;  ///< of fades and phases, for a mean
+constexpr int draws = 2000;  ///< number of fades and phases for a mean
 
 std::string packet_name(Modulation modulation, double bit_rate_bps, std::int64_t bytes) {
   return fmt::format("{}_{:g}_{}", sim::to_string(modulation), bit_rate_bps, bytes);
 }
 
-/// What the echoes do to the direct path; `random` as for sim::echoes().
+/// Effect of the echoes on the direct path; `random` as for sim::echoes().
 sim::Echoes echoes_of(const AcousticLink& link, const LinkBudget& budget, const sim::AcousticsConfig& acoustics,
                       const sim::Medium& medium, std::optional<double> water_depth_m, sim::Random* random) {
   sim::MultipathMedium water;

@@ -13,7 +13,7 @@
 
 namespace tools {
 
-/// What is sent in one piece: all of its bits must come through.
+/// Packet that is received only when all of its bits are correct.
 struct AcousticPacket {
   sim::Modulation modulation = sim::Modulation::fsk;
   double bit_rate_bps = 80;
@@ -22,19 +22,19 @@ struct AcousticPacket {
   std::optional<double> bandwidth_Hz;  ///< unset: that of the link
 };
 
-/// Of the text `fsk:80:32` (modulation, bit/s, bytes).  Nothing when it is something else.
+/// Parses the text `fsk:80:32` (modulation, bit/s, bytes).  Returns nothing for any other form.
 std::optional<AcousticPacket> parse_packet(const std::string& text);
 
-/// A frame of each rate of the WHOI Micro-Modem, 0 to 6, in its own bandwidth.
+/// Returns a frame of each rate of the WHOI Micro-Modem, 0 to 6, in its own bandwidth.
 std::vector<AcousticPacket> micromodem_packets();
 
-/// An end of a link.
+/// Pose and transducer of one end of a link.
 struct LinkEnd {
   sim::Vector3d p_W = sim::Vector3d::Zero();
   sim::Matrix3d R_WS = sim::Matrix3d::Identity();
   sim::DirectivityConfig directivity;
-  int group = -1;                      ///< of the vehicle there
-  std::optional<double> detection_dB;  ///< of the transducer there, if there is one
+  int group = -1;                      ///< of the vehicle at this end
+  std::optional<double> detection_dB;  ///< of the transducer at this end, if it has one
 };
 
 struct AcousticLink {
@@ -42,11 +42,11 @@ struct AcousticLink {
   sim::Decibels source_level{185};  ///< re 1 uPa at 1 m, on the axis
   double centre_Hz = 25000;
   double bandwidth_Hz = 4000;
-  sim::Decibels detection{6};  ///< over the noise, which the receiver needs to notice anything
+  sim::Decibels detection{6};  ///< SNR that the receiver needs to detect a signal
   sim::Decibels coding_gain{0};
 };
 
-/// What becomes of the level on its way.
+/// Terms of the sonar equation of a link (Urick 1983).
 struct LinkBudget {
   double range_m = 0;
   double travel_time_s = 0;
@@ -54,36 +54,37 @@ struct LinkBudget {
   double wind_mps = 0;
   sim::Decibels from_gain, spreading, absorption, to_gain;  ///< all are added; losses are negative
   std::optional<sim::Decibels> echoes;  ///< multipath: all inside the window over the first path, phases averaged
-  std::optional<sim::Decibels> late;    ///< multipath: level of what disturbs
+  std::optional<sim::Decibels> late;    ///< multipath: level of the echoes outside the window, which interfere
   double delay_spread_s = 0;            ///< multipath: rms
   sim::Decibels level;                  ///< of the direct path at the receiver
-  sim::Decibels noise_per_Hz, noise_reduction;  ///< the second by the receiver's directivity
-  sim::Decibels noise;                          ///< in the band, after that
+  sim::Decibels noise_per_Hz, noise_reduction;  ///< noise_reduction: by the receiver's directivity
+  sim::Decibels noise;                          ///< in the band, after noise_reduction
   sim::Decibels snr;                            ///< of the direct path
 };
 
-/// Without fading.  `water_depth_m`: of a flat bottom, for echoes, where the world's `multipath:` does not say it;
-/// unset: no bottom.
+/// Computes the budget without fading.  `water_depth_m`: depth of a flat bottom, for echoes, where the world's
+/// `multipath:` does not set it; unset: no bottom.
 LinkBudget link_budget(const AcousticLink& link, const sim::AcousticsConfig& acoustics, const sim::Medium& medium,
                        std::optional<double> water_depth_m = {});
 
-/// That a packet comes through: the mean over fades and phases of the echoes (none without `fading:` and `multipath:`).
+/// Returns the probability that a packet is received: the mean over fades and phases of the echoes (none without
+/// `fading:` and `multipath:`).
 double delivery_probability(const AcousticLink& link, const AcousticPacket& packet,
                             const sim::AcousticsConfig& acoustics, const sim::Medium& medium,
                             std::optional<double> water_depth_m = {});
 
-/// The table that `shoal acoustics` prints.
+/// Returns the table that `shoal acoustics` prints.
 std::string budget_text(const AcousticLink& link, const LinkBudget& budget, const sim::AcousticsConfig& acoustics);
-/// One row per packet: Eb/N0, bit errors and success without fading, delivery with it.
+/// Returns one row per packet: Eb/N0, bit errors and success without fading, delivery with fading.
 std::string packets_text(const AcousticLink& link, const LinkBudget& budget, const std::vector<AcousticPacket>& packets,
                          const std::vector<double>& delivered);
 
-/// A row of a table over range.
+/// Row of a table over range.
 struct RangeRow {
   LinkBudget budget;
-  std::vector<double> delivered;  ///< by packet
+  std::vector<double> delivered;  ///< delivery probability by packet
 };
-/// The receiver moves away from the sender at constant depth; ranges below the difference in depth are left out.
+/// Moves the receiver away from the sender at constant depth; omits ranges below the difference in depth.
 std::vector<RangeRow> over_range(const AcousticLink& link, const std::vector<AcousticPacket>& packets,
                                  const std::vector<double>& ranges_m, const sim::AcousticsConfig& acoustics,
                                  const sim::Medium& medium, std::optional<double> water_depth_m = {});

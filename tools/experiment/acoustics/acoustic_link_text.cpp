@@ -10,7 +10,7 @@
 #include "tools/experiment/files/gnuplot.hpp"
 #include "tools/experiment/files/scratch_directory.hpp"
 
-// How a link is shown: tables for people, CSV for programs, images.
+// Output of a link: readable tables, CSV for programs, plots.
 
 namespace tools {
 
@@ -33,6 +33,7 @@ const char* model_name(const sim::AbsorptionConfig& absorption) {
 
 std::string budget_text(const AcousticLink& link, const LinkBudget& budget, const sim::AcousticsConfig& acoustics) {
   const sim::SpreadingConfig& spreading = acoustics.spreading;
+  // Source level and propagation.
   std::string text = row_text("source level", link.source_level, "re 1 uPa at 1 m");
   text += row_text("directivity, sender", budget.from_gain, "");
   text += row_text("spreading", budget.spreading,
@@ -45,16 +46,19 @@ std::string budget_text(const AcousticLink& link, const LinkBudget& budget, cons
                                model_name(acoustics.absorption)));
   text += row_text("directivity, receiver", budget.to_gain, "");
   text += row_text("level at the receiver", budget.level, "re 1 uPa, direct path");
+  // Multipath.
   if (budget.echoes)
     text += row_text("echoes in the window", *budget.echoes,
                      fmt::format("phases averaged; delays spread by {:.2f} ms rms", 1000 * budget.delay_spread_s));
   if (budget.late && budget.late->dB() > -HUGE_VAL) text += row_text("echoes that disturb", *budget.late, "re 1 uPa");
+  // Noise.
   text +=
       row_text("noise per hertz", budget.noise_per_Hz,
                fmt::format("re 1 uPa^2/Hz; shipping {:g}, wind {:g} m/s", acoustics.noise.shipping, budget.wind_mps));
   if (budget.noise_reduction.dB() != 0)
     text += row_text("directivity index", -budget.noise_reduction, "of the receiver against noise from all sides");
   text += row_text("noise in the band", budget.noise, fmt::format("re 1 uPa; {:g} Hz", link.bandwidth_Hz));
+  // Signal-to-noise ratio and travel time.
   text += row_text("signal over noise", budget.snr, "direct path");
   if (budget.echoes && budget.late) {
     const sim::PowerRatio both = sim::to_power(budget.noise) + sim::to_power(*budget.late);

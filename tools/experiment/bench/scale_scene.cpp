@@ -71,8 +71,8 @@ std::string boxes(const Grid& grid, int count) {
   std::string text;
   sim::Random random(7, "scale_scene/boxes");
   random.begin_step(0);
-  // Corners are drawn without repetition; the outermost lie under the walls' inner faces and are left out when
-  // there are enough others.
+  // Corners are drawn without repetition; the outermost lie under the walls' inner faces and are omitted when there are
+  // enough others.
   std::vector<std::pair<int, int>> corners;
   const int margin = (grid.columns - 1) * (grid.rows - 1) >= count ? 1 : 0;
   for (int row = margin; row <= grid.rows - margin; ++row)
@@ -129,7 +129,7 @@ std::string scale_scene_text(int robots, bool one_entry_each) {
   const Grid grid = grid_for(robots);
   const double x = grid.columns * grid.cell_m;
   const double y = grid.rows * grid.cell_m;
-  // Crowds push each other all the time: the exact solver is for the rovers that stand alone.
+  // Crowds are in permanent contact: the exact solver is used for isolated rovers only.
   return "shoal: 1\nname: scale\n"
          "physics: {step_s: 0.01, quick_above_rows: 40, quick_iterations: 10, max_contacts_per_pair: 4}\nobjects:\n"
          "  - {name: ground, fixed: true, parts: [{shape: plane}]}\n" +
@@ -138,7 +138,7 @@ std::string scale_scene_text(int robots, bool one_entry_each) {
          "vehicles:\n" + rovers(grid, robots, one_entry_each);
 }
 
-/// A rover's brain, attached to the bus as a program outside would be.
+/// Controller of a rover, connected to the bus like an external program.
 struct ScaleScene::Wanderer {
   Wanderer(sim::Bus& own_bus, const std::string& name)
       : bus(own_bus),

@@ -11,20 +11,20 @@
 
 namespace tools {
 
-/// The scene that speed is measured on, as world file text: an arena of 2 m cells (1 robot: one 4 m cell; 10: 5 x 2;
-/// 100: 10 x 10; 1000: 40 x 25; otherwise as square as possible), walls 0.1 m thick and 0.5 m high just outside,
-/// robots / 4 fixed 0.5 m boxes of random yaw on cell corners, a rover in each cell (offset up to 0.4 m, random yaw).
-/// A rover: body 0.4 x 0.5 m and 20 kg, wheels 0.2 m in diameter, 180 rays over 180 degrees, 8 m, 10 Hz, 1 cm noise.
-/// `one_entry_each`: every rover its own entry in the file, instead of one with a count.
+/// Returns the world file of the benchmark scene: an arena of 2 m cells (1 robot: one 4 m cell; 10: 5 x 2; 100: 10 x
+/// 10; 1000: 40 x 25; otherwise as square as possible), walls 0.1 m thick and 0.5 m high around it, robots / 4 fixed
+/// 0.5 m boxes of random yaw on cell corners, a rover in each cell (offset up to 0.4 m, random yaw). A rover: body 0.4
+/// x 0.5 m and 20 kg, wheels 0.2 m in diameter, 180 rays over 180 degrees, 8 m, 10 Hz, 1 cm noise. `one_entry_each`:
+/// every rover has its own entry in the file, instead of one entry with a count.
 std::string scale_scene_text(int robots, bool one_entry_each = false);
 
-/// The scale scene as it runs: rovers that wander in process at 10 Hz, all reports published on the in-process bus.
+/// Running benchmark scene: rovers that wander in process at 10 Hz, all reports published on the in-process bus.
 class ScaleScene {
  public:
-  /// Throws ConfigError for `sets` (path=value) that do not fit.
+  /// Throws ConfigError for invalid `sets` (path=value).
   explicit ScaleScene(int robots, const std::vector<std::string>& sets = {}, int threads = 1);
   ~ScaleScene();
-  /// One step of the world, and what the wanderers do about the scans that came.
+  /// Takes one step of the world, and lets the wanderers react to new scans.
   void step();
   void run_for(double time_s);
   sim::World& world() { return *world_; }
@@ -39,7 +39,7 @@ class ScaleScene {
   std::vector<std::unique_ptr<Wanderer>> wanderers_;
 };
 
-/// Figures of one run of the scale scene.
+/// Performance figures of one run of the scale scene.
 struct ScaleFigures {
   int robots = 0;
   double load_s = 0;                   ///< wall time to read and build the world
@@ -55,7 +55,7 @@ struct ScaleOptions {
   std::vector<std::string> sets;  ///< path=value
 };
 
-/// Loads, warms up, measures.
+/// Loads the scene, runs the warm-up, and measures.
 ScaleFigures measure_scale(int robots, const ScaleOptions& options);
 
 }  // namespace tools

@@ -26,17 +26,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uintmax_t max_text_bytes = 8 << 20;    // of summary, metrics and world, each
-constexpr std::uintmax_t max_log_bytes = 1 << 20;     // of the end of each log
-constexpr std::uintmax_t max_file_bytes = 1 << 20;    // of each file that the world names
-constexpr std::uintmax_t max_files_bytes = 16 << 20;  // of all of them
+constexpr std::uintmax_t max_text_bytes = 8 << 20;    // limit of summary, metrics and world, each
+constexpr std::uintmax_t max_log_bytes = 1 << 20;     // limit of the end of each log
+constexpr std::uintmax_t max_file_bytes = 1 << 20;    // limit of each file that the world names
+constexpr std::uintmax_t max_files_bytes = 16 << 20;  // limit of all of them
 
 std::string size_text(std::uintmax_t bytes) {
   if (bytes < 10000) return fmt::format("{} bytes", bytes);
   return bytes < 10'000'000 ? fmt::format("{} kB", bytes / 1000) : fmt::format("{} MB", bytes / 1'000'000);
 }
 
-/// A name that is one in any file system.
+/// Returns a name that is valid in any file system.
 std::string plain_name(std::string text) {
   for (char& c : text)
     if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '_' && c != '-' && c != '.') c = '_';
@@ -97,7 +97,7 @@ class BugPacker {
     return fmt::format("bug-{}-seed{}/", plain_name(run_->world), run_->seed);
   }
 
-  /// Not a link, and nothing that only looks like a file: what is elsewhere stays there.
+  /// Returns whether the path is a regular file and not a link, so that files outside of the folder are not included.
   static bool is_plain(const fs::path& path) {
     std::error_code error;
     return fs::is_regular_file(fs::symlink_status(path, error));
@@ -162,14 +162,16 @@ class BugPacker {
     }
   }
 
-  /// Meshes, terrain, textures and currents: hashes of all, copies of small ones.
+  /// Adds meshes, terrain, textures and currents: hashes of all, copies of small ones.
   void add_world_files() {
+    // Hash the files that the world names.
     const std::string path = directory_ + "/world.yaml";
     if (!is_plain(path) || size_of(path) > max_text_bytes) return;
     sim::Diagnostics problems;
     const std::string hashes = files_text(sim::parse_config_text(read_whole_file(path), path, problems));
     if (hashes.empty()) return;
     add("files.txt", hashes, "hashes of the files that the world names");
+    // Copy small files.
     std::istringstream lines(hashes);
     std::uintmax_t copied = 0;
     for (std::string line; std::getline(lines, line);) {
@@ -189,7 +191,7 @@ class BugPacker {
     }
   }
 
-  /// The record that was named, else the only one in the folder.
+  /// Returns the named record, else the only one in the folder.
   std::string find_record() {
     if (!options_.record.empty()) return options_.record;
     std::vector<std::string> records;

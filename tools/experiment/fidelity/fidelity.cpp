@@ -42,7 +42,7 @@ FidelityState state_of(const sim::Body& body) {
           w.x(), w.y(), w.z()};
 }
 
-/// The velocity that a row starts with.  Vehicles of several bodies start as one solid.
+/// Sets the initial velocity of a row.  Vehicles of several bodies start as one rigid body.
 void set_velocity(const sim::Vehicle& vehicle, const FidelityState& start) {
   const sim::Body& first = vehicle.base();
   const sim::Matrix3d R = first.X_WB().linear();
@@ -53,7 +53,7 @@ void set_velocity(const sim::Vehicle& vehicle, const FidelityState& start) {
     body->set_velocity_W(v + w.cross(body->X_WB().translation() - origin), w);
 }
 
-/// `fields` with the numbers of a row in place of the names of columns.
+/// Replaces the names of columns in `node` by the numbers of a row.
 void fill_in(sim::ConfigNode& node, const FidelityReference& reference, const std::vector<double>& row, double scale) {
   for (sim::ConfigNode& item : node.items) fill_in(item, reference, row, scale);
   for (sim::ConfigNode::Entry& entry : node.entries) fill_in(entry.value, reference, row, scale);
@@ -63,7 +63,7 @@ void fill_in(sim::ConfigNode& node, const FidelityReference& reference, const st
     node = sim::scalar_node(sim::number_text(scale * row[reference.column(node.scalar)]), node.place);
 }
 
-/// `a, b, c`
+/// Returns `a, b, c`.
 std::vector<std::string> words_of(const std::string& text) {
   std::vector<std::string> words(1);
   for (const char c : text) {
@@ -75,7 +75,7 @@ std::vector<std::string> words_of(const std::string& text) {
   return words;
 }
 
-/// Devices of the inputs are there and take their messages.  Throws ConfigError.
+/// Checks that the devices of the inputs exist and accept their messages.  Throws ConfigError.
 void check_inputs(const FidelityCase& of, const sim::Vehicle& vehicle) {
   const std::string who = "vehicle '" + vehicle.name() + "'";
   for (const FidelityInput& input : of.inputs) {
@@ -115,6 +115,7 @@ double norm_of(const FidelityState& a, const FidelityState& b, std::size_t from)
 }
 
 void compare(FidelityResult& result) {
+  // Sums of squared differences over the rows.
   double position = 0, velocity = 0, turn = 0, heading = 0;
   for (std::size_t i = 0; i < result.t.size(); ++i) {
     const FidelityState &a = result.theirs[i], &b = result.ours[i];
@@ -126,13 +127,15 @@ void compare(FidelityResult& result) {
     heading += std::pow(std::remainder(a[5] - b[5], 2 * std::numbers::pi), 2);
     if (i > 0) result.path_m += norm_of(a, result.theirs[i - 1], 0);
   }
+  // Root mean squares.
   const auto count = static_cast<double>(result.t.size());
   result.position_rms_m = std::sqrt(position / count);
   result.velocity_rms_mps = std::sqrt(velocity / count);
   result.turn_rms_degps = std::sqrt(turn / count) / degree_rad;
   result.heading_rms_deg = std::sqrt(heading / count) / degree_rad;
+  // Comparison with the limits.
   const auto check = [&](const char* name, double value, const std::optional<double>& bar) {
-    // Not `value > bar`: a value that is not a number has missed it.
+    // Not `value > bar`, so that NaN exceeds the limit.
     if (bar && !(value <= *bar))
       result.missed.push_back(std::string(name) + " " + sim::number_text(value) + " > " + sim::number_text(*bar));
   };
@@ -159,7 +162,7 @@ FidelityState state_of(const FidelityCase& of, const FidelityReference& referenc
   return state;
 }
 
-/// All of the tree as if it were written there.
+/// Sets the source place of the whole tree.
 void set_places(sim::ConfigNode& node, const sim::SourcePlace& place) {
   node.place = place;
   for (sim::ConfigNode& item : node.items) set_places(item, place);
@@ -169,7 +172,7 @@ void set_places(sim::ConfigNode& node, const sim::SourcePlace& place) {
   }
 }
 
-/// Of the vehicle in its world: that of its file.
+/// Returns the name of the vehicle in its world, from that of its file.
 std::string vehicle_name(const FidelityCase& of) {
   std::string name = std::filesystem::path(of.vehicle).stem().string();
   for (char& c : name)
@@ -177,7 +180,7 @@ std::string vehicle_name(const FidelityCase& of) {
   return name;
 }
 
-/// What the case and the options change of the vehicle, those of the options last.
+/// Returns the changes of the vehicle by the case and the options, those of the options last.
 sim::ConfigNode overrides_of(const FidelityCase& of, const FidelityOptions& options, sim::Diagnostics& diagnostics) {
   sim::ConfigNode overrides = of.overrides;
   overrides.kind = sim::ConfigNode::Kind::map;
@@ -191,7 +194,7 @@ sim::ConfigNode overrides_of(const FidelityCase& of, const FidelityOptions& opti
   return overrides;
 }
 
-/// The same errors, with the case behind the place that each begins with.
+/// Throws the same errors, with the case after the source place that each starts with.
 [[noreturn]] void throw_for_case(const FidelityCase& of, const sim::ConfigError& error) {
   std::vector<std::string> lines = error.lines();
   for (std::string& line : lines) {
@@ -202,6 +205,7 @@ sim::ConfigNode overrides_of(const FidelityCase& of, const FidelityOptions& opti
 }
 
 FidelityResult run(const FidelityCase& of, const FidelityOptions& options) {
+  // Build the world of the case.
   if (std::error_code error; !std::filesystem::is_regular_file(of.vehicle, error))
     sim::throw_config_error(of.vehicle_place, "", "there is no vehicle file '" + of.vehicle + "'");
   const FidelityReference reference = read_fidelity_reference(of.reference);
@@ -213,6 +217,7 @@ FidelityResult run(const FidelityCase& of, const FidelityOptions& options) {
   check_inputs(of, vehicle);
   set_velocity(vehicle, state_of(of, reference, reference.rows.front()));
 
+  // Step through the rows of the reference.
   FidelityResult result;
   result.of = of;
   result.step_s = options.step_s.value_or(of.step_s);
@@ -233,7 +238,7 @@ FidelityResult run(const FidelityCase& of, const FidelityOptions& options) {
 sim::ConfigNode fidelity_world(const FidelityCase& of, const FidelityReference& reference,
                                const FidelityOptions& options) {
   const FidelityState start = state_of(of, reference, reference.rows.front());
-  // No bottom is near; that there is none at all would be said of every case.
+  // The bottom is far away; without any bottom, every case would cause a warning.
   const std::string text =
       "shoal: 1\nname: " + of.name + "\nphysics: {step_s: " + sim::number_text(options.step_s.value_or(of.step_s)) +
       "}\nmedium: {water: {}}\nobjects:\n  - name: far_bottom\n    fixed: true\n    position_m: " +

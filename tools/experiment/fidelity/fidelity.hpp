@@ -12,39 +12,40 @@
 
 namespace tools {
 
-/// A degree in rad.
+/// One degree in rad.
 inline constexpr double degree_rad = std::numbers::pi / 180;
 
-/// How columns of a reference become a command of a device.
+/// Mapping of columns of a reference to commands of a device.
 struct FidelityInput {
   std::string device;
   std::string message = "shoal.actuator_command_t";
-  std::string column;      ///< becomes `value`
-  sim::ConfigNode fields;  ///< of any other message: a text that is the name of a column becomes its number
-  double scale = 1;        ///< times every column
+  std::string column;      ///< column for the field `value`
+  sim::ConfigNode fields;  ///< fields of any other message: a text that is the name of a column is replaced by its
+                           ///< number
+  double scale = 1;        ///< factor of every column
   sim::SourcePlace place;
   void read(sim::ParamReader& in);
 };
 
-/// What a case may differ by from its reference.  Unset: any.
+/// Largest permitted differences between a case and its reference.  Unset: no limit.
 struct FidelityBars {
   std::optional<double> position_rms_m, position_max_m, velocity_rms_mps, heading_rms_deg;
   void read(sim::ParamReader& in);
 };
 
-/// A published trajectory, and how to run the same here.
+/// Published trajectory, and the setup that reproduces it.
 struct FidelityCase {
   std::string name;
   std::string text;           ///< a sentence for the report
-  std::string group, title;   ///< the vehicle it belongs to
+  std::string group, title;   ///< group: the vehicle that the case belongs to
   std::string vehicle;        ///< path of the vehicle file
   std::string reference;      ///< path of the CSV
-  sim::ConfigNode world;      ///< dotted path: value, of the world around the vehicle
-  sim::ConfigNode overrides;  ///< dotted path: value, of the vehicle
+  sim::ConfigNode world;      ///< changes of the world around the vehicle, dotted path: value
+  sim::ConfigNode overrides;  ///< changes of the vehicle, dotted path: value
   double step_s = 0.005;
   std::vector<FidelityInput> inputs;
   FidelityBars bars;
-  double trim_heave_m = 0, trim_pitch_rad = 0;  ///< the reference's level is not ours
+  double trim_heave_m = 0, trim_pitch_rad = 0;  ///< trim of the reference that differs from ours
   sim::SourcePlace place, vehicle_place;        ///< in the file of cases
 };
 
@@ -53,34 +54,35 @@ struct FidelityFile {
   std::vector<FidelityCase> cases;
 };
 
-/// Throws ConfigError.
+/// Reads a file of cases.  Throws ConfigError.
 FidelityFile read_fidelity_file(const std::string& path);
 
-/// Names of the state in a reference: place (m) in north-east-down, roll, pitch and yaw (rad), velocity over ground
-/// (m/s) and turn rates (rad/s) in forward-right-down.
+/// Names of the state in a reference: position (m) in north-east-down, roll, pitch and yaw (rad), velocity over ground
+/// (m/s) and angular rates (rad/s) in forward-right-down (SNAME notation, Fossen 2021).
 inline constexpr std::array<const char*, 12> fidelity_states = {"x", "y", "z", "phi", "theta", "psi",
                                                                 "u", "v", "w", "p",   "q",     "r"};
 using FidelityState = std::array<double, 12>;
 
-/// A table of numbers with named columns, the first of them `t` in seconds, rising.
+/// Table of numbers with named columns, the first of them `t` in seconds, increasing.
 struct FidelityReference {
   std::vector<std::string> columns;
   std::vector<std::vector<double>> rows;
-  /// Index of a column.  Throws ConfigError that names the file when there is none.
+  /// Returns the index of a column.  Throws ConfigError with the name of the file when it does not exist.
   std::size_t column(const std::string& name) const;
   std::string file;
 };
 
-/// Reads a CSV of two rows or more with numbers up to 1e9; a unit in brackets after a name is passed over.  Throws
+/// Reads a CSV file of at least two rows with numbers up to 1e9; a unit in brackets after a name is ignored.  Throws
 /// ConfigError with file and line.
 FidelityReference read_fidelity_reference(const std::string& path);
 
 struct FidelityOptions {
   std::optional<double> step_s;                  ///< instead of that of the case
-  std::map<std::string, std::string> overrides;  ///< of the vehicle, over those of the case: dotted path, YAML text
+  std::map<std::string, std::string> overrides;  ///< changes of the vehicle, applied after those of the case: dotted
+                                                 ///< path, YAML text
 };
 
-/// A case as it went: the reference, our states at the times of its rows, and how far they are apart.
+/// Result of a case: the reference, our states at the times of its rows, and the differences.
 struct FidelityResult {
   FidelityCase of;
   double step_s = 0;
@@ -88,19 +90,18 @@ struct FidelityResult {
   std::vector<FidelityState> theirs, ours;
   double position_rms_m = 0, position_max_m = 0;
   double velocity_rms_mps = 0;  ///< of the velocity vector
-  double turn_rms_degps = 0;    ///< of the turn rate vector
+  double turn_rms_degps = 0;    ///< of the angular rate vector
   double heading_rms_deg = 0;
   double path_m = 0;                ///< length of the reference's track
-  std::vector<std::string> missed;  ///< bars, as `position_rms_m 0.3 > 0.1`
+  std::vector<std::string> missed;  ///< limits that were exceeded, as `position_rms_m 0.3 > 0.1`
 };
 
-/// The world of a case.  Its values localise themselves in the file of cases, those of `options` the option.
+/// Returns the world of a case.  The source place of its values is the file of cases, that of `options` the option.
 sim::ConfigNode fidelity_world(const FidelityCase& of, const FidelityReference& reference,
                                const FidelityOptions& options = {});
 
-/// Runs the vehicle of a case in its own world, its devices commanded over the in-process bus with what the
-/// reference's inputs were; row k holds from its time to that of row k + 1.  Throws ConfigError, which names the case,
-/// and PhysicsFault.
+/// Runs the vehicle of a case in its own world.  Its devices receive the inputs of the reference over the in-process
+/// bus; row k applies from its time to that of row k + 1.  Throws ConfigError, which names the case, and PhysicsFault.
 FidelityResult run_fidelity_case(const FidelityCase& of, const FidelityOptions& options = {});
 
 }  // namespace tools

@@ -110,6 +110,7 @@ void FidelityBars::read(sim::ParamReader& in) {
 }
 
 FidelityFile read_fidelity_file(const std::string& path) {
+  // Read the file.
   sim::Diagnostics diagnostics;
   const sim::ConfigNode tree = sim::load_config_file(path, diagnostics);
   diagnostics.throw_if_any();
@@ -118,6 +119,7 @@ FidelityFile read_fidelity_file(const std::string& path) {
   file.read(in);
   in.finish();
   diagnostics.throw_if_any();
+  // Merge each case with the defaults of its group.
   const std::filesystem::path folder = std::filesystem::path(path).parent_path();
   FidelityFile result{file.text, {}};
   for (const GroupEntry& group : file.groups)

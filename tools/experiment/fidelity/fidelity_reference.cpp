@@ -12,7 +12,7 @@ namespace tools {
 
 namespace {
 
-constexpr double largest = 1e9;  ///< number in a reference
+constexpr double largest = 1e9;  ///< limit of the numbers in a reference
 
 [[noreturn]] void fail(const std::string& file, int line, const std::string& text) {
   sim::throw_config_error({sim::intern_file_name(file), line, line > 0 ? 1 : 0}, "", text);
@@ -71,6 +71,7 @@ std::vector<double> numbers_of(const std::string& path, int line, const std::str
 FidelityReference read_fidelity_reference(const std::string& path) {
   FidelityReference reference;
   reference.file = path;
+  // Names of the columns, without units.
   std::ifstream in = opened(path);
   std::string line;
   if (!std::getline(in, line)) fail(path, 0, "is empty");
@@ -78,6 +79,7 @@ FidelityReference read_fidelity_reference(const std::string& path) {
   if (reference.columns.front() != "t")
     fail(path, 1,
          "the first column must be t, got '" + sim::shortened(sim::printable(reference.columns.front())) + "'");
+  // Rows with increasing time.
   for (int number = 2; std::getline(in, line); ++number) {
     if (line.empty() || line == "\r") continue;
     std::vector<double> row = numbers_of(path, number, line);

@@ -34,7 +34,7 @@ std::string rows_of(const FidelityResult& result, const std::vector<FidelityStat
     text += fmt::format("{:.9g}", result.t[i]);
     for (std::size_t k = 0; k < states[i].size(); ++k) {
       double value = states[i][k];
-      // Both turn about the same whole turns.
+      // Both are shifted by the same number of turns.
       if (for_plot && k == 5) value = result.theirs[i][k] + std::remainder(value - result.theirs[i][k], 2 * M_PI);
       if (for_plot && ((k >= 3 && k < 6) || k >= 9)) value /= degree_rad;
       text += separator + fmt::format("{:.9g}", value);
@@ -58,7 +58,7 @@ std::string panel(const char* title, const char* x, std::initializer_list<std::p
   return text + "\n";
 }
 
-/// Tics of the track to the east: about three.
+/// Returns the interval of the east axis for about three tics.
 double tics_of(const FidelityResult& result) {
   double low = result.theirs[0][1], high = low;
   for (const FidelityState& state : result.theirs) {
@@ -70,7 +70,7 @@ double tics_of(const FidelityResult& result) {
   return power * (wide / power >= 5 ? 5 : wide / power >= 2 ? 2 : 1);
 }
 
-/// Four digits, and no minus before a zero.
+/// Formats four digits, without a minus before zero.
 std::string digits(double value) {
   const std::string text = fmt::format("{:.4f}", value);
   return text == "-0.0000" ? "0.0000" : text;
@@ -78,6 +78,7 @@ std::string digits(double value) {
 
 void plot(const std::filesystem::path& image, const FidelityResult& result) {
   const ScratchDirectory scratch;
+  // Data and script of the plot.
   write(scratch.path / "theirs", rows_of(result, result.theirs, ' ', true));
   write(scratch.path / "ours", rows_of(result, result.ours, ' ', true));
   write(scratch.path / "plot.gp",
@@ -93,6 +94,7 @@ void plot(const std::filesystem::path& image, const FidelityResult& result) {
             panel("speed", "1", {{"8", "surge"}}) + panel("speed across", "1", {{"9", "sway"}, {"10", "heave"}}) +
             "set ylabel 'deg/s'\n" + panel("turn rates", "1", {{"11", "p"}, {"12", "q"}, {"13", "r"}}) +
             "unset multiplot\n");
+  // Run gnuplot.
   if (!run_gnuplot(scratch.path.string(), "plot.gp", std::chrono::seconds(60), [] { return false; })) {
     std::ifstream log(scratch.path / "plot.log");
     std::string line;

@@ -17,7 +17,7 @@ namespace tools {
 
 namespace {
 
-/// A shell in its own process group: Ctrl-C on the terminal must not reach gnuplot.
+/// Runs a shell in its own process group: Ctrl-C on the terminal must not reach gnuplot.
 pid_t start(std::string directory, std::string script) {
   std::string shell = "sh";
   std::string option = "-c";

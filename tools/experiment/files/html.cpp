@@ -60,7 +60,7 @@ pre { background: var(--band); padding: .75rem; overflow-x: auto; font-size: .85
 }
 )";
 
-/// Bytes of the UTF-8 character at the front; 0: it is none.
+/// Returns the bytes of the UTF-8 character at the front; 0: invalid.
 std::size_t utf8_length(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned char first = byte(0);
@@ -69,7 +69,7 @@ std::size_t utf8_length(std::string_view text) {
   if (first < 0xc2 || first > 0xf4 || text.size() < length) return 0;
   for (std::size_t i = 1; i < length; ++i)
     if ((byte(i) & 0xc0) != 0x80) return 0;
-  // Overlong forms, surrogates, beyond Unicode.
+  // Reject overlong forms, surrogates and values beyond Unicode.
   if ((first == 0xe0 && byte(1) < 0xa0) || (first == 0xed && byte(1) > 0x9f)) return 0;
   if ((first == 0xf0 && byte(1) < 0x90) || (first == 0xf4 && byte(1) > 0x8f)) return 0;
   return length;
@@ -89,6 +89,7 @@ std::string html_text(std::string_view text) {
   while (!text.empty()) {
     const std::size_t length = utf8_length(text);
     const char c = text.front();
+    // Replace control characters and invalid bytes, escape markup.
     const bool control = length == 1 && ((c >= 0 && c < 0x20 && c != '\n' && c != '\t') || c == 0x7f);
     if (length == 0 || control)
       out += "\xef\xbf\xbd";

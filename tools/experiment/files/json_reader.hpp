@@ -7,10 +7,10 @@
 
 namespace tools {
 
-/// Takes values out of a JSON object that may hold anything.  Errors are std::runtime_error: file, key, rule, value.
+/// Reads values of a JSON object with type checks.  Errors are std::runtime_error: file, key, rule, value.
 class JsonReader {
  public:
-  /// `where`: file, and the place in it when that is not its top.
+  /// `where`: file, and the path of the object in it when that is not the root.
   JsonReader(const nlohmann::ordered_json& json, std::string where) : json_(json), where_(std::move(where)) {
     if (!json.is_object()) throw std::runtime_error(where_ + ": must be an object, got " + json.type_name());
   }

@@ -21,7 +21,7 @@ std::uint32_t number_at(std::string_view bytes, std::size_t at) {
 // Portable Network Graphics (W3C), section 5: chunks of length, type, data and CRC-32 of type and data.
 bool is_whole_png(std::string_view bytes) {
   constexpr std::string_view signature = "\x89PNG\r\n\x1a\n";
-  constexpr std::size_t around = 12;  // bytes of a chunk beside its data
+  constexpr std::size_t around = 12;  // bytes of a chunk in addition to its data
   if (!bytes.starts_with(signature)) return false;
   bool first = true;
   for (std::size_t at = signature.size(); bytes.size() - at >= around; first = false) {

@@ -5,7 +5,7 @@
 
 namespace tools {
 
-/// The bytes are a PNG file from its signature to its last chunk, and the checksum of each chunk is right.
+/// Returns whether the bytes are a PNG file from its signature to its last chunk, in which each checksum is valid.
 bool is_whole_png(std::string_view bytes);
 
 }  // namespace tools

@@ -9,7 +9,7 @@
 
 namespace tools {
 
-/// A temporary directory for files that another program reads; it is removed with its content.
+/// Temporary directory for files that another program reads; it is removed with its content.
 class ScratchDirectory {
  public:
   /// Throws std::runtime_error.

@@ -8,20 +8,20 @@ struct archive;
 
 namespace tools {
 
-/// Writes a tar file, compressed by gzip.  A reader finds it whole or not at all.
+/// Writer of a tar file, compressed by gzip.  The file appears under its name only when it is complete.
 class TarFile {
  public:
-  /// Throws std::runtime_error with path and reason, as all functions here.
+  /// Throws std::runtime_error with path and reason, like all functions here.
   explicit TarFile(const std::string& path);
-  /// What was not finished is removed.
+  /// Removes an unfinished file.
   ~TarFile();
   TarFile(const TarFile&) = delete;
   TarFile& operator=(const TarFile&) = delete;
 
   void add(const std::string& name, const std::string& bytes);
-  /// The bytes of a file.
+  /// Adds the content of a file.
   void add_file(const std::string& name, const std::string& path);
-  /// Closes it and gives it its name.
+  /// Closes the archive and renames it to its final name.
   void finish();
 
  private:

@@ -46,7 +46,7 @@ void add(Record& record, const shoal::MessageSchema& schema, const bridges::LogE
   record.utime_us.push_back(utime_us);
 }
 
-/// The interval between messages in s.
+/// Returns the interval between messages in s.
 double interval_s(const Record& record, const std::string& channel) {
   if (record.utime_us.size() < 9)
     throw std::runtime_error(fmt::format("channel '{}' has {} messages; an Allan deviation needs at least 9", channel,
@@ -64,12 +64,12 @@ double interval_s(const Record& record, const std::string& channel) {
   return mean_us * 1e-6;
 }
 
-/// `angular_velocity_radps` of `angular_velocity_radps[2]`.
+/// Returns `angular_velocity_radps` for `angular_velocity_radps[2]`.
 std::string array_of(const std::string& field) {
   return field.substr(0, field.find('['));
 }
 
-/// The unit that ends the names of Shoal's fields; empty when unknown.
+/// Returns the unit suffix of the names of Shoal's fields; empty when unknown.
 std::string unit_of(const std::string& array) {
   for (const auto& [ending, unit] :
        {std::pair{"_radps", "rad/s"}, {"_mps2", "m/s^2"}, {"_mps", "m/s"}, {"_uT", "uT"}, {"_rad", "rad"}, {"_m", "m"}})
@@ -80,20 +80,23 @@ std::string unit_of(const std::string& array) {
 bool drawable(const AllanCurve& curve) {
   for (const sim::AllanPoint& point : curve.points)
     if (point.deviation > 0) return true;
-  return false;  // a logarithm of zeros or NaN
+  return false;  // zeros and NaN have no logarithm
 }
 
 std::string script(const AllanTable& table, const std::string& csv, const std::string& png) {
+  // One panel for each array with drawable curves.
   std::vector<std::string> arrays;
   for (const AllanCurve& curve : table.curves)
     if (drawable(curve) && (arrays.empty() || arrays.back() != array_of(curve.field)))
       arrays.push_back(array_of(curve.field));
   if (arrays.empty()) throw std::runtime_error("nothing to draw: every Allan deviation is zero or NaN");
+  // Settings common to all panels.
   std::string text = fmt::format(
       "set datafile separator ','\nset terminal pngcairo size 1000,{}\nset output {}\n"
       "set logscale xy\nset format y '10^{{%T}}'\nset grid\nset key top right\nset xlabel 'averaging time (s)'\n"
       "set multiplot layout {},1 title {} noenhanced\n",
       60 + 440 * arrays.size(), gnuplot_text(png), arrays.size(), gnuplot_text("Allan deviation of " + table.channel));
+  // Curves of each panel.
   for (const std::string& array : arrays) {
     text += fmt::format("set ylabel {} noenhanced\nplot ", gnuplot_text(array + unit_of(array)));
     std::string separator;

@@ -9,27 +9,27 @@
 
 namespace tools {
 
-/// The Allan deviation of one number of the messages.
+/// Allan deviation (IEEE 952-1997) of one numeric field of the messages.
 struct AllanCurve {
   std::string field;  ///< such as `angular_velocity_radps[2]`
   std::vector<sim::AllanPoint> points;
 };
 
-/// Of one channel of a log.
+/// Allan deviations of one channel of a log.
 struct AllanTable {
   std::string channel;
   double dt_s = 0;  ///< between messages, by their `utime`
   std::vector<AllanCurve> curves;
 };
 
-/// Of every double that is an element of an array of fixed size, and of `rate_error` of a clock.  Throws
-/// std::runtime_error when the channel has too few messages, has several types, or its messages do not come at equal
-/// intervals (1 % of one is allowed).
+/// Computes the deviation of every double that is an element of an array of fixed size, and of `rate_error` of a clock.
+/// Throws std::runtime_error when the channel has too few messages, has several types, or its messages are not
+/// equidistant in time (within 1 %).
 AllanTable allan_table(const std::string& log, const std::string& channel, const shoal::MessageTypes& types);
 
-/// `field,tau_s,deviation,relative_error`.
+/// Returns the table as CSV: `field,tau_s,deviation,relative_error`.
 std::string to_csv(const AllanTable& table);
-/// Draws the table into a PNG with gnuplot; one panel for each array.  Throws std::runtime_error.
+/// Plots the table into a PNG file with gnuplot; one panel for each array.  Throws std::runtime_error.
 void plot(const AllanTable& table, const std::string& png);
 
 }  // namespace tools

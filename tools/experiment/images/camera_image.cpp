@@ -21,7 +21,7 @@ std::string metadata_of(const shoal::image_t& message, const std::string& key) {
   return {};
 }
 
-/// Rows of `row_stride` bytes, without what pads them.
+/// Copies rows of `row_stride` bytes, without their padding.
 template <typename T>
 sim::Image<T> raw_image(const shoal::image_t& message, int channels) {
   sim::Image<T> image(message.width, message.height, channels);
@@ -47,11 +47,13 @@ sim::Image8 displayable_16_bits(const shoal::image_t& message, const sim::Image1
 
 sim::Image8 displayable(const shoal::image_t& message) {
   using namespace devices;
+  // Check the size.
   const bool sides = message.width >= 1 && message.height >= 1 && message.width <= sim::max_image_side_px &&
                      message.height <= sim::max_image_side_px;
   if (!sides || std::int64_t{message.width} * message.height > sim::max_image_pixels)
     throw std::runtime_error(fmt::format("the image has an invalid size: {} x {}", message.width, message.height));
   const auto bytes = std::as_bytes(std::span(message.data));
+  // Convert by pixel format.
   switch (message.pixelformat) {
     case pixel_format_grey:
       return raw_image<std::uint8_t>(message, 1);

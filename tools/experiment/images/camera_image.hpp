@@ -6,8 +6,8 @@
 
 namespace tools {
 
-/// An image that a camera reported, for people to look at.  Throws std::runtime_error when its size, format and data
-/// do not fit together; sim::ImageError when what is compressed is damaged.
+/// Converts the image of a camera message to a displayable one.  Throws std::runtime_error when its size, format and
+/// data are inconsistent; sim::ImageError when compressed data is damaged.
 sim::Image8 displayable(const shoal::image_t& message);
 
 }  // namespace tools

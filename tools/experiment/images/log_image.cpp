@@ -18,15 +18,17 @@ namespace tools {
 
 namespace {
 
-/// The messages of one channel: all of them where all are drawn, else the one that is drawn.
+/// Messages of one channel: all of them where all are drawn, else the selected one.
 class Chosen {
  public:
   Chosen(const std::string& channel, const ImageChoice& choice) : channel_(channel), choice_(choice) {}
 
   void take(const bridges::LogEvent& event) {
+    // Start of simulated time.
     if (event.channel == "sim.info" && !start_known_) learn_start(event);
     if (!first_utime_) first_utime_ = event.utime;
     if (event.channel != channel_) return;
+    // Type and time of the message.
     const std::int64_t type = shoal::fingerprint(event.payload);
     if (count_ == 0) type_ = type;
     if (type != type_) throw std::runtime_error("messages of several types");
@@ -37,6 +39,7 @@ class Chosen {
       payloads_.emplace_back(event.payload);
       return;
     }
+    // Keep the message nearest to the choice.
     const double away_s = choice_.at_s ? std::abs(last_s_ - *choice_.at_s) : 0;
     const bool desired = choice_.number ? number == *choice_.number
                          : choice_.at_s ? payloads_.empty() || away_s < away_s_
@@ -79,7 +82,7 @@ class Chosen {
       first_utime_ = shoal::decode<shoal::sim_info_t>(event.payload, shoal::Finite::any).epoch_utime;
       start_known_ = true;
     } catch (const shoal::MessageError&) {
-      // A log of something else that uses the name.
+      // The channel belongs to another program that uses the name.
     }
   }
 
@@ -87,7 +90,7 @@ class Chosen {
     return static_cast<double>(event.utime - *first_utime_) * 1e-6;
   }
 
-  /// A time may lie beyond the first and the last message by one period, or by a second where there is one message.
+  /// Permits a time up to one period before the first and after the last message, or one second for a single message.
   double slack_s() const { return count_ > 1 ? (last_s_ - first_s_) / (count_ - 1) : 1; }
 
   const std::string& channel_;

@@ -12,12 +12,12 @@ namespace tools {
 
 namespace {
 
-/// What must be in the image of one vehicle or object.
+/// Part of a vehicle or object that must be inside the image.
 struct Subject {
   std::string name;
   int group = -1;
   Eigen::AlignedBox3d box;
-  std::vector<sim::Vector3d> points_W;  ///< middles of its parts
+  std::vector<sim::Vector3d> points_W;  ///< centres of its parts
   bool is_vehicle = true;
 };
 
@@ -47,7 +47,7 @@ std::vector<Subject> subjects_of(const sim::World& world, bool everything) {
   return subjects;
 }
 
-/// The subjects, and something of what is around them.
+/// Returns the bounding box of the subjects with some of their surroundings.
 Eigen::AlignedBox3d framed(const std::vector<Subject>& subjects) {
   Eigen::AlignedBox3d all;
   double max_m = 0;
@@ -61,7 +61,7 @@ Eigen::AlignedBox3d framed(const std::vector<Subject>& subjects) {
   return {all.min() - margin, all.max() + margin};
 }
 
-/// So far back from the middle of a box that each of its corners is inside the image, with a little air around.
+/// Moves the camera back from the centre of a box until each of its corners is inside the image, with a small margin.
 sim::Pose camera_pose_for(const Eigen::AlignedBox3d& box, const sim::Vector3d& back_W,
                           const sim::OpticsConfig& optics) {
   const sim::Pose X_WS = look_at(box.center() + back_W, box.center());
@@ -85,7 +85,7 @@ bool is_visible(const sim::World& world, const Subject& subject, const sim::Vect
   });
 }
 
-/// How many pixels a vehicle is wide, as it is seen from its distance.
+/// Returns the width of a vehicle in pixels at its distance.
 double pixels_of(const Subject& subject, const sim::Vector3d& eye_W, const sim::OpticsConfig& optics) {
   const double focal_px = 0.5 * optics.width / std::tan(0.5 * optics.fov_rad);
   return focal_px * subject.box.diagonal().norm() / (subject.box.center() - eye_W).norm();
@@ -107,9 +107,9 @@ sim::Pose look_at(const sim::Vector3d& eye_W, const sim::Vector3d& look_W) {
 Overview overview_of(const sim::World& world, const sim::OpticsConfig& optics, bool everything) {
   std::vector<Subject> subjects = subjects_of(world, everything);
   const Eigen::AlignedBox3d box = framed(subjects);
-  // Of objects it is enough that they are framed.
+  // Objects only need to be framed.
   std::erase_if(subjects, [](const Subject& each) { return !each.is_vehicle; });
-  // Clockwise from the south-west, and higher when that does not help.
+  // Clockwise from the south-west, and from other heights when vehicles are hidden.
   const double south_west_rad = std::atan2(-0.75, -0.5);
   std::optional<Overview> best;
   for (const double height_rad : {0.6, 1.0, 0.3, 1.4})
@@ -124,6 +124,7 @@ Overview overview_of(const sim::World& world, const sim::OpticsConfig& optics, b
       if (best && view.hidden.size() >= best->hidden.size()) continue;
       best = std::move(view);
     }
+  // Vehicles that are too small to see.
   constexpr double tiny_px = 6;
   for (const Subject& subject : subjects)
     if (pixels_of(subject, best->X_WS.translation(), optics) < tiny_px) best->tiny.push_back(subject.name);

@@ -13,19 +13,20 @@ class World;
 
 namespace tools {
 
-/// An overview image of a world.
+/// Camera pose for an overview image of a world.
 struct Overview {
   sim::Pose X_WS = sim::Pose::Identity();  ///< of a camera, which looks along x of S
-  std::vector<std::string> hidden;         ///< vehicles behind something, from here
+  std::vector<std::string> hidden;         ///< vehicles that are occluded from this pose
   std::vector<std::string> tiny;           ///< vehicles less than a few pixels wide
 };
 
-/// Looks from `eye_W` to `look_W`, upright; straight up or down, north is up in the image.
+/// Returns the pose of an upright camera at `eye_W` that looks at `look_W`; straight up or down, north is up in the
+/// image.
 sim::Pose look_at(const sim::Vector3d& eye_W, const sim::Vector3d& look_W);
 
-/// All vehicles with all their parts inside the image, and some of what is around them.  From the south-west and above
-/// where they can be seen from there, else from the direction and height from which the most of them can.  In a world
-/// without vehicles, and with `everything`: all objects too, apart from planes.
+/// Finds a pose from which all vehicles with all their parts are inside the image, with some of their surroundings:
+/// from the south-west and above where they are visible from there, else from the direction and height from which most
+/// of them are. In a world without vehicles, and with `everything`, all objects except planes are included.
 Overview overview_of(const sim::World& world, const sim::OpticsConfig& optics, bool everything = false);
 
 }  // namespace tools

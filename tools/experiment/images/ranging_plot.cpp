@@ -31,10 +31,10 @@ constexpr const char* depth_palette =
     "set palette defined (0 '#30123b', 0.25 '#4686fb', 0.5 '#1ae4b6', 0.75 '#faba39', "
     "1 '#7a0403')\nset rmargin at screen 0.8\n";
 
-/// What gnuplot gets: a file of bytes or of text, and the commands that draw it.
+/// Input of gnuplot: a file of bytes or of text, and the commands that draw it.
 struct Drawing {
   std::string data;
-  std::string commands;  ///< `data` is the file's name
+  std::string commands;  ///< `data` is the file name
 };
 
 template <typename Message>
@@ -49,32 +49,34 @@ Message only(const std::vector<sim::Bytes>& payloads) {
   return shoal::decode<Message>(payloads.front(), shoal::Finite::required);
 }
 
-/// Counts that a message gives must be those of its data: a log may come from anywhere.
+/// Checks that the counts in a message match its data, because a log may have any origin.
 void check_count(const char* what, std::size_t has, std::int64_t reports) {
   if (reports < 0 || has != static_cast<std::size_t>(reports))
     throw std::runtime_error(fmt::format("a message says it has {} {}, but has {}", reports, what, has));
 }
 
-/// A raster of bytes with its lower left corner at (x, y).
+/// Returns the command for a raster of bytes with its lower left corner at (x, y).
 std::string image_command(int width, int height, double x, double y, double dx, double dy) {
   return fmt::format("plot 'data' binary array=({},{}) format='%uchar' origin=({},{}) dx={} dy={} with image notitle\n",
                      width, height, x + dx / 2, y + dy / 2, dx, dy);
 }
 
 Drawing draw(const shoal::sonar_image_t& image) {
+  // Check the dimensions.
   check_count("bytes", image.data.size(), image.size);
   if (image.nbins < 1 || image.nbeams < 1 || image.size != std::int64_t{image.nbins} * image.nbeams ||
       !(image.range_max_m > image.range_min_m) || !(image.range_min_m >= 0))
     throw std::runtime_error("the image has an invalid size");
   // A single beam is drawn as a narrow wedge.
   const double half_rad = std::clamp(0.5 * std::abs(image.radstep) * image.nbeams, 0.05, std::numbers::pi);
+  // Extent and resolution of the raster.
   const double half_width_m = image.range_max_m * (half_rad < std::numbers::pi / 2 ? std::sin(half_rad) : 1);
   const double low_m = half_rad < std::numbers::pi / 2 ? 0 : -image.range_max_m;
   const double cell_m = 2 * half_width_m / 500;
   const int width = 500, height = static_cast<int>((image.range_max_m - low_m) / cell_m);
   const double bin_m = (image.range_max_m - image.range_min_m) / image.nbins;
   Drawing drawing;
-  // x of the image is to the right, that is -y of the sensor; up is forward.
+  // x of the image points to the right, which is -y of the sensor; up is forward.
   for (int row = 0; row < height; ++row)
     for (int column = 0; column < width; ++column) {
       const double right_m = -half_width_m + (column + 0.5) * cell_m, forward_m = low_m + (row + 0.5) * cell_m;
@@ -91,14 +93,16 @@ Drawing draw(const shoal::sonar_image_t& image) {
 }
 
 Drawing draw(const std::vector<shoal::side_scan_t>& lines) {
+  // Width of a line with the gap between the sides.
   const int bins = lines.front().nbins;
   const double range_m = lines.front().range_max_m, near_m = lines.front().range_min_m;
   if (bins < 1 || !(range_m > near_m) || !(near_m >= 0)) throw std::runtime_error("the lines have an invalid size");
   const double bin_m = (range_m - near_m) / bins;
-  const double unheard = std::round(2 * near_m / bin_m);  // between the two sides
+  const double unheard = std::round(2 * near_m / bin_m);  // gap between the two sides
   const double width = 2.0 * bins + unheard;
   if (unheard > 10000 || width * static_cast<double>(lines.size()) > max_raster_bytes)
     throw std::runtime_error("the lines have an invalid size");
+  // Append each line, port mirrored.
   Drawing drawing;
   for (const auto& line : lines) {
     if (line.nbins != bins) throw std::runtime_error("the number of bins changes");

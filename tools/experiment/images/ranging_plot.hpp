@@ -9,11 +9,11 @@
 
 namespace tools {
 
-/// True of types of which all messages are drawn in one plot, side_scan_t and multibeam_t; false where each message is
-/// its own image.
+/// Returns true for types of which all messages are drawn in one plot, side_scan_t and multibeam_t; false for types of
+/// which each message is one image.
 bool are_all_drawn(std::int64_t fingerprint);
 
-/// Plots what a range sensor recorded, by gnuplot, as a PNG file: all payloads where are_all_drawn(), else the first.
+/// Plots a recording of a range sensor with gnuplot, as a PNG file: all payloads where are_all_drawn(), else the first.
 /// All are of one type.  Throws std::runtime_error with the reason.
 void draw_ranging(const std::vector<sim::Bytes>& payloads, const std::string& title, const std::string& png);
 

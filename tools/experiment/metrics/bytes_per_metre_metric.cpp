@@ -7,7 +7,7 @@ namespace tools {
 
 namespace {
 
-/// What a metre of rms error less cost in bytes.
+/// Bytes sent per metre of reduced rms error.
 class BytesPerMetreMetric final : public Metric {
  public:
   static constexpr const char* meaning = "what a metre of smaller position error cost in bytes";
@@ -17,7 +17,7 @@ class BytesPerMetreMetric final : public Metric {
             {"reduction_m", "m", "rms error of `against` minus rms error of `metric`"}};
   }
   struct Params final : ModemsParams {
-    std::string metric, against;  ///< position errors with and without the help of messages
+    std::string metric, against;  ///< position errors with and without messages of others
     void read(sim::ParamReader& in) override {
       in.require("metric");
       read_known_name(in, "metric", metric, "position_error", "the error with messages");
@@ -45,7 +45,7 @@ class BytesPerMetreMetric final : public Metric {
                ? "the error of '" + params_.metric + "' is not known to be the smaller one"
                : "one of the errors of '" + params_.metric + "' and '" + params_.against + "' is not known";
   }
-  // No state of its own: the modems count, and the other metrics keep the errors.
+  // No state: the modems count, and the other metrics keep the errors.
   void visit_state(sim::StateArchive&, History) override {}
 
  private:

@@ -11,7 +11,7 @@ namespace tools {
 
 namespace {
 
-/// Contacts that began between vehicles, or a vehicle and an object.
+/// Contacts that started between vehicles, or a vehicle and an object.
 class CollisionMetric final : public Metric {
  public:
   static constexpr const char* meaning = "number of contacts";
@@ -20,7 +20,7 @@ class CollisionMetric final : public Metric {
             {"first_s", "s", "simulated time of the first one; none: there was no contact"}};
   }
   struct Params final : sim::MetricParams {
-    std::string with;  ///< vehicle or object; empty: all, but planes
+    std::string with;  ///< vehicle or object; empty: all except planes
     void read(sim::ParamReader& in) override {
       read_vehicle(in);
       read_known_name(in, "with", with, sim::movable_kind, "with this one alone; unset: with all, but planes");
@@ -44,7 +44,7 @@ class CollisionMetric final : public Metric {
 
   void visit_state(sim::StateArchive& archive, History) override {
     archive(last_touch_s_, count_, first_s_);
-    // At once, not after the next step: a world that was built again watches no contacts yet.
+    // Immediately, not after the next step: a restored world does not report contacts yet.
     if (archive.restoring()) choose_groups();
   }
 
@@ -78,7 +78,7 @@ class CollisionMetric final : public Metric {
     }
   }
 
-  /// The number of a group is used again; `who` is not.
+  /// The number of a group may be reused; `who` is unique.
   void add_group(int group, std::int64_t who, Group role) {
     groups_[group] = role;
     whose_[group] = who;

@@ -9,7 +9,7 @@ namespace tools {
 
 namespace {
 
-/// Whether the covariance of an estimate says how large its errors are.
+/// Consistency of an estimate: whether its covariance matches its errors.
 class ConsistencyMetric final : public EstimateMetric {
  public:
   static constexpr const char* meaning = "whether the covariance of the estimates says how large their errors are";

@@ -40,7 +40,7 @@ std::string meaning_of(sim::SignalLoss loss) {
   return "";
 }
 
-/// Packets of modems, and what became of them.
+/// Packets of modems and their delivery.
 class DeliveryMetric final : public Metric {
  public:
   static constexpr const char* meaning = "packets of modems and their delivery";
@@ -80,7 +80,7 @@ class DeliveryMetric final : public Metric {
     for (const auto& [cause, count] : counts.lost) add(figures, "lost_" + cause, static_cast<double>(count));
   }
   std::string why_none(const std::string&) const override { return "nothing was sent to these modems"; }
-  // No state of its own: the modems and the acoustic channel count, and go back with the world.
+  // No state: the modems and the acoustic channel count, and are restored with the world.
   void visit_state(sim::StateArchive&, History) override {}
 
  private:

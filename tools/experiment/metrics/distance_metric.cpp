@@ -5,7 +5,7 @@ namespace tools {
 
 namespace {
 
-/// How far a vehicle travelled.
+/// Distance travelled by a vehicle.
 class DistanceMetric final : public Metric {
  public:
   static constexpr const char* meaning = "distance travelled by a vehicle";
@@ -36,7 +36,7 @@ class DistanceMetric final : public Metric {
   const Params& params_;
   const sim::World& world_;
   const TruthHistory& truth_;
-  double before_m_ = 0;  ///< travelled before it counts
+  double before_m_ = 0;  ///< distance travelled before the metric counts
 };
 
 SHOAL_METRIC("distance", DistanceMetric);

@@ -17,13 +17,13 @@ namespace tools {
 
 namespace {
 
-/// How far ahead of the truth an estimate may be: the clock of a vehicle is not perfect.
+/// Tolerated lead of an estimate over the truth, because the clock of a vehicle is not perfect.
 constexpr sim::Time max_ahead{1'000'000};
 
-/// Of one metric; the count of bad messages is in the summary.
+/// Limit of warnings of one metric; the count of bad messages is in the summary.
 constexpr int max_warnings = 100;
 
-/// error^T P^-1 error in the first `size` dimensions; NaN when P is none that a covariance can be.
+/// Returns error^T P^-1 error in the first `size` dimensions; NaN when P is not a valid covariance.
 template <int size>
 double nees_of(const Eigen::Matrix3d& covariance_m2, const sim::Vector3d& error) {
   const Eigen::Matrix<double, size, size> P = covariance_m2.topLeftCorner<size, size>();

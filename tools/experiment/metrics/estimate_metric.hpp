@@ -11,8 +11,8 @@
 
 namespace tools {
 
-/// Compares estimates of a vehicle's position, shoal.pose_t or shoal.estimate_t on a channel, with the truth.  Of what
-/// it finds its subclasses make figures.
+/// Compares estimates of a vehicle's position, shoal.pose_t or shoal.estimate_t on a channel, with the truth.  Its
+/// subclasses compute figures from the errors.
 class EstimateMetric : public Metric {
  public:
   struct Params final : sim::MetricParams {
@@ -37,16 +37,17 @@ class EstimateMetric : public Metric {
     std::optional<Eigen::Matrix3d> covariance_m2;
   };
 
-  /// Throws std::runtime_error when the metric cannot use it.
+  /// Throws std::runtime_error when the metric cannot use the estimate.
   virtual void check(const Estimate& /*estimate*/) const {}
-  /// Normalised estimation error squared; NaN without a covariance, or with none that can be one.
+  /// Returns the normalised estimation error squared (Bar-Shalom, Li and Kirubarajan 2001); NaN without a valid
+  /// covariance.
   double nees(const Estimate& estimate, const sim::Vector3d& error) const;
   const Params& params() const { return params_; }
-  /// Between two estimates, before the first or since the last.
+  /// Returns the longest time between two estimates, before the first or since the last.
   double max_gap_s() const;
 
  private:
-  /// An estimate with a time in the future.
+  /// Estimate with a time in the future.
   struct Early {
     sim::Time time{0};
     Estimate estimate;
@@ -56,14 +57,14 @@ class EstimateMetric : public Metric {
   };
 
   static Estimate decode(const sim::Bytes& payload);
-  /// A restored world may have built it again.
+  /// Looks the vehicle up at every use, because a restored world may have built it again.
   const sim::Vehicle& vehicle() const { return *world_.find_vehicle(params_.vehicle); }
   /// Warns of an error once.
   void warn_once(const std::string& channel, const std::string& what);
   void report_sample_count();
   void warn(const std::string& text);
   void take(const Estimate& estimate);
-  /// False when the truth at that time is not known yet.
+  /// Returns false when the truth at that time is not known yet.
   bool compare(sim::Time time, const Estimate& estimate);
 
   const Params& params_;
@@ -72,10 +73,10 @@ class EstimateMetric : public Metric {
   std::unique_ptr<sim::Mailbox> mailbox_;
   std::vector<Early> early_;
   std::vector<ErrorSample> samples_;
-  std::optional<double> begun_s_;  ///< when it began to listen
+  std::optional<double> begun_s_;  ///< simulated time of the subscription
   std::int64_t bad_messages_ = 0;
-  std::string warning_text_;  ///< the last one
-  std::int64_t ignored_ = 0;  ///< messages in a row
+  std::string warning_text_;  ///< the last warning
+  std::int64_t ignored_ = 0;  ///< consecutive messages that were ignored
   int warnings_ = 0;
 };
 

@@ -5,7 +5,7 @@ namespace tools {
 
 namespace {
 
-/// How many messages came on a channel.
+/// Number of messages on a channel.
 class MessagesMetric final : public Metric {
  public:
   static constexpr const char* meaning = "messages on a channel";

@@ -8,7 +8,7 @@ namespace tools {
 
 namespace {
 
-/// When something became true for the first time.
+/// First time at which a condition holds.
 class MissionTimeMetric final : public Metric {
  public:
   static constexpr const char* meaning = "time at which a condition first became true";
@@ -29,14 +29,14 @@ class MissionTimeMetric final : public Metric {
         watch_(sim::make_watch(params.when, context.world.editor(), context.world.zones())) {}
 
   void after_step() override {
-    if (time_s_ == time_s_) return;  // it has a time
+    if (time_s_ == time_s_) return;  // already known
     if (watch_ ? watch_->count_new(world_.editor()) > 0 : is_there()) time_s_ = sim::to_seconds(world_.now());
   }
   void add_figures(Figures& figures) const override { add(figures, "time_s", time_s_); }
   std::string why_none(const std::string&) const override { return "it did not happen"; }
   void visit_state(sim::StateArchive& archive, History) override {
     archive(time_s_);
-    // A restored world may have built again what the watch looks at.
+    // A restored world may have built the observed entities again.
     if (watch_ && archive.restoring()) watch_ = sim::make_watch(params_.when, world_.editor(), world_.zones());
     if (watch_) watch_->visit_state(archive);
   }
@@ -49,7 +49,7 @@ class MissionTimeMetric final : public Metric {
 
   const Params& params_;
   sim::World& world_;
-  std::unique_ptr<sim::ConditionWatch> watch_;  ///< null: it waits for a vehicle to be at a place
+  std::unique_ptr<sim::ConditionWatch> watch_;  ///< null: it waits for a vehicle to reach a position
   double time_s_ = no_figure;
 };
 

@@ -11,7 +11,7 @@ namespace tools {
 
 namespace {
 
-/// By what it takes: messages to send, or sentences of a host.
+/// Returns whether a device is a modem by its commands: messages to send, or sentences of a host.
 bool is_modem(const sim::DeviceConfig& device) {
   const sim::DeviceType* type = sim::DeviceRegistry::instance().find(device.type);
   if (type == nullptr) return true;  // reported elsewhere

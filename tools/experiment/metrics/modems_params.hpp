@@ -7,14 +7,14 @@
 
 namespace tools {
 
-/// Parameters of a metric of one modem or all of them, of one vehicle or all.
+/// Parameters of a metric of one modem or all modems, of one vehicle or all vehicles.
 class ModemsParams : public sim::MetricParams {
  public:
-  /// `device` must be a modem of `vehicle`.
+  /// Checks that `device` is a modem of `vehicle`.
   void check(const sim::MetricConfig& metric, const sim::WorldConfig& world,
              sim::Diagnostics& diagnostics) const override;
 
-  std::string device;  ///< modem of the vehicle; empty: all of them
+  std::string device;  ///< modem of the vehicle; empty: all of its modems
 
  protected:
   void read_modems(sim::ParamReader& in);

@@ -9,7 +9,7 @@ namespace tools {
 
 namespace {
 
-/// The distance between an estimate on a channel and the truth.
+/// Distance between an estimate on a channel and the truth.
 class PositionErrorMetric final : public EstimateMetric {
  public:
   static constexpr const char* meaning =

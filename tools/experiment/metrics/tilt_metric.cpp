@@ -11,7 +11,7 @@ namespace {
 
 constexpr double fallen_rad = std::numbers::pi / 4;
 
-/// How the first body of a vehicle tilts.
+/// Tilt of the first body of a vehicle.
 class TiltMetric final : public Metric {
  public:
   static constexpr const char* meaning = "tilt of the first body of a vehicle";
@@ -39,7 +39,7 @@ class TiltMetric final : public Metric {
     const sim::Vector3d up_B = vehicle->bodies().front().second->X_WB().linear().row(2).transpose();
     const double forward_rad = std::atan2(-up_B.x(), std::hypot(up_B.y(), up_B.z()));
     const double tilt_rad = std::acos(std::clamp(up_B.z(), -1.0, 1.0));
-    // Welford's way: no sum of squares that loses the small ones.
+    // Incremental mean and variance (Welford 1962), which avoid the cancellation of a sum of squares.
     const double off_rad = forward_rad - mean_rad_;
     mean_rad_ += off_rad / static_cast<double>(++count_);
     square_rad2_ += off_rad * (forward_rad - mean_rad_);

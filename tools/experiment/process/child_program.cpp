@@ -27,7 +27,7 @@ bool open_as(int target, const char* path, int flags) {
   return file >= 0 && (file == target || (dup2(file, target) >= 0 && close(file) == 0));
 }
 
-/// The signals that the parent caught or ignored, and its mask, would be inherited.
+/// Resets the signal handlers and the mask, which would be inherited from the parent.
 void take_usual_signals() {
   struct sigaction usual {};
   usual.sa_handler = SIG_DFL;
@@ -37,10 +37,10 @@ void take_usual_signals() {
   sigprocmask(SIG_SETMASK, &none, nullptr);
 }
 
-/// In the child, where nothing may be allocated: other threads may have held locks.  Returns when it failed.
+/// Runs in the child, where nothing may be allocated, because other threads may have held locks.  Returns on failure.
 void become(const ChildProgram& program, char* const* arguments, char* const* environment, pid_t parent) {
   if (setpgid(0, 0) != 0 || prctl(PR_SET_PDEATHSIG, SIGTERM) != 0) return;
-  if (getppid() != parent) _exit(128 + SIGTERM);  // it ended before it could be watched
+  if (getppid() != parent) _exit(128 + SIGTERM);  // it ended before it could be monitored
   if (!open_as(STDIN_FILENO, "/dev/null", O_RDONLY)) return;
   if (!program.log.empty()) {
     if (!open_as(STDOUT_FILENO, program.log.c_str(), O_WRONLY | O_CREAT | O_TRUNC)) return;
@@ -61,8 +61,9 @@ std::vector<std::string> own_environment() {
 int start_child(const ChildProgram& program, pid_t& pid) {
   const std::vector<char*> arguments = pointers_to(program.arguments);
   const std::vector<char*> environment = pointers_to(program.environment);
-  int ends[2];  // it tells why it could not start; a start closes it
+  int ends[2];  // pipe for the error of a failed start; closed by a successful one
   if (pipe2(ends, O_CLOEXEC) != 0) return errno;
+  // Child: execute the program, or send the error.
   const pid_t parent = getpid();
   pid = fork();
   if (pid == 0) {
@@ -71,6 +72,7 @@ int start_child(const ChildProgram& program, pid_t& pid) {
     const ssize_t reported = write(ends[1], &error, sizeof error);
     _exit(reported < 0 ? 126 : 127);
   }
+  // Parent: wait for the error or the end of the pipe.
   const int fork_error = errno;
   close(ends[1]);
   int error = 0;

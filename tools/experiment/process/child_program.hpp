@@ -8,19 +8,19 @@
 
 namespace tools {
 
-/// A program to start.
+/// Executable, arguments and environment of a program to start.
 struct ChildProgram {
   std::string path;                      ///< with a slash, or looked up in PATH
-  std::vector<std::string> arguments;    ///< the first is what it is called
+  std::vector<std::string> arguments;    ///< the first is the program name (argv[0])
   std::vector<std::string> environment;  ///< `NAME=value`
-  std::string log;                       ///< file for its output; empty: where ours goes
+  std::string log;                       ///< file for its output; empty: our output
 };
 
-/// Starts it in its own process group, with empty standard input and default signal handling.  It gets SIGTERM
-/// when the thread that starts it ends, however that ends.  Returns 0, or the error as in errno.
+/// Starts a program in its own process group, with empty standard input and default signal handling.  It receives
+/// SIGTERM when the thread that starts it ends for any reason.  Returns 0, or the error as in errno.
 int start_child(const ChildProgram& program, pid_t& pid);
 
-/// Our own environment.
+/// Returns the environment of this process.
 std::vector<std::string> own_environment();
 
 }  // namespace tools

@@ -21,10 +21,10 @@ namespace tools {
 
 namespace {
 
-/// The slots of a sender, in microseconds.
+/// Slots of a sender, in microseconds.
 struct Slots {
   std::int64_t start_us, length_us, cycle_us;
-  /// A slot of one meets a slot of the other, sooner or later.
+  /// Returns whether a slot of one ever overlaps a slot of the other.
   bool meets(const Slots& other) const {
     const std::int64_t common_us = std::gcd(cycle_us, other.cycle_us);
     const std::int64_t apart_us = ((other.start_us - start_us) % common_us + common_us) % common_us;
@@ -32,7 +32,7 @@ struct Slots {
   }
 };
 
-/// A process, with the declaration of its program where it has one.
+/// Process, with the declaration of its program if it has one.
 class Program {
  public:
   Program(const sim::LoadedWorld& loaded, std::size_t index)
@@ -45,7 +45,7 @@ class Program {
 
   const sim::ProcessConfig& config() const { return config_; }
   std::string who() const { return "process '" + config_.name + "'"; }
-  /// A program that comes with Shoal: what its arguments mean is known here.
+  /// Returns whether the program comes with Shoal, so that the meaning of its arguments is known.
   bool is_shipped() const { return declaration_ && written_.program.starts_with("shoal-"); }
   const sim::SourcePlace& place(const char* argument) const {
     const sim::ConfigNode* value = written_.args->find(argument);
@@ -53,11 +53,11 @@ class Program {
   }
 
   bool has(const char* argument) const { return written_.args->find(argument) != nullptr; }
-  /// As the world or the declaration gives it; empty: neither does.
+  /// Value in the world or the declaration; empty: in neither.
   std::string value_of(const char* argument) const {
     return declaration_ ? sim::text_of_arg(*declaration_, *written_.args, argument) : std::string();
   }
-  /// The vehicle that it drives, which is its name in the lockstep too.
+  /// Vehicle that it drives, which is also its name in the lockstep.
   std::string vehicle() const { return value_of("name"); }
   /// The channels that it publishes on; empty: unknown.
   std::optional<std::vector<std::string>> published() const {
@@ -70,7 +70,7 @@ class Program {
   bool sends() const { return has("slot") || has("random_s"); }
   std::string slot_text() const { return value_of("slot") + "/" + value_of("slots"); }
 
-  /// Nothing when it has none, or one that the program itself refuses.
+  /// Nothing when it has none, or one that the program itself rejects.
   std::optional<Slots> slots() const {
     try {
       const int slot = std::stoi(value_of("slot")), slots = std::stoi(value_of("slots"));
@@ -109,7 +109,7 @@ const sim::VehicleInstance* find_vehicle(const sim::WorldConfig& world, const st
   return found == world.vehicles.end() ? nullptr : &*found;
 }
 
-/// A key as the file gives it to the device `modem` of a vehicle; empty: it does not.
+/// Returns a key of the device `modem` of a vehicle from its file; empty: not set.
 std::string key_of_modem(const sim::WorldConfig& world, const std::string& vehicle, const char* key) {
   const sim::VehicleInstance* found = find_vehicle(world, vehicle);
   if (found == nullptr) return {};
@@ -119,7 +119,7 @@ std::string key_of_modem(const sim::WorldConfig& world, const std::string& vehic
   return {};
 }
 
-/// They can disturb each other: what their modems were given does not put them on other frequencies.
+/// Returns whether two modems can interfere: their configuration does not separate them in frequency.
 bool share_the_water(const sim::WorldConfig& world, const std::string& a, const std::string& b) {
   for (const char* key : {"frequency_Hz", "preset"}) {
     const std::string of_a = key_of_modem(world, a, key), of_b = key_of_modem(world, b, key);
@@ -173,7 +173,7 @@ void check_names(const std::vector<Program>& programs, sim::Warnings& warnings) 
 }
 
 void check_metrics(const sim::WorldConfig& world, const std::vector<Program>& programs, sim::Warnings& warnings) {
-  if (programs.empty()) return;  // the loader looked at those
+  if (programs.empty()) return;  // the loader has checked the others
   std::set<std::string> spoken = sim::channels_of(world);
   for (const Program& program : programs) {
     const auto channels = program.published();

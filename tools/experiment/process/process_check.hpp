@@ -8,15 +8,15 @@
 
 namespace tools {
 
-/// Warns of programs of a world that cannot do what they are there for, as far as their `args:` and declarations say
-/// it: slots that overlap, a vehicle to follow that does not exist or never sends, another name in the lockstep (all of
+/// Warns of programs of a world that cannot work as configured, as far as their `args:` and declarations show:
+/// overlapping slots, a vehicle to follow that does not exist or never sends, a different name in the lockstep (all for
 /// programs that come with Shoal), metrics of channels on which none of the programs publishes.
 void warn_of_processes(const sim::LoadedWorld& loaded, sim::Warnings& warnings);
 
-/// Warns of programs that cannot be started: they are neither beside the running program nor in PATH.
+/// Warns of programs that cannot be started: they are neither in the folder of the running program nor in PATH.
 void warn_of_missing_programs(const sim::LoadedWorld& loaded, sim::Warnings& warnings);
 
-/// Warns of a `command:` whose program has a declaration, by which `args:` would be checked.
+/// Warns of a `command:` whose program has a declaration, by which `args:` could be checked.
 void warn_of_unchecked_arguments(const sim::LoadedWorld& loaded, sim::Warnings& warnings);
 
 }  // namespace tools

@@ -27,7 +27,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::seconds time_to_end{2};
 
-/// A program beside the running one is preferred, so that a build tree works without being installed.
+/// Prefers a program in the folder of the running one, so that a build tree works without installation.
 std::string find_program(const std::string& name) {
   if (name.find('/') != std::string::npos) return name;
   std::error_code error;
@@ -100,10 +100,10 @@ std::vector<ProcessGroup::Exit> ProcessGroup::reap() {
     exits.push_back({process.config.name, describe_status(status), process.config.client,
                      process.config.on_exit == sim::OnExit::end_run, failed,
                      process.config.on_exit == sim::OnExit::ignore});
-    if (kill(-process.pid, SIGTERM) == 0) left_behind_.push_back(process.pid);  // its children live on
+    if (kill(-process.pid, SIGTERM) == 0) left_behind_.push_back(process.pid);  // its children still run
     return true;
   });
-  // The number of a group without members may be given to another one.
+  // The number of a group without members may be reused by another one.
   std::erase_if(left_behind_, [](pid_t group) { return kill(-group, 0) != 0; });
   return exits;
 }

@@ -26,7 +26,7 @@ long long now_ms() {
   return 1000LL * now.tv_sec + now.tv_nsec / 1'000'000;
 }
 
-/// Without another instruction of what hangs.
+/// Ends the program without executing any of its own code, which may hang.
 [[noreturn]] void end_at_once(int signal) {
   TerminalKeys::restore_saved();
   constexpr char text[] = "\nshoal: ended by another signal: unwritten data is lost\n";
@@ -34,7 +34,7 @@ long long now_ms() {
   _exit(128 + signal);
 }
 
-/// One Ctrl-C may come as several signals: of the terminal, of a shell and of `timeout`.
+/// One Ctrl-C may arrive as several signals: from the terminal, from a shell and from `timeout`.
 constexpr long long one_request_ms = 500;
 
 void on_signal(int signal) {
@@ -45,7 +45,7 @@ void on_signal(int signal) {
     return;
   }
   if (now_ms() - first_at_ms < one_request_ms) return;
-  // While the results are written another one asks for no plots, and only a third is in earnest.
+  // While the results are written, the second signal skips the plots, and only a third one ends the program.
   const int needed = orderly_ends > 0 ? 3 : 2;
   if (before + 1 >= needed) end_at_once(signal);
 }

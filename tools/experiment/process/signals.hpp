@@ -3,21 +3,22 @@
 
 namespace tools {
 
-/// SIGINT, SIGTERM and SIGHUP end the run at the next step, once this was called.  Another one, half a second later or
-/// more, ends the program at once with 128 and its number as exit code: for a step that does not end.  SIGPIPE ends the
-/// program unless it is ignored.
+/// Installs signal handlers: SIGINT, SIGTERM and SIGHUP end the run at the next step.  A second signal, half a second
+/// later or more, ends the program at once with exit code 128 plus its number, in case a step does not end.  SIGPIPE
+/// ends the program unless it is ignored.
 void catch_signals(bool ignore_pipe);
 
-/// While this object exists the run is ending and reports it: two more signals are needed to end the program at once.
+/// Marks an orderly end of the run, which is reported: while this object exists, two more signals are needed to end the
+/// program at once.
 struct OrderlyEnd {
   OrderlyEnd();
   ~OrderlyEnd();
   OrderlyEnd(const OrderlyEnd&) = delete;
   OrderlyEnd& operator=(const OrderlyEnd&) = delete;
 };
-/// The signal that came, or 0.
+/// Returns the signal that was caught, or 0.
 int caught_signal();
-/// How many came.
+/// Returns the number of signals that were caught.
 int caught_signals();
 
 }  // namespace tools

@@ -9,7 +9,7 @@ namespace tools {
 
 namespace {
 
-/// Beside the running program, then where the command line allows files, then in PATH.
+/// Returns the search folders: that of the running program, then those that the command line allows, then PATH.
 std::vector<std::string> folders_of(const ProgramLookup& lookup) {
   std::vector<std::string> folders = lookup.folders.empty() ? sim::program_folders() : lookup.folders;
   folders.insert(folders.empty() ? folders.end() : folders.begin() + 1, lookup.allow_paths.begin(),

@@ -9,18 +9,19 @@
 
 namespace tools {
 
-/// Where the programs of a world are looked up.
+/// Folders in which the programs of a world are looked up.
 struct ProgramLookup {
   bool all_needed = true;                 ///< a `program:` without a declaration is an error, else it is left out
-  std::vector<std::string> allow_paths;   ///< folders that the command line allows, after that of the running program
-  std::vector<std::string> folders = {};  ///< the folder of the running program and those of PATH; empty: the real ones
+  std::vector<std::string> allow_paths;   ///< folders that the command line allows, besides that of the running program
+  std::vector<std::string> folders = {};  ///< the folder of the running program and those of PATH; empty: the actual
+                                          ///< ones
 };
 
-/// Checks the `args:` of the processes of a world by the declarations of their programs, and makes their commands of
-/// them.  Reads declarations only, and never starts a program.  Throws sim::ConfigError with every error found.
+/// Checks the `args:` of the processes of a world against the declarations of their programs, and builds their
+/// commands. Reads only declarations, and never starts a program.  Throws sim::ConfigError with all errors.
 void read_programs(sim::LoadedWorld& loaded, const ProgramLookup& lookup);
 
-/// A process as the file of its world writes it.
+/// Process as written in the world file.
 struct WrittenProcess {
   sim::SourcePlace place;                 ///< where its program is named
   std::string program;                    ///< empty: it has a `command`

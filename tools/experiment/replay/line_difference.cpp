@@ -20,7 +20,7 @@ Lines lines_of(const std::string& text) {
   return lines;
 }
 
-/// lengths[i][j]: of the longest common sub-sequence of a from i and b from j.
+/// lengths[i][j]: length of the longest common subsequence of a from i and b from j.
 std::vector<std::vector<std::uint32_t>> common_lengths(const Lines& a, const Lines& b) {
   std::vector<std::vector<std::uint32_t>> lengths(a.size() + 1, std::vector<std::uint32_t>(b.size() + 1));
   for (std::size_t i = a.size(); i-- > 0;)
@@ -32,6 +32,7 @@ std::vector<std::vector<std::uint32_t>> common_lengths(const Lines& a, const Lin
 }  // namespace
 
 std::vector<std::string> line_difference(const std::string& first, const std::string& second, std::size_t max) {
+  // Remove the common start and end.
   Lines a = lines_of(first), b = lines_of(second);
   std::size_t begin = 0;
   while (begin < a.size() && begin < b.size() && a[begin] == b[begin]) ++begin;
@@ -42,6 +43,7 @@ std::vector<std::string> line_difference(const std::string& first, const std::st
   };
   a = middle(a);
   b = middle(b);
+  // Follow the longest common subsequence.
   std::vector<std::string> result;
   std::size_t count = 0;
   const auto report = [&](char sign, std::size_t line, const std::string& text) {
@@ -60,6 +62,7 @@ std::vector<std::string> line_difference(const std::string& first, const std::st
       }
     }
   }
+  // Remaining lines.
   for (; i < a.size(); ++i) report('-', i, a[i]);
   for (; j < b.size(); ++j) report('+', j, b[j]);
   if (count > max) result.push_back(fmt::format("and {} more lines", count - max));

@@ -7,8 +7,8 @@
 
 namespace tools {
 
-/// The lines that differ between two texts, in order: `-` before those of the first alone, `+` before those of the
-/// second alone, with the number of the line.  At most `most`, then how many more.
+/// Returns the lines that differ between two texts, in order: `-` before lines only in the first, `+` before lines only
+/// in the second, with the line number.  At most `max` lines, followed by the number of the remaining ones.
 std::vector<std::string> line_difference(const std::string& first, const std::string& second, std::size_t max = 40);
 
 }  // namespace tools

@@ -48,7 +48,7 @@ ReplayLog read_record(const std::string& path) {
   return log;
 }
 
-/// What the lockstep needs of a world: the record's time, and its rules about clients.  Nothing is in it.
+/// Empty world for the lockstep, with the time of the record and its rules about clients.
 sim::LoadedWorld load_empty_world(const ReplayLog& log) {
   const double step_s = static_cast<double>(log.info.step_us) * 1e-6;
   sim::LoadedWorld empty =
@@ -62,7 +62,7 @@ sim::LoadedWorld load_empty_world(const ReplayLog& log) {
     load.encode_message = shoal::encode_own_message;
     empty.config.lockstep = sim::load_world_text(log.info.resolved_config, log.path, load).config.lockstep;
   } catch (const std::exception&) {
-    // A mesh or a plugin of that run may not be here; the defaults will do.
+    // A mesh or a plugin of that run may be missing here; the defaults are sufficient.
   }
   return empty;
 }
@@ -93,7 +93,7 @@ class Player {
     if (const auto other = others_.look(wait))
       throw RunError(4, "bus",
                      *other + "; its messages and those of the record would mix: choose another port with --lcm-url");
-    // The world is empty, so this is quick; a damaged record may name a step that is far away.
+    // The world is empty, so that stepping is fast; a damaged record may name a distant step.
     while (world_.step_number() < log_.begin_step() && may_continue()) world_.step();
     shoal::encode_into(log_.info, buffer_);
     publish("sim.info", buffer_);
@@ -156,6 +156,7 @@ class Player {
       throw RunError(2, "configuration",
                      fmt::format("{}: begins at {:.6g} s, after --until", log_.path, sim::to_seconds(world_.now())));
     end_step();
+    // Serve requests, wait for clients, keep the pace, step.
     while (may_continue() && world_.step_number() < last) {
       execute();
       if (!synchronized_) {
@@ -174,6 +175,7 @@ class Player {
       end_step();
       progress_.update(world_.now(), played_, control_, false);
     }
+    // Wait for the answers to the last step.
     while (may_continue() && !synchronized_) {
       execute();
       synchronize();
@@ -181,7 +183,7 @@ class Player {
     if (synchronized_) take_answers();
   }
 
-  /// The messages of the step, then the ticks.
+  /// Publishes the messages of the step, then the ticks.
   void end_step() {
     steps_.published_at(world_.step_number(), [this](std::string_view channel, std::span<const std::byte> payload) {
       publish(channel, payload);
@@ -206,11 +208,11 @@ class Player {
     synchronized_ = outcome == bridges::LockstepOutcome::done;
   }
 
-  /// What programs said to this step, and in its place what they or others said in the run.
+  /// Compares the messages of programs for this step, and publishes the recorded ones in their place.
   void take_answers() {
     answers_.came(world_.step_number(), gate_.admit());
     steps_.inputs_after(world_.step_number(), [this](std::string_view channel, std::span<const std::byte> payload) {
-      // Who speaks here himself need not receive what was published in the run, and no client should receive both.
+      // A program that publishes here does not receive the recorded messages, and no client receives both.
       if (!answers_.is_spoken(channel) || lockstep_.has_receiver(channel)) publish(channel, payload);
     });
     for (const auto& mailbox : mailboxes_)
@@ -263,7 +265,7 @@ class Player {
   bridges::LcmBus bus_;
   bridges::OtherSimulators others_;
   sim::MessageGate gate_;
-  sim::InProcessBus inner_;  // of the empty world, which has nothing to say
+  sim::InProcessBus inner_;  // of the empty world, which publishes nothing
   sim::RunControl control_;
   sim::World world_;
   bridges::LockstepService lockstep_;

@@ -17,19 +17,19 @@ struct PlayOptions {
   std::optional<double> until_s;   ///< simulated time; without it to the end of the record
   double speed = 0;                ///< times real time; 0: as fast as possible
   bool compare = false;            ///< answers that differ from the record are an error
-  bool quiet = false;              ///< no progress
+  bool quiet = false;              ///< prints no progress
 };
 
-/// What came of playing a record.
+/// Result of the playback of a record.
 struct PlayOutcome {
-  std::string text;   ///< for people, lines
-  int exit_code = 0;  ///< 0, or 1 when `compare` found a difference; 128 + signal when one ended it
+  std::string text;   ///< human-readable lines
+  int exit_code = 0;  ///< 0, or 1 when `compare` found a difference; 128 + signal when a signal ended the playback
 };
 
-/// Gives the messages of a record to programs as its run did, without a world: in lockstep to those that join, each at
-/// its own period, and on the bus to those that only listen.  What they publish changes nothing and is compared with
-/// the record.  Throws RunError: 2 options, 4 bus (also another simulator on it) or record, 5 no client joined, or
-/// one did not answer.
+/// Plays the messages of a record back to programs as its run did, without a world: in lockstep to those that join,
+/// each at its own period, and on the bus to those that only listen.  Messages that the programs publish have no
+/// effect; they are compared with the record.  Throws RunError: 2 options, 4 bus (also another simulator on it) or
+/// record, 5 no client joined, or one did not answer.
 PlayOutcome play(const PlayOptions& options);
 
 }  // namespace tools

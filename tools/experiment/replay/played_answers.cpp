@@ -81,6 +81,7 @@ bool PlayedAnswers::all_equal() const {
 std::vector<std::string> PlayedAnswers::to_lines(double step_s) const {
   std::vector<std::string> lines;
   std::size_t silent = 0;
+  // Channels with messages of programs.
   for (const auto& [name, channel] : channels_) {
     if (!channel.spoken) {
       ++silent;
@@ -95,6 +96,7 @@ std::vector<std::string> PlayedAnswers::to_lines(double step_s) const {
                           static_cast<double>(*channel.first_step) * step_s, channel.first);
     lines.push_back(std::move(line));
   }
+  // Channels without any.
   if (lines.empty())
     lines.push_back("nothing was published here on a channel on which the world of the log received messages");
   else if (silent > 0)

@@ -15,32 +15,32 @@
 
 namespace tools {
 
-/// Compares what programs publish during the playback of a record with the inputs of the world in its run: by step
-/// and channel, in order.  Channels on which no program has spoken yet are another program's.
+/// Compares the messages that programs publish during the playback of a record with the inputs of the world in its run:
+/// by step and channel, in order.  Channels on which no program has published yet belong to other programs.
 class PlayedAnswers {
  public:
   struct Channel {
     std::int64_t equal = 0, different = 0;
     std::int64_t missing = 0;                ///< in the record, not published here
     std::int64_t added = 0;                  ///< published here, not in the record
-    std::optional<std::int64_t> first_step;  ///< at which something differs
-    std::string first;                       ///< what, in words
-    bool spoken = false;                     ///< a program published on it here
+    std::optional<std::int64_t> first_step;  ///< first step with a difference
+    std::string first;                       ///< description of the first difference
+    bool spoken = false;                     ///< a program published on it in this playback
     std::int64_t recorded = 0;
   };
 
   /// `log` must outlive this.
   explicit PlayedAnswers(const ReplayLog& log);
 
-  /// Channels on which something came to the world from outside.
+  /// Channels on which the world received inputs.
   const std::map<std::string, Channel, std::less<>>& channels() const { return channels_; }
-  /// What came after `step`, in order.  To be called once for each step, in ascending order.
+  /// Compares the messages that arrived after `step`, in order.  To be called once for each step, in ascending order.
   void came(std::int64_t step, std::span<const sim::MessageGate::Delivery> input_record);
-  /// A program has published on this channel.
+  /// Returns whether a program has published on this channel.
   bool is_spoken(std::string_view channel) const;
 
   bool all_equal() const;
-  /// One line for each channel on which a program spoke, then what was not spoken.
+  /// Returns one line for each channel on which a program published, then the channels without any.
   std::vector<std::string> to_lines(double step_s) const;
 
  private:

@@ -59,12 +59,13 @@ void PlayerRequests::check_joins() {
           spdlog::warn("client '{}' asks for '{}', of which the record has no message",
                        sim::shortened(sim::printable(request.client)), sim::shortened(sim::printable(channel)));
     } catch (const std::exception&) {
-      // Who answers the request says what is wrong with it.
+      // The reply to the request contains the error.
     }
   }
 }
 
 std::optional<std::string> PlayerRequests::execute(const std::string& command, const std::string& text, double value) {
+  // Served requests.
   if (command == "join") {
     check_channels(text);
   } else if (command == "pause" || command == "resume") {
@@ -82,6 +83,7 @@ std::optional<std::string> PlayerRequests::execute(const std::string& command, c
     return where_();
   } else if (command == "where") {
     return where_();
+    // Requests that require a world.
   } else if (needs_a_world(command)) {
     throw std::runtime_error("a record is being played, so there is no world: '" + command + "' is not possible");
   }

@@ -15,15 +15,15 @@
 
 namespace tools {
 
-/// Requests on sim.control during the playback of a record: pause, resume, step, speed and where are served; requests
-/// that would change a world are rejected, and so is a client that only requests channels that the record lacks.
+/// Serves requests on sim.control during the playback of a record: pause, resume, step, speed and where.  Rejects
+/// requests that would change a world, and clients that only subscribe to channels that the record lacks.
 class PlayerRequests final : public bridges::TimeMachine {
  public:
-  /// All must outlive this.  `where` says where the record is.
+  /// All must outlive this.  `where` returns the present position in the record.
   PlayerRequests(const ReplayLog& log, sim::RunControl& control, sim::Bus& network, std::function<std::string()> where);
 
   std::optional<std::string> execute(const std::string& command, const std::string& text, double value) override;
-  /// Warns of channels that a client asks for and the record does not have.  Call it before requests are handled.
+  /// Warns of channels that a client requests and the record lacks.  To be called before requests are handled.
   void check_joins();
 
  private:

@@ -48,7 +48,7 @@ void ReadAhead::read() {
   for (Block block; !block.last;) {
     try {
       fill(block);
-    } catch (const std::bad_alloc&) {  // what was read is compared, and the rest is missing
+    } catch (const std::bad_alloc&) {  // events read so far are compared, and the others are missing
       block.last = true;
     }
     std::unique_lock lock(mutex_);

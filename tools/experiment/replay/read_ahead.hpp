@@ -23,7 +23,7 @@ class ReadAhead {
   ReadAhead(const ReadAhead&) = delete;
   ReadAhead& operator=(const ReadAhead&) = delete;
 
-  /// In the order of the file; the view holds until the next call.  False at the end.
+  /// Reads the next event in the order of the file; the view is valid until the next call.  Returns false at the end.
   bool next(bridges::LogEventView& event);
 
  private:
@@ -43,11 +43,12 @@ class ReadAhead {
   bool wait_for_block();
 
   bridges::EventLogReader file_;
-  Block current_;  // that is looked at
+  Block current_;  // being read by next()
   std::size_t at_ = 0;
   std::mutex mutex_;
   std::condition_variable changed_;
-  std::optional<Block> ready_, used_;  // on the way to the reader of events, and back for its memory
+  std::optional<Block> ready_, used_;  // ready_: next block for the reader of events; used_: returned for reuse of its
+                                       // memory
   bool stop_ = false;
   std::thread thread_;
 };

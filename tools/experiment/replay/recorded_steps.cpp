@@ -33,12 +33,12 @@ void RecordedSteps::inputs_after(std::int64_t step, const Use& use) {
   }
 }
 
-/// A record holds inputs twice: as received, with the stamp of the previous step, and in sim.inputs.
+/// A record contains inputs twice: as received, with the time stamp of the previous step, and in sim.inputs.
 bool RecordedSteps::is_copy_of_input() {
   const auto utime_of = [this](const ReplayLog::Input& input) {
     return log_.info.epoch_utime + input.step * log_.info.step_us;
   };
-  // The copy of an input whose time is over is not in the record: it begins after it.
+  // The copy of an earlier input is not in the record, which starts after it.
   while (next_copy_ < log_.inputs.size() &&
          (!is_message(log_.inputs[next_copy_]) || utime_of(log_.inputs[next_copy_]) < event_.utime))
     ++next_copy_;

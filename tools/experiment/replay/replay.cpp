@@ -34,13 +34,13 @@ namespace {
 using bridges::RunJournal;
 using Input = ReplayLog::Input;
 
-/// A bus without other participants.
+/// Bus without other participants.
 struct Line {
   std::unique_ptr<sim::InProcessBus> network = std::make_unique<sim::InProcessBus>();
   std::unique_ptr<sim::MessageGate> gate = std::make_unique<sim::MessageGate>(*network);
 };
 
-/// The world that is run: that of the log, or another one in its place.
+/// Returns the world to run: that of the log, or a replacement.
 sim::LoadedWorld load(const ReplayLog& log, const ReplayOptions& options) {
   sim::LoadOptions load = options.load;
   load.serial_ports = false;
@@ -48,7 +48,7 @@ sim::LoadedWorld load(const ReplayLog& log, const ReplayOptions& options) {
   if (!options.world.empty()) {
     sim::LoadedWorld loaded = sim::load_world(options.world, load);
     if (static_cast<std::int64_t>(loaded.config.run.seed) == log.info.seed) return loaded;
-    load.seed = log.info.seed;  // the resolved world then says so
+    load.seed = log.info.seed;  // it is then part of the resolved world
     return sim::load_world(options.world, load);
   }
   const std::vector<std::string> changed = changed_files(log.info.files);
@@ -89,6 +89,7 @@ class Replay {
     const std::int64_t last = last_step();
     outcome_.begin_step = world_.step_number();
     Progress progress(static_cast<double>(last) * outcome_.step_s, options_.quiet);
+    // Deliver the inputs and step, as in the run.
     hand_over(RunJournal::before_first_reports);
     after_step();
     try {
@@ -103,6 +104,7 @@ class Replay {
     } catch (const sim::PhysicsFault& error) {
       differ("the world", std::string("physics fault here: ") + error.what());
     }
+    // Compare the end of the run.
     progress.clear();
     if (!cut_ && log_.cut.empty() && world_.step_number() == log_.last_step) finish();
     messages_.finish(world_.step_number());
@@ -148,7 +150,7 @@ class Replay {
       throw std::runtime_error(log_.path + ": ends before the first step");
   }
 
-  /// The run, or the branch, began with a snapshot.
+  /// Restores the snapshot with which the run, or the branch, started.
   void restore() {
     if (!log_.snapshot) return;
     const std::string who = log_.path + ": sim.snapshot";
@@ -181,7 +183,7 @@ class Replay {
     return last;
   }
 
-  /// What came to the world before this step.
+  /// Delivers the inputs of the world before this step.
   void hand_over(std::int64_t step) {
     for (; next_input_ < log_.inputs.size() && log_.inputs[next_input_].step <= step; ++next_input_) {
       const Input& input = log_.inputs[next_input_];
@@ -201,7 +203,7 @@ class Replay {
     }
   }
 
-  /// What was asked for after the last step.
+  /// Executes the requests after the last step.
   void finish() {
     hand_over(world_.step_number());
     if (!outcome_.first) report_first_messages();
@@ -215,7 +217,7 @@ class Replay {
     } catch (const shoal::MessageError& error) {
       note(std::string("a request in the log cannot be read: ") + error.what());
     } catch (const std::exception&) {
-      // It was refused then as well, or the state will tell.
+      // It was rejected in the run as well, or the state will differ.
     }
   }
 
@@ -232,7 +234,7 @@ class Replay {
     if (due && !next_hash_->second.after_inputs) compare_hashes(next_hash_->second);
   }
 
-  /// All that differ by now differ since this step.
+  /// Reports the messages and channels that differ for the first time at this step.
   void report_first_messages() {
     constexpr std::size_t max = 8;
     if (messages_.first() == nullptr) return;
@@ -253,14 +255,15 @@ class Replay {
       return;
     }
     if (!outcome_.first || outcome_.first->step == world_.step_number()) differ("the world", "its state hash differs");
-    if (!parts_.empty() && motion_step_) return;  // later on nearly all differ
+    if (!parts_.empty() && motion_step_) return;  // at later steps nearly all parts differ
     std::map<std::string, std::uint64_t> here;
     for (const auto& part : world_.state().part_hashes()) here[part.part] = part.hash;
     compare_motion(logged, here);
     compare_parts(logged, here);
   }
 
-  /// Of vehicles and objects that were equal at an earlier hash: those that are made otherwise differ from the start.
+  /// Finds the first motion that differs, of vehicles and objects that were equal at an earlier hash: those with
+  /// different definitions differ from the start.
   void compare_motion(const ReplayLog::Hashes& logged, const std::map<std::string, std::uint64_t>& here) {
     if (motion_step_) return;
     for (const sim::PartHash& part : logged.parts) {
@@ -306,7 +309,7 @@ class Replay {
     if (outcome_.first->step == world_.step_number()) outcome_.first->what.push_back(subject + ": " + what);
   }
 
-  /// The device that reports on a channel, else the channel.
+  /// Returns the device that reports on a channel, else the channel.
   std::string who(const std::string& channel) const {
     for (const auto& device : world_.devices())
       if (device && device->report_channel() == channel) return device->full_name() + " (" + channel + ")";
@@ -345,7 +348,7 @@ class Replay {
       for (const std::string& entity : entities_only_in(loaded_.config, logged))
         world.push_back("only here: " + entity);
     } catch (const std::exception&) {
-      // A mesh of the log may be gone; its lines can be compared all the same.
+      // A mesh of the log may be missing; its lines can be compared nevertheless.
     }
     for (std::string& line : line_difference(log_.info.resolved_config, sim::to_yaml(loaded_.resolved), max_lines))
       world.push_back(std::move(line));
@@ -361,6 +364,7 @@ class Replay {
   }
 
   void report_log() {
+    // Gaps of the log.
     if (!log_.cut.empty()) note(log_.cut);
     for (const std::string& hole : log_.holes) note(hole);
     if (!outcome_.complete && !log_.holes.empty())
@@ -368,6 +372,7 @@ class Replay {
           fmt::format("the log lacks inputs after step {}, although it extends to step {}: nothing after step {} can "
                       "be verified",
                       log_.usable_step(), log_.last_step, log_.usable_step()));
+    // Properties of the log.
     const std::string wrote = log_.info.versions.substr(0, log_.info.versions.find('\n'));
     if (wrote != "shoal " + short_version())
       note("written by " + sim::shortened(sim::printable(wrote)) + "; this is shoal " + short_version());
@@ -376,10 +381,12 @@ class Replay {
     if (!log_.bad_snapshot.empty()) note(log_.bad_snapshot);
     if (log_.first_step > log_.begin_step()) note(fmt::format("the log begins at step {}", log_.first_step));
     if (log_.hashes.empty()) note("the log holds no hashes: only messages are compared");
+    // Messages that the log lacks.
     if (outcome_.missing_messages > 0 && !(log_.own_stamps && outcome_.first))
       note(fmt::format("{} messages that were published here are not in the log, the first at {}: {}",
                        outcome_.missing_messages, at(messages_.first_missing()->step),
                        messages_.first_missing()->channel));
+    // Problems and interventions.
     for (const std::string& problem : log_.problems) note("the log: " + problem);
     for (const std::string& audit_entry : log_.audit) note("in the run: " + audit_entry);
   }
@@ -395,14 +402,17 @@ class Replay {
       report.push_back(title + ":");
       for (const std::string& line : lines) report.push_back("  " + line);
     };
+    // Versions and state.
     section("Versions (- in the log, + here)", line_difference(log_.info.versions, version_text()));
     section("Machine (- in the log, + here)", line_difference(log_.info.build, build_text()));
     if (!parts_.empty()) section("State that differs at the first hash that does, " + at(parts_step_), few(parts_));
+    // True positions.
     std::vector<std::string> lines;
     for (const auto& [vehicle, distance] : messages_.distances())
       lines.push_back(fmt::format("{}: from {} on, at most {:.6g} m at {}", vehicle, at(distance.first_step),
                                   distance.max_m, at(distance.max_step)));
     section("True positions", lines);
+    // Channels in order of their first difference.
     lines.clear();
     std::vector<const ReplayMessages::Difference*> channels;
     for (const auto& [channel, difference] : messages_.by_channel()) channels.push_back(&difference);
@@ -429,9 +439,9 @@ class Replay {
   bool cut_ = false;
   std::vector<std::string> parts_;
   std::int64_t parts_step_ = 0;
-  std::set<std::string> equal_parts_;        // that move, and were equal at a hash
-  std::vector<std::string> moved_parts_;     // that differ at the first hash at which one of those does
-  std::optional<std::int64_t> motion_step_;  // of that hash
+  std::set<std::string> equal_parts_;        // moving parts that were equal at a hash
+  std::vector<std::string> moved_parts_;     // parts that differ at the first hash at which one of those does
+  std::optional<std::int64_t> motion_step_;  // step of that hash
 };
 
 }  // namespace

@@ -33,18 +33,18 @@ namespace tools {
 namespace {
 
 constexpr std::size_t max_problems = 20;
-/// Without messages for this long, losses are not searched for.
+/// Losses are not searched for after a longer interval without messages.
 constexpr std::size_t max_since_inputs = 1'000'000;
 
-/// The big-endian number behind the fingerprint and `index` others.
+/// Reads the big-endian number after the fingerprint and `index` others.
 std::int64_t number_at(std::span<const std::byte> payload, std::size_t index) {
   std::uint64_t value = 0;
   for (std::size_t i = 0; i < 8; ++i) value = value << 8 | std::to_integer<std::uint64_t>(payload[8 + 8 * index + i]);
   return static_cast<std::int64_t>(value);
 }
 
-/// The program that wrote a sim.info of any version, such as `shoal 0.4.0 (a1b2c3d)`: the first members are the same in
-/// all of them.  Empty: it cannot be made out.
+/// Returns the program that wrote a sim.info of any version, such as `shoal 0.4.0 (a1b2c3d)`: the first members are the
+/// same in all versions.  Empty: unreadable.
 std::string version_in(std::span<const std::byte> payload) {
   std::size_t at = 8 + 8;  // fingerprint, utime
   const auto text = [&]() -> std::string {
@@ -73,10 +73,11 @@ class Reader {
   explicit Reader(const std::string& path) : file_(path) { log_.path = path; }
 
   ReplayLog read() {
+    // Read all events.
     bridges::LogEventView event;
     while (file_.next(event)) {
       count(event.channel);
-      if (event.channel != "sim.audit") {  // which may stand behind the end of a step
+      if (event.channel != "sim.audit") {  // it may follow the end of a step
         last_stamp_ = event.utime;
         ends_whole_ = false;
       }
@@ -92,6 +93,7 @@ class Reader {
         problem(fmt::format("byte {}: {}: {}", event.offset, event.channel, error.what()));
       }
     }
+    // Check that the log is complete.
     for (const Count& count : counts_) log_.events.emplace(count.channel, count.events);
     for (const std::string& text : file_.problems()) problem(text);
     if (!informed_) fail_without_info();
@@ -103,36 +105,38 @@ class Reader {
   }
 
  private:
-  /// A message, by the place of its channel in counts_.
+  /// Message, by the index of its channel in counts_.
   struct Arrival {
     std::size_t channel;
     std::int64_t step;
   };
-  /// Numbers of sim.inputs that are missing, and the steps between which they were published.
+  /// Missing numbers of sim.inputs, and the steps between which they were published.
   struct Hole {
     std::int64_t first, last;
     std::int64_t from_step, to_step;
-    std::vector<Arrival> came = {};  ///< of a record: all messages in it since the sim.inputs before
+    std::vector<Arrival> came = {};  ///< of a record: all messages in it since the preceding sim.inputs
   };
 
-  /// In microseconds.  Without signs on the way: a damaged stamp may overflow.
+  /// Unsigned arithmetic, because a damaged time stamp may overflow.
   std::int64_t since_start(std::int64_t utime) const {
     return static_cast<std::int64_t>(static_cast<std::uint64_t>(utime) -
                                      static_cast<std::uint64_t>(log_.info.epoch_utime));
   }
   std::int64_t step_of(std::int64_t utime) const { return since_start(utime) / log_.info.step_us; }
 
-  /// A record holds messages from outside beside sim.inputs: where a channel has just as many messages more than inputs
-  /// as came in the holes, those report the steps that the holes are about.
+  /// A record contains messages from outside in addition to sim.inputs: when a channel has exactly as many messages
+  /// more than inputs as arrived in the holes, those messages determine the steps of the holes.
   void narrow_holes() {
     if (!log_.own_stamps) return;
-    std::map<std::string, std::int64_t, std::less<>> unknown;  // of the channels that inputs came on
+    std::map<std::string, std::int64_t, std::less<>> unknown;  // by channel of the inputs
+    // Count the events that are not known to be inputs.
     std::set<std::pair<std::string, std::int64_t>> inputs;
     for (const ReplayLog::Input& input : log_.inputs) {
       if (!log_.events.contains(input.channel)) continue;
       unknown.try_emplace(input.channel, log_.events.at(input.channel)).first->second -= 1;
       inputs.emplace(input.channel, input.step);
     }
+    // Remove arrivals that are known.
     for (Hole& hole : holes_)
       std::erase_if(hole.came, [&](const Arrival& came) {
         const std::string& channel = counts_[came.channel].channel;
@@ -140,6 +144,7 @@ class Reader {
       });
     for (const Hole& hole : holes_)
       for (const Arrival& came : hole.came) unknown.at(counts_[came.channel].channel) -= 1;
+    // Narrow each hole to the steps of its arrivals.
     for (Hole& hole : holes_) {
       std::erase_if(hole.came, [&](const Arrival& came) { return unknown.at(counts_[came.channel].channel) != 0; });
       if (hole.came.empty() || hole.last - hole.first + 1 > static_cast<std::int64_t>(hole.came.size())) continue;
@@ -148,17 +153,17 @@ class Reader {
     }
   }
 
-  /// The last events are of a step whose inputs come behind its messages: where the log breaks off between the two the
-  /// step cannot be run again.
+  /// Omits the last step when its inputs are missing: inputs follow the messages of their step, and a log that breaks
+  /// off between them cannot repeat the step.
   void leave_out_incomplete() {
-    // In a record all of a step stands before anything of a later one.
+    // In a record all events of a step precede those of a later one.
     std::int64_t stamped = step_of(last_stamp_);
-    // There is a sim.info every 10 s: a stamp that is far beyond is damaged.
+    // A sim.info is published every 10 s: a time stamp far beyond the last one is damaged.
     if (stamped > log_.last_step + 2 + 10'000'000 / log_.info.step_us) stamped = log_.last_step;
     if (log_.own_stamps) whole_step_ = std::max(whole_step_, stamped - 1);
     const std::int64_t known = std::max(log_.last_step, log_.own_stamps ? stamped : 0);
     log_.last_step = std::max(whole_step_, log_.begin_step());
-    // Behind the end of a step may stand what came for the next.
+    // Inputs for the next step may follow the end of a step.
     if (known > log_.last_step || (log_.own_stamps && !ends_whole_))
       log_.cut = fmt::format("the log ends in the middle of step {}: everything after step {} is left out",
                              std::max(known, log_.last_step + 1), log_.last_step);
@@ -196,11 +201,11 @@ class Reader {
   struct Count {
     std::string channel;
     std::uint64_t events = 0;
-    std::size_t next = 0;  ///< the channel that came after this one the last time
+    std::size_t next = 0;  ///< channel that followed this one the last time
   };
 
-  /// Steps are like each other: the channel is mostly the one that came after this one before, and the names need not
-  /// be looked for.
+  /// Finds the channel that followed the preceding one the last time, because steps resemble each other; this saves a
+  /// search for the name.
   void count(std::string_view channel) {
     std::size_t found = counts_.empty() ? 0 : counts_[last_].next;
     if (counts_.empty() || counts_[found].channel != channel) {
@@ -240,7 +245,7 @@ class Reader {
     if (event.utime != number_at(event.payload, 0)) log_.own_stamps = false;
   }
 
-  /// What the run, or this branch, begins with: what came before is not needed to run it again.
+  /// Stores the snapshot with which the run, or this branch, starts: earlier events are not needed for a replay.
   void take_snapshot(const bridges::LogEventView& event) {
     const auto message = shoal::decode<shoal::sim_snapshot_t>(event.payload, shoal::Finite::any);
     check_stamp(event, message.utime, message.step);
@@ -284,12 +289,12 @@ class Reader {
 
   bool is_time_of(std::int64_t step, std::int64_t utime) const {
     if (step < 0 || step > 1'000'000'000'000) return false;
-    // Without signs: the numbers are a stranger's, and may overflow.
+    // Unsigned arithmetic: the numbers are untrusted, and may overflow.
     const std::uint64_t since = static_cast<std::uint64_t>(step) * static_cast<std::uint64_t>(log_.info.step_us);
     return static_cast<std::uint64_t>(utime) == static_cast<std::uint64_t>(log_.info.epoch_utime) + since;
   }
 
-  /// A stamp that is not that of its step is of another run, or of another epoch.
+  /// Rejects a time stamp that is not that of its step: it belongs to another run, or to another epoch.
   void check_stamp(const bridges::LogEventView& event, std::int64_t utime, std::int64_t step) const {
     if (!informed_) return;
     const shoal::sim_info_t& info = log_.info;
@@ -301,6 +306,7 @@ class Reader {
   void take_info(const bridges::LogEventView& event) {
     auto info = shoal::decode<shoal::sim_info_t>(event.payload, shoal::Finite::any);
     if (event.utime != info.utime) log_.own_stamps = false;
+    // First message: start of the run.
     if (!informed_) {
       if (info.step_us < 1 || info.step_us > 10'000'000)
         throw shoal::MessageError("step_us must be from 1 to 10000000, got " + std::to_string(info.step_us));
@@ -310,9 +316,10 @@ class Reader {
       check_stamp(event, log_.info.utime, log_.info.step);
       check_sequence(log_.info.input_sequence, log_.info.step);
       note_step(log_.info.step);
-      whole_step_ = log_.info.step - 1;  // its own inputs come behind it
+      whole_step_ = log_.info.step - 1;  // its own inputs follow it
       return;
     }
+    // Later message: the same run, or another branch of it.
     const shoal::sim_info_t& first = log_.info;
     const bool same_run = info.world == first.world && info.seed == first.seed && info.step_us == first.step_us &&
                           info.epoch_utime == first.epoch_utime && info.resolved_config == first.resolved_config;
@@ -328,7 +335,7 @@ class Reader {
     whole_step_ = is_rewound ? info.step : std::max(whole_step_, info.step - 1);
   }
 
-  /// The run went back: what came later on the branch before is not part of this one.
+  /// Starts another branch after a rewind: later events of the previous branch are not part of it.
   void start_branch(const shoal::sim_info_t& info) {
     branch_ = info.branch;
     if (log_.last_step > info.step) log_.is_rewound = true;
@@ -341,14 +348,14 @@ class Reader {
     }
     log_.last_step = info.step;
     input_step_ = std::min(input_step_, info.step);
-    // What is missing of the part that was left is not missed.
+    // Losses in the abandoned part do not matter.
     std::erase_if(holes_, [&](const Hole& hole) { return hole.first >= info.input_sequence; });
     if (!holes_.empty()) holes_.back().last = std::min(holes_.back().last, info.input_sequence - 1);
-    next_sequence_ = std::min(next_sequence_, info.input_sequence);  // a larger one is a hole
+    next_sequence_ = std::min(next_sequence_, info.input_sequence);  // a larger one is a gap
     if (before_snapshot) holes_.push_back({0, std::max<std::int64_t>(info.input_sequence - 1, 0), 0, info.step});
   }
 
-  /// `next`: the number of the first sim.inputs that may still come.
+  /// `next`: lowest number of a sim.inputs that may still follow.
   void check_sequence(std::int64_t next, std::int64_t step) {
     if (next > next_sequence_) {
       holes_.push_back({next_sequence_, next - 1, input_step_, step, since_inputs_});
@@ -380,9 +387,11 @@ class Reader {
 
   void take_hash(const bridges::LogEventView& event) {
     auto message = shoal::decode<shoal::sim_hash_t>(event.payload, shoal::Finite::any);
+    // Check the position in the log.
     check_stamp(event, message.utime, message.step);
     check_sequence(message.input_sequence, message.step);
     since_inputs_.clear();
+    // Store the hash of the state and of its parts.
     ReplayLog::Hashes& hashes = log_.hashes[message.step];
     hashes.whole = static_cast<std::uint64_t>(message.hash);
     hashes.after_inputs = std::any_of(log_.inputs.rbegin(), log_.inputs.rend(), [&](const ReplayLog::Input& input) {
@@ -397,12 +406,12 @@ class Reader {
       else
         hashes.parts.push_back({std::move(message.part[i]), hash});
     }
-    input_step_ = std::max(input_step_, message.step);  // all that came up to here was in those before
+    input_step_ = std::max(input_step_, message.step);  // all earlier inputs were in messages before this one
     note_whole(message.step);
     published_ = true;
   }
 
-  /// What is known of this step ends with this message.
+  /// Marks a step as complete: this message is its last one.
   void note_whole(std::int64_t step) {
     note_step(step);
     whole_step_ = std::max(whole_step_, step);
@@ -412,7 +421,7 @@ class Reader {
   bridges::EventLogReader file_;
   SnapshotPieces pieces_;
   ReplayLog log_;
-  std::deque<Count> counts_;  // whose names do not move
+  std::deque<Count> counts_;  // deque: its names keep their addresses
   std::unordered_map<std::string_view, std::size_t> by_name_;
   std::size_t last_ = 0;  // in counts_
   std::vector<Hole> holes_;
@@ -420,11 +429,11 @@ class Reader {
   bool informed_ = false, stepped_ = false, published_ = false;
   std::int32_t branch_ = 0;
   std::int64_t next_sequence_ = 0;
-  std::int64_t input_step_ = 0;   // up to which no sim.inputs is missing behind the last one
-  std::int64_t whole_step_ = -1;  // up to which all inputs and messages are there
+  std::int64_t input_step_ = 0;   // last step without a missing sim.inputs
+  std::int64_t whole_step_ = -1;  // last step with all inputs and messages
   std::int64_t last_stamp_ = 0;   // of the last event
-  bool ends_whole_ = false;       // that event ended a step
-  std::string version_;           // that wrote a sim.info which cannot be read; empty: none did
+  bool ends_whole_ = false;       // the last event ended a step
+  std::string version_;           // version of an unreadable sim.info; empty: none
 };
 
 }  // namespace

@@ -14,9 +14,9 @@
 
 namespace tools {
 
-/// The content of a log of a run besides the messages themselves: everything needed to replay the world.
+/// Content of a log of a run without the messages: everything needed to replay the world.
 struct ReplayLog {
-  /// See sim_input_t.
+  /// Message delivered to the world; see sim_input_t.
   struct Input {
     std::int64_t step = 0;
     std::string bus, channel;
@@ -26,16 +26,18 @@ struct ReplayLog {
     std::uint64_t whole = 0;
     std::vector<sim::PartHash> parts;
     bool after_inputs = false;         ///< inputs of its own step precede it, as at the end of a run
-    std::optional<std::uint64_t> run;  ///< of the run up to here; unset: the version that wrote it did not tell
+    std::optional<std::uint64_t> run;  ///< hash of the run up to here; unset: the version that wrote the log did not
+                                       ///< record it
   };
 
   std::string path;
   shoal::sim_info_t info{};                 ///< the first
-  std::optional<Snapshot> snapshot;         ///< with which it starts; inputs and hashes are later
-  std::string bad_snapshot;                 ///< why one that it began with cannot be used; empty: none was bad
+  std::optional<Snapshot> snapshot;         ///< with which the log starts; inputs and hashes are later
+  std::string bad_snapshot;                 ///< why the snapshot at its start cannot be used; empty: it is usable, or
+                                            ///< there is none
   std::vector<Input> inputs;                ///< in the order of delivery
   std::map<std::int64_t, Hashes> hashes;    ///< by step
-  std::int64_t first_step = 0;              ///< of which the log tells
+  std::int64_t first_step = 0;              ///< first step that the log covers
   std::int64_t last_step = 0;               ///< the last one for which the log has all inputs and messages
   std::string cut;                          ///< description of what follows last_step and is left out; empty: nothing
   std::optional<std::int64_t> proven_step;  ///< up to which all inputs are present; unset: all of them
@@ -43,17 +45,17 @@ struct ReplayLog {
   std::vector<std::string> audit;           ///< text of the first sim.audit messages
   std::vector<std::string> problems;        ///< damage, and messages that cannot be read
   std::map<std::string, std::uint64_t> events;  ///< by channel
-  bool own_stamps = true;                       ///< stamped with simulated time: a record without losses
-  bool is_rewound = false;                      ///< holds the same steps more than once, of several branches
+  bool own_stamps = true;                       ///< time stamps are simulated time: a record without losses
+  bool is_rewound = false;                      ///< holds the same steps more than once, from several branches
 
-  /// Where the repetition begins.
+  /// Step at which the repetition starts.
   std::int64_t begin_step() const { return snapshot ? snapshot->step : 0; }
-  /// The last step up to which the run can be repeated.
+  /// Last step up to which the run can be repeated.
   std::int64_t usable_step() const { return proven_step.value_or(last_step); }
 };
 
-/// Reads a log once.  Throws std::runtime_error: it cannot be read, is not a log of a run, contains two runs, or has
-/// stamps that do not match its run.
+/// Reads a log in one pass.  Throws std::runtime_error when it cannot be read, is not a log of a run, contains two
+/// runs, or has time stamps that do not match its run.
 ReplayLog read_replay_log(const std::string& path);
 
 }  // namespace tools

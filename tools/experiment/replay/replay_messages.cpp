@@ -19,12 +19,12 @@ namespace tools {
 
 namespace {
 
-/// Of messages that were read and not yet compared, where stamps do not tell how far to look.
+/// Limit of messages that are read but not yet compared, where time stamps do not limit the search.
 constexpr std::size_t max_queued_bytes = std::size_t{256} << 20;
-/// A record has what is published in a step with the stamp of this step or the next.
+/// In a record, messages published in a step have the time stamp of this step or the next.
 constexpr std::int64_t steps_ahead = 2;
 
-/// Those of the run itself: another run has others.
+/// Returns whether a channel belongs to the run itself: another run has other messages on it.
 bool is_of_the_run(std::string_view channel) {
   if (!channel.starts_with("sim.")) return false;
   static constexpr std::array<std::string_view, 11> names{
@@ -41,7 +41,7 @@ bool same(std::span<const std::byte> a, std::span<const std::byte> b) {
   return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size()) == 0);
 }
 
-/// The first member, when it is a time stamp.
+/// Returns the first member, when it is a time stamp.
 std::optional<std::int64_t> stamp_of(const shoal::MessageSchema* schema, std::span<const std::byte> payload) {
   if (schema == nullptr || schema->members.empty() || schema->members.front().name != "utime" || payload.size() < 16)
     return std::nullopt;
@@ -82,7 +82,7 @@ Fields fields_of(const shoal::MessageSchema& schema, std::span<const std::byte> 
   return fields;
 }
 
-/// Which member differs first, and how.
+/// Describes the first member that differs.
 std::string difference_of(const shoal::MessageSchema* schema, std::span<const std::byte> logged,
                           std::span<const std::byte> here) {
   if (shoal::fingerprint(logged) != shoal::fingerprint(here)) return "is of another type in the log";
@@ -171,6 +171,7 @@ bool ReplayMessages::is_input(Channel& channel, Payload payload) {
 
 void ReplayMessages::published(std::string_view name, std::span<const std::byte> payload, std::int64_t step) {
   if (log_.is_rewound) return;
+  // Find the channel.
   Channel* known = find_next(name, last_published_, &Channel::next_published);
   if (known == nullptr && is_of_the_run(name)) return;
   Channel& channel = known != nullptr ? *known : add(name);
@@ -185,22 +186,25 @@ void ReplayMessages::published(std::string_view name, std::span<const std::byte>
       pop(channel);
       continue;
     }
+    // Compare the time stamps.
     const auto* schema = shoal::embedded_types().find(static_cast<std::uint64_t>(shoal::fingerprint(payload)));
     const bool one_type = shoal::fingerprint(*logged) == shoal::fingerprint(payload);
     const auto here = stamp_of(schema, payload);
     const auto there = one_type ? stamp_of(schema, *logged) : std::nullopt;
-    if (here && there && *there > *here) break;  // the log lacks this one
+    if (here && there && *there > *here) break;  // the log lacks this message
     if (here && there && *there < *here) {
       differ(name, step, fmt::format("a message stamped {} is in the log and was not published here", *there));
       pop(channel);
       continue;
     }
+    // Compare the content.
     if (name == "sim.state" && one_type)
       compare_states(*logged, payload, step);
     else
       differ(name, step, difference_of(schema, *logged, payload));
     return pop(channel);
   }
+  // The log has no such message.
   if (++missing_ == 1) first_missing_ = Difference{step, std::string(name), "is not in the log"};
   if (log_.own_stamps) differ(name, step, "was published here and is not in the log");
 }
@@ -214,6 +218,7 @@ void ReplayMessages::differ(std::string_view channel, std::int64_t step, const s
 }
 
 void ReplayMessages::compare_states(Payload logged, Payload here, std::int64_t step) {
+  // Decode both messages.
   shoal::sim_state_t there, own;
   try {
     there = shoal::decode<shoal::sim_state_t>(logged, shoal::Finite::any);
@@ -222,6 +227,7 @@ void ReplayMessages::compare_states(Payload logged, Payload here, std::int64_t s
     return differ("sim.state", step, std::string("cannot be read in the log: ") + error.what());
   }
   if (there.vehicle != own.vehicle) differ("sim.state", step, "has other vehicles in the log");
+  // Find the first difference of each vehicle.
   std::string what = "differs";
   for (std::size_t i = 0; i < own.vehicle.size(); ++i) {
     const auto found = std::find(there.vehicle.begin(), there.vehicle.end(), own.vehicle[i]);
@@ -237,6 +243,7 @@ void ReplayMessages::compare_states(Payload logged, Payload here, std::int64_t s
     look("orientation", there.orientation[j], own.orientation[i]);
     look("velocity_mps", there.velocity_mps[j], own.velocity_mps[i]);
     look("angular_velocity_radps", there.angular_velocity_radps[j], own.angular_velocity_radps[i]);
+    // Distance between the true positions.
     const auto& a = there.position_m[j];
     const auto& b = own.position_m[i];
     const double apart_m = std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
@@ -251,7 +258,7 @@ void ReplayMessages::compare_states(Payload logged, Payload here, std::int64_t s
 }
 
 void ReplayMessages::finish(std::int64_t step) {
-  // In a record every message is either an input or the simulator's.
+  // In a record every message is either an input or published by the simulator.
   if (!log_.own_stamps || log_.is_rewound || !log_.cut.empty() || log_.usable_step() < log_.last_step ||
       step < log_.last_step)
     return;

@@ -17,11 +17,11 @@
 
 namespace tools {
 
-/// How a message here differs from one of a log, such as `x_m is 1.25 in the log and 1.26 here`.
+/// Describes how a message of this replay differs from one of a log, such as `x_m is 1.25 in the log and 1.26 here`.
 std::string message_difference(std::span<const std::byte> logged, std::span<const std::byte> here);
 
-/// Compares what a world publishes when it runs again with what its log holds: byte by byte, in order per channel.
-/// Messages that the log lacks are counted; in a record, where nothing is lost, they are differences.
+/// Compares the messages of a replayed world with those in its log: byte by byte, in order per channel. Messages that
+/// the log lacks are counted; in a record, which has no losses, they are differences.
 class ReplayMessages {
  public:
   struct Difference {
@@ -38,24 +38,24 @@ class ReplayMessages {
   /// `log` must outlive this.
   explicit ReplayMessages(const ReplayLog& log);
 
-  /// A message that was published at the end of `step` here.
+  /// Compares a message that was published at the end of `step` in this replay.
   void published(std::string_view channel, std::span<const std::byte> payload, std::int64_t step);
-  /// After the last step.
+  /// To be called after the last step.
   void finish(std::int64_t step);
 
   std::uint64_t equal() const { return equal_; }
   std::uint64_t different() const { return different_; }
-  /// Published here and not in the log.
+  /// Number of messages published here and missing in the log.
   std::uint64_t missing() const { return missing_; }
-  /// The first of those; null: none.
+  /// First of those; null: none.
   const Difference* first_missing() const { return first_missing_ ? &*first_missing_ : nullptr; }
-  /// In order of discovery; null: none.
+  /// First difference in order of discovery; null: none.
   const Difference* first() const { return first_ ? &*first_ : nullptr; }
-  /// The first on sim.state of a vehicle that is in the log as well; null: none.
+  /// First difference on sim.state of a vehicle that is in the log as well; null: none.
   const Difference* first_motion() const { return first_motion_ ? &*first_motion_ : nullptr; }
-  /// The first on each channel.
+  /// First difference on each channel.
   const std::map<std::string, Difference>& by_channel() const { return by_channel_; }
-  /// Of vehicles whose true positions differ, by name.
+  /// Distances of vehicles whose true positions differ, by name.
   const std::map<std::string, Distance>& distances() const { return distances_; }
 
  private:
@@ -63,10 +63,10 @@ class ReplayMessages {
   struct Channel {
     std::string_view name;
     std::deque<sim::Bytes> queue;             // read from the log and not yet compared
-    std::uint64_t left = 0;                   // in the log, also those in the queue
-    std::multiset<std::size_t> input_record;  // hashes of messages from outside on it
+    std::uint64_t left = 0;                   // in the log, including those in the queue
+    std::multiset<std::size_t> input_record;  // hashes of its input messages
     bool published = false;
-    /// Successor of this one the last time: steps are similar, which saves a search for the name.
+    /// Successor of this channel the last time: the order of channels repeats, which saves a search for the name.
     Channel *next_published = nullptr, *next_read = nullptr;
   };
 
@@ -74,10 +74,10 @@ class ReplayMessages {
     const auto known = by_name_.find(name);
     return known == by_name_.end() ? nullptr : known->second;
   }
-  /// Tries the previous successor of `last`.  The one that is found is the last one then.
+  /// Tries the previous successor of `last`; sets `last` to the channel that is found.
   Channel* find_next(std::string_view name, Channel*& last, Channel* Channel::*next);
   Channel& add(std::string_view name);
-  /// Null: the log has no more of them, or not before what is compared now.
+  /// Returns the next logged message; null: the log has no more of them, or none before the message being compared.
   std::optional<Payload> head(Channel& channel);
   void pop(Channel& channel);
   bool is_input(Channel& channel, Payload payload);
@@ -87,13 +87,13 @@ class ReplayMessages {
   const ReplayLog& log_;
   ReadAhead file_;
   bool at_end_ = false;
-  std::int64_t look_until_ = 0;   // stamp up to which a record is read
+  std::int64_t look_until_ = 0;   // time stamp up to which a record is read
   std::size_t queued_bytes_ = 0;  // of all channels
-  bridges::LogEventView event_;   // the last one that was read
+  bridges::LogEventView event_;   // last event read
   Channel *last_published_ = nullptr, *last_read_ = nullptr;
   Channel* current_ = nullptr;  // owner of the event until it is compared; null: compared, or without owner
   std::map<std::string, Channel, std::less<>> channels_;
-  std::unordered_map<std::string_view, Channel*> by_name_;  // asked, never iterated
+  std::unordered_map<std::string_view, Channel*> by_name_;  // only for lookup, never iterated
   std::uint64_t equal_ = 0, different_ = 0, missing_ = 0;
   std::optional<Difference> first_, first_motion_, first_missing_;
   std::map<std::string, Difference> by_channel_;

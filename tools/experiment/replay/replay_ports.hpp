@@ -12,14 +12,14 @@
 
 namespace tools {
 
-/// Ports that read what was read in the run.
+/// Serial ports that return the bytes that were read in the recorded run.
 class ReplayPorts {
  public:
   void add(const ReplayLog::Input& input) { inputs_.add(input.step, input.channel, input.payload); }
   sim::PortOpener opener() {
     return [this](sim::PortKind, const std::string& path) { return std::make_unique<Port>(*this, path); };
   }
-  /// What is read from now on was read at this step.
+  /// Sets the step whose recorded bytes the ports return from now on.
   void begin_step(std::int64_t step) { step_ = step; }
 
  private:

@@ -13,7 +13,7 @@ namespace tools {
 
 namespace {
 
-/// What is the same kind of thing for every run.
+/// Facts that every run has.
 std::string overview(const std::vector<RunRecord>& runs) {
   std::vector<std::string> head{"run"};
   std::vector<std::vector<std::string>> rows{{"verdict"},      {"world"},    {"seed"},

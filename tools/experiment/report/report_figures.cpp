@@ -26,13 +26,13 @@ std::string full_name(const RunMetric& metric, const RunMetric::Figure& figure) 
   return figure.name.empty() ? metric.name : metric.name + "." + figure.name;
 }
 
-/// Without the marks of Markdown.
+/// Removes the marks of Markdown.
 std::string plain(std::string text) {
   std::erase(text, '`');
   return text;
 }
 
-/// Name and meaning of a figure.
+/// Returns name and meaning of a figure.
 std::string named(const std::string& name, const sim::FigureKind* kind) {
   std::string html = html_text(name);
   if (kind != nullptr) html += "<br><span class=\"soft small\">" + html_text(plain(kind->meaning)) + "</span>";

@@ -8,24 +8,24 @@
 
 namespace tools {
 
-/// The figures of one run by metric, each with its unit and meaning.  Counts that are 0 are folded away, except for a
+/// Returns the figures of one run by metric, each with its unit and meaning.  Counts of 0 are collapsed, except for a
 /// metric's most important figure and for figures that a rule names.
 std::string figures_html(const std::vector<RunMetric>& metrics, const std::vector<RunRecord::Rule>& rules);
 
-/// The figures of several runs, or statistics of several cases, side by side and by metric.
+/// Figures of several runs, or statistics of several cases, side by side and by metric.
 class FigureColumns {
  public:
   struct Row {
     std::string figure;               ///< `cooperative.rms_m`
-    std::string label;                ///< of the row, such as a case; empty: the name of the figure
-    std::vector<std::string> values;  ///< a text for each column
-    bool idle = false;                ///< 0 everywhere: folded away
+    std::string label;                ///< label of the row, such as a case; empty: the name of the figure
+    std::vector<std::string> values;  ///< one text per column
+    bool idle = false;                ///< 0 in all columns: collapsed
   };
 
-  /// `head`: of the columns after the first.  `figures`: all that there are, which tell the types of the metrics.
+  /// `head`: of the columns after the first.  `figures`: all figures, which determine the types of the metrics.
   FigureColumns(std::vector<std::string> head, const std::vector<std::string>& figures)
       : head_(std::move(head)), metrics_(metrics_named(figures)) {}
-  /// Of one of `figures`.
+  /// Adds a row of one of `figures`.
   void add(Row row) { rows_.push_back(std::move(row)); }
   std::string html() const;
 

@@ -23,10 +23,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Lines at the end of a program's log that the page shows.
+/// Number of lines from the end of a program's log that the page shows.
 constexpr std::size_t log_lines = 30;
 constexpr std::size_t max_log_bytes = 20000;
-/// Without an estimate for longer a score says less than it seems to.
+/// Interval without estimates beyond which a score is misleading.
 constexpr double long_gap_s = 30;
 
 std::string paragraph(const std::string& html, const char* look = "") {
@@ -41,7 +41,7 @@ std::string title_of(const RunRecord& run) {
   return run.world.empty() ? "A run" : run.world;
 }
 
-/// What the rules do not say of a run that failed; empty: nothing.
+/// Returns the reasons of a failed run besides the rules; empty: none.
 std::string why_not_passed(const RunRecord& run) {
   if (!run.error.empty()) return run.error;
   if (run.ended == "signal") return fmt::format("It was stopped by a signal after {:.2f} s.", run.sim_time_s);

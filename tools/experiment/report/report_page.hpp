@@ -11,30 +11,30 @@
 
 namespace tools {
 
-/// A results directory as one HTML page that needs no network: verdict and plots first, then figures by metric, logs of
-/// programs and facts about the run.  Takes a study's directory too; several directories of runs are compared.
-/// Throws std::runtime_error with file and reason.
+/// Returns a results directory as one HTML page that needs no network: verdict and plots first, then figures by metric,
+/// logs of programs and facts about the run.  Also accepts the directory of a study; several directories of runs are
+/// compared. Throws std::runtime_error with file and reason.
 std::string report_page(const std::vector<std::string>& directories);
 
-/// The page of one run.
+/// Returns the page of one run.
 std::string run_report(const RunRecord& run);
-/// Compares runs side by side.
+/// Returns a page that compares runs side by side.
 std::string comparison_report(const std::vector<RunRecord>& runs);
 
-/// Verdict, rules, and what came out in words.
+/// Returns verdict, rules, and the findings in words.
 std::string outcome_html(const RunRecord& run, const std::vector<RunMetric>& metrics);
-/// `passed`, `FAILED` or `not judged`, coloured; `why` follows it after a colon.
+/// Returns `passed`, `FAILED` or `not judged`, coloured; `why` follows after a colon.
 std::string judgement_html(Judgement judgement, const std::string& why = "");
 std::string verdict_html(bool passed);
-/// Rules with their outcome: those that failed, then those that hold folded away.
+/// Returns the rules with their outcome: failed ones first, then the passed ones, collapsed.
 std::string rules_html(const std::vector<RunRecord::Rule>& rules);
-/// A box with a coloured edge and the content `html`.
+/// Returns a box with a coloured edge and the content `html`.
 std::string verdict_box(Judgement judgement, const std::string& html);
-/// Texts as a list; empty: nothing.
+/// Returns texts as a list; nothing when there are none.
 std::string list_html(const std::vector<std::string>& texts);
-/// A table of names and values.
+/// Returns a table of names and values.
 std::string facts_table(const std::vector<std::pair<std::string, std::string>>& facts);
-/// The version that made the page.
+/// Returns the version of the program that wrote the page.
 std::string made_by_html();
 
 }  // namespace tools

@@ -35,7 +35,7 @@ const std::map<std::string, std::string>& captions_of_run() {
 std::vector<std::string> plots_of(const RunRecord& run) {
   std::error_code error;
   std::vector<std::string> files;
-  const bool plotted = fs::exists(run.directory + "/plot.gp", error);  // else none was asked for
+  const bool plotted = fs::exists(run.directory + "/plot.gp", error);  // otherwise plots were not requested
   if (plotted) files.emplace_back("tracks.png");
   const bool compared = std::any_of(run.metrics.begin(), run.metrics.end(), [](const auto& figure) {
     return figure.first.ends_with(".samples") && figure.second.value_or(0) > 0;

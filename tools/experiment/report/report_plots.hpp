@@ -9,12 +9,12 @@
 
 namespace tools {
 
-/// Plots of a directory as HTML, with what each shows (by file name; none: the name); those that are missing or no
-/// whole PNG are named.
+/// Returns the plots of a directory as HTML, each with its caption (by file name; default: the name); lists the plots
+/// that are missing or not a complete PNG file.
 std::string plots_html(const std::string& directory, const std::vector<std::string>& files,
                        const std::map<std::string, std::string>& captions);
 
-/// The plots of a run.
+/// Returns the plots of a run.
 std::string run_plots_html(const RunRecord& run);
 
 }  // namespace tools

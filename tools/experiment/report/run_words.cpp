@@ -16,11 +16,11 @@ namespace {
 
 using Metrics = std::vector<const RunMetric*>;
 
-/// More vehicles than this are summed up.
+/// More vehicles than this are described together.
 constexpr std::size_t max_vehicles_by_name = 4;
 constexpr std::size_t max_contacts_by_name = 5;
 
-/// Three digits, without an exponent.
+/// Formats three digits, without an exponent.
 std::string rounded(double value) {
   const double size = std::abs(value);
   if (size >= 100) return fmt::format("{:.0f}", value);
@@ -50,7 +50,7 @@ double rms_of(const RunMetric& metric) {
   return metric.value("rms_m").value_or(std::numeric_limits<double>::infinity());
 }
 
-/// Distance that the vehicle travelled until its last estimate; empty: not known.
+/// Returns the distance that the vehicle travelled until its last estimate; empty: unknown.
 std::string after_distance(const RunMetric& metric) {
   const auto final_m = metric.value("final_m");
   const auto percent = metric.value("per_distance_percent");
@@ -58,8 +58,9 @@ std::string after_distance(const RunMetric& metric) {
   return ", after " + length_text(100 * *final_m / *percent);
 }
 
-/// A vehicle's position errors, the smallest first.
+/// Describes the position errors of a vehicle, the smallest first.
 std::string position_sentence(const std::string& vehicle, Metrics metrics) {
+  // Best estimate first.
   std::stable_sort(metrics.begin(), metrics.end(),
                    [](const RunMetric* a, const RunMetric* b) { return rms_of(*a) < rms_of(*b); });
   const RunMetric& best = *metrics.front();
@@ -72,8 +73,10 @@ std::string position_sentence(const std::string& vehicle, Metrics metrics) {
     text = fmt::format("{} localises itself to {} rms ({})", vehicle, length_text(rms_of(best)), best.name);
   else
     text = fmt::format("{} is located to {} rms ({})", vehicle, length_text(rms_of(best)), best.name);
+  // Final error of a single estimate.
   if (metrics.size() == 1 && best.value("final_m"))
     text += fmt::format(", {} at the end", length_text(*best.value("final_m"))) + after_distance(best);
+  // Other estimates.
   for (std::size_t i = 1; i < metrics.size(); ++i) {
     const RunMetric& other = *metrics[i];
     text += "; " + other.name + ": ";
@@ -84,7 +87,7 @@ std::string position_sentence(const std::string& vehicle, Metrics metrics) {
   return text + ".";
 }
 
-/// The best of each of many vehicles.
+/// Describes the best result of each of many vehicles.
 std::string many_vehicles_sentence(const std::vector<std::pair<std::string, Metrics>>& by_vehicle) {
   double min_m = std::numeric_limits<double>::infinity(), max_m = 0;
   std::size_t located = 0;
@@ -154,7 +157,7 @@ std::string cost_sentence(const RunMetric& metric) {
                      length_text(*reduction_m), rounded(metric.value("bytes_per_metre").value_or(0)));
 }
 
-/// `at 12.3 s`, where something happened.
+/// Returns `at 12.3 s` for an event.
 std::string at_time(const std::optional<double>& time_s) {
   return time_s ? fmt::format("at {:.1f} s", *time_s) : "";
 }
@@ -187,13 +190,13 @@ std::string tilt_sentence(const RunMetric& metric) {
   return text + (fell_s ? " and falls " + at_time(fell_s) : " and does not fall") + ".";
 }
 
-/// The run ended before the metric began to look.
+/// Returns whether a metric has no figures, because the run ended before it started to count.
 bool has_nothing(const RunMetric& metric) {
   return std::none_of(metric.figures.begin(), metric.figures.end(),
                       [](const RunMetric::Figure& figure) { return figure.value.has_value(); });
 }
 
-/// Empty: told elsewhere, or by its figures alone.
+/// Empty: described elsewhere, or by its figures only.
 std::string sentence_of(const RunMetric& metric) {
   using Sentence = std::string (*)(const RunMetric&);
   static const std::map<std::string, Sentence> sentences = {{"consistency", consistency_sentence},

@@ -19,13 +19,13 @@ namespace tools {
 
 namespace {
 
-/// 1 when a run held the rules of its world.
+/// Figure that is 1 when the rules of the world hold.
 constexpr const char* passed_figure = "passed";
 constexpr std::size_t max_figures_in_words = 6;
 
 Judgement judgement_in(const JsonReader& in, const std::vector<RunRecord::Rule>& rules) {
   if (in.at("passed").is_null()) return Judgement::not_judged;
-  // Older versions wrote that a study without rules had passed.
+  // Older versions recorded a study without rules as passed.
   if (in.boolean("passed") && rules.empty()) return Judgement::not_judged;
   return judgement_of(in.boolean("passed"));
 }
@@ -74,7 +74,7 @@ std::vector<StudyCaseRecord> cases_of(const JsonReader& in) {
   return cases;
 }
 
-/// Every figure of any case, but the verdict of the runs.
+/// Returns the figures of all cases, except the verdict of the runs.
 std::vector<std::string> all_figures(const std::vector<StudyCaseRecord>& cases) {
   std::set<std::string> names;
   for (const StudyCaseRecord& each : cases)
@@ -92,7 +92,7 @@ std::string figures_html(const JsonReader& in, const std::vector<StudyCaseRecord
       if (name == passed_figure || found == each.figures.end()) continue;
       const CaseFigure& f = found->second;
       FigureColumns::Row row{name, each.name, {}, f.min == 0.0 && f.max == 0.0 && f.count == seeds};
-      // A mean of the runs that have the figure says nothing of those that do not.
+      // A mean over the runs with the figure is not representative when others lack it.
       row.values.push_back(figure_text(f.count) + (f.count == seeds ? "" : " of " + figure_text(seeds)));
       row.values.push_back(figure_text(f.mean));
       row.values.push_back(f.low_95 && f.high_95 ? figure_text(f.low_95) + " to " + figure_text(f.high_95) : "none");
@@ -102,7 +102,7 @@ std::string figures_html(const JsonReader& in, const std::vector<StudyCaseRecord
   return columns.html();
 }
 
-/// How many runs of a case held the rules of their own world.
+/// Number of runs of a case in which the rules of their own world hold.
 std::string passed_text(const StudyCaseRecord& record) {
   const auto found = record.figures.find(passed_figure);
   if (found == record.figures.end() || !found->second.mean || !found->second.count) return "not judged";
@@ -131,7 +131,7 @@ std::vector<RunRecord::Rule> rules_of(const JsonReader& in) {
   return rules;
 }
 
-/// The figures to say in words: those that the rules are about, else the first ones.
+/// Returns the figures to describe in words: those of the rules, else the first ones.
 std::vector<std::string> main_figures(const JsonReader& in, const std::vector<RunRecord::Rule>& rules) {
   std::vector<std::string> ruled, first;
   for (const std::string& name : texts_of(in, "figures")) {
@@ -152,11 +152,13 @@ std::vector<std::string> findings(const std::vector<std::string>& names, const s
   const std::vector<RunMetric> metrics = metrics_named(all_figures(cases));
   std::vector<std::string> sentences;
   for (const std::string& name : names) {
+    // Unit of the figure.
     std::string unit;
     for (const RunMetric& metric : metrics)
       for (const RunMetric::Figure& figure : metric.figures)
         if (name == metric.name + "." + figure.name && figure.kind != nullptr && figure.kind->unit != "1")
           unit = " " + figure.kind->unit;
+    // Mean and deviation by case.
     std::string text;
     for (const StudyCaseRecord& each : cases) {
       const auto found = each.figures.find(name);
@@ -194,7 +196,7 @@ std::string outcome_html(const JsonReader& in, const std::vector<StudyCaseRecord
       words.push_back((cases.size() > 1 ? each.name + ": " : "") + passed + " runs hold the rules of their world.");
   const std::vector<std::string> found = findings(main_figures(in, rules), cases);
   std::string html = verdict_box(judgement, "<p>" + text + "</p>\n" + rules_html(rules)) + list_html(words);
-  // Not in files of older versions.
+  // Missing in files of older versions.
   if (in.has("notes"))
     for (const std::string& note : texts_of(in, "notes")) html += "<p>Note: " + html_text(note) + ".</p>\n";
   if (!found.empty()) html += "<p>Mean and standard deviation over the runs:</p>\n" + list_html(found);

@@ -5,7 +5,7 @@
 
 namespace tools {
 
-/// The page of a study's folder, from its study.json.  Throws std::runtime_error with file and reason.
+/// Returns the page of a study's folder, from its study.json.  Throws std::runtime_error with file and reason.
 std::string study_report(const std::string& directory);
 
 }  // namespace tools

@@ -9,10 +9,10 @@
 
 namespace tools {
 
-/// The entries of `notices` in summary.json.
+/// Returns the entries of `control.audit` in summary.json.
 nlohmann::ordered_json audit_json(const std::vector<bridges::AuditEntry>& audit);
 
-/// One line: `quit at 12.30 s by client 'shoal-control-4711'`.
+/// Returns one line: `quit at 12.30 s by client 'shoal-control-4711'`.
 std::string audit_text(const bridges::AuditEntry& audit_entry);
 
 }  // namespace tools

@@ -24,7 +24,7 @@ namespace tools {
 
 namespace {
 
-/// Corners of a box, or a circle, as a closed line on the ground.
+/// Returns the corners of a box, or a circle, as a closed line on the ground.
 std::string outline_of(const sim::PartConfig& part, const sim::Pose& X_WB) {
   const sim::Pose X_WP = X_WB * sim::make_pose(part.position_m, part.rpy_rad);
   std::string text;
@@ -104,7 +104,7 @@ void Summary::fail(int code, const std::string& how_ended, const std::string& wh
 
 namespace {
 
-/// Of the first hundred pairs: a swarm in a heap has thousands.
+/// Lists the first hundred pairs: a dense swarm has thousands.
 nlohmann::ordered_json contacts_json(const std::vector<FirstContacts::Contact>& contacts) {
   constexpr std::size_t max = 100;
   auto json = nlohmann::ordered_json::array();
@@ -120,6 +120,7 @@ nlohmann::ordered_json contacts_json(const std::vector<FirstContacts::Contact>& 
 
 std::string Summary::to_json() const {
   nlohmann::ordered_json json;
+  // Run and state.
   json["world"] = world;
   json["description"] = description;
   json["seed"] = seed;
@@ -134,12 +135,14 @@ std::string Summary::to_json() const {
   json["dropped_messages"] = dropped_messages;
   json["bad_messages"] = bad_messages;
   json["quick_steps"] = quick_steps;
+  // Metrics, rules and contacts.
   json["metrics"] = nlohmann::ordered_json::object();
   for (const auto& [name, value] : metrics) json["metrics"][name] = value;  // NaN becomes null
   json["rules"] = nlohmann::ordered_json::array();
   for (const Scoring::Verdict& verdict : verdicts) json["rules"].push_back(json_of(verdict));
   json["contacts"] = contacts_json(contacts);
   json["contact_pairs"] = contacts.size();
+  // Programs and clients.
   json["processes"] = nlohmann::ordered_json::array();
   for (const Process& process : processes)
     json["processes"].push_back(
@@ -155,6 +158,7 @@ std::string Summary::to_json() const {
                                {"timeouts", client.timeouts},
                                {"contradictions", client.contradictions},
                                {"ended", client.ended.empty() ? "with the run" : client.ended}});
+  // Control, zones and modems.
   json["control"] = {{"needs_key", needs_key}, {"refused_requests", refused_requests}, {"audit_count", audit_count}};
   json["control"]["audit"] = audit_json(audit);
   for (const auto& [vehicle, record] : zones) {
@@ -170,6 +174,7 @@ std::string Summary::to_json() const {
   }
   json["modem_dropped_messages"] = modem_dropped_messages;
   json["serial_dropped_bytes"] = serial_dropped_bytes;
+  // Verdict and end.
   if (event) json["event"] = {{"text", event->text}, {"passed", event->passed}};
   json["judged"] = judged();
   if (!judged()) json["not_judged"] = why_not_judged();
@@ -182,7 +187,7 @@ std::string Summary::to_json() const {
   if (branch > 0) json["branch"] = branch;
   if (!snapshot.empty()) json["snapshot"] = snapshot;
   if (!snapshot.empty()) json["metrics_from_s"] = from_s;
-  // A client may call itself anything: what is not UTF-8 in its name must not cost the summary.
+  // The name of a client may contain any bytes: invalid UTF-8 must not prevent the summary.
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
@@ -192,11 +197,13 @@ std::string Summary::to_text() const {
       "  {} steps, {:.2f} s simulated in {:.2f} s: {:.1f} x real time\n"
       "  {} messages, {} dropped, {} bad\n",
       world, seed, steps, sim_time_s, wall_s, real_time_factor(), messages, dropped_messages, bad_messages);
+  // Branches and accuracy.
   if (!snapshot.empty())
     text += fmt::format("  {:.2f} s of it here, from {}; metrics count from {:.2f} s\n", stepped_s, snapshot, from_s);
   if (branch > 0) text += fmt::format("  branch {}: the run was rewound\n", branch);
   if (quick_steps > 0)
     text += fmt::format("  {} steps used QuickStep because an island of bodies was too large\n", quick_steps);
+  // Modems and serial ports.
   if (acoustics) {
     text += fmt::format("  acoustic packets: {} sent, {} received", acoustics->sent, acoustics->received);
     for (const auto& [cause, count] : acoustics->lost)
@@ -207,6 +214,7 @@ std::string Summary::to_text() const {
   if (modem_dropped_messages > 0)
     text += fmt::format("  {} messages were dropped from full queues of modems\n", modem_dropped_messages);
   if (serial_dropped_bytes > 0) text += fmt::format("  {} bytes of serial ports were not read\n", serial_dropped_bytes);
+  // Contacts, metrics and rules.
   text += contacts_text(contacts);
   std::size_t width = 28;
   for (const auto& [name, value] : metrics) width = std::max(width, name.size());
@@ -214,6 +222,7 @@ std::string Summary::to_text() const {
     text += fmt::format("  {:<{}} {}\n", name, width, std::isnan(value) ? "none" : fmt::format("{:.4g}", value));
   for (const Scoring::Verdict& verdict : verdicts)
     text += fmt::format("  {}: {}\n", verdict.passed ? "passed" : "FAILED", verdict.text());
+  // Programs, interventions and zones.
   for (const Process& process : processes)
     text += fmt::format("  process '{}' {} at {:.2f} s\n", process.name, process.how, process.sim_time_s);
   for (const bridges::AuditEntry& audit_entry : audit) text += "  " + audit_text(audit_entry) + "\n";
@@ -223,6 +232,7 @@ std::string Summary::to_text() const {
     if (record.finish_s) text += fmt::format("  {} finished at {:.2f} s\n", vehicle, *record.finish_s);
     if (record.speeding_s > 0) text += fmt::format("  {} was too fast for {:.2f} s\n", vehicle, record.speeding_s);
   }
+  // End of the run.
   if (event) text += fmt::format("  ended by an event, {}: {}\n", event->passed ? "passed" : "FAILED", event->text);
   if (!judged())
     text += ended_by_hand() ? fmt::format("  {}: not judged\n", why_not_judged())
@@ -233,12 +243,12 @@ std::string Summary::to_text() const {
 
 namespace {
 
-/// Rules and metrics come in dozens, zones and contacts with vehicles.
+/// The number of rules and metrics is small, that of zones and contacts grows with the vehicles.
 std::size_t room_for_summary(const sim::World& world) {
   return (std::size_t{256} << 10) + 512 * world.vehicles().size();
 }
 
-/// The folder, made where it does not exist.
+/// Creates the folder if it does not exist.
 std::string made(const std::string& directory) {
   std::error_code error;
   std::filesystem::create_directories(directory, error);
@@ -278,11 +288,12 @@ Results::Results(const std::string& directory, const sim::World& world, bool plo
   remove_link(path);
   tracks_ = error ? nullptr : std::fopen(path.c_str(), "w");
   if (tracks_ == nullptr) throw cannot_write(path, error ? error.message() : std::strerror(errno));
-  // What an earlier run left would be taken for this one's, which may be killed.
+  // Remove the files of an earlier run, which would be mistaken for those of this one if it is killed.
   for (const char* image : run_plots) std::filesystem::remove(directory + "/" + image, error);
   for (const char* file : {"summary.json", "metrics.csv", "errors.csv"})
     if (!std::filesystem::is_directory(directory + "/" + file, error))
       std::filesystem::remove(directory + "/" + file, error);
+  // Start the tracks.
   std::fprintf(tracks_, "time_s,vehicle,x_m,y_m,z_m,yaw_rad\n");
   const double step_s = sim::to_seconds(world.step_time());
   every_steps_ = std::max<std::int64_t>(1, std::llround(1.0 / (world.config().run.track_rate_hz * step_s)));
@@ -351,7 +362,7 @@ void Results::start_branch(sim::Time back_to, bool ours) {
   std::ifstream in(path);
   std::string line;
   std::uintmax_t keep = 0;
-  // Times are written with all their digits.
+  // Times are written with all digits.
   for (bool first = true; std::getline(in, line); first = false) {
     if (!first && (!ours || std::strtod(line.c_str(), nullptr) > sim::to_seconds(back_to) + 1e-7)) break;
     keep += line.size() + 1;

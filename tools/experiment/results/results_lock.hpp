@@ -7,10 +7,10 @@
 
 namespace tools {
 
-/// Keeps other runs out of a results folder while this one writes there.  A run that dies lets go of it.
+/// Lock of a results folder against other runs while this one writes there.  It is released when the process ends.
 class ResultsLock {
  public:
-  /// Makes the folder.  Throws RunError when another run has it or it cannot be made.
+  /// Creates and locks the folder.  Throws RunError when another run holds the lock or the folder cannot be created.
   explicit ResultsLock(const std::string& directory);
 
  private:

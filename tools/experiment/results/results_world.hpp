@@ -7,8 +7,8 @@
 
 namespace tools {
 
-/// Writes DIRECTORY/world.yaml.  A run does so before its first step: one that is killed leaves it, too.  Throws
-/// std::runtime_error.
+/// Writes DIRECTORY/world.yaml.  A run does so before its first step, so that the file exists even when the run is
+/// killed. Throws std::runtime_error.
 void write_results_world(const std::string& directory, const sim::ConfigNode& resolved);
 
 }  // namespace tools

@@ -6,7 +6,7 @@
 
 namespace tools {
 
-/// An error that ends the run, with its exit code and what the summary calls it.
+/// Error that ends the run, with its exit code and its name in the summary.
 struct RunError : std::runtime_error {
   RunError(int code, std::string how_ended, const std::string& text)
       : std::runtime_error(text), exit_code(code), ended(std::move(how_ended)) {}

@@ -15,14 +15,14 @@ namespace tools {
 
 namespace {
 
-/// `cooperative.rms_m` as metric and figure.  Names of metrics have no dot.
+/// Splits `cooperative.rms_m` into metric and figure.  Names of metrics have no dot.
 std::pair<std::string, std::string> parts_of(const std::string& name) {
   const auto dot = name.find('.');
   const bool whole = dot == std::string::npos || dot + 1 == name.size();
   return whole ? std::pair(name, std::string()) : std::pair(name.substr(0, dot), name.substr(dot + 1));
 }
 
-/// Figures in the order of their kind, unknown ones last.
+/// Orders figures as their kind does, unknown ones last.
 void sort_figures(RunMetric& metric) {
   std::set<std::string> names;
   for (const RunMetric::Figure& figure : metric.figures) names.insert(figure.name);
@@ -40,8 +40,9 @@ std::string text_at(const sim::ConfigNode& map, const char* key) {
   return node != nullptr ? node->scalar : "";
 }
 
-/// What the world of the run says of its metrics.  The file may be anything, and is only looked at.
+/// Reads the metrics in the world of the run.  The file is untrusted, and is only parsed.
 void read_world(const std::string& path, std::vector<RunMetric>& metrics) {
+  // Read the world of the run.
   sim::Diagnostics problems;
   sim::ConfigNode world;
   try {
@@ -51,6 +52,7 @@ void read_world(const std::string& path, std::vector<RunMetric>& metrics) {
   }
   const sim::ConfigNode* entries = world.find("metrics");
   if (entries == nullptr) return;
+  // Vehicle, channel and dimensions of each metric.
   std::map<std::string, std::size_t> places;
   for (const sim::ConfigNode& entry : entries->items) {
     const std::string name = text_at(entry, "name");
@@ -62,6 +64,7 @@ void read_world(const std::string& path, std::vector<RunMetric>& metrics) {
     metric->channel = text_at(entry, "channel");
     metric->dimensions = text_at(entry, "dimensions") == "3" ? 3 : 2;
   }
+  // Order of the world.
   const auto place = [&](const RunMetric& metric) {
     const auto known = places.find(metric.name);
     return known == places.end() ? places.size() : known->second;

@@ -19,8 +19,8 @@ constexpr std::size_t max_named_tracks = 12;
 
 using Tracks = std::vector<Scoring::Track>;
 
-/// Several metrics may look at one estimate, which is drawn once: by the first that has the most samples.  gnuplot
-/// fails on a plot without a point, so those without samples go as well.
+/// Selects one metric for each estimate: several metrics may use one estimate, which is drawn once, with the metric
+/// that has the most samples.  Metrics without samples are omitted, because gnuplot fails on a plot without points.
 Tracks distinct(const Tracks& tracks) {
   Tracks kept;
   for (const Scoring::Track& track : tracks) {
@@ -41,7 +41,7 @@ bool has_covariance(const Scoring::Track& track) {
                      [](const ErrorSample& sample) { return std::isfinite(sample.nees); });
 }
 
-/// `'errors.csv' using X:Y` of one metric; x and y are columns of errors.csv.
+/// Returns `'errors.csv' using X:Y` of one metric; x and y are columns of errors.csv.
 std::string curve(const std::string& metric, int x, const std::string& y, const std::string& look) {
   return fmt::format("'errors.csv' every ::1 using (strcol(2) eq {} ? ${} : NaN):{} with lines {}",
                      gnuplot_text(metric), x, y, look);
@@ -53,7 +53,7 @@ std::string joined(const std::vector<std::string>& curves) {
   return text + "\n";
 }
 
-/// A canvas of the shape of what is on it: a long way is not lost on a white square.
+/// Canvas with the aspect ratio of the tracks.
 constexpr const char* canvas_for_tracks =
     "stats 'tracks.csv' every ::1 using 3 name 'E' nooutput\nstats 'tracks.csv' every ::1 using 4 name 'N' nooutput\n"
     "stats 'outlines.dat' using (real(word(strcol(1),1))) name 'OE' nooutput\n"
@@ -74,7 +74,7 @@ const char* cycled(const std::array<const char*, n>& colors, std::size_t i) {
   return colors[i % n];
 }
 
-/// Where the vehicles are at the end: one that stands still would not be seen otherwise.
+/// Returns the final positions of the vehicles: one that stands still would be invisible otherwise.
 std::string end_positions(const sim::World& world) {
   std::string text = "$ends << EOD\n";
   for (const auto& vehicle : world.vehicles()) {
@@ -84,16 +84,17 @@ std::string end_positions(const sim::World& world) {
   return text + "EOD\n";
 }
 
-/// `set title`, of a plot of this world.
+/// Returns `set title` of a plot of this world.
 std::string title_of(const sim::World& world, const std::string& what) {
   return "set title " + gnuplot_text(world.config().name + ": " + what) + " noenhanced\n";
 }
 
-/// Tracks are drawn pale and broad, estimates dark and thin on top of them, so that both are seen.
+/// Tracks are drawn pale and wide, estimates dark and thin on top of them, so that both are visible.
 std::string tracks_script(const sim::World& world, const Tracks& tracks) {
   std::size_t vehicles = 0, estimates = 0;
   std::vector<std::string> curves{
       "'outlines.dat' using (real(word(strcol(1),1))):(real(word(strcol(1),2))) with lines lc 'gray40' notitle"};
+  // True tracks.
   if (world.vehicles().size() > max_named_tracks) {
     curves.emplace_back("'tracks.csv' every ::1 using 3:4 with dots lc 'blue' title 'vehicles'");
   } else {
@@ -103,12 +104,14 @@ std::string tracks_script(const sim::World& world, const Tracks& tracks) {
                       "noenhanced",
                       gnuplot_text(vehicle->name()), cycled(pale_colors, vehicles++)));
   }
+  // Estimates.
   std::set<std::string> drawn;
   for (const Scoring::Track& track : tracks)
     if (drawn.insert(track.metric).second)
       curves.push_back(curve(track.metric, 4, "5",
                              fmt::format("lw 1.5 dt 2 lc '{}' title {} noenhanced", cycled(strong_colors, estimates++),
                                          gnuplot_text(track.metric + " estimate of " + track.vehicle))));
+  // Final positions.
   if (!world.vehicles().empty())
     curves.emplace_back("$ends using 1:2 with points pt 7 ps 1 lc 'gray20' title 'at the end'");
   return canvas_for_tracks + end_positions(world) + title_of(world, "tracks from above") +
@@ -122,13 +125,13 @@ double rms_of(const Scoring::Track& track) {
   return std::sqrt(squares / static_cast<double>(track.samples->size()));
 }
 
-/// Errors over a column, with three times the sigma that the estimate tells.
+/// Plots errors over a column, with the three-sigma bound of the estimate.
 std::string errors_script(const Tracks& tracks, const char* file, const char* x_label, int x) {
   std::vector<std::string> curves;
   std::vector<double> errors_m;
   std::size_t number = 0;
   for (const Scoring::Track& track : tracks) {
-    const char* color = cycled(strong_colors, number++);  // as in tracks.png
+    const char* color = cycled(strong_colors, number++);  // the same as in tracks.png
     errors_m.push_back(rms_of(track));
     curves.push_back(curve(track.metric, x, "3",
                            fmt::format("lw 2 lc '{}' title {} noenhanced", color, gnuplot_text(track.metric))));
@@ -142,7 +145,7 @@ std::string errors_script(const Tracks& tracks, const char* file, const char* x_
          axis_of_errors(errors_m) + joined(curves) + "unset logscale y\nset autoscale y\n";
 }
 
-/// Consistency over time, with the value it has on average and the bound of 95 of 100 samples.
+/// Plots consistency over time, with its expected mean and the bound of 95 % of the samples.
 std::string nees_script(const Tracks& tracks) {
   std::vector<std::string> curves;
   std::set<int> dimensions;
@@ -170,9 +173,9 @@ std::string nees_script(const Tracks& tracks) {
 std::string run_plots_script(const sim::World& world, const Scoring& scoring) {
   const Tracks tracks = distinct(scoring.tracks());
   std::string script =
-      // The vehicles' rows alternate: without `missing` each row of another one would break the line.
+      // The rows of vehicles alternate: without `missing`, rows of other vehicles would interrupt the line.
       "set datafile separator ','\nset datafile missing NaN\nset grid\n"
-      // Below the axis and its label, not on the data.
+      // Below the axis and its label, outside of the data.
       "set key outside center bottom horizontal height 0.6 spacing 1.1\n" +
       tracks_script(world, tracks);
   if (tracks.empty()) return script;

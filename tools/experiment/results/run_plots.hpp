@@ -8,11 +8,11 @@
 
 namespace tools {
 
-/// All plots that a results directory may have, in order of presentation.
+/// Names of all plots that a results directory may have, in order of presentation.
 inline constexpr const char* run_plots[] = {"tracks.png", "errors.png", "errors_by_distance.png", "nees.png"};
 
-/// Commands for gnuplot in a results directory; names its files without a directory, so that the folder can be moved
-/// and plotted again.
+/// Returns the gnuplot commands for a results directory; they name files without a directory, so that the folder can be
+/// moved and plotted again.
 std::string run_plots_script(const sim::World& world, const Scoring& scoring);
 
 }  // namespace tools

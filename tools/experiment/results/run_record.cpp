@@ -26,7 +26,7 @@ std::map<std::string, std::optional<double>> read_figures(const JsonReader& in) 
   return figures;
 }
 
-/// Older versions wrote that a run had passed though nothing was judged.
+/// Older versions recorded a run without rules as passed.
 Judgement judgement_in(const JsonReader& in, bool has_rules) {
   if (in.at("passed").is_null()) return Judgement::not_judged;
   const bool passed = in.boolean("passed");
@@ -58,6 +58,7 @@ RunRecord read_run(const std::string& directory) {
   const std::string path = directory + "/summary.json";
   const auto json = read_json_file(path);
   const JsonReader in(json, path);
+  // Run and state.
   RunRecord run;
   run.directory = directory;
   run.world = in.text("world");
@@ -74,6 +75,7 @@ RunRecord read_run(const std::string& directory) {
   run.quick_steps = in.whole("quick_steps");
   if (in.has("modem_dropped_messages")) run.modem_dropped_messages = in.whole("modem_dropped_messages");
   run.metrics = read_figures(in);
+  // Rules, programs and contacts.
   for (const auto& item : in.list("rules")) {
     const JsonReader rule(item, path + ": rules");
     run.rules.push_back({rule.text("rule"), rule.boolean("passed"), rule.has("result") ? rule.text("result") : ""});
@@ -89,6 +91,7 @@ RunRecord read_run(const std::string& directory) {
       run.contacts.push_back(
           {contact.text("vehicle"), contact.text("with"), contact.number("first_s"), contact.whole("count")});
     }
+  // Verdict and end.
   if (in.has("event")) {
     const JsonReader event(in.object("event"), path + ": event");
     run.event = RunRecord::Rule{event.text("text"), event.boolean("passed")};

@@ -57,7 +57,7 @@ void SummaryFile::make_room(const std::string& path, std::size_t bytes) {
   rooms_.push_back({path, std::move(file)});
   int error = EINTR;
   while (error == EINTR) error = posix_fallocate(rooms_.back().file.number(), 0, static_cast<off_t>(bytes));
-  // Some file systems cannot keep room.
+  // Some file systems cannot reserve space.
   if (error != 0 && error != EINVAL && error != EOPNOTSUPP) throw cannot_write(path, error);
 }
 

@@ -8,21 +8,22 @@
 
 namespace tools {
 
-/// Before a file is written: an existing link in its place would lead elsewhere.  Other files stay,
-/// and links to terminals and the like.
+/// Removes a link at the path of a file to be written, because the link would redirect the write.  Other files are
+/// kept, and so are links to terminals and other devices.
 void remove_link(const std::string& path);
 
-/// summary.json of a run, with room on the disk for it from the start: a disk that is full by the end must not cost
-/// score and hash.  The room is in `summary.json.part` and `.part2` beside it, for the summary can be written twice.
+/// File summary.json of a run, with disk space reserved from the start, so that a disk that is full at the end does not
+/// lose score and hash.  The reserved space is in `summary.json.part` and `.part2` beside it, because the summary may
+/// be written twice.
 class SummaryFile {
  public:
-  /// Throws std::runtime_error with path and reason when there is no room.
+  /// Reserves the space.  Throws std::runtime_error with path and reason when there is not enough.
   SummaryFile(const std::string& directory, std::size_t bytes);
   ~SummaryFile();
   SummaryFile(const SummaryFile&) = delete;
   SummaryFile& operator=(const SummaryFile&) = delete;
 
-  /// A reader finds it whole or not at all.  Throws std::runtime_error.
+  /// Writes the file atomically.  Throws std::runtime_error.
   void write(const std::string& text);
 
  private:

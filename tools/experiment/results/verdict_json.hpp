@@ -7,7 +7,7 @@
 
 namespace tools {
 
-/// An entry of `rules` in summary.json and study.json.
+/// Returns an entry of `rules` in summary.json and study.json.
 nlohmann::ordered_json json_of(const RuleVerdict& verdict);
 
 }  // namespace tools

@@ -7,16 +7,16 @@
 namespace tools {
 
 void BranchLog::mark(std::int64_t step, std::int64_t oldest) {
-  // The one that holds at the oldest step stays.
+  // Keep the mark that is valid at the oldest step.
   while (marks_.size() > 1 && marks_[1].step <= oldest) marks_.pop_front();
-  if (!marks_.empty() && marks_.back().step == step) return;  // where this branch began
+  if (!marks_.empty() && marks_.back().step == step) return;  // start of this branch
   const bool same = !marks_.empty() && marks_.back().sequence == journal_.sequence();
   if (same && record_.empty()) return;
   marks_.push_back({step, buses_.record_mark(), journal_.sequence()});
 }
 
 void BranchLog::prepare(std::int32_t branch, std::int64_t step, bool ours) {
-  next_ = {step, {}, journal_.sequence() + 1};  // not from the start: the gap in the numbers says so
+  next_ = {step, {}, journal_.sequence() + 1};  // not from the start: the gap in the numbers shows this
   const auto mark =
       std::find_if(marks_.rbegin(), marks_.rend(), [step](const Mark& known) { return known.step <= step; });
   if (ours && mark != marks_.rend()) next_ = *mark;

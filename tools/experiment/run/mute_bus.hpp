@@ -5,7 +5,7 @@
 
 namespace tools {
 
-/// Between a world and its network: while it is muted nothing is sent, and incoming messages are discarded.
+/// Bus between a world and its network: while it is muted, nothing is sent and incoming messages are discarded.
 class MuteBus final : public sim::Bus {
  public:
   /// `inner` must outlive this.

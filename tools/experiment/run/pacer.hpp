@@ -9,10 +9,10 @@
 
 namespace tools {
 
-/// Holds simulated time to a multiple of wall time.
+/// Limits simulated time to a multiple of wall time.
 class Pacer {
  public:
-  /// How long to wait before the step that ends at `next`.
+  /// Returns the time to wait before the step that ends at `next`.
   std::chrono::microseconds until(sim::Time next, const sim::RunControl& control) {
     if (control.speed <= 0) return std::chrono::microseconds{0};
     const auto now = Clock::now();
@@ -20,7 +20,7 @@ class Pacer {
     const auto ahead = std::chrono::duration_cast<Clock::duration>(
         std::chrono::duration<double>(sim::to_seconds(next - sim_start_) / control.speed));
     const auto wait = std::chrono::duration_cast<std::chrono::microseconds>(wall_start_ + ahead - now);
-    // Too slow a machine: continue from here rather than race to catch up.
+    // On a machine that is too slow, continue from the present time instead of catching up.
     if (wait < std::chrono::milliseconds(-500)) start(next, now, control);
     return std::max(wait, std::chrono::microseconds{0});
   }

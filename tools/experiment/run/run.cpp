@@ -54,7 +54,7 @@ Run::Run(const sim::LoadedWorld& loaded, const RunOptions& options)
     } catch (const std::runtime_error& error) {
       throw RunError(2, "configuration", options.from_file + ": " + error.what());
     }
-    // What came before is not in this run's log, and a gap says so.
+    // Earlier messages are not in this run's log, which a gap indicates.
     journal_.start_branch(control_.branch, 1);
   }
   if (!options.results.empty()) {
@@ -159,7 +159,7 @@ void Run::start_clients() {
             "; clients and reports of the two runs would mix: end the other one with `shoal control quit`, choose "
             "another port with --lcm-url, or share this one with --lcm-shared");
   }
-  service_.publish_info();  // a log reports its run from the first event
+  service_.publish_info();  // so that the first event of a log describes its run
   if (options_.from) publish_snapshot();
   buses_.end_of_step();
   await(programs_.start());
@@ -170,11 +170,13 @@ void Run::await(const std::vector<std::string>& clients) {
   const auto deadline = begin + std::chrono::duration<double>(loaded_.config.lockstep.join_timeout_s);
   for (const std::string& client : clients) {
     bool reported = false;
+    // Wait for the client, serving requests.
     while (!lockstep_.has(client) && may_continue()) {
       service_.handle_requests(&time_);
       check_programs();
       check_bus();
       if (programs_.is_gone(client)) break;
+      // Report a timeout or a long wait.
       if (Clock::now() > deadline)
         throw RunError(
             5, "timeout",
@@ -194,6 +196,7 @@ void Run::loop() {
   end_of_step();
   const sim::Time end = duration_s_ > 0 ? sim::from_seconds(duration_s_) : sim::Time::max();
   while (may_continue() && !world_.ended() && world_.now() < end) {
+    // Requests and pauses.
     execute();
     if (time_.take_moved()) synchronized_ = false;
     if (!control_.may_step()) {
@@ -204,6 +207,7 @@ void Run::loop() {
       buses_.wait(std::chrono::milliseconds(20));
       continue;
     }
+    // Pace, then step or wait for clients.
     if (synchronized_) pace();
     if (!control_.may_step() || time_.has_moved()) continue;
     if (synchronized_)
@@ -226,7 +230,7 @@ void Run::step() {
   if (results_)
     if (const auto error = results_->error()) throw RunError(4, "bus", *error);
   if (world_.step_number() % 100 == 0) check_bus();
-  // Looking for dead children costs a system call; ten times a simulated second will do.
+  // Checking for ended children costs a system call; ten times per simulated second are sufficient.
   if (world_.step_number() % 10 == 0) check_programs();
   progress_.update(world_.now(), messages(), control_, false);
 }
@@ -295,7 +299,7 @@ void Run::check_bus() const {
 
 RunPrograms::Clients Run::clients(bool goes_on) {
   return {[this, goes_on](const std::string& client) {
-            if (goes_on) service_.handle_requests(&time_);  // its last may be that it leaves
+            if (goes_on) service_.handle_requests(&time_);  // the last request may be to leave
             return lockstep_.has_left(client);
           },
           [this](const std::string& client) {

@@ -26,22 +26,22 @@
 
 namespace tools {
 
-/// One run of a world: its parts, and the loop over steps.
+/// One run of a world: its components and the step loop.
 class Run final : private Timeline {
  public:
   /// Both must outlive this.  Throws ConfigError, BusError, std::runtime_error.
   Run(const sim::LoadedWorld& loaded, const RunOptions& options);
-  /// From the first step to the summary.
+  /// Runs from the first step to the summary.
   Summary go();
 
  private:
-  /// The key of the run, when control of it needs one: else null.
+  /// Creates the key of the run when control requires one; otherwise returns null.
   std::unique_ptr<RunKeyFile> make_key();
   void start_clients();
   void await(const std::vector<std::string>& clients);
   void loop();
   void step();
-  /// Hands what has come from outside to the world, and writes it down.
+  /// Delivers the inputs from outside to the world, and records them.
   void admit_messages();
   void end_of_step();
   TimeControl::Options time_options() const;
@@ -50,20 +50,20 @@ class Run final : private Timeline {
   void start_branch(bool ours) override;
   std::vector<bridges::LockstepBus> lockstep_buses();
   bridges::ServiceLinks service_links();
-  /// The state from which the run continues: a log that starts here can be replayed.
+  /// Publishes the state from which the run continues, so that a log that starts here can be replayed.
   void publish_snapshot();
   bool has_listeners();
-  /// Which steps are nearest to the times of --snapshot-at.  Throws RunError for one that the run cannot reach.
+  /// Finds the steps nearest to the times of --snapshot-at.  Throws RunError for a time that the run cannot reach.
   void plan_snapshots();
   void take_snapshots();
   void report_missed_snapshots() const;
-  /// Requests and keys.
+  /// Executes requests and keys.
   void execute();
   void synchronize();
-  /// Waits until the next step is due, answering requests meanwhile.
+  /// Waits until the next step is due, and answers requests in the meantime.
   void pace();
   void check_bus() const;
-  /// Reports steps that take very long.  Throws RunError for one beyond the limit of the world.
+  /// Reports very slow steps.  Throws RunError for a step beyond the limit of the world.
   void check_step_time();
   /// `goes_on`: requests may still change the world.
   RunPrograms::Clients clients(bool goes_on);
@@ -77,9 +77,9 @@ class Run final : private Timeline {
 
   const sim::LoadedWorld& loaded_;
   const RunOptions& options_;
-  const std::string files_;  ///< hashes of those that the world names
+  const std::string files_;  ///< hashes of the files that the world names
   RunBuses buses_;
-  bridges::OtherSimulators others_;  ///< are asked before the world is built
+  bridges::OtherSimulators others_;  ///< queried before the world is built
   sim::RunControl control_;
   bridges::JournalPorts ports_;
   sim::World world_;
@@ -101,7 +101,7 @@ class Run final : private Timeline {
   std::unique_ptr<Results> results_;
   std::unique_ptr<RunKeys> keys_;          ///< null: no terminal
   std::int64_t steps_taken_ = 0;           ///< in this process
-  std::set<std::int64_t> snapshot_steps_;  ///< still to come
+  std::set<std::int64_t> snapshot_steps_;  ///< pending
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
 

@@ -12,7 +12,8 @@ namespace tools {
 
 namespace {
 
-/// A pipe without a reader would stop the run for good, a terminal or a disk would get an unwanted log.
+/// Rejects special files: a pipe without a reader would block the run, and a terminal or a disk device must not receive
+/// a log.
 void check_record(const std::string& path) {
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
@@ -148,7 +149,7 @@ void RunBuses::give_up_record() {
 void RunBuses::set_muted(bool muted) {
   muted_ = muted;
   for_each([&](const Link& link) {
-    link.mute->set_muted(true);  // what waits in the network goes as well
+    link.mute->set_muted(true);  // also discards messages that wait in the network
     link.gate->collect();
     link.gate->waiting().clear();
     link.mute->set_muted(muted);

@@ -21,8 +21,7 @@
 
 namespace tools {
 
-/// The buses of a run: the world's, and those that vehicles have to themselves.  With a record, all are written into
-/// one log.
+/// Buses of a run: that of the world, and those of single vehicles.  With a record, all are written into one log.
 class RunBuses {
  public:
   /// Throws BusError.
@@ -32,47 +31,47 @@ class RunBuses {
   sim::Bus& outer() { return main_.outer(); }
   /// The world's bus without the record.
   sim::Bus& network(const std::string& name = {}) { return name.empty() ? *main_.network : *others_.at(name).network; }
-  /// The bus of a name in `buses:`, recorded, behind its gate; empty: the world's.
+  /// The bus with a name in `buses:`, recorded, behind its gate; empty: the world's.
   sim::Bus& of(const std::string& name) { return name.empty() ? main_.outer() : others_.at(name).outer(); }
   /// The gate of a bus; empty: the world's.
   sim::MessageGate& gate(const std::string& name = {}) { return name.empty() ? *main_.gate : *others_.at(name).gate; }
-  /// Start of a step: delivers the messages that have arrived on every bus, the world's first, then by name, and
-  /// reports them.
+  /// Delivers, at the start of a step, the messages that have arrived on every bus, the world's first, then by name,
+  /// and passes them to `admitted`.
   using Admitted = std::function<void(const std::string& bus, std::span<const sim::MessageGate::Delivery> inputs)>;
   void admit(const Admitted& admitted);
 
   bool over_lcm() const { return main_.lcm != nullptr; }
-  /// Whether messages of other machines can arrive on any of them.
+  /// Returns whether messages of other machines can arrive on any bus.
   bool leave_machine() const;
-  /// LCM URL of a bus; empty when it is none.
+  /// Returns the LCM URL of a bus; empty when it is not an LCM bus.
   std::string url(const std::string& name) const;
-  /// Those over LCM, without record and gate.
+  /// Returns the LCM buses, without record and gate.
   std::vector<bridges::OtherSimulators::BusToAsk> networks() const;
   /// Waits for a message on any bus, up to `time`.
   void wait(std::chrono::milliseconds time);
   void end_of_step();
-  /// The step that begins, for what the record receives.
+  /// Sets the step that starts now, for the time stamps of the record.
   void set_time(sim::Time at);
-  /// What went wrong with a connection or the record.
+  /// Returns the error of a connection or of the record.
   std::optional<std::string> lost_connection() const;
   std::optional<std::string> record_error() const;
   void close_record();
-  /// Lets the record be written as far as it is; for a run that stands still.
+  /// Flushes the record, for a run that is paused.
   void hand_over_record();
-  /// Where the record is.
+  /// Position in the record.
   struct RecordMark {
     std::uint64_t events = 0, bytes = 0;
   };
   RecordMark record_mark() const;
-  /// Makes another record, which begins with the present one's up to a mark.  Throws BusError.
+  /// Prepares another record, which starts with the present one's up to a mark.  Throws BusError.
   void prepare_record(const std::string& path, const RecordMark& mark, bool overwrite);
-  /// Continues with the record that was prepared, or removes it.
+  /// Continues with the prepared record, or removes it.
   void branch_record();
   void give_up_record();
-  /// While muted nothing is sent to the networks or recorded, and incoming messages are discarded.  What waits at the
-  /// gates is thrown away at both calls.
+  /// Mutes all buses: nothing is sent to the networks or recorded, and incoming messages are discarded.  Both calls
+  /// discard the messages that wait at the gates.
   void set_muted(bool muted);
-  /// Of all buses.
+  /// Returns the counts of all buses.
   sim::BusCounts counts() const;
 
  private:

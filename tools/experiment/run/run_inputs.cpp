@@ -53,14 +53,14 @@ void RunInputs::deliver(std::int64_t step) {
 }
 
 void RunInputs::deliver(const bridges::RunJournal::Input& input) {
-  if (input.bus == bridges::RunJournal::serial_bus) return;  // the ports read it
+  if (input.bus == bridges::RunJournal::serial_bus) return;  // read by the ports
   if (!input.bus.empty() || input.channel != bridges::RunJournal::request_channel) {
     buses_.gate(input.bus).waiting().push_back({input.channel, input.payload});
     return;
   }
   try {
     service_.execute_again(shoal::decode<shoal::sim_control_request_t>(input.payload, shoal::Finite::any));
-  } catch (const std::exception& error) {  // it was refused the first time as well
+  } catch (const std::exception& error) {  // it was rejected the first time as well
     spdlog::debug("again: {}", error.what());
   }
 }

@@ -12,7 +12,7 @@
 
 namespace tools {
 
-/// The inputs of a run from outside since a step, for repeating them.
+/// Inputs of a run from outside since a step, for replaying them.
 class RunInputs {
  public:
   /// All must outlive this.
@@ -20,20 +20,20 @@ class RunInputs {
             bridges::LockstepService& lockstep)
       : buses_(buses), journal_(journal), service_(service), lockstep_(lockstep) {}
 
-  /// Keeps all inputs from now on. `too_much` is called when they exceed the limit.
+  /// Records all inputs from now on.  `too_much` is called when they exceed the limit.
   void keep(std::size_t max_bytes, std::function<void()> too_much);
   std::size_t bytes() const { return bytes_; }
   void discard_before(std::int64_t step);
-  /// What came at this step and later.
+  /// Discards the inputs of this step and later.
   void discard_from(std::int64_t step);
 
-  /// From here on nothing is sent, and incoming messages are discarded.
+  /// Starts a replay: from here on nothing is sent, and incoming messages are discarded.
   void restart_replay(std::int64_t from_step);
-  /// Repeats the inputs after the reports of a step, up to the next.
+  /// Delivers the recorded inputs after the reports of a step, up to the next.
   void deliver(std::int64_t step);
   /// To be called after each repeated step except the last one.
   void pass(std::int64_t step) { lockstep_.pass_again(step); }
-  /// Step to start from, so that lockstep clients receive at `step` what they received the first time.
+  /// Returns the step to start from, so that lockstep clients receive at `step` what they received the first time.
   std::int64_t needed_from(std::int64_t step, std::int64_t max_steps) const {
     return lockstep_.needed_from(step, max_steps);
   }
@@ -55,7 +55,7 @@ class RunInputs {
   bridges::LockstepService& lockstep_;
   std::deque<Saved> kept_;
   std::size_t bytes_ = 0;
-  std::size_t next_ = 0;  ///< to be delivered
+  std::size_t next_ = 0;  ///< index of the next input to be delivered
 };
 
 }  // namespace tools

@@ -40,7 +40,7 @@ void RunKeyFile::write() const {
   const auto fail = [&] {
     throw bridges::BusError(path + ": cannot write the key of the run: " + std::strerror(errno));
   };
-  // Not into a file or through a link of another user.
+  // Refuse a file or link of another user.
   if (unlink(path.c_str()) != 0 && errno != ENOENT) fail();
   const bridges::FileDescriptor file(open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0600));
   if (file.number() < 0) fail();

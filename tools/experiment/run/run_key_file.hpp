@@ -7,19 +7,19 @@
 
 namespace tools {
 
-/// The key of a run, new and in a file that only its user can read, as long as the run continues.
+/// New key of a run, in a file that only its user can read, for the duration of the run.
 class RunKeyFile {
  public:
-  /// Writes `folder`/run.key; without a folder it makes one for this run alone, in XDG_RUNTIME_DIR or /tmp.  A key that
-  /// a run before left in `folder` is replaced.  Throws BusError with path and reason.
+  /// Writes `folder`/run.key; without a folder it creates one for this run, in XDG_RUNTIME_DIR or /tmp.  Replaces a key
+  /// of an earlier run in `folder`.  Throws BusError with path and reason.
   explicit RunKeyFile(const std::string& folder);
-  /// Removes the file, and the folder that was made.
+  /// Removes the file, and the folder if it was created here.
   ~RunKeyFile();
   RunKeyFile(const RunKeyFile&) = delete;
   RunKeyFile& operator=(const RunKeyFile&) = delete;
 
   const bridges::RunKey& key() const { return key_; }
-  /// Where the file is.
+  /// Folder of the file.
   const std::string& folder() const { return folder_; }
 
  private:

@@ -12,7 +12,7 @@ namespace tools {
 namespace {
 
 constexpr const char* question = "run until (seconds, or name of an event; Esc: do not): ";
-constexpr double slower_than_most = 32;  ///< times real time, from as fast as possible
+constexpr double slower_than_most = 32;  ///< multiple of real time, from as fast as possible
 constexpr double slowest = 1e-3, fastest = 1e6;
 
 }  // namespace
@@ -48,6 +48,7 @@ void RunKeys::press(char key) {
 
 void RunKeys::execute(char key) {
   switch (key) {
+    // Pause, steps and speed.
     case ' ':
       control_.set_paused(!control_.paused);
       return report_(run_state());
@@ -66,15 +67,18 @@ void RunKeys::execute(char key) {
     case 'm':
       control_.set_speed(0);
       return report_(run_state());
+    // Rewind and snapshot.
     case 'r':
     case 'R':
       return report_(time_.rewind(key == 'r' ? 10 : 30, false));
     case 's':
       return report_(time_.write_snapshot(""));
+    // Start of a question.
     case 'u':
       asking_ = true;
       answer_.clear();
       return request_(question);
+    // End and help.
     case 'q':
       control_.quit = true;
       return;

@@ -11,14 +11,14 @@
 
 namespace tools {
 
-/// What each key does to a run.
+/// Actions of the keys of a terminal on a run.
 class RunKeys {
  public:
-  /// `say` shows a line of text, `ask` an unfinished line.  All must outlive this.
+  /// `report` shows a line of text, `send_request` an unfinished line.  All must outlive this.
   using Show = std::function<void(const std::string& text)>;
   RunKeys(TimeControl& time, sim::RunControl& control, Show report, Show send_request);
 
-  /// One or two lines that name all keys.
+  /// Returns one or two lines that name all keys.
   static std::string help();
   /// Executes the keys that were pressed.
   void read();

@@ -5,7 +5,7 @@
 
 namespace tools {
 
-/// `{run}` in a text, which stands for the name of the run: so that runs at the same time do not share a path.
+/// Replaces `{run}` in a text by the name of the run, so that concurrent runs do not share a path.
 inline std::string with_run_name(std::string text, const std::string& name) {
   static constexpr char key[] = "{run}";
   for (std::size_t at = text.find(key); at != std::string::npos; at = text.find(key, at + name.size()))

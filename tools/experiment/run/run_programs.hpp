@@ -13,32 +13,33 @@
 
 namespace tools {
 
-/// The programs that a world names: started, awaited, watched.
+/// External programs of a world: starts, awaits and monitors them.
 class RunPrograms {
  public:
-  /// All but the key must outlive this.  `run_key`: what the programs get as SHOAL_RUN_KEY; empty: none.
+  /// All except the key must outlive this.  `run_key`: value of SHOAL_RUN_KEY for the programs; empty: none.
   RunPrograms(const sim::WorldConfig& config, const RunOptions& options, RunBuses& buses, std::string run_key);
 
-  /// Starts the programs when the options say so.  Returns the lockstep clients to wait for.  Throws RunError.
+  /// Starts the programs when the options require it.  Returns the lockstep clients to wait for.  Throws RunError.
   std::vector<std::string> start();
-  /// What the lockstep knows of its clients, by name.
+  /// State of lockstep clients, by name.
   struct Clients {
-    /// It has left the lockstep.
+    /// Returns whether the client has left the lockstep.
     std::function<bool(const std::string& client)> has_left;
-    /// Its process is gone.  Returns whether the run continues without it at once; otherwise its `on_timeout` applies.
+    /// Handles the end of its process.  Returns whether the run continues without it at once; otherwise its
+    /// `on_timeout` applies.
     std::function<bool(const std::string& client)> removed;
   };
 
-  /// Looks for programs that have ended.  A client that ended before its last tick and did not leave has failed,
-  /// whatever its exit code.  Throws RunError when the world says that the run ends with one.
+  /// Checks for programs that have ended.  A client that ended before its last tick without leaving has failed,
+  /// regardless of its exit code.  Throws RunError when the world requires the run to end with a program.
   void check(sim::Time now, const Clients& clients);
-  /// Before the end of the run is announced: notes the programs that have already ended.
+  /// Records the programs that have already ended, before the end of the run is announced.
   void note_last(sim::Time now, const Clients& clients);
   bool is_gone(const std::string& client) const { return removed_.contains(client); }
   /// Waits for the lockstep clients to end by themselves.
   void await_clients() { processes_.await_clients(); }
   void stop() { processes_.stop(); }
-  /// Those that ended before the run did.
+  /// Programs that ended before the run did.
   const std::vector<Summary::Process>& ended() const { return ended_; }
 
  private:

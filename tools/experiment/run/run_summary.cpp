@@ -11,13 +11,13 @@ namespace tools {
 
 namespace {
 
-/// One that came while the run was ending counts as well.
+/// Records a signal as the end of the run; a signal during its end counts as well.
 void note_signal(Summary& summary) {
   if (caught_signal() != 0 && summary.exit_code <= 1 && summary.error.empty())
     summary.fail(128 + caught_signal(), "signal", "");
 }
 
-/// All processes of the world, or a client that was started by hand.
+/// Returns whether all programs of the world are started here, or a client by hand.
 bool programs_take_part(const sim::WorldConfig& world, const RunOptions& options) {
   return world.processes.empty() || options.launch || !options.await.empty();
 }
@@ -27,8 +27,8 @@ bool programs_take_part(const sim::WorldConfig& world, const RunOptions& options
 void Run::finish(Summary& summary) {
   const OrderlyEnd orderly;
   programs_.note_last(world_.now(), clients(false));
-  if (alone_) {        // else the bus is another simulator's
-    admit_messages();  // what came after the last step is in the log: the journal says that it came from outside
+  if (alone_) {        // otherwise the bus belongs to another simulator
+    admit_messages();  // record messages after the last step as inputs
     journal_.finish(summary.ended != "fault" && summary.ended != "error");
     lockstep_.publish_end([this](std::chrono::milliseconds time) { buses_.wait(time); },
                           std::chrono::milliseconds(caught_signal() == 0 ? 1000 : 200));
@@ -40,7 +40,7 @@ void Run::finish(Summary& summary) {
   add_figures(summary);
   sim::Warnings warnings;
   if (summary.steps > 0 && programs_take_part(loaded_.config, options_)) scoring_.warn_of_silence(warnings);
-  // A rule, a program, or the event that ended it.
+  // Any failed rule or program, or the event that ended it.
   if (summary.exit_code == 0 && summary.judgement() == Judgement::failed) summary.exit_code = 1;
   note_signal(summary);
   if (results_) write_results(summary);
@@ -49,6 +49,7 @@ void Run::finish(Summary& summary) {
 
 void Run::add_figures(Summary& summary) {
   const sim::BusCounts counts = buses_.counts();
+  // Run, versions and time.
   summary.world = loaded_.config.name;
   summary.description = loaded_.config.description;
   summary.seed = loaded_.config.run.seed;
@@ -60,6 +61,7 @@ void Run::add_figures(Summary& summary) {
   summary.steps = world_.step_number();
   summary.sim_time_s = sim::to_seconds(world_.now());
   summary.duration_s = duration_s_;
+  // Hashes and counts of messages.
   summary.state_hash = world_.state().hash();
   summary.run_hash = world_.state().run_hash();
   summary.messages = counts.published + counts.received;
@@ -67,10 +69,12 @@ void Run::add_figures(Summary& summary) {
   summary.bad_messages =
       world_.counts().bad_messages + service_.bad_messages() + lockstep_.bad_messages() + scoring_.bad_messages();
   summary.quick_steps = world_.physics().quick_steps();
+  // Modems and serial ports.
   const LinkCounts links = link_counts(world_, "", "");
   if (!world_.acoustics().transducers().empty()) summary.acoustics = links;
   summary.modem_dropped_messages = world_.shared().of(devices::message_modems).dropped_from_queues();
   summary.serial_dropped_bytes = devices::serial_dropped_bytes(world_);
+  // Metrics, programs and interventions.
   summary.metrics = scoring_.figures();
   summary.verdicts = scoring_.verdicts();
   summary.processes = programs_.ended();
@@ -81,7 +85,7 @@ void Run::add_figures(Summary& summary) {
   summary.audit_count = service_.audit().count();
   summary.event = world_.ended();
   for (const auto& [vehicle, record] : world_.zone_records()) summary.zones[vehicle] = record;
-  // Without the programs that a world names there is nothing to judge.
+  // Without the programs of the world there is nothing to judge.
   const bool took_part = programs_take_part(loaded_.config, options_);
   if (!took_part && !summary.verdicts.empty())
     summary.no_verdicts = "its programs took no part: see --launch and --await";
@@ -90,7 +94,7 @@ void Run::add_figures(Summary& summary) {
   summary.contacts = scoring_.contacts().all();
   summary.judge_processes();
   summary.judge_clients();
-  // A rule is about the whole run; a program that failed has failed.
+  // A rule applies to the whole run; a failed program counts in any case.
   if (summary.ended_by_hand()) summary.verdicts.erase(summary.verdicts.begin(), summary.verdicts.begin() + rules);
 }
 

@@ -9,7 +9,7 @@
 #include "tools/experiment/run/run.hpp"
 #include "tools/experiment/snapshot/snapshot_pieces.hpp"
 
-// What a run does beside when its world moves in time, and when it writes snapshots.
+// Actions of a run when its world moves in time, and when it writes snapshots.
 
 namespace tools {
 
@@ -85,14 +85,14 @@ void Run::take_snapshots() {
   bool due = snapshot_steps_.erase(step) > 0;
   if (options_.snapshot_every_s && steps_taken_ > 0) {
     const double per_step = sim::to_seconds(world_.step_time()) / *options_.snapshot_every_s;
-    const auto half_steps = static_cast<double>(2 * step);  // whole numbers: a time in the middle counts once
+    const auto half_steps = static_cast<double>(2 * step);  // whole numbers: a time halfway between steps counts once
     due = due || std::floor((half_steps + 1) * per_step / 2) > std::floor((half_steps - 1) * per_step / 2);
   }
   if (!due) return;
   try {
     progress_.clear();
     spdlog::info("{}", time_.write_planned_snapshot());
-  } catch (const std::exception& error) {  // asked for on the command line: not to be missed
+  } catch (const std::exception& error) {  // requested on the command line: a failure must be reported
     throw RunError(4, "bus", error.what());
   }
 }

@@ -21,17 +21,19 @@ Summary run_world(const sim::LoadedWorld& loaded, const RunOptions& options) {
     summary.fail(exit_code, ended, error);
     if (!options.results.empty()) try_to_write_summary(options.results, summary);
   };
+  // Lock the results folder.
   std::optional<ResultsLock> lock;
   try {
     if (!options.results.empty()) lock.emplace(options.results);
-  } catch (const RunError& error) {  // nothing in there is touched: it is another's
+  } catch (const RunError& error) {  // the folder belongs to another run and is not changed
     summary.fail(error.exit_code, error.ended, error.what());
     return summary;
   }
-  // An old summary would be taken for this run's if this one were killed.
+  // Remove an old summary, which would be mistaken for that of this run if it is killed.
   std::error_code ignored;
   if (!options.results.empty()) std::filesystem::remove(options.results + "/summary.json", ignored);
   try {
+    // Check the options and run.
     if (options.launch && options.bus == "none")
       throw RunError(2, "configuration", "--launch needs the LCM bus: processes cannot attach to --bus none");
     if (options.launch || !options.await.empty()) {

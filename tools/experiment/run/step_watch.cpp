@@ -16,11 +16,11 @@ double thread_cpu_s() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-// A step below this is always fast enough, however short it is in simulated time.
+// A shorter step is always fast enough, regardless of its simulated length.
 constexpr double slow_step_s = 0.02;
 constexpr double slow_times = 5;
 constexpr int slow_steps_to_warn = 3;
-/// A heap of a few bodies has fewer rows; other work than physics was slow then.
+/// A group of a few bodies has fewer rows; in that case something other than physics was slow.
 constexpr int many_rows = 500;
 
 }  // namespace
@@ -53,7 +53,7 @@ std::optional<std::string> StepWatch::take_warning() {
       world_.step_number(), last_s_, reported_times_, slow_island());
 }
 
-/// `: 200 bodies are solved together, with 9801 constraint rows: 'a', 'b', 'c', ...`
+/// Returns `: 200 bodies are solved together, with 9801 constraint rows: 'a', 'b', 'c', ...`.
 std::string StepWatch::slow_island() const {
   constexpr std::size_t max_names = 3;
   const sim::IslandInfo island = world_.physics().largest_island();

@@ -8,19 +8,19 @@
 
 namespace tools {
 
-/// Measures the CPU time of each step in the thread that simulates.  Very slow physics (many overlapping bodies) is
-/// reported once, with the bodies; a step beyond `limits: step_cpu_s` ends the run.  What a step
-/// comes to does not depend on either.
+/// Measures the CPU time of each step in the simulation thread.  Very slow physics (many overlapping bodies) is
+/// reported once, with the bodies; a step beyond `limits: step_cpu_s` ends the run.  Neither changes the result of a
+/// step.
 class StepWatch {
  public:
   explicit StepWatch(const sim::World& world) : world_(world) {}
 
-  /// Around World::step().
+  /// Encloses World::step().
   void begin();
   void end();
-  /// Why the run must end: its last step took longer than the world allows.  Looks at the last step only.
+  /// Returns why the run must end: its last step took longer than the world allows.  Considers only the last step.
   std::optional<std::string> beyond_limit() const;
-  /// What people should know of slow steps; each time 10 times as slow as before.
+  /// Returns a warning about slow steps; issued again at each tenfold increase.
   std::optional<std::string> take_warning();
 
  private:
@@ -28,9 +28,9 @@ class StepWatch {
 
   const sim::World& world_;
   double begun_s_ = 0, last_s_ = 0;
-  int slow_steps_ = 0;          ///< one after the other
-  double reported_times_ = 0;   ///< how many times its length a step took when that was said
-  std::optional<double> warn_;  ///< how many times its length the last step took
+  int slow_steps_ = 0;          ///< consecutive slow steps
+  double reported_times_ = 0;   ///< ratio of CPU time to step length at the last report
+  std::optional<double> warn_;  ///< ratio of CPU time to step length of the last step
 };
 
 }  // namespace tools

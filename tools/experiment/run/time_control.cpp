@@ -20,15 +20,16 @@ namespace {
 
 constexpr int max_files = 1000;
 constexpr const char* suffix = ".snapshot";
-/// Between two snapshots for going back at least this many times what the last one cost (the steps after it take
-/// longer too, for their memory is not in the caches any more): in a run that is much faster
-/// than real time they are further apart, and the steps between them take the less time to computes again.
+/// The interval between two snapshots for rewinding is at least this multiple of the cost of the last one (the
+/// following steps are slower too, because their memory is no longer in the caches): in a run that is much faster than
+/// real time they are further apart, and the steps between them take less time to compute again.
 constexpr int rest_per_snapshot = 80;
-/// A client whose last tick is further before the step that the world goes back to gets a list that is not whole:
-/// running all that again would take too long.
+/// A client whose last tick is further before the target of a rewind receives an incomplete list, because simulating
+/// that interval again would take too long.
 constexpr std::int64_t max_lead_s = 60;
 
-/// One run of bytes that the ring can compare part by part, and back.  Its last bytes tell the three sizes.
+/// Concatenates bytes so that the ring can compare them part by part, and splits them again.  The last bytes contain
+/// the three sizes.
 constexpr std::size_t trailer_bytes = 3 * sizeof(std::uint64_t);
 
 sim::Bytes joined(const sim::Bytes& state, const sim::Bytes& scores, const sim::Bytes& owners) {
@@ -53,7 +54,7 @@ std::uint64_t hash_of(const sim::Bytes& bytes) {
   return hash.value();
 }
 
-/// The line where two texts part.
+/// Returns the first line that differs between two texts.
 std::string first_difference(const std::string& there, const std::string& here) {
   std::size_t begin = 0;
   int line = 1;
@@ -157,6 +158,7 @@ std::optional<std::string> TimeControl::execute(const std::string& command, cons
                                "'");
     return text == "run";
   };
+  // Snapshots and moves in time.
   if (command == "snapshot") return write_snapshot(text);
   if (command == "restore") return restore(text, value == 1);
   if (command == "rewind") return rewind(value, run_on());
@@ -165,6 +167,7 @@ std::optional<std::string> TimeControl::execute(const std::string& command, cons
     const std::string waits = service_.waits_for();
     return place() + (waits.empty() ? "" : ", " + waits) + what_is_kept();
   }
+  // Pause, step and speed.
   if (command == "pause" || command == "resume") {
     control_.set_paused(command == "pause");
     return place();
@@ -233,10 +236,10 @@ std::string TimeControl::rewind(double seconds, bool run_on) {
                                          sim::to_seconds(world_.step_time())));
   if (world_.step_number() == first_step_)
     throw std::runtime_error("already at the start of the run: nothing to rewind");
-  // Who wants to go back further than it has come goes to the start.
+  // A rewind beyond the start goes to the start.
   const std::int64_t target = std::max<std::int64_t>(world_.step_number() - std::llround(steps), first_step_);
   auto base = ring_.newest_until(inputs_.needed_from(target, max_lead_s * steps_per_second_));
-  if (!base) base = ring_.newest_until(target);  // some client will lack reports
+  if (!base) base = ring_.newest_until(target);  // some clients will lack reports
   if (!base) {
     const double oldest_s = sim::to_seconds(sim::Time{ring_.oldest().value_or(0) * world_.step_time().count()});
     throw std::runtime_error(fmt::format("cannot rewind {:.6g} s from {:.6g} s: the history starts at {:.6g} s",
@@ -278,12 +281,14 @@ void TimeControl::simulate_again(std::int64_t to_step) {
 
 void TimeControl::travel(const std::function<void()>& work, std::int64_t to_step, bool run_on, bool ours) {
   const Saved before = save(History::whole);
+  // Leave the present branch.
   try {
     timeline_.leave_branch(to_step, ours);
   } catch (const std::exception&) {
     timeline_.hold_here();
     throw;
   }
+  // Move the world; restore it on failure.
   inputs_.restart_replay(world_.step_number());
   try {
     work();
@@ -291,6 +296,7 @@ void TimeControl::travel(const std::function<void()>& work, std::int64_t to_step
     restore_saved(before);
     throw;
   }
+  // Start the new branch.
   inputs_.end_replay();
   ++control_.branch;
   control_.clear_until();
@@ -298,7 +304,7 @@ void TimeControl::travel(const std::function<void()>& work, std::int64_t to_step
   moved_ = true;
   try {
     timeline_.start_branch(ours);
-  } catch (const std::exception& error) {  // half of the run is there: it cannot continue
+  } catch (const std::exception& error) {  // the run is partly restored: it cannot continue
     broken_ = error.what();
     throw;
   }
@@ -393,6 +399,7 @@ std::string TimeControl::write_planned_snapshot() {
 
 std::string TimeControl::restore(const std::string& name, bool run_on) {
   const std::string path = path_of(name);
+  // Check that the snapshot is of this world.
   const Snapshot snapshot = read_snapshot(path);
   check_version(snapshot, path, options_.version);
   if (snapshot.resolved_world != options_.resolved_world)
@@ -401,6 +408,7 @@ std::string TimeControl::restore(const std::string& name, bool run_on) {
   if (snapshot.files != options_.files)
     throw std::runtime_error(
         path + ": its world used other files than this run: " + first_difference(snapshot.files, options_.files));
+  // Clients must be rewound with the world.
   if (!inputs_.clients().empty()) {
     restore_with_clients(snapshot, path, run_on);
     return place();
@@ -418,7 +426,7 @@ std::string TimeControl::restore(const std::string& name, bool run_on) {
   return place();
 }
 
-/// A file holds nothing of programs: they can only go where they have been in this run.
+/// A file has no state of the programs, which can only be restored to steps of this run.
 void TimeControl::restore_with_clients(const Snapshot& snapshot, const std::string& path, bool run_on) {
   const auto refuse = [&](const std::string& why) {
     throw std::runtime_error(
@@ -429,7 +437,7 @@ void TimeControl::restore_with_clients(const Snapshot& snapshot, const std::stri
   const auto written = written_.find(snapshot.step);
   if (written == written_.end() || written->second != hash_of(snapshot.state))
     refuse("was not written by this run before " + place());
-  // Unlike rewind(): from later on some client would lack reports.  At the start of the run no client had any.
+  // Unlike in rewind(), a later start would lack reports for some client.  At the start of the run no client had any.
   const std::int64_t needed = inputs_.needed_from(snapshot.step, max_lead_s * steps_per_second_);
   const auto base = ring_.newest_until(std::max(needed, first_step_));
   if (!base)

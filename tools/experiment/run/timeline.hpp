@@ -5,16 +5,16 @@
 
 namespace tools {
 
-/// What a run does when its world goes elsewhere in time.
+/// Interface of a run for moves of its world in time.
 class Timeline {
  public:
   virtual ~Timeline() = default;
-  /// Before: the branch is as it was left.  `ours`: the new one begins at a step that this run has been at.  The world
-  /// stays where it is when this throws.
+  /// Prepares a move; the branch is still the old one.  `ours`: the new one starts at a step of this run.  The world is
+  /// not moved when this throws.
   virtual void leave_branch(std::int64_t to_step, bool ours) = 0;
-  /// Instead of start_branch(): the world is where it was after all.
+  /// Replaces start_branch() when the move failed and the world was restored.
   virtual void hold_here() = 0;
-  /// After.
+  /// Completes a move.
   virtual void start_branch(bool ours) = 0;
 };
 

@@ -12,9 +12,9 @@ namespace tools {
 
 namespace {
 
-/// So long a vehicle settles on what it was put on.
+/// Time for a vehicle to settle on its initial support.
 constexpr double settled_after_s = 0.1;
-/// A contact whose normal is steeper than 45 degrees carries.
+/// A contact whose normal is steeper than 45 degrees is a support.
 constexpr double carries = 0.7;
 
 constexpr std::size_t max_lines = 20;
@@ -44,7 +44,7 @@ void FirstContacts::choose_groups() {
     if (groups_.size() <= at) groups_.resize(at + 1);
     groups_[at] = std::move(entry);
   };
-  std::map<const sim::VehicleConfig*, bool> on_wheels;  // by key only
+  std::map<const sim::VehicleConfig*, bool> on_wheels;  // for lookup only
   for (const auto& vehicle : world_.vehicles()) {
     const auto [drives, fresh] = on_wheels.try_emplace(&vehicle->config());
     if (fresh) drives->second = has_wheels(vehicle->config());
@@ -99,7 +99,7 @@ void FirstContacts::touch(const Group& a, const Group& b) {
   if (fresh) report(pair, contact);
 }
 
-/// Once, also when the run goes back and comes there again.
+/// Reports a contact once, also when the run is rewound and repeats it.
 void FirstContacts::report(const Pair& pair, const Contact& contact) {
   if (!report_ || said_.size() > max_lines || !said_.emplace(pair, contact.first_s).second) return;
   if (said_.size() > max_lines)
@@ -117,7 +117,7 @@ std::vector<FirstContacts::Contact> FirstContacts::all() const {
 
 void FirstContacts::visit_state(sim::StateArchive& archive) {
   archive(since_s_, resting_, contacts_);
-  // At once, not after the next step: a world that was built again watches no contacts yet.
+  // Immediately, not after the next step: a restored world does not report contacts yet.
   if (archive.restoring()) choose_groups();
 }
 

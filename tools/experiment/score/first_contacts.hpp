@@ -14,13 +14,13 @@
 
 namespace tools {
 
-/// Two that part and touch again within this time have not parted: bodies bounce.
+/// Two bodies that separate and touch again within this time count as still in contact, because bodies bounce.
 inline constexpr double parted_after_s = 0.5;
 
-/// Which vehicles hit which vehicles and objects, and how often.  Watching does not change the run.
+/// Counter of the contacts of vehicles with vehicles and objects.  Counting does not change the run.
 ///
-/// Not counted: planes and terrain; the fixed things that a vehicle with wheels drives on (contacts from below); what a
-/// vehicle stands on in its first 0.1 s.  A contact counts again when the two were apart for 0.5 s.
+/// Not counted: planes and terrain; the fixed objects that a vehicle with wheels drives on (contacts from below); the
+/// support of a vehicle in its first 0.1 s.  A contact counts again after a separation of 0.5 s.
 class FirstContacts {
  public:
   struct Contact {
@@ -31,22 +31,22 @@ class FirstContacts {
     void visit_state(sim::StateArchive& archive) { archive(first, second, first_s, count, last_s); }
   };
 
-  /// Gets a line such as `105.7 s: auv4 hits rock` at the first contact of a pair; at most 20 lines, and one that
-  /// says that further ones are only counted.
+  /// Receives a line such as `105.7 s: auv4 hits rock` at the first contact of a pair; at most 20 lines, and one that
+  /// announces that further ones are only counted.
   using Report = std::function<void(const std::string&)>;
 
-  /// `world` must outlive this.  `say` may be empty.
+  /// `world` must outlive this.  `report` may be empty.
   explicit FirstContacts(sim::World& world, Report report = {});
-  /// Call after every step.
+  /// To be called after every step.
   void after_step();
-  /// In the order of the first contacts.
+  /// Returns the contacts in the order of the first ones.
   std::vector<Contact> all() const;
   void visit_state(sim::StateArchive& archive);
 
  private:
   using Pair = std::pair<std::int64_t, std::int64_t>;
   struct Group {
-    std::int64_t who = 0;  ///< the number of a group is used again; this is not
+    std::int64_t who = 0;  ///< unique; the number of a group may be reused
     std::string name;
     bool is_vehicle = false;
     bool drives = false;  ///< a vehicle on wheels
@@ -64,15 +64,15 @@ class FirstContacts {
   sim::World& world_;
   std::uint64_t generation_ = ~std::uint64_t{0};
   std::vector<Group> groups_;               ///< by group number
-  std::map<std::int64_t, double> since_s_;  ///< when vehicles came that were not there at the start
-  std::set<Pair> resting_;                  ///< a vehicle on what it stood on when it came
+  std::map<std::int64_t, double> since_s_;  ///< start times of vehicles that were added after the start
+  std::set<Pair> resting_;                  ///< pairs of a vehicle and its support at its start
   std::map<Pair, Contact> contacts_;
-  // Of the terminal, which does not go back.
+  // Output on the terminal, which is not rewound.
   Report report_;
   std::set<std::pair<Pair, double>> said_;
 };
 
-/// Lines for the end of a run, ten at most; empty without contacts.
+/// Returns lines for the end of a run, ten at most; empty without contacts.
 std::string contacts_text(const std::vector<FirstContacts::Contact>& contacts);
 
 }  // namespace tools

@@ -33,7 +33,7 @@ void add_losses(LinkCounts& sum, const std::array<std::int64_t, sim::signal_loss
   for (std::size_t i = 0; i < causes.size(); ++i) sum.lost[causes[i]] += lost[i + 1];  // 0: none
 }
 
-/// Of a vehicle (empty: of all) and one of its devices (empty: of all).
+/// Returns whether a name is of a vehicle (empty: any) and one of its devices (empty: any).
 bool is_asked(const std::string& full_name, const std::string& vehicle, const std::string& device) {
   if (vehicle.empty()) return true;
   return device.empty() ? full_name.starts_with(vehicle + "/") : full_name == vehicle + "/" + device;
@@ -67,12 +67,14 @@ LinkCounts link_counts(const sim::World& world, const std::string& vehicle, cons
   };
   if (vehicle.empty()) add(world.acoustics().counts_of_removed());
   const bool any_lost = std::any_of(sum.lost.begin(), sum.lost.end(), [](const auto& lost) { return lost.second > 0; });
-  sum.acoustic = sum.sent > 0 || sum.received > 0 || any_lost;  // modems that have left
+  sum.acoustic = sum.sent > 0 || sum.received > 0 || any_lost;  // modems that were removed
+  // Acoustic transducers.
   for (const sim::Transducer* transducer : world.acoustics().transducers()) {
     if (transducer == nullptr || !is_asked(transducer->full_name(), vehicle, device)) continue;
     add(transducer->counts());
     sum.acoustic = sum.acoustic || transducer->has_owner();
   }
+  // Queues of modems.
   for (const auto& mounted : world.devices()) {
     const auto* modem = mounted ? dynamic_cast<const devices::AcousticModem*>(mounted->sensor()) : nullptr;
     if (modem != nullptr && is_asked(mounted->full_name(), vehicle, device)) sum.dropped += modem->dropped_from_queue();

@@ -10,23 +10,23 @@
 
 namespace tools {
 
-/// The words of the sim::SignalLoss, as in `NAME.lost_CAUSE`.
+/// Returns the words of sim::SignalLoss, as in `NAME.lost_CAUSE`.
 const std::vector<std::string>& loss_causes();
 
-/// Messages sent by modems, and the delivery of those addressed to them or to all of their kind.
+/// Messages sent by modems, and the delivery of those addressed to them or broadcast to all of their kind.
 struct LinkCounts {
-  bool acoustic = false;                     ///< there are some that are: not transponders and the like
+  bool acoustic = false;                     ///< at least one acoustic modem exists; transponders do not count
   std::int64_t sent = 0;                     ///< packets
-  std::int64_t bytes_sent = 0;               ///< in them
-  std::int64_t received = 0;                 ///< as often as one that a packet was for understood it
-  std::int64_t unsent = 0;                   ///< asked for without power, silent by a fault, or out of the water
-  std::int64_t dropped = 0;                  ///< messages that waited in a queue that was full
-  std::map<std::string, std::int64_t> lost;  ///< not understood, by cause: one of loss_causes()
+  std::int64_t bytes_sent = 0;               ///< in these packets
+  std::int64_t received = 0;                 ///< receptions by addressees that decoded the packet
+  std::int64_t unsent = 0;                   ///< requested without power, silenced by a fault, or out of the water
+  std::int64_t dropped = 0;                  ///< messages rejected by a full queue
+  std::map<std::string, std::int64_t> lost;  ///< not decoded, by cause: one of loss_causes()
 };
 
-/// On the acoustic channel, of a vehicle (empty: of all) and one of its devices (empty: of all).
+/// Counts on the acoustic channel, for a vehicle (empty: all) and one of its devices (empty: all).
 LinkCounts link_counts(const sim::World& world, const std::string& vehicle, const std::string& device);
-/// The same; of modems by radio where none of these is acoustic.
+/// Counts the same; for radio modems when none of these is acoustic.
 LinkCounts any_link_counts(const sim::World& world, const std::string& vehicle, const std::string& device);
 
 }  // namespace tools

@@ -9,7 +9,7 @@
 
 namespace tools {
 
-/// A metric for an entry of `metrics:`, whose type must be registered.
+/// Creates the metric of an entry of `metrics:`, whose type must be registered.
 std::unique_ptr<Metric> make_metric(const MetricContext& context);
 
 namespace detail {
@@ -30,9 +30,9 @@ bool add_metric(const char* word) {
 
 }  // namespace detail
 
-/// Makes a type of metric known, in its own file.  Model is a Metric with `static constexpr const char* meaning`, a
-/// `static std::vector<sim::FigureKind> figures()`, a `struct Params : sim::MetricParams` and a constructor that takes
-/// a MetricContext and the Params.
+/// Registers a type of metric, in its own file.  Model is a Metric with `static constexpr const char* meaning`, a
+/// `static std::vector<sim::FigureKind> figures()`, a `struct Params : sim::MetricParams` and a constructor from a
+/// MetricContext and the Params.
 #define SHOAL_METRIC(word, Model) \
   [[maybe_unused]] static const bool registered_##Model = ::tools::detail::add_metric<Model>(word)
 

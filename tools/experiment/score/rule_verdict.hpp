@@ -9,26 +9,26 @@
 
 namespace tools {
 
-/// A rule and its outcome.
+/// Rule and its outcome.
 struct RuleVerdict {
-  std::string rule;  ///< as it was written
+  std::string rule;  ///< as written in the file
   bool passed = false;
-  std::string result = {};    ///< what the two sides came to, or why there is none; empty: `rule` says all
+  std::string result = {};    ///< values of the two sides, or why there are none; empty: `rule` is sufficient
   double left = no_figure;    ///< value of the left side
   double right = no_figure;   ///< value of the right side
   double margin = no_figure;  ///< distance to the limit; NaN for == and !=
 
-  /// `RULE (RESULT)`.
+  /// Returns `RULE (RESULT)`.
   std::string text() const;
 };
 
-/// The value of a figure; NaN with the reason: there is none.
+/// Value of a figure; NaN with the reason when there is none.
 struct FigureValue {
   double value = no_figure;
   std::string why_none;
 };
 
-/// Judges a rule.  A figure that is NaN fails it, and the result says why there is none.
+/// Judges a rule.  A figure that is NaN fails it, and the result contains the reason.
 RuleVerdict judge_rule(const sim::RuleExpression& rule,
                        const std::function<FigureValue(const sim::RuleExpression::Figure&)>& value_of);
 

@@ -40,7 +40,7 @@ Figures Scoring::figures() const {
       if (metric->needs_others() != needs_others) continue;
       metric->add_figures(figures);
       if (!is_early(*metric)) continue;
-      // What was not looked at has no count of 0 and no gap of 0 s: a rule would hold by that.
+      // A metric without data has neither a count of 0 nor a gap of 0 s, because a rule would hold by these values.
       for (const std::string& name : metric->config().figures()) figures[name] = no_figure;
     }
   return figures;
@@ -53,7 +53,7 @@ void Scoring::visit_state(sim::StateArchive& archive, History history) {
   }
   for (const auto& metric : metrics_) {
     archive.section("metric " + metric->config().name);
-    // NaN and infinity stand in figures for what was not seen yet.
+    // NaN and infinity in figures represent missing data.
     struct State {
       Metric& metric;
       History history;

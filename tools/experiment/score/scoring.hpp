@@ -15,11 +15,11 @@
 
 namespace tools {
 
-/// Scores a run by the `metrics:` of its world: looks at the truth, at estimates on the bus of their vehicle, at
-/// contacts and packets.  Scoring does not change the run.
+/// Scores a run by the `metrics:` of its world, from the truth, estimates on the bus of their vehicle, contacts and
+/// packets.  Scoring does not change the run.
 class Scoring {
  public:
-  /// What a metric compared.
+  /// Samples that a metric compared.
   struct Track {
     std::string metric;
     std::string vehicle;
@@ -29,31 +29,31 @@ class Scoring {
   };
   using Verdict = RuleVerdict;
 
-  /// `world` must outlive this.  `say`: see FirstContacts.
+  /// `world` must outlive this.  `report`: see FirstContacts.
   explicit Scoring(sim::World& world, FirstContacts::Report report = {});
   ~Scoring();
-  /// Call after every step.
+  /// To be called after every step.
   void after_step();
 
-  /// The figures of every metric, by name.  Before its from_s a metric has none: they are NaN.
+  /// Returns the figures of every metric, by name.  They are NaN before the from_s of the metric.
   Figures figures() const;
-  /// The rules of the world, each with its outcome.
+  /// Returns the rules of the world, each with its outcome.
   std::vector<Verdict> verdicts() const;
-  /// Of the metrics that compare estimates with the truth.
+  /// Returns the tracks of the metrics that compare estimates with the truth.
   std::vector<Track> tracks() const;
   std::int64_t bad_messages() const;
-  /// Who hit whom.
+  /// Contacts between vehicles and objects.
   const FirstContacts& contacts() const { return contacts_; }
-  /// Warns of metrics that had nothing to make figures of.  At the end of a run.
+  /// Warns of metrics without data for their figures, at the end of a run.
   void warn_of_silence(sim::Warnings& warnings) const;
-  /// In sections of their own.
+  /// Visits the state of each metric in its own section.
   void visit_state(sim::StateArchive& archive, History history);
 
  private:
   const TruthHistory& truth_of(const std::string& vehicle);
-  /// The run has not come to the time from which the metric counts.
+  /// Returns whether the run has not reached the time from which the metric counts.
   bool is_early(const Metric& metric) const;
-  /// Why a figure, `NAME.figure`, is NaN.
+  /// Returns why a figure, `NAME.figure`, is NaN.
   std::string why_none(const std::string& name) const;
 
   sim::World& world_;

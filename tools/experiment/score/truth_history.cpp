@@ -4,7 +4,8 @@
 namespace tools {
 
 sim::Time true_time_of(const sim::World& world, const sim::Vehicle& vehicle, std::int64_t utime) {
-  // Clocks know their errors near now only; how far off a stamp is shows against what the clock shows now.
+  // Clock errors are known near the present only, so the difference of the stamp from the present clock reading is
+  // used.
   const std::int64_t shown_us = world.epoch_us() + vehicle.clock().reading(world.now()).count();
   std::int64_t ahead_us = 0;
   if (__builtin_sub_overflow(utime, shown_us, &ahead_us)) return utime < shown_us ? sim::Time::min() : sim::Time::max();
@@ -22,7 +23,7 @@ TruthHistory::TruthHistory(const sim::World& world, const sim::Vehicle& vehicle)
 void TruthHistory::after_step() {
   const Truth& before = recent_[slot_of(world_.step_number() - 1)];
   const sim::Vector3d position_m = world_.find_vehicle(vehicle_)->X_WV().translation();
-  // Who is put elsewhere has not travelled there.
+  // A vehicle that was placed elsewhere has not travelled the distance.
   constexpr double fastest_mps = 200;
   const double distance_m = (position_m - before.position_m).norm();
   const bool travelled = distance_m <= fastest_mps * sim::to_seconds(world_.step_time());

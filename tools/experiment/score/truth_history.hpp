@@ -10,26 +10,26 @@
 
 namespace tools {
 
-/// The true simulated time at which a vehicle's clock showed `utime`.  Any 64 bits may come: what lies too far off
-/// gives the smallest or largest time.
+/// Returns the true simulated time at which a vehicle's clock showed `utime`.  Accepts any 64 bits: out-of-range values
+/// are clamped to the smallest or largest time.
 sim::Time true_time_of(const sim::World& world, const sim::Vehicle& vehicle, std::int64_t utime);
 
-/// Where a vehicle was in the last seconds, and how far it had come.
+/// Positions of a vehicle in the last seconds, and its distance travelled.
 class TruthHistory {
  public:
   static constexpr double memory_s = 10;
   struct Truth {
     sim::Vector3d position_m = sim::Vector3d::Zero();
-    double travelled_m = 0;  ///< length of the way from the start
+    double travelled_m = 0;  ///< distance travelled from the start
     void visit_state(sim::StateArchive& archive) { archive(position_m, travelled_m); }
   };
 
   /// The world must outlive this, and keep the vehicle.
   TruthHistory(const sim::World& world, const sim::Vehicle& vehicle);
-  /// Call once after every step.
+  /// To be called once after every step.
   void after_step();
   const Truth& now() const;
-  /// At the step nearest to a time; nothing when it lies in the future or is forgotten.
+  /// Returns the truth at the step nearest to a time; nothing when it lies in the future or before the history.
   std::optional<Truth> at(sim::Time time) const;
   void visit_state(sim::StateArchive& archive);
 
@@ -37,7 +37,7 @@ class TruthHistory {
   std::size_t slot_of(std::int64_t step) const { return static_cast<std::size_t>(step) % recent_.size(); }
 
   const sim::World& world_;
-  std::string vehicle_;        ///< a restored world may have built it again
+  std::string vehicle_;        ///< by name, because a restored world may have built it again
   std::vector<Truth> recent_;  ///< ring by step number
 };
 

@@ -26,16 +26,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A snapshot is worth so many seconds more than were asked for.
+/// Additional seconds that are accepted in order to start with a snapshot.
 constexpr double max_more_s = 60;
 
-/// A place in the record from which on its events are kept.
+/// Position in the record from which its events are kept.
 struct Start {
   std::uint64_t offset = 0;
   std::int64_t utime = 0;
 };
 
-/// What one pass over the record finds.
+/// Results of one pass over the record.
 struct Survey {
   Start first;
   std::int64_t last_utime = 0;
@@ -49,7 +49,7 @@ std::optional<Message> decoded(const bridges::LogEventView& event) {
   try {
     return shoal::decode<Message>(event.payload, shoal::Finite::any);
   } catch (const shoal::MessageError&) {
-    return std::nullopt;  // of another program, or damaged: `shoal replay` says more
+    return std::nullopt;  // of another program, or damaged: `shoal replay` reports details
   }
 }
 
@@ -75,7 +75,7 @@ Survey survey(const std::string& record) {
   return found;
 }
 
-/// The first event that is later than `utime`, or that is at `offset` or behind it.
+/// Returns the first event that is later than `utime`, and at `offset` or after it.
 Start find_start(const std::string& record, std::int64_t utime, std::uint64_t offset) {
   bridges::EventLogReader log(record);
   bridges::LogEventView event;
@@ -89,7 +89,7 @@ bool is_of_run(const Snapshot& snapshot, const shoal::sim_info_t& info) {
          snapshot.branch == info.branch && snapshot.resolved_world == info.resolved_config;
 }
 
-/// The best of the run's snapshot files: the last one before `latest`, and not before `earliest`.
+/// Returns the best of the run's snapshot files: the last one before `latest`, and not before `earliest`.
 std::optional<Snapshot> find_snapshot(const std::string& folder, const shoal::sim_info_t& info, std::int64_t earliest,
                                       std::int64_t latest) {
   std::optional<Snapshot> best;
@@ -101,13 +101,13 @@ std::optional<Snapshot> find_snapshot(const std::string& folder, const shoal::si
       const bool fits = is_of_run(snapshot, info) && snapshot.utime() >= earliest && snapshot.utime() <= latest;
       if (fits && (!best || snapshot.step > best->step)) best = std::move(snapshot);
     } catch (const SnapshotFileError&) {
-      // One that cannot be used.
+      // Skip unusable files.
     }
   }
   return best;
 }
 
-/// The snapshot in the record that comes last before `latest`, and not before `earliest`.
+/// Returns the last snapshot in the record before `latest`, and not before `earliest`.
 std::optional<Start> find_snapshot(const std::vector<Start>& snapshots, std::int64_t earliest, std::int64_t latest) {
   std::optional<Start> best;
   for (const Start& snapshot : snapshots)
@@ -119,7 +119,7 @@ class Writer {
  public:
   Writer(const std::string& record, const std::string& out) : record_(record), out_(out), log_(open_file(out)) {}
 
-  /// All from `start` on, behind the last sim.info before it and `snapshot`.
+  /// Copies all events from `start` on, after the last preceding sim.info and `snapshot`.
   std::uint64_t copy(const Start& start, const std::optional<Snapshot>& snapshot) {
     bridges::EventLogReader from(record_);
     bridges::LogEventView event;
@@ -151,7 +151,7 @@ class Writer {
     throw std::runtime_error(out_ + ": cannot be written: " + std::strerror(errno != 0 ? errno : EIO));
   }
 
-  /// What was before the part that is kept: the world, and the number of the next sim.inputs.
+  /// Processes an event before the kept part: the world, and the number of the next sim.inputs.
   void look_at(const bridges::LogEventView& event) {
     if (event.channel == "sim.info") {
       if (const auto info = decoded<shoal::sim_info_t>(event)) {
@@ -168,7 +168,7 @@ class Writer {
     }
   }
 
-  /// What a run that begins with the snapshot publishes of its step.
+  /// Publishes the messages of the snapshot's step, as a run that starts with it does.
   void keep_state(const bridges::LogEventView& event) {
     if (event.channel == "sim.clock" || event.channel == "sim.state" || event.channel == "sim.hash")
       state_.emplace_back(event.channel, sim::Bytes(event.payload.begin(), event.payload.end()));
@@ -201,6 +201,7 @@ class Writer {
 
 RecordTail write_record_tail(const std::string& record, const std::string& out, const TailOptions& options) {
   const Survey found = survey(record);
+  // Extent of the record.
   const shoal::sim_info_t& info = *found.info;
   const auto in_s = [&](std::int64_t utime) { return static_cast<double>(utime - info.epoch_utime) * 1e-6; };
   const double before_s = static_cast<double>(found.last_utime - found.first.utime) * 1e-6;
@@ -211,7 +212,7 @@ RecordTail write_record_tail(const std::string& record, const std::string& out, 
   tail.info = info;
   tail.end_s = in_s(found.last_utime);
 
-  // Where it begins: with all of the record, with a snapshot, or just so many seconds before the end.
+  // Start of the tail: the whole record, a snapshot, or a number of seconds before the end.
   Start start = found.first;
   std::optional<Snapshot> snapshot;
   tail.whole = before_s <= options.last_s;
@@ -231,7 +232,7 @@ RecordTail write_record_tail(const std::string& record, const std::string& out, 
     }
   }
 
-  // What is too large begins later, and then with no snapshot.
+  // Start later, without a snapshot, if the tail is too large.
   if (found.bytes - start.offset > options.max_bytes) {
     start = find_start(record, start.utime - 1, found.bytes - options.max_bytes);
     snapshot.reset();

@@ -33,11 +33,11 @@ std::string processor_class() {
 #endif
 }
 
-/// As for every file of a world.
+/// Limit, as for every file of a world.
 constexpr std::uintmax_t max_file_bytes = 1'000'000'000;
 
-/// `path` may come from a stranger's record: a pipe or a device would be read forever, and so would some files of the
-/// kernel, which say that they are empty.
+/// Hashes a regular file; `path` may come from an untrusted record: reading a pipe, a device or some files of the
+/// kernel, which report a size of 0, would not end.
 std::string hash_of_file(const std::string& path) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error)) return no_hash;

@@ -9,19 +9,19 @@
 
 namespace tools {
 
-/// What decides the last bits of a result beside versions: processor class and C library, such as
+/// Returns what determines the last bits of a result besides versions: processor class and C library, such as
 /// `x86-64-v3, glibc 2.36`.
 std::string build_text();
 
-/// The files of meshes, terrain, textures and currents that a resolved world names, a line `HASH PATH` for each, by
-/// path.  A file that cannot be read has 16 dashes.
+/// Returns the files of meshes, terrain, textures and currents that a resolved world names, a line `HASH PATH` for
+/// each, by path.  A file that cannot be read has 16 dashes.
 std::string files_text(const sim::ConfigNode& resolved);
 
-/// A line for each file of `text` (from files_text) that does not exist now, or is another one.
+/// Returns a line for each file of `text` (from files_text) that is missing now, or has changed.
 std::vector<std::string> changed_files(const std::string& text);
 
-/// Lets a world of a record or snapshot name the files of such a list that are as they were: whoever wrote the list
-/// knew what is in them.
+/// Permits a world of a record or snapshot to name the unchanged files of such a list, because the author of the list
+/// had access to their content.
 void allow_files(const std::string& text, sim::LoadOptions& load);
 
 }  // namespace tools

@@ -42,7 +42,7 @@ void visit(sim::StateArchive& archive, Snapshot& s) {
   archive.end();
 }
 
-/// The first of the content in every format: which shoal wrote it.
+/// First part of the content in every format: the version of shoal that wrote it.
 std::string written_by(const sim::Bytes& bytes) {
   std::string version;
   try {
@@ -87,6 +87,7 @@ sim::Bytes to_bytes(const Snapshot& snapshot) {
 
 Snapshot snapshot_from_bytes(const sim::Bytes& bytes, const std::string& path) {
   const auto fail = [&](const std::string& what) -> SnapshotFileError { return SnapshotFileError(path + ": " + what); };
+  // Signature, version and checksum.
   if (bytes.size() < sizeof magic || std::memcmp(bytes.data(), magic, sizeof magic) != 0)
     throw fail("is not a Shoal snapshot: it must start with 'SHOALSNP'");
   if (bytes.size() < head_bytes + checksum_bytes) throw fail(fmt::format("is cut off after {} bytes", bytes.size()));
@@ -98,6 +99,7 @@ Snapshot snapshot_from_bytes(const sim::Bytes& bytes, const std::string& path) {
   const std::uint32_t sum = sim::crc32(std::span(bytes).first(content));
   if (sum != expected)
     throw fail(fmt::format("is damaged or cut off: its checksum must be {:08x}, got {:08x}", expected, sum));
+  // Content.
   Snapshot snapshot;
   try {
     auto archive = sim::StateArchive::restorer(std::span(bytes).subspan(head_bytes, content - head_bytes));
@@ -105,6 +107,7 @@ Snapshot snapshot_from_bytes(const sim::Bytes& bytes, const std::string& path) {
   } catch (const sim::SnapshotError& error) {
     throw fail(error.what());
   }
+  // Plausible times.
   const bool possible = snapshot.step >= 0 && snapshot.step_us > 0 && snapshot.step < INT64_MAX / 4 / snapshot.step_us;
   if (!possible) throw fail(fmt::format("step {} of {} us is invalid", snapshot.step, snapshot.step_us));
   if (snapshot.epoch_us < -INT64_MAX / 2 || snapshot.epoch_us > INT64_MAX / 2)

@@ -10,13 +10,14 @@
 
 namespace tools {
 
-/// A file that is not a snapshot, or none that this program can continue from.  what() says file, rule and value.
+/// Error of a file that is not a snapshot, or one that this program cannot continue from.  what() contains file, rule
+/// and value.
 class SnapshotFileError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// A world at one step, with what is needed to build it again.
+/// State of a world at one step, with the data needed to build the world again.
 struct Snapshot {
   std::string version;         ///< of shoal that wrote it
   std::string world;           ///< its name
@@ -27,7 +28,7 @@ struct Snapshot {
   std::int64_t step_us = 0;
   std::int64_t step = 0;
   std::int32_t branch = 0;
-  double from_s = 0;  ///< since when the scores count
+  double from_s = 0;  ///< start of the scores
   std::uint64_t state_hash = 0;
   std::vector<std::string> vehicles;
   sim::Bytes state;   ///< WorldState::snapshot()
@@ -35,22 +36,23 @@ struct Snapshot {
   sim::Bytes owners;  ///< SimService::visit_state()
 
   double time_s() const { return static_cast<double>(step * step_us) * 1e-6; }
-  /// Time stamp of messages of this step.
+  /// Returns the time stamp of messages of this step.
   std::int64_t utime() const { return epoch_us + step * step_us; }
 };
 
-/// The bytes of a snapshot file: eight letters, format version, content, checksum.
+/// Returns the content of a snapshot file: eight letters, format version, content, checksum.
 sim::Bytes to_bytes(const Snapshot& snapshot);
-/// Throws SnapshotFileError: foreign, cut off, damaged, of another format.  `path` is for the error.
+/// Throws SnapshotFileError for a file that is not a snapshot, truncated, damaged, or of another format.  `path` is for
+/// the error.
 Snapshot snapshot_from_bytes(const sim::Bytes& bytes, const std::string& path);
 
-/// A reader finds the file whole or not at all.  Throws SnapshotFileError when it cannot be written.
+/// Writes the file atomically.  Throws SnapshotFileError when it cannot be written.
 void write_snapshot(const std::string& path, const Snapshot& snapshot);
-/// Throws SnapshotFileError.
+/// Reads a snapshot file.  Throws SnapshotFileError.
 Snapshot read_snapshot(const std::string& path);
 /// Throws SnapshotFileError when another build of shoal wrote it: the order of the state may have changed.
 void check_version(const Snapshot& snapshot, const std::string& path, const std::string& own_version);
-/// Throws SnapshotFileError when a file that its world names is gone, or is another one.
+/// Throws SnapshotFileError when a file that its world names is missing or has changed.
 void check_files(const Snapshot& snapshot, const std::string& path);
 
 }  // namespace tools

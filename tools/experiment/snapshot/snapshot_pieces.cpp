@@ -47,22 +47,26 @@ std::optional<sim::Bytes> SnapshotPieces::add(const shoal::sim_snapshot_t& piece
   if (piece.piece < 0 || piece.piece >= piece.pieces || piece.bytes < 0)
     throw shoal::MessageError(
         fmt::format("piece {} of {} of a snapshot of {} bytes cannot be", piece.piece, piece.pieces, piece.bytes));
+  // Start of another snapshot.
   if (!continues(piece)) {
     first_ = piece;
     first_->data.clear();
     next_ = lost_until_ = 0;
     bytes_.clear();
   }
-  if (piece.piece < next_) return std::nullopt;  // it came twice
+  if (piece.piece < next_) return std::nullopt;  // duplicate
+  // Gap before this piece.
   if (lost_until_ > next_ || piece.piece > next_) {
     lost_until_ = std::max(lost_until_, piece.piece);
     return std::nullopt;
   }
+  // Append the piece.
   const auto* data = reinterpret_cast<const std::byte*>(piece.data.data());
   bytes_.insert(bytes_.end(), data, data + piece.data.size());
   ++next_;
   if (bytes_.size() > static_cast<std::uint64_t>(piece.bytes))
     throw shoal::MessageError(fmt::format("the pieces of a snapshot are more than its {} bytes", piece.bytes));
+  // Check the size after the last piece.
   if (next_ < piece.pieces) return std::nullopt;
   if (bytes_.size() < static_cast<std::uint64_t>(piece.bytes))
     throw shoal::MessageError(

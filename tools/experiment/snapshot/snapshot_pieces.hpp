@@ -12,19 +12,19 @@
 
 namespace tools {
 
-/// A snapshot as messages for `sim.snapshot`, each of at most 60 kB, so that one is one datagram.  The scores stay
-/// behind: they change nothing that happens.
+/// Splits a snapshot into messages for `sim.snapshot`, each of at most 60 kB, so that one fits into a datagram.  The
+/// scores are omitted, because they do not influence the run.
 std::vector<shoal::sim_snapshot_t> in_pieces(const Snapshot& snapshot, std::int32_t branch,
                                              std::int64_t input_sequence);
 
-/// Puts the pieces together again.  They come from a log: some may be missing, duplicated or forged.
+/// Reassembles the pieces.  They come from a log: some may be missing, duplicated or forged.
 class SnapshotPieces {
  public:
-  /// The bytes of the snapshot file when this was the last piece.  Throws shoal::MessageError for one that cannot be,
-  /// or that comes after others were lost.
+  /// Returns the bytes of the snapshot file after the last piece.  Throws shoal::MessageError for an invalid piece, or
+  /// one that follows lost pieces.
   std::optional<sim::Bytes> add(const shoal::sim_snapshot_t& piece);
-  /// What is missing of the last one, such as `pieces 3 to 4 of 7 of the snapshot of step 1000 are missing`; empty:
-  /// nothing.
+  /// Returns what is missing of the last snapshot, such as `pieces 3 to 4 of 7 of the snapshot of step 1000 are
+  /// missing`; empty: nothing.
   std::string missing() const;
 
  private:

@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t max_in_family = 30;
 
-/// Where the content of each named part of a snapshot is (sim::StateArchive: length and text of the name, length of
+/// Position of the content of each named part of a snapshot (sim::StateArchive: length and text of the name, length of
 /// the content, content).
 struct Part {
   std::string_view name;
@@ -57,8 +57,8 @@ void exclusive_or(std::span<std::byte> bytes, std::span<const std::byte> others)
   for (; i < bytes.size(); ++i) bytes[i] ^= others[i];
 }
 
-/// Bytes of `bytes` that agree with the part of the same name and size in `base` become 0.  Done twice it gives back
-/// what was there: names and sizes stay.
+/// Takes the difference: bytes of `bytes` that equal the part of the same name and size in `base` become 0.  Applying
+/// it twice restores the original, because names and sizes are kept.
 void take_difference(std::span<std::byte> bytes, std::span<const std::byte> base) {
   std::map<std::string_view, Part> of_base;
   for (const Part& part : parts_of(base)) of_base.emplace(part.name, part);
@@ -69,7 +69,8 @@ void take_difference(std::span<std::byte> bytes, std::span<const std::byte> base
   }
 }
 
-/// What is not zero, in words of 8 bytes: again and again how many words of zeros, how many others, and those.
+/// Run-length encoding of zeros, in words of 8 bytes: alternately the number of zero words, the number of others, and
+/// these.
 constexpr std::size_t word_bytes = sizeof(std::uint64_t);
 
 void append(sim::Bytes& out, std::span<const std::byte> bytes) {
@@ -97,7 +98,7 @@ sim::Bytes without_zeros(std::span<const std::byte> bytes) {
     std::size_t begin = i;
     while (begin < words && is_zero(begin)) ++begin;
     std::size_t end = begin;
-    // One word of zeros among others costs less than a new pair of numbers.
+    // One zero word among others costs less than another pair of numbers.
     while (end < words && !(is_zero(end) && (end + 1 == words || is_zero(end + 1)))) ++end;
     append_number(out, (begin - i) << 32 | (end - begin));
     append(out, bytes.subspan(begin * word_bytes, (end - begin) * word_bytes));
@@ -158,7 +159,7 @@ sim::Bytes SnapshotRing::Packed::unpacked() const {
   return with_zeros(deflated ? inflated(bytes) : bytes);
 }
 
-/// Deflate takes longer than all the rest of a snapshot: it is for those that there would be no room for without.
+/// Deflate is slower than all other work of a snapshot: it is used only when space is short.
 SnapshotRing::Packed SnapshotRing::pack(std::int64_t step, std::span<const std::byte> bytes) const {
   Packed packed{step, without_zeros(bytes), false};
   const std::int64_t apart = count_ == 0 ? 1 : std::max<std::int64_t>(1, step - newest());
@@ -185,6 +186,7 @@ std::size_t SnapshotRing::Family::bytes() const {
 
 void SnapshotRing::add(std::int64_t step, const sim::Bytes& snapshot, std::size_t bytes_beside) {
   assert(families_.empty() || step > newest());
+  // Store a full snapshot, or the difference from the last full one.
   const bool full =
       !families_.empty() && (families_.back().others.size() + 1 >= max_in_family ||
                              step - families_.back().whole.step >= std::max<std::int64_t>(steps_ / 2, 1) ||
@@ -200,7 +202,7 @@ void SnapshotRing::add(std::int64_t step, const sim::Bytes& snapshot, std::size_
     bytes_ += families_.back().others.back().bytes.size();
   }
   ++count_;
-  // A family goes when even its last is not needed any more, or when there is no room for it.
+  // Remove a family when even its last snapshot is too old, or when space is short.
   while (families_.size() > 1 && (families_[1].whole.step <= step - steps_ || bytes() + bytes_beside > max_bytes_)) {
     bytes_ -= families_.front().bytes();
     count_ -= 1 + families_.front().others.size();

@@ -12,37 +12,37 @@
 
 namespace tools {
 
-/// Snapshots of the last seconds in memory.  Every few are kept whole; of those between, what differs from the whole
-/// one before is kept.  Compressed where there is no room without.  Bounded in number and bytes: the oldest go first,
-/// together with the whole one that they tilt on.
+/// Snapshots of the last seconds in memory.  Every few snapshots one is stored in full; the others are stored as the
+/// difference from the preceding full one.  They are compressed when space is short.  Number and bytes are limited: the
+/// oldest are removed first, together with the full snapshot that they depend on.
 class SnapshotRing {
  public:
-  /// Snapshots are kept for `steps` steps, but never more than `max_bytes` of them; the newest one always is.
+  /// Keeps snapshots of the last `steps` steps, but never more than `max_bytes`; always keeps the newest one.
   SnapshotRing(std::int64_t steps, std::size_t max_bytes) : steps_(steps), max_bytes_(max_bytes) {}
 
-  /// `step` must be larger than that of the newest.  `bytes_beside` count as well.
+  /// Adds a snapshot; `step` must be larger than that of the newest.  `bytes_beside` count towards the limit.
   void add(std::int64_t step, const sim::Bytes& snapshot, std::size_t bytes_beside = 0);
-  /// The step of the newest snapshot that is not later than `step`.
+  /// Returns the step of the newest snapshot that is not later than `step`.
   std::optional<std::int64_t> newest_until(std::int64_t step) const;
-  /// The snapshot of a step that newest_until() gave.
+  /// Returns the snapshot of a step that newest_until() returned.
   sim::Bytes get(std::int64_t step) const;
-  /// Drops all that are later than `step`.
+  /// Removes all snapshots later than `step`.
   void discard_after(std::int64_t step);
-  /// The step of the oldest one.
+  /// Returns the step of the oldest snapshot.
   std::optional<std::int64_t> oldest() const;
   std::size_t size() const { return count_; }
-  /// That it holds in memory.
+  /// Number of bytes held in memory.
   std::size_t bytes() const { return bytes_ + whole_.size() + difference_.size(); }
 
  private:
-  /// A snapshot, or how it differs from another.
+  /// Snapshot, or its difference from another.
   struct Packed {
     std::int64_t step;
     sim::Bytes bytes;
     bool deflated;
     sim::Bytes unpacked() const;
   };
-  /// A whole snapshot, and those that tilt on it.
+  /// Full snapshot, and the differences that depend on it.
   struct Family {
     Packed whole;
     std::vector<Packed> others;
@@ -57,7 +57,7 @@ class SnapshotRing {
   std::size_t max_bytes_;
   std::deque<Family> families_;
   sim::Bytes whole_;       // the newest family's, not packed
-  sim::Bytes difference_;  // memory that is used again
+  sim::Bytes difference_;  // reused memory
   std::size_t bytes_ = 0, count_ = 0;
 };
 

@@ -8,7 +8,7 @@
 
 namespace tools {
 
-/// What a world has that another one has not, by name: `object 'box'`, `vehicle 'r1'`, `device 'r1/lidar'`,
+/// Returns the entities that only the first world has, by name: `object 'box'`, `vehicle 'r1'`, `device 'r1/lidar'`,
 /// `event 'storm'`.
 std::vector<std::string> entities_only_in(const sim::WorldConfig& world, const sim::WorldConfig& other);
 

@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 constexpr std::size_t max_seeds = 100000;
 constexpr double max_seed = 9007199254740992.0;  // 2^53
 
-/// The first seed and how many.
+/// First seed and number of seeds.
 struct SeedRange {
   std::int64_t first = 1;
   std::int64_t count = 0;
@@ -46,7 +46,7 @@ std::optional<std::int64_t> whole_seed(std::string_view text) {
   return good ? std::optional(seed) : std::nullopt;
 }
 
-/// `1-10`.  Nothing: it is not of this form.
+/// Parses `1-10`.  Nothing for any other form.
 std::optional<std::pair<std::int64_t, std::int64_t>> first_and_last(std::string_view text) {
   const std::size_t dash = text.find('-', 1);
   if (dash == std::string_view::npos) return std::nullopt;
@@ -59,7 +59,7 @@ std::optional<std::pair<std::int64_t, std::int64_t>> first_and_last(std::string_
   return first && last ? std::optional(std::pair(*first, *last)) : std::nullopt;
 }
 
-/// Adds `7` or `1-10`.  What is wrong with the text; empty: nothing.
+/// Adds `7` or `1-10`.  Returns the error; empty: none.
 std::string add_seeds(std::string_view text, std::vector<std::int64_t>& seeds) {
   const std::string got = ", got '" + sim::shortened(sim::printable(text)) + "'";
   if (const auto one = whole_seed(text)) {
@@ -79,7 +79,7 @@ bool differ_from_each_other(const std::vector<std::int64_t>& seeds) {
   return std::set<std::int64_t>(seeds.begin(), seeds.end()).size() == seeds.size();
 }
 
-/// Whether a text such as `1-10` is among the seeds, so that they are not list of numbers.
+/// Returns whether a text such as `1-10` is among the seeds, so that they are not a list of numbers.
 bool has_range(const sim::ConfigNode& node) {
   if (node.kind == sim::ConfigNode::Kind::scalar) return first_and_last(node.scalar).has_value();
   return std::any_of(node.items.begin(), node.items.end(), has_range);
@@ -115,17 +115,20 @@ std::vector<std::int64_t> read_seeds(sim::ParamReader& in) {
   }
   const sim::ConfigNode* node = in.child("seeds");
   std::vector<std::int64_t> seeds;
+  // Range as a map.
   if (node != nullptr && node->kind == sim::ConfigNode::Kind::map) {
     SeedRange range;
     in.read("seeds", range, "seeds of the runs");
     for (std::int64_t i = 0; i < range.count; ++i) seeds.push_back(range.first + i);
     return seeds;
   }
+  // Ranges as text.
   if (node != nullptr && has_range(*node)) {
     seeds = read_seed_ranges(in, *node);
     if (!differ_from_each_other(seeds)) in.error("seeds", "'seeds' must differ from each other");
     return seeds;
   }
+  // List of numbers.
   std::vector<double> numbers;
   in.read("seeds", numbers, sim::between(0, max_seed), "seeds of the runs");
   for (const double number : numbers) {
@@ -140,12 +143,12 @@ std::vector<std::int64_t> read_seeds(sim::ParamReader& in) {
   return seeds;
 }
 
-/// A key that is there must say something.
+/// Rejects a key without a value.
 void require_something(sim::ParamReader& in, const char* key, bool empty) {
   if (in.has(key) && empty) in.error(key, "'" + std::string(key) + "' must not be empty");
 }
 
-/// All figures of all cases, sorted.
+/// Returns all figures of all cases, sorted.
 std::vector<std::string> figures_of(const LoadedStudy& study) {
   std::set<std::string> names{"passed"};
   for (const sim::LoadedWorld& world : study.worlds)
@@ -162,7 +165,7 @@ std::vector<std::string> error_metrics_of(const LoadedStudy& study) {
   return {names.begin(), names.end()};
 }
 
-/// Figures and metrics are known only with the worlds.
+/// Checks names of figures and metrics, which are known only with the worlds.
 class NameCheck {
  public:
   explicit NameCheck(const LoadedStudy& study)
@@ -228,12 +231,14 @@ void StudyPlot::read(sim::ParamReader& in) {
 }
 
 void StudyConfig::read(sim::ParamReader& in) {
+  // Version and name.
   int version = 1;
   in.require("shoal");
   in.read("shoal", version, sim::between(1, 1), "version of the file format");
   in.require("study");
   in.read_name("study", name, "name of the study");
   in.read("description", description, "one sentence for people");
+  // World, seeds and cases.
   in.require("world");
   in.read("world", world, "world file, from the folder of this file");
   in.read("launch", launch, "start the programs that the world names");
@@ -242,6 +247,7 @@ void StudyConfig::read(sim::ParamReader& in) {
   in.read_list("cases", cases, "case", "ways of running the world; unset: as it is");
   if (cases.empty()) cases.emplace_back().name = "world";
   for (const StudyCase& each : cases) in.declare("case", each.name);
+  // Figures, plots and rules.
   in.read("figures", figures, "figures of the table; unset: all");
   if (in.has("figures")) figures_place = in.child("figures")->place;
   in.read_list("plots", plots, "plot", "plots");
@@ -268,7 +274,7 @@ std::vector<std::int64_t> parse_seeds(const std::string& text) {
 
 namespace {
 
-/// The world of a study lies with it or in the folder above: an error of it quotes it.
+/// Checks that the world is in the study's folder or the one above, because errors quote its text.
 void check_world_file(const std::string& world, const std::string& study, const sim::ConfigNode& root,
                       const sim::LoadOptions& load) {
   const fs::path folder = fs::path(study).parent_path();
@@ -293,7 +299,7 @@ sim::LoadedWorld world_of_case(const std::string& world, const StudyCase& in_cas
       for (std::size_t i = 0; i < sets.size(); ++i) {
         const std::string place = sim::printable("--set " + sets[i]);
         if (!line.starts_with(place + ":")) continue;
-        // After the text of the option may come a line and a column in it.
+        // The text of the option may be followed by a line and a column in it.
         const std::size_t rest = line.find_first_not_of("0123456789:", place.size());
         const sim::ConfigNode::Entry& entry = in_case.changes.entries[i];
         line = entry.value.place.text() + ": case '" + in_case.name + "': '" + sim::printable(entry.key) +
@@ -308,6 +314,7 @@ sim::LoadedWorld world_of_case(const std::string& world, const StudyCase& in_cas
 
 LoadedStudy load_study(const std::string& path, const StudyChanges& changes) {
   LoadedStudy study;
+  // Read the file.
   sim::Diagnostics diagnostics;
   const sim::ConfigNode root = sim::load_config_file(path, diagnostics);
   diagnostics.throw_if_any();
@@ -316,12 +323,14 @@ LoadedStudy load_study(const std::string& path, const StudyChanges& changes) {
   study.config.read(in);
   in.finish();
   diagnostics.throw_if_any();
+  // Apply the settings of the command line.
   study.config.file = path;
   if (!changes.seeds.empty()) study.config.seeds = changes.seeds;
   if (changes.duration_s) study.config.duration_s = changes.duration_s;
   const fs::path world_file = fs::path(path).parent_path() / study.config.world;
   study.config.world = world_file.lexically_normal().string();
   check_world_file(study.config.world, path, root, changes.load);
+  // Load the world of each case.
   sim::Warnings warnings;
   for (const StudyCase& each : study.config.cases) {
     sim::LoadOptions options = changes.load;
@@ -347,7 +356,7 @@ std::optional<SharedPort> find_shared_port(const LoadedStudy& study) {
         const sim::ConfigNode* const serial = device.source ? device.source->find("serial") : nullptr;
         const sim::ConfigNode* const path = serial != nullptr ? serial->find("path") : nullptr;
         if (path == nullptr || path->scalar.find("{run}") != std::string::npos) continue;
-        if (fs::path(path->scalar).is_relative()) continue;  // below the results of each run
+        if (fs::path(path->scalar).is_relative()) continue;  // relative to the results of each run
         return SharedPort{path->place, "vehicle '" + vehicle.name + "': device '" + device.name + "'",
                           sim::channel_name(path->scalar, vehicle.name, device.name)};
       }

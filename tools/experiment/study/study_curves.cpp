@@ -28,7 +28,7 @@ double number_of(const std::string& text) {
   return error == std::errc{} && end == text.data() + text.size() ? value : no_figure;
 }
 
-/// Between neighbours by straight lines; nothing before the first or after the last point.
+/// Linear interpolation; nothing before the first or after the last point.
 std::optional<double> error_at(const Curve& curve, double x) {
   if (x < curve.front().x || x > curve.back().x) return std::nullopt;
   const auto after =
@@ -72,7 +72,7 @@ std::vector<Band> bands_of(const std::vector<Curve>& curves, std::size_t count) 
   }
   std::vector<Band> bands;
   for (std::size_t i = 0; low <= high && i < count; ++i) {
-    // The sum of the two weighted ends hits both of them exactly.
+    // The weighted sum reaches both ends exactly.
     const double share = count > 1 ? static_cast<double>(i) / static_cast<double>(count - 1) : 0;
     const double x = (1 - share) * low + share * high;
     std::vector<double> errors;

@@ -12,7 +12,7 @@ namespace {
 
 using Metrics = std::map<std::string, std::optional<double>>;
 
-/// What the runs of a case left, in the order of the seeds.
+/// Results of the runs of a case, in the order of the seeds.
 struct Outcome {
   std::vector<std::string> hashes;
   std::vector<Metrics> figures;

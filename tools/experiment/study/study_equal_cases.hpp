@@ -8,18 +8,18 @@
 
 namespace tools {
 
-/// Cases of a study that came out equal.
+/// Cases of a study with equal results.
 struct EqualCases {
   std::vector<std::string> cases;  ///< two or more, as the study orders them
-  bool same_settings = false;      ///< they change the same things; else a setting does nothing
-  bool same_state = false;         ///< also the final states are equal
+  bool same_settings = false;      ///< they change the same settings; otherwise a setting has no effect
+  bool same_state = false;         ///< the final states are equal, too
 };
 
 /// Groups of cases whose runs have the same figures for every seed or, where a world has no figures, the same final
 /// state.  A case with a run without a result is in no group.
 std::vector<EqualCases> equal_cases(const LoadedStudy& study, const std::vector<StudyRun>& runs);
 
-/// A sentence about a group, for people.
+/// Returns a readable sentence about a group.
 std::string equal_cases_text(const EqualCases& group);
 
 }  // namespace tools

@@ -33,7 +33,7 @@ std::vector<std::string> cases_of(const StudyPlot& plot, const StudyConfig& conf
   return names;
 }
 
-/// Draws the plots of a study; each gets a data file that can be plotted again.
+/// Writer of the plots of a study; each gets a data file that can be plotted again.
 class StudyPainter {
  public:
   StudyPainter(std::string directory, const LoadedStudy& study, const std::vector<StudyRun>& runs,
@@ -47,7 +47,7 @@ class StudyPainter {
     bool any = false;
     for (const StudyPlot& plot : study_.config.plots) {
       const std::string curves = plot.over == StudyPlot::Over::cases ? by_case(plot) : along(plot);
-      if (curves.empty()) continue;  // gnuplot fails on a plot without a point
+      if (curves.empty()) continue;  // gnuplot fails on a plot without points
       any = true;
       script_ += "set output " + gnuplot_text(plot.name + ".png") + "\nset title " +
                  gnuplot_text(study_.config.name + ": " + plot.name) + " noenhanced\n" + curves + "\n";
@@ -59,7 +59,7 @@ class StudyPainter {
   }
 
  private:
-  /// Every run as a point, beside the mean and standard deviation of its case.
+  /// Plots every run as a point, beside the mean and standard deviation of its case.
   std::string by_case(const StudyPlot& plot) {
     std::string points, means, tics;
     int number = 0;
@@ -82,7 +82,7 @@ class StudyPainter {
         tics, number, gnuplot_text(with_unit(plot.figure)), file, file);
   }
 
-  /// `cooperative.rms_m (m)`
+  /// Returns `cooperative.rms_m (m)`.
   std::string with_unit(const std::string& name) const {
     for (const RunMetric& metric : metrics_named(results_.figures()))
       for (const RunMetric::Figure& figure : metric.figures)
@@ -91,7 +91,7 @@ class StudyPainter {
     return name;
   }
 
-  /// Errors over distance or time: the median of the runs, in a band of 5 to 95 % of them.
+  /// Plots errors over distance or time: the median of the runs, in a band of 5 to 95 % of them.
   std::string along(const StudyPlot& plot) {
     std::string data, plots;
     int index = 0;
@@ -100,6 +100,7 @@ class StudyPainter {
     const auto cases = cases_of(plot, study_.config);
     for (const std::string& name : cases)
       for (const std::string& metric : plot.metrics) {
+        // Data of the band.
         const std::vector<Band> bands = bands_of(curves(plot, name, metric));
         if (bands.empty()) continue;
         reached_m.push_back(0);
@@ -107,6 +108,7 @@ class StudyPainter {
         for (const Band& band : bands)
           data += fmt::format("{:.6g} {:.6g} {:.6g} {:.6g} {}\n", band.x, band.low, band.median, band.high, band.runs);
         data += "\n\n";
+        // Curve and title.
         std::string title = metric;
         if (cases.size() > 1) title = plot.metrics.size() > 1 ? name + ": " + metric : name;
         plots += fmt::format(
@@ -115,6 +117,7 @@ class StudyPainter {
             plots.empty() ? "plot " : ", ", file, index, index + 1, gnuplot_text(title));
         ++index;
       }
+    // Axes.
     if (plots.empty()) return {};
     write_file(directory_ + "/" + plot.name + ".dat", data);
     const bool distance = plot.over == StudyPlot::Over::distance;
@@ -153,7 +156,7 @@ void write_study(const std::string& directory, const LoadedStudy& study, const s
   std::error_code error;
   std::filesystem::create_directories(directory, error);
   if (error) throw std::runtime_error(directory + ": cannot be made: " + error.message());
-  // Plots of an earlier study would be taken for this one's.
+  // Remove the plots of an earlier study, which would be mistaken for those of this one.
   for (const std::string& image : study_plots(study.config)) std::filesystem::remove(directory + "/" + image, error);
   write_file(directory + "/study.csv", results.to_csv());
   StudyPainter(directory, study, runs, results).draw();

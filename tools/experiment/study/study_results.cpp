@@ -22,7 +22,7 @@ std::string number(double value) {
   return std::isfinite(value) ? fmt::format("{:.4g}", value) : "-";
 }
 
-/// A text as a CSV field.
+/// Returns a text as a CSV field.
 std::string field(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
   std::string quoted = "\"";
@@ -125,7 +125,7 @@ FigureValue StudyResults::value_of(const sim::RuleExpression::Figure& figure) co
   const Statistics statistics = of(in_case, name);
   const std::size_t runs = runs_of(in_case);
   const std::size_t lacking = runs - static_cast<std::size_t>(statistics.count);
-  // A figure that nothing could be made of in some of the runs is not a good figure.
+  // A figure that is missing in some of the runs has no statistic.
   if (lacking > 0)
     return {no_figure, fmt::format("{} of {} runs {} no such figure", lacking, runs, lacking == 1 ? "has" : "have")};
   const double value = statistics.by_word(figure.function);
@@ -176,7 +176,7 @@ std::string StudyResults::to_text() const {
   for (const std::string& figure : table_figures())
     for (const StudyCase& each : config.cases) {
       const Statistics s = of(each.name, figure);
-      // A mean of those that arrived says nothing of those that did not.
+      // A mean over the runs with the figure is not representative of the others.
       const std::size_t runs = runs_of(each.name);
       const bool all = static_cast<std::size_t>(s.count) == runs;
       text += line(figure, each.name, all ? fmt::format("{}", runs) : fmt::format("{}/{}", s.count, runs),
@@ -199,10 +199,12 @@ std::string StudyResults::to_csv() const {
   text += "\n";
   for (const StudyRun& run : runs_) {
     text += fmt::format("{},{}", study_.config.cases[run.in_case].name, run.seed);
+    // Run without a result.
     if (!run.record) {
       text += ",,,failed,,," + std::string(figures_.size(), ',') + "\n";
       continue;
     }
+    // Outcome of the run.
     const RunRecord& record = *run.record;
     const auto passed = as_flag(record.judgement);
     text += fmt::format(",{},{},{},{},{:.3f},{}", record.exit_code,
@@ -210,6 +212,7 @@ std::string StudyResults::to_csv() const {
                         : *passed ? "1"
                                   : "0",
                         field(record.ended), record.sim_time_s, record.wall_s, record.run_hash);
+    // Its figures.
     for (const std::string& figure : figures_) {
       const auto found = record.metrics.find(figure);
       const bool known = found != record.metrics.end() && found->second;
@@ -223,12 +226,14 @@ std::string StudyResults::to_csv() const {
 std::string StudyResults::to_json(int exit_code) const {
   const StudyConfig& config = study_.config;
   nlohmann::ordered_json json;
+  // Study.
   json["study"] = config.name;
   json["description"] = config.description;
   json["world"] = study_.worlds.front().config.name;
   json["seeds"] = config.seeds;
   json["launch"] = config.launch;
   json["figures"] = table_figures();
+  // Cases and their statistics.
   json["cases"] = nlohmann::ordered_json::array();
   for (const StudyCase& each : config.cases) {
     nlohmann::ordered_json entry{{"name", each.name}, {"set", each.sets()}, {"figures", nlohmann::json::object()}};
@@ -236,6 +241,7 @@ std::string StudyResults::to_json(int exit_code) const {
     for (const std::string& figure : figures_) entry["figures"][figure] = statistics_json(of(each.name, figure));
     json["cases"].push_back(std::move(entry));
   }
+  // Notes and failed runs.
   json["notes"] = nlohmann::ordered_json::array();
   for (const EqualCases& group : equal_cases(study_, runs_)) json["notes"].push_back(equal_cases_text(group));
   json["failed_runs"] = nlohmann::ordered_json::array();
@@ -243,6 +249,7 @@ std::string StudyResults::to_json(int exit_code) const {
     if (!run.record)
       json["failed_runs"].push_back(
           {{"case", config.cases[run.in_case].name}, {"seed", run.seed}, {"why", run.failure}});
+  // Rules and verdict.
   json["runs"] = runs_.size();
   json["rules"] = nlohmann::ordered_json::array();
   for (const Scoring::Verdict& verdict : verdicts()) json["rules"].push_back(json_of(verdict));

@@ -14,16 +14,16 @@ namespace tools {
 
 struct StudyCase;
 
-/// The figure of a run that is 1 when it held the rules of its world, and 0 when it did not.
+/// Figure of a run that is 1 when the rules of its world hold, and 0 when they do not.
 inline constexpr const char* passed_figure = "passed";
 
-/// Statistics over the seeds of a case, which the rules of studies take of its figures.
+/// Statistics over the seeds of a case that the rules of studies use.
 const std::vector<std::string>& statistic_words();
 
-/// Rules of a study name `STATISTIC(CASE.METRIC.FIGURE)` and `STATISTIC(CASE.passed)`.
+/// Vocabulary of the rules of a study: `STATISTIC(CASE.METRIC.FIGURE)` and `STATISTIC(CASE.passed)`.
 class StudyRuleNames final : public sim::RuleNames {
  public:
-  /// `worlds` by case; without them any metric and figure is taken.
+  /// `worlds` by case; without them any metric and figure is accepted.
   explicit StudyRuleNames(const std::vector<StudyCase>& cases, const std::vector<sim::LoadedWorld>& worlds = {});
   std::string function_problem(const std::string& function) const override;
   std::optional<sim::RuleProblem> name_problem(const std::string& function, const std::string& name) const override;
@@ -33,10 +33,10 @@ class StudyRuleNames final : public sim::RuleNames {
   std::vector<const std::vector<sim::MetricConfig>*> metrics_;  ///< by case
 };
 
-/// The case and the figure of `CASE.FIGURE`.
+/// Splits `CASE.FIGURE` into case and figure.
 std::pair<std::string, std::string> case_and_figure(const std::string& name);
 
-/// As sim::rule_of_map: the rule that `{case: a, figure: e.rms_m, statistic: max, below: 2}` becomes,
+/// Converts a rule as sim::rule_of_map does: `{case: a, figure: e.rms_m, statistic: max, below: 2}` becomes
 /// `max(a.e.rms_m) < 2`.
 std::optional<std::string> study_rule_of_map(const sim::ConfigNode& map);
 

@@ -28,9 +28,9 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-/// How long children that were asked may take to end: they end their own programs and draw.
+/// Time for children to end after a signal: they end their own programs and write plots.
 constexpr std::chrono::seconds timeout{20};
-/// Another program may have the ports.
+/// Number of attempts, because another program may use the ports.
 constexpr int max_attempts = 3;
 
 std::uint64_t fnv1a(const std::string& text) {
@@ -39,7 +39,7 @@ std::uint64_t fnv1a(const std::string& text) {
   return hash;
 }
 
-/// What a run depends on; a kept one must have the same.
+/// Returns what a run depends on; a kept run must have the same.
 std::string stamp_of(const LoadedStudy& study, const StudyRun& run) {
   const std::string world = sim::to_yaml(study.worlds[run.in_case].resolved);
   const StudyConfig& config = study.config;
@@ -52,7 +52,7 @@ std::string stamp_file(const StudyRun& run) {
   return run.directory + "/study_stamp.txt";
 }
 
-/// Reads what a run left.  Unset, with the reason: it does not exist or did not come to its end.
+/// Reads the results of a run.  Unset, with the reason: they do not exist, or the run did not reach its end.
 void read_record(StudyRun& run) {
   run.record.reset();
   try {
@@ -125,7 +125,7 @@ class StudyChildren {
     return slot;
   }
 
-  /// LCM URL of a run's bus; each slot has ports of its own.
+  /// Returns the LCM URL of a run's bus; each slot has its own ports.
   std::string url(int slot, int attempt, std::size_t bus) const {
     const auto buses = static_cast<int>(study_.worlds[0].config.buses.size()) + 1;
     const int first = (static_cast<int>(getpid()) * 64 + attempt * 517) % 1500;
@@ -142,14 +142,17 @@ class StudyChildren {
       arguments.push_back(option);
       arguments.push_back(value);
     };
+    // Settings of the case.
     for (const std::string& set : config.cases[run.in_case].sets()) add("--set", set);
     for (const std::string& path : options_.allow_paths) add("--allow-path", path);
     if (config.duration_s) add("--duration", fmt::format("{}", *config.duration_s));
+    // Without programs no bus is used.
     if (!config.launch) {
       add("--bus", "none");
-      arguments.emplace_back("--no-serial-ports");  // they are not used, and two runs cannot have the same
+      arguments.emplace_back("--no-serial-ports");  // they are not used, and two runs cannot share one
       return arguments;
     }
+    // Each concurrent run has its own buses.
     arguments.emplace_back("--launch");
     add("--run-name", fmt::format("{}-seed_{}", config.cases[run.in_case].name, run.seed));
     add("--lcm-url", url(slot, attempt, 0));
@@ -174,7 +177,7 @@ class StudyChildren {
         {spawn(arguments_of(run, slot, what.attempt), run.directory + "/run.log"), what, slot, Clock::now()});
   }
 
-  // In its own group: Ctrl-C reaches it through us.
+  // In its own process group: Ctrl-C is forwarded to it.
   static pid_t spawn(const std::vector<std::string>& arguments, const std::string& log) {
     pid_t pid = 0;
     const int error = start_child({"/proc/self/exe", arguments, own_environment(), log}, pid);
@@ -182,7 +185,7 @@ class StudyChildren {
     return pid;
   }
 
-  /// True when at least one ended.
+  /// Returns true when at least one ended.
   bool reap() {
     bool any = false;
     for (std::size_t i = 0; i < running_.size();) {
@@ -202,14 +205,17 @@ class StudyChildren {
   void finish(const Running& ended, int status) {
     StudyRun& run = runs_[ended.what.run];
     read_record(run);
+    // Result, or the signal that killed the run.
     if (WIFSIGNALED(status)) {
       run.record.reset();
       run.failure = fmt::format("was killed by signal {} ({})", WTERMSIG(status), strsignal(WTERMSIG(status)));
     }
+    // Repeat a run whose bus was occupied.
     const bool taken = run.failure.find(bridges::another_simulator) != std::string::npos;
     if (!run.record && taken && ended.what.attempt + 1 < max_attempts)
       return waiting_.push_front({ended.what.run, ended.what.attempt + 1});
     ++done_;
+    // Report the outcome.
     std::string outcome = "failed: " + run.failure + "; see " + run.directory + "/run.log";
     if (run.record) {
       std::ofstream(stamp_file(run), std::ios::binary) << stamp_of(study_, run);

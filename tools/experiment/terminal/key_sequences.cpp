@@ -12,11 +12,13 @@ constexpr char escape = 27;
 std::string KeySequences::next(char byte, Clock::time_point now) {
   const State before = state_;
   state_ = State::none;
+  // ESC starts a sequence, or is a key.
   if (byte == escape) {
     state_ = State::started;
     begun_ = now;
     return before == State::started ? std::string{escape} : std::string{};
   }
+  // Continue or end the sequence.
   switch (before) {
     case State::none:
       return {byte};

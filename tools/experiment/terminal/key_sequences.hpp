@@ -6,19 +6,19 @@
 
 namespace tools {
 
-/// Tells the keys that are one byte from those that a terminal sends as several: arrows, Home, F1 and the like begin
-/// with ESC [ or ESC O, and end with a letter or `~` (ECMA-48, sections 5.4 and 8.3.16; `ESC [ [` and a letter on the
-/// Linux console).  These are swallowed.
+/// Separates keys of one byte from keys that a terminal sends as several: arrows, Home, F1 and similar keys start with
+/// ESC [ or ESC O, and end with a letter or `~` (ECMA-48, sections 5.4 and 8.3.16; `ESC [ [` and a letter on the Linux
+/// console).  These are discarded.
 class KeySequences {
  public:
   using Clock = std::chrono::steady_clock;
   /// A single key is distinguished from the start of a sequence by a pause of this length.
   static constexpr std::chrono::milliseconds timeout{50};
 
-  /// The keys that the bytes of a terminal, given one by one, turn out to be.  None: this one belongs to a sequence, or
-  /// may.
+  /// Returns the keys that the bytes of a terminal, passed one by one, represent.  None: this byte belongs to a
+  /// sequence, or may belong to one.
   std::string next(char byte, Clock::time_point now);
-  /// ESC, when it was pressed alone by now.
+  /// Returns ESC once it is certain that it was pressed alone.
   std::string alone(Clock::time_point now);
 
  private:

@@ -15,7 +15,7 @@ Progress::Progress(double duration_s, bool quiet)
     : duration_s_(duration_s), quiet_(quiet), terminal_(isatty(STDERR_FILENO) != 0), last_(Clock::now()) {}
 
 void Progress::update(sim::Time now, std::uint64_t messages, const sim::RunControl& control, bool waits) {
-  if (quiet_ || asking_ || (++skip_ < 16 && !waits)) return;  // looking at the clock at every step would cost
+  if (quiet_ || asking_ || (++skip_ < 16 && !waits)) return;  // reading the clock at every step would be expensive
   skip_ = 0;
   const Clock::time_point wall = Clock::now();
   const double since_s = std::chrono::duration<double>(wall - last_).count();
@@ -38,7 +38,7 @@ void Progress::update(sim::Time now, std::uint64_t messages, const sim::RunContr
 
 void Progress::show(const std::string& line) {
   if (terminal_) {
-    // A line that fills the last column or more would not be taken back by the next one.
+    // The next line would not overwrite a line that fills the last column.
     const auto columns = static_cast<std::size_t>(command_line::text_columns(STDERR_FILENO)) - 1;
     const std::string fitted = command_line::cut_to(line, columns);
     const std::size_t width = command_line::column_count(fitted);

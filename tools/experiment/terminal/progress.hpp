@@ -9,20 +9,20 @@
 
 namespace tools {
 
-/// Tells people how far a run is: one live line on a terminal, a line every 10 s in a pipe.
+/// Shows the progress of a run: one live line on a terminal, a line every 10 s in a pipe.
 class Progress {
  public:
-  /// `duration_s` 0: open end.
+  /// `duration_s` 0: no end.
   Progress(double duration_s, bool quiet);
-  /// Cheap enough to call at every step.  `waits`: the world stands.
+  /// Updates the display; cheap enough to call at every step.  `waits`: the world is paused.
   void update(sim::Time now, std::uint64_t messages, const sim::RunControl& control, bool waits);
-  /// Clears the live line, so that other output starts on a fresh one.
+  /// Clears the live line, so that other output starts on a new one.
   void clear();
-  /// Words for people, on lines of their own.
+  /// Prints text on separate lines.
   void report(const std::string& text);
-  /// A question takes the place of the live line until something is said.
+  /// Shows a question in place of the live line until the next line is printed.
   void send_request(const std::string& text);
-  /// Time went back.
+  /// To be called after a rewind.
   void restart(sim::Time now);
 
  private:

@@ -15,14 +15,14 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// Signal handlers have no other way to know them.  Of the settings as they were before one is in use while the other
-// is filled.
+// Global variables, because signal handlers have no other access.  One copy of the original settings is in use while
+// the other is written.
 termios before[2]{};
 std::atomic<int> in_use{0};
 termios raw{};
 std::atomic<bool> active{false};
 
-/// From one look at the settings of the terminal to the next.
+/// Interval between checks of the settings of the terminal.
 constexpr std::chrono::milliseconds check_interval{50};
 
 bool in_foreground() {
@@ -37,7 +37,7 @@ void use_before() {
   use(before[in_use]);
 }
 
-/// Keys one by one, without echo; Ctrl-C and Ctrl-Z stay signals.
+/// Enables single keys without echo; Ctrl-C and Ctrl-Z remain signals.
 void take_over() {
   termios now{};
   if (tcgetattr(STDIN_FILENO, &now) != 0 || (now.c_lflag & (ICANON | ECHO)) == 0) return;
@@ -52,13 +52,13 @@ void take_over() {
 
 void on_stop(int) {
   use_before();
-  // SIGSTOP rather than SIGTSTP once more: it needs no handler put away and back again.
+  // SIGSTOP instead of SIGTSTP, because it needs no change of the handler.
   raise(SIGSTOP);
 }
 
 void on_death(int signal) {
   use_before();
-  raise(signal);  // SA_RESETHAND: as if it had not been caught
+  raise(signal);  // SA_RESETHAND: default action
 }
 
 void handle(int signal, void (*handler)(int), int flags) {
@@ -99,7 +99,7 @@ void TerminalKeys::restore_saved() {
 
 std::optional<char> TerminalKeys::next() {
   if (!active) return std::nullopt;
-  // A shell gives the terminal to a job that comes to the foreground, with settings of its own, and need not say so.
+  // A shell moves a job to the foreground with its own settings, possibly without a signal.
   if (const auto now = Clock::now(); now >= check_at_) {
     check_at_ = now + check_interval;
     if (in_foreground()) take_over();

@@ -63,7 +63,7 @@ void insert_entry_after(Site& site, const SourceNode::Entry& entry, const std::s
   const std::string& text = site.text.text();
   const std::string line_break = site.text.line_break();
   const std::string line = indentation_of(site, site.source) + key + ": " + value;
-  const bool ends_its_line = entry.value.span.end > 0 && text[entry.value.span.end - 1] == '\n';  // a block of text
+  const bool ends_its_line = entry.value.span.end > 0 && text[entry.value.span.end - 1] == '\n';  // a block scalar
   const std::size_t end = ends_its_line ? entry.value.span.end : site.text.line_end(entry.value.span.end);
   const bool has_break = end > 0 && text[end - 1] == '\n';
   site.edits->insert(end, has_break ? line + line_break : line_break + line);

@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
   sim::throw_config_error({sim::intern_file_name(path), 0, 0}, "", "cannot be written: " + why);
 }
 
-/// A file beside another one, which goes away unless it takes its place.
+/// Temporary file beside another one; removed unless it replaces that file.
 class NewFile {
  public:
   NewFile(const std::string& path, const std::string& target)
@@ -48,7 +48,7 @@ class NewFile {
     }
   }
 
-  /// The owner comes first: changing it takes some permissions away.
+  /// Sets the owner first, because changing it removes some permissions.
   void take_rights(const struct stat& from) {
     struct stat own {};
     if (fstat(fd_, &own) != 0) fail_by_errno();

@@ -5,10 +5,10 @@
 
 namespace tools {
 
-/// Puts `after` in the place of `before`, what the file holds.  The new file is written beside the old one, with its
-/// owner and permissions, brought to the disk, and renamed.  A symbolic link stays; what it leads to is replaced.
-/// Throws sim::ConfigError with the path and the reason, and leaves the file as it was, when it holds something else by
-/// now, has further hard links (which would keep the old text), or cannot be written.
+/// Replaces `before`, the content of the file, by `after`.  The new file is written beside the old one, with its owner
+/// and permissions, flushed to the disk, and renamed.  A symbolic link is kept; its target is replaced. Throws
+/// sim::ConfigError with the path and the reason, without any change, when the content differs from `before`, the file
+/// has further hard links (which would keep the old text), or it cannot be written.
 void replace_file(const std::string& path, const std::string& before, const std::string& after);
 
 }  // namespace tools

@@ -6,8 +6,8 @@
 
 namespace tools {
 
-/// The number that a key of a file reads from the text: decimal, with an optional sign, finite.  Nothing when the text
-/// is none.
+/// Parses a number as a key of a file does: decimal, with an optional sign, finite.  Returns nothing for any other
+/// text.
 std::optional<double> number_of(std::string_view text);
 
 inline bool is_zero(std::string_view text) {

@@ -8,17 +8,17 @@
 
 namespace tools {
 
-/// An action of events as files of version 0.1 have it, `{publish: c, type: t}`: a map of which one key is its word.
+/// Action of an event in the form of version 0.1, `{publish: c, type: t}`: a map with one key that names the action.
 struct OldAction {
   std::string_view word;
-  std::string_view main_key;  ///< what the value of the word is called since version 0.2
+  std::string_view main_key;  ///< key of that word's value since version 0.2
 };
 
 std::span<const OldAction> old_actions();
-/// Null when there is no action of this word.
+/// Returns null when there is no action with this word.
 const OldAction* find_old_action(std::string_view word);
 
-/// The only key of a map that is the word of an action; null when there is none or more than one.
+/// Returns the only key of a map that is the word of an action; null when there is none or more than one.
 const SourceNode::Entry* word_of_action(const SourceNode& map);
 
 }  // namespace tools

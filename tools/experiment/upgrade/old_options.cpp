@@ -117,13 +117,13 @@ bool are_numbers(std::span<const std::string> texts) {
   return std::all_of(texts.begin(), texts.end(), [](const std::string& text) { return number_of(text).has_value(); });
 }
 
-/// `[x, y, z]` of numbers, from `least` to `most` of them.
+/// Returns `[x, y, z]` of numbers, with a limited count.
 std::optional<std::string> tuple(const Texts& numbers, std::size_t min, std::size_t max) {
   if (numbers.size() < min || numbers.size() > max || !are_numbers(numbers)) return std::nullopt;
   return flow_list(numbers);
 }
 
-/// A list of what `row` makes of each part between semicolons.
+/// Returns a list with the result of `row` for each part between semicolons.
 template <typename Row>
 std::optional<std::string> table(const std::string& value, const Row& row) {
   Texts rows;
@@ -180,6 +180,7 @@ Values behaviour(const std::string& value) {
 Values values_of(OptionForm form, const std::string& value) {
   const Texts parts = split(value, ',');
   switch (form) {
+    // Single values.
     case OptionForm::flag:
       return Texts{"true"};
     case OptionForm::same:
@@ -189,6 +190,7 @@ Values values_of(OptionForm form, const std::string& value) {
       std::replace(word.begin(), word.end(), '-', '_');
       return Texts{scalar(word)};
     }
+    // Lists and tables.
     case OptionForm::numbers:
       return one(tuple(parts, 1, 100));
     case OptionForm::points:
@@ -197,6 +199,7 @@ Values values_of(OptionForm form, const std::string& value) {
       return one(table(value, order));
     case OptionForm::speeds:
       return one(table(value, [](const std::string& part) { return tuple(split(part, ':'), 2, 3); }));
+    // Values of two keys.
     case OptionForm::pose:
       if (parts.size() != 3 || !are_numbers(parts)) return std::nullopt;
       return Texts{flow_list({parts[0], parts[1]}), parts[2]};

@@ -8,7 +8,7 @@
 
 namespace tools {
 
-/// How the value of a command-line option becomes YAML.
+/// Conversion of the value of a command-line option to YAML.
 enum class OptionForm {
   same,       ///< the text as it is
   word,       ///< the same with `_` for `-`
@@ -22,7 +22,7 @@ enum class OptionForm {
   behaviour,  ///< "circle:X,Y,R", "zigzag:X,Y,X,Y,A,L", "follow:VEHICLE,A,L" or "route"
 };
 
-/// An option of a program that came with version 0.1, and the keys of `args:` that say the same since 0.2.
+/// Option of a program that came with version 0.1, and the equivalent keys of `args:` since 0.2.
 struct OldOption {
   const char* program;  ///< `*`: each of them
   const char* option;
@@ -30,16 +30,17 @@ struct OldOption {
   OptionForm form;
 };
 
-/// Whether a program came with version 0.1.
+/// Returns whether a program came with version 0.1.
 bool is_old_program(std::string_view program);
-/// Null when the program had no such option.
+/// Returns null when the program had no such option.
 const OldOption* find_old_option(std::string_view program, std::string_view option);
 
-/// `key: value` of what an option said, for a map in braces; nothing when the value is not of the option's form.
+/// Key and value that replace an option, for a map in braces.
 struct Argument {
   std::string key;
   std::string value;
 };
+/// Returns the arguments that replace an option; nothing when the value does not have the option's form.
 std::optional<std::vector<Argument>> arguments_of(const OldOption& option, const std::string& value);
 
 }  // namespace tools

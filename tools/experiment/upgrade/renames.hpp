@@ -9,7 +9,7 @@
 
 namespace tools {
 
-/// What has another name since version 0.2.
+/// Name that has changed in version 0.2.
 struct Rename {
   enum class What {
     key,    ///< `path` leads to the map that has the key
@@ -23,7 +23,7 @@ struct Rename {
   std::string_view before, after;
 };
 
-/// All names of keys, words, channels and message types that have changed.  The word of an action is not renamed here:
+/// Table of all changed names of keys, words, channels and message types.  The word of an action is not in it, because
 /// it decides which keys rewrite_action() moves.
 std::span<const Rename> renames();
 
@@ -34,8 +34,8 @@ std::string renamed_figure(std::string text, std::string_view before, std::strin
 /// A rule in the form of this version with the present names of figures.
 std::string renamed_rule(std::string rule, FileKind kind);
 
-/// Applies `table` at a node: the keys of a map, also within dotted keys, and the text of a scalar.  In a list of
-/// strings each item is its own node.  Where a text is a channel or a type, all of it must be `before`.
+/// Applies `table` to a node: to the keys of a map, also within dotted keys, and to the text of a scalar.  In a list of
+/// strings each item is its own node.  Where a text is a channel or a type, all of it must equal `before`.
 void apply_renames(Site& site, std::span<const Rename> table);
 
 }  // namespace tools

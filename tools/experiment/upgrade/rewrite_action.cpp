@@ -14,7 +14,7 @@ using Kind = SourceNode::Kind;
 
 constexpr std::size_t indentation_step = 2;
 
-/// Writes an action of version 0.1 again.
+/// Rewrites an action of version 0.1.
 class ActionRewriting {
  public:
   ActionRewriting(Site& site, const SourceNode::Entry& word, const OldAction& action)
@@ -39,7 +39,7 @@ class ActionRewriting {
   }
 
  private:
-  /// `{one_of: [a, b]}` in place of a name: its key is one of the action.
+  /// Handles `{one_of: [a, b]}` in place of a name: its key is one of the action.
   bool has_own_key() const {
     const SourceNode& value = *word_.value.target;
     return (action_.word == "move" || action_.word == "remove") && value.kind == Kind::map &&
@@ -63,7 +63,7 @@ class ActionRewriting {
     site_.meaning.entries.push_back({std::string(action_.word), place, std::move(keys)});
   }
 
-  /// `{publish: c, type: t}` becomes `{publish: {channel: c, type: t}}`.
+  /// Rewrites `{publish: c, type: t}` as `{publish: {channel: c, type: t}}`.
   void nest_in_braces() {
     site_.edits->insert(map_.entries.front().key.start, std::string(action_.word) + ": {");
     rename_word();
@@ -71,7 +71,7 @@ class ActionRewriting {
     site_.edits->insert(map_.span.end - 1, "}");
   }
 
-  /// Where the line would be too long, the last key begins a new one.
+  /// Breaks the line before the last key where it would be too long.
   void break_line() {
     const SourceNode::Entry& last = map_.entries.back();
     const std::size_t begin = site_.text.line_begin(map_.span.begin);
@@ -85,7 +85,7 @@ class ActionRewriting {
     site_.edits->replace({after_comma, last.key.start}, site_.text.line_break() + std::string(column, ' '));
   }
 
-  /// The word gets its own line; the keys move to the right.
+  /// Puts the word on its own line and indents the keys.
   void nest_in_block() {
     const SourceNode::Entry& first = map_.entries.front();
     const std::string indentation = indentation_of(site_, map_);
@@ -96,7 +96,7 @@ class ActionRewriting {
     rename_word();
   }
 
-  /// The key below the word stands where it belongs; the others join it.
+  /// Keeps the key below the word, which is in the right place, and moves the others to it.
   void join_own_key(std::size_t column) {
     const bool is_below = word_.value.start >= site_.text.line_end(word_.key.start);
     const bool is_plain = !word_.value.properties && word_.value.kind != Kind::alias;
@@ -106,7 +106,7 @@ class ActionRewriting {
     indent_lines(site_, {site_.text.line_end(word_.value.span.end), map_.span.end}, shift);
   }
 
-  /// The key that was the word is the main key; `move: {one_of: [a, b]}` is `one_of: [a, b]`.
+  /// Converts the key that was the word to the main key; `move: {one_of: [a, b]}` is `one_of: [a, b]`.
   void rename_word() {
     const SourceNode& value = word_.value;
     if (has_own_key()) {

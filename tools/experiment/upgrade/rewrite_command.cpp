@@ -16,7 +16,7 @@ namespace {
 
 using Kind = SourceNode::Kind;
 
-/// An option with its value, and the items of the list that it is written in.
+/// Option with its value, and the items of the list in which it is written.
 struct Group {
   TextSpan span;
   std::vector<Argument> arguments;
@@ -29,12 +29,14 @@ std::vector<Group> groups_of(const SourceNode& list) {
   for (std::size_t i = 1; i < list.items.size(); ++i) {
     const SourceNode& item = *list.items[i].target;
     const std::size_t at = list.items[i].start;
+    // Find the option.
     const std::size_t equals = item.scalar.find('=');
     const std::string name = item.scalar.substr(0, equals);
     const std::string who = program + ": ";
     const OldOption* option = item.kind == Kind::scalar ? find_old_option(program, name) : nullptr;
     if (option == nullptr) throw Doubt(at, who + "'" + sim::shortened(item.scalar) + "' was no option of this program");
     if (!seen.insert(name).second) throw Doubt(at, who + "'" + name + "' is given twice");
+    // Read its value.
     Group group{list.items[i].span, {}};
     const bool is_flag = option->form == OptionForm::flag;
     if (is_flag && equals != std::string::npos) throw Doubt(at, who + "'" + name + "' has no value");
@@ -45,6 +47,7 @@ std::vector<Group> groups_of(const SourceNode& list) {
       value = list.items[i].target->scalar;
       group.span.end = list.items[i].span.end;
     }
+    // Convert it to arguments.
     const auto arguments = arguments_of(*option, value);
     if (!arguments) throw Doubt(at, who + "'" + sim::shortened(value) + "' is not a value of '" + name + "'");
     group.arguments = *arguments;
@@ -53,7 +56,7 @@ std::vector<Group> groups_of(const SourceNode& list) {
   return groups;
 }
 
-/// Writes the keys of `args:` and the comments that stand between the options.
+/// Writer of the keys of `args:` and the comments between the options.
 class ArgumentsText {
  public:
   /// `after_program`: the first byte after the name of the program.
@@ -65,14 +68,14 @@ class ArgumentsText {
     }
   }
 
-  /// Comments on the line of the program, or before it.
+  /// Returns the comments on the line of the program, or before it.
   std::string of_program(const std::string& line) const {
     std::string text;
     for (const TextSpan& comment : of_program_) text += (text.empty() ? "  " : line) + site_.source_of(comment);
     return text;
   }
 
-  /// `{key: value, key: value}`, in lines that begin at `column` and are filled up.
+  /// Returns `{key: value, key: value}`, in lines that start at `column` and are filled up.
   std::string in_braces(std::size_t column) const {
     const std::string pad = site_.text.line_break() + std::string(column + 1, ' ');
     std::string text = "{";
@@ -80,6 +83,7 @@ class ArgumentsText {
     std::size_t comment = 0;
     bool first = true;
     bool after_comment = false;
+    // Comments up to a byte of the source.
     const auto add_comments = [&](std::size_t before) {
       for (; comment < comments_.size() && comments_[comment].begin < before; ++comment) {
         const bool stays = !after_comment && !first && is_trailing(comments_[comment]);
@@ -87,6 +91,7 @@ class ArgumentsText {
         after_comment = true;
       }
     };
+    // Entries, filled into lines.
     for (const Group& group : groups_)
       for (const Argument& argument : group.arguments) {
         const std::string entry = argument.key + ": " + argument.value;
@@ -107,7 +112,7 @@ class ArgumentsText {
     return text + (after_comment ? pad : "") + "}";
   }
 
-  /// A line for each key.
+  /// Returns one line per key.
   std::string in_block(const std::string& line) const {
     std::string text;
     std::size_t comment = 0;
@@ -120,7 +125,7 @@ class ArgumentsText {
       }
     };
     for (const Group& group : groups_) {
-      // Those between an option and its value stand before the key.
+      // Comments between an option and its value precede the key.
       if (!after_comment) add_comments(group.span.begin);
       add_comments(group.span.end);
       for (const Argument& argument : group.arguments) {
@@ -133,7 +138,7 @@ class ArgumentsText {
   }
 
  private:
-  /// Whether it stands after something on its line.
+  /// Returns whether the comment follows other text on its line.
   bool is_trailing(TextSpan comment) const {
     const std::size_t begin = site_.text.line_begin(comment.begin);
     return site_.source_of({begin, comment.begin}).find_first_not_of(" \t-") != std::string::npos;
@@ -146,9 +151,11 @@ class ArgumentsText {
 
 void write(Site& site, const SourceNode::Entry& entry, const std::string& prefix, const std::vector<Group>& groups) {
   const SourceNode& list = entry.value;
+  // Check the form of the command.
   const bool is_plain = !site.source.pair && !list.properties && !entry.key.properties && list.kind != Kind::alias &&
                         entry.key.span.end - entry.key.span.begin == entry.key.scalar.size();
   if (!is_plain) throw Doubt(list.start, "a command that is written like this is not rewritten");
+  // Texts of the program and its arguments.
   const TextSpan all{entry.key.span.begin, list.span.end};
   const ArgumentsText arguments(site, groups, {entry.after_colon, list.span.end}, list.items.front().span.end);
   const std::size_t column = site.text.column(all.begin);
@@ -157,6 +164,7 @@ void write(Site& site, const SourceNode::Entry& entry, const std::string& prefix
   const std::string comments = arguments.of_program(line);
   const std::string args = prefix + "args: ";
   const std::string on_new_line = comments + line + args + arguments.in_braces(column + args.size());
+  // Write them in the style of the file.
   if (groups.empty()) {
     site.edits->replace(all, program + comments);
   } else if (site.source.brackets) {
@@ -171,6 +179,7 @@ void write(Site& site, const SourceNode::Entry& entry, const std::string& prefix
 }
 
 void rewrite(Site& site, const SourceNode::Entry& entry) {
+  // Find a command of an old program.
   const SourceNode& list = *entry.value.target;
   const bool is_text = list.kind == Kind::scalar;
   const bool is_list =
@@ -182,6 +191,7 @@ void rewrite(Site& site, const SourceNode::Entry& entry) {
   const std::string prefix = key.substr(0, key.size() - std::string_view("command").size());
   const std::vector<Group> groups = is_list ? groups_of(list) : std::vector<Group>();
 
+  // Change the meaning.
   sim::Diagnostics problems;
   auto& entries = site.meaning.entries;
   const auto at = std::find_if(entries.begin(), entries.end(), [&](const auto& each) { return each.key == key; });
@@ -194,6 +204,7 @@ void rewrite(Site& site, const SourceNode::Entry& entry) {
     for (const Argument& argument : group.arguments)
       args.entries.push_back({argument.key, place, sim::parse_config_text(argument.value, "args", problems)});
   if (!groups.empty()) entries.insert(std::next(at), {prefix + "args", place, std::move(args)});
+  // Change the text.
   if (site.edits == nullptr) return;
   if (is_text)
     site.edits->replace(entry.key.span, prefix + "program");

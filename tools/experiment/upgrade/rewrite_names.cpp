@@ -10,7 +10,7 @@ namespace {
 
 using Kind = SourceNode::Kind;
 
-/// The key as it is called now.  Of a dotted key each part is looked at with the path of the parts before it.
+/// Returns the present name of a key.  Each part of a dotted key is renamed with the path of the parts before it.
 std::string renamed_key(const Site& site, const std::string& key, std::span<const Rename> table) {
   const auto name_at = [&](const KeyPath& map, std::string_view name) {
     for (const Rename& rename : table)
@@ -33,7 +33,7 @@ std::string renamed_key(const Site& site, const std::string& key, std::span<cons
   return renamed;
 }
 
-/// The text with the words that it has now.
+/// Returns the text with the present words.
 std::string renamed_text(const Site& site, std::span<const Rename> table) {
   std::string text = site.source.scalar;
   for (const Rename& rename : table) {
@@ -51,7 +51,7 @@ std::string renamed_text(const Site& site, std::span<const Rename> table) {
   return text;
 }
 
-/// Writes another name where a word or a key is, between its quotes where it has some.
+/// Replaces a word or a key, inside its quotes if it has any.
 void replace_name(Site& site, const SourceNode& name, std::string_view after) {
   if (site.edits == nullptr) return;
   const std::string written = site.source_of(name.span);
@@ -90,7 +90,7 @@ void apply_renames(Site& site, std::span<const Rename> table) {
     for (const SourceNode::Entry& entry : site.source.entries) {
       const std::string& key = entry.key.scalar;
       const std::string name = renamed_key(site, key, table);
-      // Another rewriting may have taken the key away.
+      // Another rewriting may have removed the key.
       if (name != key && site.meaning.find(key) != nullptr) rename_key(site, entry, name);
     }
   if (site.source.kind != Kind::scalar || site.meaning.scalar != site.source.scalar) return;

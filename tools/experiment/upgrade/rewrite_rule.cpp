@@ -16,7 +16,7 @@ namespace {
 
 using Kind = SourceNode::Kind;
 
-/// What the value of a comparison is.
+/// Kind of the value of a comparison.
 enum class Right {
   number,
   figure,  ///< another figure
@@ -92,7 +92,7 @@ class OldRule {
     return *entry->value.target;
   }
 
-  /// A figure, a case or a statistic: letters, digits, `_`, `-` and dots.
+  /// Reads a figure, a case or a statistic: letters, digits, `_`, `-` and dots.
   std::string name(const std::string& key) const {
     const SourceNode& node = value(key);
     const auto is_plain = [](char c) {

@@ -2,7 +2,7 @@
 #include "tools/experiment/upgrade/number_text.hpp"
 #include "tools/experiment/upgrade/rewriting.hpp"
 
-// Since version 0.2 a word says what a zero stood for: `speed: max`.
+// Since version 0.2 a word replaces a zero with a special meaning: `speed: max`.
 
 namespace tools {
 
@@ -36,14 +36,14 @@ constexpr WordOfZero words_of_zero[] = {
     {FileKind::vehicle, "devices.*.accel_range_g", "unlimited"},
 };
 
-/// The word of a zero at this path; null: it has none.
+/// Returns the word for a zero at this path; null: it has none.
 const char* word_at(const KeyPath& path) {
   for (const WordOfZero& each : words_of_zero)
     if (path.is(each.kind, each.path)) return each.word;
   return nullptr;
 }
 
-/// Whether the value is `${NAME}`, and the parameter of this file is 0 by default.
+/// Returns whether the value is `${NAME}`, and the parameter of this file is 0 by default.
 bool is_zero_by_parameter(const Site& site) {
   const std::string& text = site.source.scalar;
   if (!text.starts_with("${") || !text.ends_with("}")) return false;

@@ -9,31 +9,32 @@
 
 namespace tools {
 
-/// Lines that are written again are filled up to this many characters.
+/// Rewritten lines are filled up to this number of characters.
 inline constexpr std::size_t max_line_length = 120;
 
-/// A node that rewritings look at, after all nodes inside it.
+/// Node to be rewritten, after all nodes inside it.
 struct Site {
   const SourceText& text;
   KeyPath path;
-  const SourceNode& source;  ///< as it is written; never an alias
-  sim::ConfigNode& meaning;  ///< what it is to mean from now on; a rewriting changes this ...
-  TextEdits* edits;          ///< ... and the text.  Null: the text is not changed here, for it was or cannot be
+  const SourceNode& source;  ///< node as written in the file; never an alias
+  sim::ConfigNode& meaning;  ///< meaning after the upgrade; changed by a rewriting together with ...
+  TextEdits* edits;          ///< ... the text.  Null: the text is not changed here, because it was changed before or
+                             ///< cannot be
 
   std::string source_of(TextSpan span) const { return text.text().substr(span.begin, span.end - span.begin); }
 };
 
-/// One kind of change from the format of an older version to that of this one.  Throws Doubt.
+/// Change from the format of an older version to that of this one.  Throws Doubt.
 struct Rewriting {
   const char* what;
   void (*apply)(Site& site);
 };
 
-/// All of them, in the order in which they look at a node.  A new one is its own file and a line in
+/// Returns all rewritings, in the order in which they are applied to a node.  A new one has its own file and a line in
 /// rewriting.cpp.
 std::span<const Rewriting> rewritings();
 
-// In the file of the same name each.
+// Each of these is in the file of the same name.
 void rewrite_action(Site& site);
 void rewrite_zero(Site& site);
 void rewrite_rule(Site& site);

@@ -21,7 +21,7 @@ bool is_space(char c) {
   return is_blank(c) || c == '\n' || c == '\r';
 }
 
-/// Follows the text from node to node.  `cursor_` is the first byte that is not accounted for yet.
+/// Scanner of the text from node to node.  `cursor_` is the first byte that is not accounted for yet.
 class SpanFinder {
  public:
   explicit SpanFinder(const std::string& text) : text_(text) {
@@ -47,7 +47,7 @@ class SpanFinder {
 
   char at(std::size_t i) const { return i < text_.size() ? text_[i] : '\n'; }
 
-  /// Directives and `---`.
+  /// Skips directives and `---`.
   void skip_document_start() {
     skip_space();
     while (at(cursor_) == '%' && cursor_ < text_.size()) {
@@ -58,7 +58,7 @@ class SpanFinder {
     if (marker) cursor_ += 3;
   }
 
-  /// White space and comments.
+  /// Skips white space and comments.
   void skip_space() {
     while (cursor_ < text_.size()) {
       if (text_[cursor_] == '#' && (cursor_ == 0 || is_space(text_[cursor_ - 1]) || text_[cursor_ - 1] == '\xbf'))
@@ -78,20 +78,20 @@ class SpanFinder {
     comments_.push_back({begin, end});
   }
 
-  /// White space, comments and `indicator`s up to `to`.
+  /// Skips white space, comments and `indicator`s up to `to`.
   void skip_to(std::size_t to, char indicator = ' ') {
     for (skip_space(); cursor_ < to && text_[cursor_] == indicator; skip_space()) ++cursor_;
     if (cursor_ != to) stop(not_followed);
   }
 
-  /// White space, comments and commas up to the bracket, and the bracket.
+  /// Skips white space, comments and commas up to the bracket, and the bracket.
   void skip_bracket(char bracket) {
     for (skip_space(); at(cursor_) == ',' && cursor_ < text_.size(); skip_space()) ++cursor_;
     if (at(cursor_) != bracket) stop(not_followed);
     ++cursor_;
   }
 
-  /// The words that mean nothing, with an end after them.
+  /// Returns the length of a complete word for null.
   std::size_t null_word_length(std::size_t from) const {
     for (const std::string_view word : {"~", "null", "Null", "NULL"})
       if (text_.compare(from, word.size(), word) == 0) {
@@ -102,13 +102,13 @@ class SpanFinder {
   }
   bool is_null_word(std::size_t from) const { return from < text_.size() && null_word_length(from) > 0; }
 
-  /// The first byte after blanks.
+  /// Returns the first byte after blanks.
   std::size_t after_blanks(std::size_t from) const {
     while (from < text_.size() && is_blank(text_[from])) ++from;
     return from;
   }
 
-  /// Sets the span of a value.  The mark of an empty one is that of whatever follows it.
+  /// Sets the span of a value.  The mark of an empty one is that of the following token.
   void place_value(SourceNode& value, bool in_brackets) {
     if (value.kind == Kind::null) {
       const std::size_t from = after_blanks(cursor_);
@@ -150,7 +150,7 @@ class SpanFinder {
     return is_space(c) || (in_brackets && flow_indicators.find(c) != std::string_view::npos);
   }
 
-  /// Tags and anchors.
+  /// Skips tags and anchors.
   void skip_properties(SourceNode& node, bool in_brackets) {
     while (at(cursor_) == '&' || at(cursor_) == '!') {
       node.properties = true;
@@ -195,7 +195,7 @@ class SpanFinder {
     stop("a quoted text does not end");
   }
 
-  /// A block scalar ends before the first line that is not blank and has less indentation than its first one.
+  /// Ends a block scalar before the first line that is not blank and has less indentation than its first one.
   void skip_block_scalar() {
     ++cursor_;
     if (at(cursor_) == '-' || at(cursor_) == '+') ++cursor_;
@@ -218,8 +218,8 @@ class SpanFinder {
     cursor_ = end;
   }
 
-  /// The value of a plain scalar is what is written; where it is on several lines, a line break and the white space
-  /// around it stand for one space, and each empty line for a line break.
+  /// Compares the value of a plain scalar with the text; in one of several lines, a line break and the white space
+  /// around it represent one space, and each empty line a line break.
   void skip_plain(std::string_view value) {
     for (std::size_t i = 0; i < value.size();) {
       if (cursor_ < text_.size() && text_[cursor_] == value[i] && value[i] != '\n') {
@@ -238,7 +238,7 @@ class SpanFinder {
     if (!is_space(next) && next != ':' && flow_indicators.find(next) == std::string_view::npos) stop(not_followed);
   }
 
-  /// Characters of the value that stand for the line break here.
+  /// Returns the characters of the value that the line break here represents.
   std::size_t skip_folded_break(std::string_view value) {
     std::size_t breaks = 0;
     while (cursor_ < text_.size() && is_space(text_[cursor_])) breaks += text_[cursor_++] == '\n';

@@ -8,10 +8,10 @@
 
 namespace tools {
 
-/// Fills in `span` of every node below `root`, and `after_colon`, from the text and from where each node begins.
-/// Returns the comments in their order.  Every byte between the nodes must be white space, a comment or an indicator
-/// that belongs there, and every scalar must be written as its value says; throws Doubt where that does not hold, and
-/// at explicit keys (`? key`) and block scalars with an indentation indicator.
+/// Sets `span` and `after_colon` of every node below `root`, from the text and the start of each node. Returns the
+/// comments in their order.  Every byte between the nodes must be white space, a comment or a valid indicator, and
+/// every scalar must be written as its value; throws Doubt where this is not the case, and for explicit keys (`? key`)
+/// and block scalars with an indentation indicator.
 std::vector<TextSpan> find_spans(const std::string& text, SourceNode& root);
 
 }  // namespace tools

@@ -20,7 +20,7 @@ using Kind = SourceNode::Kind;
 
 constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
 
-/// Builds the tree from the events of yaml-cpp, which say where nodes begin, but not where they end.
+/// Builds the tree from the events of yaml-cpp, which give the starts of nodes, but not their ends.
 class SourceTreeBuilder final : public YAML::EventHandler {
  public:
   /// `skipped`: bytes before the first one that yaml-cpp counts.
@@ -98,7 +98,7 @@ class SourceTreeBuilder final : public YAML::EventHandler {
   std::vector<Open> open_;
 };
 
-/// Connects aliases with what they name, once the nodes stay where they are.
+/// Connects aliases with their targets, once the addresses of the nodes are final.
 class AliasTargets {
  public:
   void connect(SourceNode& node) {

@@ -19,7 +19,7 @@ struct TextSpan {
   friend bool operator==(const TextSpan&, const TextSpan&) = default;
 };
 
-/// A node of a YAML text that knows the bytes it was written with.  Aliases stay aliases.
+/// Node of a YAML text with the span of its bytes.  Aliases are not resolved.
 struct SourceNode {
   enum class Kind { null, scalar, list, map, alias };
   struct Entry;
@@ -35,7 +35,7 @@ struct SourceNode {
   std::size_t start = 0;            ///< first byte, tag and anchor included
   TextSpan span;                    ///< tag and anchor excluded
   std::size_t anchor = 0;           ///< number of the anchor that it has, or that an alias names; 0: none
-  const SourceNode* target = this;  ///< of an alias: what it names
+  const SourceNode* target = this;  ///< of an alias: the node that it names
 
   const Entry* find(std::string_view key) const;
 };
@@ -46,14 +46,14 @@ struct SourceNode::Entry {
   SourceNode value;
 };
 
-/// The reason why a text is not rewritten, and the byte that it is about.
+/// Reason why a text is not rewritten, and the byte that causes it.
 class Doubt : public std::runtime_error {
  public:
   Doubt(std::size_t where, const std::string& text) : std::runtime_error(text), at(where) {}
   std::size_t at;
 };
 
-/// A YAML text with the place of every node and comment.  It must be one that sim::parse_config_text() takes.
+/// YAML text with the position of every node and comment.  sim::parse_config_text() must accept it.
 class SourceText {
  public:
   explicit SourceText(std::string text);
@@ -62,21 +62,24 @@ class SourceText {
 
   const std::string& text() const { return text_; }
   const SourceNode& root() const { return root_; }
-  /// Why the places of its nodes are unknown, where they are: the text uses a form that is not followed byte by byte.
+  /// Reason why the positions of the nodes are unknown, if they are: the text uses a form that is not tracked byte by
+  /// byte.
   const std::optional<Doubt>& doubt() const { return doubt_; }
   /// Comments from `#` to the last character of their lines.
   const std::vector<TextSpan>& comments() const { return comments_; }
-  /// Those that begin in `span`.
+  /// Comments that start in `span`.
   std::span<const TextSpan> comments_in(TextSpan span) const;
-  /// All of them, as text.
+  /// Text of all comments.
   std::vector<std::string> comment_texts() const;
 
   std::size_t line_begin(std::size_t at) const;
-  /// The first byte of the next line, or the end of the text.
+  /// Returns the first byte of the next line, or the end of the text.
   std::size_t line_end(std::size_t at) const;
-  /// Characters before `at` in its line.
+  /// Number of characters before `at` in its line.
   std::size_t column(std::size_t at) const { return at - line_begin(at); }
-  /// The line break that the text uses: `\n` or `\r\n`.
+  /// Line break that the text uses: `
+  /// ` or `\r
+  /// `.
   const char* line_break() const;
   sim::SourcePlace place(std::size_t at, const std::string* file) const;
 

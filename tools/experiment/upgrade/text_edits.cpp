@@ -22,7 +22,7 @@ std::vector<std::string> lines_of(std::string_view text) {
 }  // namespace
 
 void TextEdits::indent_inserted_lines(std::size_t node, std::size_t begin, std::size_t spaces) {
-  // Changes inside the node are the last ones that were made.
+  // The last changes are those inside the node.
   for (auto last = edits_.rbegin(); last != edits_.rend() && last->span.begin >= node; ++last) {
     if (last->span.begin < begin) continue;
     Edit& edit = *last;
@@ -33,7 +33,7 @@ void TextEdits::indent_inserted_lines(std::size_t node, std::size_t begin, std::
 
 std::vector<TextEdits::Edit> TextEdits::sorted() const {
   std::vector<Edit> sorted = edits_;
-  // What is inserted where something is replaced stands before it.
+  // An insertion at the start of a replaced span precedes the replacement.
   std::stable_sort(sorted.begin(), sorted.end(), [](const Edit& a, const Edit& b) {
     return a.span.begin != b.span.begin ? a.span.begin < b.span.begin : a.span.end < b.span.end;
   });
@@ -56,6 +56,7 @@ std::vector<ChangedLines> TextEdits::changed_lines(const SourceText& source) con
     TextSpan lines;
     TextEdits edits;
   };
+  // Group edits that share lines.
   std::vector<Block> blocks;
   for (const Edit& edit : sorted()) {
     const TextSpan lines{source.line_begin(edit.span.begin),
@@ -65,6 +66,7 @@ std::vector<ChangedLines> TextEdits::changed_lines(const SourceText& source) con
     block.lines.end = std::max(block.lines.end, lines.end);
     block.edits.replace({edit.span.begin - block.lines.begin, edit.span.end - block.lines.begin}, edit.text);
   }
+  // Apply the edits of each group to its lines.
   std::vector<ChangedLines> changes;
   std::size_t counted = 0;
   int line = 1;

@@ -24,14 +24,14 @@ using NodeKind = sim::ConfigNode::Kind;
 constexpr std::size_t max_bytes = 64'000'000;
 constexpr std::size_t max_files = 1000;
 
-/// A file that is to be looked at, and who asked for it.
+/// File to be upgraded, and the place that refers to it.
 struct Accepts {
   std::string path;
   sim::SourcePlace asked_at;
-  std::optional<FileKind> kind;  ///< of the file that includes it
+  std::optional<FileKind> kind;  ///< kind of the file that includes it
 };
 
-/// The text of a regular file of at most 64 MB.
+/// Reads a regular file of at most 64 MB.
 std::optional<std::string> read_text(const Accepts& file, sim::Diagnostics& diagnostics) {
   const bool is_included = file.asked_at.line > 0;
   const std::string subject = is_included ? "'" + sim::shortened(file.path) + "'" : "the file";
@@ -39,10 +39,12 @@ std::optional<std::string> read_text(const Accepts& file, sim::Diagnostics& diag
     diagnostics.error(file.asked_at, "", "cannot read " + subject + ": " + why);
     return std::nullopt;
   };
+  // Check the kind of file.
   std::error_code error;
   const fs::file_status status = fs::status(file.path, error);
   if (fs::is_directory(status)) return fail("it is a directory");
   if (fs::exists(status) && !fs::is_regular_file(status)) return fail("it is not a regular file");
+  // Read up to the limit.
   errno = 0;
   std::ifstream stream(file.path, std::ios::binary);
   std::string text;
@@ -118,11 +120,11 @@ class Planner {
     if (include->kind == NodeKind::scalar) names.push_back(include);
     for (const sim::ConfigNode& item : include->items) names.push_back(&item);
     for (const sim::ConfigNode* name : names) {
-      if (name->kind != NodeKind::scalar || name->scalar.empty()) continue;  // `shoal check` says what is wrong
+      if (name->kind != NodeKind::scalar || name->scalar.empty()) continue;  // `shoal check` reports the error
       if (seen_.size() + desired_.size() > max_files)
         return diagnostics.error(name->place, "", "more than " + std::to_string(max_files) + " files");
       const std::string included = (fs::path(path).parent_path() / name->scalar).string();
-      // A file may be a stranger's: it does not choose what is rewritten elsewhere, nor what is read and quoted.
+      // A file may be untrusted: it must not select files elsewhere to be rewritten, read or quoted.
       if (!access_.may_read(included))
         return diagnostics.error(
             name->place, "",
@@ -132,7 +134,7 @@ class Planner {
     }
   }
 
-  sim::FileAccess access_;  ///< which included files are rewritten
+  sim::FileAccess access_;  ///< permits the included files to be rewritten
   std::deque<Accepts> desired_;
   std::set<fs::path> seen_;
 };

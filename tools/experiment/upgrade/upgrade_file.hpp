@@ -8,12 +8,12 @@
 
 namespace tools {
 
-/// What is to become of a file.
+/// Planned upgrade of a file.
 struct FileUpgrade {
   enum class State {
     up_to_date,
-    changes,  ///< `upgraded` is what it is to be
-    refused   ///< `error` says why; it is left as it is
+    changes,  ///< `upgraded` is the new text
+    refused   ///< `errors` gives the reasons; the file is not changed
   };
 
   std::string path;
@@ -23,13 +23,13 @@ struct FileUpgrade {
   std::vector<std::string> errors;
 };
 
-/// Reads world, vehicle and study files and those that they include, each once, in the order in which they are named.
-/// Writes nothing.
+/// Plans the upgrade of world, vehicle and study files and those that they include, each once, in the order in which
+/// they are named.  Writes nothing.
 std::vector<FileUpgrade> plan_upgrade(const std::vector<std::string>& paths);
 
-/// Puts the new text of a file in the place of the old one, which is there until the new one is whole.  The file keeps
-/// its permissions, a symbolic link stays.  Throws sim::ConfigError with the path and the reason; the file is then as
-/// it was.
+/// Replaces the text of a file atomically: the old text stays until the new one is complete.  The file keeps its
+/// permissions, and a symbolic link is kept.  Throws sim::ConfigError with the path and the reason; the file is then
+/// unchanged.
 void write_upgrade(const FileUpgrade& file);
 
 }  // namespace tools

@@ -13,7 +13,7 @@ namespace {
 
 using Kind = SourceNode::Kind;
 
-/// Null where both trees say the same; else where `b` differs, or `a` where it has something that `b` lacks.
+/// Returns null where both trees are equal; else the place where `b` differs, or of the node in `a` that `b` lacks.
 const sim::ConfigNode* first_difference(const sim::ConfigNode& a, const sim::ConfigNode& b) {
   const bool same = a.kind == b.kind && a.quoted == b.quoted && a.scalar == b.scalar &&
                     a.items.size() == b.items.size() && a.entries.size() == b.entries.size();
@@ -27,13 +27,13 @@ const sim::ConfigNode* first_difference(const sim::ConfigNode& a, const sim::Con
   return nullptr;
 }
 
-/// Shows every node to every rewriting, the inner ones first.
+/// Passes every node to every rewriting, the inner ones first.
 class Walk {
  public:
   Walk(const SourceText& text, std::span<const Rewriting> rewritings, TextEdits& edits)
       : text_(text), rewritings_(rewritings), edits_(edits) {}
 
-  /// `written` is what the text has here, `meaning` the same with aliases expanded.
+  /// `written` is the node in the text, `meaning` the same with aliases expanded.
   void visit(const KeyPath& path, const SourceNode& written, sim::ConfigNode& meaning) {
     const SourceNode& source = *written.target;
     if (source.items.size() != meaning.items.size() || source.entries.size() != meaning.entries.size())
@@ -45,7 +45,7 @@ class Walk {
       const KeyPath below = word != nullptr ? path.value_of_action(key, word->key.scalar) : path.value_of(key);
       visit(below, source.entries[i].value, meaning.entries[i].value);
     }
-    // What aliases name is written once; whether it is right in all places shows in the end.
+    // The target of aliases is written once; the final comparison shows whether it is correct in all places.
     const bool is_first = text_.doubt() == std::nullopt && seen_.insert(&source).second;
     Site site{text_, path, source, meaning, is_first ? &edits_ : nullptr};
     for (const Rewriting& rewriting : rewritings_) rewriting.apply(site);
@@ -58,7 +58,7 @@ class Walk {
   std::set<const SourceNode*> seen_;
 };
 
-/// Throws Doubt when the new text does not say what was meant, has other comments, or would be changed again.
+/// Throws Doubt when the new text does not have the intended meaning, has other comments, or would be changed again.
 void check(const SourceText& before, const std::string& after, const sim::ConfigNode& meaning, FileKind kind,
            std::span<const Rewriting> rewritings) {
   sim::Diagnostics problems;
@@ -85,7 +85,7 @@ std::optional<FileKind> kind_of(const sim::ConfigNode& root) {
   const auto has_one = [&](std::initializer_list<const char*> keys) {
     return std::any_of(keys.begin(), keys.end(), [&](const char* key) { return root.find(key) != nullptr; });
   };
-  if (has_one({"groups"})) return std::nullopt;  // of `shoal fidelity`
+  if (has_one({"groups"})) return std::nullopt;  // file of `shoal fidelity`
   if (has_one({"study", "seeds", "cases", "figures", "plots"})) return FileKind::study;
   if (has_one({"vehicles"})) return FileKind::world;
   if (has_one({"vehicle", "bodies", "joints", "devices"})) return FileKind::vehicle;

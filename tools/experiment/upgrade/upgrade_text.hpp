@@ -11,20 +11,20 @@
 
 namespace tools {
 
-/// What became of the text of a file.
+/// Result of upgrading the text of a file.
 struct UpgradedText {
-  std::string text;                 ///< as it is to be; as it was where nothing changes
-  std::vector<ChangedLines> lines;  ///< empty: it is up to date
+  std::string text;                 ///< new text; the original one where nothing changes
+  std::vector<ChangedLines> lines;  ///< empty: the file is up to date
 };
 
-/// Brings the text of a world, vehicle or study file to the format of this version.  Only what has changed is written
-/// again; comments, quotes and layout stay.  The result is parsed and compared with what was meant.  Where anything is
-/// in doubt an error goes to `diagnostics`, and the result is nothing.
+/// Upgrades the text of a world, vehicle or study file to the format of this version.  Rewrites only what has changed;
+/// comments, quotes and layout are kept.  The result is parsed and compared with the intended meaning.  When anything
+/// is ambiguous, an error is added to `diagnostics` and nothing is returned.
 std::optional<UpgradedText> upgrade_text(const std::string& text, FileKind kind, const std::string& file_name,
                                          sim::Diagnostics& diagnostics,
                                          std::span<const Rewriting> rewritings = tools::rewritings());
 
-/// What the file is about by its keys; nothing when it is none of the three.
+/// Returns the kind of a file by its keys; nothing when it is none of the three.
 std::optional<FileKind> kind_of(const sim::ConfigNode& root);
 
 }  // namespace tools

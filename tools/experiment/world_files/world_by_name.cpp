@@ -35,7 +35,7 @@ Words words_of(ShippedKind kind) {
   return {"worlds/studies", "study", "studies"};
 }
 
-/// Names and paths alone, without a look into the files.
+/// Returns names and paths only, without reading the files.
 std::vector<ShippedFile> named_files(ShippedKind kind) {
   std::vector<ShippedFile> files;
   const std::string folder = sim::shipped_folder();
@@ -77,7 +77,7 @@ std::optional<std::string> shipped_path(std::initializer_list<ShippedKind> kinds
 std::vector<ShippedFile> shipped_files(ShippedKind kind) {
   std::vector<ShippedFile> files = named_files(kind);
   for (ShippedFile& file : files) {
-    sim::Diagnostics ignored;  // `shoal check` says what is wrong with a file
+    sim::Diagnostics ignored;  // `shoal check` reports the errors of a file
     const sim::ConfigNode root = sim::load_config_file(file.path, ignored);
     if (const sim::ConfigNode* description = root.find("description")) file.description = description->scalar;
   }

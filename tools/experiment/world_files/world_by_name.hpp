@@ -7,23 +7,23 @@
 
 namespace tools {
 
-/// A YAML file that came with the program.
+/// YAML file that comes with the program.
 struct ShippedFile {
-  std::string name;         ///< without folder and ending
+  std::string name;         ///< without folder and extension
   std::string path;         ///< of the file
   std::string description;  ///< its `description:`; empty: it has none
 };
 
-/// The kinds of files that come with the program.
+/// Kind of file that comes with the program.
 enum class ShippedKind { world, vehicle, study };
 
-/// Every file of a kind, by name.  None when the program finds no shipped files (sim::shipped_folder()).
+/// Returns all files of a kind, by name.  None when the program finds no shipped files (sim::shipped_folder()).
 std::vector<ShippedFile> shipped_files(ShippedKind kind);
 
-/// The file that a command line means by `given`: a file of that name, else NAME.yaml here, else the shipped one of
-/// this name, which may also be given as `worlds/NAME.yaml`.  Another path is returned unchanged, also when there is no
-/// such file.  Throws sim::ConfigError when a bare name means nothing.
-/// Of several kinds the first that has the name counts.
+/// Resolves a file name of a command line: a file of the name `given`, else NAME.yaml in the current folder, else the
+/// shipped file of this name, which may also be given as `worlds/NAME.yaml`.  Another path is returned unchanged, also
+/// when no such file exists.  Throws sim::ConfigError when a bare name matches nothing.  Of several kinds the first one
+/// with this name is used.
 std::string file_by_name(std::initializer_list<ShippedKind> kinds, const std::string& given);
 inline std::string world_file(const std::string& given) {
   return file_by_name({ShippedKind::world}, given);

@@ -35,7 +35,7 @@ void write_all(int to, const std::string& bytes) {
   }
 }
 
-/// Ends without destructors and without flushing: those are the parent's.
+/// Ends without destructors and without flushing, which belong to the parent.
 [[noreturn]] void be_child(const std::function<std::string()>& work, const ChildLimits& limits, int to) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   for (const int fatal : {SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL}) signal(fatal, SIG_DFL);
@@ -54,7 +54,7 @@ void write_all(int to, const std::string& bytes) {
   _exit(0);
 }
 
-/// All bytes up to the end; nothing when the time is over before.
+/// Reads all bytes up to the end; nothing when the time limit is exceeded.
 std::optional<std::string> read_until(int from, Clock::time_point deadline) {
   std::string bytes;
   std::string chunk(1 << 16, '\0');

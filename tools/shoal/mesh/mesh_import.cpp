@@ -23,7 +23,7 @@ namespace {
 
 constexpr std::uintmax_t max_file_bytes = 1u << 30;
 
-/// The triangles of one of Assimp's meshes; vertices at one place are one vertex.
+/// Adds the triangles of one of Assimp's meshes; vertices at the same position are merged.
 void add_triangles(const aiMesh& from, double scale, bool y_up, sim::Mesh& mesh,
                    std::map<std::array<double, 3>, std::uint32_t>& numbers) {
   std::vector<std::uint32_t> number_of;
@@ -57,7 +57,7 @@ std::string lower_case_extension(const std::string& path) {
 
 sim::Mesh read_with_assimp(const std::string& path, const MeshImportOptions& options) {
   const std::string extension = lower_case_extension(path);
-  // Assimp turns a Collada file so that y is up, whatever axis the file names.
+  // Assimp rotates a Collada file so that y is up, regardless of the axis in the file.
   const bool y_up = options.up
                         ? *options.up == 'y'
                         : extension == ".dae" || extension == ".zae" || extension == ".gltf" || extension == ".glb";
@@ -73,7 +73,7 @@ sim::Mesh read_with_assimp(const std::string& path, const MeshImportOptions& opt
   return mesh;
 }
 
-// What the child hands back: `m`, the number of vertices, the vertices and the triangles; or `e` and the problem.
+// Result of the child: `m`, the number of vertices, the vertices and the triangles; or `e` and the error.
 constexpr std::size_t vertex_bytes = sizeof(sim::Vector3d), triangle_bytes = 3 * sizeof(std::uint32_t);
 
 std::string packed(const sim::Mesh& mesh) {
@@ -99,7 +99,7 @@ sim::Mesh unpacked(const std::string& bytes) {
   std::memcpy(static_cast<void*>(mesh.vertices_m.data()), bytes.data() + head, vertices * vertex_bytes);
   std::memcpy(mesh.triangles.data(), bytes.data() + head + vertices * vertex_bytes,
               mesh.triangles.size() * triangle_bytes);
-  // A damaged file may have made the child write anything.
+  // A damaged file may have made the child write arbitrary bytes.
   for (const auto& triangle : mesh.triangles)
     for (const std::uint32_t corner : triangle)
       if (corner >= vertices) throw ChildError("failed on this file");

@@ -20,11 +20,11 @@ using sim::ParamInfo;
 using sim::ParamKind;
 using Table = std::vector<ParamInfo>;
 
-// A scalar of a vehicle file that holds this is replaced before it is checked.
+// A scalar of a vehicle file that contains this is replaced before it is checked.
 const char* const parameter = R"(\$\{[^}]+\})";
 const char* const name_pattern = "^[A-Za-z0-9_-]+$";
 
-/// 30, not 30.0.
+/// Writes 30 instead of 30.0.
 Json json_number(double value) {
   const bool whole = std::abs(value) < 1e15 && value == std::trunc(value);
   return whole ? Json(static_cast<std::int64_t>(value)) : Json(value);
@@ -45,7 +45,7 @@ Json json_scalar(const std::string& text, ParamKind kind) {
   }
 }
 
-/// The default in JSON; null when there is none.
+/// Returns the default in JSON; null when there is none.
 Json json_default(const ParamInfo& info) {
   if (!info.word.empty() && info.initial == info.word) return info.word;
   sim::Diagnostics ignored;
@@ -76,33 +76,33 @@ Json reference_to(const std::string& definition) {
   return {{"$ref", "#/definitions/" + definition}};
 }
 
-/// A key whose value other tables describe.
+/// Key whose value is described by other tables.
 struct Special {
   Json value;     ///< schema of the value
-  Json required;  ///< what must be there in it
+  Json required;  ///< required keys of the value
 };
 
-/// Turns tables into schemas.  What must be there stands apart from what may be there: in a file that includes
-/// another, the other may have it.
+/// Converts tables to schemas.  Required keys are separate from permitted ones, because a file that includes another
+/// may find them there.
 class SchemaWriter {
  public:
-  /// `with_parameters`: every value may hold a ${name}.  `definitions`: takes the tables that have a name.
+  /// `with_parameters`: every value may contain a ${name}.  `definitions`: receives the tables that have a name.
   SchemaWriter(bool with_parameters, std::map<std::string, Special> specials, Json& definitions)
       : with_parameters_(with_parameters), specials_(std::move(specials)), definitions_(definitions) {}
 
-  /// Keys, types and ranges.
+  /// Returns keys, types and ranges.
   Json keys(const Table& table) const {
     Json schema{{"type", {"object"}}, {"properties", Json::object()}, {"additionalProperties", false}};
     for (const ParamInfo& info : table) schema["properties"][info.key] = entry(info);
     return schema;
   }
 
-  /// What must be there; an empty object when nothing must.
+  /// Returns the required keys; an empty object when there are none.
   Json required(const Table& table) const {
     Json schema = Json::object();
     for (const ParamInfo& info : table) {
       if (info.required) schema["required"].push_back(info.key);
-      if (!info.definition.empty()) continue;  // it has what it requires itself
+      if (!info.definition.empty()) continue;  // its own definition contains its required keys
       const Special* special = special_of(info);
       Json inner = special ? special->required : required(info.children);
       if (inner.empty()) continue;
@@ -111,7 +111,7 @@ class SchemaWriter {
     return schema;
   }
 
-  /// One key with its meaning and its default.
+  /// Returns one key with its description and its default.
   Json entry(const ParamInfo& info) const {
     Json schema{
         {"description", info.meaning + (info.choices.empty() && !info.rule.empty() ? " (" + info.rule + ")" : "")}};
@@ -121,14 +121,14 @@ class SchemaWriter {
     return schema;
   }
 
-  /// One word of a list.
+  /// Returns one word of a list.
   Json words(const std::vector<std::string>& choices) const {
     if (!with_parameters_) return {{"enum", choices}};
     return {{"anyOf", {Json{{"enum", choices}}, Json{{"type", "string"}, {"pattern", parameter}}}}};
   }
 
  private:
-  /// Null for a key of the same name whose value is a word, such as the `model` of absorption.
+  /// Returns null for a key of the same name whose value is a word, such as the `model` of absorption.
   const Special* special_of(const ParamInfo& info) const {
     if (!info.choices.empty()) return nullptr;
     const auto found = specials_.find(info.key);
@@ -146,12 +146,14 @@ class SchemaWriter {
 
   Json plain_value(const ParamInfo& info) const {
     switch (info.kind) {
+      // Scalars.
       case ParamKind::boolean:
         return {{"type", {"boolean"}}};
       case ParamKind::integer:
         return number_schema("integer", info.range);
       case ParamKind::number:
         return number_schema("number", info.range);
+      // Lists of values.
       case ParamKind::vector: {
         Json schema = list_of(number_schema("number", info.range));
         schema["minItems"] = schema["maxItems"] = 3;
@@ -163,6 +165,7 @@ class SchemaWriter {
         return list_of(info.pattern.empty() ? text() : text_like(info));
       case ParamKind::paths:
         return list_of(text());
+      // Maps.
       case ParamKind::map:
         return map_of(info);
       case ParamKind::maps:
@@ -176,7 +179,7 @@ class SchemaWriter {
     }
   }
 
-  /// YAML takes a plain 12 for a number; where text belongs it is text.
+  /// YAML reads a plain 12 as a number; it is accepted where a text is expected.
   static Json text() { return {{"type", {"string", "number", "boolean"}}}; }
 
   Json number_or_word(const ParamInfo& info) const {
@@ -186,14 +189,14 @@ class SchemaWriter {
     return schema;
   }
 
-  /// One map of a list; those of a name stand once in the definitions.
+  /// Returns one map of a list; named maps are stored once in the definitions.
   Json item_of(const ParamInfo& info) const {
     if (info.definition.empty()) return map_of(info);
     if (!info.children.empty()) definitions_[info.definition] = one_of_keys(info.children);
     return reference_to(info.definition);
   }
 
-  /// A map with one of these keys, each of which is a map, or the value of its first key.
+  /// Returns a map with one of these keys, each of which is a map, or the value of its first key.
   Json one_of_keys(const Table& table) const {
     Json schema = keys({});
     schema["minProperties"] = schema["maxProperties"] = 1;
@@ -213,7 +216,7 @@ class SchemaWriter {
     return {{"type", {"string"}}, {"pattern", info.pattern}, {"examples", info.examples}};
   }
 
-  /// A map without known keys is one that contains itself: any keys.
+  /// Returns a map that contains itself, for one without known keys: any keys.
   Json map_of(const ParamInfo& info) const {
     return info.children.empty() ? Json{{"type", {"object"}}} : keys(info.children);
   }
@@ -230,7 +233,7 @@ class SchemaWriter {
     return schema;
   }
 
-  /// In JSON Schema a pattern binds strings only, and a minimum numbers only: both can stand side by side.
+  /// In JSON Schema a pattern applies to strings only, and a minimum to numbers only, so that both can be combined.
   void allow_parameter(Json& schema) const {
     if (!with_parameters_ || !schema.contains("type")) return;
     if (schema["type"][0] != "string") {
@@ -250,7 +253,8 @@ Json when_type_is(const std::string& type, Json then) {
   return {{"if", {{"properties", {{"type", {{"const", type}}}}}, {"required", {"type"}}}}, {"then", std::move(then)}};
 }
 
-/// Keys of one device type: its own, and those of every device, which are checked in the definition `device`.
+/// Returns the keys of one device type: its own, and those of every device, which are checked in the definition
+/// `device`.
 Json device_type_schema(const SchemaWriter& writer, const sim::DeviceType& type, const Table& common) {
   Json schema = writer.keys(params_of(type));
   schema.erase("type");
@@ -260,12 +264,14 @@ Json device_type_schema(const SchemaWriter& writer, const sim::DeviceType& type,
   return schema;
 }
 
-/// An item of `devices:`.  Its keys depend on its type.
+/// Returns an item of `devices:`.  Its keys depend on its type.
 Special device_special(Json& definitions) {
+  // Keys of all devices.
   const SchemaWriter writer(true, {}, definitions);
   const Table common = common_params();
   Json device = writer.keys(common);
   Json any_type = writer.required(common);
+  // Keys of each type.
   std::vector<std::string> names;
   for (const sim::DeviceType* type : sim::DeviceRegistry::instance().all()) {
     names.push_back(type->name);
@@ -274,10 +280,11 @@ Special device_special(Json& definitions) {
     if (const Json own = writer.required(params_of(*type)); !own.empty())
       any_type["allOf"].push_back(when_type_is(type->name, own));
   }
+  // Words of the key `type`.
   Json& type_key = device["properties"]["type"];
   type_key = {{"description", type_key["description"]}};
   type_key.update(writer.words(names));
-  // Which keys there are is for the type to say.
+  // The permitted keys depend on the type.
   device.erase("additionalProperties");
   device["type"] = {"object", "string"};
   device["pattern"] = parameter;
@@ -291,7 +298,7 @@ const Json include_schema{
     {"type", {"string", "array"}},
     {"items", {{"type", "string"}}}};
 
-/// A whole file: keys of `table`, or an `include`, which may bring what is missing here.
+/// Returns a whole file: keys of `table`, or an `include`, which may supply the missing ones.
 Json file_schema(const std::string& file, const SchemaWriter& writer, const Table& table, Json& definitions) {
   Json schema{{"$schema", "http://json-schema.org/draft-07/schema#"},
               {"$comment", "Generated: shoal describe --schema " + file + ".  Do not edit."},
@@ -320,7 +327,7 @@ Json world_schema() {
   const Table vehicle_table = params_of<sim::VehicleConfig>();
   definitions["vehicle"] = vehicle.keys(vehicle_table);
   definitions["vehicle_required"] = vehicle.required(vehicle_table);
-  // A reference hides what stands beside it, such as the description: so it stands in an allOf.
+  // A reference hides its siblings, such as the description, so it is placed in an allOf.
   const Special model{{{"allOf", {reference_to("vehicle")}}}, reference_to("vehicle_required")};
   const SchemaWriter writer(false, {{"devices", device}, {"model", model}}, definitions);
   Json schema = file_schema("world", writer, params_of<sim::WorldConfig>(), definitions);

@@ -8,7 +8,7 @@
 
 namespace tools {
 
-/// The keys that a struct reads.
+/// Returns the keys that a struct reads.
 template <typename Config>
 std::vector<sim::ParamInfo> params_of() {
   std::vector<sim::ParamInfo> table;
@@ -18,7 +18,7 @@ std::vector<sim::ParamInfo> params_of() {
   return table;
 }
 
-/// The keys of every device.
+/// Returns the keys of every device.
 inline std::vector<sim::ParamInfo> common_params() {
   std::vector<sim::ParamInfo> table;
   sim::ParamReader in(table);
@@ -27,7 +27,7 @@ inline std::vector<sim::ParamInfo> common_params() {
   return table;
 }
 
-/// The keys of one device type, and of actuators if it is one, beside those of every device.
+/// Returns the keys of one device type, and of actuators if it is one, in addition to those of every device.
 inline std::vector<sim::ParamInfo> params_of(const sim::DeviceType& type) {
   std::vector<sim::ParamInfo> table;
   sim::ParamReader in(table);

@@ -12,7 +12,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// 30, not 30.0.
+/// Writes 30 instead of 30.0.
 Json json_bound(double value) {
   const bool whole = std::abs(value) < 1e15 && value == std::trunc(value);
   return whole ? Json(static_cast<std::int64_t>(value)) : Json(value);
@@ -32,7 +32,7 @@ Json tuple_schema(const sim::ArgDeclaration& arg) {
           {"maxItems", arg.columns.size()}};
 }
 
-/// YAML takes a plain 6 for a number; where a word belongs it is a word.
+/// YAML reads a plain 6 as a number; it is accepted where a word is expected.
 Json words_schema(const std::vector<std::string>& words) {
   Json all = Json::array();
   for (const std::string& word : words) {

@@ -36,7 +36,7 @@ std::string traffic_of(const sim::DeviceType& type) {
 /// For lines of any length unless `columns` are given.
 std::string message_text(const shoal::MessageSchema& schema, std::size_t columns = 100'000) {
   std::string text = fmt::format("{}  fingerprint {:016x}\n", schema.name, schema.fingerprint);
-  std::string comment = schema.comment;  // has lines of its own
+  std::string comment = schema.comment;  // it has its own lines
   if (columns < 1000) std::replace(comment.begin(), comment.end(), '\n', ' ');
   if (!comment.empty()) text += (columns < 1000 ? command_line::wrapped(comment, columns) : comment) + "\n";
   for (const shoal::Member& member : schema.members) {
@@ -57,7 +57,7 @@ std::string message_text(const shoal::MessageSchema& schema, std::size_t columns
   return text;
 }
 
-/// In columns where they fit, else each key with all about it beside it.
+/// Lays out keys in columns where they fit, else each key followed by its description.
 std::string keys_text(const std::vector<sim::ParamInfo>& params, std::size_t columns) {
   const std::string table = sim::text_table(params);
   std::size_t longest = 0;
@@ -185,7 +185,7 @@ std::string programs_page() {
   return page;
 }
 
-/// What `shoal describe` prints of a program; empty: there is no such program.
+/// Returns the output of `shoal describe` for a program; empty: there is no such program.
 std::string program_text(const std::string& name, std::size_t columns) {
   for (const sim::ProgramDeclaration& program : shipped_declarations()) {
     if (program.program != name) continue;
