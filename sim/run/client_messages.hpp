@@ -60,6 +60,7 @@ class ClientMessages {
   };
   /// Returns the first dropped duplicate since the last call.
   std::optional<Repeated> take_repeated();
+  // / Returns the number of dropped duplicates by client.
   const std::map<std::string, std::uint64_t, std::less<>>& repeated() const { return repeated_; }
   /// Messages dropped from full queues before they were admitted.
   std::uint64_t dropped() const { return dropped_; }
