@@ -37,7 +37,7 @@ struct Route {
   unsigned prefix_bits = 0;
 };
 
-/// The most special route to the group, as the kernel would choose it.
+/// Returns the most specific route to the group, as the kernel would choose it.
 std::optional<Route> route_to(in_addr_t group) {
   std::ifstream table("/proc/net/route");
   std::string line;
@@ -48,7 +48,7 @@ std::optional<Route> route_to(in_addr_t group) {
     std::string interface, skip;
     in_addr_t destination = 0, mask = 0;
     unsigned flags = 0;
-    // interface destination gateway flags refcnt use metric mask; addresses as the memory holds them
+    // columns: interface destination gateway flags refcnt use metric mask; addresses in memory byte order
     fields >> interface >> std::hex >> destination >> skip >> flags >> skip >> skip >> skip >> mask;
     if (!fields || (flags & route_is_up) == 0 || (group & mask) != destination) continue;
     const auto bits = static_cast<unsigned>(__builtin_popcount(mask));
@@ -67,7 +67,7 @@ std::map<std::string, unsigned> interface_flags() {
   return flags;
 }
 
-/// Commands that let multicast stay on this machine.
+/// Returns commands that route multicast within this machine.
 std::vector<std::string> loopback_commands(const std::map<std::string, unsigned>& flags) {
   std::vector<std::string> commands;
   const auto lo = flags.find("lo");
@@ -96,7 +96,7 @@ Finding check_route(const LcmEndpoint& endpoint) {
     finding.text += ", which is down";
     finding.commands = {"ip link set " + route->interface + " up"};
   } else if ((interface & IFF_MULTICAST) == 0) {
-    // Messages pass all the same over lo, but some tools look at the flag.
+    // Messages pass over lo without the flag, but some tools check it.
     finding.verdict = Verdict::warning;
     finding.text += ", which does not support multicast";
     finding.commands = {"ip link set " + route->interface + " multicast on"};
@@ -134,7 +134,7 @@ Finding check_buffers() {
   return finding;
 }
 
-/// Inodes of the UDP sockets bound to the port.
+/// Returns the inodes of the UDP sockets bound to the port.
 std::set<std::string> sockets_on_port(int port) {
   std::set<std::string> inodes;
   std::ifstream table("/proc/net/udp");
@@ -169,7 +169,7 @@ bool holds_socket(const std::string& pid, const std::set<std::string>& inodes) {
   return found;
 }
 
-/// "lcm-logger (4711)", of the processes that may be looked at.
+/// Returns names such as "lcm-logger (4711)" of the accessible processes.
 std::vector<std::string> owners_of(const std::set<std::string>& inodes) {
   std::vector<std::string> owners;
   DIR* directory = opendir("/proc");
@@ -186,7 +186,7 @@ std::vector<std::string> owners_of(const std::set<std::string>& inodes) {
   return owners;
 }
 
-/// Groups that another program on this machine has joined, other than `own`.
+/// Returns the groups that other programs on this machine have joined, except `own`.
 std::set<std::string> other_groups(const std::string& own) {
   std::set<std::string> groups;
   std::ifstream table("/proc/net/igmp");
@@ -225,11 +225,12 @@ Finding check_port(const LcmEndpoint& endpoint) {
   return finding;
 }
 
-/// In the child: 0 when a message came back.  What went wrong goes to stderr, which the parent reads.
+/// Runs the round trip in the child; returns 0 when a message came back.  Errors are written to stderr, which the
+/// parent reads.
 int round_trip(const std::string& url, std::chrono::milliseconds time_limit) {
   try {
     LcmListener receiver(url);
-    // memq carries messages within one instance only.
+    // memq passes messages within one instance only.
     std::optional<LcmListener> own_sender;
     if (lcm_endpoint(receiver.url()).kind != "memq") own_sender.emplace(url);
     LcmListener& sender = own_sender ? *own_sender : receiver;
@@ -248,7 +249,7 @@ int round_trip(const std::string& url, std::chrono::milliseconds time_limit) {
   return 1;
 }
 
-/// All that is written until the end, or until the deadline.
+/// Returns everything written until the end, or until the deadline.
 std::string read_until(int fd, std::chrono::steady_clock::time_point deadline, bool& ended) {
   std::string text;
   std::array<char, 4096> buffer;
@@ -282,7 +283,7 @@ Finding check_round_trip(const std::string& url, std::chrono::milliseconds time_
   if (child == 0) {
     dup2(ends[1], STDERR_FILENO);
     dup2(ends[1], STDOUT_FILENO);
-    // _exit: the parent's buffers and handlers are not the child's.
+    // Use _exit: the buffers and handlers of the parent must not be processed by the child.
     _exit(round_trip(url, time_limit));
   }
   close(ends[1]);
@@ -333,7 +334,7 @@ std::vector<Finding> check_network(const std::string& url, std::chrono::millisec
   }
   if (endpoint.kind != "memq") findings.push_back(check_reach(resolved));
   findings.push_back(check_round_trip(resolved, time_limit));
-  // With no route the way to mend it is known; repeat it where the symptom is.
+  // Without a route the remedy is known: repeat it at the symptom.
   for (const Finding& finding : findings)
     if (finding.name == "multicast route" && finding.verdict == Verdict::bad && findings.back().verdict == Verdict::bad)
       findings.back().commands = finding.commands;

@@ -22,11 +22,11 @@ constexpr std::uint32_t max_words = 4;
 // FNV-1a, by words of 4 bytes.
 constexpr std::uint32_t hash_start = 2166136261u;
 constexpr std::uint32_t hash_factor = 16777619u;
-/// 0x40000: more bytes than a datagram has, so all of it passes.
+/// Return value to accept: 0x40000, more bytes than a datagram has, so that all of it passes.
 constexpr std::uint32_t pass = 0x40000;
 constexpr std::size_t hashes_per_leaf = 8;
 
-/// As the filter computes it.
+/// Computes the hash in the same way as the filter.
 std::uint32_t hash_of(std::string_view channel) {
   std::uint32_t hash = hash_start;
   for (std::uint32_t word = 0; word < max_words; ++word) {
@@ -68,7 +68,7 @@ class Program {
 void Program::hash_channel_at(std::uint32_t offset) {
   constexpr std::array<std::uint32_t, 4> byte_masks{0xff000000, 0xff0000, 0xff00, 0xff};
   add(BPF_LDX | BPF_W | BPF_IMM, hash_start);
-  std::vector<std::array<std::size_t, 4>> ends;  // of each word: the jumps to take where byte 0, 1, 2, 3 ends the name
+  std::vector<std::array<std::size_t, 4>> ends;  // for each word: the jumps taken when byte 0, 1, 2, 3 ends the name
   for (std::uint32_t word = 0; word < max_words; ++word) {
     pass_if_shorter(offset + 4 * word + 4);
     load_word(offset + 4 * word);
@@ -81,7 +81,7 @@ void Program::hash_channel_at(std::uint32_t offset) {
     add_to_hash();
     add(BPF_MISC | BPF_TAX);
   }
-  std::vector<std::size_t> done{steps.size()};  // jumps to the end, where the accumulator holds the hash
+  std::vector<std::size_t> done{steps.size()};  // jumps to the end, with the hash in the accumulator
   add(BPF_JMP | BPF_JA);
   for (std::size_t i = 0; i < 4; ++i) {
     for (const auto& jumps : ends) steps[jumps[i]].jf = static_cast<std::uint8_t>(steps.size() - jumps[i] - 1);
@@ -95,7 +95,7 @@ void Program::hash_channel_at(std::uint32_t offset) {
   for (const std::size_t jump : done) steps[jump].k = static_cast<std::uint32_t>(steps.size() - jump - 1);
 }
 
-/// Binary search for the accumulator.
+/// Adds a binary search for the value of the accumulator.
 void Program::pass_if_one_of(std::span<const std::uint32_t> sorted) {
   if (sorted.size() <= hashes_per_leaf) {
     for (std::size_t i = 0; i < sorted.size(); ++i)
@@ -120,7 +120,7 @@ std::vector<sock_filter> channel_filter(const std::vector<std::string>& channels
   std::sort(hashes.begin(), hashes.end());
   hashes.erase(std::unique(hashes.begin(), hashes.end()), hashes.end());
 
-  // Not LCM's, or too short for any message: dropped.  Later fragments do not name their channel: passed.
+  // Drop datagrams that are not LCM or too short for a message; pass later fragments, which do not name their channel.
   Program program;
   program.add(BPF_LD | BPF_W | BPF_LEN);
   program.add_jump(BPF_JMP | BPF_JGE | BPF_K, short_channel_at + 2, 1, 0);

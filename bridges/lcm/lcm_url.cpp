@@ -113,7 +113,7 @@ std::string resolve_lcm_url(const std::string& url) {
   check_options(chosen, parts);
   const LcmEndpoint endpoint = endpoint_of(chosen, parts);
   if (parts.kind != "udpm") return chosen;
-  // With address and port: what liblcm would take for those that are missing is not what the receiver takes.
+  // Require address and port, because the defaults of liblcm differ from those of the receiver.
   std::string resolved = "udpm://" + endpoint.address + ":" + std::to_string(endpoint.port);
   std::string before = "?";
   bool has_buffer = false;

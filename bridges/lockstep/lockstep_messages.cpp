@@ -8,7 +8,7 @@
 #include "shoal/sim_tick_t.hpp"
 #include "sim/config/message_text.hpp"
 
-// The messages of the lockstep: ticks, acknowledgements, and what is asked for and sent again.
+// Messages of the lockstep: ticks, acknowledgements, requests for repetition and repeated messages.
 
 namespace bridges {
 
@@ -16,7 +16,7 @@ using std::chrono::milliseconds;
 
 namespace {
 
-/// Messages of a kind that are looked at before the world looks at something else.
+/// Maximum number of messages of one kind that are handled at a time.
 constexpr int max_at_once = 1000;
 
 template <typename Take>
@@ -73,7 +73,7 @@ void LockstepService::publish_tick(const std::vector<std::string>& clients, bool
   }
 }
 
-/// A tick of the branch that was left, to a client that had not answered it.
+/// Publishes a tick of the abandoned branch to a client that had not answered it.
 void LockstepService::publish_left_tick(const sim::LockstepMember& member) {
   shoal::sim_tick_t tick;
   tick.step = member.left_step;
@@ -85,7 +85,7 @@ void LockstepService::publish_left_tick(const sim::LockstepMember& member) {
   link_of(member.link).publish("sim.tick", tick, world_.now());
 }
 
-/// Its last tick once more, or one with sequence 0: it answers both, and does nothing else.
+/// Sends the last tick again, or one with sequence 0: the client answers both, and does nothing else.
 void LockstepService::probe_client(const sim::LockstepMember& member) {
   Link& link = link_of(member.link);
   if (!member.answered) {
@@ -165,7 +165,7 @@ void LockstepService::take_ack(int link_index, const sim::Message& message) {
           dropped != dropped_.end() && dropped->second.session == ack.session && !lockstep_.has(ack.client))
         notify_dropped(dropped->second, ack.client);
       else if (is_over(ack.client, ack.session))
-        return;  // its last answer, sent again while it left
+        return;  // repetition of its last answer while it was leaving
       throw std::runtime_error(why);
     }
     if (on_answer_ && link_index == 0) on_answer_(ack.client);
@@ -192,7 +192,7 @@ void LockstepService::take_ack(int link_index, const sim::Message& message) {
       if (!link.gate.reads(channel) && lockstep_.has_receiver(link_index, channel) && !channel.empty() &&
           channel.size() <= sim::Bus::max_channel_length)
         link.passed_on.push_back(link.gate.open_mailbox(channel));
-    link.messages.collect();  // what came before this answer, also since the messages were collected
+    link.messages.collect();  // messages before this answer that arrived since the last collection
     link.messages.expect(ack.client, named);
     Pending& requested = pending_[ack.client];
     requested.send_at = Clock::now() + resend_grace;
@@ -202,7 +202,7 @@ void LockstepService::take_ack(int link_index, const sim::Message& message) {
   }
 }
 
-/// Not only the first answer counts: the one that was forged may have come before that of the client.
+/// Compares the answers to a tick, because a forged one may arrive before that of the client.
 void LockstepService::compare_answers(const shoal::sim_ack_t& ack, const std::string& signer) {
   const auto difference = answers_[ack.client].add(ack);
   if (!difference) return;
@@ -236,7 +236,7 @@ void LockstepService::take_request(int link_index, const sim::Message& message) 
       throw std::runtime_error("client '" + question.client + "' requests message " + std::to_string(question.first) +
                                " of " + std::to_string(member->list.size()));
     const auto requested = pending_.find(question.client);
-    // What is on its way need not go out twice.
+    // Messages in transit need not be sent twice.
     if (requested == pending_.end() || Clock::now() < requested->second.serve_after) return;
     requested->second.serve_after = Clock::now() + milliseconds(5);
     send_again(*member, question.first);

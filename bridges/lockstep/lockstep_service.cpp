@@ -17,7 +17,7 @@ using std::chrono::milliseconds;
 
 namespace {
 
-/// Of clients; at most 1000 of them take part at the same time.
+/// Maximum number of client summaries; at most 1000 clients are in the lockstep at the same time.
 constexpr std::size_t max_summaries = 2000;
 /// Of sim::ClientMessages.
 constexpr milliseconds delivery_window{50};
@@ -144,7 +144,7 @@ std::vector<std::string> LockstepService::late() {
 }
 
 LockstepOutcome LockstepService::synchronize(const Wait& wait, const std::function<bool()>& idle) {
-  take_messages();  // also when no client is due: messages are checked, and does not pile up
+  take_messages();  // also when no client is due: messages are checked, and do not accumulate
   drop_overflowing();
   while (true) {
     std::vector<std::string> names = late();
@@ -196,7 +196,7 @@ std::string LockstepService::waits_for() {
 
 void LockstepService::check_clock() {
   const Clock::time_point now = Clock::now();
-  // One at a time: what came while this process had no processor is looked at before its time is over.
+  // One at a time: messages that arrived while this process was not scheduled are read before a time-out.
   if (now - window_start_ < delivery_window) return;
   window_start_ = now;
   for (const auto& link : links_) link->messages.next_window();
@@ -214,7 +214,7 @@ void LockstepService::report_repeated() {
   }
 }
 
-/// Time-outs rest while a user has paused the world.
+/// Suspends the time-outs while a user has paused the world.
 void LockstepService::rest_time_outs(Clock::time_point now) {
   const auto passed = now - std::exchange(served_, now);
   if (!control_.paused || control_.single_steps > 0 || paused_here_) return;
@@ -289,7 +289,8 @@ void LockstepService::check_time(const std::string& client, Pending& requested, 
   requested.reported = true;
 }
 
-/// All members are listed, as clients ignore a last tick that does not list them; who cannot answer is not waited for.
+/// Lists all members, because clients ignore a last tick that does not list them; clients that cannot answer are not
+/// waited for.
 void LockstepService::publish_end(const Wait& wait, milliseconds limit) {
   pending_.clear();
   lockstep_.ask_all(world_.step_number());

@@ -91,7 +91,7 @@ class RunJournal {
     started_ = true;
     begin_step();
   }
-  /// Starts a step; needed before each step that is not preceded by after_step().
+  /// Starts a step; needed before each step when after_step() is not called.
   void begin_step() { ports_.begin_step(step()); }
 
   /// Records messages that were admitted at the start of a step.

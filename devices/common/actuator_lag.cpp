@@ -29,8 +29,8 @@ void Lag::prepare(double h) {
     if (params_.lag_s > 0) rest_of_rest_ = std::exp(-h / params_.lag_s);
     return;
   }
-  // x'' + 2 z w x' + w^2 x = 0.  `s` and `c` are sine and cosine of the damped oscillation, or of the imaginary angle
-  // that makes an overdamped one; s is over its frequency.
+  // Solution of x'' + 2 z w x' + w^2 x = 0.  `s` and `c` are sine and cosine of the damped oscillation, or hyperbolic
+  // sine and cosine when overdamped; s is divided by its frequency.
   const double decay = std::exp(-z * w * h);
   double s = h * decay, c = decay;
   if (z < 1) {

@@ -85,7 +85,7 @@ std::vector<sim::Bytes> SerialMessages::take(std::size_t max_bytes) {
   }
   for (const std::byte b : bytes) {
     if (b == std::byte{'\n'}) {
-      // One byte more than allowed, so that the line is seen to be too long.
+      // Keep one byte more than allowed, to mark the line as too long.
       if (cut_) line_.resize(max_bytes + 1);
       if (!line_.empty()) messages.push_back(std::move(line_));
       line_.clear();

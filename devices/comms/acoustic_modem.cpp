@@ -17,7 +17,7 @@ namespace devices {
 
 namespace {
 
-/// What a preset stands for: the defaults of the keys after it.
+/// Sets the values of a preset as defaults of the keys after it.
 void use_preset(AcousticModem::Params& params) {
   for (const MicromodemRate& rate : micromodem_rates()) {
     if (params.preset != "micromodem_rate" + std::to_string(rate.number)) continue;
@@ -28,7 +28,7 @@ void use_preset(AcousticModem::Params& params) {
     params.frame_bytes = rate.frame_bytes;
     params.preamble_s = micromodem_probe_s;
   }
-  // Two modems as there are many; figures are typical, of no product.
+  // Two generic modems with typical values, not those of a product.
   if (params.preset == "low_rate") {
     params.frequency_Hz = 10000;
     params.bandwidth_Hz = 5000;
@@ -50,17 +50,17 @@ void use_preset(AcousticModem::Params& params) {
 
 constexpr std::string_view message_mark = "msg ";
 
-/// Those that understand each other.
+/// Returns the group of modems that can decode each other.
 std::string group_of(const AcousticModem::Params& params) {
   return "acoustic_modem " + params.network;
 }
 
-/// What the frame tells beside the data, in Signal::code: the sending time by the sender's clock, the destination.
+/// Header of the frame in Signal::code: the sending time by the clock of the sender, and the destination.
 std::string code_of(sim::Time sent, const std::string& destination) {
   return std::string(message_mark) + std::to_string(sent.count()) + " " + destination;
 }
 
-/// False: it is a frame of another kind of modem.
+/// Decodes a header; returns false for a frame of another type of modem.
 bool read_code(std::string_view code, sim::Time& sent, std::string& destination) {
   if (!code.starts_with(message_mark)) return false;
   code.remove_prefix(message_mark.size());
@@ -171,7 +171,7 @@ void AcousticModem::send(sim::Time, std::string destination, sim::Bytes data) {
 void AcousticModem::act(const sim::ActContext& context) {
   now_ = context.now;
   if (serial_) read_serial(context.now);
-  // Short messages go out several in a step, each when the one before has ended.
+  // Several short messages may be sent in a step, each when the previous one has ended.
   const sim::Time end = context.now + sim::from_seconds(context.step_s);
   while (!queue_.empty() && transducer_.works()) {
     sim::Time start = std::max(context.now, transducer_.busy_until());

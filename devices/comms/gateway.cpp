@@ -131,7 +131,7 @@ void Gateway::arrived(std::size_t from, sim::Time at, const std::string& source,
     return;
   }
   remember(at, data);
-  // What goes out is known, too, in case it comes back through another gateway.
+  // Remember sent messages, too, in case they return through another gateway.
   if (params_.name_source) remember(at, message.data);
   waiting_.push_back(std::move(message));
 }
@@ -146,7 +146,7 @@ void Gateway::act(const sim::ActContext& context) {
       modems_[to]->send(context.now, params_.destinations[to], std::move(message.data));
       ++counting_[message.from].passed;
     } catch (const std::runtime_error&) {
-      ++counting_[message.from].refused;  // the vehicle it was for has left
+      ++counting_[message.from].refused;  // the destination vehicle was removed
     }
   }
 }
@@ -156,7 +156,7 @@ void Gateway::visit_state(sim::StateArchive& archive) {
   if (!archive.restoring()) return;
   for (const Message& message : waiting_)
     if (message.from > 1) archive.fail("a gateway has no modem " + std::to_string(message.from));
-  // Something may arrive before the next act().
+  // Messages may arrive before the next act().
   if (modems_[0] == nullptr) find_modems();
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the host of a Micro-Modem may ask for.  About its clock: micromodem_clock.cpp.
+// Commands of the host of a Micro-Modem.  Those of its clock are in micromodem_clock.cpp.
 #include <algorithm>
 #include <map>
 
@@ -9,7 +9,7 @@ namespace devices {
 
 namespace {
 
-/// A sequence of a generic transponder: up to 64 bits in hexadecimal digits; nothing when it is anything else.
+/// Parses a sequence of a generic transponder: up to 64 bits in hexadecimal digits; none for any other text.
 std::optional<bool> is_sequence_set(const std::string& text) {
   constexpr std::size_t max_digits = 20;  // some drivers write 64 bits as a decimal number
   const bool good = !text.empty() && text.size() <= max_digits &&
@@ -34,7 +34,7 @@ MicromodemProtocol::Command MicromodemProtocol::command_of(const std::string& na
       {"CCPNT", &MicromodemProtocol::interrogate_narrowband_beacons},
       {"CCPGT", &MicromodemProtocol::interrogate_generic_beacons},
   };
-  // A Micro-Modem-1 does not know them.
+  // A Micro-Modem-1 does not support them.
   static const std::map<std::string, Command> of_second_generation{
       {"CCTMS", &MicromodemProtocol::set_time},
       {"CCTMQ", &MicromodemProtocol::query_time},
@@ -67,7 +67,7 @@ void MicromodemProtocol::take_line(const NmeaLines::Line& line, sim::Time now) {
     case NmeaError::none:
       break;
   }
-  // What a modem says comes back from a terminal that echoes; an answer to it would go round forever.
+  // Ignore own sentences echoed by a terminal: an answer would loop forever.
   if (in.name().starts_with("CA") || in.name().starts_with("SN")) return;
   if (const Command command = command_of(in.name()))
     (this->*command)(in, now);
@@ -137,7 +137,7 @@ void MicromodemProtocol::start_cycle(const NmeaSentence& in, sim::Time now) {
   side_.emit(echo(in, "CACYC"));
   Cycle cycle{who->first, who->second, *rate, *frames, *ack != 0, false, {}, sim::Time{0}};
   if (cycle.source == address()) return gather(std::move(cycle), now);
-  // It asks another to send.
+  // Requests another modem to send.
   MicromodemPacket packet;
   packet.kind = MicromodemPacket::Kind::cycle_init;
   packet.source = cycle.source, packet.destination = cycle.destination, packet.rate = cycle.rate;
@@ -243,7 +243,8 @@ void MicromodemProtocol::interrogate_generic_beacons(const NmeaSentence& in, sim
   interrogate_beacons(in, good, in.number(4, 1, max_beacon_ms), ping, false, now);
 }
 
-/// The frequencies and sequences are those of the transponders here: the host only says which of them it asks.
+/// The frequencies and sequences are those of the configured transponders; the host only selects which of them are
+/// interrogated.
 void MicromodemProtocol::interrogate_beacons(const NmeaSentence& in, bool good, std::optional<int> timeout_ms,
                                              BeaconPing ping, bool on_the_second, sim::Time now) {
   const std::string name = in.name().substr(2);

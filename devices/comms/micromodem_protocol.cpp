@@ -13,7 +13,7 @@ namespace {
 
 using Kind = MicromodemPacket::Kind;
 
-/// Between the cycle init and the data of rate 0, and before an acknowledgement, s.
+/// Pause between the cycle init and the data of rate 0, and before an acknowledgement, s.
 constexpr double gap_s = 0.1;
 constexpr double revision_period_s = 10;
 
@@ -27,7 +27,7 @@ int rounded(double value, int min, int max) {
   return static_cast<int>(std::lround(std::clamp<double>(value, min, max)));
 }
 
-/// The word of Goby and others for a packet in $CACST and $CAXST.
+/// Returns the name of a packet in $CACST and $CAXST, as used by Goby.
 int packet_type(const MicromodemPacket& packet) {
   if (packet.kind == Kind::data) return packet.rate == 0 ? 1 : 3;
   return packet.kind == Kind::cycle_init ? 1 : 2;
@@ -182,7 +182,7 @@ void MicromodemProtocol::send_cycle(sim::Time now) {
 void MicromodemProtocol::receive(const MicromodemPacket& packet, const MicromodemArrival& arrival) {
   if (is_down(arrival.ended)) return;
   if (!arrival.good && packet.is_short()) {
-    // What it was about is not known.
+    // The kind of a packet that was not decoded is unknown.
     side_.emit("CAMSG,BAD_CRC,0");
     return;
   }
@@ -260,7 +260,7 @@ void MicromodemProtocol::received_ping(const MicromodemPacket& packet, const Mic
   emit_statistics(packet, arrival, 0);
   if (packet.destination != address()) return;
   const sim::Time at = std::max(arrival.started + sim::from_seconds(micromodem_turnaround_s), arrival.ended);
-  if (at < sending_until_) return;  // it sends something else then, and the time would be wrong
+  if (at < sending_until_) return;  // another transmission is in progress, and the time would be wrong
   MicromodemPacket reply;
   reply.kind = Kind::ping_reply;
   reply.source = address(), reply.destination = packet.source;
@@ -270,7 +270,7 @@ void MicromodemProtocol::received_ping(const MicromodemPacket& packet, const Mic
 void MicromodemProtocol::received_reply(const MicromodemPacket& packet, const MicromodemArrival& arrival) {
   const std::string who = "CAMPR," + std::to_string(packet.source) + "," + std::to_string(packet.destination);
   if (packet.destination != address() || !ping_ || ping_->destination != packet.source) {
-    // Of a ping that another one sent it knows no time.
+    // The time of a ping sent by another modem is unknown.
     side_.emit(who);
     return emit_statistics(packet, arrival, 0);
   }
@@ -348,7 +348,7 @@ void MicromodemProtocol::emit_statistics(const MicromodemPacket& packet, const M
 
 void MicromodemProtocol::visit_state(sim::StateArchive& archive) {
   archive(settings_, clock_offset_us_, clock_set_, pulse_time_, due_, sending_until_, next_revision_, starting_);
-  // Three centuries: dates are made of them.
+  // Limits for valid dates: three centuries.
   constexpr std::int64_t max_us = 10'000'000'000'000'000;
   archive.require(clock_offset_us_, -max_us, max_us, "an offset of a modem's clock");
   if (pulse_time_) {
