@@ -28,7 +28,8 @@ void NaiveDrive::Params::read(sim::ParamReader& in) {
   in.read_deg("max_pitch_deg", max_pitch_rad, sim::between(0, 80), "steepest path down or up");
   in.read("heading_gain_per_s", heading_gain_per_s, sim::above_to(0, 100), "turn rate by error of the heading");
   in.read("depth_gain_per_s", depth_gain_per_s, sim::above_to(0, 100), "speed down by error of the depth");
-  constexpr double max = 4;  // above it swings for long: its damping is 1 / (2 sqrt(gain times time constant))
+  constexpr double max =
+      4;  // above it the oscillation is poorly damped: damping ratio 1 / (2 sqrt(gain * time constant))
   if (!in.describing() && heading_gain_per_s * turn_time_constant_s > max)
     in.error("heading_gain_per_s", "'heading_gain_per_s' times 'turn_time_constant_s' must be <= 4, got " +
                                        sim::number_text(heading_gain_per_s * turn_time_constant_s));
@@ -64,10 +65,10 @@ NaiveDrive::NaiveDrive(const Params& params, const sim::DeviceContext& context)
 
 void NaiveDrive::change(const Params& params) {
   params_ = params;
-  step_s_ = 0;  // the shares are computed again
+  step_s_ = 0;  // recompute the shares
 }
 
-/// Another actor moved the body: continues from there.
+/// Continues from the present pose when the body was moved by something else.
 void NaiveDrive::take_pose() {
   X_WB_ = body_.X_WB();
   p_WB_ = X_WB_.translation();
@@ -75,7 +76,7 @@ void NaiveDrive::take_pose() {
   pitch_rad_ = std::asin(std::clamp(X_WB_.linear()(2, 0), -1.0, 1.0));
 }
 
-/// Says once that a current from a file carries it no more.
+/// Warns once when the vehicle has left the area of a current from a file.
 void NaiveDrive::check_current() {
   if (!params_.drifts || left_the_current_ || world_.medium().current_known(p_WB_)) return;
   left_the_current_ = true;
@@ -88,20 +89,20 @@ double NaiveDrive::desired_turn(double speed_share) const {
   if (std::isnan(heading_target_rad_))
     return rudder_ * params_.max_turn_rate_radps * std::clamp(speed_share, -1.0, 1.0);
   const double error = sim::wrap_angle(heading_target_rad_ - yaw_rad_);
-  // No faster than to the heading in one step.
+  // At most the rate that reaches the heading in one step.
   const double gain = std::min(params_.heading_gain_per_s, 1 / step_s_);
   return std::clamp(gain * error, -max, max);
 }
 
-/// Of the momentary surface.  Without water nothing says how deep it is: the world's zero does.
+/// Returns the height of the instantaneous surface; zero in a world without water.
 double NaiveDrive::surface_over_m() const {
   return world_.medium().has_water() ? world_.medium().surface_m(p_WB_.x(), p_WB_.y()) : still_surface_m_;
 }
 
-/// Speed upwards; `surface_m`: of the momentary surface.
+/// Returns the desired upward speed.  `surface_m`: height of the instantaneous surface.
 double NaiveDrive::desired_climb(double surface_m) const {
   const double z_m = p_WB_.z(), max = std::abs(speed_mps_) * std::sin(params_.max_pitch_rad);
-  // The nearer to the surface, the slower it rises.
+  // Reduce the rise speed near the surface.
   const double level = params_.depth_gain_per_s * std::max(0.0, surface_m - z_m);
   if (std::isnan(depth_target_m_)) {
     const double climb = std::min(params_.rise_mps, level) - elevator_ * max;
@@ -111,7 +112,7 @@ double NaiveDrive::desired_climb(double surface_m) const {
   return std::clamp(world_.medium().has_water() ? std::min(climb, level) : climb, -max, max);
 }
 
-/// The path that depth or elevator ask for.
+/// Returns the path commanded by depth or elevator.
 NaiveDrive::Path NaiveDrive::path(double surface_m) {
   Path path{speed_mps_, 0, 0};
   if (params_.surface) return path;

@@ -11,7 +11,7 @@ namespace devices {
 
 namespace {
 
-/// Sound is slower in no water.
+/// Lower bound of the speed of sound in water.
 constexpr double slowest_mps = 1400;
 
 }  // namespace
@@ -79,7 +79,7 @@ void Interrogator::receive(const sim::Reception& received) {
 }
 
 sim::Matrix3d Interrogator::R_WS(sim::Time at) const {
-  // The body stands as at the end of the step; the sound came a little before.
+  // The body is in its pose at the end of the step, slightly after the arrival of the sound.
   const sim::Vector3d turn_rad = context_.body.motion().w_WB_W * sim::to_seconds(at - context_.world.now());
   const double angle_rad = turn_rad.norm();
   if (angle_rad == 0) return transducer_.R_WS();
