@@ -51,7 +51,8 @@ shoal::sim_vehicle_t message_of(const sim::Vehicle& vehicle) {
   return message;
 }
 
-/// The requester receives the place of an error in a vehicle file; the log of the run also has the error.
+/// Reads a request.  The requester receives only the place of an error in a vehicle file; the log of the run has the
+/// whole error.
 sim::SpawnRequest read_request(const sim::WorldConfig& world, const std::string& text) {
   std::vector<std::string> hidden;
   try {
@@ -62,7 +63,7 @@ sim::SpawnRequest read_request(const sim::WorldConfig& world, const std::string&
   }
 }
 
-/// Returns the error of the construction of a vehicle for the requester: only the place of an error in a file.
+/// Throws the error of the construction of a vehicle for the requester: with only the place of an error in a file.
 [[noreturn]] void throw_without_files(const sim::ConfigError& error) {
   static const std::regex place_in_a_file(R"(^(.+:[0-9]+:[0-9]+): .*)");
   std::vector<std::string> lines;

@@ -17,7 +17,7 @@
 namespace bridges {
 namespace {
 
-/// Maximum payload of UDP over IPv4.
+/// Buffer for a datagram, larger than any payload of UDP over IPv4.
 constexpr std::size_t max_datagram_bytes = 65536;
 
 [[noreturn]] void fail_with_errno(const std::string& what) {

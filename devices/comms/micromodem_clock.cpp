@@ -55,7 +55,7 @@ std::optional<std::int64_t> read_iso_time(const std::string& text) {
   return *whole + micro;
 }
 
-/// Truncates to whole seconds.
+/// Returns the time in ISO 8601 format, truncated to whole seconds.
 std::string iso_time(std::int64_t utc_us) {
   const std::string day = nmea_date(utc_us), time = nmea_time_of_day(utc_us, 0);
   return day.substr(0, 4) + "-" + day.substr(4, 2) + "-" + day.substr(6) + "T" + time.substr(0, 2) + ":" +

@@ -27,7 +27,7 @@ int rounded(double value, int min, int max) {
   return static_cast<int>(std::lround(std::clamp<double>(value, min, max)));
 }
 
-/// Returns the name of a packet in $CACST and $CAXST, as used by Goby.
+/// Returns the number of the packet type in $CACST and $CAXST, as used by Goby and others.
 int packet_type(const MicromodemPacket& packet) {
   if (packet.kind == Kind::data) return packet.rate == 0 ? 1 : 3;
   return packet.kind == Kind::cycle_init ? 1 : 2;

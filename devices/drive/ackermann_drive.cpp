@@ -85,7 +85,8 @@ void AckermannDrive::take_lengths(const sim::DeviceContext& context) {
   check_stops(context);
 }
 
-/// Returns the largest steering angle, that of the inner wheel in the turn.
+/// Warns when the stops of the steering joints are within the largest steering angle, that of the inner wheel in a
+/// turn.
 void AckermannDrive::check_stops(const sim::DeviceContext& context) const {
   const double tangent = std::tan(params_.max_steering_rad);
   const double L = lengths_.wheelbase_m;

@@ -34,7 +34,7 @@ namespace {
 
 constexpr std::size_t large_page_bytes = std::size_t{1} << 21;
 
-/// Allocates whole huge pages, which are never released.
+/// Allocator of whole huge pages, which are never released.
 class LargePages final : public std::pmr::memory_resource {
   void* do_allocate(std::size_t bytes, std::size_t) override {
     bytes = (bytes + large_page_bytes - 1) / large_page_bytes * large_page_bytes;
@@ -55,8 +55,8 @@ struct Pools {
                                                &carved};
 };
 
-/// Largest alignment for the pools, because the libstdc++ pools ignore the requested alignment for blocks such as those
-/// of 24 bytes.
+/// Rounds a size up to a multiple of the largest alignment, because the libstdc++ pools store blocks of sizes such as
+/// 24 bytes contiguously, whatever the requested alignment.
 constexpr std::size_t rounded(std::size_t bytes) {
   constexpr std::size_t alignment = alignof(std::max_align_t);
   return (bytes + alignment - 1) / alignment * alignment;

@@ -44,7 +44,7 @@ class MessageGate::GateMailbox final : public Mailbox {
     if (flag_ && !messages_.empty()) flag_->store(true, std::memory_order_relaxed);
   }
 
-  /// Returns false when the oldest message was dropped.
+  /// Adds a message; returns false when the oldest one was dropped.
   bool add(Message message) {
     messages_.push_back(std::move(message));
     if (flag_) flag_->store(true, std::memory_order_relaxed);
@@ -86,7 +86,8 @@ bool MessageGate::something_came(Channel& channel) {
   return channel.flag->load(std::memory_order_relaxed) && channel.flag->exchange(false, std::memory_order_acquire);
 }
 
-/// Looks up the name only when its bit is set; most channels have a bit that no channel with a reader has.
+/// Returns the bit of a channel.  Names are looked up only when their bit is set; the bits of most channels without a
+/// reader are not set.
 std::size_t MessageGate::bit_of(std::string_view channel) {
   const auto letter = [&](std::size_t i) { return static_cast<std::size_t>(static_cast<unsigned char>(channel[i])); };
   if (channel.empty()) return 0;

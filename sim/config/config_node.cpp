@@ -104,7 +104,7 @@ class Substitution {
 
   void error(const ConfigNode& node, const std::string& text) { diagnostics_.error(node.place, who_, text); }
 
-  /// Limit of the size after substitution: a short file could otherwise use a large parameter often enough to exhaust
+  /// Checks the size after substitution: a short file could otherwise use a large parameter often enough to exhaust
   /// memory.
   bool within_limits(const ConfigNode& at, const ConfigNode& value) {
     count(value);

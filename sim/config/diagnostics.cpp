@@ -20,8 +20,8 @@ std::string joined(const std::vector<std::string>& lines) {
   return text;
 }
 
-/// Error texts that do not quote the file: those of the YAML parser except the one about anchors, and those of
-/// load_config_file about a file that is not one of Shoal's.
+/// Returns whether an error text does not quote the file: texts of the YAML parser except the one about anchors, and
+/// those of load_config_file about a file that is not one of Shoal's.
 bool is_free_of_quotes(const std::string& text) {
   if (text == "unknown key of a world or vehicle file" || text == "must be a map of keys and values") return true;
   return text.starts_with("not valid YAML: ") && text.find("anchor") == std::string::npos;

@@ -174,7 +174,8 @@ class TreeBuilder final : public YAML::EventHandler {
     return at < text_.size() && text_.substr(at).substr(quoted ? 1 : 0).starts_with(value);
   }
 
-  /// yaml-cpp gives the tag `!` to a scalar in quotes, and `?` to anything else without a tag.
+  /// Returns the kind of a tag.  yaml-cpp gives the tag `!` to a scalar in quotes, and `?` to anything else without a
+  /// tag.
   Tag check_tag(const YAML::Mark& mark, const std::string& tag) const {
     static const std::string standard = "tag:yaml.org,2002:";
     if (tag == "!" || tag == standard + "str") return Tag::text;
@@ -297,8 +298,8 @@ std::optional<BadByte> first_bad_byte(std::string_view text) {
   return std::nullopt;
 }
 
-/// Limit of open brackets: yaml-cpp scans all of `[[[[...` before it reports the first event, with 2 GB of memory for
-/// 10 MB.  The limit is far above max_depth, because brackets in comments and quotes are counted too.
+/// Finds brackets nested beyond a limit: yaml-cpp scans all of `[[[[...` before it reports the first event, with 2 GB
+/// of memory for 10 MB.  The limit is far above max_depth, because brackets in comments and quotes are counted too.
 std::optional<BadByte> hopeless_nesting(std::string_view text) {
   constexpr int limit = 10'000;
   int depth = 0;
@@ -310,7 +311,7 @@ std::optional<BadByte> hopeless_nesting(std::string_view text) {
   return std::nullopt;
 }
 
-/// Counts brackets in comments and quotes too, so that the result is only a hint.
+/// Returns whether a bracket may be open; a hint only, because brackets in comments and quotes are counted too.
 bool may_have_open_bracket(std::string_view text) {
   std::ptrdiff_t open = 0;
   for (const char c : text) open += (c == '[' || c == '{') - (c == ']' || c == '}');

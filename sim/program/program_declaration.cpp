@@ -27,14 +27,14 @@ bool has_columns(ArgType type) {
   return type == ArgType::tuple || type == ArgType::tuples;
 }
 
-/// A name that can be a key of YAML, an option of a command line and a variable of a program.
+/// Returns whether a name can be a YAML key, a command line option and a program variable.
 bool is_arg_name(const std::string& name) {
   const auto good = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; };
   return !name.empty() && name.size() <= 60 && std::islower(static_cast<unsigned char>(name.front())) != 0 &&
          name.back() != '_' && name.find("__") == std::string::npos && std::all_of(name.begin(), name.end(), good);
 }
 
-/// Errors of keys that do not belong to the type, or are missing for it.
+/// Reports keys that do not belong to the type, or are missing for it.
 void check_keys_of_type(ParamReader& in, const ArgDeclaration& arg) {
   const std::string type = "'type: " + std::string(word_of(arg_type_words, arg.type)) + "'";
   for (const char* key : {"min", "max"})
@@ -90,7 +90,7 @@ ConfigNode node_of(const ArgDeclaration& arg) {
   return map;
 }
 
-/// A list of lists of names of arguments.
+/// Reads a list of lists of argument names.
 void read_groups(ParamReader& in, const char* key, std::vector<std::vector<std::string>>& groups, const char* meaning) {
   ParamInfo info;
   info.key = key;
@@ -113,7 +113,7 @@ void read_groups(ParamReader& in, const char* key, std::vector<std::vector<std::
   }
 }
 
-/// Names in `needs` and in groups are those of arguments, and each argument is declared once.
+/// Checks that names in `needs` and in groups are declared arguments, and that each argument is declared once.
 void check_names(ParamReader& in, const ProgramDeclaration& declaration) {
   const auto check = [&](const char* key, const std::string& name, const std::string& by) {
     if (declaration.find(name) == nullptr)
@@ -130,7 +130,7 @@ void check_names(ParamReader& in, const ProgramDeclaration& declaration) {
       for (const std::string& name : group) check(key, name, "'" + std::string(key) + "'");
 }
 
-/// One row of a table: `list of [x, y]`.
+/// Returns the type of an argument for tables, such as `list of [x, y]`.
 std::string type_text_of(const ArgDeclaration& arg) {
   std::string columns;
   for (std::size_t i = 0; i < arg.columns.size(); ++i)

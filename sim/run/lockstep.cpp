@@ -86,10 +86,10 @@ void Lockstep::join(const std::string& client, const LockstepTerms& terms, std::
     if (before.size() > terms.receives.size() || !std::equal(before.begin(), before.end(), terms.receives.begin()))
       throw std::invalid_argument("the channels of 'receives' must keep their order; new ones are appended");
     known->terms = terms;
-    if (known->period_steps != period_steps) {  // a request that was sent twice moves no tick
+    if (known->period_steps != period_steps) {  // a repeated request does not change the ticks
       known->period_steps = period_steps;
       known->joined = step;
-      // A tick that waits for its answer continues doing so; the new period begins with it.
+      // An open tick remains open; the new period starts with it.
       if (terms.session == 0 && known->answered) known->requested = -1;
     }
   } else {
@@ -206,7 +206,7 @@ Lockstep::Verdict Lockstep::acknowledge(const LockstepAck& ack, std::int64_t ste
       return Verdict::abandoned;
     }
     if (left && ack.step != member->requested) return Verdict::repeated;
-    // With sequence 0 it says that it lives, before its first tick.
+    // Sequence 0 is a sign of life before the first tick.
     if (ack.session != 0 && (ack.sequence < member->sequence || ack.sequence == 0)) return Verdict::repeated;
   }
   if (ack.step > step)
@@ -237,7 +237,7 @@ void Lockstep::restart_replay() {
 
 void Lockstep::pass(std::int64_t step) {
   for (auto& [name, member] : members_) {
-    if ((step - member.joined) % member.period_steps != 0) continue;  // its phase, also before it joined
+    if ((step - member.joined) % member.period_steps != 0) continue;  // the phase also applies before it joined
     member.again.clear();
     member.again_bytes = 0;
   }
@@ -256,7 +256,7 @@ std::int64_t Lockstep::needed_from(std::int64_t step, std::int64_t max_steps) co
 
 void Lockstep::rewound(std::int64_t step) {
   for (auto& [name, member] : members_) {
-    // The phase stays, also for one that joined later than this.
+    // Keep the phase, also for a client that joined later than this.
     if (member.joined > step)
       member.joined -= (member.joined - step + member.period_steps - 1) / member.period_steps * member.period_steps;
     if (!member.answered && !member.abandoned) {

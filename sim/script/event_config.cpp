@@ -14,7 +14,7 @@ constexpr const char* forms =
     "VEHICLE enters ZONE, VEHICLE leaves ZONE, VEHICLE inside ZONE, NAME touches NAME, VEHICLE faster than MPS, "
     "message on CHANNEL, event NAME fires (VEHICLE or NAME may be 'any')";
 
-/// Reads the words of a condition; `good` turns false at the first that does not fit, when it has been reported.
+/// Parser of the words of a condition; `good` becomes false at the first error, which is reported.
 class ConditionParser {
  public:
   ConditionParser(ParamReader& in, const char* key, const std::string& text) : in_(in), key_(key) {
@@ -64,7 +64,7 @@ class ConditionParser {
     return check("vehicle", words_[0], true);
   }
 
-  /// Reports an unknown name.  True: the form is right, whatever the name.
+  /// Reports an unknown name.  Returns true, because the form is valid for any name.
   bool check(const char* kind, const std::string& name, bool any_allowed) {
     if (any_allowed && name == "any") return true;
     const std::vector<std::string> known = in_.declared(kind);

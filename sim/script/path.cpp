@@ -10,7 +10,7 @@ namespace {
 
 constexpr int pieces_per_segment = 16;
 
-/// The rotation whose x is the direction of travel, seen from above; a vertical path has none and gives identity.
+/// Returns the rotation whose x axis is the horizontal direction of travel; identity for a vertical path.
 Matrix3d heading(const Vector3d& direction_W) {
   if (direction_W.head<2>().norm() < 1e-9 * direction_W.norm()) return Matrix3d::Identity();
   return rotation_from_rpy({0, 0, std::atan2(direction_W.y(), direction_W.x())});
@@ -104,7 +104,8 @@ double Path::parameter_at(std::size_t i, double u) const {
   const double share = (u - starts_[i]) / (starts_[i + 1] - starts_[i]);
   double t = from_[i] + share * (to_[i] - from_[i]);
   if (kind_ == PathKind::waypoints) return t;
-  // Newton's method; the speed hardly changes within a piece, so that few rounds reach rounding error.
+  // Solve for the parameter by Newton's method; the speed is nearly constant within a piece, so that few iterations
+  // reach rounding error.
   for (int round = 0; round < 4; ++round) {
     const double error_m = starts_[i] + cubics_[i].length(from_[i], t) - u;
     const double speed = cubics_[i].slope(t).norm();

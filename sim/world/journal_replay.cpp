@@ -17,7 +17,7 @@
 namespace sim {
 
 void JournalReplay::replay(std::span<const std::byte> bytes, std::int64_t last_step) {
-  journal_.start_again({});  // also when nothing of it can be read: the world is as its file says
+  journal_.start_again({});  // also when it cannot be read: the world is then as in its file
   WorldJournal::Texts texts;
   std::vector<Entry> entries;
   std::vector<int> free;

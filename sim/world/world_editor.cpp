@@ -104,7 +104,7 @@ void WorldEditor::check_removable(const std::string& name) const {
 void WorldEditor::remove_vehicle(const std::string& name) {
   check_removable(name);
   Vehicle& vehicle = parts_.entities.vehicle_named(name);
-  const std::string own_name = vehicle.name();  // the caller's may be that of the vehicle
+  const std::string own_name = vehicle.name();  // the argument may refer to the name of the vehicle
   builder_.dismantle(vehicle);
   journal_.vehicle_removed(own_name);
   builder_.sort_devices();
@@ -130,7 +130,7 @@ const WorldObject& WorldEditor::add_object(const ObjectConfig& config, const std
 
 void WorldEditor::remove_object(const std::string& name) {
   const WorldObject& object = parts_.entities.object_named(name);
-  const std::string own_name = object.name;  // the caller's may be that of the object
+  const std::string own_name = object.name;  // the argument may refer to the name of the object
   builder_.dismantle(object);
   journal_.object_removed(own_name);
 }

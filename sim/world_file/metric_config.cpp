@@ -14,10 +14,10 @@ namespace sim {
 
 namespace {
 
-/// What a metric without `type` was before version 0.2.
+/// Type of a metric without `type`, as before version 0.2.
 const std::string type_of_old_files = "position_error";
 
-/// Rules of a world name figures of its metrics.
+/// Names in the rules of a world: figures of its metrics.
 class WorldRuleNames final : public RuleNames {
  public:
   explicit WorldRuleNames(const std::vector<MetricConfig>& metrics) : metrics_(metrics) {}
@@ -48,7 +48,7 @@ void MetricConfig::read(ParamReader& in) {
                "name of the metric; gives NAME.FIGURE for each figure of its type, see docs/guides/scoring.md");
   if (!in.describing() && !in.has("type")) {
     in.error("missing key 'type'; write 'type: " + type_of_old_files + "'");
-    // Further errors, of keys and of rules that name its figures, would bury this one.
+    // Further errors, of keys and of rules that name its figures, would obscure this one.
     for (const ConfigNode::Entry& entry : in.node()->entries) in.child(entry.key.c_str());
     kind = registry.find(type_of_old_files);
     return;
@@ -89,7 +89,7 @@ std::optional<RuleProblem> figure_problem(const std::vector<MetricConfig>& metri
                                                : shown_name + " is neither a number nor a figure, METRIC.FIGURE";
     return RuleProblem{0, what + "; known metrics: " + list_text(known) + suggestion(metric_name, known)};
   }
-  if (metric->kind == nullptr) return std::nullopt;  // its type is wrong, which has been reported
+  if (metric->kind == nullptr) return std::nullopt;  // its type is invalid, which has been reported
   std::vector<std::string> figures;
   for (const FigureKind& figure : metric->kind->figures) figures.push_back(figure.name);
   if (dot == name.size())
@@ -97,7 +97,7 @@ std::optional<RuleProblem> figure_problem(const std::vector<MetricConfig>& metri
                               "." + figures.front() + "; figures: " + list_text(figures)};
   const std::string figure = name.substr(dot + 1);
   if (metric->kind->find(figure) != nullptr) return std::nullopt;
-  // The unit is what is forgotten most.
+  // The most common error is a missing unit.
   const auto with_unit = std::find_if(figures.begin(), figures.end(),
                                       [&](const std::string& each) { return each.starts_with(figure + "_"); });
   const std::string meant =

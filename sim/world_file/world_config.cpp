@@ -67,7 +67,7 @@ void BusConfig::read(ParamReader& in) {
 
 namespace {
 
-/// A list of a program and its arguments.  A text is an error that shows it as a list.
+/// Reads a program and its arguments as a list.  Text instead of a list is an error, which shows the list.
 void read_command(ParamReader& in, std::vector<std::string>& command) {
   constexpr const char* meaning =
       "instead of 'program': any program and its arguments; {lcm_url} and {run} are replaced";
@@ -89,7 +89,7 @@ void read_command(ParamReader& in, std::vector<std::string>& command) {
 void ProcessConfig::read(ParamReader& in) {
   in.require("name");
   in.read_name("name", name, "name of the process in messages");
-  // Whoever starts programs makes the command of these, by the declaration of the program.
+  // The launcher makes the command line from these, by the declaration of the program.
   std::string program;
   ConfigNode args;
   in.read("program", program, "a program with a declaration of its arguments, see docs/guides/program_arguments.md");
@@ -138,7 +138,7 @@ void LimitsConfig::read(ParamReader& in) {
 
 namespace {
 
-/// Microseconds since 1970 of `2026-01-01T00:00:00Z`; false when the text is not of that form.
+/// Parses `2026-01-01T00:00:00Z` to microseconds since 1970; returns false for text of another form.
 bool parse_utc(const std::string& text, std::int64_t& utime) {
   std::tm tm{};
   char end = 0;
@@ -155,7 +155,7 @@ bool parse_utc(const std::string& text, std::int64_t& utime) {
   return true;
 }
 
-/// What events may name.  Before they are read, for they name each other.
+/// Declares the names that events may refer to, before they are read, because they refer to each other.
 void declare_for_events(ParamReader& in, const WorldConfig& world) {
   std::set<std::string> objects;
   for (const ObjectConfig& object : world.objects)
