@@ -81,6 +81,7 @@ std::vector<std::string> loopback_commands(const std::map<std::string, unsigned>
 Finding check_route(const LcmEndpoint& endpoint) {
   Finding finding{"multicast route", Verdict::ok, "", {}};
   const auto flags = interface_flags();
+  // Find the route to the multicast group.
   const auto route = route_to(inet_addr(endpoint.address.c_str()));
   if (!route) {
     finding.verdict = Verdict::bad;
@@ -88,6 +89,7 @@ Finding check_route(const LcmEndpoint& endpoint) {
     finding.commands = loopback_commands(flags);
     return finding;
   }
+  // Check the interface of the route.
   const auto found = flags.find(route->interface);
   const unsigned interface = found == flags.end() ? 0 : found->second;
   finding.text = endpoint.address + " goes over " + route->interface;
@@ -121,11 +123,13 @@ Finding check_buffers() {
     return finding;
   }
   finding.text = "net.core.rmem_max is " + std::to_string(maximum);
+  // Check the maximum size of a buffer.
   if (maximum < desired_buffer_bytes) {
     finding.verdict = Verdict::warning;
     finding.text += ": bursts of messages and images will be lost";
     finding.commands.emplace_back("sysctl -w net.core.rmem_max=4194304");
   }
+  // Check the default size of a buffer.
   if (standard >= 0 && standard < desired_buffer_bytes) {
     finding.text += "; net.core.rmem_default is " + std::to_string(standard) +
                     ", so other LCM programs need ?recv_buf_size=4194304 in their URL";
@@ -279,6 +283,7 @@ Finding check_round_trip(const std::string& url, std::chrono::milliseconds time_
     finding.text = "no file descriptor is available for the test";
     return finding;
   }
+  // Run the test in a child process.
   const pid_t child = fork();
   if (child == 0) {
     dup2(ends[1], STDERR_FILENO);
@@ -287,6 +292,7 @@ Finding check_round_trip(const std::string& url, std::chrono::milliseconds time_
     _exit(round_trip(url, time_limit));
   }
   close(ends[1]);
+  // Read its output, and end it at the time limit.
   bool ended = false;
   std::string reported;
   if (child > 0) reported = read_until(ends[0], std::chrono::steady_clock::now() + time_limit, ended);
@@ -299,6 +305,7 @@ Finding check_round_trip(const std::string& url, std::chrono::milliseconds time_
   int status = 0;
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
+  // Interpret the result.
   if (!ended) {
     finding.text = "no test message was received within " + std::to_string(time_limit.count()) +
                    " ms; a firewall may drop multicast on UDP";
@@ -327,6 +334,7 @@ std::vector<Finding> check_network(const std::string& url, std::chrono::millisec
     return {{"LCM URL", Verdict::bad, error.what(), {}}};
   }
   std::vector<Finding> findings{{"LCM URL", Verdict::ok, resolved, {}}};
+  // Run the checks that apply to the kind of bus.
   if (endpoint.kind == "udpm") {
     findings.push_back(check_route(endpoint));
     findings.push_back(check_buffers());

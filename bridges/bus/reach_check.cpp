@@ -70,12 +70,14 @@ Finding check_reach(const std::string& resolved_url) {
   Finding finding{"reach", Finding::Verdict::ok, "messages of this bus stay on this machine", {}};
   if (endpoint.kind == "memq") return finding;
   if (endpoint.kind == "tcpq") return check_server(endpoint);
+  // Check the ttl of the URL.
   if (leaves_machine(resolved_url)) {
     finding.verdict = Finding::Verdict::warning;
     finding.text = "its ttl is above 0: messages of this bus leave this machine, and other machines can send to it" +
                    std::string(key_needed);
     return finding;
   }
+  // Check the addresses of open sockets on the port.
   std::ifstream table("/proc/net/udp");
   const OpenSockets sockets = open_sockets(table, endpoint.port, false);
   const int open = sockets.everywhere + sockets.elsewhere;

@@ -104,12 +104,14 @@ void SimService::publish_state() {
   static thread_local shoal::sim_state_t state;  // reuses its vectors from step to step
   state.utime = world_.epoch_us() + world_.now().count();
   state.step = world_.step_number();
+  // Size the lists of the message.
   const std::size_t count = world_.vehicles().size();
   state.count = static_cast<std::int32_t>(count);
   state.vehicle.resize(count);
   for (auto* list : {&state.position_m, &state.velocity_mps, &state.angular_velocity_radps})
     list->assign(count, std::vector<double>(3));
   state.orientation.assign(count, std::vector<double>(4));
+  // Fill in pose and velocity of each vehicle frame V.
   for (std::size_t i = 0; i < count; ++i) {
     const sim::Vehicle& vehicle = *world_.vehicles()[i];
     const sim::Pose X_WV = vehicle.X_WV();

@@ -91,6 +91,7 @@ void LcmConnection::open_udp(const LcmEndpoint& endpoint) {
 }
 
 void LcmConnection::test_itself() {
+  // Subscribe to the test channel with a unique text.
   struct Test {
     std::string reported = "shoal " + std::to_string(getpid()) + " " +
                            std::to_string(std::chrono::steady_clock::now().time_since_epoch().count());
@@ -104,6 +105,7 @@ void LcmConnection::test_itself() {
         waiting.received |= text == waiting.reported;
       },
       &test);
+  // Publish the text until it is received.
   const auto deadline = std::chrono::steady_clock::now() + self_test_limit;
   while (!test.received && std::chrono::steady_clock::now() < deadline) {
     publish(self_test_channel, std::as_bytes(std::span(test.reported)));

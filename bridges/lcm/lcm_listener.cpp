@@ -82,9 +82,11 @@ std::optional<Received> LcmListener::next(std::chrono::milliseconds timeout) {
   std::chrono::milliseconds left = timeout;
   while (true) {
     if (auto message = take()) return message;
+    // Wait for the network or the background thread.
     const PollSet::Readable readable = readable_.wait(left);
     if (readable.count == 0) break;
     for (std::size_t i = 0; i < readable.count; ++i) {
+      // Clear the wake-up, or receive from the network.
       if (readable.tags[i] == nullptr) {
         std::uint64_t times = 0;
         [[maybe_unused]] const auto got = read(wake_.number(), &times, sizeof times);

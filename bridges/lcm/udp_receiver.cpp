@@ -37,6 +37,7 @@ FileDescriptor open_socket(const UdpReceiver::Options& options) {
   set_option(fd, SOL_SOCKET, SO_TIMESTAMP, 1, "the kernel provides no timestamps for messages");
   if (options.buffer_bytes > 0)
     set_option(fd, SOL_SOCKET, SO_RCVBUF, options.buffer_bytes, "the receive buffer cannot be set");
+  // Bind to the group and port, and join the group.
   sockaddr_in address{};
   address.sin_family = AF_INET;
   address.sin_port = htons(static_cast<std::uint16_t>(options.port));

@@ -252,6 +252,7 @@ void LockstepService::check_time(const std::string& client, Pending& requested, 
   const sim::LockstepMember* member = lockstep_.find(client);
   const double timeout_s = member->terms.timeout_s;
   if (now - requested.begin < std::chrono::duration<double>(timeout_s) && !member->removed) return;
+  // Describe what is late.
   char limit[32];
   std::snprintf(limit, sizeof limit, "%g s", timeout_s);
   const std::string step = std::to_string(member->requested);
@@ -261,6 +262,7 @@ void LockstepService::check_time(const std::string& client, Pending& requested, 
                               ? "the process of client '" + client + "' ended before it answered step " + step
                               : "no acknowledgement from '" + client + "' for step " + step + " " + when;
   if (!requested.reported) ++summary_of(client).timeouts;
+  // Execute the agreed action.
   switch (member->terms.on_timeout) {
     case sim::OnTimeout::wait:
       if (!requested.reported) spdlog::warn("lockstep: {}; the world waits", why);
@@ -295,11 +297,13 @@ void LockstepService::publish_end(const Wait& wait, milliseconds limit) {
   pending_.clear();
   lockstep_.ask_all(world_.step_number());
   for (const auto& [client, dropped] : dropped_) notify_dropped(dropped, client);
+  // Repeat the last tick until all clients have confirmed.
   const Clock::time_point end = Clock::now() + limit;
   milliseconds interval = first_resend_interval;
   Clock::time_point send_at = Clock::now();
   while (true) {
     std::vector<std::string> names;
+    // Collect the clients that have not answered.
     bool desired = false;
     for (const auto& [name, member] : lockstep_.members()) {
       if (member.answered || member.removed) continue;

@@ -334,6 +334,7 @@ bool LockstepClient::next_tick(shoal::sim_tick_t& tick) {
   if (sequence_ == 0 && !wait_warning_)
     wait_for("its first tick on 'sim.tick' (it has joined; a paused run or missing clients may delay it)");
   while (!stop_ && end_ != End::dropped) {
+    // Handle the tick when all its messages have arrived.
     if (incomplete_ && inbox_.complete()) {
       mark_received();
       handle_tick();
@@ -347,6 +348,7 @@ bool LockstepClient::next_tick(shoal::sim_tick_t& tick) {
       tick = tick_;
       return false;
     }
+    // Request missing messages, and wait for the next message.
     if (incomplete_) request_when_due();
     const bool forever = silence_limit_.count() == 0;
     auto until = forever ? Clock::time_point::max() : received + silence_limit_;

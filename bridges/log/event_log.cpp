@@ -55,6 +55,7 @@ bool EventLogReader::next(LogEventView& event) {
   const auto report = [this](std::uint64_t offset, const std::string& what) {
     if (problems_.size() < max_problems) problems_.push_back("byte " + std::to_string(offset) + ": " + what);
   };
+  // Read events; skip to the next sync word after an error.
   while (at_ < file_bytes_) {
     const std::uint64_t start = at_;
     switch (read_event(event)) {

@@ -60,14 +60,17 @@ Place open_place(const std::string& folder, const std::string& path) {
   const auto fail_folder = [&](const std::string& why) {
     throw std::runtime_error("serial port '" + whole + "': cannot create its directory: " + why);
   };
+  // Open the folder.
   std::error_code error;
   fs::create_directories(folder.empty() ? "." : folder, error);
   if (error) fail_folder(error.message());
   Descriptor at(::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   if (*at < 0) fail_folder(std::strerror(errno));
+  // Check that the path lies below the folder.
   const fs::path below = fs::path(path).lexically_normal();
   if (below.is_absolute() || !below.has_filename() || *below.begin() == ".." || *below.begin() == ".")
     throw std::runtime_error("serial port '" + whole + "': must lie below '" + folder + "'");
+  // Create and open each part, without following links.
   for (const fs::path& part : below.parent_path()) {
     mkdirat(*at, part.c_str(), 0777);
     Descriptor next(openat(*at, part.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC));

@@ -25,6 +25,7 @@ void Lag::prepare(double h) {
   prepared_for_s_ = h;
   rest_of_rest_ = rest_of_rate_ = rate_of_rest_ = rate_of_rate_ = 0;
   const double w = params_.natural_frequency_radps, z = params_.damping_ratio;
+  // First-order lag.
   if (w == 0) {
     if (params_.lag_s > 0) rest_of_rest_ = std::exp(-h / params_.lag_s);
     return;
@@ -43,6 +44,7 @@ void Lag::prepare(double h) {
     s = (slow - fast) / (2 * spread);
     c = (slow + fast) / 2;
   }
+  // Transition matrix of difference and rate.
   rest_of_rest_ = c + z * w * s;
   rest_of_rate_ = s;
   rate_of_rest_ = -w * w * s;

@@ -78,11 +78,13 @@ SerialMessages::SerialMessages(const SerialMessageParams& params, const sim::Dev
 std::vector<sim::Bytes> SerialMessages::take(std::size_t max_bytes) {
   sim::Bytes bytes = port_.read();
   std::vector<sim::Bytes> messages;
+  // Raw framing: one message per step.
   if (!lines_) {
     if (bytes.size() > max_bytes) bytes.resize(max_bytes + 1);
     if (!bytes.empty()) messages.push_back(std::move(bytes));
     return messages;
   }
+  // Line framing: one message per line.
   for (const std::byte b : bytes) {
     if (b == std::byte{'\n'}) {
       // Keep one byte more than allowed, to mark the line as too long.

@@ -19,6 +19,7 @@ namespace {
 
 /// Sets the values of a preset as defaults of the keys after it.
 void use_preset(AcousticModem::Params& params) {
+  // Packet types of the Micro-Modem.
   for (const MicromodemRate& rate : micromodem_rates()) {
     if (params.preset != "micromodem_rate" + std::to_string(rate.number)) continue;
     params.modulation = rate.modulation;

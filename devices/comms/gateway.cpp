@@ -105,6 +105,7 @@ void Gateway::remember(sim::Time at, const sim::Bytes& data) {
 void Gateway::arrived(std::size_t from, sim::Time at, const std::string& source, const sim::Bytes& data) {
   Counts& counts = counting_[from];
   if (!vehicle_.systems().powered || faults_.silent()) return;
+  // Filter by prefix and repetition.
   const std::string& prefix = params_.only_prefix;
   const auto* text = reinterpret_cast<const char*>(data.data());
   if (!std::string_view(text, data.size()).starts_with(prefix)) {
@@ -115,6 +116,7 @@ void Gateway::arrived(std::size_t from, sim::Time at, const std::string& source,
     ++counts.repeated;
     return;
   }
+  // Make the forwarded message.
   Message message{at + sim::from_seconds(params_.delay_s), from, {}};
   if (params_.name_source) {
     const std::string name = source + ":";
@@ -122,6 +124,7 @@ void Gateway::arrived(std::size_t from, sim::Time at, const std::string& source,
     message.data.assign(bytes, bytes + name.size());
   }
   message.data.insert(message.data.end(), data.begin(), data.end());
+  // Check size and queue.
   if (message.data.size() > modems_[1 - from]->message_limit_bytes()) {
     ++counts.too_long;
     return;

@@ -28,6 +28,7 @@ std::optional<std::int64_t> utc_of(int year, int month, int day, int hour, int m
 
 /// Parses 2026-03-04T05:06:07Z, with up to six decimals; none for any other text.
 std::optional<std::int64_t> read_iso_time(const std::string& text) {
+  // Check the format.
   static constexpr std::string_view form = "dddd-dd-ddTdd:dd:dd";
   if (text.size() < form.size() + 1 || text.back() != 'Z') return {};
   for (std::size_t i = 0; i < form.size(); ++i) {
@@ -39,8 +40,10 @@ std::optional<std::int64_t> read_iso_time(const std::string& text) {
     std::from_chars(text.data() + at, text.data() + at + digits, value);
     return value;
   };
+  // Read the time of day.
   const int hour = number(11, 2), minute = number(14, 2), second = number(17, 2);
   if (hour > 23 || minute > 59 || second > 60) return {};
+  // Read the decimals of the second.
   std::string fraction = text.substr(form.size(), text.size() - form.size() - 1);
   if (!fraction.empty()) {
     const bool good = fraction.size() >= 2 && fraction.size() <= 7 && fraction[0] == '.' &&

@@ -58,6 +58,7 @@ void MicromodemProtocol::take_line(const NmeaLines::Line& line, sim::Time now) {
     error("NMEA", unknown_sentence, "line too long", now);
     return;
   }
+  // Parse the sentence.
   switch (parse_nmea(line.text, in)) {
     case NmeaError::no_sentence:
       return;  // noise
@@ -69,6 +70,7 @@ void MicromodemProtocol::take_line(const NmeaLines::Line& line, sim::Time now) {
   }
   // Ignore own sentences echoed by a terminal: an answer would loop forever.
   if (in.name().starts_with("CA") || in.name().starts_with("SN")) return;
+  // Execute the command.
   if (const Command command = command_of(in.name()))
     (this->*command)(in, now);
   else
@@ -126,6 +128,7 @@ void MicromodemProtocol::reset(const NmeaSentence& in, sim::Time now) {
 void MicromodemProtocol::start_cycle(const NmeaSentence& in, sim::Time now) {
   const auto who = addresses(in, 2, now);
   if (!who) return;
+  // Check the fields.
   const int highest_rate = config_.psk ? static_cast<int>(micromodem_rates().size()) - 1 : 0;
   const auto rate = in.number(4, 0, highest_rate);
   if (!rate) return error("CYC", bad_field, "rate must be 0 to " + std::to_string(highest_rate), now);
@@ -134,6 +137,7 @@ void MicromodemProtocol::start_cycle(const NmeaSentence& in, sim::Time now) {
   if (!ack) return error("CYC", bad_field, "ack must be 0 or 1", now);
   if (!frames) return error("CYC", bad_field, "frames must be 1 to " + std::to_string(max), now);
   if (busy("CYC", now)) return;
+  // Confirm, and gather the data of an own cycle.
   side_.emit(echo(in, "CACYC"));
   Cycle cycle{who->first, who->second, *rate, *frames, *ack != 0, false, {}, sim::Time{0}};
   if (cycle.source == address()) return gather(std::move(cycle), now);
@@ -150,12 +154,14 @@ void MicromodemProtocol::start_cycle(const NmeaSentence& in, sim::Time now) {
 void MicromodemProtocol::take_data(const NmeaSentence& in, sim::Time now) {
   const auto who = addresses(in, 1, now);
   if (!who) return;
+  // Check that the data were requested.
   if (!cycle_ || who->first != address()) return error("TXD", no_request, "no data was requested", now);
   if (who->second != cycle_->destination)
     return error(
         "TXD", bad_field,
         "the cycle is for " + std::to_string(cycle_->destination) + " and the data for " + std::to_string(who->second),
         now);
+  // Decode the data.
   const auto data = from_hex(in.at(4));
   const auto ack = in.number(3, 0, 1);
   if (!data || !ack) return error("TXD", bad_field, "data must be bytes in hexadecimal", now);
@@ -164,6 +170,7 @@ void MicromodemProtocol::take_data(const NmeaSentence& in, sim::Time now) {
     return error("TXD", too_long_data,
                  "data too long: " + std::to_string(data->size()) + " bytes and room for " + std::to_string(room), now);
   side_.emit("CATXD," + in.at(1) + "," + in.at(2) + "," + in.at(3) + "," + std::to_string(data->size()));
+  // Add the frame; send the packet when it is complete.
   const bool last = data->empty();
   if (!last || cycle_->gathered.empty()) cycle_->gathered.push_back({*ack != 0, *data});
   if (last || static_cast<int>(cycle_->gathered.size()) == cycle_->frames)

@@ -228,12 +228,14 @@ void MicromodemProtocol::received_cycle(const MicromodemPacket& packet, const Mi
 }
 
 void MicromodemProtocol::received_data(const MicromodemPacket& packet, const MicromodemArrival& arrival) {
+  // Match the packet with its cycle init.
   const bool announced = expected_ && expected_->source == packet.source && expected_->rate == packet.rate;
   if (packet.rate == 0 && !announced) return;  // without its cycle init its meaning is unknown
   if (packet.rate > 0 && !config_.psk) return;
   if (!announced) received_cycle(packet, arrival);
   expected_.reset();
   if (settings_.on("RXP")) side_.emit(packet.rate == 0 ? "CARXP,0" : "CARXP,1");
+  // Report the frames to the host.
   int bad_frames = 0, desired = 0;
   for (std::size_t i = 0; i < packet.frames.size(); ++i) {
     const auto& frame = packet.frames[i];
@@ -248,6 +250,7 @@ void MicromodemProtocol::received_data(const MicromodemPacket& packet, const Mic
                  std::to_string(static_cast<int>(frame.ack)) + "," + std::to_string(i + 1) + "," + to_hex(frame.data));
   }
   emit_statistics(packet, arrival, bad_frames);
+  // Acknowledge the frames that request it.
   if (desired == 0 || packet.destination != address()) return;
   MicromodemPacket ack;
   ack.kind = Kind::ack;

@@ -105,6 +105,7 @@ void Modem::act(const sim::ActContext& context) {
 }
 
 void Modem::transmit(sim::Time now, const Outgoing& message) {
+  // Occupy the modem for the transmission.
   const double air_time_s = 8.0 * static_cast<double>(message.data.size()) / params_.data_rate_bps;
   busy_until_ = now + std::max(sim::from_seconds(air_time_s), sim::Time{1});
   ++sent_;
@@ -121,6 +122,7 @@ void Modem::transmit(sim::Time now, const Outgoing& message) {
   const sim::Bytes payload = shoal::encode(frame);
   ++counts_.sent;
   counts_.sent_bytes += frame.size;
+  // Deliver to each addressed modem in range after the propagation delay.
   for (Modem* receiver : network_.members()) {
     if (receiver == this || receiver->params_.network != params_.network) continue;
     if (!message.destination.empty() && receiver->vehicle_ != message.destination) continue;

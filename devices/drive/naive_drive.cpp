@@ -128,6 +128,7 @@ NaiveDrive::Path NaiveDrive::path(double surface_m) {
 
 void NaiveDrive::act(const sim::ActContext& context) {
   const double h = context.step_s;
+  // Compute the response of a step.
   if (h != step_s_) {
     step_s_ = h;
     const auto share = [h](double time_constant_s) {
@@ -141,28 +142,33 @@ void NaiveDrive::act(const sim::ActContext& context) {
 
   check_current();
   const sim::Medium& medium = world_.medium();
+  // Advance speed, turn rate and yaw.
   speed_mps_ += (speed_target_mps_ * context.effectiveness - speed_mps_) * speed_share_;
   const double speed_share = params_.steerage_speed_mps > 0 ? speed_mps_ / params_.steerage_speed_mps : 1;
   turn_radps_ += (desired_turn(speed_share) - turn_radps_) * turn_share_;
   yaw_rad_ = sim::wrap_angle(yaw_rad_ + h * turn_radps_);
 
+  // Add the current and the velocity through the water.
   sim::Vector3d v_W = params_.drifts ? medium.water_velocity_W(p_WB_) : sim::Vector3d(sim::Vector3d::Zero());
   if (params_.surface) v_W.z() = 0;
   const double surface_m = params_.surface ? 0 : surface_over_m();
   const auto [forward_mps, climb_mps, pitch_rad] = path(surface_m);
   const double cos_yaw = std::cos(yaw_rad_), sin_yaw = std::sin(yaw_rad_);
   v_W += sim::Vector3d(forward_mps * cos_yaw, forward_mps * sin_yaw, climb_mps);
+  // Integrate the position, limited by the surface.
   const double z_before_m = p_WB_.z();
   p_WB_ += h * v_W;
   if (medium.has_water() && (params_.surface || p_WB_.z() > surface_m)) {
     p_WB_.z() = params_.surface ? surface_over_m() : surface_m;
     v_W.z() = (p_WB_.z() - z_before_m) / h;
   }
+  // Rotation Rz(yaw) Ry(-pitch).
   const double cos_pitch = std::cos(pitch_rad), sin_pitch = std::sin(pitch_rad);
   X_WB_.linear() << cos_yaw * cos_pitch, -sin_yaw, -cos_yaw * sin_pitch,  //
       sin_yaw * cos_pitch, cos_yaw, -sin_yaw * sin_pitch,                 //
       sin_pitch, 0, cos_pitch;
   X_WB_.translation() = p_WB_;
+  // Move the body, with its velocities.
   const double pitch_rate = (pitch_rad - pitch_rad_) / h;  // nose up, about -y
   pitch_rad_ = pitch_rad;
   body_.move_to(X_WB_, v_W, {sin_yaw * pitch_rate, -cos_yaw * pitch_rate, turn_radps_});

@@ -40,8 +40,10 @@ std::vector<sim::Vector3d> low_points(const sim::BodyConfig& body, const sim::Pa
       return {X_VP.translation() + down};
     case sim::PartShape::capsule:
     case sim::PartShape::cylinder: {
+      // Horizontal axis: the line below it.
       const sim::Vector3d along = X_VP.linear().col(2);
       if (std::abs(along.z()) < 1e-3) return {X_VP.translation() + down};
+      // Inclined axis: the lower end.
       const sim::Vector3d end = X_VP.translation() - std::copysign(part.length_m / 2, along.z()) * along;
       if (part.shape == sim::PartShape::capsule) return {end + down};
       return {end - part.radius_m * std::sqrt(1 - along.z() * along.z()) * sim::Vector3d::UnitZ()};

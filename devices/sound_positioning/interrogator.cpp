@@ -44,6 +44,7 @@ bool Interrogator::listens_to(const sim::Signal& signal) const {
 void Interrogator::ping(sim::Time at) {
   requested_.clear();
   answers_.clear();
+  // List the transponders of the network on other vehicles.
   double slowest_turnaround_s = params_.ping_s, max_answer_s = 0;
   for (const Transponder* transponder : network_.members()) {
     if (transponder->params().network != params_.network || &transponder->vehicle() == &context_.vehicle) continue;
@@ -51,9 +52,11 @@ void Interrogator::ping(sim::Time at) {
     slowest_turnaround_s = std::max(slowest_turnaround_s, transponder->params().turnaround_s);
     max_answer_s = std::max(max_answer_s, transponder->params().ping_s);
   }
+  // Set the reception window: two-way travel time, turnaround and answer.
   waiting_for_ = requested_;
   pinged_ = at;
   window_end_ = at + sim::from_seconds(2 * params_.range_max_m / slowest_mps + slowest_turnaround_s + max_answer_s);
+  // Transmit the ping.
   sim::Signal signal;
   signal.kind = sim::Signal::Kind::ping;
   signal.source_level = sim::Decibels{params_.source_level_dB};

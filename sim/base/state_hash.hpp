@@ -39,11 +39,13 @@ class StateHash {
       }
       for (const std::uint64_t each : chain) add(each);
     }
+    // Hash the remaining words.
     for (; size >= 8; size -= 8, at += 8) {
       std::uint64_t word;
       std::memcpy(&word, at, 8);
       add(word);
     }
+    // Hash the remaining bytes.
     if (size > 0) {
       std::uint64_t word = 0;
       std::memcpy(&word, at, size);

@@ -99,6 +99,7 @@ std::size_t MessageGate::bit_of(std::string_view channel) {
 std::unique_ptr<Mailbox> MessageGate::open_mailbox(const std::string& channel, std::size_t capacity) {
   const auto known = by_name_.find(channel);
   Channel* read = known == by_name_.end() ? nullptr : known->second;
+  // Open the channel on the network for its first reader.
   if (read == nullptr) {
     auto inner = network_.open_mailbox(channel, default_mailbox_capacity);  // checks the name
     const std::size_t slot = free_slots_.empty() ? channels_.size() : free_slots_.back();
@@ -117,6 +118,7 @@ std::unique_ptr<Mailbox> MessageGate::open_mailbox(const std::string& channel, s
     by_name_.emplace(channel, read);
     bits_.set(bit_of(channel));
   }
+  // Add the mailbox of the reader.
   auto mailbox = std::make_unique<GateMailbox>(*this, *read, capacity);
   read->mailboxes.push_back(mailbox.get());
   read->capacity = std::max(read->capacity, mailbox->capacity());

@@ -72,10 +72,12 @@ class Substitution {
       const std::string name = text.substr(begin + 2, end - begin - 2);
       const ConfigNode* value = find(name);
       if (value == nullptr) return error(node, unknown_text(name));
+      // The whole scalar: take the node of the parameter.
       if (begin == 0 && end + 1 == text.size()) {
         if (within_limits(node, *value)) node = ConfigNode(*value);
         return;
       }
+      // A part of the scalar: insert its text.
       if (value->kind != Kind::scalar)
         return error(node, "parameter '" + shortened(name) + "' must be text inside of text, got " + shown(*value));
       if (!within_limits(node, *value)) return;

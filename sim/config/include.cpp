@@ -85,6 +85,7 @@ class Loader {
     const SourcePlace whole_file{intern_file_name(path.string()), 0, 0};
     if (++files_ > max_files) return fail(asked_at, "more than " + std::to_string(max_files) + " files included");
     std::error_code error;
+    // Refuse cycles and files that are not allowed.
     fs::path canonical = fs::weakly_canonical(path, error);
     if (error) canonical = path;
     if (std::find(open_.begin(), open_.end(), canonical) != open_.end())
@@ -92,6 +93,7 @@ class Loader {
     const auto& access = diagnostics_.files();
     if (access != nullptr && !open_.empty() && !access->may_read(path))
       return fail(asked_at, "'" + shortened(path.string()) + "' " + FileAccess::reading_rule());
+    // Read and parse the file.
     const std::optional<std::string> text = read_text(path, asked_at);
     if (!text) return {};
     Diagnostics own;  // separate, because a repeated error adds no line to diagnostics_
@@ -101,6 +103,7 @@ class Loader {
     forward(own, diagnostics_);
     if (!own.ok()) return {};
     if (node.kind == Kind::null) return fail(whole_file, "the file is empty");
+    // Merge the included files.
     open_.push_back(canonical);
     node = with_includes(std::move(node), path);
     open_.pop_back();
@@ -146,6 +149,7 @@ class Loader {
                          (asked_at.line > 0 ? "" : "; 'shoal run --special-files' allows that"));
       return std::nullopt;
     }
+    // Read the file up to the limit of all files.
     errno = 0;
     std::ifstream stream(path, std::ios::binary);
     std::string text;

@@ -342,12 +342,14 @@ SourcePlace place_at(std::string_view text, std::size_t at, const std::string* f
 
 ConfigNode parse_config_text(const std::string& text, const std::string& file_name, Diagnostics& diagnostics) {
   const std::string* file = intern_file_name(file_name);
+  // Check encoding and nesting before yaml-cpp reads the text.
   auto bad = first_bad_byte(text);
   if (!bad) bad = hopeless_nesting(text);
   if (bad) {
     diagnostics.error(place_at(text, bad->at, file), "", bad->text);
     return {};
   }
+  // Parse, and convert exceptions to errors.
   TreeBuilder builder(text, file, diagnostics);
   try {
     std::istringstream stream(text);

@@ -178,25 +178,30 @@ template <typename Model, typename Output, typename ControllerType>
 bool add_device(const char* name) {
   using ReporterType = ReporterOf<Model, Output>;
   DeviceType type;
+  // Name, meaning and example.
   type.name = name;
   type.meaning = Model::meaning;
   if constexpr (requires { Model::example; }) type.example = Model::example;
   if constexpr (requires { Model::default_rate_hz; }) type.default_rate_hz = Model::default_rate_hz;
+  // Messages.
   if constexpr (requires { ReporterType::message_name(); })
     type.report_message = ReporterType::message_name();
   else if constexpr (!std::is_void_v<ReporterType>)
     type.report_message = ReporterType::report_message;
   if constexpr (!std::is_void_v<ControllerType>) type.command_messages = ControllerType::command_messages;
+  // Safe states.
   if constexpr (requires { Model::safe_states; })
     type.safe_states.assign(std::begin(Model::safe_states), std::end(Model::safe_states));
   else if constexpr (std::is_base_of_v<Actuator, Model>)
     type.safe_states = {SafeState::stop};
+  // Changes and scheduling.
   type.changeable = Changes<Model> || HasNoises<Model>;
   if constexpr (requires { Model::fixed_keys; })
     type.fixed_keys.assign(std::begin(Model::fixed_keys), std::end(Model::fixed_keys));
   if constexpr (requires { Model::always_on; }) type.always_on = Model::always_on;
   if constexpr (requires { Model::casts_rays; }) type.casts_rays = Model::casts_rays;
   if constexpr (requires { Model::sweeps; }) type.sweeps = Model::sweeps;
+  // Construction.
   type.make_params = [] { return std::make_shared<ParamsOf<typename Model::Params>>(); };
   type.build = build_device<Model, ReporterType, ControllerType>;
   DeviceRegistry::instance().add(std::move(type));

@@ -161,12 +161,14 @@ void Script::cut(EventState& event, const std::string& why) {
 }
 
 std::vector<ActionEntry> Script::parse_now(const ConfigNode& action, Diagnostics& diagnostics) const {
+  // Wrap a single action in a list.
   ConfigNode list;
   list.kind = ConfigNode::Kind::list;
   list.place = action.place;
   list.items = {action};
   const ConfigNode map = map_node("do", action.kind == ConfigNode::Kind::list ? action : list);
   ParamReader in(map, "", diagnostics);
+  // Declare the names that actions may refer to.
   const WorldConfig& config = stage_.config();
   std::set<std::string> objects, movable;
   for (const auto& [name, listed] : catalogue_) objects.insert(name);

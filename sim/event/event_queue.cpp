@@ -13,6 +13,7 @@ void EventQueue::schedule(Event event) {
 
 void EventQueue::insert(Event event) {
   Entry entry{event.due, event.sequence, event.stamp, event.device, event.kind, Entry::no_payload};
+  // Store the payload.
   if (!event.payload.empty()) {
     if (free_payloads_.empty()) {
       free_payloads_.push_back(static_cast<int>(payloads_.size()));
@@ -23,6 +24,7 @@ void EventQueue::insert(Event event) {
     payloads_[static_cast<std::size_t>(entry.payload)] = std::move(event.payload);
   }
   ++size_;
+  // Insert into a later slice, or into the heap of late events.
   if (const std::int64_t slice = slice_of(event.due); slice > reached_) {
     const auto [found, is_new] = slices_.try_emplace(slice);
     if (is_new && !spare_.empty()) {

@@ -41,11 +41,13 @@ const ActionKind* find_kind(ParamReader& in) {
   const std::vector<ConfigNode::Entry>& entries = in.node()->entries;
   const ActionKind* kind = nullptr;
   std::string other;
+  // Find the words of actions among the keys.
   for (const ConfigNode::Entry& entry : entries) {
     const ActionKind* named = ActionRegistry::instance().find(entry.key);
     if (kind != nullptr && named != nullptr) other = entry.key;
     if (kind == nullptr) kind = named;
   }
+  // Check that there is exactly one.
   if (entries.empty())
     in.error("an action has one key, its word, got {}; known actions: " +
              list_text(ActionRegistry::instance().words()));

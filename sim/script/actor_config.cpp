@@ -51,10 +51,12 @@ void ActorConfig::check_points(ParamReader& in) {
   const bool timed = path == PathKind::timed;
   const char* desired = timed ? "poses" : "points";
   const char* other = timed ? "points" : "poses";
+  // Report keys of other kinds of path.
   if (in.has(other)) in.error(other, "'" + std::string(other) + "' does not belong to a path of this kind");
   if (timed)
     for (const char* key : {"rpy_deg", "speed_mps"})
       if (in.has(key)) in.error(key, "'" + std::string(key) + "' does not belong to a path of this kind");
+  // Check consecutive points.
   const std::size_t count = timed ? poses.size() : points_m.size();
   if (count < 2)
     return in.error(desired, "'" + std::string(desired) + "' must have at least 2, got " + std::to_string(count));
@@ -67,6 +69,7 @@ void ActorConfig::check_points(ParamReader& in) {
     if (!timed && (points_m[i] - points_m[i + 1]).norm() < 1e-6)
       in.error("points", "points " + where + " are the same place");
   }
+  // Check the end of a loop.
   if (timed && ends == PathEnds::loop &&
       !make_pose(poses.front().position_m, poses.front().rpy_rad)
            .isApprox(make_pose(poses.back().position_m, poses.back().rpy_rad), 1e-9))

@@ -23,6 +23,7 @@ class ConditionParser {
   }
 
   bool parse(Condition& condition) {
+    // Conditions with their own forms.
     if (words_.size() == 3 && words_[0] == "message" && words_[1] == "on") return message(condition);
     if (words_.size() == 3 && words_[0] == "event" && words_[2] == "fires") {
       condition = {Condition::Kind::fires, words_[1], "", 0};
@@ -30,6 +31,7 @@ class ConditionParser {
     }
     if (words_.size() == 4 && words_[1] == "faster" && words_[2] == "than") return faster(condition);
     if (words_.size() != 3) return false;
+    // Conditions of the form SUBJECT VERB OBJECT.
     condition.subject = words_[0];
     condition.object = words_[2];
     if (words_[1] == "touches") {
@@ -111,6 +113,7 @@ void EventConfig::read(ParamReader& in) {
 }
 
 void EventConfig::read_times(ParamReader& in) {
+  // Read `at`, a number or a list.
   if (in.describing()) {
     ParamInfo info;
     info.key = "at";
@@ -126,6 +129,7 @@ void EventConfig::read_times(ParamReader& in) {
     in.read("at", at_s[0], between(0, 1e9), "");
   }
   std::sort(at_s.begin(), at_s.end());
+  // Read the keys of periodic firing.
   std::optional<double> from, until;
   in.read("every", every_s, between(1e-6, 1e9), "seconds from firing to firing");
   in.read("from_s", from, between(0, 1e9), "every: time of the first firing; unset: after one period");

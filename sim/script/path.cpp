@@ -57,6 +57,7 @@ void Path::add_spline(const std::vector<Vector3d>& points_W, bool closed) {
   // Barry and Goldman 1988, "A recursive evaluation algorithm for a class of Catmull-Rom splines", with knots at the
   // square root of the chord (centripetal): no loops and no overshoot.  An open end is mirrored at its last point.
   const auto count = static_cast<int>(points_W.size());
+  // Control points, wrapped or mirrored at the ends.
   const auto point = [&](int i) -> Vector3d {
     if (closed) return points_W[static_cast<std::size_t>((i + count) % count)];
     if (i < 0) return 2 * points_W[0] - points_W[1];
@@ -64,10 +65,12 @@ void Path::add_spline(const std::vector<Vector3d>& points_W, bool closed) {
     return points_W[static_cast<std::size_t>(i)];
   };
   for (int i = 0; i < (closed ? count : count - 1); ++i) {
+    // Tangents of the segment.
     const Vector3d p0 = point(i - 1), p1 = point(i), p2 = point(i + 1), p3 = point(i + 2);
     const double d0 = std::sqrt((p1 - p0).norm()), d1 = std::sqrt((p2 - p1).norm()), d2 = std::sqrt((p3 - p2).norm());
     const Vector3d m1 = d1 * ((p1 - p0) / d0 - (p2 - p0) / (d0 + d1) + (p2 - p1) / d1);
     const Vector3d m2 = d1 * ((p2 - p1) / d1 - (p3 - p1) / (d1 + d2) + (p3 - p2) / d2);
+    // Cubic Hermite polynomial, divided into pieces.
     const Cubic cubic{{p1, m1, 3 * (p2 - p1) - 2 * m1 - m2, 2 * (p1 - p2) + m1 + m2}};
     for (int k = 0; k < pieces_per_segment; ++k) {
       cubics_.push_back(cubic);

@@ -215,17 +215,21 @@ void MountedDevice::sample(Time now, std::int64_t step_number) {
   if (!works()) return;
   const double dt_s = last_sample_.count() < 0 ? 0.0 : to_seconds(now - last_sample_);
   last_sample_ = now;
+  // Measure the truth.
   const Pose X_WB = body_.X_WB();
   const SenseContext context{host_.world, vehicle_, now, dt_s, X_WB * X_BS_, body_.velocity_at_W(X_BS_.translation())};
   built_.sensor->measure(context);
   if (!built_.reporter) return;
+  // Report it on the truth channel.
   if (config_.truth) {
     truth_outlet_->set(now, Time{0});
     built_.reporter->report(now, *truth_outlet_);
   }
+  // Add the errors.
   noise_random_.begin_step(step_number);
   built_.sensor->disturb(dt_s, noise_random_);
   link_random_.begin_step(-step_number);  // independent of the draws of take_messages in the same step
+  // Report, unless the message is lost.
   if (config_.dropout > 0 && link_random_.uniform() < config_.dropout) return;
   const Time latency = next_latency();
   if (faults_.silent()) return;

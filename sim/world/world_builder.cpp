@@ -114,6 +114,7 @@ Vehicle& WorldBuilder::build_vehicle(const VehicleInstance& instance) {
 
 void WorldBuilder::build_parts_of(Vehicle& vehicle, const VehicleInstance& instance) {
   const VehicleConfig& config = *instance.config;
+  // Add the bodies.
   for (const BodyConfig& body : config.bodies) {
     Body& built = parts_.physics.add_body(vehicle.group(), body, instance.X_WV,
                                           body.kinematic ? Motion::kinematic : Motion::free);
@@ -125,6 +126,7 @@ void WorldBuilder::build_parts_of(Vehicle& vehicle, const VehicleInstance& insta
   if (parts_.config.bodies_only_of_many && parts_.config.events.empty() &&
       ++built_of_kind_[&config] > max_of_kind_as_a_whole)
     return parts_.physics.close_group(vehicle.group());
+  // Add joints and devices.
   build_joints_of(vehicle, instance);
   parts_.physics.close_group(vehicle.group());
   std::vector<std::string> errors;

@@ -46,6 +46,7 @@ void WorldEditor::check_place_is_free(Vehicle& vehicle, const VehicleInstance& i
 }
 
 const Vehicle& WorldEditor::add_vehicle(const VehicleInstance& instance) {
+  // Check the vehicle before any change.
   check_new_vehicle(instance);
   parts_.surfaces.check_new(instance);
   const bool new_surfaces = parts_.surfaces.has_new(*instance.config);
@@ -54,6 +55,7 @@ const Vehicle& WorldEditor::add_vehicle(const VehicleInstance& instance) {
   } catch (const std::length_error& error) {
     throw_config_error(instance.place, "vehicle " + shown_name(instance.name), error.what());
   }
+  // Add its surfaces and the vehicle.
   parts_.surfaces.add(*instance.config);
   try {
     check_place_is_free(builder_.build_vehicle(instance), instance);

@@ -280,6 +280,7 @@ LoadedWorld load(ConfigNode root, const SourcePlace& file, const LoadOptions& op
   loaded.config.files = diagnostics.files();
   apply_sets(root, options, diagnostics);
   diagnostics.throw_if_any();
+  // Read the keys of the world.
   ParamReader in(root, "", diagnostics);
   loaded.config.read(in);
   in.finish();
@@ -287,12 +288,15 @@ LoadedWorld load(ConfigNode root, const SourcePlace& file, const LoadOptions& op
   check_buses(loaded.config, root, options, diagnostics);
   // All its devices would have unknown types, which would obscure the error.
   if (!load_plugins(root, options, diagnostics)) diagnostics.throw_if_any();
+  // Apply file name, seed and name.
   if (file.file != nullptr) loaded.config.file = *file.file;
   if (options.seed) loaded.config.run.seed = *options.seed;
   if (loaded.config.name.empty() && file.file != nullptr) loaded.config.name = fs::path(*file.file).stem().string();
+  // Load the vehicles.
   VehicleLoader vehicles(loaded.config, diagnostics);
   for (const VehicleEntry& entry : loaded.config.vehicle_entries)
     for (VehicleInstance& instance : vehicles.load(entry)) loaded.config.vehicles.push_back(std::move(instance));
+  // Check references between parts of the world.
   check_channels(loaded.config, diagnostics);
   check_metrics(loaded.config, diagnostics);
   check_acoustic_links(loaded.config, root, diagnostics);
@@ -300,10 +304,12 @@ LoadedWorld load(ConfigNode root, const SourcePlace& file, const LoadOptions& op
   gather_from_vehicles(loaded.config);
   check_script(loaded.config, diagnostics);
   diagnostics.throw_if_any();
+  // Warn of settings without effect.
   Warnings own_warnings;
   Warnings& warnings = options.warnings != nullptr ? *options.warnings : own_warnings;
   warn_of_missing_water(loaded.config, warnings);
   warn_of_config(loaded.config, root, warnings, options.duration_s);
+  // Make the resolved world.
   if (options.resolve) vehicles.resolve(root);
   make_paths_absolute(root);
   if (options.seed) {

@@ -77,6 +77,7 @@ std::vector<std::string> MetricConfig::figures() const {
 }
 
 std::optional<RuleProblem> figure_problem(const std::vector<MetricConfig>& metrics, const std::string& name) {
+  // Find the metric.
   const std::size_t dot = std::min(name.find('.'), name.size());
   const std::string metric_name = name.substr(0, dot);
   const auto metric =
@@ -90,6 +91,7 @@ std::optional<RuleProblem> figure_problem(const std::vector<MetricConfig>& metri
     return RuleProblem{0, what + "; known metrics: " + list_text(known) + suggestion(metric_name, known)};
   }
   if (metric->kind == nullptr) return std::nullopt;  // its type is invalid, which has been reported
+  // Find its figure.
   std::vector<std::string> figures;
   for (const FigureKind& figure : metric->kind->figures) figures.push_back(figure.name);
   if (dot == name.size())

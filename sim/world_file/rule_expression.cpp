@@ -288,6 +288,7 @@ double RuleExpression::calculate(const std::vector<Step>& steps, std::span<const
     stack.pop_back();
     return top;
   };
+  // Execute the operations on the stack.
   for (const Step& step : steps) {
     switch (step.kind) {
       case Step::Kind::number:
@@ -329,6 +330,7 @@ RuleExpression::Outcome RuleExpression::evaluate(std::span<const double> values)
   outcome.left = calculate(left_, values);
   outcome.right = calculate(right_, values);
   const double left = outcome.left, right = outcome.right;
+  // Compare the sides, and compute the margin.
   switch (comparison_) {
     case Comparison::less:
       outcome.holds = left < right;
@@ -355,6 +357,7 @@ RuleExpression::Outcome RuleExpression::evaluate(std::span<const double> values)
       outcome.margin = std::numeric_limits<double>::quiet_NaN();
       break;
   }
+  // A rule fails for NaN, and for infinite sides of finite figures.
   const bool any_nan = std::any_of(values.begin(), values.end(), [](double value) { return std::isnan(value); });
   const bool all_finite = std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); });
   if (any_nan || std::isnan(left) || std::isnan(right)) outcome.holds = false;

@@ -80,11 +80,13 @@ std::vector<VehicleInstance> VehicleLoader::load(const VehicleEntry& entry) {
   const std::string who = "vehicle '" + entry.name + "'";
   const ConfigNode* model = model_of(entry, who);
   if (model == nullptr) return {};
+  // Place the instances.
   const Pose X_WE = make_pose(entry.position_m, entry.rpy_rad);
   const std::vector<Pose> poses = entry.count == 1
                                       ? std::vector<Pose>{X_WE}
                                       : place_instances(entry.placement, entry.count, X_WE,
                                                         static_cast<std::uint64_t>(world_.run.seed), entry.name);
+  // Decide which instances share a configuration.
   const auto singles = single_vehicles(entry, who, diagnostics_);
   const auto none_mentions = [&](std::string_view text) {
     return !mentions(*model, text) && !mentions(entry.parameters, text) && !mentions(entry.overrides, text);
@@ -95,6 +97,7 @@ std::vector<VehicleInstance> VehicleLoader::load(const VehicleEntry& entry) {
   const bool as_in_other_entries = alike && !entry.file.empty() && singles.empty() && none_mentions("${name}");
   std::shared_ptr<const VehicleConfig>& shared =
       as_in_other_entries ? shared_[what_is_said(entry, *model)] : of_this_entry;
+  // Make the instances.
   for (int i = 0; i < entry.count; ++i) {
     const std::string name = instance_name(entry, i + 1);
     const Pose& X_WV = poses[static_cast<std::size_t>(i)];
