@@ -188,7 +188,7 @@ void LockstepService::take_ack(int link_index, const sim::Message& message) {
       named.push_back({ack.channel[i], static_cast<std::uint32_t>(ack.crc[i])});
     // Drop the messages of an abandoned tick.
     if (verdict == sim::Lockstep::Verdict::abandoned) {
-      link.messages.collect();  // what came before this answer
+      link.messages.collect();  // messages that arrived before this answer
       pending_.erase(ack.client);
       if (ack.listed)
         link.messages.drop(ack.client, named);

@@ -78,12 +78,14 @@ bool read_code(std::string_view code, sim::Time& sent, std::string& destination)
 }  // namespace
 
 void AcousticModem::Params::read(sim::ParamReader& in) {
+  // Preset.
   std::vector<std::string> presets;
   for (const MicromodemRate& rate : micromodem_rates())
     presets.push_back("micromodem_rate" + std::to_string(rate.number));
   presets.insert(presets.end(), {"low_rate", "high_rate"});
   in.read_one_of("preset", preset, presets, "preset of a packet type or modem; the keys below override it");
   if (!in.describing()) use_preset(*this);
+  // Signal.
   in.read("network", network, "only modems of the same network understand each other; others act as noise");
   in.read("source_level_dB", source_level_dB, sim::between(0, 300), "re 1 uPa at 1 m, on its axis");
   in.read("frequency_Hz", frequency_Hz, sim::between(100, 1e6), "middle of its band");
@@ -93,6 +95,7 @@ void AcousticModem::Params::read(sim::ParamReader& in) {
                  "frequency shift keying, non-coherent; phase shift keying, coherent; differential phase shift keying");
   in.read("bit_rate_bps", bit_rate_bps, sim::between(1e-3, 1e9), "bits per second while it sends");
   in.read("coding_gain_dB", coding_gain_dB, sim::between(0, 60), "coding gain on Eb/N0");
+  // Packets.
   in.read("frame_bytes", frame_bytes, sim::between(1, 1 << 16), "bytes of a frame");
   in.read("frames", frames, sim::between(1, 256), "of a packet, at most");
   in.read("whole_frames", whole_frames, "a packet always takes the time of full frames, however few bytes they hold");
@@ -100,6 +103,7 @@ void AcousticModem::Params::read(sim::ParamReader& in) {
                   "longer messages are refused; all_frames: frames x frame_bytes");
   in.read("preamble_s", preamble_s, sim::between(0, 100), "of each packet, before its bits");
   in.read("header_bits", header_bits, sim::between(0, 1 << 16), "of each packet, beside those of the message");
+  // Behaviour and receiver.
   in.read("queue_messages", queue_messages, sim::at_least(1), "messages waiting to be sent; the oldest is dropped");
   in.read_or_word("synchronous_s", synchronous_s, sim::between(1e-3, 3600), {"at_once"},
                   "sending begins at a whole multiple of this (in UTC) by the vehicle's clock");
@@ -109,6 +113,7 @@ void AcousticModem::Params::read(sim::ParamReader& in) {
   in.read("receiver", receiver, "properties of its receiver");
   in.read("serial", serial, "pseudo-terminal or FIFO for programs that use no LCM");
   if (in.describing()) return;
+  // Check combinations of keys.
   if (bandwidth_Hz >= 2 * frequency_Hz)
     in.error("bandwidth_Hz", "'bandwidth_Hz' must be < 2 x frequency_Hz, got " + sim::number_text(bandwidth_Hz));
   if (max_message_bytes > frames * frame_bytes)

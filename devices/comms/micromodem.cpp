@@ -82,7 +82,7 @@ Micromodem::Micromodem(const Params& params, const sim::DeviceContext& context)
       now_(context.world.now()) {
   check_beacons(context);
   if (params.serial) serial_ = std::make_unique<SerialPort>(*params.serial, context);
-  take_address();  // last, because the destructor unregisters it
+  take_address();  // last, because the destructor removes it
   warn_of_address();
 }
 

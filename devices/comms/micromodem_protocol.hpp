@@ -107,7 +107,7 @@ class MicromodemProtocol : private MicromodemPending {
   struct Config {
     int address = 0;
     bool psk = true;           ///< has the co-processor for rates 1 to 6
-    bool synchronous = false;  ///< SNV is on at the start, and the clock is synchronised
+    bool synchronous = false;  ///< SNV is on at the start, and the clock is set
     std::string revision = "0.93.0.48";
     double frequency_Hz = 25000;
     double beacon_turnaround_s = 0.02;

@@ -24,6 +24,7 @@ bool turns_inside(double track_m, double wheelbase_m, double max_steering_rad) {
 }  // namespace
 
 void AckermannDrive::Params::read(sim::ParamReader& in) {
+  // Joints.
   in.require("left_steer_joint");
   in.read_reference("left_steer_joint", left_steer_joint, "joint", "steers the left front wheel; first axis up");
   in.require("right_steer_joint");
@@ -31,12 +32,14 @@ void AckermannDrive::Params::read(sim::ParamReader& in) {
   in.require("drive_joints");
   in.read_references("drive_joints", drive_joints, "joint", "joints of the driven wheels, axes to the left");
   if (in.has("drive_joints") && drive_joints.empty()) in.error("drive_joints", "'drive_joints' must name a joint");
+  // Geometry.
   in.read("wheelbase_m", wheelbase_m, sim::above(0), "from rear to front axle; unset: as the wheels are");
   in.read("track_m", track_m, sim::above(0),
           "between the axes that the front wheels are steered about; unset: as the joints are");
   in.read("wheel_radius_m", wheel_radius_m, sim::above(0), "radius of the driven wheels; unset: as in the vehicle");
   in.read("differential", differential,
           "each driven wheel turns at the speed of its own path; false: all at the same speed");
+  // Limits.
   in.read("max_speed_mps", max_speed_mps, sim::above(0), "maximum speed");
   in.read("max_acceleration_mps2", max_acceleration_mps2, sim::above(0), "of the speed");
   in.read("max_torque_Nm", max_torque_Nm, sim::above(0), "maximum torque of the motor of each driven wheel");

@@ -25,7 +25,7 @@ const sim::BodyConfig* body_named(const sim::VehicleConfig& vehicle, const std::
   return nullptr;
 }
 
-/// Returns whether a part is rotationally symmetric about the axis.
+/// Returns whether a part has rotational symmetry about the axis.
 bool is_round(const sim::PartConfig& part, const sim::Matrix3d& R_VB, const sim::Vector3d& axis_V) {
   if (part.shape == sim::PartShape::sphere) return true;
   if (!sim::shape_info(part.shape).round) return false;

@@ -15,7 +15,7 @@ class ThreadPool {
   explicit ThreadPool(int threads);
   ~ThreadPool();
   int threads() const;
-  /// Calls work(0) to work(count - 1) and returns when all calls have returned.  Rethrows an exception of one of them.
+  /// Calls work(0) to work(count - 1) and returns when all calls have returned.  Throws an exception of one of them.
   void for_each(std::size_t count, const std::function<void(std::size_t)>& work);
 
  private:

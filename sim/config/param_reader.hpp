@@ -86,7 +86,7 @@ class ParamReader {
   requires std::is_enum_v<Enum>
   void read_choice(const char* key, Enum& value, const std::type_identity_t<ChoiceWords<Enum>>& words,
                    const char* meaning);
-  /// Reads one word of an enum, or `word_of_none`, listed first, which unsets `value`.
+  /// Reads one word of an enum, or `word_of_none`, listed first, which clears `value`.
   template <typename Enum>
   requires std::is_enum_v<Enum>
   void read_choice(const char* key, std::optional<Enum>& value, const char* word_of_none,

@@ -40,6 +40,7 @@ void DeviceConfig::read(ParamReader& in) {
     place = in.node()->place;
     source = std::make_shared<const ConfigNode>(*in.node());
   }
+  // Find the device type.
   if (const ConfigNode* node = in.child("type"); node != nullptr) {
     device_type = DeviceRegistry::instance().find(node->scalar);
     if (device_type == nullptr) {
@@ -55,6 +56,7 @@ void DeviceConfig::read(ParamReader& in) {
     }
     rate_hz = device_type->default_rate_hz;
   }
+  // Read the common keys and those of the type.
   read_common(in);
   if (device_type == nullptr) return;
   if (device_type->is_actuator()) read_actuator(in, *device_type);

@@ -108,6 +108,7 @@ void EventQueue::for_each(const Use& use) const {
 void EventQueue::visit_state(StateArchive& archive) {
   archive.unhashed(reached_, next_sequence_);
   if (archive.restoring()) {
+    // Restore into an empty queue.
     std::vector<Event> events;
     archive(events);
     const std::int64_t reached = reached_;
@@ -121,6 +122,7 @@ void EventQueue::visit_state(StateArchive& archive) {
     }
     return;
   }
+  // Hash or save the events, sorted by time of delivery.
   std::vector<Entry> ordered;
   ordered.reserve(size_);
   for_each([&](const Entry& entry) { ordered.push_back(entry); });

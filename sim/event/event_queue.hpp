@@ -37,8 +37,8 @@ class EventQueue {
   void schedule(Event event);
   /// Removes the next event that is due at or before `now`; returns false when there is none.
   bool take_due(Time now, Event& event);
-  /// Returns the stamp of an event about `events` places ahead, if it belongs to this device: a hint to prefetch its
-  /// memory, which may be absent.
+  /// Returns the stamp of an event about `events` places ahead, if it belongs to this device: a hint for prefetching
+  /// its memory, which may be absent.
   std::optional<Time> stamp_ahead(std::size_t events, int device) const {
     if (next_ + events >= sorted_.size() || sorted_[next_ + events].device != device) return std::nullopt;
     return sorted_[next_ + events].stamp;

@@ -92,6 +92,7 @@ ConfigNode node_of(const ArgDeclaration& arg) {
 
 /// Reads a list of lists of argument names.
 void read_groups(ParamReader& in, const char* key, std::vector<std::vector<std::string>>& groups, const char* meaning) {
+  // Check the default like a given value.
   ParamInfo info;
   info.key = key;
   info.type = "list of lists of text";
@@ -163,6 +164,7 @@ void ArgDeclaration::read(ParamReader& in) {
                          shortened(printable(name)) + "'");
   in.require("type");
   in.read_choice("type", type, arg_type_words, "what the value is");
+  // Allowed values.
   std::optional<double> min, max;
   in.read("min", min, any_number(), "the least number allowed");
   in.read("max", max, any_number(), "the largest number allowed");
@@ -171,6 +173,7 @@ void ArgDeclaration::read(ParamReader& in) {
   in.read("choices", choices, "words of a choice");
   in.read("columns", columns, "names of the numbers of a tuple, with their units unless the name has one");
   in.read("min_columns", min_columns, at_least(1), "the columns after these may be left out; unset: none may");
+  // Use of the argument.
   in.read("required", required, "the program cannot do without it");
   in.read("needs", needs, "arguments that must be given with this one");
   in.read("meaning", meaning, "one line for people");

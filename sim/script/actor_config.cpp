@@ -28,6 +28,7 @@ void ActorConfig::read(ParamReader& in) {
   in.read_name("name", name, "name of the actor, unique in the world");
   in.require("object");
   in.read_reference("object", object, "object", "the object that it moves");
+  // Path.
   in.read_choice("path", path,
                  {{"waypoints", PathKind::waypoints}, {"spline", PathKind::spline}, {"timed", PathKind::timed}},
                  "straight lines; a smooth curve through the points; poses at times");
@@ -38,6 +39,7 @@ void ActorConfig::read(ParamReader& in) {
   Vector3d fixed_rpy_rad = Vector3d::Zero();
   in.read_deg("rpy_deg", fixed_rpy_rad, "waypoints, spline: kept all the way; unset: it heads along the path");
   if (in.has("rpy_deg")) rpy_rad = fixed_rpy_rad;
+  // Motion along the path.
   in.read("speed_mps", speed_mps, above_to(0, 1000), "waypoints, spline: along the path");
   in.read_choice("ends", ends, {{"loop", PathEnds::loop}, {"bounce", PathEnds::bounce}, {"stop", PathEnds::stop}},
                  "at the end: continue with the first point, return along the path, or stop");

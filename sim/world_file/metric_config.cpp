@@ -46,6 +46,7 @@ void MetricConfig::read(ParamReader& in) {
   in.require("name");
   in.read_name("name", name,
                "name of the metric; gives NAME.FIGURE for each figure of its type, see docs/guides/scoring.md");
+  // Report files of version 0.1.
   if (!in.describing() && !in.has("type")) {
     in.error("missing key 'type'; write 'type: " + type_of_old_files + "'");
     // Further errors, of keys and of rules that name its figures, would obscure this one.
@@ -62,6 +63,7 @@ void MetricConfig::read(ParamReader& in) {
     for (ParamInfo& info : merged_keys(types)) in.describe(std::move(info));
     return;
   }
+  // Read the keys of the type.
   kind = registry.find(type);
   if (kind == nullptr) return;
   const std::shared_ptr<MetricParams> own = kind->make_params();

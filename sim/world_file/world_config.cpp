@@ -187,6 +187,7 @@ void read_script(ParamReader& in, WorldConfig& world) {
 }  // namespace
 
 void WorldConfig::read(ParamReader& in) {
+  // Identification.
   in.require("shoal");
   in.read("shoal", shoal, between(1, 1), "version of the file format");
   in.read("name", name, "name of the world");
@@ -195,6 +196,7 @@ void WorldConfig::read(ParamReader& in) {
   in.read("epoch", epoch, "UTC of simulated time 0, as 2026-01-01T00:00:00Z");
   if (!parse_utc(epoch, epoch_us))
     in.error("epoch", "'epoch' must be a UTC time such as 2026-01-01T00:00:00Z, got '" + epoch + "'");
+  // Environment and surfaces.
   in.read("physics", physics, "how bodies move");
   in.read("medium", medium, "water and air, see docs/models/medium.md");
   in.read("acoustics", acoustics, "how the water carries sound between devices, see docs/models/acoustics.md");
@@ -208,11 +210,13 @@ void WorldConfig::read(ParamReader& in) {
   for (const std::string& category : categories) in.declare("category", category);
   if (categories.size() > 30) in.error("categories", "'categories' must have at most 30 names");
   in.read("light", light, "sun and sky, for images; see docs/models/cameras.md");
+  // Run and channels.
   in.read("channels", channels, "names of the channels");
   in.read("run", run, "defaults of a run, which the command line can override");
   in.read_or_word("state_rate_hz", state_rate_hz, above_to(0, 1e6), {"never"}, "of sim.state and sim.clock");
   in.read_paths("plugins", plugins,
                 "libraries with devices, beside this file or installed; only with --launch or --plugin");
+  // Objects, buses and vehicles, with the names that scripts use.
   in.read_list("objects", objects, "object", "objects: bodies without devices");
   for (const ObjectConfig& object : objects) in.declare("object", object.name);
   in.read_list("buses", buses, "bus", "separate buses, for vehicles that communicate by modem only");
@@ -226,11 +230,13 @@ void WorldConfig::read(ParamReader& in) {
     if (entry.count == 1) in.declare("vehicle", entry.name);
     for (int i = 1; entry.count > 1 && i <= entry.count; ++i) in.declare("vehicle", entry.name + std::to_string(i));
   }
+  // Script, programs and limits.
   read_script(in, *this);
   in.read_list("processes", processes, "process", "external programs, started only with --launch");
   for (const ProcessConfig& process : processes) in.declare("process", process.name);
   in.read("lockstep", lockstep, "waiting for clients");
   in.read("limits", limits, "limits of additions during the run");
+  // Metrics and pass rules.
   declare_metrics(in);
   in.read_list("metrics", metrics, "metric", "figures that score the run");
   for (const MetricConfig& metric : metrics) in.declare("metric", metric.name);

@@ -63,7 +63,7 @@ class Client {
     std::uint64_t asked_for = 0;  ///< in lockstep: lost messages that were received on request
     std::uint64_t repeated = 0;   ///< in lockstep: duplicate messages
   };
-  /// Handler of an undecoded payload.
+  /// Handler of an encoded payload.
   using BytesHandler = std::function<void(std::span<const std::byte>)>;
 
   /// `name`: name of the program, under which the simulator waits for it.  `lcm_url` "": LCM_DEFAULT_URL, or the
@@ -82,7 +82,7 @@ class Client {
       handler(shoal::decode<Message>(payload, numbers));
     });
   }
-  /// Calls `handler` with the undecoded payload of each message of this channel.
+  /// Calls `handler` with the encoded payload of each message of this channel.
   void subscribe_bytes(const std::string& channel, BytesHandler handler);
 
   /// Publishes a message immediately; in lockstep, messages published before the first tick are delayed until that
