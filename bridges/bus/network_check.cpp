@@ -138,7 +138,7 @@ Finding check_buffers() {
   return finding;
 }
 
-/// Returns the inode numbers of the UDP sockets bound to the port.
+/// Returns the identifiers of the UDP sockets bound to the port.
 std::set<std::string> sockets_on_port(int port) {
   std::set<std::string> inodes;
   std::ifstream table("/proc/net/udp");

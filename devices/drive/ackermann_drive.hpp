@@ -10,7 +10,7 @@
 
 namespace devices {
 
-/// Ackermann drive: two steered front wheels and driven wheels, as on a car.  All wheels are perpendicular to the lines
+/// Car-like drive: two steered front wheels and driven wheels, as on a car.  All wheels are perpendicular to the lines
 /// to one turning centre on the line of the rear axle: for the steering angle d of a virtual wheel in the middle of the
 /// front axle, wheelbase L and track t, tan d_left = L tan d / (L - t/2 tan d), with + for the right wheel (Rajamani,
 /// Vehicle Dynamics and Control, 2nd ed., 2012).
