@@ -84,7 +84,7 @@ std::string cpp_name(const MessageSchema& schema) {
   return replaced(schema.name, ".", "::");
 }
 
-/// In the namespace of the type, where the codec finds it.
+/// Returns the namespace of the type, in which the codec finds the check.
 std::string namespace_of(const MessageSchema& schema) {
   return replaced(schema.name.substr(0, schema.name.rfind('.')), ".", "::");
 }
@@ -116,7 +116,7 @@ void write_length_checks(std::ostream& out, const std::vector<const MessageSchem
   }
 }
 
-/// Throws MessageError when a file cannot be read.
+/// Reads the arguments and files.  Throws MessageError when a file cannot be read.
 Input read_input(int argc, char** argv) {
   Input input;
   for (int i = 3; i < argc; ++i) {

@@ -74,8 +74,9 @@ bool OtherSimulators::is_answered(Link& link) const {
   return false;
 }
 
-/// Of two runs that start at the same time, the one with the smaller number continues.  A run that receives a request
-/// may have sent its own before the other one listened, so it sends it again.
+/// Answers the requests of other starting runs.  Of two runs that start at the same time, the one with the smaller
+/// number continues.  A run that receives a request may have sent its own before the other one listened, so it sends it
+/// again.
 bool OtherSimulators::answer_requests(Link& link) {
   bool met = false;
   while (const auto question = take_valid<shoal::sim_control_request_t>(*link.requests)) {

@@ -19,7 +19,7 @@ namespace {
 
 /// Maximum number of client summaries; at most 1000 clients are in the lockstep at the same time.
 constexpr std::size_t max_summaries = 2000;
-/// Of sim::ClientMessages.
+/// Interval of the windows of sim::ClientMessages.
 constexpr milliseconds delivery_window{50};
 
 }  // namespace
@@ -150,6 +150,7 @@ LockstepOutcome LockstepService::synchronize(const Wait& wait, const std::functi
     std::vector<std::string> names = late();
     if (names.empty()) break;
     if (!idle() || control_.quit) return LockstepOutcome::stopped;
+    // Send new ticks and repetitions.
     if (lockstep_.abandoned().empty()) lockstep_.send_request(world_.step_number());
     names = late();  // some may have joined or left
     serve(names);
@@ -223,6 +224,7 @@ void LockstepService::rest_time_outs(Clock::time_point now) {
 
 void LockstepService::serve(const std::vector<std::string>& late) {
   rest_time_outs(Clock::now());
+  // Check the time-outs, and repeat requests with back-off.
   std::vector<std::string> to_tick;
   for (const std::string& client : late) {
     const Clock::time_point now = Clock::now();

@@ -94,6 +94,7 @@ void MicromodemProtocol::restart(sim::Time up) {
 
 void MicromodemProtocol::tick(sim::Time now) {
   detect_pulse(now);
+  // Send due sentences and the revision to the host.
   while (!due_.empty() && due_.front().at <= now) {
     const std::string body = std::move(due_.front().body);
     due_.erase(due_.begin());
@@ -106,6 +107,7 @@ void MicromodemProtocol::tick(sim::Time now) {
     next_revision_ = now + sim::from_seconds(revision_period_s);
     starting_ = false;
   }
+  // Handle time-outs of the host, of packets and of pings.
   if (cycle_ && now >= cycle_->deadline) {
     ++errors_;
     side_.emit("CAERR," + time_of_day(now) + ",DATA_TIMEOUT," + std::to_string(cycle_->gathered.size() + 1));
@@ -126,11 +128,13 @@ void MicromodemProtocol::tick(sim::Time now) {
 }
 
 MicromodemSide::Sound MicromodemProtocol::send(const MicromodemPacket& packet, sim::Time at, bool on_the_second) {
+  // Transmit after the previous packet.
   const auto sound = side_.transmit(packet, std::max(at, sending_until_), on_the_second);
   sending_until_ = std::max(sending_until_, sound.end);
   const auto& rate = micromodem_rates()[static_cast<std::size_t>(packet.is_short() ? 0 : packet.rate)];
   const int bytes = packet.kind == Kind::data ? packet.data_bytes() : 2;
   const auto frames = packet.frames.size();
+  // Report start and end of the transmission to the host.
   if (settings_.on("TXP")) emit_later(sound.begin, "CATXP," + std::to_string(bytes));
   if (settings_.on("TXF")) emit_later(sound.end, "CATXF," + std::to_string(bytes));
   if (!settings_.on("XST")) return sound;
@@ -170,6 +174,7 @@ void MicromodemProtocol::send_cycle(sim::Time now) {
   const bool announced = cycle_->announced;
   cycle_.reset();
   sim::Time at = now;
+  // Announce data of rate 0.
   if (packet.rate == 0 && !announced) {
     MicromodemPacket init = packet;
     init.kind = Kind::cycle_init;

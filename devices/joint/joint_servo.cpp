@@ -76,6 +76,7 @@ JointServo::JointServo(const Params& params, const sim::DeviceContext& context)
   const sim::JointAxisConfig& axis = params.axis == 0 ? joint.axis1 : joint.axis2;
   low_stop_ = axis.low_stop;
   high_stop_ = axis.high_stop;
+  // Check the range of the servo against the stops of the joint.
   using sim::number_text;
   if (params.low && high_stop_ && *params.low > *high_stop_)
     refuse(context, "'low' is outside the joint's stops: " + number_text(*params.low) + " is above 'high_stop', " +
@@ -139,6 +140,7 @@ void JointServo::act(const sim::ActContext& context) {
   if (vehicle_.systems().metered) joint_.measure_load();
   const double max_effort = mode_ == Mode::coast ? 0 : context.effectiveness * params_.max_effort;
   applied_ = 0;
+  // Effort command, or no effort.
   if (max_effort == 0 || mode_ == Mode::effort) {
     joint_.set_motor(0, 0, params_.axis);
     follows_ = true;

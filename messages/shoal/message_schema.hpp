@@ -65,7 +65,7 @@ struct LcmSource {
 /// Complete set of types: the types of all members are in it.
 class MessageTypes {
  public:
-  /// Throws MessageError, `file:line:col: ...`.
+  /// Parses the sources.  Throws MessageError, `file:line:col: ...`.
   explicit MessageTypes(std::span<const LcmSource> sources);
   MessageTypes(MessageTypes&&) = default;
   MessageTypes& operator=(MessageTypes&&) = default;

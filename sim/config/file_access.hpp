@@ -42,7 +42,7 @@ class FileAccess {
   bool ignores_ports_ = false;
 };
 
-/// Null: any file.
+/// Shared rules; null: any file.
 using FileAccessPointer = std::shared_ptr<const FileAccess>;
 
 }  // namespace sim

@@ -9,7 +9,7 @@ namespace sim {
 /// or the checkout of its build folder.  Empty: there is none.
 std::string shipped_folder();
 
-/// The same for a program in `program_folder`, such as `/usr/local/bin` or `checkout/build/release/bin`.
+/// Returns that folder for a program in `program_folder`, such as `/usr/local/bin` or `checkout/build/release/bin`.
 std::string shipped_folder_of(const std::string& program_folder);
 
 }  // namespace sim

@@ -39,7 +39,7 @@ struct LeaveTerms {
   void read(ParamReader& in);
 };
 
-/// Throws ConfigError.
+/// Reads the `text` of a leave.  Throws ConfigError.
 LeaveTerms read_leave_terms(const std::string& text);
 
 /// The `text` of `follow`, a YAML map.
@@ -48,7 +48,7 @@ struct FollowTerms {
   void read(ParamReader& in);
 };
 
-/// Throws ConfigError.
+/// Reads the `text` of a follow.  Throws ConfigError.
 FollowTerms read_follow_terms(const std::string& text);
 
 /// Returns the session in the `text` of a `join`, `leave` or `follow`; 0: there is none, the text is invalid, or the

@@ -53,7 +53,7 @@ class StateArchive {
  public:
   /// Makes an archive that hashes; result in hash() and parts().
   static StateArchive hasher() { return StateArchive(Purpose::hash); }
-  /// The same without parts(), for callers that need hash() only.
+  /// Makes an archive that hashes without parts(), for callers that need hash() only.
   static StateArchive quick_hasher() {
     StateArchive archive(Purpose::hash);
     archive.keeps_parts_ = false;

@@ -83,13 +83,13 @@ class World {
   const Geodesy& geodesy() const { return geodesy_; }
 
   std::span<const std::unique_ptr<Vehicle>> vehicles() const { return entities_.vehicles(); }
-  /// Null when there is none.
+  /// Returns a vehicle by name; null when there is none.
   const Vehicle* find_vehicle(const std::string& name) const { return entities_.find_vehicle(name); }
   /// Returns the devices in the order of their numbers; null where a device was removed.
   std::span<const std::unique_ptr<MountedDevice>> devices() const;
   /// Returns a device by vehicle and device name, such as `auv1/imu`; null when there is none.
   MountedDevice* find_device(const std::string& full_name) const { return entities_.find_device(full_name); }
-  /// Null when there is none.
+  /// Returns an object by name; null when there is none.
   const WorldObject* find_object(const std::string& name) const { return entities_.find_object(name); }
   /// Returns the objects by name.
   const std::map<std::string, WorldObject, std::less<>>& objects() const { return entities_.objects(); }
