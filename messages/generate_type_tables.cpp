@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Runs while building.  Writes, from the .lcm files, a .cpp that holds their texts and a header that checks
-// array lengths before encoding.  With --known FILE... the first files are a plugin's own, and those after --known
-// are Shoal's, which they may use.
+// Generator that runs during the build.  From the .lcm files it writes a .cpp with their texts and a header that checks
+// array lengths before encoding.  With --known FILE... the first files belong to a plugin, and those after --known are
+// the ones of Shoal, which they may use.
 #include <fstream>
 #include <iostream>
 #include <set>
@@ -23,7 +23,7 @@ std::string replaced(std::string text, const std::string& what, const std::strin
   return text;
 }
 
-/// What the tables are made of.
+/// Sources of the tables.
 struct Input {
   std::vector<LcmSource> own;
   std::vector<LcmSource> known;  ///< of Shoal, when `own` belongs to a plugin
@@ -84,7 +84,7 @@ std::string cpp_name(const MessageSchema& schema) {
   return replaced(schema.name, ".", "::");
 }
 
-/// In the namespace of the type, where the codec finds it.
+/// Returns the namespace of the type, in which the codec finds the check.
 std::string namespace_of(const MessageSchema& schema) {
   return replaced(schema.name.substr(0, schema.name.rfind('.')), ".", "::");
 }
@@ -116,7 +116,7 @@ void write_length_checks(std::ostream& out, const std::vector<const MessageSchem
   }
 }
 
-/// Throws MessageError when a file cannot be read.
+/// Reads the arguments and files.  Throws MessageError when a file cannot be read.
 Input read_input(int argc, char** argv) {
   Input input;
   for (int i = 3; i < argc; ++i) {

@@ -5,7 +5,7 @@
 
 namespace bridges {
 
-/// A bus or a log that cannot be used; the text says why and what to do.
+/// Error of a bus or a log that cannot be used; the text has the reason and the remedy.
 class BusError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -7,7 +7,7 @@
 
 namespace bridges {
 
-/// A file that closes itself.
+/// File descriptor that is closed on destruction.
 class FileDescriptor {
  public:
   explicit FileDescriptor(int number = -1) : number_(number) {}

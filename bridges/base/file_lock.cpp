@@ -26,7 +26,7 @@ std::string command_of(long process) {
   return text.size() > max_length ? text.substr(0, max_length) + "..." : text;
 }
 
-/// By /proc/locks: `1: FLOCK  ADVISORY  WRITE 1234 fd:00:5678 0 EOF`.
+/// Returns the owner of a lock from /proc/locks: `1: FLOCK  ADVISORY  WRITE 1234 fd:00:5678 0 EOF`.
 std::string owner_of(int file) {
   struct stat status {};
   if (fstat(file, &status) != 0) return "another process";
@@ -55,7 +55,7 @@ std::optional<std::string> lock_against_others(int file) {
   int failed = 0;
   do failed = flock(file, LOCK_EX | LOCK_NB);
   while (failed != 0 && errno == EINTR);
-  // Where a file system has no locks, things are as they were without them.
+  // A file system without locks gives no protection.
   if (failed == 0 || errno != EWOULDBLOCK) return std::nullopt;
   return owner_of(file);
 }

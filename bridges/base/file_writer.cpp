@@ -46,7 +46,7 @@ void FileWriter::write_all() {
     if (next_.used == 0) return;
     std::swap(next_, block);
     busy_ = true;
-    const bool lost = error_ != 0;  // it waited while an earlier one failed
+    const bool lost = error_ != 0;  // a write failed while this block was pending
     lock.unlock();
     changed_.notify_all();
     const int error = lost || write(block) ? 0 : (errno != 0 ? errno : EIO);

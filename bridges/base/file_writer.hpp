@@ -11,25 +11,25 @@
 
 namespace bridges {
 
-/// Writes a file on its own thread, in order.  The caller waits only while two blocks are pending: the disk is
-/// then too slow, and nothing may be lost.
+/// Writer of a file in its own thread, in order.  The caller blocks only while two blocks are pending, when the disk is
+/// too slow, because no data may be lost.
 class FileWriter {
  public:
   struct Block {
     std::vector<std::byte> bytes;
-    std::size_t used = 0;  ///< of them, from the first on
+    std::size_t used = 0;  ///< number of used bytes, from the first
   };
 
   explicit FileWriter(FileDescriptor file);
-  /// Writes what was handed over.
+  /// Writes the pending blocks.
   ~FileWriter();
   FileWriter(const FileWriter&) = delete;
   FileWriter& operator=(const FileWriter&) = delete;
 
-  /// Takes the block, and returns an empty one that reuses memory.  False when an earlier write failed; errno has the
-  /// reason.  Nothing is written after that.
+  /// Takes the block, and replaces it by an empty one that reuses memory.  Returns false when an earlier write failed;
+  /// errno has the reason.  Nothing is written after that.
   bool hand_over(Block& block);
-  /// Waits until all is written.  False when the write failed; errno has the reason.
+  /// Waits until everything is written.  Returns false when a write failed; errno has the reason.
   bool finish();
 
  private:
@@ -39,8 +39,8 @@ class FileWriter {
   FileDescriptor file_;
   std::mutex mutex_;
   std::condition_variable changed_;
-  Block next_;         // handed over; empty when nothing waits
-  bool busy_ = false;  // the thread writes
+  Block next_;         // pending block; empty when there is none
+  bool busy_ = false;  // the thread is writing
   bool ending_ = false;
   int error_ = 0;       // errno of the first failure
   std::thread thread_;  // last: it uses all of the above

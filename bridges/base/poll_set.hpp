@@ -6,11 +6,11 @@
 
 namespace bridges {
 
-/// Waits for file descriptors.  When several sets hold the same descriptor, only one wakes: of the waiting ones, the
-/// one that has held it longest.
+/// Set of file descriptors to wait for.  When several sets hold the same descriptor, only one wakes: the waiting set
+/// that has held it longest.
 class PollSet {
  public:
-  /// Throws BusError when no file descriptor is left.
+  /// Throws BusError when no file descriptor is available.
   PollSet();
   ~PollSet();
   PollSet(const PollSet&) = delete;
@@ -22,10 +22,10 @@ class PollSet {
     std::size_t count = 0;
   };
 
-  /// `tag` comes back from wait().  Throws BusError.
+  /// Adds a descriptor.  `tag`: returned by wait().  Throws BusError.
   void add(int fd, void* tag);
   void remove(int fd);
-  /// Those that can be read; none on time-out or signal.  Negative: no time-out.
+  /// Waits for readable descriptors and returns them; none on time-out or signal.  Negative timeout: unlimited.
   Readable wait(std::chrono::milliseconds timeout);
 
  private:

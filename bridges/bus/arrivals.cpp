@@ -34,7 +34,7 @@ void Arrivals::remove(Port& port) {
 
 void Arrivals::arrived() {
   count_.fetch_add(1);
-  // Who falls asleep now sees the new count.
+  // A thread that falls asleep now reads the new count.
   if (!asleep_.load() || !asleep_.exchange(false)) return;
   const std::uint64_t one = 1;
   [[maybe_unused]] const auto written = write(wake_fd_, &one, sizeof one);

@@ -10,31 +10,31 @@
 
 namespace bridges {
 
-/// Lets one thread sleep until a message comes on any of the buses that share this.  That thread sends what the buses
-/// have queued before it sleeps, and receives for them: no other thread delays the answer.  A bus that
-/// may block does both itself, and is only told when to send.
+/// Wait condition of one thread for a message on any of several buses.  Before it sleeps, that thread sends the queued
+/// messages of the buses, and it receives for them, so that no other thread delays the answer.  A bus that may block
+/// does both itself, and is only notified when to send.
 class Arrivals {
  public:
-  /// A bus, as the thread that waits sees it.
+  /// Interface of a bus for the waiting thread.
   class Port {
    public:
-    /// Sends, or begins to.
+    /// Sends the queued messages, or starts to send them.
     virtual void send_queued() = 0;
-    /// Delivers what has arrived to the mailboxes.  False: no further messages will arrive.
+    /// Delivers received messages to the mailboxes.  Returns false when no further messages will arrive.
     virtual bool receive() = 0;
 
    protected:
     ~Port() = default;
   };
 
-  /// Throws BusError when no file descriptor is left.
+  /// Throws BusError when no file descriptor is available.
   Arrivals();
   ~Arrivals();
   Arrivals(const Arrivals&) = delete;
   Arrivals& operator=(const Arrivals&) = delete;
 
-  /// While it lives the thread that waits serves `port`, which can receive when `fd` is readable; negative: it receives
-  /// by itself.  Made and destroyed by that thread.
+  /// Registration of a port.  While it exists, the waiting thread serves `port`, which can receive when `fd` is
+  /// readable; negative: the port receives by itself.  Must be created and destroyed by that thread.
   class Place {
    public:
     Place(Arrivals& arrivals, Port& port, int fd) : arrivals_(arrivals), port_(port) { arrivals.add(port, fd); }
@@ -47,10 +47,10 @@ class Arrivals {
     Port& port_;
   };
 
-  /// A message is in its mailbox.  From any thread.
+  /// Notifies that a message is in its mailbox.  Thread-safe.
   void arrived();
-  /// By one thread.  Sleeps until a message arrived after the last call returned; at once if one did already.  False on
-  /// time-out.
+  /// Waits until a message has arrived since the last call returned; returns immediately when one has.  Returns false
+  /// on time-out.  For one thread.
   bool wait(std::chrono::milliseconds timeout);
 
  private:

@@ -22,34 +22,35 @@
 #include "bridges/bus/outgoing_sender.hpp"
 
 namespace bridges {
-/// What LcmBus is made of; named, for LcmBus::Threads holds it.
+/// Parts of LcmBus; not in an unnamed namespace, because LcmBus::Threads contains it.
 namespace lcm_bus {
 
 constexpr std::size_t max_echoes = 4096;
 
 class ChannelMailbox;
 
-/// The mailboxes of one channel.  They share one LCM subscription, which ends with the last of them; the channel stays,
-/// for LCM's thread may just be about to use it.
+/// Mailboxes of one channel.  They share one LCM subscription, which ends with the last of them; the channel object
+/// remains, because the LCM thread may be about to use it.
 struct Channel {
   Channel(std::string channel_name, std::function<void()> on_arrival, std::function<void(Channel&)> on_unused)
       : name(std::move(channel_name)), arrived(std::move(on_arrival)), unused(std::move(on_unused)) {}
 
-  /// From the network.  What we sent ourselves and comes back is dropped: deliver_own() gave it out already.
+  /// Delivers a message from the network.  Echoes of own messages are dropped, because deliver_own() has delivered them
+  /// already.
   void deliver(std::span<const std::byte> payload);
-  /// At once, so that what the world tells itself arrives at the same step in every run.
+  /// Delivers an own message immediately, so that messages of the world to itself arrive at the same step in every run.
   void deliver_own(std::span<const std::byte> payload);
 
-  /// With the lock held.
+  /// Requires the lock.
   void give_out(sim::Message message);
 
   const std::string name;
   const std::function<void()> arrived;
   const std::function<void(Channel&)> unused;
   LcmSubscription* subscription = nullptr;
-  std::mutex mutex;  // also guards what is in the mailboxes
+  std::mutex mutex;  // also protects the contents of the mailboxes
   std::vector<ChannelMailbox*> mailboxes;
-  std::deque<std::size_t> echoes;  // hashes of what we sent and may receive again
+  std::deque<std::size_t> echoes;  // hashes of own messages whose echo is expected
   std::atomic<std::uint64_t> received = 0;
   std::atomic<std::uint64_t> dropped = 0;
 };
@@ -73,7 +74,7 @@ class ChannelMailbox final : public sim::Mailbox {
   }
 
   std::optional<sim::Message> take() override {
-    // Most mailboxes are empty in most steps; that is seen without the lock.
+    // Most mailboxes are empty in most steps: check that without the lock.
     if (size_.load(std::memory_order_acquire) == 0) return std::nullopt;
     const std::lock_guard lock(channel_.mutex);
     sim::Message message = std::move(messages_.front());
@@ -90,7 +91,7 @@ class ChannelMailbox final : public sim::Mailbox {
     flag_ = std::move(flag);
   }
 
-  /// With the channel's lock held.
+  /// Requires the lock of the channel.
   void add(sim::Message message) {
     if (messages_.size() == capacity_) {
       messages_.pop_front();
@@ -107,7 +108,7 @@ class ChannelMailbox final : public sim::Mailbox {
   const std::size_t capacity_;
   std::deque<sim::Message> messages_;
   std::atomic<std::size_t> size_ = 0;
-  std::shared_ptr<std::atomic<bool>> flag_;  // guarded by the channel's lock
+  std::shared_ptr<std::atomic<bool>> flag_;  // protected by the lock of the channel
   std::atomic<std::uint64_t> dropped_ = 0;
 };
 
@@ -119,7 +120,7 @@ void Channel::deliver(std::span<const std::byte> payload) {
   {
     const std::lock_guard lock(mutex);
     if (!echoes.empty()) {
-      // The network keeps the order, so those before the one that came back are lost.
+      // The network keeps the order, so echoes before the received one are lost.
       const auto echo = std::find(echoes.begin(), echoes.end(), hash_of(payload));
       if (echo != echoes.end()) {
         echoes.erase(echoes.begin(), echo + 1);
@@ -165,7 +166,7 @@ struct LcmBus::Threads final : Arrivals::Port {
         stop_fd(eventfd(0, EFD_CLOEXEC)) {
     if (stop_fd < 0) throw BusError("no file descriptor is available for the bus");
     if (!options.arrivals) options.arrivals = std::make_shared<Arrivals>();
-    // Before the receiver: of the two the first wakes.
+    // Added before the receiver: the first of the two wakes.
     place.emplace(*options.arrivals, *this, connection.may_block() ? -1 : connection.fd());
     readable.add(connection.fd(), this);
     readable.add(stop_fd, nullptr);
@@ -234,14 +235,14 @@ struct LcmBus::Threads final : Arrivals::Port {
     while (!stopping) {
       const bool something_came = readable.wait(pauses.wait()).count > 0;
       if (stopping || (something_came && !receive())) return;
-      // A thread that waits for messages receives them at once all the same.
+      // A thread that waits for messages still receives them immediately.
       if (pauses.due(something_came)) wait_readable(stop_fd, -1, GatherPauses::length);
     }
   }
 
   bool receive() override {
     const std::lock_guard lock(receive_mutex);
-    // Once: then a thread that waits looks at its mailboxes, while what came is in the cache.
+    // Notify once: a waiting thread then reads its mailboxes while the messages are in the cache.
     if (connected && connection.handle() == LcmConnection::Handled::lost) {
       connected = false;
       spdlog::warn("the connection to {} is lost; messages are dropped from now on", connection.url());
@@ -250,7 +251,7 @@ struct LcmBus::Threads final : Arrivals::Port {
   }
 
   LcmBusOptions options;
-  std::map<std::string, std::unique_ptr<Channel>, std::less<>> channels;  // outlives the connection's handlers
+  std::map<std::string, std::unique_ptr<Channel>, std::less<>> channels;  // outlives the handlers of the connection
   LcmConnection connection;
   std::mutex transmit_mutex, receive_mutex;
   mutable std::mutex channels_mutex;
@@ -259,7 +260,7 @@ struct LcmBus::Threads final : Arrivals::Port {
   std::atomic<bool> warned_of_size = false;
   std::atomic<std::uint64_t> published = 0;
   std::atomic<std::uint64_t> refused = 0;
-  OutgoingSender outgoing;  // its thread uses what is above
+  OutgoingSender outgoing;  // its thread uses the members above
   std::optional<Arrivals::Place> place;
   PollSet readable;
   int stop_fd = -1;
@@ -282,7 +283,7 @@ void LcmBus::publish(std::string_view channel, std::span<const std::byte> payloa
                    threads_->options.max_message_bytes);
     return;
   }
-  // Before it goes out: the echo must not overtake it.
+  // Deliver before sending: the echo must not arrive first.
   if (Channel* own = threads_->find_channel(channel)) own->deliver_own(payload);
   threads_->outgoing.push(channel, payload);
 }

@@ -5,7 +5,7 @@
 
 namespace bridges {
 
-/// Of the LCM library, such as `1.3.1`.
+/// Returns the version of the LCM library, such as `1.3.1`.
 std::string lcm_version();
 
 }  // namespace bridges

@@ -37,7 +37,7 @@ struct Route {
   unsigned prefix_bits = 0;
 };
 
-/// The most special route to the group, as the kernel would choose it.
+/// Returns the most specific route to the group, as the kernel would choose it.
 std::optional<Route> route_to(in_addr_t group) {
   std::ifstream table("/proc/net/route");
   std::string line;
@@ -48,7 +48,7 @@ std::optional<Route> route_to(in_addr_t group) {
     std::string interface, skip;
     in_addr_t destination = 0, mask = 0;
     unsigned flags = 0;
-    // interface destination gateway flags refcnt use metric mask; addresses as the memory holds them
+    // columns: interface destination gateway flags refcnt use metric mask; addresses in memory byte order
     fields >> interface >> std::hex >> destination >> skip >> flags >> skip >> skip >> skip >> mask;
     if (!fields || (flags & route_is_up) == 0 || (group & mask) != destination) continue;
     const auto bits = static_cast<unsigned>(__builtin_popcount(mask));
@@ -67,7 +67,7 @@ std::map<std::string, unsigned> interface_flags() {
   return flags;
 }
 
-/// Commands that let multicast stay on this machine.
+/// Returns commands that route multicast within this machine.
 std::vector<std::string> loopback_commands(const std::map<std::string, unsigned>& flags) {
   std::vector<std::string> commands;
   const auto lo = flags.find("lo");
@@ -81,6 +81,7 @@ std::vector<std::string> loopback_commands(const std::map<std::string, unsigned>
 Finding check_route(const LcmEndpoint& endpoint) {
   Finding finding{"multicast route", Verdict::ok, "", {}};
   const auto flags = interface_flags();
+  // Find the route to the multicast group.
   const auto route = route_to(inet_addr(endpoint.address.c_str()));
   if (!route) {
     finding.verdict = Verdict::bad;
@@ -88,6 +89,7 @@ Finding check_route(const LcmEndpoint& endpoint) {
     finding.commands = loopback_commands(flags);
     return finding;
   }
+  // Check the interface of the route.
   const auto found = flags.find(route->interface);
   const unsigned interface = found == flags.end() ? 0 : found->second;
   finding.text = endpoint.address + " goes over " + route->interface;
@@ -96,7 +98,7 @@ Finding check_route(const LcmEndpoint& endpoint) {
     finding.text += ", which is down";
     finding.commands = {"ip link set " + route->interface + " up"};
   } else if ((interface & IFF_MULTICAST) == 0) {
-    // Messages pass all the same over lo, but some tools look at the flag.
+    // Messages pass over lo without the flag, but some tools check it.
     finding.verdict = Verdict::warning;
     finding.text += ", which does not support multicast";
     finding.commands = {"ip link set " + route->interface + " multicast on"};
@@ -121,11 +123,13 @@ Finding check_buffers() {
     return finding;
   }
   finding.text = "net.core.rmem_max is " + std::to_string(maximum);
+  // Check the maximum size of a buffer.
   if (maximum < desired_buffer_bytes) {
     finding.verdict = Verdict::warning;
     finding.text += ": bursts of messages and images will be lost";
     finding.commands.emplace_back("sysctl -w net.core.rmem_max=4194304");
   }
+  // Check the default size of a buffer.
   if (standard >= 0 && standard < desired_buffer_bytes) {
     finding.text += "; net.core.rmem_default is " + std::to_string(standard) +
                     ", so other LCM programs need ?recv_buf_size=4194304 in their URL";
@@ -134,7 +138,7 @@ Finding check_buffers() {
   return finding;
 }
 
-/// Inodes of the UDP sockets bound to the port.
+/// Returns the identifiers of the UDP sockets bound to the port.
 std::set<std::string> sockets_on_port(int port) {
   std::set<std::string> inodes;
   std::ifstream table("/proc/net/udp");
@@ -169,7 +173,7 @@ bool holds_socket(const std::string& pid, const std::set<std::string>& inodes) {
   return found;
 }
 
-/// "lcm-logger (4711)", of the processes that may be looked at.
+/// Returns names such as "lcm-logger (4711)" of the accessible processes.
 std::vector<std::string> owners_of(const std::set<std::string>& inodes) {
   std::vector<std::string> owners;
   DIR* directory = opendir("/proc");
@@ -186,7 +190,7 @@ std::vector<std::string> owners_of(const std::set<std::string>& inodes) {
   return owners;
 }
 
-/// Groups that another program on this machine has joined, other than `own`.
+/// Returns the groups that other programs on this machine have joined, except `own`.
 std::set<std::string> other_groups(const std::string& own) {
   std::set<std::string> groups;
   std::ifstream table("/proc/net/igmp");
@@ -225,11 +229,12 @@ Finding check_port(const LcmEndpoint& endpoint) {
   return finding;
 }
 
-/// In the child: 0 when a message came back.  What went wrong goes to stderr, which the parent reads.
+/// Runs the round trip in the child; returns 0 when a message came back.  Errors are written to stderr, which the
+/// parent reads.
 int round_trip(const std::string& url, std::chrono::milliseconds time_limit) {
   try {
     LcmListener receiver(url);
-    // memq carries messages within one instance only.
+    // memq passes messages within one instance only.
     std::optional<LcmListener> own_sender;
     if (lcm_endpoint(receiver.url()).kind != "memq") own_sender.emplace(url);
     LcmListener& sender = own_sender ? *own_sender : receiver;
@@ -248,7 +253,7 @@ int round_trip(const std::string& url, std::chrono::milliseconds time_limit) {
   return 1;
 }
 
-/// All that is written until the end, or until the deadline.
+/// Returns everything written until the end, or until the deadline.
 std::string read_until(int fd, std::chrono::steady_clock::time_point deadline, bool& ended) {
   std::string text;
   std::array<char, 4096> buffer;
@@ -278,14 +283,16 @@ Finding check_round_trip(const std::string& url, std::chrono::milliseconds time_
     finding.text = "no file descriptor is available for the test";
     return finding;
   }
+  // Run the test in a child process.
   const pid_t child = fork();
   if (child == 0) {
     dup2(ends[1], STDERR_FILENO);
     dup2(ends[1], STDOUT_FILENO);
-    // _exit: the parent's buffers and handlers are not the child's.
+    // Use _exit: the buffers and handlers of the parent must not be processed by the child.
     _exit(round_trip(url, time_limit));
   }
   close(ends[1]);
+  // Read its output, and end it at the time limit.
   bool ended = false;
   std::string reported;
   if (child > 0) reported = read_until(ends[0], std::chrono::steady_clock::now() + time_limit, ended);
@@ -298,6 +305,7 @@ Finding check_round_trip(const std::string& url, std::chrono::milliseconds time_
   int status = 0;
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
+  // Interpret the result.
   if (!ended) {
     finding.text = "no test message was received within " + std::to_string(time_limit.count()) +
                    " ms; a firewall may drop multicast on UDP";
@@ -326,6 +334,7 @@ std::vector<Finding> check_network(const std::string& url, std::chrono::millisec
     return {{"LCM URL", Verdict::bad, error.what(), {}}};
   }
   std::vector<Finding> findings{{"LCM URL", Verdict::ok, resolved, {}}};
+  // Run the checks that apply to the kind of bus.
   if (endpoint.kind == "udpm") {
     findings.push_back(check_route(endpoint));
     findings.push_back(check_buffers());
@@ -333,7 +342,7 @@ std::vector<Finding> check_network(const std::string& url, std::chrono::millisec
   }
   if (endpoint.kind != "memq") findings.push_back(check_reach(resolved));
   findings.push_back(check_round_trip(resolved, time_limit));
-  // With no route the way to mend it is known; repeat it where the symptom is.
+  // Without a route the remedy is known: repeat it at the symptom.
   for (const Finding& finding : findings)
     if (finding.name == "multicast route" && finding.verdict == Verdict::bad && findings.back().verdict == Verdict::bad)
       findings.back().commands = finding.commands;

@@ -4,9 +4,9 @@
 namespace bridges {
 namespace {
 
-// Kept for reuse; more is given back, so that one burst of images does not stay in memory.
+// Limits of the memory kept for reuse, so that a burst of images does not remain allocated.
 constexpr std::size_t max_free_bytes = std::size_t{8} << 20;
-// A publisher that never calls end_of_step() still gets its messages out.
+// Messages of a publisher that never calls end_of_step() are also sent.
 constexpr std::chrono::milliseconds max_wait{20};
 
 }  // namespace

@@ -15,9 +15,8 @@
 
 namespace bridges {
 
-/// Messages queued for the network, between the simulating and the sending thread.  Bounded:
-/// the oldest are dropped and counted.  The lock is held only to move a message; bytes are copied outside of
-/// it.
+/// Queue of messages for the network, between the simulating and the sending thread.  Bounded: the oldest messages are
+/// dropped and counted.  The lock is held only to move a message; bytes are copied outside of it.
 class OutgoingQueue {
  public:
   struct Entry {
@@ -27,7 +26,7 @@ class OutgoingQueue {
   struct Limits {
     std::size_t messages = 20'000;
     std::size_t bytes = std::size_t{64} << 20;
-    std::size_t wake_at = 256;  ///< so many waiting messages wake the sender before the end of the step
+    std::size_t wake_at = 256;  ///< number of queued messages that wakes the sender before the end of the step
   };
 
   explicit OutgoingQueue(const Limits& limits) : limits_(limits) {}
@@ -35,17 +34,17 @@ class OutgoingQueue {
   void push(std::string_view channel, std::span<const std::byte> payload);
   /// Wakes the sender.
   void wake();
-  /// The sender's side: the oldest message, waiting for one.  `used`: what was sent before, its memory is
-  /// reused. Empty when the queue is closed and either empty or past its deadline.
+  /// Waits for and returns the oldest message, for the sender.  `used`: the message sent before, whose memory is
+  /// reused.  Returns null when the queue is closed and either empty or past its deadline.
   std::unique_ptr<Entry> next(std::unique_ptr<Entry> used);
-  /// The same for another thread, immediately, also without a call of wake().  Empty when there is none, or while the
-  /// sender is active, which also sends what was pushed before this call.
+  /// Returns the oldest message for another thread, without waiting and without a call of wake().  Returns null when
+  /// there is none, or while the sender is active, which also sends everything pushed before this call.
   std::unique_ptr<Entry> next_if_idle(std::unique_ptr<Entry> used);
-  /// The other thread leaves the rest to the sender.
+  /// Leaves the remaining messages to the sender; called by the other thread.
   void hand_over(std::unique_ptr<Entry> used);
-  /// No more messages come; what is here may be sent until the deadline.
+  /// Closes the queue; queued messages may be sent until the deadline.
   void close(std::chrono::steady_clock::time_point deadline);
-  /// Until everything pushed so far is sent or dropped.  False on time-out.
+  /// Waits until everything pushed so far is sent or dropped.  Returns false on time-out.
   bool wait_until_sent(std::chrono::milliseconds timeout);
   std::uint64_t dropped() const;
 

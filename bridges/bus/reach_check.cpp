@@ -24,7 +24,7 @@ Finding check_server(const LcmEndpoint& endpoint) {
   const std::string port = std::to_string(endpoint.port);
   std::ifstream table("/proc/net/tcp"), table_6("/proc/net/tcp6");
   const OpenSockets sockets = open_sockets(table, endpoint.port, true);
-  // An address of 128 zeros takes connections over IPv4 as well: Java's servers do that.
+  // An address of 128 zeros also accepts connections over IPv4, as Java servers do.
   std::stringstream ports_6;
   ports_6 << table_6.rdbuf();
   char local[16];
@@ -54,7 +54,7 @@ OpenSockets open_sockets(std::istream& table, int port, bool listening_only) {
     if (!fields || colon == std::string::npos) continue;
     if (std::strtol(local.c_str() + colon + 1, nullptr, 16) != port) continue;
     if (listening_only && state != listening_state) continue;
-    // As the memory holds it: in network order.
+    // Printed from memory, that is in network byte order.
     const auto address = ntohl(static_cast<in_addr_t>(std::strtoul(local.c_str(), nullptr, 16)));
     const bool loopback = address >> 24 == 127, multicast = address >> 28 == 14;
     if (address == 0)
@@ -70,12 +70,14 @@ Finding check_reach(const std::string& resolved_url) {
   Finding finding{"reach", Finding::Verdict::ok, "messages of this bus stay on this machine", {}};
   if (endpoint.kind == "memq") return finding;
   if (endpoint.kind == "tcpq") return check_server(endpoint);
+  // Check the ttl of the URL.
   if (leaves_machine(resolved_url)) {
     finding.verdict = Finding::Verdict::warning;
     finding.text = "its ttl is above 0: messages of this bus leave this machine, and other machines can send to it" +
                    std::string(key_needed);
     return finding;
   }
+  // Check the addresses of open sockets on the port.
   std::ifstream table("/proc/net/udp");
   const OpenSockets sockets = open_sockets(table, endpoint.port, false);
   const int open = sockets.everywhere + sockets.elsewhere;

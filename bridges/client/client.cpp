@@ -25,7 +25,7 @@ struct Client::Connection {
   Counts counts;
   bool joined = false;
   std::optional<shoal::sim_tick_t> unanswered;
-  std::int64_t period_us = 0;  ///< of free running; 0: it does not
+  std::int64_t period_us = 0;  ///< period without lockstep; 0: in lockstep
   std::optional<std::int64_t> clock_utime;
   std::optional<std::int64_t> due_utime;
   End end = End::none;
@@ -33,7 +33,7 @@ struct Client::Connection {
 
 namespace {
 
-/// Users of the library know its own error only.
+/// Converts errors to ClientError, the only error type of the public library.
 template <class Work>
 auto with_own_errors(const Work& work) {
   try {
@@ -71,7 +71,7 @@ Client::~Client() {
   try {
     connection_->lcm.leave();
   } catch (const std::exception&) {
-    // The world notices after lockstep.timeout_s.
+    // The world detects this after lockstep.timeout_s.
   }
 }
 
@@ -108,7 +108,7 @@ void Client::join(double period_s, const JoinOptions& options) {
     connection_->lcm.join(period_s, options.timeout, {bridges::on_timeout_of(options.on_timeout), options.timeout_s});
   });
   connection_->end = End::none;
-  connection_->joined = true;  // a tick that was open before stays so, in the same session
+  connection_->joined = true;  // an open tick remains open, in the same session
 }
 
 void Client::follow(double period_s) {
@@ -121,11 +121,12 @@ void Client::Connection::follow_clock(std::int64_t new_period_us) {
     lcm.subscribe("sim.clock", [this](std::span<const std::byte> payload) {
       try {
         const std::int64_t utime = shoal::decode<shoal::utime_t>(payload, Finite::any).utime;
-        // The clock of another run, or of one that went back: only the run itself can say that it ends.
+        // Ignore the clock of another run, or of one that was rewound: only the followed run itself can announce its
+        // end.
         if (!clock_utime || utime < *clock_utime) lcm.follow();
         clock_utime = utime;
       } catch (const MessageError&) {
-        // Any program may publish anything; the next one counts.
+        // Ignore invalid messages, which any program may publish.
       }
     });
   period_us = new_period_us;
@@ -162,7 +163,7 @@ std::optional<std::int64_t> Client::Connection::next_free_tick() {
     }
     if (!clock_utime) continue;
     lcm.mark_received();
-    // A clock that went back is that of a new run.
+    // A clock with an earlier time belongs to a new run.
     if (!due_utime || (before && *clock_utime < *before)) due_utime = *clock_utime;
     if (*clock_utime < *due_utime) continue;
     due_utime = (*clock_utime / period_us + 1) * period_us;

@@ -8,11 +8,11 @@
 
 namespace bridges {
 
-/// What each client has used up of something of which a run grants a number to each, and ten times that to all
-/// together: a client may call itself anything.  Not part of the state of the world.
+/// Quota of requests of each client.  A run grants a number to each client, and ten times that to all clients together,
+/// because a client can choose any name.  Not part of the state of the world.
 class ClientAccounts {
  public:
-  /// `what`: in the error, such as `spawn requests`; `key`: of `limits` in the world.
+  /// `what`: name in the error, such as `spawn requests`; `key`: key of `limits` in the world file.
   ClientAccounts(std::string what, std::string key, std::int64_t per_client)
       : what_(std::move(what)), key_(std::move(key)), per_client_(per_client) {}
 

@@ -14,12 +14,12 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-/// A run that continues looks at its requests every 20 ms, and between two steps.
+/// Time for an answer: a run reads its requests every 20 ms, and between two steps.
 constexpr milliseconds time_to_answer{150};
-/// Of that: while this process had no processor the others may not have had one either.
+/// Interval of the wait: while this process was not scheduled, the others may not have been scheduled either.
 constexpr milliseconds slice{15};
 
-/// As which client a run asks.
+/// Client name in the requests of a run.
 constexpr const char* asker_name = "shoal-run";
 constexpr const char* sharing = "{shared: true}";
 
@@ -28,7 +28,7 @@ std::optional<Message> take_valid(sim::Mailbox& mailbox) {
   while (const auto message = mailbox.take()) {
     try {
       return shoal::decode<Message>(message->payload, shoal::Finite::any);
-    } catch (const shoal::MessageError&) {  // any program may publish anything
+    } catch (const shoal::MessageError&) {  // ignore invalid messages, which any program may publish
     }
   }
   return std::nullopt;
@@ -57,7 +57,7 @@ void OtherSimulators::send_request(sim::Bus& network) {
   shoal::sim_control_request_t question{};
   question.id = id_;
   question.client = asker_name;
-  question.command = "alive";  // also one that is paused answers it
+  question.command = "alive";  // also answered by a paused run
   if (shared_) question.text = sharing;
   publish(network, "sim.control", question);
 }
@@ -74,8 +74,9 @@ bool OtherSimulators::is_answered(Link& link) const {
   return false;
 }
 
-/// Two runs that start at the same time: that with the smaller number stays.  Who received a question may have asked
-/// before the other one listened, so it asks again.
+/// Answers the requests of other starting runs.  Of two runs that start at the same time, the one with the smaller
+/// number continues.  A run that receives a request may have sent its own before the other one listened, so it sends it
+/// again.
 bool OtherSimulators::answer_requests(Link& link) {
   bool met = false;
   while (const auto question = take_valid<shoal::sim_control_request_t>(*link.requests)) {
@@ -103,7 +104,7 @@ std::optional<std::string> OtherSimulators::take(Link& link) {
 }
 
 std::optional<std::string> OtherSimulators::look(const Wait& wait) {
-  // Time that passed while the world was built counts; one slice is kept to read what has come.
+  // The time in which the world was built counts; keep one interval to read the messages that have arrived.
   const auto passed = std::chrono::duration_cast<milliseconds>(Clock::now() - asked_at_);
   milliseconds left = links_.empty() ? milliseconds(0) : std::max(time_to_answer - passed, slice);
   std::optional<std::string> found;

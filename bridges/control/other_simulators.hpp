@@ -15,12 +15,12 @@
 
 namespace bridges {
 
-/// Prefix of the text of look(), by which it is recognised in the error of another process.
+/// Prefix of the text of look(), which identifies it in the error of another process.
 inline constexpr const char* another_simulator = "another simulator";
 
-/// Looks for other simulators on the buses of a run, before it publishes anything: two on one bus would both answer
-/// the clients, and their reports would mix.  The request is sent on construction, so that answers arrive while the
-/// world is built.
+/// Detector of other simulators on the buses of a run, used before the run publishes: two simulators on one bus would
+/// both answer the clients, and their reports would be mixed.  The request is sent on construction, so that answers
+/// arrive while the world is built.
 class OtherSimulators {
  public:
   struct BusToAsk {
@@ -30,16 +30,16 @@ class OtherSimulators {
   /// Flushes published messages, and waits for messages up to the given time, or returns earlier.
   using Wait = std::function<void(std::chrono::milliseconds)>;
 
-  /// `shared`: the run shares its buses; it does not check, but the others are notified.
+  /// `shared`: the run shares its buses; it does not check for other simulators, but notifies them.
   OtherSimulators(const std::vector<BusToAsk>& buses, bool shared);
 
-  /// Waits until the others had their time to answer.  Describes another simulator: `another simulator answers on
-  /// URL`; nothing: none. The buses are not used after that.
+  /// Waits for answers of other simulators.  Returns the description of one, `another simulator answers on URL`; none
+  /// when there is none.  The buses are not used after that.
   std::optional<std::string> look(const Wait& wait);
 
-  /// The user allows other simulators on the buses.
+  /// Returns whether the user allows other simulators on the buses.
   bool shared() const { return shared_; }
-  /// Whose question a request is: of another run that starts.
+  /// Sender of a request.
   enum class Asker { none_of_ours, this_run, another_run, another_run_that_shares };
   Asker requester_of(const shoal::sim_control_request_t& request) const;
 
@@ -51,7 +51,7 @@ class OtherSimulators {
   };
   void send_request(sim::Bus& network);
   std::optional<std::string> take(Link& link);
-  /// True when another run that starts was answered for the first time.
+  /// Answers requests; returns true when another starting run was answered for the first time.
   bool answer_requests(Link& link);
   bool is_answered(Link& link) const;
 

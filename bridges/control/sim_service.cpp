@@ -59,7 +59,7 @@ void SimService::publish(sim::Bus& bus, const std::string& channel, const Messag
 
 bool SimService::due(double rate_hz) const {
   if (rate_hz <= 0) return false;
-  // True once in each period: at the first step at or after a multiple of it.
+  // Returns true once in each period: at the first step at or after a multiple of it.
   const double period_us = 1e6 / rate_hz;
   const double now = static_cast<double>(world_.now().count());
   const double before = now - static_cast<double>(world_.step_time().count());
@@ -101,15 +101,17 @@ void SimService::publish_info() {
 }
 
 void SimService::publish_state() {
-  static thread_local shoal::sim_state_t state;  // keeps its vectors from step to step
+  static thread_local shoal::sim_state_t state;  // reuses its vectors from step to step
   state.utime = world_.epoch_us() + world_.now().count();
   state.step = world_.step_number();
+  // Size the lists of the message.
   const std::size_t count = world_.vehicles().size();
   state.count = static_cast<std::int32_t>(count);
   state.vehicle.resize(count);
   for (auto* list : {&state.position_m, &state.velocity_mps, &state.angular_velocity_radps})
     list->assign(count, std::vector<double>(3));
   state.orientation.assign(count, std::vector<double>(4));
+  // Fill in pose and velocity of each vehicle frame V.
   for (std::size_t i = 0; i < count; ++i) {
     const sim::Vehicle& vehicle = *world_.vehicles()[i];
     const sim::Pose X_WV = vehicle.X_WV();
@@ -135,7 +137,8 @@ void SimService::warn_client(const std::string& text) {
 void SimService::handle_requests(TimeMachine* machine) {
   spawned_vehicles_.remove_timed_out();
   lockstep_.check_clock();
-  // A flood of requests must not keep the world from stepping; the rest waits, and what overflows is counted.
+  // Limit the requests per step, so that a flood does not block the world; the others remain queued, and overflows are
+  // counted.
   constexpr int max_at_once = 50;
   for (Link& link : links_)
     for (int handled = 0; handled < max_at_once; ++handled) {
@@ -145,12 +148,12 @@ void SimService::handle_requests(TimeMachine* machine) {
     }
   for (Link& link : links_)
     while (const auto info = link.infos->take())
-      // Who shares the bus on purpose knows of the other.
+      // No warning when the bus is shared intentionally.
       if (info->from_outside && others_ != nullptr && !others_->shared()) warn_of_another(link, "publishes");
 }
 
-/// Of a run that starts, for other simulators.  Another one's is answered, and that run then refuses to start; one that
-/// starts all the same is warned of.
+/// Handles the request by which a starting run detects other simulators.  That of another run is answered, and the run
+/// then refuses to start; a warning is given for one that starts nevertheless.
 bool SimService::is_own_request(Link& link, const shoal::sim_control_request_t& request) {
   const OtherSimulators::Asker asker = others_->requester_of(request);
   if (asker == OtherSimulators::Asker::another_run_that_shares) warn_of_another(link, "was started with --lcm-shared");
@@ -168,7 +171,7 @@ void SimService::handle_request(Link& link, const sim::Message& message, TimeMac
     const ControlGuard::Opened opened = lockstep_.guard().open(message.channel, message.payload);
     const auto request = shoal::decode<shoal::sim_control_request_t>(opened.content, shoal::Finite::any);
     if (others_ != nullptr && is_own_request(link, request)) return;
-    // A run that starts has no key of ours, and changes nothing.
+    // A starting run does not have the key of this run, and changes nothing.
     const bool is_question =
         others_ != nullptr && others_->requester_of(request) != OtherSimulators::Asker::none_of_ours;
     if (!opened.refusal.empty() && !is_question) return refuse(link, request, opened);
@@ -178,8 +181,8 @@ void SimService::handle_request(Link& link, const sim::Message& message, TimeMac
   }
 }
 
-/// Who is refused gets to know the rule, but a flood of such requests is not answered by a flood, and what came before
-/// was answered then: its sender must not take this for the answer.
+/// Refuses a request with the reason.  The rate of answers is limited, and a repeated request is not answered again:
+/// its sender must not mistake this for the first answer.
 void SimService::refuse(Link& link, const shoal::sim_control_request_t& request, const ControlGuard::Opened& opened) {
   constexpr int max_answers_per_s = 10;
   constexpr std::size_t max_warned = 100;
@@ -195,7 +198,7 @@ void SimService::refuse(Link& link, const shoal::sim_control_request_t& request,
     refusals_answered_ = 0;
   }
   if (opened.came_before || ++refusals_answered_ > max_answers_per_s) return;
-  // Without its session: a client that has joined must not be made to believe that it was dropped.
+  // Without its session: a joined client must not conclude that it was dropped.
   reply(link, request, 0, false, opened.refusal);
 }
 
@@ -207,7 +210,7 @@ void SimService::reply(Link& link, const shoal::sim_control_request_t& request, 
   reply.session = session;
   reply.ok = ok;
   reply.text = ok ? text : sim::shortened(text, 4000);
-  reply.utime = world_.epoch_us() + world_.now().count();  // after a rewind the new time
+  reply.utime = world_.epoch_us() + world_.now().count();  // the new time after a rewind
   publish(*link.network, "sim.control.reply", reply);
   link.network->end_of_step();
 }
@@ -216,7 +219,7 @@ void SimService::answer(Link& link, const shoal::sim_control_request_t& request,
                         TimeMachine* machine) {
   const bool on_own_bus = &link != &links_.front();
   const std::int64_t session = sim::session_in(request.text, request.command);
-  if (!on_own_bus) spawned_vehicles_.client_alive(request.client);  // vehicles are brought on the world's bus
+  if (!on_own_bus) spawned_vehicles_.client_alive(request.client);  // vehicles are spawned on the bus of the world
   try {
     const bool of_lockstep = request.command == "join" || request.command == "leave" || request.command == "alive" ||
                              request.command == "follow";
@@ -230,7 +233,7 @@ void SimService::answer(Link& link, const shoal::sim_control_request_t& request,
     if (account != nullptr) account->use(request.client);
     if (releases || request.command != "leave") note(request, signer);
     reply(link, request, session, true, *text);
-  } catch (const std::exception& error) {  // whatever it is, it is the request's fault, and the run continues
+  } catch (const std::exception& error) {  // an error of the request; the run continues
     warn_client((on_own_bus ? "sim.control of " + lockstep_.called(number_of(link)) : "sim.control") + ": client '" +
                 sim::shortened(request.client) + "': " + error.what());
     reply(link, request, session, false, error.what());
@@ -242,7 +245,8 @@ ClientAccounts* SimService::account_for(const std::string& command) {
   return command == "rewind" || command == "restore" ? &rewinds_ : nullptr;
 }
 
-/// A program that leaves names its session, which it alone knows by heart; who lets go of a hanging one does not.
+/// Returns whether a request releases another client: a program that leaves gives its own session, one that releases a
+/// hanging client does not.
 bool SimService::releases_another(const shoal::sim_control_request_t& request) const {
   return lockstep_.has(request.client) && sim::session_in(request.text, request.command) == 0;
 }

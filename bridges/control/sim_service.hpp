@@ -22,17 +22,17 @@
 
 namespace bridges {
 
-/// What a service works with where it is there; all must outlive the service.
+/// Optional objects used by a service; all must outlive it.
 struct ServiceLinks {
-  RunJournal* journal = nullptr;            ///< what changes the world is written down there
+  RunJournal* journal = nullptr;            ///< records the requests that change the world
   const OtherSimulators* others = nullptr;  ///< check for other simulators, which are warned of once
-  /// Buses that vehicles have to themselves: there the service only publishes sim.clock and answers join, leave and
-  /// alive on sim.control.  In the order in which the lockstep knows them.
+  /// Buses of single vehicles, on which the service only publishes sim.clock and answers join, leave and alive on
+  /// sim.control.  In the order of the lockstep.
   std::vector<sim::Bus*> vehicle_buses = {};
 };
 
-/// The simulator's own channels: publishes sim.info, sim.clock and sim.state, and answers requests on sim.control.
-/// Speaks through any Bus.
+/// Service on the channels of the simulator: publishes sim.info, sim.clock and sim.state, and answers requests on
+/// sim.control.  Works with any Bus.
 class SimService {
  public:
   struct Info {
@@ -42,43 +42,44 @@ class SimService {
     std::string files = {};
   };
 
-  /// `network`: the bus under `bus`; the handshake goes there directly, so that records leave it out.
+  /// `network`: the bus behind `bus`; the handshake uses it directly, so that records exclude it.
   SimService(sim::Bus& bus, sim::Bus& network, sim::World& world, sim::RunControl& control, LockstepService& lockstep,
              Info info, const ServiceLinks& links = {});
 
-  /// The owners of the vehicles.
+  /// Visits the owners of the vehicles.
   void visit_state(sim::StateArchive& archive) { spawned_vehicles_.visit_state(archive); }
-  /// While muted only the world's bus is published on.
+  /// Mutes the service: while muted, it publishes only on the bus of the world.
   void set_muted(bool muted) { muted_ = muted; }
-  /// Reports vehicles that were added or removed by a rewind; not recorded, as the record has one timeline only.
+  /// Reports vehicles that were added or removed by a rewind; not recorded, because the record has only one timeline.
   void report_changes() { spawned_vehicles_.report_to_other_timeline(network_); }
-  /// Publishes sim.info now, and not a second time at this step.
+  /// Publishes sim.info immediately, and not again at this step.
   void publish_info();
-  /// Carries out a request that a journal wrote down.  Throws std::runtime_error that says why it was refused, as then.
+  /// Executes a request from a journal.  Throws std::runtime_error with the reason when it is refused, as in the
+  /// original run.
   void execute_again(const shoal::sim_control_request_t& request);
-  /// Publishes what is due after the world's current step: clock, state, info.
+  /// Publishes the messages due after the present step of the world: clock, state, info.
   void publish_step();
-  /// Answers the requests that have come.  `machine` serves what is about time: pause, resume, step, speed, until,
-  /// where, snapshot, restore and rewind; null: not supported.
+  /// Answers the requests that have arrived.  `machine` executes those about simulated time: pause, resume, step,
+  /// speed, until, where, snapshot, restore and rewind; null: not supported.
   void handle_requests(TimeMachine* machine = nullptr);
   /// Handles the exit of a client: it leaves the lockstep, and its vehicles are removed.
   void client_exited(const std::string& client);
 
-  /// Client that the world waits for; empty: none.
+  /// Returns the client that the world waits for; empty: none.
   std::string waits_for() { return lockstep_.waits_for(); }
-  /// Bad requests so far.
+  /// Returns the number of bad requests.
   std::int64_t bad_messages() const { return bad_messages_; }
-  /// Requests so far that were refused as they were not signed with the key of the run.
+  /// Returns the number of requests refused because they were not signed with the key of the run.
   std::int64_t refused_requests() const { return refused_requests_; }
-  /// Clients that made the run end, rewind, or lose something.
+  /// Returns the audit: clients that made the run end, rewind, or lose data.
   const RunAudit& audit() const { return audit_; }
 
  private:
-  /// Where clients may be.
+  /// Bus on which clients may be.
   struct Link {
     sim::Bus* network;
     std::unique_ptr<sim::Mailbox> requests;
-    std::unique_ptr<sim::Mailbox> infos;  ///< of another simulator that was not found at the start
+    std::unique_ptr<sim::Mailbox> infos;  ///< sim.info of another simulator that was not found at the start
   };
 
   void publish_state();
@@ -87,10 +88,10 @@ class SimService {
   void answer(Link& link, const shoal::sim_control_request_t& request, const std::string& signer, TimeMachine* machine);
   void reply(Link& link, const shoal::sim_control_request_t& request, std::int64_t session, bool ok,
              const std::string& text);
-  /// The result; nothing: undecided, so there is no answer yet.  Throws std::runtime_error that says why it was
-  /// refused.
+  /// Executes a request and returns the result; none while it is undecided and not answered yet.  Throws
+  /// std::runtime_error with the reason when it is refused.
   std::optional<std::string> execute(Link& link, const shoal::sim_control_request_t& request, TimeMachine* machine);
-  /// What limits how often a client may request this; null: nothing does.
+  /// Returns the quota of a command; null when it is unlimited.
   ClientAccounts* account_for(const std::string& command);
   bool releases_another(const shoal::sim_control_request_t& request) const;
   void note(const shoal::sim_control_request_t& request, const std::string& signer);
@@ -113,10 +114,10 @@ class SimService {
   SpawnedVehicles spawned_vehicles_;
   RunJournal* const journal_;
   bool muted_ = false;
-  std::int64_t info_step_ = -1;  // of the last sim.info
+  std::int64_t info_step_ = -1;  // step of the last sim.info
   const OtherSimulators* const others_;
   bool warned_of_another_ = false;
-  std::vector<Link> links_;  // the world's first
+  std::vector<Link> links_;  // the bus of the world is the first
   RunAudit audit_;
   ClientAccounts spawns_, rewinds_;
   std::set<std::string, std::less<>> warned_refused_;  // clients

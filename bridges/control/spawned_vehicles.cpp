@@ -18,7 +18,8 @@ namespace bridges {
 
 namespace {
 
-/// One line: `rover7: lidar (shoal.planar_lidar_t on rover7.lidar, 10 Hz); drive (takes ... on rover7.drive.cmd)`.
+/// Returns one line: `rover7: lidar (shoal.planar_lidar_t on rover7.lidar, 10 Hz); drive (takes ... on
+/// rover7.drive.cmd)`.
 std::string in_words(const shoal::sim_vehicle_t& message) {
   std::string text = message.vehicle + ":";
   for (std::size_t i = 0; i < message.device.size(); ++i) {
@@ -50,7 +51,8 @@ shoal::sim_vehicle_t message_of(const sim::Vehicle& vehicle) {
   return message;
 }
 
-/// Whoever asked reads where a vehicle file is wrong; whoever runs the world also what is wrong.
+/// Reads a request.  The requester receives only the place of an error in a vehicle file; the log of the run has the
+/// whole error.
 sim::SpawnRequest read_request(const sim::WorldConfig& world, const std::string& text) {
   std::vector<std::string> hidden;
   try {
@@ -61,7 +63,7 @@ sim::SpawnRequest read_request(const sim::WorldConfig& world, const std::string&
   }
 }
 
-/// What the building of a vehicle threw, for whoever asked: of an error in a file the place alone.
+/// Throws the error of the construction of a vehicle for the requester: with only the place of an error in a file.
 [[noreturn]] void throw_without_files(const sim::ConfigError& error) {
   static const std::regex place_in_a_file(R"(^(.+:[0-9]+:[0-9]+): .*)");
   std::vector<std::string> lines;
@@ -85,7 +87,7 @@ void SpawnedVehicles::report(sim::Bus& bus, shoal::sim_vehicle_t& message, bool 
   message.utime = world_.epoch_us() + world_.now().count();
   message.present = present;
   const auto owner = owners_.find(message.vehicle);
-  // Whose it was may not be known any more when time went back behind its coming.
+  // The owner may be unknown after a rewind to a time before the spawn.
   if (owner != owners_.end() || present) message.client = owner == owners_.end() ? "" : owner->second.client;
   shoal::encode_into(message, buffer_);
   bus.publish("sim.vehicle", buffer_, world_.now());
@@ -140,8 +142,8 @@ void SpawnedVehicles::record_all() {
 }
 
 std::string SpawnedVehicles::spawn(const std::string& client, const std::string& text) {
-  // A request that is refused here changes nothing and is not written down: with its file in it, a run from the
-  // journal would allow more, and whoever listens would read the file.
+  // A request that is refused here changes nothing and is not recorded: with its file included, a replay of the journal
+  // would allow more, and subscribers could read the file.
   const sim::SpawnRequest request = read_request(world_.config(), text);
   if (journal_ != nullptr) write_down(client, "spawn", sim::self_contained_spawn(world_.config(), text));
   try {
@@ -222,7 +224,7 @@ void SpawnedVehicles::remove_vehicles_of(const std::string& client) {
     if (owner.with_client && owner.client == client) going.push_back(vehicle);
   for (const std::string& vehicle : going) {
     try {
-      if (world_.find_vehicle(vehicle) != nullptr) remove(client, vehicle);  // else an event removed it
+      if (world_.find_vehicle(vehicle) != nullptr) remove(client, vehicle);  // otherwise an event has removed it
     } catch (const std::runtime_error& error) {
       spdlog::warn("{}", error.what());
     }

@@ -18,29 +18,29 @@ namespace bridges {
 
 class RunJournal;
 
-/// The vehicles that clients spawn over `sim.control`, and their owners. Every vehicle that is added or removed, by
-/// any client, is reported on `sim.vehicle`.
+/// Vehicles that clients spawn over `sim.control`, and their owners.  Every vehicle that is added or removed, by any
+/// client, is reported on `sim.vehicle`.
 class SpawnedVehicles {
  public:
-  /// `journal` gets every request that is about to change the world, from any client, and descriptions; may be null.
+  /// `journal` records every request that is about to change the world, from any client, and descriptions; may be null.
   SpawnedVehicles(sim::World& world, sim::Bus& bus, RunJournal* journal);
 
   /// Adds the vehicle that `text` describes (an entry of `vehicles:` in YAML); returns one line that names it, its
   /// channels and rates.  Throws sim::ConfigError, with the same lines as for files.
   std::string spawn(const std::string& client, const std::string& text);
-  /// The same with a text from a journal.
+  /// Spawns a vehicle from a text of a journal.
   std::string spawn_again(const std::string& client, const std::string& text);
-  /// A vehicle or an object.  Throws sim::WorldError.
+  /// Removes a vehicle or an object.  Throws sim::WorldError.
   void remove(const std::string& client, const std::string& name);
-  /// Returns the same text as spawn() did.  Throws sim::WorldError.
+  /// Returns the same text as spawn().  Throws sim::WorldError.
   std::string describe(const std::string& client, const std::string& vehicle);
-  /// An action as in `events:`, in YAML.  Throws sim::ConfigError.
+  /// Executes an action as in `events:`, in YAML.  Throws sim::ConfigError.
   void act(const std::string& client, const std::string& text);
 
   /// Reports the vehicles that were added or removed since the last call.
   void report_changes();
-  /// After visit_state() restored: reports the vehicles that were added or removed by it to programs outside. The
-  /// world and its record do not receive it, as they have one timeline only.
+  /// Reports vehicles that were added or removed by a restore with visit_state() to external programs.  The world and
+  /// its record do not receive these reports, because they have only one timeline.
   void report_to_other_timeline(sim::Bus& network);
   /// Notes that the client is alive.
   void client_alive(const std::string& client);
@@ -49,7 +49,7 @@ class SpawnedVehicles {
   /// Removes the vehicles that this client spawned with `with_client`.
   void remove_vehicles_of(const std::string& client);
   bool has(const std::string& client) const { return clients_.contains(client); }
-  /// The owners of the vehicles.  Restoring, which must follow that of the world, restarts the time-outs.
+  /// Visits the owners of the vehicles.  Must be restored after the world; restoring restarts the time-outs.
   void visit_state(sim::StateArchive& archive);
 
  private:

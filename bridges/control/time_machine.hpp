@@ -6,12 +6,12 @@
 
 namespace bridges {
 
-/// Executes requests about simulated time: speed, pause, rewind and restore.
+/// Interface that executes requests about simulated time: speed, pause, rewind and restore.
 class TimeMachine {
  public:
   virtual ~TimeMachine() = default;
-  /// The result of a request; nothing when it does not know the command.  Throws std::runtime_error that says why it
-  /// was refused.
+  /// Returns the result of a request; none when the command is unknown.  Throws std::runtime_error with the reason when
+  /// it is refused.
   virtual std::optional<std::string> execute(const std::string& command, const std::string& text, double value) = 0;
 };
 

@@ -22,11 +22,11 @@ constexpr std::uint32_t max_words = 4;
 // FNV-1a, by words of 4 bytes.
 constexpr std::uint32_t hash_start = 2166136261u;
 constexpr std::uint32_t hash_factor = 16777619u;
-/// 0x40000: more bytes than a datagram has, so all of it passes.
+/// Return value to accept: 0x40000, more bytes than a datagram has, so that all of it passes.
 constexpr std::uint32_t pass = 0x40000;
 constexpr std::size_t hashes_per_leaf = 8;
 
-/// As the filter computes it.
+/// Computes the hash in the same way as the filter.
 std::uint32_t hash_of(std::string_view channel) {
   std::uint32_t hash = hash_start;
   for (std::uint32_t word = 0; word < max_words; ++word) {
@@ -68,7 +68,8 @@ class Program {
 void Program::hash_channel_at(std::uint32_t offset) {
   constexpr std::array<std::uint32_t, 4> byte_masks{0xff000000, 0xff0000, 0xff00, 0xff};
   add(BPF_LDX | BPF_W | BPF_IMM, hash_start);
-  std::vector<std::array<std::size_t, 4>> ends;  // of each word: the jumps to take where byte 0, 1, 2, 3 ends the name
+  // Hash whole words until one contains the end of the name.
+  std::vector<std::array<std::size_t, 4>> ends;  // for each word: the jumps taken when byte 0, 1, 2, 3 ends the name
   for (std::uint32_t word = 0; word < max_words; ++word) {
     pass_if_shorter(offset + 4 * word + 4);
     load_word(offset + 4 * word);
@@ -81,7 +82,8 @@ void Program::hash_channel_at(std::uint32_t offset) {
     add_to_hash();
     add(BPF_MISC | BPF_TAX);
   }
-  std::vector<std::size_t> done{steps.size()};  // jumps to the end, where the accumulator holds the hash
+  // Hash the last, partial word: one block for each position of the end.
+  std::vector<std::size_t> done{steps.size()};  // jumps to the end, with the hash in the accumulator
   add(BPF_JMP | BPF_JA);
   for (std::size_t i = 0; i < 4; ++i) {
     for (const auto& jumps : ends) steps[jumps[i]].jf = static_cast<std::uint8_t>(steps.size() - jumps[i] - 1);
@@ -92,10 +94,11 @@ void Program::hash_channel_at(std::uint32_t offset) {
     done.push_back(steps.size());
     add(BPF_JMP | BPF_JA);
   }
+  // Resolve the jumps to the end.
   for (const std::size_t jump : done) steps[jump].k = static_cast<std::uint32_t>(steps.size() - jump - 1);
 }
 
-/// Binary search for the accumulator.
+/// Adds a binary search for the value of the accumulator.
 void Program::pass_if_one_of(std::span<const std::uint32_t> sorted) {
   if (sorted.size() <= hashes_per_leaf) {
     for (std::size_t i = 0; i < sorted.size(); ++i)
@@ -116,11 +119,12 @@ void Program::pass_if_one_of(std::span<const std::uint32_t> sorted) {
 
 std::vector<sock_filter> channel_filter(const std::vector<std::string>& channels) {
   std::vector<std::uint32_t> hashes;
+  // Compute the sorted hashes of the channels.
   for (const std::string& channel : channels) hashes.push_back(hash_of(channel));
   std::sort(hashes.begin(), hashes.end());
   hashes.erase(std::unique(hashes.begin(), hashes.end()), hashes.end());
 
-  // Not LCM's, or too short for any message: dropped.  Later fragments do not name their channel: passed.
+  // Drop datagrams that are not LCM or too short for a message; pass later fragments, which do not name their channel.
   Program program;
   program.add(BPF_LD | BPF_W | BPF_LEN);
   program.add_jump(BPF_JMP | BPF_JGE | BPF_K, short_channel_at + 2, 1, 0);
@@ -132,6 +136,7 @@ std::vector<sock_filter> channel_filter(const std::vector<std::string>& channels
   program.add_jump(BPF_JMP | BPF_JEQ | BPF_K, short_magic, 0, 1);
   const std::size_t to_short = program.steps.size();
   program.add(BPF_JMP | BPF_JA);
+  // Fragments: pass later ones, and hash the channel of the first.
   program.pass_if_shorter(fragment_channel_at);
   program.add(BPF_LD | BPF_H | BPF_ABS, fragment_number_at);
   program.add_jump(BPF_JMP | BPF_JEQ | BPF_K, 0, 1, 0);
@@ -139,9 +144,11 @@ std::vector<sock_filter> channel_filter(const std::vector<std::string>& channels
   program.hash_channel_at(fragment_channel_at);
   const std::size_t to_search = program.steps.size();
   program.add(BPF_JMP | BPF_JA);
+  // Short messages: hash the channel.
   program.steps[to_short].k = static_cast<std::uint32_t>(program.steps.size() - to_short - 1);
   program.hash_channel_at(short_channel_at);
   program.steps[to_search].k = static_cast<std::uint32_t>(program.steps.size() - to_search - 1);
+  // Pass datagrams with a hash in the list.
   program.pass_if_one_of(hashes);
   if (program.steps.size() > BPF_MAXINSNS) return {};
   return std::move(program.steps);

@@ -8,10 +8,10 @@
 
 namespace bridges {
 
-/// A socket filter (classic BPF, for a UDP socket) that lets pass what a receiver of these channels may want: their
-/// messages, fragments that do not name their channel, and what is too short to judge.  It looks at the first 16 bytes
-/// of a channel by a hash, so a few others also pass; it never drops a message of these channels.  Empty when there are
-/// too many channels for one program.
+/// Returns a socket filter (classic BPF, for a UDP socket) that passes the datagrams a receiver of these channels may
+/// need: messages on them, fragments that do not name their channel, and datagrams that are too short to classify.  It
+/// compares a hash of the first 16 bytes of the channel, so that a few other messages also pass; it never drops a
+/// message on these channels.  Empty when there are too many channels for one program.
 std::vector<sock_filter> channel_filter(const std::vector<std::string>& channels);
 
 }  // namespace bridges

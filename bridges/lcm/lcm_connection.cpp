@@ -20,11 +20,11 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// Every LCM program says this to itself when it starts.
+// Self test that every LCM program publishes at its start.
 constexpr std::chrono::seconds self_test_limit{10};
 constexpr int max_liblcm_batch = 25;
 
-/// The regular expression that matches this channel only.
+/// Returns the regular expression that matches this channel only.
 std::string literal_channel_pattern(const std::string& channel) {
   std::string pattern;
   for (const char c : channel) {
@@ -91,6 +91,7 @@ void LcmConnection::open_udp(const LcmEndpoint& endpoint) {
 }
 
 void LcmConnection::test_itself() {
+  // Subscribe to the test channel with a unique text.
   struct Test {
     std::string reported = "shoal " + std::to_string(getpid()) + " " +
                            std::to_string(std::chrono::steady_clock::now().time_since_epoch().count());
@@ -104,10 +105,11 @@ void LcmConnection::test_itself() {
         waiting.received |= text == waiting.reported;
       },
       &test);
+  // Publish the text until it is received.
   const auto deadline = std::chrono::steady_clock::now() + self_test_limit;
   while (!test.received && std::chrono::steady_clock::now() < deadline) {
     publish(self_test_channel, std::as_bytes(std::span(test.reported)));
-    // It may be lost among others that come.
+    // Repeat, because it may be lost among other messages.
     const auto again = std::chrono::steady_clock::now() + 100ms;
     while (!test.received && std::chrono::steady_clock::now() < again)
       if (wait_readable(fd_, -1, 100ms)) handle();
@@ -120,7 +122,7 @@ void LcmConnection::test_itself() {
 }
 
 void LcmConnection::open_liblcm_receiver() {
-  // The first subscription starts liblcm's receiver.
+  // The first subscription starts the receiver of liblcm.
   lcm_subscription_t* probe = lcm_subscribe(lcm_.get(), "shoal\\.probe", ignore_message, nullptr);
   fd_ = probe == nullptr ? -1 : lcm_get_fileno(lcm_.get());
   if (fd_ < 0) refuse_url(url_, "LCM cannot receive; run `shoal doctor`");
@@ -157,7 +159,7 @@ LcmSubscription* LcmConnection::add(const std::string& channel, Handler handler,
 }
 
 void LcmConnection::unsubscribe(LcmSubscription* subscription) {
-  // liblcm's thread may still use it, so that it stays.
+  // Keep the object, because the liblcm thread may still use it.
   if (!udp_) return static_cast<void>(lcm_unsubscribe(lcm_.get(), subscription->of_liblcm));
   udp_->remove(subscription->wish);
   const std::lock_guard lock(subscriptions_->mutex);
@@ -171,7 +173,7 @@ bool LcmConnection::publish(const char* channel, std::span<const std::byte> payl
 LcmConnection::Handled LcmConnection::handle() {
   if (udp_) return udp_->handle() ? Handled::more : Handled::all;
   for (int i = 0; i < max_liblcm_batch; ++i) {
-    // liblcm would wait for a message; another thread may have been faster.
+    // Poll first: liblcm would wait for a message, which another thread may have taken.
     if (!wait_readable(fd_, -1, 0ms)) return Handled::all;
     if (lcm_handle(lcm_.get()) != 0 && lcm_get_fileno(lcm_.get()) < 0) return Handled::lost;
   }

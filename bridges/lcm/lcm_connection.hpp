@@ -12,32 +12,31 @@
 #include "bridges/base/bus_error.hpp"
 #include "bridges/lcm/lcm_url.hpp"
 
-// LCM's own type; its header stays out of ours.
+// Type of liblcm, declared here to avoid including its header.
 struct _lcm_t;
 
 namespace bridges {
 
-/// A message as a handler gets it; valid until the handler returns.
+/// Message passed to a handler; valid until the handler returns.
 struct LcmMessage {
   std::string_view channel;
   std::span<const std::byte> payload;
-  std::int64_t wall_utime = 0;  ///< when it arrived, by the wall clock
+  std::int64_t wall_utime = 0;  ///< arrival by the wall clock
 };
 
 struct LcmSubscription;
 class UdpInbox;
 
-/// A connection to LCM that works.  liblcm 1.3.1 aborts or spins on one that does not, so the constructor tries
-/// everything first and throws BusError.  A group that a firewall drops takes it ten seconds to notice.
-///
-/// liblcm sends, and receives over tcpq and memq.  Over udpm UdpReceiver receives: with ttl=0 what processes of this
-/// machine send to the multicast group, with a larger ttl all messages sent to it.
+/// Tested connection to LCM.  liblcm 1.3.1 aborts or spins on a connection that does not work, so the constructor tests
+/// it first and throws BusError.  It takes ten seconds to detect a multicast group blocked by a firewall. liblcm sends,
+/// and receives over tcpq and memq.  Over udpm, UdpReceiver receives: with ttl=0 messages from processes of this
+/// machine to the multicast group, with a larger ttl all messages to it.
 class LcmConnection {
  public:
   using Handler = void (*)(const LcmMessage& message, void* user);
   enum class Handled {
-    all,   ///< no further messages
-    more,  ///< something more may have come
+    all,   ///< all messages have been handled
+    more,  ///< more messages may have arrived
     lost,  ///< the connection is lost
   };
 
@@ -47,23 +46,23 @@ class LcmConnection {
   LcmConnection& operator=(const LcmConnection&) = delete;
 
   const std::string& url() const { return url_; }
-  /// Readable when handle() has a message.
+  /// Returns a descriptor that is readable when handle() has a message.
   int fd() const { return fd_; }
-  /// What comes waits for handle(): over udpm in the kernel's buffer, else in liblcm without limit.  From any thread.
-  /// Throws BusError.
+  /// Subscribes to a channel.  Received messages are buffered until handle(): over udpm in the kernel buffer, otherwise
+  /// in liblcm without limit.  Thread-safe.  Throws BusError.
   LcmSubscription* subscribe(const std::string& channel, Handler handler, void* user);
   LcmSubscription* subscribe_to_all(Handler handler, void* user);
-  /// The handler may be at work for a last time while this returns.
+  /// Ends a subscription.  A last call of the handler may still be in progress when this returns.
   void unsubscribe(LcmSubscription* subscription);
-  /// False when LCM refused it.
+  /// Publishes a message; returns false when LCM refused it.
   bool publish(const char* channel, std::span<const std::byte> payload);
-  /// Calls the handlers for what has come, a few messages at most, without waiting.  By one thread at a time.
+  /// Calls the handlers for a few received messages, without waiting.  By one thread at a time.
   Handled handle();
-  /// What handle() has received so far, over udpm; else 0.  From any thread.
+  /// Returns the number of bytes received by handle() over udpm; otherwise 0.  Thread-safe.
   std::uint64_t received_bytes() const;
-  /// publish() and handle() may wait for another program: tcpq.
+  /// Returns whether publish() and handle() may block on another program, as over tcpq.
   bool may_block() const { return is_tcp_; }
-  /// Makes a blocked publish() return, for good.
+  /// Makes a blocked publish() return, permanently.
   void shut_down();
 
  private:
@@ -74,32 +73,32 @@ class LcmConnection {
   LcmSubscription* add(const std::string& channel, Handler handler, void* user);
   void open_udp(const LcmEndpoint& endpoint);
   void open_liblcm_receiver();
-  /// Throws BusError when what is sent does not come back.
+  /// Sends itself a message; throws BusError when it is not received.
   void test_itself();
 
   std::string url_;
   bool is_tcp_ = false;
-  std::unique_ptr<Subscriptions> subscriptions_;  // outlives liblcm's handlers
+  std::unique_ptr<Subscriptions> subscriptions_;  // outlives the handlers of liblcm
   std::unique_ptr<_lcm_t, LcmDeleter> lcm_;
   std::unique_ptr<UdpInbox> udp_;
   int fd_ = -1;
 };
 
-/// When a thread that receives in the background lets messages gather for a while.  In a stream of small messages,
-/// waking for each costs more than receiving it; the kernel's buffer holds those that arrive in a pause.
+/// Schedule of pauses in which a background receiver lets messages accumulate.  In a stream of small messages, waking
+/// for each message costs more than receiving it; the kernel buffer holds those that arrive in a pause.
 class GatherPauses {
  public:
   static constexpr std::chrono::milliseconds until_next_check{1}, length{1};
 
   explicit GatherPauses(const LcmConnection& connection) : connection_(connection) {}
-  /// How long to wait for the next messages; negative: without limit.
+  /// Returns the time to wait for the next messages; negative: unlimited.
   std::chrono::milliseconds wait() const { return polls_ == 0 ? std::chrono::milliseconds(-1) : until_next_check; }
-  /// After the wait, and after receiving if there was something: whether to pause now.
+  /// Returns whether to pause now; called after the wait, and after receiving if messages had arrived.
   bool due(bool something_came);
 
  private:
   static constexpr int polls_before_pause = 8;
-  /// More at a time are not small messages one by one: images need all the room that the kernel has.
+  /// Limit of bytes per check for a pause: larger amounts, such as images, need the whole kernel buffer.
   static constexpr std::uint64_t max_bytes_of_check = 16 << 10;
 
   const LcmConnection& connection_;
@@ -107,7 +106,7 @@ class GatherPauses {
   int polls_ = 0;
 };
 
-/// Waits until one of the descriptors is readable.  `second` may be -1.  False on time-out or signal.
+/// Waits until one of the descriptors is readable.  `second` may be -1.  Returns false on time-out or signal.
 bool wait_readable(int first, int second, std::chrono::milliseconds timeout);
 
 }  // namespace bridges

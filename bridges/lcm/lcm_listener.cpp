@@ -11,8 +11,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// Every LCM program says this to itself when it starts.
-/// Of one look of the listener's thread: then the one that waits has its turn.
+// Self test that every LCM program publishes at its start.
+/// Limit of one receive call of the background thread, after which the waiting thread can continue.
 constexpr int max_batches = 64;
 constexpr std::size_t message_overhead_bytes = sizeof(Received) + 64;
 
@@ -26,7 +26,7 @@ void raise(const FileDescriptor& event) {
 LcmListener::LcmListener(const std::string& url)
     : connection_(url), wake_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)), stop_(eventfd(0, EFD_CLOEXEC)) {
   if (wake_.number() < 0 || stop_.number() < 0) throw BusError("no file descriptor is available for the bus");
-  // Before the thread: of the two the first wakes.
+  // Added before the thread: the first of the two wakes.
   readable_.add(connection_.fd(), &connection_);
   readable_.add(wake_.number(), nullptr);
   if (lcm_endpoint(connection_.url()).kind != "udpm") return;
@@ -82,9 +82,11 @@ std::optional<Received> LcmListener::next(std::chrono::milliseconds timeout) {
   std::chrono::milliseconds left = timeout;
   while (true) {
     if (auto message = take()) return message;
+    // Wait for the network or the background thread.
     const PollSet::Readable readable = readable_.wait(left);
     if (readable.count == 0) break;
     for (std::size_t i = 0; i < readable.count; ++i) {
+      // Clear the wake-up, or receive from the network.
       if (readable.tags[i] == nullptr) {
         std::uint64_t times = 0;
         [[maybe_unused]] const auto got = read(wake_.number(), &times, sizeof times);

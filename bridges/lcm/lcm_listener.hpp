@@ -22,12 +22,12 @@ namespace bridges {
 struct Received {
   std::string channel;
   sim::Bytes payload;
-  std::int64_t wall_utime = 0;  ///< when it arrived, by the wall clock
+  std::int64_t wall_utime = 0;  ///< arrival by the wall clock
 };
 
-/// LCM for a program with one thread: what was subscribed to, in the order of arrival.  The thread that calls next()
-/// receives while it waits; while it does other things a thread of the listener does, so that the kernel's buffer does
-/// not overflow.  Only what waits beyond `max_waiting_bytes` is dropped, the oldest first.
+/// LCM subscriber for a program with one thread: returns messages of the subscribed channels in the order of arrival.
+/// The thread that calls next() receives while it waits; at other times a background thread receives, so that the
+/// kernel buffer does not overflow.  Only messages beyond `max_waiting_bytes` are dropped, the oldest first.
 class LcmListener {
  public:
   static constexpr std::size_t max_waiting_bytes = std::size_t{256} << 20;
@@ -36,11 +36,11 @@ class LcmListener {
   ~LcmListener();
 
   void listen(const std::string& channel);
-  /// To all channels but that of LCM's own self test.
+  /// Subscribes to all channels except that of the self test of LCM.
   void listen_to_all();
-  /// The next message, waiting for it.  Empty on time-out, or when a signal came.
+  /// Waits for and returns the next message; none on time-out or signal.
   std::optional<Received> next(std::chrono::milliseconds timeout);
-  /// At once.  False when LCM refused it.
+  /// Publishes a message immediately; returns false when LCM refused it.
   bool publish(std::string_view channel, std::span<const std::byte> payload);
   const std::string& url() const { return connection_.url(); }
 
@@ -51,7 +51,7 @@ class LcmListener {
   void receive();
   void receive_in_background();
 
-  std::mutex mutex_;  // of what has arrived
+  std::mutex mutex_;  // protects the received messages
   std::deque<Received> arrived_;
   std::size_t arrived_bytes_ = 0;
   bool waiting_ = false;

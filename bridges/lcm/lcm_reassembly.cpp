@@ -8,20 +8,20 @@ namespace bridges {
 namespace {
 
 constexpr std::size_t short_header_bytes = 8;      // magic, sequence number
-constexpr std::size_t fragment_header_bytes = 20;  // and: message size, offset, fragment number and count
-/// A partial message costs at least this.
+constexpr std::size_t fragment_header_bytes = 20;  // also message size, offset, fragment number and count
+/// Minimum memory accounted for a partial message.
 constexpr std::size_t overhead_bytes = 256;
-/// Of the payload, reserved at the first fragment: images do not have to grow.
+/// Bytes of the payload reserved at the first fragment, so that buffers of images need not grow.
 constexpr std::size_t first_reserve_bytes = std::size_t{1} << 20;
 
-/// Big-endian.
+/// Reads a big-endian number.
 std::uint32_t number_at(std::span<const std::byte> bytes, std::size_t offset, std::size_t size) {
   std::uint32_t value = 0;
   for (const std::byte byte : bytes.subspan(offset, size)) value = value << 8 | std::to_integer<std::uint32_t>(byte);
   return value;
 }
 
-/// The channel at the start of `bytes`, without its terminator; empty when there is no valid one.
+/// Returns the channel at the start of `bytes`, without its terminator; empty when there is no valid one.
 std::string_view channel_in(std::span<const std::byte> bytes) {
   const auto* begin = reinterpret_cast<const char*>(bytes.data());
   const std::string_view text(begin, std::min(bytes.size(), sim::Bus::max_channel_length + 1));
@@ -37,7 +37,7 @@ std::size_t LcmReassembly::Partial::bytes() const {
 
 void LcmReassembly::Partial::add(std::span<const std::byte> part) {
   const std::size_t size = payload.size() + part.size();
-  // Twice as much each time, never more than the message has.
+  // Double the capacity each time, up to the size of the message.
   if (size > payload.capacity())
     payload.reserve(std::max(size, std::min<std::size_t>(2 * payload.capacity(), message_bytes)));
   payload.insert(payload.end(), part.begin(), part.end());
@@ -86,7 +86,7 @@ std::optional<LcmReassembly::Message> LcmReassembly::add_fragment(
     if (channel.empty()) return bad();
     fragment.part = fragment.part.subspan(channel.size() + 1);
   }
-  // Unsigned and wider than what is added: nothing wraps.
+  // Computed in a wider unsigned type, so that it cannot overflow.
   const std::uint64_t end = std::uint64_t{fragment.offset} + fragment.part.size();
   if (fragment.number >= fragment.count || fragment.message_bytes > limits_.max_message_bytes ||
       end > fragment.message_bytes)
@@ -128,7 +128,7 @@ LcmReassembly::Partials::iterator LcmReassembly::start_message(std::uint64_t sen
   partial.sequence = fragment.sequence;
   partial.message_bytes = fragment.message_bytes;
   partial.count = fragment.count;
-  // The last message's memory is used again: fresh pages cost more than copying into them.
+  // Reuse the memory of the last message: new pages cost more than the copy.
   if (payload_.capacity() <= first_reserve_bytes) partial.payload = std::move(payload_);
   partial.payload.clear();
   partial.payload.reserve(std::min<std::size_t>(fragment.message_bytes, first_reserve_bytes));
@@ -141,7 +141,7 @@ bool LcmReassembly::append(Partial& partial, const Fragment& fragment) {
   if (fragment.number > partial.next) return keep_early(partial, fragment);
   if (fragment.offset != partial.payload.size()) return false;
   partial.add(fragment.part);
-  // Those that came too early and are due now.
+  // Append early fragments that are due now.
   for (auto first = partial.early.begin(); first != partial.early.end() && first->first <= partial.next;
        first = partial.early.erase(first)) {
     const Early& early = first->second;

@@ -60,8 +60,10 @@ LcmEndpoint endpoint_of(const std::string& url, const UrlParts& parts) {
   endpoint.kind = parts.kind;
   if (parts.kind == "memq") return endpoint;
   const bool tcp = parts.kind == "tcpq";
+  // Set the defaults of LCM.
   endpoint.address = tcp ? "127.0.0.1" : "239.255.76.67";
   endpoint.port = tcp ? 7700 : 7667;
+  // Parse address and port.
   const auto colon = parts.network.find(':');
   if (colon != 0 && !parts.network.empty()) endpoint.address = parts.network.substr(0, colon);
   if (colon != std::string::npos) {
@@ -70,9 +72,11 @@ LcmEndpoint endpoint_of(const std::string& url, const UrlParts& parts) {
       refuse_url(url, "the port must be 1 to 65535, got '" + parts.network.substr(colon + 1) + "'");
     endpoint.port = *port;
   }
+  // Check the multicast address.
   in_addr address{};
   if (!tcp && (inet_pton(AF_INET, endpoint.address.c_str(), &address) != 1 || !IN_MULTICAST(ntohl(address.s_addr))))
     refuse_url(url, "'" + endpoint.address + "' is not a multicast address (224.0.0.0 to 239.255.255.255)");
+  // Read the options.
   for (const auto& [key, value] : parts.options) {
     if (key == "ttl") endpoint.ttl = whole_number(value).value_or(0);
     if (key == "recv_buf_size") endpoint.recv_buf_bytes = whole_number(value).value_or(0);
@@ -98,10 +102,12 @@ void check_options(const std::string& url, const UrlParts& parts) {
 }  // namespace
 
 std::string resolve_lcm_url(const std::string& url) {
+  // Choose the URL, the environment variable or the default.
   std::string chosen = url;
   if (chosen.empty())
     if (const char* variable = std::getenv("LCM_DEFAULT_URL")) chosen = variable;
   if (chosen.empty()) chosen = default_lcm_url;
+  // Refuse unsupported kinds and options.
   const UrlParts parts = split_url(chosen);
   if (parts.kind == "file") refuse_url(chosen, "the simulator writes logs with --record; lcm-logplayer plays them");
   if (parts.kind == "mpudpm")
@@ -113,7 +119,7 @@ std::string resolve_lcm_url(const std::string& url) {
   check_options(chosen, parts);
   const LcmEndpoint endpoint = endpoint_of(chosen, parts);
   if (parts.kind != "udpm") return chosen;
-  // With address and port: what liblcm would take for those that are missing is not what the receiver takes.
+  // Require address and port, because the defaults of liblcm differ from those of the receiver.
   std::string resolved = "udpm://" + endpoint.address + ":" + std::to_string(endpoint.port);
   std::string before = "?";
   bool has_buffer = false;
@@ -133,9 +139,11 @@ void require_tcp_server(const std::string& url, const LcmEndpoint& endpoint) {
   hints.ai_family = AF_INET;
   hints.ai_socktype = SOCK_STREAM;
   addrinfo* found = nullptr;
+  // Resolve the host.
   const std::string port = std::to_string(endpoint.port);
   if (const int error = getaddrinfo(endpoint.address.c_str(), port.c_str(), &hints, &found); error != 0)
     refuse_url(url, "host '" + endpoint.address + "': " + gai_strerror(error));
+  // Try to connect, for at most 2 s.
   const int fd = socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
   int error = fd < 0 ? errno : 0;
   if (error == 0 && connect(fd, found->ai_addr, found->ai_addrlen) != 0) {

@@ -7,13 +7,13 @@
 
 namespace bridges {
 
-/// The IPv4 addresses of this machine.
+/// IPv4 addresses of this machine.
 class OwnAddresses {
  public:
   OwnAddresses();
 
-  /// Whether `address` (host byte order) is one of this machine's; all of 127.0.0.0/8 are.  For an unknown one the
-  /// list is read again, at most once a second, as interfaces change.
+  /// Returns whether `address` (host byte order) belongs to this machine, as all of 127.0.0.0/8 do.  For an unknown
+  /// address the list is read again, at most once a second, because interfaces can change.
   bool contain(std::uint32_t address);
 
  private:

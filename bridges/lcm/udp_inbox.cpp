@@ -10,9 +10,9 @@
 namespace bridges {
 namespace {
 
-/// Unwanted messages, since the subscriptions changed, that are worth a filter.
+/// Number of unmatched messages since the last change of the subscriptions above which a filter is set.
 constexpr std::uint64_t min_unmatched_for_filter = 64;
-/// While vehicles come and go the filter would be made again and again.
+/// Delay of the filter after a change, so that it is not rebuilt repeatedly while vehicles are added and removed.
 constexpr std::chrono::milliseconds quiet_before_filter{100};
 
 }  // namespace
@@ -37,7 +37,7 @@ void UdpInbox::remove(const Subscription& subscription) {
 }
 
 void UdpInbox::subscriptions_changed() {
-  // At once: a filter that is too old would drop what is wanted now.
+  // Remove the filter immediately: an outdated one would drop messages of new subscriptions.
   if (filtering_) receiver_.set_filter({});
   filtering_ = filter_refused_ = false;
   changed_at_ = Clock::now();

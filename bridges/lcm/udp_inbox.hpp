@@ -16,8 +16,9 @@
 
 namespace bridges {
 
-/// What one udpm connection receives, by channel.  When many messages without a subscription arrive, the kernel drops
-/// them (channel_filter): on a bus, messages for others and echoes of one's own outnumber the subscribed ones.
+/// Receiver of one udpm connection that dispatches messages by channel.  When many messages without a subscription
+/// arrive, a kernel filter drops them (channel_filter): on a bus, messages for other programs and echoes of own
+/// messages outnumber the subscribed ones.
 class UdpInbox {
  public:
   using Handler = LcmConnection::Handler;
@@ -27,26 +28,26 @@ class UdpInbox {
     void* user = nullptr;
   };
 
-  /// Throws BusError; its text says what failed, without the URL.
+  /// Throws BusError with the operation that failed, without the URL.
   explicit UdpInbox(const UdpReceiver::Options& options) : receiver_(options) {}
 
   int fd() const { return receiver_.fd(); }
-  /// From any thread.  remove() identifies it by the address of `subscription`.
+  /// Adds a subscription.  Thread-safe.  remove() identifies it by the address of `subscription`.
   void add(const Subscription& subscription);
   void remove(const Subscription& subscription);
-  /// Calls the handlers for one batch.  By one thread at a time.  True when there may be more.
+  /// Calls the handlers for one batch.  By one thread at a time.  Returns true when there may be more.
   bool handle();
 
   struct Counts {
-    std::uint64_t datagrams = 0;  ///< that the kernel let pass
-    std::uint64_t foreign = 0;    ///< of other machines, dropped
-    std::uint64_t bad = 0;        ///< not LCM's, or breaking its format
+    std::uint64_t datagrams = 0;  ///< datagrams passed by the kernel filter
+    std::uint64_t foreign = 0;    ///< dropped datagrams from other machines
+    std::uint64_t bad = 0;        ///< datagrams that are not LCM, or violate its format
     std::uint64_t unmatched = 0;  ///< messages on channels without subscription
   };
-  /// By the thread that handles.
+  /// Returns the counts; only for the handling thread.
   Counts counts() const;
   bool filters() const { return filtering_; }
-  /// Of all datagrams so far.  From any thread.
+  /// Returns the bytes of all datagrams received.  Thread-safe.
   std::uint64_t received_bytes() const { return received_bytes_; }
 
  private:
@@ -63,14 +64,14 @@ class UdpInbox {
   void subscriptions_changed();
 
   UdpReceiver receiver_;
-  mutable std::mutex mutex_;  // of the subscriptions and the filter
+  mutable std::mutex mutex_;  // protects the subscriptions and the filter
   std::map<std::string, std::vector<Call>, std::less<>> by_channel_;
   std::vector<Call> to_all_;
   bool filtering_ = false;
   bool filter_refused_ = false;  // for these subscriptions
   Clock::time_point changed_at_;
   std::atomic<std::uint64_t> received_bytes_ = 0;
-  std::vector<Call> called_;  // by the thread that handles
+  std::vector<Call> called_;  // used by the handling thread only
   std::uint64_t unmatched_ = 0, unmatched_before_ = 0;
 };
 

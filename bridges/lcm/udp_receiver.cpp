@@ -17,7 +17,7 @@
 namespace bridges {
 namespace {
 
-/// UDP carries no larger payload.
+/// Buffer for a datagram, larger than any payload of UDP over IPv4.
 constexpr std::size_t max_datagram_bytes = 65536;
 
 [[noreturn]] void fail_with_errno(const std::string& what) {
@@ -37,6 +37,7 @@ FileDescriptor open_socket(const UdpReceiver::Options& options) {
   set_option(fd, SOL_SOCKET, SO_TIMESTAMP, 1, "the kernel provides no timestamps for messages");
   if (options.buffer_bytes > 0)
     set_option(fd, SOL_SOCKET, SO_RCVBUF, options.buffer_bytes, "the receive buffer cannot be set");
+  // Bind to the group and port, and join the group.
   sockaddr_in address{};
   address.sin_family = AF_INET;
   address.sin_port = htons(static_cast<std::uint16_t>(options.port));
@@ -52,7 +53,7 @@ FileDescriptor open_socket(const UdpReceiver::Options& options) {
   return opened;
 }
 
-/// When the kernel got the datagram; now if it does not say.
+/// Returns the time of reception of the datagram by the kernel; the present time if it is not given.
 std::int64_t received_at_us(msghdr& header) {
   for (cmsghdr* part = CMSG_FIRSTHDR(&header); part != nullptr; part = CMSG_NXTHDR(&header, part)) {
     if (part->cmsg_level != SOL_SOCKET || part->cmsg_type != SCM_TIMESTAMP) continue;
@@ -66,7 +67,7 @@ std::int64_t received_at_us(msghdr& header) {
 
 }  // namespace
 
-/// What recvmmsg fills.  Pages of `bytes` that no datagram was large enough for are never touched.
+/// Buffers for recvmmsg.  Pages of `bytes` beyond the largest datagram are never touched.
 struct UdpReceiver::Batch {
   struct alignas(cmsghdr) Control {
     std::array<std::byte, CMSG_SPACE(sizeof(timeval))> bytes;
@@ -76,7 +77,7 @@ struct UdpReceiver::Batch {
     for (std::size_t i = 0; i < max_batch; ++i) parts[i] = {bytes.get() + i * max_datagram_bytes, max_datagram_bytes};
   }
 
-  /// The kernel writes sizes over those that it was given.
+  /// Resets the sizes, which the kernel overwrites.
   void prepare() {
     for (std::size_t i = 0; i < max_batch; ++i) {
       msghdr& header = headers[i].msg_hdr;
@@ -129,8 +130,8 @@ bool UdpReceiver::receive(const Accepts& accepts, const Sink& sink) {
 }
 
 bool UdpReceiver::is_own(std::uint32_t address) {
-  // Where the route to the group goes over lo the source is 0.0.0.0.  From other machines the kernel takes no such
-  // datagram, nor one with an address of this machine, except to the groups of a link (224.0.0.0/24).
+  // The source is 0.0.0.0 when the route to the group uses lo.  The kernel does not accept such datagrams from other
+  // machines, nor those with an address of this machine, except for link-local groups (224.0.0.0/24).
   if (address == INADDR_ANY) return !is_group_of_link_;
   return own_.contain(address);
 }

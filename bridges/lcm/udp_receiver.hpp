@@ -16,38 +16,39 @@ struct sock_filter;
 
 namespace bridges {
 
-/// The socket that a udpm bus receives by, in place of liblcm's: liblcm 1.3.1 believes what a datagram says of itself.
-/// It is bound to the multicast group: what was sent to this machine's own address, or to another group on this port,
-/// does not arrive.
+/// Receiving socket of a udpm bus, used instead of that of liblcm, because liblcm 1.3.1 does not validate the fields of
+/// datagrams.  It is bound to the multicast group: datagrams to the address of this machine, or to another group on
+/// this port, are not received.
 class UdpReceiver {
  public:
   struct Options {
     std::string group;              ///< "239.255.76.67"
     int port = 7667;                ///< 1 to 65535
-    int buffer_bytes = 0;           ///< of the kernel, which may grant less; 0: its default
-    bool this_machine_only = true;  ///< drop what other machines send
+    int buffer_bytes = 0;           ///< size of the kernel buffer, which may be granted in part; 0: default
+    bool this_machine_only = true;  ///< drop datagrams from other machines
   };
   using Accepts = std::function<bool(std::string_view channel)>;
-  /// `received_at_us`: wall clock when the kernel got the last datagram of it, in microseconds since 1970.
+  /// Callback for a message.  `received_at_us`: wall time of reception of its last datagram by the kernel, in
+  /// microseconds since 1970.
   using Sink = std::function<void(const LcmReassembly::Message&, std::int64_t received_at_us)>;
 
   static constexpr std::size_t max_batch = 32;
 
-  /// Throws BusError; its text says what failed, without the URL.
+  /// Throws BusError with the operation that failed, without the URL.
   explicit UdpReceiver(const Options& options);
 
-  /// Readable when receive() has something.
+  /// Returns a descriptor that is readable when receive() has data.
   int fd() const { return socket_.number(); }
-  /// Receives at most `max_batch` datagrams without waiting, and passes complete messages to `sink`.
-  /// `wanted` filters fragmented messages by channel.  True when there may be more.
+  /// Receives at most `max_batch` datagrams without waiting, and passes complete messages to `sink`.  `accepts` filters
+  /// fragmented messages by channel.  Returns true when there may be more.
   bool receive(const Accepts& accepts, const Sink& sink);
-  /// Lets the kernel drop what `program` (classic BPF) rejects; empty: nothing.  False when the kernel rejects it;
-  /// then nothing is dropped.
+  /// Sets the kernel filter (classic BPF); empty: no filter.  Returns false when the kernel rejects it; then nothing is
+  /// filtered.
   bool set_filter(std::vector<sock_filter> program);
 
   struct Counts {
     std::uint64_t datagrams = 0, bytes = 0;
-    std::uint64_t foreign = 0;  ///< of other machines, dropped
+    std::uint64_t foreign = 0;  ///< dropped datagrams from other machines
   };
   const Counts& counts() const { return counts_; }
   const LcmReassembly::Counts& reassembly_counts() const { return reassembly_.counts(); }

@@ -26,7 +26,7 @@ std::string list_text(bool listed, std::int32_t count) {
 }  // namespace
 
 std::optional<std::string> AnswerHistory::add(const shoal::sim_ack_t& ack) {
-  if (ack.session != 0 && ack.sequence == 0) return std::nullopt;  // it only says that it lives
+  if (ack.session != 0 && ack.sequence == 0) return std::nullopt;  // only a sign of life
   const Answer answer{ack.session, ack.sequence, ack.step, ack.listed != 0, ack.count, hash_of_list(ack)};
   const auto first = std::find_if(answers_.begin(), answers_.end(), [&](const Answer& each) {
     return each.session == answer.session && each.sequence == answer.sequence &&

@@ -10,16 +10,16 @@
 
 namespace bridges {
 
-/// The last answers of one client, to find two different ones to one tick.
+/// History of the last answers of one client, to detect two different answers to one tick.
 class AnswerHistory {
  public:
-  /// More than the lag of a client whose ticks another program answers.
+  /// Length of the history, greater than the delay of a client whose ticks another program answers.
   static constexpr std::size_t max_answers = 64;
 
-  /// Describes how an answer differs from the first one to its tick; nothing when it is the first, or equal.  `utime`
-  /// does not count.
+  /// Adds an answer and describes how it differs from the first one to its tick; none when it is the first, or equal.
+  /// `utime` is ignored.
   std::optional<std::string> add(const shoal::sim_ack_t& ack);
-  /// The world went back: a client without session may answer the same step again.
+  /// Starts a branch after a rewind: a client without session may answer the same step again.
   void set_branch();
 
  private:
@@ -27,7 +27,7 @@ class AnswerHistory {
     std::int64_t session, sequence, step;
     bool listed;
     std::int32_t count;
-    std::uint64_t hash;  // of the list
+    std::uint64_t hash;  // hash of the list
   };
   std::deque<Answer> answers_;
 };

@@ -33,6 +33,7 @@ ControlGuard::Opened ControlGuard::open(std::string_view channel, std::span<cons
 std::string ControlGuard::refusal_of(const SignedMessage& message, std::string_view channel, bool& came_before) {
   const std::int64_t counter = message.counter;
   if (counter <= 0) return "its counter must be above 0, got " + std::to_string(counter);
+  // Find or add the sender.
   const Name key{message.sender, message.session};
   auto known = senders_.find(key);
   if (known == senders_.end()) {
@@ -43,6 +44,7 @@ std::string ControlGuard::refusal_of(const SignedMessage& message, std::string_v
     by_age_.push_back(key);
     known = senders_.emplace(key, Sender{{}, std::prev(by_age_.end())}).first;
   }
+  // Compare with its last counter on this channel.
   Sender& sender = known->second;
   const auto last = sender.counters.find(channel);
   came_before = last != sender.counters.end() && counter <= last->second;

@@ -15,7 +15,7 @@
 
 namespace bridges {
 
-/// How a message is refused that must be signed and is not.
+/// Reason of the refusal of an unsigned message that must be signed.
 inline constexpr const char* needs_key_text =
     "this run can only be controlled with its key: use --run DIR, or set SHOAL_RUN_KEY; see "
     "docs/guides/access_control.md";
@@ -26,36 +26,36 @@ inline constexpr const char* needs_key_text =
 class ControlGuard {
  public:
   struct Opened {
-    sim::Bytes content;        ///< the message itself
-    std::string signer;        ///< who sent it, with the key of the run; empty: not signed, or not checked
-    std::string refusal;       ///< why it must not be executed; empty: it may
-    bool came_before = false;  ///< rejected as a repetition, by a sender or the network
+    sim::Bytes content;        ///< enclosed message
+    std::string signer;        ///< sender, verified with the key of the run; empty: not signed, or not checked
+    std::string refusal;       ///< reason of the refusal; empty: it may be executed
+    bool came_before = false;  ///< refused as a repetition, by a sender or the network
   };
-  /// Senders whose counters are kept; the least recently seen one is replaced.
+  /// Maximum number of senders whose counters are stored; the least recently seen one is replaced.
   static constexpr std::size_t max_senders = 10'000;
 
-  /// From now on only messages that are signed with this key are to be executed.
+  /// Requires a signature: from now on only messages signed with this key are executed.
   void require(const RunKey& key) { key_ = key; }
   bool requires_key() const { return key_.has_value(); }
 
-  /// Throws shoal::MessageError when the envelope cannot be read.
+  /// Unwraps and verifies a message.  Throws shoal::MessageError when the envelope cannot be read.
   Opened open(std::string_view channel, std::span<const std::byte> payload);
 
  private:
   using Name = std::pair<std::string, std::int64_t>;  // sender and session
   struct Sender {
-    std::map<std::string, std::int64_t, std::less<>> counters;  // the last, by channel
+    std::map<std::string, std::int64_t, std::less<>> counters;  // last counter by channel
     std::list<Name>::iterator place;
   };
 
-  /// Why it is refused; empty: it is new.  Notes the counter.
+  /// Returns why a message is refused; empty when it is new.  Records its counter.
   std::string refusal_of(const SignedMessage& message, std::string_view channel, bool& came_before);
   void make_room();
 
   std::optional<RunKey> key_;
   std::map<Name, Sender> senders_;
-  std::list<Name> by_age_;  // received the longest time ago first
-  std::int64_t floor_ = 0;  // no sender that made room had a greater counter
+  std::list<Name> by_age_;  // least recently seen first
+  std::int64_t floor_ = 0;  // largest counter of all replaced senders
 };
 
 }  // namespace bridges

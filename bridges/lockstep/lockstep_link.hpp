@@ -10,7 +10,7 @@
 
 namespace bridges {
 
-/// A bus on which clients may be.
+/// Bus on which clients may be.
 struct LockstepService::Link {
   Link(sim::Bus& bus, sim::MessageGate& message_gate, const std::string& name)
       : network(bus),
@@ -21,7 +21,8 @@ struct LockstepService::Link {
         questions(bus.open_mailbox("sim.resend")),
         bundles(bus.open_mailbox("sim.resent")) {}
 
-  /// Beside the gate.  Goes out when the world waits for the answer, or at the end of the step.
+  /// Publishes a message on the network, bypassing the gate.  It is sent when the world waits for the answer, or at the
+  /// end of the step.
   template <typename Message>
   void publish(const char* channel, const Message& message, sim::Time at) {
     shoal::encode_into(message, buffer);
@@ -30,10 +31,10 @@ struct LockstepService::Link {
 
   sim::Bus& network;
   sim::MessageGate& gate;
-  const std::string called;  // in texts
+  const std::string called;  // name in texts
   sim::ClientMessages messages;
   std::unique_ptr<sim::Mailbox> acks, questions, bundles;
-  std::vector<std::unique_ptr<sim::Mailbox>> passed_on;  // read for the sake of other clients only
+  std::vector<std::unique_ptr<sim::Mailbox>> passed_on;  // opened only to forward messages to other clients
   sim::Bytes buffer;
 };
 

@@ -10,16 +10,16 @@
 #include "shoal/sim_control_reply_t.hpp"
 #include "sim/config/message_text.hpp"
 
-// Who takes part in the lockstep: joining, leaving, two clients of one name.
+// Members of the lockstep: joining, leaving, name conflicts.
 
 namespace bridges {
 
 namespace {
 
-/// After this the world takes another client of the same name.
+/// Time after which the world accepts another client of the same name.
 constexpr std::chrono::seconds alive_for{1};
 constexpr std::size_t max_ended_sessions = 1000;
-/// How the summary calls the end of a client that asked for it.
+/// Text in the summary for a client that left by request.
 constexpr const char* left = "left";
 
 std::string seconds_text(sim::Time time) {
@@ -39,6 +39,7 @@ std::string LockstepService::names() const {
 bool LockstepService::join(int link, const shoal::sim_control_request_t& request) {
   if (request.client.empty() || request.client.size() > 60)
     throw std::runtime_error("'join' needs a client name of 1 to 60 characters");
+  // Convert the period to steps.
   const double steps = request.value * 1e6 / static_cast<double>(world_.step_time().count());
   if (!(steps > 0.5 && steps < 1e12))
     throw std::runtime_error("'join' needs a period of at least one step, in seconds");
@@ -46,6 +47,7 @@ bool LockstepService::join(int link, const shoal::sim_control_request_t& request
   if (std::abs(steps - static_cast<double>(period_steps)) > 1e-6)
     throw std::runtime_error("'join' needs a period that is a multiple of the step of " +
                              std::to_string(sim::to_seconds(world_.step_time())) + " s");
+  // Read the terms, and check for clients of the same name.
   const sim::LockstepTerms terms = sim::read_lockstep_terms(request.text, defaults_);
   check_session(request.client, terms.session);
   const sim::LockstepMember* first = lockstep_.find(request.client);
@@ -59,6 +61,7 @@ bool LockstepService::join(int link, const shoal::sim_control_request_t& request
   }
   if (!lockstep_.has(request.client) && lockstep_.members().size() >= 1000)
     throw std::runtime_error("1000 clients have joined, which is the maximum");
+  // Add the client, and reset its records.
   lockstep_.join(request.client, terms, period_steps, world_.step_number(), link);
   challenges_.erase(request.client);
   dropped_.erase(request.client);
@@ -72,7 +75,7 @@ bool LockstepService::is_over(const std::string& client, std::int64_t session) c
   return session != 0 && std::find(ended_.begin(), ended_.end(), std::pair(client, session)) != ended_.end();
 }
 
-/// A request that the network repeated, or held back, must not take in again who has left.
+/// Checks that a request that the network repeated or delayed does not rejoin a client that has left.
 void LockstepService::check_session(const std::string& client, std::int64_t session) const {
   if (!is_over(client, session)) return;
   const auto summary = summaries_.find(client);
@@ -83,25 +86,29 @@ void LockstepService::check_session(const std::string& client, std::int64_t sess
                            "; join with another one");
 }
 
-/// The other of that name may have died a moment ago; it can show that it lives.
+/// Checks whether the present client of that name is alive: it may have ended a moment ago.
 bool LockstepService::may_join(const sim::LockstepMember& first, const sim::LockstepTerms& terms) {
   if (first.removed) return true;
   const std::string name = first.name;
   const Clock::time_point now = Clock::now();
-  take_messages();  // what it said before it was asked tells nothing
+  take_messages();  // discard answers sent before the check
+  // Start a check, or continue one.
   const auto [entry, fresh] = challenges_.try_emplace(name);
   Challenge& challenge = entry->second;
   if (fresh || now - challenge.ask_at > 5 * alive_for) challenge = {now, now, false};
+  // Refuse the name while its owner answers.
   if (challenge.is_alive) {
     challenges_.erase(name);
     throw std::runtime_error("another client named '" + name + "' takes part and is responding" +
                              (terms.session == 0 ? "" : "; give this one another name"));
   }
+  // Accept it when the owner did not answer in time.
   const auto requested = pending_.find(name);
   const bool at_work = requested != pending_.end() && !first.answered;
   if (at_work) return now - requested->second.since > alive_for;
-  // While the world runs its next tick will show; a program may be busy between its ticks.
+  // While the world runs, the next tick shows whether it is alive; a program may be busy between its ticks.
   if (control_.paused && now - challenge.since > alive_for) return true;
+  // Repeat the check.
   if (now >= challenge.ask_at) {
     challenge.ask_at = now + first_resend_interval;
     probe_client(first);
@@ -121,10 +128,11 @@ bool LockstepService::has_left(const std::string& client) const {
 
 bool LockstepService::leave(int link, const shoal::sim_control_request_t& request) {
   const std::string called = "client '" + sim::printable(sim::shortened(request.client)) + "'";
+  // Identify the client and its session.
   const sim::LeaveTerms terms = sim::read_leave_terms(request.text);
   const sim::LockstepMember* member = lockstep_.find(request.client);
   if (member == nullptr && is_over(request.client, terms.session))
-    return true;  // it asks again: the answer was lost, or is on its way
+    return true;  // a repeated request: the answer was lost, or is in transit
   if (member == nullptr)
     throw std::runtime_error("no client named '" + sim::shortened(request.client) + "' has joined");
   if (member->link != link)
@@ -135,10 +143,11 @@ bool LockstepService::leave(int link, const shoal::sim_control_request_t& reques
   if (terms.acknowledged > member->sequence)
     throw std::runtime_error("the client '" + member->name + "' leaves after tick " +
                              std::to_string(terms.acknowledged) + ", which was not sent to it");
-  // What it said before it leaves counts, if it takes a while to arrive.  It does not answer ticks that come later.
+  // Accept messages that it sent before it left and that arrive later.  It does not answer later ticks.
   const bool answered = member->answered || (terms.acknowledged >= 0 && terms.acknowledged < member->sequence);
   const bool complete = link_of(member->link).messages.is_complete(member->name);
   if (terms.session != 0 && !(answered && complete)) return false;
+  // Remove the client.
   report_who_left(*member, link, terms);
   discard(request.client, left);
   return true;

@@ -8,7 +8,7 @@
 #include "shoal/sim_tick_t.hpp"
 #include "sim/config/message_text.hpp"
 
-// The messages of the lockstep: ticks, acknowledgements, and what is asked for and sent again.
+// Messages of the lockstep: ticks, acknowledgements, requests for repetition and repeated messages.
 
 namespace bridges {
 
@@ -16,7 +16,7 @@ using std::chrono::milliseconds;
 
 namespace {
 
-/// Messages of a kind that are looked at before the world looks at something else.
+/// Maximum number of messages of one kind that are handled at a time.
 constexpr int max_at_once = 1000;
 
 template <typename Take>
@@ -55,11 +55,13 @@ void LockstepService::publish_tick(const std::vector<std::string>& clients, bool
     tick.step = world_.step_number();
     tick.branch = branch_;
     tick.last = last;
+    // List the clients of this link.
     for (const std::string& client : clients) {
       const sim::LockstepMember* member = lockstep_.find(client);
       if (member == nullptr || member->link != static_cast<int>(i)) continue;
       tick.client.push_back(due_of(*member));
     }
+    // List the followers in the last tick.
     for (const Follower& follower : followers_)
       if (last && follower.link == static_cast<int>(i)) {
         shoal::sim_due_t& due = tick.client.emplace_back();
@@ -73,7 +75,7 @@ void LockstepService::publish_tick(const std::vector<std::string>& clients, bool
   }
 }
 
-/// A tick of the branch that was left, to a client that had not answered it.
+/// Publishes a tick of the abandoned branch to a client that had not answered it.
 void LockstepService::publish_left_tick(const sim::LockstepMember& member) {
   shoal::sim_tick_t tick;
   tick.step = member.left_step;
@@ -85,9 +87,10 @@ void LockstepService::publish_left_tick(const sim::LockstepMember& member) {
   link_of(member.link).publish("sim.tick", tick, world_.now());
 }
 
-/// Its last tick once more, or one with sequence 0: it answers both, and does nothing else.
+/// Sends the last tick again, or one with sequence 0: the client answers both, and does nothing else.
 void LockstepService::probe_client(const sim::LockstepMember& member) {
   Link& link = link_of(member.link);
+  // Repeat the open tick.
   if (!member.answered) {
     if (member.abandoned)
       publish_left_tick(member);
@@ -97,6 +100,7 @@ void LockstepService::probe_client(const sim::LockstepMember& member) {
   }
   shoal::sim_tick_t tick;
   tick.utime = utime();
+  // Or send an empty tick with the last sequence.
   tick.step = member.requested;
   tick.branch = branch_;
   tick.last = false;
@@ -148,6 +152,7 @@ void LockstepService::check_link(int link, const std::string& client, const char
 void LockstepService::take_ack(int link_index, const sim::Message& message) {
   std::string who;
   try {
+    // Verify and decode the acknowledgement.
     const ControlGuard::Opened opened = guard_.open(message.channel, message.payload);
     if (opened.came_before) return;  // the network repeats messages as well
     const auto ack = shoal::decode<shoal::sim_ack_t>(opened.content, shoal::Finite::any);
@@ -157,6 +162,7 @@ void LockstepService::take_ack(int link_index, const sim::Message& message) {
       throw std::runtime_error("client '" + ack.client + "' names " + std::to_string(ack.channel.size()) +
                                " messages; at most " + std::to_string(sim::max_named_messages) + " are allowed");
     check_link(link_index, ack.client, "acknowledges a tick");
+    // Compare it with the tick of the client.
     std::string why;
     const auto verdict =
         lockstep_.acknowledge({ack.client, ack.step, ack.session, ack.sequence}, world_.step_number(), why);
@@ -165,21 +171,24 @@ void LockstepService::take_ack(int link_index, const sim::Message& message) {
           dropped != dropped_.end() && dropped->second.session == ack.session && !lockstep_.has(ack.client))
         notify_dropped(dropped->second, ack.client);
       else if (is_over(ack.client, ack.session))
-        return;  // its last answer, sent again while it left
+        return;  // repetition of its last answer while it was leaving
       throw std::runtime_error(why);
     }
+    // Record that the client is alive.
     if (on_answer_ && link_index == 0) on_answer_(ack.client);
     if (const auto challenge = challenges_.find(ack.client); challenge != challenges_.end())
       challenge->second.is_alive = true;
     compare_answers(ack, opened.signer);
     if (verdict == sim::Lockstep::Verdict::repeated) return;
+    // Take over the list of published messages.
     sim::LockstepMember& member = *lockstep_.find(ack.client);
     Link& link = link_of(member.link);
     std::vector<sim::NamedMessage> named;
     for (std::size_t i = 0; i < ack.channel.size(); ++i)
       named.push_back({ack.channel[i], static_cast<std::uint32_t>(ack.crc[i])});
+    // Drop the messages of an abandoned tick.
     if (verdict == sim::Lockstep::Verdict::abandoned) {
-      link.messages.collect();  // what came before this answer
+      link.messages.collect();  // messages that arrived before this answer
       pending_.erase(ack.client);
       if (ack.listed)
         link.messages.drop(ack.client, named);
@@ -187,12 +196,13 @@ void LockstepService::take_ack(int link_index, const sim::Message& message) {
         link.messages.drop_unnamed();
       return;
     }
+    // Expect the listed messages, also those for other clients only.
     if (!ack.listed) return;
     for (const std::string& channel : ack.channel)
       if (!link.gate.reads(channel) && lockstep_.has_receiver(link_index, channel) && !channel.empty() &&
           channel.size() <= sim::Bus::max_channel_length)
         link.passed_on.push_back(link.gate.open_mailbox(channel));
-    link.messages.collect();  // what came before this answer, also since the messages were collected
+    link.messages.collect();  // messages before this answer that arrived since the last collection
     link.messages.expect(ack.client, named);
     Pending& requested = pending_[ack.client];
     requested.send_at = Clock::now() + resend_grace;
@@ -202,7 +212,7 @@ void LockstepService::take_ack(int link_index, const sim::Message& message) {
   }
 }
 
-/// Not only the first answer counts: the one that was forged may have come before that of the client.
+/// Compares the answers to a tick, because a forged one may arrive before that of the client.
 void LockstepService::compare_answers(const shoal::sim_ack_t& ack, const std::string& signer) {
   const auto difference = answers_[ack.client].add(ack);
   if (!difference) return;
@@ -220,6 +230,7 @@ void LockstepService::compare_answers(const shoal::sim_ack_t& ack, const std::st
 void LockstepService::take_request(int link_index, const sim::Message& message) {
   std::string who;
   try {
+    // Verify and decode the request.
     const ControlGuard::Opened opened = guard_.open(message.channel, message.payload);
     if (opened.came_before) return;  // the network repeats messages as well
     const auto question = shoal::decode<shoal::sim_resend_t>(opened.content, shoal::Finite::any);
@@ -227,6 +238,7 @@ void LockstepService::take_request(int link_index, const sim::Message& message) 
     who = question.client.substr(0, 60);
     check_permission(question.client, "requests messages", opened);
     check_link(link_index, question.client, "requests messages");
+    // Check session, tick and index.
     const sim::LockstepMember* member = lockstep_.find(question.client);
     if (is_over(question.client, question.session)) return;
     if (member == nullptr || member->terms.session != question.session)
@@ -236,7 +248,7 @@ void LockstepService::take_request(int link_index, const sim::Message& message) 
       throw std::runtime_error("client '" + question.client + "' requests message " + std::to_string(question.first) +
                                " of " + std::to_string(member->list.size()));
     const auto requested = pending_.find(question.client);
-    // What is on its way need not go out twice.
+    // Messages in transit need not be sent twice.
     if (requested == pending_.end() || Clock::now() < requested->second.serve_after) return;
     requested->second.serve_after = Clock::now() + milliseconds(5);
     send_again(*member, question.first);
@@ -268,6 +280,7 @@ void LockstepService::send_again(const sim::LockstepMember& member, std::int32_t
 void LockstepService::take_bundle(int link_index, const sim::Message& message) {
   std::string who;
   try {
+    // Verify and decode the repeated messages.
     const ControlGuard::Opened opened = guard_.open(message.channel, message.payload);
     if (opened.came_before) return;  // the network repeats messages as well
     const auto bundle = shoal::decode<shoal::sim_resent_t>(opened.content, shoal::Finite::any);
@@ -275,11 +288,13 @@ void LockstepService::take_bundle(int link_index, const sim::Message& message) {
     who = bundle.client.substr(0, 60);
     check_permission(bundle.client, "sends messages again", opened);
     check_link(link_index, bundle.client, "sends messages again");
+    // Check session and tick.
     const sim::LockstepMember* member = lockstep_.find(bundle.client);
     if (is_over(bundle.client, bundle.session)) return;
     if (member == nullptr || member->terms.session != bundle.session)
       throw std::runtime_error("client '" + bundle.client + "' sends messages again, but is not a lockstep client");
     if (bundle.sequence != member->sequence || !member->answered) return;  // late
+    // Add the messages to those expected.
     Link& link = link_of(member->link);
     for (std::size_t i = 0; i < bundle.message.size(); ++i) {
       const auto bytes = bytes_of(bundle.message[i]);

@@ -17,9 +17,9 @@ using std::chrono::milliseconds;
 
 namespace {
 
-/// Of clients; at most 1000 of them take part at the same time.
+/// Maximum number of client summaries; at most 1000 clients are in the lockstep at the same time.
 constexpr std::size_t max_summaries = 2000;
-/// Of sim::ClientMessages.
+/// Interval of the windows of sim::ClientMessages.
 constexpr milliseconds delivery_window{50};
 
 }  // namespace
@@ -144,12 +144,13 @@ std::vector<std::string> LockstepService::late() {
 }
 
 LockstepOutcome LockstepService::synchronize(const Wait& wait, const std::function<bool()>& idle) {
-  take_messages();  // also when no client is due: messages are checked, and does not pile up
+  take_messages();  // also when no client is due: messages are checked, and do not accumulate
   drop_overflowing();
   while (true) {
     std::vector<std::string> names = late();
     if (names.empty()) break;
     if (!idle() || control_.quit) return LockstepOutcome::stopped;
+    // Send new ticks and repetitions.
     if (lockstep_.abandoned().empty()) lockstep_.send_request(world_.step_number());
     names = late();  // some may have joined or left
     serve(names);
@@ -196,7 +197,7 @@ std::string LockstepService::waits_for() {
 
 void LockstepService::check_clock() {
   const Clock::time_point now = Clock::now();
-  // One at a time: what came while this process had no processor is looked at before its time is over.
+  // One at a time: messages that arrived while this process was not scheduled are read before a time-out.
   if (now - window_start_ < delivery_window) return;
   window_start_ = now;
   for (const auto& link : links_) link->messages.next_window();
@@ -214,7 +215,7 @@ void LockstepService::report_repeated() {
   }
 }
 
-/// Time-outs rest while a user has paused the world.
+/// Suspends the time-outs while a user has paused the world.
 void LockstepService::rest_time_outs(Clock::time_point now) {
   const auto passed = now - std::exchange(served_, now);
   if (!control_.paused || control_.single_steps > 0 || paused_here_) return;
@@ -223,6 +224,7 @@ void LockstepService::rest_time_outs(Clock::time_point now) {
 
 void LockstepService::serve(const std::vector<std::string>& late) {
   rest_time_outs(Clock::now());
+  // Check the time-outs, and repeat requests with back-off.
   std::vector<std::string> to_tick;
   for (const std::string& client : late) {
     const Clock::time_point now = Clock::now();
@@ -252,6 +254,7 @@ void LockstepService::check_time(const std::string& client, Pending& requested, 
   const sim::LockstepMember* member = lockstep_.find(client);
   const double timeout_s = member->terms.timeout_s;
   if (now - requested.begin < std::chrono::duration<double>(timeout_s) && !member->removed) return;
+  // Describe what is late.
   char limit[32];
   std::snprintf(limit, sizeof limit, "%g s", timeout_s);
   const std::string step = std::to_string(member->requested);
@@ -261,6 +264,7 @@ void LockstepService::check_time(const std::string& client, Pending& requested, 
                               ? "the process of client '" + client + "' ended before it answered step " + step
                               : "no acknowledgement from '" + client + "' for step " + step + " " + when;
   if (!requested.reported) ++summary_of(client).timeouts;
+  // Execute the agreed action.
   switch (member->terms.on_timeout) {
     case sim::OnTimeout::wait:
       if (!requested.reported) spdlog::warn("lockstep: {}; the world waits", why);
@@ -289,16 +293,19 @@ void LockstepService::check_time(const std::string& client, Pending& requested, 
   requested.reported = true;
 }
 
-/// All members are listed, as clients ignore a last tick that does not list them; who cannot answer is not waited for.
+/// Lists all members, because clients ignore a last tick that does not list them; clients that cannot answer are not
+/// waited for.
 void LockstepService::publish_end(const Wait& wait, milliseconds limit) {
   pending_.clear();
   lockstep_.ask_all(world_.step_number());
   for (const auto& [client, dropped] : dropped_) notify_dropped(dropped, client);
+  // Repeat the last tick until all clients have confirmed.
   const Clock::time_point end = Clock::now() + limit;
   milliseconds interval = first_resend_interval;
   Clock::time_point send_at = Clock::now();
   while (true) {
     std::vector<std::string> names;
+    // Collect the clients that have not answered.
     bool desired = false;
     for (const auto& [name, member] : lockstep_.members()) {
       if (member.answered || member.removed) continue;

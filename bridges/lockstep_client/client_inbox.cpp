@@ -9,14 +9,14 @@
 namespace bridges {
 namespace {
 
-/// The handshake, and what reports it: no tick names them, and handlers are called when they come.
+/// Channels of the handshake and its reports: no tick names their messages, and handlers are called on arrival.
 constexpr std::string_view unnamed_channels[] = {"sim.ack",    "sim.control", "sim.control.reply", "sim.hash",
                                                  "sim.info",   "sim.inputs",  "sim.audit",         "sim.resend",
                                                  "sim.resent", "sim.tick"};
 
 constexpr std::size_t max_recent = 8192;
 constexpr std::size_t max_held = 100'000;
-/// After so many ticks that do not name a message none will.
+/// Number of ticks after which an unnamed message is no longer expected in a list.
 constexpr int hold_ticks = 3;
 
 }  // namespace
@@ -36,7 +36,7 @@ bool ClientInbox::hold(Received& message) {
   if (place == places_.end()) return false;
   std::deque<Held>& held = held_[place->second];
   held.push_back({sim::crc32(message.payload), std::move(message.payload)});
-  if (held.size() > max_held) held.pop_front();  // if a tick names it, it is asked for
+  if (held.size() > max_held) held.pop_front();  // if a tick names it, it is requested
   return true;
 }
 
@@ -89,7 +89,7 @@ void ClientInbox::add(std::int32_t first, const std::vector<shoal::sim_payload_t
 
 void ClientInbox::hand_over(const Handle& handle) {
   for (Named& named : std::exchange(named_, {})) {
-    // One that was handled before any tick named it.
+    // Skip a message that was handled before a tick named it.
     if (early_.erase({named.channel, named.crc}) > 0) continue;
     remember({named.channel, named.crc});
     handle(std::string(names_[named.channel]), named.payload);  // a copy: handlers may add channels

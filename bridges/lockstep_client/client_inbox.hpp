@@ -18,38 +18,38 @@
 
 namespace bridges {
 
-/// What comes for a lockstep client, until a tick names it: then it is handled in the order of that list.
+/// Inbox of a lockstep client: holds messages until a tick names them, and handles them in the order of its list.
 class ClientInbox {
  public:
   using Handle = std::function<void(const std::string& channel, std::span<const std::byte> payload)>;
   struct Counts {
     std::uint64_t asked_for = 0;  ///< messages that arrived only after a request
-    std::uint64_t repeated = 0;   ///< messages that came again, and were dropped
-    std::uint64_t unnamed = 0;    ///< messages that no tick named: of senders that the simulator does not receive
+    std::uint64_t repeated = 0;   ///< duplicate messages, which were dropped
+    std::uint64_t unnamed = 0;    ///< messages that no tick named, from senders that the simulator does not receive
   };
 
-  /// Not a channel of the handshake, or of what reports it.
+  /// Returns whether ticks name the messages of a channel: all channels except those of the handshake and its reports.
   static bool is_named(std::string_view channel);
-  /// A channel whose messages ticks name; they do so by its place.
+  /// Adds a channel whose messages ticks name by its index.
   void add_channel(const std::string& channel);
   const std::vector<std::string>& channels() const { return names_; }
-  /// False: on none of these channels, and left as it is.
+  /// Holds a message.  Returns false when it is on none of these channels; it is then unchanged.
   bool hold(Received& message);
 
-  /// A tick came.  False: it names an unknown channel, and changes nothing.
+  /// Sets the list of a tick.  Returns false when it names an unknown channel; nothing has then changed.
   bool expect(const shoal::sim_due_t& due);
-  /// All that the tick names has come.
+  /// Returns whether all messages that the tick names have arrived.
   bool complete();
-  /// Place in the list of the tick.
+  /// Returns the index of the first missing message in the list of the tick.
   std::int32_t first_missing() const;
-  /// Messages of the list from `first` on, which were sent again.
+  /// Adds messages of the list, from index `first` on, that were sent again.
   void add(std::int32_t first, const std::vector<shoal::sim_payload_t>& messages);
-  /// Handles what the tick names, then what no tick has named for a while.
+  /// Handles the messages that the tick names, then those that no tick has named for several ticks.
   void hand_over(const Handle& handle);
 
   /// Discards messages that no tick has listed.
   void drop_held();
-  /// Also forgets the handled messages: they may arrive again.
+  /// Discards all messages, and the memory of handled ones, which may then arrive again.
   void discard();
   const Counts& counts() const { return counts_; }
 
@@ -57,7 +57,7 @@ class ClientInbox {
   struct Held {
     std::uint32_t crc;
     sim::Bytes payload;
-    int ticks = 0;  ///< that did not name it
+    int ticks = 0;  ///< number of ticks that did not name it
   };
   struct Named {
     std::size_t channel;
@@ -73,10 +73,10 @@ class ClientInbox {
   std::vector<std::string> names_;
   std::map<std::string, std::size_t, std::less<>> places_;
   std::vector<std::deque<Held>> held_;  // by channel
-  std::vector<Named> named_;            // by the tick, in its order
+  std::vector<Named> named_;            // messages named by the tick, in its order
   std::set<Key> recent_;                // handled a short time ago
   std::deque<Key> recent_order_;
-  std::set<Key> early_;  // of those: handled although no tick had named them
+  std::set<Key> early_;  // recent ones that were handled although no tick had named them
   Counts counts_;
 };
 

@@ -14,29 +14,31 @@
 
 namespace bridges {
 
-/// What a lockstep client publishes: its answers name it, and it is kept until the next tick, to be sent again.
+/// Outbox of a lockstep client: its answers name the published messages, which are kept until the next tick for
+/// repetition.
 class ClientOutbox {
  public:
   using Send = std::function<void(std::string_view channel, std::span<const std::byte> payload)>;
 
   ClientOutbox(std::string client, Send send) : client_(std::move(client)), send_(std::move(send)) {}
 
-  /// At once while a tick is open, else with release().  Throws BusError when there are more than an answer may name.
+  /// Publishes a message, immediately while a tick is open, otherwise at release().  Throws BusError when there are
+  /// more messages than an answer may name.
   void publish(std::string_view channel, std::span<const std::byte> payload);
-  /// A tick is handled.
+  /// Opens a tick, which is being handled.
   void open() { open_ = true; }
   bool is_open() const { return open_; }
-  /// What was published between ticks goes out.
+  /// Sends the messages published between ticks.
   void release();
-  /// The tick is answered: the answer names what was published since open().
+  /// Closes the tick: its answer names the messages published since open().
   void close();
   void name_all(shoal::sim_ack_t& ack) const;
-  /// What the last answer named, from a place in its list on.
+  /// Sends the messages named by the last answer again, from index `first` of its list on.
   void send_again(const shoal::sim_resent_t& head, std::int32_t first,
                   const std::function<void(const shoal::sim_resent_t& bundle)>& send) const;
   /// Restarts the answers; messages for the next tick are kept.
   void restart();
-  /// Nothing was published.
+  /// Discards all messages.
   void clear();
 
  private:
@@ -48,7 +50,7 @@ class ClientOutbox {
 
   std::string client_;
   Send send_;
-  bool open_ = false;                                  // a tick is handled and not answered
+  bool open_ = false;                                  // a tick is being handled and not answered
   std::vector<Published> published_, sent_, delayed_;  // since the tick; with the last answer; before the next tick
 };
 

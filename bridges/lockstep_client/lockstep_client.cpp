@@ -26,12 +26,12 @@ constexpr const char* question_channel = "sim.resend";
 constexpr const char* bundle_channel = "sim.resent";
 
 constexpr milliseconds slice{50};
-/// How often a program that follows a run requests, at most, to be notified of its end.
+/// Maximum number of requests of a following program to be notified of the end of the run.
 constexpr int max_requests = 20;
-/// What a client waits, at most, for the simulator to let it go.
+/// Maximum wait for the confirmation of a leave.
 constexpr milliseconds time_to_leave{1000};
 
-/// Nothing when the payload is not a valid M: any program may publish anything.
+/// Decodes a message; none when the payload is not a valid M, which any program may publish.
 template <class M>
 std::optional<M> try_decode(std::span<const std::byte> payload) {
   try {
@@ -41,7 +41,7 @@ std::optional<M> try_decode(std::span<const std::byte> payload) {
   }
 }
 
-/// A fresh random number per start, so that replies from an earlier instance are recognised as stale.
+/// Returns a new random number for each start, so that replies to an earlier instance are recognised as stale.
 std::int64_t random_session() {
   std::random_device device;
   const std::uint64_t high = device();
@@ -57,7 +57,7 @@ LockstepClient::LockstepClient(const std::string& url, std::string name)
       outbox_(name_, [this](std::string_view channel, std::span<const std::byte> payload) { send(channel, payload); }) {
   for (const char* channel : {tick_channel, reply_channel, question_channel, bundle_channel}) lcm_.listen(channel);
   if (const auto key = run_key_from_environment()) signer_.emplace(*key, name_);
-  // A program that was started again must not take the answer to its predecessor for its own.
+  // A restarted program must not accept the answer to its predecessor.
   request_id_ = static_cast<std::int32_t>(std::random_device()() >> 2);
 }
 
@@ -65,7 +65,7 @@ void LockstepClient::subscribe(const std::string& channel, Handler handler) {
   auto& handlers = handlers_[channel];
   const bool own =
       channel == tick_channel || channel == reply_channel || channel == question_channel || channel == bundle_channel;
-  // One subscription per channel, or each message would arrive twice.
+  // One subscription per channel: otherwise each message would arrive twice.
   if (handlers.empty() && !own) lcm_.listen(channel);
   if (ClientInbox::is_named(channel)) inbox_.add_channel(channel);
   handlers.push_back(std::move(handler));
@@ -151,7 +151,7 @@ void LockstepClient::join(double period_s, milliseconds timeout, const JoinOptio
   wait_for("a simulator to answer its join on 'sim.control.reply'");
   request_join(Clock::now() + timeout);
   mark_received();
-  // What came before was not for a member of the lockstep.
+  // Discard messages from before the join.
   if (!joined_) inbox_.drop_held();
   joined_ = true;
 }
@@ -176,7 +176,7 @@ void LockstepClient::call_handlers(const std::string& channel, std::span<const s
 void LockstepClient::follow() {
   following_ = true;
   end_ = End::none;
-  join_id_ = ++request_id_;  // the number of the request: follow() takes the place of join()
+  join_id_ = ++request_id_;  // number of the request: follow() replaces join()
   answered_id_.reset();
   requests_left_ = max_requests;
   ask_at_ = Clock::now();
@@ -224,7 +224,7 @@ void LockstepClient::take(Received message) {
 void LockstepClient::take_reply(std::span<const std::byte> payload) {
   const auto reply = try_decode<shoal::sim_control_reply_t>(payload);
   if (!reply || reply->client != name_) return;
-  // Another client may have our name, and even our number of a request.  What could not be read has no session.
+  // Another client may have the same name and request number.  The answer to an unreadable request has no session.
   const bool ours = reply->session == session_;
   if (!ours && reply->session != 0) return;
   if (reply->id == request_id_) {
@@ -245,20 +245,20 @@ void LockstepClient::take_tick(std::span<const std::byte> payload) {
   const auto due = std::find_if(tick->client.begin(), tick->client.end(), [&](const shoal::sim_due_t& each) {
     return each.name == name_ && each.session == session_;
   });
-  if (due == tick->client.end()) return;  // also a last one: the end of another run
+  if (due == tick->client.end()) return;  // also for a last tick: the end of another run
   if (following_) {
     if (tick->last != 0) end_ = End::last_tick;
     return;
   }
   if (due->sequence == sequence_ && !outbox_.is_open())
-    return send_ack();  // our answer was lost or is in transit, or the simulator checks whether we are alive
+    return send_ack();  // the answer was lost or is in transit, or the simulator checks whether this client is alive
   if (due->sequence <= sequence_ || (incomplete_ && incomplete_->sequence == due->sequence)) return;
   const shoal::sim_due_t own = *due;
   start_tick(std::move(*tick), own);
 }
 
 void LockstepClient::start_tick(shoal::sim_tick_t tick, const shoal::sim_due_t& due) {
-  if (!inbox_.expect(due)) return;  // not what we asked for
+  if (!inbox_.expect(due)) return;  // a list that was not requested
   incomplete_ = {std::move(tick), due.sequence, Clock::now() + resend_grace, first_resend_interval};
 }
 
@@ -319,7 +319,7 @@ void LockstepClient::handle_tick() {
   outbox_.open();
   if (first) branch_ = tick_.branch;
   if (tick_.branch != branch_ && !rewind(tick_)) {
-    // Not handled: after another join() it comes again.
+    // Not handled: it is sent again after another join().
     --sequence_;
     outbox_.close();
     return;
@@ -334,6 +334,7 @@ bool LockstepClient::next_tick(shoal::sim_tick_t& tick) {
   if (sequence_ == 0 && !wait_warning_)
     wait_for("its first tick on 'sim.tick' (it has joined; a paused run or missing clients may delay it)");
   while (!stop_ && end_ != End::dropped) {
+    // Handle the tick when all its messages have arrived.
     if (incomplete_ && inbox_.complete()) {
       mark_received();
       handle_tick();
@@ -347,6 +348,7 @@ bool LockstepClient::next_tick(shoal::sim_tick_t& tick) {
       tick = tick_;
       return false;
     }
+    // Request missing messages, and wait for the next message.
     if (incomplete_) request_when_due();
     const bool forever = silence_limit_.count() == 0;
     auto until = forever ? Clock::time_point::max() : received + silence_limit_;
@@ -365,7 +367,7 @@ bool LockstepClient::next_tick(shoal::sim_tick_t& tick) {
 
 void LockstepClient::acknowledge(const shoal::sim_tick_t&) {
   if (!outbox_.is_open()) return;
-  // The world waits, so it is the same step in every run from which it knows of new channels.
+  // The world waits now, so that new channels take effect at the same step in every run.
   if (inbox_.channels().size() > channels_reported_) request_join(Clock::now() + std::chrono::seconds(30));
   outbox_.close();
   send_ack();
@@ -393,7 +395,7 @@ void LockstepClient::leave() {
   try {
     request("leave", 0, text_of(sim::LeaveTerms{session_, sequence_}), deadline, false);
   } catch (const BusError&) {
-    // The world notices when it waits for this client.
+    // The world detects it when it waits for this client.
   }
 }
 

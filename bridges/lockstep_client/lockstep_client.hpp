@@ -22,7 +22,7 @@
 
 namespace bridges {
 
-/// For an autonomy program that runs in step with the simulator, in one thread:
+/// Client for an autonomy program that runs in lockstep with the simulator, in one thread:
 ///
 ///     LockstepClient client("", "pilot");
 ///     client.subscribe("auv1.lidar", on_lidar);
@@ -34,10 +34,10 @@ namespace bridges {
 ///     }
 ///
 /// The world waits between a tick and its acknowledgement.  Messages are held until the tick that lists them, and
-/// then handled in the order of that list; missing ones are requested.  So a client does the same whatever
-/// the network loses, repeats or puts in another order; docs/guides/lockstep.md has the protocol.  Payloads that are
-/// not valid ticks or replies are ignored; a handler that decodes with shoal::decode() should catch
-/// shoal::MessageError, which else leaves next_tick().
+/// then handled in the order of that list; missing ones are requested.  The behaviour of a client is therefore
+/// independent of losses, duplicates and reordering in the network; docs/guides/lockstep.md describes the protocol.
+/// Payloads that are not valid ticks or replies are ignored; a handler that decodes with shoal::decode() should catch
+/// shoal::MessageError, which otherwise propagates out of next_tick().
 class LockstepClient {
  public:
   using Handler = std::function<void(std::span<const std::byte>)>;
@@ -46,64 +46,64 @@ class LockstepClient {
     last_tick,
     stopped,
     silence,
-    rewound,  ///< the world went back, and on_rewind() was not called before
+    rewound,  ///< the world was rewound, and no handler was set by on_rewind()
     dropped,  ///< the world continued without this client; see reason()
   };
   struct JoinOptions {
-    std::optional<sim::OnTimeout> on_timeout;  ///< unset: the world's choice
-    double timeout_s = 0;                      ///< wall time; 0: the world's
+    std::optional<sim::OnTimeout> on_timeout;  ///< unset: as in the world file
+    double timeout_s = 0;                      ///< wall time; 0: as in the world file
   };
   using Counts = ClientInbox::Counts;
 
-  /// Signs what controls the run when SHOAL_RUN_KEY has its key.  Throws BusError when LCM cannot be used, or when that
-  /// variable has something else.
+  /// Signs messages that control the run when SHOAL_RUN_KEY contains its key.  Throws BusError when LCM cannot be used,
+  /// or when that variable is invalid.
   LockstepClient(const std::string& url, std::string name);
 
-  /// Also from a handler, which then sees the messages after its own.
+  /// Subscribes to a channel.  May be called from a handler; the new handler then receives the messages after the
+  /// present one.
   void subscribe(const std::string& channel, Handler handler);
-  /// At once, so it is out before the acknowledgement that follows; between an acknowledgement and the next tick it
-  /// waits for that tick.  Throws BusError when LCM refuses it.
+  /// Publishes a message immediately, so that it precedes the acknowledgement that follows; between an acknowledgement
+  /// and the next tick it is delayed until that tick.  Throws BusError when LCM refuses it.
   void publish(std::string_view channel, std::span<const std::byte> payload);
-  /// Asks for a tick every `period_s` of simulated time.  Throws BusError with the simulator's text when it
-  /// refuses, when it does not answer in time, and when stop() is called.
+  /// Joins the lockstep with a tick every `period_s` of simulated time.  Throws BusError with the reason when the
+  /// simulator refuses, when it does not answer in time, and when stop() is called.
   void join(double period_s, std::chrono::milliseconds timeout, const JoinOptions& options);
   void join(double period_s, std::chrono::milliseconds timeout) { join(period_s, timeout, JoinOptions{}); }
-  /// Waits for the tick of this client, and for all messages that it names, and calls their handlers.  False at the
-  /// end of the run (its last tick is acknowledged here), when stop() was called, after `silence_limit` without any
-  /// message, and for what End says.
+  /// Waits for the tick of this client, and for all messages that it names, and calls their handlers.  Returns false at
+  /// the end of the run (its last tick is acknowledged here), when stop() was called, after `silence_limit` without any
+  /// message, and in the other cases of End.
   bool next_tick(shoal::sim_tick_t& tick);
   void acknowledge(const shoal::sim_tick_t& tick);
-  /// Acknowledges the tick that is open, and asks the simulator to stop waiting for this client.  Waits for a
-  /// moment until it knows.
+  /// Acknowledges the open tick, and requests to leave the lockstep.  Waits briefly for the confirmation.
   void leave();
-  /// For a program that does not take part in the lockstep: asks the simulator, from handle_message(), to be listed in
-  /// the last tick of its run.  Again for each run that is followed.
+  /// Follows a run without lockstep: handle_message() requests to be listed in the last tick of the run, again for each
+  /// run that is followed.
   void follow();
-  /// Calls the handlers of the next message: for a program that does not take part in the lockstep.
-  /// False when stop() was called, after `silence_limit`, and after follow() at the end of the run.
+  /// Waits for the next message and calls its handlers, for a program without lockstep.  Returns false when stop() was
+  /// called, after `silence_limit`, and after follow() at the end of the run.
   bool handle_message();
-  /// `handler` is called when the world went back, before the messages of the first tick there.
+  /// Sets the handler of rewinds, which is called before the messages of the first tick of the new branch.
   void on_rewind(std::function<void(const shoal::sim_tick_t&)> handler) { rewound_ = std::move(handler); }
   std::int32_t branch() const { return branch_; }
-  /// From a signal handler or another thread.
+  /// Stops the client.  May be called from a signal handler or another thread.
   void stop() { stop_ = true; }
-  /// Why next_tick() or handle_message() returned false.
+  /// Returns why next_tick() or handle_message() returned false.
   End end() const { return end_; }
-  /// The simulator's words, when it dropped this client.
+  /// Returns the reason given by the simulator when it dropped this client.
   const std::string& reason() const { return reason_; }
   const Counts& counts() const { return inbox_.counts(); }
-  /// Zero: wait forever.
+  /// Sets the maximum wall time without any message; zero: unlimited.
   void set_silence_limit(std::chrono::milliseconds limit) { silence_limit_ = limit; }
-  /// Wall time without an answer to join(), a first tick, or the message of wait_for(), after which a warning on
-  /// standard error names what is missing.  3 s unless set; zero: never.
+  /// Sets the wall time without an answer to join(), a first tick, or the message of wait_for(), after which a warning
+  /// on standard error names what is missing.  3 s by default; zero: no warning.
   void set_warning_after(std::chrono::milliseconds after) { warning_after_ = after; }
-  /// `what`, a channel with its reason, is waited for from now on, until mark_received().
+  /// Starts the wait for `what`, a channel with its reason, until mark_received().
   void wait_for(const std::string& what);
   void mark_received() { wait_warning_.reset(); }
 
  private:
   using Clock = std::chrono::steady_clock;
-  /// The tick that this client waits to have all messages of.
+  /// Tick with messages that have not all arrived.
   struct Incomplete {
     shoal::sim_tick_t tick;
     std::int64_t sequence;
@@ -111,9 +111,9 @@ class LockstepClient {
     std::chrono::milliseconds interval;
   };
 
-  /// Waits in slices, so that stop() is seen.
+  /// Waits for a message in short intervals, so that stop() takes effect.
   std::optional<Received> wait(Clock::time_point deadline, bool heed_stop = true);
-  /// Sends a request until it is answered; gives the text.  Throws BusError.
+  /// Sends a request repeatedly until it is answered.  Throws BusError.
   void request(const std::string& command, double value, const std::string& text, Clock::time_point deadline,
                bool heed_stop);
   void send_request(const std::string& command, std::int32_t id, double value, const std::string& text);
@@ -135,19 +135,19 @@ class LockstepClient {
 
   LcmListener lcm_;
   std::string name_;
-  std::optional<MessageSigner> signer_;  ///< unset: nothing is signed
+  std::optional<MessageSigner> signer_;  ///< unset: messages are not signed
   std::int64_t session_;
   double period_s_ = 0;
   JoinOptions options_;
-  // Handlers may subscribe: a deque grows without moving the one that is called.
+  // Handlers may subscribe: a deque grows without moving the handler that is being called.
   std::map<std::string, std::deque<Handler>, std::less<>> handlers_;
   ClientInbox inbox_;
   ClientOutbox outbox_;
-  std::size_t channels_reported_ = 0;  // number of channels that the simulator knows
+  std::size_t channels_reported_ = 0;  // number of channels reported to the simulator
   bool joined_ = false;
   std::int32_t request_id_ = 0, join_id_ = 0;
   std::optional<std::int32_t> answered_id_;
-  std::string refusal_;  // of the request; empty: granted
+  std::string refusal_;  // reason of the refusal of the request; empty: granted
 
   bool following_ = false;
   int requests_left_ = 0;  // for notification of the end of the followed run
@@ -155,7 +155,7 @@ class LockstepClient {
   std::chrono::milliseconds request_interval_{0};
 
   std::optional<Incomplete> incomplete_;
-  std::int64_t sequence_ = 0;  // of the last tick that was handled
+  std::int64_t sequence_ = 0;  // sequence of the last handled tick
   shoal::sim_tick_t tick_;
   std::function<void(const shoal::sim_tick_t&)> rewound_;
   std::int32_t branch_ = 0;

@@ -6,7 +6,7 @@ namespace bridges {
 namespace {
 
 constexpr std::size_t bundle_bytes = 60'000;
-/// Channel and lengths of a message, about.
+/// Approximate bytes of channel and lengths of a message.
 constexpr std::size_t message_head_bytes = 80;
 
 }  // namespace

@@ -8,18 +8,19 @@
 
 namespace bridges {
 
-/// Warns once on standard error what a program waits for, when that takes long.
+/// Warning on standard error, given once, when a program waits long for a message.
 class WaitWarning {
  public:
   using Clock = std::chrono::steady_clock;
-  /// A delay after which a user expects output.
+  /// Delay after which a user expects output.
   static constexpr std::chrono::milliseconds default_delay{3000};
 
-  /// `text`: one sentence of who waits for what, on which channel and LCM URL.  Zero: no warning.
+  /// `text`: one sentence with the waiting program, the expected message, its channel and LCM URL.  `after` zero: no
+  /// warning.
   WaitWarning(std::string text, std::chrono::milliseconds after = default_delay)
       : text_(std::move(text)), said_(after.count() <= 0), due_(Clock::now() + after) {}
 
-  /// To be called from time to time while waiting.
+  /// Prints the warning when it is due; must be called periodically while waiting.
   void look() {
     if (said_ || Clock::now() < due_) return;
     said_ = true;

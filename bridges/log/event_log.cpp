@@ -16,7 +16,7 @@ namespace {
 // Per event, big-endian: sync word, number (8), time (8), length of the channel (4), of the data (4).
 constexpr std::uint32_t sync_word = 0xEDA1DA01;
 constexpr std::size_t header_bytes = 28;
-constexpr std::int32_t max_channel_bytes = 1000;  // liblcm's own limit for logs
+constexpr std::int32_t max_channel_bytes = 1000;  // limit of liblcm for logs
 constexpr std::size_t max_problems = 100;
 constexpr std::size_t block_bytes = std::size_t{1} << 18;
 constexpr std::size_t read_bytes = std::size_t{1} << 17;
@@ -36,7 +36,7 @@ std::uint64_t number64(const unsigned char* at) {
 }  // namespace
 
 EventLogReader::EventLogReader(const std::string& path)
-    : file_(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {  // a pipe is not waited for
+    : file_(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {  // do not block on a pipe
   if (file_.number() < 0) throw BusError(path + ": " + std::strerror(errno));
   struct stat status {};
   if (fstat(file_.number(), &status) != 0) throw BusError(path + ": " + std::strerror(errno));
@@ -55,6 +55,7 @@ bool EventLogReader::next(LogEventView& event) {
   const auto report = [this](std::uint64_t offset, const std::string& what) {
     if (problems_.size() < max_problems) problems_.push_back("byte " + std::to_string(offset) + ": " + what);
   };
+  // Read events; skip to the next sync word after an error.
   while (at_ < file_bytes_) {
     const std::uint64_t start = at_;
     switch (read_event(event)) {
@@ -65,7 +66,7 @@ bool EventLogReader::next(LogEventView& event) {
         report(start, std::to_string(at_ - start) + " bytes between events were skipped");
         break;
       case Outcome::truncated:
-        // A damaged length looks the same as a cut end; then whole events follow.
+        // A damaged length looks like a truncated end, but is followed by whole events.
         find_sync();
         report(start, at_ < file_bytes_
                           ? std::to_string(at_ - start) + " bytes of a damaged event were skipped"

@@ -24,7 +24,7 @@ struct LogEvent {
   std::uint64_t offset = 0;  ///< where in the file it begins
 };
 
-/// An event in the memory of the reader, until it reads on.
+/// Event in the memory of the reader, valid until the next read.
 struct LogEventView {
   std::int64_t number = 0;
   std::int64_t utime = 0;
@@ -33,18 +33,18 @@ struct LogEventView {
   std::uint64_t offset = 0;  ///< where in the file it begins
 };
 
-/// Reads an LCM event log, also a damaged one: lengths are bounded by the file, what is not an event is skipped
-/// and reported, an event cut off at the end (the writer was killed) ends the reading.
+/// Reader of an LCM event log, also of a damaged one: lengths are bounded by the file size, bytes that are not an event
+/// are skipped and reported, and a truncated event at the end (the writer was killed) ends the reading.
 class EventLogReader {
  public:
   /// Throws BusError when the file cannot be opened or is not a regular file.
   explicit EventLogReader(const std::string& path);
 
-  /// In the order of the file.  Empty at the end.
+  /// Returns the next event in the order of the file; none at the end.
   std::optional<LogEvent> next();
-  /// The same without a copy.  False at the end.
+  /// Reads the next event without a copy; returns false at the end.
   bool next(LogEventView& event);
-  /// So far, such as `byte 4711: 28 bytes between events were skipped`.
+  /// Returns the problems found so far, such as `byte 4711: 28 bytes between events were skipped`.
   const std::vector<std::string>& problems() const { return problems_; }
   std::uint64_t file_bytes() const { return file_bytes_; }
 
@@ -52,37 +52,38 @@ class EventLogReader {
   enum class Outcome { event, garbage, truncated };
 
   Outcome read_event(LogEventView& event);
-  /// Moves to the next sync word behind here, or to the end.
+  /// Moves to the next sync word, or to the end.
   void find_sync();
-  /// Has the bytes of the file from at_ on in memory, at least `size` unless it ends before.  How many there are.
+  /// Buffers the bytes of the file from at_ on, at least `size` unless the file ends before.  Returns the number of
+  /// buffered bytes.
   std::size_t fill(std::size_t size);
   const unsigned char* here() const { return buffer_.data() + (at_ - buffer_start_); }
 
   FileDescriptor file_;
   std::vector<unsigned char> buffer_;
-  std::uint64_t buffer_start_ = 0;  // in the file
+  std::uint64_t buffer_start_ = 0;  // offset in the file
   std::size_t buffered_ = 0;
   std::uint64_t file_bytes_ = 0;
   std::uint64_t at_ = 0;
   std::vector<std::string> problems_;
 };
 
-/// Writes an LCM event log: whole events, through blocks that another thread writes.
+/// Writer of an LCM event log: whole events, in blocks that another thread writes.
 class EventLogWriter {
  public:
   explicit EventLogWriter(FileDescriptor file) : file_(std::move(file)) {}
 
-  /// All return false when a write failed so far; errno has the reason.
+  /// Writes an event.  This and the functions below return false after a failed write; errno has the reason.
   bool write(std::int64_t number, std::int64_t utime, std::string_view channel, std::span<const std::byte> payload);
-  /// Bytes of another log.
+  /// Writes bytes of another log.
   bool write(std::span<const std::byte> bytes);
-  /// Lets the thread write what there is, and does not wait for it.
+  /// Passes the present block to the thread, without waiting.
   bool hand_over();
-  /// Waits until all is written.
+  /// Waits until everything is written.
   bool flush();
 
  private:
-  /// Space for `size` bytes in the block; null: writing has failed.
+  /// Returns space for `size` bytes in the block; null when writing has failed.
   std::byte* room(std::size_t size);
 
   FileWriter file_;

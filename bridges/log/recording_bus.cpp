@@ -17,14 +17,14 @@
 namespace bridges {
 namespace {
 
-/// Sync word, number, time, two lengths.
+/// Bytes of an event header: sync word, number, time, two lengths.
 constexpr std::uint64_t event_head_bytes = 28;
 constexpr std::size_t copied_at_once = std::size_t{1} << 20;
 constexpr std::chrono::milliseconds shortest_pause{50};
 constexpr std::chrono::milliseconds max_buffered{250};
 
 std::unique_ptr<EventLogWriter> create(const std::string& path, Existing existing) {
-  // O_EXCL decides and creates in one go; a device such as /dev/full is never "made".
+  // O_EXCL checks and creates atomically; a device such as /dev/full is never created.
   const int flags = O_WRONLY | O_CREAT | O_CLOEXEC | (existing == Existing::refuse ? O_EXCL : 0);
   FileDescriptor file(open(path.c_str(), flags, 0666));
   if (file.number() < 0 && errno == EEXIST)
@@ -32,7 +32,7 @@ std::unique_ptr<EventLogWriter> create(const std::string& path, Existing existin
   if (file.number() < 0) throw BusError(path + ": " + std::strerror(errno));
   if (const auto owner = lock_against_others(file.number()))
     throw BusError(path + ": " + *owner + " is recording into it; choose another name");
-  // Only now: what another run records stays.  A device has no length.
+  // Truncate only now, to keep the record of another run.  A device has no length.
   if (ftruncate(file.number(), 0) != 0 && errno != EINVAL) throw BusError(path + ": " + std::strerror(errno));
   return std::make_unique<EventLogWriter>(std::move(file));
 }
@@ -76,8 +76,8 @@ void RecordingBus::record(std::string_view channel, std::span<const std::byte> p
   if (!log_->write(static_cast<std::int64_t>(recorded_), utime_, channel, payload)) return fail(errno);
   ++recorded_;
   bytes_ += event_head_bytes + channel.size() + payload.size();
-  // Once a simulated second, but not more often than it is worth it: a killed run loses little, and `tail` sees it
-  // grow.
+  // Write once per simulated second, at limited intervals, so that a killed run loses little, and `tail` can follow the
+  // file.
   if (const std::int64_t second = (utime_ - epoch_utime_) / 1'000'000; second > checked_s_) {
     checked_s_ = second;
     hand_over();
@@ -86,7 +86,7 @@ void RecordingBus::record(std::string_view channel, std::span<const std::byte> p
 
 void RecordingBus::end_of_step() {
   inner_.end_of_step();
-  // A simulated second may last minutes: in a slow run, or in a world that is large.
+  // A simulated second may take minutes in a slow run or a large world.
   if (!first_) hand_over_after(max_buffered);
 }
 
@@ -117,7 +117,7 @@ void RecordingBus::prepare(const std::string& path, std::uint64_t events, std::u
     if (got <= 0 || !next_->log->write({part.data(), static_cast<std::size_t>(got)})) break;
     left -= static_cast<std::uint64_t>(got);
   }
-  if (left == 0 && next_->log->flush()) return;  // a full disk shows here
+  if (left == 0 && next_->log->flush()) return;  // a full disk is detected here
   give_up();
   throw BusError(path + ": cannot copy " + path_ + " into it");
 }
@@ -136,7 +136,7 @@ void RecordingBus::go_on() {
   recorded_ = next_->events;
   bytes_ = next_->bytes;
   next_.reset();
-  utime_ = epoch_utime_;  // time went back: the next set_time() tells
+  utime_ = epoch_utime_;  // after a rewind the next set_time() sets the time
   checked_s_ = 0;
 }
 

@@ -19,20 +19,18 @@ class EventLogWriter;
 
 enum class Existing { refuse, overwrite };
 
-/// A bus that also writes all it carries into an LCM event log, stamped with epoch + simulated time:
-/// lcm-logplayer plays it back at the right speed, and two equal runs leave equal files.  For one thread.
-///
-/// Recorded are what is published here, and what a gate before this bus admitted: only that decides what the
-/// simulation does.
+/// Bus that records its messages in an LCM event log, with the time stamp epoch + simulated time: lcm-logplayer plays
+/// it back at the right speed, and two equal runs produce equal files.  Not thread-safe. Records the messages published
+/// here and those admitted by the gate in front of this bus, because only these determine the simulation.
 class RecordingBus final : public sim::Bus {
  public:
-  /// Throws BusError when the file exists and may not be overwritten, or cannot be made.
+  /// Throws BusError when the file exists and may not be overwritten, or cannot be created.
   RecordingBus(std::unique_ptr<sim::Bus> inner, const std::string& path, std::int64_t epoch_utime,
                Existing existing = Existing::refuse);
   /// `inner` must outlive this.
   RecordingBus(sim::Bus& inner, const std::string& path, std::int64_t epoch_utime,
                Existing existing = Existing::refuse);
-  /// A second bus that is recorded into the log of the first, which must outlive this.
+  /// Makes a second bus that is recorded in the log of the first, which must outlive this.
   RecordingBus(sim::Bus& inner, RecordingBus& first);
   ~RecordingBus() override;
 
@@ -41,30 +39,31 @@ class RecordingBus final : public sim::Bus {
                                              std::size_t capacity = default_mailbox_capacity) override {
     return inner_.open_mailbox(channel, capacity);
   }
-  /// Writes down messages from outside and was handed to the world.
+  /// Records messages from outside that were delivered to the world.
   void admitted(std::span<const sim::MessageGate::Delivery> input_record);
-  /// Has what is older than a quarter of a second of wall time written: a run that is killed loses no more.
+  /// Writes events older than a quarter of a second of wall time, so that a killed run loses no more than that.
   void end_of_step() override;
   sim::BusCounts counts() const override { return inner_.counts(); }
 
-  /// The step that begins: the stamp of what is admitted from now on.
+  /// Sets the time of the step that starts, which is the time stamp of messages admitted from now on.
   void set_time(sim::Time at);
-  /// The first error, with path and reason; nothing is written after it.  What was written stays readable.
+  /// Returns the first error, with path and reason; nothing is written after it.  Events written before remain
+  /// readable.
   std::optional<std::string> error() const { return error_; }
   std::uint64_t recorded() const { return recorded_; }
-  /// Size of the log so far.
+  /// Returns the size of the log so far.
   std::uint64_t bytes() const { return bytes_; }
-  /// Makes another log, which begins with a copy of the first `events` events, of `bytes` bytes.  This one continues
-  /// until go_on().  Throws BusError when the file cannot be made whole.
+  /// Prepares another log that starts with a copy of the first `events` events, of `bytes` bytes.  The present log
+  /// continues until go_on().  Throws BusError when the file cannot be completed.
   void prepare(const std::string& path, std::uint64_t events, std::uint64_t bytes, Existing existing);
   /// Closes the log and continues in the prepared one.
   void go_on();
-  /// Removes the one that was prepared.
+  /// Removes the prepared log.
   void give_up();
-  /// Lets what is buffered be written, and does not wait for it: for a run that stands still.  Not more often than it
-  /// is worth it, so call it again.
+  /// Starts to write buffered events without waiting, for a paused run.  Acts at limited intervals, so it must be
+  /// called periodically.
   void hand_over();
-  /// Writes what is buffered.  The bus continues without recording.
+  /// Writes buffered events and closes the log.  The bus continues without recording.
   void close();
   sim::Bus& inner() { return inner_; }
 
@@ -81,11 +80,11 @@ class RecordingBus final : public sim::Bus {
 
   std::unique_ptr<sim::Bus> owned_;
   sim::Bus& inner_;
-  RecordingBus* first_ = nullptr;  // whose log is used; null: our own
+  RecordingBus* first_ = nullptr;  // bus whose log is used; null: own log
   std::string path_;
   std::int64_t epoch_utime_ = 0;
-  std::int64_t utime_ = 0;      // of the last event; never goes back
-  std::int64_t checked_s_ = 0;  // simulated second in which it was last looked whether to hand over
+  std::int64_t utime_ = 0;      // utime of the last event; never decreases
+  std::int64_t checked_s_ = 0;  // simulated second of the last check whether to hand over
   std::chrono::steady_clock::time_point handed_over_;
   std::unique_ptr<EventLogWriter> log_;
   std::optional<Next> next_;  // prepared

@@ -11,7 +11,7 @@ namespace bridges {
 
 namespace {
 
-/// What one sim.inputs holds, about: LCM carries at most 16 MB.
+/// Approximate size limit of one sim.inputs; the maximum of LCM is 16 MB.
 constexpr std::size_t max_bytes = std::size_t{1} << 20;
 
 }  // namespace
@@ -31,7 +31,7 @@ sim::Bytes SerialInputs::read(const std::string& path, std::int64_t step) {
   return bytes;
 }
 
-/// A serial port that writes down what comes in.
+/// Serial port that records its input.
 class JournalPorts::Port final : public sim::BytePort {
  public:
   Port(JournalPorts& ports, std::string path, std::unique_ptr<sim::BytePort> inner)
@@ -119,7 +119,7 @@ void RunJournal::finish(bool step_is_whole) {
   if (!step_is_whole || !started_ || last_hash_step_ == world_.step_number()) return;
   if (every_steps_ > 0) return publish_hash();
   if (is_observed_ && !is_observed_()) return;
-  publish_inputs();  // without inputs: a log that ends with this one was not cut off
+  publish_inputs();  // without inputs: marks that a log with it is not truncated
   last_hash_step_ = world_.step_number();
 }
 
@@ -153,7 +153,8 @@ void RunJournal::publish_hash() {
   message.step = world_.step_number();
   message.branch = branch_;
   message.input_sequence = sequence_;
-  sim::StateHash whole;  // WorldState::hash() is that of the hashes of all parts; so the state is gone through once
+  sim::StateHash whole;  // WorldState::hash() is the hash of the hashes of all parts, so that one pass over the state
+                         // is sufficient
   for (const sim::PartHash& part : world_.state().part_hashes()) {
     whole.add(part.hash);
     message.part.push_back(part.part);

@@ -23,7 +23,7 @@ namespace bridges {
 class SerialInputs {
  public:
   void add(std::int64_t step, const std::string& path, sim::Bytes bytes);
-  /// What was read from the port of this path at this step; empty when nothing was.
+  /// Returns the bytes read from the port with this path at this step; empty when there are none.
   sim::Bytes read(const std::string& path, std::int64_t step);
   void clear() { waiting_.clear(); }
 
@@ -31,7 +31,7 @@ class SerialInputs {
   std::map<std::string, std::deque<std::pair<std::int64_t, sim::Bytes>>> waiting_;
 };
 
-/// Serial ports of a world that write down what they read, for a RunJournal.
+/// Serial ports of a world that record their input for a RunJournal.
 class JournalPorts {
  public:
   struct Reading {
@@ -40,13 +40,13 @@ class JournalPorts {
     sim::Bytes bytes;
   };
 
-  /// An opener of such ports, which must not outlive this.  Empty for an empty one.
+  /// Returns an opener of such ports, which must not outlive this; empty for an empty one.
   sim::PortOpener wrap(sim::PortOpener open);
-  /// What is read from now on is read at this step.
+  /// Sets the step of the input read from now on.
   void begin_step(std::int64_t step) { step_ = step; }
-  /// What was read since the last call.
+  /// Returns the input since the last call.
   std::vector<Reading> take() { return std::exchange(read_, {}); }
-  /// While muted, ports deliver the recorded input, and drop what is written to them.
+  /// Mutes the ports: while muted, they deliver the recorded input, and drop the bytes written to them.
   void mute(bool muted) {
     muted_ = muted;
     inputs_.clear();
@@ -62,64 +62,65 @@ class JournalPorts {
   SerialInputs inputs_;
 };
 
-/// Publishes on the world's bus what makes a run repeatable: all inputs of the world from outside (sim.inputs), and
-/// hashes that prove that a replay is equal (sim.hash).
+/// Journal on the bus of the world that makes a run repeatable: all external inputs of the world (sim.inputs), and
+/// hashes to verify that a replay is equal (sim.hash).
 class RunJournal {
  public:
-  /// In sim_input_t::bus, for bytes of pseudo-terminals and FIFOs.
+  /// Value of sim_input_t::bus for bytes of pseudo-terminals and FIFOs.
   static constexpr const char* serial_bus = "serial";
-  /// In sim_input_t::channel, for a request that changes the world.
+  /// Value of sim_input_t::channel for a request that changes the world.
   static constexpr const char* request_channel = "sim.control";
-  /// In sim_hash_t::part, after the parts of the state: WorldState::run_hash().  No name in a world has a space.
+  /// Value of sim_hash_t::part, after the parts of the state, for WorldState::run_hash().  Unique, because names in a
+  /// world have no spaces.
   static constexpr const char* run_hash_part = "run hash";
-  /// In sim_input_t::step, before the first reports.
+  /// Value of sim_input_t::step before the first reports.
   static constexpr std::int64_t before_first_reports = -1;
 
-  /// Something that came to the world from outside; see sim_input_t.
+  /// External input of the world; see sim_input_t.
   struct Input {
     std::string bus, channel;
     sim::Bytes payload;
   };
 
-  /// `bus`: the world's, recorded; `ports`: those of `world`.  All must outlive this.  Hashes are computed while
+  /// `bus`: recorded bus of the world; `ports`: ports of `world`.  All must outlive this.  Hashes are computed while
   /// `received` returns true, that is while a subscriber may exist; empty: always.
   RunJournal(sim::Bus& bus, const sim::World& world, JournalPorts& ports, std::function<bool()> received = {});
 
-  /// The first reports go out next.
+  /// Starts the journal, before the first reports are published.
   void start() {
     started_ = true;
     begin_step();
   }
-  /// Before each step that is not followed by after_step().
+  /// Starts a step; needed before each step when after_step() is not called.
   void begin_step() { ports_.begin_step(step()); }
 
-  /// Messages that were admitted at the start of a step.
+  /// Records messages that were admitted at the start of a step.
   void admitted(const std::string& bus, std::span<const sim::MessageGate::Delivery> input_record);
-  /// A request that is about to change the world.
+  /// Records a request that is about to change the world.
   void request(const shoal::sim_control_request_t& request);
   void input(const std::string& bus, const std::string& channel, std::span<const std::byte> payload);
-  /// `listener` is called for every input when it is delivered; empty: none.
+  /// Sets a callback for every input when it is delivered; empty: none.
   using Listener = std::function<void(std::int64_t step, const Input& input)>;
   void set_listener(Listener listener) { listener_ = std::move(listener); }
 
-  /// After each step: publishes what came to it, and a hash when one is due.
+  /// Ends a step: publishes its inputs, and a hash when one is due.
   void after_step();
-  /// Publishes what is pending and, unless the last step was interrupted, a last hash; without hashes, an empty
-  /// sim.inputs.  Safe to call twice.
+  /// Ends the journal: publishes pending inputs and, unless the last step was interrupted, a last hash; without hashes,
+  /// an empty sim.inputs.  May be called twice.
   void finish(bool step_is_whole = true);
 
-  /// While a part of a run is recomputed, nothing is published or recorded, and serial ports deliver the input in
-  /// serial_inputs() and drop what is written to them.
+  /// Mutes the journal while a part of a run is recomputed: nothing is published or recorded, and serial ports deliver
+  /// the input in serial_inputs() and drop the bytes written to them.
   void mute(bool muted) {
     muted_ = muted;
     ports_.mute(muted);
     begin_step();
   }
   SerialInputs& serial_inputs() { return ports_.input_record(); }
-  /// After a rewind: what is published from now on belongs to another branch.
+  /// Starts another branch after a rewind.
   void start_branch(std::int32_t branch, std::int64_t next_sequence);
   std::int32_t branch() const { return branch_; }
-  /// Of the next sim.inputs.
+  /// Returns the sequence of the next sim.inputs.
   std::int64_t sequence() const { return sequence_; }
 
  private:
@@ -136,7 +137,7 @@ class RunJournal {
   bool started_ = false, muted_ = false;
   std::int32_t branch_ = 0;
   std::int64_t sequence_ = 0;
-  std::int64_t last_hash_step_ = -1;  // or of what stands for the last one
+  std::int64_t last_hash_step_ = -1;  // step of the last hash, or of its substitute
   std::vector<shoal::sim_input_t> waiting_;
   std::size_t waiting_bytes_ = 0;
   sim::Bytes buffer_;

@@ -29,7 +29,7 @@ constexpr std::size_t max_waiting_bytes = 1 << 16;
   throw std::runtime_error("serial port '" + path + "': " + what + ": " + std::strerror(errno));
 }
 
-/// A descriptor that closes itself.
+/// File descriptor that is closed on destruction.
 class Descriptor {
  public:
   explicit Descriptor(int number = -1) : number_(number) {}
@@ -47,27 +47,30 @@ class Descriptor {
   int number_;
 };
 
-/// Where a port is made: a name in an open folder, so that no link can be inserted in between.
+/// Place of a port: a name in an open folder, so that no link can be inserted in the path.
 struct Place {
   Descriptor folder;
   std::string name;
-  std::string path;  ///< whole, for messages
+  std::string path;  ///< full path, for messages
 };
 
-/// Opens the folder of `path` below `folder`, and makes those that are missing.  Links below `folder` are not followed.
+/// Opens the folder of `path` below `folder`, and creates missing folders.  Links below `folder` are not followed.
 Place open_place(const std::string& folder, const std::string& path) {
   const std::string whole = (fs::path(folder) / path).string();
   const auto fail_folder = [&](const std::string& why) {
     throw std::runtime_error("serial port '" + whole + "': cannot create its directory: " + why);
   };
+  // Open the folder.
   std::error_code error;
   fs::create_directories(folder.empty() ? "." : folder, error);
   if (error) fail_folder(error.message());
   Descriptor at(::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   if (*at < 0) fail_folder(std::strerror(errno));
+  // Check that the path lies below the folder.
   const fs::path below = fs::path(path).lexically_normal();
   if (below.is_absolute() || !below.has_filename() || *below.begin() == ".." || *below.begin() == ".")
     throw std::runtime_error("serial port '" + whole + "': must lie below '" + folder + "'");
+  // Create and open each part, without following links.
   for (const fs::path& part : below.parent_path()) {
     mkdirat(*at, part.c_str(), 0777);
     Descriptor next(openat(*at, part.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC));
@@ -79,7 +82,7 @@ Place open_place(const std::string& folder, const std::string& path) {
   return {std::move(at), below.filename().string(), whole};
 }
 
-/// Bytes that wait to be written to a descriptor that never blocks.
+/// Queue of bytes for a non-blocking descriptor.
 class Outbox {
  public:
   void add(std::span<const std::byte> bytes) {
@@ -110,7 +113,7 @@ class Outbox {
 sim::Bytes read_all(int descriptor) {
   sim::Bytes bytes;
   char chunk[512];
-  // Bounded, so that a program that writes without end cannot hold up the step.
+  // Bounded, so that a program that writes continuously cannot delay the step.
   while (bytes.size() < max_waiting_bytes) {
     const ssize_t size = ::read(descriptor, chunk, sizeof chunk);
     if (size <= 0) break;
@@ -120,9 +123,9 @@ sim::Bytes read_all(int descriptor) {
   return bytes;
 }
 
-// The system gives the number of a pseudo-terminal that is gone to the next one, so a link that a killed run left may
-// lead to another terminal.  While a run lives, it holds a lock on a byte of its terminal that stands for the path of
-// the link; and its links are spelt in their own way, so that no other program's is taken for one.
+// The system reuses the numbers of pseudo-terminals, so that a link left by a killed run may lead to another terminal.
+// While a run is alive, it holds a lock on a byte of its terminal that identifies the path of the link; and its links
+// have a distinct form, so that they are not confused with those of other programs.
 
 constexpr char terminals[] = "/dev/pts/";
 constexpr char own_spelling[] = "/dev/pts/./";
@@ -145,14 +148,14 @@ struct flock lock_of(const Place& place) {
   return lock;
 }
 
-/// What a link leads to; empty: it is not a link.
+/// Returns the target of a link; empty when it is not a link.
 std::string target_of(const Place& place) {
   char target[256];
   const ssize_t size = readlinkat(*place.folder, place.name.c_str(), target, sizeof target);
   return size < 0 ? std::string() : std::string(target, static_cast<std::size_t>(size));
 }
 
-/// Whether a run that lives made this link.
+/// Returns whether this link belongs to a run that is alive.
 bool is_held(const Place& place) {
   const Descriptor terminal(openat(*place.folder, place.name.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
   if (*terminal < 0) return errno != ENOENT;  // otherwise it may belong to another program
@@ -160,11 +163,11 @@ bool is_held(const Place& place) {
   return fcntl(*terminal, F_OFD_GETLK, &lock) != 0 || lock.l_type != F_UNLCK;
 }
 
-/// Makes room for a link, or throws.
+/// Removes the remains of a killed run at the place of a link, or throws.
 void remove_stale_link(const Place& place) {
   const std::string target = target_of(place);
   if (target.empty()) return;
-  // A run that was killed leaves its link, and another program's terminal may have that number since.
+  // A killed run leaves its link, and the terminal of another program may have the same number now.
   if (!target.starts_with(own_spelling) || is_held(place))
     throw std::runtime_error("serial port '" + place.path + "': is in use: " + std::strerror(EEXIST) +
                              "; if no run uses it, remove the link");
@@ -180,7 +183,7 @@ class PtyPort final : public sim::BytePort {
     char name[128];
     termios raw{};
     cfmakeraw(&raw);
-    // The slave stays open here too: reading the master fails while the slave is not open.
+    // Keep the slave open: reading the master fails while no one has the slave open.
     if (openpty(&master_, &slave_, name, &raw, nullptr) != 0) fail("cannot open a pseudo-terminal", path);
     fcntl(master_, F_SETFL, O_NONBLOCK);
     fcntl(master_, F_SETFD, FD_CLOEXEC);
@@ -197,7 +200,8 @@ class PtyPort final : public sim::BytePort {
     }
   }
   ~PtyPort() override {
-    if (target_of(place_) == target_) unlinkat(*place_.folder, place_.name.c_str(), 0);  // else it is another's now
+    if (target_of(place_) == target_)
+      unlinkat(*place_.folder, place_.name.c_str(), 0);  // otherwise it has been replaced
     close_all();
   }
   sim::Bytes read() override {
@@ -216,20 +220,20 @@ class PtyPort final : public sim::BytePort {
     ::close(slave_);
   }
   Place place_;
-  std::string target_;  // of the link
+  std::string target_;  // target of the link
   int master_ = -1;
   int slave_ = -1;
   Outbox out_;
 };
 
-/// A FIFO in a folder, removed when this goes.
+/// FIFO in a folder, removed on destruction.
 class Fifo {
  public:
   Fifo(const Place& port, const std::string& ending)
       : folder_(fcntl(*port.folder, F_DUPFD_CLOEXEC, 0)), name_(port.name + ending), path_(port.path + ending) {
     remove_stale();
     if (mkfifoat(*folder_, name_.c_str(), 0600) != 0) fail("cannot create the FIFO", path_);
-    // Both ways: no end-of-file when a writer leaves, no error without a reader.
+    // Open for reading and writing: no end-of-file when a writer closes, no error without a reader.
     end_ = Descriptor(openat(*folder_, name_.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC | O_NOFOLLOW));
     if (*end_ < 0 || fstat(*end_, &status_) != 0 || !S_ISFIFO(status_.st_mode)) fail("cannot open the FIFO", path_);
     fchmod(*end_, own_mode);
@@ -242,7 +246,7 @@ class Fifo {
   int operator*() const { return *end_; }
 
  private:
-  /// The sticky bit does nothing to a FIFO; here it says that a run made it.
+  /// Mark of a FIFO created by a run: the sticky bit, which has no effect on a FIFO.
   static constexpr mode_t own_mode = S_ISVTX | 0600;
 
   bool is_own_file() const {
@@ -250,7 +254,7 @@ class Fifo {
     return *end_ >= 0 && fstatat(*folder_, name_.c_str(), &now, AT_SYMLINK_NOFOLLOW) == 0 &&
            now.st_ino == status_.st_ino && now.st_dev == status_.st_dev;
   }
-  /// Removes a FIFO left behind by a killed run, that is one without a reader. Throws for that of a live run.
+  /// Removes a FIFO left by a killed run, that is one without a reader.  Throws for that of a running one.
   void remove_stale() {
     struct stat status {};
     if (fstatat(*folder_, name_.c_str(), &status, AT_SYMLINK_NOFOLLOW) != 0 || !S_ISFIFO(status.st_mode)) return;

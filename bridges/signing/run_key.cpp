@@ -23,7 +23,7 @@ namespace {
 
 constexpr std::string_view white_space = " \t\r\n";
 
-/// -1: not a hexadecimal digit.
+/// Returns the value of a hexadecimal digit; -1 for another character.
 int digit_value(char digit) {
   if (digit >= '0' && digit <= '9') return digit - '0';
   if (digit >= 'a' && digit <= 'f') return digit - 'a' + 10;
@@ -97,7 +97,7 @@ std::optional<RunKey> run_key_from_environment() {
 
 RunKey read_run_key(const std::string& folder) {
   const std::string path = folder + "/" + run_key_file;
-  // O_NONBLOCK: a FIFO of that name must not hold us up.
+  // O_NONBLOCK: do not block on a FIFO of that name.
   const FileDescriptor file(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   if (file.number() < 0)
     throw BusError(path + ": " + std::strerror(errno) +

@@ -60,7 +60,7 @@ MessageSigner::MessageSigner(const RunKey& key, std::string_view sender)
   if (sender_.empty()) sender_ = "?";
   std::random_device device;
   session_ = static_cast<std::int64_t>((std::uint64_t{device()} << 31 ^ device()) & 0x7fffffffffffffff);
-  // A later start begins higher, so that the simulator may forget the sessions that it saw first.
+  // A later start has a higher initial counter, so that the simulator may discard its oldest sessions.
   const auto now = std::chrono::system_clock::now().time_since_epoch();
   counter_ = std::chrono::duration_cast<std::chrono::microseconds>(now).count();
 }

@@ -12,7 +12,7 @@
 
 namespace bridges {
 
-/// The content of a shoal.sim_signed_t.
+/// Content of a shoal.sim_signed_t.
 struct SignedMessage {
   std::int64_t session = 0;
   std::string sender;
@@ -21,24 +21,26 @@ struct SignedMessage {
   Mac mac{};
 };
 
-/// Whether the payload claims to be a shoal.sim_signed_t, by its fingerprint.
+/// Returns whether the payload has the fingerprint of shoal.sim_signed_t.
 bool is_signed(std::span<const std::byte> payload);
-/// Reads one.  Checks neither MAC nor counter.  Throws shoal::MessageError.
+/// Decodes a signed message.  Checks neither MAC nor counter.  Throws shoal::MessageError.
 SignedMessage read_signed(std::span<const std::byte> payload);
-/// The message itself, whether it is signed or not.  Checks neither MAC nor counter.  Throws shoal::MessageError.
+/// Returns the message itself, whether it is signed or not.  Checks neither MAC nor counter.  Throws
+/// shoal::MessageError.
 sim::Bytes content_of(std::span<const std::byte> payload);
-/// Whether the MAC of a payload that read_signed() takes is that of this key and channel.
+/// Returns whether the MAC of a signed payload is valid for this key and channel.
 bool has_mac_of(const RunKey& key, std::string_view channel, std::span<const std::byte> payload);
 
-/// Whether this channel carries signed messages in place of others: those of programs that control a run.
+/// Returns whether signed messages replace plain ones on this channel: the channels by which programs control a run.
 bool is_control_channel(std::string_view channel);
 
-/// Signs what one program sends.
+/// Signer of the messages of one program.
 class MessageSigner {
  public:
-  /// `sender`: how the program calls itself; cut to 60 bytes.
+  /// `sender`: name of the program, truncated to 60 bytes.
   MessageSigner(const RunKey& key, std::string_view sender);
-  /// The payload to publish on `channel` in place of `content`.  Each call gives another one, also for equal messages.
+  /// Returns the payload to publish on `channel` in place of `content`.  It differs in every call, also for equal
+  /// messages.
   sim::Bytes sign(std::string_view channel, std::span<const std::byte> content);
 
  private:

@@ -7,7 +7,7 @@
 
 namespace devices {
 
-/// Takes shoal.actuator_command_t for an actuator that one number commands.
+/// Controller of an actuator commanded by one number: receives shoal.actuator_command_t.
 template <typename Model>
 class NumberController : public sim::Controller {
  public:

@@ -25,12 +25,13 @@ void Lag::prepare(double h) {
   prepared_for_s_ = h;
   rest_of_rest_ = rest_of_rate_ = rate_of_rest_ = rate_of_rate_ = 0;
   const double w = params_.natural_frequency_radps, z = params_.damping_ratio;
+  // First-order lag.
   if (w == 0) {
     if (params_.lag_s > 0) rest_of_rest_ = std::exp(-h / params_.lag_s);
     return;
   }
-  // x'' + 2 z w x' + w^2 x = 0.  `s` and `c` are sine and cosine of the damped oscillation, or of the imaginary angle
-  // that makes an overdamped one; s is over its frequency.
+  // Solution of x'' + 2 z w x' + w^2 x = 0.  `s` and `c` are sine and cosine of the damped oscillation, or hyperbolic
+  // sine and cosine when overdamped; s is divided by its frequency.
   const double decay = std::exp(-z * w * h);
   double s = h * decay, c = decay;
   if (z < 1) {
@@ -43,6 +44,7 @@ void Lag::prepare(double h) {
     s = (slow - fast) / (2 * spread);
     c = (slow + fast) / 2;
   }
+  // Transition matrix of difference and rate.
   rest_of_rest_ = c + z * w * s;
   rest_of_rate_ = s;
   rate_of_rest_ = -w * w * s;

@@ -8,8 +8,8 @@
 
 namespace devices {
 
-/// The vehicles that a device may name while it is built: those in the world, or in the world file.
-/// Null: there is none of this name.
+/// Returns the configuration of a vehicle that a device names at construction, in the world or in the world file; null
+/// when there is none of this name.
 inline const sim::VehicleConfig* named_vehicle(const sim::World& world, const std::string& name) {
   if (const sim::Vehicle* vehicle = world.find_vehicle(name)) return &vehicle->config();
   const auto& all = world.config().vehicles;

@@ -37,6 +37,7 @@ NmeaError parse_nmea(std::string_view line, NmeaSentence& sentence) {
   const std::size_t begin = line.rfind('$');
   if (begin == std::string_view::npos) return NmeaError::no_sentence;
   std::string_view body = line.substr(begin + 1);
+  // Verify the checksum.
   const std::size_t star = body.find('*');
   unsigned expected = 0;
   if (star != std::string_view::npos) {
@@ -46,8 +47,10 @@ NmeaError parse_nmea(std::string_view line, NmeaSentence& sentence) {
     body = body.substr(0, star);
     if (nmea_checksum(body) != expected) return NmeaError::bad_checksum;
   }
+  // Refuse non-printable characters.
   const auto printable = [](char c) { return c >= 0x20 && c < 0x7f; };
   if (body.empty() || !std::all_of(body.begin(), body.end(), printable)) return NmeaError::no_sentence;
+  // Split the body into fields.
   sentence.fields.clear();
   for (std::size_t at = 0; at <= body.size();) {
     const std::size_t comma = std::min(body.find(',', at), body.size());

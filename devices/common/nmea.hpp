@@ -12,41 +12,41 @@
 
 namespace devices {
 
-/// A sentence as of NMEA 0183: `$CCMPC,1,2*5E`.
+/// NMEA 0183 sentence, such as `$CCMPC,1,2*5E`.
 struct NmeaSentence {
   std::vector<std::string> fields;  ///< the first is the name, without `$`
 
   const std::string& name() const { return fields.front(); }
-  /// Field `i`, counted from the one after the name as 1; empty where there is none.
+  /// Returns field `i`, where 1 is the field after the name; empty when there is none.
   const std::string& at(std::size_t i) const;
   std::size_t count() const { return fields.size() - 1; }
-  /// A whole number in a range; nothing when the field is anything else.
+  /// Returns a field as an integer within a range; none when it is anything else.
   std::optional<int> number(std::size_t i, int min, int max) const;
 };
 
-/// What reading a line gave.
+/// Result of parsing a line.
 enum class NmeaError { none, no_sentence, bad_checksum };
 
-/// The exclusive or of all characters.
+/// Returns the exclusive or of all characters.
 unsigned nmea_checksum(std::string_view body);
-/// `$`, what is given, `*` and the checksum.
+/// Returns the sentence `$BODY*CHECKSUM`.
 std::string nmea_sentence(std::string_view body);
-/// Reads a line without its end.  What stands before the `$` is passed over; a checksum may be missing, but must be
-/// right where it is.  A line with characters that cannot be printed is not a sentence.
+/// Parses a line without its line end.  Text before the `$` is skipped; a checksum is optional, but must be correct
+/// when present.  A line with non-printable characters is not a sentence.
 NmeaError parse_nmea(std::string_view line, NmeaSentence& sentence);
 
-/// Makes lines of bytes as they come.  Memory is bounded for any input.
+/// Splitter of a byte stream into lines.  Memory is bounded for any input.
 class NmeaLines {
  public:
   struct Line {
     std::string text;
-    bool too_long = false;  ///< the text is not all of it
+    bool too_long = false;  ///< the text is truncated
   };
-  /// Lines that have ended, the empty ones left out.
+  /// Returns the completed lines, without empty ones.
   std::vector<Line> add(std::span<const std::byte> bytes);
   void visit_state(sim::StateArchive& archive) { archive(line_, too_long_); }
 
-  /// Room for a frame of 256 bytes in hexadecimal digits.
+  /// Maximum length of a line, sufficient for a frame of 256 bytes in hexadecimal digits.
   static constexpr std::size_t longest = 640;
 
  private:
@@ -54,9 +54,9 @@ class NmeaLines {
   bool too_long_ = false;
 };
 
-/// Two digits for each byte, small letters.
+/// Returns two lower-case hexadecimal digits for each byte.
 std::string to_hex(std::span<const std::byte> bytes);
-/// Nothing when it is not an even number of hexadecimal digits.
+/// Decodes hexadecimal digits; none when the text is not an even number of them.
 std::optional<sim::Bytes> from_hex(std::string_view text);
 
 }  // namespace devices

@@ -8,10 +8,10 @@
 
 namespace devices {
 
-/// The first true time, not before `from`, when the vehicle's clock shows a whole multiple of `period` (in UTC: the
-/// run's epoch counts).
+/// Returns the first true time, not before `from`, at which the vehicle clock shows a whole multiple of `period` (in
+/// UTC, including the epoch of the run).
 inline sim::Time next_whole(const sim::Vehicle& vehicle, std::int64_t epoch_us, sim::Time from, sim::Time period) {
-  // Not its reading: that is a tick of the clock, which may be coarser than the period.
+  // Use the clock error, not the reading: the resolution of the clock may be coarser than the period.
   const std::int64_t utc_us = epoch_us + (from + sim::from_seconds(vehicle.clock().error_s(from))).count();
   std::int64_t over_us = utc_us % period.count();
   if (over_us < 0) over_us += period.count();

@@ -8,16 +8,16 @@
 
 namespace devices {
 
-/// One of the keys whose product is the number of rays in a sample.
+/// Key whose value is a factor of the number of rays in a sample.
 struct RayFactor {
   std::string key;
   double count;
 };
 
-/// An error at one of the keys when a sample takes more than a million rays.
+/// Reports an error at one of the keys when a sample needs more than a million rays.
 void check_rays(sim::ParamReader& in, std::span<const RayFactor> factors);
 
-/// The rate that the device will have, from its own map: 0 is every step.  What is wrong with it is said elsewhere.
+/// Returns the rate of the device from its own map; 0: every step.  Errors of the rate are reported elsewhere.
 double rate_hz_of(const sim::ParamReader& in, double default_rate_hz);
 
 }  // namespace devices

@@ -8,14 +8,14 @@
 
 namespace devices {
 
-/// Represents in a snapshot a large reading, such as an image, that was published when it was taken and is not used
-/// until the next one replaces it: only its hash is kept.
+/// Digest of a large reading, such as an image, in a snapshot.  Such a reading is published when it is taken and not
+/// used again, so that the snapshot contains only its hash.
 class ReadingDigest {
  public:
-  /// Another reading takes the place of the last one.
+  /// Marks that a new reading has replaced the last one.
   void renew() { restored_.reset(); }
 
-  /// `values`: all vectors of numbers that the reading consists of.
+  /// Visits the digest.  `values`: all vectors of numbers of the reading.
   template <typename... Values>
   void visit(sim::StateArchive& archive, const Values&... values) {
     std::uint64_t digest = 0;
@@ -32,7 +32,7 @@ class ReadingDigest {
     return hash.value();
   }
 
-  std::optional<std::uint64_t> restored_;  ///< of a reading that is not here: it was taken before the snapshot
+  std::optional<std::uint64_t> restored_;  ///< digest of a reading taken before the snapshot, which is not available
 };
 
 }  // namespace devices

@@ -9,8 +9,8 @@
 
 namespace devices {
 
-/// Numbers that are as many in every run of the device, since their count follows from its parameters.  `of`: what
-/// they are, for the error of a snapshot that has another number of them.
+/// Visits a vector whose size is determined by the parameters of the device.  `of`: name of the values, for the error
+/// of a snapshot with another size.
 template <typename T>
 void visit_same_size(sim::StateArchive& archive, std::vector<T>& values, std::string_view of) {
   static_assert(std::is_arithmetic_v<T>);

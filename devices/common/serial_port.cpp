@@ -78,14 +78,16 @@ SerialMessages::SerialMessages(const SerialMessageParams& params, const sim::Dev
 std::vector<sim::Bytes> SerialMessages::take(std::size_t max_bytes) {
   sim::Bytes bytes = port_.read();
   std::vector<sim::Bytes> messages;
+  // Raw framing: one message per step.
   if (!lines_) {
     if (bytes.size() > max_bytes) bytes.resize(max_bytes + 1);
     if (!bytes.empty()) messages.push_back(std::move(bytes));
     return messages;
   }
+  // Line framing: one message per line.
   for (const std::byte b : bytes) {
     if (b == std::byte{'\n'}) {
-      // One byte more than allowed, so that the line is seen to be too long.
+      // Keep one byte more than allowed, to mark the line as too long.
       if (cut_) line_.resize(max_bytes + 1);
       if (!line_.empty()) messages.push_back(std::move(line_));
       line_.clear();

@@ -12,32 +12,32 @@
 
 namespace devices {
 
-/// A connection of other programs to a modem, in addition to the bus.
+/// Parameters of a serial connection of other programs to a device, in addition to the bus.
 struct SerialParams {
   sim::PortKind kind = sim::PortKind::pty;
   std::string path;
   void read(sim::ParamReader& in);
 };
 
-/// The same for bytes that are messages.
+/// Parameters of a serial connection that carries messages.
 struct SerialMessageParams : SerialParams {
   enum class Framing {
-    line,  ///< a message is a line
-    raw,   ///< a message is what came within a step
+    line,  ///< each line is a message
+    raw,   ///< the bytes received within a step are a message
   };
 
   Framing framing = Framing::line;
   void read(sim::ParamReader& in);
 };
 
-/// Bytes of the serial ports of a world that no program read, since its start.  It depends on the programs at their
-/// other ends, and is no part of the state.
+/// Returns the number of bytes of the serial ports of a world that no program has read since its start.  It depends on
+/// the connected programs, and is not part of the state.
 std::uint64_t serial_dropped_bytes(const sim::World& world);
 
-/// The port of a device; without one where the program that builds the world offers none.
+/// Serial port of a device; inactive when the program that builds the world supplies no ports.
 class SerialPort {
  public:
-  /// Throws std::runtime_error that names device and path.
+  /// Throws std::runtime_error with device and path.
   SerialPort(const SerialParams& params, const sim::DeviceContext& context);
 
   sim::Bytes read();
@@ -49,28 +49,28 @@ class SerialPort {
   sim::DeviceHost& host_;
   std::string who_, path_;
   std::unique_ptr<sim::BytePort> port_;
-  std::uint64_t dropped_bytes_ = 0;  // that were counted already
+  std::uint64_t dropped_bytes_ = 0;  // already counted
 };
 
-/// What came by a serial port is too long for a message: counted as a bad message.
+/// Counts and reports data from a serial port that are too long for a message as a bad message.
 void warn_of_length(sim::WorldWarnings& warnings, const std::string& device, std::size_t max_bytes);
 
-/// Messages through a serial port: lines, or what came within a step.
+/// Messages through a serial port: lines, or the bytes received within a step.
 class SerialMessages {
  public:
   SerialMessages(const SerialMessageParams& params, const sim::DeviceContext& context);
 
-  /// What has come since the last call.  A message that is too long has max_bytes + 1 bytes.
+  /// Returns the messages received since the last call.  A message that is too long has max_bytes + 1 bytes.
   std::vector<sim::Bytes> take(std::size_t max_bytes);
   void write(sim::Bytes data);
-  /// The received part of an unfinished line.  What is in the port itself is beyond the simulator.
+  /// Visits the received part of an unfinished line.  Bytes in the port itself are outside of the simulator.
   void visit_state(sim::StateArchive& archive) { archive(line_, cut_); }
 
  private:
   SerialPort port_;
   bool lines_;
-  sim::Bytes line_;   // not yet ended
-  bool cut_ = false;  // more of it came than is in line_
+  sim::Bytes line_;   // not yet complete
+  bool cut_ = false;  // the line was longer than line_
 };
 
 }  // namespace devices

@@ -17,8 +17,9 @@ namespace devices {
 
 namespace {
 
-/// What a preset stands for: the defaults of the keys after it.
+/// Sets the values of a preset as defaults of the keys after it.
 void use_preset(AcousticModem::Params& params) {
+  // Packet types of the Micro-Modem.
   for (const MicromodemRate& rate : micromodem_rates()) {
     if (params.preset != "micromodem_rate" + std::to_string(rate.number)) continue;
     params.modulation = rate.modulation;
@@ -28,7 +29,7 @@ void use_preset(AcousticModem::Params& params) {
     params.frame_bytes = rate.frame_bytes;
     params.preamble_s = micromodem_probe_s;
   }
-  // Two modems as there are many; figures are typical, of no product.
+  // Two generic modems with typical values, not those of a product.
   if (params.preset == "low_rate") {
     params.frequency_Hz = 10000;
     params.bandwidth_Hz = 5000;
@@ -50,17 +51,17 @@ void use_preset(AcousticModem::Params& params) {
 
 constexpr std::string_view message_mark = "msg ";
 
-/// Those that understand each other.
+/// Returns the group of modems that can decode each other.
 std::string group_of(const AcousticModem::Params& params) {
   return "acoustic_modem " + params.network;
 }
 
-/// What the frame tells beside the data, in Signal::code: the sending time by the sender's clock, the destination.
+/// Header of the frame in Signal::code: the sending time by the clock of the sender, and the destination.
 std::string code_of(sim::Time sent, const std::string& destination) {
   return std::string(message_mark) + std::to_string(sent.count()) + " " + destination;
 }
 
-/// False: it is a frame of another kind of modem.
+/// Decodes a header; returns false for a frame of another type of modem.
 bool read_code(std::string_view code, sim::Time& sent, std::string& destination) {
   if (!code.starts_with(message_mark)) return false;
   code.remove_prefix(message_mark.size());
@@ -77,12 +78,14 @@ bool read_code(std::string_view code, sim::Time& sent, std::string& destination)
 }  // namespace
 
 void AcousticModem::Params::read(sim::ParamReader& in) {
+  // Preset.
   std::vector<std::string> presets;
   for (const MicromodemRate& rate : micromodem_rates())
     presets.push_back("micromodem_rate" + std::to_string(rate.number));
   presets.insert(presets.end(), {"low_rate", "high_rate"});
   in.read_one_of("preset", preset, presets, "preset of a packet type or modem; the keys below override it");
   if (!in.describing()) use_preset(*this);
+  // Signal.
   in.read("network", network, "only modems of the same network understand each other; others act as noise");
   in.read("source_level_dB", source_level_dB, sim::between(0, 300), "re 1 uPa at 1 m, on its axis");
   in.read("frequency_Hz", frequency_Hz, sim::between(100, 1e6), "middle of its band");
@@ -92,6 +95,7 @@ void AcousticModem::Params::read(sim::ParamReader& in) {
                  "frequency shift keying, non-coherent; phase shift keying, coherent; differential phase shift keying");
   in.read("bit_rate_bps", bit_rate_bps, sim::between(1e-3, 1e9), "bits per second while it sends");
   in.read("coding_gain_dB", coding_gain_dB, sim::between(0, 60), "coding gain on Eb/N0");
+  // Packets.
   in.read("frame_bytes", frame_bytes, sim::between(1, 1 << 16), "bytes of a frame");
   in.read("frames", frames, sim::between(1, 256), "maximum number of frames of a packet");
   in.read("whole_frames", whole_frames, "a packet always takes the time of full frames, however few bytes they hold");
@@ -109,6 +113,7 @@ void AcousticModem::Params::read(sim::ParamReader& in) {
   in.read("receiver", receiver, "properties of its receiver");
   in.read("serial", serial, "pseudo-terminal or FIFO for programs that use no LCM");
   if (in.describing()) return;
+  // Check combinations of keys.
   if (bandwidth_Hz >= 2 * frequency_Hz)
     in.error("bandwidth_Hz", "'bandwidth_Hz' must be < 2 x frequency_Hz, got " + sim::number_text(bandwidth_Hz));
   if (max_message_bytes > frames * frame_bytes)
@@ -172,7 +177,7 @@ void AcousticModem::send(sim::Time, std::string destination, sim::Bytes data) {
 void AcousticModem::act(const sim::ActContext& context) {
   now_ = context.now;
   if (serial_) read_serial(context.now);
-  // Short messages go out several in a step, each when the one before has ended.
+  // Several short messages may be sent in a step, each when the previous one has ended.
   const sim::Time end = context.now + sim::from_seconds(context.step_s);
   while (!queue_.empty() && transducer_.works()) {
     sim::Time start = std::max(context.now, transducer_.busy_until());

@@ -14,9 +14,8 @@
 
 namespace devices {
 
-/// Acoustic modem: carries messages of bytes between vehicles under water, by world.acoustics().  It sends one
-/// message at a time and cannot receive meanwhile; medium access and retransmission are up to the programs that use
-/// it.
+/// Acoustic modem: transmits byte messages between vehicles under water through world.acoustics().  It is half-duplex
+/// and sends one message at a time; medium access control and retransmission are left to the programs that use it.
 class AcousticModem final : public sim::Sensor, public MessageModem, private sim::AcousticListener {
  public:
   static constexpr const char* meaning = "Acoustic modem: messages of bytes between vehicles under water.";
@@ -47,9 +46,9 @@ class AcousticModem final : public sim::Sensor, public MessageModem, private sim
   };
   struct Packet {
     std::string source, destination;
-    sim::Time sent{0}, arrived{0};  ///< begin of sending, and of the sound here; true times
-    sim::Time sent_reading{0};      ///< by the clock of the sender
-    sim::Time arrived_reading{0};   ///< by the own clock
+    sim::Time sent{0}, arrived{0};  ///< start of transmission and of reception; true times
+    sim::Time sent_reading{0};      ///< transmission time by the clock of the sender
+    sim::Time arrived_reading{0};   ///< arrival time by the own clock
     double snr_dB = 0, level_dB = 0, closing_mps = 0;
     sim::Bytes data;
     void visit_state(sim::StateArchive& archive) {
@@ -65,7 +64,7 @@ class AcousticModem final : public sim::Sensor, public MessageModem, private sim
   /// Throws std::runtime_error when the message is empty or too long, or the destination names no vehicle.
   void send(sim::Time now, std::string destination, sim::Bytes data) override;
   std::size_t message_limit_bytes() const override;
-  /// Begins the next transmission when it may.
+  /// Starts the next transmission when it is permitted.
   void act(const sim::ActContext& context);
   double power_W() const;
 
@@ -73,9 +72,9 @@ class AcousticModem final : public sim::Sensor, public MessageModem, private sim
   void disturb(double, sim::Random&) override {}
   void visit_state(sim::StateArchive& archive) override;
 
-  /// How long the sound of a message of this size is.
+  /// Returns the duration of the transmission of a message of this size.
   double duration_s(std::size_t bytes) const;
-  /// What arrived since the last sample.
+  /// Returns the messages that arrived since the last sample.
   const std::vector<Packet>& received() const { return received_; }
   const sim::Transducer& transducer() const { return transducer_; }
   std::int64_t dropped_from_queue() const override { return dropped_; }
@@ -90,7 +89,7 @@ class AcousticModem final : public sim::Sensor, public MessageModem, private sim
   bool listens_to(const sim::Signal& signal) const override;
   void receive(const sim::Reception& received) override;
   void transmit(sim::Time at, Outgoing message);
-  /// Bits of the sound of a message.
+  /// Returns the number of transmitted bits of a message.
   std::int64_t bits(std::size_t bytes) const;
   void read_serial(sim::Time now);
 
@@ -117,7 +116,7 @@ class AcousticModemReporter final : public sim::Reporter {
   const AcousticModem& modem_;
 };
 
-/// Takes shoal.modem_send_t.
+/// Receives shoal.modem_send_t.
 class AcousticModemController final : public sim::Controller {
  public:
   static constexpr const char* command_messages = "shoal.modem_send_t";

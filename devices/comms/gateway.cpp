@@ -105,6 +105,7 @@ void Gateway::remember(sim::Time at, const sim::Bytes& data) {
 void Gateway::arrived(std::size_t from, sim::Time at, const std::string& source, const sim::Bytes& data) {
   Counts& counts = counting_[from];
   if (!vehicle_.systems().powered || faults_.silent()) return;
+  // Filter by prefix and repetition.
   const std::string& prefix = params_.only_prefix;
   const auto* text = reinterpret_cast<const char*>(data.data());
   if (!std::string_view(text, data.size()).starts_with(prefix)) {
@@ -115,6 +116,7 @@ void Gateway::arrived(std::size_t from, sim::Time at, const std::string& source,
     ++counts.repeated;
     return;
   }
+  // Make the forwarded message.
   Message message{at + sim::from_seconds(params_.delay_s), from, {}};
   if (params_.name_source) {
     const std::string name = source + ":";
@@ -122,6 +124,7 @@ void Gateway::arrived(std::size_t from, sim::Time at, const std::string& source,
     message.data.assign(bytes, bytes + name.size());
   }
   message.data.insert(message.data.end(), data.begin(), data.end());
+  // Check size and queue.
   if (message.data.size() > modems_[1 - from]->message_limit_bytes()) {
     ++counts.too_long;
     return;
@@ -131,7 +134,7 @@ void Gateway::arrived(std::size_t from, sim::Time at, const std::string& source,
     return;
   }
   remember(at, data);
-  // What goes out is known, too, in case it comes back through another gateway.
+  // Remember sent messages, too, in case they return through another gateway.
   if (params_.name_source) remember(at, message.data);
   waiting_.push_back(std::move(message));
 }
@@ -146,7 +149,7 @@ void Gateway::act(const sim::ActContext& context) {
       modems_[to]->send(context.now, params_.destinations[to], std::move(message.data));
       ++counting_[message.from].passed;
     } catch (const std::runtime_error&) {
-      ++counting_[message.from].refused;  // the vehicle it was for has left
+      ++counting_[message.from].refused;  // the destination vehicle was removed
     }
   }
 }
@@ -156,7 +159,7 @@ void Gateway::visit_state(sim::StateArchive& archive) {
   if (!archive.restoring()) return;
   for (const Message& message : waiting_)
     if (message.from > 1) archive.fail("a gateway has no modem " + std::to_string(message.from));
-  // Something may arrive before the next act().
+  // Messages may arrive before the next act().
   if (modems_[0] == nullptr) find_modems();
 }
 

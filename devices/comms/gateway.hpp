@@ -11,9 +11,9 @@
 
 namespace devices {
 
-/// Passes messages between two modems of one vehicle, such as the radio and the acoustic modem of a buoy.  What arrives
-/// at one is sent by the other, after `delay_s`; it is never returned to its source, and the same bytes are not
-/// forwarded twice within `repeat_s`, so that two gateways between the same networks do not loop.
+/// Gateway between two modems of one vehicle, such as the radio and the acoustic modem of a buoy.  A message received
+/// by one is sent by the other after `delay_s`; it is never returned to its source, and the same bytes are not
+/// forwarded twice within `repeat_s`, so that two gateways between the same networks do not form a loop.
 class Gateway final : public sim::Sensor {
  public:
   static constexpr const char* meaning = "Gateway: passes messages between two modems of its vehicle.";
@@ -29,7 +29,7 @@ class Gateway final : public sim::Sensor {
     int queue_messages = 64;
     void read(sim::ParamReader& in);
   };
-  /// Per direction: from the first modem to the second, and back.
+  /// Counts of one direction: from the first modem to the second, or back.
   struct Counts {
     std::int64_t passed = 0, too_long = 0, repeated = 0, refused = 0;
     void visit_state(sim::StateArchive& archive) { archive(passed, too_long, repeated, refused); }
@@ -58,9 +58,9 @@ class Gateway final : public sim::Sensor {
 
   void find_modems();
   void arrived(std::size_t from, sim::Time at, const std::string& source, const sim::Bytes& data);
-  /// Is `data` these bytes, or with `name_source` these bytes behind names of vehicles?
+  /// Returns whether `data` equals `seen`, with `name_source` also when vehicle names precede the bytes.
   bool is_same(const sim::Bytes& data, const sim::Bytes& seen) const;
-  /// The same passed within repeat_s.
+  /// Returns whether the same message was forwarded within repeat_s.
   bool seen_before(sim::Time at, const sim::Bytes& data);
   void remember(sim::Time at, const sim::Bytes& data);
 
@@ -69,7 +69,7 @@ class Gateway final : public sim::Sensor {
   const sim::Vehicle& vehicle_;
   const sim::DeviceFaults& faults_;
   const MessageModems& all_modems_;
-  std::array<MessageModem*, 2> modems_{};  // found at the first step: they may come after this device in the file
+  std::array<MessageModem*, 2> modems_{};  // found at the first step, because they may follow this device in the file
   std::deque<Message> waiting_;
   std::deque<Seen> seen_;
   std::array<Counts, 2> counting_, counts_;

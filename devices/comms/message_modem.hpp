@@ -12,19 +12,19 @@
 
 namespace devices {
 
-/// A modem that carries messages of bytes between vehicles, as a gateway sees it.
+/// Interface of a modem that transmits byte messages between vehicles, for gateways.
 class MessageModem {
  public:
-  /// Reported each message that arrives.
+  /// Callback for each message that arrives.
   using Tap = std::function<void(sim::Time at, const std::string& source, const sim::Bytes& data)>;
 
   virtual ~MessageModem() = default;
   /// Queues a message; empty destination: broadcast.  Throws std::runtime_error when it cannot be sent.
   virtual void send(sim::Time now, std::string destination, sim::Bytes data) = 0;
   virtual std::size_t message_limit_bytes() const = 0;
-  /// Messages that were not sent, as its queue was full.
+  /// Returns the number of messages dropped because the queue was full.
   virtual std::int64_t dropped_from_queue() const = 0;
-  /// One at most.
+  /// Sets the only tap.
   void set_tap(Tap tap) { tap_ = std::move(tap); }
 
  protected:
@@ -36,7 +36,7 @@ class MessageModem {
   Tap tap_;
 };
 
-/// The message modems of a world by full name, such as `buoy/radio`.
+/// Message modems of a world by full name, such as `buoy/radio`.
 class MessageModems {
  public:
   void join(const std::string& full_name, MessageModem& modem) { modems_[full_name] = &modem; }
@@ -46,13 +46,13 @@ class MessageModems {
     dropped_by_removed_ += modem->second->dropped_from_queue();
     modems_.erase(modem);
   }
-  /// Null when there is none.
+  /// Returns a modem by full name; null when there is none.
   MessageModem* find(const std::string& full_name) const {
     const auto found = modems_.find(full_name);
     return found == modems_.end() ? nullptr : found->second;
   }
 
-  /// Messages that all modems, also those that have left, dropped from full queues.
+  /// Returns the number of messages dropped from full queues by all modems, including removed ones.
   std::int64_t dropped_from_queues() const {
     std::int64_t dropped = dropped_by_removed_;
     for (const auto& [name, modem] : modems_) dropped += modem->dropped_from_queue();
@@ -64,7 +64,7 @@ class MessageModems {
   std::int64_t dropped_by_removed_ = 0;
 };
 
-/// Of each world.
+/// The registry of modems of each world.
 inline const sim::SharedKind<MessageModems> message_modems;
 
 }  // namespace devices

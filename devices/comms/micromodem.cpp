@@ -31,7 +31,7 @@ MicromodemProtocol::Config protocol_config(const Micromodem::Params& params) {
 
 }  // namespace
 
-/// What the modems of a world are called, by network and address.
+/// Names of the modems of a world by network and address.
 struct Micromodem::Addresses {
   std::map<std::pair<std::string, int>, std::vector<std::string>> names;
 };
@@ -82,7 +82,7 @@ Micromodem::Micromodem(const Params& params, const sim::DeviceContext& context)
       now_(context.world.now()) {
   check_beacons(context);
   if (params.serial) serial_ = std::make_unique<SerialPort>(*params.serial, context);
-  take_address();  // nothing fails after it, so the destructor takes it back
+  take_address();  // last, because the destructor removes it
   warn_of_address();
 }
 
@@ -105,7 +105,7 @@ void Micromodem::check_beacons(const sim::DeviceContext& context) const {
   }
 }
 
-/// Two of one address answer for each other; the others cannot tell.
+/// Warns of two modems with one address: both answer, and the others cannot distinguish them.
 void Micromodem::warn_of_address() const {
   const auto& names = addresses_.names[{params_.network, address_}];
   if (names.size() == 2 && names[0] != names[1])
@@ -129,7 +129,7 @@ void Micromodem::unlist() {
 
 void Micromodem::take(const std::string& sentence, sim::Time now) {
   now_ = now;
-  NmeaLines lines;  // by the bus every sentence is whole
+  NmeaLines lines;  // sentences over the bus are complete
   const std::string ended = sentence + "\n";
   for (const auto& line : lines.add(std::as_bytes(std::span(ended.data(), ended.size())))) take_line(line, now);
 }
@@ -237,7 +237,8 @@ bool Micromodem::listens_to(const sim::Signal& signal) const {
 void Micromodem::receive(const sim::Reception& received) {
   now_ = std::max(now_, received.ended);
   if (received.signal.kind == sim::Signal::Kind::answer) return received_beacon(received);
-  // One that it did not take is nothing to it.  Out of the water is the sender: it would receive nothing there itself.
+  // Ignore receptions that were not detected.  Out of the water applies to the sender: this modem would not receive
+  // there.
   const bool has_errors = received.loss == sim::SignalLoss::noise || received.loss == sim::SignalLoss::interference ||
                           received.loss == sim::SignalLoss::sender_off ||
                           received.loss == sim::SignalLoss::out_of_water;

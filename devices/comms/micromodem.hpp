@@ -14,7 +14,7 @@
 
 namespace devices {
 
-/// The transponders that $CCPDT, $CCPNT and $CCPGT ask.
+/// Parameters of the transponders interrogated by $CCPDT, $CCPNT and $CCPGT.
 struct MicromodemBeaconParams {
   std::string network = "usbl";
   std::vector<std::string> transponders;
@@ -25,8 +25,8 @@ struct MicromodemBeaconParams {
   void read(sim::ParamReader& in);
 };
 
-/// Acoustic modem of the WHOI Micro-Modem class: its NMEA sentences through a pseudo-terminal and through the bus, its
-/// packets through the water.  What it says and when is MicromodemProtocol's.
+/// Acoustic modem of the WHOI Micro-Modem class: NMEA sentences through a pseudo-terminal and the bus, packets through
+/// the water.  MicromodemProtocol implements the protocol.
 class Micromodem final : public sim::Sensor, private sim::AcousticListener, private MicromodemSide {
  public:
   static constexpr const char* meaning = "Acoustic modem of the WHOI Micro-Modem class, with its NMEA sentences.";
@@ -47,7 +47,7 @@ class Micromodem final : public sim::Sensor, private sim::AcousticListener, priv
   };
   struct Sentence {
     sim::Time at;       ///< true time
-    sim::Time reading;  ///< by the vehicle's clock
+    sim::Time reading;  ///< time by the vehicle clock
     std::string sentence;
     void visit_state(sim::StateArchive& archive) { archive(at, reading, sentence); }
   };
@@ -56,7 +56,7 @@ class Micromodem final : public sim::Sensor, private sim::AcousticListener, priv
   Micromodem(const Params& params, const sim::DeviceContext& context);
   ~Micromodem() override;
 
-  /// A sentence from the host by the bus; an end of line is not needed.
+  /// Receives a sentence from the host over the bus; a line end is not required.
   void take(const std::string& sentence, sim::Time now);
   void act(const sim::ActContext& context);
   double power_W() const;
@@ -65,7 +65,7 @@ class Micromodem final : public sim::Sensor, private sim::AcousticListener, priv
   void disturb(double, sim::Random&) override {}
   void visit_state(sim::StateArchive& archive) override;
 
-  /// What it said since the last sample.
+  /// Returns the sentences sent to the host since the last sample.
   const std::vector<Sentence>& sentences() const { return sentences_; }
   const MicromodemProtocol& protocol() const { return protocol_; }
   const sim::Transducer& transducer() const { return transducer_; }
@@ -77,7 +77,7 @@ class Micromodem final : public sim::Sensor, private sim::AcousticListener, priv
 
   void check_beacons(const sim::DeviceContext& context) const;
   void warn_of_address() const;
-  /// In the addresses of the world.
+  /// Registers an address in the world.
   void list(int address);
   void unlist();
   bool listens_to(const sim::Signal& signal) const override;
@@ -89,7 +89,7 @@ class Micromodem final : public sim::Sensor, private sim::AcousticListener, priv
   sim::Time call_back() override;
   std::int64_t utc_us(sim::Time at) const override;
   double elapsed_s(sim::Time from, sim::Time to) const override;
-  /// The host may have given it another address.
+  /// Applies an address that the host may have changed.
   void take_address();
   void take_line(const NmeaLines::Line& line, sim::Time now);
   std::string group() const { return "micromodem " + params_.network; }
@@ -106,7 +106,7 @@ class Micromodem final : public sim::Sensor, private sim::AcousticListener, priv
   std::vector<Sentence> sentences_;
   std::unique_ptr<SerialPort> serial_;
   sim::Time now_{0};
-  int address_ = -1;  // that the channel knows; -1: none yet
+  int address_ = -1;  // registered address; -1: none yet
   bool off_ = false;  // without power, or silent by a fault
 };
 
@@ -121,7 +121,7 @@ class MicromodemReporter final : public sim::Reporter {
   const Micromodem& modem_;
 };
 
-/// Takes shoal.nmea_sentence_t.
+/// Receives shoal.nmea_sentence_t.
 class MicromodemController final : public sim::Controller {
  public:
   static constexpr const char* command_messages = "shoal.nmea_sentence_t";

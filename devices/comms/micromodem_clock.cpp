@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The clock of a Micro-Modem: what sets it, and what is said of it.
+// Clock of a Micro-Modem: sentences that set and report it.
 #include <charconv>
 #include <chrono>
 #include <cmath>
@@ -17,7 +17,7 @@ std::int64_t floor_second(std::int64_t utc_us) {
   return utc_us / second_us - (utc_us % second_us < 0 ? 1 : 0);
 }
 
-/// Nothing when there is no such day.
+/// Converts a date; none when there is no such day.
 std::optional<std::int64_t> utc_of(int year, int month, int day, int hour, int minute, int second) {
   using namespace std::chrono;
   const year_month_day date{std::chrono::year{year}, std::chrono::month{static_cast<unsigned>(month)},
@@ -26,8 +26,9 @@ std::optional<std::int64_t> utc_of(int year, int month, int day, int hour, int m
   return microseconds(sys_days(date).time_since_epoch()).count() + second_us * (3600LL * hour + 60LL * minute + second);
 }
 
-/// 2026-03-04T05:06:07Z, with up to six digits after a point; nothing when it is anything else.
+/// Parses 2026-03-04T05:06:07Z, with up to six decimals; none for any other text.
 std::optional<std::int64_t> read_iso_time(const std::string& text) {
+  // Check the format.
   static constexpr std::string_view form = "dddd-dd-ddTdd:dd:dd";
   if (text.size() < form.size() + 1 || text.back() != 'Z') return {};
   for (std::size_t i = 0; i < form.size(); ++i) {
@@ -39,8 +40,10 @@ std::optional<std::int64_t> read_iso_time(const std::string& text) {
     std::from_chars(text.data() + at, text.data() + at + digits, value);
     return value;
   };
+  // Read the time of day.
   const int hour = number(11, 2), minute = number(14, 2), second = number(17, 2);
   if (hour > 23 || minute > 59 || second > 60) return {};
+  // Read the decimals of the second.
   std::string fraction = text.substr(form.size(), text.size() - form.size() - 1);
   if (!fraction.empty()) {
     const bool good = fraction.size() >= 2 && fraction.size() <= 7 && fraction[0] == '.' &&
@@ -55,7 +58,7 @@ std::optional<std::int64_t> read_iso_time(const std::string& text) {
   return *whole + micro;
 }
 
-/// Cut off to whole seconds.
+/// Returns the time in ISO 8601 format, truncated to whole seconds.
 std::string iso_time(std::int64_t utc_us) {
   const std::string day = nmea_date(utc_us), time = nmea_time_of_day(utc_us, 0);
   return day.substr(0, 4) + "-" + day.substr(4, 2) + "-" + day.substr(6) + "T" + time.substr(0, 2) + ":" +
@@ -80,7 +83,7 @@ std::array<int, 3> micromodem_generation(const std::string& revision) {
 
 void MicromodemProtocol::set_utc(std::int64_t set_us, sim::Time now) {
   clock_offset_us_ = set_us - side_.utc_us(now);
-  // With a pulse every second it only learns which second it is.
+  // With a pulse per second, only the number of the second is set.
   if (settings_.on("SNV"))
     clock_offset_us_ = std::llround(static_cast<double>(clock_offset_us_) / static_cast<double>(second_us)) * second_us;
   clock_set_ = true;

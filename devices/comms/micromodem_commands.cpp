@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the host of a Micro-Modem may ask for.  About its clock: micromodem_clock.cpp.
+// Commands of the host of a Micro-Modem.  Those of its clock are in micromodem_clock.cpp.
 #include <algorithm>
 #include <map>
 
@@ -9,7 +9,7 @@ namespace devices {
 
 namespace {
 
-/// A sequence of a generic transponder: up to 64 bits in hexadecimal digits; nothing when it is anything else.
+/// Parses a sequence of a generic transponder: up to 64 bits in hexadecimal digits; none for any other text.
 std::optional<bool> is_sequence_set(const std::string& text) {
   constexpr std::size_t max_digits = 20;  // some drivers write 64 bits as a decimal number
   const bool good = !text.empty() && text.size() <= max_digits &&
@@ -34,7 +34,7 @@ MicromodemProtocol::Command MicromodemProtocol::command_of(const std::string& na
       {"CCPNT", &MicromodemProtocol::interrogate_narrowband_beacons},
       {"CCPGT", &MicromodemProtocol::interrogate_generic_beacons},
   };
-  // A Micro-Modem-1 does not know them.
+  // A Micro-Modem-1 does not support them.
   static const std::map<std::string, Command> of_second_generation{
       {"CCTMS", &MicromodemProtocol::set_time},
       {"CCTMQ", &MicromodemProtocol::query_time},
@@ -58,6 +58,7 @@ void MicromodemProtocol::take_line(const NmeaLines::Line& line, sim::Time now) {
     error("NMEA", unknown_sentence, "line too long", now);
     return;
   }
+  // Parse the sentence.
   switch (parse_nmea(line.text, in)) {
     case NmeaError::no_sentence:
       return;  // noise
@@ -67,8 +68,9 @@ void MicromodemProtocol::take_line(const NmeaLines::Line& line, sim::Time now) {
     case NmeaError::none:
       break;
   }
-  // What a modem says comes back from a terminal that echoes; an answer to it would go round forever.
+  // Ignore own sentences echoed by a terminal: an answer would loop forever.
   if (in.name().starts_with("CA") || in.name().starts_with("SN")) return;
+  // Execute the command.
   if (const Command command = command_of(in.name()))
     (this->*command)(in, now);
   else
@@ -126,6 +128,7 @@ void MicromodemProtocol::reset(const NmeaSentence& in, sim::Time now) {
 void MicromodemProtocol::start_cycle(const NmeaSentence& in, sim::Time now) {
   const auto who = addresses(in, 2, now);
   if (!who) return;
+  // Check the fields.
   const int highest_rate = config_.psk ? static_cast<int>(micromodem_rates().size()) - 1 : 0;
   const auto rate = in.number(4, 0, highest_rate);
   if (!rate) return error("CYC", bad_field, "rate must be 0 to " + std::to_string(highest_rate), now);
@@ -134,10 +137,11 @@ void MicromodemProtocol::start_cycle(const NmeaSentence& in, sim::Time now) {
   if (!ack) return error("CYC", bad_field, "ack must be 0 or 1", now);
   if (!frames) return error("CYC", bad_field, "frames must be 1 to " + std::to_string(max), now);
   if (busy("CYC", now)) return;
+  // Confirm, and gather the data of an own cycle.
   side_.emit(echo(in, "CACYC"));
   Cycle cycle{who->first, who->second, *rate, *frames, *ack != 0, false, {}, sim::Time{0}};
   if (cycle.source == address()) return gather(std::move(cycle), now);
-  // It asks another to send.
+  // Requests another modem to send.
   MicromodemPacket packet;
   packet.kind = MicromodemPacket::Kind::cycle_init;
   packet.source = cycle.source, packet.destination = cycle.destination, packet.rate = cycle.rate;
@@ -150,12 +154,14 @@ void MicromodemProtocol::start_cycle(const NmeaSentence& in, sim::Time now) {
 void MicromodemProtocol::take_data(const NmeaSentence& in, sim::Time now) {
   const auto who = addresses(in, 1, now);
   if (!who) return;
+  // Check that the data were requested.
   if (!cycle_ || who->first != address()) return error("TXD", no_request, "no data was requested", now);
   if (who->second != cycle_->destination)
     return error(
         "TXD", bad_field,
         "the cycle is for " + std::to_string(cycle_->destination) + " and the data for " + std::to_string(who->second),
         now);
+  // Decode the data.
   const auto data = from_hex(in.at(4));
   const auto ack = in.number(3, 0, 1);
   if (!data || !ack) return error("TXD", bad_field, "data must be bytes in hexadecimal", now);
@@ -164,6 +170,7 @@ void MicromodemProtocol::take_data(const NmeaSentence& in, sim::Time now) {
     return error("TXD", too_long_data,
                  "data too long: " + std::to_string(data->size()) + " bytes and room for " + std::to_string(room), now);
   side_.emit("CATXD," + in.at(1) + "," + in.at(2) + "," + in.at(3) + "," + std::to_string(data->size()));
+  // Add the frame; send the packet when it is complete.
   const bool last = data->empty();
   if (!last || cycle_->gathered.empty()) cycle_->gathered.push_back({*ack != 0, *data});
   if (last || static_cast<int>(cycle_->gathered.size()) == cycle_->frames)
@@ -243,7 +250,8 @@ void MicromodemProtocol::interrogate_generic_beacons(const NmeaSentence& in, sim
   interrogate_beacons(in, good, in.number(4, 1, max_beacon_ms), ping, false, now);
 }
 
-/// The frequencies and sequences are those of the transponders here: the host only says which of them it asks.
+/// The frequencies and sequences are those of the configured transponders; the host only selects which of them are
+/// interrogated.
 void MicromodemProtocol::interrogate_beacons(const NmeaSentence& in, bool good, std::optional<int> timeout_ms,
                                              BeaconPing ping, bool on_the_second, sim::Time now) {
   const std::string name = in.name().substr(2);

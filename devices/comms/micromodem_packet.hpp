@@ -11,29 +11,29 @@
 
 namespace devices {
 
-/// What goes through the water between two Micro-Modems.
+/// Packet transmitted through the water between two Micro-Modems.
 struct MicromodemPacket {
   enum class Kind { cycle_init, data, ack, ping, ping_reply, mini };
   struct Frame {
-    bool ack = false;  ///< asks for an acknowledgement
+    bool ack = false;  ///< requests an acknowledgement
     sim::Bytes data;
     void visit_state(sim::StateArchive& archive) { archive(ack, data); }
   };
 
   Kind kind = Kind::mini;
   int source = 0, destination = 0;
-  int rate = 0;               ///< of a cycle
-  bool ack = false;           ///< the cycle asks for acknowledgements
+  int rate = 0;               ///< rate of a cycle
+  bool ack = false;           ///< the cycle requests acknowledgements
   int frame_count = 0;        ///< of the cycle
-  int value = 0;              ///< of a mini-packet; of an acknowledgement: bit i stands for frame i
+  int value = 0;              ///< value of a mini-packet; in an acknowledgement, bit i denotes frame i
   std::vector<Frame> frames;  ///< of data
 
   bool is_short() const { return kind != Kind::data; }
   int data_bytes() const;
-  /// All but the data, as text for Signal::code; the data one after the other, for Signal::payload.
+  /// Return all fields except the data as text for Signal::code, and the concatenated data for Signal::payload.
   std::string code() const;
   sim::Bytes payload() const;
-  /// Nothing when it is of no Micro-Modem.
+  /// Decodes a packet; none when it is not from a Micro-Modem.
   static std::optional<MicromodemPacket> read(const std::string& code, const sim::Bytes& payload);
 };
 

@@ -13,7 +13,7 @@ namespace {
 
 using Kind = MicromodemPacket::Kind;
 
-/// Between the cycle init and the data of rate 0, and before an acknowledgement, s.
+/// Pause between the cycle init and the data of rate 0, and before an acknowledgement, s.
 constexpr double gap_s = 0.1;
 constexpr double revision_period_s = 10;
 
@@ -27,7 +27,7 @@ int rounded(double value, int min, int max) {
   return static_cast<int>(std::lround(std::clamp<double>(value, min, max)));
 }
 
-/// The word of Goby and others for a packet in $CACST and $CAXST.
+/// Returns the number of the packet type in $CACST and $CAXST, as used by Goby and others.
 int packet_type(const MicromodemPacket& packet) {
   if (packet.kind == Kind::data) return packet.rate == 0 ? 1 : 3;
   return packet.kind == Kind::cycle_init ? 1 : 2;
@@ -94,6 +94,7 @@ void MicromodemProtocol::restart(sim::Time up) {
 
 void MicromodemProtocol::tick(sim::Time now) {
   detect_pulse(now);
+  // Send due sentences and the revision to the host.
   while (!due_.empty() && due_.front().at <= now) {
     const std::string body = std::move(due_.front().body);
     due_.erase(due_.begin());
@@ -106,6 +107,7 @@ void MicromodemProtocol::tick(sim::Time now) {
     next_revision_ = now + sim::from_seconds(revision_period_s);
     starting_ = false;
   }
+  // Handle time-outs of the host, of packets and of pings.
   if (cycle_ && now >= cycle_->deadline) {
     ++errors_;
     side_.emit("CAERR," + time_of_day(now) + ",DATA_TIMEOUT," + std::to_string(cycle_->gathered.size() + 1));
@@ -126,11 +128,13 @@ void MicromodemProtocol::tick(sim::Time now) {
 }
 
 MicromodemSide::Sound MicromodemProtocol::send(const MicromodemPacket& packet, sim::Time at, bool on_the_second) {
+  // Transmit after the previous packet.
   const auto sound = side_.transmit(packet, std::max(at, sending_until_), on_the_second);
   sending_until_ = std::max(sending_until_, sound.end);
   const auto& rate = micromodem_rates()[static_cast<std::size_t>(packet.is_short() ? 0 : packet.rate)];
   const int bytes = packet.kind == Kind::data ? packet.data_bytes() : 2;
   const auto frames = packet.frames.size();
+  // Report start and end of the transmission to the host.
   if (settings_.on("TXP")) emit_later(sound.begin, "CATXP," + std::to_string(bytes));
   if (settings_.on("TXF")) emit_later(sound.end, "CATXF," + std::to_string(bytes));
   if (!settings_.on("XST")) return sound;
@@ -170,6 +174,7 @@ void MicromodemProtocol::send_cycle(sim::Time now) {
   const bool announced = cycle_->announced;
   cycle_.reset();
   sim::Time at = now;
+  // Announce data of rate 0.
   if (packet.rate == 0 && !announced) {
     MicromodemPacket init = packet;
     init.kind = Kind::cycle_init;
@@ -182,7 +187,7 @@ void MicromodemProtocol::send_cycle(sim::Time now) {
 void MicromodemProtocol::receive(const MicromodemPacket& packet, const MicromodemArrival& arrival) {
   if (is_down(arrival.ended)) return;
   if (!arrival.good && packet.is_short()) {
-    // What it was about is not known.
+    // The kind of a packet that was not decoded is unknown.
     side_.emit("CAMSG,BAD_CRC,0");
     return;
   }
@@ -228,12 +233,14 @@ void MicromodemProtocol::received_cycle(const MicromodemPacket& packet, const Mi
 }
 
 void MicromodemProtocol::received_data(const MicromodemPacket& packet, const MicromodemArrival& arrival) {
+  // Match the packet with its cycle init.
   const bool announced = expected_ && expected_->source == packet.source && expected_->rate == packet.rate;
   if (packet.rate == 0 && !announced) return;  // without its cycle init its meaning is unknown
   if (packet.rate > 0 && !config_.psk) return;
   if (!announced) received_cycle(packet, arrival);
   expected_.reset();
   if (settings_.on("RXP")) side_.emit(packet.rate == 0 ? "CARXP,0" : "CARXP,1");
+  // Report the frames to the host.
   int bad_frames = 0, desired = 0;
   for (std::size_t i = 0; i < packet.frames.size(); ++i) {
     const auto& frame = packet.frames[i];
@@ -248,6 +255,7 @@ void MicromodemProtocol::received_data(const MicromodemPacket& packet, const Mic
                  std::to_string(static_cast<int>(frame.ack)) + "," + std::to_string(i + 1) + "," + to_hex(frame.data));
   }
   emit_statistics(packet, arrival, bad_frames);
+  // Acknowledge the frames that request it.
   if (desired == 0 || packet.destination != address()) return;
   MicromodemPacket ack;
   ack.kind = Kind::ack;
@@ -260,7 +268,7 @@ void MicromodemProtocol::received_ping(const MicromodemPacket& packet, const Mic
   emit_statistics(packet, arrival, 0);
   if (packet.destination != address()) return;
   const sim::Time at = std::max(arrival.started + sim::from_seconds(micromodem_turnaround_s), arrival.ended);
-  if (at < sending_until_) return;  // it sends something else then, and the time would be wrong
+  if (at < sending_until_) return;  // another transmission is in progress, and the time would be wrong
   MicromodemPacket reply;
   reply.kind = Kind::ping_reply;
   reply.source = address(), reply.destination = packet.source;
@@ -270,7 +278,7 @@ void MicromodemProtocol::received_ping(const MicromodemPacket& packet, const Mic
 void MicromodemProtocol::received_reply(const MicromodemPacket& packet, const MicromodemArrival& arrival) {
   const std::string who = "CAMPR," + std::to_string(packet.source) + "," + std::to_string(packet.destination);
   if (packet.destination != address() || !ping_ || ping_->destination != packet.source) {
-    // Of a ping that another one sent it knows no time.
+    // The time of a ping sent by another modem is unknown.
     side_.emit(who);
     return emit_statistics(packet, arrival, 0);
   }
@@ -348,7 +356,7 @@ void MicromodemProtocol::emit_statistics(const MicromodemPacket& packet, const M
 
 void MicromodemProtocol::visit_state(sim::StateArchive& archive) {
   archive(settings_, clock_offset_us_, clock_set_, pulse_time_, due_, sending_until_, next_revision_, starting_);
-  // Three centuries: dates are made of them.
+  // Limits for valid dates: three centuries.
   constexpr std::int64_t max_us = 10'000'000'000'000'000;
   archive.require(clock_offset_us_, -max_us, max_us, "an offset of a modem's clock");
   if (pulse_time_) {

@@ -15,64 +15,67 @@
 
 namespace devices {
 
-/// Numbers of $CAERR; the words are ours.
+/// Error numbers of $CAERR; the names are Shoal's.
 inline constexpr int unknown_sentence = 1, bad_field = 3, is_busy = 4, too_long_data = 5, no_request = 6;
 
 inline constexpr int micromodem_broadcast = 127;
 inline constexpr int micromodem_beacons = 4;
 inline constexpr int max_beacon_ms = 60000;
-/// The first firmware of a Micro-Modem-2, and the first whose clock mode is a bit field.
+/// First firmware of a Micro-Modem-2, and first firmware whose clock mode is a bit field.
 inline constexpr std::array<int, 3> micromodem_2{2, 0, 0}, micromodem_clock_bits{2, 0, 26038};
-/// Time from the start of a ping to the start of its answer, s; the interrogator subtracts it.
+/// Turnaround time from the start of a ping to the start of its answer, s; the interrogator subtracts it.
 inline constexpr double micromodem_turnaround_s = 1;
 
-/// What the protocol of a Micro-Modem needs of the modem around it.
+/// Interface of the protocol of a Micro-Modem to the modem.
 class MicromodemSide {
  public:
   struct Sound {
     sim::Time begin{0}, end{0};
   };
   virtual ~MicromodemSide() = default;
-  /// To the host.  `body`: a sentence without `$` and checksum.
+  /// Sends a sentence to the host.  `body`: sentence without `$` and checksum.
   virtual void emit(const std::string& body) = 0;
-  /// Sends at `at`, or as soon after it as what it sends already has ended; at a whole second of the clock if asked to.
+  /// Transmits a packet at `at`, or as soon afterwards as present transmissions have ended; with `on_the_second` at a
+  /// whole second of the clock.
   virtual Sound transmit(const MicromodemPacket& packet, sim::Time at, bool on_the_second) = 0;
-  /// Asks the transponders.
+  /// Interrogates the transponders.
   virtual Sound interrogate_beacons(sim::Time at, bool on_the_second) = 0;
-  /// What it was to send and has not begun is not sent.  Until when it continues sending.
+  /// Cancels transmissions that have not started.  Returns the end of the transmission in progress.
   virtual sim::Time call_back() = 0;
-  /// By the clock of the vehicle: microseconds since 1970 in UTC.
+  /// Returns the time by the vehicle clock: microseconds since 1970 in UTC.
   virtual std::int64_t utc_us(sim::Time at) const = 0;
-  /// Interval between two times by a counter at the rate of that clock, unaffected by its steps, s.
+  /// Returns the interval between two times, s, measured by a counter at the rate of that clock and unaffected by steps
+  /// of the clock.
   virtual double elapsed_s(sim::Time from, sim::Time to) const = 0;
 };
 
-/// How a packet came.
+/// Reception of a packet.
 struct MicromodemArrival {
   sim::Time started{0}, ended{0};
   double level_dB = 0, snr_dB = 0, closing_mps = 0;
   double noise_dB = 0;
-  bool good = true;  ///< false: it was noticed, but not understood
+  bool good = true;  ///< false: it was detected, but not decoded
 };
 
-/// What is in progress.  Outside of the class that uses it: clang rejects an optional of an incomplete class.
+/// Operations in progress.  Defined outside of the class that uses them, because clang rejects an optional of an
+/// incomplete class.
 struct MicromodemPending {
-  /// A cycle whose data it gathers from the host.
+  /// Cycle whose data are gathered from the host.
   struct Cycle {
     int source = 0, destination = 0, rate = 0, frames = 0;
     bool ack = false;
-    bool announced = false;  ///< its cycle init was sent by another
+    bool announced = false;  ///< another modem sent the cycle init
     std::vector<MicromodemPacket::Frame> gathered;
     sim::Time deadline{0};
     void visit_state(sim::StateArchive& archive);
   };
-  /// A cycle whose data it expects.
+  /// Cycle whose data are expected.
   struct Expected {
     int source = 0, destination = 0, rate = 0, frames = 0;
     sim::Time deadline{0};
     void visit_state(sim::StateArchive& archive) { archive(source, destination, rate, frames, deadline); }
   };
-  /// A ping whose answer it expects.
+  /// Ping whose answer is expected.
   struct Ping {
     int destination = 0;
     sim::Time sent{0}, deadline{0};
@@ -85,9 +88,9 @@ struct MicromodemPending {
     std::array<std::optional<sim::Time>, micromodem_beacons> answered{};
     void visit_state(sim::StateArchive& archive) { archive(sent, deadline, turnaround_s, desired, answered); }
   };
-  /// A time that the clock is set to when the next second of the vehicle's clock begins.
+  /// Time to which the clock is set at the next whole second of the vehicle clock.
   struct PulseTime {
-    std::int64_t second = 0;  ///< of the vehicle's clock, when the host said so
+    std::int64_t second = 0;  ///< second of the vehicle clock at the request of the host
     std::int64_t set_us = 0;
     void visit_state(sim::StateArchive& archive) { archive(second, set_us); }
   };
@@ -98,13 +101,13 @@ struct MicromodemPending {
   };
 };
 
-/// What a Micro-Modem says and sends: sentences and packets in, sentences and packets out, no physics.
+/// Protocol of a Micro-Modem: sentences and packets in, sentences and packets out, no physics.
 class MicromodemProtocol : private MicromodemPending {
  public:
   struct Config {
     int address = 0;
     bool psk = true;           ///< has the co-processor for rates 1 to 6
-    bool synchronous = false;  ///< SNV is on at the start, and the clock is good
+    bool synchronous = false;  ///< SNV is on at the start, and the clock is set
     std::string revision = "0.93.0.48";
     double frequency_Hz = 25000;
     double beacon_turnaround_s = 0.02;
@@ -112,18 +115,19 @@ class MicromodemProtocol : private MicromodemPending {
 
   MicromodemProtocol(const Config& config, MicromodemSide& side);
 
-  /// A line from the host, whatever it holds.
+  /// Handles a line from the host, with any content.
   void take_line(const NmeaLines::Line& line, sim::Time now);
   void tick(sim::Time now);
-  /// Resets its state, and sends its greeting again at `up`.  Settings stay; the time that the host set does not.
+  /// Resets the state, and sends the start-up sentences again at `up`.  Settings are kept; the time set by the host is
+  /// not.
   void restart(sim::Time up);
   void receive(const MicromodemPacket& packet, const MicromodemArrival& arrival);
-  /// A transponder (0: the first) answered.
+  /// Handles the answer of a transponder (0: the first).
   void beacon_answered(int beacon, sim::Time started);
 
   int address() const { return settings_.get("SRC"); }
   const MicromodemSettings& settings() const { return settings_; }
-  /// Sentences that were answered by an error.
+  /// Returns the number of sentences answered with an error.
   std::int64_t errors() const { return errors_; }
   void visit_state(sim::StateArchive& archive);
 
@@ -143,36 +147,37 @@ class MicromodemProtocol : private MicromodemPending {
   void interrogate_generic_beacons(const NmeaSentence& in, sim::Time now);
   void interrogate_beacons(const NmeaSentence& in, bool good, std::optional<int> timeout_ms, BeaconPing ping,
                            bool on_the_second, sim::Time now);
-  /// Null: this modem does not know the sentence.
+  /// Returns the handler of a sentence; null when this modem does not support it.
   Command command_of(const std::string& name) const;
-  /// The fields of the sentence under another name.
+  /// Returns the fields of the sentence under another name.
   static std::string echo(const NmeaSentence& in, const std::string& name);
 
   // micromodem_clock.cpp
   void set_clock(const NmeaSentence& in, sim::Time now);
   void set_time(const NmeaSentence& in, sim::Time now);
   void query_time(const NmeaSentence& in, sim::Time now);
-  /// The host set the time of its clock to this.
+  /// Sets the time of the clock, requested by the host.
   void set_utc(std::int64_t set_us, sim::Time now);
-  /// A whole second of the vehicle's clock may have begun since.
+  /// Checks whether a whole second of the vehicle clock has begun since the last call.
   void detect_pulse(sim::Time now);
-  /// $CACST and $CAXST: 0 to 3, bit 1: packets keep the second of the vehicle's clock; bit 0: the time was set.  From
-  /// firmware 2.0.26038 on: bits 0 and 1 give the source of the time, bits 2 to 4 that of the pulse.
+  /// Returns the clock mode of $CACST and $CAXST: 0 to 3; bit 1: packets are aligned to the second of the vehicle
+  /// clock; bit 0: the time was set.  From firmware 2.0.26038 on: bits 0 and 1 give the source of the time, bits 2 to 4
+  /// that of the pulse.
   int clock_mode() const;
 
-  /// A restart was requested and is pending.
+  /// Returns whether a restart is pending.
   bool is_down(sim::Time now) const { return starting_ && now < next_revision_; }
   void emit_later(sim::Time at, std::string body);
   void error(const std::string& module, int number, const std::string& text, sim::Time now);
-  /// Says so when it is.
+  /// Returns whether the modem is busy, and reports an error then.
   bool busy(const char* module, sim::Time now);
-  /// Says so when they are wrong.
+  /// Returns source and destination; reports an error and returns none when they are invalid.
   std::optional<std::pair<int, int>> addresses(const NmeaSentence& in, std::size_t first, sim::Time now);
 
   void gather(Cycle cycle, sim::Time now);
   void request_frame(sim::Time now);
   void send_cycle(sim::Time now);
-  /// Sends, and reports the start and end to the host.
+  /// Transmits a packet, and reports start and end to the host.
   MicromodemSide::Sound send(const MicromodemPacket& packet, sim::Time at, bool on_the_second);
   void report_beacons(sim::Time now);
 
@@ -182,12 +187,12 @@ class MicromodemProtocol : private MicromodemPending {
   void received_reply(const MicromodemPacket& packet, const MicromodemArrival& arrival);
   void emit_statistics(const MicromodemPacket& packet, const MicromodemArrival& arrival, int bad_frames);
 
-  /// The modem's own clock, which the host may have set.
+  /// Returns the time of the clock of the modem, which the host may have set.
   std::int64_t utc_us(sim::Time at) const { return side_.utc_us(at) + clock_offset_us_; }
   std::string time_of_day(sim::Time at, int digits = 0) const;
 
   Config config_;
-  std::array<int, 3> generation_;  // of its software
+  std::array<int, 3> generation_;  // of the firmware
   MicromodemSide& side_;
   MicromodemSettings settings_;
   std::int64_t clock_offset_us_ = 0;
@@ -196,7 +201,7 @@ class MicromodemProtocol : private MicromodemPending {
   std::vector<Due> due_;
   sim::Time sending_until_{0};
   sim::Time next_revision_{0};
-  bool starting_ = true;  // it will say INIT then
+  bool starting_ = true;  // it sends INIT then
   std::optional<Cycle> cycle_;
   std::optional<Expected> expected_;
   std::optional<Ping> ping_;
@@ -204,11 +209,13 @@ class MicromodemProtocol : private MicromodemPending {
   std::int64_t errors_ = 0;
 };
 
-/// Major, minor, patch of `2.0.26038`; of `0.93.0.48` the first three; 0 for what cannot be read.
+/// Returns major, minor and patch of `2.0.26038`; the first three numbers of `0.93.0.48`; 0 for a part that is not a
+/// number.
 std::array<int, 3> micromodem_generation(const std::string& revision);
-/// Time of day of UTC: hhmmss, and with digits of the second a point and those, cut off.
+/// Returns the UTC time of day as hhmmss, with `digits` > 0 followed by a point and the truncated decimals of the
+/// second.
 std::string nmea_time_of_day(std::int64_t utc_us, int digits);
-/// yyyymmdd.
+/// Returns the UTC date as yyyymmdd.
 std::string nmea_date(std::int64_t utc_us);
 
 }  // namespace devices

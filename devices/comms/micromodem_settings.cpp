@@ -7,7 +7,7 @@ namespace devices {
 
 MicromodemSettings::MicromodemSettings()
     : values_{
-          // Those that have an effect here; times in seconds, TAT in milliseconds.
+          // Settings with an effect in the simulation; times in seconds, TAT in milliseconds.
           {"CST", 1},
           {"CTO", 10},
           {"DTO", 2},
@@ -21,7 +21,7 @@ MicromodemSettings::MicromodemSettings()
           {"TXF", 1},
           {"TXP", 1},
           {"XST", 1},
-          // Those that are only kept.
+          // Settings that are only stored.
           {"AGC", 0},
           {"AGN", 250},
           {"ASD", 0},

@@ -12,7 +12,7 @@
 
 namespace devices {
 
-/// All modems of a world, in device order.
+/// Modems of a world, in device order.
 class Modem::Network {
  public:
   void join(Modem& modem) { members_.push_back(&modem); }
@@ -59,7 +59,7 @@ Modem::Modem(const Params& params, const sim::DeviceContext& context)
                             "'through: acoustic' needs water to carry its sound: the world has no 'medium: {water: "
                             "...}'");
   if (params.serial) serial_ = std::make_unique<SerialMessages>(*params.serial, context);
-  // Last: a port that cannot be opened throws.
+  // Open the port last, because a failure throws.
   network_.join(*this);
   host_.shared.of(message_modems).join(full_name_, *this);
 }
@@ -96,7 +96,7 @@ void Modem::send(sim::Time, std::string destination, sim::Bytes data) {
 void Modem::act(const sim::ActContext& context) {
   const sim::Time now = context.now;
   if (serial_) read_serial(now);
-  // Short messages go out several in a step, each when the one before has ended.
+  // Several short messages may be sent in a step, each when the previous one has ended.
   const sim::Time end = now + sim::from_seconds(context.step_s);
   for (sim::Time start = std::max(now, busy_until_); !queue_.empty() && start < end; start = busy_until_) {
     const Outgoing message = std::move(queue_.front());
@@ -106,11 +106,12 @@ void Modem::act(const sim::ActContext& context) {
 }
 
 void Modem::transmit(sim::Time now, const Outgoing& message) {
+  // Occupy the modem for the transmission.
   const double air_time_s = 8.0 * static_cast<double>(message.data.size()) / params_.data_rate_bps;
   busy_until_ = now + std::max(sim::from_seconds(air_time_s), sim::Time{1});
   ++sent_;
-  // The frame between modems is a modem_received_t; the receiver's copy is completed when it arrives.  Its utime says
-  // how far the sender's clock is off.
+  // The frame between modems is a modem_received_t; the copy of the receiver is completed on arrival.  Its utime
+  // contains the error of the clock of the sender.
   shoal::modem_received_t frame;
   frame.sent_utime = now.count();
   frame.source = vehicle_;
@@ -122,6 +123,7 @@ void Modem::transmit(sim::Time now, const Outgoing& message) {
   const sim::Bytes payload = shoal::encode(frame);
   ++counts_.sent;
   counts_.sent_bytes += frame.size;
+  // Deliver to each addressed modem in range after the propagation delay.
   for (Modem* receiver : network_.members()) {
     if (receiver == this || receiver->params_.network != params_.network) continue;
     if (!message.destination.empty() && receiver->vehicle_ != message.destination) continue;
@@ -156,7 +158,7 @@ double Modem::propagation_mps() const {
 
 bool Modem::lost_in_transit_to(const Modem& receiver) const {
   if (params_.loss_probability <= 0) return false;
-  // A stream for each pair, so that another modem in the world changes no other link.
+  // One random stream for each pair, so that an additional modem does not change other links.
   sim::Random link(seed_, full_name_ + ">" + receiver.full_name_);
   link.begin_step(sent_);
   return link.uniform() < params_.loss_probability;

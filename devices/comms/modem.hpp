@@ -16,10 +16,10 @@
 
 namespace devices {
 
-/// Radio modem: carries messages of bytes between vehicles.  It sends one message at a time, which takes size / data
-/// rate; the message arrives distance / speed of propagation later at every modem of the same network that was in range
-/// when the sending began, with both ends in what carries the signal.  (With `through: acoustic` it is a simple
-/// stand-in for an acoustic one, without noise, collisions and Doppler; see acoustic_modem.)
+/// Radio modem: transmits byte messages between vehicles.  It sends one message at a time, for a duration of size /
+/// data rate.  The message arrives after the propagation delay, distance / propagation speed, at every modem of the
+/// same network that was in range when the transmission started, with both ends in the medium of the signal. (`through:
+/// acoustic` gives a simple acoustic modem without noise, collisions and Doppler; see acoustic_modem.)
 class Modem final : public sim::Sensor, public MessageModem {
  public:
   static constexpr const char* meaning = "Radio or acoustic modem: messages of bytes between vehicles.";
@@ -28,7 +28,7 @@ class Modem final : public sim::Sensor, public MessageModem {
     SignalCarrier through = SignalCarrier::radio;
     double range_m = 100;
     double data_rate_bps = 9600;
-    std::optional<double> propagation_mps;  ///< unset: of light, or of sound where the sender is
+    std::optional<double> propagation_mps;  ///< unset: speed of light, or speed of sound at the sender
     double loss_probability = 0;
     bool line_of_sight = false;
     int queue_messages = 16;
@@ -36,7 +36,7 @@ class Modem final : public sim::Sensor, public MessageModem {
     std::optional<SerialMessageParams> serial;
     void read(sim::ParamReader& in);
   };
-  /// What it sent, and the delivery of messages of its network addressed to it or broadcast.
+  /// Counts of sent messages, and of the delivery of messages of its network addressed to it or broadcast.
   struct Counts {
     std::int64_t sent = 0, sent_bytes = 0, received = 0;
     /// By SignalLoss: `range` out of range, `noise` in a zone without radio, `blocked` by obstacles or by an antenna
@@ -47,7 +47,7 @@ class Modem final : public sim::Sensor, public MessageModem {
   struct Packet {
     std::string source, destination;
     sim::Time sent{0}, arrived{0};
-    sim::Time sent_reading{0};  ///< by the clock of the sender
+    sim::Time sent_reading{0};  ///< transmission time by the clock of the sender
     sim::Bytes data;
     void visit_state(sim::StateArchive& archive) { archive(source, destination, sent, arrived, sent_reading, data); }
   };
@@ -59,7 +59,7 @@ class Modem final : public sim::Sensor, public MessageModem {
   /// Throws std::runtime_error when the message is empty or too long, or the destination has no modem here.
   void send(sim::Time now, std::string destination, sim::Bytes data) override;
   std::size_t message_limit_bytes() const override { return static_cast<std::size_t>(params_.max_message_bytes); }
-  /// Begins the next transmission when the last one has ended.
+  /// Starts the next transmission when the last one has ended.
   void act(const sim::ActContext& context);
 
   void measure(const sim::SenseContext& context) override;
@@ -67,7 +67,7 @@ class Modem final : public sim::Sensor, public MessageModem {
   void arrive(sim::Time at, std::span<const std::byte> payload) override;
   void visit_state(sim::StateArchive& archive) override;
 
-  /// What arrived since the last sample.
+  /// Returns the messages that arrived since the last sample.
   const std::vector<Packet>& received() const { return received_; }
   std::int64_t dropped_from_queue() const override { return dropped_; }
   const Counts& counts() const { return counts_; }
@@ -85,10 +85,10 @@ class Modem final : public sim::Sensor, public MessageModem {
 
   void transmit(sim::Time now, const Outgoing& message);
   double propagation_mps() const;
-  /// Why a message does not come to a modem that it is for; none: it does.
+  /// Returns why a message is not delivered to a modem that it is addressed to; none when it is delivered.
   sim::SignalLoss loss_to(const Modem& receiver) const;
   bool lost_in_transit_to(const Modem& receiver) const;
-  /// Whether an obstacle is between the two antennas; their own hulls do not count.
+  /// Returns whether an obstacle is between the two antennas; the hulls of the two vehicles are ignored.
   bool hidden_from(const Modem& receiver) const;
   sim::Vector3d p_WS() const;
   void read_serial(sim::Time now);
@@ -125,7 +125,7 @@ class ModemReporter final : public sim::Reporter {
   const Modem& modem_;
 };
 
-/// Takes shoal.modem_send_t.
+/// Receives shoal.modem_send_t.
 class ModemController final : public sim::Controller {
  public:
   static constexpr const char* command_messages = "shoal.modem_send_t";

@@ -24,6 +24,7 @@ bool turns_inside(double track_m, double wheelbase_m, double max_steering_rad) {
 }  // namespace
 
 void AckermannDrive::Params::read(sim::ParamReader& in) {
+  // Joints.
   in.require("left_steer_joint");
   in.read_reference("left_steer_joint", left_steer_joint, "joint", "steers the left front wheel; first axis up");
   in.require("right_steer_joint");
@@ -31,12 +32,14 @@ void AckermannDrive::Params::read(sim::ParamReader& in) {
   in.require("drive_joints");
   in.read_references("drive_joints", drive_joints, "joint", "joints of the driven wheels, axes to the left");
   if (in.has("drive_joints") && drive_joints.empty()) in.error("drive_joints", "'drive_joints' must name a joint");
+  // Geometry.
   in.read("wheelbase_m", wheelbase_m, sim::above(0), "from rear to front axle; unset: as the wheels are");
   in.read("track_m", track_m, sim::above(0),
           "between the axes that the front wheels are steered about; unset: as the joints are");
   in.read("wheel_radius_m", wheel_radius_m, sim::above(0), "radius of the driven wheels; unset: as in the vehicle");
   in.read("differential", differential,
           "each driven wheel turns at the speed of its own path; false: all at the same speed");
+  // Limits.
   in.read("max_speed_mps", max_speed_mps, sim::above(0), "maximum speed");
   in.read("max_acceleration_mps2", max_acceleration_mps2, sim::above(0), "maximum acceleration of the speed");
   in.read("max_torque_Nm", max_torque_Nm, sim::above(0), "maximum torque of the motor of each driven wheel");
@@ -85,7 +88,8 @@ void AckermannDrive::take_lengths(const sim::DeviceContext& context) {
   check_stops(context);
 }
 
-/// The inner wheel is steered most: left when it turns left, right when it turns right.
+/// Warns when the stops of the steering joints are within the largest steering angle, that of the inner wheel in a
+/// turn.
 void AckermannDrive::check_stops(const sim::DeviceContext& context) const {
   const double tangent = std::tan(params_.max_steering_rad);
   const double L = lengths_.wheelbase_m;
@@ -120,9 +124,10 @@ void AckermannDrive::steer(sim::Joint& joint, double side, double torque_Nm, dou
   const double tangent = std::tan(steering_rad_);
   const double L = lengths_.wheelbase_m;
   const double angle_rad = std::atan(L * tangent / (L + side * lengths_.track_m / 2 * tangent));
-  // A fifth of the error each step, as ODE's erp: quick and without overshoot.
+  // Correct a fifth of the error per step, as with ERP 0.2 of ODE: fast and without overshoot.
   const double velocity = 0.2 * (angle_rad - joint.position(0)) / step_s;
-  const double max = 2 * params_.max_steering_rate_radps;  // the inner wheel turns faster than the middle
+  const double max =
+      2 * params_.max_steering_rate_radps;  // the inner wheel steers faster than the virtual middle wheel
   if (vehicle_.systems().metered) joint.measure_load();
   joint.set_motor(std::clamp(velocity, -max, max), torque_Nm, 0);
 }
@@ -130,7 +135,7 @@ void AckermannDrive::steer(sim::Joint& joint, double side, double torque_Nm, dou
 double AckermannDrive::speed_ratio(const DrivenWheel& wheel) const {
   if (!params_.differential) return 1;
   const double curvature = std::tan(steering_rad_) / lengths_.wheelbase_m;
-  // The velocity of the wheel's place; a front wheel points along it.
+  // Velocity of the wheel position; a front wheel is aligned with it.
   return std::hypot(1 - curvature * wheel.y_m, curvature * (wheel.x_m + lengths_.wheelbase_m));
 }
 
@@ -144,7 +149,7 @@ void AckermannDrive::act(const sim::ActContext& context) {
   steer(*steer_[1], 1, effort * params_.max_steering_torque_Nm, context.step_s);
   for (DrivenWheel& wheel : wheels_) {
     wheel.motors.set_target(speed_mps_ * speed_ratio(wheel) / lengths_.wheel_radius_m);
-    // The limit is of the car's speed, above; the wheel follows at once.
+    // The speed of the vehicle is limited above; the wheel follows without a further limit.
     wheel.motors.act(std::numeric_limits<double>::infinity(), effort * params_.max_torque_Nm, context.step_s);
   }
 }
@@ -180,7 +185,7 @@ void AckermannDrive::clamp_targets() {
 }
 
 void AckermannDrive::set_twist(double forward_mps, double turn_radps) {
-  // atan2 would turn the steering around when it backs up.
+  // Not atan2, which would reverse the steering in reverse motion.
   const double steering_rad = forward_mps == 0
                                   ? std::copysign(turn_radps == 0 ? 0.0 : params_.max_steering_rad, turn_radps)
                                   : std::atan(lengths_.wheelbase_m * turn_radps / forward_mps);

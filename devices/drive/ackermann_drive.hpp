@@ -10,10 +10,10 @@
 
 namespace devices {
 
-/// Two steered front wheels and driven wheels, as on a car.  The wheels stand at right angles to the lines to one
-/// centre of turn, on the line of the rear axle: for the steering angle d of a wheel in the middle of the front axle,
-/// wheelbase L and track t, tan d_left = L tan d / (L - t/2 tan d), and + on the right (Rajamani, Vehicle Dynamics and
-/// Control, 2nd ed., 2012).
+/// Car-like drive: two steered front wheels and driven wheels, as on a car.  All wheels are perpendicular to the lines
+/// to one turning centre on the line of the rear axle: for the steering angle d of a virtual wheel in the middle of the
+/// front axle, wheelbase L and track t, tan d_left = L tan d / (L - t/2 tan d), with + for the right wheel (Rajamani,
+/// Vehicle Dynamics and Control, 2nd ed., 2012).
 class AckermannDrive final : public sim::Actuator {
  public:
   static constexpr const char* example =
@@ -26,7 +26,7 @@ class AckermannDrive final : public sim::Actuator {
     std::string left_steer_joint;
     std::string right_steer_joint;
     std::vector<std::string> drive_joints;
-    std::optional<double> wheelbase_m, track_m, wheel_radius_m;  ///< unset: as the joints and wheels have them
+    std::optional<double> wheelbase_m, track_m, wheel_radius_m;  ///< unset: from the joints and wheels
     bool differential = true;
     double max_speed_mps = 2;
     double max_acceleration_mps2 = 2;
@@ -40,17 +40,18 @@ class AckermannDrive final : public sim::Actuator {
 
   AckermannDrive(const Params& params, const sim::DeviceContext& context);
   void act(const sim::ActContext& context) override;
-  /// stop: it brakes and keeps its steering; coast: wheels and steering are free.
+  /// Applies a safe state.  stop: brakes and holds the steering angle; coast: wheels and steering are free.
   void make_safe(sim::SafeState safe) override;
   void change(const Params& params);
   double power_W() const override;
   void visit_state(sim::StateArchive& archive) override;
 
-  /// Speed of the middle of the rear axle, and the steering angle in the middle of the front axle.
+  /// Commands the speed of the middle of the rear axle, and the steering angle in the middle of the front axle.
   void set_steering(double speed_mps, double steering_rad);
-  /// Turn rate = speed * tan(steering) / wheelbase.  It cannot turn on the spot: then it only steers.
+  /// Commands a twist, with turn rate = speed * tan(steering) / wheelbase.  It cannot turn on the spot: at zero speed
+  /// it only steers.
   void set_twist(double forward_mps, double turn_radps);
-  /// Thrust sets the speed, the rudder the steering angle.
+  /// Commands thrust, which sets the speed, and rudder, which sets the steering angle.
   void set_thrust_rudder(double thrust, double rudder);
   double steering_rad() const { return steering_rad_; }
 
@@ -60,7 +61,7 @@ class AckermannDrive final : public sim::Actuator {
     double x_m, y_m;  ///< from the middle of the front axle: forward, left
   };
   void clamp_targets();
-  /// Of the joints and wheels, where `params_` has none.
+  /// Lengths from the joints and wheels, for those that `params_` does not set.
   struct Lengths {
     double wheelbase_m = 0.3, track_m = 0.2, wheel_radius_m = 0.05;
   };
@@ -68,7 +69,7 @@ class AckermannDrive final : public sim::Actuator {
   void check_stops(const sim::DeviceContext& context) const;
   Lengths lengths_of(const Params& params) const;
   void steer(sim::Joint& joint, double side, double torque_Nm, double step_s);
-  /// Ground speed of a wheel that rolls without slip, over that of the middle of the rear axle.
+  /// Returns the ratio of the ground speed of a wheel that rolls without slip to that of the middle of the rear axle.
   double speed_ratio(const DrivenWheel& wheel) const;
 
   Params params_;
@@ -77,11 +78,11 @@ class AckermannDrive final : public sim::Actuator {
   sim::Joint* steer_[2];  ///< left, right
   std::vector<DrivenWheel> wheels_;
   double target_mps_ = 0, target_steering_rad_ = 0;
-  double speed_mps_ = 0, steering_rad_ = 0;  ///< now, on the way to the targets
+  double speed_mps_ = 0, steering_rad_ = 0;  ///< present set points, which approach the targets
   bool coasting_ = false;
 };
 
-/// Takes shoal.ackermann_command_t, shoal.twist_command_t or shoal.thrust_rudder_command_t, distinguished by their
+/// Receives shoal.ackermann_command_t, shoal.twist_command_t or shoal.thrust_rudder_command_t, distinguished by their
 /// fingerprints.
 class AckermannDriveController final : public sim::Controller {
  public:

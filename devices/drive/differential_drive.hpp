@@ -5,7 +5,7 @@
 
 namespace devices {
 
-/// Two driven wheels on one axle.
+/// Differential drive: two driven wheels on one axle.
 class DifferentialDrive final : public TwoSidedDrive {
  public:
   static constexpr const char* meaning =
@@ -23,8 +23,8 @@ class DifferentialDrive final : public TwoSidedDrive {
   void change(const Params& params) { change_drive(params.drive); }
 };
 
-/// Takes shoal.wheel_speeds_command_t, shoal.twist_command_t or shoal.thrust_rudder_command_t, distinguished by their
-/// fingerprints.
+/// Receives shoal.wheel_speeds_command_t, shoal.twist_command_t or shoal.thrust_rudder_command_t, distinguished by
+/// their fingerprints.
 class DifferentialDriveController final : public sim::Controller {
  public:
   static constexpr const char* command_messages =

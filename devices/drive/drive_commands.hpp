@@ -11,8 +11,8 @@
 
 namespace devices {
 
-/// Hands a drive the command in a payload, identified by its fingerprint: a twist or thrust and rudder, and wheel
-/// speeds or speed and steering where the drive knows them.
+/// Decodes the command in a payload, identified by its fingerprint, and passes it to a drive: twist or thrust and
+/// rudder, and wheel speeds or speed and steering if the drive supports them.
 template <typename Drive>
 void receive_drive_command(Drive& drive, std::span<const std::byte> payload) {
   using shoal::Finite;

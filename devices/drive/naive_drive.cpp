@@ -28,7 +28,8 @@ void NaiveDrive::Params::read(sim::ParamReader& in) {
   in.read_deg("max_pitch_deg", max_pitch_rad, sim::between(0, 80), "steepest path down or up");
   in.read("heading_gain_per_s", heading_gain_per_s, sim::above_to(0, 100), "turn rate by error of the heading");
   in.read("depth_gain_per_s", depth_gain_per_s, sim::above_to(0, 100), "speed down by error of the depth");
-  constexpr double max = 4;  // above it swings for long: its damping is 1 / (2 sqrt(gain times time constant))
+  constexpr double max =
+      4;  // above it the oscillation is poorly damped: damping ratio 1 / (2 sqrt(gain * time constant))
   if (!in.describing() && heading_gain_per_s * turn_time_constant_s > max)
     in.error("heading_gain_per_s", "'heading_gain_per_s' times 'turn_time_constant_s' must be <= 4, got " +
                                        sim::number_text(heading_gain_per_s * turn_time_constant_s));
@@ -64,10 +65,10 @@ NaiveDrive::NaiveDrive(const Params& params, const sim::DeviceContext& context)
 
 void NaiveDrive::change(const Params& params) {
   params_ = params;
-  step_s_ = 0;  // the shares are computed again
+  step_s_ = 0;  // recompute the shares
 }
 
-/// Another actor moved the body: continues from there.
+/// Continues from the present pose when the body was moved by something else.
 void NaiveDrive::take_pose() {
   X_WB_ = body_.X_WB();
   p_WB_ = X_WB_.translation();
@@ -75,7 +76,7 @@ void NaiveDrive::take_pose() {
   pitch_rad_ = std::asin(std::clamp(X_WB_.linear()(2, 0), -1.0, 1.0));
 }
 
-/// Says once that a current from a file carries it no more.
+/// Warns once when the vehicle has left the area of a current from a file.
 void NaiveDrive::check_current() {
   if (!params_.drifts || left_the_current_ || world_.medium().current_known(p_WB_)) return;
   left_the_current_ = true;
@@ -88,20 +89,20 @@ double NaiveDrive::desired_turn(double speed_share) const {
   if (std::isnan(heading_target_rad_))
     return rudder_ * params_.max_turn_rate_radps * std::clamp(speed_share, -1.0, 1.0);
   const double error = sim::wrap_angle(heading_target_rad_ - yaw_rad_);
-  // No faster than to the heading in one step.
+  // At most the rate that reaches the heading in one step.
   const double gain = std::min(params_.heading_gain_per_s, 1 / step_s_);
   return std::clamp(gain * error, -max, max);
 }
 
-/// Of the momentary surface.  Without water nothing says how deep it is: the world's zero does.
+/// Returns the height of the instantaneous surface; zero in a world without water.
 double NaiveDrive::surface_over_m() const {
   return world_.medium().has_water() ? world_.medium().surface_m(p_WB_.x(), p_WB_.y()) : still_surface_m_;
 }
 
-/// Speed upwards; `surface_m`: of the momentary surface.
+/// Returns the desired upward speed.  `surface_m`: height of the instantaneous surface.
 double NaiveDrive::desired_climb(double surface_m) const {
   const double z_m = p_WB_.z(), max = std::abs(speed_mps_) * std::sin(params_.max_pitch_rad);
-  // The nearer to the surface, the slower it rises.
+  // Reduce the rise speed near the surface.
   const double level = params_.depth_gain_per_s * std::max(0.0, surface_m - z_m);
   if (std::isnan(depth_target_m_)) {
     const double climb = std::min(params_.rise_mps, level) - elevator_ * max;
@@ -111,7 +112,7 @@ double NaiveDrive::desired_climb(double surface_m) const {
   return std::clamp(world_.medium().has_water() ? std::min(climb, level) : climb, -max, max);
 }
 
-/// The path that depth or elevator ask for.
+/// Returns the path commanded by depth or elevator.
 NaiveDrive::Path NaiveDrive::path(double surface_m) {
   Path path{speed_mps_, 0, 0};
   if (params_.surface) return path;
@@ -127,6 +128,7 @@ NaiveDrive::Path NaiveDrive::path(double surface_m) {
 
 void NaiveDrive::act(const sim::ActContext& context) {
   const double h = context.step_s;
+  // Compute the response of a step.
   if (h != step_s_) {
     step_s_ = h;
     const auto share = [h](double time_constant_s) {
@@ -140,28 +142,33 @@ void NaiveDrive::act(const sim::ActContext& context) {
 
   check_current();
   const sim::Medium& medium = world_.medium();
+  // Advance speed, turn rate and yaw.
   speed_mps_ += (speed_target_mps_ * context.effectiveness - speed_mps_) * speed_share_;
   const double speed_share = params_.steerage_speed_mps > 0 ? speed_mps_ / params_.steerage_speed_mps : 1;
   turn_radps_ += (desired_turn(speed_share) - turn_radps_) * turn_share_;
   yaw_rad_ = sim::wrap_angle(yaw_rad_ + h * turn_radps_);
 
+  // Add the current and the velocity through the water.
   sim::Vector3d v_W = params_.drifts ? medium.water_velocity_W(p_WB_) : sim::Vector3d(sim::Vector3d::Zero());
   if (params_.surface) v_W.z() = 0;
   const double surface_m = params_.surface ? 0 : surface_over_m();
   const auto [forward_mps, climb_mps, pitch_rad] = path(surface_m);
   const double cos_yaw = std::cos(yaw_rad_), sin_yaw = std::sin(yaw_rad_);
   v_W += sim::Vector3d(forward_mps * cos_yaw, forward_mps * sin_yaw, climb_mps);
+  // Integrate the position, limited by the surface.
   const double z_before_m = p_WB_.z();
   p_WB_ += h * v_W;
   if (medium.has_water() && (params_.surface || p_WB_.z() > surface_m)) {
     p_WB_.z() = params_.surface ? surface_over_m() : surface_m;
     v_W.z() = (p_WB_.z() - z_before_m) / h;
   }
+  // Rotation Rz(yaw) Ry(-pitch).
   const double cos_pitch = std::cos(pitch_rad), sin_pitch = std::sin(pitch_rad);
   X_WB_.linear() << cos_yaw * cos_pitch, -sin_yaw, -cos_yaw * sin_pitch,  //
       sin_yaw * cos_pitch, cos_yaw, -sin_yaw * sin_pitch,                 //
       sin_pitch, 0, cos_pitch;
   X_WB_.translation() = p_WB_;
+  // Move the body, with its velocities.
   const double pitch_rate = (pitch_rad - pitch_rad_) / h;  // nose up, about -y
   pitch_rad_ = pitch_rad;
   body_.move_to(X_WB_, v_W, {sin_yaw * pitch_rate, -cos_yaw * pitch_rate, turn_radps_});

@@ -7,12 +7,11 @@
 
 namespace devices {
 
-/// Moves a kinematic body as a helm asks, without forces: first order in speed and in turn rate, no gravity, no
-/// contact that stops it.  The cheapest marine vehicle, for thousands.
-///
-/// Speed and turn rate tend to their targets with their time constants; the path angle follows from the depth
-/// controller or the elevator; the current carries the vehicle along.  Depth counts from the still surface.  It does
-/// not rise out of the water: it levels out below the surface.  x and y of the body are its own, roll is none.
+/// Kinematic drive: moves a kinematic body by helm commands, without forces, with first-order response in speed and in
+/// turn rate, and without gravity and contacts.  The marine vehicle with the lowest cost, for simulations with
+/// thousands of vehicles. Speed and turn rate approach their targets with their time constants; the path angle follows
+/// from the depth controller or the elevator; the vehicle drifts with the current.  Depth is measured from the still
+/// surface.  The vehicle does not rise out of the water: it levels out below the surface.  Roll is zero.
 class NaiveDrive final : public sim::Actuator {
  public:
   static constexpr const char* meaning =
@@ -42,9 +41,10 @@ class NaiveDrive final : public sim::Actuator {
   void make_safe(sim::SafeState safe) override;
   void visit_state(sim::StateArchive& archive) override;
 
-  /// NaN leaves a setpoint as it is.  In water a depth below 0 is 0.
+  /// Commands speed, heading and depth.  NaN keeps a set point.  In water a depth below 0 is set to 0.
   void set_helm(double speed_mps, double heading_rad, double depth_m);
-  /// -1 to 1 each; positive rudder turns counter-clockwise, positive elevator takes it down.
+  /// Commands the controls, each from -1 to 1; positive rudder turns counter-clockwise, positive elevator causes a
+  /// dive.
   void set_controls(double thrust, double rudder, double elevator);
   bool surface() const { return params_.surface; }
 
@@ -59,25 +59,25 @@ class NaiveDrive final : public sim::Actuator {
   void take_pose();
   void check_current();
 
-  // What each step needs, side by side.
+  // Data of each step, contiguous in memory.
   sim::Body& body_;
   const sim::World& world_;
   const sim::WorldWarnings& warnings_;
-  double still_surface_m_;  // without tide and waves; without water the world's zero stands for it
+  double still_surface_m_;  // without tide and waves; without water the zero height of the world
   double speed_mps_, turn_radps_ = 0, climb_mps_ = 0;
   double yaw_rad_ = 0, pitch_rad_ = 0;
   sim::Vector3d p_WB_ = sim::Vector3d::Zero();
-  sim::Pose X_WB_ = sim::Pose::Identity();  // where it left the body; another pose means that it was moved
+  sim::Pose X_WB_ = sim::Pose::Identity();  // last pose set; another pose means that the body was moved
   double speed_target_mps_;
   double heading_target_rad_ = std::numeric_limits<double>::quiet_NaN();  // NaN: by rudder
   double depth_target_m_ = std::numeric_limits<double>::quiet_NaN();      // NaN: by elevator
   double rudder_ = 0, elevator_ = 0;
-  bool left_the_current_ = false;                         // was said
-  double step_s_ = 0, speed_share_ = 0, turn_share_ = 0;  // of the way to the target in a step
+  bool left_the_current_ = false;                         // has been reported
+  double step_s_ = 0, speed_share_ = 0, turn_share_ = 0;  // share of the remaining difference covered in a step
   Params params_;
 };
 
-/// Takes shoal.helm_command_t, shoal.thrust_rudder_elevator_command_t or shoal.thrust_rudder_command_t.
+/// Receives shoal.helm_command_t, shoal.thrust_rudder_elevator_command_t or shoal.thrust_rudder_command_t.
 class NaiveDriveController final : public sim::Controller {
  public:
   static constexpr const char* command_messages =

@@ -5,9 +5,10 @@
 
 namespace devices {
 
-/// Wheels on both sides without steering: to turn, they scrub sideways.  The vehicle then turns slower than its
-/// geometric track says, as if the track were wider; `track_m` is that effective track (Mandow et al., Experimental
-/// kinematics for wheeled skid-steer mobile robots, IROS 2007: the distance of the sides' centres of rotation).
+/// Skid-steer drive: wheels on both sides without steering, which slip sideways in a turn.  The vehicle then turns
+/// slower than expected from its geometric track; `track_m` is the effective, wider track (Mandow et al., Experimental
+/// kinematics for wheeled skid-steer mobile robots, IROS 2007: the distance between the instantaneous centres of
+/// rotation of the two sides).
 class SkidSteer final : public TwoSidedDrive {
  public:
   static constexpr const char* meaning =

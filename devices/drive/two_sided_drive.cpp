@@ -13,7 +13,7 @@ namespace devices {
 
 namespace {
 
-/// Of wheels whose shape does not say it, such as meshes.
+/// Default radius of wheels without one in their shape, such as meshes.
 constexpr double usual_wheel_radius_m = 0.1;
 
 }  // namespace
@@ -45,7 +45,7 @@ TwoSidedDrive::TwoSidedDrive(const Params& params, const sim::DeviceContext& con
   warn_of_shared_weight(context, joints);
 }
 
-/// What was given counts, then what the joints and wheels have.
+/// Sets the lengths: configured ones first, then those of the joints and wheels.
 void TwoSidedDrive::take_lengths() {
   track_m_ = params_.track_m.value_or(usual_track_m_);
   wheel_radius_m_ = params_.wheel_radius_m.value_or(joint_radius_m_.value_or(usual_wheel_radius_m));

@@ -9,42 +9,43 @@
 
 namespace devices {
 
-/// Wheels on the left that turn at one speed and wheels on the right that turn at another.  Ground speed of a side:
+/// Drive with one speed for the wheels on the left and another for those on the right.  Ground speed of a side:
 /// radius * rate; turn rate: (right - left) / track.
 class TwoSidedDrive : public sim::Actuator {
  public:
   static constexpr sim::SafeState safe_states[] = {sim::SafeState::stop, sim::SafeState::coast};
-  /// What both kinds of drive have; each reads its joints itself.
+  /// Parameters of both kinds of drive; each reads its joints itself.
   struct Params {
-    std::optional<double> wheel_radius_m;  ///< unset: that of the wheels
-    std::optional<double> track_m;         ///< unset: the distance of the wheels
+    std::optional<double> wheel_radius_m;  ///< unset: radius of the wheels
+    std::optional<double> track_m;         ///< unset: distance between the wheels
     double max_speed_mps = 1.0;
     double max_turn_radps = 2.0;
-    double max_acceleration_mps2 = 2.0;  ///< of a wheel's ground speed
-    double max_torque_Nm = 10.0;         ///< of each motor
+    double max_acceleration_mps2 = 2.0;  ///< acceleration of the ground speed of a wheel
+    double max_torque_Nm = 10.0;         ///< torque of each motor
     MotorPower power;
     void read(sim::ParamReader& in, const char* meaning_of_track);
   };
 
   void act(const sim::ActContext& context) override;
-  /// stop: the wheels brake; coast: they turn freely.
+  /// Applies a safe state.  stop: the wheels brake; coast: they turn freely.
   void make_safe(sim::SafeState safe) override;
   double power_W() const override;
   void visit_state(sim::StateArchive& archive) override;
 
   void set_wheel_speeds(double left_radps, double right_radps);
-  /// Where a side cannot turn as fast as commanded, both are slowed so that the curvature is kept.
+  /// Commands a twist.  When a side cannot reach its speed, both are slowed so that the curvature is kept.
   void set_twist(double forward_mps, double turn_radps);
-  /// As a vessel: thrust sets the forward speed, the rudder a turn rate in proportion to it.
+  /// Commands thrust, which sets the forward speed, and rudder, which sets a turn rate in proportion to it, as on a
+  /// vessel.
   void set_thrust_rudder(double thrust, double rudder);
   double track_m() const { return track_m_; }
   double wheel_radius_m() const { return wheel_radius_m_; }
 
  protected:
-  /// `scrubs`: it turns by slip, with a track that is wider than its wheels are apart.
+  /// `scrubs`: skid steering, with an effective track wider than the distance between the wheels.
   TwoSidedDrive(const Params& params, const sim::DeviceContext& context, const std::vector<std::string>& left_joints,
                 const std::vector<std::string>& right_joints, bool scrubs = false);
-  /// A command that is too fast now is slowed, with its curvature.
+  /// Applies changed parameters.  A command above the new limits is slowed with its curvature kept.
   void change_drive(const Params& params);
 
  private:
@@ -52,9 +53,9 @@ class TwoSidedDrive : public sim::Actuator {
   void check_lengths(const sim::DeviceContext& context, bool scrubs) const;
 
   Params params_;
-  double joint_track_m_ = 0;              ///< as the joints have it
-  double usual_track_m_ = 0;              ///< where none is given
-  std::optional<double> joint_radius_m_;  ///< of their wheels
+  double joint_track_m_ = 0;              ///< track from the joints
+  double usual_track_m_ = 0;              ///< default track
+  std::optional<double> joint_radius_m_;  ///< radius of the wheels of the joints
   double wheel_radius_m_ = 0, track_m_ = 0;
   WheelMotors left_;
   WheelMotors right_;

@@ -17,21 +17,21 @@ namespace devices {
 
 namespace {
 
-/// What is higher by more does not carry: contacts are hard.
+/// Height tolerance of supporting points: higher points carry no load, because contacts are hard.
 constexpr double level_m = 5e-5;
 
-/// A point that may stand on the ground.
+/// Point that may rest on the ground.
 struct Support {
   sim::Vector3d p_V_m = sim::Vector3d::Zero();
   bool driven = false;
-  std::string part;  ///< as a message calls it
+  std::string part;  ///< name in messages
 };
 
 std::string part_text(const sim::BodyConfig& body, const sim::PartConfig& part) {
   return "'" + body.name + (part.name.empty() ? "" : "/" + part.name) + "'";
 }
 
-/// The lowest points of a part: one of what is round, the corners of a box.  Empty: of another shape.
+/// Returns the lowest points of a part: one point of a round shape, the corners of a box; empty for another shape.
 std::vector<sim::Vector3d> low_points(const sim::BodyConfig& body, const sim::PartConfig& part) {
   const sim::Pose X_VP = sim::make_pose(body.position_m, body.rpy_rad) * sim::make_pose(part.position_m, part.rpy_rad);
   const sim::Vector3d down = -part.radius_m * sim::Vector3d::UnitZ();
@@ -40,8 +40,10 @@ std::vector<sim::Vector3d> low_points(const sim::BodyConfig& body, const sim::Pa
       return {X_VP.translation() + down};
     case sim::PartShape::capsule:
     case sim::PartShape::cylinder: {
+      // Horizontal axis: the line below it.
       const sim::Vector3d along = X_VP.linear().col(2);
       if (std::abs(along.z()) < 1e-3) return {X_VP.translation() + down};
+      // Inclined axis: the lower end.
       const sim::Vector3d end = X_VP.translation() - std::copysign(part.length_m / 2, along.z()) * along;
       if (part.shape == sim::PartShape::capsule) return {end + down};
       return {end - part.radius_m * std::sqrt(1 - along.z() * along.z()) * sim::Vector3d::UnitZ()};
@@ -62,13 +64,13 @@ std::vector<sim::Vector3d> low_points(const sim::BodyConfig& body, const sim::Pa
   return {};
 }
 
-/// Whether it meets ordinary ground.
+/// Returns whether a part collides with ordinary ground.
 bool meets_ground(const sim::PartConfig& part) {
   return part.collides_with.empty() ||
          std::find(part.collides_with.begin(), part.collides_with.end(), "solid") != part.collides_with.end();
 }
 
-/// Something between its wheels gives.
+/// Returns whether a vehicle has a suspension or other compliance between its wheels.
 bool gives(const sim::VehicleConfig& vehicle) {
   return std::any_of(vehicle.joints.begin(), vehicle.joints.end(), [&](const sim::JointConfig& joint) {
     if (joint.type == sim::JointType::fixed) return false;
@@ -83,7 +85,7 @@ bool is_soft(const sim::WorldConfig& world) {
                      [](const sim::ContactConfig& contact) { return contact.soft_cfm.value_or(0) > 0; });
 }
 
-/// The points as low as the driven wheels, or lower; nothing when the wheels are not round or not level.
+/// Returns the points as low as the driven wheels, or lower; none when the wheels are not round or not level.
 std::optional<std::vector<Support>> supports_of(const sim::VehicleConfig& vehicle,
                                                 const std::vector<std::string>& driven_joints) {
   std::vector<const sim::BodyConfig*> driven;
@@ -107,7 +109,7 @@ std::optional<std::vector<Support>> supports_of(const sim::VehicleConfig& vehicl
   return supports;
 }
 
-/// Whether a + b x + c y can be 1 at the driven points and 0 at the others.
+/// Returns whether a + b x + c y can be 1 at the driven points and 0 at the others.
 bool weight_is_determined(const std::vector<Support>& supports) {
   const auto count = static_cast<Eigen::Index>(supports.size());
   Eigen::MatrixX3d places(count, 3);

@@ -25,7 +25,7 @@ const sim::BodyConfig* body_named(const sim::VehicleConfig& vehicle, const std::
   return nullptr;
 }
 
-/// The part turns about the axis without a change of its shape.
+/// Returns whether a part has rotational symmetry about the axis.
 bool is_round(const sim::PartConfig& part, const sim::Matrix3d& R_VB, const sim::Vector3d& axis_V) {
   if (part.shape == sim::PartShape::sphere) return true;
   if (!sim::shape_info(part.shape).round) return false;
@@ -33,7 +33,7 @@ bool is_round(const sim::PartConfig& part, const sim::Matrix3d& R_VB, const sim:
   return std::abs((R_VB * R_BP).col(2).dot(axis_V)) > 0.999;
 }
 
-/// All its parts are round: it is a wheel, and not what carries one.
+/// Returns whether all parts of a body are round, so that it is a wheel and not its carrier.
 bool is_wheel(const sim::BodyConfig& body, const sim::Vector3d& axis_V) {
   const sim::Matrix3d R_VB = sim::make_pose(body.position_m, body.rpy_rad).linear();
   return !body.parts.empty() && std::all_of(body.parts.begin(), body.parts.end(),

@@ -11,14 +11,13 @@
 
 namespace devices {
 
-/// Driven wheels that turn at one speed, each by its own motor.  The speed follows its target with a limited
-/// acceleration.
+/// Driven wheels with a common speed, each with its own motor.  The speed follows its target with limited acceleration.
 class WheelMotors {
  public:
   WheelMotors(const sim::DeviceContext& context, const std::vector<std::string>& joints);
 
   void set_target(double radps) { target_radps_ = radps; }
-  /// One step.  `max_torque_Nm`: of each motor; 0: the wheels turn freely.
+  /// Runs one step.  `max_torque_Nm`: maximum torque of each motor; 0: the wheels turn freely.
   void act(double max_acceleration_radps2, double max_torque_Nm, double step_s);
   double target_radps() const { return target_radps_; }
   double current_radps() const { return current_radps_; }
@@ -28,7 +27,7 @@ class WheelMotors {
  private:
   struct Wheel {
     sim::Joint* joint;
-    int axis;  ///< the last one of the joint: of hinge2 the wheel's
+    int axis;  ///< last axis of the joint; the wheel axis of a hinge2
   };
   const sim::Vehicle& vehicle_;
   std::vector<Wheel> wheels_;

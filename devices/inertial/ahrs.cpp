@@ -47,7 +47,7 @@ void Ahrs::disturb(double dt_s, sim::Random& random) {
 void fill(const Ahrs& ahrs, shoal::ins_t& message) {
   const double nothing = std::numeric_limits<double>::quiet_NaN();
   const sim::Quaterniond& q = ahrs.q_WS();
-  const double sign = q.w() < 0 ? -1 : 1;  // of the two quaternions of a rotation the one with w >= 0
+  const double sign = q.w() < 0 ? -1 : 1;  // choose the quaternion with w >= 0 of the two of a rotation
   message.device_time = message.utime;
   for (int i = 0; i < 3; ++i) {
     message.gyro[i] = ahrs.angular_velocity_S_radps()[i];

@@ -6,8 +6,9 @@
 
 namespace devices {
 
-/// Attitude and heading reference: orientation, angular velocity and specific force.  Its filter is not simulated but
-/// what is left of its error: a small rotation about east and north (tilt) and about up (heading), in the world.
+/// Attitude and heading reference system (AHRS): orientation, angular velocity and specific force.  Instead of its
+/// filter, the residual error is simulated: a small rotation about east and north (tilt) and about up (heading), in the
+/// world frame.
 class Ahrs final : public sim::Sensor {
  public:
   static constexpr const char* meaning = "Orientation with small errors of tilt and heading, rates and accelerations.";

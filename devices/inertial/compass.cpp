@@ -11,14 +11,14 @@ namespace devices {
 
 namespace {
 
-/// To [0, 2 pi).
+/// Wraps an angle to [0, 2 pi).
 double compass_angle(double angle_rad) {
   const double turn = 2 * std::numbers::pi;
   const double wrapped = angle_rad - turn * std::floor(angle_rad / turn);
   return wrapped < turn ? wrapped : 0;
 }
 
-/// The earth's field in the axes of the world (east, north, up).
+/// Returns the magnetic field of the earth in the world axes (east, north, up).
 sim::Vector3d field_W_uT(const Compass::Params& p) {
   const double horizontal_uT = p.field_uT * std::cos(p.inclination_rad);
   return {horizontal_uT * std::sin(p.declination_rad), horizontal_uT * std::cos(p.declination_rad),
@@ -64,8 +64,8 @@ void Compass::change(const Params& params) {
 }
 
 double Compass::heading_of(const sim::Vector3d& field_S, const sim::Vector3d& up_S) {
-  // Magnetic north and west are what is level of the field and what is square to it.  x_S by its parts along the two;
-  // x_S upright and free fall have no heading: atan2(0, 0) is 0.
+  // Magnetic north is the horizontal component of the field, and west is perpendicular to it.  The heading follows from
+  // the components of x_S along both; it is undefined for vertical x_S and in free fall, where atan2(0, 0) gives 0.
   const sim::Vector3d west_S = up_S.cross(field_S);
   const sim::Vector3d north_S = west_S.cross(up_S);  // longer than west_S by the length of up_S
   return compass_angle(std::atan2(-west_S.x() * up_S.norm(), north_S.x()));

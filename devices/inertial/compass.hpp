@@ -7,10 +7,10 @@
 
 namespace devices {
 
-/// Three-axis magnetometer and the heading it gives.  The earth's field is the same in the whole world.  What is
-/// measured: soft iron * field + hard iron + noise; hard iron is magnetised and turns with the sensor, soft iron bends
-/// the field (Gebre-Egziabher et al., Calibration of strapdown magnetometers in magnetic field domain, J. Aerosp. Eng.
-/// 19(2), 2006).
+/// Three-axis magnetometer and its magnetic heading.  The magnetic field of the earth is uniform in the world.
+/// Measurement: soft iron * field + hard iron + noise; hard iron is a constant field that turns with the sensor, soft
+/// iron distorts the external field (Gebre-Egziabher et al., Calibration of strapdown magnetometers in magnetic field
+/// domain, J. Aerosp. Eng. 19(2), 2006).
 class Compass final : public sim::Sensor {
  public:
   static constexpr const char* meaning = "Magnetic heading and field, with hard and soft iron.";
@@ -18,14 +18,14 @@ class Compass final : public sim::Sensor {
   enum class TiltCompensation { none, ideal, accelerometer };
   struct Params {
     // The World Magnetic Model 2025 at the default origin (42.36 N 71.09 W, Cambridge, Massachusetts) at the start of
-    // 2026: -13.97 deg, 66.26 deg, 51.22 uT; computed from NOAA's coefficients, held against the declinations of its
-    // test values.
+    // 2026: -13.97 deg, 66.26 deg, 51.22 uT; computed from the NOAA coefficients and checked against the declinations
+    // of the NOAA test values.
     double declination_rad = sim::degrees_to_radians(-14.0);
     double inclination_rad = sim::degrees_to_radians(66.3);
     double field_uT = 51.2;
     double declination_correction_rad = 0;
     sim::Vector3d hard_iron_uT = sim::Vector3d::Zero();
-    std::vector<double> soft_iron = {1, 0, 0, 0, 1, 0, 0, 0, 1};  ///< rows of a matrix
+    std::vector<double> soft_iron = {1, 0, 0, 0, 1, 0, 0, 0, 1};  ///< matrix, row by row
     TiltCompensation tilt_compensation = TiltCompensation::accelerometer;
     double tilt_time_s = 0.3;
     sim::NoiseParams field_noise;    ///< of each axis, uT
@@ -34,7 +34,7 @@ class Compass final : public sim::Sensor {
   };
   struct Reading {
     double heading_rad = 0;       ///< from magnetic north, clockwise, [0, 2 pi)
-    double heading_true_rad = 0;  ///< from true north; the measured one by the configured declination
+    double heading_true_rad = 0;  ///< from true north, with the configured declination
     sim::Vector3d field_S_uT = sim::Vector3d::Zero();
     void visit_state(sim::StateArchive& archive) { archive(heading_rad, heading_true_rad, field_S_uT); }
   };
@@ -50,7 +50,7 @@ class Compass final : public sim::Sensor {
   const Reading& reading() const { return reading_; }
 
  private:
-  /// The heading when the field and a direction upwards are given in S.
+  /// Returns the heading from the field and the upward direction, both in S.
   static double heading_of(const sim::Vector3d& field_S, const sim::Vector3d& up_S);
 
   Params params_;

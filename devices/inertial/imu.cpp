@@ -11,14 +11,14 @@ namespace devices {
 
 namespace {
 
-/// Reads a number in the unit of data sheets into a member in SI.
+/// Reads a number in data sheet units into a member in SI units.
 void read_in(sim::ParamReader& in, const char* key, double& value, double unit_si, const char* meaning) {
   double number = value / unit_si;
   in.read(key, number, sim::at_least(0), meaning);
   if (in.has(key)) value = number * unit_si;
 }
 
-/// Beyond it the output is cut; 0 in the struct: nowhere.
+/// Reads the output limit; 0 in the struct: unlimited.
 void read_range(sim::ParamReader& in, const char* key, double& value, double unit_si, const char* meaning) {
   double number = value / unit_si;
   in.read_or_word(key, number, sim::above(0), {"unlimited"}, meaning);
@@ -68,7 +68,7 @@ void Imu::Params::read(sim::ParamReader& in) {
   std::vector<std::string> names;
   for (const ImuPreset& unit : imu_presets()) names.push_back(unit.name);
   in.read_one_of("preset", preset, names, "preset of a product by its data sheet; the keys below override it");
-  // The preset is the default of the keys that follow.
+  // The preset supplies the defaults of the keys that follow.
   for (const ImuPreset& unit : imu_presets()) {
     if (unit.name != preset || in.describing()) continue;
     gyro = unit.gyro;

@@ -5,13 +5,12 @@ namespace devices {
 
 namespace {
 
-// Every figure is one that the data sheet calls typical, unless it says otherwise.  A figure that stands with +- and
-// is a limit counts as three standard deviations, a typical one as one.  A data sheet gives no correlation time of the
-// bias: 100 s puts the peak of the Allan deviation at 189 s, about where the sheets draw the flat part.  What a sheet
-// does not state (rate random walk, or the accelerometers' bias instability of the BMI088) is left at zero.
-//
-// The whole sheets were not at hand.  "Checked" is what stands on the first page of the sheet or in a public quote of
-// it, which is named; "not checked" is from memory.
+// The values are the typical ones of the data sheets, unless noted otherwise.  A limit given with +- is taken as three
+// standard deviations, a typical value as one.  Data sheets give no correlation time of the bias: with 100 s the peak
+// of the Allan deviation is at 189 s, close to the flat part of the published curves.  Values that a sheet does not
+// state (rate random walk, or the bias instability of the BMI088 accelerometers) are zero. The complete sheets were not
+// available.  "Checked" values are on the first page of the sheet or in the named public quote of it; "not checked"
+// values have no verified source.
 
 /// Analog Devices, data sheet ADIS16470 Rev. C.  Checked, first page: gyros 2000 deg/s, in-run bias stability 8 deg/h;
 /// accelerometers 40 g, 13 ug.  Checked, a public simulator that quotes table 1: angular random walk 0.34 deg/sqrt(h).
@@ -55,8 +54,8 @@ ImuPreset bmi088() {
 /// accelerometers 0.05 mg, 300 ppm; misalignment 1 mrad.  Checked, a table of the journal NAVIGATION
 /// (navi.ion.org/highwire/markup/10540): the same noise and, as 1 sigma, bias repeatability 4 deg/h and 0.75 mg.
 /// Velocity random walk: 0.07 m/s/sqrt(h) in that table and in a quote of rev. 27, 0.06 in rev. 9, 0.024 in a quote of
-/// rev. 31. Full scale 400 deg/s: said of the STIM377H of the same family.  Errors of scale and misalignment are read
-/// as 1 sigma, which the quotes do not say.
+/// rev. 31. Full scale 400 deg/s: stated for the STIM377H of the same family.  Errors of scale and misalignment are
+/// taken as 1 sigma, which the quotes do not state.
 ImuPreset stim300() {
   ImuPreset preset{"stim300", {}, {}};
   preset.gyro.random_walk = 0.15 * unit::deg_per_sqrt_h;

@@ -8,19 +8,19 @@
 
 namespace devices {
 
-/// A unit by its name, as its data sheet describes it.
+/// Named inertial unit with the errors of its data sheet.
 struct ImuPreset {
   std::string name;
   InertialParams gyro;   ///< rad/s
   InertialParams accel;  ///< m/s^2
 };
 
-/// `ideal` comes first.
+/// Returns all presets, `ideal` first.
 const std::vector<ImuPreset>& imu_presets();
 
-/// Units of data sheets.
+/// Conversion factors from data sheet units to SI units.
 namespace unit {
-inline constexpr double mps2_per_g = 9.80665;  ///< standard gravity, whatever the world's gravity is
+inline constexpr double mps2_per_g = 9.80665;  ///< standard gravity, independent of the gravity of the world
 inline constexpr double degps = sim::degrees_to_radians(1);
 inline constexpr double deg_per_h = degps / 3600;
 inline constexpr double deg_per_sqrt_h = degps / 60;  ///< angle random walk, in rad / sqrt(s)

@@ -6,8 +6,8 @@
 
 namespace devices {
 
-/// Roll and pitch of a sensor frame for which the specific force is the direction upwards: right at rest, wrong while
-/// the sensor is accelerated.
+/// Roll and pitch of a sensor frame when the specific force is taken as the upward direction: correct at rest, in error
+/// while the sensor is accelerated.
 struct Tilt {
   double roll_rad = 0;   ///< as in Rz(yaw) Ry(pitch) Rx(roll)
   double pitch_rad = 0;  ///< positive: the nose is down
@@ -15,7 +15,7 @@ struct Tilt {
 };
 Tilt tilt_of(const sim::Vector3d& up_S);
 
-/// Measures roll and pitch as real ones do, by the specific force.  The truth is the attitude.
+/// Inclinometer: measures roll and pitch from the specific force, as real ones do.  Its truth channel has the attitude.
 class Inclinometer final : public sim::Sensor {
  public:
   static constexpr const char* meaning = "Roll and pitch from the specific force, so it errs while accelerated.";

@@ -41,7 +41,7 @@ void InertialErrors::use(const InertialParams& params) {
 
 void InertialErrors::plan(double dt_s) {
   cached_dt_s_ = dt_s;
-  // White noise of density N has the standard deviation N / sqrt(dt) when it is averaged over dt.
+  // White noise of density N averaged over dt has the standard deviation N / sqrt(dt).
   white_std_ = params_.random_walk / std::sqrt(dt_s);
   walk_std_ = params_.rate_random_walk * std::sqrt(dt_s);
   const double sigma = params_.bias_instability / gauss_markov_allan_peak;
@@ -52,7 +52,7 @@ void InertialErrors::plan(double dt_s) {
 void InertialErrors::add_random_parts(sim::Vector3d& value, sim::Random& random) {
   const double factor = fault_.factor;
   if (params_.bias_instability > 0) {
-    // The first value comes from the stationary distribution: the unit has been on for a while.
+    // Draw the first value from the stationary distribution: the unit was switched on earlier.
     const double kept = started_ ? kept_ : 0;
     const double fresh_std = started_ ? fresh_std_ : params_.bias_instability / gauss_markov_allan_peak;
     for (int i = 0; i < 3; ++i) gauss_markov_[i] = kept * gauss_markov_[i] + fresh_std * random.gaussian();

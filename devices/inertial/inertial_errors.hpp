@@ -8,39 +8,39 @@
 
 namespace devices {
 
-/// The errors of a triad of gyros or accelerometers as data sheets state them, in SI units: rad/s of a gyro, m/s^2 of
-/// an accelerometer, written [u] here.
+/// Errors of a triad of gyros or accelerometers as stated in data sheets (terms of IEEE Std 952-1997), in SI units:
+/// rad/s of a gyro, m/s^2 of an accelerometer, written [u] here.
 struct InertialParams {
   double random_walk = 0;       ///< white noise: angle or velocity random walk, [u] sqrt(s)
   double bias_instability = 0;  ///< peak of the Allan deviation of the slow error, [u]
-  double bias_time_s = 100;     ///< its correlation time
-  double rate_random_walk = 0;  ///< of the drift after one second, [u] / sqrt(s)
+  double bias_time_s = 100;     ///< correlation time of the slow error
+  double rate_random_walk = 0;  ///< standard deviation of the drift after one second, [u] / sqrt(s)
   double turn_on_bias = 0;      ///< standard deviation of an offset drawn once, [u]
   double scale = 0;             ///< standard deviation of the scale error of each axis, drawn once
   double misalignment_rad = 0;  ///< standard deviation of each cross-axis element, drawn once
-  double range = 0;             ///< the output is cut to +- this, [u]; 0: not cut
-  double resolution = 0;        ///< step of the output, [u]; 0: none
+  double range = 0;             ///< output limit +-, [u]; 0: unlimited
+  double resolution = 0;        ///< quantisation step of the output, [u]; 0: none
 };
 
 /// Allan deviation of a first-order Gauss-Markov process of standard deviation 1 over correlation times `tau / T_c`:
-/// sigma_A^2 = 2 / x (1 - (3 - 4 exp(-x) + exp(-2 x)) / (2 x)).  From the definition of the Allan variance, with the
-/// covariance exp(-|t| / T_c).
+/// sigma_A^2 = 2 / x (1 - (3 - 4 exp(-x) + exp(-2 x)) / (2 x)).  Derived from the definition of the Allan variance with
+/// the covariance exp(-|t| / T_c).
 double gauss_markov_allan_deviation(double correlation_times);
 
-/// It is largest at tau = 1.89 T_c, where it is this (found numerically from the formula above).
-/// Data sheets quote the flat part of the measured Allan deviation as `bias instability`; the Gauss-Markov process gets
-/// the standard deviation with which its peak is as high: sigma = quoted / 0.6174.
+/// Maximum of that Allan deviation, at tau = 1.89 T_c (found numerically from the formula above).  Data sheets quote
+/// the flat part of the measured Allan deviation as `bias instability`; the standard deviation of the Gauss-Markov
+/// process is chosen so that its peak has that value: sigma = quoted / 0.6174.
 inline constexpr double gauss_markov_allan_peak = 0.61737;
 inline constexpr double gauss_markov_allan_peak_at = 1.8926;  ///< correlation times
 
-/// Applies the errors: output = (I + M) truth + offset + drift + white noise, cut and rounded.  The diagonal of M holds
-/// scale errors, the rest misalignments of the axes (first order; Titterton and Weston, Strapdown Inertial Navigation
-/// Technology, 2nd ed., 2004).
+/// Error model of a triad: output = (I + M) truth + offset + drift + white noise, limited and quantised.  The diagonal
+/// of M holds scale errors, the other elements misalignments of the axes (first order; Titterton and Weston, Strapdown
+/// Inertial Navigation Technology, 2nd ed., 2004).
 class InertialErrors {
  public:
-  /// What faults do to the quantity of `noise` reaches the errors of the data sheet too.
+  /// Faults of the quantity of `noise` also affect the errors of the data sheet.
   InertialErrors(const InertialParams& params, const sim::NoiseParams& noise, const sim::DeviceContext& context);
-  /// Errors that were drawn once keep their direction and are rescaled.
+  /// Applies changed parameters.  Errors that were drawn once keep their direction and are rescaled.
   void change(const InertialParams& params, const sim::NoiseParams& noise);
   void apply(sim::Vector3d& value, double dt_s, sim::Random& random);
   void visit_state(sim::StateArchive& archive) { archive(noise_, started_, gauss_markov_, walk_); }
@@ -56,7 +56,7 @@ class InertialErrors {
   InertialParams params_;
   sim::Noise noise_;
   const sim::NoiseFault& fault_;
-  double nominal_dt_s_;  ///< stands for the interval before the first sample
+  double nominal_dt_s_;  ///< interval used before the first sample
   // Drawn once, standard normal.
   sim::Vector3d drawn_bias_;
   sim::Matrix3d drawn_matrix_;

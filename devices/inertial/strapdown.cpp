@@ -9,7 +9,7 @@ namespace devices {
 
 sim::Vector3d rotation_vector(const sim::Quaterniond& q) {
   const double sine = q.vec().norm();
-  // Below 1e-9 the angle is twice the sine to the last bit; 0 / 0 must not happen.
+  // Below 1e-9 the angle equals twice the sine in double precision; this avoids 0 / 0.
   const double factor = sine < 1e-9 ? 2 : 2 * std::atan2(sine, std::abs(q.w())) / sine;
   return (q.w() < 0 ? -factor : factor) * q.vec();
 }
@@ -26,14 +26,14 @@ void LowPass::change(double time_constant_s) {
 }
 
 const sim::Vector3d& LowPass::apply(const sim::Vector3d& x, double dt_s) {
-  if (dt_s != cached_dt_s_) {  // exp() once, not in every sample
+  if (dt_s != cached_dt_s_) {  // avoids exp() in every sample
     cached_dt_s_ = dt_s;
     gain_ = time_constant_s_ > 0 ? -std::expm1(-dt_s / time_constant_s_) : 1;
   }
   if (started_)
     y_ += gain_ * (x - y_);
   else
-    y_ = x;  // it has been on for a while when the run starts
+    y_ = x;  // steady state: it was switched on before the run
   started_ = true;
   return y_;
 }
@@ -41,13 +41,13 @@ const sim::Vector3d& LowPass::apply(const sim::Vector3d& x, double dt_s) {
 Strapdown::Strapdown(const sim::DeviceContext& context) : body_(context.body) {}
 
 void Strapdown::measure(const sim::SenseContext& context) {
-  // An event may change it; the sample in whose interval it does takes all of it as new.
+  // An event may change gravity; the sample of that interval uses the new value for all of it.
   const sim::Vector3d gravity_W_mps2(0, 0, -context.world.physics().gravity_mps2());
   sim::Quaterniond q_WS(context.X_WS.linear());
   if (started_ && context.dt_s > 0) {
-    if (q_WS.dot(q_WS_) < 0) q_WS.coeffs() = -q_WS.coeffs();  // the same rotation, on the side of the last one
+    if (q_WS.dot(q_WS_) < 0) q_WS.coeffs() = -q_WS.coeffs();  // same rotation, with the sign closest to the last one
     w_WS_S_ = rotation_vector(q_WS_.conjugate() * q_WS) / context.dt_s;
-    // The sum of two unit quaternions points to the rotation half-way.
+    // The normalised sum of two unit quaternions is the rotation half-way between them.
     const sim::Quaterniond q_half(sim::Quaterniond(q_WS_.coeffs() + q_WS.coeffs()).normalized());
     f_S_ = q_half.conjugate() * sim::Vector3d((context.v_WS_W - v_WS_W_) / context.dt_s - gravity_W_mps2);
   } else {

@@ -44,7 +44,7 @@ void Bumper::add_place(const sim::ContactReport& contact, int own, std::vector<P
   const sim::Pose X_VW = vehicle_.X_WV().inverse();
   const sim::Vector3d normal_V = X_VW.linear() * contact.normal_W;
   const sim::PartInfo& other = parts[static_cast<std::size_t>(contact.parts[1 - own])];
-  // Part names begin with the vehicle's.
+  // Part names start with the name of the vehicle.
   const std::string part = parts[static_cast<std::size_t>(contact.parts[own])].name.substr(vehicle_.name().size() + 1);
   places.push_back({part, physics_.group_name(other.group), X_VW * contact.position_W,
                     own == 0 ? normal_V : sim::Vector3d(-normal_V), contact.force_W_N.norm()});
@@ -94,8 +94,8 @@ void Bumper::change(const Params& params) {
   params_.report = params.report;
 }
 
-// Publishes shoal.bumper_t: at the first sample and when a touch begins or ends, or at every sample.  A report of a
-// change that is lost on its way is not repeated.
+// Publishes shoal.bumper_t: at the first sample and when a contact begins or ends, or at every sample.  A lost report
+// of a change is not repeated.
 bool fill(const Bumper& bumper, shoal::bumper_t& message) {
   if (!bumper.is_update()) return false;
   message.touching = bumper.touching();

@@ -7,8 +7,8 @@
 
 namespace devices {
 
-/// Tells what parts of the vehicle touch.  It is updated at every step: a contact that ends before the next sample is
-/// reported, with the places of the step with the largest force.
+/// Contact sensor of parts of the vehicle.  It is updated at every step: a contact that ends before the next sample is
+/// reported, with the contact points of the step with the largest force.
 class Bumper final : public sim::Sensor {
  public:
   static constexpr const char* meaning = "Contacts of parts of the vehicle: where, with whom and how hard.";
@@ -26,18 +26,18 @@ class Bumper final : public sim::Sensor {
     std::string part;
     std::string other;
     sim::Vector3d position_V = sim::Vector3d::Zero();
-    sim::Vector3d normal_V = sim::Vector3d::Zero();  ///< out of the other, into this vehicle
+    sim::Vector3d normal_V = sim::Vector3d::Zero();  ///< points from the other entity into this vehicle
     double force_N = 0;
     void visit_state(sim::StateArchive& archive) { archive(part, other, position_V, normal_V, force_N); }
   };
 
   Bumper(const Params& params, const sim::DeviceContext& context);
   ~Bumper() override;
-  /// Looks at the contacts of the last step; the framework calls it before each one.
+  /// Evaluates the contacts of the last step; called by the framework before each step.
   void act(const sim::ActContext& context);
   void measure(const sim::SenseContext& context) override;
   void disturb(double dt_s, sim::Random& random) override;
-  /// All but the parts.
+  /// Applies changed parameters, except the parts.
   void change(const Params& params);
   auto noises() { return std::tie(force_noise_); }
   void visit_state(sim::StateArchive& archive) override {
@@ -45,7 +45,7 @@ class Bumper final : public sim::Sensor {
   }
 
   bool touching() const { return touching_; }
-  /// The reporter has something to say.
+  /// Returns whether there is something to report.
   bool is_update() const { return params_.report == When::always || changed_; }
   const std::vector<Place>& places() const { return places_; }
 
@@ -59,8 +59,8 @@ class Bumper final : public sim::Sensor {
   const sim::Vehicle& vehicle_;
   std::vector<int> parts_;  ///< their numbers, sorted
   sim::NoiseOf<&Params::force_noise> force_noise_;
-  bool looked_ = true;          ///< at the last step
-  std::vector<Place> pressed_;  ///< since the last sample: the step that pressed most
+  bool looked_ = true;          ///< whether the last step was evaluated
+  std::vector<Place> pressed_;  ///< contacts of the step with the largest force since the last sample
   double max_force_N_ = -1;
   bool touching_ = false;
   bool changed_ = false;

@@ -10,12 +10,12 @@
 
 namespace devices {
 
-/// The motors and the stops of a joint's axes, all of which messages set while the world runs.
+/// Motors and stops of the axes of a joint, set by messages at run time.
 ///
 /// Each axis has a motor with a velocity and a maximum force, as in ODE: it applies the force that reaches that
-/// velocity within a step, up to the maximum.  A velocity out of reach and a force is thus a
-/// motor of that force.  A stop that is set behind the joint pushes it back, as fast as the stops of the joint are
-/// stiff.
+/// velocity within a step, up to the maximum.  A velocity that cannot be reached thus gives a motor with constant
+/// force.  A stop set beyond the present position pushes the joint back, at a rate that depends on the stiffness of its
+/// stops.
 class JointDrive final : public sim::Actuator {
  public:
   static constexpr const char* meaning =
@@ -30,7 +30,7 @@ class JointDrive final : public sim::Actuator {
     MotorPower power;
     void read(sim::ParamReader& in);
   };
-  /// NaN: as it is.
+  /// Settings of an axis.  NaN: unchanged.
   struct Settings {
     double velocity = std::numeric_limits<double>::quiet_NaN();
     double max_force = std::numeric_limits<double>::quiet_NaN();
@@ -40,19 +40,19 @@ class JointDrive final : public sim::Actuator {
 
   JointDrive(const Params& params, const sim::DeviceContext& context);
   void act(const sim::ActContext& context) override;
-  /// stop: the motors brake with the most force; coast: they turn freely.  Stops stay where they are.
+  /// Applies a safe state.  stop: the motors brake with maximum force; coast: they turn freely.  Stops are kept.
   void make_safe(sim::SafeState safe) override;
   void change(const Params& params);
   double power_W() const override;
   void visit_state(sim::StateArchive& archive) override;
 
-  /// Of one axis, or of all with -1.  Velocity and force beyond the limits are cut.  Throws std::runtime_error, and
-  /// changes nothing, for an axis that it does not have, a force below zero, and stops that cannot be.
+  /// Changes the settings of one axis, or of all with -1.  Velocity and force are limited.  Throws std::runtime_error
+  /// and changes nothing for an axis that does not exist, a negative force, and invalid stops.
   void set(int axis, const Settings& settings);
 
  private:
   struct Axis {
-    int number;  ///< of the joint
+    int number;  ///< number of the axis of the joint
     double velocity = 0, max_force = 0;
     double low_stop = -std::numeric_limits<double>::infinity(), high_stop = std::numeric_limits<double>::infinity();
     bool has_stops = true;
@@ -71,7 +71,7 @@ class JointDrive final : public sim::Actuator {
   bool coasting_ = false;
 };
 
-/// Takes shoal.joint_settings_t.
+/// Receives shoal.joint_settings_t.
 class JointDriveController final : public sim::Controller {
  public:
   static constexpr const char* command_messages = "shoal.joint_settings_t";

@@ -7,8 +7,8 @@
 
 namespace devices {
 
-/// Force and torque through a joint, as a load cell or a force-torque sensor in it measures: what the joint applies on
-/// its second body (where only one body moves, on that one), with the torque about the joint's anchor.
+/// Force and torque through a joint, as measured by a load cell or force-torque sensor: the wrench that the joint
+/// applies to its second body (or to the only movable body), with the torque about the anchor of the joint.
 class JointLoad final : public sim::Sensor {
  public:
   static constexpr const char* meaning = "Force and torque that go through a joint, about its anchor.";
@@ -26,11 +26,11 @@ class JointLoad final : public sim::Sensor {
   JointLoad(const Params& params, const sim::DeviceContext& context);
   void measure(const sim::SenseContext& context) override;
   void disturb(double dt_s, sim::Random& random) override;
-  /// The errors and the frame; the joint stays.
+  /// Applies changed errors and frame; the joint is kept.
   void change(const Params& params) { params_.frame = params.frame; }
   auto noises() { return std::tie(force_noise_, torque_noise_); }
   void visit_state(sim::StateArchive& archive) override { archive(force_noise_, torque_noise_, force_N_, torque_Nm_); }
-  /// In the frame that the parameters say.
+  /// Return the reading in the configured frame.
   const sim::Vector3d& force_N() const { return force_N_; }
   const sim::Vector3d& torque_Nm() const { return torque_Nm_; }
 

@@ -7,7 +7,7 @@
 
 namespace devices {
 
-/// Drives one joint of the vehicle at a commanded velocity, with limited velocity and force.
+/// Motor that drives one joint of the vehicle at a commanded velocity, with limited velocity and force.
 class JointMotor final : public sim::Actuator {
  public:
   static constexpr const char* meaning = "Motor on one hinge or slider, commanded by velocity.";
@@ -23,12 +23,12 @@ class JointMotor final : public sim::Actuator {
 
   JointMotor(const Params& params, const sim::DeviceContext& context);
   void act(const sim::ActContext& context) override;
-  /// stop: it brakes; coast: it turns freely.
+  /// Applies a safe state.  stop: it brakes; coast: it turns freely.
   void make_safe(sim::SafeState safe) override;
   void change(const Params& params);
   double power_W() const override { return params_.power.of_motor(joint_, 0, params_.max_force); }
   void visit_state(sim::StateArchive& archive) override { archive(velocity_, coasting_); }
-  /// Beyond the limit it is cut.
+  /// Commands a velocity, which is limited.
   void set_velocity(double velocity);
   double velocity() const { return velocity_; }
 
@@ -40,7 +40,7 @@ class JointMotor final : public sim::Actuator {
   bool coasting_ = false;
 };
 
-/// Takes shoal.joint_command_t.
+/// Receives shoal.joint_command_t.
 class JointMotorController final : public sim::Controller {
  public:
   static constexpr const char* command_messages = "shoal.joint_command_t";

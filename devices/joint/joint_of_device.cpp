@@ -10,7 +10,7 @@ namespace devices {
 
 namespace {
 
-/// Such as: joint 'lift' is a slider.
+/// Returns a text such as: joint 'lift' is a slider.
 std::string what_it_is(const sim::Joint& joint, const std::string& name) {
   const std::string type(word_of(sim::joint_type_words, joint.type()));
   switch (joint.type()) {

@@ -8,22 +8,22 @@
 
 namespace devices {
 
-/// What the motor of an axis takes from the battery, by the model of a DC motor: mechanical power over efficiency, and
-/// the heat of its winding, which grows with the square of the effort and is there at standstill too (Krause et al.,
-/// Analysis of Electric Machinery and Drive Systems, 3rd ed., 2013: P = effort * velocity + R i^2, effort ~ i).
-/// Braking recovers no energy.
+/// Power that the motor of an axis draws from the battery, by the model of a DC motor: mechanical power over
+/// efficiency, plus the heat of its winding, which is proportional to the square of the effort, also at standstill
+/// (Krause et al., Analysis of Electric Machinery and Drive Systems, 3rd ed., 2013: P = effort * velocity + R i^2,
+/// effort ~ i). Braking recovers no energy.
 struct MotorPower {
   double efficiency = 0.8;
-  double holding_W = 0;  ///< heat at the largest effort
+  double holding_W = 0;  ///< heat at maximum effort
 
   void read(sim::ParamReader& in) {
     in.read("efficiency", efficiency, sim::above_to(0, 1), "mechanical power over electrical power of a motor");
     in.read("holding_W", holding_W, sim::at_least(0),
             "heat of a motor at its largest effort; less by the square of the effort");
   }
-  /// Of the motor that the physics keeps on an axis.  Its load must be measured.
+  /// Returns the power of the motor of an axis in the physics.  The load of the joint must be measured.
   double of_motor(const sim::Joint& joint, int axis, double max_effort) const {
-    // A stop may push harder than the motor, without drawing power.
+    // Limit the effort: a stop may push harder than the motor, without drawing power.
     const double limit = joint.motor_max_force(axis);
     return of(std::clamp(joint.effort(axis), -limit, limit), joint.velocity(axis), max_effort);
   }

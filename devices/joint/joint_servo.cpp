@@ -17,9 +17,9 @@ namespace {
 
 constexpr double unlimited = std::numeric_limits<double>::infinity();
 
-/// The highest velocity for this step from which it stops exactly after `distance`, when each further step is slower
-/// by change = acceleration * step_s.  With m such steps to come, v = m change + f and
-/// distance / step_s = v + (v - change) + ... + f = (m + 1) (m change / 2 + f), 0 <= f <= change.
+/// Returns the highest velocity for this step from which it stops exactly after `distance`, when the velocity decreases
+/// in each further step by change = acceleration * step_s.  With m such steps to come, v = m change + f and distance /
+/// step_s = v + (v - change) + ... + f = (m + 1) (m change / 2 + f), 0 <= f <= change.
 double stopping_velocity(double distance, double acceleration, double step_s) {
   if (distance <= 0) return 0;
   const double at_once = distance / step_s;
@@ -78,6 +78,7 @@ JointServo::JointServo(const Params& params, const sim::DeviceContext& context)
   const sim::JointAxisConfig& axis = params.axis == 0 ? joint.axis1 : joint.axis2;
   low_stop_ = axis.low_stop;
   high_stop_ = axis.high_stop;
+  // Check the range of the servo against the stops of the joint.
   using sim::number_text;
   if (params.low && high_stop_ && *params.low > *high_stop_)
     refuse(context, "'low' is outside the joint's stops: " + number_text(*params.low) + " is above 'high_stop', " +
@@ -97,7 +98,7 @@ void JointServo::find_range() {
 
 void JointServo::change(const Params& params) {
   params_ = params;
-  find_range();  // a target in a range that shrank is cut
+  find_range();  // limits the target to a reduced range
   if (mode_ == Mode::position) target_ = std::clamp(target_, low_, high_);
 }
 
@@ -116,7 +117,7 @@ void JointServo::move_set_point(double step_s) {
 }
 
 double JointServo::pid_effort(double max_effort, double step_s) {
-  // A joint that is held up must not store the way it was kept from going.
+  // Limit the distance to the joint, so that a blocked joint does not accumulate motion.
   if (mode_ == Mode::velocity && params_.kp > 0) {
     const double slack = params_.max_effort / params_.kp;
     const double position = joint_.position(params_.axis);
@@ -124,7 +125,7 @@ double JointServo::pid_effort(double max_effort, double step_s) {
   }
   const double proportional = params_.kp * error() + params_.kd * (set_point_.velocity - joint_.velocity(params_.axis));
   const double more = params_.ki * error() * step_s;
-  // It does not wind up while the effort is cut.
+  // Anti-windup: no integration while the effort is limited.
   if (std::abs(proportional + integral_ + more) <= max_effort || more * integral_ < 0)
     integral_ = std::clamp(integral_ + more, -params_.integral_limit, params_.integral_limit);
   return std::clamp(proportional + integral_, -max_effort, max_effort);
@@ -141,17 +142,18 @@ void JointServo::act(const sim::ActContext& context) {
   if (vehicle_.systems().metered) joint_.measure_load();
   const double max_effort = mode_ == Mode::coast ? 0 : context.effectiveness * params_.max_effort;
   applied_ = 0;
+  // Effort command, or no effort.
   if (max_effort == 0 || mode_ == Mode::effort) {
     joint_.set_motor(0, 0, params_.axis);
     follows_ = true;
     if (max_effort > 0) applied_ = cut_effort(max_effort);
   } else {
-    // The velocity motor moves the joint over the whole step, from where the set point was at its start.
+    // The velocity motor moves the joint during the whole step, from the set point at its start.
     const bool was_following = follows_;
     const double error_before = was_following ? 0 : error();
     move_set_point(context.step_s);
     if (params_.control == Control::velocity) {
-      // More than the whole error in a step would swing.
+      // Correct at most the whole error in a step, to avoid oscillation.
       const double gain = std::min(params_.kp, 1 / context.step_s);
       const double desired = set_point_.velocity + gain * error_before;
       joint_.set_motor(std::clamp(desired, -params_.max_velocity, params_.max_velocity), max_effort, params_.axis);

@@ -9,7 +9,7 @@
 
 namespace devices {
 
-/// A set point with limited velocity and acceleration that comes to rest exactly at its target.
+/// Set point with limited velocity and acceleration that comes to rest exactly at its target.
 class SetPoint {
  public:
   double position = 0;
@@ -20,20 +20,20 @@ class SetPoint {
     double acceleration;  ///< may be infinite
   };
   void visit_state(sim::StateArchive& archive) { archive(position, velocity); }
-  /// One step towards a position.
+  /// Runs one step towards a position.
   void approach(double target, const Limits& limits, double step_s);
-  /// One step at a velocity, never beyond the positions given.
+  /// Runs one step at a velocity, within the position limits.
   void run(double target_velocity, double low, double high, const Limits& limits, double step_s);
 
  private:
   void advance(double desired_velocity, const Limits& limits, double step_s);
 };
 
-/// Drives one axis of a joint to a position, at a velocity or with an effort.
+/// Servo that drives one axis of a joint to a position, at a velocity or with an effort.
 ///
-/// Position and velocity commands move a set point with limited velocity and acceleration.  `control: velocity` lets
-/// the physics' velocity motor follow it: velocity = that of the set point + kp * error.  `control: pid` applies the
-/// effort kp * error + ki * integral + kd * error of the velocity.  An effort command applies that effort.
+/// Position and velocity commands move a set point with limited velocity and acceleration.  `control: velocity` uses
+/// the velocity motor of the physics: velocity = set point velocity + kp * error.  `control: pid` applies the effort kp
+/// * error + ki * integral of the error + kd * velocity error.  An effort command applies that effort.
 class JointServo final : public sim::Actuator {
  public:
   static constexpr const char* meaning = "Servo on one axis of a joint, commanded by position, velocity or effort.";
@@ -49,7 +49,7 @@ class JointServo final : public sim::Actuator {
     double kp = 20;
     double ki = 0;
     double kd = 0;
-    double integral_limit = 0;  ///< of the effort that the integral gives
+    double integral_limit = 0;  ///< limit of the effort of the integral term
     std::optional<double> low;
     std::optional<double> high;
     double max_velocity = 1;
@@ -62,14 +62,14 @@ class JointServo final : public sim::Actuator {
 
   JointServo(const Params& params, const sim::DeviceContext& context);
   void act(const sim::ActContext& context) override;
-  /// hold: keeps the position of this moment; stop: slows down to rest; coast: no effort; park: goes to
-  /// `park_position`.
+  /// Applies a safe state.  hold: holds the present position; stop: slows down to rest; coast: no effort; park: moves
+  /// to `park_position`.
   void make_safe(sim::SafeState safe) override;
   void change(const Params& params);
   double power_W() const override;
   void visit_state(sim::StateArchive& archive) override;
 
-  /// Beyond the limits it is cut.
+  /// Command a position, velocity or effort, which are limited.
   void set_position(double position);
   void set_velocity(double velocity);
   void set_effort(double effort);
@@ -90,15 +90,15 @@ class JointServo final : public sim::Actuator {
   const sim::Vehicle& vehicle_;
   std::optional<double> low_stop_, high_stop_;
   double low_, high_;
-  Mode mode_ = Mode::position;  ///< until the first command it stays where it is
-  double target_ = 0;           ///< by mode
+  Mode mode_ = Mode::position;  ///< until the first command it holds its position
+  double target_ = 0;           ///< target in the unit of the mode
   SetPoint set_point_;
-  bool follows_ = false;  ///< without force the set point goes with the joint, so that it does not jump afterwards
+  bool follows_ = false;  ///< without effort the set point tracks the joint, to avoid a jump afterwards
   double integral_ = 0;   ///< effort
-  double applied_ = 0;    ///< effort of the last step, where this class gave it
+  double applied_ = 0;    ///< effort of the last step, when applied by this class
 };
 
-/// Takes shoal.joint_servo_command_t, or shoal.joint_command_t for a velocity, distinguished by their fingerprints.
+/// Receives shoal.joint_servo_command_t, or shoal.joint_command_t for a velocity, distinguished by their fingerprints.
 class JointServoController final : public sim::Controller {
  public:
   static constexpr const char* command_messages = "shoal.joint_servo_command_t, shoal.joint_command_t";

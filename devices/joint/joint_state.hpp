@@ -7,8 +7,8 @@
 
 namespace devices {
 
-/// Positions, velocities and efforts of joints.  A joint with two axes is listed twice: NAME and NAME/1; a
-/// ball with a motor three times.
+/// Sensor of positions, velocities and efforts of joints.  A joint with two axes is listed twice, as NAME and NAME/1; a
+/// ball joint with a motor three times.
 class JointState final : public sim::Sensor {
  public:
   static constexpr const char* meaning = "Positions, velocities and efforts of the vehicle's joints.";
@@ -31,11 +31,11 @@ class JointState final : public sim::Sensor {
   JointState(const Params& params, const sim::DeviceContext& context);
   void measure(const sim::SenseContext& context) override;
   void disturb(double dt_s, sim::Random& random) override;
-  /// The errors; the joints stay.
+  /// Returns the errors, which can change; the joints cannot.
   auto noises() { return std::tie(position_noise_, velocity_noise_, effort_noise_); }
   void visit_state(sim::StateArchive& archive) override;
 
-  // In the joints' own signs; rad, rad/s, N m, or m, m/s, N of a slider.
+  // Readings with the signs of the joints; rad, rad/s, N m, or m, m/s, N of a slider.
   const std::vector<Axis>& axes() const { return axes_; }
   const std::vector<double>& positions() const { return positions_; }
   const std::vector<double>& velocities() const { return velocities_; }

@@ -8,15 +8,13 @@
 
 namespace devices {
 
-/// A mass inside the vehicle that moves and so shifts its weight: the battery of a glider.  The vehicle's own numbers
-/// have it at the command 0.
-///
-/// - slide: along x of the device frame D; the command is the way in m.  Forwards turns the nose down.
-/// - turn: about x of D, hanging along -z at a radius; the command is an angle in rad.  Positive swings it to +y, which
-///   rolls the vehicle to port.
-///
-/// What acts is the moment of its weight in the attitude of this moment.  What is left out: the force that moves it,
-/// its own inertia about the new place, and its part in centrifugal forces; all are small for a mass that moves slowly.
+/// Moving mass inside the vehicle that shifts its centre of mass, such as the battery of a glider.  The inertia of the
+/// vehicle includes the mass at command 0.
+/// - slide: along x of the device frame D; the command is the displacement in m.  Forward pitches the nose down.
+/// - turn: about x of D, at a radius along -z; the command is an angle in rad.  Positive moves it towards +y, which
+/// rolls the vehicle to port. The moment of its weight in the present attitude is applied.  The force that moves it,
+/// the change of inertia with its position, and its centrifugal forces are neglected; all are small for a mass that
+/// moves slowly.
 class MovingMass final : public sim::Actuator {
  public:
   static constexpr const char* meaning =
@@ -40,14 +38,14 @@ class MovingMass final : public sim::Actuator {
   };
 
   MovingMass(const Params& params, const sim::DeviceContext& context);
-  /// `effectiveness` slows its motor; at 0 it stays where it is.
+  /// Runs one step.  `effectiveness` slows the motor; at 0 the mass holds its position.
   void act(const sim::ActContext& context) override;
-  /// hold: it stays where it is; stop: to 0.
+  /// Applies a safe state.  hold: holds its position; stop: moves to 0.
   void make_safe(sim::SafeState safe) override;
   void change(const Params& params);
   void visit_state(sim::StateArchive& archive) override;
 
-  /// m or rad, by `motion`; beyond the limits it is cut.
+  /// Commands a position, m or rad by `motion`, which is limited.
   void set_command(double command);
   double place() const { return lag_.value(); }
 

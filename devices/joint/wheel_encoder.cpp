@@ -57,10 +57,10 @@ void WheelEncoder::measure(const sim::SenseContext&) {
   }
 }
 
-/// Each tick is missed on its own: a binomial number of `passed`.
+/// Returns the number of missed ticks, which are independent: binomially distributed with `passed` trials.
 std::int64_t WheelEncoder::missed_of(std::int64_t passed, sim::Random& random) const {
   if (params_.missed_ticks <= 0) return 0;
-  // One by one while they are few; more than that are normal to within their rounding.
+  // Draw few ticks one by one, and many with the normal approximation of the binomial distribution.
   constexpr std::int64_t few = 1000;
   const double p = params_.missed_ticks;
   if (passed > few) {

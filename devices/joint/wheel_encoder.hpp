@@ -7,7 +7,7 @@
 
 namespace devices {
 
-/// Counts the ticks of wheels.  It counts how joints turn: a wheel that slips is counted as one that rolls.
+/// Wheel encoder: counts ticks of the rotation of joints, so that a slipping wheel is counted like a rolling one.
 class WheelEncoder final : public sim::Sensor {
  public:
   static constexpr const char* meaning = "Ticks of wheels, counted from the turning of their joints.";
@@ -17,20 +17,20 @@ class WheelEncoder final : public sim::Sensor {
     std::vector<std::string> joints;
     int ticks_per_turn = 1024;
     double missed_ticks = 0;
-    sim::NoiseParams noise;  ///< of the angle each wheel turned between two samples, rad
+    sim::NoiseParams noise;  ///< error of the rotation of each wheel between two samples, rad
     void read(sim::ParamReader& in);
   };
   struct Wheel {
     std::string name;
     const sim::Joint* joint;
-    int axis;  ///< the last one of the joint: of hinge2 the wheel's
+    int axis;  ///< last axis of the joint; the wheel axis of a hinge2
   };
 
   WheelEncoder(const Params& params, const sim::DeviceContext& context);
-  /// The truth: every tick counted, and the joint's own rate.
+  /// Measures the truth: every tick, and the rate of the joint.
   void measure(const sim::SenseContext& context) override;
   void disturb(double dt_s, sim::Random& random) override;
-  /// The errors; joints and ticks stay.
+  /// Applies changed errors; joints and ticks are kept.
   void change(const Params& params) { params_.missed_ticks = params.missed_ticks; }
   auto noises() { return std::tie(noise_); }
   void visit_state(sim::StateArchive& archive) override;
@@ -46,9 +46,9 @@ class WheelEncoder final : public sim::Sensor {
   std::vector<Wheel> wheels_;
   sim::NoiseOf<&Params::noise> noise_;
   std::vector<double> angles_rad_;     ///< true, at the last sample
-  std::vector<double> believed_rad_;   ///< with the noise
-  std::vector<std::int64_t> passed_;   ///< ticks of the believed angle
-  std::vector<std::int64_t> counted_;  ///< of those, the ones that were counted
+  std::vector<double> believed_rad_;   ///< angle with noise
+  std::vector<std::int64_t> passed_;   ///< ticks of the angle with noise
+  std::vector<std::int64_t> counted_;  ///< counted ones of those ticks
   std::vector<std::int64_t> ticks_;    ///< the reading
   std::vector<double> rates_radps_;    ///< the reading
 };

@@ -45,7 +45,7 @@ double Battery::open_circuit_V() const {
   return std::lerp(table[low], table[low + 1], at - static_cast<double>(low));
 }
 
-/// What the actuators took in a step, and what each device takes all the time.
+/// Returns the power of the actuators in a step plus the constant power of all devices.
 double Battery::drawn_W(double step_s) {
   sim::VehicleSystems& systems = vehicle_.systems();
   double power_W = systems.drawn_J / step_s;
@@ -58,11 +58,11 @@ double Battery::drawn_W(double step_s) {
 void Battery::act(const sim::ActContext& context) {
   const double power_W = drawn_W(context.step_s);
   const double E = open_circuit_V(), R = params_.internal_resistance_ohm;
-  // The smaller root of R I^2 - E I + P = 0, in the form that holds for R = 0 too.
+  // Smaller root of R I^2 - E I + P = 0, in the form that is also valid for R = 0.
   const double root = std::sqrt(std::max(E * E - 4 * R * power_W, 0.0));
   current_A_ = E * E < 4 * R * power_W ? E / (2 * R) : 2 * power_W / (E + root);
   energy_J_ -= E * current_A_ * context.step_s;
-  // What is left of a step's worth by rounding does not make another step.
+  // Treat a remainder due to rounding as empty, to avoid an additional step.
   if (energy_J_ > 1e-6 * E * current_A_ * context.step_s) return;
   energy_J_ = 0;
   current_A_ = 0;
@@ -82,7 +82,7 @@ void Battery::disturb(double dt_s, sim::Random& random) {
   current_noise_.apply(reading_.current_A, dt_s, random);
   charge_noise_.apply(reading_.charge, dt_s, random);
   reading_.charge = std::clamp(reading_.charge, 0.0, 1.0);
-  reading_.energy_J = reading_.charge * capacity_J();  // a gauge knows the energy from the charge
+  reading_.energy_J = reading_.charge * capacity_J();  // a fuel gauge derives the energy from the charge
 }
 
 void Battery::change(const Params& params) {

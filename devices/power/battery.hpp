@@ -7,10 +7,10 @@
 
 namespace devices {
 
-/// The one battery of a vehicle: an open-circuit voltage E that falls with the charge, behind an internal resistance R
-/// (the Rint model; Plett, Battery Management Systems, vol. I: Battery Modeling, 2015).  It gives the vehicle the power
-/// P it draws: E I - R I^2 = P; of that the charge pays E I.  Where P is more than E^2 / 4R the voltage breaks down to
-/// E / 2, and no more comes.
+/// Battery of a vehicle, at most one: an open-circuit voltage E that falls with the charge, in series with an internal
+/// resistance R (the Rint model; Plett, Battery Management Systems, vol. I: Battery Modeling, 2015).  The current I
+/// follows from the power P drawn by the vehicle: E I - R I^2 = P; the charge decreases by the power E I.  When P
+/// exceeds E^2 / 4R, the voltage drops to E / 2, and the power is limited to that value.
 class Battery final : public sim::Sensor {
  public:
   static constexpr const char* meaning = "Battery of the vehicle: drained by its devices; empty, they go off.";
@@ -34,11 +34,11 @@ class Battery final : public sim::Sensor {
   };
 
   Battery(const Params& params, const sim::DeviceContext& context);
-  /// Drains it by what the devices drew since the last step.
+  /// Discharges it by the energy that the devices have drawn since the last step.
   void act(const sim::ActContext& context);
   void measure(const sim::SenseContext& context) override;
   void disturb(double dt_s, sim::Random& random) override;
-  /// Its charge stays the same share of the capacity.
+  /// Applies changed parameters.  The state of charge, as a share of the capacity, is kept.
   void change(const Params& params);
   auto noises() { return std::tie(voltage_noise_, current_noise_, charge_noise_); }
   void visit_state(sim::StateArchive& archive) override {

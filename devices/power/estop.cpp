@@ -21,7 +21,7 @@ EmergencyStop::EmergencyStop(const Params& params, const sim::DeviceContext& con
     : params_(params), vehicle_(context.vehicle) {
   if (params.engaged_at_start) set_engaged(true);
   if (params.stops_on_touch.empty()) return;
-  // The bumper may come after it in the file, so that only its description is there yet.
+  // The bumper may follow it in the file: at this point only its configuration exists.
   const auto& devices = vehicle_.config().devices;
   const bool known = std::any_of(devices.begin(), devices.end(), [&](const sim::DeviceConfig& device) {
     return device.name == params.stops_on_touch && device.type == "bumper";

@@ -10,8 +10,8 @@ namespace devices {
 
 class Bumper;
 
-/// The emergency stop of a vehicle: while it is engaged, all actuators are in their safe states and take no commands.
-/// Released, they stay there until their next command.
+/// Emergency stop of a vehicle: while it is engaged, all actuators are in their safe states and accept no commands.
+/// After release they remain there until their next command.
 class EmergencyStop final : public sim::Sensor {
  public:
   static constexpr const char* meaning = "Emergency stop: engaged, all actuators of the vehicle go to safe states.";
@@ -24,7 +24,7 @@ class EmergencyStop final : public sim::Sensor {
   };
 
   EmergencyStop(const Params& params, const sim::DeviceContext& context);
-  /// Engages when the bumper begins to touch; a release holds until the next touch.
+  /// Engages at the start of a contact of the bumper; a release is effective until the next contact.
   void act(const sim::ActContext& context);
   void measure(const sim::SenseContext& context) override;
   void disturb(double, sim::Random&) override {}
@@ -35,12 +35,12 @@ class EmergencyStop final : public sim::Sensor {
  private:
   Params params_;
   sim::Vehicle& vehicle_;
-  const Bumper* bumper_ = nullptr;  ///< once all devices are there
+  const Bumper* bumper_ = nullptr;  ///< set when all devices have been built
   bool touched_ = false;
   bool engaged_ = false;  ///< as sampled
 };
 
-/// Takes shoal.estop_t.
+/// Receives shoal.estop_t.
 class EmergencyStopController final : public sim::Controller {
  public:
   static constexpr const char* command_messages = "shoal.estop_t";

@@ -11,7 +11,7 @@ namespace devices {
 
 namespace {
 
-/// Sound is slower in no water.
+/// Lower bound of the speed of sound in water.
 constexpr double slowest_mps = 1400;
 
 }  // namespace
@@ -44,6 +44,7 @@ bool Interrogator::listens_to(const sim::Signal& signal) const {
 void Interrogator::ping(sim::Time at) {
   requested_.clear();
   answers_.clear();
+  // List the transponders of the network on other vehicles.
   double slowest_turnaround_s = params_.ping_s, max_answer_s = 0;
   for (const Transponder* transponder : network_.members()) {
     if (transponder->params().network != params_.network || &transponder->vehicle() == &context_.vehicle) continue;
@@ -51,9 +52,11 @@ void Interrogator::ping(sim::Time at) {
     slowest_turnaround_s = std::max(slowest_turnaround_s, transponder->params().turnaround_s);
     max_answer_s = std::max(max_answer_s, transponder->params().ping_s);
   }
+  // Set the reception window: two-way travel time, turnaround and answer.
   waiting_for_ = requested_;
   pinged_ = at;
   window_end_ = at + sim::from_seconds(2 * params_.range_max_m / slowest_mps + slowest_turnaround_s + max_answer_s);
+  // Transmit the ping.
   sim::Signal signal;
   signal.kind = sim::Signal::Kind::ping;
   signal.source_level = sim::Decibels{params_.source_level_dB};
@@ -79,7 +82,7 @@ void Interrogator::receive(const sim::Reception& received) {
 }
 
 sim::Matrix3d Interrogator::R_WS(sim::Time at) const {
-  // The body stands as at the end of the step; the sound came a little before.
+  // The body is in its pose at the end of the step, slightly after the arrival of the sound.
   const sim::Vector3d turn_rad = context_.body.motion().w_WB_W * sim::to_seconds(at - context_.world.now());
   const double angle_rad = turn_rad.norm();
   if (angle_rad == 0) return transducer_.R_WS();

@@ -10,7 +10,7 @@
 
 namespace devices {
 
-/// Keys of a device that asks transponders.
+/// Parameters of a device that interrogates transponders.
 struct InterrogatorParams {
   std::string network;
   double range_max_m = 1000;
@@ -22,31 +22,33 @@ struct InterrogatorParams {
   void read(sim::ParamReader& in);
 };
 
-/// Pings the transponders of a network and listens for their answers, which may come side by side on their frequencies.
+/// Interrogator: pings the transponders of a network and receives their answers, which may overlap on their different
+/// frequencies.
 class Interrogator final : public sim::AcousticListener {
  public:
-  /// What came back from one transponder.
+  /// Answer of one transponder.
   struct Answer {
-    std::string transponder;                       ///< vehicle/device
-    sim::Time started{0};                          ///< when it came
-    double two_way_s = 0;                          ///< of the sound there and back, without the turnaround
-    double distance_m = 0;                         ///< the mean of the ways there and back: the truth
-    sim::Vector3d p_ST_S = sim::Vector3d::Zero();  ///< where it answered, from where and how the sensor was at `begun`
+    std::string transponder;  ///< vehicle/device
+    sim::Time started{0};     ///< start of the reception
+    double two_way_s = 0;     ///< two-way travel time, without the turnaround
+    double distance_m = 0;    ///< truth: mean of the path lengths of ping and answer
+    sim::Vector3d p_ST_S =
+        sim::Vector3d::Zero();  ///< position of the transponder at its answer, in the sensor frame S at `started`
     void visit_state(sim::StateArchive& archive) { archive(transponder, started, two_way_s, distance_m, p_ST_S); }
   };
 
   Interrogator(const InterrogatorParams& params, const sim::DeviceContext& context);
   void change(const InterrogatorParams& params);
-  /// Sends a ping at `at`, the end of a step, to all that are in the network now.  Answers to an earlier one no longer
-  /// count.
+  /// Sends a ping at `at`, the end of a step, to all present members of the network.  Answers to an earlier ping are
+  /// then ignored.
   void ping(sim::Time at);
-  /// Whether all interrogated transponders have answered, or none in range can still answer.
+  /// Returns whether all interrogated transponders have answered, or none in range can still answer.
   bool done(sim::Time now) const { return waiting_for_.empty() || now >= window_end_; }
-  /// Names of all that were asked.
+  /// Returns the names of all interrogated transponders.
   const std::vector<std::string>& requested() const { return requested_; }
-  /// What came since the last call, in the order of its arrival.
+  /// Returns the answers since the last call, in the order of arrival.
   std::vector<Answer> take_answers();
-  /// All but its transducer, which the acoustic channel knows.
+  /// Visits the state except the transducer, which the acoustic channel visits.
   void visit_state(sim::StateArchive& archive);
 
   bool listens_to(const sim::Signal& signal) const override;

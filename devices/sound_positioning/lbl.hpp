@@ -10,9 +10,9 @@
 
 namespace devices {
 
-/// Long baseline: interrogates a net of transponders with one ping, and reports the travel times of all answers
-/// together, when they are complete or no more can arrive from within range.  The next ping goes out at a sample after
-/// that, not before `ping_period_s` is over.
+/// Long-baseline positioning (LBL): interrogates a net of transponders with one ping, and reports the travel times of
+/// all answers together, when they are complete or no more can arrive from within range.  The next ping is sent at a
+/// later sample, at least `ping_period_s` after the last one.
 class Lbl final : public sim::Sensor {
  public:
   static constexpr const char* meaning = "LBL: ranges to a net of acoustic transponders, by the time of sound.";
@@ -25,7 +25,7 @@ class Lbl final : public sim::Sensor {
     sim::NoiseParams time_noise;  ///< s
     void read(sim::ParamReader& in);
   };
-  /// Of one transponder.
+  /// Range to one transponder.
   struct Range {
     std::string transponder;
     double travel_time_s = 0, range_m = 0;  ///< NaN: no answer
@@ -41,7 +41,8 @@ class Lbl final : public sim::Sensor {
   void measure(const sim::SenseContext& context) override;
   void disturb(double dt_s, sim::Random& random) override;
   void visit_state(sim::StateArchive& archive) override;
-  /// Answers to the ping that is finished at this sample; empty: none is, or no transponder was interrogated.
+  /// Returns the answers to the ping completed at this sample; empty: none is completed, or no transponder was
+  /// interrogated.
   const std::vector<Range>& ranges() const { return ranges_; }
 
  private:
@@ -53,8 +54,8 @@ class Lbl final : public sim::Sensor {
   bool asking_ = false;
   sim::Time next_ping_{0};
   std::vector<Range> ranges_;
-  double assumed_mps_ = 0;   ///< that turns the times of this sample into ranges
-  double since_ping_s_ = 0;  ///< for the slow parts of the error
+  double assumed_mps_ = 0;   ///< sound speed used for the ranges of this sample
+  double since_ping_s_ = 0;  ///< interval for the slowly varying errors
 };
 
 }  // namespace devices

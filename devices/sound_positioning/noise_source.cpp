@@ -47,7 +47,7 @@ void NoiseSource::send_pulses(const sim::ActContext& context) {
   const sim::Time period = sim::from_seconds(*params_.period_s);
   const sim::Time end = context.now + sim::from_seconds(context.step_s);
   for (sim::Time at = (context.now + period - sim::Time{1}) / period * period; at < end; at += period) {
-    if (at < transducer_->busy_until()) continue;  // the last of a longer period, before a change
+    if (at < transducer_->busy_until()) continue;  // the last pulse of a longer period, before a change
     sim::Signal pulse;
     pulse.kind = sim::Signal::Kind::noise;
     pulse.source_level = sim::Decibels{params_.level_dB};
@@ -63,7 +63,7 @@ void NoiseSource::make_safe(sim::SafeState safe) {
 }
 
 void NoiseSource::visit_state(sim::StateArchive& archive) {
-  archive(on_);  // what sounds now is the channel's
+  archive(on_);  // the acoustic channel visits the present sound
 }
 
 SHOAL_ACTUATOR("noise_source", NoiseSource, NumberController<NoiseSource>);

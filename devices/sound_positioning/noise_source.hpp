@@ -8,9 +8,9 @@
 
 namespace devices {
 
-/// Makes noise in the water, in the way of modems and transponders: an engine, a pile driver, a jammer, another
-/// vehicle's sonar.  `continuous` noise is in the water everywhere at once, as part of the ambient noise; pulses travel
-/// as signals do.
+/// Noise source in the water that interferes with modems and transponders: an engine, a pile driver, a jammer, the
+/// sonar of another vehicle.  `continuous` noise has no travel time and is added to the ambient noise; pulses propagate
+/// as signals.
 class NoiseSource final : public sim::Actuator, public sim::AcousticListener {
  public:
   static constexpr const char* meaning = "Makes noise under water: an engine, a jammer, another vehicle's sonar.";

@@ -11,7 +11,7 @@
 
 namespace devices {
 
-/// All range_beacon devices of a world, in the order in which they came.
+/// The range_beacon devices of a world, in the order in which they were added.
 class RangeBeacon::Network {
  public:
   void join(RangeBeacon& device) { members_.push_back(&device); }
@@ -94,7 +94,7 @@ void RangeBeacon::look_at(const sim::SenseContext& context, const std::string& b
   const double range_m = p_S.norm();
   if (range_m > params_.range_max_m || !carries(context.world.medium(), params_.through, p_W)) return;
   if (params_.occlusion && range_m > 0) {
-    // A fixed beacon may stick to a wall: the last millimetre hides nothing.
+    // A fixed beacon may be attached to a wall: ignore obstacles in the last millimetre.
     const double reach_m = std::max(0.0, range_m - 1e-3);
     const sim::Vector3d direction_W = context.X_WS.linear() * (p_S / range_m);
     const auto hit =

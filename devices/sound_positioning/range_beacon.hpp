@@ -10,8 +10,8 @@
 
 namespace devices {
 
-/// Measures ranges, and directions if configured, to beacons of its network: the range_beacon devices of other vehicles
-/// and beacons at fixed places.  The signal takes no time.
+/// Sensor of ranges, and directions if configured, to the beacons of its network: range_beacon devices of other
+/// vehicles and beacons at fixed positions.  The signal propagates instantaneously.
 class RangeBeacon final : public sim::Sensor {
  public:
   static constexpr const char* meaning = "Ranges and directions to beacons: other vehicles' devices or fixed places.";
@@ -24,7 +24,7 @@ class RangeBeacon final : public sim::Sensor {
   struct Params {
     std::string network = "beacons";
     std::vector<FixedBeacon> beacons;
-    bool beacon_only = false;  ///< it only serves as a beacon for others and measures nothing
+    bool beacon_only = false;  ///< serves only as a beacon for others, and measures nothing
     bool bearing = false;
     bool elevation = false;
     SignalCarrier through = SignalCarrier::radio;
@@ -57,13 +57,13 @@ class RangeBeacon final : public sim::Sensor {
  private:
   class Network;
   static const sim::SharedKind<Network> network_of_world;
-  /// The errors to one beacon have their own life.
+  /// Errors of one beacon, independent of those of the others.
   struct Errors {
     std::string beacon;
     sim::Noise range, bearing, elevation;
     double seen_at_s;
   };
-  /// `group`: of the vehicle that carries the beacon; -1: it stands free.
+  /// Measures one beacon.  `group`: group of the vehicle that carries it; -1: fixed beacon.
   void look_at(const sim::SenseContext& context, const std::string& beacon, const sim::Vector3d& p_W, int group);
   bool answers() const;
   sim::Vector3d p_WS() const;

@@ -6,17 +6,17 @@
 
 namespace devices {
 
-/// What carries a signal from device to device, and so what it passes.
+/// Carrier of a signal between devices, which determines the media it passes through.
 enum class SignalCarrier {
-  radio,     ///< not water
-  acoustic,  ///< not air; where a world has no water it passes nothing
-  any,       ///< everything
+  radio,     ///< does not pass through water
+  acoustic,  ///< does not pass through air; blocked in a world without water
+  any,       ///< passes through everything
 };
 
-/// The key `through`.
+/// Reads the key `through`.
 void read_through(sim::ParamReader& in, SignalCarrier& through);
 
-/// An antenna or transducer works at this place.
+/// Returns whether an antenna or transducer works at this position.
 bool carries(const sim::Medium& medium, SignalCarrier carrier, const sim::Vector3d& p_W);
 
 }  // namespace devices

@@ -10,8 +10,8 @@
 namespace devices {
 
 /// Acoustic transponder: answers the pings of other vehicles in its network on its own frequency.
-/// The answer begins `turnaround_s` after the ping, first sound to first sound, but not before the ping has ended.  A
-/// ping that comes while an answer is still to be sent is not answered.
+/// The answer starts `turnaround_s` after the start of the ping, but not before the ping has ended.  A ping received
+/// while an answer is pending is not answered.
 class Transponder final : public sim::Sensor, public sim::AcousticListener {
  public:
   static constexpr const char* meaning = "Acoustic transponder: answers USBL and LBL devices of its network.";

@@ -10,10 +10,11 @@
 
 namespace devices {
 
-/// Ultra-short baseline: range and direction to the transponders of its network.  A ping goes out at a sample, every
-/// `ping_period_s`, but not before the answers to the last one are in.  The travel time is that of the sound from where
-/// this device was at the ping to the transponder and from there to where it is when the answer comes; the direction is
-/// to where the transponder answered.  What came is reported at the next sample.
+/// Ultra-short-baseline positioning (USBL): range and direction to the transponders of its network.  A ping is sent at
+/// a sample, every `ping_period_s`, but not before the answers to the last one are complete.  The travel time is that
+/// from the position of this device at the ping to the transponder, and from there to the position of this device at
+/// the arrival of the answer; the direction is that to the transponder at its answer.  Answers are reported at the next
+/// sample.
 class Usbl final : public sim::Sensor {
  public:
   static constexpr const char* meaning = "USBL: range and direction to acoustic transponders, by the time of sound.";
@@ -28,7 +29,7 @@ class Usbl final : public sim::Sensor {
     sim::NoiseParams elevation_noise;  ///< rad
     void read(sim::ParamReader& in);
   };
-  /// What has been received from one transponder.
+  /// Measurement of one transponder.
   struct Fix {
     std::string target;
     double travel_time_s = 0, range_m = 0, azimuth_rad = 0, elevation_rad = 0;
@@ -54,11 +55,11 @@ class Usbl final : public sim::Sensor {
   sim::NoiseOf<&Params::elevation_noise> elevation_noise_;
   sim::Time next_ping_{0};
   std::vector<Fix> fixes_;
-  double assumed_mps_ = 0;  ///< that turns the times of this sample into ranges
-  double since_fix_s_ = 0;  ///< for the slow parts of the errors
+  double assumed_mps_ = 0;  ///< sound speed used for the ranges of this sample
+  double since_fix_s_ = 0;  ///< interval for the slowly varying errors
 };
 
-/// Publishes one shoal.usbl_t for each answer that came since the last sample.
+/// Publishes one shoal.usbl_t for each answer since the last sample.
 class UsblReporter final : public sim::Reporter {
  public:
   static constexpr const char* report_message = "shoal.usbl_t";

@@ -14,7 +14,7 @@
 
 namespace sim {
 
-/// Reports one message a sample.  A device fills in its message by a function next to its model:
+/// Reporter of one message per sample.  A device fills its message in a function next to its model:
 ///
 ///     void fill(const Pressure& pressure, shoal::pressure_t& message);
 ///     SHOAL_SENSOR("pressure", Pressure, shoal::pressure_t);
@@ -40,7 +40,7 @@ class MessageReporter final : public Reporter {
     }
   }
 
-  /// As a schema names it, such as `shoal.pressure_t`.
+  /// Returns the name of the message type in schemas, such as `shoal.pressure_t`.
   static std::string message_name() {
     const std::unique_ptr<char, decltype(&std::free)> type(
         abi::__cxa_demangle(typeid(Message).name(), nullptr, nullptr, nullptr), &std::free);

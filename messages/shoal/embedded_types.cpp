@@ -11,7 +11,7 @@ namespace {
 
 struct KnownTypes {
   std::vector<LcmSource> sources;
-  std::list<MessageTypes> generations;  ///< the last one is complete; the others are still pointed to
+  std::list<MessageTypes> generations;  ///< the last one is complete; pointers into the others remain valid
 };
 
 KnownTypes& known_types() {

@@ -146,7 +146,7 @@ class Parser {
     return value;
   }
 
-  /// The lines of comment that end right above `line`.
+  /// Returns the comment lines directly above `line`.
   std::string comment_above(int line) const {
     std::string text;
     for (auto it = comments_.find(--line); it != comments_.end(); it = comments_.find(--line))
@@ -241,7 +241,7 @@ class Parser {
       advance();
     }
     expect(";");
-    // The comment behind the semicolon was read with the token after it.
+    // The comment after the semicolon was read with the next token.
     if (const auto it = comments_.find(line); it != comments_.end())
       for (std::size_t i = first; i < schema.members.size(); ++i) schema.members[i].comment = it->second;
   }

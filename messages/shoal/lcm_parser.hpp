@@ -7,7 +7,7 @@
 
 namespace shoal {
 
-/// The types of one .lcm text, with fingerprint and pointers to other types still missing.
+/// Returns the types of one .lcm text, without fingerprints and pointers to other types.
 std::vector<MessageSchema> parse_lcm(const LcmSource& source);
 
 }  // namespace shoal

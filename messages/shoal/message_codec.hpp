@@ -18,7 +18,7 @@ std::int64_t fingerprint_of() {
   return M::getHash();
 }
 
-/// The schema of one of Shoal's own types, or of a plugin's.
+/// Returns the schema of a type of Shoal or of a plugin.
 template <class M>
 const MessageSchema& schema_of() {
   static const MessageSchema& schema = [&]() -> const MessageSchema& {
@@ -30,15 +30,15 @@ const MessageSchema& schema_of() {
   return schema;
 }
 
-/// Encodes into `out`, whose memory is reused.  Throws MessageError when an array is not as long as its
-/// length member says: the generated code would read past its end.
+/// Encodes into `out`, whose memory is reused.  Throws MessageError when the size of an array differs from its length
+/// member, because the generated code would read past its end.
 template <class M>
 void encode_into(const M& message, std::vector<std::byte>& out) {
   check_array_lengths(message);
   out.resize(static_cast<std::size_t>(message.getEncodedSize()));
   const int written = message.encode(out.data(), 0, static_cast<int>(out.size()));
   if (written < 0) throw MessageError(std::string("cannot encode ") + M::getTypeName());
-  out.resize(static_cast<std::size_t>(written));  // a string with a NUL inside is cut there
+  out.resize(static_cast<std::size_t>(written));  // a string with an embedded NUL ends there
 }
 
 template <class M>

@@ -6,7 +6,7 @@
 namespace shoal {
 namespace {
 
-// The hash of lcm-gen: signed 64-bit arithmetic with wrap-around, done on unsigned.
+// Hash of lcm-gen: signed 64-bit arithmetic with wrap-around, computed with unsigned numbers.
 std::uint64_t hash_char(std::uint64_t v, char c) {
   const auto shifted = static_cast<std::uint64_t>(static_cast<std::int64_t>(v) >> 55);
   return ((v << 8) ^ shifted) + static_cast<std::uint64_t>(static_cast<std::int64_t>(static_cast<signed char>(c)));
@@ -33,7 +33,7 @@ std::uint64_t members_hash(const MessageSchema& schema) {
   return v;
 }
 
-/// `parents`: a type inside itself counts as 0.
+/// Computes the fingerprint.  `parents`: a recursive type contributes 0.
 std::uint64_t compute_fingerprint(const MessageSchema& schema, std::vector<const MessageSchema*>& parents) {
   for (const MessageSchema* parent : parents)
     if (parent == &schema) return 0;
@@ -81,7 +81,7 @@ std::size_t wire_size(WireType type) {
     case WireType::float64:
       return 8;
     case WireType::string:
-      return 5;  // at least: length and NUL
+      return 5;  // minimum: length and NUL
     case WireType::compound:
       break;
   }

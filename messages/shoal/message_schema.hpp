@@ -15,7 +15,7 @@
 
 namespace shoal {
 
-/// A message or a .lcm text that is not what it should be.
+/// Error of an invalid message or .lcm text.
 class MessageError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -25,32 +25,32 @@ struct MessageSchema;
 
 enum class WireType { boolean, byte, int8, int16, int32, int64, float32, float64, string, compound };
 
-/// Encoded bytes of one value; of a string at least.  0 for compounds.
+/// Returns the encoded bytes of one value; the minimum for a string, 0 for compounds.
 std::size_t wire_size(WireType type);
 
 struct Dimension {
   std::string text;           ///< as written between the brackets; it enters the fingerprint
-  std::int64_t constant = 0;  ///< the size, unless a member gives it
-  int length_slot = -1;       ///< which of the type's lengths gives the size; -1: constant
+  std::int64_t constant = 0;  ///< constant size, unless a member gives it
+  int length_slot = -1;       ///< index of the length that gives the size; -1: constant
   bool is_variable() const { return length_slot >= 0; }
 };
 
 struct Member {
   std::string name;
-  std::string type_name;  ///< as lcm-gen sees it: "double", or with package: "shoal.image_metadata_t"
+  std::string type_name;  ///< name in lcm-gen: "double", or with package: "shoal.image_metadata_t"
   std::string comment;
   WireType type = WireType::byte;
   const MessageSchema* compound = nullptr;
   std::vector<Dimension> dimensions;
-  int length_slot = -1;  ///< when this member is the length of an array
+  int length_slot = -1;  ///< index of the length, when this member is the length of an array
   bool is_variable() const;
 };
 
-/// One type of a .lcm file.
+/// Schema of one type of a .lcm file.
 struct MessageSchema {
   std::string name;  ///< with package: "shoal.pose_t"
   std::string comment;
-  bool is_enum = false;  ///< on the wire a single int32, member "value"
+  bool is_enum = false;  ///< encoded as a single int32, member "value"
   std::vector<Member> members;
   std::uint64_t fingerprint = 0;
   std::size_t min_size = 0;  ///< encoded bytes without fingerprint when all arrays and strings are empty
@@ -62,56 +62,56 @@ struct LcmSource {
   std::string text;
 };
 
-/// A set of types whose members all are known.
+/// Complete set of types: the types of all members are in it.
 class MessageTypes {
  public:
-  /// Throws MessageError, `file:line:col: ...`.
+  /// Parses the sources.  Throws MessageError, `file:line:col: ...`.
   explicit MessageTypes(std::span<const LcmSource> sources);
   MessageTypes(MessageTypes&&) = default;
   MessageTypes& operator=(MessageTypes&&) = default;
 
-  /// By full name, "shoal.pose_t".
+  /// Returns a type by its full name, such as "shoal.pose_t"; null when there is none.
   const MessageSchema* find(std::string_view name) const;
-  /// Several types are equal on the wire when their members are; the first by name is found.
+  /// Returns a type by its fingerprint; the first by name of several types with equal members.
   const MessageSchema* find(std::uint64_t fingerprint) const;
-  /// By name without package, and fingerprint: all that a generated class knows of itself.
+  /// Returns a type by its name without package and its fingerprint, the data available from a generated class.
   const MessageSchema* find(std::string_view short_name, std::uint64_t fingerprint) const;
   const std::map<std::string, MessageSchema, std::less<>>& all() const { return by_name_; }
 
  private:
   void resolve();
 
-  std::map<std::string, MessageSchema, std::less<>> by_name_;  // nodes do not move: members point to them
+  std::map<std::string, MessageSchema, std::less<>> by_name_;  // map nodes have stable addresses: members point to them
   std::map<std::uint64_t, const MessageSchema*> by_fingerprint_;
 };
 
-/// Shoal's own types and those of plugins, known without any file.  What was found in it stays valid.
+/// Returns the types of Shoal and of plugins, which need no files.  Pointers to them remain valid.
 const MessageTypes& embedded_types();
-/// Shoal's own.
+/// Returns the sources of the types of Shoal.
 std::span<const LcmSource> embedded_lcm_sources();
-/// Adds the types of a plugin to embedded_types(): a call that lcm_generate writes.  Call before other threads look
-/// at types.  Throws MessageError, such as for a type that exists already.
+/// Adds the types of a plugin to embedded_types(); called by code from lcm_generate.  Must be called before other
+/// threads use types.  Throws MessageError, such as for a type that exists already.
 bool add_lcm_sources(const std::vector<LcmSource>& sources);
-/// embedded_types() and those of the user's .lcm files.
+/// Returns embedded_types() and the types of .lcm files of the user.
 MessageTypes types_with(const std::vector<std::string>& lcm_files);
 
-/// Whether NaN and infinity are refused.  Commands: required; reports may hold NaN for "not measured".
+/// Policy for NaN and infinity.  `required` refuses them, as for commands; reports may contain NaN for "not measured".
 enum class Finite { required, any };
 
-/// What is wrong with an encoded message of this type, or nothing.  Never reads outside the payload, and takes time
-/// proportional to its size, for any bytes.
+/// Validates an encoded message of this type.  Returns the error, or none.  Never reads outside of the payload, and
+/// takes time proportional to its size, for any bytes.
 std::optional<std::string> validate(const MessageSchema& schema, std::span<const std::byte> payload, Finite finite);
 
-/// A `boolean`; any integer; float or double; string; a one-dimensional array of `byte`.
+/// Value of a field: `boolean`; any integer; float or double; string; one-dimensional array of `byte`.
 using FieldValue = std::variant<bool, std::int64_t, double, std::string_view, std::span<const std::byte>>;
-/// Name as in C: "pos[0]", "metadata[1].key".
+/// Callback for a field, with its name as in C: "pos[0]", "metadata[1].key".
 using FieldVisitor = std::function<void(std::string_view name, const FieldValue& value)>;
 
-/// Validates, then shows every field in order.  Returns the error, in which case nothing was shown.
+/// Validates a message, then visits every field in order.  Returns the error, in which case no field was visited.
 std::optional<std::string> visit_fields(const MessageSchema& schema, std::span<const std::byte> payload,
                                         const FieldVisitor& visitor);
 
-/// The first eight bytes; 0 when there are fewer.
+/// Returns the fingerprint, the first eight bytes; 0 when there are fewer.
 std::int64_t fingerprint(std::span<const std::byte> payload);
 
 }  // namespace shoal

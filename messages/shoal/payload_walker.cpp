@@ -11,8 +11,8 @@
 namespace shoal {
 namespace {
 
-constexpr int max_depth = 32;                    // types that contain themselves; also the depth of our recursion
-constexpr std::uint64_t max_empty_rows = 65536;  // arrays may be large only where they have bytes to show for it
+constexpr int max_depth = 32;                    // limit of recursive types, and of the recursion here
+constexpr std::uint64_t max_empty_rows = 65536;  // limit of rows without bytes in the payload
 
 template <class T>
 T big_endian(const std::byte* at) {
@@ -51,7 +51,7 @@ std::string text_of(double value) {
   return text.str();
 }
 
-/// Walks a payload.  Without a visitor it only checks.
+/// Traversal of a payload.  Without a visitor it only validates.
 class Walker {
  public:
   Walker(std::span<const std::byte> payload, Finite finite, const FieldVisitor* visitor)
@@ -63,7 +63,8 @@ class Walker {
 
   bool walk(const MessageSchema& schema, int depth = 0) {
     if (depth > max_depth) return fail("", "is nested deeper than " + std::to_string(max_depth));
-    std::array<std::int64_t, 64> lengths;  // of this type's arrays; not initialised, every slot is set before use
+    std::array<std::int64_t, 64>
+        lengths;  // lengths of the arrays of this type; not initialised, every element is set before use
     for (const Member& member : schema.members)
       if (!walk_member(member, lengths, depth)) return false;
     return true;
@@ -99,7 +100,7 @@ class Walker {
     if (member.type == WireType::compound) return walk_compounds(member, lengths, count, depth);
     if (member.type == WireType::string) return walk_strings(member, lengths, count);
     const std::size_t size = wire_size(member.type);
-    // count <= 2^62 / size is sure: element_count() refuses more.
+    // count <= 2^62 / size is guaranteed: element_count() refuses more.
     if (count * size > remaining()) return fail_short(member.name, count * size);
     if (member.length_slot >= 0) {
       lengths[static_cast<std::size_t>(member.length_slot)] = read_integer(member.type, at_);
@@ -111,11 +112,11 @@ class Walker {
     return true;
   }
 
-  /// The product of the dimensions, kept within what the payload can hold.
+  /// Computes the product of the dimensions, limited to what the payload can contain.
   bool element_count(const Member& member, const Lengths& lengths, std::uint64_t& count) {
     const std::size_t element = member.compound != nullptr ? member.compound->min_size : wire_size(member.type);
     bool empty = false;
-    std::uint64_t rows = 1;  // vectors that a decoder makes even when the array has no element
+    std::uint64_t rows = 1;  // vectors that a decoder creates even when the array is empty
     for (const Dimension& dimension : member.dimensions) {
       const std::int64_t size =
           dimension.is_variable() ? lengths[static_cast<std::size_t>(dimension.length_slot)] : dimension.constant;
@@ -135,7 +136,7 @@ class Walker {
       return true;
     }
     if (count > remaining() / element) {
-      // 2^58 * wire sizes of at most 8 fit; a compound's may not, then the figure is only a bound.
+      // 2^58 * wire sizes of at most 8 do not overflow; for compounds the number is only a bound.
       std::uint64_t needed = 0;
       if (__builtin_mul_overflow(count, static_cast<std::uint64_t>(element), &needed))
         needed = std::numeric_limits<std::uint64_t>::max();
@@ -208,7 +209,7 @@ class Walker {
       (*visitor_)(path_ + name, value);
   }
 
-  /// Name with the indices of the i-th element, the last index running fastest.
+  /// Returns the name with the indices of the i-th element, with the last index varying fastest.
   static std::string element_name(const Member& member, const Lengths& lengths, std::uint64_t i) {
     std::string indices;
     for (auto it = member.dimensions.rbegin(); it != member.dimensions.rend(); ++it) {

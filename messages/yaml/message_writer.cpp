@@ -16,9 +16,9 @@ namespace {
 using sim::ConfigNode;
 using Kind = ConfigNode::Kind;
 
-constexpr int max_depth = 32;  // types that contain themselves
+constexpr int max_depth = 32;  // limit of recursive types
 
-/// A map of one key, so that a value is read with the rules and messages of a key.
+/// Makes a map with one key, so that a value is read with the rules and messages of that key.
 ConfigNode map_of(const std::string& key, const ConfigNode& value) {
   ConfigNode map;
   map.kind = Kind::map;
@@ -27,7 +27,7 @@ ConfigNode map_of(const std::string& key, const ConfigNode& value) {
   return map;
 }
 
-/// Members of a type in which NaN says "as before".
+/// Members of a type in which NaN means "unchanged".
 struct AsBefore {
   const char* type;
   std::vector<std::string> members;
@@ -78,14 +78,14 @@ class Writer {
   std::vector<std::byte> take() { return std::move(bytes_); }
 
  private:
-  /// Where the writer is within a member.
+  /// Position of the writer within a member.
   struct Spot {
     const std::vector<std::int64_t>& lengths;
     std::size_t dimension;
     std::string name;
     const std::string& who;
     int depth;
-    bool as_before;  // NaN may be written, and what is missing is NaN
+    bool as_before;  // NaN is allowed, and missing values are NaN
   };
 
   void refuse_unknown(const MessageSchema& schema, const ConfigNode& value, const std::string& who) {
@@ -98,7 +98,7 @@ class Writer {
                                "'; members: " + sim::list_text(known) + sim::did_you_mean(entry.key, known));
   }
 
-  /// The length of each array, from the first list that has it; a length that is given itself must be the same.
+  /// Returns the length of each array, from the first list with this length; an explicit length must be equal.
   std::vector<std::int64_t> lengths_of(const MessageSchema& schema, const ConfigNode& value, const std::string& who) {
     std::vector<std::int64_t> lengths(static_cast<std::size_t>(schema.length_slots), -1);
     for (const Member& member : schema.members) {
@@ -169,7 +169,7 @@ class Writer {
     const bool missing = value.kind == Kind::null;
     if (spot.as_before && (missing || is_nan(value)))
       return put_real(member.type, std::numeric_limits<double>::quiet_NaN());
-    // What is missing is 0.
+    // Missing members are 0.
     const ConfigNode map = missing ? ConfigNode{} : map_of(spot.name, value);
     sim::ParamReader in(map, spot.who, diagnostics_);
     const char* key = spot.name.c_str();

@@ -72,7 +72,7 @@ class AddAction final : public Action {
 
   PlaceChoice where_;
   std::string name_;
-  std::shared_ptr<const ObjectConfig> object_;  ///< null: it is in the world file
+  std::shared_ptr<const ObjectConfig> object_;  ///< null: the object is in the world file
 };
 
 SHOAL_ACTION("add", AddAction);

@@ -64,7 +64,7 @@ class OneOfAction final : public Action {
   }
 
   std::vector<std::vector<ActionEntry>> choices_;
-  std::vector<double> weights_;  ///< empty: all alike
+  std::vector<double> weights_;  ///< empty: equal
 };
 
 SHOAL_ACTION("one_of", OneOfAction);

@@ -10,16 +10,16 @@
 
 namespace sim {
 
-/// Where something is put: at a pose, at one of several places, or somewhere in an area.
+/// Choice of a pose: a given one, one of several positions, or a random one in an area.
 struct PlaceChoice {
   std::optional<Vector3d> position_m;
   std::optional<Vector3d> rpy_rad;
-  std::vector<Vector3d> places_m;      ///< one of them, at random
-  Vector3d area_m = Vector3d::Zero();  ///< size of the box around the position that places are drawn from
+  std::vector<Vector3d> places_m;      ///< positions, of which one is drawn at random
+  Vector3d area_m = Vector3d::Zero();  ///< size of the box around the position, from which positions are drawn
   bool random_yaw = false;
 
   void read(ParamReader& in);
-  /// `X_W_unless`: default of the parts that are not given.
+  /// Draws a pose in the world frame.  `X_W_unless`: default for the position or orientation that is not given.
   Pose choose(const Pose& X_W_unless, Random& random) const;
 };
 

@@ -61,8 +61,8 @@ class PublishAction final : public Action {
                         "' cannot be published on: sim.* belongs to the simulator, and names are printable");
   }
 
-  /// sim/ has no message types, but a type whose first member is `int64_t utime` can be recognised by encoding
-  /// different values.
+  /// Returns whether the first member is `int64_t utime`, by encoding different values, because sim/ does not depend on
+  /// message types.
   bool starts_with_utime(const EncodeMessage& encode, const SourcePlace& place) const {
     ConfigNode stamped = value_;
     stamped.entries.push_back({"utime", place, scalar_node("1", place)});
@@ -78,7 +78,7 @@ class PublishAction final : public Action {
   std::string type_;
   ConfigNode value_;
   Bytes payload_;
-  bool stamp_utime_ = false;  ///< the first member is a time stamp that was not given
+  bool stamp_utime_ = false;  ///< whether the first member is a time stamp without a given value
 };
 
 SHOAL_ACTION("publish", PublishAction);

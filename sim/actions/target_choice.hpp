@@ -9,13 +9,13 @@
 
 namespace sim {
 
-/// The vehicle or object that something is done to: by name, or `one_of` several.
+/// Target of an action: a vehicle or object by name, or `one_of` several.
 struct TargetChoice {
   std::vector<std::string> names;
 
-  /// `key`: of the name.
+  /// Reads the target.  `key`: key of the name.
   void read(ParamReader& in, const char* key);
-  /// Draws from `random` when there are several.
+  /// Returns the name of the target; draws from `random` when there are several.
   const std::string& choose(Random& random) const;
 };
 

@@ -9,8 +9,8 @@
 
 namespace sim {
 
-/// Numbers 0, 1, 2, ... for things that come and go.  A number given back is used again, the lowest first: which
-/// number is next depends only on which are in use, not on the order in which they became free.
+/// Allocator of the numbers 0, 1, 2, ... for objects that are added and removed.  Released numbers are reused, the
+/// lowest first: the next number depends only on which are in use, not on the order in which they were released.
 class FreeNumbers {
  public:
   int next() const { return !prescribed_.empty() ? prescribed_.front() : free_.empty() ? count_ : *free_.begin(); }
@@ -22,10 +22,10 @@ class FreeNumbers {
     return number;
   }
   void give_back(int number) { free_.insert(number); }
-  /// One more than the highest number ever taken.
+  /// Returns one more than the highest number ever taken.
   int count() const { return count_; }
 
-  /// The next ones are these, in this order.  Throws std::out_of_range when one of them is in use or cannot be.
+  /// Sets the next numbers, in this order.  Throws std::out_of_range when one of them is in use or out of range.
   void prescribe(const std::vector<int>& numbers) {
     constexpr int max = 10'000'000;
     for (const int number : numbers)
@@ -35,7 +35,7 @@ class FreeNumbers {
       throw std::out_of_range("a number occurs twice");
     prescribed_.assign(numbers.begin(), numbers.end());
   }
-  /// All that were prescribed have been taken.
+  /// Returns whether all prescribed numbers have been taken.
   bool as_prescribed() const { return prescribed_.empty(); }
 
  private:
@@ -44,7 +44,7 @@ class FreeNumbers {
   int count_ = 0;
 };
 
-/// The element with a number; the vector grows when the number is its size.
+/// Returns the element with this number; the vector grows when the number is its size.
 template <typename T>
 T& slot(std::vector<T>& all, int number) {
   if (static_cast<std::size_t>(number) >= all.size()) all.resize(static_cast<std::size_t>(number) + 1);

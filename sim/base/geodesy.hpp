@@ -7,14 +7,15 @@
 
 namespace sim {
 
-/// A place on the WGS84 ellipsoid.
+/// Geodetic position on the WGS84 ellipsoid.
 struct GeodeticPosition {
   double latitude_deg = 0;
   double longitude_deg = 0;
-  double height_m = 0;  ///< over the ellipsoid
+  double height_m = 0;  ///< above the ellipsoid
 };
 
-/// Local east-north-up coordinates about an origin, by way of earth-centred coordinates (GeographicLib).
+/// Local east-north-up (ENU) coordinates about an origin, converted through earth-centred coordinates with
+/// GeographicLib.
 class Geodesy {
  public:
   explicit Geodesy(const GeodeticPosition& origin);

@@ -10,7 +10,7 @@ namespace sim {
 using Vector3d = Eigen::Vector3d;
 using Matrix3d = Eigen::Matrix3d;
 using Quaterniond = Eigen::Quaterniond;
-/// A pose X_AB: takes a point given in frame B to frame A.
+/// Pose X_AB of frame B in frame A: maps a point given in B to A.
 using Pose = Eigen::Isometry3d;
 
 constexpr double degrees_to_radians(double angle_deg) {
@@ -20,17 +20,17 @@ constexpr double radians_to_degrees(double angle_rad) {
   return angle_rad * 180.0 / std::numbers::pi;
 }
 
-/// The rotation of roll, pitch, yaw about the fixed x, y and z axes, in that order: Rz(yaw) Ry(pitch) Rx(roll).
+/// Rotation by roll, pitch, yaw about the fixed x, y and z axes, in that order: Rz(yaw) Ry(pitch) Rx(roll).
 Matrix3d rotation_from_rpy(const Vector3d& rpy_rad);
 /// Roll, pitch, yaw of a rotation; pitch in [-pi/2, pi/2].
 Vector3d rpy_from_rotation(const Matrix3d& R);
 Pose make_pose(const Vector3d& position_m, const Vector3d& rpy_rad);
 /// Yaw of a rotation about world z, in (-pi, pi].
 double yaw_of(const Matrix3d& R);
-/// The angle brought to (-pi, pi].
+/// Returns the angle wrapped to (-pi, pi].
 double wrap_angle(double angle_rad);
 
-/// The matrix of a cross product from the left: cross_matrix(v) * x is v x x.
+/// Skew-symmetric cross-product matrix S(v): S(v) * x equals the cross product of v and x.
 inline Matrix3d cross_matrix(const Vector3d& v) {
   Matrix3d m;
   m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;

@@ -11,7 +11,7 @@
 
 namespace sim {
 
-/// A 64-bit hash over the bits of the state: equal hashes, equal runs.
+/// 64-bit hash over the bits of the state.  It is not cryptographic.
 class StateHash {
  public:
   void add(std::uint64_t word) { value_ = mixed(value_, word); }
@@ -28,7 +28,7 @@ class StateHash {
   void add_bytes(const void* data, std::size_t size) {
     add(static_cast<std::uint64_t>(size));
     const char* at = static_cast<const char*>(data);
-    // Four chains side by side, for each step of a chain waits for the one before.
+    // Hash four independent chains in parallel: each step of a chain depends on the previous one.
     constexpr std::size_t lanes = 4, min_size_for_lanes = 64;
     if (size >= min_size_for_lanes) {
       std::uint64_t chain[lanes] = {value_, value_ + 1, value_ + 2, value_ + 3};
@@ -39,11 +39,13 @@ class StateHash {
       }
       for (const std::uint64_t each : chain) add(each);
     }
+    // Hash the remaining words.
     for (; size >= 8; size -= 8, at += 8) {
       std::uint64_t word;
       std::memcpy(&word, at, 8);
       add(word);
     }
+    // Hash the remaining bytes.
     if (size > 0) {
       std::uint64_t word = 0;
       std::memcpy(&word, at, size);
@@ -54,7 +56,7 @@ class StateHash {
   std::uint64_t value() const { return value_; }
 
  private:
-  /// The mixing step of MurmurHash3's 64-bit finalizer, chained.
+  /// Chained mixing step, after the 64-bit finalizer of MurmurHash3.
   static std::uint64_t mixed(std::uint64_t value, std::uint64_t word) {
     value ^= word;
     value *= 0xff51afd7ed558ccdULL;

@@ -10,7 +10,7 @@
 
 namespace sim {
 
-// The address sanitizer must see each object by itself.  g++ says that it is there in one way, clang in another.
+// The address sanitizer needs separate allocations.  g++ and clang indicate it in different ways.
 #if defined(__has_feature)
 #if __has_feature(address_sanitizer)
 #define SHOAL_ADDRESS_SANITIZER
@@ -34,13 +34,13 @@ namespace {
 
 constexpr std::size_t large_page_bytes = std::size_t{1} << 21;
 
-/// Whole large pages, which are never given back.
+/// Allocator of whole huge pages, which are never released.
 class LargePages final : public std::pmr::memory_resource {
   void* do_allocate(std::size_t bytes, std::size_t) override {
     bytes = (bytes + large_page_bytes - 1) / large_page_bytes * large_page_bytes;
     void* pages = std::aligned_alloc(large_page_bytes, bytes);
     if (pages == nullptr) throw std::bad_alloc();
-    madvise(pages, bytes, MADV_HUGEPAGE);  // where there are none, it is memory all the same
+    madvise(pages, bytes, MADV_HUGEPAGE);  // without huge pages it is ordinary memory
     return pages;
   }
   void do_deallocate(void* pages, std::size_t, std::size_t) override { std::free(pages); }
@@ -55,13 +55,14 @@ struct Pools {
                                                &carved};
 };
 
-/// The pools of libstdc++ put blocks of 24 bytes side by side, whatever alignment is asked for.
+/// Rounds a size up to a multiple of the largest alignment, because the libstdc++ pools store blocks of sizes such as
+/// 24 bytes contiguously, whatever the requested alignment.
 constexpr std::size_t rounded(std::size_t bytes) {
   constexpr std::size_t alignment = alignof(std::max_align_t);
   return (bytes + alignment - 1) / alignment * alignment;
 }
 
-/// Lives to the end of the process: objects with static storage may go later than anything here.
+/// Exists until the end of the process: objects with static storage may be destroyed later than anything here.
 Pools& pools() {
   static Pools* const all = new Pools;
   return *all;

@@ -6,12 +6,12 @@
 
 namespace sim {
 
-/// Memory of what every step visits.  Objects of one size lie side by side, in large pages where the system has them:
-/// a step that walks through thousands of vehicles misses the caches seldom.  From any thread.
+/// Allocates memory for objects that every step visits.  Objects of one size are contiguous, in huge pages where the
+/// system has them, so that a step over thousands of vehicles has few cache misses.  Thread-safe.
 void* allocate_for_steps(std::size_t bytes);
 void free_for_steps(void* memory, std::size_t bytes) noexcept;
 
-/// Base of classes whose objects every step visits.
+/// Base class of objects that every step visits.
 struct VisitedInSteps {
   static void* operator new(std::size_t bytes) { return allocate_for_steps(bytes); }
   static void operator delete(void* memory, std::size_t bytes) noexcept { free_for_steps(memory, bytes); }

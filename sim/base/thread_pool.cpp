@@ -20,7 +20,7 @@ struct ThreadPool::Impl {
 ThreadPool::ThreadPool(int threads) : impl_(std::make_unique<Impl>()) {
   const int processors = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   impl_->threads = threads > 0 ? threads : processors;
-  if (impl_->threads > processors)  // else TBB warns, and takes fewer
+  if (impl_->threads > processors)  // otherwise TBB warns, and uses fewer
     impl_->more.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(impl_->threads));
   impl_->arena.initialize(impl_->threads);
 }

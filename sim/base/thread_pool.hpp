@@ -7,14 +7,15 @@
 
 namespace sim {
 
-/// Threads that share the work of one step.  Who does what is open: the work must not depend on it.
+/// Thread pool for the work of one step.  The assignment of work to threads is undefined; results must not depend on
+/// it.
 class ThreadPool {
  public:
-  /// `threads`: including the caller's; 0: one for each processor.
+  /// `threads`: number including the calling thread; 0: one for each processor.
   explicit ThreadPool(int threads);
   ~ThreadPool();
   int threads() const;
-  /// Calls work(0) to work(count - 1), and returns when all have.  Throws what one of them threw.
+  /// Calls work(0) to work(count - 1) and returns when all calls have returned.  Throws an exception of one of them.
   void for_each(std::size_t count, const std::function<void(std::size_t)>& work);
 
  private:

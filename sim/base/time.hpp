@@ -7,13 +7,13 @@
 
 namespace sim {
 
-/// Simulated time since the start of the run: an integer number of microseconds.  Never the wall clock.
+/// Simulated time since the start of the run in whole microseconds; never wall time.
 using Time = std::chrono::microseconds;
 
 inline double to_seconds(Time t) {
   return static_cast<double>(t.count()) * 1e-6;
 }
-/// The nearest whole microsecond.
+/// Rounds to the nearest microsecond.
 inline Time from_seconds(double t_s) {
   return Time{std::llround(t_s * 1e6)};
 }

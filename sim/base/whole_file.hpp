@@ -8,8 +8,8 @@
 
 namespace sim {
 
-/// All bytes of a regular file of at most `max_mb` megabytes.  Throws Error, which says why not, without the file's
-/// name.
+/// Returns all bytes of a regular file of at most `max_mb` megabytes.  Throws Error with the reason, without the name
+/// of the file.
 template <typename Error>
 std::string whole_file(const std::string& path, std::uintmax_t max_mb = 1000) {
   std::error_code error;

@@ -9,10 +9,10 @@
 
 namespace sim {
 
-/// One flag per device, contiguous in memory: which mailboxes may have messages.
+/// Flags of the mailboxes that may have messages: one per device, contiguous in memory.
 class ArrivalFlags {
  public:
-  /// The flag of a device's number; it exists as long as any owner holds it.
+  /// Returns the flag of a device by its number; it exists as long as any owner holds it.
   std::shared_ptr<std::atomic<bool>> of(int device) {
     const auto number = static_cast<std::size_t>(device);
     while (blocks_.size() <= number / flags_per_block) blocks_.push_back(std::make_shared<Block>());

@@ -20,7 +20,7 @@ using Bytes = std::vector<std::byte>;
 struct Message {
   std::string channel;
   Bytes payload;
-  bool from_outside = false;  ///< came over the network, not from this process
+  bool from_outside = false;  ///< received over the network, not published by this process
 
   template <typename Archive>
   void visit_state(Archive& archive) {
@@ -28,19 +28,20 @@ struct Message {
   }
 };
 
-/// What one subscriber has not yet read.  Bounded: when full, the oldest message is dropped and counted.
+/// Queue of the unread messages of one subscriber.  Bounded: when it is full, the oldest message is dropped and
+/// counted.
 class Mailbox {
  public:
   virtual ~Mailbox() = default;
-  /// The oldest unread message.  Never waits.
+  /// Removes and returns the oldest unread message.  Never blocks.
   virtual std::optional<Message> take() = 0;
   virtual std::uint64_t dropped() const = 0;
-  /// Sets `flag` whenever a message arrives, so that a reader of thousands of mailboxes can skip the empty ones.
-  ///   The reader clears it first, then takes all messages.  For one flag.
+  /// Sets `flag` whenever a message arrives, so that a reader of thousands of mailboxes can skip the empty ones.  The
+  /// reader clears the flag first, then takes all messages.  Supports one flag.
   virtual void raise_on_arrival(std::shared_ptr<std::atomic<bool>> flag) = 0;
-  /// What waits, oldest first, for a snapshot.  A mailbox that only the network fills need not tell.
+  /// Returns the unread messages, oldest first, for a snapshot.  A mailbox that only the network fills may return none.
   virtual std::vector<Message> unread() const { return {}; }
-  /// Takes the place of what waits.
+  /// Replaces the unread messages.
   virtual void set_unread(std::vector<Message> /*messages*/) {
     while (take()) {
     }
@@ -54,20 +55,20 @@ struct BusCounts {
   std::uint64_t dropped_incoming = 0;
 };
 
-/// Publish/subscribe of bytes on named channels.  A channel has 1 to 63 characters.
+/// Publish/subscribe interface: byte payloads on named channels.  A channel name has 1 to 63 characters.
 class Bus {
  public:
   static constexpr std::size_t max_channel_length = 63;
   static constexpr std::size_t default_mailbox_capacity = 1000;
 
   virtual ~Bus() = default;
-  /// Never waits for the network.  `at`: simulated time, stamped on records.
+  /// Publishes a message without waiting for the network.  `at`: simulated time, recorded as its time stamp.
   virtual void publish(std::string_view channel, std::span<const std::byte> payload, Time at) = 0;
-  /// Its own mailbox for every call.  It must not outlive the bus.  Throws std::invalid_argument on a channel
-  /// name that is empty or too long.
+  /// Opens a new mailbox for a channel at every call.  The mailbox must not outlive the bus.  Throws
+  /// std::invalid_argument for a channel name that is empty or too long.
   virtual std::unique_ptr<Mailbox> open_mailbox(const std::string& channel,
                                                 std::size_t capacity = default_mailbox_capacity) = 0;
-  /// Called once after the reports of each step, so that a bus may hand over a step's messages at once.
+  /// Is called once after the reports of each step, so that a bus can send the messages of a step in one batch.
   virtual void end_of_step() {}
   virtual BusCounts counts() const = 0;
 };

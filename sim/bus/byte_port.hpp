@@ -10,21 +10,21 @@
 
 namespace sim {
 
-/// A stream of bytes to a program outside: a pseudo-terminal or a FIFO.  Never waits.
+/// Byte stream to an external program: a pseudo-terminal or a pair of FIFOs.  Never blocks.
 class BytePort {
  public:
   virtual ~BytePort() = default;
-  /// What has arrived since the last call; often nothing.
+  /// Returns the bytes that have arrived since the last call; often none.
   virtual Bytes read() = 0;
-  /// Queues bytes; what the reader does not fetch is dropped, oldest first, and counted.
+  /// Queues bytes.  Bytes that the reader does not fetch are dropped, oldest first, and counted.
   virtual void write(std::span<const std::byte> bytes) = 0;
   virtual std::uint64_t dropped_bytes() const = 0;
 };
 
-/// A pseudo-terminal, or a pair of FIFOs PATH.in and PATH.out.
+/// Kind of port: a pseudo-terminal, or a pair of FIFOs PATH.in and PATH.out.
 enum class PortKind { pty, fifo };
 
-/// Opens a port.  Throws std::runtime_error that names the path.
+/// Function that opens a port.  Throws std::runtime_error with the path.
 using PortOpener = std::function<std::unique_ptr<BytePort>(PortKind kind, const std::string& path)>;
 
 }  // namespace sim

@@ -24,7 +24,7 @@ struct InProcessBus::Queue {
   std::deque<Message> messages;
   std::size_t capacity = 0;
   std::uint64_t dropped = 0;
-  bool closed = false;                      ///< its mailbox is gone
+  bool closed = false;                      ///< its mailbox was destroyed
   std::shared_ptr<std::atomic<bool>> flag;  ///< may be null
 };
 

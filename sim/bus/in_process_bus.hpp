@@ -7,7 +7,7 @@
 
 namespace sim {
 
-/// Delivers within the process, at once, in the order of publishing.  For one thread.
+/// Bus within the process: delivers immediately, in the order of publication.  Not thread-safe.
 class InProcessBus final : public Bus {
  public:
   InProcessBus();
@@ -19,7 +19,7 @@ class InProcessBus final : public Bus {
  private:
   struct Queue;
   class QueueMailbox;
-  // Ordered by name; std::less<> finds a string_view without making a string.
+  // Ordered by name; std::less<> looks up a string_view without constructing a string.
   std::map<std::string, std::vector<std::shared_ptr<Queue>>, std::less<>> queues_;
   BusCounts counts_;
 };

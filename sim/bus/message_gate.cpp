@@ -8,7 +8,7 @@
 
 namespace sim {
 
-/// A channel with readers, and its one mailbox at the network.
+/// Channel with readers, and its mailbox on the network.
 struct MessageGate::Channel {
   std::string name;
   std::size_t slot = 0;
@@ -16,7 +16,7 @@ struct MessageGate::Channel {
   std::unique_ptr<Mailbox> inner;
   std::vector<GateMailbox*> mailboxes;
   std::size_t capacity = 0;  ///< of the largest mailbox
-  std::size_t waiting = 0;   ///< at most: waiting() may be changed by its user
+  std::size_t waiting = 0;   ///< upper bound: the user of waiting() may change it
 };
 
 class MessageGate::GateMailbox final : public Mailbox {
@@ -44,7 +44,7 @@ class MessageGate::GateMailbox final : public Mailbox {
     if (flag_ && !messages_.empty()) flag_->store(true, std::memory_order_relaxed);
   }
 
-  /// False: the oldest had to make room.
+  /// Adds a message; returns false when the oldest one was dropped.
   bool add(Message message) {
     messages_.push_back(std::move(message));
     if (flag_) flag_->store(true, std::memory_order_relaxed);
@@ -75,9 +75,9 @@ void MessageGate::publish(std::string_view channel, std::span<const std::byte> p
   const auto known = by_name_.find(channel);
   if (known == by_name_.end()) return network_.publish(channel, payload, at);
   Channel& read = *known->second;
-  if (something_came(read)) collect_from(read);  // what came before keeps its place
+  if (something_came(read)) collect_from(read);  // keeps the order of earlier messages
   network_.publish(channel, payload, at);
-  // The network has echoed this by now, and this process cannot have published in between.
+  // The network has echoed this already, and this process cannot have published in between.
   if (something_came(read)) take_from(read, [](const Message& message) { return message.from_outside; });
   give(read, payload, false);
 }
@@ -86,7 +86,8 @@ bool MessageGate::something_came(Channel& channel) {
   return channel.flag->load(std::memory_order_relaxed) && channel.flag->exchange(false, std::memory_order_acquire);
 }
 
-/// Channels of one bit are asked for by name; most have a bit that no channel that is read has.
+/// Returns the bit of a channel.  Names are looked up only when their bit is set; the bits of most channels without a
+/// reader are not set.
 std::size_t MessageGate::bit_of(std::string_view channel) {
   const auto letter = [&](std::size_t i) { return static_cast<std::size_t>(static_cast<unsigned char>(channel[i])); };
   if (channel.empty()) return 0;
@@ -98,6 +99,7 @@ std::size_t MessageGate::bit_of(std::string_view channel) {
 std::unique_ptr<Mailbox> MessageGate::open_mailbox(const std::string& channel, std::size_t capacity) {
   const auto known = by_name_.find(channel);
   Channel* read = known == by_name_.end() ? nullptr : known->second;
+  // Open the channel on the network for its first reader.
   if (read == nullptr) {
     auto inner = network_.open_mailbox(channel, default_mailbox_capacity);  // checks the name
     const std::size_t slot = free_slots_.empty() ? channels_.size() : free_slots_.back();
@@ -116,6 +118,7 @@ std::unique_ptr<Mailbox> MessageGate::open_mailbox(const std::string& channel, s
     by_name_.emplace(channel, read);
     bits_.set(bit_of(channel));
   }
+  // Add the mailbox of the reader.
   auto mailbox = std::make_unique<GateMailbox>(*this, *read, capacity);
   read->mailboxes.push_back(mailbox.get());
   read->capacity = std::max(read->capacity, mailbox->capacity());
@@ -144,7 +147,7 @@ void MessageGate::collect_from(Channel& channel) {
   take_from(channel, [](const Message&) { return true; });
 }
 
-/// As many as the mailbox at the network held at the call: who continues sending meanwhile cannot hold up the step.
+/// Takes as many messages as the network mailbox holds at the call, so that a continuous sender cannot delay the step.
 template <typename Accepts>
 void MessageGate::take_from(Channel& channel, const Accepts& accepts) {
   std::size_t left = default_mailbox_capacity;
@@ -155,14 +158,14 @@ void MessageGate::take_from(Channel& channel, const Accepts& accepts) {
     waiting_.push_back({std::move(message->channel), std::move(message->payload)});
     ++channel.waiting;
   }
-  if (left == 0) channel.flag->store(true, std::memory_order_relaxed);  // there may be more
+  if (left == 0) channel.flag->store(true, std::memory_order_relaxed);  // there may be more messages
   if (channel.waiting > channel.capacity) drop_oldest(channel);
 }
 
-/// All that are too many, in one pass.
+/// Drops all excess messages in one pass.
 void MessageGate::drop_oldest(Channel& channel) {
   const auto is_of_channel = [&](const Delivery& arrivals) { return arrivals.channel == channel.name; };
-  // The user of waiting() may have taken some out.
+  // The user of waiting() may have removed some.
   channel.waiting = static_cast<std::size_t>(std::count_if(waiting_.begin(), waiting_.end(), is_of_channel));
   if (channel.waiting <= channel.capacity) return;
   std::size_t too_many = channel.waiting - channel.capacity;

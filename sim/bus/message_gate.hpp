@@ -16,13 +16,11 @@
 
 namespace sim {
 
-/// A bus between a network and a world.  Messages from outside wait here until admit(), which the run calls once at
-/// the start of each step: all readers of a channel see a message in the same step, and the order is known.  A
-/// message published through the gate is in its mailboxes immediately, and is not delivered again when the network
-/// echoes it.
-///
-/// Everything published on the network past the gate counts as coming from outside, also when this process publishes
-/// it.  For one thread.
+/// Bus between a network and a world.  Messages from outside are queued until admit(), which the run calls once at the
+/// start of each step: all readers of a channel receive a message in the same step and in a defined order.  A message
+/// published through the gate is in its mailboxes immediately, and is not delivered again when the network echoes it.
+/// A message published on the network directly, not through the gate, counts as a message from outside, even when this
+/// process publishes it.  Not thread-safe.
 class MessageGate final : public Bus {
  public:
   /// `network` must outlive the gate.
@@ -40,26 +38,27 @@ class MessageGate final : public Bus {
   std::unique_ptr<Mailbox> open_mailbox(const std::string& channel,
                                         std::size_t capacity = default_mailbox_capacity) override;
   void end_of_step() override { network_.end_of_step(); }
-  /// What the network counts, and what was dropped here.
+  /// Returns the counts of the network plus the messages dropped by the gate.
   BusCounts counts() const override;
 
-  /// Collects the messages from outside on channels that have a reader.  True: something waits.  Of a channel
-  /// at most as many wait as its largest mailbox holds; then the oldest is dropped and counted.
+  /// Collects the messages from outside on channels that have a reader.  Returns true when messages are waiting.  The
+  /// queue of a channel is limited to the capacity of its largest mailbox; beyond it, the oldest message is dropped and
+  /// counted.
   bool collect();
-  /// Collected and not admitted: by channel in the order in which the channels were first read, within a channel in
-  /// the order of arrival.  May be put in another order, and added to.
+  /// Messages that were collected and not admitted yet: by channel in the order in which the channels were first read,
+  /// within a channel in the order of arrival.  The caller may reorder the list and add to it.
   std::vector<Delivery>& waiting() { return waiting_; }
-  /// Collects, and gives all that waits to the mailboxes of its channels.  What was given stays readable until the
-  /// next call.  Messages on channels without a reader are dropped.
+  /// Collects messages and delivers all waiting ones to the mailboxes of their channels.  Returns the delivered
+  /// messages, which are valid until the next call.  Messages on channels without a reader are dropped.
   const std::vector<Delivery>& admit();
 
-  /// admit() calls it after collecting and before giving: it may reorder, add and remove messages.
+  /// Callback of admit() between collection and delivery; may reorder, add and remove messages.
   using Order = std::function<void(std::vector<Delivery>& messages)>;
   void set_order(Order order) { order_ = std::move(order); }
-  /// Whether this channel has a reader here.
+  /// Returns whether this channel has a reader at the gate.
   bool reads(std::string_view channel) const { return by_name_.contains(channel); }
 
-  /// `watch` is called for every publication, before the network; empty: none.
+  /// Callback for every publication, called before the message is sent to the network; empty: none.
   using Watch = std::function<void(std::string_view channel, std::span<const std::byte> payload)>;
   void set_watch(Watch watch) { watch_ = std::move(watch); }
 
@@ -74,7 +73,7 @@ class MessageGate final : public Bus {
   void collect_from(Channel& channel);
   template <typename Accepts>
   void take_from(Channel& channel, const Accepts& accepts);
-  /// True when a message may have arrived since the previous call.
+  /// Returns true when a message may have arrived since the previous call.
   static bool something_came(Channel& channel);
   static constexpr std::size_t max_bits = 1024;
   static std::size_t bit_of(std::string_view channel);
@@ -86,11 +85,11 @@ class MessageGate final : public Bus {
   Bus& network_;
   Watch watch_;
   Order order_;
-  ArrivalFlags flags_;                              // one for each slot: something may have come
+  ArrivalFlags flags_;                              // one for each slot: a message may have arrived
   std::vector<std::unique_ptr<Channel>> channels_;  // by slot; null: the slot is free
   std::vector<std::size_t> free_slots_;
-  std::unordered_map<std::string, Channel*, NameHash, std::equal_to<>> by_name_;  // asked, never iterated
-  std::bitset<max_bits> bits_;                                                    // of the names that are or were read
+  std::unordered_map<std::string, Channel*, NameHash, std::equal_to<>> by_name_;  // for look-ups, never iterated
+  std::bitset<max_bits> bits_;  // of the names that have or had a reader
   std::vector<Delivery> waiting_, admitted_;
   std::uint64_t dropped_ = 0;
 };

@@ -14,7 +14,7 @@
 
 namespace sim {
 
-/// A word of YAML and what it stands for.
+/// YAML word and the enumerator that it denotes.
 template <typename Enum>
 struct ChoiceWord {
   std::string_view word;
@@ -25,11 +25,11 @@ constexpr std::size_t max_choice_words = 16;
 
 namespace detail {
 
-/// Whether the enum of `value` has an enumerator of this value.  The compiler writes the argument of a template into
-/// the name of the function: `Color::red` where there is an enumerator, `(Color)7` where there is none.
+/// Returns whether the enum of `value` has an enumerator with this value.  The compiler writes the template argument
+/// into the name of the function: `Color::red` for an enumerator, `(Color)7` otherwise.
 template <auto value>
 consteval bool is_enumerator() {
-  // GCC and Clang end in `value = Color::red]`.
+  // The names end in `value = Color::red]` with GCC and Clang.
   constexpr std::string_view name = __PRETTY_FUNCTION__;
   const auto in_word = [](char c) {
     return c == '_' || (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
@@ -39,7 +39,7 @@ consteval bool is_enumerator() {
   return begin < name.size() - 1 && !(name[begin] >= '0' && name[begin] <= '9');
 }
 
-/// How many enumerators an enum has.  They must be numbered as they are without `=`: 0, 1, 2.
+/// Returns the number of enumerators of an enum.  They must have the consecutive values 0, 1, 2, ...
 template <typename Enum, std::size_t... number>
 constexpr std::size_t count_enumerators(std::index_sequence<number...>) {
   constexpr std::array exists = {is_enumerator<static_cast<Enum>(number)>()...};
@@ -52,7 +52,7 @@ constexpr std::size_t count_enumerators(std::index_sequence<number...>) {
 
 }  // namespace detail
 
-/// Throws std::logic_error unless each enumerator has one word and each word stands for one enumerator.
+/// Throws std::logic_error unless words and enumerators correspond one to one.
 template <typename Enum>
 constexpr void check_choice_words(std::span<const ChoiceWord<Enum>> words) {
   const std::size_t count = detail::count_enumerators<Enum>(std::make_index_sequence<max_choice_words + 1>());
@@ -65,12 +65,12 @@ constexpr void check_choice_words(std::span<const ChoiceWord<Enum>> words) {
       if (words[k].value == words[i].value) throw std::logic_error("an enumerator has two words");
     }
   }
-  // Each word stands for its own enumerator, so none is left when there are as many.
+  // The words denote different enumerators, so equal counts mean that every enumerator has a word.
   if (words.size() < count) throw std::logic_error("an enumerator has no word");
 }
 
-/// The words of YAML for an enum, in the order in which messages and documentation list them.  The compiler refuses a
-/// table that check_choice_words() would: an enumerator without a word does not compile.
+/// Table of the YAML words of an enum, in the order in which messages and documentation list them.  The table is
+/// checked at compile time by check_choice_words(): an enumerator without a word does not compile.
 template <typename Enum>
 class ChoiceWords {
   static_assert(std::is_enum_v<Enum> && !std::is_convertible_v<Enum, int>, "words stand for an enum class");
@@ -90,7 +90,7 @@ class ChoiceWords {
   std::size_t count_ = 0;
 };
 
-/// The word of a value.
+/// Returns the word of a value.
 template <typename Enum>
 constexpr std::string_view word_of(const ChoiceWords<Enum>& words, Enum value) {
   for (const ChoiceWord<Enum>& each : words)
@@ -99,7 +99,7 @@ constexpr std::string_view word_of(const ChoiceWords<Enum>& words, Enum value) {
   return "?";
 }
 
-/// The value of a word; none: the word is not in the table.
+/// Returns the value of a word; none when the word is not in the table.
 template <typename Enum>
 constexpr std::optional<Enum> value_of(const ChoiceWords<Enum>& words, std::string_view word) {
   for (const ChoiceWord<Enum>& each : words)

@@ -26,7 +26,7 @@ std::vector<std::string> split_path(std::string_view path) {
   return keys;
 }
 
-/// The item with this name, else the item at this index, counted from 1 as in messages.
+/// Returns the item with this name, or the item at this index, counted from 1 as in messages.
 ConfigNode* find_item(ConfigNode& list, const std::string& key) {
   for (ConfigNode& item : list.items)
     if (const std::string* name = name_of(item); name != nullptr && *name == key) return &item;
@@ -54,7 +54,7 @@ class Substitution {
 
   void apply(ConfigNode& node) {
     if (node.kind == Kind::scalar) {
-      apply_to_scalar(node);  // not searched again: a parameter that names itself would never end
+      apply_to_scalar(node);  // not searched again: a parameter that refers to itself would cause infinite recursion
       return;
     }
     for (ConfigNode& item : node.items) apply(item);
@@ -72,15 +72,17 @@ class Substitution {
       const std::string name = text.substr(begin + 2, end - begin - 2);
       const ConfigNode* value = find(name);
       if (value == nullptr) return error(node, unknown_text(name));
+      // The whole scalar: take the node of the parameter.
       if (begin == 0 && end + 1 == text.size()) {
         if (within_limits(node, *value)) node = ConfigNode(*value);
         return;
       }
+      // A part of the scalar: insert its text.
       if (value->kind != Kind::scalar)
         return error(node, "parameter '" + shortened(name) + "' must be text inside of text, got " + shown(*value));
       if (!within_limits(node, *value)) return;
       result.append(text, copied, begin - copied).append(value->scalar);
-      if (value->place.origin == Origin::bus) node.place.origin = Origin::bus;  // a peer wrote a part of it
+      if (value->place.origin == Origin::bus) node.place.origin = Origin::bus;  // a client wrote a part of it
       copied = end + 1;
     }
     if (copied == 0) return;
@@ -104,7 +106,8 @@ class Substitution {
 
   void error(const ConfigNode& node, const std::string& text) { diagnostics_.error(node.place, who_, text); }
 
-  /// A short file could otherwise name a large parameter often enough to fill the memory.
+  /// Checks the size after substitution: a short file could otherwise use a large parameter often enough to exhaust
+  /// memory.
   bool within_limits(const ConfigNode& at, const ConfigNode& value) {
     count(value);
     const bool within = nodes_ <= max_inserted_nodes && bytes_ <= max_inserted_bytes;

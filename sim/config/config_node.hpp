@@ -10,14 +10,14 @@
 
 namespace sim {
 
-/// A node of a YAML document that knows where it was written, also after files were merged.
+/// Node of a YAML document with its place in the source file, which is kept when files are merged.
 struct ConfigNode {
   enum class Kind { null, scalar, list, map };
   struct Entry;
 
   Kind kind = Kind::null;
-  bool quoted = false;    ///< a scalar in quotes: always text, never a number
-  bool verbatim = false;  ///< a scalar that stands in its file as it is: on one line, without escapes
+  bool quoted = false;    ///< scalar in quotes: always text, never a number
+  bool verbatim = false;  ///< scalar written literally in its file: on one line, without escapes
   std::string scalar;
   std::vector<ConfigNode> items;  ///< of a list
   std::vector<Entry> entries;     ///< of a map, in file order, keys unique
@@ -33,45 +33,45 @@ struct ConfigNode::Entry {
   ConfigNode value;
 };
 
-/// The place of one character of a scalar, counted from 0; where the scalar is not verbatim, the place of the scalar.
+/// Returns the place of one character of a scalar, counted from 0; the place of the scalar when it is not verbatim.
 SourcePlace place_in(const ConfigNode& scalar, std::size_t offset);
 
-/// A plain scalar, as if it were written at `place`.
+/// Makes a plain scalar with this place.
 ConfigNode scalar_node(const std::string& text, const SourcePlace& place);
-/// Marks the values and keys of a tree with their origin.
+/// Sets the origin of all values and keys of a tree.
 void set_origin(ConfigNode& node, Origin origin);
-/// A map of one key, so that a value is read with the rules and messages of a key.
+/// Makes a map with one key, so that a value is read with the rules and messages of that key.
 ConfigNode map_node(const std::string& key, const ConfigNode& value);
 
-/// Parses one YAML document.  Syntax errors, duplicate keys, a second document, documents nested too deeply or
-/// with too many nodes (aliases expanded) go to `diagnostics`; the result is then a null node.
+/// Parses one YAML document.  Syntax errors, duplicate keys, a second document, and documents nested too deeply or with
+/// too many nodes (aliases expanded) are reported to `diagnostics`; the result is then a null node.
 ConfigNode parse_config_text(const std::string& text, const std::string& file_name, Diagnostics& diagnostics);
 
 /// Reads a file and the files its `include:` key names (a file name or a list of them, relative to the file).
 /// An included file is the base over which the including file is merged: maps key by key, lists of maps that
-/// have a `name` item by item by that name, anything else replaced.  Missing files, files over 64 MB, cyclic
-/// includes, an empty file and one that is not a map are errors.
-/// `named_by`: Origin::command_line for a file that is quoted in errors.  Files that it includes must be allowed by the
-/// FileAccess of the diagnostics.  Where there is one, a file that the command line does not name is quoted only when
-/// its top level has nothing but keys of worlds and vehicles; other errors say line and column.
+/// have a `name` item by item by that name, anything else is replaced.  Missing files, files over 64 MB, cyclic
+/// includes, empty files and files that are not a map are errors. `named_by`: Origin::command_line for a file that
+/// errors may quote.  Included files must be allowed by the FileAccess of the diagnostics.  With a FileAccess, a file
+/// that the command line does not name is quoted only when all keys of its top level are keys of worlds or vehicles;
+/// other errors contain only line and column.
 ConfigNode load_config_file(const std::string& path, Diagnostics& diagnostics, Origin named_by = Origin::command_line);
 
-/// Sets the value at a dotted path, such as `vehicles.rover1.devices.lidar.rate_hz`.  An item of a list is named
-/// by its `name` or its index; maps are created on the way where a key is missing.  `value` is YAML text.  Errors
-/// (a list item that does not exist, a path through a scalar) go to `diagnostics` at `place`.
+/// Sets the value at a dotted path, such as `vehicles.rover1.devices.lidar.rate_hz`.  An item of a list is selected by
+/// its `name` or its index; missing maps along the path are created.  `value` is YAML text.  Errors (a list item that
+/// does not exist, a path through a scalar) go to `diagnostics` at `place`.
 void set_config_path(ConfigNode& root, std::string_view path, const ConfigNode& value, const SourcePlace& place,
                      Diagnostics& diagnostics);
 
 /// Replaces every `${name}` in the scalars below `node` by the scalar of that name in `parameters`.  A scalar that
-/// is nothing but `${name}` takes the parameter's node, so that numbers and lists stay what they are.  Unknown names
-/// are errors that list the known ones.
+/// consists of `${name}` alone is replaced by the node of the parameter, so that numbers and lists keep their type.
+/// Unknown names are errors that list the known ones.
 void substitute_parameters(ConfigNode& node, const std::vector<std::pair<std::string, ConfigNode>>& parameters,
                            const std::string& who, Diagnostics& diagnostics);
 
-/// The text of `name` in an item of a list; null when the item is not a map or lacks the key.
+/// Returns the text of `name` in an item of a list; null when the item is not a map or lacks the key.
 const std::string* name_of(const ConfigNode& item);
 
-/// YAML text of the tree, which parses to the same tree.
+/// Returns YAML text that parses to the same tree.
 std::string to_yaml(const ConfigNode& node);
 
 }  // namespace sim

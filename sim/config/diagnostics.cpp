@@ -11,7 +11,7 @@ namespace sim {
 
 namespace {
 
-// One mistake in a vehicle file repeats for every vehicle of a fleet; more is not helpful.
+// Limit of lines: an error in a vehicle file is repeated for every vehicle of a fleet.
 constexpr std::size_t max_lines = 1000;
 
 std::string joined(const std::vector<std::string>& lines) {
@@ -20,7 +20,7 @@ std::string joined(const std::vector<std::string>& lines) {
   return text;
 }
 
-/// Words of the YAML parser about what it found, of which only the one about anchors has some of the file in it; and
+/// Returns whether an error text does not quote the file: texts of the YAML parser except the one about anchors, and
 /// those of load_config_file about a file that is not one of Shoal's.
 bool is_free_of_quotes(const std::string& text) {
   if (text == "unknown key of a world or vehicle file" || text == "must be a map of keys and values") return true;
@@ -37,7 +37,7 @@ std::string SourcePlace::text() const {
 
 const std::string* intern_file_name(const std::string& file) {
   static std::mutex mutex;
-  static std::set<std::string> names;  // a set never moves its elements
+  static std::set<std::string> names;  // elements of a set are never moved
   const std::lock_guard lock(mutex);
   return &*names.insert(file).first;
 }
@@ -55,9 +55,9 @@ void Diagnostics::error(const SourcePlace& place, const std::string& who, const 
     hidden_.push_back(printable(line));
     line = place.text() + ": is wrong; the file is not quoted, for the command line does not name it";
   }
-  // Names come from files: a line feed or an escape sequence in one must not reach the terminal.
+  // Names are input: line feeds and escape sequences must not reach the terminal.
   line = printable(line);
-  // A mistake in a vehicle file is one mistake, however many vehicles use the file.
+  // Report an error in a vehicle file once, independent of the number of vehicles that use it.
   const std::string seen = printable(place.line > 0 && !hides ? place.text() + ": " + text : line);
   if (!seen_.insert(seen).second) return;
   if (lines_.size() == max_lines) line = "more errors are not shown";

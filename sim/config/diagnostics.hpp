@@ -12,16 +12,16 @@ namespace sim {
 
 class FileAccess;
 
-/// Who wrote a value.
+/// Source of a value.
 enum class Origin : unsigned char {
   file,          ///< a world, a vehicle file, or what they include
   command_line,  ///< `--set`
-  bus            ///< a peer
+  bus            ///< a client on the bus
 };
 
-/// Where a value was written: a file (or `--set`), a line and a column counted from 1; line 0: the whole file.
+/// Place of a value: file (or `--set`), line and column counted from 1; line 0: the whole file.
 struct SourcePlace {
-  const std::string* file = nullptr;  ///< interned, lives as long as the program
+  const std::string* file = nullptr;  ///< interned, valid until the program ends
   int line = 0;
   int column = 0;
   Origin origin = Origin::file;
@@ -30,10 +30,10 @@ struct SourcePlace {
   std::string text() const;
 };
 
-/// One copy of a file name for all the places in it.
+/// Returns the shared copy of a file name, to which all places in the file refer.
 const std::string* intern_file_name(const std::string& file);
 
-/// Bad input.  `lines()` holds every error found, one line each; `what()` joins them.
+/// Invalid input.  `lines()` holds all errors found, one line each; `what()` joins them.
 class ConfigError : public std::runtime_error {
  public:
   explicit ConfigError(std::vector<std::string> lines);
@@ -43,19 +43,19 @@ class ConfigError : public std::runtime_error {
   std::vector<std::string> lines_;
 };
 
-/// Throws ConfigError of one line, as Diagnostics would write it.
+/// Throws a ConfigError of one line in the format of Diagnostics.
 [[noreturn]] void throw_config_error(const SourcePlace& place, const std::string& who, const std::string& text);
 
-/// Collects errors so that all errors of a file are reported, not only the first.
+/// Collection of errors, so that all errors of a file are reported, not only the first.
 class Diagnostics {
  public:
   Diagnostics() = default;
-  /// `files`: which files may be named in what is read with these diagnostics; null: any.
+  /// `files`: the files that input read with these diagnostics may name; null: any.
   explicit Diagnostics(std::shared_ptr<const FileAccess> files) : files_(std::move(files)) {}
   /// `subject` precedes `who` in every error: `subject: who: text`.
   explicit Diagnostics(std::string subject) : subject_(std::move(subject)) {}
 
-  /// Adds `place: who: text` (who may be empty).  The same text at the same place is kept once, independent of `who`.
+  /// Adds `place: who: text` (who may be empty).  The same text at the same place is stored once, independent of `who`.
   void error(const SourcePlace& place, const std::string& who, const std::string& text);
   bool ok() const { return lines_.empty(); }
   const std::vector<std::string>& lines() const { return lines_; }
@@ -63,8 +63,8 @@ class Diagnostics {
   void throw_if_any() const;
 
   const std::shared_ptr<const FileAccess>& files() const { return files_; }
-  /// Reduces errors in files to their places: the reader of the errors may not be entitled to see quoted content.
-  /// Errors in requests from the bus are unchanged.  The whole lines are in hidden().
+  /// Reduces errors in files to their places, because the recipient may not be entitled to see quoted content.  Errors
+  /// in requests from the bus are unchanged.  The complete lines are in hidden().
   void hide_files() { hides_files_ = true; }
   const std::vector<std::string>& hidden() const { return hidden_; }
 

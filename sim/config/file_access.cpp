@@ -9,7 +9,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Absolute, with all symbolic links resolved as far as the path exists; empty: it cannot be.
+/// Returns the absolute path with all symbolic links resolved as far as it exists; empty when that fails.
 fs::path resolved(const fs::path& path) {
   std::error_code error;
   const fs::path whole = fs::absolute(path.empty() ? "." : path, error);

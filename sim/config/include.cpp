@@ -55,13 +55,13 @@ void merge_lists_by_name(ConfigNode& base, ConfigNode&& over) {
       continue;
     }
     merge(base.items[found->second], std::move(item));
-    // A second item of this name is a duplicate the reader must still see, not one more layer.
+    // A second item of this name is a duplicate that the reader must detect, not another layer.
     index.erase(found);
   }
   base.place = over.place;
 }
 
-/// Lays `over` upon `base`.  Values keep the places they were written at.
+/// Merges `over` into `base`.  Values keep their places.
 void merge(ConfigNode& base, ConfigNode&& over) {
   if (base.kind == Kind::map && over.kind == Kind::map)
     merge_maps(base, std::move(over));
@@ -75,16 +75,17 @@ void forward(const Diagnostics& from, Diagnostics& to) {
   for (const std::string& line : from.lines()) to.error({}, "", line);
 }
 
-/// Reads a file and what it includes.
+/// Reads a file and its included files.
 class Loader {
  public:
   Loader(Diagnostics& diagnostics, Origin named_by) : diagnostics_(diagnostics), named_by_(named_by) {}
 
-  /// `asked_at`: where the file was asked for; a place without a line for the first file.
+  /// `asked_at`: place of the include; a place without a line for the first file.
   ConfigNode load(const fs::path& path, const SourcePlace& asked_at) {
     const SourcePlace whole_file{intern_file_name(path.string()), 0, 0};
     if (++files_ > max_files) return fail(asked_at, "more than " + std::to_string(max_files) + " files included");
     std::error_code error;
+    // Refuse cycles and files that are not allowed.
     fs::path canonical = fs::weakly_canonical(path, error);
     if (error) canonical = path;
     if (std::find(open_.begin(), open_.end(), canonical) != open_.end())
@@ -92,15 +93,17 @@ class Loader {
     const auto& access = diagnostics_.files();
     if (access != nullptr && !open_.empty() && !access->may_read(path))
       return fail(asked_at, "'" + shortened(path.string()) + "' " + FileAccess::reading_rule());
+    // Read and parse the file.
     const std::optional<std::string> text = read_text(path, asked_at);
     if (!text) return {};
-    Diagnostics own;  // a second copy of an error adds no line to diagnostics_, so its lines tell nothing
+    Diagnostics own;  // separate, because a repeated error adds no line to diagnostics_
     if (hides(path)) own.hide_files();
     ConfigNode node = parse_config_text(*text, path.string(), own);
     if (own.ok() && node.kind != Kind::null) check_top_level(node, path, own);
     forward(own, diagnostics_);
     if (!own.ok()) return {};
     if (node.kind == Kind::null) return fail(whole_file, "the file is empty");
+    // Merge the included files.
     open_.push_back(canonical);
     node = with_includes(std::move(node), path);
     open_.pop_back();
@@ -108,7 +111,7 @@ class Loader {
   }
 
  private:
-  /// Whether a world names the file, which may be anything, and the command line does not.
+  /// Returns whether only a world names the file, which may then be any file, and the command line does not.
   bool hides(const fs::path& path) const {
     const auto& access = diagnostics_.files();
     return access != nullptr && (named_by_ != Origin::command_line || !open_.empty()) && !access->may_quote(path);
@@ -122,7 +125,7 @@ class Loader {
       return own.error(node.place, "", hidden ? rule : rule + ", got " + shown(node));
     }
     if (!hidden) return;
-    // What follows may quote the file: it is one of Shoal's, then, not the notes of whoever runs the world.
+    // The errors below may quote the file: it must be a file of Shoal, not a private file of the user.
     for (const ConfigNode::Entry& entry : node.entries)
       if (!diagnostics_.files()->is_known_key(entry.key))
         own.error(entry.place, "", "unknown key of a world or vehicle file");
@@ -140,12 +143,13 @@ class Loader {
       fail(asked_at, "cannot read " + subject + ": it is a directory");
       return std::nullopt;
     }
-    // A pipe without a writer would never end, a terminal would wait for a world to be typed.
+    // Refuse special files: a pipe without a writer would block, and so would a terminal.
     if (fs::exists(path, status_error) && !fs::is_regular_file(path, status_error)) {
       fail(asked_at, "cannot read " + subject + ": it is not a regular file" +
                          (asked_at.line > 0 ? "" : "; 'shoal run --special-files' allows that"));
       return std::nullopt;
     }
+    // Read the file up to the limit of all files.
     errno = 0;
     std::ifstream stream(path, std::ios::binary);
     std::string text;

@@ -17,7 +17,7 @@ std::vector<ParamInfo> merged_keys(const std::vector<std::pair<std::string, std:
       keys.push_back(info);
       ParamInfo& merged = keys.back();
       const bool is_text = merged.kind == ParamKind::text || merged.kind == ParamKind::name;
-      if (merged.required && is_text && merged.choices.empty()) merged.initial = "\"\"";  // of types without it
+      if (merged.required && is_text && merged.choices.empty()) merged.initial = "\"\"";  // for types without this key
       merged.required = false;
     }
   for (ParamInfo& info : keys) {

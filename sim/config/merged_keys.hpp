@@ -9,8 +9,9 @@
 
 namespace sim {
 
-/// The keys of several types in one table, each once and none required.  `types`: word and keys of each.  The
-/// description of a key of one or two types names them, unless the key has the name of the type.
+/// Merges the keys of several types into one table, each key once and none required.  `types`: word and keys of each
+/// type.  The description of a key that belongs to one or two types names them, unless the key has the name of the
+/// type.
 std::vector<ParamInfo> merged_keys(const std::vector<std::pair<std::string, std::vector<ParamInfo>>>& types);
 
 }  // namespace sim

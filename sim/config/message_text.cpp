@@ -49,7 +49,7 @@ std::string escaped(unsigned char c) {
   return text;
 }
 
-/// How many letters must be added, removed, changed or swapped with their neighbour.
+/// Returns the edit distance: number of letters added, removed, changed or swapped with their neighbour.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> before(b.size() + 1), last(b.size() + 1), row(b.size() + 1);
   std::iota(last.begin(), last.end(), 0);
@@ -75,8 +75,8 @@ std::string printable(std::string_view text) {
     // C2 80 to C2 9F are the control characters U+0080 to U+009F; U+009B starts commands like ESC [ does.
     const bool c1 = c == 0xc2 && i + 1 < text.size() && static_cast<unsigned char>(text[i + 1]) >= 0x80 &&
                     static_cast<unsigned char>(text[i + 1]) < 0xa0;
-    // E2 80 AA to AE and E2 81 A6 to A9 are U+202A to U+202E and U+2066 to U+2069, which turn the direction of writing:
-    // what is shown would not be what the file says.
+    // E2 80 AA to AE and E2 81 A6 to A9 are U+202A to U+202E and U+2066 to U+2069, which change the direction of
+    // writing: the displayed text would differ from the file.
     const auto byte = [&](std::size_t k) { return k < text.size() ? static_cast<unsigned char>(text[k]) : 0u; };
     const bool turns = c == 0xe2 && ((byte(i + 1) == 0x80 && byte(i + 2) >= 0xaa && byte(i + 2) <= 0xae) ||
                                      (byte(i + 1) == 0x81 && byte(i + 2) >= 0xa6 && byte(i + 2) <= 0xa9));
@@ -153,7 +153,7 @@ std::string closest_name(std::string_view misspelt, const std::vector<std::strin
     const std::size_t longer = std::max(name.size(), misspelt.size());
     if (longer - std::min(name.size(), misspelt.size()) >= min) continue;
     const std::size_t distance = edit_distance(misspelt, name);
-    if (distance >= min || distance >= name.size()) continue;  // 'x' is not a misspelt 'y'
+    if (distance >= min || distance >= name.size()) continue;  // one letter is not a misspelling of another
     min = distance;
     closest = name;
   }

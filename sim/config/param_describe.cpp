@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The describing half of ParamReader: rows of tables instead of values.
+// Describing functions of ParamReader, which make rows of tables instead of reading values.
 #include <algorithm>
 
 #include "sim/config/message_text.hpp"

@@ -7,7 +7,7 @@
 
 namespace sim {
 
-/// The range a number must lie in.
+/// Range in which a number must lie.
 struct Rule {
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
@@ -20,7 +20,7 @@ struct Rule {
 };
 
 Rule any_number();
-/// A coordinate in the world: within 1e7 m, beyond which a body counts as lost.
+/// Range of a coordinate in the world: within 1e7 m; a body farther away counts as lost.
 Rule any_place();
 Rule at_least(double low);
 Rule above(double low);
@@ -28,15 +28,15 @@ Rule at_most(double high);
 Rule between(double low, double high);   ///< both ends allowed
 Rule above_to(double low, double high);  ///< low excluded, high allowed
 
-/// A word that a key takes instead of a number, for what no number says: `duration_s: forever`.
+/// Word that a key accepts instead of a number, for a special value: `duration_s: forever`.
 struct NumberWord {
   const char* word;
-  double value = 0;  ///< what the program computes with; the rule of the key does not allow it
+  double value = 0;  ///< value used by the program; outside the rule of the key
 };
 
-/// What the value of a key is.
+/// Kind of the value of a key.
 enum class ParamKind {
-  any,  ///< described by hand, nothing is known
+  any,  ///< described by hand, unspecified
   boolean,
   integer,
   number,
@@ -46,24 +46,24 @@ enum class ParamKind {
   vector,
   numbers,
   texts,
-  paths,  ///< a list of such
+  paths,  ///< list of paths
   map,
   maps,
-  lists,  ///< a list of lists of maps
-  raw     ///< a map that is read elsewhere
+  lists,  ///< list of lists of maps
+  raw     ///< map that is read elsewhere
 };
 
-/// What happens to a file that a key names.
+/// Use of a file that a key names.
 enum class PathUse {
   read,       ///< relative to the file that holds the key
-  looked_up,  ///< in several folders, by whoever needs it: vehicle files, plugins
-  made        ///< a serial port, relative to the folder of the run
+  looked_up,  ///< searched in several folders by its loader: vehicle files, plugins
+  made        ///< created: a serial port, relative to the folder of the run
 };
 
-/// As tables call it: `number`, `[x, y, z]`, `list of maps`.
+/// Returns the name of a kind in tables: `number`, `[x, y, z]`, `list of maps`.
 std::string type_text(ParamKind kind);
 
-/// What is known of one key: the source of error messages, `shoal describe`, docs and schemas.
+/// Description of one key: the source of error messages, `shoal describe`, documentation and schemas.
 struct ParamInfo {
   std::string key;
   std::string type;     ///< as type_text()
@@ -73,18 +73,18 @@ struct ParamInfo {
   bool required = false;
   std::vector<ParamInfo> children;  ///< keys of a map, or of each item of a list of maps
 
-  // The same for programs.
+  // The same in machine-readable form.
   ParamKind kind = ParamKind::any;
-  Rule range = {};                         ///< of each number
-  std::vector<std::string> choices = {};   ///< the only words allowed; empty: any
-  PathUse path_use = PathUse::read;        ///< of a path
-  bool may_be_null = false;                ///< `key:` without a value is allowed
-  std::string word = {};                   ///< instead of the number; see NumberWord
-  bool one_key = false;                    ///< each map has one of the children and nothing else
-  bool main_alone = false;                 ///< a value of the first child may stand for the map
-  std::string definition = {};             ///< a name of the maps' keys; without children they are those of this name
-  std::string pattern = {};                ///< regular expression (ECMA) that each text of a list matches; empty: any
-  std::vector<std::string> examples = {};  ///< of such texts
+  Rule range = {};                        ///< of each number
+  std::vector<std::string> choices = {};  ///< allowed words; empty: any
+  PathUse path_use = PathUse::read;       ///< of a path
+  bool may_be_null = false;               ///< `key:` without a value is allowed
+  std::string word = {};                  ///< instead of the number; see NumberWord
+  bool one_key = false;                   ///< each map has exactly one of the children
+  bool main_alone = false;                ///< the value of the first child may be given instead of the map
+  std::string definition = {};  ///< name for the keys of the maps; without children: refers to the keys of this name
+  std::string pattern = {};     ///< regular expression (ECMA) that each text of a list matches; empty: any
+  std::vector<std::string> examples = {};  ///< examples of texts that match
 };
 
 }  // namespace sim

@@ -37,7 +37,7 @@ std::string yaml_list(const Values& values, const ToText& to_text) {
   return "[" + text + "]";
 }
 
-/// 45 degrees come back from radians as 45.000000000000007 or so.
+/// Rounds the conversion error of angles: 45 degrees are converted from radians to about 45.000000000000007.
 double rounded_degrees(double angle_rad) {
   char text[40];
   std::snprintf(text, sizeof text, "%.12g", radians_to_degrees(angle_rad));
@@ -46,7 +46,7 @@ double rounded_degrees(double angle_rad) {
 
 enum class NumberText { number, not_finite, no_number };
 
-/// A decimal number, written as YAML allows it.
+/// Parses a decimal number in YAML syntax.
 NumberText parse_number(std::string_view text, double& value) {
   if (text.starts_with('+') && text.size() > 1 && text[1] != '-' && text[1] != '+') text.remove_prefix(1);
   std::string magnitude(text.starts_with('-') ? text.substr(1) : text);
@@ -56,12 +56,12 @@ NumberText parse_number(std::string_view text, double& value) {
     if (magnitude == word) return NumberText::not_finite;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error == std::errc::invalid_argument || end != text.data() + text.size()) return NumberText::no_number;
-  // Out of range is said of both ends; strtod tells too large from too small.
+  // The parser reports out of range at both ends; strtod distinguishes too large from too small.
   if (error == std::errc::result_out_of_range) value = std::strtod(std::string(text).c_str(), nullptr);
   return std::isfinite(value) ? NumberText::number : NumberText::not_finite;
 }
 
-/// What a message says was found where a number was wanted.
+/// Describes a value found in place of a number, for messages.
 std::string shown_as_no_number(const ConfigNode& node) {
   return (node.kind == Kind::scalar && node.quoted ? "the text " : "") + shown(node);
 }
@@ -126,7 +126,7 @@ const ConfigNode* ParamReader::take(const char* key) {
   const auto required = std::find(required_.begin(), required_.end(), key);
   if (required == required_.end()) return value;
   required_.erase(required);
-  const bool is_map = node_->kind == Kind::map || node_->kind == Kind::null;  // else that was the error
+  const bool is_map = node_->kind == Kind::map || node_->kind == Kind::null;  // otherwise that was the error
   if (value == nullptr && is_map) error("missing key " + quoted_name(key));
   return value;
 }
@@ -156,7 +156,7 @@ void ParamReader::declare(const char* kind, const std::string& name) {
     for (const NamedPlace& named : named_places_)
       if (named.kind == listed_as && named.name == name && ++seen == count) place = named.place;
     if (seen >= count) break;
-    // The other one goes by a name that is not written, such as that of an instance.
+    // The other one has a generated name, such as that of an instance.
     for (const NamedPlace& named : named_places_)
       if (seen == 1 && named.kind == listed_as && named.name == name) place = named.place;
   }
@@ -185,7 +185,7 @@ void ParamReader::check_reference(const char* key, const char* kind, const std::
 
 // Values
 
-// Squares and cubes of what is larger are not finite, and nothing real is.
+// Squares and cubes of larger numbers may overflow, and no physical quantity is larger.
 constexpr double max_magnitude = 1e30;
 
 bool ParamReader::take_number(const std::string& what, const ConfigNode& node, const Rule& rule, double& value) {
@@ -219,7 +219,7 @@ bool ParamReader::take_integer(const std::string& what, const ConfigNode& node, 
   if (node.kind == Kind::scalar && !node.quoted) {
     found = parse_number(text, number);
     if (found == NumberText::number && (error != std::errc{} || !all_read)) {
-      // 1e3 is a whole number too.
+      // Accept 1e3 as a whole number.
       if (number != std::trunc(number)) found = NumberText::no_number;
       if (found == NumberText::number && std::abs(number) > exact_whole_numbers) {
         error_at(node.place, what + " must be a whole number of at most 63 bits, got " + shown(node));

@@ -28,14 +28,14 @@ concept ReadsParams = requires(T value, ParamReader& in) {
   value.read(in);
 };
 
-/// Hands the keys of one YAML map to a struct, or (describing) collects what the struct would read.  A struct names
-/// each key, its range and its meaning once, in its `read`.  Members hold the defaults.  Errors are collected, never
-/// thrown: after an error the member keeps its default.
+/// Reads the keys of one YAML map into a struct, or (when describing) collects the descriptions of the keys.  A struct
+/// names each key, its range and its meaning once, in its `read`.  Members hold the defaults.  Errors are collected,
+/// never thrown: after an error the member keeps its default.
 class ParamReader {
  public:
-  /// Reads `node`.  `who` is the start of each message, such as `vehicle 'auv1': device 'lidar'`.
+  /// Makes a reader of `node`.  `who`: prefix of each message, such as `vehicle 'auv1': device 'lidar'`.
   ParamReader(const ConfigNode& node, std::string who, Diagnostics& diagnostics);
-  /// Describes: every call appends to `table`; members are left alone.
+  /// Makes a describing reader: every call appends to `table`; members are unchanged.
   explicit ParamReader(std::vector<ParamInfo>& table);
   ParamReader(const ParamReader&) = delete;
   ParamReader& operator=(const ParamReader&) = delete;
@@ -50,8 +50,8 @@ class ParamReader {
   void read(const char* key, double& value, const Rule& rule, const char* meaning);
   /// Reads a number that may be absent; without the key `value` stays unset.
   void read(const char* key, std::optional<double>& value, const Rule& rule, const char* meaning);
-  /// Reads a number inside `rule`, or a word: `duration_s: forever`.  The value is then `word.value`; who writes that
-  /// number itself is given the word.
+  /// Reads a number inside `rule`, or a word such as `duration_s: forever`, which sets `word.value`.  That number
+  /// itself is an error, which names the word.
   void read_or_word(const char* key, double& value, const Rule& rule, const NumberWord& word, const char* meaning);
   /// Reads a whole number, or a word.
   void read_or_word(const char* key, int& value, const Rule& rule, const NumberWord& word, const char* meaning);
@@ -64,95 +64,96 @@ class ParamReader {
   void read(const char* key, Vector3d& value, const Rule& rule, const char* meaning);
   /// Reads a list of three numbers that may be absent; without the key `value` stays unset.
   void read(const char* key, std::optional<Vector3d>& value, const Rule& rule, const char* meaning);
-  /// Any number of numbers, each inside `rule`.
+  /// Reads a list of numbers of any length, each inside `rule`.
   void read(const char* key, std::vector<double>& value, const Rule& rule, const char* meaning);
   /// Reads a list of texts.
   void read(const char* key, std::vector<std::string>& value, const char* meaning);
-  /// A name, which may become part of a channel or a file name: letters, digits, '_' and '-'.
+  /// Reads a name of letters, digits, '_' and '-', which may become part of a channel or file name.
   void read_name(const char* key, std::string& value, const char* meaning);
-  /// A file.  A file that is read is relative to the file that holds this map; one that is made (a serial port) to the
-  /// folder of the run.  An error, and false, when it comes over the bus, or when the FileAccess of the diagnostics
-  /// does not allow it; what the command line sets is allowed.  The value is kept as it was written.
+  /// Reads the path of a file.  A file to be read is relative to the file that holds this map; one to be created (a
+  /// serial port) to the folder of the run.  Reports an error and returns false when the path comes over the bus, or
+  /// when the FileAccess of the diagnostics does not allow it; paths set on the command line are allowed.  The value is
+  /// kept as it was written.
   bool read_path(const char* key, std::string& value, PathUse use, const char* meaning);
-  /// Libraries, which are looked up by their loader.
+  /// Reads a list of libraries, which are looked up by their loader.
   void read_paths(const char* key, std::vector<std::string>& value, const char* meaning);
-  /// A number in degrees in the file (key ends in `_deg`), in radians in the struct; `rule` is in degrees.
+  /// Reads an angle in degrees (key ends in `_deg`) and stores it in radians; `rule` is in degrees.
   void read_deg(const char* key, double& value_rad, const Rule& rule, const char* meaning);
-  /// Three angles in degrees in the file, in radians in the struct.
+  /// Reads three angles in degrees and stores them in radians.
   void read_deg(const char* key, Vector3d& value_rad, const char* meaning);
-  /// Reads one word out of those of an enum.
+  /// Reads one word of an enum.
   template <typename Enum>
   requires std::is_enum_v<Enum>
   void read_choice(const char* key, Enum& value, const std::type_identity_t<ChoiceWords<Enum>>& words,
                    const char* meaning);
-  /// Reads the same with a further word, listed first, for none of them.
+  /// Reads one word of an enum, or `word_of_none`, listed first, which clears `value`.
   template <typename Enum>
   requires std::is_enum_v<Enum>
   void read_choice(const char* key, std::optional<Enum>& value, const char* word_of_none,
                    const std::type_identity_t<ChoiceWords<Enum>>& words, const char* meaning);
-  /// Reads one word out of those of an enum whose values are in `allowed`.
+  /// Reads one word of an enum; only the values in `allowed` are accepted.
   template <typename Enum>
   requires std::is_enum_v<Enum>
   void read_choice(const char* key, Enum& value, const std::type_identity_t<ChoiceWords<Enum>>& words,
                    std::span<const std::type_identity_t<Enum>> allowed, const char* meaning);
-  /// Reads one name out of a list that is known only when the program runs, or has no meaning beyond its row of a
-  /// table: registered types, presets.  A word that the program decides by belongs to an enum, see read_choice.
+  /// Reads one name of a list that is known only at run time or selects a row of a table: registered types, presets.  A
+  /// word that selects program behaviour belongs to an enum, see read_choice.
   void read_one_of(const char* key, std::string& value, const std::vector<std::string>& names, const char* meaning);
-  /// A name that must have been announced by `declare(kind, name)`.  Empty (the default) means none.
+  /// Reads a name that must have been declared by `declare(kind, name)`.  Empty (the default) means none.
   void read_reference(const char* key, std::string& value, const char* kind, const char* meaning);
   /// Reads a list of names, each as by read_reference().
   void read_references(const char* key, std::vector<std::string>& value, const char* kind, const char* meaning);
-  /// The next read of `key` must find it: `missing key 'file'`.
+  /// Makes the next read of `key` report an error when the key is absent: `missing key 'file'`.
   void require(const char* key);
-  /// A map that is read elsewhere (overrides, a process's environment): kept as it is.
+  /// Stores a map that is read elsewhere (overrides, the environment of a process) unchanged.
   void read_raw(const char* key, ConfigNode& value, const char* meaning);
 
   // A key without a value (`parts:` and nothing after it) is an empty map or list, or an unset optional.
 
-  /// A nested map.  A T that has set_key() is given `key`, whether the key is present or not.
+  /// Reads a nested map.  `key` is passed to set_key() of a T that has it, whether the key is present or not.
   template <ReadsParams T>
   void read(const char* key, T& value, const char* meaning);
   /// Reads a nested map that may be absent; without the key `value` stays unset.
   template <ReadsParams T>
   void read(const char* key, std::optional<T>& value, const char* meaning);
-  /// A list of maps.  Who of an item: `kind 'name'` when the item has a `name`, else `kind 3` (from 1).
+  /// Reads a list of maps.  Messages denote an item as `kind 'name'` when it has a `name`, else as `kind 3` (from 1).
   template <ReadsParams T>
   void read_list(const char* key, std::vector<T>& value, const char* kind, const char* meaning);
-  /// A list of such lists.  Describes nothing.
+  /// Reads a list of lists of maps.  Adds no description.
   template <ReadsParams T>
   void read_lists(const char* key, std::vector<std::vector<T>>& value, const char* kind);
 
-  /// Makes a name known for read_reference in this reader and the readers nested in it.  The second time the same
-  /// name of a kind is declared in one reader it is an error: `duplicate joint 'left'`.
+  /// Declares a name for read_reference in this reader and the readers nested in it.  Declaring the same name of a kind
+  /// twice in one reader is an error: `duplicate joint 'left'`.
   void declare(const char* kind, const std::string& name);
-  /// The names of a kind known here, sorted.
+  /// Returns the declared names of a kind, sorted.
   std::vector<std::string> declared(const char* kind) const;
 
-  /// An error at the value of `key` (or at the map when the key is absent).
+  /// Reports an error at the value of `key`, or at the map when the key is absent.
   void error(const char* key, const std::string& text);
-  /// An error at the map itself.
+  /// Reports an error at the map itself.
   void error(const std::string& text);
 
-  /// Whether this reader collects descriptions instead of values.
+  /// Returns whether this reader collects descriptions instead of values.
   bool describing() const { return table_ != nullptr; }
-  /// The map has this key; false when describing.
+  /// Returns whether the map has this key; false when describing.
   bool has(const char* key) const;
-  /// The map that is read; null when describing.
+  /// Returns the map that is read; null when describing.
   const ConfigNode* node() const { return node_; }
-  /// The node of a key that is present.  Marks the key as known.
+  /// Returns the node of a key, null when absent, and marks the key as known.
   const ConfigNode* child(const char* key);
-  /// Start of each error message, such as `vehicle 'auv1': device 'lidar'`.
+  /// Prefix of each error message, such as `vehicle 'auv1': device 'lidar'`.
   const std::string& who() const { return who_; }
-  /// Collects the errors and warnings.
+  /// Returns the collection of errors.
   Diagnostics& diagnostics() { return *diagnostics_; }
   /// Adds a row to the table when describing (for keys that are read by hand through child()).
   void describe(ParamInfo info);
 
-  /// Reports unknown keys: `unknown key 'beam'; known keys: beams, fov_deg`.  Call once, after the last read.
+  /// Reports unknown keys: `unknown key 'beam'; known keys: beams, fov_deg`.  Must be called once, after the last read.
   void finish();
 
  private:
-  /// A value of a list that has a name, for the place of `duplicate joint 'left'`.
+  /// Place of a named item of a list, for errors such as `duplicate joint 'left'`.
   struct NamedPlace {
     std::string kind;  ///< empty: an item of a list of text
     std::string name;
@@ -163,17 +164,17 @@ class ParamReader {
   ParamReader(const ConfigNode& node, std::string who, Diagnostics& diagnostics, const ParamReader* parent);
   ParamReader(std::vector<ParamInfo>& table, const ParamReader* parent, const void* type);
 
-  /// The value of `key`, which becomes known; null when absent.  Reports it when it is required and absent.
+  /// Returns the value of `key`, null when absent, and marks the key as known.  Reports a required key that is absent.
   const ConfigNode* take(const char* key);
   void describe_value(const char* key, ParamKind kind, const Rule& range, std::string initial, const char* meaning);
   void describe_or_word(const char* key, ParamKind kind, const Rule& range, const NumberWord& word, double initial,
                         const char* meaning);
-  /// Text whose rule is more than a range: `choices`, or names.
+  /// Describes text whose rule is not a range: `choices`, or names.
   void describe_words(const char* key, ParamKind kind, std::string rule, std::string initial, const char* meaning,
                       std::vector<std::string> choices = {});
   void error_at(const SourcePlace& place, const std::string& text);
   bool take_number(const std::string& what, const ConfigNode& node, const Rule& rule, double& value);
-  /// The node of a key that has a number; null when it has the word, which `value` becomes, or an error.
+  /// Returns the node of a key that holds a number; null when it holds the word, which sets `value`, or is wrong.
   const ConfigNode* take_unless_word(const char* key, double& value, const Rule& rule, const NumberWord& word);
   bool take_integer(const std::string& what, const ConfigNode& node, const Rule& rule, std::int64_t& value);
   bool take_text(const std::string& what, const ConfigNode& node, std::string& value);
@@ -185,12 +186,13 @@ class ParamReader {
                           const char* meaning);
   std::string who_of_item(const ConfigNode& item, const char* kind, std::size_t index) const;
 
-  /// `type` identifies the type, so that describing a recursive type terminates.
+  /// Returns the descriptions of nested keys.  `type` identifies the type, so that describing a recursive type
+  /// terminates.
   std::vector<ParamInfo> describe_children(const void* type, const ReadInto& read_into) const;
   void describe_nested(const char* key, ParamKind kind, const std::string& initial, const void* type,
                        const ReadInto& read_into, const char* meaning);
   void read_nested(const char* key, const ConfigNode& node, const ReadInto& read_into);
-  /// Calls `read_into` for each item of the list.  False when the value is not a list.
+  /// Calls `read_into` for each item of the list.  Returns false when the value is not a list.
   bool read_items(const char* key, const ConfigNode& node, const char* kind, const ReadInto& read_into);
 
   const ConfigNode* node_ = nullptr;

@@ -11,7 +11,7 @@ namespace sim {
 
 namespace detail {
 
-/// Its address names the type T.
+/// Object whose address identifies the type T.
 template <typename T>
 inline constexpr char type_mark = 0;
 
@@ -57,7 +57,7 @@ void ParamReader::read_choice(const char* key, Enum& value, const std::type_iden
 template <ReadsParams T>
 void ParamReader::read(const char* key, T& value, const char* meaning) {
   if (describing()) {
-    // A copy: read() may set members that follow from others.
+    // Read a copy: read() may set members that are derived from others.
     const auto read_copy = [&value](ParamReader& in) { T(value).read(in); };
     describe_nested(key, ParamKind::map, "{}", &detail::type_mark<T>, read_copy, meaning);
     return;

@@ -24,7 +24,7 @@ void append_rows(const std::vector<ParamInfo>& params, const std::string& prefix
   }
 }
 
-/// Text in which Markdown finds no cell border and no tag.
+/// Returns the text with cell borders and tags of Markdown escaped.
 std::string escaped_for_markdown(const std::string& text) {
   std::string escaped;
   for (const char c : text) {
@@ -34,7 +34,7 @@ std::string escaped_for_markdown(const std::string& text) {
   return escaped;
 }
 
-/// A cell set as code; inside of it only the border needs escaping.
+/// Returns a cell formatted as code, in which only the border needs escaping.
 std::string code(const std::string& text) {
   if (text.empty()) return "";
   std::string escaped;

@@ -9,14 +9,14 @@
 
 namespace sim {
 
-/// Key, type, rule, default, meaning of each key, those of maps and lists by their paths as below.
+/// Returns key, type, rule, default and meaning of each key; nested keys are named by their paths as below.
 std::vector<std::array<std::string, 5>> param_rows(const std::vector<ParamInfo>& params);
 
-/// The keys as a table in Markdown: key, type, rule, default, meaning.  The keys of a map are
-/// `noise.gaussian_std`, those of the items of a list `parts[].shape`.
+/// Returns the keys as a Markdown table: key, type, rule, default, meaning.  Keys of a map are written as
+/// `noise.gaussian_std`, keys of the items of a list as `parts[].shape`.
 std::string markdown_table(const std::vector<ParamInfo>& params);
 
-/// The same as text in columns, for a terminal.
+/// Returns the same table as text in columns, for a terminal.
 std::string text_table(const std::vector<ParamInfo>& params);
 
 }  // namespace sim

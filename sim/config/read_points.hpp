@@ -8,7 +8,7 @@
 
 namespace sim {
 
-/// A list of points `[[x, y, z], ...]`, or of `[x, y]` when `columns` is 2 (z is then 0).
+/// Reads a list of points `[[x, y, z], ...]`, or of `[x, y]` when `columns` is 2 (z is then 0).
 void read_points(ParamReader& in, const char* key, std::vector<Vector3d>& value, std::size_t columns,
                  const char* meaning);
 

@@ -15,7 +15,7 @@ bool has_worlds(const fs::path& folder) {
   return fs::is_directory(folder / "worlds", error) && fs::is_directory(folder / "vehicles", error);
 }
 
-/// The source folder that CMake noted in a build folder; empty: it is not one.
+/// Returns the source folder recorded by CMake in a build folder; empty when it is not a build folder.
 fs::path source_of_build(const fs::path& build) {
   constexpr std::string_view mark = "CMAKE_HOME_DIRECTORY:INTERNAL=";
   std::ifstream cache(build / "CMakeCache.txt");

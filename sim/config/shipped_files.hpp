@@ -5,11 +5,11 @@
 
 namespace sim {
 
-/// The folder with the `worlds/` and `vehicles/` that came with this program: `share/shoal` of its installation, or the
-/// checkout that its build folder belongs to.  Empty: there is none.
+/// Returns the folder with the `worlds/` and `vehicles/` shipped with this program: `share/shoal` of its installation,
+/// or the checkout of its build folder.  Empty: there is none.
 std::string shipped_folder();
 
-/// The same for a program in `program_folder`, such as `/usr/local/bin` or `checkout/build/release/bin`.
+/// Returns that folder for a program in `program_folder`, such as `/usr/local/bin` or `checkout/build/release/bin`.
 std::string shipped_folder_of(const std::string& program_folder);
 
 }  // namespace sim

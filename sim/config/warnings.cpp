@@ -8,14 +8,14 @@
 namespace sim {
 
 void Warnings::warn(const SourcePlace& place, const std::string& who, const std::string& text) {
-  constexpr std::size_t max_lines = 100;  // more is not helpful
+  constexpr std::size_t max_lines = 100;  // limit of logged warnings
   if (lines_.size() > max_lines) return;
   std::string line = place.text();
   for (const std::string& part : {who, text})
     if (!part.empty()) line += (line.empty() ? "" : ": ") + part;
-  // Names come from files: a line feed or an escape sequence in one must not reach the terminal.
+  // Names are input: line feeds and escape sequences must not reach the terminal.
   line = printable(line);
-  // What is wrong in a vehicle file is said once, however many vehicles use the file.
+  // Report an error in a vehicle file once, independent of the number of vehicles that use it.
   if (!seen_.insert(place.line > 0 ? printable(place.text() + ": " + text) : line).second) return;
   if (lines_.size() == max_lines) line = "more warnings are not shown";
   spdlog::warn("{}", line);

@@ -10,13 +10,13 @@
 
 namespace sim {
 
-/// Input that is valid but probably unintended: logged as one line each, `file:line:column: who: text`.
+/// Warnings of input that is valid but probably unintended, each logged as one line: `file:line:column: who: text`.
 class Warnings {
  public:
   /// Logs `place: who: text` (place and who may be empty).  The same text at the same place is logged once,
   /// independent of `who`; at most 100 lines are logged.
   void warn(const SourcePlace& place, const std::string& who, const std::string& text);
-  /// All that was logged.
+  /// Returns all logged lines.
   const std::vector<std::string>& lines() const { return lines_; }
 
  private:
@@ -24,7 +24,7 @@ class Warnings {
   std::set<std::string> seen_;
 };
 
-/// The place of a key of a map, else that of the map.
+/// Returns the place of a key of a map, or of the map when the key is absent.
 SourcePlace place_of(const ConfigNode& map, std::string_view key);
 
 }  // namespace sim

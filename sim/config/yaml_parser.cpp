@@ -24,14 +24,14 @@ constexpr int max_depth = 100;
 constexpr std::size_t max_nodes = 2'000'000;
 constexpr std::size_t max_text_bytes = 256'000'000;
 
-/// Ends the parsing.
+/// Exception that ends the parsing.
 struct Stop {
   SourcePlace place;
   std::string text;
   bool bad_key = false;
 };
 
-/// What a tree costs when an alias copies it.
+/// Size of a tree, counted when an alias copies it.
 struct TreeSize {
   std::size_t nodes = 0;
   std::size_t text_bytes = 0;
@@ -51,7 +51,7 @@ TreeSize size_of(const ConfigNode& node) {
   return size;
 }
 
-/// Builds the tree from the parser's events.  A YAML::Node tree in between would lose duplicate keys and
+/// Builder of the tree from the events of the parser.  An intermediate YAML::Node tree would lose duplicate keys and
 /// quotes.
 class TreeBuilder final : public YAML::EventHandler {
  public:
@@ -82,7 +82,7 @@ class TreeBuilder final : public YAML::EventHandler {
   void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override {
     if (expects_key()) stop_at_bad_key(mark, "nothing");
     ConfigNode node = new_node(Kind::null, mark);
-    // The mark of nothing is that of whatever comes next; the key without a value is the better place.
+    // The mark of an empty value is that of the next token; report the key without a value instead.
     const bool is_value = !open_.empty() && open_.back().node.kind == Kind::map;
     if (is_value && node.place.line != open_.back().key_place.line) node.place = open_.back().key_place;
     add(std::move(node), anchor);
@@ -128,7 +128,7 @@ class TreeBuilder final : public YAML::EventHandler {
  private:
   enum class Tag { none, text };
 
-  /// A list or map whose end has not come yet.
+  /// Open list or map.
   struct Open {
     ConfigNode node;
     YAML::anchor_t anchor = YAML::NullAnchor;
@@ -166,14 +166,16 @@ class TreeBuilder final : public YAML::EventHandler {
     return node;
   }
 
-  /// Of block scalars, escapes, and texts of several lines the file has other characters than the value.
+  /// Returns whether a scalar is literal in the file: block scalars, escapes, and texts of several lines differ from
+  /// their values.
   bool is_verbatim(const YAML::Mark& mark, const std::string& value, bool quoted) const {
     if (mark.is_null() || static_cast<std::size_t>(mark.line) >= line_starts_.size()) return false;
     const std::size_t at = line_starts_[static_cast<std::size_t>(mark.line)] + static_cast<std::size_t>(mark.column);
     return at < text_.size() && text_.substr(at).substr(quoted ? 1 : 0).starts_with(value);
   }
 
-  /// `!` is yaml-cpp's tag of a scalar in quotes, `?` of anything else without a tag.
+  /// Returns the kind of a tag.  yaml-cpp gives the tag `!` to a scalar in quotes, and `?` to anything else without a
+  /// tag.
   Tag check_tag(const YAML::Mark& mark, const std::string& tag) const {
     static const std::string standard = "tag:yaml.org,2002:";
     if (tag == "!" || tag == standard + "str") return Tag::text;
@@ -222,7 +224,7 @@ class TreeBuilder final : public YAML::EventHandler {
 
   void remember(YAML::anchor_t anchor, const ConfigNode& node) {
     const TreeSize size = size_of(node);
-    count(size, node.place);  // nested anchors copy what is inside them once for each level
+    count(size, node.place);  // nested anchors copy their contents once for each level
     anchors_[anchor] = {node, size};
   }
 
@@ -259,7 +261,8 @@ struct BadByte {
   std::string text;
 };
 
-/// The length of the UTF-8 character at `at`; 0 when it is none (RFC 3629: no overlong forms, no surrogates).
+/// Returns the length of the UTF-8 character at `at`; 0 when it is invalid (RFC 3629: no overlong forms, no
+/// surrogates).
 std::size_t character_length(std::string_view text, std::size_t at) {
   const auto byte = [&](std::size_t i) -> unsigned {
     return i < text.size() ? static_cast<unsigned char>(text[i]) : 0;
@@ -279,7 +282,7 @@ std::size_t character_length(std::string_view text, std::size_t at) {
   return length;
 }
 
-/// yaml-cpp takes broken UTF-8 as it comes, and the byte 4 as the end of the file.
+/// Checks the encoding, because yaml-cpp accepts invalid UTF-8, and takes the byte 4 as the end of the file.
 std::optional<BadByte> first_bad_byte(std::string_view text) {
   for (std::size_t i = 0; i < text.size();) {
     const auto c = static_cast<unsigned char>(text[i]);
@@ -295,8 +298,8 @@ std::optional<BadByte> first_bad_byte(std::string_view text) {
   return std::nullopt;
 }
 
-/// yaml-cpp looks ahead over all of `[[[[...` before it reports the first one: 2 GB of memory for 10 MB.  The
-/// limit is far above max_depth, because brackets in comments and quotes are counted too.
+/// Finds brackets nested beyond a limit: yaml-cpp scans all of `[[[[...` before it reports the first event, with 2 GB
+/// of memory for 10 MB.  The limit is far above max_depth, because brackets in comments and quotes are counted too.
 std::optional<BadByte> hopeless_nesting(std::string_view text) {
   constexpr int limit = 10'000;
   int depth = 0;
@@ -308,14 +311,14 @@ std::optional<BadByte> hopeless_nesting(std::string_view text) {
   return std::nullopt;
 }
 
-/// Brackets in comments and quotes are counted too: good for a hint only.
+/// Returns whether a bracket may be open; a hint only, because brackets in comments and quotes are counted too.
 bool may_have_open_bracket(std::string_view text) {
   std::ptrdiff_t open = 0;
   for (const char c : text) open += (c == '[' || c == '{') - (c == ']' || c == '}');
   return open > 0;
 }
 
-/// yaml-cpp calls a tab in the indentation `illegal map value`, among others.
+/// Detects a tab in the indentation, which yaml-cpp reports as `illegal map value`, among others.
 bool is_indented_with_tab(std::string_view text, int line) {
   for (int before = 0; before < line; ++before) {
     const std::size_t end = text.find('\n');
@@ -339,12 +342,14 @@ SourcePlace place_at(std::string_view text, std::size_t at, const std::string* f
 
 ConfigNode parse_config_text(const std::string& text, const std::string& file_name, Diagnostics& diagnostics) {
   const std::string* file = intern_file_name(file_name);
+  // Check encoding and nesting before yaml-cpp reads the text.
   auto bad = first_bad_byte(text);
   if (!bad) bad = hopeless_nesting(text);
   if (bad) {
     diagnostics.error(place_at(text, bad->at, file), "", bad->text);
     return {};
   }
+  // Parse, and convert exceptions to errors.
   TreeBuilder builder(text, file, diagnostics);
   try {
     std::istringstream stream(text);
@@ -352,7 +357,7 @@ ConfigNode parse_config_text(const std::string& text, const std::string& file_na
     while (parser.HandleNextDocument(builder)) {
     }
   } catch (const Stop& stop) {
-    // yaml-cpp takes what stands in an open bracket for a key.
+    // yaml-cpp takes the text in an open bracket for a key.
     const bool open = stop.bad_key && may_have_open_bracket(text);
     builder.error(stop.place, stop.text + (open ? "; is a bracket not closed?" : ""));
   } catch (const YAML::DeepRecursion& error) {

@@ -19,7 +19,7 @@ bool is_control(char c) {
   return static_cast<unsigned char>(c) < 0x20 || c == 0x7f;
 }
 
-/// Read without quotes, the text is the same text again.
+/// Returns whether the text without quotes parses to the same text.
 bool plain_is_safe(std::string_view text, bool in_flow) {
   if (text.empty() || text == "~" || text == "null" || text == "Null" || text == "NULL" || text == "<<") return false;
   if (text.front() == ' ' || text.back() == ' ' || text.back() == ':') return false;
@@ -28,7 +28,7 @@ bool plain_is_safe(std::string_view text, bool in_flow) {
   if (std::string_view("-?:").find(text.front()) != std::string_view::npos && (text.size() == 1 || text[1] == ' '))
     return false;
   if (text.find(": ") != std::string_view::npos || text.find(" #") != std::string_view::npos) return false;
-  if (text.starts_with("\xef\xbb\xbf")) return false;  // a byte order mark would be dropped
+  if (text.starts_with("\xef\xbb\xbf")) return false;  // a byte order mark would be lost
   if (in_flow && text.find_first_of(",[]{}?:") != std::string_view::npos) return false;
   return std::none_of(text.begin(), text.end(), is_control);
 }
@@ -84,7 +84,8 @@ void append_flow(const ConfigNode& node, std::size_t limit, std::string& out) {
   }
 }
 
-/// A list of values, or of lists of values, all of which keep their quotes or the lack of them on one line.
+/// Returns whether a node is a list of values, or of lists of values, that can be written on one line with the same
+/// quoting.
 bool fits_on_a_line(const ConfigNode& node) {
   switch (node.kind) {
     case Kind::null:

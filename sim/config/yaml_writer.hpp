@@ -8,7 +8,7 @@
 
 namespace sim {
 
-/// The tree on one line, such as `{name: left, axis: [0, 1, 0]}`.  Stops soon after `limit` bytes.
+/// Returns the tree as YAML on one line, such as `{name: left, axis: [0, 1, 0]}`.  Stops soon after `limit` bytes.
 std::string to_flow_yaml(const ConfigNode& node, std::size_t limit = static_cast<std::size_t>(-1));
 
 }  // namespace sim

@@ -20,77 +20,78 @@ class Vehicle;
 class VehicleClock;
 class World;
 
-/// Where and when a sensor samples.
+/// Inputs of a sensor at a sample.
 struct SenseContext {
-  const World& world;      ///< as it stands at `now`
+  const World& world;      ///< state at `now`
   const Vehicle& vehicle;  ///< the vehicle that carries the sensor
-  Time now;                ///< the time sampled
-  double dt_s;             ///< since this sensor's last sample; 0 at the first
-  Pose X_WS;               ///< the sensor frame, as mounted
-  Vector3d v_WS_W;         ///< velocity of its origin
+  Time now;                ///< sample time
+  double dt_s;             ///< time since the last sample of this sensor; 0 at the first
+  Pose X_WS;               ///< pose of the sensor frame S in the world frame W
+  Vector3d v_WS_W;         ///< velocity of the origin of S, in W
 };
 
 /// One physics step, for sensors that observe continuously (spinning lidar, rolling shutter).
 struct SweepContext {
-  const World& world;      ///< as it stands at the end of the step
+  const World& world;      ///< state at the end of the step
   const Vehicle& vehicle;  ///< the vehicle that carries the sensor
   Time from;               ///< start of the step that just ended
-  Time now;                ///< its end
-  Pose X_WS_from;          ///< the sensor frame at `from`
-  Pose X_WS;               ///< the sensor frame at `now`
-  Time next_sample;        ///< when measure() is called next; now or later
+  Time now;                ///< end of the step
+  Pose X_WS_from;          ///< pose of the sensor frame at `from`
+  Pose X_WS;               ///< pose of the sensor frame at `now`
+  Time next_sample;        ///< time of the next measure(); now or later
 
-  /// Between the ends of the step.
+  /// Returns the pose of the sensor frame at a time in the step, by interpolation.
   Pose X_WS_at(Time at) const;
 };
 
-/// The model of a sensor: reads physics, knows no message.
-///
-/// A model whose measure(), disturb() and sweep() touch nothing but itself and the scene says `static constexpr bool
-/// casts_rays = true`: those are then called from several threads, for different devices at once, and so is its
-/// reporter.  A model that has sweep() says `static constexpr bool sweeps = true`.
+/// Model of a sensor: reads the physics, and does not depend on message types.
+/// A model whose measure(), disturb() and sweep() access only the model itself and the scene declares `static constexpr
+/// bool casts_rays = true`: these functions and its reporter are then called from several threads, for different
+/// devices concurrently.  A model that has sweep() declares `static constexpr bool sweeps = true`.
 class Sensor {
  public:
   virtual ~Sensor() = default;
-  /// Measures without error: the truth becomes the reading.  Called at every sample.
+  /// Measures without error: sets the reading to the true values.  Called at every sample.
   virtual void measure(const SenseContext& context) = 0;
-  /// Called after each step, before measure() when that is due; the world is in its state at the end of the step.
+  /// Observes one physics step.  Called after each step, before measure() when a sample is due; the world is in its
+  /// state at the end of the step.
   virtual void sweep(const SweepContext& /*context*/) {}
-  /// Turns the truth into a measurement, in place: noise, quantisation.  Called once after every measure().
+  /// Adds the measurement errors to the reading in place: noise, quantisation.  Called once after every measure().
   virtual void disturb(double dt_s, Random& random) = 0;
-  /// About how many rays a sample takes: whether it is worth sharing the work among threads.
+  /// Returns the approximate number of rays of a sample, which decides whether the work is shared among threads.
   virtual std::int64_t rays() const { return 0; }
-  /// It looks for the bottom though it does not cast rays as the scanners do: a world without one is worth a warning.
+  /// Returns whether the sensor detects the bottom without casting rays as scanners do: a world without a bottom then
+  /// causes a warning.
   virtual bool needs_bottom() const { return false; }
-  /// Something sent to this device at a simulated time arrives, see DeviceHost::schedule_arrival.
+  /// Receives data scheduled for this device at a simulated time, see DeviceHost::schedule_arrival.
   virtual void arrive(Time /*at*/, std::span<const std::byte> /*payload*/) {}
-  /// The reading and everything that outlasts a sample.
+  /// Visits the reading and all state that is kept between samples.
   virtual void visit_state(StateArchive& archive) = 0;
 };
 
-/// Takes the messages a reporter makes.  The channel is the framework's business.
+/// Publishes the messages of a reporter on the channel that the framework has chosen.
 class Publisher {
  public:
   virtual ~Publisher() = default;
   /// Publishes an encoded message.
   virtual void publish(std::span<const std::byte> payload) = 0;
-  /// The time stamp of messages: the run's epoch plus the time by the clock of the vehicle, in microseconds; true time
-  /// on a truth channel.
+  /// Returns the time stamp of a message: the epoch of the run plus the time of the vehicle clock, in microseconds;
+  /// true time on a truth channel.
   std::int64_t utime(Time at) const;
-  /// Of what another clock stamped, such as a message by its sender: that clock's `reading`; true time on a truth
-  /// channel.
+  /// Returns the time stamp of data stamped by another clock, such as a message stamped by its sender: the `reading` of
+  /// that clock; true time on a truth channel.
   std::int64_t utime_elsewhere(Time at, Time reading) const {
     return epoch_us_ + (clock_ ? reading.count() : at.count());
   }
-  /// By true time, as satellites tell it.
+  /// Returns the time stamp in true time, as received from GNSS.
   std::int64_t true_utime(Time at) const { return epoch_us_ + at.count(); }
-  /// It is the truth that is being reported.
+  /// Returns whether this is a truth channel.
   bool is_truth() const { return clock_ == nullptr; }
-  /// Space to encode into, reused from message to message.
+  /// Returns the encoding buffer, reused from message to message.
   Bytes& buffer() { return buffer_; }
 
  protected:
-  /// `clock` must outlive the publisher; null: for truth.
+  /// `clock` must outlive the publisher; null: truth channel.
   explicit Publisher(std::int64_t epoch_us, const VehicleClock* clock) : epoch_us_(epoch_us), clock_(clock) {}
 
  private:
@@ -99,7 +100,7 @@ class Publisher {
   Bytes buffer_;
 };
 
-/// Turns a sensor's reading into messages.
+/// Converts the reading of a sensor to messages.
 class Reporter {
  public:
   virtual ~Reporter() = default;
@@ -107,40 +108,42 @@ class Reporter {
   virtual void report(Time sampled_at, Publisher& out) const = 0;
 };
 
-/// What an actuator works with in a step.
+/// Inputs of an actuator in a step.
 struct ActContext {
   Time now;              ///< at the start of the step
   double step_s;         ///< length of the step
-  double effectiveness;  ///< the share of its effort it can give: 1 sound, 0 dead or without power
+  double effectiveness;  ///< available share of the effort: 1 healthy, 0 failed or without power
 };
 
-/// What an actuator does without valid commands: at an emergency stop, when commands time out, when the power fails.
+/// Behaviour of an actuator without valid commands: at an emergency stop, after a command timeout, after a power
+/// failure.
 enum class SafeState {
-  stop,   ///< the command that stands for rest: no speed, no thrust, rudder amidships
-  coast,  ///< no effort at all
-  hold,   ///< the position of this moment is kept
-  park,   ///< it goes to its parking position, see the device
+  stop,   ///< neutral command: no speed, no thrust, rudder amidships
+  coast,  ///< no effort
+  hold,   ///< holds the present position
+  park,   ///< moves to the parking position, see the device
 };
 
-/// The model of an actuator: acts on physics, knows no message.
+/// Model of an actuator: acts on the physics, and does not depend on message types.
 class Actuator : public VisitedInSteps {
  public:
   virtual ~Actuator() = default;
-  /// Called before each physics step.
+  /// Applies the effort of a step.  Called before each physics step.
   virtual void act(const ActContext& context) = 0;
   /// Replaces the command until the next one arrives.
   virtual void make_safe(SafeState safe) = 0;
-  /// Power that it currently draws from the battery, in addition to the device's `power_W`.
+  /// Returns the power currently drawn from the battery, in addition to `power_W` of the device.
   virtual double power_W() const { return 0; }
-  /// Everything that outlasts a step, as Sensor::visit_state.
+  /// Visits all state that is kept between steps, as Sensor::visit_state.
   virtual void visit_state(StateArchive& archive) = 0;
 };
 
-/// Takes messages and sets the actuator.
+/// Decodes command messages and commands the actuator.
 class Controller {
  public:
   virtual ~Controller() = default;
-  /// `payload` is unchecked bytes.  An invalid one throws std::runtime_error with the reason, and changes nothing.
+  /// Executes a command.  `payload`: unchecked bytes.  Throws std::runtime_error with the reason when they are invalid;
+  /// nothing has then changed.
   virtual void receive(Time now, std::span<const std::byte> payload) = 0;
 };
 

@@ -17,7 +17,7 @@ void DeviceConfig::read_common(ParamReader& in) {
   if (body == "world") in.error("body", "'body' must be a body of the vehicle, got 'world'");
   in.read("position_m", position_m, any_number(), "place of the sensor frame in the body frame");
   in.read_deg("rpy_deg", rpy_rad, "roll, pitch, yaw of the sensor frame in the body frame");
-  // One sample in twelve days is rare enough.
+  // Lower limit of the rate: one sample in twelve days.
   in.read_or_word("rate_hz", rate_hz, between(1e-6, 1e6), {"every_step"}, "samples per simulated second");
   in.read("phase_s", phase_s, between(0, 1e6), "time of the first sample; unset: spread over the period by name");
   in.read("latency_s", latency_s, between(0, 1e6), "from sample to report, or from command to effect");
@@ -40,6 +40,7 @@ void DeviceConfig::read(ParamReader& in) {
     place = in.node()->place;
     source = std::make_shared<const ConfigNode>(*in.node());
   }
+  // Find the device type.
   if (const ConfigNode* node = in.child("type"); node != nullptr) {
     device_type = DeviceRegistry::instance().find(node->scalar);
     if (device_type == nullptr) {
@@ -48,12 +49,13 @@ void DeviceConfig::read(ParamReader& in) {
       in.error("type", "unknown device type '" + node->scalar + "'; known types: " + list_text(known, known.size()) +
                            did_you_mean(node->scalar, known));
       in.read("name", name, "");
-      // The other keys belong to an unknown type; calling them unknown too would bury the mistake.
+      // Do not report the other keys of an unknown type as unknown, which would obscure the error.
       for (const ConfigNode::Entry& entry : in.node()->entries) in.child(entry.key.c_str());
       return;
     }
     rate_hz = device_type->default_rate_hz;
   }
+  // Read the common keys and those of the type.
   read_common(in);
   if (device_type == nullptr) return;
   if (device_type->is_actuator()) read_actuator(in, *device_type);

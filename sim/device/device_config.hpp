@@ -21,34 +21,34 @@ class DeviceParams {
   virtual void read(ParamReader& in) = 0;
 };
 
-/// One device of a vehicle as configured.  The keys here are understood by every device.
+/// Configuration of one device of a vehicle: the keys common to all devices, and the parameters of its type.
 struct DeviceConfig {
   std::string name;                        ///< unique in its vehicle
   std::string type;                        ///< name of the device type, such as `lidar`
-  std::string body;                        ///< where it is mounted; empty: the vehicle's first body
-  Vector3d position_m = Vector3d::Zero();  ///< of the sensor frame S in the body frame B
+  std::string body;                        ///< body on which it is mounted; empty: first body of the vehicle
+  Vector3d position_m = Vector3d::Zero();  ///< position of the sensor frame S in the body frame B
   Vector3d rpy_rad = Vector3d::Zero();     ///< roll, pitch and yaw of S in B
   double rate_hz = 0;                      ///< samples per simulated second; 0: every step
-  std::optional<double> phase_s;           ///< time of the first sample; unset: spread over the period by name
-  double latency_s = 0;                    ///< sensor: sample to report; actuator: message to effect
-  double jitter_s = 0;                     ///< added to the latency, uniform in [0, jitter)
-  double dropout = 0;                      ///< probability that a report or a command is lost
-  bool truth = false;                      ///< publish the reading without errors beside the report
-  double power_W = 0;                      ///< power drawn from the vehicle's battery all the time
-  std::string channel;                     ///< of the reports; empty: by the world's template
-  double watchdog_s = 0;                   ///< actuator: a command older than this is stale; 0: never
-  SafeState safe{};                        ///< actuator: where it goes then
+  std::optional<double> phase_s;  ///< time of the first sample; unset: derived from the name, spread over the period
+  double latency_s = 0;           ///< sensor: sample to report; actuator: message to effect
+  double jitter_s = 0;            ///< added to the latency, uniform in [0, jitter)
+  double dropout = 0;             ///< probability that a report or a command is lost
+  bool truth = false;             ///< also publish the reading without errors
+  double power_W = 0;             ///< constant power drawn from the battery of the vehicle
+  std::string channel;            ///< channel of the reports; empty: by the template of the world
+  double watchdog_s = 0;          ///< actuator: a command older than this is stale; 0: never
+  SafeState safe{};               ///< actuator: behaviour without a valid command
 
   const DeviceType* device_type = nullptr;     ///< the registered type; null when it is unknown
   std::shared_ptr<const DeviceParams> params;  ///< the keys of the type
-  SourcePlace place;                           ///< where the device was written, for errors found later
-  std::shared_ptr<const ConfigNode> source;    ///< as it was written, for changes while it runs
+  SourcePlace place;                           ///< place in the source file, for errors found later
+  std::shared_ptr<const ConfigNode> source;    ///< source tree, for changes at run time
 
   /// Reads the common keys and those of the type.
   void read(ParamReader& in);
-  /// The keys common to all devices, for `shoal describe` and the docs.
+  /// Reads the keys common to all devices; also used by `shoal describe` and the documentation.
   void read_common(ParamReader& in);
-  /// The keys of every actuator, with the safe states that the type knows.
+  /// Reads the keys common to all actuators, with the safe states of the type.
   void read_actuator(ParamReader& in, const DeviceType& of);
   /// Pose of the sensor frame S in the body frame B.
   Pose X_BS() const { return make_pose(position_m, rpy_rad); }

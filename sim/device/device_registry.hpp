@@ -16,14 +16,15 @@ namespace sim {
 
 struct DeviceContext;
 
-/// Fills and publishes one message a sample.  Defined where messages are known: messages/reporter/message_reporter.hpp.
+/// Reporter that fills and publishes one message per sample.  Defined in messages/reporter/message_reporter.hpp,
+/// because sim/ does not depend on message types.
 template <typename Model, typename Message>
 class MessageReporter;
 
-/// The name of a quantity for faults: the key of its noise without `_noise`.
+/// Returns the name of a quantity for faults: the key of its noise without `_noise`.
 std::string quantity_of(const std::string& noise_key);
 
-/// A device as built.  A sensor has a reporter, an actuator a controller; some devices have all four.
+/// Objects of one device.  A sensor has a reporter, an actuator a controller; some devices have all four.
 struct BuiltDevice {
   std::unique_ptr<Sensor> sensor;          ///< measures
   std::unique_ptr<Reporter> reporter;      ///< publishes what the sensor measured
@@ -33,52 +34,52 @@ struct BuiltDevice {
   std::function<void(const DeviceParams&)> change;
 };
 
-/// A device type by its YAML name.
+/// Device type, identified by its YAML name.
 struct DeviceType {
   std::string name;                     ///< in YAML: `type: NAME`
   std::string meaning;                  ///< one sentence
-  double default_rate_hz = 0;           ///< unless the file says otherwise; 0: every step
+  double default_rate_hz = 0;           ///< default sample rate; 0: every step
   std::string example;                  ///< keys in YAML on the vehicle of every_device_test; empty: joints are enough
   std::string report_message;           ///< such as `shoal.pose_t`; empty: does not report
   std::string command_messages;         ///< comma separated; empty: takes no commands
-  std::vector<SafeState> safe_states;   ///< of an actuator, the default first; empty: no actuator
-  bool changeable = false;              ///< its own keys can change while it runs
-  std::vector<std::string> fixed_keys;  ///< of its own keys those that cannot, all the same
+  std::vector<SafeState> safe_states;   ///< safe states of an actuator, the default first; empty: not an actuator
+  bool changeable = false;              ///< whether keys of the type can change at run time
+  std::vector<std::string> fixed_keys;  ///< keys of a changeable type that cannot change
   bool always_on = false;               ///< works without power and at an emergency stop
   bool casts_rays = false;              ///< see Sensor
   bool sweeps = false;                  ///< see Sensor
   std::function<std::shared_ptr<DeviceParams>()> make_params;                   ///< parameters with their defaults
   std::function<BuiltDevice(const DeviceParams&, const DeviceContext&)> build;  ///< makes one device
 
-  /// Whether it publishes messages.
+  /// Returns whether the device publishes messages.
   bool reports() const { return !report_message.empty(); }
-  /// Whether it receives messages.
+  /// Returns whether the device receives messages.
   bool takes_commands() const { return !command_messages.empty(); }
-  /// Whether it acts on the physics.
+  /// Returns whether the device acts on the physics.
   bool is_actuator() const { return !safe_states.empty(); }
-  /// The quantities whose error YAML describes, for faults.
+  /// Returns the quantities with configurable errors, for faults.
   std::vector<std::string> quantities() const;
 };
 
-/// Why a fault makes no sense for a type of device; empty: it does.
+/// Returns the reason why a fault does not apply to a device type; empty when it does.
 std::string fault_misfit(const DeviceType& type, const FaultConfig& fault);
 
 inline constexpr ChoiceWords<SafeState> safe_state_words{
     {"stop", SafeState::stop}, {"coast", SafeState::coast}, {"hold", SafeState::hold}, {"park", SafeState::park}};
 
-/// All device types, filled before main by the SHOAL_ macros.
+/// Registry of all device types, filled before main by the SHOAL_ macros.
 class DeviceRegistry {
  public:
-  /// The registry of this process.
+  /// Returns the registry of this process.
   static DeviceRegistry& instance();
-  /// A duplicate name is a problem; the first type keeps it.  Nothing is thrown: a static initialiser calls this,
-  /// and what it throws ends the program.
+  /// Registers a type.  A duplicate name is recorded as a problem, and the first type remains registered.  Never
+  /// throws, because static initialisers call this function and their exceptions would end the program.
   void add(DeviceType type);
-  /// What went wrong while types were added, since the last call.
+  /// Returns the registration problems since the last call.
   std::vector<std::string> take_problems();
-  /// The type of this name; null when there is none.
+  /// Returns the type of this name; null when there is none.
   const DeviceType* find(const std::string& name) const;
-  /// In the order of their names.
+  /// Returns all types, sorted by name.
   std::vector<const DeviceType*> all() const;
 
  private:
@@ -104,7 +105,7 @@ std::unique_ptr<Model> make_model(const DeviceParams& params, const DeviceContex
     return std::make_unique<Model>(own);
 }
 
-/// Hands a device that is sensor and actuator at once to its two owners.
+/// Actuator interface of a model that is both sensor and actuator; the sensor interface owns the model.
 template <typename Model>
 class ActuatorSide final : public Actuator {
  public:
@@ -130,13 +131,13 @@ concept Acts = requires(Model& model, const ActContext& context) {
   model.act(context);
 };
 
-/// The reporter of a device that is registered with `Output`: a Reporter or nothing (void), or else a message.
+/// Reporter of a device registered with `Output`, which is a Reporter, a message type, or void for none.
 template <typename Model, typename Output>
 using ReporterOf = std::conditional_t<std::is_void_v<Output> || std::is_base_of_v<Reporter, Output>, Output,
                                       MessageReporter<Model, Output>>;
 
-/// Models with parameters that can change while they run: change() takes them, and noises() names the errors, as a
-/// tuple of references to NoiseOf, that change with them.
+/// Models whose parameters can change at run time: change() sets them, and noises() returns the affected errors as a
+/// tuple of references to NoiseOf.
 template <typename Model>
 concept Changes = requires(Model& model, const typename Model::Params& params) {
   model.change(params);
@@ -153,7 +154,7 @@ void change_model(Model& model, const typename Model::Params& params) {
     std::apply([&params](auto&... noises) { (noises.change(params), ...); }, model.noises());
 }
 
-/// ReporterType or ControllerType void: the device has none.
+/// Builds the objects of a device.  ReporterType or ControllerType void: the device has none.
 template <typename Model, typename ReporterType, typename ControllerType>
 BuiltDevice build_device(const DeviceParams& params, const DeviceContext& context) {
   BuiltDevice built;
@@ -177,25 +178,30 @@ template <typename Model, typename Output, typename ControllerType>
 bool add_device(const char* name) {
   using ReporterType = ReporterOf<Model, Output>;
   DeviceType type;
+  // Name, meaning and example.
   type.name = name;
   type.meaning = Model::meaning;
   if constexpr (requires { Model::example; }) type.example = Model::example;
   if constexpr (requires { Model::default_rate_hz; }) type.default_rate_hz = Model::default_rate_hz;
+  // Messages.
   if constexpr (requires { ReporterType::message_name(); })
     type.report_message = ReporterType::message_name();
   else if constexpr (!std::is_void_v<ReporterType>)
     type.report_message = ReporterType::report_message;
   if constexpr (!std::is_void_v<ControllerType>) type.command_messages = ControllerType::command_messages;
+  // Safe states.
   if constexpr (requires { Model::safe_states; })
     type.safe_states.assign(std::begin(Model::safe_states), std::end(Model::safe_states));
   else if constexpr (std::is_base_of_v<Actuator, Model>)
     type.safe_states = {SafeState::stop};
+  // Changes and scheduling.
   type.changeable = Changes<Model> || HasNoises<Model>;
   if constexpr (requires { Model::fixed_keys; })
     type.fixed_keys.assign(std::begin(Model::fixed_keys), std::end(Model::fixed_keys));
   if constexpr (requires { Model::always_on; }) type.always_on = Model::always_on;
   if constexpr (requires { Model::casts_rays; }) type.casts_rays = Model::casts_rays;
   if constexpr (requires { Model::sweeps; }) type.sweeps = Model::sweeps;
+  // Construction.
   type.make_params = [] { return std::make_shared<ParamsOf<typename Model::Params>>(); };
   type.build = build_device<Model, ReporterType, ControllerType>;
   DeviceRegistry::instance().add(std::move(type));
@@ -204,11 +210,12 @@ bool add_device(const char* name) {
 
 }  // namespace detail
 
-/// `output`: what is reported: a message, filled by fill() (see MessageReporter), or a Reporter for a device that
-/// publishes several messages or stamps them itself.
+/// Registers a sensor.  `output`: a message type, filled by fill() (see MessageReporter), or a Reporter for a device
+/// that publishes several messages or sets their time stamps itself.
 #define SHOAL_SENSOR(name, Model, output) SHOAL_DEVICE(name, Model, output, void)
 #define SHOAL_ACTUATOR(name, Model, ControllerType) SHOAL_DEVICE(name, Model, void, ControllerType)
-/// For a device that is both: its model is a Sensor that may also have act(), make_safe() and power_W().
+/// Registers a device that is sensor and actuator: its model is a Sensor that may also have act(), make_safe() and
+/// power_W().
 #define SHOAL_TRANSCEIVER(name, Model, output, ControllerType) SHOAL_DEVICE(name, Model, output, ControllerType)
 #define SHOAL_DEVICE(name, Model, output, ControllerType) \
   [[maybe_unused]] static const bool registered_##Model = ::sim::detail::add_device<Model, output, ControllerType>(name)

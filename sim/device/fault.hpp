@@ -16,54 +16,55 @@ enum class FaultKind {
   stuck,     ///< a sensor repeats its last report, an actuator keeps its last command
   silent,    ///< no report is published, no command is received
   biased,    ///< `bias` is added to a quantity
-  degraded,  ///< the random errors of a quantity are `noise_factor` times as large; `dropout` more is lost
-  partial,   ///< an actuator gives `effectiveness` of its effort
-  dead,      ///< an actuator gives none
+  degraded,  ///< the random errors of a quantity are multiplied by `noise_factor`; messages are lost with probability
+             ///< `dropout`
+  partial,   ///< an actuator delivers the share `effectiveness` of its effort
+  dead,      ///< an actuator delivers no effort
 };
 
 inline constexpr ChoiceWords<FaultKind> fault_kind_words{
     {"stuck", FaultKind::stuck},       {"silent", FaultKind::silent},   {"biased", FaultKind::biased},
     {"degraded", FaultKind::degraded}, {"partial", FaultKind::partial}, {"dead", FaultKind::dead}};
 
-/// What is wrong with a device, as YAML says it.
+/// Fault of a device, as configured in YAML.
 struct FaultConfig {
-  FaultKind kind = FaultKind::silent;  ///< which of the faults
-  std::string quantity;      ///< biased, degraded: the key of its noise without `_noise`; empty: every quantity
-  double bias = 0;           ///< biased: in the unit of the quantity
-  double noise_factor = 1;   ///< degraded
-  double dropout = 0;        ///< degraded: probability that a report or command is lost, beside the device's own
+  FaultKind kind = FaultKind::silent;  ///< kind of the fault
+  std::string quantity;     ///< biased, degraded: the key of its noise without `_noise`; empty: every quantity
+  double bias = 0;          ///< biased: in the unit of the quantity
+  double noise_factor = 1;  ///< degraded
+  double dropout = 0;  ///< degraded: probability that a report or command is lost, in addition to that of the device
   double effectiveness = 1;  ///< partial: 0 to 1
 
   /// Reads the keys of a fault.
   void read(ParamReader& in);
-  /// Equal in all members.
+  /// Compares all members.
   bool operator==(const FaultConfig&) const = default;
-  /// All members.
+  /// Visits all members.
   void visit_state(StateArchive& archive) { archive(kind, quantity, bias, noise_factor, dropout, effectiveness); }
 };
 
-/// The faults of one device.  Of each kind (and quantity) there is at most one: the last one set.
+/// Faults of one device: at most one of each kind (and quantity), the last one set.
 class DeviceFaults {
  public:
-  /// Adds a fault, in place of one of the same kind and quantity.
+  /// Sets a fault; replaces one of the same kind and quantity.
   void set(const FaultConfig& fault);
   /// Removes all faults.
   void clear();
 
-  /// Where the Noise of a quantity finds what a fault does to it; made at the first call, stays where it is.
+  /// Returns the effect of the faults on the Noise of a quantity; created at the first call, with a stable address.
   const NoiseFault& noise_of(const std::string& quantity);
 
-  /// The faults that are set.
+  /// Returns the active faults.
   const std::vector<FaultConfig>& active() const { return active_; }
-  /// Whether the last report or command repeats.
+  /// Returns whether the last report or command is repeated.
   bool stuck() const { return stuck_; }
-  /// Whether no message passes.
+  /// Returns whether all messages are blocked.
   bool silent() const { return silent_; }
-  /// Probability that a message is lost, beside that of the device.
+  /// Returns the probability that a message is lost, in addition to that of the device.
   double dropout() const { return dropout_; }
-  /// Share of the effort that is left, 0 to 1.
+  /// Returns the available share of the effort, 0 to 1.
   double effectiveness() const { return effectiveness_; }
-  /// The active faults.
+  /// Visits the active faults.
   void visit_state(StateArchive& archive);
 
  private:
@@ -71,7 +72,7 @@ class DeviceFaults {
     std::string name;
     NoiseFault fault;
   };
-  /// Computes what the active faults come to.
+  /// Computes the combined effect of the active faults.
   void update();
 
   std::vector<FaultConfig> active_;

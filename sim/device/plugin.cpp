@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 
 struct LoadedPlugin {
   fs::path path;     ///< canonical
-  std::string name;  ///< of its file
+  std::string name;  ///< file name
 };
 
 std::vector<LoadedPlugin>& loaded_plugins() {
@@ -45,8 +45,8 @@ std::vector<fs::path> plugin_directories() {
   return directories;
 }
 
-/// The text of SHOAL_PLUGIN in the file.  Read before the library is loaded: loading runs its initialisers, and those
-/// of another interface may do anything.
+/// Reads the text of SHOAL_PLUGIN from the file, before the library is loaded: loading runs its initialisers, which may
+/// have undefined behaviour with another interface.
 std::string info_in_file(const fs::path& path) {
   std::ifstream in(path, std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(in), {}};
@@ -54,7 +54,7 @@ std::string info_in_file(const fs::path& path) {
   return at == std::string::npos ? std::string() : std::string(bytes.c_str() + at);
 }
 
-/// Why a file cannot be loaded as a plugin; empty: nothing speaks against it.
+/// Returns why a file cannot be loaded as a plugin; empty when it can.
 std::string objection(const fs::path& path) {
   std::error_code error;
   if (!fs::exists(path, error)) return "there is no such file";
@@ -74,7 +74,7 @@ std::string objection(const fs::path& path) {
   return {};
 }
 
-/// An exception cannot leave an initialiser of a library: it ends the program.  This says so before it does.
+/// Prints an error before an exception in an initialiser of a library ends the program.
 std::string initialising;
 [[noreturn]] void print_exception() {
   std::string what = "an initialiser ended the program";
@@ -91,7 +91,7 @@ std::string initialising;
   std::_Exit(2);
 }
 
-/// Why it could not be loaded; empty: it is there.
+/// Loads a library; returns the reason of a failure, or empty.
 std::string open_library(const fs::path& path) {
   const std::terminate_handler before = std::set_terminate(print_exception);
   void* library = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
@@ -101,7 +101,7 @@ std::string open_library(const fs::path& path) {
     if (reason.starts_with(path.string() + ": ")) reason.erase(0, path.string().size() + 2);
     return "cannot be loaded: " + printable(reason);
   }
-  // It is never closed: its devices and their code live as long as the program.
+  // The library is never closed: its devices and their code are used until the program ends.
   return dlsym(library, "shoal_plugin_info") == nullptr ? "does not export shoal_plugin_info" : std::string();
 }
 
@@ -120,7 +120,7 @@ std::string find_plugin(const std::string& file, const std::string& directory) {
 
 void load_plugin(const std::string& path, const SourcePlace& place, const std::string& who, Diagnostics& diagnostics) {
   std::error_code error;
-  // An absolute path also keeps dlopen from searching the system's libraries.
+  // An absolute path also prevents dlopen from searching the system libraries.
   fs::path canonical = fs::weakly_canonical(path, error);
   if (error) canonical = fs::path(path);
   for (const LoadedPlugin& plugin : loaded_plugins())

@@ -10,29 +10,29 @@ namespace sim {
 
 namespace detail {
 using MakeShared = std::function<std::shared_ptr<void>()>;
-/// The place of a new kind among all.
+/// Registers a kind and returns its index.
 std::size_t register_shared_kind(MakeShared make);
 }  // namespace detail
 
-/// A kind of thing that devices share, such as the network between radio modems: each world has one T of it, made with
-/// the world.  To be defined once, as a constant beside T: `inline const sim::SharedKind<Network> network_of_modems;`.
+/// Kind of object that devices share, such as the network between radio modems: each world has one T, created with the
+/// world.  To be defined once, as a constant beside T: `inline const sim::SharedKind<Network> network_of_modems;`.
 template <typename T>
 class SharedKind {
  public:
   SharedKind() : number_(detail::register_shared_kind([] { return std::make_shared<T>(); })) {}
   SharedKind(const SharedKind&) = delete;
   SharedKind& operator=(const SharedKind&) = delete;
-  /// Index of this kind among all kinds.
+  /// Returns the index of this kind among all kinds.
   std::size_t number() const { return number_; }
 
  private:
   std::size_t number_;
 };
 
-/// What the devices of a world share, one thing of each kind.
+/// Objects shared by the devices of a world, one of each kind.
 class SharedByDevices {
  public:
-  /// Of every kind that is known now: those of plugins too, which are loaded before a world is built.
+  /// Makes one object of each registered kind, including those of plugins, which are loaded before a world is built.
   SharedByDevices();
 
   /// The one thing of this kind.

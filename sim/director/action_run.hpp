@@ -11,14 +11,14 @@ class Diagnostics;
 class Script;
 class Stage;
 
-/// What an action is carried out with.
+/// Context in which an action is executed.
 struct ActionRun {
   Script& script;
   Stage& stage;
   std::string who;                     ///< such as `event 'night'`; empty: a request
-  Random& random;                      ///< of its choices
-  Diagnostics* diagnostics = nullptr;  ///< where failures go; null: to the world's warnings
-  int depth = 0;                       ///< events that have fired each other up to this one
+  Random& random;                      ///< for random choices
+  Diagnostics* diagnostics = nullptr;  ///< receives failures; null: the warnings of the world
+  int depth = 0;                       ///< length of the chain of events that fired each other
 };
 
 }  // namespace sim

@@ -39,7 +39,7 @@ void Actor::command(ActorCommand command, Time now) {
   anchor(now);
   moving_ = command != ActorCommand::stop;
   if (command == ActorCommand::start || command == ActorCommand::stop) return;
-  // On the way back of a bounce the place counts, not how often it has been there.
+  // On the return path of a bounce only the position counts, not the number of passes.
   if (from_ > path_.length()) from_ = 2 * path_.length() - from_;
   direction_ = command == ActorCommand::forward ? 1 : -1;
 }
@@ -47,7 +47,7 @@ void Actor::command(ActorCommand command, Time now) {
 void Actor::find_body(Stage& stage) {
   if (generation_ == stage.entities().generation()) return;
   const WorldObject* object = stage.entities().find_object(config_.object);
-  // Only a kinematic body can be led along; the world sees to it that an actor's object is one.
+  // Only a kinematic body can be moved along a path; the world makes the object of an actor kinematic.
   body_ = object && object->body->kinematic() ? object->body : nullptr;
   generation_ = stage.entities().generation();
 }
@@ -60,8 +60,9 @@ void Actor::place(Stage& stage) {
 
 void Actor::step(Stage& stage, Time now) {
   find_body(stage);
-  if (body_ == nullptr) return;  // removed; it is in its place again when it comes back
-  // Someone put it elsewhere, or it is new: it jumps back, for a way in one step would hit others like a bullet.
+  if (body_ == nullptr) return;  // removed; placed again when it is added again
+  // The body was moved, or is new: place it without velocity, because the displacement in one step would be a very fast
+  // impact on others.
   if ((body_->X_WB().translation() - X_WB_.translation()).squaredNorm() > 1e-12) body_->set_pose(pose_at(now));
   const Time step = stage.clock().step;
   X_WB_ = pose_at(now + step);

@@ -10,16 +10,17 @@ namespace sim {
 class Body;
 class Stage;
 
-/// An actor in the world.  Where it is follows from its last command and the time since, with no sum over steps.
+/// Actor in the world.  Its pose is a function of its last command and the time since then, without accumulation over
+/// steps.
 class Actor {
  public:
   explicit Actor(const ActorConfig& config);
   const ActorConfig& config() const { return config_; }
   void command(ActorCommand command, Time now);
   Pose pose_at(Time now) const;
-  /// Puts its object at the beginning of the path.
+  /// Places its object at the start of the path.
   void place(Stage& stage);
-  /// Moves its object so that it is in its place at the end of the step that begins now.
+  /// Moves its object so that it reaches its pose at the end of the step that starts now.
   void step(Stage& stage, Time now);
   void visit_state(StateArchive& archive) { archive(since_, from_, direction_, moving_, X_WB_); }
 
@@ -30,14 +31,14 @@ class Actor {
 
   const ActorConfig& config_;
   Path path_;
-  double rate_;      ///< of the path's parameter, per second
-  Time since_{0};    ///< when the last command came
-  double from_ = 0;  ///< progress then; bounce: up to twice the length, there and back
+  double rate_;      ///< of the path parameter, per second
+  Time since_{0};    ///< time of the last command
+  double from_ = 0;  ///< progress at the last command; bounce: up to twice the length, forward and back
   int direction_ = 1;
   bool moving_ = true;
-  // The object by its name, looked up again when entities were added or removed.
+  // Body of the object, looked up by name again after entities were added or removed.
   Body* body_ = nullptr;
-  Pose X_WB_ = Pose::Identity();  ///< where it was sent last
+  Pose X_WB_ = Pose::Identity();  ///< last commanded pose
   std::uint64_t generation_ = ~std::uint64_t{0};
 };
 

@@ -10,7 +10,7 @@ namespace sim {
 
 namespace {
 
-/// Something that is true or false of each vehicle.
+/// Watch of a condition that is true or false for each vehicle.
 class VehicleWatch : public ConditionWatch {
  public:
   explicit VehicleWatch(std::string vehicle) : vehicle_(std::move(vehicle)) {}
@@ -41,7 +41,7 @@ class VehicleWatch : public ConditionWatch {
 
  private:
   std::string vehicle_;
-  std::vector<State> states_;  ///< by the vehicle's number
+  std::vector<State> states_;  ///< by vehicle number
 };
 
 class ZoneWatch final : public VehicleWatch {

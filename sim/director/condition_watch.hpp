@@ -11,16 +11,16 @@ namespace sim {
 class Stage;
 class Zones;
 
-/// Sees when the condition of an event becomes true.
+/// Detects when the condition of an event becomes true.
 class ConditionWatch {
  public:
   virtual ~ConditionWatch() = default;
-  /// How often it became true since the last call; called once in each step.
+  /// Returns how often the condition became true since the last call; called once in each step.
   virtual int count_new(Stage& stage) = 0;
   virtual void visit_state(StateArchive& archive) = 0;
 };
 
-/// Null when there is nothing to watch: no condition, or that of another event.
+/// Makes the watch of a condition; null when none is needed: no condition, or the firing of another event.
 std::unique_ptr<ConditionWatch> make_watch(const Condition& condition, Stage& stage, const Zones& zones);
 
 }  // namespace sim

@@ -67,7 +67,7 @@ void Script::step() {
   const Time now = stage_.now();
   firings_ = 0;
   if (!ruled_zones_.empty()) update_records(now);
-  // All conditions are looked at before anything happens, so that no event sees half of what another one did.
+  // Evaluate all conditions before any action, so that events do not depend on partial effects of others.
   std::vector<int> counts(events_.size(), 0);
   for (std::size_t i = 0; i < events_.size(); ++i) {
     if (events_[i].next && *events_[i].next <= now) counts[i] += due_times(events_[i], now);
@@ -120,7 +120,7 @@ int Script::due_times(EventState& event, Time now) {
   while (event.next && *event.next <= now) {
     ++count;
     ++event.planned;
-    // More than may fire in a step: a restored count, or one of another interval.  The rest is passed over at once.
+    // More planned times than may fire in a step, from a restored count or another interval: skip the excess at once.
     if (count > max_firings_per_step && event.config.every_s > 0) {
       const double passed = (to_seconds(now) - event.config.from_s) / event.config.every_s;
       event.planned = std::max(event.planned, static_cast<std::int64_t>(passed));
@@ -161,12 +161,14 @@ void Script::cut(EventState& event, const std::string& why) {
 }
 
 std::vector<ActionEntry> Script::parse_now(const ConfigNode& action, Diagnostics& diagnostics) const {
+  // Wrap a single action in a list.
   ConfigNode list;
   list.kind = ConfigNode::Kind::list;
   list.place = action.place;
   list.items = {action};
   const ConfigNode map = map_node("do", action.kind == ConfigNode::Kind::list ? action : list);
   ParamReader in(map, "", diagnostics);
+  // Declare the names that actions may refer to.
   const WorldConfig& config = stage_.config();
   std::set<std::string> objects, movable;
   for (const auto& [name, listed] : catalogue_) objects.insert(name);
@@ -215,7 +217,7 @@ void Script::visit_state(StateArchive& archive) {
   for (Actor& actor : actors_) archive(actor);
   for (std::size_t i = 0; i < events_.size(); ++i) {
     archive(events_[i]);
-    // It would be made up for at once, as often as a forger likes.
+    // A forged count would cause any number of firings.
     const std::optional<Time>& next = events_[i].next;
     if (archive.restoring() && next && *next <= stage_.now() - stage_.clock().step)
       archive.fail("an event that is overdue");

@@ -7,7 +7,7 @@
 #include "sim/director/stage.hpp"
 #include "sim/vehicle/world_warnings.hpp"
 
-// What the actions of events ask of the script; the actions themselves are in sim/actions.
+// Functions of the script for the actions of events, which are in sim/actions.
 
 namespace sim {
 

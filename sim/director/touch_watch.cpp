@@ -50,7 +50,7 @@ class TouchWatch final : public ConditionWatch {
       const auto& shapes = object.config.parts;
       consider(name, object.group, !std::all_of(shapes.begin(), shapes.end(), is_plane));
     }
-    // A group that came may have the number of one that went, whose watch ended with it; watching twice does no harm.
+    // A new group may have the number of a removed one, whose watch ended with it; watching twice is harmless.
     const bool any_first = condition_.subject == "any";
     for (const int group : any_first ? second_ : first_) stage.physics().watch_contacts(group);
   }
@@ -65,7 +65,7 @@ class TouchWatch final : public ConditionWatch {
   const Condition& condition_;
   std::uint64_t generation_ = ~std::uint64_t{0};
   std::set<int> first_, second_;
-  // A group's number is used again when something comes for something that went: then it is another touch.
+  // The number of a group is reused when an entity replaces a removed one: that is another contact.
   std::map<int, std::int64_t> whose_;
   std::set<std::pair<std::int64_t, std::int64_t>> touching_;
 };

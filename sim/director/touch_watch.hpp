@@ -5,7 +5,8 @@
 
 namespace sim {
 
-/// Of `NAME touches NAME`.  `any`: every vehicle and object except those made of planes, which everything rests on.
+/// Makes the watch of `NAME touches NAME`.  `any`: every vehicle and object except those made of planes, on which
+/// everything rests.
 std::unique_ptr<ConditionWatch> make_touch_watch(const Condition& condition, Stage& stage);
 
 }  // namespace sim

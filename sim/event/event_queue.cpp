@@ -13,6 +13,7 @@ void EventQueue::schedule(Event event) {
 
 void EventQueue::insert(Event event) {
   Entry entry{event.due, event.sequence, event.stamp, event.device, event.kind, Entry::no_payload};
+  // Store the payload.
   if (!event.payload.empty()) {
     if (free_payloads_.empty()) {
       free_payloads_.push_back(static_cast<int>(payloads_.size()));
@@ -23,6 +24,7 @@ void EventQueue::insert(Event event) {
     payloads_[static_cast<std::size_t>(entry.payload)] = std::move(event.payload);
   }
   ++size_;
+  // Insert into a later slice, or into the heap of late events.
   if (const std::int64_t slice = slice_of(event.due); slice > reached_) {
     const auto [found, is_new] = slices_.try_emplace(slice);
     if (is_new && !spare_.empty()) {
@@ -36,7 +38,7 @@ void EventQueue::insert(Event event) {
   }
 }
 
-/// Appends what is due up to the end of this slice, sorted.
+/// Appends the events due up to the end of this slice, sorted.
 void EventQueue::reach(std::int64_t slice) {
   if (slice <= reached_) return;
   reached_ = slice;
@@ -102,10 +104,11 @@ void EventQueue::for_each(const Use& use) const {
     for (const Entry& entry : entries) use(entry);
 }
 
-/// How they are stored depends on their history; the order of delivery is what counts.
+/// Visits the events in the order of delivery, because their storage depends on the history.
 void EventQueue::visit_state(StateArchive& archive) {
   archive.unhashed(reached_, next_sequence_);
   if (archive.restoring()) {
+    // Restore into an empty queue.
     std::vector<Event> events;
     archive(events);
     const std::int64_t reached = reached_;
@@ -119,15 +122,16 @@ void EventQueue::visit_state(StateArchive& archive) {
     }
     return;
   }
+  // Hash or save the events, sorted by time of delivery.
   std::vector<Entry> ordered;
   ordered.reserve(size_);
   for_each([&](const Entry& entry) { ordered.push_back(entry); });
   std::sort(ordered.begin(), ordered.end(), Earlier());
-  auto size = static_cast<std::uint64_t>(ordered.size());  // as archive(std::vector<Event>) has it
+  auto size = static_cast<std::uint64_t>(ordered.size());  // format of archive(std::vector<Event>)
   archive(size);
   for (const Entry& entry : ordered) {
     Event event{entry.due, entry.sequence, entry.device, entry.kind, entry.stamp, {}};
-    // Lent, for a hash of many camera images copies none.
+    // Move payloads out and back, so that hashing copies no camera images.
     Bytes* const payload =
         entry.payload != Entry::no_payload ? &payloads_[static_cast<std::size_t>(entry.payload)] : nullptr;
     if (payload != nullptr) std::swap(event.payload, *payload);

@@ -13,16 +13,16 @@
 
 namespace sim {
 
-/// What happens at a simulated time to one device (a delayed report, a delayed command, an arrival) or to the acoustic
+/// Event at a simulated time for one device (a delayed report, a delayed command, an arrival) or for the acoustic
 /// channel.  Plain data, so that the queue can be hashed and saved.
 struct Event {
-  static constexpr int of_acoustics = -2;  ///< in place of a device
+  static constexpr int of_acoustics = -2;  ///< device number of the acoustic channel
 
   Time due{0};
   std::uint64_t sequence = 0;  ///< order of scheduling; breaks ties
   int device = -1;             ///< number of the device in the world
-  int kind = 0;                ///< the receiver's own
-  Time stamp{0};               ///< the receiver's own
+  int kind = 0;                ///< defined by the receiver
+  Time stamp{0};               ///< defined by the receiver
   Bytes payload;
 
   void visit_state(StateArchive& archive) {
@@ -31,25 +31,25 @@ struct Event {
   }
 };
 
-/// Events in the order of (due, sequence).
+/// Queue of events in the order of (due, sequence).
 class EventQueue {
  public:
   void schedule(Event event);
-  /// Takes the next event that is due at or before `now`; false when there is none.
+  /// Removes the next event that is due at or before `now`; returns false when there is none.
   bool take_due(Time now, Event& event);
-  /// The stamp of an event about this many events ahead, if it belongs to this device: for prefetching its memory.
-  ///   Nothing is lost when there is none.
+  /// Returns the stamp of an event about `events` places ahead, if it belongs to this device: a hint for prefetching
+  /// its memory, which may be absent.
   std::optional<Time> stamp_ahead(std::size_t events, int device) const {
     if (next_ + events >= sorted_.size() || sorted_[next_ + events].device != device) return std::nullopt;
     return sorted_[next_ + events].stamp;
   }
-  /// Drops what waits for a device that goes.
+  /// Drops the events of a device that is removed.
   void drop_device(int device);
   std::size_t size() const { return size_; }
   void visit_state(StateArchive& archive);
 
  private:
-  /// An event, with its payload elsewhere: most have none.
+  /// Event with its payload stored separately: most events have none.
   struct Entry {
     static constexpr int no_payload = -1;
 
@@ -57,7 +57,7 @@ class EventQueue {
     std::uint64_t sequence;
     Time stamp;
     int device, kind;
-    int payload;  // its place in payloads_
+    int payload;  // index into payloads_
   };
   struct Earlier {
     bool operator()(const Entry& a, const Entry& b) const {
@@ -67,7 +67,7 @@ class EventQueue {
   struct Later {
     bool operator()(const Entry& a, const Entry& b) const { return Earlier()(b, a); }
   };
-  /// Times are cut into slices, which are sorted when they are reached: a heap of all that waits for long would not fit
+  /// Returns the slice of a time.  Slices are sorted when they are reached: a heap of all distant events would not fit
   /// into the cache.
   static std::int64_t slice_of(Time due) { return due.count() >> 14; }
 
@@ -77,11 +77,11 @@ class EventQueue {
   template <typename Use>
   void for_each(const Use& use) const;
 
-  std::vector<Entry> sorted_;  // up to the slice `reached_`; those before `next_` were taken
+  std::vector<Entry> sorted_;  // up to the slice `reached_`; those before `next_` have been taken
   std::size_t next_ = 0;
-  std::vector<Entry> late_;  // a heap: scheduled when their slice had been reached
+  std::vector<Entry> late_;  // heap of events that were scheduled after their slice was reached
   std::map<std::int64_t, std::vector<Entry>> slices_;
-  std::vector<std::vector<Entry>> spare_;  // empty, with memory
+  std::vector<std::vector<Entry>> spare_;  // empty, with reserved memory
   std::int64_t reached_ = -1;
   std::size_t size_ = 0;
   std::vector<Bytes> payloads_;

@@ -23,8 +23,8 @@ bool is_file(const std::string& path) {
   return fs::exists(path, error);
 }
 
-/// Folders in which a name is looked up stay whole; a declaration that a world names by its path may be anybody's file,
-/// of which errors say no more than how many there are.
+/// Reads a declaration.  Errors of files found in the program folders are reported in full; a declaration that a world
+/// names by its path may be any file, and only the number of its errors is reported.
 FoundProgram read_found(const std::string& path, const std::string& file, bool quoted, const SourcePlace& place,
                         const std::string& who, Diagnostics& diagnostics) {
   Diagnostics own;

@@ -10,29 +10,31 @@
 
 namespace sim {
 
-/// How a declaration is called: NAME.args.yaml beside the program NAME.
+/// Suffix of a declaration file: NAME.args.yaml beside the program NAME.
 inline constexpr const char* declaration_ending = ".args.yaml";
 
-/// Where a `program:` without a slash is looked up: the folder of the running program, then the absolute ones of PATH.
+/// Returns the folders in which a `program:` without a slash is searched: the folder of the running program, then the
+/// absolute folders of PATH.
 std::vector<std::string> program_folders();
 
-/// The programs of a folder that have a declaration, sorted.
+/// Returns the programs of a folder that have a declaration, sorted.
 std::vector<std::string> declared_programs(const std::string& folder);
 
-/// A program with its declaration, which lies beside it.
+/// Program with the declaration beside it.
 struct FoundProgram {
   std::string path;
-  std::shared_ptr<const ProgramDeclaration> declaration;  ///< null: there is none, or it is broken
-  bool exists = false;                                    ///< there is a file with the declaration
+  std::shared_ptr<const ProgramDeclaration> declaration;  ///< null: there is none, or it is invalid
+  bool exists = false;                                    ///< whether the declaration file exists
 };
 
-/// Reads the declaration of the program that `program` names, in the first of `folders` that has one; a name with a
-/// slash is a path, of which `files` must allow the declaration.  A declaration that is broken is an error, with its
-/// own place unless a world names the path of it.  Never starts the program.
+/// Reads the declaration of a program from the first of `folders` that has one.  A name with a slash is a path, and
+/// `files` must allow its declaration.  An invalid declaration is an error, reported at its own place unless a world
+/// names its path.  Never starts the program.
 FoundProgram find_program(const std::string& program, const std::vector<std::string>& folders, const FileAccess* files,
                           const SourcePlace& place, const std::string& who, Diagnostics& diagnostics);
 
-/// Reads a file NAME.args.yaml; errors, also those of files that are too large or not regular, go to `diagnostics`.
+/// Reads a file NAME.args.yaml.  Errors are reported to `diagnostics`, also for files that are too large or not
+/// regular.
 ProgramDeclaration read_declaration_file(const std::string& path, Diagnostics& diagnostics);
 
 }  // namespace sim

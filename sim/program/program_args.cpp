@@ -11,7 +11,7 @@ namespace {
 
 using Kind = ConfigNode::Kind;
 
-// Linux takes no longer word on a command line (MAX_ARG_STRLEN, 32 pages with the zero at its end).
+// Maximum length of a word on a Linux command line (MAX_ARG_STRLEN, 32 pages with the terminating zero).
 constexpr std::size_t max_word = 131071;
 
 std::string json_of(const std::vector<double>& numbers) {
@@ -26,7 +26,7 @@ std::string json_of(const std::vector<std::vector<double>>& lists) {
   return "[" + text + "]";
 }
 
-/// One list of numbers, called `name` in errors.
+/// Reads one list of numbers.  `name`: its name in errors.
 bool read_numbers(const ArgDeclaration& arg, const std::string& name, const ConfigNode& value, const std::string& who,
                   Diagnostics& diagnostics, std::vector<double>& numbers) {
   const std::size_t before = diagnostics.lines().size();
@@ -72,7 +72,7 @@ void check_unknown(const ProgramDeclaration& declaration, const ConfigNode& args
   }
 }
 
-/// What must be there, and which arguments go together.
+/// Checks required arguments and groups of arguments.
 void check_together(const ProgramDeclaration& declaration, const ConfigNode& args, const SourcePlace& place,
                     const std::string& who, Diagnostics& diagnostics) {
   for (const ArgDeclaration& arg : declaration.args) {

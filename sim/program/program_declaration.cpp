@@ -28,14 +28,14 @@ bool has_columns(ArgType type) {
   return type == ArgType::tuple || type == ArgType::tuples;
 }
 
-/// A name that can be a key of YAML, an option of a command line and a variable of a program.
+/// Returns whether a name can be a YAML key, a command line option and a program variable.
 bool is_arg_name(const std::string& name) {
   const auto good = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; };
   return !name.empty() && name.size() <= 60 && std::islower(static_cast<unsigned char>(name.front())) != 0 &&
          name.back() != '_' && name.find("__") == std::string::npos && std::all_of(name.begin(), name.end(), good);
 }
 
-/// Errors of keys that do not belong to the type, or are missing for it.
+/// Reports keys that do not belong to the type, or are missing for it.
 void check_keys_of_type(ParamReader& in, const ArgDeclaration& arg) {
   const std::string type = "'type: " + std::string(word_of(arg_type_words, arg.type)) + "'";
   for (const char* key : {"min", "max"})
@@ -91,8 +91,9 @@ ConfigNode node_of(const ArgDeclaration& arg) {
   return map;
 }
 
-/// A list of lists of names of arguments.
+/// Reads a list of lists of argument names.
 void read_groups(ParamReader& in, const char* key, std::vector<std::vector<std::string>>& groups, const char* meaning) {
+  // Check the default like a given value.
   ParamInfo info;
   info.key = key;
   info.type = "list of lists of text";
@@ -139,7 +140,7 @@ void check_names(ParamReader& in, const ProgramDeclaration& declaration) {
       for (const std::string& name : group) check(key, name, "'" + std::string(key) + "'");
 }
 
-/// One row of a table: `list of [x, y]`.
+/// Returns the type of an argument for tables, such as `list of [x, y]`.
 std::string type_text_of(const ArgDeclaration& arg) {
   std::string columns;
   for (std::size_t i = 0; i < arg.columns.size(); ++i)
@@ -172,6 +173,7 @@ void ArgDeclaration::read(ParamReader& in) {
                          shortened(printable(name)) + "'");
   in.require("type");
   in.read_choice("type", type, arg_type_words, "what the value is");
+  // Allowed values.
   std::optional<double> min, max;
   in.read("min", min, any_number(), "the least number allowed");
   in.read("max", max, any_number(), "the largest number allowed");
@@ -180,6 +182,7 @@ void ArgDeclaration::read(ParamReader& in) {
   in.read("choices", choices, "words of a choice");
   in.read("columns", columns, "names of the numbers of a tuple, with their units unless the name has one");
   in.read("min_columns", min_columns, at_least(1), "the columns after these may be left out; unset: none may");
+  // Use of the argument.
   in.read("required", required, "the program cannot do without it");
   in.read("needs", needs, "arguments that must be given with this one");
   in.read("meaning", meaning, "one line for people");

@@ -12,7 +12,7 @@
 
 namespace sim {
 
-/// What the value of an argument is.
+/// Type of the value of an argument.
 enum class ArgType {
   number,
   integer,
@@ -24,31 +24,30 @@ enum class ArgType {
   tuples    ///< a list of such lists
 };
 
-/// The words for types in a declaration.
+/// Words of the types in a declaration.
 inline constexpr ChoiceWords<ArgType> arg_type_words{
     {"number", ArgType::number}, {"integer", ArgType::integer}, {"text", ArgType::text},   {"flag", ArgType::flag},
     {"choice", ArgType::choice}, {"numbers", ArgType::numbers}, {"tuple", ArgType::tuple}, {"tuples", ArgType::tuples}};
 
-/// One argument of a program.
+/// Declaration of one argument of a program.
 struct ArgDeclaration {
   std::string name;  ///< with its unit: `speed_mps`
   ArgType type = ArgType::text;
-  Rule range;                        ///< of each number
+  Rule range;                        ///< range of each number
   std::vector<std::string> choices;  ///< words of a choice
   std::vector<std::string> columns;  ///< names of the numbers of a tuple
-  int min_columns = 0;               ///< the columns after these may be left out; 0: none may
+  int min_columns = 0;               ///< number of required columns; 0: all are required
   bool required = false;
-  std::optional<ConfigNode>
-      initial;                     ///< value of the argument when it is not given; unset: the meaning says what happens
-  std::vector<std::string> needs;  ///< arguments that must be given with this one
+  std::optional<ConfigNode> initial;  ///< default value; unset: the meaning describes the behaviour
+  std::vector<std::string> needs;     ///< arguments that must be given with this one
   std::string meaning;
 
   void read(ParamReader& in);
-  /// The number of columns that a tuple must have at least.
+  /// Returns the minimum number of columns of a tuple.
   std::size_t needed_columns() const;
 };
 
-/// What the arguments of a program are, as its file NAME.args.yaml says.  The format is explained in
+/// Declaration of the arguments of a program, from its file NAME.args.yaml.  The format is described in
 /// docs/guides/program_arguments.md.
 struct ProgramDeclaration {
   int shoal_args = 1;  ///< version of the format
@@ -64,13 +63,13 @@ struct ProgramDeclaration {
   const ArgDeclaration* find(const std::string& name) const;
 };
 
-/// Reads a declaration.  `file` is its name in errors, which go to `diagnostics`.
+/// Reads a declaration.  `file`: its name in errors, which are reported to `diagnostics`.
 ProgramDeclaration read_declaration(const std::string& text, const std::string& file, Diagnostics& diagnostics);
 
-/// The text of NAME.args.yaml, which reads back as the same declaration.
+/// Returns the text of NAME.args.yaml, which parses to the same declaration.
 std::string to_yaml(const ProgramDeclaration& declaration);
 
-/// The arguments as rows of a table of keys.
+/// Returns the arguments as rows of a table of keys.
 std::vector<ParamInfo> param_table_of(const ProgramDeclaration& declaration);
 
 }  // namespace sim

@@ -112,7 +112,7 @@ std::string ClientMessages::why_not(const std::string& client, std::int32_t plac
 bool ClientMessages::add(const std::string& client, std::int32_t place, const std::string& channel,
                          const Bytes& payload) {
   const auto found = expected_.find(client);
-  if (found == expected_.end()) return true;  // it came by itself meanwhile, and the list was admitted
+  if (found == expected_.end()) return true;  // it has arrived meanwhile, and the list was admitted
   if (place < 0 || static_cast<std::size_t>(place) >= found->second.size()) return false;
   Expected& expected = found->second[static_cast<std::size_t>(place)];
   if (expected.named.channel != channel || expected.named.crc != crc32(payload)) return false;
@@ -185,7 +185,7 @@ std::optional<ClientMessages::Repeated> ClientMessages::take_repeated() {
 }
 
 void ClientMessages::order(std::vector<MessageGate::Delivery>& messages) {
-  if (expected_.empty() && strays_.empty() && twins_.empty()) return;  // no client lists what it publishes
+  if (expected_.empty() && strays_.empty() && twins_.empty()) return;  // no client lists its messages
   take(messages);
   for (auto& [client, list] : expected_) {
     match(list);

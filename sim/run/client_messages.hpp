@@ -14,31 +14,32 @@
 
 namespace sim {
 
-/// Sorts the messages at a gate, so that their order does not depend on the network: first those that clients list as
-/// published, by the name of the client and in their order; then all others.
+/// Orders the messages at a gate independently of the network: first the messages that clients list as published, by
+/// client name and in the order of the list; then all others.
 ///
-/// The sender of a message is unknown. So for each message of a client, one unlisted message with the same channel
-/// and bytes is dropped: within repeat_windows, as the network may have duplicated it, and within late_windows when
-/// the client's own message is still in transit.
+/// The sender of a message is unknown.  Therefore, for each listed message, one unlisted message with the same channel
+/// and bytes is dropped: within repeat_windows, because the network may have duplicated it, and within late_windows
+/// when the listed message is still in transit.
 class ClientMessages {
  public:
   /// `gate` must outlive this.
   explicit ClientMessages(MessageGate& gate) : gate_(gate) {}
 
-  /// What a client lists as published since its previous answer. Channels without a reader at the gate are left out.
+  /// Sets the messages that a client lists as published since its previous answer.  Channels without a reader at the
+  /// gate are left out.
   void expect(const std::string& client, const std::vector<NamedMessage>& named);
   /// Collects the messages that have arrived. Call it before is_complete().
   void collect();
   bool is_complete(const std::string& client) const;
   /// Index, in the list given to expect(), of the first missing message; -1: none is missing.
   std::int32_t first_missing(const std::string& client) const;
-  /// How many of the list are missing, and the first: `2 of the 3 messages that it lists were not received, first
-  /// 'a.cmd' with CRC-32 1a2b3c4d`.  Empty: none is.
+  /// Returns the number of missing messages of the list, and the first: `2 of the 3 messages that it lists were not
+  /// received, first 'a.cmd' with CRC-32 1a2b3c4d`.  Empty: none is missing.
   std::string missing_text(const std::string& client) const;
-  /// A message of the list that was sent again.  False when it is not the one that was named.  One that arrives after
-  /// the list was complete and admitted is ignored.
+  /// Adds a message of the list that was sent again.  Returns false when it is not the one that was named.  A message
+  /// that arrives after the list was complete and admitted is ignored.
   bool add(const std::string& client, std::int32_t place, const std::string& channel, const Bytes& payload);
-  /// What is wrong with one that add() refuses: `sends again 'a.cmd' with CRC-32 ... at place 2, but named ...`.
+  /// Returns why add() refuses a message: `sends again 'a.cmd' with CRC-32 ... at place 2, but named ...`.
   std::string why_not(const std::string& client, std::int32_t place, const std::string& channel,
                       const Bytes& payload) const;
   /// Stops waiting for missing messages.
@@ -53,17 +54,18 @@ class ClientMessages {
   void drop_unnamed();
   /// Starts another window; to be called at equal intervals.
   void next_window();
-  /// A message that was dropped as one of this client's that came twice.
+  /// Duplicate of a message of a client, which was dropped.
   struct Repeated {
     std::string client, channel;
   };
-  /// The first since the call before, and how many by client in all.
+  /// Returns the first dropped duplicate since the last call.
   std::optional<Repeated> take_repeated();
+  // / Returns the number of dropped duplicates by client.
   const std::map<std::string, std::uint64_t, std::less<>>& repeated() const { return repeated_; }
   /// Messages dropped from full queues before they were admitted.
   std::uint64_t dropped() const { return dropped_; }
 
-  /// Unnamed messages that wait: of one channel, and bytes of all.
+  /// Limits of queued unlisted messages: number per channel, and total bytes.
   static constexpr std::size_t max_of_channel = 10'000;
   static constexpr std::size_t max_bytes = 256'000'000;
   static constexpr std::int64_t repeat_windows = 1, late_windows = 10;
@@ -77,7 +79,7 @@ class ClientMessages {
     NamedMessage named;
     bool is_read = false;  ///< the channel has a reader
     bool there = false;
-    bool sent_again = false;  ///< its first copy may be in transit
+    bool sent_again = false;  ///< the first copy may still be in transit
     Bytes payload;
   };
   struct Stray {
@@ -85,7 +87,7 @@ class ClientMessages {
     std::uint32_t crc;
   };
   using Key = std::pair<std::string, std::uint32_t>;  // channel and CRC-32
-  /// A message to be dropped once, on arrival.
+  /// Duplicate message to be dropped once, on arrival.
   struct Twin {
     std::string client;
     std::int64_t last_window;
@@ -98,7 +100,7 @@ class ClientMessages {
   void expect_twin(const std::string& client, const NamedMessage& named, std::int64_t windows, bool counts);
   bool is_twin(const Stray& stray);
   void discard_strays();
-  /// Takes it out.
+  /// Removes and returns a stray message.
   Stray take_out(Strays::iterator stray);
   void drop_oldest(std::uint64_t arrival);
 

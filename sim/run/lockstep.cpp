@@ -86,10 +86,10 @@ void Lockstep::join(const std::string& client, const LockstepTerms& terms, std::
     if (before.size() > terms.receives.size() || !std::equal(before.begin(), before.end(), terms.receives.begin()))
       throw std::invalid_argument("the channels of 'receives' must keep their order; new ones are appended");
     known->terms = terms;
-    if (known->period_steps != period_steps) {  // a request that was sent twice moves no tick
+    if (known->period_steps != period_steps) {  // a repeated request does not change the ticks
       known->period_steps = period_steps;
       known->joined = step;
-      // A tick that waits for its answer continues doing so; the new period begins with it.
+      // An open tick remains open; the new period starts with it.
       if (terms.session == 0 && known->answered) known->requested = -1;
     }
   } else {
@@ -132,6 +132,7 @@ bool Lockstep::has_receiver(int link, std::string_view channel) const {
 void Lockstep::post(int link, std::string_view channel, std::span<const std::byte> payload) {
   const auto found = receivers_.find(channel);
   if (found == receivers_.end()) return;
+  // Share one copy among all receivers.
   std::shared_ptr<const Bytes> shared;
   std::uint32_t crc = 0;
   for (const Receiver& receiver : found->second) {
@@ -141,6 +142,7 @@ void Lockstep::post(int link, std::string_view channel, std::span<const std::byt
       crc = crc32(payload);
     }
     LockstepMember& member = *receiver.member;
+    // Replay: collect the repeated messages.
     if (again_) {
       member.again_bytes += payload.size() + sizeof(PostedMessage);
       if (member.again_bytes > max_pending_bytes)
@@ -149,6 +151,7 @@ void Lockstep::post(int link, std::string_view channel, std::span<const std::byt
         member.again.push_back({receiver.channel, crc, shared});
       continue;
     }
+    // Otherwise add to the list of the next tick, up to the limit.
     if (member.too_much) continue;
     member.pending_bytes += payload.size() + sizeof(PostedMessage);
     if (member.pending_bytes > max_pending_bytes) {
@@ -196,6 +199,7 @@ std::vector<LockstepMember*> Lockstep::abandoned() {
 Lockstep::Verdict Lockstep::acknowledge(const LockstepAck& ack, std::int64_t step, std::string& why) {
   const std::string who = "client '" + printable(shortened(ack.client)) + "'";
   LockstepMember* member = find(ack.client);
+  // Handle answers to abandoned and earlier ticks.
   if (member != nullptr && member->terms.session == ack.session) {
     const bool left = ack.session != 0 ? ack.sequence == member->left_sequence : ack.step == member->left_step;
     if (left && member->abandoned && ack.step == member->left_step) {
@@ -206,9 +210,10 @@ Lockstep::Verdict Lockstep::acknowledge(const LockstepAck& ack, std::int64_t ste
       return Verdict::abandoned;
     }
     if (left && ack.step != member->requested) return Verdict::repeated;
-    // With sequence 0 it says that it lives, before its first tick.
+    // Sequence 0 is a sign of life before the first tick.
     if (ack.session != 0 && (ack.sequence < member->sequence || ack.sequence == 0)) return Verdict::repeated;
   }
+  // Refuse acknowledgements that match no tick.
   if (ack.step > step)
     why = who + " acknowledges step " + std::to_string(ack.step) + ", which is in the future";
   else if (member == nullptr)
@@ -221,6 +226,7 @@ Lockstep::Verdict Lockstep::acknowledge(const LockstepAck& ack, std::int64_t ste
     why = who + " acknowledges step " + std::to_string(ack.step) + " for the tick of step " +
           std::to_string(member->requested);
   if (!why.empty()) return Verdict::refused;
+  // Accept the first answer to the present tick.
   const bool current = ack.session != 0 ? ack.sequence == member->sequence : ack.step == member->requested;
   if (!current || member->answered) return Verdict::repeated;
   member->answered = true;
@@ -237,7 +243,7 @@ void Lockstep::restart_replay() {
 
 void Lockstep::pass(std::int64_t step) {
   for (auto& [name, member] : members_) {
-    if ((step - member.joined) % member.period_steps != 0) continue;  // its phase, also before it joined
+    if ((step - member.joined) % member.period_steps != 0) continue;  // the phase also applies before it joined
     member.again.clear();
     member.again_bytes = 0;
   }
@@ -256,7 +262,7 @@ std::int64_t Lockstep::needed_from(std::int64_t step, std::int64_t max_steps) co
 
 void Lockstep::rewound(std::int64_t step) {
   for (auto& [name, member] : members_) {
-    // The phase stays, also for one that joined later than this.
+    // Keep the phase, also for a client that joined later than this.
     if (member.joined > step)
       member.joined -= (member.joined - step + member.period_steps - 1) / member.period_steps * member.period_steps;
     if (!member.answered && !member.abandoned) {

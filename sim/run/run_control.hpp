@@ -14,13 +14,13 @@ struct RunControl {
   bool paused = false;
   bool quit = false;
   double speed = 0;                 ///< times real time; 0: as fast as possible
-  std::int64_t single_steps = 0;    ///< to take although paused
-  std::int64_t changes = 0;         ///< counts changes of paused and speed, so that pacing starts again
-  std::int64_t pause_requests = 0;  ///< counts requests to pause, resume or step
+  std::int64_t single_steps = 0;    ///< steps to take while paused
+  std::int64_t changes = 0;         ///< number of changes of paused and speed, after which pacing restarts
+  std::int64_t pause_requests = 0;  ///< number of requests to pause, resume or step
   std::optional<Time> until;        ///< the run pauses at the first step at or after this
   std::string until_event;          ///< the run pauses when this event has fired; empty: none
-  std::int64_t until_firings = 0;   ///< how often it had fired before
-  std::int32_t branch = 0;          ///< grows with every rewind and restore
+  std::int64_t until_firings = 0;   ///< number of its firings before the request
+  std::int32_t branch = 0;          ///< increases with every rewind and restore
 
   bool may_step() const { return !quit && (!paused || single_steps > 0); }
   void step_taken() {

@@ -9,10 +9,10 @@ namespace sim {
 
 namespace {
 
-/// A definition of the schema.
+/// Name of the definition in the schema.
 constexpr const char* definition = "action";
 
-/// The keys of an action, which stand in a map.
+/// Keys of an action in its map, as a type with read().
 struct ActionKeys {
   Action& action;
   const char* main;
@@ -25,7 +25,7 @@ std::string unknown_action(const std::string& word) {
          did_you_mean(word, words);
 }
 
-/// What to write instead of a map with keys beside the word of the action.
+/// Returns the present form of a map with keys beside the word of the action, for error messages.
 std::string advice(const ConfigNode& action, const ActionKind& kind) {
   const ConfigNode form = new_form_of(action, kind);
   if (has_keys_of(form.entries.front().value, kind))
@@ -35,16 +35,18 @@ std::string advice(const ConfigNode& action, const ActionKind& kind) {
   return ", whose value is a map; keys of '" + kind.word + "': " + list_text(keys);
 }
 
-/// The one action whose word is a key; null when there is none or more than one, which is reported.
+/// Returns the action whose word is a key; reports an error and returns null when there is none or more than one.
 const ActionKind* find_kind(ParamReader& in) {
   const std::vector<ConfigNode::Entry>& entries = in.node()->entries;
   const ActionKind* kind = nullptr;
   std::string other;
+  // Find the words of actions among the keys.
   for (const ConfigNode::Entry& entry : entries) {
     const ActionKind* named = ActionRegistry::instance().find(entry.key);
     if (kind != nullptr && named != nullptr) other = entry.key;
     if (kind == nullptr) kind = named;
   }
+  // Check that there is exactly one.
   if (entries.empty())
     in.error("an action must have one key, its word, got {}; known actions: " +
              list_text(ActionRegistry::instance().words()));
@@ -67,7 +69,7 @@ std::string keys_text(const ActionKind& kind) {
   return list_text(keys);
 }
 
-/// A key whose value is a list of actions, or a list of such lists.
+/// Describes a key whose value is a list of actions, or a list of such lists.
 ParamInfo info_of_actions(const char* key, ParamKind kind, const char* meaning) {
   ParamInfo info;
   info.key = key;
@@ -86,7 +88,7 @@ void ActionEntry::read(ParamReader& in) {
   if (in.describing()) return;  // see read_actions
   place = in.node()->place;
   who = in.who();
-  if (in.node()->kind != ConfigNode::Kind::map) return;  // was reported
+  if (in.node()->kind != ConfigNode::Kind::map) return;  // already reported
   for (const ConfigNode::Entry& entry : in.node()->entries) in.child(entry.key.c_str());
   const ActionKind* kind = find_kind(in);
   if (kind == nullptr) return;

@@ -10,29 +10,29 @@
 
 namespace sim {
 
-/// A type of action by its word in YAML.
+/// Type of action, identified by its word in YAML.
 struct ActionKind {
   std::string word;      ///< its key in the list
   std::string meaning;   ///< one line: what it does
-  const char* main_key;  ///< of its map, such as `channel` of publish
-  bool main_alone;       ///< the value of the main key may stand for the map: `log: text`
+  const char* main_key;  ///< main key of its map, such as `channel` of publish
+  bool main_alone;       ///< the value of the main key may replace the map: `log: text`
   std::function<std::shared_ptr<Action>()> make;
 
-  /// The keys of its map, the main one first.
+  /// Returns the keys of its map, the main one first.
   std::vector<ParamInfo> keys() const;
-  /// Its word with its keys.
+  /// Returns its word with its keys.
   ParamInfo info() const;
 };
 
-/// All types of actions, filled before main by SHOAL_ACTION, and by plugins when they are loaded.
+/// Registry of all types of actions, filled before main by SHOAL_ACTION, and by plugins when they are loaded.
 class ActionRegistry {
  public:
   static ActionRegistry& instance();
-  /// Two types of one word are a mistake of the program.
+  /// Registers a type.  Two types with the same word are a programming error.
   void add(ActionKind kind);
-  /// Null when there is none.
+  /// Returns the type with this word; null when there is none.
   const ActionKind* find(const std::string& word) const;
-  /// In the order of their words.
+  /// Returns all types, sorted by word.
   std::vector<const ActionKind*> all() const;
   std::vector<std::string> words() const;
 
@@ -51,7 +51,7 @@ bool add_action(const char* word) {
 
 }  // namespace detail
 
-/// Makes a type of action known, in its own file.  Model is an Action with `static constexpr const char* meaning` and
+/// Registers a type of action, in its own file.  Model is an Action with `static constexpr const char* meaning` and
 /// `main_key`, and `static constexpr bool main_alone`; see ActionKind.
 #define SHOAL_ACTION(word, Model) \
   [[maybe_unused]] static const bool registered_##Model = ::sim::detail::add_action<Model>(word)

@@ -28,6 +28,7 @@ void ActorConfig::read(ParamReader& in) {
   in.read_name("name", name, "name of the actor, unique in the world");
   in.require("object");
   in.read_reference("object", object, "object", "the object that it moves");
+  // Path.
   in.read_choice("path", path,
                  {{"waypoints", PathKind::waypoints}, {"spline", PathKind::spline}, {"timed", PathKind::timed}},
                  "straight lines; a smooth curve through the points; poses at times");
@@ -38,6 +39,7 @@ void ActorConfig::read(ParamReader& in) {
   Vector3d fixed_rpy_rad = Vector3d::Zero();
   in.read_deg("rpy_deg", fixed_rpy_rad, "waypoints, spline: kept all the way; unset: it heads along the path");
   if (in.has("rpy_deg")) rpy_rad = fixed_rpy_rad;
+  // Motion along the path.
   in.read("speed_mps", speed_mps, above_to(0, 1000), "waypoints, spline: along the path");
   in.read_choice("ends", ends, {{"loop", PathEnds::loop}, {"bounce", PathEnds::bounce}, {"stop", PathEnds::stop}},
                  "at the end: continue with the first point, return along the path, or stop");
@@ -51,10 +53,12 @@ void ActorConfig::check_points(ParamReader& in) {
   const bool timed = path == PathKind::timed;
   const char* desired = timed ? "poses" : "points";
   const char* other = timed ? "points" : "poses";
+  // Report keys of other kinds of path.
   if (in.has(other)) in.error(other, "'" + std::string(other) + "' does not belong to a path of this kind");
   if (timed)
     for (const char* key : {"rpy_deg", "speed_mps"})
       if (in.has(key)) in.error(key, "'" + std::string(key) + "' does not belong to a path of this kind");
+  // Check consecutive points.
   const std::size_t count = timed ? poses.size() : points_m.size();
   if (count < 2)
     return in.error(desired, "'" + std::string(desired) + "' must have at least 2, got " + std::to_string(count));
@@ -67,6 +71,7 @@ void ActorConfig::check_points(ParamReader& in) {
     if (!timed && (points_m[i] - points_m[i + 1]).norm() < 1e-6)
       in.error("points", "points " + where + " are the same place");
   }
+  // Check the end of a loop.
   if (timed && ends == PathEnds::loop &&
       !make_pose(poses.front().position_m, poses.front().rpy_rad)
            .isApprox(make_pose(poses.back().position_m, poses.back().rpy_rad), 1e-9))

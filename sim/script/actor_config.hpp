@@ -11,14 +11,14 @@
 
 namespace sim {
 
-/// What an actor does at the end of its path.
+/// Behaviour of an actor at the end of its path.
 enum class PathEnds { loop, bounce, stop };
 
 enum class ActorCommand {
-  start,    ///< continue in the direction it had
-  stop,     ///< stand
+  start,    ///< continue in the previous direction
+  stop,     ///< stop moving
   forward,  ///< towards the end of the path
-  back,     ///< towards its beginning
+  back,     ///< towards the start of the path
 };
 
 inline constexpr ChoiceWords<ActorCommand> actor_command_words{{"start", ActorCommand::start},
@@ -28,10 +28,11 @@ inline constexpr ChoiceWords<ActorCommand> actor_command_words{{"start", ActorCo
 
 enum class ActorStart {
   moving,
-  waiting,  ///< for the command of an event
+  waiting,  ///< waits for the command of an event
 };
 
-/// Moves an object along a path.  The object becomes kinematic: it pushes others, and is not pushed.
+/// Configuration of an actor, which moves an object along a path.  The object becomes kinematic: it exerts contact
+/// forces, and its motion is not affected by them.
 struct ActorConfig {
   std::string name;
   std::string object;

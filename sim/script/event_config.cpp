@@ -14,7 +14,7 @@ constexpr const char* forms =
     "VEHICLE enters ZONE, VEHICLE leaves ZONE, VEHICLE inside ZONE, NAME touches NAME, VEHICLE faster than MPS, "
     "message on CHANNEL, event NAME fires (VEHICLE or NAME may be 'any')";
 
-/// Reads the words of a condition; `good` turns false at the first that does not fit, when it has been reported.
+/// Parser of the words of a condition; `good` becomes false at the first error, which is reported.
 class ConditionParser {
  public:
   ConditionParser(ParamReader& in, const char* key, const std::string& text) : in_(in), key_(key) {
@@ -23,6 +23,7 @@ class ConditionParser {
   }
 
   bool parse(Condition& condition) {
+    // Conditions with their own forms.
     if (words_.size() == 3 && words_[0] == "message" && words_[1] == "on") return message(condition);
     if (words_.size() == 3 && words_[0] == "event" && words_[2] == "fires") {
       condition = {Condition::Kind::fires, words_[1], "", 0};
@@ -30,6 +31,7 @@ class ConditionParser {
     }
     if (words_.size() == 4 && words_[1] == "faster" && words_[2] == "than") return faster(condition);
     if (words_.size() != 3) return false;
+    // Conditions of the form SUBJECT VERB OBJECT.
     condition.subject = words_[0];
     condition.object = words_[2];
     if (words_[1] == "touches") {
@@ -64,7 +66,7 @@ class ConditionParser {
     return check("vehicle", words_[0], true);
   }
 
-  /// Reports an unknown name.  True: the form is right, whatever the name.
+  /// Reports an unknown name.  Returns true, because the form is valid for any name.
   bool check(const char* kind, const std::string& name, bool any_allowed) {
     if (any_allowed && name == "any") return true;
     const std::vector<std::string> known = in_.declared(kind);
@@ -111,6 +113,7 @@ void EventConfig::read(ParamReader& in) {
 }
 
 void EventConfig::read_times(ParamReader& in) {
+  // Read `at`, a number or a list.
   if (in.describing()) {
     ParamInfo info;
     info.key = "at";
@@ -126,6 +129,7 @@ void EventConfig::read_times(ParamReader& in) {
     in.read("at", at_s[0], between(0, 1e9), "");
   }
   std::sort(at_s.begin(), at_s.end());
+  // Read the keys of periodic firing.
   std::optional<double> from, until;
   in.read("every", every_s, between(1e-6, 1e9), "seconds from firing to firing");
   in.read("from_s", from, between(0, 1e9), "every: time of the first firing; unset: after one period");

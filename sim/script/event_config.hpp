@@ -9,13 +9,13 @@
 
 namespace sim {
 
-/// What an event waits for.
+/// Condition of an event.
 struct Condition {
   enum class Kind {
     none,
     enters,  ///< subject: vehicle or any; object: zone
     leaves,
-    inside,   ///< as enters, and a vehicle that is inside at the start counts
+    inside,   ///< as enters, and counts a vehicle that is inside at the start
     touches,  ///< vehicles or objects
     message,  ///< subject: channel
     faster,   ///< subject: vehicle or any
@@ -27,17 +27,17 @@ struct Condition {
   double speed_mps = 0;
 };
 
-/// Something that happens in the world: at times, every so often, or when something becomes true.
+/// Configuration of an event: actions at given times, periodically, or when a condition becomes true.
 struct EventConfig {
   std::string name;
   std::vector<double> at_s;
-  double every_s = 0;  ///< 0: not so
+  double every_s = 0;  ///< period; 0: not periodic
   double from_s = 0;
   double until_s = std::numeric_limits<double>::infinity();
   double jitter_s = 0;
   Condition when;
   double delay_s = 0;
-  std::int64_t times = 0;  ///< it fires at most so often; 0: no limit
+  std::int64_t times = 0;  ///< maximum number of firings; 0: no limit
   double probability = 1;
   std::vector<ActionEntry> actions;
   SourcePlace place;
@@ -50,7 +50,7 @@ struct EventConfig {
   void read_times(ParamReader& in);
 };
 
-/// Reads the text of `when:`.  What is wrong is reported at the key; names must be declared.
+/// Reads the text of `when:`.  Errors are reported at the key; names must be declared.
 Condition parse_condition(ParamReader& in, const char* key);
 
 }  // namespace sim

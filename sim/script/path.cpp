@@ -10,7 +10,7 @@ namespace {
 
 constexpr int pieces_per_segment = 16;
 
-/// The rotation whose x is the direction of travel, seen from above; a vertical path has none and gives identity.
+/// Returns the rotation whose x axis is the horizontal direction of travel; identity for a vertical path.
 Matrix3d heading(const Vector3d& direction_W) {
   if (direction_W.head<2>().norm() < 1e-9 * direction_W.norm()) return Matrix3d::Identity();
   return rotation_from_rpy({0, 0, std::atan2(direction_W.y(), direction_W.x())});
@@ -57,6 +57,7 @@ void Path::add_spline(const std::vector<Vector3d>& points_W, bool closed) {
   // Barry and Goldman 1988, "A recursive evaluation algorithm for a class of Catmull-Rom splines", with knots at the
   // square root of the chord (centripetal): no loops and no overshoot.  An open end is mirrored at its last point.
   const auto count = static_cast<int>(points_W.size());
+  // Control points, wrapped or mirrored at the ends.
   const auto point = [&](int i) -> Vector3d {
     if (closed) return points_W[static_cast<std::size_t>((i + count) % count)];
     if (i < 0) return 2 * points_W[0] - points_W[1];
@@ -64,10 +65,12 @@ void Path::add_spline(const std::vector<Vector3d>& points_W, bool closed) {
     return points_W[static_cast<std::size_t>(i)];
   };
   for (int i = 0; i < (closed ? count : count - 1); ++i) {
+    // Tangents of the segment.
     const Vector3d p0 = point(i - 1), p1 = point(i), p2 = point(i + 1), p3 = point(i + 2);
     const double d0 = std::sqrt((p1 - p0).norm()), d1 = std::sqrt((p2 - p1).norm()), d2 = std::sqrt((p3 - p2).norm());
     const Vector3d m1 = d1 * ((p1 - p0) / d0 - (p2 - p0) / (d0 + d1) + (p2 - p1) / d1);
     const Vector3d m2 = d1 * ((p2 - p1) / d1 - (p3 - p1) / (d1 + d2) + (p3 - p2) / d2);
+    // Cubic Hermite polynomial, divided into pieces.
     const Cubic cubic{{p1, m1, 3 * (p2 - p1) - 2 * m1 - m2, 2 * (p1 - p2) + m1 + m2}};
     for (int k = 0; k < pieces_per_segment; ++k) {
       cubics_.push_back(cubic);
@@ -104,7 +107,8 @@ double Path::parameter_at(std::size_t i, double u) const {
   const double share = (u - starts_[i]) / (starts_[i + 1] - starts_[i]);
   double t = from_[i] + share * (to_[i] - from_[i]);
   if (kind_ == PathKind::waypoints) return t;
-  // Newton's method; the speed hardly changes within a piece, so that few rounds reach rounding error.
+  // Solve for the parameter by Newton's method; the speed is nearly constant within a piece, so that few iterations
+  // reach rounding error.
   for (int round = 0; round < 4; ++round) {
     const double error_m = starts_[i] + cubics_[i].length(from_[i], t) - u;
     const double speed = cubics_[i].slope(t).norm();

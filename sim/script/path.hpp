@@ -14,21 +14,21 @@ enum class PathKind {
   timed,      ///< poses at times
 };
 
-/// A pose at a time.
+/// Pose at a time.
 struct TimedPose {
   double at_s = 0;
   Vector3d position_m = Vector3d::Zero();
   Vector3d rpy_rad = Vector3d::Zero();
 };
 
-/// A curve through the world with an orientation at each place.  Its parameter u runs from 0 to length(): metres
-/// along a path of waypoints or a spline, seconds since its first pose along a timed one.
+/// Curve in the world frame with an orientation at each point.  Its parameter u runs from 0 to length(): metres along a
+/// path of waypoints or a spline, seconds since the first pose along a timed path.
 class Path {
  public:
-  /// Consecutive points must differ.  `closed`: goes back from the last point to the first.  Without `R_WO` the path's
-  /// +x is its direction (in the horizontal plane, z up).
+  /// Makes a path through points.  Consecutive points must differ.  `closed`: returns from the last point to the first.
+  /// Without `R_WO` the +x axis follows the path direction (in the horizontal plane, z up).
   static Path through(PathKind kind, std::vector<Vector3d> points_W, bool closed, std::optional<Matrix3d> R_WO);
-  /// Times must grow.
+  /// Makes a path through timed poses.  Times must increase.
   static Path timed(const std::vector<TimedPose>& poses);
 
   double length() const { return starts_.back(); }
@@ -51,7 +51,7 @@ class Path {
 
   PathKind kind_ = PathKind::waypoints;
   std::optional<Matrix3d> R_WO_;
-  // Pieces between starts_[i] and starts_[i + 1]; of a spline several for each segment, which begin at from_[i].
+  // Pieces between starts_[i] and starts_[i + 1]; a spline has several per segment, which start at from_[i].
   std::vector<double> starts_{0.0};
   std::vector<Cubic> cubics_;
   std::vector<double> from_, to_;

@@ -8,22 +8,23 @@
 
 namespace sim::detail {
 
-/// Whether an enumeration has a name for this value: without one, compilers write it as a cast such as `(Kind)5`.
+/// Returns whether an enumeration has a name for this value: compilers write an unnamed value as a cast such as
+/// `(Kind)5`.
 template <auto value>
 constexpr bool has_name() {
   const std::string_view function = __PRETTY_FUNCTION__;
   const std::string_view text = function.substr(function.rfind("value = "));
-  const std::size_t cast = text.rfind(')');  // of a cast, or of a namespace without a name
+  const std::size_t cast = text.rfind(')');  // of a cast, or of an unnamed namespace
   return cast == std::string_view::npos || text[cast + 1] == ':';
 }
 
-/// One bit for each of the values 0 to 31 that has a name.
+/// Returns a mask with one bit for each of the values 0 to 31 that has a name.
 template <typename Enum, std::size_t... values>
 constexpr std::uint32_t named_values(std::index_sequence<values...>) {
   return ((has_name<static_cast<Enum>(values)>() ? std::uint32_t{1} << values : 0u) | ...);
 }
 
-/// Whether the value is an enumerator of its type.  For enumerations whose enumerators are from 0 to 31.
+/// Returns whether the value is an enumerator of its type.  The enumerators of the type must be from 0 to 31.
 template <typename Enum>
 constexpr bool is_enumerator(Enum value) {
   constexpr std::uint32_t named = named_values<Enum>(std::make_index_sequence<32>());

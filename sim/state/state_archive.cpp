@@ -13,6 +13,7 @@ constexpr std::size_t max_name_bytes = 300;
 
 void StateArchive::section(std::string_view name) {
   end_part();
+  // Hash: start a new part hash.
   if (hashing()) {
     if (keeps_parts_) part_ = name;
     part_hash_ = StateHash();
@@ -20,6 +21,7 @@ void StateArchive::section(std::string_view name) {
     return;
   }
   part_ = name;
+  // Save or restore: name and length of the part.
   std::string text(name);
   visit(text);
   std::uint64_t length = 0;  // known at the end of the part

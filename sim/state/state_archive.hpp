@@ -26,49 +26,47 @@
 
 namespace sim {
 
-/// A snapshot that does not fit: cut off, damaged, or of another world.  what() says at which part of the state.
+/// Invalid snapshot: truncated, damaged, or of another world.  what() names the part of the state.
 class SnapshotError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// The hash of one part of the state.
+/// Hash of one part of the state.
 struct PartHash {
   std::string part;  ///< such as `auv1/dvl`
   std::uint64_t hash = 0;
   bool operator==(const PartHash&) const = default;
 };
 
-/// Visits the whole state for one of three purposes: to hash, save or restore it.  A class with
-/// state has one function for all of them, so that a snapshot cannot miss a part of it:
+/// Archive that hashes, saves or restores the whole state.  A class with state has one function for all three purposes,
+/// so that a snapshot cannot omit a member:
 ///
 ///     void visit_state(StateArchive& archive) { archive(charge_, reading_, noise_); }
-///
-/// archive(...) takes numbers, enumerations, texts, durations, Eigen's fixed-size types, the containers below of what
-/// it takes, and every class with visit_state().  What follows from other state is computed again when
-/// archive.restoring().  Hashing and saving change nothing.
-///
-/// What is restored is not trusted.  The archive itself refuses values that no enumeration has, numbers that are not
-/// finite or beyond max_number, and times more than max_time from the start.  What else must hold - an index, a count,
-/// a time that something is planned from - visit_state() checks with require() when archive.restoring().
+/// archive(...) accepts numbers, enumerations, texts, durations, fixed-size Eigen types, the containers below of these
+/// types, and every class with visit_state().  Derived state is computed again when archive.restoring().  Hashing and
+/// saving do not modify the state. Restored data are untrusted.  The archive refuses values that are not enumerators,
+/// numbers that are not finite or exceed max_number, and times more than max_time from the start.  visit_state() must
+/// check all other invariants, such as indices, counts and times used for planning, with require() when
+/// archive.restoring().
 class StateArchive {
  public:
-  /// Hashes; result in hash() and parts().
+  /// Makes an archive that hashes; result in hash() and parts().
   static StateArchive hasher() { return StateArchive(Purpose::hash); }
-  /// The same without parts(), for callers that need hash() only.
+  /// Makes an archive that hashes without parts(), for callers that need hash() only.
   static StateArchive quick_hasher() {
     StateArchive archive(Purpose::hash);
     archive.keeps_parts_ = false;
     return archive;
   }
-  /// Saves; result in take_bytes().
-  /// `about_bytes`: how much there may be, so that memory is asked for once.
+  /// Makes an archive that saves; result in take_bytes().  `about_bytes`: expected size, so that memory is allocated
+  /// once.
   static StateArchive saver(std::size_t about_bytes = 0) {
     StateArchive archive(Purpose::save);
     archive.output_.reserve(about_bytes);
     return archive;
   }
-  /// Restores from bytes that outlive the archive.
+  /// Makes an archive that restores from bytes, which must outlive it.
   static StateArchive restorer(std::span<const std::byte> bytes) {
     StateArchive archive(Purpose::restore);
     archive.input_ = bytes;
@@ -79,12 +77,12 @@ class StateArchive {
   bool saving() const { return purpose_ == Purpose::save; }
   bool restoring() const { return purpose_ == Purpose::restore; }
 
-  /// A part of the world begins, and the one before ends.  Names what errors and differences are notified of. Restoring
-  /// throws SnapshotError when the snapshot has another part here, or the part before was longer.
+  /// Starts a part of the state and ends the previous one.  `name` identifies the part in errors and differences.
+  /// Restoring throws SnapshotError when the snapshot has another part here, or the previous part was longer.
   void section(std::string_view name);
-  /// The last part ends.  Restoring throws SnapshotError when bytes are left over.
+  /// Ends the last part.  Restoring throws SnapshotError when bytes are left over.
   void end();
-  /// Throws SnapshotError with the name of the part: for state that is well-formed and cannot be.
+  /// Throws SnapshotError with the name of the part: for well-formed but impossible state.
   [[noreturn]] void fail(const std::string& what) const;
   /// Throws SnapshotError with the name of the part when a restored value is outside of [low, high]; `what` names it.
   /// Does nothing while hashing and saving.
@@ -94,7 +92,8 @@ class StateArchive {
     if (restoring() && !(value >= low && value <= high)) fail_range(what);
   }
 
-  /// Largest magnitude of a restored number: far beyond anything physical, far from where squares overflow.
+  /// Largest magnitude of a restored number: larger than any physical quantity, and small enough that squares do not
+  /// overflow.
   static constexpr double max_number = 1e100;
   /// Largest magnitude of a restored time or duration: 31 years.
   static constexpr std::chrono::microseconds max_time{1'000'000'000'000'000};
@@ -103,35 +102,36 @@ class StateArchive {
   void operator()(Values&... values) {
     (visit(values), ...);
   }
-  /// The same for values in which NaN and infinity mean something, such as a target that is not set.
+  /// Visits values in which NaN and infinity are valid, such as an unset target.
   template <typename... Values>
   void not_only_finite(Values&... values) {
     const bool before = std::exchange(finite_only_, false);
     (visit(values), ...);
     finite_only_ = before;
   }
-  /// What is saved and restored but not hashed: it changes nothing that happens, such as counts for a summary.
+  /// Visits values that are saved and restored but not hashed, because they do not influence the simulation, such as
+  /// counts for a summary.
   template <typename... Values>
   void unhashed(Values&... values) {
     if (!hashing()) (visit(values), ...);
   }
-  /// `size` numbers of objects that must be as many in the world as in the snapshot.
+  /// Checks that the number of objects, `size`, is the same in the world and in the snapshot.
   void expect_count(std::size_t size, std::string_view of);
 
-  /// Of all parts, and of what was visited outside of them.
+  /// Returns the hash of all parts, and of the values visited outside of them.
   std::uint64_t hash() const {
     StateHash all = total_;
     if (in_part_ || !had_parts_) all.add(part_hash_.value());
     return all.value();
   }
-  /// One for each section, in order.
+  /// Returns the hashes of the parts, in order.
   const std::vector<PartHash>& parts() const { return parts_; }
   std::vector<std::byte> take_bytes() { return std::move(output_); }
 
-  /// That were not read yet, of the part or the snapshot.
+  /// Returns the number of unread bytes of the part or the snapshot.
   std::size_t bytes_left() const { return left(); }
 
-  /// Bits as they are.
+  /// Visits raw memory.
   void raw(void* data, std::size_t size) {
     switch (purpose_) {
       case Purpose::hash:
@@ -188,7 +188,7 @@ class StateArchive {
     else
       part_hash_.add(static_cast<std::uint64_t>(value));
   }
-  /// Of what was restored.
+  /// Checks a restored value.
   template <typename T>
   void check_scalar(const T& value) const {
     if constexpr (std::is_floating_point_v<T>) {
@@ -310,16 +310,17 @@ class StateArchive {
     const std::size_t size = count(values.size(), 1);
     if (values.size() > size) values.resize(size);
     for (std::size_t i = 0; i < size; ++i) {
-      if (i == values.size()) values.emplace_back();  // as they are read: a size that is wrong asks for no memory
+      if (i == values.size()) values.emplace_back();  // grown while reading: a wrong size allocates no memory
       visit(values[i]);
     }
   }
-  /// How many follow.  Restoring throws when so many elements of at least `bytes_each` cannot be there.
+  /// Visits the number of elements that follow.  Restoring throws when the remaining bytes cannot hold that many
+  /// elements of at least `bytes_each`.
   std::size_t count(std::size_t size, std::size_t bytes_each);
   [[noreturn]] void fail_short(std::size_t desired) const;
   [[noreturn]] void fail_number(double value) const;
   [[noreturn]] void fail_range(std::string_view what) const;
-  /// Bytes of this part, or of the snapshot outside of parts.
+  /// Returns the remaining bytes of this part, or of the snapshot outside of parts.
   std::size_t left() const { return (in_part_ ? part_end_ : input_.size()) - at_; }
   void end_part();
 
@@ -331,7 +332,7 @@ class StateArchive {
   std::vector<PartHash> parts_;
   std::string part_ = "the start";
   std::vector<std::byte> output_;
-  std::size_t part_start_ = 0;  // in the output: where the length of the part stands
+  std::size_t part_start_ = 0;  // offset of the length of the part in the output
   bool in_part_ = false;
   std::span<const std::byte> input_;
   std::size_t at_ = 0;

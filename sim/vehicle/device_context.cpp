@@ -22,7 +22,7 @@ Noise DeviceContext::noise(const NoiseParams& params, int values) const {
 }
 
 NoiseOrigin DeviceContext::noise_origin(const NoiseParams& params) const {
-  assert(*params.key != '\0');  // it was read
+  assert(*params.key != '\0');  // set by Params::read
   const std::string quantity = quantity_of(params.key);
   return {host.seed, full_name() + "#" + quantity, &faults.noise_of(quantity)};
 }

@@ -15,30 +15,31 @@ class Joint;
 class Vehicle;
 class World;
 
-/// What a device may hold on to while it is built.
+/// Objects available to a device at construction, which it may keep references to.
 struct DeviceContext {
   const World& world;          ///< the world that is being built
   Vehicle& vehicle;            ///< the vehicle that carries the device
   const DeviceConfig& config;  ///< the keys of the device
-  Body& body;                  ///< that the device is mounted on
+  Body& body;                  ///< body on which the device is mounted
   int number;                  ///< of the device in the world, for DeviceHost::schedule_arrival
   DeviceFaults& faults;        ///< the faults of the device, for its Noise
   DeviceHost& host;            ///< outlives the device
 
-  /// Throws std::out_of_range: names were checked when the file was read.
+  /// Returns a joint by name.  Throws std::out_of_range: names are checked when the file is read.
   Joint& joint(const std::string& name) const;
   std::string full_name() const;  ///< such as `rover1/lidar`
-  /// What it shares with other devices of the world.
+  /// Returns the object shared with other devices of the world.
   template <typename T>
   T& shared(const SharedKind<T>& kind) const {
     return host.shared.of(kind);
   }
-  /// The error of a quantity, with its own random stream, which faults can reach; both are named after the key
-  /// that `params` was read by.  `values`: how many have slow parts of their own (axes of a vector).
+  /// Makes the error of a quantity, with its own random stream, subject to faults; both are named after the key of
+  /// `params`.  `values`: number of components with independent slowly varying errors (axes of a vector).
   Noise noise(const NoiseParams& params, int values) const;
-  /// Random stream and faults of a quantity, named after the key that `params` was read by.
+  /// Returns the random stream and faults of a quantity, named after the key of `params`.
   NoiseOrigin noise_origin(const NoiseParams& params) const;
-  /// For a Transducer or a ContinuousSound.  Throws ConfigError at the device's place when the world has no water.
+  /// Returns the site of a Transducer or a ContinuousSound.  Throws ConfigError at the place of the device when the
+  /// world has no water.
   SoundSite sound_site() const;
 };
 

@@ -17,9 +17,9 @@ class PhysicsWorld;
 class World;
 struct ChannelConfig;
 
-/// The services of a world that its devices may use in addition to queries; shared by all of them.
+/// Services of a world for its devices, shared by all of them.
 struct DeviceHost {
-  const World& world;  ///< to be asked
+  const World& world;  ///< for queries
   const ChannelConfig& channels;
   const StepClock& clock;
   std::int64_t epoch_us;
@@ -27,12 +27,12 @@ struct DeviceHost {
   PhysicsWorld& physics;
   const std::unique_ptr<AcousticChannel>& acoustics;
   EventQueue& events;
-  const PortOpener& open_port;  ///< for devices that talk through a pseudo-terminal or FIFO; empty: there are none
+  const PortOpener& open_port;  ///< for devices with a pseudo-terminal or FIFO; empty: none can be opened
   WorldWarnings& warnings;
   SharedByDevices& shared;
 
-  /// Something sent now arrives at a device at a simulated time: its sensor's arrive() is called.  `device`: its
-  /// number.
+  /// Schedules the arrival of data at a device at a simulated time, when arrive() of its sensor is called.  `device`:
+  /// its number.
   void schedule_arrival(int device, Time due, Bytes payload);
 };
 

@@ -12,31 +12,31 @@
 
 namespace sim {
 
-/// The devices of a world by number.  The number of a removed device is used again, that of the last one first.
+/// Devices of a world by number.  Numbers of removed devices are reused, the last released first.
 class DeviceTable {
  public:
-  /// In the order of their numbers; null where a device was removed.
+  /// Returns the devices in the order of their numbers; null where a device was removed.
   std::span<const std::unique_ptr<MountedDevice>> all() const { return devices_; }
   std::size_t size() const { return devices_.size(); }
-  /// Null when there is none.
+  /// Returns a device by number; null when there is none.
   MountedDevice* at(int number) const { return devices_[static_cast<std::size_t>(number)].get(); }
-  /// Of the device that is added next.
+  /// Returns the number of the device that is added next.
   int next_number();
-  /// One that was built with next_number().
+  /// Adds a device that was built with next_number().
   void add(std::unique_ptr<MountedDevice> device);
   void remove(int number);
   void clear();
-  /// Raised when something arrives in the mailbox of the device.
+  /// Returns the flag that is set when a message arrives in the mailbox of the device.
   std::atomic<bool>* arrival_flag(int number) { return arrival_flags_.of(number).get(); }
 
-  // For who builds a world again as it became.
+  // For the reconstruction of a world from its journal.
   const std::vector<int>& free_numbers() const { return free_; }
-  /// The devices that are added next get these numbers.  Throws std::out_of_range when one is in use.
+  /// Sets the numbers of the devices that are added next.  Throws std::out_of_range when one is in use.
   void prescribe(const std::vector<int>& numbers);
   bool as_prescribed() const { return free_.empty(); }
-  /// The numbers that are free, in the order in which they will be used.  Throws SnapshotError when they cannot be.
+  /// Sets the free numbers, in the order in which they will be used.  Throws SnapshotError when they are invalid.
   void set_free(std::vector<int> free, std::int64_t size);
-  /// What waits in the mailboxes.
+  /// Visits the unread messages of the mailboxes.
   void visit_messages(StateArchive& archive);
 
  private:

@@ -5,7 +5,7 @@
 
 namespace sim {
 
-/// Why and how the world itself ends the run.
+/// Reason and result of a run that the world itself ends.
 struct EndOfRun {
   std::string text;
   bool passed = true;

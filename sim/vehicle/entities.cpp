@@ -82,7 +82,7 @@ void Entities::clear() {
 
 void Entities::visit_state(StateArchive& archive) {
   archive(next_vehicle_number_, next_object_number_);
-  constexpr int max_vehicles_ever = 100'000'000;  // lists have a place for each number
+  constexpr int max_vehicles_ever = 100'000'000;  // some lists have an element for each number
   if (archive.restoring() &&
       (next_vehicle_number_ < 0 || next_vehicle_number_ > max_vehicles_ever || next_object_number_ < 0))
     archive.fail("invalid numbers of vehicles or objects");

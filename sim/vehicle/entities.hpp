@@ -12,29 +12,29 @@
 
 namespace sim {
 
-/// A thing without devices, as built.
+/// Object without devices in the world.
 struct WorldObject {
-  std::int64_t number = 0;  ///< grows from object to object, and is not used again
+  std::int64_t number = 0;  ///< increases from object to object, and is never reused
   std::string name;
   int group = -1;
   Body* body = nullptr;
   ObjectConfig config;
 };
 
-/// The vehicles and objects of a world, by name.
+/// Vehicles and objects of a world, by name.
 class Entities {
  public:
   const std::vector<std::unique_ptr<Vehicle>>& vehicles() const { return vehicles_; }
   const std::map<std::string, WorldObject, std::less<>>& objects() const { return objects_; }
-  /// Null when there is none.
+  /// Return the entity of this name; null when there is none.
   Vehicle* find_vehicle(const std::string& name) const;
   const WorldObject* find_object(const std::string& name) const;
   MountedDevice* find_device(const std::string& full_name) const;
-  /// Throw WorldError when there is none.
+  /// Return the entity of this name.  Throw WorldError when there is none.
   Vehicle& vehicle_named(const std::string& name) const;
   const WorldObject& object_named(const std::string& name) const;
   MountedDevice& device_named(const std::string& full_name) const;
-  /// Throws ConfigError when something has this name.
+  /// Throws ConfigError when the name is in use.
   void check_new_name(const std::string& name, const SourcePlace& place, const std::string& who) const;
 
   Vehicle& add(std::unique_ptr<Vehicle> vehicle);
@@ -43,19 +43,19 @@ class Entities {
   void remove(const WorldObject& object);
   void clear();
 
-  /// Of the next one that is added.
+  /// Return the number of the next entity that is added.
   int next_vehicle_number() const { return next_vehicle_number_; }
   std::int64_t next_object_number() const { return next_object_number_; }
   int take_vehicle_number() { return next_vehicle_number_++; }
   std::int64_t take_object_number() { return next_object_number_++; }
-  /// For who builds a world again as it became.
+  /// Set the next number, for the reconstruction of a world from its journal.
   void prescribe_vehicle_number(int number) { next_vehicle_number_ = number; }
   void prescribe_object_number(std::int64_t number) { next_object_number_ = number; }
 
-  /// Grows when mark_changed() is called: with every vehicle or object that was added or removed.
+  /// Returns a counter that mark_changed() increments: with every vehicle or object that was added or removed.
   std::uint64_t generation() const { return generation_; }
   void mark_changed() { ++generation_; }
-  /// The next numbers.
+  /// Visits the next numbers.
   void visit_state(StateArchive& archive);
 
  private:

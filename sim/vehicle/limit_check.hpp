@@ -9,12 +9,12 @@
 
 namespace sim {
 
-/// A name for a message, in quotes.
+/// Returns a name in quotes, printable and shortened, for messages.
 inline std::string shown_name(const std::string& name) {
   return "'" + shortened(printable(name)) + "'";
 }
 
-/// Throws ConfigError when there would be more than the world allows.
+/// Throws ConfigError when `count` exceeds the limit of the world.
 inline void check_limit(const char* what, std::size_t count, int limit, const SourcePlace& place,
                         const std::string& who) {
   if (count > static_cast<std::size_t>(limit))

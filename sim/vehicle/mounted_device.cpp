@@ -12,7 +12,8 @@
 
 namespace sim {
 
-/// Keeps what a sensor reports until the world publishes it: at once, or at a later simulated time by way of an event.
+/// Publisher that holds the reports of a sensor until the world publishes them: immediately, or at a later simulated
+/// time by an event.
 class MountedDevice::Outlet final : public Publisher {
  public:
   Outlet(MountedDevice& device, Bus& bus, const std::string& channel, const VehicleClock* clock)
@@ -23,12 +24,12 @@ class MountedDevice::Outlet final : public Publisher {
     latency_ = latency;
   }
 
-  /// Keeps what is published from now on in `copies` too; null: no longer.
+  /// Also stores messages published from now on in `copies`; null: stops.
   void copy_to(std::vector<Bytes>* copies) { copies_ = copies; }
 
   void publish(std::span<const std::byte> payload) override {
     if (copies_) copies_->emplace_back(payload.begin(), payload.end());
-    // Payloads are kept for their memory: a camera's is large.
+    // Keep payloads to reuse their memory: those of cameras are large.
     if (waiting_ == payloads_.size()) payloads_.emplace_back();
     payloads_[waiting_++].assign(payload.begin(), payload.end());
   }
@@ -88,7 +89,7 @@ MountedDevice::MountedDevice(Vehicle& vehicle, const DeviceConfig& config, Devic
   acting_->is_actuator = type_.is_actuator();
   acting_->always_on = type_.always_on;
   report_outlet_ = std::make_unique<Outlet>(*this, bus_, report_channel_, &vehicle.clock());
-  // Who switches the truth on observes: the run, and its hash, stay what they are.
+  // The truth channel is for observation: it does not change the run and its hash.
   truth_outlet_ = std::make_unique<Outlet>(*this, RunHash::uncounted(bus_), truth_channel_, nullptr);
   plan_again(host.clock.now());
 }
@@ -113,10 +114,10 @@ void MountedDevice::plan_next_sample() {
     ++samples_planned_;
     return;
   }
-  // Sample k is due at phase + k * period, so that a rate which does not divide the step is right on average.  Two
-  // samples never share a step, and none is before the step after the device came.
+  // Sample k is due at phase + k * period, so that a rate that does not divide the step rate is correct on average. Two
+  // samples are never in one step, and the first is at the earliest in the step after the device was added.
   const auto step_us = static_cast<double>(host_.clock.step.count());
-  // Where many samples fall into one step, all but one are skipped at once.
+  // When many samples fall into one step, skip all but one at once.
   const double skip = (static_cast<double>(earliest - 1) * step_us - phase_us_) / period_us_;
   std::int64_t sample = std::max(samples_planned_, static_cast<std::int64_t>(std::floor(skip)));
   while (step_of_sample(sample) < earliest) ++sample;
@@ -124,7 +125,7 @@ void MountedDevice::plan_next_sample() {
   next_sample_step_ = step_of_sample(sample);
 }
 
-/// The first step at or after its due time.
+/// Returns the first step at or after the due time of a sample.
 std::int64_t MountedDevice::step_of_sample(std::int64_t sample) const {
   constexpr double beyond_all_runs_us = 1e18;
   const auto step_us = static_cast<double>(host_.clock.step.count());
@@ -133,7 +134,8 @@ std::int64_t MountedDevice::step_of_sample(std::int64_t sample) const {
       std::ceil(std::clamp(due_us, -beyond_all_runs_us, beyond_all_runs_us) / step_us - 1e-9));
 }
 
-/// The next sample was planned from the last one: whatever else a snapshot says would be made up for sample by sample.
+/// Checks that the next sample follows from the last one: for other values in a snapshot the device would catch up
+/// sample by sample.
 void MountedDevice::check_schedule(const StateArchive& archive) const {
   if (!senses()) return;
   archive.require(samples_planned_, 1, std::numeric_limits<std::int64_t>::max() / 2, "a next sample");
@@ -157,7 +159,7 @@ void MountedDevice::take_messages(Time now, std::int64_t step_number) {
     if (faults_.dropout() > 0 && link_random_.uniform() < faults_.dropout()) continue;
     Time latency = next_latency();
     if (type_.is_actuator()) latency += from_seconds(vehicle_.config().actuator_latency_s);
-    // A sensor's latency delays its reports, not its commands (a modem is both).
+    // The latency of a sensor delays its reports, not its commands (a modem has both).
     if (latency.count() == 0 || built_.sensor) {
       receive(now, message->payload);
       continue;
@@ -213,17 +215,21 @@ void MountedDevice::sample(Time now, std::int64_t step_number) {
   if (!works()) return;
   const double dt_s = last_sample_.count() < 0 ? 0.0 : to_seconds(now - last_sample_);
   last_sample_ = now;
+  // Measure the truth.
   const Pose X_WB = body_.X_WB();
   const SenseContext context{host_.world, vehicle_, now, dt_s, X_WB * X_BS_, body_.velocity_at_W(X_BS_.translation())};
   built_.sensor->measure(context);
   if (!built_.reporter) return;
+  // Report it on the truth channel.
   if (config_.truth) {
     truth_outlet_->set(now, Time{0});
     built_.reporter->report(now, *truth_outlet_);
   }
+  // Add the errors.
   noise_random_.begin_step(step_number);
   built_.sensor->disturb(dt_s, noise_random_);
-  link_random_.begin_step(-step_number);  // apart from the draws of take_messages in the same step
+  link_random_.begin_step(-step_number);  // independent of the draws of take_messages in the same step
+  // Report, unless the message is lost.
   if (config_.dropout > 0 && link_random_.uniform() < config_.dropout) return;
   const Time latency = next_latency();
   if (faults_.silent()) return;
@@ -237,7 +243,7 @@ void MountedDevice::report(Time now) {
     built_.reporter->report(now, *report_outlet_);
     return;
   }
-  if (!frozen_) {  // the first report after the fault is the one that is repeated
+  if (!frozen_) {  // the first report after the fault is repeated
     frozen_.emplace();
     frozen_utime_ = report_outlet_->utime(now);
     report_outlet_->copy_to(&*frozen_);
@@ -245,7 +251,7 @@ void MountedDevice::report(Time now) {
     report_outlet_->copy_to(nullptr);
     return;
   }
-  // Only the time stamp continues.
+  // Only the time stamp advances.
   const std::int64_t utime = report_outlet_->utime(now);
   for (Bytes& payload : *frozen_) {
     if (utime_of(payload) == frozen_utime_) set_utime(payload, utime);
@@ -285,14 +291,15 @@ void MountedDevice::clear_faults() {
 
 void MountedDevice::change(const DeviceConfig& changed, Time now) {
   const bool other_rate = changed.rate_hz != config_.rate_hz || changed.phase_s != config_.phase_s;
-  config_ = changed;  // what must stay as it is, changed_device() refuses to change
+  config_ = changed;  // changed_device() refuses changes of fixed values
   acting_->watchdog = from_seconds(config_.watchdog_s);
   acting_->safe_state = config_.safe;
   if (built_.change) built_.change(*changed.params);
   if (other_rate) plan_again(now);
 }
 
-/// Samples count from time 0, whenever the device came or got its rate; the next one is the first after now.
+/// Plans the samples from time 0, independent of when the device was added or changed; the next sample is the first
+/// after now.
 void MountedDevice::plan_again(Time now) {
   samples_planned_ = 0;
   next_sample_step_ = now / host_.clock.step;
@@ -305,7 +312,7 @@ void MountedDevice::visit_state(StateArchive& archive) {
   double period_us = period_us_, phase_us = phase_us_;
   archive.unhashed(period_us, phase_us);
   if (archive.restoring()) {
-    // The world that is restored may give the device another rate.
+    // The device may have another rate in the restored world.
     if (period_us != period_us_ || phase_us != phase_us_) plan_again(host_.clock.now());
     check_schedule(archive);
     archive.require(last_sample_, Time{-1}, host_.clock.now(), "the time of a last sample");

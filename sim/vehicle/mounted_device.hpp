@@ -17,27 +17,27 @@ namespace sim {
 
 struct VehicleSystems;
 
-/// The data that a step needs to run an actuator, separate from the rest of its device.
+/// Data that a step needs to run an actuator, stored apart from its device.
 struct Acting : VisitedInSteps {
   Actuator* actuator = nullptr;
   VehicleSystems* systems = nullptr;
   Time watchdog{0};          ///< 0: none
-  Time last_command{-1};     ///< the last one that was good; -1: none yet
-  double effectiveness = 1;  ///< by faults
+  Time last_command{-1};     ///< time of the last valid command; -1: none yet
+  double effectiveness = 1;  ///< share of the effort that faults leave
   SafeState safe_state = SafeState::stop;
   bool is_actuator = false;  ///< has safe states
   bool always_on = false;
   bool stuck = false;
-  bool safe = false;  ///< the actuator was made safe, and no command came since
+  bool safe = false;  ///< the actuator is in its safe state, without a command since
 
   void act(Time now, double step_s);
 };
 
-/// A device in its vehicle, with what the framework puts around every device: the schedule of samples, latency,
-/// jitter, dropout, the truth channel, the mailbox, faults, the watchdog, power and emergency stop.
+/// Device in its vehicle, with the framework functions of every device: schedule of samples, latency, jitter, dropout,
+/// truth channel, mailbox, faults, watchdog, power and emergency stop.
 class MountedDevice {
  public:
-  /// What its events are about: Event::kind.
+  /// Kinds of its events: Event::kind.
   enum EventKind { report_event, command_event, arrival_event };
 
   /// `config` must outlive the device (the vehicle keeps it).
@@ -46,36 +46,36 @@ class MountedDevice {
   MountedDevice(const MountedDevice&) = delete;
   MountedDevice& operator=(const MountedDevice&) = delete;
 
-  /// Hands the controller the messages that have come; with a latency they become events.
+  /// Passes the messages that have arrived to the controller; with a latency they become events.
   void take_messages(Time now, std::int64_t step_number);
-  /// Of the step after which it samples next.
+  /// Returns the number of the step after which it samples next.
   std::int64_t next_sample_step() const { return next_sample_step_; }
-  /// See Sensor::sweep; called after each step of a sensor that sweeps.
+  /// Calls Sensor::sweep; called after each step for a sensor that sweeps.
   void sweep(Time now);
-  /// Samples; the reports wait for publish().  Sensors that cast rays may do so at the same time in several threads.
+  /// Samples; reports are published by publish_reports().  May be called concurrently for sensors that cast rays.
   void sample(Time now, std::int64_t step_number);
-  /// Publishes or schedules what sample() found.
+  /// Publishes or schedules the reports of sample().
   void publish_reports();
-  /// An event of this device is due.
+  /// Handles an event of this device that is due.
   void handle(const Event& event);
 
-  /// From now on; a fault of the same kind (and quantity) is replaced.
+  /// Sets a fault from now on; replaces a fault of the same kind (and quantity).
   void set_fault(const FaultConfig& fault);
   void clear_faults();
   const DeviceFaults& faults() const { return faults_; }
-  /// Takes the values of `changed` that may change while it runs: rate, latency, jitter, dropout, power, watchdog, and
-  /// the type's own keys when the type allows it (see can_change).  Name, mounting and channels stay.
+  /// Applies the values of `changed` that may change at run time: rate, latency, jitter, dropout, power, watchdog, and
+  /// the keys of the type when it allows that (see can_change).  Name, mounting and channels are kept.
   void change(const DeviceConfig& changed, Time now);
-  /// Its own keys can change while it runs.
+  /// Returns whether the keys of its type can change at run time.
   bool can_change() const { return static_cast<bool>(built_.change); }
 
   bool senses() const { return built_.sensor != nullptr; }
   bool sweeps() const { return type_.sweeps; }
   bool casts_rays() const { return type_.casts_rays; }
   std::int64_t rays() const { return built_.sensor->rays(); }
-  /// Its actuator is null when it has none.
+  /// Returns the data of its actuator; their `actuator` is null when it has none.
   Acting* acting() const { return acting_.get(); }
-  /// Null when it takes no messages.
+  /// Returns its mailbox; null when it receives no messages.
   Mailbox* mailbox() const { return mailbox_.get(); }
   int number() const { return number_; }
   const std::string& full_name() const { return full_name_; }
@@ -122,8 +122,8 @@ class MountedDevice {
   std::int64_t samples_planned_ = 0;
   std::int64_t next_sample_step_ = 0;
   Time last_sample_{-1};
-  std::optional<Pose> X_WS_before_;  ///< at the end of the last step, for sweep()
-  /// What a stuck sensor repeats, and the time stamp in it.
+  std::optional<Pose> X_WS_before_;  ///< pose at the end of the last step, for sweep()
+  /// Messages that a stuck sensor repeats, and their time stamp.
   std::optional<std::vector<Bytes>> frozen_;
   std::int64_t frozen_utime_ = 0;
 };

@@ -13,11 +13,9 @@
 
 namespace sim {
 
-/// A hash chained over what a world publishes and over its states, in the order in which they come: it stays
-/// different after the first difference.
-///
-/// Counted are the messages that go through counted(): those of devices and of events, on every bus.  Channels for
-/// observation only are excluded: truth channels and the simulator's own `sim.*`.
+/// Hash chained over the messages that a world publishes and over its states, in order: it stays different after the
+/// first difference. The hash includes the messages published through counted(): those of devices and of events, on
+/// every bus.  Channels for observation only are excluded: truth channels and the `sim.*` channels of the simulator.
 class RunHash {
  public:
   RunHash();
@@ -25,15 +23,15 @@ class RunHash {
   RunHash(const RunHash&) = delete;
   RunHash& operator=(const RunHash&) = delete;
 
-  /// A bus that counts what is published on it and passes everything on to `bus`, which must outlive this.  The same
-  /// one at every call.
+  /// Returns a bus that adds its publications to the hash and forwards everything to `bus`, which must outlive this.
+  /// Returns the same object at every call.
   Bus& counted(Bus& bus);
-  /// The bus under one that counted() gave; any other bus itself.
+  /// Returns the bus behind one returned by counted(); any other bus unchanged.
   static Bus& uncounted(Bus& bus);
 
-  /// A state, by its hash.
+  /// Adds a state, by its hash.
   void add_state(std::uint64_t hash);
-  /// The chain so far.
+  /// Returns the present value of the chain.
   std::uint64_t value() const { return chain_; }
   void visit_state(StateArchive& archive) { archive(chain_); }
 

@@ -7,10 +7,10 @@
 
 namespace sim {
 
-/// The time of a world: so many whole steps since its start.
+/// Time of a world: number of whole steps since its start.
 struct StepClock {
-  Time step{0};                  ///< length of one
-  std::int64_t step_number = 0;  ///< of the last step that physics has done
+  Time step{0};                  ///< length of one step
+  std::int64_t step_number = 0;  ///< number of completed physics steps
   Time now() const { return Time{step_number * step.count()}; }
 };
 

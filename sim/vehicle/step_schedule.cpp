@@ -67,8 +67,8 @@ void StepSchedule::advance_clocks(const StepClock& clock, const Medium& medium) 
   }
 }
 
-/// Sensors that cast rays take nearly all the time and touch nothing but themselves: they go first, in parallel.  What
-/// they found is published among the others' in device order, as if one after the other had sampled.
+/// Samples and publishes.  Sensors that cast rays take nearly all the time and change only their own state: they sample
+/// first, in parallel.  All reports are then published in device order, as if the devices had sampled sequentially.
 void StepSchedule::sense(const StepClock& clock, const Scene& scene) {
   due_.clear();
   casting_.clear();
@@ -91,11 +91,11 @@ void StepSchedule::cast_rays(const StepClock& clock, const Scene& scene) {
     if (casting.device->sweeps()) casting.device->sweep(clock.now());
     if (casting.due) casting.device->sample(clock.now(), clock.step_number);
   };
-  // Waking threads costs as much as some hundred rays.
+  // Waking threads costs as much as several hundred rays.
   constexpr std::int64_t min_rays_for_threads = 1500;
   std::int64_t rays = 0;
   for (const Casting& casting : casting_) rays += casting.device->rays();
-  // Where nothing is cast, as between the images of cameras, nothing has to be looked up either.
+  // When no rays are cast, as between the images of cameras, skip the look-up as well.
   if (rays > 0) scene.prepare();
   if (threads_ && rays >= min_rays_for_threads && scene.concurrent())
     threads_->for_each(casting_.size(), [&](std::size_t i) { sample(casting_[i]); });

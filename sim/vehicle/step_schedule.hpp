@@ -20,40 +20,40 @@ class Vehicle;
 struct Acting;
 struct StepClock;
 
-/// The devices that each stage of a step visits, in device order.
+/// Schedule of the devices that each stage of a step visits, in device order.
 class StepSchedule {
  public:
-  /// Threads that share the sensors which cast rays; 0: one for each processor.  The run is the same for any number.
+  /// Sets the number of threads for sensors that cast rays; 0: one for each processor.  Results do not depend on it.
   void use_threads(int threads);
-  /// To be called whenever devices were added or removed, or their samples are due at other times.
+  /// Rebuilds the schedule.  Must be called when devices were added or removed, or their sample times have changed.
   void sort(const Entities& entities, DeviceTable& devices);
   void clear();
-  /// A device samples at other times from now on.
+  /// Updates the sample times of a device.
   void plan_again(const MountedDevice& device);
 
   void take_messages(const StepClock& clock);
   void act(const StepClock& clock, double step_s);
-  /// Clocks that are not perfect: before what is due, so that what is stamped in a step is stamped by the clocks as
-  /// they stand at its end.
+  /// Advances the imperfect clocks.  Called before due events and samples, so that time stamps of a step use the clocks
+  /// at its end.
   void advance_clocks(const StepClock& clock, const Medium& medium);
-  /// Stages 6 and 7.
+  /// Runs stages 6 and 7: samples the sensors and publishes their reports.
   void sense(const StepClock& clock, const Scene& scene);
-  /// Of all sensors so far.
+  /// Returns the number of samples of all sensors since the start.
   std::int64_t& samples() { return samples_; }
 
  private:
-  /// A device with a mailbox, and whether there may be something in it.
+  /// Device with a mailbox, and the flag for possible messages.
   struct Listening {
     std::atomic<bool>* messages;
     MountedDevice* device;
   };
-  /// A sensor, and the step after which it samples next.
+  /// Sensor, and the step after which it samples next.
   struct Sensing {
     std::int64_t due_step;
     MountedDevice* device;
     bool casts_rays, sweeps;
   };
-  /// What this step has to sense.
+  /// Sensor to run in this step.
   struct Casting {
     MountedDevice* device;
     bool due;
@@ -63,7 +63,7 @@ class StepSchedule {
   std::vector<Listening> listening_;
   std::vector<Acting*> acting_;
   std::vector<Sensing> sensing_;
-  std::vector<Vehicle*> clocked_;  // vehicles whose clocks are not perfect
+  std::vector<Vehicle*> clocked_;  // vehicles with imperfect clocks
   std::vector<Sensing*> due_;
   std::vector<Casting> casting_;
   std::unique_ptr<ThreadPool> threads_;  // null: one thread

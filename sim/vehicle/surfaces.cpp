@@ -34,14 +34,14 @@ bool Surfaces::has_new(const VehicleConfig& config) const {
          std::any_of(config.contacts.begin(), config.contacts.end(), new_contact);
 }
 
-/// What a newcomer says of surfaces may concern its own only: a contact of [default, any] would change those of others.
+/// Checks that a new vehicle defines only its own surfaces: a contact of [default, any] would change those of others.
 void Surfaces::check_new(const VehicleInstance& instance) const {
   const std::string who = "vehicle " + shown_name(instance.name);
   const VehicleConfig& config = *instance.config;
   std::set<std::string, std::less<>> own;
   for (const MaterialConfig& material : config.materials)
     if (!materials_.contains(material.name)) own.insert(material.name);
-  constexpr int max_materials = 200;  // a table of pairs is kept
+  constexpr int max_materials = 200;  // limits the size of the table of pairs
   check_limit("materials", materials_.size() + own.size(), max_materials, instance.place, who);
   check_limit("contacts", contacts_.size() + config.contacts.size(), 20 * max_materials, instance.place, who);
   for (const ContactConfig& contact : config.contacts) {

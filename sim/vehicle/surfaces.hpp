@@ -14,18 +14,18 @@ struct VehicleConfig;
 struct VehicleInstance;
 struct WorldConfig;
 
-/// The materials and contacts that a world knows: those of its file, and of all vehicles that were added.
+/// Materials and contacts of a world: those of its file, and of all vehicles that were added.
 class Surfaces {
  public:
   explicit Surfaces(PhysicsWorld& physics) : physics_(physics) {}
 
-  /// Those of the file alone.
+  /// Resets to the surfaces of the world file.
   void start(const WorldConfig& config);
-  /// A vehicle has materials, contacts or categories that are not known yet.
+  /// Returns whether a vehicle has new materials, contacts or categories.
   bool has_new(const VehicleConfig& config) const;
   /// Throws ConfigError where a contact of a vehicle would change the surfaces of others, or there are too many.
   void check_new(const VehicleInstance& instance) const;
-  /// Those of a vehicle.
+  /// Adds the surfaces of a vehicle.
   void add(const VehicleConfig& config);
 
  private:

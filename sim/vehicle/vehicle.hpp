@@ -16,12 +16,12 @@ namespace sim {
 
 class MountedDevice;
 
-/// What the devices of a vehicle share.
+/// State shared by the devices of a vehicle.
 struct VehicleSystems {
   bool estopped = false;  ///< actuators are in their safe states and take no commands
   bool powered = true;    ///< false: the battery is empty; only devices that need no power work
-  bool metered = false;   ///< there is a battery to drain
-  double drawn_J = 0;     ///< taken since the battery last looked
+  bool metered = false;   ///< whether there is a battery to discharge
+  double drawn_J = 0;     ///< energy drawn since the last update of the battery
 
   void visit_state(StateArchive& archive) {
     archive(estopped, powered, drawn_J);
@@ -29,28 +29,28 @@ struct VehicleSystems {
   }
 };
 
-/// A vehicle in the world: its bodies, joints and devices by name.
+/// Vehicle in the world: its bodies, joints and devices by name.
 class Vehicle {
  public:
-  /// Without bodies, joints and devices, which are added in this order.  `clock`: that its devices hold on to.
+  /// Makes a vehicle without bodies, joints and devices, which are added in this order.  `clock`: clock of its devices.
   Vehicle(std::string name, int number, int group, std::shared_ptr<const VehicleConfig> config, Bus& bus,
           VehicleClock clock);
 
   const std::string& name() const { return name_; }
-  /// Grows from vehicle to vehicle, and is not used again when one is removed.
+  /// Returns the vehicle number, which increases from vehicle to vehicle and is never reused.
   int number() const { return number_; }
   int group() const { return group_; }
   const VehicleConfig& config() const { return *config_; }
-  /// Where its devices publish and listen.
+  /// Returns the bus of its devices.
   Bus& bus() const { return bus_; }
-  /// The first body, which carries the vehicle frame.
+  /// Returns the first body, which carries the vehicle frame.
   const Body& base() const { return *bodies_.front().second; }
   Pose X_WV() const { return base().X_WB() * X_BV_; }
 
-  /// By the name in the vehicle file.  Throws std::out_of_range.
+  /// Return a body or joint by its name in the vehicle file.  Throw std::out_of_range when there is none.
   Body& body(const std::string& name) const;
   Joint& joint(const std::string& name) const;
-  /// Null when there is none.
+  /// Returns a device by name; null when there is none.
   MountedDevice* find_device(const std::string& name) const;
   const std::vector<std::pair<std::string, Body*>>& bodies() const { return bodies_; }
   const std::vector<std::pair<std::string, Joint*>>& joints() const { return joints_; }
@@ -59,11 +59,11 @@ class Vehicle {
   VehicleSystems& systems() { return systems_; }
   const VehicleSystems& systems() const { return systems_; }
 
-  /// By which its devices stamp what they report.
+  /// Returns the clock for the time stamps of its devices.
   VehicleClock& clock() { return clock_; }
   const VehicleClock& clock() const { return clock_; }
 
-  /// Its bodies, joints, systems and clock; devices are parts of their own.
+  /// Visits bodies, joints, systems and clock; devices are separate parts of the state.
   void visit_state(StateArchive& archive) {
     for (const auto& [name, body] : bodies_) body->visit_state(archive);
     for (const auto& [name, joint] : joints_) joint->visit_state(archive);

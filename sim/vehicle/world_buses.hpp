@@ -10,20 +10,20 @@
 
 namespace sim {
 
-/// The bus of a name.
+/// Function that returns the bus of a name.
 using BusFinder = std::function<Bus&(const std::string& name)>;
 
-/// The buses of a world, each counted in its run hash, and which channels its devices have on them.
+/// Buses of a world, each included in its run hash, and the channels of its devices on them.
 class WorldBuses {
  public:
-  /// `find` gives the bus of a name; without it all vehicles are on `bus`, which must outlive this.
+  /// `find` returns the bus of a name; without it all vehicles are on `bus`, which must outlive this.
   WorldBuses(Bus& bus, BusFinder find) : bus_(bus), find_(std::move(find)) {}
 
-  /// The world's own.
+  /// Returns the bus of the world.
   Bus& own() { return run_hash_.counted(bus_); }
-  /// Empty: the world's own.
+  /// Returns a bus by name; empty: the bus of the world.
   Bus& named(const std::string& name) { return name.empty() || !find_ ? own() : run_hash_.counted(find_(name)); }
-  /// Where a channel is spoken: the bus of the vehicle whose device has it, else the world's.
+  /// Returns the bus of a channel: that of the vehicle whose device uses it, else that of the world.
   Bus& of_channel(const std::string& channel) {
     const auto known = channels_.find(channel);
     return known == channels_.end() ? own() : *known->second;

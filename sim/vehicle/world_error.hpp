@@ -5,7 +5,8 @@
 
 namespace sim {
 
-/// Something that cannot be done to the world as it is now.  what() is one line with who, rule and value.
+/// Failure of an operation that the present state of the world does not allow.  what() is one line with who, rule and
+/// value.
 class WorldError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

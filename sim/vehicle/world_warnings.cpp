@@ -11,7 +11,7 @@ namespace sim {
 
 void WorldWarnings::bad_message(const std::string& who, const std::string& text) {
   ++bad_messages_;
-  // One line for each kind of mistake: a flood of bad messages must not become a flood of lines.
+  // Log one line for each kind of error, to limit the lines caused by a flood of bad messages.
   constexpr std::size_t max_lines = 100;
   const std::string line = who + ": " + shortened(printable(text), 300);
   if (lines_.size() >= max_lines || std::find(lines_.begin(), lines_.end(), line) != lines_.end()) return;

@@ -11,19 +11,19 @@
 
 namespace sim {
 
-/// What a world warns of, in the log.
+/// Warnings of a world, written to the log.
 class WorldWarnings {
  public:
   /// `clock` must outlive this.
   explicit WorldWarnings(const StepClock& clock) : clock_(clock) {}
 
-  /// What is found while the world, or something in it, is built.  A world that is rebuilt after a restore does not
-  /// repeat them.
+  /// Returns the warnings found while the world, or an entity in it, is built.  A world that is rebuilt after a restore
+  /// does not repeat them.
   Warnings& building() { return building_; }
-  /// Something that a client or an event did wrong, with the time of the world.  All are counted; the same line is
-  /// logged once, and at most 100 lines are.
+  /// Reports an error of a client or an event, with the time of the world.  All errors are counted; the same line is
+  /// logged once, and at most 100 lines are logged.
   void bad_message(const std::string& who, const std::string& text);
-  /// Something that is worth knowing, with the time of the world.  Not counted.
+  /// Logs a warning with the time of the world.  It is not counted.
   void warn(const std::string& who, const std::string& text) const;
 
   std::int64_t bad_messages() const { return bad_messages_; }

@@ -12,7 +12,7 @@ namespace sim {
 
 namespace {
 
-constexpr double deepest_m = 12000;  // deeper than any sea
+constexpr double deepest_m = 12000;  // deeper than any ocean
 
 bool has_coefficients(const BodyConfig& body) {
   return body.hydrodynamics && body.hydrodynamics->model == HydrodynamicsConfig::Model::coefficients;

@@ -9,10 +9,10 @@ namespace sim {
 class Vehicle;
 class World;
 
-/// A line when vehicles that are in water, or float on it, have no ground below them and a device that needs it,
-/// because it casts rays or declares it (Sensor::needs_bottom).
+/// Returns a warning when vehicles in or on water have no bottom below them and a device that needs one, because it
+/// casts rays or declares it (Sensor::needs_bottom).
 std::vector<std::string> bottom_warnings(const World& world);
-/// The same for one of them.
+/// Returns the same for one vehicle.
 std::vector<std::string> bottom_warnings(const World& world, const Vehicle& vehicle);
 
 }  // namespace sim

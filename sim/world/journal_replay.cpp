@@ -17,7 +17,8 @@
 namespace sim {
 
 void JournalReplay::replay(std::span<const std::byte> bytes, std::int64_t last_step) {
-  journal_.start_again({});  // also when nothing of it can be read: the world is as its file says
+  journal_.start_again({});  // also when it cannot be read: the world is then as in its file
+  // Restore texts and entries.
   WorldJournal::Texts texts;
   std::vector<Entry> entries;
   std::vector<int> free;
@@ -26,6 +27,7 @@ void JournalReplay::replay(std::span<const std::byte> bytes, std::int64_t last_s
   archive(texts, entries, free, devices);
   archive.end();
   journal_.start_again(texts);
+  // Apply the entries in order.
   std::int64_t earliest = 0;
   try {
     for (Entry& entry : entries) {

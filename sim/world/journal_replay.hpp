@@ -15,15 +15,15 @@ class WorldBuilder;
 class WorldJournal;
 struct WorldParts;
 
-/// Makes the changes of a journal again, in a world that was just built, and notes them in its journal.
+/// Replays the changes of a journal in a newly built world, and records them in its journal.
 class JournalReplay {
  public:
   /// All must outlive this.
   JournalReplay(WorldParts& parts, WorldBuilder& builder, WorldJournal& journal)
       : parts_(parts), builder_(builder), journal_(journal) {}
 
-  /// `bytes`: WorldJournal::bytes() of another journal, which need not be trusted.  Nothing in it may be later than
-  /// `last_step`.  Throws SnapshotError.
+  /// Replays a journal.  `bytes`: WorldJournal::bytes() of another journal, possibly untrusted.  No entry may be later
+  /// than `last_step`.  Throws SnapshotError.
   void replay(std::span<const std::byte> bytes, std::int64_t last_step);
 
  private:

@@ -18,13 +18,13 @@ namespace sim {
 
 namespace {
 
-/// What stands on the ground, or lies on something, is a millimetre deep in it.
+/// Allowed penetration: objects that rest on the ground or on others penetrate by about a millimetre.
 constexpr double allowed_m = 0.01;
 
-/// Higher than the hills over any valley.
+/// Height above all terrain.
 constexpr double highest_m = 12000;
 
-/// A vehicle or object that can be in the wrong place.
+/// Vehicle or free object with its initial pose.
 struct Starter {
   std::string kind, name;
   SourcePlace place;
@@ -54,7 +54,7 @@ std::set<int> groups_of_terrain(const World& world) {
   return groups;
 }
 
-/// Where a starter is wrong, after `it starts`; empty: it is not.
+/// Checks the initial pose of an entity.
 class StartCheck {
  public:
   explicit StartCheck(const World& world) : world_(world), terrains_(groups_of_terrain(world)) {
@@ -72,7 +72,7 @@ class StartCheck {
     if (const std::string ground = terrain_over(starter); !ground.empty()) return "below the terrain of " + ground;
     const auto [other, depth_m] = world_.physics().deepest_overlap(starter.group);
     if (depth_m <= allowed_m) return "";
-    // Of two that stand in each other one is enough.
+    // Report only one of two entities that penetrate each other.
     if (!warned_.insert(std::minmax(starter.name, other)).second) return "";
     return number_text(std::round(depth_m * 1000) / 1000) + " m deep in '" + other + "'";
   }
@@ -82,7 +82,7 @@ class StartCheck {
     if (terrains_.empty()) return "";
     RayFilter others;
     others.exclude_group = starter.group;
-    // All of it: what stands in the ground is another mistake.
+    // The whole entity must be below: partial penetration of the ground is another error.
     const auto top = tops_m_.find(starter.group);
     if (top == tops_m_.end()) return "";
     const Vector3d from_W(starter.p_W.x(), starter.p_W.y(), top->second);
@@ -104,7 +104,7 @@ void warn_of_starts(const World& world, Warnings& warnings) {
   std::map<std::string, SourcePlace> places;
   for (const VehicleInstance& vehicle : world.config().vehicles) places.emplace(vehicle.name, vehicle.place);
   StartCheck check(world);
-  // Of the many that one entry with a `count` makes, the first is named and the others are counted.
+  // Name the first vehicle of an entry with a `count`, and count the others.
   std::vector<std::pair<Starter, std::string>> first;
   std::map<std::string, int> more;
   for (const Starter& starter : starters_of(world, places)) {

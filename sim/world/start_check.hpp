@@ -6,8 +6,8 @@ namespace sim {
 class Warnings;
 class World;
 
-/// Warns of vehicles and of objects that are free to move that start more than 1 cm deep in something else, or below
-/// terrain: physics pushes them out, or they fall forever.  Call when the world is built.
+/// Warns of vehicles and free objects that start more than 1 cm inside another entity, or below terrain: contact forces
+/// push them out, or they fall forever.  Must be called when the world is built.
 void warn_of_starts(const World& world, Warnings& warnings);
 
 }  // namespace sim

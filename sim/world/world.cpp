@@ -68,8 +68,8 @@ void World::run_due_events() {
   }
 }
 
-/// What moves after each step, the rest after every tenth: the whole state takes up to a tenth of a step to hash, and
-/// what differs in it shows in motion or in messages, or still differs then.
+/// Adds the motion after each step, and the whole state after every tenth: hashing it takes up to a tenth of a step,
+/// and a difference in it affects motion or messages, or persists until then.
 void World::add_to_run_hash() {
   constexpr std::int64_t steps_per_whole_state = 10;
   StateArchive archive = StateArchive::quick_hasher();

@@ -34,33 +34,33 @@ class WorldState;
 struct WorldParts;
 struct ZoneRecord;
 
-/// What the steps of a world cost in work; equal in every run.
+/// Counts of a world; equal in every run.
 struct WorldCounts {
   std::int64_t samples = 0;
   std::int64_t bad_messages = 0;
 };
 
-/// A world as built: bodies, vehicles, devices and the events between them.  Advances on request; it does not depend on
-/// wall time.  Is changed through editor(), and hashed, saved and restored through state().
+/// Simulated world: bodies, vehicles, devices and the events between them.  Advances on request, independently of wall
+/// time.  It is changed through editor(), and hashed, saved and restored through state().
 class World {
  public:
-  /// `config` must outlive the world.  `open_port` serves devices that talk through a pseudo-terminal or FIFO.
-  /// Throws ConfigError for what only building can find (mesh files, masses).
-  /// `find_bus` gives the bus of a name in `config.buses`; without it all vehicles are on `bus`.
+  /// `config` must outlive the world.  `open_port` opens the ports of devices with a pseudo-terminal or FIFO.  Throws
+  /// ConfigError for errors that only construction can detect (mesh files, masses).  `find_bus` returns the bus of a
+  /// name in `config.buses`; without it all vehicles are on `bus`.
   World(const WorldConfig& config, Bus& bus, PortOpener open_port = {}, BusFinder find_bus = {});
   ~World();
   World(const World&) = delete;
   World& operator=(const World&) = delete;
 
-  /// Threads that share the sensors which cast rays; 0: one for each processor.  The run is the same for any number.
+  /// Sets the number of threads for sensors that cast rays; 0: one for each processor.  Results do not depend on it.
   void use_threads(int threads);
 
-  /// Stages 1 to 7 of a step: messages, act, medium, script, physics, sense, report.  Throws PhysicsFault.
+  /// Runs stages 1 to 7 of a step: messages, act, medium, script, physics, sense, report.  Throws PhysicsFault.
   void step();
 
-  /// Adds, removes, moves and changes what is in the world.
+  /// Returns the editor, which adds, removes, moves and changes entities of the world.
   WorldEditor& editor() { return *editor_; }
-  /// Hashes, snapshots.
+  /// Returns the state, for hashes and snapshots.
   WorldState& state() { return *state_; }
   const WorldState& state() const { return *state_; }
 
@@ -74,43 +74,43 @@ class World {
   PhysicsWorld& physics() { return physics_; }
   const PhysicsWorld& physics() const { return physics_; }
   const Scene& scene() const { return physics_.scene(); }
-  /// Water and air at the time of the world: in stages 1 to 5 that of the start of the step, then that of its end.
+  /// Returns water and air at the time of the world: in stages 1 to 5 at the start of the step, then at its end.
   const Medium& medium() const { return medium_; }
   const Hydrodynamics& hydrodynamics() const;
-  /// What carries sound between transducers.
+  /// Returns the acoustic channel between transducers.
   AcousticChannel& acoustics();
   const AcousticChannel& acoustics() const;
   const Geodesy& geodesy() const { return geodesy_; }
 
   std::span<const std::unique_ptr<Vehicle>> vehicles() const { return entities_.vehicles(); }
-  /// Null when there is none.
+  /// Returns a vehicle by name; null when there is none.
   const Vehicle* find_vehicle(const std::string& name) const { return entities_.find_vehicle(name); }
-  /// In the order of their numbers; null where a device was removed.
+  /// Returns the devices in the order of their numbers; null where a device was removed.
   std::span<const std::unique_ptr<MountedDevice>> devices() const;
-  /// By vehicle and device, such as `auv1/imu`.  Null when there is none.
+  /// Returns a device by vehicle and device name, such as `auv1/imu`; null when there is none.
   MountedDevice* find_device(const std::string& full_name) const { return entities_.find_device(full_name); }
-  /// Null when there is none.
+  /// Returns an object by name; null when there is none.
   const WorldObject* find_object(const std::string& name) const { return entities_.find_object(name); }
-  /// By name.
+  /// Returns the objects by name.
   const std::map<std::string, WorldObject, std::less<>>& objects() const { return entities_.objects(); }
-  /// Increases with every vehicle or object that is added or removed: holders of pointers to them must then look them
-  /// up again.
+  /// Returns a counter of added and removed vehicles and objects: when it changes, holders of pointers to them must
+  /// look them up again.
   std::uint64_t generation() const { return entities_.generation(); }
-  /// What devices of one kind share, such as the network between radio modems.
+  /// Returns the objects shared by devices of one kind, such as the network between radio modems.
   const SharedByDevices& shared() const;
 
-  /// The world's own.
+  /// Returns the bus of the world.
   Bus& bus();
-  /// Where a channel is spoken: the bus of the vehicle whose device has it, else the world's.
+  /// Returns the bus of a channel: that of the vehicle whose device uses it, else that of the world.
   Bus& bus_of_channel(const std::string& channel);
   WorldWarnings& warnings();
 
-  /// Why and how the world ends the run; nothing: it does not.
+  /// Returns reason and result when the world itself ends the run; none: it continues.
   const std::optional<EndOfRun>& ended() const;
   const Zones& zones() const;
-  /// By vehicle, when the world has zones with a speed limit or a finish.
+  /// Returns the records by vehicle, when the world has zones with a speed limit or a finish.
   const std::map<std::string, ZoneRecord>& zone_records() const;
-  /// Number of firings of the event of this name; nothing when it does not exist.
+  /// Returns the number of firings of an event by name; none when it does not exist.
   std::optional<std::int64_t> event_firings(const std::string& name) const;
   WorldCounts counts() const;
 

@@ -47,7 +47,7 @@ void WorldBuilder::add_objects() {
 }
 
 void WorldBuilder::add_vehicles() {
-  std::vector<std::string> errors;  // of all vehicles, not of the first alone; the same of many of a kind once
+  std::vector<std::string> errors;  // of all vehicles, not only the first; equal errors of vehicles of one model once
   std::set<std::string> known;
   for (const VehicleInstance& instance : parts_.config.vehicles) {
     try {
@@ -84,7 +84,7 @@ const WorldObject& WorldBuilder::build_object(const ObjectConfig& config, const 
 }
 
 const WorldObject& WorldBuilder::place_object(const ObjectConfig& config, const std::string& name, const Pose& X_WE) {
-  // What an actor leads along must be kinematic, also when something else of its name comes.
+  // An object moved by an actor must be kinematic, also when another object of its name is added.
   const bool led = std::any_of(parts_.config.actors.begin(), parts_.config.actors.end(),
                                [&](const ActorConfig& actor) { return actor.object == name; });
   if (!led || config.kinematic) return build_object(config, name, X_WE);
@@ -104,7 +104,7 @@ Vehicle& WorldBuilder::build_vehicle(const VehicleInstance& instance) {
       VehicleClock(instance.config->clock, parts_.seed(), instance.name, parts_.clock.now())));
   try {
     build_parts_of(vehicle, instance);
-  } catch (...) {  // a mesh that is not a solid, a port that is taken: nothing of it stays
+  } catch (...) {  // a mesh that is not a solid, a port in use: remove everything that was built
     dismantle(vehicle);
     throw;
   }
@@ -114,17 +114,19 @@ Vehicle& WorldBuilder::build_vehicle(const VehicleInstance& instance) {
 
 void WorldBuilder::build_parts_of(Vehicle& vehicle, const VehicleInstance& instance) {
   const VehicleConfig& config = *instance.config;
+  // Add the bodies.
   for (const BodyConfig& body : config.bodies) {
     Body& built = parts_.physics.add_body(vehicle.group(), body, instance.X_WV,
                                           body.kinematic ? Motion::kinematic : Motion::free);
     vehicle.add_body(body.name, built);
     if (!body.kinematic) parts_.hydrodynamics->add_body(built, body);
   }
-  // What could be wrong with joints and devices of a kind showed in the first ones.
+  // Errors in joints and devices of a model were found in its first vehicles.
   constexpr int max_of_kind_as_a_whole = 100;
   if (parts_.config.bodies_only_of_many && parts_.config.events.empty() &&
       ++built_of_kind_[&config] > max_of_kind_as_a_whole)
     return parts_.physics.close_group(vehicle.group());
+  // Add joints and devices.
   build_joints_of(vehicle, instance);
   parts_.physics.close_group(vehicle.group());
   std::vector<std::string> errors;
@@ -194,7 +196,7 @@ bool WorldBuilder::change_device(const std::string& full_name, const ConfigNode&
   return changed.has_value();
 }
 
-/// Devices before what they hold on to, as at the end of the world.
+/// Dismantles devices before the objects to which they refer, as in the destructor of the world.
 void WorldBuilder::dismantle_all() {
   parts_.script.reset();
   parts_.schedule.clear();

@@ -20,26 +20,26 @@ struct VehicleInstance;
 struct WorldObject;
 struct WorldParts;
 
-/// Builds what is in a world, and takes it apart.  Notes nothing in the journal.
+/// Builds and dismantles the entities of a world.  Records nothing in the journal.
 class WorldBuilder {
  public:
-  /// `parts` must outlive this, and have its physics and medium as they begin.
+  /// `parts` must outlive this, with physics and medium in their initial state.
   explicit WorldBuilder(WorldParts& parts);
 
   /// Builds everything in the world file except its script.  Throws ConfigError.
   void build();
-  /// The same again; what was in the world is gone, and so is its script.
+  /// Removes all entities and the script, and builds the world again.
   void rebuild();
 
-  /// Throws ConfigError; the world is then unchanged.
+  /// Builds a vehicle.  Throws ConfigError; the world is then unchanged.
   Vehicle& build_vehicle(const VehicleInstance& instance);
-  /// An object that an actor moves becomes kinematic.  Throws ConfigError; the world is then unchanged.
+  /// Builds an object; one that an actor moves becomes kinematic.  Throws ConfigError; the world is then unchanged.
   const WorldObject& place_object(const ObjectConfig& config, const std::string& name, const Pose& X_WE);
   void dismantle(Vehicle& vehicle);
   void dismantle(const WorldObject& object);
   /// See WorldEditor::change_device.
   bool change_device(const std::string& full_name, const ConfigNode& values, Diagnostics& diagnostics);
-  /// To be called after vehicles were added or removed.
+  /// Rebuilds the schedule.  Must be called after vehicles were added or removed.
   void sort_devices();
 
  private:

@@ -46,6 +46,7 @@ void WorldEditor::check_place_is_free(Vehicle& vehicle, const VehicleInstance& i
 }
 
 const Vehicle& WorldEditor::add_vehicle(const VehicleInstance& instance) {
+  // Check the vehicle before any change.
   check_new_vehicle(instance);
   parts_.surfaces.check_new(instance);
   const bool new_surfaces = parts_.surfaces.has_new(*instance.config);
@@ -54,6 +55,7 @@ const Vehicle& WorldEditor::add_vehicle(const VehicleInstance& instance) {
   } catch (const std::length_error& error) {
     throw_config_error(instance.place, "vehicle " + shown_name(instance.name), error.what());
   }
+  // Add its surfaces and the vehicle.
   parts_.surfaces.add(*instance.config);
   try {
     check_place_is_free(builder_.build_vehicle(instance), instance);
@@ -104,7 +106,7 @@ void WorldEditor::check_removable(const std::string& name) const {
 void WorldEditor::remove_vehicle(const std::string& name) {
   check_removable(name);
   Vehicle& vehicle = parts_.entities.vehicle_named(name);
-  const std::string own_name = vehicle.name();  // the caller's may be that of the vehicle
+  const std::string own_name = vehicle.name();  // the argument may refer to the name of the vehicle
   builder_.dismantle(vehicle);
   journal_.vehicle_removed(own_name);
   builder_.sort_devices();
@@ -130,7 +132,7 @@ const WorldObject& WorldEditor::add_object(const ObjectConfig& config, const std
 
 void WorldEditor::remove_object(const std::string& name) {
   const WorldObject& object = parts_.entities.object_named(name);
-  const std::string own_name = object.name;  // the caller's may be that of the object
+  const std::string own_name = object.name;  // the argument may refer to the name of the object
   builder_.dismantle(object);
   journal_.object_removed(own_name);
 }

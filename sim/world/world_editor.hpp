@@ -24,16 +24,16 @@ struct VehicleInstance;
 struct WorldObject;
 struct WorldParts;
 
-/// Changes a world while it runs: adds, removes and moves vehicles and objects, sets faults and values of devices. Call
-/// between steps, or from a script in stage 4 of a step.  What a snapshot needs to make the same changes again is
-/// noted.  World::editor() is the one of a world.
+/// Editor of a running world: adds, removes and moves vehicles and objects, sets faults and parameters of devices. Must
+/// be called between steps, or from a script in stage 4 of a step.  Records what a snapshot needs to repeat the
+/// changes.  World::editor() returns the editor of a world.
 class WorldEditor final : public Stage {
  public:
   /// All must outlive this.
   WorldEditor(const World& world, WorldParts& parts, WorldBuilder& builder, WorldJournal& journal)
       : world_(world), parts_(parts), builder_(builder), journal_(journal) {}
 
-  // What a script sees.
+  // Interface for scripts.
   const WorldConfig& config() const override;
   const StepClock& clock() const override;
   const Entities& entities() const override;
@@ -41,11 +41,11 @@ class WorldEditor final : public Stage {
   Bus& bus_of_channel(const std::string& channel) override;
   WorldWarnings& warnings() override;
 
-  /// Adds a vehicle.  Throws ConfigError (names and channels that are taken, meshes, masses, limits, contacts that
+  /// Adds a vehicle.  Throws ConfigError (names and channels in use, meshes, masses, limits, contacts that
   /// would change the surfaces of others, an occupied place); the vehicle is then not added.
   const Vehicle& add_vehicle(const VehicleInstance& instance);
   void remove_vehicle(const std::string& name) override;
-  /// Throws WorldError as remove_vehicle would.
+  /// Throws the WorldError that remove_vehicle would throw.
   void check_removable(const std::string& vehicle) const;
   void move_vehicle(const std::string& name, const Pose& X_WV) override;
   const WorldObject& add_object(const ObjectConfig& config, const std::string& name, const Pose& X_WE) override;
@@ -57,7 +57,7 @@ class WorldEditor final : public Stage {
   void set_gravity(double gravity_mps2) override;
   void publish(const std::string& channel, std::span<const std::byte> payload) override;
   void end(const EndOfRun& end) override;
-  /// Carries out one action (a map) or several (a list of maps), as in `events:`.  Throws ConfigError.
+  /// Executes one action (a map) or several (a list of maps), as in `events:`.  Throws ConfigError.
   void run_action(const ConfigNode& action);
 
  private:

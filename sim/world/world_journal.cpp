@@ -15,7 +15,7 @@ namespace sim {
 
 namespace {
 
-/// The place of an element in a list; -1: it is not in there.
+/// Returns the index of an element in a list; -1: not found.
 template <typename T>
 std::int64_t place_in(const std::vector<T>& list, const T* element) {
   for (std::size_t i = 0; i < list.size(); ++i)
@@ -54,7 +54,7 @@ WorldJournal::Entry WorldJournal::entry(Entry::Kind kind, const std::string& nam
 
 Bytes WorldJournal::bytes() const {
   StateArchive archive = StateArchive::saver(size_);
-  auto& self = const_cast<WorldJournal&>(*this);  // saving changes nothing
+  auto& self = const_cast<WorldJournal&>(*this);  // saving does not modify the state
   Texts texts;
   for (const auto& [number, text] : texts_) texts.emplace_back(number, text.text);
   std::vector<int> free = parts_.devices.free_numbers();
@@ -135,7 +135,7 @@ void WorldJournal::release_text(std::int64_t number) {
   texts_.erase(text);
 }
 
-/// The lowest number that is free.
+/// Stores the YAML source of an entry under the lowest free number.
 void WorldJournal::note_source(Entry& entry, const ConfigNode& source) {
   std::string text = text_of(source);
   if (const auto known = text_numbers_.find(text); known != text_numbers_.end()) {
@@ -173,7 +173,7 @@ void WorldJournal::vehicle_added(const VehicleInstance& instance, const Vehicle&
 }
 
 void WorldJournal::vehicle_failed(const VehicleInstance& instance, bool new_surfaces) {
-  // What is in the world file has brought its surfaces at the start.
+  // Surfaces of entities in the world file were added at the start.
   if (full_ || !new_surfaces || !instance.config->source) return;
   Entry surfaces = entry(Entry::Kind::surfaces, instance.name);
   note_vehicle(surfaces, instance);
@@ -187,7 +187,7 @@ void WorldJournal::vehicle_removed(const std::string& name) {
   if (!added) return append(entry(Entry::Kind::vehicle_removed, name));
   Entry& removed = entries_[*added];
   if (!removed.new_surfaces || removed.text_number < 0) return drop(*added);
-  // They stay, and keep their numbers: the place among the others counts.
+  // The surfaces remain, with their numbers: their order matters.
   size_ -= removed.bytes();
   Entry surfaces;
   surfaces.step = removed.step;
@@ -215,7 +215,7 @@ void WorldJournal::object_removed(const std::string& name) {
   added ? drop(*added) : append(entry(Entry::Kind::object_removed, name));
 }
 
-/// One entry for each device, with all values that were changed: some may be possible only together.
+/// Records one entry for each device, with all changed values, because some are valid only in combination.
 void WorldJournal::device_changed(const std::string& full_name, const ConfigNode& values) {
   if (full_) return;
   const auto is_set_again = [&](const ConfigNode::Entry& old) {
@@ -236,7 +236,7 @@ void WorldJournal::device_changed(const std::string& full_name, const ConfigNode
   append(std::move(changed));
 }
 
-/// Joints that are made again are the last ones: so is the entry.
+/// Appends the entry at the end, because joints that are created again are the last ones.
 void WorldJournal::anchored_vehicle_moved(const Vehicle& vehicle) {
   if (full_) return;
   if (const auto known = place_of(Entry::Kind::moved, vehicle.name())) drop(*known);

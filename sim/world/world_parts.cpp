@@ -7,14 +7,14 @@ namespace sim {
 
 namespace {
 
-/// Whom the events are for is looked up by number when they are due.
+/// Checks restored events: their devices are looked up by number when they are due.
 void check_events(EventQueue& queue, std::size_t devices, const AcousticChannel& acoustics,
                   const StateArchive& archive) {
   StateArchive saver = StateArchive::saver();
   saver(queue);
   const Bytes bytes = saver.take_bytes();
   StateArchive reader = StateArchive::restorer(bytes);
-  std::int64_t reached = 0;  // what the queue saves before its events
+  std::int64_t reached = 0;  // written by the queue before its events
   std::uint64_t next_sequence = 0;
   std::vector<Event> events;
   reader(reached, next_sequence, events);
@@ -51,7 +51,7 @@ void WorldParts::visit_state(StateArchive& archive) {
   for (const auto& vehicle : entities.vehicles()) {
     archive.section(vehicle->name());
     archive(*vehicle);
-    // It would be advanced from there in as many small steps as a forger likes.
+    // With a forged value it would be advanced in any number of small steps.
     if (archive.restoring() && !vehicle->clock().is_stopped_at(clock.now()))
       archive.fail("a clock whose time does not match that of the world");
     for (MountedDevice* device : vehicle->devices()) {
@@ -68,7 +68,7 @@ void WorldParts::visit_state(StateArchive& archive) {
   if (archive.restoring()) check_events(events, devices.size(), *acoustics, archive);
   archive.section("script");
   archive(*script);
-  if (!archive.hashing()) {  // what the world itself has sent to its devices in the step that ended
+  if (!archive.hashing()) {  // messages of the world to its own devices in the last step
     archive.section("messages");
     devices.visit_messages(archive);
   }

@@ -26,21 +26,23 @@ namespace sim {
 
 class World;
 
-/// What a world is made of.  World owns it; WorldBuilder fills and empties it, World steps it, WorldEditor changes it,
-/// WorldState saves and restores it.  For sources of this folder only.
+/// Parts of a world.  World owns and steps them; WorldBuilder builds and dismantles the entities, WorldEditor changes
+/// them, WorldState saves and restores them.  For sources of this folder only.
 struct WorldParts {
-  /// `config` and `bus` must outlive this.  Initial physics and medium, without content: WorldBuilder adds it.
+  /// Makes the initial physics and medium without entities, which WorldBuilder adds.  `config` and `bus` must outlive
+  /// this.
   WorldParts(const World& world, const WorldConfig& config, Bus& bus, PortOpener open_port, BusFinder find_bus);
 
   std::uint64_t seed() const { return static_cast<std::uint64_t>(config.run.seed); }
-  /// `world`, `medium`, each vehicle with its devices, `objects` and so on; see WorldState::part_hashes().
+  /// Visits `world`, `medium`, each vehicle with its devices, `objects` and the other parts; see
+  /// WorldState::part_hashes().
   void visit_state(StateArchive& archive);
 
-  // In the order of dependence: devices are destroyed before what they refer to.
+  // In the order of dependence: devices are destroyed before the objects to which they refer.
   const WorldConfig& config;
   PortOpener open_port;
   StepClock clock;
-  bool in_step = false;  ///< also after a step that threw
+  bool in_step = false;  ///< remains true after a step that threw
   Geodesy geodesy;
   WorldWarnings warnings;
   EventQueue events;
@@ -55,7 +57,7 @@ struct WorldParts {
   Entities entities;
   DeviceTable devices;
   StepSchedule schedule;
-  std::unique_ptr<Script> script;  ///< null: the world was lost when a snapshot was restored
+  std::unique_ptr<Script> script;  ///< null: the world was lost in a failed restore
   std::optional<EndOfRun> ended;
 };
 

@@ -14,10 +14,10 @@ namespace sim {
 
 namespace {
 
-/// Grows when the order or the meaning of what a snapshot holds changes.
+/// Version of the snapshot format; increases when order or meaning of its contents change.
 constexpr std::uint32_t state_version = 4;
 
-/// What says which world a snapshot is of.
+/// Identification of the world of a snapshot.
 struct SnapshotHead {
   std::uint32_t version = state_version;
   std::uint64_t seed = 0;

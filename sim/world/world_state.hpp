@@ -16,31 +16,32 @@ class WorldBuilder;
 class WorldJournal;
 struct WorldParts;
 
-/// The state of a world: hashed, saved and restored.  World::state() is the one of a world.
+/// Hashes, saves and restores the state of a world.  World::state() returns the one of a world.
 class WorldState {
  public:
   /// All must outlive this.
   WorldState(WorldParts& parts, WorldBuilder& builder, Stage& stage, WorldJournal& journal)
       : parts_(parts), builder_(builder), stage_(stage), journal_(journal) {}
 
-  /// A hash over the whole state: bodies, joints, devices, clocks, medium, events, sound in flight, script.
+  /// Returns a hash of the whole state: bodies, joints, devices, clocks, medium, events, sound in flight, script.
   std::uint64_t hash() const;
-  /// A hash over the whole way here: every message that devices and events have published, the motion of every body
-  /// after each step, the whole state after every tenth step and now.  Equal ones prove equal runs, equal state hashes
-  /// only equal ends.  What is published for observation alone does not count; see RunHash.  A snapshot holds it.
+  /// Returns a hash of the whole run up to now: every message that devices and events have published, the motion of
+  /// every body after each step, the whole state after every tenth step and now.  Equal run hashes mean equal runs;
+  /// equal state hashes mean only equal final states.  Channels for observation only are excluded; see RunHash.  A
+  /// snapshot contains the run hash.
   std::uint64_t run_hash() const;
-  /// The state hash by part, in an order that does not change: `world`, `medium`, vehicles such as `auv1`, devices such
+  /// Returns the state hashes by part, in a fixed order: `world`, `medium`, vehicles such as `auv1`, devices such
   /// as `auv1/dvl`, `objects`, `events`, `acoustics`, `script`.
   std::vector<PartHash> part_hashes() const;
-  /// All of the state between two steps, and what was added, removed and changed since the start.  Throws
-  /// SnapshotError when a vehicle or object was added that was not read from YAML.
+  /// Returns the whole state between two steps, and the entities and parameters that were added, removed or changed
+  /// since the start.  Throws SnapshotError when a vehicle or object was added that was not read from YAML.
   Bytes snapshot() const;
-  /// Goes to a snapshot of a world of the same configuration, of this one or of another process, and on from there
-  /// with the same bits.  When vehicles, objects or the parameters of devices are not those of the snapshot, the
-  /// world is rebuilt in place: references to vehicles, bodies, devices and scene become invalid, and
-  /// World::generation() increases; references to World and PhysicsWorld stay valid.  Throws SnapshotError when it
-  /// does not fit; the world is then as before, or, when that fails too, the error says so.  The world may have been
-  /// rebuilt meanwhile: see World::generation().
+  /// Restores a snapshot of a world of the same configuration, from this or another process; the run then continues bit
+  /// by bit as from the snapshot.  When vehicles, objects or the parameters of devices are not those of the snapshot,
+  /// the world is rebuilt in place: references to vehicles, bodies, devices and scene become invalid, and
+  /// World::generation() increases; references to World and PhysicsWorld stay valid.  Throws SnapshotError when the
+  /// snapshot does not match; the world is then as before, or, when that fails too, the error says so.  The world may
+  /// have been rebuilt meanwhile: see World::generation().
   void restore(std::span<const std::byte> snapshot);
 
  private:
@@ -50,7 +51,7 @@ class WorldState {
   WorldBuilder& builder_;
   Stage& stage_;
   WorldJournal& journal_;
-  mutable std::size_t last_bytes_ = 0;  // of a snapshot: about what the next one needs
+  mutable std::size_t last_bytes_ = 0;  // size of the last snapshot, an estimate for the next one
 };
 
 }  // namespace sim

@@ -33,7 +33,7 @@ NamedDevice ActionCheck::device(const std::string& name) const {
   return {};
 }
 
-/// `; vehicle 'r1' has: gps, imu`; nothing when there is no such vehicle.
+/// Returns `; vehicle 'r1' has: gps, imu`; empty when there is no such vehicle.
 std::string ActionCheck::devices_of(const std::string& vehicle) const {
   for (const VehicleInstance& instance : world_.vehicles) {
     if (instance.name != vehicle || !instance.config) continue;

@@ -9,10 +9,10 @@ namespace sim {
 
 using FindDevice = std::function<NamedDevice(const std::string&)>;
 
-/// What an action sees when it is checked.
+/// Context of the check of an action.
 class ActionCheck {
  public:
-  /// `find_device`: by VEHICLE/DEVICE.  All must outlive this.
+  /// `find_device`: finds a device VEHICLE/DEVICE.  All arguments must outlive this.
   ActionCheck(const WorldConfig& world, const FindDevice& find_device, Diagnostics& diagnostics,
               const ActionEntry& entry)
       : world_(world), find_device_(find_device), diagnostics_(diagnostics), entry_(entry) {}
@@ -21,9 +21,9 @@ class ActionCheck {
   const ActionEntry& entry() const { return entry_; }
   Diagnostics& diagnostics() const { return diagnostics_; }
   void error(const std::string& text) const;
-  /// The device VEHICLE/DEVICE.  Reports when there is none, and gives an empty one.
+  /// Returns the device VEHICLE/DEVICE.  Reports an error and returns an empty NamedDevice when there is none.
   NamedDevice device(const std::string& name) const;
-  /// For an action that holds others.
+  /// Checks the actions nested in an action.
   void check(const std::vector<ActionEntry>& actions) const;
 
  private:
@@ -35,11 +35,11 @@ class ActionCheck {
   const ActionEntry& entry_;
 };
 
-/// What is checked once the vehicles of a world are known: objects of actors, and actions (devices, faults, changes of
-/// values, messages, which are encoded now).
+/// Checks a script after the vehicles of a world were loaded: objects of actors, and actions (devices, faults, changes
+/// of parameters, messages, which are encoded here).
 void check_script(WorldConfig& world, Diagnostics& diagnostics);
 
-/// The same for actions.
+/// Checks a list of actions in the same way.
 void check_actions(const std::vector<ActionEntry>& actions, const WorldConfig& world, const FindDevice& find_device,
                    Diagnostics& diagnostics);
 

@@ -11,7 +11,7 @@ namespace sim {
 
 namespace {
 
-/// Rounding of step_s * rate_hz.
+/// Tolerance for the rounding of step_s * rate_hz.
 constexpr double close_to_one = 1 + 1e-9;
 
 class ConfigCheck {
@@ -20,7 +20,7 @@ class ConfigCheck {
       : world_(world), root_(root), warnings_(warnings), end_s_(end_s) {}
 
   void check_rates() const {
-    std::set<const VehicleConfig*> seen;  // asked, never iterated
+    std::set<const VehicleConfig*> seen;  // for look-ups, never iterated
     for (const VehicleInstance& vehicle : world_.vehicles)
       if (seen.insert(vehicle.config.get()).second)
         for (const DeviceConfig& device : vehicle.config->devices)
@@ -42,7 +42,7 @@ class ConfigCheck {
         warnings_.warn(metric.place, who,
                        "'from_s' " + number_text(params.from_s) + " is not before the end of the run at " +
                            number_text(end_s_) + " s: nothing counts");
-      // What programs publish is not known here.
+      // The publications of programs are unknown here.
       if (params.channel.empty() || !world_.processes.empty()) continue;
       if (spoken.contains(params.channel) || params.channel.starts_with("sim.")) continue;
       warnings_.warn(metric.place, who,
@@ -95,7 +95,7 @@ class ConfigCheck {
                        number_text(std::round(1e6 / step_s) / 1e6) + " Hz with 'step_s' " + number_text(step_s));
   }
 
-  /// Of a channel on which a device would publish if it were configured to.
+  /// Returns a hint for a channel on which a device would publish if it were configured to.
   std::string truth_hint(const std::string& channel) const {
     for (const VehicleInstance& vehicle : world_.vehicles)
       for (const DeviceConfig& device : vehicle.config->devices)
@@ -108,7 +108,7 @@ class ConfigCheck {
   const WorldConfig& world_;
   const ConfigNode& root_;
   Warnings& warnings_;
-  double end_s_;  ///< 0: the run has none
+  double end_s_;  ///< 0: unlimited run
 };
 
 }  // namespace

@@ -23,7 +23,7 @@ void collect(const std::vector<ParamInfo>& table, const std::string& parent, Key
   }
 }
 
-/// Goes through a tree.
+/// Visitor of a tree.
 class Visitor {
  public:
   Visitor(const Visit& visit, const Keys& keys) : visit_(visit), keys_(keys) {}
@@ -48,7 +48,7 @@ class Visitor {
     if (!text.empty() && text.find("${") == std::string::npos) visit_(text, named_in);
   }
 
-  /// An entry of `vehicles:`: its overrides and parameters become parts of the model.
+  /// Visits an entry of `vehicles:`, whose overrides and parameters become parts of the model.
   void go_vehicle(ConfigNode& node) {
     parameters_.clear();
     ConfigNode* model = node.find("model");
@@ -63,7 +63,7 @@ class Visitor {
       }
   }
 
-  /// `bodies.chassis.parts.hull.mesh`: items of lists stand between the keys.
+  /// Visits an override such as `bodies.chassis.parts.hull.mesh`, with items of lists between the keys.
   void go_override(ConfigNode::Entry& entry, const std::string* model_file) {
     std::vector<std::string> path{""};
     for (const char c : entry.key)
@@ -82,7 +82,8 @@ class Visitor {
 
   const Visit& visit_;
   const Keys& keys_;
-  std::map<std::string, const std::string*> parameters_;  ///< that stand for files, and where they are used
+  std::map<std::string, const std::string*>
+      parameters_;  ///< parameters used as file names, and the file that uses them
 };
 
 }  // namespace
@@ -104,7 +105,7 @@ Keys data_file_keys() {
 }
 
 void visit_data_files(ConfigNode& root, const Visit& visit) {
-  // Plugins add device types; else the keys stay as they are.
+  // Recompute the keys only when plugins have added device types.
   static std::mutex mutex;
   static std::map<std::size_t, Keys> keys_by_types;
   const std::lock_guard lock(mutex);

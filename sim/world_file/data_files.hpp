@@ -10,16 +10,17 @@
 
 namespace sim {
 
-/// The keys that name a file that is read (ParamKind::path, PathUse::read), each with the key of the map or list it
-/// stands in: (`parts`, `mesh`), (`terrain`, `file`).  Of the world, of vehicles and of every registered device.
+/// Returns the keys that name a file to be read (ParamKind::path, PathUse::read), each with the key of the map or list
+/// that contains it: (`parts`, `mesh`), (`terrain`, `file`).  Includes the keys of the world, of vehicles and of all
+/// registered devices.
 std::set<std::pair<std::string, std::string>> data_file_keys();
 
-/// Calls `visit` for each value below `root` that such a key names, also in overrides and as a parameter of a vehicle;
-/// `named_in`: the file that it is relative to the folder of; null: unknown.
+/// Calls `visit` for each value of such a key below `root`, also in overrides and parameters of vehicles.  `named_in`:
+/// the file to whose folder the path is relative; null: unknown.
 void visit_data_files(ConfigNode& root,
                       const std::function<void(std::string& path, const std::string* named_in)>& visit);
 
-/// Names those files by their whole path, so that the tree may be written anywhere.
+/// Replaces the paths of those files by absolute paths, so that the tree can be written to any folder.
 void make_paths_absolute(ConfigNode& root);
 
 }  // namespace sim

@@ -11,7 +11,7 @@ namespace sim {
 
 namespace {
 
-/// The keys that every device (or actuator) of the type has, whatever the type's own are.
+/// Returns the keys common to all devices (or actuators), without those of the type.
 std::set<std::string> common_keys(const DeviceType& type) {
   std::vector<ParamInfo> table;
   ParamReader in(table);
@@ -23,7 +23,7 @@ std::set<std::string> common_keys(const DeviceType& type) {
   return keys;
 }
 
-/// Why a key must stay as it is; empty: it may change.
+/// Returns why a key cannot change; empty when it can.
 std::string why_not(const DeviceType& type, const std::string& key, const std::set<std::string>& common) {
   for (const char* fixed : {"name", "type", "body", "position_m", "rpy_deg", "channel"})
     if (key == fixed) return "'" + key + "' cannot change while the device runs";
@@ -33,7 +33,7 @@ std::string why_not(const DeviceType& type, const std::string& key, const std::s
   return "'" + shortened(printable(key)) + "' cannot change while a device of type " + type.name + " runs";
 }
 
-/// What a device may name: see VehicleConfig::read.
+/// Declares the names that a device may refer to: see VehicleConfig::read.
 void declare_names(ParamReader& in, const VehicleConfig& vehicle, const WorldConfig& world) {
   declare_surfaces(in, world, &vehicle);
   vehicle.declare_bodies(in);

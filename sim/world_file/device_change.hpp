@@ -8,18 +8,18 @@
 
 namespace sim {
 
-/// The configuration of a device after some of its values have changed while it runs.  `values`: dotted key: value.
-/// Values that cannot be read or changed are reported to `diagnostics`, and there is no result.
+/// Returns the configuration of a device with some values changed at run time.  `values`: dotted key: value.  Values
+/// that cannot be read or changed are reported to `diagnostics`; the result is then empty.
 std::optional<DeviceConfig> changed_device(const DeviceConfig& device, const VehicleConfig& vehicle,
                                            const WorldConfig& world, const ConfigNode& values, const std::string& who,
                                            Diagnostics& diagnostics);
 
-/// Null when there is none.
+/// Device with its vehicle; null when there is none.
 struct NamedDevice {
   const VehicleConfig* vehicle = nullptr;
   const DeviceConfig* device = nullptr;
 };
-/// The device `VEHICLE/DEVICE` of the world file.
+/// Returns the device `VEHICLE/DEVICE` of the world file.
 NamedDevice device_of(const WorldConfig& world, const std::string& full_name);
 
 }  // namespace sim

@@ -27,12 +27,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Materials, contacts and categories that vehicles bring.  The world's own contacts come after, so that they win.
+/// Collects materials, contacts and categories of the vehicles.  The contacts of the world follow, and take precedence.
 void gather_from_vehicles(WorldConfig& world) {
   std::vector<MaterialConfig> materials;
   std::vector<ContactConfig> contacts;
   std::vector<std::string> categories;
-  std::set<const VehicleConfig*> configs_seen;  // asked, never iterated
+  std::set<const VehicleConfig*> configs_seen;  // for look-ups, never iterated
   std::set<std::string> materials_seen{"default"};
   std::set<std::string> categories_seen{"solid"};
   const auto add = [&](const auto& from, const std::vector<std::string>& own_categories) {
@@ -45,7 +45,7 @@ void gather_from_vehicles(WorldConfig& world) {
   };
   for (const VehicleInstance& vehicle : world.vehicles)
     if (configs_seen.insert(vehicle.config.get()).second) add(*vehicle.config, vehicle.config->categories);
-  // Again, even where a vehicle said the same before: the last of equals wins.
+  // Add them again even when a vehicle has equal ones: the last one takes precedence.
   for (const ContactConfig& contact : world.contacts) std::erase(contacts, contact);
   add(world, world.categories);
   world.materials = std::move(materials);
@@ -58,7 +58,7 @@ void check_channels(const WorldConfig& world, Diagnostics& diagnostics) {
   std::set<std::string> seen;
   for (const VehicleInstance& vehicle : world.vehicles)
     for (const DeviceConfig& device : vehicle.config->devices) {
-      // Of two devices of one name, which the reader has reported, all channels would clash.
+      // Skip two devices of one name, which the reader has reported: all their channels would conflict.
       if (device.device_type == nullptr || !seen.insert(vehicle.name + "/" + device.name).second) continue;
       const std::string who = "vehicle '" + vehicle.name + "': device '" + device.name + "'";
       for (const ChannelKind kind : all_channel_kinds) {
@@ -70,7 +70,7 @@ void check_channels(const WorldConfig& world, Diagnostics& diagnostics) {
     }
 }
 
-/// Keys of an entry of `vehicles:`; every other key of a path is in the vehicle's file.
+/// Returns whether a key belongs to an entry of `vehicles:`; every other key of a path is in the vehicle file.
 bool is_key_of_entry(const std::string& key) {
   static const std::set<std::string> own_keys = {"name",  "file",      "model",      "position_m", "rpy_deg",
                                                  "count", "placement", "parameters", "overrides",  "bus"};
@@ -83,7 +83,7 @@ const std::string& text_at(const ConfigNode& map, const char* key) {
   return value != nullptr ? value->scalar : nothing;
 }
 
-/// Whether `name` is NAME7 of an entry NAME with a `count` of 7 or more.
+/// Returns whether `name` is NAME7 of an entry NAME with a `count` of 7 or more.
 bool is_one_of_count(const ConfigNode& entry, const std::string& name) {
   const std::string& stem = text_at(entry, "name");
   const std::string& count = text_at(entry, "count");
@@ -109,8 +109,8 @@ void add_override(ConfigNode& vehicle, const std::string& key, const ConfigNode&
   overrides.entries.push_back({key, place, value});
 }
 
-/// `vehicles.NAME.devices.lidar.rate_hz` changes what is in the vehicle's file: it becomes one of its overrides, also
-/// where NAME is one vehicle of a `count`.
+/// Converts a path into the vehicle file, such as `vehicles.NAME.devices.lidar.rate_hz`, to an override of the entry,
+/// also when NAME is one vehicle of a `count`.
 bool set_override(ConfigNode& root, const std::string& path, const ConfigNode& value, const SourcePlace& place,
                   Diagnostics& diagnostics) {
   const std::size_t first = path.find('.');
@@ -150,13 +150,14 @@ void apply_sets(ConfigNode& root, const LoadOptions& options, Diagnostics& diagn
     }
     ConfigNode value = parse_config_text(set.substr(equals + 1), *place.file, diagnostics);
     set_origin(value, Origin::command_line);
-    // Relative file names in the value still start at the world file.
+    // Relative file names in the value are relative to the world file.
     const std::string path = set.substr(0, equals);
     if (!set_override(root, path, value, place, diagnostics)) set_config_path(root, path, value, place, diagnostics);
   }
 }
 
-/// Why a plugin that a world names was not loaded; empty: it was, or `load_plugin` has said why not.
+/// Loads a plugin named by a world; returns the reason of a failure, empty on success or when `load_plugin` has
+/// reported it.
 std::string plugin_problem(ConfigNode& item, const std::string& who, const LoadOptions& options,
                            Diagnostics& diagnostics) {
   const fs::path file = item.place.file != nullptr ? *item.place.file : "";
@@ -170,7 +171,7 @@ std::string plugin_problem(ConfigNode& item, const std::string& who, const LoadO
   return {};
 }
 
-/// Loads what `plugins:` names, before any device is read.  From then on the tree names them by their whole paths.
+/// Loads the plugins in `plugins:`, before any device is read, and replaces their names in the tree by absolute paths.
 bool load_plugins(ConfigNode& root, const LoadOptions& options, Diagnostics& diagnostics) {
   const std::size_t before = diagnostics.lines().size();
   ConfigNode* plugins = root.find("plugins");
@@ -184,7 +185,7 @@ bool load_plugins(ConfigNode& root, const LoadOptions& options, Diagnostics& dia
   return diagnostics.lines().size() == before;
 }
 
-/// Says once that coefficients do nothing here.
+/// Warns once that hydrodynamic coefficients have no effect in a world without water.
 void warn_of_missing_water(const WorldConfig& world, Warnings& warnings) {
   if (world.medium.water) return;
   std::vector<const VehicleInstance*> dry;
@@ -199,7 +200,7 @@ void warn_of_missing_water(const WorldConfig& world, Warnings& warnings) {
                 "it has hydrodynamics, but the world has no 'medium: water:', so it will fall freely");
 }
 
-/// In water that weighs less than nothing all of hydrostatics turns over.
+/// Checks that the weight of water is positive: otherwise the direction of hydrostatic forces would be reversed.
 void check_weight_of_water(const WorldConfig& world, const ConfigNode& root, Diagnostics& diagnostics) {
   if (!world.medium.water || world.physics.gravity_mps2 >= 0) return;
   const ConfigNode* physics = root.find("physics");
@@ -209,7 +210,7 @@ void check_weight_of_water(const WorldConfig& world, const ConfigNode& root, Dia
       "'gravity_mps2' must be 0 or more in a world with water, got " + number_text(world.physics.gravity_mps2));
 }
 
-/// The ends of `links:` are vehicles of the file, or devices of theirs.
+/// Checks that the ends of `links:` are vehicles of the file, or their devices.
 void check_acoustic_links(const WorldConfig& world, const ConfigNode& root, Diagnostics& diagnostics) {
   const ConfigNode* acoustics = root.find("acoustics");
   const ConfigNode* links = acoustics != nullptr ? acoustics->find("links") : nullptr;
@@ -235,7 +236,7 @@ void check_acoustic_links(const WorldConfig& world, const ConfigNode& root, Diag
     }
 }
 
-/// The keys of the top level of world and vehicle files.
+/// Returns the keys of the top level of world and vehicle files.
 std::set<std::string> known_keys() {
   std::vector<ParamInfo> table;
   ParamReader in(table);
@@ -249,13 +250,13 @@ std::set<std::string> known_keys() {
 bool is_local_only(const std::string& url) {
   if (url.starts_with("memq:")) return true;
   const std::size_t ttl = url.find("ttl=");
-  // LCM takes the last of several.
+  // LCM uses the last of several values.
   return url.starts_with("udpm:") && (ttl == std::string::npos || (url.substr(ttl, 5) == "ttl=0" &&
                                                                    (ttl + 5 == url.size() || url[ttl + 5] == '&') &&
                                                                    url.find("ttl=", ttl + 1) == std::string::npos));
 }
 
-/// LCM's URLs can also write files and reach other machines.
+/// Checks the URLs of buses, because LCM URLs can also write files and reach other machines.
 void check_buses(const WorldConfig& world, const ConfigNode& root, const LoadOptions& options,
                  Diagnostics& diagnostics) {
   const ConfigNode* list = root.find("buses");
@@ -281,19 +282,23 @@ LoadedWorld load(ConfigNode root, const SourcePlace& file, const LoadOptions& op
   loaded.config.files = diagnostics.files();
   apply_sets(root, options, diagnostics);
   diagnostics.throw_if_any();
+  // Read the keys of the world.
   ParamReader in(root, "", diagnostics);
   loaded.config.read(in);
   in.finish();
   check_weight_of_water(loaded.config, root, diagnostics);
   check_buses(loaded.config, root, options, diagnostics);
-  // Its devices would all be of unknown types, which would bury the mistake.
+  // All its devices would have unknown types, which would obscure the error.
   if (!load_plugins(root, options, diagnostics)) diagnostics.throw_if_any();
+  // Apply file name, seed and name.
   if (file.file != nullptr) loaded.config.file = *file.file;
   if (options.seed) loaded.config.run.seed = *options.seed;
   if (loaded.config.name.empty() && file.file != nullptr) loaded.config.name = fs::path(*file.file).stem().string();
+  // Load the vehicles.
   VehicleLoader vehicles(loaded.config, diagnostics);
   for (const VehicleEntry& entry : loaded.config.vehicle_entries)
     for (VehicleInstance& instance : vehicles.load(entry)) loaded.config.vehicles.push_back(std::move(instance));
+  // Check references between parts of the world.
   check_channels(loaded.config, diagnostics);
   check_metrics(loaded.config, diagnostics);
   check_acoustic_links(loaded.config, root, diagnostics);
@@ -301,19 +306,21 @@ LoadedWorld load(ConfigNode root, const SourcePlace& file, const LoadOptions& op
   gather_from_vehicles(loaded.config);
   check_script(loaded.config, diagnostics);
   diagnostics.throw_if_any();
+  // Warn of settings without effect.
   Warnings own_warnings;
   Warnings& warnings = options.warnings != nullptr ? *options.warnings : own_warnings;
   warn_of_missing_water(loaded.config, warnings);
   warn_of_config(loaded.config, root, warnings, options.duration_s);
+  // Make the resolved world.
   if (options.resolve) vehicles.resolve(root);
   make_paths_absolute(root);
   if (options.seed) {
     const SourcePlace place{intern_file_name("--seed"), 0, 0};
     set_config_path(root, "run.seed", scalar_node(std::to_string(*options.seed), place), place, diagnostics);
   }
-  if (!options.resolve) {  // what was said of each vehicle is in its instance
+  if (!options.resolve) {  // the instances contain the configurations of the vehicles
     if (ConfigNode* vehicles_node = root.find("vehicles")) *vehicles_node = {};
-    std::vector<VehicleEntry>().swap(loaded.config.vehicle_entries);  // with its memory
+    std::vector<VehicleEntry>().swap(loaded.config.vehicle_entries);  // also releases the memory
   }
   loaded.resolved = std::move(root);
   return loaded;
@@ -334,7 +341,7 @@ FileAccessPointer files_of(const std::string& world_file, const LoadOptions& opt
 
 namespace {
 
-/// All that a pipe or device gives.
+/// Returns the whole contents of a pipe or device.
 std::string text_of(const std::string& path) {
   constexpr std::size_t max_bytes = std::size_t{64} << 20;
   const SourcePlace place{intern_file_name(path), 0, 0};

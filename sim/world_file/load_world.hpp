@@ -12,36 +12,36 @@ namespace sim {
 
 struct LoadOptions {
   std::vector<std::string> sets;      ///< `path=value`, as given with --set
-  std::optional<std::int64_t> seed;   ///< instead of the file's
-  bool allow_plugins = false;         ///< load the `plugins:` of the world, which then run code
+  std::optional<std::int64_t> seed;   ///< seed instead of that of the file
+  bool allow_plugins = false;         ///< load the `plugins:` of the world, which execute code
   EncodeMessage encode_message = {};  ///< for events that publish messages
-  /// The world may be untrusted: the files that it names must lie below its folder, the folder `vehicles` beside
-  /// that or the shipped ones, and its buses must stay on this machine unless `allow_plugins`.
+  /// Treats the world as untrusted: the files that it names must lie below its folder, the folder `vehicles` beside it
+  /// or the shipped folders, and its buses must be local to this machine unless `allow_plugins`.
   bool only_own_files = false;
-  std::vector<std::string> allow_paths = {};  ///< further folders and files
-  bool serial_ports = true;                   ///< they are opened: their paths count
-  bool special_files = false;    ///< the world may come from a pipe or a device; it cannot include others then
-  Warnings* warnings = nullptr;  ///< of several worlds, so that what is wrong in all is logged once; null: of its own
-  /// Put the vehicle files into LoadedWorld::resolved; without them it has no vehicles, nor has `vehicle_entries`.
+  std::vector<std::string> allow_paths = {};  ///< further allowed folders and files
+  bool serial_ports = true;                   ///< serial ports are opened, and their paths are checked
+  bool special_files = false;    ///< the world may be read from a pipe or a device; it then cannot include files
+  Warnings* warnings = nullptr;  ///< shared by several worlds, so that common warnings are logged once; null: separate
+  /// Insert the vehicle files into LoadedWorld::resolved; otherwise it and `vehicle_entries` have no vehicles.
   bool resolve = true;
-  /// Duration of the run instead of the file's, 0: without end.  Warnings are of what comes after both.
+  /// Duration of the run instead of that of the file, 0: unlimited.  Warnings apply to what comes after both.
   std::optional<double> duration_s = {};
 };
 
-/// Which files a world (or vehicle) in `world_file` may name; null: any.
+/// Returns the rules for files that a world (or vehicle) in `world_file` may name; null: any file.
 FileAccessPointer files_of(const std::string& world_file, const LoadOptions& options);
 
 struct LoadedWorld {
   WorldConfig config;
-  /// The world as it runs, with includes, vehicle files and --set applied: its own world file.
+  /// The effective world, with includes, vehicle files and --set applied; a complete world file.
   ConfigNode resolved;
 };
 
-/// Reads and checks a world file and the vehicle files it names.  Throws ConfigError with every error found.
+/// Reads and checks a world file and the vehicle files that it names.  Throws ConfigError with all errors found.
 LoadedWorld load_world(const std::string& path, const LoadOptions& options = {});
-/// The same from text.  `file_name` is used in messages, its directory to find vehicle files.
+/// Reads a world from text.  `file_name` is used in messages, and its folder for finding vehicle files.
 LoadedWorld load_world_text(const std::string& text, const std::string& file_name, const LoadOptions& options = {});
-/// The same from a tree; errors are at the places of its nodes.
+/// Reads a world from a tree; errors are reported at the places of its nodes.
 LoadedWorld load_world_tree(ConfigNode root, const std::string& file_name, const LoadOptions& options = {});
 
 }  // namespace sim

@@ -14,10 +14,10 @@ namespace sim {
 
 namespace {
 
-/// What a metric without `type` was before version 0.2.
+/// Type of a metric without `type`, as before version 0.2.
 const std::string type_of_old_files = "position_error";
 
-/// Rules of a world name figures of its metrics.
+/// Names in the rules of a world: figures of its metrics.
 class WorldRuleNames final : public RuleNames {
  public:
   explicit WorldRuleNames(const std::vector<MetricConfig>& metrics) : metrics_(metrics) {}
@@ -41,9 +41,10 @@ void MetricConfig::read(ParamReader& in) {
   in.require("name");
   in.read_name("name", name,
                "name of the metric; gives NAME.FIGURE for each figure of its type, see docs/guides/scoring.md");
+  // Report files of version 0.1.
   if (!in.describing() && !in.has("type")) {
     in.error("missing key 'type'; write 'type: " + type_of_old_files + "'");
-    // Further errors, of keys and of rules that name its figures, would bury this one.
+    // Further errors, of keys and of rules that name its figures, would obscure this one.
     for (const ConfigNode::Entry& entry : in.node()->entries) in.child(entry.key.c_str());
     kind = registry.find(type_of_old_files);
     return;
@@ -57,6 +58,7 @@ void MetricConfig::read(ParamReader& in) {
     for (ParamInfo& info : merged_keys(types)) in.describe(std::move(info));
     return;
   }
+  // Read the keys of the type.
   kind = registry.find(type);
   if (kind == nullptr) {
     for (const ConfigNode::Entry& entry : in.node()->entries) in.child(entry.key.c_str());
@@ -75,6 +77,7 @@ std::vector<std::string> MetricConfig::figures() const {
 }
 
 std::optional<RuleProblem> figure_problem(const std::vector<MetricConfig>& metrics, const std::string& name) {
+  // Find the metric.
   const std::size_t dot = std::min(name.find('.'), name.size());
   const std::string metric_name = name.substr(0, dot);
   const auto metric =
@@ -87,7 +90,8 @@ std::optional<RuleProblem> figure_problem(const std::vector<MetricConfig>& metri
                                                : shown_name + " is neither a number nor a figure, METRIC.FIGURE";
     return RuleProblem{0, what + "; known metrics: " + list_text(known) + did_you_mean(metric_name, known)};
   }
-  if (metric->kind == nullptr) return std::nullopt;  // its type is wrong, which has been reported
+  if (metric->kind == nullptr) return std::nullopt;  // its type is invalid, which has been reported
+  // Find its figure.
   std::vector<std::string> figures;
   for (const FigureKind& figure : metric->kind->figures) figures.push_back(figure.name);
   if (dot == name.size())

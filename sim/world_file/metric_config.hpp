@@ -14,26 +14,26 @@ namespace sim {
 
 struct WorldConfig;
 
-/// One entry of `metrics:`; gives figures that score the run.
+/// Entry of `metrics:`, which yields figures that score the run.
 struct MetricConfig {
   std::string name;
   const MetricKind* kind = nullptr;            ///< null only after an error
-  std::shared_ptr<const MetricParams> params;  ///< of its type; null only after an error
+  std::shared_ptr<const MetricParams> params;  ///< parameters of its type; null only after an error
   SourcePlace place;
 
   void read(ParamReader& in);
-  /// Names of its figures, `NAME.figure`, as pass rules and the summary call them.
+  /// Returns the names of its figures, `NAME.figure`, as used in pass rules and the summary.
   std::vector<std::string> figures() const;
 };
 
-/// Makes each metric known by the word of its type, so that other metrics of the list may name it.  Call before
+/// Declares each metric by the word of its type, so that other metrics of the list may name it.  Must be called before
 /// `metrics` is read.
 void declare_metrics(ParamReader& in);
-/// What is wrong with `METRIC.FIGURE` where these metrics are known, and at which of its characters.
+/// Returns what is wrong with the name `METRIC.FIGURE`, and at which character; none when it is valid.
 std::optional<RuleProblem> figure_problem(const std::vector<MetricConfig>& metrics, const std::string& name);
-/// Reads `pass:`, the list of rules of a world, which name figures of `metrics`.
+/// Reads `pass:`, the list of pass rules of a world, which name figures of `metrics`.
 void read_rules(ParamReader& in, std::vector<RuleExpression>& rules, const std::vector<MetricConfig>& metrics);
-/// What is wrong with metrics when the vehicles are known, such as devices that do not exist.
+/// Checks metrics after the vehicles were loaded, such as for devices that do not exist.
 void check_metrics(const WorldConfig& world, Diagnostics& diagnostics);
 
 }  // namespace sim

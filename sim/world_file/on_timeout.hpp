@@ -5,12 +5,12 @@
 
 namespace sim {
 
-/// What happens when a client of the lockstep does not answer in time.
+/// Action when a client of the lockstep does not answer in time.
 enum class OnTimeout {
   wait,     ///< the world waits forever
-  pause,    ///< the world pauses, until it answers or a client resumes the run: then without it
-  go_on,    ///< without it
-  end_run,  ///< with exit code 5
+  pause,    ///< the world pauses until the client answers, or until another one resumes the run without it
+  go_on,    ///< the run continues without the client
+  end_run,  ///< the run ends with exit code 5
 };
 
 inline constexpr ChoiceWords<OnTimeout> on_timeout_words{{"wait", OnTimeout::wait},

@@ -23,7 +23,8 @@ bool is_digit(char c) {
 bool is_letter(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
 }
-/// Names of metrics and cases may have a '-', which also subtracts.
+/// Returns whether a character may be in a name.  Names of metrics and cases may contain '-', which is also the minus
+/// sign.
 bool is_of_name(char c) {
   return is_letter(c) || is_digit(c) || c == '-' || c == '.';
 }
@@ -32,14 +33,14 @@ std::string quoted(std::string_view text) {
   return "'" + shortened(printable(text)) + "'";
 }
 
-/// The bytes of the UTF-8 character that `text` begins with.
+/// Returns the bytes of the first UTF-8 character of `text`.
 std::string_view first_character(std::string_view text) {
   std::size_t size = 1;
   while (size < text.size() && (static_cast<unsigned char>(text[size]) & 0xc0) == 0x80) ++size;
   return text.substr(0, size);
 }
 
-/// Whether what begins with a digit is a name such as `3d.rms_m`: a letter comes after a dot.
+/// Returns whether a word that starts with a digit is a name such as `3d.rms_m`, with a letter after a dot.
 bool has_figure(std::string_view word) {
   const std::size_t dot = word.rfind('.');
   return dot != std::string_view::npos && dot + 1 < word.size() && is_letter(word[dot + 1]);
@@ -51,7 +52,7 @@ std::string RuleExpression::Figure::text() const {
   return function.empty() ? name : function + "(" + name + ")";
 }
 
-/// Reads by recursive descent; throws a RuleProblem at the first mistake.
+/// Recursive-descent parser; throws a RuleProblem at the first error.
 class RuleParser {
  public:
   RuleParser(std::string_view text, const RuleNames& names) : text_(text), names_(names) { rule_.text_ = text; }
@@ -91,14 +92,14 @@ class RuleParser {
     return true;
   }
 
-  /// The run of characters of names and numbers that comes next.
+  /// Returns the next sequence of characters of names and numbers.
   std::string_view word() const {
     std::size_t end = at_;
     while (end < text_.size() && is_of_name(text_[end])) ++end;
     return text_.substr(at_, end - at_);
   }
 
-  /// For messages: a word, an operator, or one character.
+  /// Returns the next word, operator or character, for messages.
   std::string shown_next() const {
     for (const std::string_view of : {"<=", ">=", "==", "!="})
       if (is_next(of)) return quoted(of);
@@ -109,7 +110,7 @@ class RuleParser {
   bool comparison_is_next() const { return is_next("<") || is_next(">") || is_next("==") || is_next("!="); }
 
   bool read_comparison() {
-    // The longer one of two that begin alike comes first.
+    // Operators with a common prefix: the longer one first.
     static constexpr std::pair<std::string_view, Comparison> comparisons[] = {
         {"<=", Comparison::less_or_equal}, {">=", Comparison::greater_or_equal},
         {"==", Comparison::equal},         {"!=", Comparison::not_equal},
@@ -122,7 +123,7 @@ class RuleParser {
     return false;
   }
 
-  /// What stands where an operator, a comparison or the end should be.  `open`: where an open parenthesis stands.
+  /// Reports text in place of an operator, a comparison or the end.  `open`: position of an open parenthesis.
   [[noreturn]] void fail_after_operand(const std::optional<std::size_t>& open = std::nullopt) const {
     if (at_end() && open) fail(*open, "'(' is not closed");
     if (at_end()) fail(at_, "the rule has no comparison; write one of < <= > >= == !=");
@@ -163,7 +164,7 @@ class RuleParser {
     }
   }
 
-  /// A number, a figure, or more in parentheses or after a minus.
+  /// Reads a number, a figure, an expression in parentheses, or an operand after a minus.
   void read_operand() {
     if (++depth_ > RuleExpression::max_depth)
       fail(at_, "the rule is nested more than " + std::to_string(RuleExpression::max_depth) + " deep");
@@ -243,13 +244,13 @@ class RuleParser {
     add_figure({function, name});
   }
 
-  /// Where a name that may be followed by a minus ends: at the last '-' before which it is known.
+  /// Returns the length of a name that may be followed by a minus: up to the last '-' before which it is known.
   std::size_t name_length(std::string_view whole, const std::string& function) const {
     for (std::size_t end = whole.size();; end = whole.rfind('-', end - 1)) {
       if (end == std::string_view::npos || end == 0) break;
       if (!names_.name_problem(function, std::string(whole.substr(0, end)))) return end;
     }
-    // Nothing is known; figures have no '-' in their names.
+    // No prefix is known; figures have no '-' in their names.
     const std::size_t dot = whole.find('.');
     return std::min(whole.find('-', dot == std::string_view::npos ? whole.size() : dot), whole.size());
   }
@@ -265,7 +266,7 @@ class RuleParser {
   std::string_view text_;
   const RuleNames& names_;
   RuleExpression rule_;
-  std::vector<Step>* steps_ = nullptr;  ///< of the side that is read
+  std::vector<Step>* steps_ = nullptr;  ///< of the side being read
   std::size_t at_ = 0;
   int depth_ = 0;
 };
@@ -287,6 +288,7 @@ double RuleExpression::calculate(const std::vector<Step>& steps, std::span<const
     stack.pop_back();
     return top;
   };
+  // Execute the operations on the stack.
   for (const Step& step : steps) {
     switch (step.kind) {
       case Step::Kind::number:
@@ -328,6 +330,7 @@ RuleExpression::Outcome RuleExpression::evaluate(std::span<const double> values)
   outcome.left = calculate(left_, values);
   outcome.right = calculate(right_, values);
   const double left = outcome.left, right = outcome.right;
+  // Compare the sides, and compute the margin.
   switch (comparison_) {
     case Comparison::less:
       outcome.holds = left < right;
@@ -354,6 +357,7 @@ RuleExpression::Outcome RuleExpression::evaluate(std::span<const double> values)
       outcome.margin = std::numeric_limits<double>::quiet_NaN();
       break;
   }
+  // A rule fails for NaN, and for infinite sides of finite figures.
   const bool any_nan = std::any_of(values.begin(), values.end(), [](double value) { return std::isnan(value); });
   const bool all_finite = std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); });
   if (any_nan || std::isnan(left) || std::isnan(right)) outcome.holds = false;

@@ -10,23 +10,24 @@
 
 namespace sim {
 
-/// What is wrong with a rule, and at which character of its text, counted from 0.
+/// Error in a rule, and the index of its character in the text, counted from 0.
 struct RuleProblem {
   std::size_t at = 0;
   std::string text;
 };
 
-/// Says which figures the rules of a file may name.
+/// Interface that checks the figures named by the rules of a file.
 class RuleNames {
  public:
   virtual ~RuleNames() = default;
-  /// What is wrong with a function, the `max` of `max(NAME)`.  Empty: nothing.
+  /// Returns what is wrong with a function, the `max` of `max(NAME)`; empty when it is valid.
   virtual std::string function_problem(const std::string& function) const = 0;
-  /// What is wrong with a name, and at which of its characters.  `function` is empty where the name stands alone.
+  /// Returns what is wrong with a name, and at which of its characters; none when it is valid.  `function` is empty for
+  /// a name without one.
   virtual std::optional<RuleProblem> name_problem(const std::string& function, const std::string& name) const = 0;
 };
 
-/// A rule such as `cooperative.rms_m < 0.4 * alone.rms_m`: figures and numbers with + - * / and parentheses on both
+/// Pass rule such as `cooperative.rms_m < 0.4 * alone.rms_m`: figures and numbers with + - * / and parentheses on both
 /// sides of one comparison.
 class RuleExpression {
  public:
@@ -43,31 +44,31 @@ class RuleExpression {
     std::string text() const;
   };
 
-  /// What the two sides of a rule came to.
+  /// Result of the evaluation of a rule.
   struct Outcome {
     double left = 0;
     double right = 0;
-    double margin = 0;  ///< distance to the limit, below 0 when the rule fails; NaN for == and !=
+    double margin = 0;  ///< distance to the limit, negative when the rule fails; NaN for == and !=
     bool holds = false;
   };
 
-  /// Holds nothing.
+  /// Makes an empty rule.
   RuleExpression() = default;
-  /// Reads `text`.  Nothing when it is not a rule; `problem` then says why.
+  /// Parses `text`.  Returns none when it is not a rule; `problem` then has the reason.
   static std::optional<RuleExpression> parse(std::string_view text, const RuleNames& names, RuleProblem& problem);
 
   const std::string& text() const { return text_; }
   Comparison comparison() const { return comparison_; }
-  /// The figures that the rule names, each once, in the order of the text.
+  /// Returns the figures that the rule names, each once, in the order of the text.
   const std::vector<Figure>& figures() const { return figures_; }
-  /// `values` are those of figures(), in the same order.  A rule does not hold when one of them is NaN, or when a side
-  /// is not finite though its figures are: a division by 0.
+  /// Evaluates the rule.  `values`: the values of figures(), in the same order.  A rule fails when one of them is NaN,
+  /// or when a side is not finite although its figures are, after a division by 0.
   Outcome evaluate(std::span<const double> values) const;
 
  private:
   friend class RuleParser;
 
-  /// One step of a calculation on a stack.
+  /// Operation of a stack machine.
   struct Step {
     enum class Kind { number, figure, negate, add, subtract, multiply, divide };
     Kind kind = Kind::number;

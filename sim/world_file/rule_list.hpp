@@ -14,8 +14,7 @@ namespace sim {
 /// Describes `pass:`, a list of rules.
 void describe_rules(ParamReader& in, const char* meaning, std::vector<std::string> examples);
 
-/// Reads the value of `pass:`.  `new_form`: the text that an entry becomes which is a map, as rules were in version
-/// 0.1.
+/// Reads the value of `pass:`.  `new_form`: converts an entry that is a map, the form of rules in version 0.1, to text.
 std::vector<RuleExpression> read_rule_list(const ConfigNode& list, const RuleNames& names,
                                            const std::function<std::optional<std::string>(const ConfigNode&)>& new_form,
                                            Diagnostics& diagnostics);

@@ -9,20 +9,20 @@
 
 namespace sim {
 
-/// The rule that `{metric: a.rms_m, below_metric: b.rms_m, factor: 0.4}`, the form of version 0.1, becomes:
-/// `a.rms_m < 0.4 * b.rms_m`.  Nothing when the map is no such rule.
+/// Converts a rule in the form of version 0.1, `{metric: a.rms_m, below_metric: b.rms_m, factor: 0.4}`, to the present
+/// form, `a.rms_m < 0.4 * b.rms_m`.  Returns none when the map is not such a rule.
 std::optional<std::string> rule_of_map(const ConfigNode& map);
 
-/// The scalar of a key; nothing when it is missing, empty, or no scalar.
+/// Returns the scalar of a key; none when it is missing, empty, or not a scalar.
 std::optional<std::string> scalar_of_key(const ConfigNode& map, const char* key);
 
-/// A key of version 0.1 and the comparison that it stood for.
+/// Key of version 0.1 and the comparison that it denoted.
 struct OldComparison {
   const char* key;
   const char* sign;
 };
 
-/// The only one of `comparisons` whose key the map has; null when it has none or several.
+/// Returns the only one of `comparisons` whose key is in the map; null when there are none or several.
 const OldComparison* only_comparison(const ConfigNode& map, const std::vector<OldComparison>& comparisons);
 
 }  // namespace sim

@@ -4,20 +4,24 @@
 namespace sim {
 
 void VehicleConfig::read(ParamReader& in) {
+  // Identification and parameters.
   in.require("shoal");
   in.read("shoal", shoal, between(1, 1), "version of the file format");
   in.read("vehicle", vehicle, "name of this kind of vehicle");
   in.read("description", description, "one sentence for people");
   in.read_raw("parameters", parameters, "default of each ${name} used in the file");
+  // Surfaces.
   in.read_list("materials", materials, "material", "materials this vehicle brings");
   for (const MaterialConfig& material : materials) in.declare("material", material.name);
   in.read_list("contacts", contacts, "contact", "contact parameters of pairs of materials");
   in.read("categories", categories, "categories of parts this vehicle brings");
   for (const std::string& category : categories) in.declare("category", category);
+  // Properties of the whole vehicle.
   in.read("self_collision", self_collision, "parts of this vehicle collide with each other");
   in.read("actuator_latency_s", actuator_latency_s, between(0, 1e6),
           "from command to effect, added to the latency of each actuator");
   in.read("clock", clock, "clock with which its devices stamp their reports; unset: true time");
+  // Bodies, joints and devices.
   in.require("bodies");
   in.read_list("bodies", bodies, "body", "parts that move as one; the first carries the vehicle frame");
   if (in.has("bodies") && bodies.empty()) in.error("bodies", "'bodies' must have at least one body");

@@ -11,25 +11,25 @@
 
 namespace sim {
 
-/// A kind of vehicle, as a vehicle file describes it.
+/// Vehicle model, as described by a vehicle file.
 struct VehicleConfig {
   int shoal = 1;        ///< version of the file format
-  std::string vehicle;  ///< name of the kind
+  std::string vehicle;  ///< name of the model
   std::string description;
   ConfigNode parameters;  ///< name: default value, for ${name} in the file
   std::vector<MaterialConfig> materials;
   std::vector<ContactConfig> contacts;
   std::vector<std::string> categories;
   bool self_collision = false;
-  double actuator_latency_s = 0;  ///< from command to effect, added to each actuator's own
+  double actuator_latency_s = 0;  ///< delay from command to effect, added to that of each actuator
   ClockConfig clock;
   std::vector<BodyConfig> bodies;  ///< the first one carries the vehicle frame
   std::vector<JointConfig> joints;
   std::vector<DeviceConfig> devices;
-  std::shared_ptr<const ConfigNode> source;  ///< what it was read from, parameters put in; null: made by hand
+  std::shared_ptr<const ConfigNode> source;  ///< source tree with parameters substituted; null: not read from a file
 
   void read(ParamReader& in);
-  /// Makes its bodies and parts known to what names them.
+  /// Declares its bodies and parts, for keys that refer to them.
   void declare_bodies(ParamReader& in) const;
 };
 

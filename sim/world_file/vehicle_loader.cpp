@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 using Parameters = std::vector<std::pair<std::string, ConfigNode>>;
 
-/// Where a file named in a world is found: beside it, then in ../vehicles, then among the shipped ones.
+/// Finds a file named in a world: beside the world file, then in ../vehicles, then among the shipped files.
 std::string find_file(const std::string& file, const SourcePlace& named_in) {
   const fs::path directory = named_in.file ? fs::path(*named_in.file).parent_path() : fs::path();
   std::vector<fs::path> candidates{directory / file, directory / ".." / "vehicles" / file};
@@ -50,7 +50,8 @@ bool mentions(const ConfigNode& node, std::string_view text) {
                      [&](const ConfigNode::Entry& entry) { return mentions(entry.value, text); });
 }
 
-/// Of the override `rover7/devices.lidar.rate_hz` the vehicle of a `count`; empty: the override is for all of them.
+/// Returns the vehicle of a `count` in an override such as `rover7/devices.lidar.rate_hz`; empty when it applies to all
+/// of them.
 std::string_view single_vehicle(const std::string& key) {
   return std::string_view(key).substr(0, key.find('/') == std::string::npos ? 0 : key.find('/'));
 }
@@ -59,7 +60,7 @@ std::string instance_name(const VehicleEntry& entry, int index) {
   return entry.count == 1 ? entry.name : entry.name + std::to_string(index);
 }
 
-/// The vehicles of an entry that have overrides of their own.
+/// Returns the vehicles of an entry with own overrides.
 std::set<std::string, std::less<>> single_vehicles(const VehicleEntry& entry, const std::string& who,
                                                    Diagnostics& diagnostics) {
   std::set<std::string, std::less<>> names, wrong;
@@ -77,7 +78,7 @@ std::set<std::string, std::less<>> single_vehicles(const VehicleEntry& entry, co
   return names;
 }
 
-/// Equal for entries whose vehicles differ in name and place only.
+/// Returns a key that is equal for entries whose vehicles differ only in name and pose.
 std::string what_is_said(const VehicleEntry& entry, const ConfigNode& model) {
   return std::to_string(reinterpret_cast<std::uintptr_t>(&model)) + "\n" + to_yaml(entry.parameters) + "\n" +
          to_yaml(entry.overrides);
@@ -89,11 +90,13 @@ std::vector<VehicleInstance> VehicleLoader::load(const VehicleEntry& entry) {
   const std::string who = "vehicle '" + entry.name + "'";
   const ConfigNode* model = model_of(entry, who);
   if (model == nullptr) return {};
+  // Place the instances.
   const Pose X_WE = make_pose(entry.position_m, entry.rpy_rad);
   const std::vector<Pose> poses = entry.count == 1
                                       ? std::vector<Pose>{X_WE}
                                       : place_instances(entry.placement, entry.count, X_WE,
                                                         static_cast<std::uint64_t>(world_.run.seed), entry.name);
+  // Decide which instances share a configuration.
   const auto singles = single_vehicles(entry, who, diagnostics_);
   const auto none_mentions = [&](std::string_view text) {
     return !mentions(*model, text) && !mentions(entry.parameters, text) && !mentions(entry.overrides, text);
@@ -104,6 +107,7 @@ std::vector<VehicleInstance> VehicleLoader::load(const VehicleEntry& entry) {
   const bool as_in_other_entries = alike && !entry.file.empty() && singles.empty() && none_mentions("${name}");
   std::shared_ptr<const VehicleConfig>& shared =
       as_in_other_entries ? shared_[what_is_said(entry, *model)] : of_this_entry;
+  // Make the instances.
   for (int i = 0; i < entry.count; ++i) {
     const std::string name = instance_name(entry, i + 1);
     const Pose& X_WV = poses[static_cast<std::size_t>(i)];
@@ -187,7 +191,7 @@ std::shared_ptr<const VehicleConfig> VehicleLoader::read(ConfigNode tree, const 
 }
 
 void VehicleLoader::declare_names(ParamReader& in, const ConfigNode& tree) const {
-  // What the vehicle brings itself it declares itself; another vehicle may have brought the same.
+  // The vehicle declares its own surfaces; another vehicle may have the same.
   const auto brings = [&](const char* list, const std::string& name) {
     const ConfigNode* items = tree.find(list);
     return items != nullptr && std::any_of(items->items.begin(), items->items.end(), [&](const ConfigNode& item) {
@@ -248,7 +252,7 @@ namespace {
 
 constexpr std::size_t max_request_bytes = 1 << 20;
 
-/// What a spawn request says beside the entry.
+/// Keys of a spawn request: the entry of `vehicles:` and those of its owner.
 struct SpawnEntry {
   VehicleEntry vehicle;
   bool with_client = false;
@@ -280,7 +284,7 @@ void check_untrusted(const ConfigNode& node, const std::string& who, Diagnostics
   for (const ConfigNode& item : node.items) check_untrusted(item, who, diagnostics);
   for (const ConfigNode::Entry& entry : node.entries) {
     const std::string key = entry.key.substr(entry.key.find_last_of("./") + 1);
-    // Files are refused by the kind of their keys; these are more than a file.
+    // Keys of files are refused by their kind; these keys are not of that kind.
     if (key == "serial" || key == "include" || entry.key.find("serial.") != std::string::npos)
       diagnostics.error(entry.place, who, "'" + key + "' cannot be used in a request from the bus");
     check_untrusted(entry.value, who, diagnostics);
@@ -312,7 +316,7 @@ SpawnRequest read_spawn(const WorldConfig& world, const ConfigNode& node, Sender
   diagnostics.throw_if_any();
   check_spawn(entry, sender, diagnostics);
   diagnostics.throw_if_any();
-  // Vehicle files are looked up from the world's file, not from the working directory.
+  // Vehicle files are searched relative to the world file, not to the working directory.
   entry.vehicle.beside.file = intern_file_name(world.file);
   if (hidden != nullptr) diagnostics.hide_files();
   std::vector<VehicleInstance> instances = VehicleLoader(world, diagnostics).load(entry.vehicle);
@@ -352,7 +356,7 @@ std::string self_contained_spawn(const WorldConfig& world, const std::string& te
       entry.value = std::move(model);
       return to_yaml(node);
     }
-  } catch (const ConfigError&) {  // it will be refused
+  } catch (const ConfigError&) {  // it will be refused later
   }
   return text;
 }

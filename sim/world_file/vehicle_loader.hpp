@@ -11,16 +11,16 @@
 
 namespace sim {
 
-/// Turns entries of `vehicles:` into vehicle configurations.  Each vehicle file is read once.
+/// Loader that converts entries of `vehicles:` to vehicle configurations.  Each vehicle file is read once.
 class VehicleLoader {
  public:
   VehicleLoader(const WorldConfig& world, Diagnostics& diagnostics) : world_(world), diagnostics_(diagnostics) {}
 
-  /// The instances of an entry, fewer or none after errors.
+  /// Returns the instances of an entry, fewer or none after errors.
   std::vector<VehicleInstance> load(const VehicleEntry& entry);
-  /// A vehicle from a tree without parameters, such as VehicleConfig::source.
+  /// Reads a vehicle from a tree without parameters, such as VehicleConfig::source.
   std::shared_ptr<const VehicleConfig> read(ConfigNode tree, const std::string& who) const;
-  /// Fills `file:` entries of the tree with what the files said.
+  /// Replaces the `file:` entries of the tree by the contents of the files.
   void resolve(ConfigNode& world_node) const;
 
  private:
@@ -36,36 +36,37 @@ class VehicleLoader {
   const WorldConfig& world_;
   Diagnostics& diagnostics_;
   std::map<std::string, ConfigNode> files_;
-  /// By file, parameters and overrides: entries that say the same share one.
+  /// Configurations by file, parameters and overrides; equal entries share one.
   std::map<std::string, std::shared_ptr<const VehicleConfig>> shared_;
 };
 
-/// Reads and checks a vehicle file by itself, with its default parameters.  Of the options the rule about files counts.
+/// Reads and checks a vehicle file by itself, with its default parameters.  Of the options, only the rules for files
+/// apply.
 VehicleConfig load_vehicle(const std::string& path, const LoadOptions& options = {});
 
-/// A vehicle that a client spawns during the run: an entry of `vehicles:`, and its owner.
+/// Request of a client to spawn a vehicle during the run: an entry of `vehicles:` and its owner.
 struct SpawnRequest {
   VehicleInstance vehicle;
-  bool with_client = false;    ///< it goes when the client goes
-  double alive_timeout_s = 5;  ///< wall time after which a silent client counts as gone
+  bool with_client = false;    ///< remove the vehicle when its client has disconnected
+  double alive_timeout_s = 5;  ///< wall time after which a silent client counts as disconnected
 };
 
-/// Reads a spawn request.  The text comes over the network and is not trusted: it can use vehicle files that lie
-/// beside the world file, in ../vehicles or among the shipped ones by their bare names, but no other file, and no
-/// serial port.  Throws ConfigError, with places such as `spawn:3:7`; for an error in a vehicle file only the place,
-/// as the requester may not be entitled to read the file.  `hidden`: gets those errors in full.
+/// Reads a spawn request.  The text comes over the network and is untrusted: it may use vehicle files beside the world
+/// file, in ../vehicles or among the shipped ones by their bare names, but no other file and no serial port.  Throws
+/// ConfigError, with places such as `spawn:3:7`; for an error in a vehicle file only the place, because the requester
+/// may not be entitled to read the file.  `hidden`: receives those errors in full.
 SpawnRequest read_spawn_request(const WorldConfig& world, const std::string& text,
                                 std::vector<std::string>* hidden = nullptr);
-/// The same for what self_contained_spawn() made of a request that was checked then.
+/// Reads the result of self_contained_spawn() for a request that was checked before.
 SpawnRequest read_journalled_spawn(const WorldConfig& world, const std::string& text);
-/// The request with its vehicle file in it, so that it can be carried out where that file is not.  As it is when the
-/// file cannot be read or the request is wrong.
+/// Returns the request with the contents of its vehicle file, so that it can be executed where the file does not exist.
+/// Returns it unchanged when the file cannot be read or the request is invalid.
 std::string self_contained_spawn(const WorldConfig& world, const std::string& text);
 
-/// A stranger may not reach for ports and included files: reports the keys `serial` and `include`.  Keys of files are
-/// refused by their kind (ParamReader::read_path).
+/// Reports the keys `serial` and `include`, which untrusted input may not use.  Keys of files are refused by their kind
+/// (ParamReader::read_path).
 void check_untrusted(const ConfigNode& node, const std::string& who, Diagnostics& diagnostics);
-/// YAML that comes over the bus, at most 1 MiB.  Throws ConfigError, with places such as `spawn:3:7`.
+/// Parses YAML received over the bus, at most 1 MiB.  Throws ConfigError, with places such as `spawn:3:7`.
 ConfigNode parse_untrusted(const std::string& text, const std::string& from);
 
 }  // namespace sim

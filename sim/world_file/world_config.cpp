@@ -67,7 +67,7 @@ void BusConfig::read(ParamReader& in) {
 
 namespace {
 
-/// A list of a program and its arguments.  A text is an error that shows it as a list.
+/// Reads a program and its arguments as a list.  Text instead of a list is an error, which shows the list.
 void read_command(ParamReader& in, std::vector<std::string>& command) {
   constexpr const char* meaning =
       "instead of 'program': any program and its arguments; {lcm_url} and {run} are replaced";
@@ -92,7 +92,7 @@ void read_command(ParamReader& in, std::vector<std::string>& command) {
 void ProcessConfig::read(ParamReader& in) {
   in.require("name");
   in.read_name("name", name, "name of the process in messages");
-  // Whoever starts programs makes the command of these, by the declaration of the program.
+  // The launcher makes the command line from these, by the declaration of the program.
   std::string program;
   ConfigNode args;
   in.read("program", program, "a program with a declaration of its arguments, see docs/guides/program_arguments.md");
@@ -144,7 +144,7 @@ void LimitsConfig::read(ParamReader& in) {
 
 namespace {
 
-/// Microseconds since 1970 of `2026-01-01T00:00:00Z`; false when the text is not of that form.
+/// Parses `2026-01-01T00:00:00Z` to microseconds since 1970; returns false for text of another form.
 bool parse_utc(const std::string& text, std::int64_t& utime) {
   std::tm tm{};
   char end = 0;
@@ -161,7 +161,7 @@ bool parse_utc(const std::string& text, std::int64_t& utime) {
   return true;
 }
 
-/// What events may name.  Before they are read, for they name each other.
+/// Declares the names that events may refer to, before they are read, because they refer to each other.
 void declare_for_events(ParamReader& in, const WorldConfig& world) {
   std::set<std::string> objects;
   for (const ObjectConfig& object : world.objects)
@@ -193,6 +193,7 @@ void read_script(ParamReader& in, WorldConfig& world) {
 }  // namespace
 
 void WorldConfig::read(ParamReader& in) {
+  // Identification.
   in.require("shoal");
   in.read("shoal", shoal, between(1, 1), "version of the file format");
   in.read("name", name, "name of the world");
@@ -201,6 +202,7 @@ void WorldConfig::read(ParamReader& in) {
   in.read("epoch", epoch, "UTC of simulated time 0, as 2026-01-01T00:00:00Z");
   if (!parse_utc(epoch, epoch_us))
     in.error("epoch", "'epoch' must be a UTC time such as 2026-01-01T00:00:00Z, got '" + epoch + "'");
+  // Environment and surfaces.
   in.read("physics", physics, "how bodies move");
   in.read("medium", medium, "water and air, see docs/models/medium.md");
   in.read("acoustics", acoustics, "how the water carries sound between devices, see docs/models/acoustics.md");
@@ -214,11 +216,13 @@ void WorldConfig::read(ParamReader& in) {
   for (const std::string& category : categories) in.declare("category", category);
   if (categories.size() > 30) in.error("categories", "'categories' must have at most 30 names");
   in.read("light", light, "sun and sky, for images; see docs/models/cameras.md");
+  // Run and channels.
   in.read("channels", channels, "names of the channels");
   in.read("run", run, "defaults of a run, which the command line can override");
   in.read_or_word("state_rate_hz", state_rate_hz, above_to(0, 1e6), {"never"}, "rate of sim.state and sim.clock");
   in.read_paths("plugins", plugins,
                 "libraries with devices, beside this file or installed; only with --launch or --plugin");
+  // Objects, buses and vehicles, with the names that scripts use.
   in.read_list("objects", objects, "object", "objects: bodies without devices");
   for (const ObjectConfig& object : objects) in.declare("object", object.name);
   in.read_list("buses", buses, "bus", "separate buses, for vehicles that communicate by modem only");
@@ -232,11 +236,13 @@ void WorldConfig::read(ParamReader& in) {
     if (entry.count == 1) in.declare("vehicle", entry.name);
     for (int i = 1; entry.count > 1 && i <= entry.count; ++i) in.declare("vehicle", entry.name + std::to_string(i));
   }
+  // Script, programs and limits.
   read_script(in, *this);
   in.read_list("processes", processes, "process", "external programs, started only with --launch");
   for (const ProcessConfig& process : processes) in.declare("process", process.name);
   in.read("lockstep", lockstep, "waiting for clients");
   in.read("limits", limits, "limits of additions during the run");
+  // Metrics and pass rules.
   declare_metrics(in);
   in.read_list("metrics", metrics, "metric", "figures that score the run");
   for (const MetricConfig& metric : metrics) in.declare("metric", metric.name);

@@ -25,7 +25,7 @@
 
 namespace sim {
 
-/// Where the world lies on the earth.
+/// Geodetic origin of the world.
 struct OriginConfig {
   GeodeticPosition position{42.3584, -71.0876, 0};  // the Charles River at MIT
   void read(ParamReader& in);
@@ -33,15 +33,15 @@ struct OriginConfig {
 
 /// Defaults of a run, which the command line can override.
 struct RunConfig {
-  double duration_s = 60;  ///< 0: until told to quit
+  double duration_s = 60;  ///< 0: until a quit request
   double speed = 0;        ///< times real time; 0: as fast as possible
   std::int64_t seed = 1;
-  double track_rate_hz = 10;            ///< of the tracks in the results
-  std::int64_t hash_every_steps = 100;  ///< of the hashes on `sim.hash`; 0: none
+  double track_rate_hz = 10;            ///< rate of the tracks in the results
+  std::int64_t hash_every_steps = 100;  ///< interval of the hashes on `sim.hash`; 0: none
   void read(ParamReader& in);
 };
 
-/// Names of the channels.  {vehicle}, {device}, {VEHICLE} and {DEVICE} (upper case) are replaced.
+/// Templates of the channel names.  {vehicle}, {device}, {VEHICLE} and {DEVICE} (upper case) are replaced.
 struct ChannelConfig {
   std::string report = "{vehicle}.{device}";
   std::string command = "{vehicle}.{device}.cmd";
@@ -53,49 +53,49 @@ struct ChannelConfig {
 struct VehicleEntry {
   std::string name;
   std::string file;
-  ConfigNode model;  ///< the vehicle itself instead of a file
+  ConfigNode model;  ///< inline vehicle model instead of a file
   Vector3d position_m = Vector3d::Zero();
   Vector3d rpy_rad = Vector3d::Zero();
   int count = 1;
   PlacementConfig placement;
   ConfigNode parameters;  ///< name: value
   ConfigNode overrides;   ///< dotted path: value
-  std::string bus;        ///< of `buses:`; empty: the world's
+  std::string bus;        ///< name in `buses:`; empty: bus of the world
   SourcePlace place;
   SourcePlace file_place;  ///< of `file`
-  SourcePlace beside;      ///< the file that vehicle files lie beside; unset: `place`
+  SourcePlace beside;      ///< file whose folder is searched for vehicle files; unset: `place`
   void read(ParamReader& in);
 };
 
-/// A vehicle as it will stand in the world.
+/// Vehicle to be placed in the world.
 struct VehicleInstance {
   SourcePlace place;
   std::string name;
   Pose X_WV = Pose::Identity();
-  std::shared_ptr<const VehicleConfig> config;  ///< shared by instances that are alike
-  std::string bus;                              ///< name of its own bus; empty: the world's
+  std::shared_ptr<const VehicleConfig> config;  ///< shared by equal instances
+  std::string bus;                              ///< name of its bus; empty: bus of the world
 };
 
-/// A bus beside the world's, so that robots cannot talk around the simulated modem.
+/// Additional bus, so that robots can communicate only through the simulated modem.
 struct BusConfig {
   std::string name;
   std::string lcm_url;  ///< such as udpm://239.255.76.67:7668?ttl=0
   void read(ParamReader& in);
 };
 
-/// What happens when a program ends before the run.
+/// Action when a program ends before the run.
 enum class OnExit {
   go_on,    ///< the run continues, and fails if the program failed
-  end_run,  ///< with exit code 1
-  ignore,   ///< the run continues, and a failure does not count
+  end_run,  ///< the run ends with exit code 1
+  ignore,   ///< the run continues, and a failure is ignored
 };
 
-/// An external program of the experiment, started only with --launch.
+/// External program of the experiment, started only with --launch.
 struct ProcessConfig {
   std::string name;
-  std::vector<std::string> command;  ///< program and arguments; looked up beside the shoal program, then in PATH
-  std::string client;                ///< name it joins the lockstep with; empty: it does not
-  std::string bus;                   ///< of `buses:`; empty: the world's
+  std::vector<std::string> command;  ///< program and arguments; searched beside the shoal program, then in PATH
+  std::string client;                ///< client name with which it joins the lockstep; empty: it does not join
+  std::string bus;                   ///< name in `buses:`; empty: bus of the world
   OnExit on_exit = OnExit::go_on;
   void read(ParamReader& in);
 };
@@ -104,27 +104,27 @@ struct LockstepConfig {
   double timeout_s = 10;       ///< wall time to wait for an acknowledgement
   double join_timeout_s = 30;  ///< wall time to wait for the launched clients to join
   OnTimeout on_timeout = OnTimeout::end_run;
-  bool agreed = false;  ///< the file says on_timeout
+  bool agreed = false;  ///< whether the file sets on_timeout
   void read(ParamReader& in);
 };
 
-/// What may come while the world runs.
+/// Limits of additions while the world runs.
 struct LimitsConfig {
-  int vehicles = 2000;  ///< at any one time, those of the world file included
+  int vehicles = 2000;  ///< at any time, including those of the world file
   int objects = 20000;
   int bodies_per_vehicle = 100;
   int devices_per_vehicle = 100;
-  int parts = 200;                ///< of one vehicle or object
+  int parts = 200;                ///< maximum of one vehicle or object
   int spawns_per_client = 10000;  ///< requests over the whole run; all clients together: ten times as many
   int rewinds_per_client = 1000;  ///< the same, `restore` included
   double step_cpu_s = 0;          ///< CPU time of a step of the world; a longer one ends the run.  0: none
   void read(ParamReader& in);
 };
 
-/// Everything a world file says.
+/// Contents of a world file.
 struct WorldConfig {
-  std::string file;         ///< where it was read
-  FileAccessPointer files;  ///< those that may be named, also by later additions; null: any
+  std::string file;         ///< file from which it was read
+  FileAccessPointer files;  ///< rules for the files that may be named, also by later additions; null: any
   int shoal = 1;
   std::string name;
   std::string description;
@@ -153,27 +153,27 @@ struct WorldConfig {
   std::vector<ZoneConfig> zones;
   std::vector<ActorConfig> actors;
   std::vector<EventConfig> events;
-  /// For checks of a file: of more than 100 vehicles of one kind only the first get joints and devices.
+  /// For checks of a file: only the first 100 vehicles of a model get joints and devices.
   bool bodies_only_of_many = false;
-  EncodeMessage encode_message;  ///< for actions that publish; empty: they cannot
-  double state_rate_hz = 10;     ///< of sim.state and sim.clock
+  EncodeMessage encode_message;  ///< encoder for actions that publish; empty: they cannot publish
+  double state_rate_hz = 10;     ///< rate of sim.state and sim.clock
 
   void read(ParamReader& in);
 };
 
-/// Makes the materials and categories known that parts may name: the world's, and those a vehicle brings (or null).
+/// Declares the materials and categories that parts may name: those of the world, and those of a vehicle (or null).
 void declare_surfaces(ParamReader& in, const WorldConfig& world, const VehicleConfig* vehicle = nullptr);
 
 enum class ChannelKind { report, command, truth };
 inline constexpr ChannelKind all_channel_kinds[] = {ChannelKind::report, ChannelKind::command, ChannelKind::truth};
-/// The channel of a device by the world's templates.
+/// Returns the channel of a device from the templates of the world.
 std::string device_channel(const ChannelConfig& channels, const std::string& vehicle, const DeviceConfig& device,
                            ChannelKind kind);
 
-/// What is wrong with a channel of a device; empty: nothing.  `taken`: another device has it.
+/// Returns what is wrong with a channel of a device; empty when it is valid.  `taken`: another device uses it.
 std::string channel_error(const std::string& channel, bool taken);
 
-/// The channel name a template gives.
+/// Returns the channel name of a template.
 std::string channel_name(const std::string& pattern, const std::string& vehicle, const std::string& device);
 
 }  // namespace sim

@@ -18,13 +18,14 @@
 
 namespace shoal {
 
-/// A bus that cannot be used, or a simulator that refuses or does not answer; the text says why and what to do.
+/// Error of a bus that cannot be used, or of a simulator that refuses or does not answer; the text has the reason and
+/// the remedy.
 class ClientError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// The connection of an autonomy program to its vehicle, in one thread:
+/// Connection of an autonomy program to its vehicle, in one thread:
 ///
 ///     shoal::Client client("pilot");
 ///     client.subscribe<shoal::dvl_t>("auv1.dvl", [&](const shoal::dvl_t& dvl) { ... });
@@ -34,8 +35,8 @@ class ClientError : public std::runtime_error {
 /// Handlers are called in next_tick() and wait_until() only: in lockstep for all messages up to the tick, in the
 /// order in which they were published, independent of losses and duplicates in the network; otherwise in the order of
 /// arrival.  An invalid payload is counted, reported once per channel on standard error, and not handled; the same
-/// holds for one whose handler throws MessageError.  Any other exception of a handler leaves the call that waited.
-/// Handlers may publish and subscribe.
+/// holds for one whose handler throws MessageError.  Any other exception of a handler propagates out of the waiting
+/// call. Handlers may publish and subscribe.
 class Client {
  public:
   /// Reason why next_tick() returned nothing.
@@ -47,44 +48,46 @@ class Client {
     rewound,    ///< the world was rewound, and there is no on_rewind()
     dropped,    ///< the world continued without this client, which had not answered in time; see reason()
   };
-  /// What is to happen when the client does not answer.
+  /// Policy for the case that the client does not answer.
   struct JoinOptions {
-    std::string on_timeout;  ///< wait, pause (the world pauses), continue (without it), end (the run); "": the world's
-    double timeout_s = 0;    ///< of wall time; 0: the world's
-    std::chrono::milliseconds timeout = std::chrono::seconds(30);  ///< to wait for a simulator
+    std::string on_timeout;  ///< wait, pause (the world pauses), continue (without the client), end (the run); "": as
+                             ///< in the world file
+    double timeout_s = 0;    ///< wall time; 0: as in the world file
+    std::chrono::milliseconds timeout = std::chrono::seconds(30);  ///< maximum time to wait for a simulator
   };
   /// Numbers of messages since the client was made.
   struct Counts {
-    std::uint64_t received = 0;   ///< messages on channels that were subscribed to
-    std::uint64_t bad = 0;        ///< of those, refused
+    std::uint64_t received = 0;   ///< messages on subscribed channels
+    std::uint64_t bad = 0;        ///< received messages that were refused
     std::uint64_t published = 0;  ///< messages published
-    std::uint64_t asked_for = 0;  ///< in lockstep: lost messages and received on request
-    std::uint64_t repeated = 0;   ///< in lockstep: messages that came twice
+    std::uint64_t asked_for = 0;  ///< in lockstep: lost messages that were received on request
+    std::uint64_t repeated = 0;   ///< in lockstep: duplicate messages
   };
-  /// Handler of an undecoded payload.
+  /// Handler of an encoded payload.
   using BytesHandler = std::function<void(std::span<const std::byte>)>;
 
-  /// `name`: of the program, by which the simulator waits for it.  `lcm_url` "": LCM_DEFAULT_URL, then LCM's default.
-  /// Throws ClientError when LCM cannot be used there.
+  /// `name`: name of the program, under which the simulator waits for it.  `lcm_url` "": LCM_DEFAULT_URL, or the
+  /// default of LCM.  Throws ClientError when LCM cannot be used with this URL.
   explicit Client(const std::string& name, const std::string& lcm_url = {});
-  /// Leaves the lockstep, so that the world does not wait for a program that is gone.
+  /// Leaves the lockstep, so that the world does not wait for a program that has ended.
   ~Client();
   Client(const Client&) = delete;
   Client& operator=(const Client&) = delete;
 
   /// Calls `handler(const Message&)` for each message of this channel.  `numbers`: whether NaN and infinity are
-  /// refused; many reports say NaN for what was not measured.
+  /// refused; many reports have NaN for values that were not measured.
   template <class Message, class Handler>
   void subscribe(const std::string& channel, Handler handler, Finite numbers = Finite::any) {
     subscribe_bytes(channel, [handler = std::move(handler), numbers](std::span<const std::byte> payload) mutable {
       handler(shoal::decode<Message>(payload, numbers));
     });
   }
-  /// The payload as it came.
+  /// Calls `handler` with the encoded payload of each message of this channel.
   void subscribe_bytes(const std::string& channel, BytesHandler handler);
 
-  /// At once; in lockstep what is published before the first tick waits for it.  Throws MessageError when an array is
-  /// not as long as its length member says, ClientError when LCM refuses.
+  /// Publishes a message immediately; in lockstep, messages published before the first tick are delayed until that
+  /// tick.  Throws MessageError when the size of an array differs from its length member, ClientError when LCM refuses
+  /// the message.
   template <class Message>
   void publish(std::string_view channel, const Message& message) {
     encode_into(message, buffer_);
@@ -93,43 +96,43 @@ class Client {
   /// Publishes an encoded payload; see publish().
   void publish_bytes(std::string_view channel, std::span<const std::byte> payload);
 
-  /// Lockstep: the world waits at a tick every `period_s` of simulated time, a multiple of its step.  Throws
-  /// ClientError with the simulator's words when it refuses, when none answers within `timeout` of wall time, and when
-  /// stop() is called meanwhile.
+  /// Joins the lockstep: the world waits for this client at a tick every `period_s` of simulated time, a multiple of
+  /// its step.  Throws ClientError with the reason when the simulator refuses, when none answers within `timeout` of
+  /// wall time, and when stop() is called meanwhile.
   void join(double period_s, std::chrono::milliseconds timeout = std::chrono::seconds(30));
   /// Joins with a policy for the case that this client does not answer in time; see JoinOptions.
   void join(double period_s, const JoinOptions& options);
-  /// Free running: the world does not wait.  next_tick() then returns when sim.clock passes a multiple of `period_s`;
-  /// sim.clock is published at the world's `state_rate_hz`, 10 Hz by default.
+  /// Follows a run without lockstep: the world does not wait.  next_tick() then returns when sim.clock passes a
+  /// multiple of `period_s`; sim.clock is published at the `state_rate_hz` of the world, 10 Hz by default.
   void follow(double period_s);
 
-  /// In lockstep this acknowledges the tick before: what was published since acts in the next step.  Waits for the next
-  /// tick, and gives the simulator's time in microseconds.  Every report up to then has been handled (when not in
-  /// lockstep: those received so far).  Nothing when the run is over, also on further calls: see end().  Throws
-  /// std::logic_error before join() and follow().
+  /// Waits for the next tick, and returns its simulated time in microseconds.  In lockstep it first acknowledges the
+  /// previous tick: messages published since then take effect in the next step.  All reports up to the tick have been
+  /// handled (without lockstep: those received so far).  Returns none when the run is over, also on further calls: see
+  /// end().  Throws std::logic_error before join() and follow().
   std::optional<std::int64_t> next_tick();
-  /// Goes through the ticks up to the first one at or after `utime`.
+  /// Handles ticks up to the first one at or after `utime`, and returns its time as next_tick() does.
   std::optional<std::int64_t> wait_until(std::int64_t utime);
 
-  /// Makes next_tick() return, for good.  From a signal handler or another thread.
+  /// Makes next_tick() return, permanently.  May be called from a signal handler or another thread.
   void stop() noexcept;
-  /// Reason why the run is over for this client; End::none while it continues.
+  /// Returns why the run is over for this client; End::none while it continues.
   End end() const;
-  /// What the simulator said when it dropped this client.
+  /// Returns the reason given by the simulator when it dropped this client.
   const std::string& reason() const;
-  /// `handler(utime)` is called in next_tick() when the world was rewound, before any message of the new branch is
-  /// handled; held messages are dropped.  Without a handler next_tick() then returns nothing.
+  /// Sets the handler of rewinds.  `handler(utime)` is called in next_tick() when the world was rewound, before any
+  /// message of the new branch is handled; held messages are dropped.  Without a handler next_tick() then returns none.
   void on_rewind(std::function<void(std::int64_t utime)> handler);
-  /// How often the world went back before the present tick.
+  /// Returns the number of rewinds before the present tick.
   std::int32_t branch() const;
-  /// How much wall time may pass without any message; zero: forever.  10 minutes by default, as the world may be
+  /// Sets the maximum wall time without any message; zero: unlimited.  10 minutes by default, because the world may be
   /// paused.
   void set_silence_limit(std::chrono::milliseconds limit);
-  /// While join() waits for an answer, and next_tick() for the first tick or for sim.clock, longer than `after` of wall
-  /// time, one line on standard error says what is waited for, on which channel and LCM URL.  3 s by default; zero:
-  /// no warning.
+  /// Sets the delay of the warning about a missing simulator.  When join() waits for an answer, or next_tick() for the
+  /// first tick or for sim.clock, longer than `after` of wall time, one line on standard error names the expected
+  /// message, channel and LCM URL.  3 s by default; zero: no warning.
   void set_wait_warning(std::chrono::milliseconds after);
-  /// Numbers of messages so far.
+  /// Returns the numbers of messages since the client was made.
   Counts counts() const;
 
  private:
