@@ -233,10 +233,10 @@ struct LcmBus::Threads final : Arrivals::Port {
   void receive_all() {
     GatherPauses pauses(connection);
     while (!stopping) {
-      const bool something_came = readable.wait(pauses.wait()).count > 0;
-      if (stopping || (something_came && !receive())) return;
+      const bool has_arrivals = readable.wait(pauses.wait()).count > 0;
+      if (stopping || (has_arrivals && !receive())) return;
       // A thread that waits for messages still receives them immediately.
-      if (pauses.due(something_came)) wait_readable(stop_fd, -1, GatherPauses::length);
+      if (pauses.due(has_arrivals)) wait_readable(stop_fd, -1, GatherPauses::length);
     }
   }
 

@@ -207,7 +207,7 @@ std::int32_t Client::branch() const {
 
 Client::Counts Client::counts() const {
   Counts counts = connection_->counts;
-  counts.asked_for = connection_->lcm.counts().asked_for;
+  counts.requested = connection_->lcm.counts().requested;
   counts.repeated = connection_->lcm.counts().repeated;
   return counts;
 }

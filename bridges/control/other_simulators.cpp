@@ -20,7 +20,7 @@ constexpr milliseconds time_to_answer{150};
 constexpr milliseconds slice{15};
 
 /// Client name in the requests of a run.
-constexpr const char* asker_name = "shoal-run";
+constexpr const char* requester_name = "shoal-run";
 constexpr const char* sharing = "{shared: true}";
 
 template <class Message>
@@ -56,21 +56,21 @@ OtherSimulators::OtherSimulators(const std::vector<BusToAsk>& buses, bool shared
 void OtherSimulators::send_request(sim::Bus& network) {
   shoal::sim_control_request_t question{};
   question.id = id_;
-  question.client = asker_name;
+  question.client = requester_name;
   question.command = "alive";  // also answered by a paused run
   if (shared_) question.text = sharing;
   publish(network, "sim.control", question);
 }
 
-OtherSimulators::Asker OtherSimulators::requester_of(const shoal::sim_control_request_t& request) const {
-  if (request.client != asker_name || request.command != "alive") return Asker::none_of_ours;
-  if (request.id == id_) return Asker::this_run;
-  return request.text == sharing ? Asker::another_run_that_shares : Asker::another_run;
+OtherSimulators::Requester OtherSimulators::requester_of(const shoal::sim_control_request_t& request) const {
+  if (request.client != requester_name || request.command != "alive") return Requester::none_of_ours;
+  if (request.id == id_) return Requester::this_run;
+  return request.text == sharing ? Requester::another_run_that_shares : Requester::another_run;
 }
 
 bool OtherSimulators::is_answered(Link& link) const {
   while (const auto reply = take_valid<shoal::sim_control_reply_t>(*link.replies))
-    if (reply->client == asker_name && reply->id == id_) return true;
+    if (reply->client == requester_name && reply->id == id_) return true;
   return false;
 }
 
@@ -80,7 +80,7 @@ bool OtherSimulators::is_answered(Link& link) const {
 bool OtherSimulators::answer_requests(Link& link) {
   bool met = false;
   while (const auto question = take_valid<shoal::sim_control_request_t>(*link.requests)) {
-    if (requester_of(*question) != Asker::another_run) continue;
+    if (requester_of(*question) != Requester::another_run) continue;
     if (met_.insert(question->id).second) {
       met = true;
       send_request(*link.network);

@@ -40,8 +40,8 @@ class OtherSimulators {
   /// Returns whether the user allows other simulators on the buses.
   bool shared() const { return shared_; }
   /// Sender of a request.
-  enum class Asker { none_of_ours, this_run, another_run, another_run_that_shares };
-  Asker requester_of(const shoal::sim_control_request_t& request) const;
+  enum class Requester { none_of_ours, this_run, another_run, another_run_that_shares };
+  Requester requester_of(const shoal::sim_control_request_t& request) const;
 
  private:
   struct Link {

@@ -155,9 +155,10 @@ void SimService::handle_requests(TimeMachine* machine) {
 /// Handles the request by which a starting run detects other simulators.  That of another run is answered, and the run
 /// then refuses to start; a warning is given for one that starts nevertheless.
 bool SimService::is_own_request(Link& link, const shoal::sim_control_request_t& request) {
-  const OtherSimulators::Asker asker = others_->requester_of(request);
-  if (asker == OtherSimulators::Asker::another_run_that_shares) warn_of_another(link, "was started with --lcm-shared");
-  return asker == OtherSimulators::Asker::this_run;
+  const OtherSimulators::Requester asker = others_->requester_of(request);
+  if (asker == OtherSimulators::Requester::another_run_that_shares)
+    warn_of_another(link, "was started with --lcm-shared");
+  return asker == OtherSimulators::Requester::this_run;
 }
 
 void SimService::warn_of_another(const Link& link, const char* how) {
@@ -173,7 +174,7 @@ void SimService::handle_request(Link& link, const sim::Message& message, TimeMac
     if (others_ != nullptr && is_own_request(link, request)) return;
     // A starting run does not have the key of this run, and changes nothing.
     const bool is_question =
-        others_ != nullptr && others_->requester_of(request) != OtherSimulators::Asker::none_of_ours;
+        others_ != nullptr && others_->requester_of(request) != OtherSimulators::Requester::none_of_ours;
     if (!opened.refusal.empty() && !is_question) return refuse(link, request, opened);
     answer(link, request, opened.signer, machine);
   } catch (const shoal::MessageError& error) {

@@ -184,10 +184,10 @@ std::uint64_t LcmConnection::received_bytes() const {
   return udp_ ? udp_->received_bytes() : 0;
 }
 
-bool GatherPauses::due(bool something_came) {
+bool GatherPauses::due(bool has_arrivals) {
   const std::uint64_t bytes = connection_.received_bytes();
   const bool few = bytes - std::exchange(bytes_, bytes) <= max_bytes_of_check;
-  polls_ = something_came && few ? polls_ + 1 : 0;
+  polls_ = has_arrivals && few ? polls_ + 1 : 0;
   if (polls_ < polls_before_pause || connection_.may_block()) return false;
   polls_ = 0;
   return true;

@@ -94,7 +94,7 @@ class GatherPauses {
   /// Returns the time to wait for the next messages; negative: unlimited.
   std::chrono::milliseconds wait() const { return polls_ == 0 ? std::chrono::milliseconds(-1) : until_next_check; }
   /// Returns whether to pause now; called after the wait, and after receiving if messages had arrived.
-  bool due(bool something_came);
+  bool due(bool has_arrivals);
 
  private:
   static constexpr int polls_before_pause = 8;

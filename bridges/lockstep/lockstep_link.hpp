@@ -18,7 +18,7 @@ struct LockstepService::Link {
         called(name.empty() ? "the world's bus" : "bus '" + name + "'"),
         messages(message_gate),
         acks(bus.open_mailbox("sim.ack")),
-        questions(bus.open_mailbox("sim.resend")),
+        resend_requests(bus.open_mailbox("sim.resend")),
         bundles(bus.open_mailbox("sim.resent")) {}
 
   /// Publishes a message on the network, bypassing the gate.  It is sent when the world waits for the answer, or at the
@@ -33,7 +33,7 @@ struct LockstepService::Link {
   sim::MessageGate& gate;
   const std::string called;  // name in texts
   sim::ClientMessages messages;
-  std::unique_ptr<sim::Mailbox> acks, questions, bundles;
+  std::unique_ptr<sim::Mailbox> acks, resend_requests, bundles;
   std::vector<std::unique_ptr<sim::Mailbox>> passed_on;  // opened only to forward messages to other clients
   sim::Bytes buffer;
 };

@@ -131,7 +131,7 @@ void LockstepService::take_messages() {
     Link& link = *links_[i];
     if (!lockstep_.empty()) link.messages.collect();
     take_up_to(max_at_once, *link.acks, [&](const sim::Message& ack) { take_ack(static_cast<int>(i), ack); });
-    take_up_to(max_at_once, *link.questions,
+    take_up_to(max_at_once, *link.resend_requests,
                [&](const sim::Message& question) { take_request(static_cast<int>(i), question); });
     take_up_to(max_at_once, *link.bundles,
                [&](const sim::Message& bundle) { take_bundle(static_cast<int>(i), bundle); });
@@ -272,7 +272,7 @@ void LockstepService::send_again(const sim::LockstepMember& member, std::int32_t
         return ResentMessage{member.terms.receives[static_cast<std::size_t>(posted.channel)], *posted.payload};
       },
       [&](const shoal::sim_resent_t& bundle) {
-        summary_of(member.name).messages_sent_again += bundle.count;
+        summary_of(member.name).messages_resent += bundle.count;
         link.publish("sim.resent", bundle, world_.now());
       });
 }
@@ -298,7 +298,7 @@ void LockstepService::take_bundle(int link_index, const sim::Message& message) {
     Link& link = link_of(member->link);
     for (std::size_t i = 0; i < bundle.message.size(); ++i) {
       const auto bytes = bytes_of(bundle.message[i]);
-      ++summary_of(bundle.client).messages_asked_for;
+      ++summary_of(bundle.client).messages_requested;
       if (!link.messages.add(bundle.client, bundle.first + static_cast<std::int32_t>(i), bundle.message[i].channel,
                              {bytes.begin(), bytes.end()}))
         throw std::runtime_error("client '" + bundle.client + "' " +

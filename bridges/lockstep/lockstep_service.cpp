@@ -56,10 +56,10 @@ const std::string& LockstepService::called(int link) const {
 }
 
 void LockstepService::watch_gates() {
-  const bool desired = std::any_of(lockstep_.members().begin(), lockstep_.members().end(),
-                                   [](const auto& entry) { return !entry.second.terms.receives.empty(); });
+  const bool any_receives = std::any_of(lockstep_.members().begin(), lockstep_.members().end(),
+                                        [](const auto& entry) { return !entry.second.terms.receives.empty(); });
   for (std::size_t i = 0; i < links_.size(); ++i) {
-    if (!desired)
+    if (!any_receives)
       links_[i]->gate.set_watch({});
     else
       links_[i]->gate.set_watch([this, i](std::string_view channel, std::span<const std::byte> payload) {
@@ -297,7 +297,7 @@ void LockstepService::check_time(const std::string& client, Pending& requested, 
 /// waited for.
 void LockstepService::publish_end(const Wait& wait, milliseconds limit) {
   pending_.clear();
-  lockstep_.ask_all(world_.step_number());
+  lockstep_.request_all(world_.step_number());
   for (const auto& [client, dropped] : dropped_) notify_dropped(dropped, client);
   // Repeat the last tick until all clients have confirmed.
   const Clock::time_point end = Clock::now() + limit;
@@ -306,12 +306,12 @@ void LockstepService::publish_end(const Wait& wait, milliseconds limit) {
   while (true) {
     std::vector<std::string> names;
     // Collect the clients that have not answered.
-    bool desired = false;
+    bool is_awaited = false;
     for (const auto& [name, member] : lockstep_.members()) {
       if (member.answered || member.removed) continue;
       names.push_back(name);
       if (member.terms.session == 0 || !summary_of(name).ended.empty()) continue;
-      desired = true;
+      is_awaited = true;
       pending_.try_emplace(name);
     }
     const Clock::time_point now = Clock::now();
@@ -320,7 +320,7 @@ void LockstepService::publish_end(const Wait& wait, milliseconds limit) {
       send_at = now + interval;
       interval = next_resend_interval(interval);
     }
-    if (!desired || now >= end) break;
+    if (!is_awaited || now >= end) break;
     wait(milliseconds(10));
     take_messages();
   }

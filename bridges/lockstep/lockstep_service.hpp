@@ -68,7 +68,7 @@ class LockstepService {
   /// Returns whether a client on a link must receive every message of this channel.
   bool has_receiver(std::string_view channel, int link = 0) const { return lockstep_.has_receiver(link, channel); }
   /// Sets a callback with the name of each client that answers on the bus of the world.
-  void set_on_answer(std::function<void(const std::string&)> received) { on_answer_ = std::move(received); }
+  void set_on_answer(std::function<void(const std::string&)> on_answer) { on_answer_ = std::move(on_answer); }
 
   /// Returns the guard, which checks lockstep messages and should check all others that control the run.
   ControlGuard& guard() { return guard_; }

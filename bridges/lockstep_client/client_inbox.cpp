@@ -83,7 +83,7 @@ void ClientInbox::add(std::int32_t first, const std::vector<shoal::sim_payload_t
     if (named.there || sim::crc32(bytes) != named.crc) continue;
     named.payload.assign(bytes.begin(), bytes.end());
     named.there = true;
-    ++counts_.asked_for;
+    ++counts_.requested;
   }
 }
 

@@ -23,7 +23,7 @@ class ClientInbox {
  public:
   using Handle = std::function<void(const std::string& channel, std::span<const std::byte> payload)>;
   struct Counts {
-    std::uint64_t asked_for = 0;  ///< messages that arrived only after a request
+    std::uint64_t requested = 0;  ///< messages that arrived only after a request
     std::uint64_t repeated = 0;   ///< duplicate messages, which were dropped
     std::uint64_t unnamed = 0;    ///< messages that no tick named, from senders that the simulator does not receive
   };

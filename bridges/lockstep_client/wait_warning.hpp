@@ -18,18 +18,18 @@ class WaitWarning {
   /// `text`: one sentence with the waiting program, the expected message, its channel and LCM URL.  `after` zero: no
   /// warning.
   WaitWarning(std::string text, std::chrono::milliseconds after = default_delay)
-      : text_(std::move(text)), said_(after.count() <= 0), due_(Clock::now() + after) {}
+      : text_(std::move(text)), warned_(after.count() <= 0), due_(Clock::now() + after) {}
 
   /// Prints the warning when it is due; must be called periodically while waiting.
   void look() {
-    if (said_ || Clock::now() < due_) return;
-    said_ = true;
+    if (warned_ || Clock::now() < due_) return;
+    warned_ = true;
     std::cerr << text_ << std::endl;
   }
 
  private:
   std::string text_;
-  bool said_;
+  bool warned_;
   Clock::time_point due_;
 };
 

@@ -61,12 +61,12 @@ sim::PortOpener JournalPorts::wrap(sim::PortOpener open) {
   };
 }
 
-RunJournal::RunJournal(sim::Bus& bus, const sim::World& world, JournalPorts& ports, std::function<bool()> received)
+RunJournal::RunJournal(sim::Bus& bus, const sim::World& world, JournalPorts& ports, std::function<bool()> is_observed)
     : bus_(bus),
       world_(world),
       ports_(ports),
       every_steps_(world.config().run.hash_every_steps),
-      is_observed_(std::move(received)) {
+      is_observed_(std::move(is_observed)) {
   begin_step();
 }
 

@@ -83,8 +83,8 @@ class RunJournal {
   };
 
   /// `bus`: recorded bus of the world; `ports`: ports of `world`.  All must outlive this.  Hashes are computed while
-  /// `received` returns true, that is while a subscriber may exist; empty: always.
-  RunJournal(sim::Bus& bus, const sim::World& world, JournalPorts& ports, std::function<bool()> received = {});
+  /// `is_observed` returns true, that is while a subscriber may exist; empty: always.
+  RunJournal(sim::Bus& bus, const sim::World& world, JournalPorts& ports, std::function<bool()> is_observed = {});
 
   /// Starts the journal, before the first reports are published.
   void start() {

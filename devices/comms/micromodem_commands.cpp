@@ -216,9 +216,9 @@ void MicromodemProtocol::interrogate_remus_beacons(const NmeaSentence& in, sim::
   BeaconPing ping;
   bool good = on_the_second.has_value();
   for (std::size_t i = 0; i < micromodem_beacons; ++i) {
-    const auto desired = in.number(6 + i, 0, 1);
-    good = good && desired;
-    ping.desired[i] = desired.value_or(0) != 0;
+    const auto requested = in.number(6 + i, 0, 1);
+    good = good && requested;
+    ping.is_requested[i] = requested.value_or(0) != 0;
   }
   interrogate_beacons(in, good, in.number(5, 1, max_beacon_ms), ping, on_the_second.value_or(0) != 0, now);
 }
@@ -231,7 +231,7 @@ void MicromodemProtocol::interrogate_narrowband_beacons(const NmeaSentence& in, 
   for (std::size_t i = 0; i < micromodem_beacons; ++i) {
     const auto frequency_Hz = in.number(5 + i, 0, 1000000);
     good = good && frequency_Hz;
-    ping.desired[i] = frequency_Hz.value_or(0) != 0;
+    ping.is_requested[i] = frequency_Hz.value_or(0) != 0;
   }
   interrogate_beacons(in, good, in.number(4, 1, max_beacon_ms), ping, at_once.value_or(1) == 0, now);
 }
@@ -243,9 +243,9 @@ void MicromodemProtocol::interrogate_generic_beacons(const NmeaSentence& in, sim
   for (const std::size_t frequency : {1, 5}) good = good && in.number(frequency, 1, 1000000);
   good = good && in.number(2, 1, 64) && in.number(10, 0, 1000000);
   for (std::size_t i = 0; i < micromodem_beacons; ++i) {
-    const auto desired = is_sequence_set(in.at(6 + i));
-    good = good && desired;
-    ping.desired[i] = desired.value_or(false);
+    const auto requested = is_sequence_set(in.at(6 + i));
+    good = good && requested;
+    ping.is_requested[i] = requested.value_or(false);
   }
   interrogate_beacons(in, good, in.number(4, 1, max_beacon_ms), ping, false, now);
 }

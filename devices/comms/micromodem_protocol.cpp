@@ -241,7 +241,7 @@ void MicromodemProtocol::received_data(const MicromodemPacket& packet, const Mic
   expected_.reset();
   if (settings_.on("RXP")) side_.emit(packet.rate == 0 ? "CARXP,0" : "CARXP,1");
   // Report the frames to the host.
-  int bad_frames = 0, desired = 0;
+  int bad_frames = 0, acknowledged = 0;
   for (std::size_t i = 0; i < packet.frames.size(); ++i) {
     const auto& frame = packet.frames[i];
     if (!arrival.good) {
@@ -249,17 +249,17 @@ void MicromodemProtocol::received_data(const MicromodemPacket& packet, const Mic
       side_.emit("CAMSG,BAD_CRC," + std::to_string(packet.rate));
       continue;
     }
-    if (frame.ack) desired |= 1 << i;
+    if (frame.ack) acknowledged |= 1 << i;
     if (settings_.on("RXD"))
       side_.emit("CARXD," + std::to_string(packet.source) + "," + std::to_string(packet.destination) + "," +
                  std::to_string(static_cast<int>(frame.ack)) + "," + std::to_string(i + 1) + "," + to_hex(frame.data));
   }
   emit_statistics(packet, arrival, bad_frames);
   // Acknowledge the frames that request it.
-  if (desired == 0 || packet.destination != address()) return;
+  if (acknowledged == 0 || packet.destination != address()) return;
   MicromodemPacket ack;
   ack.kind = Kind::ack;
-  ack.source = address(), ack.destination = packet.source, ack.value = desired;
+  ack.source = address(), ack.destination = packet.source, ack.value = acknowledged;
   send(ack, arrival.ended + sim::from_seconds(gap_s), false);
 }
 
@@ -300,7 +300,7 @@ void MicromodemProtocol::report_beacons(sim::Time now) {
   std::string body = "SNTTA";
   for (std::size_t i = 0; i < micromodem_beacons; ++i) {
     body += ",";
-    if (!beacon_ping_->desired[i] || !beacon_ping_->answered[i]) continue;
+    if (!beacon_ping_->is_requested[i] || !beacon_ping_->answered[i]) continue;
     const double both_s = side_.elapsed_s(beacon_ping_->sent, *beacon_ping_->answered[i]);
     char time[24];
     std::snprintf(time, sizeof time, "%.4f", (both_s - beacon_ping_->turnaround_s) / 2);

@@ -84,9 +84,9 @@ struct MicromodemPending {
   struct BeaconPing {
     sim::Time sent{0}, deadline{0};
     double turnaround_s = 0;
-    std::array<bool, micromodem_beacons> desired{};
+    std::array<bool, micromodem_beacons> is_requested{};
     std::array<std::optional<sim::Time>, micromodem_beacons> answered{};
-    void visit_state(sim::StateArchive& archive) { archive(sent, deadline, turnaround_s, desired, answered); }
+    void visit_state(sim::StateArchive& archive) { archive(sent, deadline, turnaround_s, is_requested, answered); }
   };
   /// Time to which the clock is set at the next whole second of the vehicle clock.
   struct PulseTime {

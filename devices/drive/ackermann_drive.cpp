@@ -33,7 +33,7 @@ void AckermannDrive::Params::read(sim::ParamReader& in) {
   in.read_references("drive_joints", drive_joints, "joint", "joints of the driven wheels, axes to the left");
   if (in.has("drive_joints") && drive_joints.empty()) in.error("drive_joints", "'drive_joints' must name a joint");
   // Geometry.
-  in.read("wheelbase_m", wheelbase_m, sim::above(0), "from rear to front axle; unset: as the wheels are");
+  in.read("wheelbase_m", wheelbase_m, sim::above(0), "distance from rear to front axle; unset: taken from the wheels");
   in.read("track_m", track_m, sim::above(0),
           "between the axes that the front wheels are steered about; unset: as the joints are");
   in.read("wheel_radius_m", wheel_radius_m, sim::above(0), "radius of the driven wheels; unset: as in the vehicle");

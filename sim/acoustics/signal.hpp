@@ -74,7 +74,7 @@ enum class SignalLoss {
   half_duplex,   ///< the receiver was sending
   busy,          ///< the receiver was taking another signal
   captured,      ///< a stronger signal took the receiver over
-  doppler,       ///< sender and receiver close or part too fast
+  doppler,       ///< sender and receiver approach or separate too fast
   blocked,       ///< something stands between
   out_of_water,  ///< sender or receiver left the water
   receiver_off,  ///< without power, or silent by a fault

@@ -75,14 +75,14 @@ void MessageGate::publish(std::string_view channel, std::span<const std::byte> p
   const auto known = by_name_.find(channel);
   if (known == by_name_.end()) return network_.publish(channel, payload, at);
   Channel& read = *known->second;
-  if (something_came(read)) collect_from(read);  // keeps the order of earlier messages
+  if (has_arrivals(read)) collect_from(read);  // keeps the order of earlier messages
   network_.publish(channel, payload, at);
   // The network has echoed this already, and this process cannot have published in between.
-  if (something_came(read)) take_from(read, [](const Message& message) { return message.from_outside; });
+  if (has_arrivals(read)) take_from(read, [](const Message& message) { return message.from_outside; });
   give(read, payload, false);
 }
 
-bool MessageGate::something_came(Channel& channel) {
+bool MessageGate::has_arrivals(Channel& channel) {
   return channel.flag->load(std::memory_order_relaxed) && channel.flag->exchange(false, std::memory_order_acquire);
 }
 
@@ -139,7 +139,7 @@ void MessageGate::close(GateMailbox& mailbox) {
 
 bool MessageGate::collect() {
   for (const auto& channel : channels_)
-    if (channel && something_came(*channel)) collect_from(*channel);
+    if (channel && has_arrivals(*channel)) collect_from(*channel);
   return !waiting_.empty();
 }
 

@@ -74,7 +74,7 @@ class MessageGate final : public Bus {
   template <typename Accepts>
   void take_from(Channel& channel, const Accepts& accepts);
   /// Returns true when a message may have arrived since the previous call.
-  static bool something_came(Channel& channel);
+  static bool has_arrivals(Channel& channel);
   static constexpr std::size_t max_bits = 1024;
   static std::size_t bit_of(std::string_view channel);
   bool may_be_read(std::string_view channel) const { return bits_[bit_of(channel)]; }

@@ -183,9 +183,9 @@ void ArgDeclaration::read(ParamReader& in) {
   in.read("columns", columns, "names of the numbers of a tuple, with their units unless the name has one");
   in.read("min_columns", min_columns, at_least(1), "the columns after these may be left out; unset: none may");
   // Use of the argument.
-  in.read("required", required, "the program cannot do without it");
+  in.read("required", required, "the argument must be given");
   in.read("needs", needs, "arguments that must be given with this one");
-  in.read("meaning", meaning, "one line for people");
+  in.read("meaning", meaning, "description in one line");
   ParamInfo info;
   info.key = "default";
   info.initial = "~";
@@ -212,7 +212,7 @@ void ProgramDeclaration::read(ParamReader& in) {
   in.read("shoal_args", shoal_args, between(1, 1), "version of the format");
   in.require("program");
   in.read("program", program, "file name of the program; the declaration is NAME.args.yaml");
-  in.read("meaning", meaning, "one sentence for people");
+  in.read("meaning", meaning, "description in one sentence");
   const auto read_channels = [&in](const char* key, std::optional<std::vector<std::string>>& channels, const char* of) {
     std::vector<std::string> list;
     in.read(key, list, of);

@@ -51,11 +51,11 @@ ClientMessages::Stray ClientMessages::take_out(Strays::iterator stray) {
   const std::uint64_t arrival = stray->first;
   Stray taken = std::move(stray->second);
   strays_.erase(stray);
-  stray_bytes_ -= taken.messages.payload.size();
-  const auto channel = by_channel_.find(taken.messages.channel);
+  stray_bytes_ -= taken.message.payload.size();
+  const auto channel = by_channel_.find(taken.message.channel);
   channel->second.erase(arrival);
   if (channel->second.empty()) by_channel_.erase(channel);
-  const auto key = by_key_.find({taken.messages.channel, taken.crc});
+  const auto key = by_key_.find({taken.message.channel, taken.crc});
   key->second.erase(arrival);
   if (key->second.empty()) by_key_.erase(key);
   return taken;
@@ -72,7 +72,7 @@ void ClientMessages::match(std::vector<Expected>& list) {
     if (!expected.is_read || expected.there) continue;
     const auto found = by_key_.find({expected.named.channel, expected.named.crc});
     if (found == by_key_.end()) continue;
-    expected.payload = take_out(strays_.find(*found->second.begin())).messages.payload;
+    expected.payload = take_out(strays_.find(*found->second.begin())).message.payload;
     expected.there = true;
   }
 }
@@ -165,11 +165,11 @@ void ClientMessages::expect_twin(const std::string& client, const NamedMessage& 
 }
 
 bool ClientMessages::is_twin(const Stray& stray) {
-  const auto twin = twins_.find({stray.messages.channel, stray.crc});
+  const auto twin = twins_.find({stray.message.channel, stray.crc});
   if (twin == twins_.end()) return false;
   if (const std::string& client = twin->second.client; twin->second.counts) {
     if (repeated_.size() < max_names || repeated_.contains(client)) ++repeated_[client];
-    if (!first_repeated_) first_repeated_ = Repeated{client, stray.messages.channel};
+    if (!first_repeated_) first_repeated_ = Repeated{client, stray.message.channel};
   }
   twins_.erase(twin);
   return true;
@@ -197,7 +197,7 @@ void ClientMessages::order(std::vector<MessageGate::Delivery>& messages) {
   }
   expected_.clear();
   for (auto& [arrival, stray] : strays_)
-    if (!is_twin(stray)) messages.push_back(std::move(stray.messages));
+    if (!is_twin(stray)) messages.push_back(std::move(stray.message));
   discard_strays();
 }
 

@@ -83,7 +83,7 @@ class ClientMessages {
     Bytes payload;
   };
   struct Stray {
-    MessageGate::Delivery messages;
+    MessageGate::Delivery message;
     std::uint32_t crc;
   };
   using Key = std::pair<std::string, std::uint32_t>;  // channel and CRC-32

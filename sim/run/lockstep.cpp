@@ -178,7 +178,7 @@ void Lockstep::send_request(std::int64_t step) {
     if (member.due(step) && member.requested < step && !member.abandoned) close_list(member, step);
 }
 
-void Lockstep::ask_all(std::int64_t step) {
+void Lockstep::request_all(std::int64_t step) {
   for (auto& [name, member] : members_) close_list(member, step);
 }
 

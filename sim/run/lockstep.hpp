@@ -130,7 +130,7 @@ class Lockstep {
   /// Sends the tick to the clients that are due at this step and have not received it yet; their lists are closed.
   void send_request(std::int64_t step);
   /// Sends the last tick to all clients, due or not.
-  void ask_all(std::int64_t step);
+  void request_all(std::int64_t step);
   /// Returns the clients due at this step that have not answered, sorted by name.
   std::vector<LockstepMember*> missing(std::int64_t step);
   /// Returns the clients whose tick was open at a rewind.  No client gets a new tick before they have answered: only

@@ -51,7 +51,7 @@ void MetricConfig::read(ParamReader& in) {
   }
   std::string type;
   in.require("type");
-  in.read_one_of("type", type, registry.words(), "what it looks at");
+  in.read_one_of("type", type, registry.words(), "type of the metric");
   if (in.describing()) {
     std::vector<std::pair<std::string, std::vector<ParamInfo>>> types;
     for (const MetricKind* each : registry.all()) types.emplace_back(each->word, each->keys());

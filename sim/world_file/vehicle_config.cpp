@@ -8,13 +8,13 @@ void VehicleConfig::read(ParamReader& in) {
   in.require("shoal");
   in.read("shoal", shoal, between(1, 1), "version of the file format");
   in.read("vehicle", vehicle, "name of this kind of vehicle");
-  in.read("description", description, "one sentence for people");
+  in.read("description", description, "description in one sentence");
   in.read_raw("parameters", parameters, "default of each ${name} used in the file");
   // Surfaces.
-  in.read_list("materials", materials, "material", "materials this vehicle brings");
+  in.read_list("materials", materials, "material", "materials that this vehicle adds to the world");
   for (const MaterialConfig& material : materials) in.declare("material", material.name);
   in.read_list("contacts", contacts, "contact", "contact parameters of pairs of materials");
-  in.read("categories", categories, "categories of parts this vehicle brings");
+  in.read("categories", categories, "categories of parts that this vehicle adds to the world");
   for (const std::string& category : categories) in.declare("category", category);
   // Properties of the whole vehicle.
   in.read("self_collision", self_collision, "parts of this vehicle collide with each other");

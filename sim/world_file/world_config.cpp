@@ -197,7 +197,7 @@ void WorldConfig::read(ParamReader& in) {
   in.require("shoal");
   in.read("shoal", shoal, between(1, 1), "version of the file format");
   in.read("name", name, "name of the world");
-  in.read("description", description, "one sentence for people");
+  in.read("description", description, "description in one sentence");
   in.read("origin", origin, "geographic position of the world");
   in.read("epoch", epoch, "UTC of simulated time 0, as 2026-01-01T00:00:00Z");
   if (!parse_utc(epoch, epoch_us))

@@ -71,8 +71,8 @@ int fly(const Pilot& pilot) {
     client.publish(pilot.name + ".note", note);
   }
   const auto counts = client.counts();
-  std::printf("hash %016" PRIx64 " ticks %" PRId64 " asked_for %" PRIu64 " repeated %" PRIu64 " end %d\n", hash, ticks,
-              counts.asked_for, counts.repeated, static_cast<int>(client.end()));
+  std::printf("hash %016" PRIx64 " ticks %" PRId64 " requested %" PRIu64 " repeated %" PRIu64 " end %d\n", hash, ticks,
+              counts.requested, counts.repeated, static_cast<int>(client.end()));
   if (!client.reason().empty()) std::printf("%s\n", client.reason().c_str());
   return client.end() == shoal::Client::End::last_tick || ticks == pilot.leave_at ? 0 : 1;
 }

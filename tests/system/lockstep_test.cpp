@@ -67,7 +67,7 @@ struct Mission {
     for (const auto& pilot : pilots) {
       const int code = pilot->wait();
       const std::string output = pilot->output();
-      result += "\n" + std::to_string(code) + " " + output.substr(0, output.find(" asked_for")) + pilot->errors();
+      result += "\n" + std::to_string(code) + " " + output.substr(0, output.find(" requested")) + pilot->errors();
     }
     return result;
   }

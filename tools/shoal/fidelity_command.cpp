@@ -33,8 +33,8 @@ int fidelity(const FidelityArguments& arguments) {
   // Cases to run.
   FidelityFile file = read_fidelity_file(arguments.cases);
   std::erase_if(file.cases, [&](const FidelityCase& of) {
-    const auto desired = [&](const std::string& name) { return name == of.name || name == of.group; };
-    return !arguments.names.empty() && std::none_of(arguments.names.begin(), arguments.names.end(), desired);
+    const auto is_selected = [&](const std::string& name) { return name == of.name || name == of.group; };
+    return !arguments.names.empty() && std::none_of(arguments.names.begin(), arguments.names.end(), is_selected);
   });
   if (file.cases.empty() && arguments.names.empty())
     throw CLI::ValidationError("CASES", "there is no case in " + arguments.cases);

@@ -149,7 +149,7 @@ View make_view(const SnapArguments& arguments, const sim::World& world) {
   return view;
 }
 
-sim::Image8 take_picture(const sim::World& world, const View& view, sim::TextureLibrary& textures) {
+sim::Image8 render_view(const sim::World& world, const View& view, sim::TextureLibrary& textures) {
   const auto rays = sim::make_pixel_rays(sim::Optics(view.optics), view.antialias);
   // The library outlives the renderer, which requires shared ownership.
   const std::shared_ptr<sim::TextureLibrary> shared(&textures, [](sim::TextureLibrary*) {});
@@ -187,7 +187,7 @@ void take_one(const SnapArguments& arguments, const sim::World& world, const std
   const View view = make_view(arguments, world);
   warn(view);
   const auto start = std::chrono::steady_clock::now();
-  const sim::Image8 output = take_picture(world, view, textures);
+  const sim::Image8 output = render_view(world, view, textures);
   const double render_s = seconds_since(start);
   try {
     sim::write_image(path, output, arguments.quality);

@@ -144,9 +144,9 @@ int spy(const SpyArguments& arguments) {
   const auto seconds_since = [](Clock::time_point then) {
     return std::chrono::duration<double>(Clock::now() - then).count();
   };
-  bridges::WaitWarning audit_entry("shoal spy: waiting for messages on " +
-                                   (arguments.channel.empty() ? "any channel" : "'" + arguments.channel + "'") +
-                                   ", at " + listener.url());
+  bridges::WaitWarning warning("shoal spy: waiting for messages on " +
+                               (arguments.channel.empty() ? "any channel" : "'" + arguments.channel + "'") + ", at " +
+                               listener.url());
   bool closed = false;
   const auto over = [&] {
     closed = output_closed();
@@ -155,7 +155,7 @@ int spy(const SpyArguments& arguments) {
   bool any_table = false;
   // Count the messages and print the table regularly.
   while (!over()) {
-    if (channels.empty()) audit_entry.look();
+    if (channels.empty()) warning.look();
     if (const auto message = listener.next(std::chrono::milliseconds(100))) {
       Seen& seen = channels[message->channel];
       ++seen.messages;

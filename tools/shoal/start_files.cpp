@@ -46,7 +46,7 @@ events:
   - {name: halt, at: 7, do: [{publish: {channel: rover1.drive.cmd, type: shoal.twist_command_t,
      value: {forward_mps: 0}}}]}
 
-# What is measured, and what is good enough (docs/guides/scoring.md).
+# Metrics and the rules that they must meet (docs/guides/scoring.md).
 metrics:
   - {name: distance, type: distance, vehicle: rover1}
   - {name: bumps, type: collisions, vehicle: rover1}
@@ -96,7 +96,7 @@ vehicles:
         - {at_m: [100, 60], depth_m: 10}
       devices.autopilot.at_end: circle
 
-# What is measured, and what is good enough (docs/guides/scoring.md).
+# Metrics and the rules that they must meet (docs/guides/scoring.md).
 metrics:
   - {name: distance, type: distance, vehicle: auv1}
 # pass:

@@ -60,7 +60,7 @@ class Client {
     std::uint64_t received = 0;   ///< messages on subscribed channels
     std::uint64_t bad = 0;        ///< received messages that were refused
     std::uint64_t published = 0;  ///< messages published
-    std::uint64_t asked_for = 0;  ///< in lockstep: lost messages that were received on request
+    std::uint64_t requested = 0;  ///< in lockstep: lost messages that were received on request
     std::uint64_t repeated = 0;   ///< in lockstep: duplicate messages
   };
   /// Handler of an encoded payload.

@@ -70,7 +70,7 @@ class StartingRun {
     while (!found && looked < both) {
       while (const auto message = requests_->take()) {
         const auto request = shoal::decode<shoal::sim_control_request_t>(message->payload, shoal::Finite::any);
-        if (others_.requester_of(request) != OtherSimulators::Asker::another_run) continue;
+        if (others_.requester_of(request) != OtherSimulators::Requester::another_run) continue;
         shoal::sim_control_reply_t reply{};
         reply.id = request.id;
         reply.client = request.client;
@@ -167,11 +167,11 @@ TEST(OtherSimulators, OneThatSharesDoesNotLookAndSaysSo) {
   request.id = -1;
   request.client = "shoal-run";
   request.command = "alive";
-  EXPECT_EQ(own.requester_of(request), OtherSimulators::Asker::another_run);
+  EXPECT_EQ(own.requester_of(request), OtherSimulators::Requester::another_run);
   request.text = "{shared: true}";
-  EXPECT_EQ(own.requester_of(request), OtherSimulators::Asker::another_run_that_shares);
+  EXPECT_EQ(own.requester_of(request), OtherSimulators::Requester::another_run_that_shares);
   request.client = "pilot";
-  EXPECT_EQ(own.requester_of(request), OtherSimulators::Asker::none_of_ours);
+  EXPECT_EQ(own.requester_of(request), OtherSimulators::Requester::none_of_ours);
 }
 
 }  // namespace

@@ -62,11 +62,11 @@ TEST(LockstepAnswers, WhatALeavingClientSendsTwiceIsNoBadMessage) {
   EXPECT_TRUE(s.request_reply("leave", 0, "{session: 5, acknowledged: 1}", "pilot").ok);
   EXPECT_TRUE(s.request_reply("leave", 0, "{session: 5, acknowledged: 1}", "pilot").ok) << "its reply was late";
   s.acknowledge(0, "pilot", 5, 1);  // the tick was late, and it answered once more
-  shoal::sim_resend_t question{};
-  question.client = "pilot";
-  question.session = 5;
-  question.sequence = 1;
-  s.test.send("sim.resend", question);
+  shoal::sim_resend_t resend_request{};
+  resend_request.client = "pilot";
+  resend_request.session = 5;
+  resend_request.sequence = 1;
+  s.test.send("sim.resend", resend_request);
   s.synchronize();
   EXPECT_EQ(s.lockstep.bad_messages() + s.service.bad_messages(), 0);
 }
@@ -87,7 +87,7 @@ TEST(LockstepAnswers, WhatCameWithAnAnswerAfterTheInputsWasLookedAtIsNotAskedFor
         return true;
       });
   EXPECT_EQ(s.admitted(), "1");
-  EXPECT_TRUE(s.questions.take_all().empty());
+  EXPECT_TRUE(s.resend_requests.take_all().empty());
 }
 
 TEST(LockstepAnswers, WhatIsSentAgainTooLateIsNoBadMessage) {

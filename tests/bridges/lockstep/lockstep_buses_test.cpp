@@ -80,9 +80,9 @@ TEST(LockstepBuses, AnswersCountOnTheirOwnBusOnly) {
   shoal::sim_ack_t ack{};
   ack.client = "pilot";
   s.send_there("sim.ack", ack);
-  shoal::sim_resend_t question{};
-  question.client = "pilot";
-  s.send_there("sim.resend", question);
+  shoal::sim_resend_t resend_request{};
+  resend_request.client = "pilot";
+  s.send_there("sim.resend", resend_request);
   shoal::sim_resent_t bundle{};
   bundle.client = "pilot";
   bundle.of_client = 1;

@@ -75,7 +75,7 @@ struct LockstepWorld : ServedWorld {
   }
 
   test::Listener<shoal::sim_tick_t> ticks{test, "sim.tick"};
-  test::Listener<shoal::sim_resend_t> questions{test, "sim.resend"};
+  test::Listener<shoal::sim_resend_t> resend_requests{test, "sim.resend"};
   test::Listener<shoal::sim_resent_t> bundles{test, "sim.resent"};
 };
 

@@ -66,12 +66,12 @@ TEST(LockstepService, ATickNamesWhatTheClientMustHaveAndSendsItAgain) {
       EXPECT_EQ(due.sequence, 1);
       EXPECT_EQ(due.channel, (std::vector<std::int32_t>{1, 0}));
       EXPECT_EQ(due.crc[1], sim::crc32(bytes_of("two")));
-      shoal::sim_resend_t question{};
-      question.client = "pilot";
-      question.session = 5;
-      question.sequence = 1;
-      question.first = 1;
-      s.test.send("sim.resend", question);
+      shoal::sim_resend_t resend_request{};
+      resend_request.client = "pilot";
+      resend_request.session = 5;
+      resend_request.sequence = 1;
+      resend_request.first = 1;
+      s.test.send("sim.resend", resend_request);
     } else if (requested == 2) {
       const auto bundle = s.bundles.last();
       EXPECT_EQ(bundle.first, 1);
@@ -81,7 +81,7 @@ TEST(LockstepService, ATickNamesWhatTheClientMustHaveAndSendsItAgain) {
       s.acknowledge(0, "pilot", 5, 1);
     }
   });
-  EXPECT_EQ(s.lockstep.summaries().at(0).messages_sent_again, 1);
+  EXPECT_EQ(s.lockstep.summaries().at(0).messages_resent, 1);
   EXPECT_EQ(s.lockstep.bad_messages(), 0);
 }
 
@@ -93,11 +93,11 @@ TEST(LockstepService, BundlesThatAreTooLargeComeInParts) {
   int requested = 0;
   s.synchronize([&] {
     if (++requested == 1) {
-      shoal::sim_resend_t question{};
-      question.client = "pilot";
-      question.session = 5;
-      question.sequence = 1;
-      s.test.send("sim.resend", question);
+      shoal::sim_resend_t resend_request{};
+      resend_request.client = "pilot";
+      resend_request.session = 5;
+      resend_request.sequence = 1;
+      s.test.send("sim.resend", resend_request);
     } else if (requested == 2) {
       std::vector<std::int32_t> first;
       for (const auto& bundle : s.bundles.take_all()) first.push_back(bundle.first);
@@ -119,9 +119,9 @@ TEST(LockstepService, RequestsWhatAClientPublishedUntilItIsThere) {
       s.acknowledge(0, "pilot", 5, 1, {{"cmd", "1"}, {"cmd", "2"}});
       return;
     }
-    for (const auto& question : s.questions.take_all()) {
-      EXPECT_EQ(question.of_client, 1);
-      EXPECT_EQ(question.first, 0);
+    for (const auto& resend_request : s.resend_requests.take_all()) {
+      EXPECT_EQ(resend_request.of_client, 1);
+      EXPECT_EQ(resend_request.first, 0);
       shoal::sim_resent_t bundle{};
       bundle.client = "pilot";
       bundle.session = 5;
@@ -145,8 +145,8 @@ TEST(LockstepService, WhatOneClientPublishesIsOnTheListOfAnotherInOrder) {
     s.acknowledge(0, "a", 6, 1, {{"note", "1"}, {"other", "x"}});  // no one in the world reads `note`
     s.test.bus.publish("note", bytes_of("1"), sim::Time(0));
     s.acknowledge(0, "b", 5, 1);
-    for (const auto& question : s.questions.take_all()) {
-      EXPECT_EQ(question.client, "a");  // it came before anyone listened
+    for (const auto& resend_request : s.resend_requests.take_all()) {
+      EXPECT_EQ(resend_request.client, "a");  // it came before anyone listened
       s.test.bus.publish("note", bytes_of("1"), sim::Time(0));
     }
   });

@@ -66,7 +66,7 @@ TEST(ClientInbox, TakesWhatIsSentAgainOnlyWhenItIsWhatWasNamed) {
   inbox.add(-1, {right, right});
   inbox.add(1, {right, right});  // there is no place 2
   EXPECT_TRUE(inbox.complete());
-  EXPECT_EQ(inbox.counts().asked_for, 1u);
+  EXPECT_EQ(inbox.counts().requested, 1u);
   EXPECT_THAT(inbox.handled(), ElementsAre("a:1", "a:2"));
 }
 

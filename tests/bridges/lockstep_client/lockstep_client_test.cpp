@@ -345,7 +345,7 @@ TEST(LockstepClient, RequestsWhatIsMissingUntilItHasAll) {
   ASSERT_TRUE(test.client.next_tick(test.tick));
   thread.join();
   EXPECT_EQ(test.seen, (std::vector<std::string>{"1", "2", "3"}));
-  EXPECT_EQ(test.client.counts().asked_for, 2u);
+  EXPECT_EQ(test.client.counts().requested, 2u);
 }
 
 TEST(LockstepClient, NamesWhatItPublishedAndSendsItAgain) {

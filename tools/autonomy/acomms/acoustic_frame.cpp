@@ -128,7 +128,7 @@ std::int64_t centimetres(double metres) {
 /// Each length corresponds to one kind.
 std::optional<int> kind_of_state(std::size_t bytes) {
   if (bytes == state_bytes) return state_kind;
-  if (bytes == obeying_state_bytes) return obeying_state_kind;
+  if (bytes == executing_state_bytes) return executing_state_kind;
   if (bytes == refusing_state_bytes) return refusing_state_kind;
   return std::nullopt;
 }
@@ -147,7 +147,9 @@ std::uint16_t checksum(std::span<const std::uint8_t> bytes) {
 
 std::optional<Bytes> encode(const AcousticState& state) {
   if (!fits(state)) return std::nullopt;
-  const int kind = state.refused_order != 0 ? refusing_state_kind : state.order != 0 ? obeying_state_kind : state_kind;
+  const int kind = state.refused_order != 0 ? refusing_state_kind
+                   : state.order != 0       ? executing_state_kind
+                                            : state_kind;
   Writer out(kind);
   out.put(state.sender, 1);
   out.put(of_week_ms(state.utime), 4);
@@ -194,7 +196,7 @@ std::optional<AcousticState> decode(std::span<const std::uint8_t> bytes, std::in
   }
   // Reject values out of range.
   if (time_of_week_ms >= week_ms || state.east_std_m <= 0 || state.north_std_m <= 0 ||
-      std::abs(state.correlation) > 1 || (*kind == obeying_state_kind && state.order == 0))
+      std::abs(state.correlation) > 1 || (*kind == executing_state_kind && state.order == 0))
     return std::nullopt;
   if (!fits(state)) return std::nullopt;
   state.utime = full_utime(time_of_week_ms, near_utime);

@@ -77,12 +77,12 @@ namespace acoustic_frame {
 
 inline constexpr std::size_t state_bytes = 28;
 inline constexpr std::size_t order_bytes = 23;
-inline constexpr std::size_t obeying_state_bytes = 29;
+inline constexpr std::size_t executing_state_bytes = 29;
 inline constexpr std::size_t refusing_state_bytes = 31;
 inline constexpr int version = 1;
 inline constexpr int state_kind = 0;
 inline constexpr int order_kind = 1;
-inline constexpr int obeying_state_kind = 2;
+inline constexpr int executing_state_kind = 2;
 inline constexpr int refusing_state_kind = 3;
 
 using Bytes = std::vector<std::uint8_t>;

@@ -13,11 +13,11 @@ BalanceModel::Response BalanceModel::response(Complex s) const {
   const double M = wheels_kg + wheels_kgm2 / (wheel_radius_m * wheel_radius_m), ml = mass_kg * height_m;
   const double determinant = (M + mass_kg) * inertia_kgm2 - ml * ml;
   const double stiffness = ml * gravity_mps2;  // torque of gravity for a tilt
-  const double lean_by_lean = (M + mass_kg) * stiffness / determinant;
+  const double tilt_by_tilt = (M + mass_kg) * stiffness / determinant;
   const double tilt_by_torque = -(M + mass_kg + ml / wheel_radius_m) / determinant;
   const double distance_by_tilt = -ml * stiffness / determinant;
   const double distance_by_torque = (inertia_kgm2 / wheel_radius_m + ml) / determinant;
-  const Complex tilt = tilt_by_torque / (s * s - lean_by_lean);
+  const Complex tilt = tilt_by_torque / (s * s - tilt_by_tilt);
   return {tilt, (distance_by_tilt * tilt + distance_by_torque) / s};
 }
 

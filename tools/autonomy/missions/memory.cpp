@@ -11,7 +11,7 @@ void Memory::keep(std::int64_t utime) {
     copies_.pop_front();
 }
 
-bool Memory::rewinds(std::int64_t utime) {
+bool Memory::rewind(std::int64_t utime) {
   if (copies_.empty() || copies_.front().utime >= utime) return false;
   while (copies_.back().utime >= utime) copies_.pop_back();
   restore_saved_(copies_.back().state.get());

@@ -30,7 +30,7 @@ class Memory {
   void keep(std::int64_t utime);
   /// Restores the state after a rewind of the world, where the tick `utime` is the first one: the state after the last
   /// decision before it.  Returns false, with the state unchanged, when there is no such copy.
-  bool rewinds(std::int64_t utime);
+  bool rewind(std::int64_t utime);
   std::size_t size() const { return copies_.size(); }
 
  private:

@@ -74,7 +74,7 @@ int take_part(shoal::Client& client, const Participation& participation, Memory 
   const StopBySignal stop(client);
   bool lost = false;
   client.on_rewind([&](std::int64_t utime) {
-    if (memory.rewinds(utime)) return;
+    if (memory.rewind(utime)) return;
     lost = true;
     client.stop();
   });

@@ -98,9 +98,9 @@ Drawing draw(const std::vector<shoal::side_scan_t>& lines) {
   const double range_m = lines.front().range_max_m, near_m = lines.front().range_min_m;
   if (bins < 1 || !(range_m > near_m) || !(near_m >= 0)) throw std::runtime_error("the lines have an invalid size");
   const double bin_m = (range_m - near_m) / bins;
-  const double unheard = std::round(2 * near_m / bin_m);  // gap between the two sides
-  const double width = 2.0 * bins + unheard;
-  if (unheard > 10000 || width * static_cast<double>(lines.size()) > max_raster_bytes)
+  const double gap_bins = std::round(2 * near_m / bin_m);  // gap between the two sides
+  const double width = 2.0 * bins + gap_bins;
+  if (gap_bins > 10000 || width * static_cast<double>(lines.size()) > max_raster_bytes)
     throw std::runtime_error("the lines have an invalid size");
   // Append each line, port mirrored.
   Drawing drawing;
@@ -109,7 +109,7 @@ Drawing draw(const std::vector<shoal::side_scan_t>& lines) {
     check_count("bins to port", line.port.size(), bins);
     check_count("bins to starboard", line.starboard.size(), bins);
     drawing.data.append(line.port.rbegin(), line.port.rend());
-    drawing.data.append(static_cast<std::size_t>(unheard), '\0');
+    drawing.data.append(static_cast<std::size_t>(gap_bins), '\0');
     drawing.data.append(line.starboard.begin(), line.starboard.end());
   }
   drawing.commands =

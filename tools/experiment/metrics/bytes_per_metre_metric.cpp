@@ -10,7 +10,7 @@ namespace {
 /// Bytes sent per metre of reduced rms error.
 class BytesPerMetreMetric final : public Metric {
  public:
-  static constexpr const char* meaning = "what a metre of smaller position error cost in bytes";
+  static constexpr const char* meaning = "bytes sent for each metre by which the position error is smaller";
   static std::vector<sim::FigureKind> figures() {
     return {{"bytes_per_metre", "bytes/m", "bytes_sent / reduction_m; none when the error did not become smaller"},
             {"bytes_sent", "bytes", "payload of the packets that the modems sent", true},

@@ -23,7 +23,7 @@ std::string meaning_of(sim::SignalLoss loss) {
     case sim::SignalLoss::captured:
       return "a stronger signal took the receiver over";
     case sim::SignalLoss::doppler:
-      return "sender and receiver close or part too fast";
+      return "sender and receiver approach or separate too fast";
     case sim::SignalLoss::blocked:
       return "something stands between; by radio: or an antenna is under water";
     case sim::SignalLoss::out_of_water:

@@ -152,8 +152,8 @@ std::string Summary::to_json() const {
     json["clients"].push_back({{"name", client.client},
                                {"ticks", client.ticks},
                                {"repeated_ticks", client.repeated_ticks},
-                               {"messages_sent_again", client.messages_sent_again},
-                               {"messages_asked_for", client.messages_asked_for},
+                               {"messages_resent", client.messages_resent},
+                               {"messages_requested", client.messages_requested},
                                {"messages_repeated", client.messages_repeated},
                                {"timeouts", client.timeouts},
                                {"contradictions", client.contradictions},
@@ -283,11 +283,11 @@ void write_results_world(const std::string& directory, const sim::ConfigNode& re
 
 Results::Results(const std::string& directory, const sim::World& world, bool plots)
     : directory_(made(directory)), summary_file_(directory, room_for_summary(world)), world_(world), plots_(plots) {
-  std::error_code error;
   const std::string path = directory + "/tracks.csv";
   remove_link(path);
-  tracks_ = error ? nullptr : std::fopen(path.c_str(), "w");
-  if (tracks_ == nullptr) throw cannot_write(path, error ? error.message() : std::strerror(errno));
+  tracks_ = std::fopen(path.c_str(), "w");
+  if (tracks_ == nullptr) throw cannot_write(path, std::strerror(errno));
+  std::error_code error;
   // Remove the files of an earlier run, which would be mistaken for those of this one if it is killed.
   for (const char* image : run_plots) std::filesystem::remove(directory + "/" + image, error);
   for (const char* file : {"summary.json", "metrics.csv", "errors.csv"})

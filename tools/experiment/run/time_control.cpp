@@ -245,11 +245,11 @@ std::string TimeControl::rewind(double seconds, bool run_on) {
     throw std::runtime_error(fmt::format("cannot rewind {:.6g} s from {:.6g} s: the history starts at {:.6g} s",
                                          seconds, sim::to_seconds(world_.now()), oldest_s));
   }
-  rewinds(*base, target, run_on);
+  rewind_to(*base, target, run_on);
   return place();
 }
 
-void TimeControl::rewinds(std::int64_t base, std::int64_t target, bool run_on) {
+void TimeControl::rewind_to(std::int64_t base, std::int64_t target, bool run_on) {
   travel(
       [&] {
         const sim::Bytes all = ring_.get(base);
@@ -444,7 +444,7 @@ void TimeControl::restore_with_clients(const Snapshot& snapshot, const std::stri
     refuse(ring_.oldest() ? fmt::format("its {:.6g} s are before the history of this run, which starts at {:.6g} s",
                                         snapshot.time_s(), sim::to_seconds(world_.step_time() * *ring_.oldest()))
                           : "this run keeps no history (see --rewind-s)");
-  rewinds(*base, snapshot.step, run_on);
+  rewind_to(*base, snapshot.step, run_on);
 }
 
 }  // namespace tools

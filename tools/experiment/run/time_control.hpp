@@ -97,7 +97,7 @@ class TimeControl final : public bridges::TimeMachine {
   void travel(const std::function<void()>& work, std::int64_t to_step, bool run_on, bool ours);
   void restore_saved(const Saved& before);
   /// Moves to a step of this branch, from an earlier snapshot in memory.
-  void rewinds(std::int64_t base, std::int64_t target, bool run_on);
+  void rewind_to(std::int64_t base, std::int64_t target, bool run_on);
   void restore_with_clients(const Snapshot& snapshot, const std::string& path, bool run_on);
   std::string what_is_kept() const;
   std::string write_file(const std::string& name);

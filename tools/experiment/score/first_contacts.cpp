@@ -101,8 +101,8 @@ void FirstContacts::touch(const Group& a, const Group& b) {
 
 /// Reports a contact once, also when the run is rewound and repeats it.
 void FirstContacts::report(const Pair& pair, const Contact& contact) {
-  if (!report_ || said_.size() > max_lines || !said_.emplace(pair, contact.first_s).second) return;
-  if (said_.size() > max_lines)
+  if (!report_ || reported_.size() > max_lines || !reported_.emplace(pair, contact.first_s).second) return;
+  if (reported_.size() > max_lines)
     report_("further first contacts are only counted; see the summary");
   else
     report_(fmt::format("{:.1f} s: {} hits {}", contact.first_s, contact.first, contact.second));

@@ -69,7 +69,7 @@ class FirstContacts {
   std::map<Pair, Contact> contacts_;
   // Output on the terminal, which is not rewound.
   Report report_;
-  std::set<std::pair<Pair, double>> said_;
+  std::set<std::pair<Pair, double>> reported_;
 };
 
 /// Returns lines for the end of a run, ten at most; empty without contacts.

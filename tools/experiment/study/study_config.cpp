@@ -237,7 +237,7 @@ void StudyConfig::read(sim::ParamReader& in) {
   in.read("shoal", version, sim::between(1, 1), "version of the file format");
   in.require("study");
   in.read_name("study", name, "name of the study");
-  in.read("description", description, "one sentence for people");
+  in.read("description", description, "description in one sentence");
   // World, seeds and cases.
   in.require("world");
   in.read("world", world, "world file, from the folder of this file");

@@ -25,18 +25,18 @@ constexpr std::size_t max_bytes = 64'000'000;
 constexpr std::size_t max_files = 1000;
 
 /// File to be upgraded, and the place that refers to it.
-struct Accepts {
+struct QueuedFile {
   std::string path;
-  sim::SourcePlace asked_at;
+  sim::SourcePlace referenced_at;
   std::optional<FileKind> kind;  ///< kind of the file that includes it
 };
 
 /// Reads a regular file of at most 64 MB.
-std::optional<std::string> read_text(const Accepts& file, sim::Diagnostics& diagnostics) {
-  const bool is_included = file.asked_at.line > 0;
+std::optional<std::string> read_text(const QueuedFile& file, sim::Diagnostics& diagnostics) {
+  const bool is_included = file.referenced_at.line > 0;
   const std::string subject = is_included ? "'" + sim::shortened(file.path) + "'" : "the file";
   const auto fail = [&](const std::string& why) {
-    diagnostics.error(file.asked_at, "", "cannot read " + subject + ": " + why);
+    diagnostics.error(file.referenced_at, "", "cannot read " + subject + ": " + why);
     return std::nullopt;
   };
   // Check the kind of file.
@@ -68,42 +68,42 @@ std::vector<std::string> folders_of(const std::vector<std::string>& paths) {
 class Planner {
  public:
   explicit Planner(const std::vector<std::string>& paths) : access_(folders_of(paths), paths, {}) {
-    for (const std::string& path : paths) desired_.push_back({path, {sim::intern_file_name(path), 0, 0}, std::nullopt});
+    for (const std::string& path : paths) queue_.push_back({path, {sim::intern_file_name(path), 0, 0}, std::nullopt});
   }
 
   std::vector<FileUpgrade> plan() {
     std::vector<FileUpgrade> files;
-    for (; !desired_.empty(); desired_.pop_front()) {
+    for (; !queue_.empty(); queue_.pop_front()) {
       std::error_code error;
-      const fs::path canonical = fs::weakly_canonical(desired_.front().path, error);
-      if (!seen_.insert(error ? fs::path(desired_.front().path) : canonical).second) continue;
-      files.push_back(plan_file(desired_.front()));
+      const fs::path canonical = fs::weakly_canonical(queue_.front().path, error);
+      if (!seen_.insert(error ? fs::path(queue_.front().path) : canonical).second) continue;
+      files.push_back(plan_file(queue_.front()));
     }
     return files;
   }
 
  private:
-  FileUpgrade plan_file(const Accepts& desired) {
+  FileUpgrade plan_file(const QueuedFile& queued) {
     FileUpgrade file;
-    file.path = desired.path;
+    file.path = queued.path;
     sim::Diagnostics diagnostics;
-    if (const auto text = read_text(desired, diagnostics)) {
+    if (const auto text = read_text(queued, diagnostics)) {
       file.before = *text;
-      plan_text(file, desired, diagnostics);
+      plan_text(file, queued, diagnostics);
     }
     if (!diagnostics.ok()) file.state = FileUpgrade::State::refused;
     file.errors = diagnostics.lines();
     return file;
   }
 
-  void plan_text(FileUpgrade& file, const Accepts& desired, sim::Diagnostics& diagnostics) {
+  void plan_text(FileUpgrade& file, const QueuedFile& queued, sim::Diagnostics& diagnostics) {
     const sim::ConfigNode root = sim::parse_config_text(file.before, file.path, diagnostics);
     if (!diagnostics.ok()) return;
     const sim::SourcePlace whole_file{sim::intern_file_name(file.path), 0, 0};
     if (root.kind == NodeKind::null) return diagnostics.error(whole_file, "", "the file is empty");
     if (root.kind != NodeKind::map)
       return diagnostics.error(root.place, "", "must be a map of keys and values, got " + sim::shown(root));
-    const std::optional<FileKind> kind = desired.kind ? desired.kind : kind_of(root);
+    const std::optional<FileKind> kind = queued.kind ? queued.kind : kind_of(root);
     if (!kind) return diagnostics.error(whole_file, "", "must be a world, a vehicle or a study");
     want_included(root, file.path, *kind, diagnostics);
     auto upgraded = upgrade_text(file.before, *kind, file.path, diagnostics);
@@ -121,7 +121,7 @@ class Planner {
     for (const sim::ConfigNode& item : include->items) names.push_back(&item);
     for (const sim::ConfigNode* name : names) {
       if (name->kind != NodeKind::scalar || name->scalar.empty()) continue;  // `shoal check` reports the error
-      if (seen_.size() + desired_.size() > max_files)
+      if (seen_.size() + queue_.size() > max_files)
         return diagnostics.error(name->place, "", "more than " + std::to_string(max_files) + " files");
       const std::string included = (fs::path(path).parent_path() / name->scalar).string();
       // A file may be untrusted: it must not select files elsewhere to be rewritten, read or quoted.
@@ -130,12 +130,12 @@ class Planner {
             name->place, "",
             "'" + sim::shortened(sim::printable(name->scalar)) +
                 "' must lie below the folder of a file on the command line, or be one of these files");
-      desired_.push_back({included, name->place, kind});
+      queue_.push_back({included, name->place, kind});
     }
   }
 
   sim::FileAccess access_;  ///< permits the included files to be rewritten
-  std::deque<Accepts> desired_;
+  std::deque<QueuedFile> queue_;
   std::set<fs::path> seen_;
 };
 

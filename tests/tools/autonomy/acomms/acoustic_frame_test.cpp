@@ -69,7 +69,7 @@ bool is_good(std::span<const std::uint8_t> bytes) {
 }
 
 TEST(AcousticFrame, FitsIntoAFrameOfThe32ByteRate) {
-  const std::vector<std::size_t> sizes = {frame::state_bytes, frame::order_bytes, frame::obeying_state_bytes,
+  const std::vector<std::size_t> sizes = {frame::state_bytes, frame::order_bytes, frame::executing_state_bytes,
                                           frame::refusing_state_bytes};
   const std::vector<frame::Bytes> frames = one_of_each_kind(6);
   ASSERT_EQ(frames.size(), sizes.size());

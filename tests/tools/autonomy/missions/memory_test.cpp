@@ -17,17 +17,17 @@ TEST(Memory, PutsBackWhatWasKnownAfterTheLastDecisionBefore) {
     state = static_cast<int>(tick);
     memory.keep(tick * 100'000);
   }
-  EXPECT_TRUE(memory.rewinds(450'000));
+  EXPECT_TRUE(memory.rewind(450'000));
   EXPECT_EQ(state, 4);
-  EXPECT_TRUE(memory.rewinds(400'000));  // the decision at that tick is still to be made
+  EXPECT_TRUE(memory.rewind(400'000));  // the decision at that tick is still to be made
   EXPECT_EQ(state, 3);
   state = 40;
   memory.keep(400'000);
   state = 50;
   memory.keep(500'000);
-  EXPECT_TRUE(memory.rewinds(500'000));
+  EXPECT_TRUE(memory.rewind(500'000));
   EXPECT_EQ(state, 40) << "of the new branch, not of the one that was left";
-  EXPECT_TRUE(memory.rewinds(50'000));
+  EXPECT_TRUE(memory.rewind(50'000));
   EXPECT_EQ(state, 0) << "before its first decision";
 }
 
@@ -40,9 +40,9 @@ TEST(Memory, KeepsAsLongAsItIsConfiguredAndNoLonger) {
   }
   // At 10 s: from the one that holds at 8 s on.
   EXPECT_EQ(memory.size(), 201u);
-  EXPECT_FALSE(memory.rewinds(8'000'000));
+  EXPECT_FALSE(memory.rewind(8'000'000));
   EXPECT_EQ(state, 1000) << "left alone";
-  EXPECT_TRUE(memory.rewinds(8'000'001));
+  EXPECT_TRUE(memory.rewind(8'000'001));
   EXPECT_EQ(state, 800);
 }
 
@@ -51,7 +51,7 @@ TEST(Memory, OfNoLengthKeepsNothing) {
   Memory memory(state, 0);
   memory.keep(1);
   EXPECT_EQ(memory.size(), 0u);
-  EXPECT_FALSE(memory.rewinds(2));
+  EXPECT_FALSE(memory.rewind(2));
   EXPECT_EQ(state, 7);
 }
 
@@ -67,7 +67,7 @@ TEST(Memory, ABehaviourIsCopiedWithItsOwner) {
   memory.keep(2);
   EXPECT_NE(east, north);
   EXPECT_EQ(behaviour->steer({0, {50, 0}, {1, 0}}).heading_rad > 0.1, true) << "on its way to the second waypoint";
-  ASSERT_TRUE(memory.rewinds(2));
+  ASSERT_TRUE(memory.rewind(2));
   EXPECT_EQ(behaviour->steer({0, {50, 0}, {1, 0}}).heading_rad, east);
 }
 
