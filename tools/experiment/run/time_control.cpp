@@ -366,7 +366,7 @@ std::string TimeControl::path_of(const std::string& name) const {
       });
   if (!good)
     throw std::runtime_error(
-        "a snapshot has a file name of 1 to 100 inputs, digits, '.', '-' and '_', not beginning with '.', got '" +
+        "a snapshot has a file name of 1 to 100 letters, digits, '.', '-' and '_', not beginning with '.', got '" +
         sim::shortened(sim::printable(name)) + "'");
   return options_.directory + "/" + name + (name.ends_with(suffix) ? "" : suffix);
 }
