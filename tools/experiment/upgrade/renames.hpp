@@ -27,7 +27,7 @@ struct Rename {
 /// it decides which keys rewrite_action() moves.
 std::span<const Rename> renames();
 
-/// `text`, such as a rule, with the present name of a figure: `before` is replaced where it is a whole name after a
+/// `text`, for example a rule, with the present name of a figure: `before` is replaced where it is a whole name after a
 /// dot.
 std::string renamed_figure(std::string text, std::string_view before, std::string_view after);
 

@@ -107,7 +107,7 @@ TEST(ProcessCheck, ReportsAnEventOnAChannelWithoutSubscriber) {
               HasSubstr("event 'go': no device and no program of this world subscribes to 'auv.estimat'"));
   EXPECT_THAT(warnings_of({}, event("nothing")), HasSubstr("event 'go': no device and no program"));
   EXPECT_EQ(warnings_of({{"auv", auv + "}"}, {"other", "command: [another_program]"}}, event("nothing")), "");
-  EXPECT_EQ(warnings_of({}, event("heard") + "metrics: [{name: m, type: messages, channel: heard}]\n"), "");
+  EXPECT_EQ(warnings_of({}, event("received") + "metrics: [{name: m, type: messages, channel: received}]\n"), "");
 }
 
 TEST(ProcessCheck, ReportsAProgramThatIsNotThere) {
