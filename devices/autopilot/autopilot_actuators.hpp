@@ -11,16 +11,16 @@
 
 namespace devices {
 
-/// The actuators that an autopilot drives, by the geometry and the curves of its vehicle's file.
+/// Actuators of an autopilot, with the geometry and thrust curves from the vehicle file.
 class AutopilotActuators {
  public:
-  /// Throws ConfigError for names of no thruster or fin, and for axes that they cannot give.
+  /// Throws ConfigError for unknown thrusters or fins, and for axes that they cannot control.
   AutopilotActuators(const AutopilotParams& params, const sim::DeviceContext& context);
 
   CraftAbilities abilities() const;
-  /// Finds the commands for a wrench at a speed through the water.
+  /// Computes the commands for a wrench at a velocity through the water.  Returns which actuators are saturated.
   Limited share(const Wrench& wrench, const sim::Vector3d& v_B, double density_kgpm3);
-  /// Publishes the commands that share() found.
+  /// Publishes the commands computed by share().
   void publish(sim::Time now);
 
  private:
