@@ -60,7 +60,8 @@ bool ThrustAllocation::gives(int axis) const {
   return std::find(axes_.begin(), axes_.end(), axis) != axes_.end();
 }
 
-/// Returns true when the limit in the direction of the force is at most a hundredth of the limit of the thruster.
+/// Returns true when the limit in the direction of the force is at most a hundredth of the larger limit of both
+/// directions.
 bool ThrustAllocation::cannot_push(Eigen::Index thruster, double force_N) const {
   const ThrusterPlace& place = thrusters_[static_cast<std::size_t>(thruster)];
   const double limit = std::abs(force_N > 0 ? place.max_N : place.min_N);

@@ -40,8 +40,8 @@ class WaterMount {
     const sim::Vector3d v_B = turned_ ? sim::Vector3d(R_BD_ * v_D) : v_D;
     return flow.body.R_WB * v_B;
   }
-  /// Returns the force that stops the relative flow at D within one step.  Lift and drag are limited to it, because a
-  /// larger force would reverse the flow and make the integration unstable.
+  /// Returns the force that stops the relative flow at D within one step.  Lift and drag are limited to it,
+  /// because a larger force would reverse the flow within the step, which is unphysical.
   double max_force_N(double speed_mps, double step_s) const { return mass_at_D_kg_ * speed_mps / step_s; }
   /// Adds a force in D at the origin of D.
   void add_force_D(const WaterFlow& flow, const sim::Vector3d& force_N) {

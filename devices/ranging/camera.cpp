@@ -210,7 +210,7 @@ void Camera::sweep(const sim::SweepContext& context) {
   for (; next_exposure_ < count; ++next_exposure_) {
     const sim::Time at = context.next_sample - before_sample(next_exposure_);
     if (at > context.now) return;
-    // The time may precede this step when the previous image ended late, at a rate that is no divisor of the step rate.
+    // The time may precede this step when the previous image ended late, at a rate that does not divide the step rate.
     expose(next_exposure_, X_WS_at(at));
   }
 }

@@ -80,6 +80,7 @@ void set_depth(shoal::image_t& message, const Camera& camera) {
 // Publishes shoal.image_t, equal on the wire to bot_core's.
 void fill(const Camera& camera, shoal::image_t& message) {
   const Camera::Params& params = camera.params();
+  // Size and optics of the image.
   message.width = params.optics.width;
   message.height = params.optics.height;
   message.metadata.clear();

@@ -63,6 +63,7 @@ void ImagingSonar::make_rays() {
 void ImagingSonar::measure(const sim::SenseContext& context) {
   receiver_.cast(context.world.scene(), context.X_WS, rays_S_);
   bins_.begin(receiver_);
+  // Distribute the echoes over range, by the extent of each ray's footprint in elevation and bearing.
   const auto rays = static_cast<std::size_t>(params_.elevation_rays * params_.beam_rays);
   for (std::size_t i = 0; i < rays_S_.size(); ++i) {
     const SonarEcho echo = receiver_.echo(i, rays_S_[i]);

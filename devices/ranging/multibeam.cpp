@@ -50,6 +50,7 @@ void Multibeam::change(const Params& params) {
 void Multibeam::make_rays() {
   angles_rad_.clear();
   rays_S_.clear();
+  // Rays of each beam over its -3 dB widths, with the two-way beam pattern.
   const double step_rad = params_.beams > 1 ? params_.swath_rad / (params_.beams - 1) : 0;
   const double first_rad = params_.beams > 1 ? -params_.swath_rad / 2 : 0;
   const int n = params_.across_rays, m = params_.along_rays;

@@ -89,14 +89,14 @@ class SonarReceiver {
   double pulse_m() const { return sound_speed_mps_ * params_.pulse_s / 2; }
   /// Returns the ratio of measured to true ranges: assumed over true speed of sound.
   double range_scale() const { return range_scale_; }
-  /// The last properties of the medium are part of the state, because they apply while the sonar is outside its medium.
+  /// Archives the last properties of the medium, which apply while the sonar is outside its medium.
   void visit_state(sim::StateArchive& archive) { archive(sound_speed_mps_, absorption_dBpm_, range_scale_); }
 
  private:
   /// Updates the properties of the medium at the sensor.  Returns false when the sonar is outside its medium.
   bool update_medium(const sim::Vector3d& p_WS);
   /// Returns the distance to the water surface along a ray, at most its range_max_m.  `surface_m`: height of the
-  /// surface above or below the sensor, in W.
+  /// surface in W at the position of the sensor.
   double range_to_surface_m(const sim::Ray& ray_W, double surface_m) const;
 
   const sim::PhysicsWorld& physics_;

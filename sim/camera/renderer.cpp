@@ -266,7 +266,7 @@ LinearColor Renderer::albedo(const RayHit& hit, const Vector3d& p_W, float footp
 LinearColor Renderer::shade(const RayHit& hit, const Ray& ray, bool in_shadow, float footprint_m) {
   const Vector3d p_W = ray.origin_W + hit.range_m * ray.direction_W;
   const Eigen::Vector3f normal = hit.normal_W.cast<float>(), direction = ray.direction_W.cast<float>();
-  // Enlarge the footprint at grazing incidence by the geometric mean of its two directions, which keeps patterns sharp.
+  // Footprint at grazing incidence: geometric mean of its two extents, a compromise between sharpness and aliasing.
   const float slant = std::max(0.05F, -normal.dot(direction));
   const LinearColor own = albedo(hit, p_W, footprint_m / std::sqrt(slant));
   // Ambient light by the share of the hemisphere that is sky; the ground reflects less.

@@ -42,7 +42,7 @@ struct SoundSurface {
 /// Material of a part: its response to light, lasers and sound.  Contacts refer to it by name (see ContactConfig).
 struct MaterialConfig {
   std::string name;
-  std::string color;  ///< `#rrggbb`; empty: grey.  A part's own color takes precedence.
+  std::string color;  ///< `#rrggbb`; empty: default color.  The color of a part takes precedence.
   double gloss = 0;   ///< strength of the highlight of the sun, 0 to 1
   TextureConfig texture;
   LaserSurface laser;
