@@ -49,10 +49,13 @@ class Autopilot final : public sim::Sensor {
   const Route& route() const { return route_; }
 
   // Commands.  NaN keeps the present value of a field.
+  /// Changes the mode.  Throws std::runtime_error for mode waypoints without a route.
   void set_mode(Mode mode);
   /// Sets heading, speed, depth or altitude.  A heading ends a route or station keeping.
   void set_helm(const shoal::helm_command_t& command);
+  /// Starts a new route.
   void set_waypoints(const shoal::waypoints_command_t& command);
+  /// Starts station keeping.
   void set_station(const shoal::station_command_t& command);
 
  private:

@@ -122,7 +122,7 @@ void AutopilotActuators::add_fins(const AutopilotParams& params, const sim::Devi
     torque.col(static_cast<Eigen::Index>(i)) = one.tail<2>();
     planes_.push_back({{params.fins[i]}, fin->limit_rad});
   }
-  // The pseudoinverse ignores fins with a negligible effect on an axis.
+  // The pseudo-inverse ignores fins with a negligible effect on an axis.
   fin_angles_ = Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(torque).pseudoInverse();
   if (torque.norm() < 1e-9 || !fin_angles_.allFinite()) refuse(context, "'fins' neither pitch nor turn the vehicle");
 }

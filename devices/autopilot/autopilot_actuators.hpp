@@ -17,6 +17,7 @@ class AutopilotActuators {
   /// Throws ConfigError for unknown thrusters or fins, and for axes that they cannot control.
   AutopilotActuators(const AutopilotParams& params, const sim::DeviceContext& context);
 
+  /// Returns mass and controllable axes of the craft.
   CraftAbilities abilities() const;
   /// Computes the commands for a wrench at a velocity through the water.  Returns which actuators are saturated.
   Limited share(const Wrench& wrench, const sim::Vector3d& v_B, double density_kgpm3);
@@ -24,15 +25,18 @@ class AutopilotActuators {
   void publish(sim::Time now);
 
  private:
+  /// Actuator by name, with its last command.
   struct Driven {
     std::string name;
     double command = 0;
   };
+  /// Thruster with its thrust curve and axis.
   struct Propeller {
     Driven device;
     ThrusterCommand curve;
     sim::Vector3d axis_B;
   };
+  /// Fin with its limit.
   struct Plane {
     Driven device;
     double limit_rad;

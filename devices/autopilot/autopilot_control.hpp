@@ -30,6 +30,7 @@ class AxisHold {
   /// Returns the commanded acceleration.  `error`: desired minus actual value; `rate`: x'.  `frozen`: the actuators are
   /// saturated and the integral is held (anti-windup).
   double step(double error, double rate, double dt_s, bool frozen);
+  /// Clears the integral term.
   void reset() { sum_ = 0; }
   void visit_state(sim::StateArchive& archive) { archive(sum_); }
 
@@ -45,6 +46,7 @@ class RateHold {
 
   /// Returns the commanded acceleration.  `frozen`: the integral is held (anti-windup).
   double step(double error, double dt_s, bool frozen);
+  /// Clears the integral term.
   void reset() { sum_ = 0; }
   void visit_state(sim::StateArchive& archive) { archive(sum_); }
 

@@ -37,7 +37,7 @@ ThrustAllocation::ThrustAllocation(std::vector<ThrusterPlace> thrusters, const s
       throw std::invalid_argument("the thrusters cannot give " + wrench_axes()[static_cast<std::size_t>(axes_[n - 1])] +
                                   (n > 1 ? " beside the axes before it" : ""));
   if (axes_.empty()) throw std::invalid_argument("the thrusters produce no force");
-  // Weighted pseudoinverse W^-1 B^T (B W^-1 B^T)^-1.
+  // Weighted pseudo-inverse W^-1 B^T (B W^-1 B^T)^-1.
   const Eigen::Index rows = static_cast<Eigen::Index>(axes_.size());
   Eigen::MatrixXd effect(rows, effect_.cols());
   for (Eigen::Index row = 0; row < rows; ++row) effect.row(row) = effect_.row(axes_[static_cast<std::size_t>(row)]);

@@ -36,7 +36,9 @@ class Fin final : public sim::Actuator {
   static constexpr const char* meaning =
       "Rudder or plane that turns about z of its frame; commanded by its angle in rad.";
   static constexpr sim::SafeState safe_states[] = {sim::SafeState::stop, sim::SafeState::hold};
+  /// Force model: foil, or published coefficients.
   enum class Model { lift, coefficients };
+  /// Flow of the foil model: at the fin, or at the origin of the body.
   enum class Flow { local, body };
   struct Params {
     Model model = Model::lift;

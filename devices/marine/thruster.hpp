@@ -25,9 +25,13 @@ class Thruster final : public sim::Actuator {
  public:
   static constexpr const char* meaning =
       "Propeller that pushes along +x of its frame; commanded by rpm, rad/s, effort (-1 to 1) or thrust.";
+  /// Unit of a command.
   enum class Command { effort, rpm, radps, thrust_N };
+  /// Model of the thrust at a level.
   enum class Curve { quadratic, table, kt_kq, direct };
+  /// Velocity for the inflow: water along the axis, speed of the body through the water, or over ground.
   enum class Inflow { water, water_speed, ground };
+  /// Direction of rotation, seen from behind.
   enum class Turns { right, left };
   struct Params {
     Command command = Command::effort;
@@ -69,6 +73,7 @@ class Thruster final : public sim::Actuator {
   double thrust_N() const { return thrust_N_; }  ///< thrust on the body in the last step
 
  private:
+  /// Thrust and shaft torque.
   struct Effort {
     double thrust_N, shaft_torque_Nm;
   };

@@ -39,6 +39,7 @@ class Ctd final : public sim::Sensor {
   }
   const Reading& reading() const { return reading_; }
   double depth_m() const { return params_.depth.depth_m(reading_.pressure_Pa); }
+  /// Returns the practical salinity computed from the measured values.
   double salinity_psu() const;
 
  private:

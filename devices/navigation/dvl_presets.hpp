@@ -17,6 +17,7 @@ struct DvlPreset {
   double rate_hz;                         ///< for documentation; a preset cannot set the common key `rate_hz`
 };
 
+/// Returns all presets.
 std::span<const DvlPreset> dvl_presets();
 
 }  // namespace devices

@@ -11,7 +11,7 @@
 namespace devices {
 
 /// Satellite receiver: position on the WGS84 ellipsoid, from the geodetic origin of the world, and velocity over
-/// ground. It has no fix while its antenna, the origin of its frame, is below the instantaneous water surface.  It may
+/// ground.  It has no fix while its antenna, the origin of its frame, is below the instantaneous water surface.  It may
 /// discipline the clock of its vehicle (docs/models/clocks.md): each fix measures the clock error with the jitter of
 /// the pulse per second.
 class Gps final : public sim::Sensor {

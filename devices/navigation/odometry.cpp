@@ -77,7 +77,7 @@ void Odometry::disturb(double dt_s, sim::Random& random) {
   const double angles[2] = {left_.position(left_.axes() - 1), right_.position(right_.axes() - 1)};
   double turned[2] = {angles[0] - wheel_rad_[0], angles[1] - wheel_rad_[1]};
   noise_.apply(std::span<double>(turned), dt_s, random);
-  // Quantise to ticks.
+  // Convert to whole ticks.
   const double rad_per_tick = 2 * std::numbers::pi / params_.ticks_per_turn;
   std::int64_t ticks[2];
   for (int side = 0; side < 2; ++side) {

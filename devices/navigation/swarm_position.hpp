@@ -23,6 +23,7 @@ class SwarmPosition final : public sim::Sensor {
     sim::NoiseParams absolute_noise;
     void read(sim::ParamReader& in);
   };
+  /// Detection of another vehicle.
   struct Sighting {
     int vehicle = -1;  ///< number of the vehicle in the world
     std::string name;
@@ -40,6 +41,7 @@ class SwarmPosition final : public sim::Sensor {
   bool absolute() const { return params_.absolute; }
 
  private:
+  /// Noise states of the measurements of one vehicle.
   struct Errors {
     int vehicle = -1;
     sim::Noise relative, absolute;

@@ -11,6 +11,7 @@ class WaterSpeed final : public sim::Sensor {
  public:
   static constexpr const char* meaning = "Paddle wheel or pitot tube: speed through the water along its x axis.";
   static constexpr double default_rate_hz = 5;
+  /// Sign of the measured speed.
   enum class Senses {
     both,
     forward,    ///< 0 for flow from behind, as a pitot tube

@@ -21,7 +21,7 @@ struct ExposureParams {
 };
 
 /// Camera rendered without GPU or display.  Its optical axis is +x of the sensor frame S; +y is left in the image and
-/// +z up. See docs/models/cameras.md.
+/// +z up.  See docs/models/cameras.md.
 class Camera final : public sim::Sensor {
  public:
   static constexpr const char* meaning = "Camera: color, grey, depth or segmentation; pinhole or fisheye.";
@@ -30,7 +30,9 @@ class Camera final : public sim::Sensor {
   static constexpr bool sweeps = true;
   static constexpr const char* fixed_keys[] = {"image", "readout_s", "exposure_time_s", "blur_samples"};
   static constexpr bool reuses_message = true;
+  /// Kind of image: color, grey, depth, segmentation by part or by vehicle.
   enum class Kind { rgb, grey, depth, parts, vehicles };
+  /// Encoding of the message.
   enum class Encoding { raw, raw16, png, jpeg };
   /// Depth along the optical axis, or range along the ray.
   enum class DepthAlong { axis, ray };
@@ -92,6 +94,7 @@ class Camera final : public sim::Sensor {
   sim::Pose X_WS_at(sim::Time at) const;
   void add_sensor_noise(sim::Random& random);
 
+  /// Pose of the camera at a time.
   struct Place {
     sim::Time at{0};
     sim::Pose X_WS = sim::Pose::Identity();

@@ -46,10 +46,11 @@ struct LaserParams {
 /// Returns of a scan, one per beam.
 struct LaserReturns {
   std::vector<double> ranges_m;
-  /// Received power times range squared, relative to a white Lambertian surface at normal incidence in clear air.
+  /// Received power times range squared, relative to a white Lambert surface at normal incidence in clear air.
   std::vector<double> intensities;
   std::vector<std::uint8_t> returned;  ///< 0: no return
 
+  /// Sets the number of beams, all without return at `range_m`.
   void assign(std::size_t beams, double range_m);
   std::size_t size() const { return ranges_m.size(); }
 };
@@ -58,8 +59,8 @@ struct LaserReturns {
 ///
 /// The received power is that of the laser range equation for a surface wider than the beam (A. V. Jelalian, Laser
 /// Radar Systems, 1992, ch. 1): P ~ rho cos(i) / r^2 exp(-2 alpha r), rho the reflectivity, i the angle of incidence,
-/// alpha the extinction coefficient.  A share `gloss` of rho is reflected specularly and returns only within a few
-/// degrees of normal incidence.
+/// alpha the extinction coefficient.  A share `gloss` of rho is specular reflection and returns only within a
+/// few degrees of normal incidence.
 class LaserReceiver {
  public:
   LaserReceiver(const LaserParams& params, const sim::DeviceContext& context);
@@ -82,6 +83,7 @@ class LaserReceiver {
   void visit_state(sim::StateArchive& archive) { archive(noise_); }
 
  private:
+  /// Echo along one ray of a beam.
   struct Echo {
     double range_m, power;
   };

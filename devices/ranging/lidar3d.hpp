@@ -42,6 +42,7 @@ class Lidar3d final : public sim::Sensor {
   const LaserReturns& returns() const { return returns_; }
   int rings() const { return static_cast<int>(elevations_rad_.size()); }
   int columns() const { return params_.columns; }
+  /// Returns the unit vector of a beam in S.
   sim::Vector3d direction_S(int column, int ring) const;
   /// Returns the time of a column relative to the end of the rotation; 0 or negative.
   sim::Time offset(int column) const;

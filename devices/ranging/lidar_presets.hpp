@@ -17,6 +17,7 @@ struct LidarPreset {
   double rate_hz = 0;  ///< for documentation; a preset cannot set the common key `rate_hz`
   LaserParams laser;
 };
+/// Returns all presets of planar scanners.
 std::span<const LidarPreset> lidar_presets();
 
 /// Parameters of a multi-ring scanner from its data sheet.
@@ -28,6 +29,7 @@ struct Lidar3dPreset {
   double rate_hz = 0;  ///< for documentation
   LaserParams laser;
 };
+/// Returns all presets of multi-ring scanners.
 std::span<const Lidar3dPreset> lidar3d_presets();
 
 }  // namespace devices

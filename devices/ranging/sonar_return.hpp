@@ -15,6 +15,7 @@ namespace devices {
 
 /// Parameters common to all sonars; read from the map of the device.  Levels are in dB re 1 uPa.
 struct SonarParams {
+  /// Medium in which the sonar receives echoes.
   enum class WorksIn { water, air, any };
   /// Time-varied gain: 20 or 40 log10 r plus two-way absorption.
   enum class Gain { none, log20, log40 };
@@ -59,7 +60,7 @@ struct SonarEcho {
   double power_uPa2 = 0;  ///< at the receiver
 };
 
-/// Echo levels by the active sonar equation with Lambert scattering.  A ray with solid angle w insonifies the area
+/// Echo levels by the active sonar equation with Lambert scattering.  A ray with solid angle w covers the area
 /// A = w r^2 / cos(i), with i the angle of incidence.  The scattering strength is S = 10 log mu + 10 log cos^2(i), and
 ///   EL = SL - 40 log r - 2 a r + S + 10 log A + 10 log b^2,
 /// so that the power of one ray is SL b^2 mu cos(i) w r^-2 10^(-a r / 5) (Urick, Principles of Underwater Sound, 3rd

@@ -23,6 +23,7 @@ using Vector2d = Eigen::Vector2d;
 /// Distortion models: Brown-Conrady (Brown 1971) for the pinhole, Kannala-Brandt (2006) for the fisheye, both with the
 /// coefficients of OpenCV.
 struct OpticsConfig {
+  /// Projection of the lens: pinhole or equidistant fisheye.
   enum class Lens { pinhole, fisheye };
   static constexpr ChoiceWords<Lens> lens_words{{"pinhole", Lens::pinhole}, {"fisheye", Lens::fisheye}};
 

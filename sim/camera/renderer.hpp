@@ -16,6 +16,7 @@ namespace sim {
 /// Quantity stored in the pixels of an image.
 enum class ImageKind { color, depth, parts, groups };
 
+/// Options of a renderer.
 struct RenderOptions {
   ImageKind kind = ImageKind::color;
   /// Selects the parts in the image.  Parts of transparent materials are always invisible.
@@ -35,8 +36,8 @@ struct Frame {
 };
 
 /// Renders images of a world by ray casting.  Surfaces are lit by the sun (Lambert's law, with shadows) and by the sky,
-/// with a highlight after Blinn (1977).  It uses neither GPU nor display and is bitwise reproducible.  PixelRays models
-/// the lens, develop() the exposure.  A renderer is used by one thread at a time; several renderers may run
+/// with a highlight after Blinn (1977).  It uses neither GPU nor display and is reproducible bit by bit.  PixelRays
+/// models the lens, develop() the exposure.  A renderer is used by one thread at a time; several renderers may run
 /// concurrently when Scene::concurrent() is true.
 class Renderer {
  public:
@@ -70,22 +71,33 @@ class Renderer {
     std::shared_ptr<const Texture> texture;
   };
   struct Tile;
+  /// Part with its inverse pose.
   struct PosedPart {
     int part = -1;
     Pose X_PW = Pose::Identity();
   };
 
+  /// Returns the properties of a material.  `strict`: an unreadable texture is an error.
   Surface make_surface(int material, bool strict) const;
+  /// Returns the cached properties of a material.
   const Surface& surface(int material);
   /// Returns the inverse pose of a part, cached because neighbouring pixels mostly hit the same part.
   const Pose& X_PW(int part);
+  /// Returns the diffuse color at a hit; `footprint_m`: size of the projected pixel.
   LinearColor albedo(const RayHit& hit, const Vector3d& p_W, float footprint_m);
+  /// Returns the light of the sky in a direction.
   LinearColor sky(const Eigen::Vector3f& direction_W) const;
+  /// Returns the light reflected at a hit.
   LinearColor shade(const RayHit& hit, const Ray& ray, bool in_shadow, float footprint_m);
+  /// Collects the rays of a tile.
   void gather(Tile& tile, const Pose& X_WS) const;
+  /// Casts the rays of a tile.
   void cast(Tile& tile) const;
+  /// Casts shadow rays from the hits to the sun.
   void find_shadows(Tile& tile) const;
+  /// Adds the light of a tile to the frame.
   void fill_light(Tile& tile, float weight, Frame& frame);
+  /// Writes depth or labels of a tile to the frame.
   void fill_values(const Tile& tile, Frame& frame) const;
 
   const PhysicsWorld& physics_;

@@ -61,7 +61,7 @@ LinearColor ImagePyramid::sample(double u_px, double v_px, double footprint_px) 
   const Image8& image = levels_[level];
   // Reduce the position to one period before the conversion to integers.
   const double u = std::fmod(u_px, width()) * scale - 0.5, v = std::fmod(v_px, height()) * scale - 0.5;
-  // Interpolate bilinearly.
+  // Bilinear interpolation.
   const double column = std::floor(u), row = std::floor(v);
   const auto a = static_cast<float>(u - column), b = static_cast<float>(v - row);
   const long i = static_cast<long>(column), j = static_cast<long>(row);

@@ -17,10 +17,10 @@ namespace sim {
 /// Red, green and blue in linear light.
 using LinearColor = Eigen::Vector3f;
 
+/// Converts an sRGB color to linear light.
 LinearColor linear_color(const Color& srgb);
 
-/// Image with prefiltered copies at half, a quarter, ... of its size, against aliasing at a distance (mipmap, Williams
-/// 1983).
+/// Image with filtered copies at half, a quarter, ... of its size, against aliasing at a distance (Williams 1983).
 class ImagePyramid {
  public:
   explicit ImagePyramid(Image8 image);

@@ -27,6 +27,7 @@ struct AlignedBox {
 /// in a separate list that every query examines.
 class BoxGrid {
  public:
+  /// Builds the index of the given boxes.
   void build(std::span<const AlignedBox> boxes);
   const AlignedBox& box(int index) const { return boxes_[index]; }
 

@@ -10,6 +10,7 @@
 
 namespace sim {
 
+/// Shape of a zone.
 enum class ZoneShape { box, sphere, cylinder, polygon };
 
 inline constexpr ChoiceWords<ZoneShape> zone_shape_words{{"box", ZoneShape::box},
@@ -44,6 +45,7 @@ struct ZoneConfig {
 class Zone {
  public:
   explicit Zone(const ZoneConfig& config);
+  /// Returns true when a point lies inside the zone or on its border.
   bool contains(const Vector3d& p_W) const;
   const ZoneConfig& config() const { return config_; }
 

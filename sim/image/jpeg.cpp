@@ -13,7 +13,7 @@ namespace sim {
 
 namespace {
 
-// libjpeg reports errors by longjmp.  Functions that call setjmp hold no objects with destructors.
+// libjpeg reports errors by longjmp.  Functions that it may leave hold no objects with destructors.
 
 struct JpegErrors {
   jpeg_error_mgr manager;  // must be first: libjpeg returns this address

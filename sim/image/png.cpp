@@ -53,7 +53,7 @@ Image<T> read_png(std::span<const std::byte> bytes, png_uint_32 format, int chan
 }
 
 /// Reader based on libpng's row interface, because its simplified interface converts gamma.  libpng reports errors by
-/// longjmp; functions that call setjmp hold no objects with destructors.
+/// longjmp; functions that it may leave hold no objects with destructors.
 class LevelReader {
  public:
   explicit LevelReader(std::span<const std::byte> bytes) : rest_(bytes) {

@@ -59,7 +59,7 @@ void check_added_mass(const Matrix6d& A, ParamReader& in) {
                         axes[i] + " and " + axes[j] + " and " + number_text(A(j, i)) + " the other way");
       return;
     }
-  // Check that the matrix is positive semidefinite.
+  // Check that the matrix is positive semi-definite.
   const double min = smallest_eigenvalue(A);
   if (!not_negative(min, A))
     in.error(key, "the matrix of added mass has a negative eigenvalue, " + computed_text(min) +

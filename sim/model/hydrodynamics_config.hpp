@@ -86,15 +86,18 @@ struct WindageConfig {
 
 /// Deviations of some published models from the physics, to reproduce their results.
 struct PublishedQuirks {
+  /// Coriolis forces of added mass.
   enum class Coriolis {
     full,
     without_munk,  ///< without the coupling of sway and heave with rotation by added mass
     none,          ///< no Coriolis forces of added mass
   };
+  /// Rotation of the current into the body frame.
   enum class Current {
     full,
     yaw_only,  ///< the current is rotated into the body frame by the yaw angle alone
   };
+  /// Speed that reduces the linear surge damping.
   enum class FadeSpeed {
     water,
     ground,  ///< sqrt(u + v^2) over ground, as in MSS
@@ -107,11 +110,12 @@ struct PublishedQuirks {
   void read(ParamReader& in);
 };
 
-/// Section `hydrodynamics:` of a body: manoeuvring model with the published coefficients of a vehicle (Fossen, Handbook
+/// Section `hydrodynamics:` of a body: maneuvering model with the published coefficients of a vehicle (Fossen, Handbook
 /// of Marine Craft Hydrodynamics and Motion Control).  All coefficients refer to the origin of the body frame.
 ///
 /// The members are in forward-right-down for either value of `frame` in the file.
 struct HydrodynamicsConfig {
+  /// Source of the hydrodynamic forces.
   enum class Model {
     coefficients,
     none,  ///< no forces of the water on this body

@@ -24,7 +24,7 @@ struct ShapeInfo {
   std::vector<std::string_view> keys;  ///< keys specific to this shape
   std::string_view required_key;       ///< one of `keys`; empty: none is required
   bool solid;                          ///< encloses a volume: has mass, displaces water and may move
-  bool round;                          ///< rotationally symmetric about z
+  bool round;                          ///< rotational symmetry about z
   Vector3d drag_coefficient;           ///< default in water, along x, y and z
 };
 

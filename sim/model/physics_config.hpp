@@ -18,9 +18,11 @@ namespace sim {
 
 /// Section `physics:` of a world.
 struct PhysicsConfig {
+  /// Constraint solver of ODE: chosen by the size of an island, dWorldStep or dWorldQuickStep.
   enum class Solver { automatic, step, quick };
   static constexpr ChoiceWords<Solver> solver_words{
       {"auto", Solver::automatic}, {"step", Solver::step}, {"quick", Solver::quick}};
+  /// Broad phase of collision detection (ODE space).
   enum class Space { sap, quadtree, hash, simple };
   static constexpr ChoiceWords<Space> space_words{
       {"sap", Space::sap}, {"quadtree", Space::quadtree}, {"hash", Space::hash}, {"simple", Space::simple}};

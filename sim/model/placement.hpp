@@ -11,6 +11,7 @@ namespace sim {
 
 /// Layout of the instances of an entry with `count`, relative to the pose of the entry.
 struct PlacementConfig {
+  /// Arrangement of the instances.
   enum class Pattern { grid, line, circle, random };
 
   Pattern pattern = Pattern::grid;

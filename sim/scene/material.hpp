@@ -13,6 +13,7 @@ namespace sim {
 
 /// Pattern on a surface, projected along the axis of the part closest to the surface normal.
 struct TextureConfig {
+  /// Kind of pattern.
   enum class Pattern { none, checker, stripes, image };
 
   Pattern pattern = Pattern::none;
@@ -27,7 +28,7 @@ struct TextureConfig {
 /// Reflection of a laser beam by a surface.
 struct LaserSurface {
   double reflectivity = 0.5;  ///< share of the power reflected diffusely (Lambert); white wall 0.8, tyre 0.05
-  double gloss = 0;           ///< share of it reflected specularly, which returns only near normal incidence
+  double gloss = 0;           ///< share of it in specular reflection, which returns only near normal incidence
   void read(ParamReader& in);
 };
 

@@ -32,7 +32,7 @@ struct SurfacePoint {
 /// Two surfaces are defined on the points.  Sensors see triangles: each cell is split along the diagonal from its
 /// south-west to its north-east corner.  Collisions use a smooth surface by default: the biquadratic B-spline whose
 /// control points are the points of the grid (de Boor, A Practical Guide to Splines, for uniform knots).  The spline is
-/// C1-continuous. Its height stays within the range of the nine heights around a point and its curvature within their
+/// C1-continuous.  Its height stays within the range of the nine heights around a point and its curvature within their
 /// second differences, so that a step in the heights causes no spike of acceleration.  Where heights vary along one
 /// axis only it passes through the midpoints between neighbouring points.  At the points of the grid it lies below
 /// peaks and above pits by an eighth of the second difference along each axis.  It reproduces a plane exactly, up to

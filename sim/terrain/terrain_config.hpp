@@ -21,6 +21,7 @@ enum class Holes { error, nearest, linear };
 
 /// Region of terrain with another material: outline in the xy-plane of the frame of the terrain.
 struct TerrainAreaConfig {
+  /// Outline of the region.
   enum class Shape { box, circle, polygon };
 
   Shape shape = Shape::box;
@@ -36,6 +37,7 @@ struct TerrainAreaConfig {
 
 /// Section `terrain:` of a part of shape terrain.
 struct TerrainConfig {
+  /// Source of the heights: ESRI ASCII grid, grey PNG, or a formula.
   enum class Source { ascii, png, slope, sine, fractal };
   /// Point at the origin of the part: centre of the grid, its south-west point, or `map_origin_m`.
   enum class Origin { center, corner, map };
