@@ -16,7 +16,7 @@ namespace devices {
 
 constexpr std::size_t dvl_beams = 4;
 
-/// Doppler velocity log: four beams about -z of the sensor frame S, 90 deg apart in azimuth (Janus configuration). Each
+/// Doppler velocity log: four beams about -z of the sensor frame S, 90 deg apart in azimuth (Janus).  Each
 /// beam, a unit vector b, measures b . v; the velocity v is the least-squares solution for the beams that detect the
 /// bottom, at least three.  The bottom is assumed to be stationary.
 class Dvl final : public sim::Sensor {

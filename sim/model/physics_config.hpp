@@ -65,7 +65,7 @@ struct ContactConfig {
 /// Part of a body: shape, mass, material, and pose in the body frame.
 struct PartConfig {
   std::string name;
-  PartShape shape = PartShape::box;
+  PartShape shape = PartShape::box;    ///< the normal of a plane is +z of its frame
   Vector3d size_m = Vector3d::Ones();  ///< box: x, y, z
   double radius_m = 0.5;               ///< sphere, capsule, cylinder
   double length_m = 1.0;               ///< length along z: capsule without its caps, cylinder
@@ -80,7 +80,7 @@ struct PartConfig {
   std::string category = "solid";
   std::vector<std::string> collides_with;  ///< categories; empty: all
   std::string color;                       ///< `#rrggbb`, in images and viewers; empty: color of the material
-  // Parameters in water, for a body without hydrodynamic coefficients.
+  // Parameters in water, for a free body without hydrodynamic coefficients.
   bool displaces = true;                 ///< buoyancy and drag act on the part
   bool displaces_was_given = false;      ///< the key `displaces` is in the file
   std::vector<double> drag_coefficient;  ///< one, or three along x, y and z of the part; empty: default of the shape
