@@ -23,7 +23,7 @@ namespace {
 
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 
-/// A device that takes shoal.helm_command_t, or an error.
+/// Reports an error unless `name` is a device that receives shoal.helm_command_t.
 void check_helm(const sim::DeviceContext& context, const std::string& name) {
   if (name.empty()) return;
   for (const sim::DeviceConfig& device : context.vehicle.config().devices)
@@ -158,7 +158,7 @@ CraftMotion Autopilot::motion_of(const sim::World& world) const {
   motion.X_WS = body_.X_WB();
   motion.v_WS_W = body_.v_WB_W();
   const sim::Matrix3d R_SW = motion.X_WS.linear().transpose();
-  // The water does nothing to a kinematic body, and so is not looked up for it in each step.
+  // The cache has no water for kinematic bodies, on which water exerts no force.
   const sim::BodyInWater& around = world.hydrodynamics().around(body_);
   const sim::Vector3d water_W =
       around.known ? around.water.velocity_W : world.medium().water_velocity_W(motion.X_WS.translation());
@@ -167,14 +167,14 @@ CraftMotion Autopilot::motion_of(const sim::World& world) const {
   return motion;
 }
 
-/// NaN: there is nothing below.
+/// Returns the altitude; NaN when no bottom is within range.
 double Autopilot::altitude_of(const sim::SenseContext& context) const {
   const auto hit = context.world.scene().cast(body_.X_WB().translation(), -sim::Vector3d::UnitZ(),
                                               params_.altitude_range_m, {~0u, vehicle_.group()});
   return hit ? hit->range_m : nothing;
 }
 
-/// Where the altitude is wanted and no bottom is seen, the depth of this moment.
+/// Returns the desired height; the present height when an altitude is desired and no bottom is detected.
 double Autopilot::height_desired(const sim::SenseContext& context) {
   const double height_m = body_.X_WB().translation().z();
   if (!altitude_desired_m_) return surface_m_ - *depth_desired_m_;
@@ -203,8 +203,8 @@ void Autopilot::follow_route(double dt_s) {
   if (params_.at_end == AtEnd::stop) desired_.speed_mps = 0;
 }
 
-/// The craft heads so that it goes along the course, whatever the current and its own sideslip do: what it makes of its
-/// heading now, it will make of the next one.
+/// Corrects the heading by the present drift angle, so that the course over ground follows the circle despite current
+/// and sideslip.
 void Autopilot::follow_circle() {
   const Aim aim = circle_.aim(place());
   reading_.cross_track_m = aim.cross_track_m;
@@ -301,7 +301,7 @@ void fill(const Autopilot& autopilot, shoal::autopilot_state_t& message) {
 
 namespace {
 
-/// NaN means `as before`; other numbers have bounds.
+/// Throws when a field is outside its limits.  NaN is valid and means no change.
 void check(const char* field, double value, double low, double high) {
   if (!std::isnan(value) && !(value >= low && value <= high))
     throw std::runtime_error(std::string("field '") + field + "' must be between " + std::to_string(low) + " and " +

@@ -17,9 +17,9 @@ class waypoints_command_t;
 
 namespace devices {
 
-/// Steers a marine vehicle: holds heading, depth or altitude and speed, follows waypoints, or stays at a station.  It
-/// reads the true motion of the body it is on, and publishes commands on the channels of the actuators it drives, at
-/// its rate, as an external program would.
+/// Autopilot of a marine vehicle: controls heading, depth or altitude and speed, follows waypoints, or keeps station.
+/// It uses the true motion of the body it is mounted on, and publishes commands on the channels of its actuators at its
+/// rate, as an external program would.
 class Autopilot final : public sim::Sensor {
  public:
   static constexpr const char* meaning =
@@ -29,7 +29,7 @@ class Autopilot final : public sim::Sensor {
   using Params = AutopilotParams;
   using Mode = AutopilotMode;
 
-  /// What it is after, and how far from it.  NaN: does not apply.
+  /// Setpoints and errors.  NaN: not applicable in the present mode.
   struct Reading {
     Mode mode = Mode::off;
     double speed_mps = 0, heading_rad = 0, depth_m = 0, altitude_m = 0;
@@ -42,17 +42,20 @@ class Autopilot final : public sim::Sensor {
   Autopilot(const Params& params, const sim::DeviceContext& context);
   void measure(const sim::SenseContext& context) override;
   void disturb(double, sim::Random&) override {}
-  /// Whether it is ever to hold an altitude.
+  /// Returns true when the configuration has an altitude to hold.
   bool needs_bottom() const override;
   void visit_state(sim::StateArchive& archive) override;
   const Reading& reading() const { return reading_; }
   const Route& route() const { return route_; }
 
-  // Commands.  A number that is NaN leaves what it is about as it is.
+  // Commands.  NaN keeps the present value of a field.
+  /// Changes the mode.  Throws std::runtime_error for mode waypoints without a route.
   void set_mode(Mode mode);
-  /// Ends a route or station when there is a heading among the numbers.
+  /// Sets heading, speed, depth or altitude.  A heading ends a route or station keeping.
   void set_helm(const shoal::helm_command_t& command);
+  /// Starts a new route.
   void set_waypoints(const shoal::waypoints_command_t& command);
+  /// Starts station keeping.
   void set_station(const shoal::station_command_t& command);
 
  private:
@@ -75,20 +78,20 @@ class Autopilot final : public sim::Sensor {
   sim::Vehicle& vehicle_;
   const sim::Body& body_;
   const sim::DeviceFaults& faults_;
-  double surface_m_;  // of the still water
+  double surface_m_;  // height of the still water surface
   std::optional<AutopilotActuators> actuators_;
   HelmLaw law_;
   Route route_;
   Circle circle_;
   Mode mode_;
   Setpoint desired_;
-  // One of them.
+  // Exactly one of the two is set.
   std::optional<double> depth_desired_m_, altitude_desired_m_;
   Limited limited_;
   Reading reading_;
 };
 
-/// Takes shoal.helm_command_t, shoal.waypoints_command_t, shoal.station_command_t and shoal.autopilot_command_t.
+/// Receives shoal.helm_command_t, shoal.waypoints_command_t, shoal.station_command_t and shoal.autopilot_command_t.
 class AutopilotController final : public sim::Controller {
  public:
   static constexpr const char* command_messages =

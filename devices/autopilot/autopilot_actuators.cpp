@@ -18,10 +18,11 @@ namespace devices {
 
 namespace {
 
-// Of the water that thrust and lift are planned with; limits need not be exact.
+// Density of water for the limits of thrust and lift, which need not be exact.
 constexpr double plan_density_kgpm3 = 1025;
 
-/// A device of the vehicle, which may come after the autopilot in the file: only its description is there yet.
+/// Returns the configuration of a device of the vehicle.  The device may follow the autopilot in the file, so that it
+/// is not constructed yet.
 template <typename Params>
 std::pair<const sim::DeviceConfig*, const Params*> described(const sim::DeviceContext& context, const char* key,
                                                              const std::string& name, const char* type) {
@@ -38,7 +39,7 @@ std::pair<const sim::DeviceConfig*, const Params*> described(const sim::DeviceCo
   refuse(context, std::string("'") + key + "' names no " + type + " '" + name + "'");
 }
 
-/// Mass and moments of inertia about the body's origin, with added mass.
+/// Returns mass and moments of inertia about the origin of the body, including added mass.
 Wrench mass_of(const sim::DeviceContext& context) {
   const sim::Body& body = context.body;
   const sim::Vector3d r = body.p_BC();
@@ -52,7 +53,7 @@ Wrench mass_of(const sim::DeviceContext& context) {
   return mass;
 }
 
-/// Two autopilots that drive one actuator would fight.
+/// Reports an error when another autopilot drives one of the same actuators.
 void refuse_two_masters(const AutopilotParams& params, const sim::DeviceContext& context) {
   const auto driven_by = [](const AutopilotParams& autopilot) {
     std::vector<std::string> names = autopilot.thrusters;
@@ -80,6 +81,7 @@ AutopilotActuators::AutopilotActuators(const AutopilotParams& params, const sim:
 }
 
 void AutopilotActuators::add_thrusters(const AutopilotParams& params, const sim::DeviceContext& context) {
+  // Pose, limits and weight of each thruster.
   std::vector<ThrusterPlace> places;
   for (std::size_t i = 0; i < params.thrusters.size(); ++i) {
     const auto [config, thruster] = described<Thruster::Params>(context, "thrusters", params.thrusters[i], "thruster");
@@ -93,6 +95,7 @@ void AutopilotActuators::add_thrusters(const AutopilotParams& params, const sim:
     propellers_.push_back({{params.thrusters[i]}, curve, place.X_ST.linear().col(0)});
   }
   if (places.empty()) return;
+  // Indices of the controlled axes; with fins, surge only.
   std::vector<int> axes;
   for (const std::string& axis : params.axes)
     axes.push_back(
@@ -107,7 +110,7 @@ void AutopilotActuators::add_thrusters(const AutopilotParams& params, const sim:
 
 void AutopilotActuators::add_fins(const AutopilotParams& params, const sim::DeviceContext& context) {
   if (params.fins.empty()) return;
-  // Torque about pitch and yaw of each fin, per rad and (m/s)^2 of speed.
+  // Pitch and yaw torque of each fin per rad and (m/s)^2.
   Eigen::MatrixXd torque(2, static_cast<Eigen::Index>(params.fins.size()));
   for (std::size_t i = 0; i < params.fins.size(); ++i) {
     const auto [config, fin] = described<Fin::Params>(context, "fins", params.fins[i], "fin");
@@ -119,7 +122,7 @@ void AutopilotActuators::add_fins(const AutopilotParams& params, const sim::Devi
     torque.col(static_cast<Eigen::Index>(i)) = one.tail<2>();
     planes_.push_back({{params.fins[i]}, fin->limit_rad});
   }
-  // A fin that does next to nothing about an axis is not used for it.
+  // The pseudo-inverse ignores fins with a negligible effect on an axis.
   fin_angles_ = Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(torque).pseudoInverse();
   if (torque.norm() < 1e-9 || !fin_angles_.allFinite()) refuse(context, "'fins' neither pitch nor turn the vehicle");
 }
@@ -134,6 +137,7 @@ CraftAbilities AutopilotActuators::abilities() const {
 }
 
 Limited AutopilotActuators::share(const Wrench& wrench, const sim::Vector3d& v_B, double density_kgpm3) {
+  // Allocate the wrench to the thrusters.
   const double density = density_kgpm3 > 0 ? density_kgpm3 : plan_density_kgpm3;
   Limited limited;
   constexpr double all = 1 - 1e-9;  // except for rounding
@@ -144,6 +148,7 @@ Limited AutopilotActuators::share(const Wrench& wrench, const sim::Vector3d& v_B
         propeller.curve.command_for_N(forces_N_[static_cast<Eigen::Index>(i)], propeller.axis_B.dot(v_B), density);
   }
   if (planes_.empty()) return limited;
+  // Deflect the fins in proportion to torque over speed squared.
   const double speed = std::max(slowest_mps, v_B.x());
   const Eigen::VectorXd angles = fin_angles_ * wrench.tail<2>() / (speed * speed);
   for (std::size_t i = 0; i < planes_.size(); ++i) {

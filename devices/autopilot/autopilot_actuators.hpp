@@ -11,28 +11,32 @@
 
 namespace devices {
 
-/// The actuators that an autopilot drives, by the geometry and the curves of its vehicle's file.
+/// Actuators of an autopilot, with the geometry and thrust curves from the vehicle file.
 class AutopilotActuators {
  public:
-  /// Throws ConfigError for names of no thruster or fin, and for axes that they cannot give.
+  /// Throws ConfigError for unknown thrusters or fins, and for axes that they cannot control.
   AutopilotActuators(const AutopilotParams& params, const sim::DeviceContext& context);
 
+  /// Returns mass and controllable axes of the craft.
   CraftAbilities abilities() const;
-  /// Finds the commands for a wrench at a speed through the water.
+  /// Computes the commands for a wrench at a velocity through the water.  Returns which actuators are saturated.
   Limited share(const Wrench& wrench, const sim::Vector3d& v_B, double density_kgpm3);
-  /// Publishes the commands that share() found.
+  /// Publishes the commands computed by share().
   void publish(sim::Time now);
 
  private:
+  /// Actuator by name, with its last command.
   struct Driven {
     std::string name;
     double command = 0;
   };
+  /// Thruster with its thrust curve and axis.
   struct Propeller {
     Driven device;
     ThrusterCommand curve;
     sim::Vector3d axis_B;
   };
+  /// Fin with its limit.
   struct Plane {
     Driven device;
     double limit_rad;

@@ -24,6 +24,7 @@ void StationParams::read(sim::ParamReader& in) {
 void AutopilotParams::read(sim::ParamReader& in) {
   in.read_choice("mode", mode, "auto", autopilot_mode_words,
                  "at the start; auto: waypoints where there are some, else hold; off: others drive the actuators");
+  // Actuators.
   in.read("thrusters", thrusters, "names of thrusters of the vehicle");
   in.read("fins", fins, "names of fins of the vehicle; with fins it turns and changes depth by means of them");
   in.read("helm", helm, "name of a device that takes shoal.helm_command_t, in place of thrusters and fins");
@@ -32,6 +33,7 @@ void AutopilotParams::read(sim::ParamReader& in) {
   in.read("axes", axes,
           "those of surge, sway, heave, roll, pitch and yaw that the thrusters control; unset: as many as possible, "
           "only surge when there are fins");
+  // Setpoints and route.
   in.read("hold", hold, "what is held at the start");
   in.read("station", station, "position to hold in mode station");
   in.read_list("waypoints", waypoints, "waypoint", "the route");
@@ -42,6 +44,7 @@ void AutopilotParams::read(sim::ParamReader& in) {
                  "after the last waypoint: hold station there, stop, keep the last heading, or circle around it");
   in.read("circle_radius_m", circle_radius_m, sim::above_to(0, 1e6),
           "radius of the circle; at least the turning radius of the craft at its speed");
+  // Guidance and control.
   in.read("guidance", guidance, "how the route is followed");
   in.read("gains", gains, "gains of the controllers");
   in.read("altitude_range_m", altitude_range_m, sim::above(0),
@@ -50,7 +53,7 @@ void AutopilotParams::read(sim::ParamReader& in) {
   check(in);
 }
 
-/// What depends on two keys.
+/// Checks combinations of keys.
 void AutopilotParams::check(sim::ParamReader& in) const {
   if (thrusters.empty() && helm.empty()) in.error("'thrusters' or 'helm' must name what the autopilot drives");
   if (!helm.empty() && !(thrusters.empty() && fins.empty())) in.error("helm", "'helm' replaces 'thrusters' and 'fins'");

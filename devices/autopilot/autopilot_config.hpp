@@ -10,7 +10,7 @@
 
 namespace devices {
 
-/// What an autopilot does.
+/// Mode of an autopilot.
 enum class AutopilotMode { off = 0, hold = 1, waypoints = 2, station = 3, circle = 4 };
 
 inline constexpr sim::ChoiceWords<AutopilotMode> autopilot_mode_words{{"off", AutopilotMode::off},
@@ -19,10 +19,10 @@ inline constexpr sim::ChoiceWords<AutopilotMode> autopilot_mode_words{{"off", Au
                                                                       {"station", AutopilotMode::station},
                                                                       {"circle", AutopilotMode::circle}};
 
-/// What to do after the last waypoint.
+/// Behaviour after the last waypoint.
 enum class AtEnd { station, stop, hold, circle };
 
-/// `hold:` what is held at the start; unset: as it is then.
+/// Section `hold:`, setpoints at the start; unset: the initial values.
 struct HoldParams {
   double speed_mps = 0;
   std::optional<double> heading_deg;
@@ -31,15 +31,15 @@ struct HoldParams {
   void read(sim::ParamReader& in);
 };
 
-/// `station:` where to stay.
+/// Section `station:`, position to keep.
 struct StationParams {
-  std::optional<Eigen::Vector2d> place_m;  ///< unset: where it is at the start
+  std::optional<Eigen::Vector2d> place_m;  ///< unset: initial position
   void read(sim::ParamReader& in);
 };
 
-/// The keys of an autopilot.
+/// Keys of an autopilot.
 struct AutopilotParams {
-  std::optional<AutopilotMode> mode;  ///< unset: waypoints where there are some, else hold
+  std::optional<AutopilotMode> mode;  ///< unset: waypoints when there are any, else hold
   std::vector<std::string> thrusters;
   std::vector<std::string> fins;
   std::string helm;
@@ -57,8 +57,9 @@ struct AutopilotParams {
   double altitude_range_m = 200;
   void read(sim::ParamReader& in);
 
-  /// The waypoints, or those of the lawnmower.
+  /// Returns the waypoints, or those of the lawnmower.
   std::vector<Waypoint> route() const;
+  /// Returns the mode at the start.
   AutopilotMode first_mode() const;
 
  private:

@@ -18,7 +18,7 @@ double AxisHold::step(double error, double rate, double dt_s, bool frozen) {
   const double w = gains_.bandwidth_radps, damping = gains_.damping;
   const double desired = w / (2 * damping) * error;
   const double rate_desired = std::clamp(desired, -gains_.rate_max, gains_.rate_max);
-  // On the way to a far value errors would pile up.
+  // Hold the integral while the rate is limited (anti-windup).
   if (!frozen && desired == rate_desired) sum_ += gains_.integral * w * w * w * error * dt_s;
   return 2 * damping * w * (rate_desired - rate) + sum_;
 }

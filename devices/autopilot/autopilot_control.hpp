@@ -6,43 +6,47 @@
 
 namespace devices {
 
-/// A craft with fins that is slower is steered as if it had this speed.
+/// Lower limit of the speed in the control laws of fins, whose effect vanishes with the speed.
 inline constexpr double slowest_mps = 0.5;
 
-/// How fast a quantity is brought to its set value.
+/// Gains of the control of one quantity.
 struct HoldGains {
   double bandwidth_radps = 0.5;
   double damping = 1;
-  double rate_max = 0.5;  ///< m/s or rad/s
-  double integral = 0.1;  ///< 0: none
+  double rate_max = 0.5;  ///< limit of the rate, m/s or rad/s
+  double integral = 0.1;  ///< integral gain; 0: none
   void read(sim::ParamReader& in);
 };
 
-/// Holds a quantity x of a plant x'' = a + d, d an unknown constant: PID by placed poles (Fossen, Handbook of Marine
-/// Craft Hydrodynamics and Motion Control, 2021, algorithm 15.1), as a cascade, so that the rate stays in bounds:
+/// Controls a quantity x of a plant x'' = a + d with an unknown constant disturbance d: PID control by pole placement
+/// (Fossen, Handbook of Marine Craft Hydrodynamics and Motion Control, 2021, algorithm 15.1), as a cascade that limits
+/// the rate:
 ///   a = 2 zeta w (clamp(w / (2 zeta) e, rate_max) - x') + integral w^3 (sum of e dt).
-/// The sum is stable for integral < 2 zeta.
+/// The loop is stable for integral < 2 zeta.
 class AxisHold {
  public:
   explicit AxisHold(const HoldGains& gains) : gains_(gains) {}
 
-  /// The acceleration to ask for.  `error`: wanted less true; `rate`: x'.  `frozen`: the integral of the error is
-  /// held (anti-windup), as the actuators are saturated.
+  /// Returns the commanded acceleration.  `error`: desired minus actual value; `rate`: x'.  `frozen`: the actuators are
+  /// saturated and the integral is held (anti-windup).
   double step(double error, double rate, double dt_s, bool frozen);
+  /// Clears the integral term.
   void reset() { sum_ = 0; }
   void visit_state(sim::StateArchive& archive) { archive(sum_); }
 
  private:
   HoldGains gains_;
-  double sum_ = 0;  ///< acceleration
+  double sum_ = 0;  ///< integral term, an acceleration
 };
 
-/// Holds the rate itself, of a plant v' = a + d: a = w e + integral w^2 (sum of e dt).
+/// Controls the velocity v of a plant v' = a + d (PI control): a = w e + integral w^2 (sum of e dt).
 class RateHold {
  public:
   RateHold(double bandwidth_radps, double integral) : bandwidth_radps_(bandwidth_radps), integral_(integral) {}
 
+  /// Returns the commanded acceleration.  `frozen`: the integral is held (anti-windup).
   double step(double error, double dt_s, bool frozen);
+  /// Clears the integral term.
   void reset() { sum_ = 0; }
   void visit_state(sim::StateArchive& archive) { archive(sum_); }
 

@@ -54,7 +54,7 @@ void Lawnmower::read(sim::ParamReader& in) {
 std::vector<Waypoint> Lawnmower::waypoints() const {
   const Eigen::Vector2d along(std::cos(direction_rad), std::sin(direction_rad));
   const Eigen::Vector2d left(-along.y(), along.x());
-  // The last track may lie on the edge; rounding is not to lose it.
+  // Tolerance so that rounding does not drop a last track on the edge.
   const int tracks = static_cast<int>(std::floor(std::abs(width_m) / spacing_m + 1e-9)) + 1;
   std::vector<Waypoint> points;
   for (int track = 0; track < tracks; ++track) {
@@ -89,7 +89,7 @@ bool Route::reached(const Eigen::Vector2d& p_W) const {
 }
 
 Aim Route::aim(const Eigen::Vector2d& p_W, double dt_s) {
-  // A point on the spot of another is reached with it; each is looked at once.
+  // Switch past all waypoints reached, each at most once.
   for (std::size_t looked = 0; !finished_ && looked < points_.size() && reached(p_W); ++looked) {
     if (to_ + 1 == points_.size() && !loop_) {
       finished_ = true;
@@ -102,16 +102,17 @@ Aim Route::aim(const Eigen::Vector2d& p_W, double dt_s) {
   const Eigen::Vector2d leg = to().p_W - from_W_, offset = p_W - from_W_;
   Aim aim;
   aim.distance_m = (to().p_W - p_W).norm();
-  // A leg without length has no direction: the point itself is aimed at.
+  // Head for the waypoint itself when the leg has no length.
   const double length = leg.norm();
   if (length < 1e-6) {
     aim.heading_rad = std::atan2(to().p_W.y() - p_W.y(), to().p_W.x() - p_W.x());
     return aim;
   }
+  // Line-of-sight heading with integral action.
   aim.cross_track_m = (leg.x() * offset.y() - leg.y() * offset.x()) / length;
   const double lookahead = params_.lookahead_m, biased = aim.cross_track_m + params_.integral * sum_m_;
   aim.heading_rad = sim::wrap_angle(std::atan2(leg.y(), leg.x()) - std::atan(biased / lookahead));
-  // In a turn the sum would only wind up.
+  // Integrate near the leg only (anti-windup in turns).
   if (std::abs(aim.cross_track_m) < lookahead / 2)
     sum_m_ += dt_s * lookahead * aim.cross_track_m / (lookahead * lookahead + biased * biased);
   return aim;

@@ -10,7 +10,7 @@
 
 namespace devices {
 
-/// A point of a route in the world's horizontal plane.  Unset members are unchanged.
+/// Waypoint in the horizontal plane of the world.  Unset members keep the previous setpoints.
 struct Waypoint {
   Eigen::Vector2d p_W = Eigen::Vector2d::Zero();
   std::optional<double> depth_m;     ///< below the still surface
@@ -20,20 +20,20 @@ struct Waypoint {
   void visit_state(sim::StateArchive& archive) { archive(p_W, depth_m, altitude_m, speed_mps); }
 };
 
-/// Parallel tracks over a rectangle.
+/// Lawnmower pattern: parallel tracks over a rectangle.
 struct Lawnmower {
-  Eigen::Vector2d corner_m = Eigen::Vector2d::Zero();  ///< where the first track begins
-  double direction_rad = 0;                            ///< of the first track, counter-clockwise from east
-  double length_m = 100;                               ///< of a track
-  double width_m = 50;                                 ///< to the left of the first track; negative: to its right
+  Eigen::Vector2d corner_m = Eigen::Vector2d::Zero();  ///< start of the first track
+  double direction_rad = 0;                            ///< direction of the first track, counter-clockwise from east
+  double length_m = 100;                               ///< length of a track
+  double width_m = 50;                                 ///< width to the left of the first track; negative: to its right
   double spacing_m = 10;
   std::optional<double> depth_m, altitude_m, speed_mps;
   void read(sim::ParamReader& in);
-  /// Both ends of each track, in the order in which they are run.
+  /// Returns both ends of each track, in the order of travel.
   std::vector<Waypoint> waypoints() const;
 };
 
-/// How a craft follows its route.
+/// Parameters of path following.
 struct GuidanceParams {
   double lookahead_m = 10;
   double integral = 0.5;  ///< m/s; 0: none
@@ -41,28 +41,28 @@ struct GuidanceParams {
   void read(sim::ParamReader& in);
 };
 
-/// Where to head now.
+/// Output of the guidance law.
 struct Aim {
   double heading_rad = 0;
-  double cross_track_m = 0;  ///< left of the leg is positive
-  double distance_m = 0;     ///< to the waypoint
+  double cross_track_m = 0;  ///< positive to the left of the leg
+  double distance_m = 0;     ///< distance to the waypoint
 };
 
-/// Follows the legs of a route by line of sight with an integral against drift (ILOS: Borhaug, Pavlov, Pettersen 2008;
-/// Fossen 2021, section 12.4):
+/// Follows the legs of a route by integral line-of-sight guidance, which compensates drift (ILOS: Borhaug, Pavlov,
+/// Pettersen 2008; Fossen 2021, section 12.4):
 ///   heading = direction of the leg - atan((e + kappa s) / Delta),  s' = Delta e / (Delta^2 + (e + kappa s)^2),
-/// with e the cross-track error, Delta the lookahead, kappa the integral; s stands while |e| > Delta / 2.  A waypoint
-/// is reached inside of its radius, or when the craft has passed the line through it across the leg: the craft does
-/// not return to a missed point.
+/// with e the cross-track error, Delta the lookahead distance, kappa the integral gain.  The integral s is held while
+/// |e| >= Delta / 2.  A waypoint is reached within its acceptance radius, or when the craft passes the line through it
+/// perpendicular to the leg, so that the craft does not return to a missed waypoint.
 class Route {
  public:
   explicit Route(const GuidanceParams& params) : params_(params) {}
 
-  /// Begins at `from_W`.
+  /// Starts a route at `from_W`.
   void start(std::vector<Waypoint> points, bool loop, const Eigen::Vector2d& from_W);
-  /// Continues to the next waypoint where one was reached.  Not for an empty route.
+  /// Switches to the next waypoint when one is reached and returns the guidance.  The route must not be empty.
   Aim aim(const Eigen::Vector2d& p_W, double dt_s);
-  /// The one it goes to.
+  /// Returns the current waypoint.
   const Waypoint& to() const { return points_[to_]; }
   std::size_t index() const { return to_; }
   std::size_t size() const { return points_.size(); }
@@ -83,18 +83,18 @@ class Route {
   double sum_m_ = 0;
 };
 
-/// Circles around a place by a vector field (Nelson, Barber, McLain, Beard, Vector field path following for miniature
+/// Circles around a point by a vector field (Nelson, Barber, McLain, Beard, Vector field path following for miniature
 /// air vehicles, 2007, eq. 11), here with angles counter-clockwise from east and a gain of 2:
 ///   course = phi + turn (pi/2 + atan(2 (d - R) / R)),
-/// with phi the direction from the place to the craft, d their distance, R the radius, turn 1 counter-clockwise or -1.
+/// with phi the direction from the point to the craft, d their distance, R the radius, turn 1 counter-clockwise or -1.
 class Circle {
  public:
   explicit Circle(double radius_m) : radius_m_(radius_m) {}
 
-  /// From `p_W` with this heading; the side is the one to which the craft turns less.
+  /// Starts at `p_W` with the given heading.  The direction of rotation is the one that needs the smaller turn.
   void start(const Eigen::Vector2d& center_W, const Eigen::Vector2d& p_W, double heading_rad);
-  /// `heading_rad` of the aim is the course over ground that leads to the circle and along it; `distance_m` is to its
-  /// center.
+  /// Returns the guidance.  `heading_rad` is the course over ground to and along the circle; `distance_m` is the
+  /// distance to its center.
   Aim aim(const Eigen::Vector2d& p_W) const;
   void visit_state(sim::StateArchive& archive);
 

@@ -8,7 +8,7 @@ namespace devices {
 
 namespace {
 
-// Slower than this through the water a craft with rudder or two propellers keeps its heading at a station.
+// Speed below which a craft without sway control keeps its heading at a station.
 constexpr double idle_mps = 0.05;
 
 Eigen::Vector2d at_most(const Eigen::Vector2d& v, double length) {
@@ -42,7 +42,7 @@ HelmLaw::HelmLaw(const HelmGains& gains, const CraftAbilities& craft)
       north_(gains.position),
       speed_(gains.speed_bandwidth_radps, gains.speed_integral) {}
 
-/// Acceleration in the world that takes a craft with thrusters to all sides to its station.
+/// Returns the acceleration in W towards the station, for a craft with sway control.
 sim::Vector3d HelmLaw::hold_station_sideways(const CraftMotion& motion, const Eigen::Vector2d& station, double dt_s,
                                              bool frozen) {
   const sim::Vector3d p = motion.X_WS.translation();
@@ -50,12 +50,12 @@ sim::Vector3d HelmLaw::hold_station_sideways(const CraftMotion& motion, const Ei
           north_.step(station.y() - p.y(), motion.v_WS_W.y(), dt_s, frozen), 0};
 }
 
-/// A craft that goes ahead only heads where the water must be left behind: against the current in the end, which the
-/// sum of errors finds.
+/// Sets heading and speed towards the station, for a craft without sway control.  In the steady state it heads against
+/// the current, which the integral of the error estimates.
 void HelmLaw::hold_station_ahead(const CraftMotion& motion, const Eigen::Vector2d& station, double dt_s, bool frozen,
                                  Demand& demand) {
   const HoldGains& gains = gains_.position;
-  // Its heading has to come first, so it is slower than a craft that moves to all sides.
+  // Lower bandwidth than with sway control, because the heading must settle first.
   const double k = 0.2 * gains.bandwidth_radps / gains.damping;
   const Eigen::Vector2d error = station - motion.X_WS.translation().head<2>();
   if (craft_.fins) {
@@ -63,16 +63,18 @@ void HelmLaw::hold_station_ahead(const CraftMotion& motion, const Eigen::Vector2
     demand.speed_mps = std::clamp(k * error.norm(), gains_.steerage_mps, std::max(gains_.steerage_mps, gains.rate_max));
     return;
   }
+  // Velocity through the water: proportional part and estimate of the drift.
   const Eigen::Vector2d near = at_most(k * error, gains.rate_max);
   if (!frozen && (k * error).norm() <= gains.rate_max) drift_sum_mps_ += gains.integral * k * k * error * dt_s;
   const Eigen::Vector2d desired = near + drift_sum_mps_;
   if (desired.norm() < idle_mps) return;
+  // Head along it; advance only as far as the heading is aligned.
   demand.heading_rad = std::atan2(desired.y(), desired.x());
   const double turn = sim::wrap_angle(demand.heading_rad - sim::yaw_of(motion.X_WS.linear()));
   demand.speed_mps = desired.norm() * std::max(0.0, std::cos(turn));
 }
 
-/// The pitch (nose down is positive) at which a craft with fins comes to its height.
+/// Returns the desired pitch (positive nose down) of a craft with fins, to reach a height.
 double HelmLaw::pitch_for(const CraftMotion& motion, double height_m, double dt_s, bool frozen) {
   const double k = gains_.climb_gain_per_s;
   const double error = height_m - motion.X_WS.translation().z();
@@ -85,11 +87,13 @@ double HelmLaw::pitch_for(const CraftMotion& motion, double height_m, double dt_
 
 Demand HelmLaw::step(const CraftMotion& motion, const Setpoint& desired, double dt_s, const Limited& limited) {
   const bool frozen = limited.thrusters, turn_frozen = craft_.fins ? limited.fins : limited.thrusters;
+  // Setpoints of heading and speed.
   Demand demand;
   demand.heading_rad = desired.heading_rad;
   demand.speed_mps = desired.station_m ? 0 : desired.speed_mps;
   const sim::Vector3d rpy = sim::rpy_from_rotation(motion.X_WS.linear());
   sim::Vector3d a_W = sim::Vector3d::Zero(), a_S = sim::Vector3d::Zero(), turn_S;
+  // Horizontal accelerations: station keeping or speed.
   if (desired.station_m && craft_.sideways) {
     a_W = hold_station_sideways(motion, *desired.station_m, dt_s, frozen);
   } else {
@@ -98,15 +102,18 @@ Demand HelmLaw::step(const CraftMotion& motion, const Setpoint& desired, double 
     a_S.x() = speed_.step(demand.speed_error_mps, dt_s, frozen);
     a_S.y() = -gains_.speed_bandwidth_radps * motion.v_S.y();
   }
+  // Vertical motion: by pitch with fins, by heave with thrusters.
   double pitch = 0;
   if (craft_.fins)
     pitch = pitch_for(motion, desired.height_m, dt_s, turn_frozen);
   else if (craft_.heaves)
     a_W.z() = depth_.step(desired.height_m - motion.X_WS.translation().z(), motion.v_WS_W.z(), dt_s, frozen);
+  // Angular accelerations.
   demand.heading_error_rad = sim::wrap_angle(demand.heading_rad - rpy.z());
   turn_S.x() = roll_.step(-rpy.x(), motion.w_S.x(), dt_s, turn_frozen);
   turn_S.y() = pitch_.step(pitch - rpy.y(), motion.w_S.y(), dt_s, turn_frozen);
   turn_S.z() = heading_.step(demand.heading_error_rad, motion.w_S.z(), dt_s, turn_frozen);
+  // Convert accelerations to a wrench.
   a_S += motion.X_WS.linear().transpose() * a_W;
   demand.wrench.head<3>() = craft_.mass.head<3>().cwiseProduct(a_S);
   demand.wrench.tail<3>() = craft_.mass.tail<3>().cwiseProduct(turn_S);

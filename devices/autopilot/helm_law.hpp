@@ -9,30 +9,31 @@
 
 namespace devices {
 
-/// How a craft moves now.  S: its frame, x forward, y left, z up.
+/// Motion of a craft.  S: its frame, x forward, y left, z up.
 struct CraftMotion {
   sim::Pose X_WS = sim::Pose::Identity();
-  sim::Vector3d v_WS_W = sim::Vector3d::Zero();  ///< over ground
-  sim::Vector3d v_S = sim::Vector3d::Zero();     ///< through the water
-  sim::Vector3d w_S = sim::Vector3d::Zero();
+  sim::Vector3d v_WS_W = sim::Vector3d::Zero();  ///< velocity over ground
+  sim::Vector3d v_S = sim::Vector3d::Zero();     ///< velocity through the water
+  sim::Vector3d w_S = sim::Vector3d::Zero();     ///< angular velocity
 };
 
-/// What it is to do.
+/// Desired motion of a craft.
 struct Setpoint {
-  double speed_mps = 0;  ///< through the water, ahead
+  double speed_mps = 0;  ///< forward speed through the water
   double heading_rad = 0;
-  double height_m = 0;                         ///< of its frame in the world
-  std::optional<Eigen::Vector2d> station_m{};  ///< to stay over; speed is not looked at then
+  double height_m = 0;                         ///< height of its frame in the world
+  std::optional<Eigen::Vector2d> station_m{};  ///< position to keep; replaces the speed
   void visit_state(sim::StateArchive& archive) { archive(speed_mps, heading_rad, height_m, station_m); }
 };
 
-/// What the actuators are asked for.
+/// Output of the control law.
 struct Demand {
-  Wrench wrench = Wrench::Zero();                     ///< in S, N and N m
-  double speed_mps = 0, heading_rad = 0;              ///< what it wants at this moment
-  double heading_error_rad = 0, speed_error_mps = 0;  ///< wanted less true
+  Wrench wrench = Wrench::Zero();                     ///< commanded wrench in S, N and N m
+  double speed_mps = 0, heading_rad = 0;              ///< setpoints of this step
+  double heading_error_rad = 0, speed_error_mps = 0;  ///< setpoint minus actual value
 };
 
+/// Gains of the control law.
 struct HelmGains {
   HoldGains heading{1.5, 1, 0.4, 0.05};
   HoldGains depth{1, 1, 0.4, 0.1};
@@ -46,15 +47,15 @@ struct HelmGains {
   void read(sim::ParamReader& in);
 };
 
-/// How a craft is moved.
+/// Mass and actuators of a craft.
 struct CraftAbilities {
-  Wrench mass = Wrench::Ones();  ///< with added mass, kg and kg m^2
-  bool fins = false;             ///< it climbs by its pitch
-  bool sideways = false;         ///< thrusters push it sideways
-  bool heaves = false;           ///< and up and down
+  Wrench mass = Wrench::Ones();  ///< including added mass, kg and kg m^2
+  bool fins = false;             ///< depth is controlled by pitch, with fins
+  bool sideways = false;         ///< thrusters control sway
+  bool heaves = false;           ///< thrusters control heave
 };
 
-/// Which actuators were at their limits in the last step.
+/// Actuators that were saturated in the last step.
 struct Limited {
   bool thrusters = false;
   bool fins = false;
@@ -62,13 +63,14 @@ struct Limited {
   void visit_state(sim::StateArchive& archive) { archive(thrusters, fins); }
 };
 
-/// From set values to forces and torques.
+/// Control law from setpoints to forces and torques.
 class HelmLaw {
  public:
   HelmLaw(const HelmGains& gains, const CraftAbilities& craft);
 
+  /// Returns the wrench and setpoints for one control period of `dt_s`.
   Demand step(const CraftMotion& motion, const Setpoint& desired, double dt_s, const Limited& limited);
-  /// Forgets the sums of errors.
+  /// Resets the integral terms.
   void reset();
   void visit_state(sim::StateArchive& archive) {
     archive(heading_, depth_, roll_, pitch_, east_, north_, speed_, climb_sum_rad_, drift_sum_mps_);

@@ -15,6 +15,7 @@ const std::vector<std::string>& wrench_axes() {
 
 ThrustAllocation::ThrustAllocation(std::vector<ThrusterPlace> thrusters, const std::vector<int>& axes)
     : thrusters_(std::move(thrusters)), effect_(6, static_cast<Eigen::Index>(thrusters_.size())) {
+  // Wrench of a unit force of each thruster.
   double arms = 0;
   for (std::size_t i = 0; i < thrusters_.size(); ++i) {
     const sim::Vector3d push = thrusters_[i].X_ST.linear().col(0);
@@ -23,6 +24,7 @@ ThrustAllocation::ThrustAllocation(std::vector<ThrusterPlace> thrusters, const s
     arms += torque.squaredNorm();
   }
   arm_m_ = std::max(1e-3, std::sqrt(arms / static_cast<double>(std::max<std::size_t>(1, thrusters_.size()))));
+  // Choose the axes and check that they are controllable.
   axes_ = axes;
   if (axes.empty()) {
     for (const int axis : {0, 5, 2, 1, 3, 4}) {
@@ -35,6 +37,7 @@ ThrustAllocation::ThrustAllocation(std::vector<ThrusterPlace> thrusters, const s
       throw std::invalid_argument("the thrusters cannot give " + wrench_axes()[static_cast<std::size_t>(axes_[n - 1])] +
                                   (n > 1 ? " beside the axes before it" : ""));
   if (axes_.empty()) throw std::invalid_argument("the thrusters produce no force");
+  // Weighted pseudo-inverse W^-1 B^T (B W^-1 B^T)^-1.
   const Eigen::Index rows = static_cast<Eigen::Index>(axes_.size());
   Eigen::MatrixXd effect(rows, effect_.cols());
   for (Eigen::Index row = 0; row < rows; ++row) effect.row(row) = effect_.row(axes_[static_cast<std::size_t>(row)]);
@@ -44,7 +47,7 @@ ThrustAllocation::ThrustAllocation(std::vector<ThrusterPlace> thrusters, const s
   inverse_ = eased * (effect * eased).inverse();
 }
 
-/// The axes are independent, by a margin: an arm of a twentieth of the others' would ask for huge forces.
+/// Returns true when the axes are independent with a margin: a singular value below 0.05 would need huge forces.
 bool ThrustAllocation::controllable(const std::vector<int>& axes) const {
   if (static_cast<Eigen::Index>(axes.size()) > effect_.cols()) return false;
   Eigen::MatrixXd rows(static_cast<Eigen::Index>(axes.size()), effect_.cols());
@@ -57,16 +60,18 @@ bool ThrustAllocation::gives(int axis) const {
   return std::find(axes_.begin(), axes_.end(), axis) != axes_.end();
 }
 
-/// One way it pushes with less than a hundredth of what it has the other way, or not at all.
+/// Returns true when the limit in the direction of the force is at most a hundredth of the larger limit of both
+/// directions.
 bool ThrustAllocation::cannot_push(Eigen::Index thruster, double force_N) const {
   const ThrusterPlace& place = thrusters_[static_cast<std::size_t>(thruster)];
   const double limit = std::abs(force_N > 0 ? place.max_N : place.min_N);
   return force_N != 0 && limit <= 0.01 * std::max(place.max_N, -place.min_N);
 }
 
-/// The least weighted squares of the forces among those that come nearest to the wrench, without what was dropped; what
-/// turns out to be dropped too goes the same way (active set).  Returns the share of the wrench that they give.
+/// Computes the weighted least-norm forces among those closest to the wrench, without the dropped thrusters.  Thrusters
+/// that cannot produce their force are dropped in turn (active set method).  Returns the share of the wrench produced.
 double ThrustAllocation::nearest(const Wrench& desired, std::vector<bool> dropped, Eigen::VectorXd& forces_N) const {
+  // Target and effect, with torques scaled to forces by the mean arm.
   const auto rows = static_cast<Eigen::Index>(axes_.size());
   Eigen::VectorXd target(rows), given(rows);
   Eigen::MatrixXd effect(rows, effect_.cols());
@@ -76,6 +81,7 @@ double ThrustAllocation::nearest(const Wrench& desired, std::vector<bool> droppe
     target[row] = desired[axis] / arm;
     effect.row(row) = effect_.row(axis) / arm;
   }
+  // Solve and drop thrusters until the forces are feasible.
   for (bool again = true; again;) {
     again = false;
     Eigen::VectorXd ease(effect.cols());
@@ -91,6 +97,7 @@ double ThrustAllocation::nearest(const Wrench& desired, std::vector<bool> droppe
         again = dropped[static_cast<std::size_t>(i)] = true;
     given = effect * forces_N;
   }
+  // Share of the target along its own direction.
   const double square = target.squaredNorm();
   return square > 0 ? std::clamp(given.dot(target) / square, 0.0, 1.0) : 1;
 }
@@ -98,13 +105,16 @@ double ThrustAllocation::nearest(const Wrench& desired, std::vector<bool> droppe
 double ThrustAllocation::allocate(const Wrench& desired, Eigen::VectorXd& forces_N) const {
   forces_N = Eigen::VectorXd::Zero(effect_.cols());
   if (!desired.allFinite()) return 0;
+  // Unconstrained solution.
   for (std::size_t i = 0; i < axes_.size(); ++i)
     forces_N += inverse_.col(static_cast<Eigen::Index>(i)) * desired[axes_[i]];
+  // Drop thrusters that cannot push in the required direction.
   std::vector<bool> dropped(thrusters_.size());
   for (std::size_t i = 0; i < dropped.size(); ++i)
     dropped[i] = cannot_push(static_cast<Eigen::Index>(i), forces_N[static_cast<Eigen::Index>(i)]);
   const bool any = std::find(dropped.begin(), dropped.end(), true) != dropped.end();
   const double share = any ? nearest(desired, dropped, forces_N) : 1;
+  // Scale all forces to the limits.
   double scale = 1;
   for (Eigen::Index i = 0; i < forces_N.size(); ++i) {
     const ThrusterPlace& thruster = thrusters_[static_cast<std::size_t>(i)];

@@ -31,10 +31,12 @@ void BodyWrench::set_wrench(const sim::Vector3d& force_N, const sim::Vector3d& t
 }
 
 void BodyWrench::act(const sim::ActContext& context) {
-  const double left = params_.lag_s > 0 ? std::exp(-context.step_s / params_.lag_s) : 0;  // of the way
+  const double left =
+      params_.lag_s > 0 ? std::exp(-context.step_s / params_.lag_s) : 0;  // share of the step response that remains
   force_N_ = desired_force_N_ + left * (force_N_ - desired_force_N_);
   torque_Nm_ = desired_torque_Nm_ + left * (torque_Nm_ - desired_torque_Nm_);
   if (context.effectiveness == 0 || (force_N_.isZero(0) && torque_Nm_.isZero(0))) return;
+  // Apply force and torque in W.
   const sim::BodyMotion body = body_.motion();
   const sim::Vector3d force_B = R_BD_ * (context.effectiveness * force_N_).eval();
   const sim::Vector3d torque_B = R_BD_ * (context.effectiveness * torque_Nm_).eval();

@@ -7,8 +7,8 @@
 
 namespace devices {
 
-/// A force and a torque on the body, in the device frame, the force at its origin: thrusters that are modelled
-/// elsewhere allocated, a tow, a push in a test.  Works in air too.
+/// Force and torque on the body in the device frame, the force at its origin, in water and in air.  Uses: thrusters
+/// modelled by another program, a tow, a push in a test.
 class BodyWrench final : public sim::Actuator {
  public:
   static constexpr const char* meaning = "Force and torque on the body in the device's frame, at its origin.";
@@ -21,14 +21,14 @@ class BodyWrench final : public sim::Actuator {
 
   BodyWrench(const Params& params, const sim::DeviceContext& context);
   void act(const sim::ActContext& context) override;
-  /// stop: no force.
+  /// stop: zero wrench.
   void make_safe(sim::SafeState) override { set_wrench(sim::Vector3d::Zero(), sim::Vector3d::Zero()); }
   void change(const Params& params);
   void visit_state(sim::StateArchive& archive) override {
     archive(desired_force_N_, desired_torque_Nm_, force_N_, torque_Nm_);
   }
 
-  /// In the device frame; each axis is cut to its limit.
+  /// Sets the wrench in the device frame; each axis is clamped to its limit.
   void set_wrench(const sim::Vector3d& force_N, const sim::Vector3d& torque_Nm);
 
  private:
@@ -40,7 +40,7 @@ class BodyWrench final : public sim::Actuator {
   sim::Vector3d force_N_ = sim::Vector3d::Zero(), torque_Nm_ = sim::Vector3d::Zero();
 };
 
-/// Takes shoal.wrench_t.
+/// Receives shoal.wrench_t.
 class BodyWrenchController final : public sim::Controller {
  public:
   static constexpr const char* command_messages = "shoal.wrench_t";

@@ -35,7 +35,7 @@ void BuoyancyEngine::change(const Params& params) {
   params_ = params;
   lag_.set(params.lag, params.rate_m3ps);
   desired_m3_ = std::clamp(desired_m3_, params.min_m3, params.max_m3);
-  // Of a ball of the largest volume.
+  // Diameter of a sphere of the largest volume.
   height_m_ = 2 * std::cbrt(std::max({params.max_m3, -params.min_m3, 1e-9}) * 3 / (4 * std::numbers::pi));
 }
 
@@ -61,7 +61,7 @@ void BuoyancyEngine::act(const sim::ActContext& context) {
   const WaterFlow flow = mount_.flow();
   if (flow.density_kgpm3 == 0) return;
   const double weight_Npm3 = flow.density_kgpm3 * mount_.world().physics().gravity_mps2();
-  // Only against the pressure; the sea fills the vehicle again for nothing.
+  // Power is needed only to displace water against the pressure, not to reduce the volume.
   power_W_ =
       std::max(volume - before, 0.0) / context.step_s * weight_Npm3 * std::max(flow.depth_m, 0.0) / params_.efficiency;
   mount_.add_force_W(flow, {0, 0, weight_Npm3 * volume * share_under_water(flow.depth_m, height_m_)});

@@ -7,15 +7,15 @@
 
 namespace devices {
 
-/// Changes the volume that a vehicle displaces: a bladder with its pump, as in gliders and floats.  At volume 0 the
-/// vehicle has the buoyancy of its `hydrodynamics`; the force of the rest, density times gravity times volume, acts at
-/// the device's place.
+/// Variable buoyancy: a bladder with a pump, as in gliders and floats.  At volume 0 the vehicle has the buoyancy of its
+/// `hydrodynamics`; the additional force, density times gravity times volume, acts at the origin of the device frame.
 class BuoyancyEngine final : public sim::Actuator {
  public:
   static constexpr const char* meaning =
       "Changes the displaced volume; commanded by volume in m^3, or by a fraction (-1 to 1) of its limits.";
   static constexpr sim::SafeState safe_states[] = {sim::SafeState::hold, sim::SafeState::park, sim::SafeState::stop};
   static constexpr const char* fixed_keys[] = {"initial_m3"};
+  /// Unit of a command: m^3, or a fraction of the limits.
   enum class Command { volume, fraction };
   struct Params {
     Command command = Command::volume;
@@ -28,7 +28,7 @@ class BuoyancyEngine final : public sim::Actuator {
   };
 
   BuoyancyEngine(const Params& params, const sim::DeviceContext& context);
-  /// `effectiveness` slows the pump; at 0 the volume stays.
+  /// `effectiveness` scales the rate of the pump; at 0 the volume is constant.
   void act(const sim::ActContext& context) override;
   /// hold: the pump stops; park: to park_m3; stop: to 0.
   void make_safe(sim::SafeState safe) override;
@@ -36,7 +36,7 @@ class BuoyancyEngine final : public sim::Actuator {
   void change(const Params& params);
   void visit_state(sim::StateArchive& archive) override { archive(lag_, desired_m3_, power_W_); }
 
-  /// m^3 or a fraction, by `command`; beyond the limits it is cut.
+  /// Sets the volume in m^3 or as a fraction, see `command`; clamped to the limits.
   void set_command(double command);
   double volume_m3() const { return lag_.value(); }
 
@@ -46,7 +46,7 @@ class BuoyancyEngine final : public sim::Actuator {
   Lag lag_;
   double desired_m3_ = 0;
   double power_W_ = 0;
-  double height_m_ = 0;  // over which it comes out of the water
+  double height_m_ = 0;  // height over which it emerges from the water
 };
 
 }  // namespace devices

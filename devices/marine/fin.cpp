@@ -63,10 +63,11 @@ void Fin::set_command(double angle_rad) {
 }
 
 void Fin::act(const sim::ActContext& context) {
-  // What it gives is the work of its servo; the water pushes a fin that is stuck all the same.
+  // The effectiveness acts on the servo only; hydrodynamic forces act on a stuck fin too.
   const double h = context.effectiveness * context.step_s;
   const double angle =
       std::clamp(h > 0 ? lag_.follow(command_, h) : lag_.value(), -params_.limit_rad, params_.limit_rad);
+  // Forces of the immersed share.
   const WaterFlow flow = mount_.flow();
   if (flow.density_kgpm3 == 0) return;
   const double share = share_under_water(flow.depth_m, span_m_);

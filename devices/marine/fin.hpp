@@ -13,16 +13,17 @@
 
 namespace devices {
 
-/// Force and moment about the body's origin for each rad of deflection and (m/s)^2 of forward speed, as published.
+/// Published coefficients: force and moment about the origin of the body per rad of deflection and (m/s)^2 of forward
+/// speed.
 struct FinCoefficients {
-  sim::Vector3d force = sim::Vector3d::Zero();  ///< of the body, forward-left-up
+  sim::Vector3d force = sim::Vector3d::Zero();  ///< forward-left-up axes of the body
   sim::Vector3d moment = sim::Vector3d::Zero();
   void read(sim::ParamReader& in);
 };
 
-/// A rudder, a stern plane, a bow plane.  In the device frame D, x is forward along the chord at rest and z is the
-/// hinge.  A command is an angle in rad; a positive one turns the leading edge from x towards y.  With flow from ahead
-/// the lift is along +y then.
+/// Rudder, stern plane or bow plane.  In the device frame D, x is forward along the chord at rest and z is the hinge
+/// axis.  A command is an angle in rad; a positive angle turns the leading edge from x towards y, and with flow from
+/// ahead the lift is along +y.
 ///
 /// - A rudder at the stern, mounted with `rpy_deg: [0, 0, 0]`: positive turns the vehicle to starboard (as delta_r of
 ///   MSS).  `rpy_deg: [180, 0, 0]`: to port.
@@ -35,7 +36,9 @@ class Fin final : public sim::Actuator {
   static constexpr const char* meaning =
       "Rudder or plane that turns about z of its frame; commanded by its angle in rad.";
   static constexpr sim::SafeState safe_states[] = {sim::SafeState::stop, sim::SafeState::hold};
+  /// Force model: foil, or published coefficients.
   enum class Model { lift, coefficients };
+  /// Flow of the foil model: at the fin, or at the origin of the body.
   enum class Flow { local, body };
   struct Params {
     Model model = Model::lift;
@@ -51,14 +54,14 @@ class Fin final : public sim::Actuator {
   };
 
   Fin(const Params& params, const sim::DeviceContext& context);
-  /// `effectiveness` slows the servo; at 0 the fin stays where it is.
+  /// `effectiveness` scales the rate of the servo; at 0 the fin is stuck.
   void act(const sim::ActContext& context) override;
-  /// stop: amidships; hold: where it is.
+  /// stop: amidships; hold: present angle.
   void make_safe(sim::SafeState safe) override { command_ = safe == sim::SafeState::hold ? lag_.value() : 0; }
   void change(const Params& params);
   void visit_state(sim::StateArchive& archive) override { archive(lag_, command_); }
 
-  /// Angle in rad; beyond the limit it is cut.
+  /// Sets the angle in rad; clamped to the limit.
   void set_command(double angle_rad);
   double angle_rad() const { return lag_.value(); }
 
@@ -72,7 +75,7 @@ class Fin final : public sim::Actuator {
   Lag lag_;
   double command_ = 0;
   double span_m_ = 0;
-  double max_coefficient_ = 1;  // of force or moment
+  double max_coefficient_ = 1;  // norm of force or moment per rad and (m/s)^2
   Foil foil_;
 };
 

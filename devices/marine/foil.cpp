@@ -20,12 +20,12 @@ void FoilParams::read(sim::ParamReader& in) {
 }
 
 double FoilParams::slope() const {
-  // Whicker & Fehlner 1958 without sweep.
+  // Lift slope of a low-aspect-ratio wing without sweep (Whicker & Fehlner 1958).
   return lift_slope.value_or(std::numbers::pi * aspect_ratio / (1 + std::sqrt(1 + aspect_ratio * aspect_ratio / 4)));
 }
 
 Eigen::Vector2d Foil::force(double mx, double my, double angle_rad) const {
-  // The chord, turned to point forward in the motion.
+  // Angle of attack, with the chord pointing forward along the motion.
   const double cx = std::cos(angle_rad), cy = std::sin(angle_rad);
   double sine = mx * cy - my * cx, cosine = mx * cx + my * cy;
   if (cosine < 0) {
@@ -33,9 +33,11 @@ Eigen::Vector2d Foil::force(double mx, double my, double angle_rad) const {
     cosine = -cosine;
   }
   const double attack = std::atan2(sine, cosine);
+  // Attached flow: lift and induced drag.
   double C_L = slope_ * attack;
   double C_D =
       params_.drag_coefficient + C_L * C_L / (std::numbers::pi * params_.span_efficiency * params_.aspect_ratio);
+  // Blend with the normal force of a plate past the stall.
   const double past = std::min((std::abs(attack) - params_.stall_rad) / params_.stall_width_rad, 1.0);
   if (past > 0) {
     const double stalled = past * past * (3 - 2 * past);
@@ -43,6 +45,7 @@ Eigen::Vector2d Foil::force(double mx, double my, double angle_rad) const {
     C_L += stalled * (std::copysign(C_N * cosine, sine) - C_L);
     C_D += stalled * (params_.drag_coefficient + C_N * std::abs(sine) - C_D);
   }
+  // Drag opposes the motion; lift is perpendicular to it.
   return {-C_D * mx - C_L * my, -C_D * my + C_L * mx};
 }
 

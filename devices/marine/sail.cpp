@@ -45,13 +45,16 @@ void Sail::act(const sim::ActContext& context) {
   const sim::Medium& medium = mount_.world().medium();
   const WaterFlow flow = mount_.flow();
   if (flow.density_kgpm3 > 0 && flow.depth_m > 0) return;
+  // Velocity of the sail relative to the air.
   const sim::Vector3d v_WD_W = flow.body.v_WB_W + flow.body.w_WB_W.cross(flow.p_WD - flow.body.p_WB);
   const sim::Vector3d v_D = mount_.in_D(flow, v_WD_W - medium.air_velocity_W(flow.p_WD));
   const double square = v_D.x() * v_D.x() + v_D.y() * v_D.y();
   if (square < 1e-12) return;
   const double speed = std::sqrt(square);
   const double mx = v_D.x() / speed, my = v_D.y() / speed;
+  // The boom follows the wind up to the sheet.
   const double boom = std::clamp(std::atan2(my, mx), -sheet, sheet);
+  // Lift and drag, limited for stability.
   const double pressure = 0.5 * medium.density_kgpm3(flow.p_WD) * square * params_.area_m2;
   const Eigen::Vector2d force = pressure * foil_.force(mx, my, boom);
   const double bound = std::min(1.0, mount_.max_force_N(speed, context.step_s) / force.norm());

@@ -8,12 +8,11 @@
 
 namespace devices {
 
-/// A sail on a boom.  The mast is z of the device frame D, whose origin is the centre of effort; the boom points along
-/// -x when the sheet is hauled in.  The command is the length of the sheet as an angle in rad: so far the wind can
-/// swing the boom out to either side.  A boom that the sheet does not hold lies in the wind, and the sail only drags.
+/// Sail on a boom.  The mast is z of the device frame D, whose origin is the centre of effort; the boom points along -x
+/// when the sheet is hauled in.  The command is the length of the sheet as the maximum angle of the boom to either
+/// side, rad.  A boom within this angle is aligned with the wind, and the sail has drag only.
 ///
-/// The wind is that over the water less the motion of the sail itself (the apparent wind); the sail is a foil, see
-/// Foil.
+/// The sail is a foil in the apparent wind, the true wind minus the velocity of the sail, see Foil.
 class Sail final : public sim::Actuator {
  public:
   static constexpr const char* meaning =
@@ -37,14 +36,14 @@ class Sail final : public sim::Actuator {
   };
 
   Sail(const Params& params, const sim::DeviceContext& context);
-  /// `effectiveness` slows the winch; at 0 the sheet stays as it is.
+  /// `effectiveness` scales the rate of the winch; at 0 the sheet is stuck.
   void act(const sim::ActContext& context) override;
-  /// stop: the sheet is let out; hold: it stays as it is.
+  /// stop: the sheet is let out; hold: present length.
   void make_safe(sim::SafeState safe) override;
   void change(const Params& params);
   void visit_state(sim::StateArchive& archive) override;
 
-  /// Angle of the sheet in rad; cut to 0 and the limit.
+  /// Sets the angle of the sheet in rad; clamped to 0 and the limit.
   void set_command(double sheet_rad);
   double sheet_rad() const { return lag_.value(); }
 

@@ -34,11 +34,13 @@ void Thruster::Params::read(sim::ParamReader& in) {
       "command", command,
       {{"effort", Command::effort}, {"rpm", Command::rpm}, {"radps", Command::radps}, {"thrust_N", Command::thrust_N}},
       "unit of a command; effort is -1 to 1; also the unit of the levels below");
+  // Level: limits, dead band and lag.
   in.read("max", max, sim::above_to(0, 1e6), "largest level; 1 of an effort");
   in.read("min", min, sim::between(-1e6, 0), "largest level astern; absent: -max");
   in.read("dead_band", dead_band, sim::at_least(0), "commands smaller than this are 0");
   lag.read(in);
   in.read("rate_limit", rate_limit, sim::above(0), "maximum change of the level per second; absent: no limit");
+  // Thrust curve.
   if (command == Command::thrust_N) curve = Curve::direct;
   in.read_choice(
       "curve", curve,
@@ -55,7 +57,7 @@ void Thruster::Params::read(sim::ParamReader& in) {
   in.read("k_q0", k_q0, sim::between(0, 10), "kt_kq: torque coefficient without inflow");
   in.read("k_q_slope", k_q_slope, sim::between(0, 10), "kt_kq: loss of the torque coefficient per advance ratio");
   in.read("full_speed_rpm", full_speed_rpm, sim::above_to(0, 1e6), "kt_kq: shaft speed at effort 1");
-  // Without inflow or thrust it would be no thruster, and no autopilot could reckon with it.
+  // Interaction with the hull; shares below 1, so that thrust and inflow never vanish.
   in.read("wake_fraction", wake_fraction, sim::between(0, 0.99),
           "wake fraction: share of the speed that the inflow loses to the hull");
   in.read("thrust_deduction", thrust_deduction, sim::between(0, 0.99),
@@ -64,6 +66,7 @@ void Thruster::Params::read(sim::ParamReader& in) {
                  {{"water", Inflow::water}, {"water_speed", Inflow::water_speed}, {"ground", Inflow::ground}},
                  "water: along the axis, where the propeller is; water_speed: speed of the body through the water; "
                  "ground: its speed over ground, as MSS remus100 has it");
+  // Torque, ventilation and power.
   in.read_choice("turns", turns, {{"right", Turns::right}, {"left", Turns::left}},
                  "right: clockwise seen from behind; the reaction torque turns the hull the other way");
   in.read("torque_per_thrust_m", torque_per_thrust_m, sim::between(0, 10), "shaft torque per thrust, except for kt_kq");
@@ -72,6 +75,7 @@ void Thruster::Params::read(sim::ParamReader& in) {
   in.read("full_power_W", full_power_W, sim::at_least(0),
           "from the battery at full thrust; less by thrust^1.5; not for kt_kq");
   in.read("efficiency", efficiency, sim::above_to(0, 1), "kt_kq: shaft power over power from the battery");
+  // Check combinations of keys.
   if (in.describing()) return;
   if (command != Command::effort && !max) in.error("'max' is missing: the largest level in the unit of 'command'");
   if (command == Command::effort && (upper() > 1 || lower() < -1))
@@ -126,7 +130,7 @@ Thruster::Effort Thruster::effort_of(double level, double inflow_mps, double den
     thrust = thrust_in_table(level);
   } else if (params_.curve == Curve::kt_kq) {
     const double n = turns_per_second(level), D = params_.diameter_m;
-    // Advance ratio times n; no thrust curve is meant for an inflow from behind.
+    // Advance ratio times n; 0 for inflow from behind, which the thrust curve does not cover.
     const double Jn = n > 0 ? std::max(inflow_mps, 0.0) / D : 0;
     const double scale = params_.density_kgpm3.value_or(density_kgpm3) * D * D * D * D * std::abs(n);
     return {scale * (params_.k_t0 * n - params_.k_t_slope * Jn),
@@ -150,14 +154,16 @@ void Thruster::act(const sim::ActContext& context) {
   if (flow.density_kgpm3 == 0) return;
   const double share = params_.ventilation ? share_under_water(flow.depth_m, params_.diameter_m) : 1;
   if (share == 0) return;
+  // Thrust on the body.
   const Effort full = effort_of(level, inflow_mps(flow), flow.density_kgpm3);
   const double scale = share * context.effectiveness;
   thrust_N_ = scale * (1 - params_.thrust_deduction) * full.thrust_N;
   mount_.add_force_D(flow, {thrust_N_, 0, 0});
-  // The hull is turned against the shaft.
+  // Reaction torque on the hull, opposed to the rotation of the shaft.
   const double sense = params_.turns == Turns::right ? -1 : 1;
   const double torque = sense * params_.torque_share * scale * full.shaft_torque_Nm;
   if (torque != 0) mount_.add_torque_D(flow, {torque, 0, 0});
+  // Electric power.
   if (params_.curve == Curve::kt_kq) {
     const double radps = 2 * std::numbers::pi * turns_per_second(level);
     power_W_ = std::max(scale * full.shaft_torque_Nm * radps, 0.0) / params_.efficiency;

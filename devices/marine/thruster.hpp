@@ -12,10 +12,10 @@
 
 namespace devices {
 
-/// A propeller with its motor.  It pushes the body along +x of the device frame D, at its origin.
+/// Propeller with its motor.  Its thrust acts along +x of the device frame D, at the origin of D.
 ///
-/// A command becomes a level (a shaft speed, an effort, a thrust, by `command`), which is limited, has a dead band and
-/// lags; a curve makes the thrust of it:
+/// A command sets the level (shaft speed, effort or thrust, see `command`), with limits, dead band and lag.  A curve
+/// gives the thrust at a level:
 /// - quadratic: T = a |n| n - b |n| u, with a for ahead or astern and u the inflow (Fossen 2011, eq. 9.3: bilinear)
 /// - table: linear between pairs of level and thrust, constant beyond them
 /// - kt_kq: T = rho D^4 |n| n (K_T0 - s J), Q = rho D^5 |n| n (K_Q0 - s_Q J), J = (1 - w) u / (n D), n in turns per
@@ -25,13 +25,17 @@ class Thruster final : public sim::Actuator {
  public:
   static constexpr const char* meaning =
       "Propeller that pushes along +x of its frame; commanded by rpm, rad/s, effort (-1 to 1) or thrust.";
+  /// Unit of a command.
   enum class Command { effort, rpm, radps, thrust_N };
+  /// Model of the thrust at a level.
   enum class Curve { quadratic, table, kt_kq, direct };
+  /// Velocity for the inflow: water along the axis, speed of the body through the water, or over ground.
   enum class Inflow { water, water_speed, ground };
+  /// Direction of rotation, seen from behind.
   enum class Turns { right, left };
   struct Params {
     Command command = Command::effort;
-    std::optional<double> max, min;  ///< of the level
+    std::optional<double> max, min;  ///< limits of the level
     double dead_band = 0;
     LagParams lag;
     std::optional<double> rate_limit;
@@ -57,18 +61,19 @@ class Thruster final : public sim::Actuator {
 
   Thruster(const Params& params, const sim::DeviceContext& context);
   void act(const sim::ActContext& context) override;
-  /// stop: as the command 0.
+  /// stop: command 0.
   void make_safe(sim::SafeState) override { command_ = 0; }
   double power_W() const override { return power_W_; }
   void change(const Params& params);
   void visit_state(sim::StateArchive& archive) override;
 
-  /// In the unit of `command`; beyond the limits it is cut.
+  /// Sets the command in the unit of `command`; clamped to the limits.
   void set_command(double command);
   double level() const { return lag_.value(); }
-  double thrust_N() const { return thrust_N_; }  ///< on the body, in the last step
+  double thrust_N() const { return thrust_N_; }  ///< thrust on the body in the last step
 
  private:
+  /// Thrust and shaft torque.
   struct Effort {
     double thrust_N, shaft_torque_Nm;
   };
@@ -80,7 +85,7 @@ class Thruster final : public sim::Actuator {
   Params params_;
   WaterMount mount_;
   Lag lag_;
-  double command_ = 0;  // limited, without what lies in the dead band
+  double command_ = 0;  // after limits and dead band
   double thrust_N_ = 0;
   double power_W_ = 0;
   double full_thrust_N_ = 0;

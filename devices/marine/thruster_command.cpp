@@ -43,7 +43,7 @@ double ThrusterCommand::min_N(double density_kgpm3) const {
   return thrust_N(params_.lower(), density_kgpm3);
 }
 
-/// The level nearest to zero with this thrust; a flat part of the table is a dead band.
+/// Returns the level closest to zero with this thrust; flat parts of the table are skipped as dead bands.
 double ThrusterCommand::level_in_table(double thrust_N) const {
   if (thrust_N == 0) return 0;
   const std::vector<double>& table = params_.table;
@@ -64,7 +64,7 @@ double ThrusterCommand::command_for_N(double thrust_N, double inflow_mps, double
   } else if (params_.curve == Thruster::Curve::table) {
     level = level_in_table(thrust_N / (1 - params_.thrust_deduction));
   } else if (thrust_N != 0) {
-    // |thrust| = square level^2 -+ loss level inflow, of a level counted in the direction of the thrust.
+    // Solve |thrust| = square level^2 - loss level inflow for the level, both positive in the direction of the thrust.
     const bool ahead = thrust_N > 0;
     const Bilinear curve = bilinear(ahead, density_kgpm3);
     const double inflow = (1 - params_.wake_fraction) * (ahead ? inflow_mps : -inflow_mps);

@@ -5,19 +5,20 @@
 
 namespace devices {
 
-/// Which command makes a thruster give a thrust: the inverse of its curve.
+/// Inverse of a thrust curve: from thrust to command.
 class ThrusterCommand {
  public:
   explicit ThrusterCommand(const Thruster::Params& params) : params_(params) {}
 
-  /// Limits of the thrust without inflow, N.
+  /// Return the limits of the thrust without inflow, N.
   double max_N(double density_kgpm3) const;
   double min_N(double density_kgpm3) const;
-  /// In the unit of the thruster's commands, inside its limits.  `inflow_mps`: speed of the water along the axis.
+  /// Returns the command for a thrust, in the unit of the thruster's commands and within its limits.  `inflow_mps`:
+  /// inflow speed along the axis.
   double command_for_N(double thrust_N, double inflow_mps, double density_kgpm3) const;
 
  private:
-  /// N per level squared, and N lost per level and m/s of inflow.
+  /// Coefficients of the bilinear model: N per level squared, and N lost per level and m/s of inflow.
   struct Bilinear {
     double square, loss;
   };

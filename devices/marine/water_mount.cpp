@@ -25,7 +25,7 @@ double WaterMount::mass_at(const sim::Body& body, const sim::Vector3d& p_BD) {
   return 1 / (1 / body.mass_kg() + (p_BD - body.p_BC()).squaredNorm() / smallest_inertia);
 }
 
-/// A body that the water does nothing to can have a propeller all the same.
+/// Returns the flow for a body without hydrodynamics, which can carry a propeller too.
 WaterFlow WaterMount::flow_without_cache() const {
   WaterFlow flow;
   flow.body = body_.motion();

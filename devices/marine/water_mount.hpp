@@ -7,17 +7,17 @@
 
 namespace devices {
 
-/// A device frame D in the water, at this moment.
+/// State of a device frame D in the water.
 struct WaterFlow {
   sim::BodyMotion body;
   sim::Vector3d p_WD;        ///< origin of the device frame
-  sim::Vector3d v_D;         ///< its velocity through the water, in D, m/s
+  sim::Vector3d v_D;         ///< velocity through the water, in D, m/s
   sim::Vector3d water_W;     ///< velocity of the water at the body, m/s
-  double depth_m = 0;        ///< of that origin below the surface
-  double density_kgpm3 = 0;  ///< of the water; 0 in a world without
+  double depth_m = 0;        ///< depth of the origin below the surface
+  double density_kgpm3 = 0;  ///< density of the water; 0 in a world without water
 };
 
-/// Where on a body in the water an actuator sits: the flow there, and forces from there.
+/// Mounting of an actuator on a body in the water: provides the flow at the device and applies its forces.
 class WaterMount {
  public:
   explicit WaterMount(const sim::DeviceContext& context)
@@ -28,25 +28,28 @@ class WaterMount {
         turned_(!R_BD_.isIdentity(0)),
         mass_at_D_kg_(mass_at(body_, p_BD_)) {}
 
-  /// At the start of the step, before any force acts.
+  /// Returns the flow at the start of the step, before forces act.
   WaterFlow flow() const;
-  /// A velocity in the world, in the axes of D.
+  /// Rotates a vector from W to D.
   sim::Vector3d in_D(const WaterFlow& flow, const sim::Vector3d& v_W) const {
     const sim::Vector3d v_B = flow.body.R_WB.transpose() * v_W;
     return turned_ ? sim::Vector3d(R_BD_.transpose() * v_B) : v_B;
   }
+  /// Rotates a vector from D to W.
   sim::Vector3d in_W(const WaterFlow& flow, const sim::Vector3d& v_D) const {
     const sim::Vector3d v_B = turned_ ? sim::Vector3d(R_BD_ * v_D) : v_D;
     return flow.body.R_WB * v_B;
   }
-  /// The largest force of a flow of this speed: one that stops the flow at D in a step.  A larger one would turn it
-  /// round, which no lift and no drag does.
+  /// Returns the force that stops the relative flow at D within one step.  Lift and drag are limited to it,
+  /// because a larger force would reverse the flow within the step, which is unphysical.
   double max_force_N(double speed_mps, double step_s) const { return mass_at_D_kg_ * speed_mps / step_s; }
-  /// At the origin of D.
+  /// Adds a force in D at the origin of D.
   void add_force_D(const WaterFlow& flow, const sim::Vector3d& force_N) {
     body_.add_force_W(in_W(flow, force_N), flow.p_WD);
   }
+  /// Adds a force in W at the origin of D.
   void add_force_W(const WaterFlow& flow, const sim::Vector3d& force_N) { body_.add_force_W(force_N, flow.p_WD); }
+  /// Adds a torque in D.
   void add_torque_D(const WaterFlow& flow, const sim::Vector3d& torque_Nm) {
     body_.add_torque_W(in_W(flow, torque_Nm));
   }
@@ -60,12 +63,13 @@ class WaterMount {
   sim::Matrix3d R_BD_;
   bool turned_;
   double mass_at_D_kg_;
-  /// What a force at a place of the body has to move at least, without added mass.
+  /// Returns a lower bound of the effective mass of the body at a point, without added mass.
   static double mass_at(const sim::Body& body, const sim::Vector3d& p_BD);
   WaterFlow flow_without_cache() const;
 };
 
-/// Share of something of this height that is under water when its middle is at `depth_m`: 0 to 1, smooth at both ends.
+/// Returns the immersed share of a device of the given height whose centre is at `depth_m`: 0 to 1, smooth at both
+/// ends.
 inline double share_under_water(double depth_m, double height_m) {
   const double share = depth_m / height_m + 0.5;
   if (share >= 1) return 1;

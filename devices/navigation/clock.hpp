@@ -6,8 +6,8 @@
 
 namespace devices {
 
-/// Tells the state of the vehicle's clock, as a time server on board does.  The true error is on the truth channel
-/// only.
+/// State of the clock of the vehicle, as reported by an onboard time server.  The true error is published on the truth
+/// channel only.
 class Clock final : public sim::Sensor {
  public:
   static constexpr const char* meaning = "State of the vehicle's clock: when it was disciplined, how good it may be.";
@@ -20,7 +20,7 @@ class Clock final : public sim::Sensor {
     double since_fix_s = -1;
     double estimated_std_s = 0;
     double error_s = 0;
-    double rate_error = 0;  ///< mean since the last sample
+    double rate_error = 0;  ///< mean rate error since the last sample
     void visit_state(sim::StateArchive& archive) {
       archive(disciplined, since_fix_s, estimated_std_s);
       archive.not_only_finite(error_s, rate_error);

@@ -7,8 +7,8 @@
 
 namespace devices {
 
-/// CTD: conductivity, temperature and pressure of the medium, each with its error; salinity and depth are computed of
-/// these as a real one does.
+/// CTD: conductivity, temperature and pressure of the medium, each with its error.  Salinity and depth are computed
+/// from the measured values.
 class Ctd final : public sim::Sensor {
  public:
   static constexpr const char* meaning = "CTD: conductivity, temperature, depth, salinity and speed of sound.";
@@ -22,7 +22,7 @@ class Ctd final : public sim::Sensor {
     void read(sim::ParamReader& in);
   };
   struct Reading {
-    bool valid = false;  ///< in water
+    bool valid = false;  ///< true in water
     double conductivity_Spm = 0, temperature_C = 0, pressure_Pa = 0, sound_speed_mps = 0;
     void visit_state(sim::StateArchive& archive) {
       archive(valid, conductivity_Spm, temperature_C, pressure_Pa, sound_speed_mps);
@@ -39,10 +39,11 @@ class Ctd final : public sim::Sensor {
   }
   const Reading& reading() const { return reading_; }
   double depth_m() const { return params_.depth.depth_m(reading_.pressure_Pa); }
+  /// Returns the practical salinity computed from the measured values.
   double salinity_psu() const;
 
  private:
-  /// Pressure over that of the air, for the salinity scale.
+  /// Returns the gauge pressure, for the salinity scale.
   double pressure_dbar() const { return (reading_.pressure_Pa - params_.depth.assumed_surface_Pa) * 1e-4; }
 
   Params params_;

@@ -15,15 +15,15 @@ namespace devices {
 
 namespace {
 
-/// The least squares solution of b_i . v = value_i over the beams in use.
+/// Normal equations of the least-squares problem b_i . v = value_i over the beams in use.
 struct BeamSystem {
-  sim::Matrix3d inverse = sim::Matrix3d::Zero();  ///< of the sum of b_i b_i^T
+  sim::Matrix3d inverse = sim::Matrix3d::Zero();  ///< inverse of the sum of b_i b_i^T
   sim::Vector3d right = sim::Vector3d::Zero();
 
   sim::Vector3d solution() const { return inverse * right; }
 };
 
-/// `use(i)` and `value(i)` of each beam.  Nothing with less than three beams.
+/// Returns the normal equations for the beams with use(i) and their values value(i); empty for fewer than three beams.
 template <typename Use, typename Value>
 std::optional<BeamSystem> beam_system(const std::array<sim::Vector3d, dvl_beams>& beams_S, Use use, Value value) {
   sim::Matrix3d sum = sim::Matrix3d::Zero();
@@ -46,7 +46,7 @@ void Dvl::Params::read(sim::ParamReader& in) {
   std::vector<std::string> names;
   for (const DvlPreset& unit : dvl_presets()) names.push_back(unit.name);
   in.read_one_of("preset", preset, names, "preset of a product by its data sheet; the keys below override it");
-  // The preset is the default of the keys that follow.
+  // The preset sets the defaults of the keys that follow.
   for (const DvlPreset& unit : dvl_presets()) {
     if (unit.name != preset || in.describing()) continue;
     beam_angle_rad = sim::degrees_to_radians(unit.beam_angle_deg);
@@ -55,6 +55,7 @@ void Dvl::Params::read(sim::ParamReader& in) {
     scale_std = unit.scale_std;
     velocity_noise.bias_std = unit.bias_std_mps;
   }
+  // Geometry and detection of beams.
   in.read_deg("beam_angle_deg", beam_angle_rad, sim::between(5, 60), "between each beam and -z");
   in.read_deg("first_azimuth_deg", first_azimuth_rad, sim::between(-360, 360),
               "azimuth of the first beam, from x towards y; the others follow every 90 deg");
@@ -65,9 +66,11 @@ void Dvl::Params::read(sim::ParamReader& in) {
   in.read_deg("incidence_max_deg", incidence_max_rad, sim::above_to(0, 90),
               "maximum angle of incidence, from the normal of the bottom, that returns an echo");
   in.read("beam_dropout", beam_dropout, sim::between(0, 1), "probability that a beam is lost, drawn for each beam");
+  // Water track.
   in.read("water_track", water_track, "also measure the velocity relative to a layer of water");
   in.read("layer_from_m", layer_from_m, sim::at_least(0), "start of that layer along -z");
   in.read("layer_to_m", layer_to_m, sim::above(0), "end of that layer along -z");
+  // Errors.
   in.read("beam_std_mps", beam_std_mps, sim::at_least(0), "white noise of each beam, standard deviation");
   in.read("beam_std_per_mps", beam_std_per_mps, sim::at_least(0), "its increase per m/s of speed");
   in.read("scale_std", scale_std, sim::at_least(0),
@@ -115,17 +118,19 @@ void Dvl::measure(const sim::SenseContext& context) {
   if (!medium_.in_water(p_WS)) return;
   sound_scale_ = params_.assumed_sound_speed_mps ? *params_.assumed_sound_speed_mps / medium_.sound_speed_mps(p_WS) : 1;
   speed_mps_ = context.v_WS_W.norm();
+  // Cast one ray per beam.
   const double cosine = std::cos(params_.beam_angle_rad);
   std::array<sim::Ray, dvl_beams> rays_W;
   std::array<sim::RayHit, dvl_beams> hits;
   for (std::size_t i = 0; i < dvl_beams; ++i)
     rays_W[i] = {p_WS, context.X_WS.linear() * beams_S_[i], params_.altitude_max_m / cosine};
   context.world.scene().cast(rays_W, filter_, hits);
+  // True measurements of each beam.
   for (std::size_t i = 0; i < dvl_beams; ++i) {
     Beam& beam = reading_.beams[i];
     const sim::RayHit& hit = hits[i];
     const sim::Vector3d& direction_W = rays_W[i].direction_W;
-    // Sound that has left the water on its way does not come back.
+    // The echo needs a hit in water, beyond the minimum altitude and within the maximum angle of incidence.
     const bool echo = hit.hit() && hit.range_m * cosine >= params_.altitude_min_m &&
                       -hit.normal_W.dot(direction_W) >= std::cos(params_.incidence_max_rad) &&
                       medium_.in_water(p_WS + hit.range_m * direction_W);
@@ -137,11 +142,11 @@ void Dvl::measure(const sim::SenseContext& context) {
   solve();
 }
 
-// The mean over three places, in the middle of the thirds of the layer.
+// Mean over three points, at the centres of the thirds of the layer.
 void Dvl::listen_to_water(const sim::Ray& ray_W, const sim::Vector3d& v_WS_W, Beam& beam) const {
   const double cosine = std::cos(params_.beam_angle_rad);
   const double thickness_m = params_.layer_to_m - params_.layer_from_m;
-  if (beam.range_m * cosine < params_.layer_to_m) return;  // the bottom is in it
+  if (beam.range_m * cosine < params_.layer_to_m) return;  // bottom within the layer
   if (!medium_.in_water(ray_W.origin_W + params_.layer_to_m / cosine * ray_W.direction_W)) return;
   sim::Vector3d v_water_W = sim::Vector3d::Zero();
   for (const double share : {1.0 / 6, 3.0 / 6, 5.0 / 6}) {
@@ -166,10 +171,11 @@ void Dvl::solve() {
     reading_.velocity_S = over_bottom->solution();
     const double white_mps = params_.beam_noise.gaussian_std;
     reading_.fom_mps = std::sqrt(over_bottom->inverse.trace()) * std::hypot(expected_beam_std_mps(), white_mps);
-    // A plane n . p = d is met at the range d / (n . b): 1 / range = (n / d) . b is linear in b.
+    // Fit a plane n . p = d to the bottom: range = d / (n . b), so that 1 / range = (n / d) . b is linear in b.
     const auto plane = beam_system(beams_S_, sees_bottom, [&](std::size_t i) { return 1 / beams[i].range_m; });
     reading_.altitude_m = std::clamp(-1 / plane->solution().z(), 0.0, 2 * params_.altitude_max_m);
   }
+  // Velocity through the water.
   const auto through_water = beam_system(
       beams_S_, [&](std::size_t i) { return beams[i].detects_water; },
       [&](std::size_t i) { return beams[i].water_mps; });
@@ -177,6 +183,7 @@ void Dvl::solve() {
 }
 
 void Dvl::disturb(double dt_s, sim::Random& random) {
+  // Scale errors and white noise of each beam.
   const double scale = sound_scale_ * (1 + params_.scale_std * scale_draw_);
   const double white_mps = beam_fault_.factor * expected_beam_std_mps();
   std::array<double, dvl_beams> bottom_mps, water_mps, ranges_m;
@@ -185,11 +192,13 @@ void Dvl::disturb(double dt_s, sim::Random& random) {
     water_mps[i] = reading_.beams[i].water_mps * scale + white_mps * random.gaussian();
     ranges_m[i] = reading_.beams[i].range_m * sound_scale_;
   }
+  // Configured noise.
   beam_noise_.apply(bottom_mps, dt_s, random);
   water_beam_noise_.apply(water_mps, dt_s, random);
   range_noise_.apply(ranges_m, dt_s, random);
   for (std::size_t i = 0; i < dvl_beams; ++i) {
     Beam& beam = reading_.beams[i];
+    // Store the measurements and drop beams at random.
     beam.velocity_mps = bottom_mps[i];
     beam.water_mps = water_mps[i];
     beam.range_m = std::max(ranges_m[i], 1e-3);
@@ -197,7 +206,7 @@ void Dvl::disturb(double dt_s, sim::Random& random) {
     if (random.uniform() < params_.beam_dropout) beam.detects_water = false;
   }
   solve();
-  // The slow errors continue without lock.
+  // Advance correlated errors even without lock.
   const auto disturb_velocity = [&](sim::Noise& noise, std::optional<sim::Vector3d>& velocity) {
     sim::Vector3d value = velocity.value_or(sim::Vector3d::Zero());
     noise.apply(std::span<double>(value.data(), 3), dt_s, random);
@@ -209,7 +218,7 @@ void Dvl::disturb(double dt_s, sim::Random& random) {
 
 void Dvl::visit_state(sim::StateArchive& archive) {
   archive(beam_noise_, water_beam_noise_, velocity_noise_, water_velocity_noise_, range_noise_);
-  // Out of the water the last values continue to scale the errors.
+  // Out of the water, errors are scaled with the last values.
   archive(sound_scale_, speed_mps_, reading_);
 }
 

@@ -16,9 +16,9 @@ namespace devices {
 
 constexpr std::size_t dvl_beams = 4;
 
-/// Doppler velocity log: four beams about -z of the sensor frame S, 90 deg apart.  Along each beam b (of unit length)
-/// it measures b . v; the velocity v is the least squares solution for the beams that see the bottom, three at least.
-/// What the beams hit counts as standing still.
+/// Doppler velocity log: four beams about -z of the sensor frame S, 90 deg apart in azimuth (Janus).  Each
+/// beam, a unit vector b, measures b . v; the velocity v is the least-squares solution for the beams that detect the
+/// bottom, at least three.  The bottom is assumed to be stationary.
 class Dvl final : public sim::Sensor {
  public:
   static constexpr const char* meaning =
@@ -27,13 +27,13 @@ class Dvl final : public sim::Sensor {
   static constexpr bool casts_rays = true;
   struct Params {
     std::string preset;
-    double beam_angle_rad = sim::degrees_to_radians(30);     ///< from -z
-    double first_azimuth_rad = sim::degrees_to_radians(45);  ///< of the first beam, from x to y
-    double altitude_min_m = 0.5, altitude_max_m = 100;       ///< along -z
+    double beam_angle_rad = sim::degrees_to_radians(30);     ///< angle between beams and -z
+    double first_azimuth_rad = sim::degrees_to_radians(45);  ///< azimuth of the first beam, from x towards y
+    double altitude_min_m = 0.5, altitude_max_m = 100;       ///< distance along -z
     double incidence_max_rad = sim::degrees_to_radians(60);
     double beam_dropout = 0;
     bool water_track = true;
-    double layer_from_m = 2, layer_to_m = 8;  ///< along -z
+    double layer_from_m = 2, layer_to_m = 8;  ///< water layer, distance along -z
     double beam_std_mps = 0, beam_std_per_mps = 0, scale_std = 0;
     std::optional<double> assumed_sound_speed_mps;
     std::vector<std::string> see_through;
@@ -41,10 +41,11 @@ class Dvl final : public sim::Sensor {
     sim::NoiseParams range_noise;                 ///< m
     void read(sim::ParamReader& in);
   };
+  /// Measurement of one beam.
   struct Beam {
     double range_m = 0;
-    double velocity_mps = 0;  ///< towards what it hits
-    double water_mps = 0;     ///< towards the layer of water
+    double velocity_mps = 0;  ///< relative to the bottom, positive towards it
+    double water_mps = 0;     ///< relative to the water layer
     bool sees_bottom = false, detects_water = false;
     void visit_state(sim::StateArchive& archive) {
       archive(range_m, velocity_mps, water_mps, sees_bottom, detects_water);
@@ -53,7 +54,7 @@ class Dvl final : public sim::Sensor {
   struct Reading {
     std::array<Beam, dvl_beams> beams;
     std::optional<sim::Vector3d> velocity_S, water_velocity_S;
-    double altitude_m = 0, fom_mps = 0;  ///< of a reading with velocity_S
+    double altitude_m = 0, fom_mps = 0;  ///< valid with velocity_S
     void visit_state(sim::StateArchive& archive) { archive(beams, velocity_S, water_velocity_S, altitude_m, fom_mps); }
   };
 
@@ -69,9 +70,9 @@ class Dvl final : public sim::Sensor {
   const Reading& reading() const { return reading_; }
 
  private:
-  /// The water that a beam receives in the layer: sets its velocity.
+  /// Sets the velocity of a beam relative to the water layer.
   void listen_to_water(const sim::Ray& ray_W, const sim::Vector3d& v_WS_W, Beam& beam) const;
-  /// Velocities and altitude from the beams.
+  /// Computes velocities and altitude from the beams.
   void solve();
   double expected_beam_std_mps() const;
 
@@ -86,9 +87,9 @@ class Dvl final : public sim::Sensor {
   sim::NoiseOf<&Params::velocity_noise> velocity_noise_;
   sim::NoiseOf<&Params::velocity_noise> water_velocity_noise_;
   sim::NoiseOf<&Params::range_noise> range_noise_;
-  double scale_draw_;       ///< standard normal, once in a run
+  double scale_draw_;       ///< standard normal, drawn once per run
   double sound_scale_ = 1;  ///< assumed over true speed of sound
-  double speed_mps_ = 0;    ///< true, for the noise
+  double speed_mps_ = 0;    ///< true speed, for the noise
   std::array<sim::Vector3d, dvl_beams> beams_S_;
   Reading reading_;
 };

@@ -4,8 +4,8 @@
 namespace devices {
 
 // Data sheets give the standard deviation of one ping for the horizontal velocity; along a beam it is sqrt(2) sin(beam
-// angle) times that.  The long-term accuracy, such as 0.2 % +- 1 mm/s, is read as one standard deviation of scale and
-// bias.  The sheets were not at hand: no figure is checked but those marked so.
+// angle) times that.  The long-term accuracy, such as 0.2 % +- 1 mm/s, is taken as one standard deviation of scale
+// and bias.  Figures are not verified against the data sheets unless marked as checked.
 const DvlPreset presets[] = {
     // Teledyne RD Instruments, Workhorse Navigator: 600 kHz; 30 deg and four beams checked (its FAQ).  0.2 % +- 1 mm/s,
     // 3 mm/s at 1 m/s and 4 mm/s at 3 m/s, 0.7 to 90 m, 7 Hz.
@@ -15,7 +15,7 @@ const DvlPreset presets[] = {
     // The same at 1200 kHz: 0.2 % +- 1 mm/s, to 30 m.
     {"workhorse_1200", 30, 0.5, 30, 1.77e-3, 3.54e-4, 0.002, 0.001, 7},
     // Nortek DVL1000: 25 deg, 0.2 to 75 m (75 m checked: a training text of VideoRay), 0.1 to 0.3 % +- 1 mm/s, 8 Hz;
-    // 2 mm/s of a ping is what the simulator DUNE of LSTS takes.
+    // 2 mm/s per ping as in DUNE (LSTS).
     {"dvl1000", 25, 0.2, 75, 1.2e-3, 0, 0.002, 0.001, 8},
 };
 

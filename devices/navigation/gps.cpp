@@ -13,7 +13,7 @@ namespace devices {
 
 namespace {
 
-/// Two receivers that steer one clock would fight.
+/// Reports an error when another receiver disciplines the same clock.
 void refuse_two_masters(const sim::DeviceContext& context) {
   for (const sim::DeviceConfig& device : context.vehicle.config().devices) {
     if (device.type != "gps" || device.name == context.config.name) continue;
@@ -73,7 +73,7 @@ void Gps::disturb(double dt_s, sim::Random& random) {
   vertical_noise_.apply(reading_.p_W.z(), dt_s, random);
   velocity_noise_.apply(std::span<double>(reading_.v_W.data(), 3), dt_s, random);
   reading_.position = geodesy_.to_geodetic(reading_.p_W);
-  if (params_.disciplines_clock) discipline(random);  // after all other draws: they are the same without it
+  if (params_.disciplines_clock) discipline(random);  // last, so that the other random draws do not depend on it
 }
 
 void Gps::discipline(sim::Random& random) {
@@ -105,7 +105,7 @@ void GpsReporter::report(sim::Time sampled_at, sim::Publisher& out) const {
   message.speed = fix ? std::hypot(reading.v_W.x(), reading.v_W.y()) : nothing;
   message.heading = fix ? std::atan2(reading.v_W.x(), reading.v_W.y()) : nothing;
   for (int i = 0; i < 3; ++i) message.xyz_pos[i] = fix ? reading.p_W[i] : nothing;
-  // Satellites tell the true time, whatever the vehicle's clock shows.
+  // Satellites provide the true time, independent of the vehicle clock.
   message.gps_time = static_cast<double>(fix ? out.true_utime(sampled_at) : message.utime) * 1e-6;
   shoal::encode_into(message, out.buffer());
   out.publish(out.buffer());

@@ -10,27 +10,28 @@
 
 namespace devices {
 
-/// Satellite receiver: position on the WGS84 ellipsoid by the world's origin, and velocity over ground.  No fix while
-/// its antenna, the origin of its frame, is under the momentary surface of the water.  It may steer the clock of its
-/// vehicle (docs/models/clocks.md): a fix tells the clock's error except for the jitter of its pulse.
+/// Satellite receiver: position on the WGS84 ellipsoid, from the geodetic origin of the world, and velocity over
+/// ground.  It has no fix while its antenna, the origin of its frame, is below the instantaneous water surface.  It may
+/// discipline the clock of its vehicle (docs/models/clocks.md): each fix measures the clock error with the jitter of
+/// the pulse per second.
 class Gps final : public sim::Sensor {
  public:
   static constexpr const char* meaning = "Satellite positioning: WGS84 position, velocity over ground, fix quality.";
   static constexpr double default_rate_hz = 1;
   struct Params {
-    sim::NoiseParams horizontal_noise;  ///< of east and of north, m
-    sim::NoiseParams vertical_noise;    ///< of the height, m
-    sim::NoiseParams velocity_noise;    ///< of each component of the velocity, m/s
+    sim::NoiseParams horizontal_noise;  ///< error of east and north, m
+    sim::NoiseParams vertical_noise;    ///< error of the height, m
+    sim::NoiseParams velocity_noise;    ///< error of each component of the velocity, m/s
     int fix_quality = 1;
     int satellites = 9;
-    std::optional<double> min_height_m;  ///< below this height of the antenna there is no fix
-    double reacquisition_s = 0;  ///< after a zone that denies it or water over the antenna, until there is a fix again
+    std::optional<double> min_height_m;  ///< minimum height of the antenna for a fix
+    double reacquisition_s = 0;          ///< time to the next fix after a denied zone or submersion
     bool disciplines_clock = false;
-    sim::DisciplineParams discipline;  ///< its interval is not used: it is the period of the samples
+    sim::DisciplineParams discipline;  ///< its interval is ignored; the sample period applies
     void read(sim::ParamReader& in);
   };
   struct Reading {
-    int fix_quality = 0;  ///< 0: no fix, and the rest is NaN
+    int fix_quality = 0;  ///< 0: no fix; the other fields are NaN
     sim::GeodeticPosition position;
     sim::Vector3d p_W = sim::Vector3d::Zero();
     sim::Vector3d v_W = sim::Vector3d::Zero();
@@ -49,7 +50,7 @@ class Gps final : public sim::Sensor {
   }
   const Reading& reading() const { return reading_; }
   const Params& params() const { return params_; }
-  /// The standard deviation it claims, from its noise, m.
+  /// Returns the reported standard deviation for a noise model, m.
   static double accuracy_m(const sim::NoiseParams& noise);
 
  private:
@@ -66,7 +67,7 @@ class Gps final : public sim::Sensor {
   sim::NoiseOf<&Params::velocity_noise> velocity_noise_;
   Reading reading_;
   sim::Time sampled_at_{0};
-  std::optional<sim::Time> denied_at_;  ///< when it was last under water or in a zone that denies it
+  std::optional<sim::Time> denied_at_;  ///< last time under water or in a denied zone
 };
 
 /// Publishes shoal.gps_data_t, equal on the wire to bot_core's.

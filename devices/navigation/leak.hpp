@@ -8,8 +8,8 @@
 
 namespace devices {
 
-/// Leak detector: water comes into the hull while its place is deeper than the hull is rated for, or while an event
-/// says so, and it reports how much.  It does not make the hull heavier.
+/// Leak detector: reports the volume of water in the hull.  Water enters below the rated depth of the hull, or while an
+/// event sets `leaking`.  The mass of the vehicle does not change.
 class Leak final : public sim::Sensor {
  public:
   static constexpr const char* meaning = "Leak detector: water in the hull, from too great a depth or from an event.";
@@ -36,8 +36,8 @@ class Leak final : public sim::Sensor {
  private:
   Params params_;
   sim::NoiseOf<&Params::water_noise> water_noise_;
-  double water_l_ = 0;  ///< in the hull
-  bool burst_ = false;  ///< it has been too deep: it leaks wherever there is water
+  double water_l_ = 0;  ///< true volume in the hull
+  bool burst_ = false;  ///< rated depth was exceeded: permanent leak under water
   double reading_l_ = 0;
 };
 

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::int64_t max_ticks = 1'000'000'000'000'000'000;
 
-/// A restored angle, or an error without bound, may be any number.
+/// Converts to whole ticks with saturation, because a restored angle or an unbounded error may be any number.
 std::int64_t whole_ticks(double ticks) {
   constexpr auto limit = static_cast<double>(max_ticks);
   return static_cast<std::int64_t>(std::floor(std::fmin(std::fmax(ticks, -limit), limit)));
@@ -49,7 +49,7 @@ Odometry::Odometry(const Params& params, const sim::DeviceContext& context)
   wheel_radius_m_ = radius.value_m();
   track_m_ = track.value_m();
   if (!(track_m_ > 0)) refuse(context, "'track_m' is needed: its wheels are in one place");
-  // What it believes may be off, as on a rover whose tyres are worn; of a rover that turns by slip the track is wider.
+  // Assumed lengths may differ, as with worn tyres.  The effective track of a skid-steered rover is wider.
   const AllowedRatio miscalibrated{0.9, 1.1};
   const bool scrubs = std::any_of(vehicle.devices.begin(), vehicle.devices.end(),
                                   [](const sim::DeviceConfig& device) { return device.type == "skid_steer"; });
@@ -73,9 +73,11 @@ void Odometry::measure(const sim::SenseContext& context) {
 }
 
 void Odometry::disturb(double dt_s, sim::Random& random) {
+  // Angles of the wheels since the last sample, with noise.
   const double angles[2] = {left_.position(left_.axes() - 1), right_.position(right_.axes() - 1)};
   double turned[2] = {angles[0] - wheel_rad_[0], angles[1] - wheel_rad_[1]};
   noise_.apply(std::span<double>(turned), dt_s, random);
+  // Convert to whole ticks.
   const double rad_per_tick = 2 * std::numbers::pi / params_.ticks_per_turn;
   std::int64_t ticks[2];
   for (int side = 0; side < 2; ++side) {
@@ -83,12 +85,13 @@ void Odometry::disturb(double dt_s, sim::Random& random) {
     believed_rad_[side] += turned[side];
     ticks[side] = whole_ticks(believed_rad_[side] / rad_per_tick);
   }
+  // Distance and rotation of the vehicle.
   const double m_per_tick = rad_per_tick * wheel_radius_m_;
   const double left_m = static_cast<double>(ticks[0] - reckoned_.left_ticks) * m_per_tick;
   const double right_m = static_cast<double>(ticks[1] - reckoned_.right_ticks) * m_per_tick;
   const double forward_m = 0.5 * (left_m + right_m);
   const double turn_rad = (right_m - left_m) / track_m_;
-  // The chord of an arc of constant curvature, at the mean heading.
+  // Integrate the pose along an arc of constant curvature: its chord at the mean heading.
   const double half = 0.5 * turn_rad;
   const double chord_m = std::abs(half) < 1e-9 ? forward_m : forward_m * std::sin(half) / half;
   reckoned_.x_m += chord_m * std::cos(reckoned_.theta_rad + half);

@@ -9,8 +9,8 @@
 
 namespace devices {
 
-/// Dead reckoning of a differential drive from quantised wheel ticks.  It uses its own calibration of wheel radius
-/// and track, which may be wrong, and ignores slip: the error grows as on a real rover.
+/// Dead reckoning of a differential drive from quantised wheel ticks.  It uses assumed values of wheel radius and
+/// track, which may be wrong, and ignores slip, so that the error grows as on a real rover.
 class Odometry final : public sim::Sensor {
  public:
   static constexpr const char* meaning =
@@ -19,9 +19,9 @@ class Odometry final : public sim::Sensor {
   struct Params {
     std::string left_joint;
     std::string right_joint;
-    std::optional<double> wheel_radius_m, track_m;  ///< that it believes in; unset: as in the vehicle
+    std::optional<double> wheel_radius_m, track_m;  ///< assumed; unset: as in the vehicle
     int ticks_per_turn = 1024;
-    sim::NoiseParams noise;  ///< of the angle each wheel turned between two samples, rad
+    sim::NoiseParams noise;  ///< error of the angle of each wheel between samples, rad
     void read(sim::ParamReader& in);
   };
   struct Reading {
@@ -34,23 +34,23 @@ class Odometry final : public sim::Sensor {
   };
 
   Odometry(const Params& params, const sim::DeviceContext& context);
-  /// The truth: the vehicle's pose relative to where it started.
+  /// Sets the true pose of the vehicle relative to its initial pose.
   void measure(const sim::SenseContext& context) override;
-  /// The measurement: ticks counted and summed up.
+  /// Sets the measured pose by integration of the wheel ticks.
   void disturb(double dt_s, sim::Random& random) override;
   void visit_state(sim::StateArchive& archive) override;
   const Reading& reading() const { return reading_; }
 
  private:
   Params params_;
-  double wheel_radius_m_, track_m_;  ///< that it believes in
+  double wheel_radius_m_, track_m_;  ///< assumed
   const sim::Joint& left_;
   const sim::Joint& right_;
   sim::NoiseOf<&Params::noise> noise_;
-  sim::Pose X_W0_;  ///< where the vehicle started
+  sim::Pose X_W0_;  ///< initial pose of the vehicle
   double truth_theta_rad_ = 0;
   double wheel_rad_[2] = {0, 0};     ///< true angles at the last sample
-  double believed_rad_[2] = {0, 0};  ///< with the noise, before they are cut into ticks
+  double believed_rad_[2] = {0, 0};  ///< angles with noise, before quantisation
   Reading reading_;
   Reading reckoned_;
 };

@@ -7,7 +7,7 @@
 
 namespace devices {
 
-/// Pressure sensor: the absolute pressure of the water or air at its place, and the depth it makes of it.
+/// Pressure sensor: absolute pressure of the water or air at the sensor, and the depth computed from it.
 class Pressure final : public sim::Sensor {
  public:
   static constexpr const char* meaning = "Pressure sensor: absolute pressure, depth, temperature.";

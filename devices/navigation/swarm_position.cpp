@@ -26,7 +26,7 @@ SwarmPosition::SwarmPosition(const Params& params, const sim::DeviceContext& con
 
 bool SwarmPosition::visible(const sim::SenseContext& context, const sim::Vehicle& other) const {
   const sim::Vector3d from_W = context.X_WS.translation();
-  // Aim at the middle of the vehicle's base, for its frame often lies on the ground.
+  // Use the centre of mass of the base as target, because the frame often lies on the ground.
   const sim::Vector3d to_W = other.base().X_WB() * other.base().p_BC();
   const sim::Vector3d d = to_W - from_W;
   const double distance_m = d.norm();
@@ -82,7 +82,7 @@ void SwarmPosition::visit_state(sim::StateArchive& archive) {
   for (Errors& errors : errors_) archive(errors.relative, errors.absolute, errors.seen_at_s);
 }
 
-/// What is in them follows; that they have begun otherwise makes no difference then.
+/// Creates the errors of the vehicles detected before a snapshot.  Their state is restored afterwards.
 void SwarmPosition::make_errors_of(const std::vector<int>& seen, const sim::StateArchive& archive) {
   errors_.clear();
   for (const int vehicle : seen) {

@@ -9,7 +9,7 @@
 
 namespace devices {
 
-/// Measures the positions of the other vehicles: relative to itself, and in the world if configured.
+/// Positions of the other vehicles within range, relative to the sensor and, if configured, in the world frame.
 class SwarmPosition final : public sim::Sensor {
  public:
   static constexpr const char* meaning = "Relative (and absolute) positions of the other vehicles within range.";
@@ -23,10 +23,11 @@ class SwarmPosition final : public sim::Sensor {
     sim::NoiseParams absolute_noise;
     void read(sim::ParamReader& in);
   };
+  /// Detection of another vehicle.
   struct Sighting {
-    int vehicle = -1;  ///< its number in the world
+    int vehicle = -1;  ///< number of the vehicle in the world
     std::string name;
-    sim::Vector3d p_SV_S = sim::Vector3d::Zero();  ///< from the sensor, in the sensor's frame
+    sim::Vector3d p_SV_S = sim::Vector3d::Zero();  ///< relative to the sensor, in its frame
     sim::Vector3d p_WV = sim::Vector3d::Zero();
     void visit_state(sim::StateArchive& archive) { archive(vehicle, name, p_SV_S, p_WV); }
   };
@@ -35,11 +36,12 @@ class SwarmPosition final : public sim::Sensor {
   void measure(const sim::SenseContext& context) override;
   void disturb(double dt_s, sim::Random& random) override;
   void visit_state(sim::StateArchive& archive) override;
-  /// In the order of the vehicles in the world.
+  /// Returns the vehicles detected, in the order of the world.
   const std::vector<Sighting>& sightings() const { return sightings_; }
   bool absolute() const { return params_.absolute; }
 
  private:
+  /// Noise states of the measurements of one vehicle.
   struct Errors {
     int vehicle = -1;
     sim::Noise relative, absolute;
@@ -55,8 +57,8 @@ class SwarmPosition final : public sim::Sensor {
   sim::NoisesOf<&Params::relative_noise> relative_noises_;
   sim::NoisesOf<&Params::absolute_noise> absolute_noises_;
   std::vector<Sighting> sightings_;
-  std::vector<Errors> errors_;     ///< of each vehicle seen so far, in the order of first sight
-  std::vector<int> errors_index_;  ///< by vehicle number; -1: not seen yet
+  std::vector<Errors> errors_;     ///< of each vehicle detected so far, in the order of detection
+  std::vector<int> errors_index_;  ///< index in errors_ by vehicle number; -1: not detected yet
   double now_s_ = 0;
 };
 

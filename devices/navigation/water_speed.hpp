@@ -6,15 +6,16 @@
 
 namespace devices {
 
-/// Paddle wheel or pitot tube: speed of its place through the water, along +x of the sensor frame.
+/// Paddle wheel or pitot tube: speed of the sensor through the water along +x of its frame.
 class WaterSpeed final : public sim::Sensor {
  public:
   static constexpr const char* meaning = "Paddle wheel or pitot tube: speed through the water along its x axis.";
   static constexpr double default_rate_hz = 5;
+  /// Sign of the measured speed.
   enum class Senses {
     both,
-    forward,    ///< 0 when the water comes from behind, as a pitot tube
-    magnitude,  ///< without its sign, as a paddle wheel
+    forward,    ///< 0 for flow from behind, as a pitot tube
+    magnitude,  ///< absolute value, as a paddle wheel
   };
   struct Params {
     Senses senses = Senses::both;

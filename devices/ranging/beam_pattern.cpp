@@ -9,7 +9,7 @@ std::vector<sim::Vector3d> cone_pattern(double half_angle_rad, int rays) {
   std::vector<sim::Vector3d> pattern;
   pattern.reserve(static_cast<std::size_t>(rays));
   for (int k = 0; k < rays; ++k) {
-    // Equal steps of 1 - cos(angle) are equal solid angles.
+    // Equal steps of 1 - cos(angle) give equal solid angles.
     const double cosine = 1 - (1 - std::cos(half_angle_rad)) * (k + 0.5) / rays;
     const double sine = std::sqrt(1 - cosine * cosine);
     const double around_rad = k * golden_angle_rad;

@@ -7,11 +7,11 @@
 
 namespace devices {
 
-/// Unit vectors that cover a cone about +x with equal solid angles: a sunflower spiral, the
-/// first near the axis (H. Vogel, Mathematical Biosciences 44, 1979).  One of them: the axis.
+/// Returns unit vectors that sample a cone about +x with equal solid angles, on a Fibonacci spiral from the axis
+/// outwards (H. Vogel, Mathematical Biosciences 44, 1979).  A single ray is the axis.
 std::vector<sim::Vector3d> cone_pattern(double half_angle_rad, int rays);
 
-/// The solid angle of such a cone, sr.
+/// Returns the solid angle of the cone, sr.
 double cone_solid_angle_sr(double half_angle_rad);
 
 }  // namespace devices

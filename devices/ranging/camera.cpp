@@ -16,10 +16,10 @@ namespace devices {
 
 namespace {
 
-/// LCM 1.3.1 sends no message of more than 16 MiB; some of it is left for the metadata.
+/// Maximum size of a message in LCM 1.3.1, 16 MiB, with a reserve for the metadata.
 constexpr int max_message_bytes = (16 << 20) - (64 << 10);
 
-/// What the cameras of a world share: decoded textures, and the rays of lenses that are alike.
+/// Data shared by the cameras of a world: decoded textures, and the rays of equal lenses.
 struct SharedByCameras {
   std::shared_ptr<sim::TextureLibrary> textures = std::make_shared<sim::TextureLibrary>();
   std::map<std::string, std::weak_ptr<const sim::PixelRays>> rays;
@@ -67,21 +67,25 @@ void Camera::Params::read(sim::ParamReader& in) {
                   {"segmentation_vehicles", Kind::vehicles}},
                  "kind of image");
   optics.read(in);
+  // Encoding.
   in.read_choice("encoding", encoding,
                  {{"raw", Encoding::raw}, {"raw16", Encoding::raw16}, {"png", Encoding::png}, {"jpeg", Encoding::jpeg}},
                  "encoding of the message; raw16: depth in mm, 0 where there is none; png of depth too");
   in.read("jpeg_quality", jpeg_quality, sim::between(1, 100), "quality of JPEG images");
+  // Rendering.
   in.read("range_max_m", range_max_m, sim::above_to(0, 100'000), "maximum range along the ray");
   in.read_choice("depth_along", depth_along, depth_along_words,
                  "depth: distance along the optical axis, or range of the ray");
   in.read("antialias", antialias, sim::between(1, 4), "rgb, grey: so many rays along each side of a pixel");
   in.read("exposure", exposure, "rgb, grey: exposure");
+  // Noise.
   in.read("noise", noise, "rgb, grey: error of each level from 0 to 255; depth: of each depth, m");
   in.read("depth_noise_per_m", depth_noise_per_m, sim::at_least(0),
           "depth: a standard deviation of this times depth squared, 1/m, as stereo has it");
   in.read_or_word("full_well_electrons", full_well_electrons, sim::above(0), {"unlimited"},
                   "rgb, grey: electrons of a white pixel, for shot noise; unlimited: no shot noise");
   in.read("read_noise_electrons", read_noise_electrons, sim::at_least(0), "rgb, grey: with full_well_electrons");
+  // Rolling shutter and motion blur.
   in.read("readout_s", readout_s, sim::between(0, 10),
           "rolling shutter: the first row is exposed this long before the last, which is at the sample time");
   in.read("exposure_time_s", exposure_time_s, sim::between(0, 10),
@@ -90,6 +94,7 @@ void Camera::Params::read(sim::ParamReader& in) {
   in.read("sees_own_vehicle", sees_own_vehicle, "its own vehicle is visible in the image");
   in.read_references("see_through", see_through, "category", "categories of parts that are not visible in the image");
   if (in.describing()) return;
+  // Check combinations of keys and the size of messages.
   if (encoding == Encoding::raw16 && image != Kind::depth) in.error("encoding", "'raw16' is for images of depth");
   if (encoding == Encoding::jpeg && !takes_light(image)) in.error("encoding", "'jpeg' is for images rgb and grey");
   if (static_cast<double>(optics.width) * optics.height * antialias * antialias > sim::max_image_pixels)
@@ -150,13 +155,13 @@ void Camera::change(const Params& params) {
   options.range_max_m = params.range_max_m;
   options.depth_along_ray = params.depth_along == DepthAlong::ray;
   options.light = world_.config().light;
-  // A mean of depths or labels is neither.
+  // Depths and labels must not be averaged.
   const int per_side = takes_light(params.image) ? params.antialias : 1;
   renderer_ =
       std::make_unique<sim::Renderer>(physics_, shared.rays_of(params.optics, per_side), options, shared.textures);
   renderer_->clear(in_progress_);
   next_exposure_ = 0;
-  next_sample_ = swept_at_;  // not known until the next sweep
+  next_sample_ = swept_at_;  // unknown until the next sweep
 }
 
 int Camera::exposures() const {
@@ -179,7 +184,7 @@ sim::Time Camera::before_sample(int exposure) const {
 }
 
 void Camera::remember(const sim::SweepContext& context) {
-  if (places_.empty() || places_.back().at != context.from) {  // the first step, or it was without power
+  if (places_.empty() || places_.back().at != context.from) {  // first step, or the camera was without power
     places_.clear();
     places_.push_back({context.from, context.X_WS_from});
   }
@@ -205,7 +210,7 @@ void Camera::sweep(const sim::SweepContext& context) {
   for (; next_exposure_ < count; ++next_exposure_) {
     const sim::Time at = context.next_sample - before_sample(next_exposure_);
     if (at > context.now) return;
-    // Before this step where the image before it ended late, as with a rate that does not divide the step.
+    // The time may precede this step when the previous image ended late, at a rate that does not divide the step rate.
     expose(next_exposure_, X_WS_at(at));
   }
 }
@@ -221,7 +226,7 @@ void Camera::measure(const sim::SenseContext& context) {
   for (; next_exposure_ < exposures(); ++next_exposure_) expose(next_exposure_, context.X_WS);
   next_exposure_ = 0;
   image_digest_.renew();
-  // The next one is not an earlier than this; the next sweep knows.
+  // Lower bound of the next sample time, until the next sweep sets it.
   const double steps = config_.rate_hz > 0 ? 1 / (config_.rate_hz * sim::to_seconds(step_)) : 1;
   next_sample_ = context.now + step_ * std::max<std::int64_t>(1, static_cast<std::int64_t>(steps + 1e-9));
   std::swap(frame_, in_progress_);
@@ -274,7 +279,7 @@ void Camera::visit_state(sim::StateArchive& archive) {
     archive.expect_count(image.data.size(), "values in an image");
     archive.raw(image.data.data(), image.data.size() * sizeof image.data[0]);
   };
-  // The part of the next image that is there already.
+  // Exposed part of the next image.
   if (archive.restoring()) renderer_->clear(in_progress_);
   if (next_exposure_ > 0) {
     visit(in_progress_.light);

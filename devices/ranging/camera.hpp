@@ -13,15 +13,15 @@
 
 namespace devices {
 
-/// How bright an image becomes.
+/// Exposure of images.
 struct ExposureParams {
-  bool automatic = false;  ///< each image gets the gain that makes its mean a middle grey
-  double gain = 1;         ///< times the light; beside `automatic` on top of that
+  bool automatic = false;  ///< automatic gain: the mean of each image is middle grey
+  double gain = 1;         ///< gain of the light, in addition to `automatic`
   void read(sim::ParamReader& in);
 };
 
-/// Camera without GPU or display: looks along +x of the sensor frame S, +y is left in the image and +z up.
-/// See docs/models/cameras.md.
+/// Camera rendered without GPU or display.  Its optical axis is +x of the sensor frame S; +y is left in the image and
+/// +z up.  See docs/models/cameras.md.
 class Camera final : public sim::Sensor {
  public:
   static constexpr const char* meaning = "Camera: color, grey, depth or segmentation; pinhole or fisheye.";
@@ -30,7 +30,9 @@ class Camera final : public sim::Sensor {
   static constexpr bool sweeps = true;
   static constexpr const char* fixed_keys[] = {"image", "readout_s", "exposure_time_s", "blur_samples"};
   static constexpr bool reuses_message = true;
+  /// Kind of image: color, grey, depth, segmentation by part or by vehicle.
   enum class Kind { rgb, grey, depth, parts, vehicles };
+  /// Encoding of the message.
   enum class Encoding { raw, raw16, png, jpeg };
   /// Depth along the optical axis, or range along the ray.
   enum class DepthAlong { axis, ray };
@@ -44,8 +46,8 @@ class Camera final : public sim::Sensor {
     DepthAlong depth_along = DepthAlong::axis;
     int antialias = 1;
     ExposureParams exposure;
-    sim::NoiseParams noise;          ///< of levels 0 to 255, or of depth, m
-    double depth_noise_per_m = 0;    ///< standard deviation of depth is this times depth squared, 1/m
+    sim::NoiseParams noise;          ///< error of levels 0 to 255, or of depth, m
+    double depth_noise_per_m = 0;    ///< standard deviation of depth over depth squared, 1/m
     double full_well_electrons = 0;  ///< shot noise: electrons of a white pixel; 0: none
     double read_noise_electrons = 0;
     double readout_s = 0;
@@ -54,7 +56,7 @@ class Camera final : public sim::Sensor {
     bool sees_own_vehicle = false;
     std::vector<std::string> see_through;  ///< part categories
     void read(sim::ParamReader& in);
-    /// Of the pixels of an image; 0 when they are compressed.
+    /// Returns the size of the pixels of an image in bytes; 0 for compressed images.
     double message_bytes() const;
 
    private:
@@ -71,27 +73,28 @@ class Camera final : public sim::Sensor {
   void visit_state(sim::StateArchive& archive) override;
 
   const Params& params() const { return params_; }
-  /// What it sees and in which light, for images with its lens.
+  /// Returns filter, range and light of the images.
   const sim::RenderOptions& render_options() const { return renderer_->options(); }
-  /// The last image, of the configured kind; the others are empty.
+  /// Return the last image.  Only the image of the configured kind is filled.
   const sim::Image8& levels() const { return levels_; }        ///< rgb, grey
-  const sim::FloatImage& depth_m() const { return depth_m_; }  ///< depth; infinity: nothing in range
+  const sim::FloatImage& depth_m() const { return depth_m_; }  ///< depth; infinity: no hit
   const sim::Image16& labels() const { return frame_.labels; }
-  /// What each label in the last image stands for, one `LABEL NAME` in a line.
+  /// Returns the names of the labels in the last image, one line `LABEL NAME` each.
   std::string label_text() const;
 
  private:
-  /// Exposures of an image: rows that are read out one after the other, or whole images that blur into one.
+  /// Returns the number of exposures per image: rows of a rolling shutter, or images averaged for motion blur.
   int exposures() const;
-  /// When one of them is, before the sample of its image.
+  /// Returns the time from an exposure to the sample of its image.
   sim::Time before_sample(int exposure) const;
   void expose(int exposure, const sim::Pose& X_WS);
   /// Records the poses of the camera during an image.
   void remember(const sim::SweepContext& context);
-  /// Where it was, as far back as that is known.
+  /// Returns the pose at a time, clamped to the recorded interval.
   sim::Pose X_WS_at(sim::Time at) const;
   void add_sensor_noise(sim::Random& random);
 
+  /// Pose of the camera at a time.
   struct Place {
     sim::Time at{0};
     sim::Pose X_WS = sim::Pose::Identity();
@@ -108,20 +111,20 @@ class Camera final : public sim::Sensor {
   Params params_;
   std::unique_ptr<sim::Renderer> renderer_;
   sim::NoiseOf<&Params::noise> noise_;
-  sim::Frame in_progress_, frame_;  // the next image, and the last one
+  sim::Frame in_progress_, frame_;  // image being exposed, and last image
   int next_exposure_ = 0;
-  std::deque<Place> places_;                // at the ends of steps, the last one now
-  sim::Time swept_at_{0}, next_sample_{0};  // as far as known, for rays()
-  sim::FloatImage light_;                   // the last image without errors, in color or grey
+  std::deque<Place> places_;                // poses at the ends of steps, latest last
+  sim::Time swept_at_{0}, next_sample_{0};  // for rays()
+  sim::FloatImage light_;                   // last image without noise, in color or grey
   float gain_ = 1;
   sim::Image8 levels_;
   sim::FloatImage depth_m_;
   ReadingDigest image_digest_;  // of the last image
-  std::vector<double> values_;  // what noise works on
+  std::vector<double> values_;  // buffer for noise
 };
 
-/// FourCC numbers of bot_core's pixel formats, as signed 32-bit integers.  PNG is none of bot_core's: the letters
-/// `PNG `, least significant first.
+/// FourCC codes of bot_core's pixel formats as signed 32-bit integers.  PNG is not defined by bot_core; its code is the
+/// letters `PNG `, least significant byte first.
 enum PixelFormat : std::int32_t {
   pixel_format_grey = 1497715271,
   pixel_format_rgb = 859981650,

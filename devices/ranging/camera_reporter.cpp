@@ -13,7 +13,7 @@ namespace devices {
 
 namespace {
 
-/// Millimetres, rounded; 0 where there is nothing, or nothing that fits.
+/// Converts depth to mm, rounded; 0 without a hit or for values above 65535.
 sim::Image16 millimetres(const sim::FloatImage& depth_m) {
   sim::Image16 image(depth_m.width, depth_m.height, 1);
   for (std::size_t i = 0; i < image.data.size(); ++i) {
@@ -28,11 +28,11 @@ void set_raw(shoal::image_t& message, const sim::Image<T>& image, std::int32_t f
   message.pixelformat = format;
   message.row_stride = static_cast<std::int32_t>(sizeof(T)) * image.width * image.channels;
   message.data.resize(image.data.size() * sizeof(T));
-  // x86 and ARM, the machines there are builds for, are little endian as the formats are.
+  // The formats are little-endian, as are the supported machines (x86 and ARM).
   std::memcpy(message.data.data(), image.data.data(), message.data.size());
 }
 
-/// `compressed`: keeps its memory.
+/// Sets the message to a compressed image.
 void set_compressed(shoal::image_t& message, const sim::Bytes& compressed, std::int32_t format) {
   message.pixelformat = format;
   message.row_stride = 0;
@@ -80,10 +80,12 @@ void set_depth(shoal::image_t& message, const Camera& camera) {
 // Publishes shoal.image_t, equal on the wire to bot_core's.
 void fill(const Camera& camera, shoal::image_t& message) {
   const Camera::Params& params = camera.params();
+  // Size and optics of the image.
   message.width = params.optics.width;
   message.height = params.optics.height;
   message.metadata.clear();
   add_metadata(message, "optics", params.optics.text());
+  // Pixels in the encoding of the camera.
   switch (params.image) {
     case Camera::Kind::rgb:
     case Camera::Kind::grey:

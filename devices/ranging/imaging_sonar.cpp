@@ -44,7 +44,7 @@ void ImagingSonar::make_rays() {
   up_S_.clear();
   left_S_.clear();
   const int n = params_.elevation_rays, m = params_.beam_rays;
-  // Over twice the -3 dB height, where the two-way response has fallen by 24 dB.
+  // Rays cover twice the -3 dB height; the two-way response is -24 dB at its ends.
   const double height_rad = 2 * params_.vertical_rad / n, width_rad = beam_width_rad() / m;
   for (int beam = 0; beam < params_.beams; ++beam)
     for (int k = 0; k < m; ++k)
@@ -63,6 +63,7 @@ void ImagingSonar::make_rays() {
 void ImagingSonar::measure(const sim::SenseContext& context) {
   receiver_.cast(context.world.scene(), context.X_WS, rays_S_);
   bins_.begin(receiver_);
+  // Distribute the echoes over range, by the extent of each ray's footprint in elevation and bearing.
   const auto rays = static_cast<std::size_t>(params_.elevation_rays * params_.beam_rays);
   for (std::size_t i = 0; i < rays_S_.size(); ++i) {
     const SonarEcho echo = receiver_.echo(i, rays_S_[i]);

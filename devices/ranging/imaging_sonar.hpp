@@ -7,8 +7,8 @@
 
 namespace devices {
 
-/// Forward-looking imaging sonar: echo level over range and bearing.  The beams fan out about +x of the sensor frame S,
-/// from -fov/2 to +fov/2 about +z, counter-clockwise, and are tall: elevation is not told apart.
+/// Forward-looking imaging sonar: echo level over range and bearing.  The beams cover bearings from -fov/2 to +fov/2
+/// about +z of the sensor frame S, counter-clockwise from +x.  Elevation is not resolved.
 class ImagingSonar final : public sim::Sensor {
  public:
   static constexpr const char* meaning = "Forward-looking sonar: an image of echo levels over range and bearing.";
@@ -47,7 +47,7 @@ class ImagingSonar final : public sim::Sensor {
   SonarReceiver receiver_;
   SonarBins bins_;
   std::vector<SonarRay> rays_S_;  ///< beam by beam
-  /// Of each ray: towards more elevation, times the elevation that the ray stands for; and towards more bearing.
+  /// Tangents of each ray towards higher elevation and bearing, multiplied by the angles that the ray represents.
   std::vector<sim::Vector3d> up_S_, left_S_;
 };
 

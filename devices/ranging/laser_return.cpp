@@ -12,7 +12,7 @@ namespace devices {
 
 namespace {
 
-/// A polished surface is never flat: its mirrored share has fallen to 1/e at this angle from head-on.
+/// Angle from normal incidence at which the specular share falls to 1/e, as its sine.
 const double gloss_width_sine = std::sin(sim::degrees_to_radians(3.0));
 constexpr double dark_reflectivity = 0.1;
 
@@ -26,12 +26,14 @@ void LaserWeather::read(sim::ParamReader& in) {
 }
 
 void LaserParams::read(sim::ParamReader& in) {
+  // Range and its errors.
   in.read("range_min_m", range_min_m, sim::at_least(0), "minimum range: closer hits report this");
   in.read("range_max_m", range_max_m, sim::above(0), "maximum range: a ray that hits nothing reports this");
   in.read("resolution_m", resolution_m, sim::at_least(0), "ranges are rounded to multiples of this; 0: not");
   in.read("range_std_m", range_std_m, sim::at_least(0), "white noise of each range at no distance ...");
   in.read("range_std_per_m", range_std_per_m, sim::between(0, 1),
           "... and the increase of its standard deviation per metre");
+  // Detection and beam.
   in.read_or_word("range_at_10_percent_m", dark_range_m, sim::above(0), {"unlimited"},
                   "largest range at which a surface of reflectivity 0.1 is seen head-on; unlimited: every surface is");
   in.read_deg("beam_divergence_deg", beam_divergence_rad, sim::between(0, 30), "full divergence angle of a beam");
@@ -41,6 +43,7 @@ void LaserParams::read(sim::ParamReader& in) {
       "echoes of one beam nearer together than this (half a pulse's length) are one, at their mean weighted by power");
   in.read_choice("returns", returns, {{"strongest", Returns::strongest}, {"first", Returns::first}},
                  "which of several echoes of a beam is reported");
+  // Filter, weather and noise.
   in.read("sees_own_vehicle", sees_own_vehicle, "rays also hit parts of its own vehicle");
   in.read_references("see_through", see_through, "category", "categories of parts that rays pass through");
   in.read("weather", weather, "rain, fog or dust");
@@ -107,11 +110,13 @@ void LaserReceiver::receive(std::span<const sim::RayHit> hits, std::span<const s
   returns.ranges_m[i] = params_.range_max_m;
   returns.intensities[i] = 0;
   returns.returned[i] = 0;
+  // Echoes of all rays, sorted by range.
   echoes_.clear();
   for (std::size_t k = 0; k < hits.size(); ++k)
     if (hits[k].hit())
       echoes_.push_back({hits[k].range_m, intensity(hits[k], rays[k].direction_W) / static_cast<double>(hits.size())});
   std::sort(echoes_.begin(), echoes_.end(), [](const Echo& a, const Echo& b) { return a.range_m < b.range_m; });
+  // Merge close echoes and select the first or strongest one.
   const bool first = params_.returns == LaserParams::Returns::first;
   for (std::size_t from = 0, to = 0; from < echoes_.size(); from = to) {
     double power = 0, moment = 0, sum_m = 0;
@@ -120,7 +125,7 @@ void LaserReceiver::receive(std::span<const sim::RayHit> hits, std::span<const s
       moment += echoes_[to].power * echoes_[to].range_m;
       sum_m += echoes_[to].range_m;
     }
-    // A scanner whose parameters see everything sees black, too.
+    // Use the unweighted mean for black surfaces, which return no power.
     const double mean_m = power > 0 ? moment / power : sum_m / static_cast<double>(to - from);
     if (power < threshold(mean_m) || (returns.returned[i] && power <= returns.intensities[i])) continue;
     returns.ranges_m[i] = std::clamp(mean_m, params_.range_min_m, params_.range_max_m);
@@ -132,6 +137,7 @@ void LaserReceiver::receive(std::span<const sim::RayHit> hits, std::span<const s
 
 void LaserReceiver::disturb(LaserReturns& returns, double dt_s, sim::Random& random) {
   std::vector<double>& ranges_m = returns.ranges_m;
+  // Returns from drops in front of the target.
   if (params_.weather.false_returns_per_m > 0) {
     for (std::size_t i = 0; i < ranges_m.size(); ++i) {
       const double drop_m = -std::log(random.uniform()) / params_.weather.false_returns_per_m;
@@ -141,10 +147,12 @@ void LaserReceiver::disturb(LaserReturns& returns, double dt_s, sim::Random& ran
       returns.returned[i] = 1;
     }
   }
+  // Noise of the ranges.
   if (params_.range_std_m > 0 || params_.range_std_per_m > 0)
     for (double& range_m : ranges_m)
       range_m += fault_.factor * (params_.range_std_m + params_.range_std_per_m * range_m) * random.gaussian();
   noise_.apply(std::span<double>(ranges_m), dt_s, random);
+  // Quantisation and limits.
   for (std::size_t i = 0; i < ranges_m.size(); ++i) {
     if (params_.resolution_m > 0) ranges_m[i] = std::round(ranges_m[i] / params_.resolution_m) * params_.resolution_m;
     ranges_m[i] =

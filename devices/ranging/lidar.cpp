@@ -16,7 +16,7 @@ void Lidar::Params::read(sim::ParamReader& in) {
   std::vector<std::string> names{"none"};
   for (const LidarPreset& unit : lidar_presets()) names.push_back(unit.name);
   in.read_one_of("preset", preset, names, "preset of a product by its data sheet; the keys below override it");
-  // The preset is the default of the keys that follow.
+  // The preset sets the defaults of the keys that follow.
   for (const LidarPreset& unit : lidar_presets()) {
     if (unit.name != preset || in.describing()) continue;
     beams = unit.beams;
@@ -45,11 +45,12 @@ void Lidar::change(const Params& params) {
   fan_.count = params.beams;
   fan_.range_max_m = params.laser.range_max_m;
   fan_.first_angle_rad = params.beams == 1 ? 0.0 : -0.5 * params.fov_rad;
-  // A full circle has no last beam on top of the first.
+  // In a full circle the last beam does not coincide with the first.
   const bool full_circle = params.fov_rad >= 2 * std::numbers::pi - 1e-9;
   const int gaps = full_circle ? params.beams : params.beams - 1;
   fan_.step_rad = gaps > 0 ? params.fov_rad / gaps : 0.0;
 
+  // Directions of all rays.
   directions_S_.clear();
   for (std::size_t i = 0; i < beams; ++i) {
     const double angle_rad = fan_.first_angle_rad + static_cast<double>(i) * fan_.step_rad;
@@ -72,6 +73,7 @@ void Lidar::measure(const sim::SenseContext& context) {
 void Lidar::measure_axes(const sim::SenseContext& context) {
   fan_.X_WS = context.X_WS;
   context.world.scene().cast_fan(fan_, receiver_.filter(), hits_);
+  // Without material effects the ranges follow directly from the hits.
   if (!params_.intensities && receiver_.sees_all()) {
     for (std::size_t i = 0; i < hits_.size(); ++i) {
       returns_.ranges_m[i] = std::clamp(hits_[i].range_m, params_.laser.range_min_m, params_.laser.range_max_m);

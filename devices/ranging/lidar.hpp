@@ -8,8 +8,9 @@
 
 namespace devices {
 
-/// Planar laser scanner.  The beams fan out in the xy-plane of the sensor frame S, from -fov/2 to +fov/2 about +x,
-/// counter-clockwise seen from +z, all at one instant.  A beam that begins inside a solid ends where it leaves it.
+/// Planar laser scanner.  The beams lie in the xy-plane of the sensor frame S, from -fov/2 to +fov/2 about +x,
+/// counter-clockwise seen from +z, and are measured at one instant.  A beam that begins inside a solid hits its surface
+/// from inside.
 class Lidar final : public sim::Sensor {
  public:
   static constexpr const char* meaning = "Planar laser scanner: ranges over a fan of beams.";
@@ -32,9 +33,9 @@ class Lidar final : public sim::Sensor {
   std::int64_t rays() const override { return static_cast<std::int64_t>(hits_.size()); }
   void visit_state(sim::StateArchive& archive) override;
 
-  /// From right to left; range_max_m where there is no return, and range_min_m where something is closer.
+  /// Returns ranges from right to left; range_max_m without a return, range_min_m for closer hits.
   const std::vector<double>& ranges_m() const { return returns_.ranges_m; }
-  /// See LaserReturns; empty unless asked for.
+  /// Returns the intensities, see LaserReturns; empty unless configured.
   std::span<const double> intensities() const;
   double first_angle_rad() const { return fan_.first_angle_rad; }
   double step_rad() const { return fan_.step_rad; }
@@ -48,7 +49,7 @@ class Lidar final : public sim::Sensor {
   LaserReceiver receiver_;
   LaserReturns returns_;
   ReadingDigest digest_;
-  std::vector<sim::Vector3d> directions_S_;  ///< of the beams; of all their rays when several sample one
+  std::vector<sim::Vector3d> directions_S_;  ///< of the beams, or of all rays that sample them
   std::vector<sim::Ray> rays_;
   std::vector<sim::RayHit> hits_;
 };

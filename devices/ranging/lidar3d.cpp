@@ -16,7 +16,7 @@ namespace devices {
 
 namespace {
 
-constexpr int max_rings = 1000;  // their numbers are 16 bits in the message
+constexpr int max_rings = 1000;  // ring numbers have 16 bits in the message
 
 }  // namespace
 
@@ -24,7 +24,7 @@ void Lidar3d::Params::read(sim::ParamReader& in) {
   std::vector<std::string> names{"none"};
   for (const Lidar3dPreset& unit : lidar3d_presets()) names.push_back(unit.name);
   in.read_one_of("preset", preset, names, "preset of a product by its data sheet; the keys below override it");
-  // The preset is the default of the keys that follow.
+  // The preset sets the defaults of the keys that follow.
   for (const Lidar3dPreset& unit : lidar3d_presets()) {
     if (unit.name != preset || in.describing()) continue;
     rings = unit.rings;
@@ -33,6 +33,7 @@ void Lidar3d::Params::read(sim::ParamReader& in) {
     columns = unit.columns;
     laser = unit.laser;
   }
+  // Rings and columns.
   in.read("rings", rings, sim::between(1, max_rings), "beams above each other, evenly spread");
   in.read_deg("lowest_deg", lowest_rad, sim::between(-90, 90), "elevation of the first ring");
   in.read_deg("highest_deg", highest_rad, sim::between(-90, 90), "elevation of the last ring");
@@ -41,6 +42,7 @@ void Lidar3d::Params::read(sim::ParamReader& in) {
   in.read("columns", columns, sim::between(1, 100000), "directions in a turn; the turn is a report period long");
   laser.read(in);
   if (in.describing()) return;
+  // Check angles, number of rays and rate.
   if (lowest_rad > highest_rad) in.error("lowest_deg", "'lowest_deg' must be <= highest_deg");
   if (ring_angles_deg.size() > std::size_t{max_rings})
     in.error("ring_angles_deg",
@@ -75,7 +77,7 @@ void Lidar3d::change(const Params& params) {
     for (const sim::Vector3d& d : receiver_.beam_pattern()) ring_rays_.push_back(up * d);
   }
   returns_.assign(elevations_rad_.size() * static_cast<std::size_t>(params.columns), params.laser.range_max_m);
-  turn_end_ = sim::Time{-1};  // begins again
+  turn_end_ = sim::Time{-1};  // restarts the rotation
   next_column_ = 0;
   digest_.renew();
 }
@@ -92,7 +94,8 @@ sim::Time Lidar3d::offset(int column) const {
 }
 
 void Lidar3d::start_turn(const sim::SweepContext& context) {
-  // A turn follows the last one.  The first one, one after a pause and one at a new rate have the length of the rate.
+  // A rotation that follows the previous one lasts until the next sample.  Others, at the start, after a pause and at a
+  // new rate, last one period.
   if (turn_end_ == context.from)
     turn_length_ = context.next_sample - context.from;
   else
@@ -114,6 +117,7 @@ void Lidar3d::sweep(const sim::SweepContext& context) {
 }
 
 void Lidar3d::cast_columns(const sim::SweepContext& context, int first, int last) {
+  // Rays of the columns from the pose at their times.
   rays_.clear();
   for (int column = first; column < last; ++column) {
     const sim::Pose X_WS = context.X_WS_at(turn_end_ + offset(column));
@@ -125,6 +129,7 @@ void Lidar3d::cast_columns(const sim::SweepContext& context, int first, int last
     }
   }
   if (rays_.empty()) return;
+  // Cast them and convert the hits to returns.
   if (hits_.size() < rays_.size()) hits_.resize(rays_.size());
   const std::span<sim::RayHit> hits = std::span(hits_).first(rays_.size());
   context.world.scene().cast(rays_, receiver_.filter(), hits);
@@ -136,12 +141,12 @@ void Lidar3d::cast_columns(const sim::SweepContext& context, int first, int last
 }
 
 std::int64_t Lidar3d::rays() const {
-  // Of a step; before the first turn is begun: of all of it.
+  // Rays of one step; all rays before the first rotation.
   const auto all = static_cast<std::int64_t>(ring_rays_.size()) * params_.columns;
   return turn_length_ > step_ ? all * step_.count() / turn_length_.count() : all;
 }
 
-// The turn was measured step by step.
+// The rotation was measured in sweep().
 void Lidar3d::measure(const sim::SenseContext&) {}
 
 void Lidar3d::disturb(double dt_s, sim::Random& random) {
@@ -153,7 +158,7 @@ void Lidar3d::visit_state(sim::StateArchive& archive) {
   const bool possible = next_column_ >= 0 && next_column_ <= params_.columns && turn_length_ >= sim::Time{0} &&
                         turn_length_ <= sim::StateArchive::max_time / params_.columns && step_ >= sim::Time{0};
   if (archive.restoring() && !possible) archive.fail("an invalid rotation of the laser's head");
-  // A whole turn is out already.
+  // A complete rotation is already published; a hash is sufficient.
   if (next_column_ == params_.columns)
     digest_.visit(archive, returns_.ranges_m, returns_.intensities, returns_.returned);
   else

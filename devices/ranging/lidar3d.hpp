@@ -8,10 +8,10 @@
 
 namespace devices {
 
-/// Multi-ring laser scanner.  Its head turns about +z of the sensor frame S, counter-clockwise seen from above, once in
-/// a report period: column k of n points to the azimuth -pi + 2 pi k / n, and the last column is measured at the end of
-/// the turn.  Each step casts the columns that passed in it, from where the sensor was at their times.  The turn that
-/// begins before the run, or while the device has no power, lacks the columns of that time.
+/// Multi-ring laser scanner.  Its head rotates about +z of the sensor frame S, counter-clockwise seen from above, once
+/// per report period.  Column k of n has the azimuth -pi + 2 pi k / n, and the last column is measured at the end of
+/// the rotation.  Each step casts the columns due in it, from the pose of the sensor at their times.  A rotation that
+/// begins before the run or without power lacks the columns of that time.
 class Lidar3d final : public sim::Sensor {
  public:
   static constexpr const char* meaning = "Multi-ring laser scanner: a point cloud for each turn of its head.";
@@ -24,7 +24,7 @@ class Lidar3d final : public sim::Sensor {
     int rings = 16;
     double lowest_rad = sim::degrees_to_radians(-15);
     double highest_rad = sim::degrees_to_radians(15);
-    std::vector<double> ring_angles_deg;  ///< when given, instead of the three above
+    std::vector<double> ring_angles_deg;  ///< replaces the three members above when not empty
     int columns = 900;
     LaserParams laser;
     void read(sim::ParamReader& in);
@@ -38,16 +38,17 @@ class Lidar3d final : public sim::Sensor {
   std::int64_t rays() const override;
   void visit_state(sim::StateArchive& archive) override;
 
-  /// The last turn, column by column, ring by ring.
+  /// Returns the last rotation, column by column, ring by ring.
   const LaserReturns& returns() const { return returns_; }
   int rings() const { return static_cast<int>(elevations_rad_.size()); }
   int columns() const { return params_.columns; }
+  /// Returns the unit vector of a beam in S.
   sim::Vector3d direction_S(int column, int ring) const;
-  /// When a column of the last turn was measured, from the turn's end; 0 or below.
+  /// Returns the time of a column relative to the end of the rotation; 0 or negative.
   sim::Time offset(int column) const;
 
  private:
-  /// The beams of the columns that have passed in this turn; the others are empty.
+  /// Archives the columns measured so far in the current rotation; the others are empty.
   void visit_begun_turn(sim::StateArchive& archive);
   void start_turn(const sim::SweepContext& context);
   /// Casts the columns [first, last).
@@ -57,12 +58,12 @@ class Lidar3d final : public sim::Sensor {
   Params params_;
   LaserReceiver receiver_;
   std::vector<double> elevations_rad_;
-  std::vector<sim::Vector3d> ring_rays_;  ///< of azimuth 0: of each ring its beam, or all rays that sample it
+  std::vector<sim::Vector3d> ring_rays_;  ///< at azimuth 0: beam of each ring, or all rays that sample it
   LaserReturns returns_;
-  ReadingDigest digest_;  ///< of a whole turn
+  ReadingDigest digest_;  ///< of a complete rotation
   sim::Time turn_end_{-1};
   sim::Time turn_length_{0};
-  sim::Time step_{0};  ///< of the last sweep, for rays()
+  sim::Time step_{0};  ///< length of the last sweep, for rays()
   int next_column_ = 0;
   std::vector<sim::Ray> rays_;
   std::vector<sim::RayHit> hits_;

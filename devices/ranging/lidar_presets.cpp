@@ -9,7 +9,7 @@ namespace {
 
 using sim::degrees_to_radians;
 
-// "Checked" is what a manual, a data sheet or a public quote of one says, which is named; "not checked" is from memory.
+// "Checked" figures agree with the named manual, data sheet or quotation of one; "not checked" figures are unverified.
 
 /// SICK LMS 200 in its 8 m (millimetre) mode.  Checked, documentation of Player: 180 deg in steps of 1 deg are 181
 /// points, 75 Hz at 500 kbaud and 10 Hz at 38400 baud; 8.192 m in mm, 81.92 m in cm.  Not checked: standard deviation
@@ -25,7 +25,7 @@ LidarPreset lms200() {
   return preset;
 }
 
-/// SICK LMS 291 in its 80 m (centimetre) mode.  Checked as above, standard deviation 10 mm at 20 m as a user's figure.
+/// SICK LMS 291 in its 80 m (centimetre) mode.  Checked as above; standard deviation 10 mm at 20 m reported by a user.
 /// Not checked: 30 m at 10 % reflectivity, beam of 11 mrad.
 LidarPreset lms291() {
   LidarPreset preset{"lms291", 181, std::numbers::pi, 75, {}};
@@ -41,8 +41,8 @@ LidarPreset lms291() {
 
 /// Hokuyo UTM-30LX.  Checked, comments of public drivers: 270 deg, 0.25 deg, 1081 points, 25 ms, 0.1 to 30 m, +-30 mm
 /// to 10 m.  Not checked: standard deviation 10 mm to 10 m and 30 mm to 30 m, here 5 mm and 0.8 mm/m (9 mm at 5 m, 29
-/// mm at 30 m).  Derived, not from the sheet: 10 m at 10 %, from 30 m on white paper (90 %).  Divergence: not known, no
-/// mixed pixels unless asked for.
+/// mm at 30 m).  Derived, not from the sheet: 10 m at 10 %, from 30 m on white paper (90 %).  Divergence: unknown; no
+/// mixed pixels unless configured.
 LidarPreset utm30lx() {
   LidarPreset preset{"utm30lx", 1081, degrees_to_radians(270), 40, {}};
   preset.laser.range_min_m = 0.1;

@@ -50,6 +50,7 @@ void Multibeam::change(const Params& params) {
 void Multibeam::make_rays() {
   angles_rad_.clear();
   rays_S_.clear();
+  // Rays of each beam over its -3 dB widths, with the two-way beam pattern.
   const double step_rad = params_.beams > 1 ? params_.swath_rad / (params_.beams - 1) : 0;
   const double first_rad = params_.beams > 1 ? -params_.swath_rad / 2 : 0;
   const int n = params_.across_rays, m = params_.along_rays;
@@ -77,9 +78,10 @@ void Multibeam::measure(const sim::SenseContext& context) {
   true_ranges_m_ = ranges_m_;
 }
 
-// The loudest stretch of echoes, at the mean of their ranges weighted by power: the weighted mean time of amplitude
-// detection (de Moustier, Oceans 1993).
+// Finds the range window with the highest echo power and reports its power-weighted mean range: amplitude detection by
+// weighted mean time (de Moustier, Oceans 1993).
 void Multibeam::detect(std::size_t beam) {
+  // Echoes of the beam, sorted by range.
   ranges_m_[beam] = params_.sonar.range_max_m;
   strengths_dB_[beam] = 0;
   valid_[beam] = 0;
@@ -94,7 +96,7 @@ void Multibeam::detect(std::size_t beam) {
   const auto end_of = [&](double from_m) {
     return std::max(from_m * (1 + params_.gate), from_m + receiver_.pulse_m());
   };
-  // A stretch that begins later ends later: both ends only move on.
+  // Slide the window over the echoes; both ends increase monotonically.
   std::size_t loudest_from = 0, loudest_to = 0;
   double max_uPa2 = 0, stretch_uPa2 = 0;
   for (std::size_t from = 0, to = 0; from < echoes_.size(); ++from) {
@@ -103,6 +105,7 @@ void Multibeam::detect(std::size_t beam) {
     if (stretch_uPa2 > max_uPa2) max_uPa2 = stretch_uPa2, loudest_from = from, loudest_to = to;
     stretch_uPa2 -= echoes_[from].power_uPa2;
   }
+  // Power and weighted mean range in the window.
   double loudest_uPa2 = 0, moment = 0;
   for (std::size_t i = loudest_from; i < loudest_to; ++i) {
     loudest_uPa2 += echoes_[i].power_uPa2;
@@ -110,6 +113,7 @@ void Multibeam::detect(std::size_t beam) {
   }
   const double range_m = moment / loudest_uPa2;
   const double level_dB = 10 * std::log10(loudest_uPa2);
+  // Apply the detection threshold.
   if (echoes_.empty() || level_dB < params_.detection.threshold_dB) return;
   ranges_m_[beam] = range_m;
   strengths_dB_[beam] = level_dB + receiver_.gain_dB(range_m);
@@ -117,11 +121,13 @@ void Multibeam::detect(std::size_t beam) {
 }
 
 void Multibeam::disturb(double dt_s, sim::Random& random) {
+  // Errors of strengths and ranges.
   if (params_.sonar.speckle)
     for (double& strength_dB : strengths_dB_) strength_dB += 10 * std::log10(speckle_power(random));
   strength_noise_.apply(std::span<double>(strengths_dB_), dt_s, random);
   for (double& range_m : ranges_m_) range_m *= receiver_.range_scale();
   noise_.apply(std::span<double>(ranges_m_), dt_s, random);
+  // Detection with errors, quantisation and limits.
   for (std::size_t i = 0; i < ranges_m_.size(); ++i) {
     const double level_dB = strengths_dB_[i] - receiver_.gain_dB(true_ranges_m_[i]);
     valid_[i] = valid_[i] && level_dB >= params_.detection.threshold_dB;

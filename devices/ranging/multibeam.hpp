@@ -9,7 +9,7 @@
 
 namespace devices {
 
-/// Multibeam sonar: a swath of beams in the yz-plane of the sensor frame S, about -z, from starboard (-y) to port.
+/// Multibeam sonar: a swath of beams in the yz-plane of the sensor frame S, centred on -z, from starboard (-y) to port.
 class Multibeam final : public sim::Sensor {
  public:
   static constexpr const char* meaning = "Multibeam sonar: ranges and strengths over a swath across the track.";
@@ -27,8 +27,8 @@ class Multibeam final : public sim::Sensor {
     SonarParams sonar;
     SonarDetectionParams detection;
     double resolution_m = 0.01;
-    sim::NoiseParams noise;           ///< of each range, m
-    sim::NoiseParams strength_noise;  ///< dB
+    sim::NoiseParams noise;           ///< error of each range, m
+    sim::NoiseParams strength_noise;  ///< error of each strength, dB
     void read(sim::ParamReader& in);
   };
 
@@ -47,7 +47,7 @@ class Multibeam final : public sim::Sensor {
 
  private:
   void make_rays();
-  /// Range and strength of one beam, from its echoes.
+  /// Computes range and strength of one beam from its echoes.
   void detect(std::size_t beam);
 
   Params params_;

@@ -9,8 +9,8 @@
 
 namespace devices {
 
-/// What stops the rays of a sensor: not the parts of the categories it sees through, nor, unless it sees it, the group
-/// of its own vehicle.
+/// Returns the filter of the rays of a sensor.  It excludes parts of the categories `see_through` and, unless
+/// `sees_own_vehicle`, the group of the sensor's vehicle.
 sim::RayFilter make_ray_filter(const sim::PhysicsWorld& physics, sim::RayKind kind,
                                const std::vector<std::string>& see_through, int own_group, bool sees_own_vehicle);
 

@@ -41,7 +41,7 @@ void SideScan::change(const Params& params) {
 void SideScan::make_rays() {
   rays_S_.clear();
   down_S_.clear();
-  // Over twice the -3 dB height, where the two-way response has fallen by 24 dB, but no farther than straight down.
+  // Rays cover twice the -3 dB height, where the two-way response is -24 dB, but at most straight down.
   const double lowest_rad = std::min(params_.depression_rad + params_.vertical_rad, std::numbers::pi / 2);
   const double highest_rad = params_.depression_rad - params_.vertical_rad;
   const int n = params_.rays, m = params_.along_rays;

@@ -7,9 +7,9 @@
 
 namespace devices {
 
-/// Side-scan sonar: one line of echo levels over slant range to each side, across the track.  Its two beams lie in the
-/// yz-plane of the sensor frame S, thin along +x and tall, one to port (+y) and one to starboard, and look down by the
-/// depression angle.
+/// Side-scan sonar: one line of echo levels over slant range to each side, across the track.  Its two fan beams lie in
+/// the yz-plane of the sensor frame S, narrow along +x, one to port (+y) and one to starboard, inclined downwards by
+/// the depression angle.
 class SideScan final : public sim::Sensor {
  public:
   static constexpr const char* meaning = "Side-scan sonar: echo levels over slant range, to port and starboard.";
@@ -35,7 +35,7 @@ class SideScan final : public sim::Sensor {
   std::int64_t rays() const override { return static_cast<std::int64_t>(rays_S_.size()); }
   void visit_state(sim::StateArchive& archive) override;
 
-  /// Two beams: port and starboard.
+  /// Returns the image with two beams: port and starboard.
   const SonarBins& image() const { return bins_; }
   const SonarParams& sonar() const { return params_.sonar; }
 
@@ -46,7 +46,7 @@ class SideScan final : public sim::Sensor {
   SonarReceiver receiver_;
   SonarBins bins_;
   std::vector<SonarRay> rays_S_;       ///< port, then starboard
-  std::vector<sim::Vector3d> down_S_;  ///< of each ray: towards more depression, times the angle it stands for
+  std::vector<sim::Vector3d> down_S_;  ///< tangent of each ray towards larger depression, times the angle it represents
 };
 
 }  // namespace devices

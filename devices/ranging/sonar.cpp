@@ -29,6 +29,7 @@ RangeSonar::RangeSonar(const Params& params, const sim::DeviceContext& context, 
 void RangeSonar::change(const Params& params) {
   params_ = params;
   receiver_.change(params.sonar);
+  // Rays over the cone, weighted by the two-way beam pattern.
   const sim::Quaterniond R_SA = sim::Quaterniond::FromTwoVectors(sim::Vector3d::UnitX(), axis_S_);
   const double share_sr = cone_solid_angle_sr(params.beam_rad / 2) / params.rays;
   rays_S_.clear();
@@ -48,6 +49,7 @@ void RangeSonar::miss() {
 void RangeSonar::measure(const sim::SenseContext& context) {
   miss();
   receiver_.cast(context.world.scene(), context.X_WS, rays_S_);
+  // Echoes sorted by range.
   echoes_.clear();
   for (std::size_t i = 0; i < rays_S_.size(); ++i) {
     const SonarEcho echo = receiver_.echo(i, rays_S_[i]);
@@ -55,7 +57,7 @@ void RangeSonar::measure(const sim::SenseContext& context) {
   }
   std::sort(echoes_.begin(), echoes_.end(),
             [](const SonarEcho& a, const SonarEcho& b) { return a.range_m < b.range_m; });
-  // The first echo that is loud enough, together with all that comes back while the pulse lasts.
+  // Find the first echo above the threshold, summed over the length of the pulse.
   const double threshold_uPa2 = std::pow(10, params_.detection.threshold_dB / 10);
   for (std::size_t from = 0; from < echoes_.size() && !valid_; ++from) {
     double power_uPa2 = 0;

@@ -8,7 +8,7 @@
 
 namespace devices {
 
-/// A sonar with one beam, a cone about an axis of the sensor frame S: the range to what it receives first.
+/// Single-beam sonar: range of the first echo in a cone about an axis of the sensor frame S.
 class RangeSonar : public sim::Sensor {
  public:
   static constexpr double default_rate_hz = 10;
@@ -19,8 +19,8 @@ class RangeSonar : public sim::Sensor {
     double beam_rad = sim::degrees_to_radians(20);
     int rays = 64;
     double resolution_m = 0.01;
-    sim::NoiseParams noise;           ///< of the range, m
-    sim::NoiseParams strength_noise;  ///< dB
+    sim::NoiseParams noise;           ///< error of the range, m
+    sim::NoiseParams strength_noise;  ///< error of the strength, dB
     void read(sim::ParamReader& in);
   };
 
@@ -51,7 +51,7 @@ class RangeSonar : public sim::Sensor {
   bool valid_ = false;
 };
 
-/// Looks along +x of S.
+/// Single-beam sonar along +x of S.
 class Sonar final : public RangeSonar {
  public:
   static constexpr const char* meaning = "Single-beam sonar: range and strength of the first echo in a cone.";
@@ -59,7 +59,7 @@ class Sonar final : public RangeSonar {
       : RangeSonar(params, context, sim::Vector3d::UnitX()) {}
 };
 
-/// Looks along -z of S: downwards, when it is mounted upright.
+/// Altimeter: single-beam sonar along -z of S, downwards when mounted upright.
 class Altimeter final : public RangeSonar {
  public:
   static constexpr const char* meaning = "Single-beam sonar that looks down: height above the ground.";

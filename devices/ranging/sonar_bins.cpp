@@ -11,7 +11,7 @@ namespace devices {
 namespace {
 
 constexpr double smallest_bin_m = 1e-4;
-constexpr double silence_dB = -300;  // no echo at all: below every floor
+constexpr double silence_dB = -300;  // level without any echo, below every floor
 
 double level_dB(double power_uPa2) {
   return power_uPa2 > 0 ? 10 * std::log10(power_uPa2) : silence_dB;
@@ -62,7 +62,7 @@ void SonarBins::add(const SonarEcho& echo, double extent_m, int beam) {
   const double bin_m = (range_max_m_ - range_min_m_) / params_.bins;
   const double width = std::max(extent_m * range_scale_, pulse_m_) / bin_m;
   const double from = (echo.range_m * range_scale_ - range_min_m_) / bin_m - width / 2, to = from + width;
-  // A grazed patch can reach over more bins than an int counts.
+  // Clamp before the conversion: at grazing incidence the extent can exceed the range of int.
   const int first = static_cast<int>(std::clamp(std::floor(from), 0.0, static_cast<double>(params_.bins)));
   const int last = static_cast<int>(std::clamp(std::floor(to), -1.0, params_.bins - 1.0));
   for (int bin = first; bin <= last; ++bin) {
@@ -85,7 +85,7 @@ void SonarBins::disturb(double dt_s, sim::Random& random) {
   const double background_uPa2 = std::pow(10, params_.noise_level_dB / 10);
   const auto beams = static_cast<std::size_t>(beams_);
   for (std::size_t i = 0; i < levels_dB_.size(); ++i) {
-    // Echo and background are both sums of many waves with random phases, so that their sum is one, too.
+    // Echo and background are sums of many waves with random phases, so speckle applies to their total power.
     double power_uPa2 = power_uPa2_[i] + background_uPa2;
     if (speckle_) power_uPa2 *= speckle_power(random);
     levels_dB_[i] = level_dB(power_uPa2) + gains_dB_[i / beams];

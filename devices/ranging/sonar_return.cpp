@@ -12,8 +12,8 @@ namespace devices {
 
 namespace {
 
-constexpr double dry_sound_speed_mps = 1500;  // worlds without water stand for water everywhere, or say otherwise
-constexpr int surface_material = -1;          // of a hit that is the surface of the water
+constexpr double dry_sound_speed_mps = 1500;  // in worlds without water, unless configured
+constexpr int surface_material = -1;          // material of a hit of the water surface
 
 bool works(SonarParams::WorksIn where, bool wet) {
   switch (where) {
@@ -33,6 +33,7 @@ void SonarParams::read(sim::ParamReader& in) {
   in.read("range_min_m", range_min_m, sim::at_least(0),
           "minimum range: closer echoes are lost while the sonar transmits");
   in.read("range_max_m", range_max_m, sim::above_to(0, 20000), "maximum range, which determines how long it listens");
+  // Medium.
   in.read_choice(
       "works_in", works_in, {{"water", WorksIn::water}, {"air", WorksIn::air}, {"any", WorksIn::any}},
       "in a world with water: the medium in which it works; on the other side of the surface it receives nothing");
@@ -44,9 +45,11 @@ void SonarParams::read(sim::ParamReader& in) {
           "absorption of sound, dB per km; unset: that of the water for frequency_kHz, else 0");
   in.read("frequency_kHz", frequency_kHz, sim::between(0.1, 10000),
           "frequency of the sound, for the absorption of the water");
+  // Echo of the water surface.
   in.read("surface_echo", surface_echo, "the water surface returns an echo; otherwise rays that reach it are lost");
   in.read("surface_backscatter_dB", surface_backscatter_dB, sim::between(-100, 0),
           "backscatter strength of the water surface");
+  // Transmitter, receiver and filter.
   in.read("source_level_dB", source_level_dB, sim::between(0, 300), "re 1 uPa at 1 m");
   in.read("pulse_s", pulse_s, sim::above_to(0, 1), "length of the ping; c pulse / 2 is the resolution in range");
   in.read_choice("tvg", tvg, {{"none", Gain::none}, {"20log", Gain::log20}, {"40log", Gain::log40}},
@@ -101,7 +104,7 @@ double SonarReceiver::range_to_surface_m(const sim::Ray& ray_W, double surface_m
   const sim::Vector3d& o = ray_W.origin_W;
   const sim::Vector3d& d = ray_W.direction_W;
   if (d.z() == 0) return ray_W.range_max_m;
-  // The level over the sensor first, then, in waves, that over the place found.
+  // Intersect with the level at the sensor; in waves, iterate with the level at the intersection.
   double range_m = (surface_m - o.z()) / d.z();
   for (int i = 0; i < 2 && medium_.has_waves() && range_m > 0 && range_m < ray_W.range_max_m; ++i)
     range_m = (medium_.surface_m(o.x() + range_m * d.x(), o.y() + range_m * d.y()) - o.z()) / d.z();
@@ -112,6 +115,7 @@ void SonarReceiver::cast(const sim::Scene& scene, const sim::Pose& X_WS, std::sp
   rays_W_.resize(rays_S.size());
   hits_.assign(rays_S.size(), {});
   if (!update_medium(X_WS.translation())) return;
+  // Rays in W, limited by the maximum range and the water surface.
   const double range_max_m = params_.range_max_m / range_scale_;
   for (std::size_t i = 0; i < rays_S.size(); ++i)
     rays_W_[i] = {X_WS.translation(), X_WS.linear() * rays_S[i].direction_S, range_max_m};
@@ -119,6 +123,7 @@ void SonarReceiver::cast(const sim::Scene& scene, const sim::Pose& X_WS, std::sp
     const double surface_m = medium_.surface_m(X_WS.translation().x(), X_WS.translation().y());
     for (sim::Ray& ray_W : rays_W_) ray_W.range_max_m = range_to_surface_m(ray_W, surface_m);
   }
+  // Cast them; add hits of the water surface if it returns echoes.
   scene.cast(rays_W_, filter_, hits_);
   if (!params_.surface_echo) return;
   for (std::size_t i = 0; i < hits_.size(); ++i) {
@@ -135,7 +140,7 @@ SonarEcho SonarReceiver::echo(std::size_t ray, const SonarRay& ray_S) const {
   if (!hit.hit() && !surface) return {};
   if (hit.range_m * range_scale_ < params_.range_min_m || hit.range_m <= 0) return {};
   const double cosine = std::clamp(-hit.normal_W.dot(rays_W_[ray].direction_W), 0.0, 1.0);
-  // 2 a r dB as a power: 10^(-2 a r / 10).
+  // Two-way absorption and scattering strength, dB.
   const double loss_dB = 2 * absorption_dBpm_ * hit.range_m;
   const double scatter_dB =
       surface ? params_.surface_backscatter_dB : physics_.material(hit.material).sound.backscatter_dB;
@@ -146,7 +151,7 @@ SonarEcho SonarReceiver::echo(std::size_t ray, const SonarRay& ray_S) const {
 
 double SonarReceiver::range_slope(std::size_t ray, const sim::Vector3d& tangent_W) const {
   const sim::RayHit& hit = hits_[ray];
-  // Grazing, a patch would be without end; 20 ranges per radian is 3 deg.
+  // Limit the slope at grazing incidence to that at a grazing angle of 3 deg.
   const double cosine = std::max(std::abs(hit.normal_W.dot(rays_W_[ray].direction_W)), 0.05);
   return hit.range_m * std::abs(hit.normal_W.dot(tangent_W)) / cosine;
 }

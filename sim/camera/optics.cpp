@@ -15,12 +15,12 @@ namespace sim {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-/// The undistorted radius at which a pinhole gives up: 89.4 degrees off the axis.
+/// Largest undistorted radius of a pinhole: 89.4 degrees off the axis.
 constexpr double widest_pinhole = 100;
 
 constexpr double min_focal_px = 1e-3, max_focal_px = 1e9;
 
-/// fx and fy.
+/// Returns fx and fy in pixels.
 Vector2d focal_px_of(const OpticsConfig& config) {
   if (!config.focal_px.empty()) return {config.focal_px.front(), config.focal_px.back()};
   const double half_rad = 0.5 * config.fov_rad;
@@ -62,6 +62,7 @@ void OpticsConfig::read(ParamReader& in) {
 }
 
 std::string OpticsConfig::problem() const {
+  // Check sizes of the image and of the lists.
   if (width < 1 || height < 1 || width > max_image_side_px || height > max_image_side_px ||
       width * height > max_image_pixels)
     return fmt::format("'width' x 'height' must be at most {} pixels, got {} x {}", max_image_pixels, width, height);
@@ -73,6 +74,7 @@ std::string OpticsConfig::problem() const {
   if (distortion.size() > max)
     return fmt::format("'distortion' of a {} must have at most {} numbers, got {}", word_of(lens_words, lens), max,
                        distortion.size());
+  // Check the field of view and the focal length.
   if (focal_px.empty() && !fisheye && !(fov_rad > 0 && fov_rad < std::numbers::pi))
     return fmt::format("'fov_deg' of a pinhole must be > 0 and < 180, got {:g}", radians_to_degrees(fov_rad));
   if (!(fov_rad > 0 && fov_rad < 2 * std::numbers::pi))
@@ -83,12 +85,12 @@ std::string OpticsConfig::problem() const {
       return fmt::format("'{}' must make a focal length >= {:g} and <= {:g} pixels, got {:g}",
                          focal_px.empty() ? "fov_deg" : "focal_px", min_focal_px, max_focal_px, f);
   const Optics optics(*this);
-  // The distortion is smooth and grows outwards: where corners and sides are good, all is.
+  // Check the border of the image: the distortion is smooth and grows outwards, so its inside is then valid too.
   for (int i = 0; i <= 16; ++i)
     for (const Vector2d& uv : {Vector2d(width * i / 16.0, 0), Vector2d(width * i / 16.0, height),
                                Vector2d(0, height * i / 16.0), Vector2d(width, height * i / 16.0)}) {
       if (optics.direction_S(uv.x(), uv.y())) continue;
-      if (fisheye && !std::isfinite(optics.fold_radius())) continue;  // beyond the circle of the image
+      if (fisheye && !std::isfinite(optics.fold_radius())) continue;  // outside the image circle
       return fmt::format("'distortion' folds the image over at pixel ({:.0f}, {:.0f})", uv.x(), uv.y());
     }
   return {};
@@ -106,6 +108,7 @@ std::string OpticsConfig::text() const {
 }
 
 Optics::Optics(const OpticsConfig& config) : config_(config), fisheye_(config.lens == OpticsConfig::Lens::fisheye) {
+  // Sort the coefficients of OpenCV by their meaning.
   const std::vector<double>& k = config_.distortion;
   const auto number = [&](std::size_t i) { return i < k.size() ? k[i] : 0.0; };
   if (fisheye_) {
@@ -140,7 +143,7 @@ void Optics::find_fold() {
   last_good_ = end;
   fold_radius_ = infinity;
   for (int i = 1; distorted_ && i <= steps; ++i) {
-    // Finer near the axis, for a pinhole's radius grows as a tangent.
+    // Steps of a pinhole are finer near the axis, because its radius grows as the tangent of the angle.
     const double share = static_cast<double>(i) / steps;
     const double r = fisheye_ ? end * share : end * share * share;
     if (distorted_slope(r) > 0) continue;
@@ -153,7 +156,7 @@ void Optics::find_fold() {
 double Optics::undistorted_radius(double distorted) const {
   if (!distorted_) return distorted;
   double low = 0, high = last_good_;
-  // Bisection brings it near, Newton to the last bits: the curve rises up to last_good_.
+  // Bisection, then Newton's method to full precision; the curve is monotonic up to last_good_.
   for (int i = 0; i < 20; ++i) {
     const double middle = 0.5 * (low + high);
     (distorted_radius(middle) < distorted ? low : high) = middle;
@@ -184,6 +187,7 @@ std::optional<Vector2d> Optics::undistort(const Vector2d& distorted) const {
   const double radius = distorted.norm();
   if (radius == 0) return distorted;
   if (radius >= fold_radius_) return std::nullopt;
+  // Newton's method from the solution for radial distortion.
   Vector2d p = distorted * (undistorted_radius(radius) / radius);
   for (int i = 0; i < 50; ++i) {
     const Vector2d error = distort(p) - distorted;

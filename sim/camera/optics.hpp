@@ -13,36 +13,40 @@ namespace sim {
 
 using Vector2d = Eigen::Vector2d;
 
-/// The lens of a camera and the grid of its pixels.
+/// Lens and pixel grid of a camera.
 ///
-/// The camera looks along +x of the sensor frame S, +y is to the left and +z is up.  A place in the image is (u, v) in
-/// pixels from the outer corner of the first pixel: u to the right, v downwards; the pixel in column i and row j has
-/// its centre at (i + 0.5, j + 0.5).  OpenCV counts from the centre of the first pixel: its principal point is 0.5
-/// less.
+/// The camera looks along +x of the sensor frame S, +y is to the left and +z is up.  Image
+/// coordinates (u, v) are in pixels from the outer corner of the first pixel, u to the right, v downwards.  The pixel
+/// in column i and row j has its centre at (i + 0.5, j + 0.5).  OpenCV counts from the centre of the first pixel, so
+/// its principal point is smaller by 0.5.
+///
+/// Distortion models: Brown-Conrady (Brown 1971) for the pinhole, Kannala-Brandt (2006) for the fisheye, both with the
+/// coefficients of OpenCV.
 struct OpticsConfig {
+  /// Projection of the lens: pinhole or equidistant fisheye.
   enum class Lens { pinhole, fisheye };
   static constexpr ChoiceWords<Lens> lens_words{{"pinhole", Lens::pinhole}, {"fisheye", Lens::fisheye}};
 
   int width = 320;
   int height = 240;
   Lens lens = Lens::pinhole;
-  double fov_rad = degrees_to_radians(45);         ///< horizontal, of the lens without distortion
-  std::vector<double> focal_px;                    ///< fx, fy or one for both; empty: from the field of view
-  std::vector<double> principal_px;                ///< empty: the middle of the image
+  double fov_rad = degrees_to_radians(45);         ///< horizontal field of view without distortion
+  std::vector<double> focal_px;                    ///< fx and fy, or one value for both; empty: from fov_rad
+  std::vector<double> principal_px;                ///< principal point; empty: centre of the image
   std::vector<double> distortion;                  ///< pinhole: k1, k2, p1, p2, k3; fisheye: k1 to k4; OpenCV's order
-  double max_angle_rad = degrees_to_radians(180);  ///< fisheye: pixels farther off the axis are empty
+  double max_angle_rad = degrees_to_radians(180);  ///< fisheye: pixels at a larger angle to the axis are empty
 
   void read(ParamReader& in);
-  /// What is wrong with it; empty: nothing.
+  /// Returns a description of the first invalid value; empty when the configuration is valid.
   std::string problem() const;
-  /// All values as YAML, for messages and to tell lenses apart.
+  /// Returns all values as YAML, for messages and for comparing lenses.
   std::string text() const;
 };
 
-/// Viewing direction of each pixel.
+/// Projection between pixels and viewing directions.
 class Optics {
  public:
-  /// Throws std::invalid_argument when there is no focal length > 0; the rest is up to config.problem().
+  /// Throws std::invalid_argument unless the focal length is > 0.  Other errors are reported by config.problem().
   explicit Optics(const OpticsConfig& config);
 
   int width() const { return config_.width; }
@@ -51,13 +55,13 @@ class Optics {
   double focal_y_px() const { return fy_; }
   const OpticsConfig& config() const { return config_; }
 
-  /// Unit vector in S of the viewing direction at (u, v) in the image; nothing outside the lens's field of view.
+  /// Returns the viewing direction at (u, v) as a unit vector in S; empty outside the field of view of the lens.
   std::optional<Vector3d> direction_S(double u, double v) const;
-  /// Where a point in S is seen, inside the image or not; nothing when the lens cannot see it.
+  /// Returns the image coordinates of a point in S, inside the image or not; empty outside the field of view.
   std::optional<Vector2d> project(const Vector3d& p_S) const;
 
-  /// The distortion folds over at this distance from the principal point (in units of the focal length, distorted);
-  /// infinity: nowhere.
+  /// Returns the distorted radius, in focal lengths from the principal point, at which the distortion stops being
+  /// monotonic; infinity when it is monotonic over the whole field of view.
   double fold_radius() const { return fold_radius_; }
 
  private:
@@ -72,26 +76,26 @@ class Optics {
   OpticsConfig config_;
   bool fisheye_;
   double fx_ = 1, fy_ = 1, cx_ = 0, cy_ = 0;
-  double radial_[4] = {0, 0, 0, 0};  ///< of r^2, r^4, r^6, r^8
+  double radial_[4] = {0, 0, 0, 0};  ///< coefficients of r^2, r^4, r^6, r^8
   double p1_ = 0, p2_ = 0;
   bool distorted_ = false;
-  double last_good_ = 0;    ///< undistorted radius (pinhole) or angle (fisheye) up to which the radial curve rises
-  double fold_radius_ = 0;  ///< distorted_radius(last_good_), or infinity when it never folds
+  double last_good_ = 0;  ///< undistorted radius (pinhole) or angle (fisheye) up to which the radial curve is monotonic
+  double fold_radius_ = 0;  ///< distorted_radius(last_good_), or infinity when it is monotonic everywhere
 };
 
-/// The directions of a whole image, computed once.
+/// Viewing directions of all pixels of an image, computed once.
 struct PixelRays {
-  int width = 0, height = 0;  ///< of the image
-  int per_side = 1;           ///< rays of a pixel along u and along v
-  float pixel_angle = 0;      ///< angle between neighbouring rays in the middle of the image
-  /// Row by row, (width * per_side) in a row.  Zero: sees nothing.
+  int width = 0, height = 0;  ///< size of the image in pixels
+  int per_side = 1;           ///< rays per pixel along u and along v
+  float pixel_angle = 0;      ///< angle between neighbouring rays at the centre of the image, rad
+  /// Unit vectors row by row, width * per_side in each row.  A zero vector marks a pixel outside the field of view.
   std::vector<Eigen::Vector3f> directions_S;
 
   int columns() const { return width * per_side; }
   const Eigen::Vector3f* row(int row) const { return directions_S.data() + std::size_t(row) * std::size_t(columns()); }
 };
 
-/// `per_side` x `per_side` rays for each pixel, evenly spread.
+/// Returns per_side x per_side evenly spaced rays for each pixel.
 std::shared_ptr<const PixelRays> make_pixel_rays(const Optics& optics, int per_side);
 
 }  // namespace sim

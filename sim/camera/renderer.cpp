@@ -9,12 +9,12 @@ namespace sim {
 
 namespace {
 
-/// Rays of a tile go nearly the same way, so that the scene can follow them together.
+/// Rays per tile.  They have nearly the same direction, so that the scene can trace them as packets.
 constexpr int tile_rays = 64;
 constexpr double shadow_range_m = 10'000;
 constexpr float nothing_seen_m = std::numeric_limits<float>::infinity();
 
-/// Colors of what has none: fixed things, and things that move, by the number of their group.
+/// Default colors: of fixed parts, of the ground, and of moving parts by group number.
 const Color fixed_color = {178, 170, 156};
 const Color ground_color = {196, 198, 196};
 const Color group_colors[] = {{70, 120, 190},  {214, 106, 62}, {92, 156, 88},  {190, 74, 96},
@@ -25,10 +25,10 @@ float raised_to_64(float x) {
   return x;
 }
 
-/// How much of a footprint around x a line of 0.02 at every whole number covers.
+/// Returns the share of a footprint around x that is covered by lines of width 0.02 at the whole numbers.
 float line_share(double x, float footprint) {
   constexpr float width = 0.02F;
-  // To the nearest whole number and back, by a number so large that it has no room for fractions; std::round is a call.
+  // Round to the nearest whole number by adding and subtracting 1.5 * 2^52, which is faster than std::round.
   constexpr double large = 0x1.8p52;
   const double nearest = (x + large) - large;
   const auto off = static_cast<float>(std::abs(x - nearest));
@@ -40,15 +40,15 @@ float line_share(double x, float footprint) {
 }  // namespace
 
 struct Renderer::Tile {
-  int column = 0, row = 0;    ///< of the first ray, in rays
-  int columns = 0, rows = 0;  ///< of rays
-  int seeing = 0;             ///< rays that see something
+  int column = 0, row = 0;    ///< position of the first ray, in rays
+  int columns = 0, rows = 0;  ///< size in rays
+  int seeing = 0;             ///< number of rays within the field of view
   std::array<Ray, tile_rays> rays;
   std::array<RayHit, tile_rays> hits;
-  std::array<int, tile_rays> number;  ///< of the ray of a place in the tile; -1: sees nothing
+  std::array<int, tile_rays> number;  ///< index in `rays` of each position in the tile; -1: outside the field of view
   std::array<float, tile_rays> along_axis;
   std::array<Ray, tile_rays> shadow_rays;
-  std::array<int, tile_rays> shadow_of;  ///< number of the ray
+  std::array<int, tile_rays> shadow_of;  ///< index in `rays`
   std::array<std::uint8_t, tile_rays> blocked, in_shadow;
 };
 
@@ -61,7 +61,7 @@ Renderer::Renderer(const PhysicsWorld& physics, std::shared_ptr<const PixelRays>
       to_sun_W_(options.light.to_sun_W()),
       to_sun_f_W_(to_sun_W_.cast<float>()),
       sun_is_up_(to_sun_W_.z() > 0 && options.light.sun > 0),
-      // A little warmer than the sky.
+      // Slightly warmer than the sky.
       sun_(LinearColor(1.0F, 0.97F, 0.91F) * static_cast<float>(options.light.sun)),
       zenith_(linear_color(parse_color(options.light.zenith_color).value_or(Color{}))),
       horizon_(linear_color(parse_color(options.light.horizon_color).value_or(Color{}))),
@@ -114,11 +114,12 @@ void Renderer::render(const Pose& X_WS, Frame& frame) {
 }
 
 void Renderer::render_rows(const Pose& X_WS, int first, int end, float weight, Frame& frame) {
-  // A tile holds whole pixels; a single row becomes tiles that are wide and flat.
+  // Choose the shape of tiles: whole pixels, nearly square; wide and flat when a single row is rendered.
   const int n = rays_->per_side;
   int high = 1;
   while (2 * high * n <= 8 && 2 * high <= end - first) high *= 2;
   const int wide = std::max(1, tile_rays / (high * n * n));
+  // Render tile by tile.
   Tile tile;
   posed_ = {};
   for (int row = first; row < end; row += high)
@@ -169,7 +170,7 @@ void Renderer::find_shadows(Tile& tile) const {
   for (int i = 0; i < tile.seeing; ++i) {
     const RayHit& hit = tile.hits[i];
     if (!hit.hit() || hit.normal_W.dot(to_sun_W_) <= 0) continue;
-    // Off the surface by more than its rounding, else it shades itself.
+    // Offset the origin from the surface by more than the rounding error, to avoid self-shadowing.
     const double off_m = 1e-3 + 1e-5 * hit.range_m;
     Ray& ray = tile.shadow_rays[count];
     ray.origin_W = tile.rays[i].origin_W + hit.range_m * tile.rays[i].direction_W + off_m * hit.normal_W;
@@ -177,7 +178,7 @@ void Renderer::find_shadows(Tile& tile) const {
     ray.range_max_m = shadow_range_m;
     tile.shadow_of[count++] = i;
   }
-  // What the camera does not see, such as its own vehicle, has a shadow all the same.
+  // Parts that the camera filters out, such as its own vehicle, still cast shadows.
   const RayFilter filter{~0u, -1, RayKind::light};
   physics_.scene().find_blocked(std::span(tile.shadow_rays).first(count), filter, std::span(tile.blocked).first(count));
   for (std::size_t i = 0; i < count; ++i) tile.in_shadow[tile.shadow_of[i]] = tile.blocked[i];
@@ -229,10 +230,11 @@ LinearColor Renderer::sky(const Eigen::Vector3f& direction_W) const {
   if (up >= 0)
     color += std::sqrt(up) * (zenith_ - horizon_);
   else
-    color -= up * (ground_ - horizon_);  // gently: where there is no ground, the horizon has no edge
+    color -= up * (ground_ - horizon_);  // continuous at the horizon
+  // Add the disc of the sun and its halo.
   if (!sun_is_up_) return color;
   const float toward = direction_W.dot(to_sun_f_W_);
-  constexpr float disc = 0.99996F;  // cosine of half a degree, twice the sun's radius
+  constexpr float disc = 0.99996F;  // cosine of half a degree: twice the angular radius of the sun
   if (toward > disc) return sun_ * 1.5F;
   if (toward > 0.9F && up > 0) color += raised_to_64(raised_to_64(toward)) * sun_ + 0.15F * raised_to_64(toward) * sun_;
   return color;
@@ -255,7 +257,7 @@ LinearColor Renderer::albedo(const RayHit& hit, const Vector3d& p_W, float footp
   const bool fixed = physics_.bodies()[static_cast<std::size_t>(part.body)]->fixed();
   if (!fixed) return linear_color(group_colors[static_cast<std::size_t>(part.group) % std::size(group_colors)]);
   if (!part.plane) return linear_color(fixed_color);
-  // A plane: a grid of one metre tells how far things are.
+  // Planes show a grid of 1 m as a scale for distances.
   const Vector3d p_P = X_PW(hit.part) * p_W;
   const float line = std::max(line_share(p_P.x(), footprint_m), line_share(p_P.y(), footprint_m));
   return linear_color(ground_color) * (1 - 0.35F * line);
@@ -264,13 +266,14 @@ LinearColor Renderer::albedo(const RayHit& hit, const Vector3d& p_W, float footp
 LinearColor Renderer::shade(const RayHit& hit, const Ray& ray, bool in_shadow, float footprint_m) {
   const Vector3d p_W = ray.origin_W + hit.range_m * ray.direction_W;
   const Eigen::Vector3f normal = hit.normal_W.cast<float>(), direction = ray.direction_W.cast<float>();
-  // A surface seen at a flat angle fills a pixel with more of its length; half of that keeps patterns sharp across.
+  // Footprint at grazing incidence: geometric mean of its two extents, a compromise between sharpness and aliasing.
   const float slant = std::max(0.05F, -normal.dot(direction));
   const LinearColor own = albedo(hit, p_W, footprint_m / std::sqrt(slant));
-  // Half a sphere of sky over the ground lights what lies flat; what hangs over sees the ground's share of it.
+  // Ambient light by the share of the hemisphere that is sky; the ground reflects less.
   const float open = 0.5F * (1 + normal.z());
   LinearColor light = own * (sky_strength_ * (0.45F + 0.55F * open));
   const float toward = normal.dot(to_sun_f_W_);
+  // Add diffuse light of the sun and the highlight (Blinn 1977).
   if (!sun_is_up_ || in_shadow || toward <= 0) return light;
   light += own.cwiseProduct(sun_) * toward;
   const float gloss = surface(hit.material).gloss;
@@ -296,7 +299,7 @@ Image8 develop(const FloatImage& light, float gain) {
 }
 
 float auto_gain(const FloatImage& light) {
-  // Of a sum over all pixels double keeps every bit that matters.
+  // Sum in double precision to limit the rounding error.
   double sum = 0;
   const std::size_t pixels = light.data.size() / 3;
   for (std::size_t i = 0; i < pixels; ++i) sum += std::min(1.0F, luminance(light.data.data() + 3 * i));

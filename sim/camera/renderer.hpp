@@ -13,20 +13,21 @@
 
 namespace sim {
 
-/// What an image is of.
+/// Quantity stored in the pixels of an image.
 enum class ImageKind { color, depth, parts, groups };
 
+/// Options of a renderer.
 struct RenderOptions {
   ImageKind kind = ImageKind::color;
-  /// Parts of materials that let light through are never seen.
+  /// Selects the parts in the image.  Parts of transparent materials are always invisible.
   RayFilter filter{~0u, -1, RayKind::light};
-  double range_max_m = 10'000;   ///< along the ray; what is farther is not seen
-  bool depth_along_ray = false;  ///< depth is the range; else the distance along the optical axis (x of S)
+  double range_max_m = 10'000;   ///< along the ray; parts beyond it are invisible
+  bool depth_along_ray = false;  ///< true: depth is the range; false: distance along the optical axis (x of S)
   LightConfig light;
 };
 
-/// One image in progress: `light` holds a color image in linear RGB, `depth_m` depth (infinity: nothing), `labels` a
-/// segmentation (see Renderer::label_name); the others stay empty.
+/// Image being rendered.  Depending on the kind of the image one member is filled and the others stay empty: `light`
+/// holds linear RGB, `depth_m` depth (infinity: no hit), `labels` a segmentation (see Renderer::label_name).
 struct Frame {
   FloatImage light;
   FloatImage depth_m;
@@ -34,32 +35,34 @@ struct Frame {
   void visit_state(StateArchive& archive) { archive(light, depth_m, labels); }
 };
 
-/// Makes images of a world, ray by ray: Lambert's law under a sun with shadows and a sky, a Blinn-Phong highlight.
-/// No GPU, no display; the same bits in every run.  Knows neither lens nor exposure: see PixelRays and develop().
-/// One thread at a time; several renderers may work at once when the scene allows it.
+/// Renders images of a world by ray casting.  Surfaces are lit by the sun (Lambert's law, with shadows) and by the sky,
+/// with a highlight after Blinn (1977).  It uses neither GPU nor display and is reproducible bit by bit.  PixelRays
+/// models the lens, develop() the exposure.  A renderer is used by one thread at a time; several renderers may run
+/// concurrently when Scene::concurrent() is true.
 class Renderer {
  public:
-  /// Throws ConfigError for a texture that cannot be read, of a material that the world has now.  For one that is
-  /// added later, such a texture is left out.
+  /// Throws ConfigError when a texture of an existing material cannot be read.  Unreadable textures of materials that
+  /// are added later are ignored.
   Renderer(const PhysicsWorld& physics, std::shared_ptr<const PixelRays> rays, const RenderOptions& options,
            std::shared_ptr<TextureLibrary> textures);
 
-  /// An empty frame of the right size: black, infinitely far, label 0.
+  /// Sets the frame to the size of the image and clears it: black, infinite depth, label 0.
   void clear(Frame& frame) const;
-  /// Renders rows [first, end) with the camera at X_WS and the world as it is.  Light is added times `weight`; depth
-  /// and labels are replaced.  Everything when end == height.
+  /// Renders rows [first, end) with the camera at X_WS and the world in its present state.  Light is multiplied by
+  /// `weight` and added; depth and labels are replaced.  The image is complete when end == height.
   void render_rows(const Pose& X_WS, int first, int end, float weight, Frame& frame);
-  /// All rows.
+  /// Clears the frame and renders all rows.
   void render(const Pose& X_WS, Frame& frame);
 
   const PixelRays& rays() const { return *rays_; }
   const RenderOptions& options() const { return options_; }
 
-  /// What a label stands for: `rover1/chassis/hull` or `rover1`.  0 is what is not seen, part n and group n are n + 1.
+  /// Returns the name of a label, such as `rover1/chassis/hull` or `rover1`.  Label 0 means no hit; part n and group n
+  /// have label n + 1.
   static std::string label_name(const PhysicsWorld& physics, ImageKind kind, std::uint16_t label);
 
  private:
-  /// A material as it looks.
+  /// Optical properties of a material.
   struct Surface {
     bool known = false;
     bool has_color = false;
@@ -68,30 +71,41 @@ class Renderer {
     std::shared_ptr<const Texture> texture;
   };
   struct Tile;
+  /// Part with its inverse pose.
   struct PosedPart {
     int part = -1;
     Pose X_PW = Pose::Identity();
   };
 
+  /// Returns the properties of a material.  `strict`: an unreadable texture is an error.
   Surface make_surface(int material, bool strict) const;
+  /// Returns the cached properties of a material.
   const Surface& surface(int material);
-  /// Asked for again and again: neighbouring pixels mostly see one part.
+  /// Returns the inverse pose of a part, cached because neighbouring pixels mostly hit the same part.
   const Pose& X_PW(int part);
+  /// Returns the diffuse color at a hit; `footprint_m`: size of the projected pixel.
   LinearColor albedo(const RayHit& hit, const Vector3d& p_W, float footprint_m);
+  /// Returns the light of the sky in a direction.
   LinearColor sky(const Eigen::Vector3f& direction_W) const;
+  /// Returns the light reflected at a hit.
   LinearColor shade(const RayHit& hit, const Ray& ray, bool in_shadow, float footprint_m);
+  /// Collects the rays of a tile.
   void gather(Tile& tile, const Pose& X_WS) const;
+  /// Casts the rays of a tile.
   void cast(Tile& tile) const;
+  /// Casts shadow rays from the hits to the sun.
   void find_shadows(Tile& tile) const;
+  /// Adds the light of a tile to the frame.
   void fill_light(Tile& tile, float weight, Frame& frame);
+  /// Writes depth or labels of a tile to the frame.
   void fill_values(const Tile& tile, Frame& frame) const;
 
   const PhysicsWorld& physics_;
   std::shared_ptr<const PixelRays> rays_;
   RenderOptions options_;
   std::shared_ptr<TextureLibrary> textures_;
-  std::vector<Surface> surfaces_;  // by number of the material
-  PosedPart posed_;                // the last one, while rows are rendered
+  std::vector<Surface> surfaces_;  // by material number
+  PosedPart posed_;                // last part used while rows are rendered
   Vector3d to_sun_W_;
   Eigen::Vector3f to_sun_f_W_;
   bool sun_is_up_;
@@ -99,11 +113,11 @@ class Renderer {
   float sky_strength_;
 };
 
-/// Light to sRGB: times `gain`, cut at white.
+/// Converts linear light to sRGB: multiplied by `gain`, clipped at white.
 Image8 develop(const FloatImage& light, float gain);
-/// The gain that brings the mean brightness to a middle grey of 18 %.
+/// Returns the gain that brings the mean luminance to middle grey, 18 %.
 float auto_gain(const FloatImage& light);
-/// Grey by brightness.
+/// Returns the luminance of an RGB image as one channel.
 FloatImage grey_of(const FloatImage& light);
 
 }  // namespace sim

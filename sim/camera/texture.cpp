@@ -10,7 +10,7 @@ namespace sim {
 
 namespace {
 
-/// Half as wide and high, rounded up; the mean in linear light.
+/// Returns the image at half width and height, rounded up, averaged in linear light.
 Image8 halved(const Image8& image) {
   Image8 half((image.width + 1) / 2, (image.height + 1) / 2, 3);
   for (int row = 0; row < half.height; ++row)
@@ -31,9 +31,9 @@ LinearColor pixel(const Image8& image, long column, long row) {
   return {linear_from_srgb(rgb[0]), linear_from_srgb(rgb[1]), linear_from_srgb(rgb[2])};
 }
 
-/// The share of the second color between x - w/2 and x + w/2, where fields of length 1 take turns.
+/// Returns the share of the second color between x - w/2 and x + w/2, where fields of length 1 alternate.
 double share_of_second(double x, double w) {
-  // The integral of the square wave that is 0 in [0, 1) and 1 in [1, 2).
+  // Integral of the square wave that is 0 in [0, 1) and 1 in [1, 2).
   const auto integral = [](double t) {
     const double whole = std::floor(t / 2);
     return whole + std::max(0.0, t - 2 * whole - 1);
@@ -54,12 +54,14 @@ ImagePyramid::ImagePyramid(Image8 image) {
 }
 
 LinearColor ImagePyramid::sample(double u_px, double v_px, double footprint_px) const {
+  // Choose the level whose pixels match the footprint.
   std::size_t level = 0;
   double scale = 1;
   for (; level + 1 < levels_.size() && footprint_px * scale > 1.5; ++level) scale *= 0.5;
   const Image8& image = levels_[level];
-  // Far from the origin of a large part: bring the place near before it becomes an integer.
+  // Reduce the position to one period before the conversion to integers.
   const double u = std::fmod(u_px, width()) * scale - 0.5, v = std::fmod(v_px, height()) * scale - 0.5;
+  // Bilinear interpolation.
   const double column = std::floor(u), row = std::floor(v);
   const auto a = static_cast<float>(u - column), b = static_cast<float>(v - row);
   const long i = static_cast<long>(column), j = static_cast<long>(row);
@@ -75,11 +77,13 @@ Texture::Texture(const TextureConfig& config, std::shared_ptr<const ImagePyramid
 }
 
 LinearColor Texture::color(const Vector3d& p_P, const Vector3d& normal_P, double footprint_m) const {
+  // Project along the axis closest to the normal.
   int axis = 0;
   normal_P.cwiseAbs().maxCoeff(&axis);
   const double u = (axis == 0 ? p_P.y() : p_P.x()) / size_m_;
   const double v = (axis == 2 ? p_P.y() : p_P.z()) / size_m_;
   const double footprint = footprint_m / size_m_;
+  // Share of the second color, averaged over the footprint.
   double second = 0;
   switch (pattern_) {
     case TextureConfig::Pattern::none:

@@ -14,34 +14,35 @@
 
 namespace sim {
 
-/// Linear red, green, blue.
+/// Red, green and blue in linear light.
 using LinearColor = Eigen::Vector3f;
 
+/// Converts an sRGB color to linear light.
 LinearColor linear_color(const Color& srgb);
 
-/// An image with smaller and smaller copies of itself, so that it does not shimmer from afar.
+/// Image with filtered copies at half, a quarter, ... of its size, against aliasing at a distance (Williams 1983).
 class ImagePyramid {
  public:
   explicit ImagePyramid(Image8 image);
   int width() const { return levels_.front().width; }
   int height() const { return levels_.front().height; }
-  /// At a place from its top left corner, in pixels of the largest image, repeated without end.  `footprint_px`: how
-  /// large what looks at it is.
+  /// Returns the color at a position in pixels of the largest image, from its top left corner.  The image repeats
+  /// periodically.  `footprint_px`: size of the projected pixel.
   LinearColor sample(double u_px, double v_px, double footprint_px) const;
 
  private:
   std::vector<Image8> levels_;
 };
 
-/// A pattern on a surface.
+/// Pattern on a surface.
 class Texture {
  public:
-  /// `image` is null unless the pattern is one.
+  /// `image` is null unless the pattern is an image.
   Texture(const TextureConfig& config, std::shared_ptr<const ImagePyramid> image);
-  /// The color at a point of the part, where its surface has this normal, both in the frame P of the part.  The
-  /// pattern lies in the plane across the axis that the normal goes along most: on top and bottom u is along x and v
-  /// along y, on the sides towards x u is along y, on those towards y along x, and v is along z.  The first field, and
-  /// the lower left corner of the image, begin at the origin of P.  `footprint_m`: size of what looks at it.
+  /// Returns the color at a surface point with the given normal, both in the frame P of the part.  The pattern is
+  /// projected along the axis of P closest to the normal.  Along z, u is x and v is y; along x, u is y and v is z;
+  /// along y, u is x and v is z.  The first field, and the lower left corner of an image, begin at the origin of P.
+  /// `footprint_m`: size of the projected pixel on the surface.
   LinearColor color(const Vector3d& p_P, const Vector3d& normal_P, double footprint_m) const;
 
  private:
@@ -51,10 +52,11 @@ class Texture {
   std::shared_ptr<const ImagePyramid> image_;
 };
 
-/// Decodes each image file once, however many materials and cameras use it.  May be used from several threads.
+/// Cache of decoded image files, shared by materials and cameras.  Thread-safe.
 class TextureLibrary {
  public:
-  /// Null for pattern `none`.  Throws ConfigError at the place of the texture when its file cannot be read.
+  /// Returns the texture; null for the pattern `none`.  Throws ConfigError, with the position of the texture in its
+  /// YAML file, when the image cannot be read.
   std::shared_ptr<const Texture> get(const TextureConfig& config, const std::string& who);
 
  private:

@@ -18,10 +18,12 @@ void BoxGrid::build(std::span<const AlignedBox> boxes) {
   large_.clear();
   cells_.clear();
   if (boxes_.empty()) return;
+  // Median width of the boxes.
   std::vector<double> widths;
   for (const AlignedBox& box : boxes_) widths.push_back(width_of(box));
   std::nth_element(widths.begin(), widths.begin() + static_cast<std::ptrdiff_t>(widths.size() / 2), widths.end());
   const double median_m = widths[widths.size() / 2];
+  // Separate large boxes from small ones.
   std::vector<int> small;
   reach_ = 0;
   for (int i = 0; i < static_cast<int>(boxes_.size()); ++i) {
@@ -35,7 +37,7 @@ void BoxGrid::build(std::span<const AlignedBox> boxes) {
   }
   choose_cells(small);
 
-  // Counting sort by cell.
+  // Sort boxes into cells (counting sort).
   const auto cell_of = [&](int index) {
     const Vector3d center = boxes_[index].center();
     return row(center.y()) * columns_ + column(center.x());
@@ -57,7 +59,7 @@ void BoxGrid::choose_cells(const std::vector<int>& small) {
   const Vector3d size = bounds.high - bounds.low;
   low_x_ = bounds.low.x();
   low_y_ = bounds.low.y();
-  // About one box a cell; never more than a few thousand cells along a line of boxes.
+  // About one box per cell, and at most 1024 cells along each axis.
   const double count = static_cast<double>(small.size());
   cell_m_ = std::max({std::sqrt(size.x() * size.y() / count), std::max(size.x(), size.y()) / 1024, 1e-3});
   columns_ = std::max(1, static_cast<int>(std::ceil(size.x() / cell_m_)));

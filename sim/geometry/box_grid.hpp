@@ -9,7 +9,7 @@
 
 namespace sim {
 
-/// A box along the axes of the world.
+/// Axis-aligned box in the world frame.
 struct AlignedBox {
   Vector3d low = Vector3d::Zero();
   Vector3d high = Vector3d::Zero();
@@ -22,11 +22,12 @@ struct AlignedBox {
   }
 };
 
-/// Finds the boxes that meet a box, in a grid of square cells in the xy-plane.  Each box is in the cell of
-/// its centre, so it is found once; a search looks as far around as the largest of them reaches.  Boxes much
-/// larger than the median are kept apart and always looked at.
+/// Spatial index of boxes: a grid of square cells in the xy-plane.  Each box is stored once, in the cell of its centre;
+/// queries are enlarged by half the width of the largest box in the grid.  Boxes much larger than the median are stored
+/// in a separate list that every query examines.
 class BoxGrid {
  public:
+  /// Builds the index of the given boxes.
   void build(std::span<const AlignedBox> boxes);
   const AlignedBox& box(int index) const { return boxes_[index]; }
 
@@ -39,7 +40,7 @@ class BoxGrid {
     const int column_low = column(query.low.x() - reach_), column_high = column(query.high.x() + reach_);
     const int row_low = row(query.low.y() - reach_), row_high = row(query.high.y() + reach_);
     for (int r = row_low; r <= row_high; ++r) {
-      // The cells of a row lie one behind the other.
+      // Cells of a row are stored consecutively.
       const std::uint32_t end = starts_[r * columns_ + column_high + 1];
       for (std::uint32_t at = starts_[r * columns_ + column_low]; at < end; ++at)
         if (boxes_[cells_[at]].meets(query)) visit(cells_[at]);
@@ -54,8 +55,8 @@ class BoxGrid {
 
   std::vector<AlignedBox> boxes_;
   std::vector<int> large_;
-  std::vector<int> cells_;             // box numbers, cell by cell
-  std::vector<std::uint32_t> starts_;  // of each cell in cells_, and the end
+  std::vector<int> cells_;             // box indices, cell by cell
+  std::vector<std::uint32_t> starts_;  // start of each cell in cells_, and the end
   double low_x_ = 0, low_y_ = 0, cell_m_ = 1, reach_ = 0;
   int columns_ = 1, rows_ = 1;
 };

@@ -14,30 +14,30 @@
 namespace sim {
 namespace {
 
-constexpr double max_mesh_coordinate_m = 1e7;  // as far as a part may be
+constexpr double max_mesh_coordinate_m = 1e7;  // same limit as for the position of a part
 
-/// Words separated by white space; knows the ends of lines.
+/// Splits a text into words separated by white space, by line or across lines.
 class Words {
  public:
   explicit Words(std::string_view text) : whole_(text), text_(text) {}
-  /// The next word of the line; empty at its end.
+  /// Returns the next word of the line; empty at its end.
   std::string_view in_line() {
     while (!text_.empty() && (text_[0] == ' ' || text_[0] == '\t' || text_[0] == '\r')) text_.remove_prefix(1);
     return take();
   }
-  /// The next word of the text; empty at its end.
+  /// Returns the next word of the text; empty at its end.
   std::string_view any() {
     while (!text_.empty() && is_space(text_[0])) text_.remove_prefix(1);
     return take();
   }
-  /// Goes to the next line; false at the end of the text.
+  /// Skips to the next line; returns false at the end of the text.
   bool next_line() {
     const auto end = text_.find('\n');
     if (end == std::string_view::npos) return false;
     text_.remove_prefix(end + 1);
     return true;
   }
-  /// The number of the line of the last word.
+  /// Returns the line number of the last word, from 1.
   std::ptrdiff_t line() const {
     return 1 + std::count(whole_.begin(), whole_.end() - static_cast<std::ptrdiff_t>(text_.size()), '\n');
   }
@@ -54,7 +54,8 @@ class Words {
   std::string_view whole_, text_;
 };
 
-/// A file that a world names is not quoted: the line says enough to whoever may read it.
+/// Throws MeshError with the line number.  The contents of the file are not quoted, because a world may refer to a file
+/// that its author cannot read.
 [[noreturn]] void fail_in_line(const Words& words, const std::string& text) {
   throw MeshError("is not a mesh: line " + std::to_string(words.line()) + ": " + text);
 }
@@ -70,10 +71,10 @@ double number_from(std::string_view word, const Words& words, const char* what =
 
 Vector3d checked_vertex(const Vector3d& p) {
   if (!p.allFinite()) throw MeshError("has a vertex that is not finite");
-  return p + Vector3d::Zero();  // -0 and 0 are one place
+  return p + Vector3d::Zero();  // converts -0 to 0
 }
 
-/// Gives equal vertices one number: STL repeats each vertex in every triangle.
+/// Merges equal vertices, which STL repeats in every triangle.
 class Welder {
  public:
   explicit Welder(Mesh& mesh) : mesh_(mesh) {}
@@ -102,7 +103,7 @@ Mesh parse_binary_stl(std::string_view bytes, std::uint32_t count) {
   Welder welder(mesh);
   mesh.triangles.reserve(count);
   for (std::uint32_t i = 0; i < count; ++i) {
-    float numbers[12];  // a normal, which is not used, and three vertices
+    float numbers[12];  // normal, which is ignored, and three vertices
     std::memcpy(numbers, bytes.data() + 84 + 50 * std::size_t{i}, sizeof numbers);
     std::uint32_t corner[3];
     for (int k = 0; k < 3; ++k)
@@ -116,13 +117,14 @@ Mesh parse_ascii_stl(std::string_view text) {
   Mesh mesh;
   Welder welder(mesh);
   Words words(text);
-  words.next_line();  // `solid` and a name that may be anything
+  words.next_line();  // `solid` and an arbitrary name
+  // Collect three vertices per facet.
   std::vector<std::uint32_t> corners;
   bool ended = false;
   for (auto word = words.any(); !word.empty(); word = words.any()) {
     ended = word == "endsolid";
     if (word == "facet") {
-      words.next_line();  // the normal is not used
+      words.next_line();  // the normal is ignored
     } else if (word == "vertex") {
       const double x = number_from(words.any(), words);
       const double y = number_from(words.any(), words);
@@ -138,6 +140,7 @@ Mesh parse_ascii_stl(std::string_view text) {
       fail_in_line(words, "unknown word");
     }
   }
+  // Reject truncated files.
   if (!corners.empty()) throw MeshError("ends inside a facet");
   if (!ended) throw MeshError("is truncated: it ends without 'endsolid'");
   return mesh;
@@ -154,7 +157,7 @@ Mesh not_empty(Mesh mesh) {
   return mesh;
 }
 
-/// A corner of an OBJ face is `7`, `7/1`, `7//3` or `-1`; only the vertex counts.
+/// Returns the vertex index of a corner of an OBJ face: `7`, `7/1`, `7//3` or `-1`.  Texture and normal are ignored.
 std::uint32_t obj_index(std::string_view word, const Words& words, std::size_t vertices) {
   const double number = number_from(word.substr(0, word.find('/')), words, "vertex number");
   const double index = number < 0 ? static_cast<double>(vertices) + number : number - 1;
@@ -185,7 +188,7 @@ Mesh parse_stl(std::string_view bytes) {
   std::uint32_t count = 0;
   if (bytes.size() >= 84) std::memcpy(&count, bytes.data() + 80, 4);
   const bool size_fits = bytes.size() >= 84 && bytes.size() == 84 + 50 * std::size_t{count};
-  // Some binary files begin with `solid` too: the size decides first.
+  // Check the size first, because some binary files begin with `solid` too.
   if (!size_fits && bytes.substr(0, 5) == "solid") return not_empty(parse_ascii_stl(bytes));
   if (bytes.size() < 84) throw MeshError("is not a mesh: too short for an STL file");
   if (count > max_mesh_triangles && bytes.size() >= 84 + 50 * std::size_t{count})
@@ -230,9 +233,9 @@ bool is_closed(const Mesh& mesh) {
 }
 
 MeshSolid solid_of(const Mesh& mesh) {
-  // Sums the tetrahedra between each triangle and a point near the mesh (not the origin: a mesh far from it
-  // would lose digits).  The integral of x x^T over one is det/120 (sum of p p^T + s s^T), with s the sum of
-  // its corners.
+  // Sum over the tetrahedra between each triangle and a point near the mesh, which limits cancellation for a mesh far
+  // from the origin.  The integral of x x^T over a tetrahedron is det/120 (sum of p p^T + s s^T), with p its corners
+  // and s their sum.
   const Vector3d near = mesh.vertices_m.empty() ? Vector3d::Zero() : mesh.vertices_m.front();
   double volume = 0;
   Vector3d first = Vector3d::Zero();
@@ -245,6 +248,7 @@ MeshSolid solid_of(const Mesh& mesh) {
     first += det / 24 * sum;
     second += det / 120 * (a * a.transpose() + b * b.transpose() + c * c.transpose() + sum * sum.transpose());
   }
+  // Shift the second moments to the centroid and convert them to inertia.
   MeshSolid solid;
   solid.volume_m3 = volume;
   if (volume == 0) return solid;

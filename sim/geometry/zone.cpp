@@ -11,7 +11,7 @@ namespace sim {
 
 namespace {
 
-/// A key that says nothing of this shape would be ignored; it is most likely meant for another shape.
+/// Reports keys of other shapes, which would be ignored, and missing keys of this shape.
 void check_keys(ParamReader& in, ZoneShape shape) {
   const std::string word(word_of(zone_shape_words, shape));
   const auto belongs_to = [&](const char* key, std::initializer_list<ZoneShape> shapes, bool required) {
@@ -71,7 +71,8 @@ bool Zone::contains(const Vector3d& p_W) const {
 }
 
 bool Zone::inside_polygon(const Vector3d& p_Z) const {
-  // A ray to +x crosses the outline an odd number of times; corners count with the edge above them only.
+  // Even-odd rule: a ray to +x from a point inside crosses the outline an odd number of times.  A corner counts with
+  // the edge above it only.
   bool inside = false;
   const auto& corners = config_.points_m;
   for (std::size_t i = 0, j = corners.size() - 1; i < corners.size(); j = i++) {

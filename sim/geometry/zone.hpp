@@ -10,6 +10,7 @@
 
 namespace sim {
 
+/// Shape of a zone.
 enum class ZoneShape { box, sphere, cylinder, polygon };
 
 inline constexpr ChoiceWords<ZoneShape> zone_shape_words{{"box", ZoneShape::box},
@@ -17,10 +18,10 @@ inline constexpr ChoiceWords<ZoneShape> zone_shape_words{{"box", ZoneShape::box}
                                                          {"cylinder", ZoneShape::cylinder},
                                                          {"polygon", ZoneShape::polygon}};
 
-/// What a zone does to those inside it.
+/// Service that a zone denies to the vehicles inside.
 enum class ZoneFlag { gps_denied, radio_denied };
 
-/// A named region of the world, for events, denied services and rules.  Nothing collides with it.
+/// Named region of the world for events, denied services and rules.  It takes no part in collisions.
 struct ZoneConfig {
   std::string name;
   ZoneShape shape = ZoneShape::box;
@@ -30,8 +31,8 @@ struct ZoneConfig {
   double radius_m = 1;                 ///< sphere, cylinder
   double height_m = 1;                 ///< cylinder, along z
   std::vector<Vector3d> points_m;      ///< polygon: corners in the zone's xy-plane
-  double low_m = -1e9;                 ///< polygon: between these heights in the zone's frame
-  double high_m = 1e9;
+  double low_m = -1e9;                 ///< polygon: lower limit of z in the zone's frame
+  double high_m = 1e9;                 ///< polygon: upper limit of z
   bool gps_denied = false;
   bool radio_denied = false;
   std::optional<double> speed_limit_mps;
@@ -40,10 +41,11 @@ struct ZoneConfig {
   void read(ParamReader& in);
 };
 
-/// A zone as placed.  Its border belongs to it.
+/// Zone at its pose in the world.  The border is part of the zone.
 class Zone {
  public:
   explicit Zone(const ZoneConfig& config);
+  /// Returns true when a point lies inside the zone or on its border.
   bool contains(const Vector3d& p_W) const;
   const ZoneConfig& config() const { return config_; }
 
@@ -58,15 +60,15 @@ class Zone {
 class Zones {
  public:
   explicit Zones(const std::vector<ZoneConfig>& configs);
-  /// Whether a service is denied at a place.
+  /// Returns true when a service is denied at a point.
   bool denied(ZoneFlag flag, const Vector3d& p_W) const;
   const std::vector<Zone>& all() const { return all_; }
-  /// -1 when there is none.
+  /// Returns the index of a zone by name; -1 when there is none.
   int index_of(const std::string& name) const;
 
  private:
   std::vector<Zone> all_;
-  std::vector<int> gps_denied_, radio_denied_;  ///< numbers in all_; most worlds have none
+  std::vector<int> gps_denied_, radio_denied_;  ///< indices in all_
 };
 
 }  // namespace sim

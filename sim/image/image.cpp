@@ -9,7 +9,7 @@ namespace sim {
 
 namespace {
 
-/// Fine enough that no level is off by more than a quarter: 255 * 12.92 / 16384 = 0.2 levels per entry at the dark end.
+/// Size of the table: one entry spans at most 255 * 12.92 / 16384 = 0.2 levels, at the dark end.
 constexpr int srgb_steps = 16384;
 
 struct SrgbTables {
@@ -59,7 +59,7 @@ Image8 depth_image(const FloatImage& depth_m) {
 
 std::array<std::uint8_t, 3> label_color(std::uint16_t label) {
   if (label == 0) return {0, 0, 0};
-  // Golden-ratio steps around the circle of hues keep neighbours apart; brightness changes from turn to turn.
+  // Steps of the golden ratio around the hue circle separate successive labels; value and saturation vary too.
   const std::uint32_t step = label * 2654435769U;  // 2^32 / golden ratio
   const double hue = 6.0 * step / 4294967296.0;
   const double value = 1.0 - 0.18 * (label % 3), grey = 0.25 + 0.15 * (label / 3 % 2);

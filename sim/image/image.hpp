@@ -10,11 +10,11 @@
 
 namespace sim {
 
-/// Images larger than this are refused, in files and of cameras.
+/// Maximum size of images, in files and of cameras.
 inline constexpr int max_image_side_px = 8192;
 inline constexpr int max_image_pixels = 16'000'000;
 
-/// Values of pixels, row by row from the top, each row from left to right, `channels` side by side.
+/// Pixel values in row-major order from the top left corner, channels interleaved.
 template <typename T>
 struct Image {
   int width = 0;
@@ -44,27 +44,27 @@ struct Image {
   }
 };
 
-/// Grey or RGB in sRGB, as files have them.
+/// Grey or RGB with sRGB encoding, as in image files.
 using Image8 = Image<std::uint8_t>;
-/// Depth in millimetres, or labels.
+/// Depth in mm, or labels.
 using Image16 = Image<std::uint16_t>;
-/// Light in linear measure (RGB, 1 is white), or depth in metres.
+/// Linear light (RGB, 1 is white), or depth in m.
 using FloatImage = Image<float>;
 
-/// Light of an sRGB level, 0 to 1 (IEC 61966-2-1).
+/// Converts an sRGB level to linear light, 0 to 1 (IEC 61966-2-1).
 float linear_from_srgb(std::uint8_t level);
-/// The sRGB level of light; less than 0 counts as 0, more than 1 as 1.
+/// Converts linear light to an sRGB level; the light is clamped to 0 .. 1.
 std::uint8_t srgb_from_linear(float light);
-/// How bright linear RGB looks (ITU-R BT.709).
+/// Returns the luminance of linear RGB (ITU-R BT.709).
 inline float luminance(const float* rgb) {
   return 0.2126F * rgb[0] + 0.7152F * rgb[1] + 0.0722F * rgb[2];
 }
 
-/// An image of depth for people: near is bright, black is nothing; logarithmic between the nearest and the farthest.
+/// Returns a depth image for display on a logarithmic scale from the nearest (bright) to the farthest; black: no hit.
 Image8 depth_image(const FloatImage& depth_m);
-/// An image of labels for people: each has its own color, 0 is black.
+/// Returns a label image for display, with one color per label; label 0 is black.
 Image8 label_image(const Image16& labels);
-/// The color of a label, the same in every image.
+/// Returns the display color of a label, the same in every image.
 std::array<std::uint8_t, 3> label_color(std::uint16_t label);
 
 }  // namespace sim

@@ -4,7 +4,7 @@
 #include <csetjmp>
 #include <cstdio>
 #include <cstdlib>
-// After cstdio, which it needs.
+// Requires cstdio.
 #include <jpeglib.h>
 
 #include "sim/image/image_file.hpp"
@@ -13,10 +13,10 @@ namespace sim {
 
 namespace {
 
-// libjpeg reports errors by a jump out of its C code.  The functions that jump hold nothing with a destructor.
+// libjpeg reports errors by longjmp.  Functions that it may leave hold no objects with destructors.
 
 struct JpegErrors {
-  jpeg_error_mgr manager;  // first: libjpeg hands this address back
+  jpeg_error_mgr manager;  // must be first: libjpeg returns this address
   std::jmp_buf jump;
   char message[JMSG_LENGTH_MAX];
 };
@@ -27,7 +27,7 @@ struct JpegErrors {
   std::longjmp(errors->jump, 1);
 }
 
-/// A warning says that the data are damaged.
+/// Treats warnings as errors: they mean damaged data.
 void refuse_warnings(j_common_ptr info, int level) {
   if (level < 0) jump_out(info);
 }
@@ -39,7 +39,7 @@ void use_errors(j_common_ptr info, JpegErrors& errors) {
   errors.message[0] = 0;
 }
 
-/// A progressive file can hold thousands of scans of nothing.
+/// Limits the number of scans, because a progressive file can hold thousands of empty ones.
 void limit_scans(j_common_ptr info) {
   if (!info->is_decompressor || reinterpret_cast<j_decompress_ptr>(info)->input_scan_number < 500) return;
   auto* errors = reinterpret_cast<JpegErrors*>(info->err);
@@ -69,7 +69,7 @@ class JpegReader {
   bool read(unsigned char* rgb, unsigned width, unsigned height) {
     if (setjmp(errors.jump) != 0) return false;
     jpeg_start_decompress(&info);
-    // What libjpeg will write is its own answer, not what was asked for.
+    // Check the size of the output reported by libjpeg against the size of the buffer.
     if (info.output_width != width || info.output_height != height || info.output_components != 3) {
       std::snprintf(errors.message, sizeof errors.message, "rows of another size");
       return false;

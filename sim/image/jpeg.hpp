@@ -11,7 +11,7 @@ namespace sim {
 
 /// Throws ImageError for an image that is empty or too large.
 void check_image_size(std::uint64_t width, std::uint64_t height);
-/// As RGB.  Throws ImageError.
+/// Decodes a JPEG to RGB.  Throws ImageError.
 Image8 decode_jpeg(std::span<const std::byte> bytes);
 
 }  // namespace sim

@@ -16,7 +16,7 @@ namespace sim {
 
 namespace {
 
-/// libpng's own record of a reader or a writer, freed whatever happens.
+/// Owner of libpng's state of a reader or writer.
 struct PngImage {
   PngImage() { image.version = PNG_IMAGE_VERSION; }
   ~PngImage() { png_image_free(&image); }
@@ -47,13 +47,13 @@ Image<T> read_png(std::span<const std::byte> bytes, png_uint_32 format, int chan
   Image<T> image(static_cast<int>(png.image.width), static_cast<int>(png.image.height), channels);
   png.image.format = format;
   if (PNG_IMAGE_SIZE(png.image) != image.data.size() * sizeof(T)) throw ImageError("PNG: rows of another size");
-  const png_color black{0, 0, 0};  // behind what is transparent
+  const png_color black{0, 0, 0};  // background of transparent pixels
   if (!png_image_finish_read(&png.image, &black, image.data.data(), 0, nullptr)) png.fail();
   return image;
 }
 
-/// libpng's reader of rows, where its simplified interface would convert gamma.  Errors come back by longjmp, so that
-/// what jumps stays in functions that hold nothing with a destructor.
+/// Reader based on libpng's row interface, because its simplified interface converts gamma.  libpng reports errors by
+/// longjmp; functions that it may leave hold no objects with destructors.
 class LevelReader {
  public:
   explicit LevelReader(std::span<const std::byte> bytes) : rest_(bytes) {
@@ -94,7 +94,7 @@ class LevelReader {
     if constexpr (std::endian::native == std::endian::little) png_set_swap(png_);
     const int passes = png_set_interlace_handling(png_);
     png_read_update_info(png_, info_);
-    // What libpng will write is its own answer, not what was asked for: with tRNS it adds a channel.
+    // Check the row size reported by libpng against the buffer: with tRNS it adds a channel.
     if (png_get_rowbytes(png_, info_) != std::size_t{width()} * sizeof *levels) png_error(png_, "rows of another size");
     for (int pass = 0; pass < passes; ++pass)
       for (std::size_t row = 0; row < height(); ++row)

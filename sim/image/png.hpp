@@ -7,7 +7,7 @@
 
 namespace sim {
 
-/// As RGB, transparent pixels over black.  Throws ImageError.
+/// Decodes a PNG to RGB; transparent pixels are blended with black.  Throws ImageError.
 Image8 decode_png(std::span<const std::byte> bytes);
 
 }  // namespace sim

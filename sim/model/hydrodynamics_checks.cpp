@@ -28,20 +28,21 @@ double smallest_eigenvalue(const Matrix& matrix) {
   return Eigen::SelfAdjointEigenSolver<Matrix>(matrix, Eigen::EigenvaluesOnly).eigenvalues()[0];
 }
 
-/// False: below zero by more than the rounding of its numbers.
-/// A computed value without the digits of rounding.
+/// Returns a computed value as text with 6 digits, which hides rounding errors.
 std::string computed_text(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.6g", value);
   return text;
 }
 
+/// Returns false when an eigenvalue is below zero by more than the rounding error of the matrix.
 bool not_negative(double eigenvalue, const Matrix6d& matrix) {
   return eigenvalue >= -1e-9 * matrix.cwiseAbs().maxCoeff();
 }
 
 void check_added_mass(const Matrix6d& A, ParamReader& in) {
   const char* key = key_of_added_mass(in);
+  // Check the sign of the diagonal.
   for (int i = 0; i < 6; ++i) {
     if (A(i, i) >= 0) continue;
     in.error(key, std::string("the added mass in ") + axes[i] + " must be >= 0, got " + number_text(A(i, i)) +
@@ -49,6 +50,7 @@ void check_added_mass(const Matrix6d& A, ParamReader& in) {
                       "dot, which are its negative");
     return;
   }
+  // Check the symmetry.
   const double scale = A.cwiseAbs().maxCoeff();
   for (int i = 0; i < 6; ++i)
     for (int j = i + 1; j < 6; ++j) {
@@ -57,6 +59,7 @@ void check_added_mass(const Matrix6d& A, ParamReader& in) {
                         axes[i] + " and " + axes[j] + " and " + number_text(A(j, i)) + " the other way");
       return;
     }
+  // Check that the matrix is positive semi-definite.
   const double min = smallest_eigenvalue(A);
   if (!not_negative(min, A))
     in.error(key, "the matrix of added mass has a negative eigenvalue, " + computed_text(min) +
@@ -84,10 +87,11 @@ void check_damping(const char* key, const Matrix6d& damping, ParamReader& in) {
                    ": a negative value would accelerate the vehicle; papers print derivatives, which are its negative");
 }
 
-/// That no combination of motions is driven: what damping takes is nu' D nu, of which only the symmetric part counts.
+/// Checks that damping adds energy to no combination of motions.  The dissipated power is nu' D nu, to which only the
+/// symmetric part of D contributes.
 void check_damping_couplings(const HydrodynamicsConfig& config, ParamReader& in) {
   const Matrix6d& D = config.linear_damping;
-  if (!(D.diagonal().minCoeff() >= 0)) return;  // was said
+  if (!(D.diagonal().minCoeff() >= 0)) return;  // already reported
   const double min = smallest_eigenvalue(Matrix6d((D + D.transpose()) / 2));
   if (!not_negative(min, D))
     in.error("linear_damping", "the symmetric part of 'linear_damping' has a negative eigenvalue, " +
@@ -127,12 +131,14 @@ void check_coefficients(const HydrodynamicsConfig& config, ParamReader& in) {
 std::vector<std::string> doubts_about(const HydrodynamicsConfig& config, const std::string& who) {
   std::vector<std::string> doubts;
   const double above = config.center_of_buoyancy_m.z() - config.center_of_mass_m.z();
+  // Centre of mass above the centre of buoyancy: unstable.
   if (!config.waterline && above > 0)
     doubts.push_back(config.place.text() + ": " + who + ": its centre of mass lies " + number_text(above) +
                      " m above its centre of buoyancy, so that it turns over; is 'frame' " +
                      std::string(word_of(axes_frame_words, config.frame)) + " right?");
+  // Triangle inequality of the principal moments of inertia.
   const Eigen::SelfAdjointEigenSolver<Matrix3d> principal(config.inertia_kgm2);
-  const Vector3d moments = principal.eigenvalues();  // growing
+  const Vector3d moments = principal.eigenvalues();  // in ascending order
   if (moments[2] > (1 + 1e-9) * (moments[0] + moments[1]))
     doubts.push_back(config.place.text() + ": " + who + ": no solid has its principal moments of inertia, " +
                      number_text(moments[0]) + ", " + number_text(moments[1]) + " and " + number_text(moments[2]) +

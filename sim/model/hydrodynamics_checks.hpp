@@ -8,11 +8,11 @@
 
 namespace sim {
 
-/// Reports unphysical values: mass that is not positive definite, added mass that is asymmetric or negative, damping
-/// that adds energy.  For numbers that were read without errors.
+/// Reports unphysical values as errors: inertia that is not positive definite, added mass that is asymmetric or
+/// negative, damping that adds energy.  Expects numbers that were read without errors.
 void check_coefficients(const HydrodynamicsConfig& config, ParamReader& in);
 
-/// What is possible but most likely a mistake, a line each: `body 'auv1/hull': ...`.
+/// Returns warnings about values that are possible but most likely wrong, one line each: `body 'auv1/hull': ...`.
 std::vector<std::string> doubts_about(const HydrodynamicsConfig& config, const std::string& who);
 
 }  // namespace sim

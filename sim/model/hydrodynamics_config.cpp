@@ -13,14 +13,14 @@ namespace sim {
 
 namespace {
 
-/// Signs of the components in forward-right-down against forward-left-up.
+/// Signs that convert components from forward-left-up to forward-right-down.
 const Vector6d flip = (Vector6d() << 1, -1, -1, 1, -1, -1).finished();
 
 Vector3d to_frd(const Vector3d& v) {
   return {v.x(), -v.y(), -v.z()};
 }
 
-/// A diagonal of n numbers or all n x n, row by row.
+/// Reads a matrix: n numbers (diagonal) or n x n numbers, row by row.
 template <int n>
 void read_matrix(ParamReader& in, const char* key, Eigen::Matrix<double, n, n>& matrix, const char* meaning) {
   std::vector<double> values;
@@ -38,7 +38,7 @@ void read_matrix(ParamReader& in, const char* key, Eigen::Matrix<double, n, n>& 
 
 enum class InertiaAbout { center_of_mass, origin };
 
-/// `added_mass_of_spheroid:`
+/// Section `added_mass_of_spheroid:`.
 struct SpheroidConfig {
   double half_length_m = 1, radius_m = 0.1, density_kgpm3 = 1025;
   void read(ParamReader& in) {
@@ -53,32 +53,37 @@ struct SpheroidConfig {
   }
 };
 
-/// True when the force turns round with the motion, as a hull that is the same to port and starboard, above and below,
-/// has it: surge in X, sway, roll and yaw in Y, K and N, heave and pitch in Z and M.  Other squares are the same both
-/// ways, such as X_vv and M_rr.
+/// Returns true when the force changes sign with the motion, for a hull symmetric about its vertical and horizontal
+/// planes: surge in X; sway, roll and yaw in Y, K and N; heave and pitch in Z and M.  Other quadratic terms, such as
+/// X_vv and M_rr, are even in the velocity.
 bool reverses(int row, int motion) {
   constexpr int plane[] = {0, 1, 2, 1, 2, 1};
   return plane[row] == plane[motion];
 }
 
-/// Reads `X_uu`, `Y_uv`, `N_|v|r`, `M_qdot`.  False: the name is none of these.  `second` -2: an acceleration.
+/// Parses the name of a derivative: `X_uu`, `Y_uv`, `N_|v|r`, `M_qdot`.  Returns false for other names.  `second` is -2
+/// for an acceleration.
 bool parse_derivative(std::string_view name, DerivativeTerm& term) {
   if (name.size() < 3 || name[1] != '_') return false;
+  // Row: force or moment.
   const auto row = derivative_rows.find(name[0]);
   if (row == std::string_view::npos) return false;
   term.row = static_cast<int>(row);
   name.remove_prefix(2);
+  // States, with bars around the one whose absolute value is taken.
   const auto state = [](char c) { return static_cast<int>(derivative_states.find(c)); };
   const bool bars = name.size() == 4 && ((name[0] == '|' && name[2] == '|') || (name[1] == '|' && name[3] == '|'));
   std::string letters;
   if (bars && name[0] == '|') letters = {name[1], name[3]};
   if (bars && name[1] == '|') letters = {name[2], name[0]};
   if (!bars) letters = name;
+  // Acceleration.
   if (letters.size() == 4 && letters.substr(1) == "dot") {
     term.first = state(letters[0]);
     term.second = -2;
     return term.first >= 0;
   }
+  // One or two velocities.
   if (letters.empty() || letters.size() > 2) return false;
   term.first = state(letters[0]);
   term.second = letters.size() == 2 ? state(letters[1]) : -1;
@@ -166,6 +171,7 @@ void HydrodynamicsConfig::read(ParamReader& in) {
   in.read_choice("model", model, {{"coefficients", Model::coefficients}, {"none", Model::none}},
                  "coefficients: as published for this vehicle; none: water does nothing to this body");
   in.read_choice("frame", frame, axes_frame_words, "axes of the numbers: frd as papers print them, flu as bodies have");
+  // Mass and inertia.
   if (model == Model::coefficients) in.require("mass_kg");
   in.read("mass_kg", mass_kg, between(1e-9, 1e12), "mass of the body, instead of that of its parts");
   in.read("center_of_mass_m", center_of_mass_m, between(-1000, 1000), "in the body's frame");
@@ -176,6 +182,7 @@ void HydrodynamicsConfig::read(ParamReader& in) {
   in.read_choice("inertia_about", about,
                  {{"center_of_mass", InertiaAbout::center_of_mass}, {"origin", InertiaAbout::origin}},
                  "point that the inertia is about");
+  // Weight and buoyancy.
   in.read("weight_N", weight_N, above(0), "instead of mass times gravity");
   in.read("buoyancy_N", buoyancy_N, at_least(0), "buoyancy of the whole vehicle under water; absent: of volume_m3");
   in.read("volume_m3", volume_m3, above(0), "volume of displaced water; absent: it floats in balance");
@@ -183,6 +190,7 @@ void HydrodynamicsConfig::read(ParamReader& in) {
   in.read("center_of_buoyancy_m", center_of_buoyancy_m, between(-1000, 1000), "in the body's frame");
   in.read("hull_height_m", hull_height_m, above(0), "over which it emerges; absent: of a ball of its volume");
   in.read("hull_length_m", hull_length_m, at_least(0), "over which it emerges when it stands upright");
+  // Added mass.
   read_matrix<6>(in, "added_mass", added_mass, "6 numbers (diagonal) or 36, row by row; positive as mass");
   std::optional<SpheroidConfig> spheroid;
   in.read("added_mass_of_spheroid", spheroid, "instead of added_mass: that of a spheroid about the origin");
@@ -190,9 +198,11 @@ void HydrodynamicsConfig::read(ParamReader& in) {
     in.error("added_mass_of_spheroid", "only one of 'added_mass' and 'added_mass_of_spheroid'");
   if (spheroid && spheroid->half_length_m >= spheroid->radius_m)
     added_mass = spheroid_added_mass(spheroid->half_length_m, spheroid->radius_m, spheroid->density_kgpm3).asDiagonal();
+  // Damping.
   read_matrix<6>(in, "linear_damping", linear_damping, "6 or 36 numbers; positive values damp");
   read_matrix<6>(in, "quadratic_damping", quadratic_damping,
                  "6 or 36 numbers, times |speed| speed; positive values damp");
+  // Convert to forward-right-down.
   if (frame == AxesFrame::flu) {
     const Matrix6d P = flip.asDiagonal();
     for (Matrix6d* matrix : {&added_mass, &linear_damping, &quadratic_damping}) *matrix = (P * *matrix * P).eval();
@@ -201,6 +211,7 @@ void HydrodynamicsConfig::read(ParamReader& in) {
     center_of_mass_m = to_frd(center_of_mass_m);
     center_of_buoyancy_m = to_frd(center_of_buoyancy_m);
   }
+  // Derivatives by name.
   ConfigNode named;
   in.read_raw("derivatives", named,
               "forces named as SNAME does, signs as printed: X_uu: -1.62, Y_uv: -28.6, Z_wdot: -35.5");
@@ -215,23 +226,27 @@ void HydrodynamicsConfig::read(ParamReader& in) {
               "' is not a derivative: X_u, X_uu, Y_uv, N_|v|r, Z_wdot with rows XYZKMN, states uvwpqr");
       continue;
     }
+    // Check that the value is a finite number.
     if (entry.value.kind != ConfigNode::Kind::scalar || entry.value.scalar.empty() || *end != 0 ||
         !std::isfinite(term.coefficient)) {
       in.diagnostics().error(entry.value.place, in.who(),
                              "'" + entry.key + "' must be a number, got " + shown(entry.value));
       continue;
     }
+    // Convert the sign to forward-right-down.
     if (frame == AxesFrame::flu) {
       double sign = flip[term.row];
       if (!term.absolute) sign *= flip[term.first];
       if (term.second >= 0) sign *= flip[term.second];
       term.coefficient *= sign;
     }
+    // Acceleration derivatives are part of the added mass.
     if (term.second == -2)
       added_mass(term.row, term.first) -= term.coefficient;
     else
       derivatives.push_back(term);
   }
+  // Optional models.
   in.read("cross_flow", cross_flow, "drag of a slender hull across its axis");
   in.read("hull_lift", hull_lift, "lift and drag of the hull by its angle of attack");
   in.read("waterline", waterline, "waterline of a surface craft: restoring forces against the surface");
@@ -240,6 +255,7 @@ void HydrodynamicsConfig::read(ParamReader& in) {
   }
   in.read("windage", windage, "what the wind does to the part over the water");
   in.read("quirks", quirks, "what some published models do and the physics does not");
+  // Shift the inertia to the centre of mass (parallel axis theorem).
   if (about == InertiaAbout::origin) {
     const Vector3d& r = center_of_mass_m;
     inertia_kgm2 -= mass_kg * (r.squaredNorm() * Matrix3d::Identity() - r * r.transpose());

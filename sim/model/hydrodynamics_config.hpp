@@ -16,104 +16,109 @@ namespace sim {
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
-/// Axes of numbers: forward, left, up as bodies have them, or forward, right, down as papers print them.
+/// Axes of the coefficients: forward-left-up as in body frames, or forward-right-down as in the literature.
 enum class AxesFrame { flu, frd };
 
 inline constexpr ChoiceWords<AxesFrame> axes_frame_words{{"flu", AxesFrame::flu}, {"frd", AxesFrame::frd}};
 
-/// The letters of the names of derivatives: forces and moments, and velocities (SNAME).
+/// Letters in the names of hydrodynamic derivatives: forces and moments, and velocities (SNAME 1950).
 inline constexpr std::string_view derivative_rows = "XYZKMN";
 inline constexpr std::string_view derivative_states = "uvwpqr";
 
-/// A hydrodynamic force named as SNAME does: `coefficient` times one or two components of the velocity, such as
-/// Y_uv (u v), N_rr (|r| r), X_rr (r r), X_u.  Rows and states: 0 to 5 are X u, Y v, Z w, K p, M q, N r.
+/// Hydrodynamic derivative in the notation of SNAME (1950): `coefficient` times one or two components of the velocity,
+/// such as Y_uv (u v), N_rr (|r| r), X_rr (r r), X_u.  Rows 0 to 5 are X, Y, Z, K, M, N; states 0 to 5 are u, v, w, p,
+/// q, r.
 struct DerivativeTerm {
   int row = 0;
-  int first = 0;
-  int second = -1;        ///< -1: linear
-  bool absolute = false;  ///< |first| second
+  int first = 0;          ///< first state
+  int second = -1;        ///< second state; -1: linear term
+  bool absolute = false;  ///< the term is |first| second
   double coefficient = 0;
 };
 
-/// Drag of a slender hull across its axis, strip by strip.
+/// Cross-flow drag of a slender hull by strip theory.
 struct CrossFlowConfig {
   double length_m = 1;
-  double height_m = 0.2;                      ///< diameter of a round hull; draft of a boat
-  std::optional<double> density_kgpm3;        ///< unset: the water's
-  std::vector<double> drag_coefficient{1.1};  ///< one number, or pairs Reynolds number, coefficient
+  double height_m = 0.2;                      ///< diameter of a round hull, draft of a boat
+  std::optional<double> density_kgpm3;        ///< unset: density of the water
+  std::vector<double> drag_coefficient{1.1};  ///< one number, or pairs of Reynolds number and coefficient
   double reynolds_length_m = 1;
   double kinematic_viscosity_m2ps = 1e-6;
-  int strips = 0;  ///< 0: the exact integral; n: the sum over n points, both ends with full weight
+  int strips = 0;  ///< 0: exact integral; n: sum over n points, both ends with full weight
   void read(ParamReader& in);
 };
 
-/// Lift and drag of a hull in its plane of symmetry, by angle of attack.
+/// Lift and drag of a hull in its plane of symmetry as functions of the angle of attack.
 struct HullLiftConfig {
   double area_m2 = 1;
-  std::optional<double> density_kgpm3;  ///< unset: the water's
+  std::optional<double> density_kgpm3;  ///< unset: density of the water
   double lift_slope = 0;                ///< dC_L/d(alpha), 1/rad
-  double drag_coefficient = 0;          ///< C_D at no lift
-  double induced_drag = 0;              ///< C_D grows by this times C_L^2
+  double drag_coefficient = 0;          ///< C_D at zero lift
+  double induced_drag = 0;              ///< k in C_D = drag_coefficient + k C_L^2
   void read(ParamReader& in);
 };
 
-/// Restoring forces of a surface craft, linear in its heave, roll and pitch against the water surface.
+/// Linear restoring forces of a surface craft by its heave, roll and pitch relative to the water surface.
 struct WaterlineConfig {
-  double length_m = 1;  ///< of the water plane: the waves are felt at its ends
+  double length_m = 1;  ///< length of the water plane; waves are evaluated at its ends
   double beam_m = 1;
   double heave_Npm = 0;
-  double heave_pitch_N = 0;  ///< couples heave and pitch: force per rad and moment per m
+  double heave_pitch_N = 0;  ///< coupling of heave and pitch: force per rad and moment per m
   double roll_Nmprad = 0;
   double pitch_Nmprad = 0;
-  double load_kg = 0;  ///< pulls the craft out of the trim in which its frame lies in the surface
+  double load_kg = 0;  ///< added load, which changes the trim in which the frame lies in the surface
   Vector3d load_at_m = Vector3d::Zero();
   void read(ParamReader& in);
 };
 
-/// What the wind does to the part of a craft that is over the water (Fossen 2011, eq. 8.23 to 8.30), by the angle at
-/// which it comes: X = q C_X A_F cos, Y = q C_Y A_L sin, N = q C_N A_L L sin(2 angle), K = Y times the height.
+/// Wind loads on the part of a craft above the water by the angle of attack g of the wind (Fossen 2011, eq. 8.23 to
+/// 8.30): X = q C_X A_F cos(g), Y = q C_Y A_L sin(g), N = q C_N A_L L sin(2 g), K = Y times the height.
 struct WindageConfig {
   double frontal_area_m2 = 0;
   double lateral_area_m2 = 0;
   double surge_coefficient = 0.7;
   double sway_coefficient = 0.8;
-  double yaw_coefficient = 0.05;  ///< positive: wind from abeam of the bow turns the bow away from it
-  double height_m = 0;            ///< of the middle of the lateral area over the origin
-  double length_m = 1;            ///< over all
+  double yaw_coefficient = 0.05;  ///< positive: wind from forward of the beam turns the bow away from it
+  double height_m = 0;            ///< height of the centroid of the lateral area over the origin
+  double length_m = 1;            ///< length over all
   void read(ParamReader& in);
 };
 
-/// What some published models do and the physics does not.
+/// Deviations of some published models from the physics, to reproduce their results.
 struct PublishedQuirks {
+  /// Coriolis forces of added mass.
   enum class Coriolis {
     full,
-    without_munk,  ///< added mass couples no sway, heave and turning
+    without_munk,  ///< without the coupling of sway and heave with rotation by added mass
     none,          ///< no Coriolis forces of added mass
   };
+  /// Rotation of the current into the body frame.
   enum class Current {
     full,
-    yaw_only,  ///< the current is turned into the body by its yaw alone
+    yaw_only,  ///< the current is rotated into the body frame by the yaw angle alone
   };
+  /// Speed that reduces the linear surge damping.
   enum class FadeSpeed {
     water,
-    ground,  ///< sqrt(u + v^2) over ground, as MSS has it
+    ground,  ///< sqrt(u + v^2) over ground, as in MSS
   };
 
   Coriolis added_mass_coriolis = Coriolis::full;
   Current current = Current::full;
-  double surge_damping_fade_spm = 0;  ///< linear surge damping falls with exp(-this * speed)
+  double surge_damping_fade_spm = 0;  ///< linear surge damping is multiplied by exp(-this * speed)
   FadeSpeed fade_speed = FadeSpeed::water;
   void read(ParamReader& in);
 };
 
-/// `hydrodynamics:` of a body: a vehicle as its published coefficients describe it (Fossen, Handbook of Marine Craft
-/// Hydrodynamics and Motion Control).  All numbers are about the origin of the body's frame.
+/// Section `hydrodynamics:` of a body: maneuvering model with the published coefficients of a vehicle (Fossen, Handbook
+/// of Marine Craft Hydrodynamics and Motion Control).  All coefficients refer to the origin of the body frame.
 ///
-/// Whatever `frame` the file has, the numbers here are in forward-right-down.
+/// The members are in forward-right-down for either value of `frame` in the file.
 struct HydrodynamicsConfig {
+  /// Source of the hydrodynamic forces.
   enum class Model {
     coefficients,
-    none,  ///< water does nothing to this body
+    none,  ///< no forces of the water on this body
   };
 
   Model model = Model::coefficients;
@@ -122,15 +127,15 @@ struct HydrodynamicsConfig {
   Vector3d center_of_mass_m = Vector3d::Zero();
   Matrix3d inertia_kgm2 = Matrix3d::Zero();  ///< about the centre of mass
   std::optional<double> weight_N;            ///< unset: mass times gravity
-  std::optional<double> buoyancy_N;          ///< when all of it is immersed; unset: of volume_m3
-  std::optional<double> volume_m3;           ///< unset: neutral
+  std::optional<double> buoyancy_N;          ///< buoyancy when fully immersed; unset: from volume_m3
+  std::optional<double> volume_m3;           ///< displaced volume; unset: neutral buoyancy
   Vector3d center_of_buoyancy_m = Vector3d::Zero();
-  std::optional<double> hull_height_m;  ///< over which it emerges; unset: of a ball of its volume
-  double hull_length_m = 0;             ///< it emerges over this when it stands upright
+  std::optional<double> hull_height_m;  ///< height over which it emerges; unset: diameter of a sphere of its volume
+  double hull_length_m = 0;             ///< height over which it emerges in vertical attitude
   Matrix6d added_mass = Matrix6d::Zero();
   Matrix6d linear_damping = Matrix6d::Zero();
-  Matrix6d quadratic_damping = Matrix6d::Zero();  ///< times |nu_j| nu_j
-  std::vector<DerivativeTerm> derivatives;        ///< beyond the matrices; forces, signs as printed
+  Matrix6d quadratic_damping = Matrix6d::Zero();  ///< multiplied by |nu_j| nu_j
+  std::vector<DerivativeTerm> derivatives;        ///< additional terms; as forces, with published signs
   std::optional<CrossFlowConfig> cross_flow;
   std::optional<HullLiftConfig> hull_lift;
   std::optional<WaterlineConfig> waterline;

@@ -5,19 +5,19 @@
 
 namespace sim {
 
-/// Joints, as ODE has them.  What differs by type asks by a switch without default, so that the compiler names the
-/// places that a new type has to fill in.
+/// Types of joints, as in ODE.  Code that depends on the type uses a switch without default, so that the compiler
+/// reports every place to extend for a new type.
 enum class JointType { fixed, ball, hinge, hinge2, universal, slider };
 
 inline constexpr ChoiceWords<JointType> joint_type_words{
     {"fixed", JointType::fixed},   {"ball", JointType::ball},           {"hinge", JointType::hinge},
     {"hinge2", JointType::hinge2}, {"universal", JointType::universal}, {"slider", JointType::slider}};
 
-/// What is known of a joint by its type.
+/// Properties of a type of joint.
 struct JointInfo {
   bool second_axis;      ///< has the key `axis2`
-  bool carries_a_wheel;  ///< one body turns on the other about its last axis, without end
-  bool turns;            ///< its axes are angles, where it has axes
+  bool carries_a_wheel;  ///< allows unlimited rotation of one body on the other about its last axis
+  bool turns;            ///< positions of its axes are angles
 };
 
 constexpr JointInfo joint_info(JointType type) {

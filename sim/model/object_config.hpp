@@ -10,23 +10,23 @@
 
 namespace sim {
 
-/// A thing without devices.
+/// Object: one or more parts without devices.
 struct ObjectConfig {
   std::string name;
   Vector3d position_m = Vector3d::Zero();
   Vector3d rpy_rad = Vector3d::Zero();
-  bool fixed = false;      ///< never moves
-  bool present = true;     ///< false: it is absent until an event adds it
-  bool kinematic = false;  ///< an actor moves it
+  bool fixed = false;      ///< static
+  bool present = true;     ///< false: absent until an event adds it
+  bool kinematic = false;  ///< moved by an actor, not by forces
   int count = 1;
   PlacementConfig placement;
   std::vector<PartConfig> parts;
-  std::shared_ptr<const ConfigNode> source;  ///< what it was read from; null: made by hand
+  std::shared_ptr<const ConfigNode> source;  ///< YAML node it was read from; null: created in code
   SourcePlace place;
   void read(ParamReader& in);
 };
 
-/// Refuses, as `name`, words that mean something else where names are used.
+/// Reports an error when `name` is a reserved word (any, world, sim).
 void refuse_reserved(ParamReader& in, const std::string& name);
 
 }  // namespace sim

@@ -9,8 +9,8 @@
 
 namespace sim {
 
-/// Shapes of parts.  What differs by shape asks by a switch without default, so that the compiler names the places
-/// that a new shape has to fill in: ODE's geom and mass (sim/ode/part_shape.cpp), what water sees
+/// Shapes of parts.  Code that depends on the shape uses a switch without default, so that the compiler reports every
+/// place to extend for a new shape: ODE's geom and mass (sim/ode/part_shape.cpp), immersed volume
 /// (sim/hydrodynamics/immersed_piece.cpp), wheels on the ground, outlines in plots.
 enum class PartShape { box, sphere, capsule, cylinder, plane, mesh, terrain };
 
@@ -19,19 +19,21 @@ inline constexpr ChoiceWords<PartShape> part_shape_words{
     {"cylinder", PartShape::cylinder}, {"plane", PartShape::plane},   {"mesh", PartShape::mesh},
     {"terrain", PartShape::terrain}};
 
-/// What is known of a shape without its sizes.
+/// Properties of a shape that do not depend on its dimensions.
 struct ShapeInfo {
-  std::vector<std::string_view> keys;  ///< of a part of this shape alone
-  std::string_view required_key;       ///< one of `keys`; empty: all have defaults
+  std::vector<std::string_view> keys;  ///< keys specific to this shape
+  std::string_view required_key;       ///< one of `keys`; empty: none is required
   bool solid;                          ///< encloses a volume: has mass, displaces water and may move
-  bool round;                          ///< turning about its z axis does not change it
-  Vector3d drag_coefficient;           ///< in water, along x, y and z
+  bool round;                          ///< rotational symmetry about z
+  Vector3d drag_coefficient;           ///< default in water, along x, y and z
 };
 
+/// Returns the properties of a shape.
 const ShapeInfo& shape_info(PartShape shape);
 
-/// Keys of parts that make sense for some shapes only, in the order in which mistakes are reported.
+/// Returns the keys of parts that apply to some shapes only, in the order in which errors are reported.
 const std::vector<const char*>& keys_of_some_shapes();
+/// Returns true when a key applies to a shape.
 bool has_key(PartShape shape, std::string_view key);
 
 }  // namespace sim

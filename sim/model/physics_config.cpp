@@ -12,10 +12,12 @@
 namespace sim {
 
 void PhysicsConfig::read(ParamReader& in) {
+  // Time step and gravity.
   in.read("step_s", step_s, above_to(0, 1), "time of one step; a whole number of microseconds");
   if (std::abs(step_s * 1e6 - std::round(step_s * 1e6)) > 1e-6 || step_s < 1e-6)
     in.error("step_s", "'step_s' must be a whole number of microseconds, got " + number_text(step_s) + " s");
   in.read("gravity_mps2", gravity_mps2, any_number(), "gravity, downwards");
+  // Constraint solver.
   in.read_choice("solver", solver, solver_words,
                  "step: exact; quick: iterative; auto: quick for large islands, step for the others");
   in.read("quick_above_rows", quick_above_rows, at_least(0),
@@ -24,14 +26,17 @@ void PhysicsConfig::read(ParamReader& in) {
   in.read("erp", erp, between(0, 1),
           "error reduction parameter: fraction of the joint or contact error corrected per step");
   in.read("cfm", cfm, between(0, 1), "softness of joints and contacts, (m/s)/N s");
+  // Contacts.
   in.read("contact_max_correcting_velocity_mps", contact_max_correcting_velocity_mps, above(0),
           "maximum speed at which overlapping parts are separated");
   in.read("contact_surface_layer_m", contact_surface_layer_m, between(0, 1),
           "penetration of parts at rest, which keeps contacts from flickering");
   in.read("max_contacts_per_pair", max_contacts_per_pair, between(1, 256), "contact points of two parts");
+  // Collision detection and ray casting.
   in.read_choice("space", space, space_words, "broad phase of collision detection");
   in.read_choice("rays", rays, ray_library_words,
                  "library for ray casting: embree is fast; ode casts one ray at a time, for comparison");
+  // Limits that detect divergence.
   in.read("max_speed_mps", max_speed_mps, above(0), "a body faster than this stops the run");
   in.read("max_distance_m", max_distance_m, above(0), "a body farther from the origin than this stops the run");
 }
@@ -56,12 +61,12 @@ void ContactConfig::read(ParamReader& in) {
 
 namespace {
 
-/// Rays are followed in single precision first, and a part whose size squared is infinite there would hide others.
+/// Limits of lengths of parts.  Ray casting starts in single precision, where squared lengths must not overflow.
 Rule part_length() {
   return between(1e-6, 1e7);
 }
 
-/// A key of another shape is a mistake: it would do nothing.
+/// Reports keys of other shapes, which would have no effect.
 void check_keys_of_shape(ParamReader& in, PartShape shape) {
   const std::string word(word_of(part_shape_words, shape));
   for (const char* key : keys_of_some_shapes())
@@ -75,6 +80,7 @@ void PartConfig::read(ParamReader& in) {
     place = in.node()->place;
     if (place.file) directory = std::filesystem::path(*place.file).parent_path().string();
   }
+  // Shape and dimensions.
   in.read("name", name, "name of the part");
   in.read_choice("shape", shape, part_shape_words, "shape of the part");
   in.read("size_m", size_m, part_length(), "box: lengths along x, y and z");
@@ -83,6 +89,7 @@ void PartConfig::read(ParamReader& in) {
   in.read_path("mesh", mesh, PathUse::read, "mesh: an STL or OBJ file, relative to this file");
   in.read("scale", scale, above(0), "mesh: its numbers times this are metres");
   in.read("terrain", terrain, "terrain: its heights; see docs/models/terrain.md");
+  // Pose, mass and material.
   in.read("position_m", position_m, any_place(), "centre of the part in the frame of the body");
   in.read_deg("rpy_deg", rpy_rad, "roll, pitch and yaw of the part in the frame of the body");
   in.read("mass_kg", mass_kg, between(1e-9, 1e12), "mass; a part with neither mass nor density weighs nothing");
@@ -95,6 +102,7 @@ void PartConfig::read(ParamReader& in) {
   in.read("color", color, "color in images and viewers, #rrggbb; none: the material's");
   read_water_keys(in);
   if (in.describing()) return;
+  // Check combinations of keys.
   check_keys_of_shape(in, shape);
   if (mass_kg && density_kgpm3) in.error("density_kgpm3", "give 'mass_kg' or 'density_kgpm3', not both");
   if (shape == PartShape::mesh && mesh.empty()) in.error("a part of shape mesh needs the key 'mesh'");
@@ -114,6 +122,7 @@ void PartConfig::read_drag_coefficient(ParamReader& in) {
   const char* key = "drag_coefficient";
   const char* meaning =
       "in water, by projected area: one number, or three along x, y and z of the part; none: that of the shape";
+  // Describe the key, which accepts two types.
   if (in.describing()) {
     ParamInfo info;
     info.key = key;
@@ -123,6 +132,7 @@ void PartConfig::read_drag_coefficient(ParamReader& in) {
     info.meaning = meaning;
     return in.describe(std::move(info));
   }
+  // Accept a single number or a list.
   if (in.has(key) && in.node()->find(key)->kind == ConfigNode::Kind::scalar) {
     drag_coefficient.resize(1);
     in.read(key, drag_coefficient[0], at_least(0), meaning);
@@ -180,7 +190,7 @@ void check_axes(ParamReader& in, const JointConfig& joint) {
     in.error("axis2", "the axes of a " + word + " must not be parallel");
   if (!info.second_axis && in.has("axis2")) in.error("axis2", "a " + word + " has no second axis");
   if (!info.turns) return;
-  // ODE measures angles from -pi to pi; a stop beyond would never act.
+  // ODE measures angles from -pi to pi, so a stop outside this range would have no effect.
   for (const auto& stop : {joint.axis1.low_stop, joint.axis1.high_stop, joint.axis2.low_stop, joint.axis2.high_stop})
     if (stop && std::abs(*stop) > std::numbers::pi)
       in.error("stops of an angle must lie between -pi and pi, got " + number_text(*stop));
@@ -192,6 +202,7 @@ void JointConfig::read(ParamReader& in) {
   in.require("name");
   in.read_name("name", name, "name of the joint");
   in.read_choice("type", type, joint_type_words, "kind of joint");
+  // Bodies.
   in.require("bodies");
   in.read_references("bodies", bodies, "body",
                      "two bodies, or a body and world; the joint counts how the second moves on the first");
@@ -201,6 +212,7 @@ void JointConfig::read(ParamReader& in) {
     in.error("bodies", "a joint needs two different bodies");
   else if (bodies.size() == 2 && (bodies[0] == "world" || (type == JointType::hinge2 && bodies[1] == "world")))
     in.error("bodies", bodies[0] == "world" ? "'world' can only be the second body" : "a hinge2 cannot join the world");
+  // Anchor and axes.
   std::optional<Vector3d> anchor;
   in.read("anchor_m", anchor, any_number(),
           "point of the joint in the frame of the vehicle; unset: the origin of the second body, or of the first when "
@@ -210,6 +222,7 @@ void JointConfig::read(ParamReader& in) {
   axis1.read(in);
   in.read("axis2", axis2, "second axis of hinge2 (the wheel's) and universal: the same keys");
   in.read("motor", motor, "ball: it has motor and stops about x, y and z of the vehicle's frame; others have theirs");
+  // Check the motor and the axes.
   if (!in.describing() && motor && type != JointType::ball)
     in.error("motor", "'motor' is for a ball; the axes of a " + std::string(word_of(joint_type_words, type)) +
                           " have theirs without it");
@@ -217,7 +230,7 @@ void JointConfig::read(ParamReader& in) {
 }
 
 void JointConfig::anchor_at_body(const std::vector<BodyConfig>& of_vehicle) {
-  if (bodies.size() != 2) return;  // was reported
+  if (bodies.size() != 2) return;  // already reported
   const std::string& at = bodies[1] == "world" ? bodies[0] : bodies[1];
   for (const BodyConfig& body : of_vehicle)
     if (body.name == at) anchor_m = body.position_m;

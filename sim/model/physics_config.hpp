@@ -16,11 +16,13 @@
 
 namespace sim {
 
-/// `physics:` of a world.
+/// Section `physics:` of a world.
 struct PhysicsConfig {
+  /// Constraint solver of ODE: chosen by the size of an island, dWorldStep or dWorldQuickStep.
   enum class Solver { automatic, step, quick };
   static constexpr ChoiceWords<Solver> solver_words{
       {"auto", Solver::automatic}, {"step", Solver::step}, {"quick", Solver::quick}};
+  /// Broad phase of collision detection (ODE space).
   enum class Space { sap, quadtree, hash, simple };
   static constexpr ChoiceWords<Space> space_words{
       {"sap", Space::sap}, {"quadtree", Space::quadtree}, {"hash", Space::hash}, {"simple", Space::simple}};
@@ -35,23 +37,23 @@ struct PhysicsConfig {
   double contact_max_correcting_velocity_mps = 1.0;
   double contact_surface_layer_m = 0.0005;
   int max_contacts_per_pair = 8;
-  Space space = Space::sap;  ///< finds parts near each other
+  Space space = Space::sap;  ///< broad phase of collision detection
   RayLibrary rays = RayLibrary::embree;
-  double max_speed_mps = 1000;  ///< a body faster than this has exploded
-  double max_distance_m = 1e7;  ///< a body farther from the origin than this has exploded
+  double max_speed_mps = 1000;  ///< a faster body stops the run: the simulation has diverged
+  double max_distance_m = 1e7;  ///< a body farther from the origin stops the run
 
   void read(ParamReader& in);
 };
 
-/// What happens where two materials touch.  `any` stands for every
-/// material.  An entry that names both materials takes precedence over one with `any`; among equals the last one.
+/// Contact parameters of a pair of materials.  `any` stands for every material.  An entry that names both materials
+/// takes precedence over one with `any`; among equal entries the last one is used.
 struct ContactConfig {
   std::vector<std::string> between = {"any", "any"};  ///< two names of materials, or `any`
-  double friction = 0.8;                              ///< Coulomb coefficient, along the slip (dContactApprox1)
+  double friction = 0.8;                              ///< Coulomb friction coefficient (ODE's dContactApprox1)
   double bounce = 0;                                  ///< coefficient of restitution, 0 to 1
   double bounce_velocity_mps = 0.1;                   ///< minimum impact speed for a bounce
-  std::optional<double> soft_erp;                     ///< unset: the world's erp
-  std::optional<double> soft_cfm;                     ///< unset: the world's cfm
+  std::optional<double> soft_erp;                     ///< unset: erp of the world
+  std::optional<double> soft_cfm;                     ///< unset: cfm of the world
   double rolling_friction_m = 0;                      ///< rolling resistance as a lever, m (ODE's rho)
   double spinning_friction_m = 0;                     ///< resistance to spinning about the normal (ODE's rhoN)
   double slip = 0;                                    ///< force dependent slip, (m/s)/N (ODE's slip1 and slip2)
@@ -60,15 +62,15 @@ struct ContactConfig {
   bool operator==(const ContactConfig&) const = default;
 };
 
-/// A solid: shape, mass, material, and its pose in the body frame.
+/// Part of a body: shape, mass, material, and pose in the body frame.
 struct PartConfig {
   std::string name;
-  PartShape shape = PartShape::box;
+  PartShape shape = PartShape::box;    ///< the normal of a plane is +z of its frame
   Vector3d size_m = Vector3d::Ones();  ///< box: x, y, z
   double radius_m = 0.5;               ///< sphere, capsule, cylinder
-  double length_m = 1.0;               ///< along z: capsule without its caps, cylinder
+  double length_m = 1.0;               ///< length along z: capsule without its caps, cylinder
   std::string mesh;                    ///< mesh: STL or OBJ file, relative to the YAML file
-  double scale = 1.0;                  ///< mesh
+  double scale = 1.0;                  ///< mesh: factor from coordinates in the file to m
   std::optional<TerrainConfig> terrain;
   Vector3d position_m = Vector3d::Zero();
   Vector3d rpy_rad = Vector3d::Zero();
@@ -76,16 +78,16 @@ struct PartConfig {
   std::optional<double> density_kgpm3;  ///< instead of mass_kg
   std::string material = "default";
   std::string category = "solid";
-  std::vector<std::string> collides_with;  ///< categories; empty: all.  A plane with normal +z of its frame.
-  std::string color;                       ///< in images and viewers: `#rrggbb`; empty: the material's
-  // In water, for a free body without coefficients of its own.
-  bool displaces = true;                 ///< a solid that water lifts and brakes
-  bool displaces_was_given = false;      ///< `displaces` is written
-  std::vector<double> drag_coefficient;  ///< one, or along x, y and z of the part; empty: that of the shape
-  double added_mass_coefficient = 0.5;   ///< added mass over the mass of the water displaced; 0.5: of a sphere
+  std::vector<std::string> collides_with;  ///< categories; empty: all
+  std::string color;                       ///< `#rrggbb`, in images and viewers; empty: color of the material
+  // Parameters in water, for a free body without hydrodynamic coefficients.
+  bool displaces = true;                 ///< buoyancy and drag act on the part
+  bool displaces_was_given = false;      ///< the key `displaces` is in the file
+  std::vector<double> drag_coefficient;  ///< one, or three along x, y and z of the part; empty: default of the shape
+  double added_mass_coefficient = 0.5;   ///< added mass over displaced mass of water; 0.5: sphere
 
-  SourcePlace place;      ///< where the part was written, for errors found while building
-  std::string directory;  ///< of the YAML file, where mesh files are looked up
+  SourcePlace place;      ///< position in the YAML file, for errors while building
+  std::string directory;  ///< directory of the YAML file, for relative paths of mesh files
 
   void read(ParamReader& in);
 
@@ -94,15 +96,15 @@ struct PartConfig {
   void read_drag_coefficient(ParamReader& in);
 };
 
-/// Parts that move as one.
+/// Rigid body: parts that move together.
 struct BodyConfig {
   std::string name;
-  Vector3d position_m = Vector3d::Zero();  ///< of the body frame B in the vehicle frame V
+  Vector3d position_m = Vector3d::Zero();  ///< origin of the body frame B in the vehicle frame V
   Vector3d rpy_rad = Vector3d::Zero();
   std::vector<PartConfig> parts;
-  bool kinematic = false;                            ///< a device moves it; no force does
-  std::optional<HydrodynamicsConfig> hydrodynamics;  ///< its mass is that of the body, whatever the parts weigh
-  SourcePlace place;                                 ///< where the body was written, for errors found while building
+  bool kinematic = false;                            ///< moved by a device, not by forces
+  std::optional<HydrodynamicsConfig> hydrodynamics;  ///< its mass replaces the mass of the parts
+  SourcePlace place;                                 ///< position in the YAML file, for errors while building
 
   void read(ParamReader& in);
 };
@@ -119,18 +121,19 @@ struct JointAxisConfig {
   void read(ParamReader& in);
 };
 
+/// Joint between two bodies, or between a body and the world.
 struct JointConfig {
   std::string name;
   JointType type = JointType::hinge;
   std::vector<std::string> bodies;       ///< two names; the second may be `world`
   Vector3d anchor_m = Vector3d::Zero();  ///< in the vehicle frame
-  bool anchored = false;                 ///< `anchor_m` is in the file; else it is the origin of the second body
-  JointAxisConfig axis1;                 ///< of a ball with a motor: of all its axes
+  bool anchored = false;                 ///< true: `anchor_m` is in the file; false: origin of the second body
+  JointAxisConfig axis1;                 ///< ball with a motor: applies to all axes
   JointAxisConfig axis2;                 ///< hinge2 and universal
-  bool motor = false;                    ///< ball: it has one, about x, y and z of the vehicle frame
+  bool motor = false;                    ///< ball: has a motor about x, y and z of the vehicle frame
 
   void read(ParamReader& in);
-  /// Puts the anchor at the origin of the second body, or of the first when the second is the world.
+  /// Sets the anchor to the origin of the second body, or of the first when the second is the world.
   void anchor_at_body(const std::vector<BodyConfig>& of_vehicle);
 };
 

@@ -53,6 +53,7 @@ std::vector<Pose> place_instances(const PlacementConfig& config, int count, cons
   std::vector<Pose> poses;
   poses.reserve(static_cast<std::size_t>(count));
   Random random(seed, name + "#placement");
+  // Instances draw from separate random streams.
   for (int i = 0; i < count; ++i) {
     random.begin_step(i);
     Vector3d p = place_of(config, i, count, random);

@@ -12,11 +12,13 @@ Vector6d spheroid_added_mass(double half_length_m, double radius_m, double densi
   const double a = half_length_m, b = radius_m;
   const double mass = 4.0 / 3 * std::numbers::pi * density_kgpm3 * a * b * b;
   const double e2 = 1 - (b / a) * (b / a), e = std::sqrt(e2);
-  // The formulas lose all digits as e goes to 0: then it is a ball.
+  // Use the limit of a sphere for small eccentricity, where the formulas suffer from cancellation.
   if (e < 1e-2) return mass * (Vector6d() << 0.5, 0.5, 0.5, 0, 0, 0).finished();
+  // Shape factors alpha_0 and beta_0 (Lamb, article 114).
   const double logarithm = std::log((1 + e) / (1 - e));
   const double alpha = 2 * (1 - e2) / (e2 * e) * (logarithm / 2 - e);
   const double beta = 1 / e2 - (1 - e2) / (2 * e2 * e) * logarithm;
+  // Added mass over displaced mass, along and across the axis, and for rotation.
   const double along = alpha / (2 - alpha), across = beta / (2 - beta);
   const double turning = e2 * e2 * (beta - alpha) / ((2 - e2) * (2 * e2 - (2 - e2) * (beta - alpha)));
   const double inertia = mass * (a * a + b * b) / 5;

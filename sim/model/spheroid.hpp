@@ -5,9 +5,9 @@
 
 namespace sim {
 
-/// Added mass of a prolate spheroid about its centre, its long axis along x: kg, kg, kg, kg m^2, kg m^2, kg m^2.  A
-/// good guess for a hull without published numbers.  `half_length_m` must be `radius_m` or more.  From the potential
-/// flow about an ellipsoid (Lamb, Hydrodynamics, articles 114 and 115).
+/// Returns the diagonal of the added mass of a prolate spheroid about its centre, long axis along x: kg, kg, kg, kg
+/// m^2, kg m^2, kg m^2.  It is an approximation for slender hulls without published coefficients.  `half_length_m` must
+/// be at least `radius_m`.  Potential flow about an ellipsoid: Lamb, Hydrodynamics, articles 114 and 115.
 Vector6d spheroid_added_mass(double half_length_m, double radius_m, double density_kgpm3);
 
 }  // namespace sim

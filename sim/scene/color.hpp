@@ -8,10 +8,10 @@
 
 namespace sim {
 
-/// Red, green, blue as files have them (sRGB).
+/// Red, green and blue, sRGB-encoded as in files.
 using Color = std::array<std::uint8_t, 3>;
 
-/// `#rrggbb`; empty when the text looks different.
+/// Parses `#rrggbb`; returns empty for other texts.
 std::optional<Color> parse_color(const std::string& text);
 
 }  // namespace sim

@@ -28,11 +28,13 @@ void TextureConfig::read(ParamReader& in) {
     place = in.node()->place;
     if (place.file) directory = std::filesystem::path(*place.file).parent_path().string();
   }
+  // Keys of the texture.
   in.read_choice("pattern", pattern, pattern_words, "what is on the surface");
   in.read("colors", colors, "checker, stripes: two colors, #rrggbb");
   in.read("size_m", size_m, above(0), "length of a field, width of a stripe or of the image");
   const bool allowed = in.read_path("file", file, PathUse::read, "image: a PNG or JPEG file, relative to this file");
   if (in.describing()) return;
+  // Check colors and the keys required by the pattern.
   for (const std::string& color : colors) check_color(in, "colors", color);
   std::error_code error;
   const auto path = std::filesystem::path(directory) / file;

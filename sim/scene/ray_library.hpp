@@ -5,7 +5,7 @@
 
 namespace sim {
 
-/// Which library follows rays.
+/// Library for ray casting.
 enum class RayLibrary { embree, ode };
 
 inline constexpr ChoiceWords<RayLibrary> ray_library_words{{"embree", RayLibrary::embree}, {"ode", RayLibrary::ode}};

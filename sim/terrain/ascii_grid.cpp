@@ -13,12 +13,12 @@ namespace {
 
 constexpr double hole = std::numeric_limits<double>::quiet_NaN();
 
-/// Words of a text, with the line they stand in.
+/// Splits a text into words and counts lines.
 class Words {
  public:
   explicit Words(std::string_view text) : rest_(text) {}
   int line() const { return line_; }
-  /// Empty at the end.
+  /// Returns the next word; empty at the end.
   std::string_view next() {
     std::size_t begin = 0;
     while (begin < rest_.size() && is_space(rest_[begin])) line_ += rest_[begin++] == '\n';
@@ -28,7 +28,7 @@ class Words {
     rest_.remove_prefix(end);
     return word;
   }
-  /// The next word, which stays.
+  /// Returns the next word without consuming it.
   std::string_view peek() const { return Words(*this).next(); }
   [[noreturn]] void fail(const std::string& text) const {
     throw TerrainError("line " + std::to_string(line_) + ": " + text);
@@ -78,6 +78,7 @@ bool is_word(std::string_view word) {
 }
 
 Header read_header(Words& words) {
+  // Read pairs of keyword and number.
   Header header;
   while (is_word(words.peek())) {
     const std::string key = lower_case(words.next());
@@ -86,6 +87,7 @@ Header read_header(Words& words) {
     if (*value) words.fail("'" + key + "' comes twice");
     *value = words.number(key);
   }
+  // Check that required keywords are present.
   const auto need = [&](const std::optional<double>& value, const char* name) {
     if (!value) words.fail("is not an ESRI ASCII grid: '" + std::string(name) + "' is missing before the heights");
   };
@@ -94,6 +96,7 @@ Header read_header(Words& words) {
   need(header.cellsize, "cellsize");
   need(header.xllcorner ? header.xllcorner : header.xllcenter, "xllcorner");
   need(header.yllcorner ? header.yllcorner : header.yllcenter, "yllcorner");
+  // Check the values.
   if (!(*header.cellsize > 0)) words.fail("cellsize must be > 0, got " + number_text(*header.cellsize));
   if (*header.cellsize < HeightGrid::min_cell_m || *header.cellsize > HeightGrid::max_place_m)
     words.fail("cellsize must be from 0.0001 to 1e7 m, got " + number_text(*header.cellsize));
@@ -104,15 +107,17 @@ Header read_header(Words& words) {
   return header;
 }
 
-/// The value of the nearest point that is not a hole, by rings of points around; of equals the first found.
+/// Fills each hole with the height of the nearest valid point, by a distance transform (Danielsson, Euclidean distance
+/// mapping, 1980).  Of equally distant points the first found is used.
 void fill_nearest(HeightGrid& grid) {
   const HeightGrid before = grid;
-  // Two passes over distances that neighbours hand on (Danielsson, Euclidean distance mapping, 1980).
+  // Start with the valid points.
   std::vector<std::pair<int, int>> nearest(grid.heights_m.size(), {-1, -1});
   const auto index = [&](int i, int j) { return static_cast<std::size_t>(j) * grid.columns + i; };
   for (int j = 0; j < grid.rows; ++j)
     for (int i = 0; i < grid.columns; ++i)
       if (!std::isnan(grid.at(i, j))) nearest[index(i, j)] = {i, j};
+  // Replace the nearest point by that of a neighbour if it is closer.
   const auto offer = [&](int i, int j, int from_i, int from_j) {
     if (from_i < 0 || from_j < 0 || from_i >= grid.columns || from_j >= grid.rows) return;
     const auto [a, b] = nearest[index(from_i, from_j)];
@@ -121,6 +126,7 @@ void fill_nearest(HeightGrid& grid) {
     const double now = std::hypot(best.first - i, best.second - j), offered = std::hypot(a - i, b - j);
     if (best.first < 0 || offered < now) best = {a, b};
   };
+  // Propagate northwards, then southwards.
   for (int j = 0; j < grid.rows; ++j) {
     for (int i = 0; i < grid.columns; ++i)
       for (const auto& [di, dj] : {std::pair{-1, 0}, {0, -1}, {-1, -1}, {1, -1}}) offer(i, j, i + di, j + dj);
@@ -131,15 +137,18 @@ void fill_nearest(HeightGrid& grid) {
       for (const auto& [di, dj] : {std::pair{1, 0}, {0, 1}, {1, 1}, {-1, 1}}) offer(i, j, i + di, j + dj);
     for (int i = 0; i < grid.columns; ++i) offer(i, j, i - 1, j);
   }
+  // Copy the heights.
   for (std::size_t k = 0; k < grid.heights_m.size(); ++k)
     grid.heights_m[k] = before.at(nearest[k].first, nearest[k].second);
 }
 
-/// Each hole lies in a gap of its row and of its column: the mean of the lines across those that have two ends, by
-/// their shortness.  Holes without such a gap take the nearest height.
+/// Fills holes by linear interpolation across the gap in the row and across the gap in the column, weighted by the
+/// inverse lengths of the gaps.  Holes without valid points on both sides, in either direction, take the nearest
+/// height.
 void fill_linear(HeightGrid& grid) {
   const HeightGrid before = grid;
   std::vector<double> sums(grid.heights_m.size(), 0), weights(grid.heights_m.size(), 0);
+  // Interpolate across the gaps of all lines in one direction.
   const auto cross = [&](int lines, int points, auto&& index) {
     for (int line = 0; line < lines; ++line) {
       int last = -1;
@@ -156,9 +165,11 @@ void fill_linear(HeightGrid& grid) {
       }
     }
   };
+  // Along rows, then along columns.
   const auto columns = static_cast<std::size_t>(grid.columns);
   cross(grid.rows, grid.columns, [&](int row, int k) { return row * columns + k; });
   cross(grid.columns, grid.rows, [&](int column, int k) { return k * columns + column; });
+  // Weighted mean; nearest height where neither line has a value.
   for (std::size_t k = 0; k < sums.size(); ++k)
     if (std::isnan(grid.heights_m[k]) && weights[k] > 0) grid.heights_m[k] = sums[k] / weights[k];
   fill_nearest(grid);
@@ -167,6 +178,7 @@ void fill_linear(HeightGrid& grid) {
 }  // namespace
 
 HeightGrid parse_ascii_grid(std::string_view text, double vertical_scale, Holes holes) {
+  // Geometry of the grid from the header.
   Words words(text);
   const Header header = read_header(words);
   HeightGrid grid;
@@ -175,11 +187,12 @@ HeightGrid parse_ascii_grid(std::string_view text, double vertical_scale, Holes 
   grid.cell_m = *header.cellsize;
   grid.west_m = header.xllcenter ? *header.xllcenter : *header.xllcorner + grid.cell_m / 2;
   grid.south_m = header.yllcenter ? *header.yllcenter : *header.yllcorner + grid.cell_m / 2;
-  // A number and a space each: a header that promises more than the file has must not cost its memory.
+  // Each height takes two characters or more.  Check the length of the file before memory is allocated.
   const std::size_t count = static_cast<std::size_t>(grid.columns) * grid.rows;
   if (text.size() < 2 * count - 1)
     throw TerrainError("is too short for " + std::to_string(grid.columns) + " x " + std::to_string(grid.rows) +
                        " heights");
+  // Heights, from north to south.
   grid.heights_m.resize(count);
   const double nodata = header.nodata_value.value_or(-9999);
   std::size_t holes_found = 0;
@@ -193,6 +206,7 @@ HeightGrid parse_ascii_grid(std::string_view text, double vertical_scale, Holes 
                    std::to_string(grid.rows - row) + ": fill holes with 'holes: nearest' or 'holes: linear'");
       grid.at(column, row) = is_hole ? hole : value * vertical_scale;
     }
+  // Check the end of the file and fill holes.
   if (!words.next().empty()) words.fail("there are more heights than ncols times nrows");
   if (holes_found == count) throw TerrainError("has no heights, only NODATA");
   if (holes_found > 0) holes == Holes::nearest ? fill_nearest(grid) : fill_linear(grid);

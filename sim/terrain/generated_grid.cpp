@@ -33,7 +33,7 @@ class GradientNoise {
  private:
   static double fade(double t) { return t * t * t * (t * (6 * t - 15) + 10); }
   static double blend(double t, double a, double b) { return a + t * (b - a); }
-  /// The slope at a lattice point, one of eight, times the way from there.
+  /// Returns the product of the gradient at a lattice point, one of eight, and the offset (u, v) from the point.
   double corner(std::int64_t i, std::int64_t j, double u, double v) const {
     constexpr double diagonal = std::numbers::sqrt2 / 2;
     const std::uint8_t first = order_[static_cast<std::size_t>(i & 255)];
@@ -59,14 +59,14 @@ class GradientNoise {
   std::array<std::uint8_t, 256> order_;
 };
 
-/// Octaves of noise, each half as long as the last, down to waves of four cells.  Those longer than a few times the
-/// grid are left out: they are a plane there.
+/// Sum of octaves of noise, each with half the wavelength of the previous one, down to four cells.  Octaves with
+/// wavelengths over 8 times the size of the grid are omitted, because they are planes there.
 void make_fractal(HeightGrid& grid, const TerrainConfig& config) {
   const GradientNoise noise(static_cast<std::uint64_t>(config.seed));
   double max_m = config.wavelength_m, weight = 1;
   while (max_m > 8 * std::max(grid.width_m(), grid.depth_m())) max_m /= 2;
   for (double wave_m = max_m; wave_m >= 4 * config.cell_m && weight > 1e-4; wave_m /= 2) {
-    // Shifted by an irrational part of a wave, or all octaves would be 0 at the points they share.
+    // Shift octaves by an irrational share of the wavelength, so that their zeros do not coincide.
     const double shift = std::numbers::phi * wave_m;
     for (int j = 0; j < grid.rows; ++j)
       for (int i = 0; i < grid.columns; ++i)
@@ -74,12 +74,13 @@ void make_fractal(HeightGrid& grid, const TerrainConfig& config) {
                                            (grid.south_m + j * grid.cell_m - shift) / wave_m);
     weight *= config.roughness;
   }
+  // Scale to the desired amplitude.
   const double low = grid.lowest_m(), high = grid.highest_m();
   if (!(high > low)) return;
   for (double& height_m : grid.heights_m) height_m = config.amplitude_m * (2 * (height_m - low) / (high - low) - 1);
 }
 
-/// Heights that depend on the distance along a direction alone.
+/// Fills the grid with heights that depend only on the distance along a direction.
 template <typename HeightAlong>
 void fill_along(HeightGrid& grid, double direction_rad, const HeightAlong& height_m) {
   const double toward_x = std::cos(direction_rad), toward_y = std::sin(direction_rad);
@@ -92,6 +93,7 @@ void fill_along(HeightGrid& grid, double direction_rad, const HeightAlong& heigh
 }  // namespace
 
 HeightGrid generate_grid(const TerrainConfig& config) {
+  // Flat grid centred on the origin.
   const double columns = std::round(config.size_m[0] / config.cell_m) + 1;
   const double rows = std::round(config.size_m[1] / config.cell_m) + 1;
   check_grid_size(static_cast<std::int64_t>(std::min(columns, 1e12)), static_cast<std::int64_t>(std::min(rows, 1e12)));
@@ -102,6 +104,7 @@ HeightGrid generate_grid(const TerrainConfig& config) {
   grid.west_m = -grid.width_m() / 2;
   grid.south_m = -grid.depth_m() / 2;
   grid.heights_m.assign(static_cast<std::size_t>(grid.columns) * grid.rows, 0);
+  // Fill in the heights.
   switch (config.source) {
     case TerrainConfig::Source::slope: {
       const double climb = std::tan(config.angle_rad);

@@ -10,10 +10,10 @@
 namespace sim {
 namespace {
 
-/// Where a coordinate lies among the points of one axis.
+/// Position of a coordinate among the points of one axis.
 struct Seat {
-  int index;  ///< the nearest point
-  double t;   ///< from there, in cells: -0.5 to 0.5
+  int index;  ///< index of the nearest point
+  double t;   ///< offset from it in cells, -0.5 to 0.5
 };
 
 Seat seat(double from_first_m, double cell_m, int points) {
@@ -22,7 +22,7 @@ Seat seat(double from_first_m, double cell_m, int points) {
   return {index, s - index};
 }
 
-/// The heights around a point, relative to it; beyond the border the surface continues straight.
+/// Heights around a point relative to its own height, extrapolated linearly beyond the border.
 struct Neighbours {
   double d[3][3];  // [row][column]
 
@@ -42,7 +42,7 @@ struct Neighbours {
   }
 };
 
-/// The quadratic B-spline of a row or column: its value and derivatives at t.
+/// Uniform quadratic B-spline in one dimension: weights of value and derivatives at t.
 struct Weights {
   double value[3], slope[3];
   explicit Weights(double t)
@@ -68,9 +68,11 @@ std::size_t HeightGrid::cell_at(double x, double y) const {
 }
 
 SurfacePoint HeightGrid::smooth_at(double x, double y) const {
+  // Nearest point, heights around it and B-spline weights.
   const Seat u = seat(x - west_m, cell_m, columns), v = seat(y - south_m, cell_m, rows);
   const Neighbours around(*this, u.index, v.index);
   const Weights a(u.t), b(v.t);
+  // Tensor product of the splines along x and y.
   SurfacePoint point;
   point.height_m = at(u.index, v.index);
   for (int j = 0; j < 3; ++j) {
@@ -87,6 +89,7 @@ SurfacePoint HeightGrid::smooth_at(double x, double y) const {
     point.bend_xy_pm += b.slope[j] * slope;
     point.bend_yy_pm += Weights::bend[j] * value;
   }
+  // Convert derivatives from cells to metres.
   const double per_m = 1 / cell_m;
   point.slope_x *= per_m;
   point.slope_y *= per_m;
@@ -97,10 +100,12 @@ SurfacePoint HeightGrid::smooth_at(double x, double y) const {
 }
 
 double HeightGrid::facet_height(double x, double y) const {
+  // Cell and position in the cell.
   const double u = std::clamp((x - west_m) / cell_m, 0.0, columns - 1.0);
   const double v = std::clamp((y - south_m) / cell_m, 0.0, rows - 1.0);
   const int i = std::min(static_cast<int>(u), columns - 2), j = std::min(static_cast<int>(v), rows - 2);
   const double s = u - i, t = v - j;
+  // Interpolate in the south-eastern or north-western triangle.
   const double south_west = at(i, j), north_east = at(i + 1, j + 1);
   const double corner = s >= t ? at(i + 1, j) : at(i, j + 1);
   return south_west + std::max(s, t) * (corner - south_west) + std::min(s, t) * (north_east - corner);
@@ -111,7 +116,7 @@ void check_grid_size(std::int64_t columns, std::int64_t rows) {
   if (columns < 2 || rows < 2) throw TerrainError("is not a grid: it has " + size + " and needs at least 2 x 2");
   if (columns > HeightGrid::max_cells || rows > HeightGrid::max_cells || columns * rows > HeightGrid::max_cells)
     throw TerrainError("is too large: it has " + size + ", and may have 16 million");
-  // A long strip of few rows is most likely no map of heights.
+  // Reject long strips of few rows, which are most likely not height maps.
   if (columns > HeightGrid::max_side || rows > HeightGrid::max_side)
     throw TerrainError("is too long: it has " + size + ", and may have 65536 along a side");
 }

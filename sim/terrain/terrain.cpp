@@ -28,7 +28,7 @@ HeightGrid read_grid(const TerrainConfig& config) {
   return generate_grid(config);
 }
 
-/// Puts the origin where the configuration says.
+/// Moves the grid to the configured origin.
 void place(HeightGrid& grid, const TerrainConfig& config) {
   switch (config.origin) {
     case TerrainConfig::Origin::center:
@@ -69,7 +69,7 @@ Zone zone_of(const TerrainAreaConfig& area) {
   return Zone(zone);
 }
 
-/// A cell belongs to the last area that its middle lies in.
+/// Returns the area of each cell: the last area that contains the centre of the cell.
 std::vector<std::uint8_t> areas_of_cells(const HeightGrid& grid, const std::vector<TerrainAreaConfig>& areas) {
   if (areas.empty()) return {};
   std::vector<Zone> zones;

@@ -10,25 +10,26 @@
 
 namespace sim {
 
-/// Ground as loaded: heights, and which area each cell belongs to.
+/// Terrain as loaded: heights, and the area of each cell.
 struct Terrain {
   HeightGrid grid;
-  std::vector<std::uint8_t> area_of_cell;  ///< 0: none; else the number of the area, from 1.  Empty: no areas.
+  std::vector<std::uint8_t> area_of_cell;  ///< number of the area, from 1; 0: none.  Empty when there are no areas.
 
-  /// 0: none.
+  /// Returns the number of the area at (x, y), from 1; 0: none.
   int area_at(double x, double y) const { return area_of_cell.empty() ? 0 : area_of_cell[grid.cell_at(x, y)]; }
 };
 
-/// Reads or makes the terrain.  Throws TerrainError, which names the file.
+/// Reads or generates the terrain.  Throws TerrainError with the name of the file.
 Terrain load_terrain(const TerrainConfig& config);
 
-/// An ESRI ASCII grid.  Keywords in any case and order; heights by rows from north to south.  Its south-west point is
-/// where the file says: xllcorner is the outer corner of a square around the point, half a cell to the south-west.
-/// Throws TerrainError with the line.
+/// Parses an ESRI ASCII grid.  Keywords are accepted in any case and order; rows of heights run from north to south.
+/// The position of the south-west point is taken from the file: xllcenter and yllcenter, or xllcorner and yllcorner,
+/// which lie half a cell to the south-west of it.  Throws TerrainError with the line number.
 HeightGrid parse_ascii_grid(std::string_view text, double vertical_scale, Holes holes);
-/// A PNG of 8 or 16 bits of grey, the northern row first; black is `low_m`, white `high_m`.  Throws TerrainError.
+/// Reads a PNG with 8 or 16 bits of grey, northernmost row first.  Black is `low_m`, white `high_m`.  Throws
+/// TerrainError.
 HeightGrid read_png_grid(const std::string& path, double cell_m, double low_m, double high_m);
-/// slope, sine or fractal, with its south-west point at (-size / 2).
+/// Generates a slope, sine or fractal terrain, centred on the origin.
 HeightGrid generate_grid(const TerrainConfig& config);
 
 }  // namespace sim

@@ -11,7 +11,7 @@
 namespace sim {
 namespace {
 
-/// Two numbers.
+/// Reads a list of exactly two numbers.
 void read_pair(ParamReader& in, const char* key, std::vector<double>& value, const Rule& rule, const char* meaning) {
   const std::vector<double> before = value;
   in.read(key, value, rule, meaning);
@@ -83,7 +83,7 @@ ChoiceKeys keys_of_source(TerrainConfig::Source source) {
   return {"cell_m", "size_m", "amplitude_m", "wavelength_m", "roughness", "seed"};
 }
 
-/// So many cells a wave must have.
+/// Returns the minimum number of cells per wavelength.
 double least_cells_of_wave(TerrainConfig::Source source) {
   switch (source) {
     case TerrainConfig::Source::sine:
@@ -98,7 +98,7 @@ double least_cells_of_wave(TerrainConfig::Source source) {
   return 0;
 }
 
-/// Waves that the grid is too coarse for would come out flat or as other waves.
+/// Reports wavelengths that the grid is too coarse for, because sampling would alias them.
 void check_wavelength(ParamReader& in, const TerrainConfig& config) {
   const double cells = least_cells_of_wave(config.source);
   if (config.wavelength_m >= cells * config.cell_m) return;
@@ -115,10 +115,12 @@ void TerrainConfig::read(ParamReader& in) {
     place = in.node()->place;
     if (place.file) directory = std::filesystem::path(*place.file).parent_path().string();
   }
+  // Kind of source and collision surface.
   in.require("source");
   in.read_choice("source", source, source_words, "source of the heights: an ESRI ASCII grid, a grey PNG, or a formula");
   in.read_choice("collision", collision, terrain_collision_words,
                  "collision surface: smooth, or triangles as ODE's heightfield or trimesh");
+  // Grid and heights of a file.
   in.read_path("file", file, PathUse::read, "ascii, png: relative to this file");
   in.read("cell_m", cell_m, between(HeightGrid::min_cell_m, HeightGrid::max_place_m),
           "distance of neighbouring heights; ascii: the file says it");
@@ -133,6 +135,7 @@ void TerrainConfig::read(ParamReader& in) {
   in.read_choice("origin", origin, {{"center", Origin::center}, {"corner", Origin::corner}, {"map", Origin::map}},
                  "point of the grid at the part's position: its middle, its south-west corner, or map_origin_m");
   read_pair(in, "map_origin_m", map_origin_m, any_number(), "origin map: easting and northing, as in the file");
+  // Parameters of generated terrain.
   in.read_deg("angle_deg", angle_rad, between(-80, 80), "slope: gradient");
   in.read_deg("direction_deg", direction_rad, any_number(),
               "slope, sine: direction of ascent, counter-clockwise from +x");
@@ -143,6 +146,7 @@ void TerrainConfig::read(ParamReader& in) {
   in.read("seed", seed, at_least(0), "fractal: other seed, other hills");
   in.read_list("areas", areas, "area", "regions of other materials, the last wins");
   if (in.describing()) return;
+  // Check combinations of keys.
   refuse_keys_of_others(in, "source", source_words, source, keys_of_source);
   check_wavelength(in, *this);
   if (is_read_from_file(source) && file.empty())
