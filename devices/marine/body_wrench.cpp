@@ -9,8 +9,8 @@
 namespace devices {
 
 void BodyWrench::Params::read(sim::ParamReader& in) {
-  in.read("force_max_N", force_max_N, sim::between(0, 1e9), "the most along each axis, both ways");
-  in.read("torque_max_Nm", torque_max_Nm, sim::between(0, 1e9), "the most about each axis, both ways");
+  in.read("force_max_N", force_max_N, sim::between(0, 1e9), "maximum force along each axis, both directions");
+  in.read("torque_max_Nm", torque_max_Nm, sim::between(0, 1e9), "maximum torque about each axis, both directions");
   in.read("lag_s", lag_s, sim::at_least(0), "time constant of a first-order lag; 0: none");
 }
 

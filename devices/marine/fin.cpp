@@ -8,7 +8,7 @@ namespace devices {
 
 void FinCoefficients::read(sim::ParamReader& in) {
   sim::AxesFrame frame = sim::AxesFrame::flu;
-  in.read_choice("frame", frame, sim::axes_frame_words, "axes of the numbers: frd as papers print them");
+  in.read_choice("frame", frame, sim::axes_frame_words, "axes of the numbers: frd as printed in papers");
   const char* const keys[] = {"X", "Y", "Z", "K", "M", "N"};
   const char* const meanings[] = {"force along x, N per rad and (m/s)^2",    "force along y, N per rad and (m/s)^2",
                                   "force along z, N per rad and (m/s)^2",    "moment about x, N m per rad and (m/s)^2",
@@ -25,7 +25,7 @@ void Fin::Params::read(sim::ParamReader& in) {
                  "lift: by area and slope; coefficients: force and moment per angle and square of the forward speed");
   in.read_choice("flow", flow, {{"local", Flow::local}, {"body", Flow::body}},
                  "local: as it is at the fin; body: lift by the angle of the fin alone and the speed of the body's "
-                 "origin, as MSS remus100 has it");
+                 "origin, as in MSS remus100");
   in.read("area_m2", area_m2, sim::above_to(0, 1000),
           "area of the fin, one side; of both fins for a pair on one servo");
   foil.read(in);

@@ -65,7 +65,7 @@ void Thruster::Params::read(sim::ParamReader& in) {
   in.read_choice("inflow", inflow,
                  {{"water", Inflow::water}, {"water_speed", Inflow::water_speed}, {"ground", Inflow::ground}},
                  "water: along the axis, where the propeller is; water_speed: speed of the body through the water; "
-                 "ground: its speed over ground, as MSS remus100 has it");
+                 "ground: its speed over ground, as in MSS remus100");
   // Torque, ventilation and power.
   in.read_choice("turns", turns, {{"right", Turns::right}, {"left", Turns::left}},
                  "right: clockwise seen from behind; the reaction torque turns the hull the other way");

@@ -76,12 +76,12 @@ void Camera::Params::read(sim::ParamReader& in) {
   in.read("range_max_m", range_max_m, sim::above_to(0, 100'000), "maximum range along the ray");
   in.read_choice("depth_along", depth_along, depth_along_words,
                  "depth: distance along the optical axis, or range of the ray");
-  in.read("antialias", antialias, sim::between(1, 4), "rgb, grey: so many rays along each side of a pixel");
+  in.read("antialias", antialias, sim::between(1, 4), "rgb, grey: number of rays along each side of a pixel");
   in.read("exposure", exposure, "rgb, grey: exposure");
   // Noise.
   in.read("noise", noise, "rgb, grey: error of each level from 0 to 255; depth: of each depth, m");
   in.read("depth_noise_per_m", depth_noise_per_m, sim::at_least(0),
-          "depth: a standard deviation of this times depth squared, 1/m, as stereo has it");
+          "depth: standard deviation over depth squared, 1/m, as of a stereo camera");
   in.read_or_word("full_well_electrons", full_well_electrons, sim::above(0), {"unlimited"},
                   "rgb, grey: electrons of a white pixel, for shot noise; unlimited: no shot noise");
   in.read("read_noise_electrons", read_noise_electrons, sim::at_least(0), "rgb, grey: with full_well_electrons");

@@ -16,8 +16,8 @@ void Multibeam::Params::read(sim::ParamReader& in) {
   in.read_deg("swath_deg", swath_rad, sim::between(0, 180), "angle between the outermost beams");
   in.read_deg("across_deg", across_rad, sim::above_to(0, 30), "width of a beam across the track, at -3 dB");
   in.read_deg("along_deg", along_rad, sim::above_to(0, 30), "width of a beam along the track, at -3 dB");
-  in.read("across_rays", across_rays, sim::between(1, 50), "rays over the width of a beam");
-  in.read("along_rays", along_rays, sim::between(1, 50), "rays over the width of a beam");
+  in.read("across_rays", across_rays, sim::between(1, 50), "rays over the width of a beam across the track");
+  in.read("along_rays", along_rays, sim::between(1, 50), "rays over the width of a beam along the track");
   in.read("gate", gate, sim::between(0, 1), "echoes of a beam within this share of the range are one bottom");
   sonar.read(in);
   detection.read(in);
@@ -105,6 +105,7 @@ void Multibeam::detect(std::size_t beam) {
     if (stretch_uPa2 > max_uPa2) max_uPa2 = stretch_uPa2, loudest_from = from, loudest_to = to;
     stretch_uPa2 -= echoes_[from].power_uPa2;
   }
+  if (echoes_.empty()) return;
   // Power and weighted mean range in the window.
   double loudest_uPa2 = 0, moment = 0;
   for (std::size_t i = loudest_from; i < loudest_to; ++i) {
@@ -114,7 +115,7 @@ void Multibeam::detect(std::size_t beam) {
   const double range_m = moment / loudest_uPa2;
   const double level_dB = 10 * std::log10(loudest_uPa2);
   // Apply the detection threshold.
-  if (echoes_.empty() || level_dB < params_.detection.threshold_dB) return;
+  if (level_dB < params_.detection.threshold_dB) return;
   ranges_m_[beam] = range_m;
   strengths_dB_[beam] = level_dB + receiver_.gain_dB(range_m);
   valid_[beam] = 1;

@@ -33,8 +33,8 @@ void ZoneConfig::read(ParamReader& in) {
   in.require("name");
   in.read_name("name", name, "name of the zone, unique in the world");
   in.require("shape");
-  in.read_choice("shape", shape, zone_shape_words, "visual appearance");
-  in.read("position_m", position_m, any_number(), "its middle; polygon: the origin of its corners");
+  in.read_choice("shape", shape, zone_shape_words, "shape of the region");
+  in.read("position_m", position_m, any_number(), "centre; polygon: the origin of its corners");
   in.read_deg("rpy_deg", rpy_rad, "roll, pitch, yaw");
   in.read("size_m", size_m, above(0), "box: its lengths along x, y, z");
   in.read("radius_m", radius_m, above(0), "sphere, cylinder");
@@ -44,7 +44,8 @@ void ZoneConfig::read(ParamReader& in) {
   in.read("high_m", high_m, any_number(), "polygon: upper end, in z of the zone");
   in.read("gps_denied", gps_denied, "antennas inside have no fix");
   in.read("radio_denied", radio_denied, "modems inside neither send nor receive");
-  in.read("speed_limit_mps", speed_limit_mps, at_least(0), "seconds above it are counted for each vehicle");
+  in.read("speed_limit_mps", speed_limit_mps, at_least(0),
+          "speed limit; the time above it is counted for each vehicle");
   in.read("finish", finish, "the time at which each vehicle first enters is recorded");
   check_keys(in, shape);
   if (in.has("points_m") && points_m.size() < 3)

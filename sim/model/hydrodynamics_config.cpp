@@ -113,8 +113,9 @@ void CrossFlowConfig::read(ParamReader& in) {
   in.read("reynolds_length_m", reynolds_length_m, above(0), "length in the Reynolds number");
   in.read("kinematic_viscosity_m2ps", kinematic_viscosity_m2ps, above(0),
           "kinematic viscosity of the water, for the Reynolds number");
-  in.read_or_word("strips", strips, between(2, 1000), {"exact"},
-                  "a sum over so many points, both ends with full weight, as some references do; exact: the integral");
+  in.read_or_word(
+      "strips", strips, between(2, 1000), {"exact"},
+      "number of points of a sum with full weight at both ends, as in some references; exact: the integral");
 }
 
 void HullLiftConfig::read(ParamReader& in) {
@@ -169,8 +170,8 @@ void PublishedQuirks::read(ParamReader& in) {
 void HydrodynamicsConfig::read(ParamReader& in) {
   if (in.node() != nullptr) place = in.node()->place;
   in.read_choice("model", model, {{"coefficients", Model::coefficients}, {"none", Model::none}},
-                 "coefficients: as published for this vehicle; none: water does nothing to this body");
-  in.read_choice("frame", frame, axes_frame_words, "axes of the numbers: frd as papers print them, flu as bodies have");
+                 "coefficients: as published for this vehicle; none: no hydrodynamic forces");
+  in.read_choice("frame", frame, axes_frame_words, "axes of the numbers: frd as printed in papers, flu as of bodies");
   // Mass and inertia.
   if (model == Model::coefficients) in.require("mass_kg");
   in.read("mass_kg", mass_kg, between(1e-9, 1e12), "mass of the body, instead of that of its parts");
@@ -214,7 +215,7 @@ void HydrodynamicsConfig::read(ParamReader& in) {
   // Derivatives by name.
   ConfigNode named;
   in.read_raw("derivatives", named,
-              "forces named as SNAME does, signs as printed: X_uu: -1.62, Y_uv: -28.6, Z_wdot: -35.5");
+              "forces in SNAME notation, signs as printed: X_uu: -1.62, Y_uv: -28.6, Z_wdot: -35.5");
   for (const ConfigNode::Entry& entry : named.entries) {
     DerivativeTerm term;
     char* end = nullptr;
@@ -253,8 +254,8 @@ void HydrodynamicsConfig::read(ParamReader& in) {
   if (frame == AxesFrame::flu && waterline) {
     waterline->load_at_m = to_frd(waterline->load_at_m);
   }
-  in.read("windage", windage, "what the wind does to the part over the water");
-  in.read("quirks", quirks, "what some published models do and the physics does not");
+  in.read("windage", windage, "wind force on the part above the water");
+  in.read("quirks", quirks, "deviations of published models from physics");
   // Shift the inertia to the centre of mass (parallel axis theorem).
   if (about == InertiaAbout::origin) {
     const Vector3d& r = center_of_mass_m;

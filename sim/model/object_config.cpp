@@ -20,10 +20,10 @@ void ObjectConfig::read(ParamReader& in) {
   in.read_deg("rpy_deg", rpy_rad, "roll, pitch, yaw");
   in.read("fixed", fixed, "it is static");
   in.read("present", present, "false: it is absent until an event adds it");
-  in.read("count", count, between(1, 100000), "how many; named NAME1, NAME2, ...");
+  in.read("count", count, between(1, 100000), "number of instances, named NAME1, NAME2, ...");
   in.read("placement", placement, "placement of the instances when there is a count");
   in.require("parts");
-  in.read_list("parts", parts, "part", "what it is made of");
+  in.read_list("parts", parts, "part", "parts of the body");
   if (in.has("parts") && in.child("parts")->items.empty() && in.child("parts")->kind != ConfigNode::Kind::scalar)
     in.error("parts", "'parts' must have at least one part");
 }

@@ -29,7 +29,7 @@ void TextureConfig::read(ParamReader& in) {
     if (place.file) directory = std::filesystem::path(*place.file).parent_path().string();
   }
   // Keys of the texture.
-  in.read_choice("pattern", pattern, pattern_words, "what is on the surface");
+  in.read_choice("pattern", pattern, pattern_words, "pattern on the surface");
   in.read("colors", colors, "checker, stripes: two colors, #rrggbb");
   in.read("size_m", size_m, above(0), "length of a field, width of a stripe or of the image");
   const bool allowed = in.read_path("file", file, PathUse::read, "image: a PNG or JPEG file, relative to this file");
@@ -67,7 +67,7 @@ void MaterialConfig::read(ParamReader& in) {
   in.require("name");
   in.read("name", name, "name of the material");
   if (name == "any") in.error("name", "'any' stands for every material and cannot be a name");
-  in.read("color", color, "color in images and viewers, #rrggbb; a part's own color wins");
+  in.read("color", color, "color in images and viewers, #rrggbb; a part's own color has precedence");
   if (!in.describing() && !color.empty()) check_color(in, "color", color);
   in.read("gloss", gloss, between(0, 1), "strength of the sun's highlight in images");
   in.read("texture", texture, "pattern in images");

@@ -123,7 +123,7 @@ void TerrainConfig::read(ParamReader& in) {
   // Grid and heights of a file.
   in.read_path("file", file, PathUse::read, "ascii, png: relative to this file");
   in.read("cell_m", cell_m, between(HeightGrid::min_cell_m, HeightGrid::max_place_m),
-          "distance of neighbouring heights; ascii: the file says it");
+          "distance of neighbouring heights; ascii: given in the file");
   read_pair(in, "size_m", size_m, between(HeightGrid::min_cell_m, HeightGrid::max_place_m),
             "slope, sine, fractal: lengths along x and y");
   in.read("vertical_scale", vertical_scale, above(0), "ascii: heights of the file times this are metres");
@@ -131,20 +131,20 @@ void TerrainConfig::read(ParamReader& in) {
   in.read("height_min_m", height_min_m, any_number(), "png: height of black");
   in.read("height_max_m", height_max_m, any_number(), "png: height of white");
   in.read_choice("holes", holes, {{"error", Holes::error}, {"nearest", Holes::nearest}, {"linear", Holes::linear}},
-                 "ascii: what NODATA becomes; linear: between the ends of the hole in its row and column");
+                 "ascii: replacement of NODATA; linear: between the ends of the hole in its row and column");
   in.read_choice("origin", origin, {{"center", Origin::center}, {"corner", Origin::corner}, {"map", Origin::map}},
                  "point of the grid at the part's position: its middle, its south-west corner, or map_origin_m");
   read_pair(in, "map_origin_m", map_origin_m, any_number(), "origin map: easting and northing, as in the file");
   // Parameters of generated terrain.
-  in.read_deg("angle_deg", angle_rad, between(-80, 80), "slope: gradient");
+  in.read_deg("angle_deg", angle_rad, between(-80, 80), "slope: inclination");
   in.read_deg("direction_deg", direction_rad, any_number(),
               "slope, sine: direction of ascent, counter-clockwise from +x");
   in.read("amplitude_m", amplitude_m, at_least(0), "sine; fractal: half of the height between lowest and highest");
   in.read("wavelength_m", wavelength_m, between(HeightGrid::min_cell_m, HeightGrid::max_place_m),
           "sine; fractal: of the largest hills");
   in.read("roughness", roughness, between(0, 1), "fractal: height of hills by that of hills twice as long");
-  in.read("seed", seed, at_least(0), "fractal: other seed, other hills");
-  in.read_list("areas", areas, "area", "regions of other materials, the last wins");
+  in.read("seed", seed, at_least(0), "fractal: seed of the hills");
+  in.read_list("areas", areas, "area", "regions of other materials; the last one has precedence");
   if (in.describing()) return;
   // Check combinations of keys.
   refuse_keys_of_others(in, "source", source_words, source, keys_of_source);
