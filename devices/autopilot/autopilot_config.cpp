@@ -34,7 +34,7 @@ void AutopilotParams::read(sim::ParamReader& in) {
           "those of surge, sway, heave, roll, pitch and yaw that the thrusters control; unset: as many as possible, "
           "only surge when there are fins");
   // Setpoints and route.
-  in.read("hold", hold, "what is held at the start");
+  in.read("hold", hold, "setpoints held at the start");
   in.read("station", station, "position to hold in mode station");
   in.read_list("waypoints", waypoints, "waypoint", "the route");
   in.read("lawnmower", lawnmower, "a route of parallel tracks, in place of waypoints");

@@ -98,7 +98,7 @@ void AcousticModem::Params::read(sim::ParamReader& in) {
   // Packets.
   in.read("frame_bytes", frame_bytes, sim::between(1, 1 << 16), "bytes of a frame");
   in.read("frames", frames, sim::between(1, 256), "maximum number of frames of a packet");
-  in.read("whole_frames", whole_frames, "a packet always takes the time of full frames, however few bytes they hold");
+  in.read("whole_frames", whole_frames, "a packet always takes the time of full frames, also with fewer bytes");
   in.read_or_word("max_message_bytes", max_message_bytes, sim::between(1, 1 << 20), {"all_frames"},
                   "longer messages are refused; all_frames: frames x frame_bytes");
   in.read("preamble_s", preamble_s, sim::between(0, 100), "preamble of each packet, before its bits");

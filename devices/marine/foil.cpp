@@ -15,7 +15,7 @@ void FoilParams::read(sim::ParamReader& in) {
   in.read_deg("stall_width_deg", stall_width_rad, sim::above_to(0, 89),
               "width of the transition from there to a plate across the flow");
   in.read("drag_coefficient", drag_coefficient, sim::between(0, 10), "C_D without lift");
-  in.read("span_efficiency", span_efficiency, sim::above_to(0, 2), "e of the drag that comes with lift");
+  in.read("span_efficiency", span_efficiency, sim::above_to(0, 2), "Oswald efficiency e of the induced drag");
   in.read("plate_coefficient", plate_coefficient, sim::between(0, 3), "C_D when it is perpendicular to the flow");
 }
 

@@ -32,7 +32,7 @@ bool works(SonarParams::WorksIn where, bool wet) {
 void SonarParams::read(sim::ParamReader& in) {
   in.read("range_min_m", range_min_m, sim::at_least(0),
           "minimum range: closer echoes are lost while the sonar transmits");
-  in.read("range_max_m", range_max_m, sim::above_to(0, 20000), "maximum range, which determines how long it listens");
+  in.read("range_max_m", range_max_m, sim::above_to(0, 20000), "maximum range, which sets the listening time");
   // Medium.
   in.read_choice(
       "works_in", works_in, {{"water", WorksIn::water}, {"air", WorksIn::air}, {"any", WorksIn::any}},

@@ -20,7 +20,7 @@ class OneOfAction final : public Action {
   void read(ParamReader& in, const char* main) override {
     in.require(main);
     read_action_lists(in, main, choices_, "[[actions], [actions]]");
-    in.read("weights", weights_, at_least(0), "how often each is chosen; unset: all alike");
+    in.read("weights", weights_, at_least(0), "relative frequency of each list; unset: equal");
     if (!in.has(main)) return;
     const std::size_t count = in.child(main)->items.size();
     if (choices_.empty() && count == 0)

@@ -7,7 +7,7 @@ namespace sim {
 
 void FaultConfig::read(ParamReader& in) {
   in.require("kind");
-  in.read_choice("kind", kind, fault_kind_words, "what is wrong with the device");
+  in.read_choice("kind", kind, fault_kind_words, "kind of fault");
   in.read("quantity", quantity, "biased, degraded: key of its noise without '_noise'; unset: every quantity");
   in.read("bias", bias, any_number(), "biased: added to the quantity, in its unit");
   in.read("noise_factor", noise_factor, between(0, 1e6), "degraded: the random errors are this many times as large");

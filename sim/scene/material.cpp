@@ -55,8 +55,8 @@ void TextureConfig::read(ParamReader& in) {
 }
 
 void LaserSurface::read(ParamReader& in) {
-  in.read("reflectivity", reflectivity, between(0, 1), "share of a laser's power that comes back diffusely");
-  in.read("gloss", gloss, between(0, 1), "share of it that is mirrored, so that it comes back head-on only");
+  in.read("reflectivity", reflectivity, between(0, 1), "share of a laser's power that is reflected diffusely");
+  in.read("gloss", gloss, between(0, 1), "share of it that is reflected specularly, and returns at normal incidence only");
 }
 
 void SoundSurface::read(ParamReader& in) {

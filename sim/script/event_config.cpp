@@ -105,7 +105,7 @@ void EventConfig::read(ParamReader& in) {
     if (in.has(key) && !in.has("every")) in.error(key, "'" + std::string(key) + "' belongs to 'every'");
   in.read("delay_s", delay_s, between(0, 1e9), "delay between firing and the actions");
   in.read_or_word("times", times, at_least(1), {"unlimited"},
-                  "it fires at most so often; with 'at' not more often than it says");
+                  "maximum number of firings; with 'at' at most the number of its times");
   if (times == 0) times = static_cast<std::int64_t>(at_s.size());
   in.read("probability", probability, between(0, 1), "probability of firing");
   in.require("do");

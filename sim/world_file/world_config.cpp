@@ -47,7 +47,7 @@ void VehicleEntry::read(ParamReader& in) {
   in.read_raw("model", model, "the vehicle itself, as in a vehicle file, instead of a file");
   in.read("position_m", position_m, any_place(), "place of the vehicle frame in the world");
   in.read_deg("rpy_deg", rpy_rad, "roll, pitch, yaw");
-  in.read("count", count, between(1, 100000), "how many; named NAME1, NAME2, ...");
+  in.read("count", count, between(1, 100000), "number of instances, named NAME1, NAME2, ...");
   in.read("placement", placement, "placement of the instances when there is a count");
   in.read_raw("parameters", parameters, "values of the vehicle file's ${names}; ${index} counts from 1");
   in.read_reference("bus", bus, "bus", "separate bus, named in `buses`; unset: the world's");
@@ -211,7 +211,7 @@ void WorldConfig::read(ParamReader& in) {
   in.read_list("materials", materials, "material", "materials of this world");
   for (const MaterialConfig& material : materials) in.declare("material", material.name);
   in.read_list("contacts", contacts, "contact",
-               "contact parameters of pairs of materials; both named wins over any, then the last one");
+               "contact parameters of pairs of materials; a pair of names has precedence over any, then the last one");
   in.read("categories", categories, "categories of parts, beside `solid`; at most 30");
   for (const std::string& category : categories) in.declare("category", category);
   if (categories.size() > 30) in.error("categories", "'categories' must have at most 30 names");
