@@ -11,7 +11,7 @@ inline Vector3d to_eigen(const dReal* v) {
   return {v[0], v[1], v[2]};
 }
 
-/// ODE's 3x4 matrices, row by row.
+/// Rotation matrix from ODE's 3x4 row-major layout.
 inline Matrix3d rotation_to_eigen(const dReal* R) {
   Matrix3d out;
   out << R[0], R[1], R[2], R[4], R[5], R[6], R[8], R[9], R[10];
@@ -32,13 +32,13 @@ inline void to_ode(const Quaterniond& q, dQuaternion out) {
   out[3] = q.z();
 }
 
-/// Eigen's rotation from a quaternion is exact for the identity, which keeps level things level to the last
-/// bit.
+/// Unit quaternion of a rotation.  Eigen's conversion is exact for the identity, which keeps level bodies level to the
+/// last bit.
 inline Quaterniond to_quaternion(const Matrix3d& R) {
   return Quaterniond(R).normalized();
 }
 
-/// ODE's frame of a body, at its centre of mass.
+/// Pose of ODE's frame of a body, with its origin at the centre of mass.
 inline Pose ode_pose(dBodyID body) {
   Pose X_WC = Pose::Identity();
   X_WC.linear() = rotation_to_eigen(dBodyGetRotation(body));
