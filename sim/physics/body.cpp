@@ -188,12 +188,12 @@ void Body::visit_state(StateArchive& archive) {
   struct {
     double p_WC[3], q_WB[4], R_WB[12], v_WC_W[3], w_WB_W[3];
   } motion;
-  // Copy the motion out of ODE.
   struct {
     double force_N[3], torque_Nm[3];
     Pose::MatrixType seat_X_WB;
     bool enabled, move_is_due;
   } rest = {};
+  // Copy the motion out of ODE, and visit it as one block.
   const auto each = [&](const auto& copy) {
     copy(motion.p_WC, p_WC_, 3);
     copy(motion.q_WB, dBodyGetQuaternion(ode_.get()), 4);

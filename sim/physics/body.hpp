@@ -73,8 +73,8 @@ class Body : public VisitedInSteps {
   /// Sets the velocities of a free body; no effect on other bodies.
   void set_velocity_W(const Vector3d& v_WB_W, const Vector3d& w_WB_W);
 
-  /// Switch off gravity or the gyroscopic torque.  The caller then adds the weight or the torque -w x I w itself (a
-  /// model of added mass needs both off).
+  /// Switch gravity or the gyroscopic torque on or off.  When off, the caller adds the weight or the torque -w x I w
+  /// itself (a model of added mass needs both off).
   void set_gravity(bool on);
   void set_gyroscopic(bool on) { gyroscopic_ = on; }
 
