@@ -29,7 +29,7 @@ void check_depths(ParamReader& in, const std::vector<Layer>& rows) {
     }
 }
 
-/// A column of the profile is there in all rows or in none.
+/// Checks that a column of the profile is in all rows or in none.
 void check_column(ParamReader& in, const std::vector<WaterLayerConfig>& rows,
                   std::optional<double> WaterLayerConfig::*column, const char* key) {
   const auto given =
@@ -54,6 +54,7 @@ void WaterLayerConfig::read(ParamReader& in) {
 }
 
 void WaterConfig::read(ParamReader& in) {
+  // Surface, density, temperature and salinity.
   in.read("surface_m", surface_m, between(-1e6, 1e6), "height of the still surface in the world");
   in.read_choice("density", density, {{"constant", Density::constant}, {"eos80", Density::eos80}},
                  "constant: density_kgpm3; eos80: from temperature, salinity and pressure");
@@ -61,10 +62,12 @@ void WaterConfig::read(ParamReader& in) {
   in.read("temperature_C", temperature_C, between(-5, 100), "temperature of the water");
   in.read("salinity_psu", salinity_psu, between(0, 400), "salinity of the water");
   in.read_list("profile", profile, "row", "temperature and salinity by depth, linear in between");
+  // Speed of sound.
   in.read_choice("sound_speed", sound,
                  {{"mackenzie", SoundSpeed::mackenzie}, {"medwin", SoundSpeed::medwin}, {"unesco", SoundSpeed::unesco}},
                  "equation, where no number is given");
   in.read("sound_speed_mps", sound_speed_mps, between(100, 10000), "the same everywhere");
+  // Check that the keys are consistent.
   if (in.describing()) return;
   check_depths(in, profile);
   check_column(in, profile, &WaterLayerConfig::density_kgpm3, "density_kgpm3");
@@ -233,7 +236,7 @@ void check_keys_of_waves(ParamReader& in, WavesConfig::Type type) {
 }
 
 /// Sets height and period of a sea state: the middle of the range of heights and the most probable period in the open
-/// North Atlantic (Lee and Bales 1984, as in STANAG 4194; sea states 0 and 1 have no period there: that of 2).
+/// North Atlantic (Lee and Bales 1984, as in STANAG 4194; sea states 0 and 1 have no period there and use that of 2).
 void take_sea_state(WavesConfig& waves) {
   constexpr double hs_m[] = {0, 0.05, 0.3, 0.88, 1.88, 3.25, 5, 7.5, 11.5};
   constexpr double tp_s[] = {7.5, 7.5, 7.5, 7.5, 8.8, 9.7, 12.4, 15, 16.4};
@@ -269,7 +272,7 @@ void WavesConfig::read(ParamReader& in) {
 
 namespace {
 
-/// A list with one entry may leave out the list around it.
+/// Reads a list, which may be given as a single map when it has one entry.
 template <typename Entry>
 void read_one_or_more(ParamReader& in, const char* key, std::vector<Entry>& entries, const char* kind,
                       const char* meaning) {
