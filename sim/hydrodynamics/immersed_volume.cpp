@@ -40,6 +40,7 @@ class WetFaces {
       }
     }
     for (std::size_t i = 2; i < count; ++i) {
+      // Tetrahedron from the apex to a triangle of the clipped face.
       const double det = wet[0].dot(wet[i - 1].cross(wet[i]));
       volume_ += det / 6;
       first_ += det / 24 * (wet[0] + wet[i - 1] + wet[i]);
