@@ -233,7 +233,8 @@ void AcousticChannel::set_receiver(Flight& flight, const Transducer* to) {
   flight.to_join = to != nullptr ? to->join_ : 0;
 }
 
-/// Prefetches the flight of a later event: with many signals in transit, consecutive ones are far apart in memory.
+/// Loads the flight of a later event into the cache: with many signals in transit, consecutive ones are far apart in
+/// memory.
 void AcousticChannel::fetch_ahead() const {
   constexpr std::size_t events_ahead = 6;
   const std::optional<Time> item = around_.events.stamp_ahead(events_ahead, Event::of_acoustics);
@@ -322,7 +323,7 @@ void AcousticChannel::emit(int number, Time now) {
 double AcousticChannel::update_neighbours(const Signal& signal, Time now) {
   const bool anew = neighbours_age_ < 0 || to_seconds(now) - neighbours_age_ > neighbours_hold_s;
   std::vector<Neighbourhood::Member> members;
-  // Search the positions of all transducers again.
+  // Collect the positions of all transducers.
   if (anew) {
     lowest_m_ = std::numeric_limits<double>::infinity();
     for (const Transducer* each : transducers_) {

@@ -87,7 +87,7 @@ class AcousticChannel {
     Vector3d p_W = Vector3d::Zero(), v_W = Vector3d::Zero();
     Matrix3d R_WS = Matrix3d::Identity();
     DirectivityConfig directivity;
-    SignalLoss cut = SignalLoss::none;        // why the sender stopped before the end
+    SignalLoss cut = SignalLoss::none;        // cause of an early end
     Time cut_after{0};                        // duration sent until then
     int users = 0;                            // flights and events that refer to it
     void visit_state(StateArchive& archive);  // except `from`
@@ -108,6 +108,7 @@ class AcousticChannel {
     void visit_state(StateArchive& archive);  // except `to`
   };
 
+  /// Add and remove transducers and continuous sounds.
   void join(Transducer& transducer);
   void leave(Transducer& transducer);
   /// Erases the count of an address that no transducer has any more.

@@ -38,10 +38,12 @@ PowerRatio AcousticChannel::noise_at(const Transducer& to, const Vector3d& p_W, 
 }
 
 Decibels AcousticChannel::link_loss(const Transducer& to, const Sending& sending, double& loss_probability) const {
+  // Whether a name of the configuration, a vehicle or a device, includes a device.
   const auto named = [](const std::string& name, const std::string& device) {
     return name.empty() || name == device ||
            (device.size() > name.size() && device[name.size()] == '/' && device.compare(0, name.size(), name) == 0);
   };
+  // Sum of losses, and probability of any of the random losses.
   Decibels loss{0};
   loss_probability = 0;
   for (const LinkConfig& link : config_.links) {

@@ -14,7 +14,7 @@ Echoes echoes(const MultipathConfig& config, const MultipathMedium& medium, cons
               depths.horizontal_m, water_m, config.max_bounces, paths);
   std::vector<PathGain> gains;
   path_gains(paths, config, medium, gains);
-  // Relative to the direct path from here on, which is well defined even where its power underflows.
+  // Relative to the direct path from here on, which also works at ranges where its power is below the smallest number.
   const Decibels direct = gains[0].gain;
   for (PathGain& gain : gains) gain.gain -= direct;
   const double direct_s = gains[0].delay_s;

@@ -126,11 +126,13 @@ double Propagation::water_depth_m(const Vector3d& p_W) const {
 
 Echoes Propagation::echoes_of(const Vector3d& from_W, const Vector3d& to_W, double frequency_Hz, Decibels direct,
                               Random& random) const {
+  // Geometry of the link.
   LinkDepths depths;
   depths.source_m = medium_.depth_m(from_W);
   depths.receiver_m = medium_.depth_m(to_W);
   depths.horizontal_m = (to_W - from_W).head<2>().norm();
   depths.water_m = water_depth_m((from_W + to_W) / 2);
+  // Water along the path.
   MultipathMedium water;
   water.frequency_Hz = frequency_Hz;
   water.sound_speed_mps = 1 / medium_.mean_slowness_spm(from_W.z(), to_W.z());
@@ -160,6 +162,7 @@ Propagation::Gain Propagation::gain(const Vector3d& from_W, int from_group, cons
   } else {
     gain.signal += direct;
   }
+  // Fading acts on signal and echoes alike.
   const Decibels faded = fade(config_.fading, random);
   gain.signal += faded;
   if (gain.disturbing.linear() > 0) gain.disturbing = to_power(faded) * gain.disturbing;

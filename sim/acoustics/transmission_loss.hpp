@@ -15,11 +15,12 @@ Decibels spreading_loss(double range_m, double k);
 /// Spreading loss, spherical up to the transition range and cylindrical beyond.
 Decibels spreading_loss_with_transition(double range_m, double transition_range_m);
 
+/// Loss by absorption over a range.
 Decibels absorption_loss(double range_m, double absorption_dBpkm);
 
 /// `spreading:` of a world's acoustics.
 struct SpreadingConfig {
-  double factor = 1.5;                       ///< k
+  double factor = 1.5;                       ///< k of k 10 log10(range)
   std::optional<double> transition_range_m;  ///< instead of the factor
   void read(ParamReader& in);
 };

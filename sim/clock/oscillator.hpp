@@ -58,7 +58,7 @@ class Oscillator {
   double offset_s_, drift_;
   std::int64_t intervals_ = 0;
   double wander_s_ = 0;
-  double walk_ = 0;              ///< of the frequency
+  double walk_ = 0;              ///< random walk of the frequency
   std::vector<double> flicker_;  ///< frequency errors of the processes
 };
 

@@ -13,7 +13,7 @@ namespace sim {
 namespace {
 
 constexpr Time look_ahead{2'000'000};
-constexpr double max_error_s = 4e7;  ///< a bit more than a year
+constexpr double max_error_s = 4e7;  ///< slightly more than a year
 constexpr double max_slew = 0.1;
 constexpr double max_learnt = 0.05;
 

@@ -109,6 +109,7 @@ void CoefficientModel::fold_derivatives() {
 void CoefficientModel::find_rates() {
   const Vector6d mass = mass_.diagonal();
   linear_rate_ = linear_diagonal_.cwiseQuotient(mass);
+  // Cross flow adds to quadratic damping.
   Vector6d quadratic = quadratic_diagonal_;
   if (config_.cross_flow) {
     const CrossFlowConfig& hull = *config_.cross_flow;
@@ -126,6 +127,7 @@ void CoefficientModel::find_rates() {
 
 void CoefficientModel::find_turning() {
   const Vector6d mass = mass_.diagonal();
+  // Ratios of masses and of moments of inertia bound the rates.
   const bool munk = coriolis_ == Coriolis::full;
   double lightest_share = 1;
   for (int i = 0; i < 3; ++i) {
@@ -142,6 +144,7 @@ void CoefficientModel::find_turning() {
 
 CoefficientModel::StepLimit CoefficientModel::max_step() const {
   const double damping = spectral_radius(mass_inverse_ * config_.linear_damping);
+  // Stiffness of the waterline, or of weight and buoyancy.
   Matrix6d stiffness = Matrix6d::Zero();
   if (config_.waterline) {
     const WaterlineConfig& plane = *config_.waterline;
@@ -278,11 +281,13 @@ Vector6d CoefficientModel::forces(const CraftState& state, const Vector6d& nu_r)
 
 Vector6d CoefficientModel::damping(const CraftState& state, const Vector6d& nu_r) const {
   Vector6d tau;
+  // Linear and quadratic damping.
   if (diagonal_damping_) {
     tau = -(linear_diagonal_ + quadratic_diagonal_.cwiseProduct(nu_r.cwiseAbs())).cwiseProduct(nu_r);
   } else {
     tau = -config_.linear_damping * nu_r - config_.quadratic_damping * nu_r.cwiseAbs().cwiseProduct(nu_r);
   }
+  // Variants of published models.
   const PublishedQuirks& quirks = config_.quirks;
   if (quirks.surge_damping_fade_spm > 0) {
     const double speed = fade_by_speed_in_water_ ? nu_r.head<3>().norm()
@@ -311,6 +316,7 @@ double CoefficientModel::cross_flow_drag(double speed) const {
   return table[i - 1] + along * (table[i + 1] - table[i - 1]);
 }
 
+/// Adds the cross-flow drag by strip theory (Faltinsen 1990; Fossen 2011).
 void CoefficientModel::add_cross_flow(const Vector6d& nu_r, double density, Vector6d& tau) const {
   const CrossFlowConfig& hull = *config_.cross_flow;
   const double scale =
@@ -326,6 +332,7 @@ void CoefficientModel::add_cross_flow(const Vector6d& nu_r, double density, Vect
   tau[4] -= scale * vertical.moment;
 }
 
+/// Adds lift and drag of the hull in its vertical plane, by the angle of attack.
 void CoefficientModel::add_hull_lift(const Vector6d& nu_r, double density, Vector6d& tau) const {
   const HullLiftConfig& hull = *config_.hull_lift;
   const double u = nu_r[0], w = nu_r[2];
@@ -338,11 +345,13 @@ void CoefficientModel::add_hull_lift(const Vector6d& nu_r, double density, Vecto
   const double C_L = hull.lift_slope * alpha;
   const double lift = pressure * C_L * kept_lift(alpha);
   const double drag = pressure * (hull.drag_coefficient + hull.induced_drag * C_L * C_L);
+  // Rotate lift and drag into body axes.
   const double cosine = u / in_plane, sine = w / in_plane;
   tau[0] += -drag * cosine + (u < 0 ? -lift : lift) * sine;
   tau[2] += -drag * sine - lift * std::abs(cosine);
 }
 
+/// Adds the wind forces (Fossen 2011, eq. 8.23 to 8.30).
 void CoefficientModel::add_windage(const CraftState& state, Vector6d& tau) const {
   constexpr double air_density_kgpm3 = 1.225;
   const WindageConfig& area = *config_.windage;
@@ -360,6 +369,7 @@ void CoefficientModel::add_windage(const CraftState& state, Vector6d& tau) const
 void CoefficientModel::add_restoring(const CraftState& state, Vector6d& tau) const {
   if (config_.waterline) {
     const WaterlineConfig& plane = *config_.waterline;
+    // Attitude relative to the surface.
     const double roll = std::atan2(state.down.y(), state.down.z()) - state.surface_roll_rad;
     const double pitch = std::asin(std::clamp(-state.down.x(), -1.0, 1.0)) - state.surface_pitch_rad;
     const double weight = config_.mass_kg * gravity_mps2_;
@@ -369,6 +379,7 @@ void CoefficientModel::add_restoring(const CraftState& state, Vector6d& tau) con
     tau[2] -= share * (plane.heave_Npm * heave + plane.heave_pitch_N * pitch);
     tau[3] -= share * (plane.roll_Nmprad * roll);
     tau[4] -= share * (plane.pitch_Nmprad * pitch + plane.heave_pitch_N * heave);
+    // Weight of a load.
     if (plane.load_kg > 0) {
       const Vector3d load = share * plane.load_kg * gravity_mps2_ * state.down;
       const Vector3d moment = plane.load_at_m.cross(load);
@@ -376,6 +387,7 @@ void CoefficientModel::add_restoring(const CraftState& state, Vector6d& tau) con
       tau[3] += moment.x();
       tau[4] += moment.y();
     }
+    // Weight of a craft that has left the water.
     if (share < 1) {
       const Vector3d falling = (1 - share) * weight * state.down;
       tau.head<3>() += falling;
@@ -383,6 +395,7 @@ void CoefficientModel::add_restoring(const CraftState& state, Vector6d& tau) con
     }
     return;
   }
+  // Weight and buoyancy of a craft without waterline.
   const Vector3d weight = weight_N_ * state.down;
   const double full = buoyancy_N_ >= 0 ? buoyancy_N_ : *config_.volume_m3 * state.density_kgpm3 * gravity_mps2_;
   const Vector3d buoyancy = -full * immersed(state) * state.down;

@@ -69,11 +69,13 @@ class CoefficientModel {
   /// Sum of all forces.
   Vector6d total_forces(const CraftState& state, const Vector6d& tau, const Vector6d& nu_r, double share) const;
   Vector3d water_turning(const CraftState& state) const;
+  /// Damping forces of a fully submerged craft.
   Vector6d damping(const CraftState& state, const Vector6d& nu_r) const;
   void add_cross_flow(const Vector6d& nu_r, double density, Vector6d& tau) const;
   void add_hull_lift(const Vector6d& nu_r, double density, Vector6d& tau) const;
   void add_windage(const CraftState& state, Vector6d& tau) const;
   void add_restoring(const CraftState& state, Vector6d& tau) const;
+  /// Drag coefficient of the cross flow at this speed, from the table over the Reynolds number.
   double cross_flow_drag(double speed) const;
   double displaced_kg(const CraftState& state) const;
   void fold_derivatives();

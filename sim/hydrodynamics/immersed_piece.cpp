@@ -20,7 +20,7 @@ Vector3d drag_of(const PartConfig& part) {
   return given.size() == 1 ? Vector3d(Vector3d::Constant(given[0])) : Vector3d(given[0], given[1], given[2]);
 }
 
-/// Angular drag areas by strip theory: each strip of a face is in a flow of its own speed, which gives the integral of
+/// Angular drag areas by strip theory: each strip of a face has its own flow speed, which gives the integral of
 /// |r|^3 over a side.
 Vector3d angular_drag(const Vector3d& C, const Vector3d& size) {
   Vector3d drag;

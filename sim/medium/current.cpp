@@ -31,8 +31,7 @@ Vector3d of_profile(const std::vector<CurrentLayerConfig>& rows, double depth_m)
 
 /// Speed of a vortex relative to its peak, at a radius relative to that of the peak.
 double vortex_speed(CurrentConfig::Core core, double ratio) {
-  // Lamb-Oseen vortex normalized by its peak: d/dr of (1 - e^(-a r^2)) / r is 0 at r = 1 for a = 1.25643 (Devenport et
-  // al. 1996).
+  // Lamb-Oseen vortex normalized by its peak: d/dr of (1 - e^(-a r^2)) / r is 0 at r = 1 for a = 1.25643.
   constexpr double a = 1.2564312086261697;
   switch (core) {
     case CurrentConfig::Core::lamb_oseen:
@@ -56,6 +55,7 @@ double wind_driven_speed_mps(double surface_speed_mps, double depth_m, double re
 
 Current::Current(const std::vector<CurrentConfig>& entries, const std::vector<TideConfig>& tides, std::uint64_t seed)
     : tides_(tides) {
+  // Sort the entries by their dependence on time and position.
   for (std::size_t i = 0; i < entries.size(); ++i) {
     const CurrentConfig& entry = entries[i];
     switch (entry.type) {
@@ -128,7 +128,7 @@ Vector3d Current::local_W(double x_m, double y_m, double depth_m) const {
         break;  // none of by_depth_
     }
   }
-  // Vortices and grids.
+  // Currents that depend on the horizontal position.
   for (const Vortex& vortex : vortices_) {
     const Eigen::Vector2d r = Eigen::Vector2d(x_m, y_m) - vortex.center_m;
     const double ratio = r.norm() / vortex.core_radius_m;

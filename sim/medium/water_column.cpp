@@ -11,7 +11,7 @@ namespace sim {
 namespace {
 
 constexpr double deepest_m = 12000;
-constexpr double spacing_m = 20;  ///< of the rows that the pressure is integrated over
+constexpr double spacing_m = 20;  ///< of the rows for the integration of the pressure
 
 double mix(double a, double b, double share) {
   return a + (b - a) * share;

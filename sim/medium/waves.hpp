@@ -49,7 +49,7 @@ class Waves {
   double highest_m_ = 0;
   // Arrays with one number per wave, padded with waves of zero height to whole lanes.  Angles in turns.
   Column kx_, ky_, turns_, k_, amplitude_;
-  Column speed_, speed_x_, speed_y_;                       ///< amplitude omega, and its parts, m/s
+  Column speed_, speed_x_, speed_y_;                       ///< amplitude omega, and its horizontal components, m/s
   Column acceleration_, acceleration_x_, acceleration_y_;  ///< amplitude omega^2
   Column two_k_depth_, by_sinh_, by_cosh_;                 ///< finite depth: 2 k h, 1 / (1 -+ e^(-2 k h))
 };

@@ -116,6 +116,7 @@ dMass unit_density_mass(const PartConfig& part, const CollisionMesh* mesh) {
       break;
     case PartShape::mesh: {
       if (mesh == nullptr) break;
+      // Volume, inertia and centroid of the solid.
       const MeshSolid& solid = mesh->solid;
       dMassSetParameters(&mass, solid.volume_m3, 0, 0, 0, solid.inertia(0, 0), solid.inertia(1, 1), solid.inertia(2, 2),
                          solid.inertia(0, 1), solid.inertia(0, 2), solid.inertia(1, 2));

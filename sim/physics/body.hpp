@@ -43,9 +43,11 @@ class Body : public VisitedInSteps {
   const Vector3d& p_BC() const { return p_BC_; }                ///< centre of mass in B
   const Matrix3d& inertia_C_B() const { return inertia_C_B_; }  ///< about the centre of mass, axes of B, kg m^2
 
+  /// Pose of the body frame.
   Pose X_WB() const;
   /// Velocity of the origin of B.  A kinematic body keeps the velocity of the last step until the next step.
   Vector3d v_WB_W() const;
+  /// Angular velocity.
   Vector3d w_WB_W() const;
   /// Pose and velocities together; cheaper than the separate calls.
   BodyMotion motion() const;

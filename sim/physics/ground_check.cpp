@@ -29,11 +29,13 @@ std::vector<std::string> warnings_about(const CollisionTerrain& ground, const St
   std::vector<std::string> found;
   switch (ground.collision) {
     case TerrainCollision::smooth:
+      // One contact point per wheel: small bumps are missed.
       if (it.wheel && cell_m < it.size_m.x() / 4)
         found.push_back("cells of " + number_text(cell_m) + " m are much smaller than a wheel of radius " +
                         number_text(it.size_m.x()) + " m, which touches the ground at one point: bumps may be missed");
       break;
     case TerrainCollision::facets: {
+      // Many facets below a part are slow; hard contacts at their edges oscillate.
       if (it.wheel && cell_m < 2 * it.size_m.x())
         found.push_back("facets of " + number_text(cell_m) + " m are smaller than a wheel of " +
                         number_text(2 * it.size_m.x()) + " m, which costs their square: use collision: smooth");

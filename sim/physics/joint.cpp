@@ -283,6 +283,7 @@ void Joint::update_position(double step_s) {
     return;
   }
   for (int axis = 0; axis < axes_; ++axis) {
+    // Free wheels are integrated; other angles are measured.
     const double expected = velocity(axis) * step_s;
     if (type_ == JointType::hinge2 && axis == 1) {
       position_[1] += expected;

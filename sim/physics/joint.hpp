@@ -47,7 +47,9 @@ class Joint {
   /// free wheel: its angle is integrated from its rate.  For a ball: components of the rotation vector, with norm up to
   /// pi.
   double position(int axis = 0) const { return position_[axis]; }
+  /// Rate of the position (rad/s, or m/s for a slider).
   double velocity(int axis = 0) const;
+  /// Sets the velocity and the maximum torque (N m) or force (N) of the motor of an axis.
   void set_motor(double velocity, double max_force, int axis = 0);
   double motor_velocity(int axis = 0) const { return motor_velocity_[axis]; }
   double motor_max_force(int axis = 0) const { return motor_max_force_[axis]; }
@@ -124,7 +126,7 @@ class Joint {
   double motor_velocity_[max_axes] = {};
   double motor_max_force_[max_axes] = {};
   std::array<OdeStops, max_axes> configured_stops_;
-  bool stops_were_set_ = false;                     ///< at run time
+  bool stops_were_set_ = false;                     ///< set_stops() was called
   dxBody* loaded_ = nullptr;                        // whose load is measured
   Vector3d p_CA_C_ = Vector3d::Zero();              // the anchor in ODE's frame of the loaded body
   std::unique_ptr<Load> load_;                      // when it is measured

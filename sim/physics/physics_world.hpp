@@ -147,6 +147,7 @@ class PhysicsWorld {
   /// the run.
   std::span<const ContactReport> contacts() const;
 
+  /// Scene for ray casting.
   const Scene& scene() const;
   /// Bodies by number; null where a body was removed.
   std::span<const std::unique_ptr<Body>> bodies() const;
@@ -166,6 +167,7 @@ class PhysicsWorld {
   std::optional<Eigen::AlignedBox3d> bounds_W(int part) const;
   /// Name of a group; empty when the group was removed.
   const std::string& group_name(int group) const;
+  /// Counts of the last step.
   const StepCounts& last_step() const;
   /// Returns the island (bodies connected by joints and contacts) with the most constraint rows in the last step, which
   /// takes the most time.  Visits each body.

@@ -53,7 +53,7 @@ struct PhysicsWorld::Impl {
   std::vector<Joint*> measured_joints;
   std::vector<ContactReport> contact_reports;
   double gravity_mps2 = config.gravity_mps2;
-  bool gravity_was_set = false;  ///< at run time
+  bool gravity_was_set = false;  ///< set_gravity() was called
   SceneMoves moves;
   std::unique_ptr<WorldScene> scene;
   std::vector<dBodyID> large_, small_;  // bodies by the rows of their islands; buffers reused in each step

@@ -9,7 +9,7 @@ namespace sim {
 
 namespace {
 
-/// Finalizer of SplitMix64, which decorrelates the keys of neighbouring seeds.
+/// Finalizer of SplitMix64: keys of neighbouring seeds are unrelated.
 std::uint64_t mixed(std::uint64_t word) {
   word += 0x9e3779b97f4a7c15ULL;
   word = (word ^ (word >> 30)) * 0xbf58476d1ce4e5b9ULL;
@@ -24,7 +24,7 @@ std::uint32_t high_word(std::uint64_t word) {
   return static_cast<std::uint32_t>(word >> 32);
 }
 
-/// Evaluates c[0] + c[1] x + c[2] x^2 + ... by Horner's rule.
+/// Evaluates c[0] + c[1] x + c[2] x^2 + ... in nested form.
 template <std::size_t N>
 double polynomial(const double (&c)[N], double x) {
   double sum = c[N - 1];

@@ -159,7 +159,7 @@ void EmbreeScene::bounds_of(const RTCBoundsFunctionArguments* arguments) {
   out.upper_x = high.x(), out.upper_y = high.y(), out.upper_z = high.z();
 }
 
-// Rays.
+// Ray casting.
 
 /// Query of a packet in a layer.  Callbacks get it by its first member.
 struct EmbreeScene::Query {

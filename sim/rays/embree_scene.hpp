@@ -53,7 +53,7 @@ class EmbreeScene final : public WorldScene {
     std::uint64_t seen = ~std::uint64_t{0};
     bool changed = false;     // shapes were added or removed
     double travelled_m = 0;   // sum over shapes since the tree was built
-    double half_width_m = 0;  // sum over shapes
+    double half_width_m = 0;  // sum of the radii of the shapes
   };
   struct Part {
     ScenePart part;

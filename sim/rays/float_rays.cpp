@@ -6,7 +6,7 @@
 
 namespace sim {
 
-/// Sets all lanes without branches, so that the compiler vectorizes the loops over lanes.
+/// Sets all lanes without branches, so that the compiler makes vector loops over lanes.
 [[gnu::always_inline]] inline void FloatRays::aim_all(FloatRays& out, const double (&from)[3][RayPacket::size],
                                                       const double (&direction)[3][RayPacket::size],
                                                       const double (&range_m)[RayPacket::size], unsigned lanes) {

@@ -187,6 +187,7 @@ std::optional<RayHit> OdeScene::cast(const Vector3d& origin_W, const Vector3d& d
   const Vector3d end_W = origin_W + range_max_m * direction_W;
   find_candidates({origin_W.cwiseMin(end_W), origin_W.cwiseMax(end_W)}, filter, origin_W, range_max_m);
   for (const Candidate& candidate : candidates_) {
+    // Skip boxes behind the nearest hit.
     if (candidate.nearest_m > nearest.range_m) break;
     const Layer& layer = layers_[candidate.layer];
     if (entry_range(layer.grid.box(candidate.cluster), origin_W, direction_W) > nearest.range_m) continue;

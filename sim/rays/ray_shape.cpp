@@ -17,7 +17,7 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 using Kind = RayShape::Kind;
 
-// The functions below have no branches, so that the compiler vectorizes the loops over lanes.
+// The functions below have no branches, so that the compiler makes vector loops over lanes.
 #define SHOAL_INLINE [[gnu::always_inline]] inline
 
 /// Interval of a ray inside a convex body; empty when enter > leave.
@@ -50,7 +50,7 @@ SHOAL_INLINE LocalRay to_local(const RayShape& shape, const RayPacket& rays, int
 /// Limits the interval to -half..half along one axis.  A ray in the plane of a face (0 / 0) counts as inside:
 /// comparisons with NaN change nothing.
 SHOAL_INLINE Inside cut(Inside in, double from, double direction, double half) {
-  const double inverse = 1 / (direction + 0.0);  // -0 becomes 0, as `ahead` has it
+  const double inverse = 1 / (direction + 0.0);  // -0 becomes 0, consistent with `ahead`
   const double ahead = direction < 0 ? -half : half;
   const double enter = (-ahead - from) * inverse, leave = (ahead - from) * inverse;
   return {larger(enter, in.enter), smaller(leave, in.leave)};
@@ -191,7 +191,7 @@ void see_sse2(const RayShape& shape, const RayPacket& rays, double (&from)[3][Ra
   transform_all_to(shape, rays, from, direction);
 }
 
-// Results are bitwise equal: AVX2 alone has no fused multiply-add.
+// The results have equal bits: AVX2 alone has no fused multiply-add.
 
 [[gnu::target("avx2")]] void ranges_avx2(const RayShape& shape, const RayPacket& rays, unsigned lanes,
                                          double (&range_m)[RayPacket::size]) {
@@ -249,6 +249,7 @@ namespace {
 
 /// Sets kind and sizes of the shape from the geom.
 void take_sizes(RayShape& shape, int number, const ScenePart& part, const TriangleScene* mesh) {
+  // Sizes of a sphere, capsule or cylinder.
   const auto round = [&](Kind kind, double radius_m, double length_m) {
     shape.kind = kind;
     shape.size = {radius_m, radius_m * radius_m, length_m / 2};

@@ -95,8 +95,8 @@ struct alignas(64) RayPacket {
 };
 
 /// Computes the range at which each lane of `lanes` (bits) hits the shape, which must not be a mesh: where it enters in
-/// front of its origin, or leaves when it starts inside; infinity when it misses.  The result is bitwise independent of
-/// the number of lanes.  Other elements of `range_m` are undefined.
+/// front of its origin, or leaves when it starts inside; infinity when it misses.  The bits of the result do not depend
+/// on the number of lanes.  Other elements of `range_m` are undefined.
 void find_ranges(const RayShape& shape, const RayPacket& rays, unsigned lanes, double (&range_m)[RayPacket::size]);
 /// Transforms all lanes to the frame of the shape, which is not a plane: x of all lanes, y, z.
 void transform_to(const RayShape& shape, const RayPacket& rays, double (&from)[3][RayPacket::size],

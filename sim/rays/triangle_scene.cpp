@@ -135,7 +135,7 @@ void TriangleScene::filter_cast(const RTCFilterFunctionNArguments* arguments) {
 unsigned TriangleScene::cast(const RayShape& shape, RayPacket& rays, unsigned lanes) const {
   Query query(*this, shape, rays, lanes);
   query.floats.intersect(scene_.get(), query.context);
-  // Prefetch the vertices of the candidates.
+  // Load the vertices of the candidates into the cache.
   for (unsigned rest = lanes; rest != 0; rest &= rest - 1) {
     const int lane = std::countr_zero(rest);
     for (int i = 0; i < query.found[lane]; ++i)
@@ -146,6 +146,7 @@ unsigned TriangleScene::cast(const RayShape& shape, RayPacket& rays, unsigned la
   for (; lanes != 0; lanes &= lanes - 1) {
     const int lane = std::countr_zero(lanes);
     for (int i = 0; i < query.found[lane]; ++i) {
+      // Compute the candidate in double precision, and keep the nearest.
       const auto [tfar, triangle] = query.candidates[lane][i];
       if (tfar > query.nearest[lane] + query.floats.margin_m()) continue;
       const double range_m = find_range(query.from_M(lane), query.direction_M(lane), triangle);
