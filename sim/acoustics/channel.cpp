@@ -249,8 +249,8 @@ void AcousticChannel::handle(const Event& event, Time now) {
   step_end_ = now;
   handling_ = true;
   fetch_ahead();
-  // Dispatch by the kind of event.
   const int item = static_cast<int>(event.stamp.count());
+  // Dispatch by the kind of event.
   switch (event.kind) {
     case emission_event:
       emit(item, now);

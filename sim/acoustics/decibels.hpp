@@ -80,6 +80,7 @@ class PowerRatio {
 inline Decibels to_decibels(PowerRatio power) {
   return Decibels(10 * std::log10(power.linear()));
 }
+/// Power of a level.
 inline PowerRatio to_power(Decibels level) {
   return PowerRatio(std::pow(10.0, level.dB() / 10));
 }

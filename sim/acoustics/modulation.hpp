@@ -24,6 +24,7 @@ double bit_error_rayleigh_fsk(PowerRatio mean_EbN0);
 /// 1e-12.  `coding_gain`: added to Eb/N0.
 double packet_success_probability(Modulation modulation, PowerRatio EbN0, std::int64_t bits,
                                   Decibels coding_gain = Decibels(0));
+/// The same from the bit error probability.
 double packet_success_probability(double bit_error, std::int64_t bits);
 
 /// Duration of `bits` at this rate, s.

@@ -25,6 +25,7 @@ struct SpreadingConfig {
   void read(ParamReader& in);
 };
 
+/// Spreading loss by a configuration.
 Decibels spreading_loss(double range_m, const SpreadingConfig& config);
 
 /// `absorption:` of a world's acoustics.

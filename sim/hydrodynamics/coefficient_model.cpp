@@ -316,7 +316,7 @@ double CoefficientModel::cross_flow_drag(double speed) const {
   return table[i - 1] + along * (table[i + 1] - table[i - 1]);
 }
 
-/// Adds the cross-flow drag by strip theory (Faltinsen 1990; Fossen 2011).
+/// Adds the cross-flow drag by strip theory (Fossen 2011).
 void CoefficientModel::add_cross_flow(const Vector6d& nu_r, double density, Vector6d& tau) const {
   const CrossFlowConfig& hull = *config_.cross_flow;
   const double scale =

@@ -222,7 +222,7 @@ void ImmersedBodies::add_piece(const ImmersedPiece& piece, double gravity_mps2, 
   sum.wet = true;
   const Vector3d at_CP_W = p_WP + R_WP * immersed.centroid_m - sum.p_WC;
   const double displaced_kg = water.density_kgpm3 * immersed.volume_m3;
-  // Froude-Krylov force: the pressure gradient that accelerates the water acts on the displaced volume.
+  // Buoyancy and Froude-Krylov force: the pressure gradient that accelerates the water acts on the displaced volume.
   const Vector3d lift = displaced_kg * (Vector3d(0, 0, gravity_mps2) + water.acceleration_W);
   sum.force_N += lift;
   sum.lift_N += lift.z();

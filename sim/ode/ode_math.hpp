@@ -18,6 +18,7 @@ inline Matrix3d rotation_to_eigen(const dReal* R) {
   return out;
 }
 
+/// Writes a rotation in ODE's 3x4 row-major layout.
 inline void to_ode(const Matrix3d& R, dMatrix3 out) {
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 3; ++column) out[4 * row + column] = R(row, column);
@@ -25,6 +26,7 @@ inline void to_ode(const Matrix3d& R, dMatrix3 out) {
   }
 }
 
+/// Writes a quaternion in ODE's order: w, x, y, z.
 inline void to_ode(const Quaterniond& q, dQuaternion out) {
   out[0] = q.w();
   out[1] = q.x();

@@ -48,12 +48,15 @@ class Collider {
   Collider(const PhysicsConfig& config, ContactTable table);
 
   // The caller assigns the numbers of groups, bodies and parts, and may reuse those of removed ones.
+  /// Adds an empty group with its own collision space.
   void add_group(int group, bool self_collision);
   /// Adds the geom to the space of its group.  A moving geom must be attached to its body and have its pose.
   void add_part(int number, const CollisionPart& part, GeomHandle geom, Motion motion);
+  /// Adds a body, whose pointers must stay valid until remove_group.
   void add_body(int number, const CollisionBody& body);
   /// Excludes contacts between two bodies connected by a joint.
   void join(int first, int second);
+  /// Adds the space and the fixed parts of the group to the world's space.
   void close_group(int group);
   /// Destroys the geoms of all parts of a group.  Call before its ODE bodies are destroyed.
   void remove_group(int group, std::span<const int> bodies, std::span<const int> parts);
