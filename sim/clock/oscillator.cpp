@@ -16,11 +16,11 @@ struct ClockPreset {
 };
 
 // tcxo, ocxo: typical of their class, not of one unit; an underwater OCXO ages by 0.2 to 2e-9 per day
-// (slx-timing.com/underwater-system-precision-clock, seen), and a drift of 0.02 ppm is some ten days of that.  csac:
-// Microchip SA.45s.  Seen, Microchip's notes on its timing error (Chip Scale Atomic Clocks: Effects on Timing Error):
-// about 1 us after 24 h, 5 us after 48 h, 8 to 12 us after 72 h without an initial error; a random walk of 1e-13 /
-// sqrt(s) gives 1.5, 4.2 and 7.6 us.  Not verified against its data sheet: Allan deviation 3e-10 at 1 s falling to
-// 1e-11 at 1000 s, 5e-11 at shipment, 5e-10 over 45 C.
+// (slx-timing.com/underwater-system-precision-clock, seen), and a drift of 0.02 ppm is some ten days of that.
+// csac: Microchip SA.45s.  Seen, Microchip's notes on its timing error (Chip Scale Atomic Clocks: Effects on Timing
+// Error): about 1 us after 24 h, 5 us after 48 h, 8 to 12 us after 72 h without an initial error; a random walk of
+// 1e-13 / sqrt(s) gives 1.5, 4.2 and 7.6 us.  Not verified against its data sheet: Allan deviation 3e-10 at 1 s falling
+// to 1e-11 at 1000 s, 5e-11 at shipment, 5e-10 over 45 C.
 constexpr ClockPreset presets[] = {
     {"perfect", 0, 0, 0, 0, 0},
     {"tcxo", 1, 1e-9, 1e-11, 5e-10, 0.05},

@@ -168,16 +168,17 @@ void VehicleClock::discipline(Time now, double measured_error_s, const Disciplin
   // The correction that starts at `now` continues from the end of the previous one.
   const State::Steer* before = state.steer_at(now + Time{1});
   double offset_s = before ? before->offset_s + before->rate * to_seconds(now - before->after) : 0;
-  // Correct a large error by a step.
   if (!state.first_fix) state.first_fix = now;
   double left_s = measured_error_s;
+  // Correct a large error by a step.
   if (std::abs(measured_error_s) > params.step_above_s) {
     offset_s -= measured_error_s;
     left_s = 0;
     state.rate_is_unknown = true;
   }
-  // Double pole of the loop: remaining fraction of an error after an interval.  From x' = x + dt (d - kp x / dt) and d'
-  // = d - ki x / dt of phase x and frequency d: kp = 1 - pole^2, ki = (1 - pole)^2.
+  // Double pole of the loop: remaining fraction of an error after an interval.
+  // From x' = x + dt (d - kp x / dt) and d' = d - ki x / dt of phase x and frequency d: kp = 1 - pole^2, ki = (1 -
+  // pole)^2.
   const double pole = std::exp(-dt_s / params.time_constant_s);
   const double kp = 1 - pole * pole;
   const double ki = (1 - pole) * (1 - pole);

@@ -272,10 +272,10 @@ int Collider::touch(int first, int second, dWorldID world, dJointGroupID contact
   return count;
 }
 
-// Lets a part within the surface layer sink back to its lower bound in one step, so that its weight keeps it on the
-// ground.  Without this, ODE stops a part that has penetrated less than the surface layer from sinking further, and
-// nothing returns it to that depth: where the ground curves away, the part separates within a few steps, falls and
-// lands, repeatedly.
+// Lets a part within the surface layer sink to its full depth in one step, so that its weight keeps it on the ground.
+// Without this, ODE stops a part that has penetrated less than the surface layer from sinking further, and nothing
+// returns it to that depth: where the ground curves away, the part separates within a few steps, falls and lands,
+// repeatedly.
 void Collider::follow_ground(dContact& contact) const {
   const double to_layer_m = surface_layer_m_ - contact.geom.depth;
   if (!(to_layer_m > 0)) return;

@@ -221,7 +221,8 @@ void PhysicsWorld::Impl::finish(std::int64_t step_number) {
 
 bool PhysicsWorld::Impl::out_of_bounds(const Body& body) const {
   const auto square = [](const dReal* v) { return v[0] * v[0] + v[1] * v[1] + v[2] * v[2]; };
-  // The condition is false for NaN.  Angular velocity has no configured bound, but must be finite.
+  // Comparisons with NaN are false, so that NaN is out of bounds.  Angular velocity has no configured bound, but must
+  // be finite.
   return !(square(body.v_WC_W_) <= config.max_speed_mps * config.max_speed_mps &&
            square(body.p_WC_) <= config.max_distance_m * config.max_distance_m && square(body.w_WB_W_) < 1e300);
 }
