@@ -13,7 +13,7 @@
 
 namespace sim {
 
-/// An entry of `links:`, for one way between two transducers.
+/// Entry of `links:`: losses from one transducer to another.
 struct LinkConfig {
   std::string from, to;  ///< a vehicle, or vehicle/device; empty: any
   bool both_ways = true;
@@ -22,7 +22,7 @@ struct LinkConfig {
   void read(ParamReader& in);
 };
 
-/// `acoustics:` of a world: how the water carries sound between transducers.
+/// `acoustics:` of a world: propagation of sound between transducers.
 struct AcousticsConfig {
   SpreadingConfig spreading;
   AbsorptionConfig absorption;
@@ -30,9 +30,9 @@ struct AcousticsConfig {
   std::optional<MultipathConfig> multipath;
   FadingConfig fading;
   bool occlusion = true;                    ///< terrain, objects and hulls block sound
-  std::optional<double> occlusion_loss_dB;  ///< loss through obstacles; unset: nothing passes
-  double inaudible_dB = 10;                 ///< sounds that are this far below the noise do not count
-  std::optional<double> range_max_m;        ///< nothing is received beyond
+  std::optional<double> occlusion_loss_dB;  ///< loss through obstacles; unset: no transmission
+  double inaudible_dB = 10;                 ///< signals this far below the noise are ignored
+  std::optional<double> range_max_m;        ///< maximum range of reception
   std::vector<LinkConfig> links;
   void read(ParamReader& in);
 };

@@ -16,8 +16,8 @@ Decibels AmbientNoise::spectral_level(double frequency_kHz) const {
 }
 
 Decibels AmbientNoise::band_level(double centre_Hz, double bandwidth_Hz) const {
-  // Gauss's rule of 4 points on pieces that grow by no more than a third of their lower end: the spectrum falls by
-  // powers of the frequency, and each piece is good to 1e-4 dB.
+  // Gauss-Legendre quadrature with 4 points on intervals that grow by at most a third of their lower end; as the
+  // spectrum falls by powers of the frequency, the error of each interval is below 1e-4 dB.
   constexpr double point[] = {0.3399810435848563, 0.8611363115940526};
   constexpr double weight[] = {0.6521451548625461, 0.3478548451374538};
   double low_Hz = std::max(centre_Hz - bandwidth_Hz / 2, 1.0);

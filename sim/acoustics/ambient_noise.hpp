@@ -8,18 +8,17 @@
 
 namespace sim {
 
-/// Ambient noise of the sea: turbulence, shipping, wind and the water's own heat, the curves of Wenz (JASA 34, 1962) in
+/// Ambient noise of the sea from turbulence, shipping, wind and thermal noise: the curves of Wenz (JASA 34, 1962) in
 /// the form of R. Coates (Underwater Acoustic Systems, 1990), as in M. Stojanovic (On the relationship between capacity
 /// and distance in an underwater acoustic communication channel, 2007).
 struct AmbientNoise {
   double shipping = 0.5;  ///< 0 (none near) to 1 (heavy)
   double wind_mps = 5;
-  Decibels offset;  ///< of all, such as for a harbour
+  Decibels offset;  ///< added to the whole spectrum, such as for a harbour
 
-  /// Per hertz, dB re 1 uPa^2/Hz.  frequency_kHz > 0.
+  /// Spectral level, dB re 1 uPa^2/Hz.  frequency_kHz > 0.
   Decibels spectral_level(double frequency_kHz) const;
-  /// In the band about the centre, dB re 1 uPa: the spectrum integrated over it.  A band that would reach below 1 Hz
-  /// begins there.
+  /// Level in the band about the centre, dB re 1 uPa: integral of the spectrum.  The band is cut at 1 Hz.
   Decibels band_level(double centre_Hz, double bandwidth_Hz) const;
 };
 

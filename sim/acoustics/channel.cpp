@@ -13,13 +13,14 @@ namespace sim {
 
 namespace {
 
-/// Limit of the closing speed on a sound, as a share of its speed; the last part of the way is computed when
-/// the sound is so near.
+/// Fraction of the travel time before the estimated arrival at which the arrival is computed exactly; it bounds the
+/// closing speed as a fraction of the speed of sound.
 constexpr double early = 0.02;
-/// The neighbours are valid for this time; no transducer moves farther meanwhile, nor while a sound is under way.
+/// Validity of the list of neighbours, and the distance that no transducer moves farther in this time or while a sound
+/// travels.
 constexpr double neighbours_hold_s = 1;
 constexpr double stray_m = 150;
-/// How often those who send or take signals are looked after.
+/// Interval of the checks of active senders and receivers.
 constexpr Time watch_period{100'000};
 
 }  // namespace
@@ -79,7 +80,7 @@ void AcousticChannel::leave(Transducer& transducer) {
   clear_receivers();
 }
 
-/// The counts of names that come and go would be more and more.
+/// Bounds the memory for the counts of addresses that are added and removed.
 void AcousticChannel::discard_messages_for(const Audience& removed) {
   const auto group = messages_.find(removed.group);
   if (removed.address.empty() || group == messages_.end() || !group->second.contains(removed.address)) return;
@@ -143,7 +144,7 @@ Decibels AcousticChannel::compute_min_level(double frequency_Hz) const {
       below_dB = std::max(below_dB, each->noise_reduction(frequency_Hz).dB() - each->config().detection_dB);
   double gain_dB = 0;
   for (const LinkConfig& link : config_.links) gain_dB += std::max(0.0, -link.extra_loss_dB);
-  // Fading makes one signal in fifty or fewer stronger than this.
+  // Margin for fading: exceeded by at most one signal in fifty.
   if (config_.fading.type == FadingConfig::Type::rayleigh) gain_dB += 6;
   if (config_.fading.type == FadingConfig::Type::log_normal) gain_dB += 2 * config_.fading.std_dB;
   return Decibels{below_dB + gain_dB};
@@ -216,7 +217,7 @@ void AcousticChannel::transmit(Transducer& from, Signal signal, Time at) {
   sending.group = from.group();
   sending.sequence = ++from.signals_;
   sending.sent = at;
-  sending.users = 2;  // the two events
+  sending.users = 2;  // the two events below
   schedule(at, emission_event, number);
   schedule(at + sending.signal.duration, emission_end_event, number);
 }
@@ -232,7 +233,8 @@ void AcousticChannel::set_receiver(Flight& flight, const Transducer* to) {
   flight.to_join = to != nullptr ? to->join_ : 0;
 }
 
-/// With many signals under way each one is far from the last in memory.
+/// Loads the flight of a later event into the cache: with many signals in transit, consecutive ones are far apart in
+/// memory.
 void AcousticChannel::fetch_ahead() const {
   constexpr std::size_t events_ahead = 6;
   const std::optional<Time> item = around_.events.stamp_ahead(events_ahead, Event::of_acoustics);
@@ -248,6 +250,7 @@ void AcousticChannel::handle(const Event& event, Time now) {
   handling_ = true;
   fetch_ahead();
   const int item = static_cast<int>(event.stamp.count());
+  // Dispatch by the kind of event.
   switch (event.kind) {
     case emission_event:
       emit(item, now);
@@ -278,12 +281,14 @@ void AcousticChannel::handle(const Event& event, Time now) {
 
 void AcousticChannel::emit(int number, Time now) {
   Sending& sending = *sendings_[static_cast<std::size_t>(number)];
+  // Without power or out of the water the signal is not sent.
   Transducer* from = sending.from;
   if (from == nullptr || !from->works() || !around_.medium.in_water(from->p_W(sending.sent))) {
     if (from != nullptr) ++from->counts_.unsent;
     release(number);
     return;
   }
+  // Record pose, velocity and pattern of the sender at transmission.
   sending.p_W = from->p_W(sending.sent);
   sending.v_W = from->v_W();
   sending.R_WS = from->R_WS();
@@ -293,6 +298,7 @@ void AcousticChannel::emit(int number, Time now) {
     watching_ = true;
     schedule(now + watch_period, watch_event, 0);
   }
+  // Count messages, and abort receptions of the sender (half duplex).
   from->sending_until_ = std::max(from->sending_until_, sending.sent + sending.signal.duration);
   if (sending.signal.kind == Signal::Kind::message) {
     ++from->counts_.sent;
@@ -303,6 +309,7 @@ void AcousticChannel::emit(int number, Time now) {
   for (std::int64_t flight = from->receiver_.drop(); flight >= 0; flight = from->receiver_.drop())
     flights_[static_cast<std::size_t>(flight)].loss = SignalLoss::half_duplex;
 
+  // Send to each transducer in audible range.
   const double reach_m = update_neighbours(sending.signal, now) + stray_m;
   neighbours_.near(sending.p_W, reach_m, near_);
   examined_ += static_cast<std::int64_t>(near_.size());
@@ -316,6 +323,7 @@ void AcousticChannel::emit(int number, Time now) {
 double AcousticChannel::update_neighbours(const Signal& signal, Time now) {
   const bool anew = neighbours_age_ < 0 || to_seconds(now) - neighbours_age_ > neighbours_hold_s;
   std::vector<Neighbourhood::Member> members;
+  // Collect the positions of all transducers.
   if (anew) {
     lowest_m_ = std::numeric_limits<double>::infinity();
     for (const Transducer* each : transducers_) {
@@ -350,7 +358,7 @@ void AcousticChannel::end_emission(int number, Time at) {
   Sending& sending = *sendings_[static_cast<std::size_t>(number)];
   Transducer* const from = sending.from;
   if (from != nullptr && from->sending_ == number) {
-    // The end of the signal is missing.
+    // Lost power or left the water since the last check: the end of the signal is missing.
     if (!from->works())
       cut(number, SignalLoss::sender_off, at);
     else if (!around_.medium.in_water(from->p_W(at)))
@@ -384,14 +392,14 @@ void AcousticChannel::approach(int number, Time due) {
   Flight& flight = flights_[static_cast<std::size_t>(number)];
   if (const Transducer* const to = receiver_of(flight)) {
     const Sending& sending = *sendings_[static_cast<std::size_t>(flight.sending)];
-    // From here on the receiver continues as it does now.
+    // Extrapolate the receiver at constant velocity.
     const auto arrival = meeting(around_.medium, sending.p_W, sending.sent, to->p_W(step_end_), step_end_, to->v_W());
     if (arrival) {
       flight.travel_time_s = arrival->travel_time_s;
       flight.started = std::max(due, sending.sent + from_seconds(arrival->travel_time_s));
       flight.p_begun_W = to->p_W(flight.started);
     } else {
-      set_receiver(flight, nullptr);  // faster than sound: it was thrown out of the world
+      set_receiver(flight, nullptr);  // faster than sound: the body has diverged
     }
   }
   schedule(std::max(flight.started, due), start_event, number);

@@ -22,7 +22,7 @@
 
 namespace sim {
 
-/// What the channel knows of the world.
+/// Parts of the world that the channel uses.
 struct AcousticSurroundings {
   const Medium& medium;
   const PhysicsWorld& physics;
@@ -30,9 +30,9 @@ struct AcousticSurroundings {
   std::uint64_t seed;
 };
 
-/// Carries sound through the water from transducer to transducer, by events in simulated time.  A signal goes along
-/// the straight line from where the sender was to where the receiver is when it arrives, at the mean slowness of the
-/// water along it.  docs/models/acoustics.md has the equations and their sources.
+/// Underwater acoustic channel between transducers, driven by events in simulated time.  A signal travels along the
+/// straight line from the position of the sender at transmission to that of the receiver at arrival, at the mean
+/// slowness of the water along it.  docs/models/acoustics.md has the equations and their sources.
 class AcousticChannel {
  public:
   AcousticChannel(const AcousticsConfig& config, const AcousticSurroundings& surroundings);
@@ -40,32 +40,34 @@ class AcousticChannel {
 
   const AcousticsConfig& config() const { return config_; }
   bool has_water() const { return around_.medium.has_water(); }
-  /// An event of the channel is due; `now` is the end of the step that just ended.
+  /// Handles an event of the channel; `now` is the end of the step that just ended.
   void handle(const Event& event, Time now);
-  /// A transducer was moved: neighbours are searched again.
+  /// Discards the list of neighbours.  Call after a transducer was moved.
   void discard_places() { neighbours_age_ = -1; }
-  /// A receiver changed: how faint a sound may be and matter is looked up again.
+  /// Discards the minimum signal levels and the list of neighbours.  Call after a receiver changed.
   void clear_receivers();
-  /// Messages that were sent to this one, since the last with its address left, or all of its group since the start.
+  /// Number of messages sent to this address, since the last transducer with it was removed, or to its whole group
+  /// since the start.
   std::int64_t messages_for(const Audience& own) const;
-  /// What transducers that have left sent and received.
+  /// Counts of all removed transducers.
   const Transducer::Counts& counts_of_removed() const { return removed_; }
 
-  /// In device order; null where one has left.
+  /// Transducers in device order; null where one was removed.
   const std::vector<Transducer*>& transducers() const { return transducers_; }
-  /// For rebuilding a world: the transducers that join next get these numbers.  False: one is taken or cannot
-  /// be.
+  /// Assigns these numbers to the next transducers, to rebuild a world.  Returns false when a number is invalid or in
+  /// use.
   bool prescribe(std::vector<int> numbers);
+  /// Whether all prescribed numbers have been assigned.
   bool as_prescribed() const { return prescribed_.empty(); }
   const Propagation& propagation() const { return propagation_; }
-  /// Receptions, received or not, since the start: what the work grows with.
+  /// Number of receptions since the start, successful or not: a measure of the work.
   std::int64_t flights() const { return flights_made_; }
   /// Number of transducers examined in the search for receivers, since the start.
   std::int64_t examined() const { return examined_; }
-  /// With the transducers and continuous sounds, whose devices do not.
+  /// Visits the state, including transducers and continuous sounds; their devices do not visit them.
   void visit_state(StateArchive& archive);
-  /// `events`: all that are due later, of whomever.  Throws SnapshotError when those of the channel do not fit its
-  /// signals.
+  /// Checks restored events against the signals.  `events`: all queued events of the world.  Throws SnapshotError when
+  /// events and signals of the channel do not match.
   void check_events(std::span<const Event> events, const StateArchive& archive) const;
 
  private:
@@ -73,10 +75,10 @@ class AcousticChannel {
   friend class ContinuousSound;
   enum EventKind { emission_event, emission_end_event, near_event, start_event, end_event, watch_event, silence_event };
 
-  /// A signal under way.
+  /// Transmission in progress.
   struct Sending {
     Signal signal;
-    Transducer* from = nullptr;  // null: it left
+    Transducer* from = nullptr;  // null: removed
     std::string source;
     int number = -1;
     int group = -1;
@@ -85,38 +87,39 @@ class AcousticChannel {
     Vector3d p_W = Vector3d::Zero(), v_W = Vector3d::Zero();
     Matrix3d R_WS = Matrix3d::Identity();
     DirectivityConfig directivity;
-    SignalLoss cut = SignalLoss::none;        // why the sender stopped before the end
-    Time cut_after{0};                        // of what it sent until then
-    int users = 0;                            // flights and events that still need it
-    void visit_state(StateArchive& archive);  // but for `from`
+    SignalLoss cut = SignalLoss::none;        // cause of an early end
+    Time cut_after{0};                        // duration sent until then
+    int users = 0;                            // flights and events that refer to it
+    void visit_state(StateArchive& archive);  // except `from`
   };
-  /// A signal on its way to one receiver.
+  /// Propagation of a signal to one receiver.
   struct Flight {
     int sending = -1;
-    int to = -1;  // number of the transducer; -1: it left
+    int to = -1;  // number of the transducer; -1: removed
     Time started{0}, ended{0};
     double travel_time_s = 0;
     Vector3d p_begun_W = Vector3d::Zero();
     double closing_mps = 0;
     Decibels level{0}, snr{0};
     SignalLoss loss = SignalLoss::none;
-    std::uint32_t to_join = 0;  // else another has its number now
+    std::uint32_t to_join = 0;  // differs from the transducer's when its number was reused
     bool listened = false, present = false, detected = false, delayed = false;
-    bool meant = false;                       // it is for the receiver
-    void visit_state(StateArchive& archive);  // but for `to`
+    bool meant = false;                       // addressed to the receiver
+    void visit_state(StateArchive& archive);  // except `to`
   };
 
+  /// Add and remove transducers and continuous sounds.
   void join(Transducer& transducer);
   void leave(Transducer& transducer);
-  /// When no other transducer has that address.
+  /// Erases the count of an address that no transducer has any more.
   void discard_messages_for(const Audience& removed);
   void join(ContinuousSound& sound);
   void leave(ContinuousSound& sound);
   void transmit(Transducer& from, Signal signal, Time at);
-  /// Of signals that have not begun.  Until when it sends.
+  /// Cancels the signals that have not started.  Returns the end of the present transmission.
   Time call_back(Transducer& from);
 
-  /// Null when it left.
+  /// Receiver of a flight; null when it was removed.
   Transducer* receiver_of(const Flight& flight) const {
     Transducer* const to = flight.to < 0 ? nullptr : transducers_[static_cast<std::size_t>(flight.to)];
     return to != nullptr && to->join_ == flight.to_join ? to : nullptr;
@@ -125,36 +128,36 @@ class AcousticChannel {
   void fetch_ahead() const;
   void emit(int sending, Time now);
   void send_to(int sending, Transducer& to);
-  /// Updates the neighbours when they are outdated, for signals of this range.  Returns that range, m.
+  /// Updates the neighbours when they are outdated, for the audible range of this signal.  Returns that range, m.
   double update_neighbours(const Signal& signal, Time now);
   void end_emission(int sending, Time at);
-  /// The sender stops before the end.
+  /// Ends a transmission early.
   void cut(int sending, SignalLoss why, Time at);
-  /// The receiver will be notified, if the signal still exists then.
+  /// Schedules the early end at a receiver, unless the signal ends before.
   void schedule_silence(int flight, const Sending& sending, Time now);
   void approach(int flight, Time due);
   void begin(int flight);
   void fall_silent(int flight, Time due);
-  /// Checks whether senders and receivers of signals are still able to.
+  /// Checks whether active senders and receivers still have power and are in the water.
   void watch();
   bool can(const Transducer& transducer) const;
-  /// A continuous sound began, ended or changed.
+  /// Updates the noise of receptions after a continuous sound started, ended or changed.
   void noise_changed();
-  /// Margin below the noise within which a signal may still matter to a receiver.
+  /// Margin below the noise within which a signal can affect a receiver.
   Decibels min_level(double frequency_Hz) const;
   Decibels compute_min_level(double frequency_Hz) const;
   void end(int flight);
-  /// Level, end and Doppler.  Returns the power of echoes that disturb, re 1 uPa^2.
-  /// `later_s`: by which the first sound is an echo's.
+  /// Computes level, end and Doppler of a flight.  Returns the power of interfering echoes, re 1 uPa^2. `later_s`:
+  /// delay of the first arrival when it is an echo.
   PowerRatio compute_level(Flight& flight, const Sending& sending, double& later_s);
-  /// The reason why it cannot be decoded, independent of other signals.
+  /// Reason why a signal cannot be decoded, independent of other signals.
   SignalLoss obstacle(const Flight& flight) const;
   Decibels link_loss(const Transducer& to, const Sending& sending, double& loss_probability) const;
-  /// Of the sea and of continuous sounds, in the band of a signal, as a receiver receives it.
+  /// Noise of the sea and of continuous sounds in the band of a signal, as received.
   PowerRatio noise_at(const Transducer& to, const Vector3d& p_W, const Signal& signal) const;
   void take(int number, Flight& flight, const Sending& sending, PowerRatio power, PowerRatio disturbing);
   void finish(const Transducer& to, Flight& flight, const Sending& sending, const SignalReceiver::Outcome& outcome);
-  /// Its draws when a signal begins, and when it ends.
+  /// Random stream of a signal at a receiver, for its start or its end.
   Random stream(const Transducer& to, const Sending& sending, bool at_end) const;
   void schedule(Time due, EventKind kind, int item);
   Transducer* visit_transducer(StateArchive& archive, const Transducer* transducer);
@@ -163,7 +166,8 @@ class AcousticChannel {
   int new_flight();
   void release(int sending);
   Time step_end() const { return step_end_; }
-  /// While events are handled: its own number for each time that bodies may have moved.  Else negative.
+  /// Number of the present state of motion, while events are handled; else negative.  It changes when bodies may have
+  /// moved.
   std::int64_t look() const { return handling_ ? polls_ : -1; }
 
   AcousticsConfig config_;
@@ -182,12 +186,12 @@ class AcousticChannel {
   std::int64_t polls_ = 0;
   bool handling_ = false;
   Neighbourhood neighbours_;
-  double neighbours_age_ = -1;                                           // when they were looked up, s; negative: not
-  double lowest_m_ = 0;                                                  // z of the lowest of them then
+  double neighbours_age_ = -1;                                           // time of the last search, s; negative: none
+  double lowest_m_ = 0;                                                  // z of the lowest transducer at that time
   std::map<std::string, std::map<std::string, std::int64_t>> messages_;  // sent, by group and address
-  mutable std::vector<std::pair<double, Decibels>> min_levels_;          // of a frequency, computed before
+  mutable std::vector<std::pair<double, Decibels>> min_levels_;          // cache by frequency
   mutable std::int64_t examined_ = 0;
-  bool watching_ = false;  // a watch_event is under way
+  bool watching_ = false;  // a watch_event is scheduled
   Transducer::Counts removed_;
   std::vector<int> near_;
 };

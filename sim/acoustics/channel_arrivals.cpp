@@ -5,13 +5,13 @@
 #include "sim/acoustics/sound_path.hpp"
 #include "sim/device/fault.hpp"
 
-// What becomes of a signal where it arrives.
+// Reception of signals at their receivers.
 
 namespace sim {
 
 namespace {
 
-/// A gain below this is none.
+/// Gains below this count as zero.
 constexpr double lowest_dB = -1000;
 
 }  // namespace
@@ -38,10 +38,12 @@ PowerRatio AcousticChannel::noise_at(const Transducer& to, const Vector3d& p_W, 
 }
 
 Decibels AcousticChannel::link_loss(const Transducer& to, const Sending& sending, double& loss_probability) const {
+  // Whether a name of the configuration, a vehicle or a device, includes a device.
   const auto named = [](const std::string& name, const std::string& device) {
     return name.empty() || name == device ||
            (device.size() > name.size() && device[name.size()] == '/' && device.compare(0, name.size(), name) == 0);
   };
+  // Sum of losses, and probability of any of the random losses.
   Decibels loss{0};
   loss_probability = 0;
   for (const LinkConfig& link : config_.links) {
@@ -55,7 +57,7 @@ Decibels AcousticChannel::link_loss(const Transducer& to, const Sending& sending
 }
 
 Random AcousticChannel::stream(const Transducer& to, const Sending& sending, bool at_end) const {
-  // One for each pair, so that another modem in the world changes no other link.
+  // One stream per pair, so that adding a modem changes no other link.
   Random random(around_.seed, sending.source + ">" + to.full_name() + "#sound");
   random.begin_step(2 * sending.sequence + at_end);
   return random;
@@ -64,6 +66,7 @@ Random AcousticChannel::stream(const Transducer& to, const Sending& sending, boo
 PowerRatio AcousticChannel::compute_level(Flight& flight, const Sending& sending, double& later_s) {
   const Transducer& to = *receiver_of(flight);
   const Signal& signal = sending.signal;
+  // Range, direction, Doppler and end of the signal.
   const Vector3d displacement_W = flight.p_begun_W - sending.p_W;
   const double range_m = displacement_W.norm();
   const Vector3d direction_W = range_m > 0 ? Vector3d(displacement_W / range_m) : Vector3d(Vector3d::UnitX());
@@ -73,11 +76,13 @@ PowerRatio AcousticChannel::compute_level(Flight& flight, const Sending& sending
   const double squeezed = doppler_factor(direction_W, sending.v_W, v_to_W, c);
   flight.ended = flight.started + from_seconds(to_seconds(signal.duration) / squeezed);
 
+  // Path gain and losses of the link.
   Random random = propagation_.draws() ? stream(to, sending, false) : Random(0, {});
   const Propagation::Gain gain =
       propagation_.gain(sending.p_W, sending.group, flight.p_begun_W, to.group(), signal.centre_Hz, random);
   double loss_probability = 0;
   Decibels level = signal.source_level - link_loss(to, sending, loss_probability);
+  // Directivity at both ends.
   const auto add_beam = [&](const DirectivityConfig& beam, const auto& direction_S) {
     if (beam.pattern != DirectivityConfig::Pattern::omni)
       level += directivity_gain(beam, direction_S(), signal.centre_Hz, c);
@@ -95,7 +100,8 @@ SignalLoss AcousticChannel::obstacle(const Flight& flight) const {
   if (!around_.medium.in_water(flight.p_begun_W)) return SignalLoss::out_of_water;
   if (!to.works()) return SignalLoss::receiver_off;
   if (flight.loss != SignalLoss::none) return flight.loss;  // blocked
-  // SignalReceiver::take() looks, too; but what no receiver could detect is lost in the noise, whatever is below.
+  // SignalReceiver::take() tests this too; but an undetectable signal counts as lost in noise whatever the causes
+  // below.
   if (flight.snr < Decibels{to.config().detection_dB}) return SignalLoss::noise;
   if (flight.started < to.sending_until_) return SignalLoss::half_duplex;
   if (std::abs(flight.closing_mps) > to.config().doppler_limit_mps) return SignalLoss::doppler;
@@ -112,13 +118,14 @@ void AcousticChannel::begin(int number) {
   }
   Transducer& to = *receiver;
   const Vector3d p_W = to.p_W(flight.started);
-  // Where it was expected, except for what its turns do in so short a time; a transducer that was moved is searched
-  // again.
+  // The position is as predicted except for rotation in this short time; after a jump of the transducer, predict the
+  // arrival again.
   if (!flight.delayed && (p_W - flight.p_begun_W).norm() > 0.01) {
     approach(number, flight.started);
     return;
   }
   flight.p_begun_W = p_W;
+  // Drop signals beyond the maximum range.
   if (config_.range_max_m && (p_W - sending.p_W).norm() > *config_.range_max_m) {
     if (flight.meant) ++to.counts_.lost[static_cast<std::size_t>(SignalLoss::range)];
     end(number);
@@ -127,13 +134,14 @@ void AcousticChannel::begin(int number) {
   double later_s = 0;
   const PowerRatio disturbing = compute_level(flight, sending, later_s);
   if (later_s > 0 && !flight.delayed) {
-    // Nothing comes along the direct path: the first sound is an echo.
+    // The direct path is blocked: the first arrival is an echo.
     flight.delayed = true;
     flight.travel_time_s += later_s;
     flight.started += from_seconds(later_s);
     schedule(flight.started, start_event, number);
     return;
   }
+  // Start the reception.
   flight.listened = to.listener_.listens_to(sending.signal);
   flight.present = flight.loss == SignalLoss::none && around_.medium.in_water(flight.p_begun_W);
   const PowerRatio power = to_power(flight.level);
@@ -191,6 +199,7 @@ void AcousticChannel::end(int number) {
   Flight& flight = flights_[static_cast<std::size_t>(number)];
   const Sending& sending = *sendings_[static_cast<std::size_t>(flight.sending)];
   if (Transducer* const to = receiver_of(flight)) {
+    // Determine the result of the reception.
     SignalReceiver::Outcome outcome;
     const bool taken = flight.present && to->receiver_.end(number, flight.ended, outcome);
     if (flight.listened) {
@@ -202,12 +211,14 @@ void AcousticChannel::end(int number) {
         if (!around_.medium.in_water(to->p_W(flight.ended))) flight.loss = SignalLoss::out_of_water;
         if (!to->works()) flight.loss = SignalLoss::receiver_off;
       }
+      // Count messages addressed to the receiver.
       if (flight.meant) ++to->counts_.lost[static_cast<std::size_t>(flight.loss)];
       if (flight.meant && flight.loss == SignalLoss::none) {
         ++to->counts_.understood;
         to->counts_.understood_bytes += static_cast<std::int64_t>(sending.signal.payload.size());
       }
-      // By what is so of the receiver: a sender that went out of the water is received to stop.
+      // Notify the listener unless the receiver itself cannot receive: the end of a signal is received when only the
+      // sender left the water.
       const bool out_itself = flight.loss == SignalLoss::out_of_water && sending.cut != SignalLoss::out_of_water;
       const bool deaf = out_itself || flight.loss == SignalLoss::receiver_off || flight.loss == SignalLoss::blocked ||
                         !to->works() || !around_.medium.in_water(to->p_W(flight.ended));
@@ -217,7 +228,7 @@ void AcousticChannel::end(int number) {
                                flight.snr, sinr, flight.closing_mps, flight.loss, flight.detected});
     }
   }
-  // receive() may have transmitted: references are stale.
+  // receive() may have transmitted, which invalidates references.
   const int of = flights_[static_cast<std::size_t>(number)].sending;
   free_flights_.push_back(number);
   flights_[static_cast<std::size_t>(number)] = {};

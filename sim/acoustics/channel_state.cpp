@@ -10,7 +10,7 @@ namespace sim {
 
 namespace {
 
-/// It is the place of a count.
+/// Checks a loss, which is used as an index of counts.
 void check_loss(SignalLoss loss, const StateArchive& archive) {
   if (static_cast<int>(loss) < 0 || static_cast<int>(loss) >= signal_losses)
     archive.fail("a signal lost for an unknown cause");
@@ -33,7 +33,7 @@ void AcousticChannel::Flight::visit_state(StateArchive& archive) {
   if (archive.restoring()) check_loss(loss, archive);
 }
 
-/// By its number; -1: null.  Returns what is restored.
+/// Visits a transducer by its number; -1: null.  Returns the restored one.
 Transducer* AcousticChannel::visit_transducer(StateArchive& archive, const Transducer* transducer) {
   int number = transducer != nullptr ? transducer->number() : -1;
   archive(number);
@@ -42,16 +42,18 @@ Transducer* AcousticChannel::visit_transducer(StateArchive& archive, const Trans
 }
 
 void AcousticChannel::visit_state(StateArchive& archive) {
+  // Transducers and continuous sounds.
   for (Transducer* transducer : transducers_)
     if (transducer != nullptr) archive(*transducer);
   for (ContinuousSound* sound : sounds_) archive(*sound);
+  // Transmissions and flights.
   auto sendings = static_cast<std::uint64_t>(sendings_.size()), flights = static_cast<std::uint64_t>(flights_.size());
   archive(sendings, flights);
   if (archive.restoring()) {
     sendings_.clear();
     flights_.clear();
   }
-  // They grow as they are read: a number that is wrong asks for no memory.
+  // Grow the lists while reading, so that a wrong count allocates no memory.
   for (std::uint64_t i = 0; i < sendings; ++i) {
     if (archive.restoring()) sendings_.push_back(std::make_unique<Sending>());
     archive(*sendings_[i]);
@@ -65,6 +67,7 @@ void AcousticChannel::visit_state(StateArchive& archive) {
     if (archive.restoring()) set_receiver(flights_[i], to);
   }
   if (archive.restoring()) ++polls_;
+  // Free lists, neighbours and counts.
   archive.unhashed(free_sendings_, free_flights_, flights_made_, step_end_, neighbours_, neighbours_age_);
   if (!archive.hashing()) archive.not_only_finite(lowest_m_);  // infinity: without a receiver
   archive.unhashed(messages_, watching_, removed_);
@@ -77,7 +80,7 @@ namespace {
   archive.fail("a signal that does not exist");
 }
 
-/// Which of `count` items are in use.  A free one may be listed once.
+/// Returns which of `count` items are in use.  Fails when an item is free twice.
 std::vector<char> in_use(const std::vector<int>& free, std::size_t count, const StateArchive& archive) {
   std::vector<char> used(count, 1);
   for (const int number : free) {
@@ -89,7 +92,7 @@ std::vector<char> in_use(const std::vector<int>& free, std::size_t count, const 
 
 }  // namespace
 
-/// Numbers that are used to look things up.
+/// Checks all restored numbers that are used as indices.
 void AcousticChannel::check_numbers(const StateArchive& archive) const {
   const std::vector<char> sending_used = in_use(free_sendings_, sendings_.size(), archive);
   const std::vector<char> flight_used = in_use(free_flights_, flights_.size(), archive);
@@ -104,14 +107,14 @@ void AcousticChannel::check_numbers(const StateArchive& archive) const {
     const bool in_range = each->sending_ >= -1 && each->sending_ < static_cast<int>(sendings_.size());
     if (!in_range || !each->receiver_.flights_are_below(flights_.size())) fail_for_signal(archive);
   }
-  // Those of one that has left stay in the list until it is built again, which a negative age asks for.
+  // Numbers of removed transducers stay in the list until it is rebuilt, which a negative age requests.
   const bool in_use_now = !(neighbours_age_ < 0);
   if (in_use_now && !neighbours_.numbers_are_below(transducers_.size()))
     archive.fail("a neighbour that does not exist");
 }
 
-/// A signal in use has just the events and flights that it counts, and a flight one event; else one would be let go of
-/// while another still needs it.
+/// Checks that each signal in use has exactly the events and flights that it counts, and each flight one event;
+/// otherwise a signal could be released while it is still needed.
 void AcousticChannel::check_events(std::span<const Event> events, const StateArchive& archive) const {
   std::vector<int> users(sendings_.size(), 0), flight_events(flights_.size(), 0);
   const std::vector<char> flight_used = in_use(free_flights_, flights_.size(), archive);

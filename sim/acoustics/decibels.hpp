@@ -7,13 +7,13 @@
 
 namespace sim {
 
-// A level and a power are different types: adding decibels multiplies powers, and the compiler rejects mixing the
-// two. The only conversions are to_decibels() and to_power().
+// Levels and powers have different types: adding decibels multiplies powers, and the compiler rejects mixing the two.
+// The only conversions are to_decibels() and to_power().
 //
-// Levels under water are over the pressure of 1 uPa: a source level is that at 1 m from the source, a noise level is
-// per hertz or in a band, as its name says.
+// Underwater levels are relative to a pressure of 1 uPa: a source level is that at 1 m from the source, a noise level
+// is per hertz or in a band, as its name states.
 
-/// A level, or a gain (negative: a loss), in dB.  Minus infinity: no power at all.
+/// Level, or gain (negative: loss), in dB.  Minus infinity: zero power.
 class Decibels {
  public:
   constexpr Decibels() = default;
@@ -21,7 +21,7 @@ class Decibels {
 
   constexpr double dB() const { return dB_; }
 
-  /// The gains one after the other.
+  /// Gains in series: their decibels add.
   constexpr Decibels& operator+=(Decibels other) {
     dB_ += other.dB_;
     return *this;
@@ -33,7 +33,7 @@ class Decibels {
   friend constexpr Decibels operator+(Decibels a, Decibels b) { return Decibels(a.dB_ + b.dB_); }
   friend constexpr Decibels operator-(Decibels a, Decibels b) { return Decibels(a.dB_ - b.dB_); }
   constexpr Decibels operator-() const { return Decibels(-dB_); }
-  /// So many times the same gain, such as dB per bounce by bounces.
+  /// Repeated gain, such as dB per bounce times the number of bounces.
   friend constexpr Decibels operator*(double times, Decibels each) { return Decibels(times * each.dB_); }
   friend constexpr auto operator<=>(Decibels a, Decibels b) = default;
   template <typename Archive>
@@ -48,7 +48,7 @@ class Decibels {
   double dB_ = 0;
 };
 
-/// A power over that of the reference (1 uPa, or another power): linear, not negative.
+/// Power relative to a reference (1 uPa, or another power): linear, not negative.
 class PowerRatio {
  public:
   constexpr PowerRatio() = default;
@@ -56,7 +56,7 @@ class PowerRatio {
 
   constexpr double linear() const { return linear_; }
 
-  /// Of sounds that do not interfere: their powers add up.
+  /// Sum of incoherent sounds: their powers add.
   constexpr PowerRatio& operator+=(PowerRatio other) {
     linear_ += other.linear_;
     return *this;
@@ -76,23 +76,24 @@ class PowerRatio {
   double linear_ = 0;
 };
 
-/// 10 log10; nothing at all is minus infinity.
+/// Level of a power: 10 log10; zero power gives minus infinity.
 inline Decibels to_decibels(PowerRatio power) {
   return Decibels(10 * std::log10(power.linear()));
 }
+/// Power of a level.
 inline PowerRatio to_power(Decibels level) {
   return PowerRatio(std::pow(10.0, level.dB() / 10));
 }
 
-/// Of a pressure: 20 log10.  `pressure` over the reference pressure, of any sign.
+/// Level of a pressure: 20 log10.  `pressure`: relative to the reference pressure, of any sign.
 inline Decibels pressure_level(double pressure) {
   return Decibels(20 * std::log10(std::abs(pressure)));
 }
 
-/// The pressure that levels under water are over, Pa.
+/// Reference pressure of underwater levels, Pa.
 inline constexpr double reference_pressure_Pa = 1e-6;
-/// What a plane wave of one acoustic watt, spread over all directions, has at 1 m in sea water, dB re 1 uPa:
-/// 10 log10(rho c / 4 pi) + 120, with rho c = 1.54e6 (Urick, Principles of Underwater Sound, 1983, chapter 4).
+/// Source level of one acoustic watt radiated in all directions in sea water, dB re 1 uPa at 1 m: 10 log10(rho c / 4
+/// pi) + 120, with rho c = 1.54e6 (Urick, Principles of Underwater Sound, 1983, chapter 4).
 inline constexpr Decibels one_watt_level{170.9};
 
 }  // namespace sim

@@ -13,7 +13,7 @@ namespace {
 
 using Pattern = DirectivityConfig::Pattern;
 
-/// Pressure over that on the axis, or in the plane across a line.
+/// Pressure relative to that on the axis, or in the plane normal to a line.
 double piston(double x) {
   return std::abs(x) < 1e-4 ? 1 - x * x / 8 : 2 * ::j1(x) / x;
 }
@@ -21,7 +21,7 @@ double line(double u) {
   return std::abs(u) < 1e-4 ? 1 - u * u / 6 : std::sin(u) / u;
 }
 
-/// `cosine`: of the angle to +x (piston, hemisphere) or to z (toroid).
+/// Response in a direction.  `cosine`: of the angle to +x (piston, hemisphere) or to z (toroid).
 Decibels gain_at(const DirectivityConfig& config, double cosine, double wave_number_pm) {
   Decibels gain;
   switch (config.pattern) {
@@ -71,7 +71,7 @@ Decibels directivity_gain(const DirectivityConfig& config, const Vector3d& direc
 Decibels directivity_index(const DirectivityConfig& config, double frequency_Hz, double sound_speed_mps) {
   if (config.pattern == Pattern::omni) return {};
   const double k = 2 * std::numbers::pi * frequency_Hz / sound_speed_mps;
-  // The midpoints of so many rings see every lobe.
+  // Midpoint rule over the angle, fine enough to resolve every lobe.
   const int rings = 4000;
   PowerRatio sum;
   for (int i = 0; i < rings; ++i) {

@@ -14,7 +14,7 @@ Echoes echoes(const MultipathConfig& config, const MultipathMedium& medium, cons
               depths.horizontal_m, water_m, config.max_bounces, paths);
   std::vector<PathGain> gains;
   path_gains(paths, config, medium, gains);
-  // Over the direct path from here on: at ranges where nothing is left of it, too.
+  // Relative to the direct path from here on, which also works at ranges where its power is below the smallest number.
   const Decibels direct = gains[0].gain;
   for (PathGain& gain : gains) gain.gain -= direct;
   const double direct_s = gains[0].delay_s;

@@ -7,7 +7,7 @@
 
 namespace sim {
 
-/// `fading:` of a world's acoustics: how a packet's level differs from the mean, from packet to packet.
+/// `fading:` of a world's acoustics: variation of the level from packet to packet.
 struct FadingConfig {
   enum class Type { none, rayleigh, log_normal };
 
@@ -16,8 +16,8 @@ struct FadingConfig {
   void read(ParamReader& in);
 };
 
-/// The gain of one packet.  rayleigh: many paths and none that is strong; the power has the mean 1 and an exponential
-/// distribution.  log_normal: about 0 dB, which is the median.  Draws nothing for none.
+/// Draws the gain of one packet.  rayleigh: many paths without a dominant one; the power has the mean 1 and an
+/// exponential distribution.  log_normal: the median is 0 dB.  none: draws nothing.
 Decibels fade(const FadingConfig& config, Random& random);
 
 }  // namespace sim

@@ -23,8 +23,8 @@ void image_paths(double source_depth_m, double receiver_depth_m, double horizont
   add(receiver_depth_m - source_depth_m, 0, 0, receiver_depth_m < source_depth_m);
   const double D = water_depth_m, zs = source_depth_m, zr = receiver_depth_m;
   for (int n = 1; n <= max_bounces; ++n) {
-    // Unfolded, a path that begins upwards rises by zs, then crosses the water n - 1 times, then ends at the receiver;
-    // one that begins downwards is its mirror image.
+    // Unfolded, a path that starts upwards rises by zs, crosses the water n - 1 times, and ends at the receiver; one
+    // that starts downwards is its mirror image.
     const int more = (n + 1) / 2, less = n / 2;
     if (!std::isfinite(D)) {
       add(zs + zr, 1, 0, true);
@@ -81,8 +81,8 @@ double surface_reflection(double wave_number_pm, double roughness_m, double graz
 
 std::complex<double> bottom_reflection(const BottomConfig& bottom, double grazing_rad) {
   if (bottom.loss_dB) return std::pow(10.0, -*bottom.loss_dB / 20);
-  // Loss makes the speed of sound complex: alpha dB per wavelength is a part of alpha / (40 pi log10 e) of the wave
-  // number.  The root that decays away from the boundary is the one with a positive imaginary part.
+  // Attenuation makes the speed of sound complex: alpha dB per wavelength adds an imaginary part of alpha / (40 pi
+  // log10 e) of the wave number.  The physical root decays away from the boundary: its imaginary part is positive.
   const double loss = bottom.attenuation_dB_per_wavelength / (40 * pi * std::numbers::log10e);
   const std::complex<double> n = std::complex<double>(1, loss) / bottom.speed_ratio;
   const double sine = std::sin(grazing_rad), cosine = std::cos(grazing_rad);
@@ -107,7 +107,7 @@ void path_gains(const std::vector<ImagePath>& paths, const MultipathConfig& conf
     const Decibels surface = config.surface_loss_dB
                                  ? Decibels(-*config.surface_loss_dB)
                                  : pressure_level(surface_reflection(k, roughness_m, path.grazing_rad));
-    // Not 0 times minus infinity.
+    // Avoid 0 times minus infinity.
     if (path.surface_bounces > 0) gain.gain += path.surface_bounces * surface;
     gain.phase_rad += path.surface_bounces * pi;
     if (path.bottom_bounces > 0) {
@@ -126,8 +126,10 @@ void randomize_phases(std::vector<PathGain>& gains, Random& random) {
 MultipathSum combine(const std::vector<PathGain>& gains, double window_s) {
   MultipathSum sum;
   if (gains.empty()) return sum;
+  // Find the first arrival.
   sum.first_s = gains[0].delay_s;
   for (const PathGain& each : gains) sum.first_s = std::min(sum.first_s, each.delay_s);
+  // Add pressures inside the window, powers after it.
   std::complex<double> pressure = 0;
   double power = 0, first_moment = 0, second_moment = 0;
   for (const PathGain& each : gains) {
@@ -140,6 +142,7 @@ MultipathSum combine(const std::vector<PathGain>& gains, double window_s) {
     first_moment += p * late_s;
     second_moment += p * late_s * late_s;
   }
+  // Standard deviation of the delays.
   sum.signal = PowerRatio(std::norm(pressure));
   if (power > 0) {
     const double mean_s = first_moment / power;

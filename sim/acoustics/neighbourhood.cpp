@@ -39,7 +39,7 @@ void Neighbourhood::near(const Vector3d& p_W, double reach_m, std::vector<int>& 
   const auto before = [](const Entry& entry, const std::pair<std::int64_t, std::int64_t>& at) {
     return std::tie(entry.row, entry.column) < std::tie(at.first, at.second);
   };
-  // From row to row that has members; where the reach is far more than the members' spread, few rows are left.
+  // Skip rows and columns without members by binary search, so that a large reach costs little.
   auto entry = std::lower_bound(entries_.begin(), entries_.end(), std::pair{bottom, first}, before);
   while (entry != entries_.end() && entry->row <= top) {
     if (entry->column < first) {

@@ -10,23 +10,24 @@
 
 namespace sim {
 
-/// Finds who is near a place among many: a grid of square cells in the plane, kept as a sorted list.
+/// Search for members near a point: a grid of square cells in the horizontal plane, stored as a sorted list.
 class Neighbourhood {
  public:
   struct Member {
     int number;
     Vector3d p_W;
   };
-  /// `reach_m`: about how far queries will look.
+  /// Builds the grid.  `reach_m`: typical radius of queries.
   void build(std::span<const Member> members, double reach_m);
-  /// Numbers of all members no farther from the place than this in the plane, in rising order; perhaps some more.
+  /// Finds the numbers of all members within this horizontal distance, in rising order; the result may include some
+  /// that are farther away.
   void near(const Vector3d& p_W, double reach_m, std::vector<int>& numbers) const;
   void visit_state(StateArchive& archive) {
     archive(cell_m_, entries_);
     archive.require(cell_m_, 1.0, StateArchive::max_number, "a grid of transducers with cells of a size");
     if (archive.restoring() && !in_order()) archive.fail("the snapshot has transducers in an invalid order");
   }
-  /// All members have numbers from 0 to below this.
+  /// Whether all members have numbers in [0, count).
   bool numbers_are_below(std::size_t count) const;
 
  private:

@@ -44,7 +44,7 @@ std::array<double, Propagation::depths_m.size()> Propagation::min_absorption_dBp
   for (std::size_t i = 0; i < depths_m.size(); ++i) {
     const Vector3d p_W(0, 0, surface_m - depths_m[i]);
     lowest_dBpkm = std::min(lowest_dBpkm, absorption_dBpkm(config_.absorption, frequency_Hz, medium_, p_W, p_W));
-    min_dBpkm[i] = 0.95 * lowest_dBpkm;  // between those depths
+    min_dBpkm[i] = 0.95 * lowest_dBpkm;  // margin for the depths in between
   }
   return min_dBpkm;
 }
@@ -55,6 +55,7 @@ double Propagation::audible_range_m(const Signal& signal, Decibels below, double
   const double min_dBpkm = of.min_dBpkm[static_cast<std::size_t>(depth - depths_m.begin())];
   const Decibels floor = of.ambient - below;
   const double max_m = config_.range_max_m.value_or(1e6);
+  // Bisect the range on a logarithmic scale.
   const auto received = [&](double range_m) {
     return signal.source_level - spreading_loss(range_m, config_.spreading) - absorption_loss(range_m, min_dBpkm) >
            floor;
@@ -76,7 +77,8 @@ double Propagation::free_part(const Vector3d& from_W, int from_group, const Vect
   RayFilter filter;
   filter.kind = RayKind::sound;
   filter.exclude_group = to_group;
-  // From the receiver to where the sender was; the sender's own hull, which has gone on, hides nothing.
+  // Cast from the receiver to the past position of the sender; the sender's own hull, which has moved on, does not
+  // block.
   const auto hit = [&](const Vector3d& p_W, const Vector3d& q_W) {
     const Vector3d d_W = q_W - p_W;
     const double d_m = d_W.norm();
@@ -86,8 +88,8 @@ double Propagation::free_part(const Vector3d& from_W, int from_group, const Vect
   };
   const auto at_m = hit(to_W, from_W);
   if (!at_m) return 1;
-  // Something is in the way.  Sound goes round what is smaller than the first Fresnel zone there; how much of the rim
-  // of that zone is free tells how much passes.
+  // The direct path is blocked.  Sound diffracts around obstacles smaller than the first Fresnel zone; the free
+  // fraction of the rim of that zone approximates the sound that passes.
   const double wavelength_m = medium_.sound_speed_mps(to_W) / frequency_Hz;
   const double radius_m = std::sqrt(wavelength_m * *at_m * (length_m - *at_m) / length_m);
   const Vector3d along_W = displacement_W / length_m;
@@ -105,7 +107,7 @@ double Propagation::free_part(const Vector3d& from_W, int from_group, const Vect
 
 double Propagation::water_depth_m(const Vector3d& p_W) const {
   if (config_.multipath->water_depth_m) return *config_.multipath->water_depth_m;
-  // The bottom does not move: what moves about over it is passed.
+  // Only fixed bodies are bottom: skip moving ones.
   RayFilter filter;
   filter.kind = RayKind::sound;
   double below_m = 0;
@@ -124,11 +126,13 @@ double Propagation::water_depth_m(const Vector3d& p_W) const {
 
 Echoes Propagation::echoes_of(const Vector3d& from_W, const Vector3d& to_W, double frequency_Hz, Decibels direct,
                               Random& random) const {
+  // Geometry of the link.
   LinkDepths depths;
   depths.source_m = medium_.depth_m(from_W);
   depths.receiver_m = medium_.depth_m(to_W);
   depths.horizontal_m = (to_W - from_W).head<2>().norm();
   depths.water_m = water_depth_m((from_W + to_W) / 2);
+  // Water along the path.
   MultipathMedium water;
   water.frequency_Hz = frequency_Hz;
   water.sound_speed_mps = 1 / medium_.mean_slowness_spm(from_W.z(), to_W.z());
@@ -145,7 +149,7 @@ Propagation::Gain Propagation::gain(const Vector3d& from_W, int from_group, cons
   gain.blocked = free == 0;
   Decibels direct;
   if (free < 1) {
-    // What passes by the obstacle, and what passes through it.
+    // Sound diffracted around the obstacle, or transmitted through it.
     const double through = config_.occlusion_loss_dB ? std::pow(10.0, -*config_.occlusion_loss_dB / 20) : 0;
     direct = pressure_level(std::max(free, through));
   }
@@ -158,6 +162,7 @@ Propagation::Gain Propagation::gain(const Vector3d& from_W, int from_group, cons
   } else {
     gain.signal += direct;
   }
+  // Fading acts on signal and echoes alike.
   const Decibels faded = fade(config_.fading, random);
   gain.signal += faded;
   if (gain.disturbing.linear() > 0) gain.disturbing = to_power(faded) * gain.disturbing;

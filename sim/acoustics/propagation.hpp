@@ -13,51 +13,51 @@
 
 namespace sim {
 
-/// What becomes of a sound on its way through the water of a world, by `acoustics:`.
+/// Propagation of sound through the water of a world, configured by `acoustics:`.
 class Propagation {
  public:
-  /// All must outlive it.
+  /// The arguments must outlive the object.
   Propagation(const AcousticsConfig& config, const Medium& medium, const PhysicsWorld& physics)
       : config_(config), medium_(medium), physics_(physics) {}
 
   /// Path gain: received level relative to the source level at 1 m on the axis.
   struct Gain {
-    Decibels signal;        ///< minus infinity: nothing is received
-    PowerRatio disturbing;  ///< echoes that come too late to help
-    bool blocked = false;   ///< the direct path is
+    Decibels signal;        ///< minus infinity: no reception
+    PowerRatio disturbing;  ///< power of echoes that arrive after the window
+    bool blocked = false;   ///< the direct path is blocked
     double later_s = 0;     ///< delay of an echo relative to the blocked direct path
   };
-  /// The random draws: phases of the echoes, then fading.  The groups are those of the vehicles at both ends, whose
-  /// hulls do not block the path.
+  /// Computes the gain of a path.  Random draws: phases of the echoes, then fading.  The groups are those of the
+  /// vehicles at both ends, whose hulls do not block the path.
   Gain gain(const Vector3d& from_W, int from_group, const Vector3d& to_W, int to_group, double frequency_Hz,
             Random& random) const;
-  /// Spreading and absorption along the straight line.
+  /// Loss by spreading and absorption along the straight line.
   Decibels transmission_loss(const Vector3d& from_W, const Vector3d& to_W, double frequency_Hz) const;
-  /// Whether gain() draws.
+  /// Whether gain() draws random numbers.
   bool draws() const { return config_.multipath.has_value() || config_.fading.type != FadingConfig::Type::none; }
   /// Ambient noise of a band: re 1 uPa.
   Decibels ambient_level(double centre_Hz, double bandwidth_Hz) const;
-  /// The same less a directivity index, re 1 uPa^2.
+  /// Power of the same, reduced by a directivity index, re 1 uPa^2.
   PowerRatio ambient_power(double centre_Hz, double bandwidth_Hz, Decibels less) const;
-  /// Beyond this a signal is farther below the noise than `below` on any path no deeper than `deepest_m` below the
+  /// Range beyond which a signal is more than `below` under the noise on any path at most `deepest_m` below the
   /// surface.
   double audible_range_m(const Signal& signal, Decibels below, double deepest_m = deepest_sea_m) const;
   static constexpr double deepest_sea_m = 12000;
-  /// How much of the first Fresnel zone is free of terrain, objects and hulls: 1 all, 0 nothing.
+  /// Free fraction of the first Fresnel zone with terrain, objects and hulls as obstacles: 1 all, 0 none.
   double free_part(const Vector3d& from_W, int from_group, const Vector3d& to_W, int to_group,
                    double frequency_Hz) const;
 
  private:
   Echoes echoes_of(const Vector3d& from_W, const Vector3d& to_W, double frequency_Hz, Decibels direct,
                    Random& random) const;
-  /// Down to these depths.
+  /// Depths at which the minimum absorption is tabulated.
   static constexpr std::array<double, 12> depths_m{0, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, deepest_sea_m};
-  /// The least absorption anywhere between the surface and each of depths_m.
+  /// Minimum absorption between the surface and each of depths_m.
   std::array<double, depths_m.size()> min_absorption_dBpkm(double frequency_Hz) const;
-  /// Below the surface; infinite when there is no bottom.
+  /// Depth of the bottom below the surface; infinite when there is no bottom.
   double water_depth_m(const Vector3d& p_W) const;
 
-  /// What does not change in a run: the mean wind and the water stay.
+  /// Values of a band that are constant in a run, as mean wind and water are.
   struct Band {
     double centre_Hz, bandwidth_Hz;
     Decibels ambient;
@@ -69,7 +69,7 @@ class Propagation {
   const AcousticsConfig& config_;
   const Medium& medium_;
   const PhysicsWorld& physics_;
-  mutable std::vector<Band> bands_;  // computed before
+  mutable std::vector<Band> bands_;  // cache
 };
 
 }  // namespace sim

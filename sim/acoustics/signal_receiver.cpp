@@ -8,7 +8,7 @@ namespace sim {
 
 namespace {
 
-/// The part of a sound's power that falls into the band of another.
+/// Fraction of a sound's power in the band of another.
 inline double share_in_band(const PresentSound& of, const PresentSound& band) {
   if (of.centre_Hz == band.centre_Hz && of.bandwidth_Hz == band.bandwidth_Hz) return 1;
   const double low_Hz = std::max(of.centre_Hz - of.bandwidth_Hz / 2, band.centre_Hz - band.bandwidth_Hz / 2);
@@ -32,7 +32,7 @@ SignalReceiver::Others SignalReceiver::others(const PresentSound& but, Time at) 
 bool SignalReceiver::is_detectable(const TakenSignal& signal, PowerRatio needed) const {
   const PowerRatio still = signal.noise + signal.disturbing;
   PowerRatio sum{0};
-  // What is added to a sum never makes it less, rounded or not: once it is too much, the rest does not matter.
+  // A sum of powers never decreases, rounded or not, so that the loop can end as soon as it is too large.
   constexpr std::size_t check_interval = 8;
   for (std::size_t i = 0; i < present_.size();) {
     const std::size_t end = std::min(i + check_interval, present_.size());
@@ -80,17 +80,20 @@ void SignalReceiver::begin(const PresentSound& sound, Time at) {
 
 SignalLoss SignalReceiver::take(const TakenSignal& signal, const Rules& rules, std::int64_t& displaced) {
   displaced = -1;
+  // Test detection against noise, then against other sounds.
   const PowerRatio needed = to_power(Decibels{rules.detection_dB});
   const PowerRatio still = signal.noise + signal.disturbing;
   if (signal.sound.power / still < needed) return SignalLoss::noise;
   const bool detected = is_detectable(signal, needed);
+  // Find the reception in the same band.
   auto rival = taken_.end();
   for (auto each = taken_.begin(); each != taken_.end(); ++each) {
-    // One that ends as this one begins is not a rival.
+    // A signal that ends when this one starts is not a rival.
     if (each->signal.ended <= signal.started || share_in_band(each->signal.sound, signal.sound) <= 0) continue;
     if (rival != taken_.end()) return SignalLoss::busy;
     rival = each;
   }
+  // Capture the receiver, or lock on to the signal.
   if (rival != taken_.end()) {
     const PowerRatio stronger = signal.sound.power / rival->signal.sound.power;
     if (!detected || stronger < to_power(Decibels{rules.capture_dB})) return SignalLoss::busy;

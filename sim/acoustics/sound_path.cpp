@@ -11,7 +11,7 @@ double travel_time_s(const Medium& medium, const Vector3d& from_W, const Vector3
 
 namespace {
 
-/// The least t >= 0 with |offset + velocity t| = c t.
+/// Smallest t >= 0 with |offset + velocity t| = c t.
 std::optional<double> same_speed_meeting_s(const Vector3d& offset_W, const Vector3d& velocity_W, double c_mps) {
   const double a = c_mps * c_mps - velocity_W.squaredNorm(), b = offset_W.dot(velocity_W);
   if (a <= 0) return std::nullopt;
@@ -25,7 +25,7 @@ std::optional<Arrival> meeting(const Medium& medium, const Vector3d& source_W, c
   const Vector3d offset_W = receiver_W - source_W;
   Vector3d p_W = receiver_W;
   double t_s = 0;
-  // The slowness changes little between a meeting place and the next guess: each round gains 5 digits and more.
+  // Fixed-point iteration: the slowness varies little between iterates, and each one gains at least 5 digits.
   for (int round = 0; round < 20; ++round) {
     const double c_mps = 1 / medium.mean_slowness_spm(source_W.z(), p_W.z());
     const std::optional<double> next_s = same_speed_meeting_s(offset_W, velocity_W, c_mps);

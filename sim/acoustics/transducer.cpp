@@ -44,7 +44,7 @@ void Transducer::belong_to(const Audience& own) {
 }
 
 std::int64_t Transducer::out_of_range() const {
-  // Without signs: a forged snapshot may hold any counts.
+  // Unsigned arithmetic, as a forged snapshot may contain any counts.
   const auto meant = static_cast<std::uint64_t>(site_.channel.messages_for(own_));
   return static_cast<std::int64_t>(meant - static_cast<std::uint64_t>(meant_before_) -
                                    static_cast<std::uint64_t>(meant_near_));
@@ -61,7 +61,7 @@ bool Transducer::works() const {
 }
 
 const Transducer::Motion& Transducer::motion() const {
-  // Where hundreds of signals come to it in a step, it is computed once.
+  // Cached, as hundreds of signals may arrive in one step.
   const std::int64_t look = site_.channel.look();
   if (look == motion_of_ && look >= 0) return motion_;
   const BodyMotion body = site_.body.motion();
@@ -91,7 +91,7 @@ void Transducer::change(const ReceiverConfig& config) {
 Decibels Transducer::noise_reduction(double frequency_Hz) const {
   if (config_.directivity.pattern == DirectivityConfig::Pattern::omni) return {};
   if (index_of_Hz_ != frequency_Hz) {
-    // The speed of sound in water changes by some percent at most, the index by hundredths of dB.
+    // A variation of the speed of sound by some percent changes the index by hundredths of dB only.
     constexpr double usual_mps = 1500;
     index_ = directivity_index(config_.directivity, frequency_Hz, usual_mps);
     index_of_Hz_ = frequency_Hz;

@@ -13,37 +13,37 @@
 
 namespace sim {
 
-/// Receiver of the signals of a transducer.
+/// Interface for the device that receives the signals of a transducer.
 class AcousticListener {
  public:
   virtual ~AcousticListener() = default;
-  /// Tries to understand it.  What it does not listen to is noise in its band.
+  /// Whether the device tries to decode a signal.  Other signals are noise in its band.
   virtual bool listens_to(const Signal& signal) const = 0;
-  /// Called when a signal that it receives has ended, decoded or not (not for a transducer without power or out of
-  /// the water).  Called at a simulated time within the step that just ended, `received.ended`; the
-  /// listener may transmit at that time or later.
+  /// Called when a signal that it receives has ended, decoded or not (not for a transducer without power or out of the
+  /// water).  Called at a simulated time within the step that just ended, `received.ended`; the listener may transmit
+  /// at that time or later.
   virtual void receive(const Reception& received) = 0;
 };
 
-/// The receiver of a transducer.
+/// Configuration of the receiver of a transducer.
 struct ReceiverConfig {
-  double detection_dB = 6;        ///< signal over noise and other sounds that it needs to notice a signal
-  double capture_dB = 6;          ///< a signal stronger by this takes it from the one it is taking
-  double protection_dB = 6;       ///< over all other messages in its band that one needs while it is taken
-  double doppler_limit_mps = 5;   ///< closing or parting speed it follows
+  double detection_dB = 6;        ///< minimum ratio to noise and other sounds for detection
+  double capture_dB = 6;          ///< a signal stronger by this captures the receiver
+  double protection_dB = 6;       ///< ratio to all other messages in its band below which bits are lost
+  double doppler_limit_mps = 5;   ///< maximum closing or opening speed
   DirectivityConfig directivity;  ///< for sending and receiving; the axis is x of the device
   void read(ParamReader& in);
 };
 
-/// Point where sound enters and leaves the water.  Owned by a device; in the channel while it exists, which hashes and
-/// saves its state: the device does not visit it.
+/// Acoustic transducer: the point at which sound enters and leaves the water.  Owned by a device; registered with the
+/// channel, which hashes and saves its state, so that the device does not visit it.
 class Transducer {
  public:
-  /// Messages: what it sent, and what became of those that were for it.
+  /// Counts of messages sent, and of messages addressed to it by result.
   struct Counts {
     std::int64_t sent = 0, sent_bytes = 0;
     std::int64_t understood = 0, understood_bytes = 0;
-    std::int64_t unsent = 0;  ///< asked for without power, silent by a fault, or out of the water
+    std::int64_t unsent = 0;                         ///< not sent: no power, silenced by a fault, or out of the water
     std::array<std::int64_t, signal_losses> lost{};  ///< by SignalLoss
     void visit_state(StateArchive& archive) { archive(sent, sent_bytes, understood, understood_bytes, unsent, lost); }
   };
@@ -53,33 +53,33 @@ class Transducer {
   Transducer(const Transducer&) = delete;
   Transducer& operator=(const Transducer&) = delete;
 
-  /// From `at` on, which is not before now (the start of the step in act(), `Reception::ended` in receive()).  The
-  /// caller lets one signal end before the next begins.
+  /// Transmits a signal from `at` on, which is not before now (the start of the step in act(), `Reception::ended` in
+  /// receive()).  The caller must not let signals overlap.
   void transmit(Signal signal, Time at);
   /// Cancels queued transmissions that have not started.
   void call_back();
-  /// Sets its identity; anonymous before the first call.
+  /// Sets its address; it has none before the first call.
   void belong_to(const Audience& own);
-  /// It was called: messages may be for this one, as for that of a modem.
+  /// Whether belong_to() was called, so that messages can be addressed to it, as for a modem.
   bool has_owner() const { return !own_.group.empty(); }
-  /// It sends now, or has something scheduled, until this time.
+  /// End of all present and scheduled transmissions.
   Time busy_until() const { return busy_until_; }
-  /// It is taking a signal now.
+  /// Whether a reception is in progress.
   bool receiving() const { return receiver_.taking(); }
-  /// Has power, and no fault keeps it silent.
+  /// Whether it has power and is not silenced by a fault.
   bool works() const;
 
-  /// At a time within or near the step that just ended: by its velocity from where it is.
+  /// Position at a time within or near the step that just ended, extrapolated by its velocity.
   Vector3d p_W(Time at) const;
   Vector3d v_W() const { return motion().v_W; }
   Matrix3d R_WS() const;
   const std::string& full_name() const { return site_.full_name; }
-  /// See SoundSite.
+  /// Group whose bodies do not block its sound; see SoundSite.
   int group() const { return site_.group; }
   int number() const { return number_; }
   const ReceiverConfig& config() const { return config_; }
   void change(const ReceiverConfig& config);
-  /// Directivity index: reduction of isotropic noise: the directivity index.
+  /// Directivity index: reduction of isotropic noise.
   Decibels noise_reduction(double frequency_Hz) const;
   Counts counts() const;
   void visit_state(StateArchive& archive) {
@@ -90,53 +90,53 @@ class Transducer {
  private:
   friend class AcousticChannel;
 
-  /// Where it is at the end of the step, and how it moves.
+  /// Position at the end of the step, and velocity.
   struct Motion {
     Vector3d p_W, v_W;
-    Vector3d drift_W;  // v_W as p_W(Time) has it: the same except for rounding
+    Vector3d drift_W;  // velocity used by p_W(Time): equals v_W except for rounding
   };
   const Motion& motion() const;
   bool is_meant_by(const Signal& signal) const {
     return signal.to.group == own_.group && (signal.to.address.empty() || signal.to.address == own_.address);
   }
-  /// Messages for it that were sent out of its range.
+  /// Number of messages addressed to it that were sent out of its range.
   std::int64_t out_of_range() const;
 
   AcousticListener& listener_;
   ReceiverConfig config_;
   const SoundSite site_;
   int number_ = -1;
-  std::uint32_t join_ = 0;  // of the joins of all transducers, from 1: others may have had its number before
-  Time busy_until_{0};      // of all it was asked to send
-  Time sending_until_{0};   // of what it sends or sent last
-  int sending_ = -1;        // what it sends, in the channel; -1: nothing
+  std::uint32_t join_ = 0;  // serial number of its registration, from 1, as numbers are reused
+  Time busy_until_{0};      // of all requested transmissions
+  Time sending_until_{0};   // end of the present or last transmission
+  int sending_ = -1;        // number of its present transmission in the channel; -1: none
   std::int64_t signals_ = 0;
   SignalReceiver receiver_;
-  Counts counts_;  // without those that are out of range
+  Counts counts_;  // without messages lost out of range
   Audience own_;
-  std::int64_t meant_before_ = 0;  // messages for who it is, sent before it was
-  std::int64_t meant_near_ = 0;    // since then: those that are or were in flight to it, and its own
-  // The directivity index of a frequency, computed before; NaN: none.
+  std::int64_t meant_before_ = 0;  // messages to its address, sent before it had this address
+  std::int64_t meant_near_ = 0;    // since then: messages in flight to it now or before, and its own
+  // Cached directivity index of one frequency; NaN: none.
   mutable double index_of_Hz_ = std::numeric_limits<double>::quiet_NaN();
   mutable Decibels index_;
   mutable Motion motion_;
-  mutable std::int64_t motion_of_ = -1;  // AcousticChannel::look() that it is of
+  mutable std::int64_t motion_of_ = -1;  // AcousticChannel::look() at which it was computed
 };
 
-/// A sound that continues and on: an engine, a pile driver, a jammer.  Owned by a device; in the channel while it
-/// exists, which hashes and saves its state: the device does not visit it.
+/// Continuous sound source, such as an engine, a pile driver or a jammer.  Owned by a device; registered with the
+/// channel, which hashes and saves its state, so that the device does not visit it.
 class ContinuousSound {
  public:
-  /// Even over its band.
+  /// Makes a source with constant spectral density over its band.
   ContinuousSound(Decibels source_level, double centre_Hz, double bandwidth_Hz, SoundSite site);
   ~ContinuousSound();
   ContinuousSound(const ContinuousSound&) = delete;
   ContinuousSound& operator=(const ContinuousSound&) = delete;
 
-  /// On at first.  Silent as well without power, by a fault and out of the water.
+  /// Switches the sound; initially on.  It is also silent without power, by a fault and out of the water.
   void set_on(bool on);
   bool on() const { return on_; }
-  /// Re 1 uPa at 1 m, over its band.
+  /// Sets the source level, re 1 uPa at 1 m, over its band.
   void set_level(Decibels source_level);
   void visit_state(StateArchive& archive) { archive(on_, source_level_); }
 

@@ -9,21 +9,23 @@
 
 namespace sim {
 
-/// Loss by spreading over that at 1 m: k 10 log10(range), 0 nearer than 1 m.  k: 1 cylindrical, 1.5 practical,
-/// 2 spherical (Urick, Principles of Underwater Sound, 1983, chapter 5).
+/// Spreading loss relative to 1 m: k 10 log10(range), 0 closer than 1 m.  k: 1 cylindrical, 1.5 practical, 2 spherical
+/// (Urick, Principles of Underwater Sound, 1983, chapter 5).
 Decibels spreading_loss(double range_m, double k);
-/// Spherical as far as the transition range, cylindrical beyond.
+/// Spreading loss, spherical up to the transition range and cylindrical beyond.
 Decibels spreading_loss_with_transition(double range_m, double transition_range_m);
 
+/// Loss by absorption over a range.
 Decibels absorption_loss(double range_m, double absorption_dBpkm);
 
 /// `spreading:` of a world's acoustics.
 struct SpreadingConfig {
-  double factor = 1.5;                       ///< k
+  double factor = 1.5;                       ///< k of k 10 log10(range)
   std::optional<double> transition_range_m;  ///< instead of the factor
   void read(ParamReader& in);
 };
 
+/// Spreading loss by a configuration.
 Decibels spreading_loss(double range_m, const SpreadingConfig& config);
 
 /// `absorption:` of a world's acoustics.
@@ -36,8 +38,8 @@ struct AbsorptionConfig {
   void read(ParamReader& in);
 };
 
-/// Mean along the straight line between two places, dB/km.  Francois and Garrison's takes temperature and salinity of
-/// the water at the ends and in the middle (Simpson's rule).
+/// Mean absorption along the straight line between two points, dB/km.  For Francois and Garrison, temperature and
+/// salinity are taken at both ends and in the middle (Simpson's rule).
 double absorption_dBpkm(const AbsorptionConfig& config, double frequency_Hz, const Medium& medium,
                         const Vector3d& from_W, const Vector3d& to_W);
 

@@ -9,18 +9,18 @@ namespace sim {
 
 namespace {
 
-/// The oscillator alone: how well it was set, `offset_s` and `offset_std_s` say.
+/// Preset of an oscillator, without its initial setting (`offset_s` and `offset_std_s`).
 struct ClockPreset {
   const char* name;
   double drift_std_ppm, white_fm, random_walk_fm, flicker_floor, temperature_ppm_per_C;
 };
 
-// tcxo, ocxo: typical of their class, of no one unit; an underwater OCXO ages by 0.2 to 2e-9 in a day
+// tcxo, ocxo: typical of their class, not of one unit; an underwater OCXO ages by 0.2 to 2e-9 per day
 // (slx-timing.com/underwater-system-precision-clock, seen), and a drift of 0.02 ppm is some ten days of that.
 // csac: Microchip SA.45s.  Seen, Microchip's notes on its timing error (Chip Scale Atomic Clocks: Effects on Timing
-// Error): about 1 us after 24 h, 5 us after 48 h, 8 to 12 us after 72 h without an error at the start; a random walk
-// of 1e-13 / sqrt(s) gives 1.5, 4.2 and 7.6 us.  From memory of its data sheet, not seen: Allan deviation 3e-10 at
-// 1 s falling to 1e-11 at 1000 s, 5e-11 at shipment, 5e-10 over 45 C.
+// Error): about 1 us after 24 h, 5 us after 48 h, 8 to 12 us after 72 h without an initial error; a random walk of
+// 1e-13 / sqrt(s) gives 1.5, 4.2 and 7.6 us.  Not verified against its data sheet: Allan deviation 3e-10 at 1 s falling
+// to 1e-11 at 1000 s, 5e-11 at shipment, 5e-10 over 45 C.
 constexpr ClockPreset presets[] = {
     {"perfect", 0, 0, 0, 0, 0},
     {"tcxo", 1, 1e-9, 1e-11, 5e-10, 0.05},
@@ -28,12 +28,13 @@ constexpr ClockPreset presets[] = {
     {"csac", 5e-5, 3e-10, 1e-13, 5e-12, 1e-5},
 };
 
-/// Steps of the frequency that no oscillator makes are cut, so that the clock never runs backwards.
+/// Limit of the frequency error, beyond any real oscillator, so that the clock never runs backwards.
 constexpr double max_rate = 0.1;
 
 }  // namespace
 
 void ClockConfig::read(ParamReader& in) {
+  // Preset, and the values that it sets.
   std::vector<std::string> names;
   for (const ClockPreset& each : presets) names.emplace_back(each.name);
   in.read_one_of("preset", preset, names,
@@ -46,6 +47,7 @@ void ClockConfig::read(ParamReader& in) {
     flicker_floor = each.flicker_floor;
     temperature_ppm_per_C = each.temperature_ppm_per_C;
   }
+  // Initial offset and drift.
   constexpr double year_s = 31557600;
   in.read("offset_s", offset_s, between(-year_s, year_s), "reading minus true time at the start");
   in.read("offset_std_s", offset_std_s, between(0, 1e6),
@@ -53,14 +55,17 @@ void ClockConfig::read(ParamReader& in) {
   in.read("drift_ppm", drift_ppm, between(-1e4, 1e4), "constant error of the frequency; 1 ppm gains 3.6 ms in an hour");
   in.read("drift_std_ppm", drift_std_ppm, between(0, 1e3),
           "standard deviation of a further drift, drawn once per vehicle");
+  // Random variation of the frequency.
   in.read("white_fm", white_fm, between(0, 1e-4), "Allan deviation at 1 s by white noise of the frequency");
   in.read("random_walk_fm", random_walk_fm, between(0, 1e-6),
           "random walk of the frequency in 1 s, 1/sqrt(s); an Allan deviation of this times sqrt(tau / 3)");
   in.read("flicker_floor", flicker_floor, between(0, 1e-4), "flat part of the Allan deviation");
+  // Temperature dependence.
   in.read("temperature_ppm_per_C", temperature_ppm_per_C, between(-100, 100),
           "change of the frequency with the temperature of the water at the vehicle");
   in.read("reference_temperature_C", reference_temperature_C, between(-50, 100),
           "temperature without an effect; also that of the clock in air");
+  // Update interval and resolution.
   in.read("update_s", update_s, between(0.01, 3600), "interval at which the random parts advance; linear in between");
   in.read("resolution_s", resolution_s, between(1e-6, 60),
           "tick: the reading is rounded down to a multiple of it, and to whole microseconds");
@@ -90,7 +95,7 @@ Oscillator::Oscillator(const ClockConfig& config, std::uint64_t seed, const std:
   drift_ = 1e-6 * (config.drift_ppm + config.drift_std_ppm * random_.gaussian());
   drift_ = std::clamp(drift_, -max_rate, max_rate);
   if (config.flicker_floor <= 0) return;
-  // From the stationary distribution: it has been on for a while.
+  // Drawn from the stationary distribution, as of an oscillator that has run for a long time.
   for (std::size_t i = 0; i < flicker_times_s().size(); ++i)
     flicker_.push_back(config.flicker_floor * flicker_process_std() * random_.gaussian());
 }
@@ -99,14 +104,16 @@ void Oscillator::advance(std::optional<double> temperature_C) {
   random_.begin_step(intervals_++);
   const double dt_s = config_.update_s;
   const double root_s = std::sqrt(dt_s);
+  // Random walk of the frequency, and white noise.
   double gained_s = walk_ * dt_s;
   if (config_.white_fm > 0) gained_s += config_.white_fm * root_s * random_.gaussian();
   if (config_.random_walk_fm > 0) {
-    // The walk and its integral over the interval, which are correlated: variances q^2 dt and q^2 dt^3 / 3.
+    // Joint draw of the walk and its integral over the interval, with variances q^2 dt and q^2 dt^3 / 3.
     const double first = random_.gaussian(), second = random_.gaussian();
     walk_ += config_.random_walk_fm * root_s * first;
     gained_s += config_.random_walk_fm * dt_s * root_s * (first / 2 + second / std::sqrt(12.0));
   }
+  // Flicker noise: exact Gauss-Markov steps, integrated by the trapezoidal rule.
   for (std::size_t i = 0; i < flicker_.size(); ++i) {
     const double times = dt_s / flicker_times_s()[i];
     const double fresh = config_.flicker_floor * flicker_process_std() * std::sqrt(-std::expm1(-2 * times));
@@ -114,6 +121,7 @@ void Oscillator::advance(std::optional<double> temperature_C) {
     flicker_[i] = std::exp(-times) * before + fresh * random_.gaussian();
     gained_s += (before + flicker_[i]) / 2 * dt_s;
   }
+  // Temperature, and limits of the rate.
   if (temperature_C)
     gained_s += 1e-6 * config_.temperature_ppm_per_C * (*temperature_C - config_.reference_temperature_C) * dt_s;
   walk_ = std::clamp(walk_, -max_rate, max_rate);

@@ -13,19 +13,19 @@ namespace sim {
 namespace {
 
 constexpr Time look_ahead{2'000'000};
-constexpr double max_error_s = 4e7;  ///< a bit more than a year
+constexpr double max_error_s = 4e7;  ///< slightly more than a year
 constexpr double max_slew = 0.1;
 constexpr double max_learnt = 0.05;
 
 }  // namespace
 
 struct VehicleClock::State {
-  /// Of the wander of the oscillator, which is linear between nodes.
+  /// Node of the oscillator's wander, which is linear between nodes.
   struct Node {
     Time at;
     double wander_s;
   };
-  /// Of the correction: it holds after a time, and grows from there.
+  /// Correction that applies after a time, and changes linearly from there.
   struct Steer {
     Time after;
     double offset_s, rate;
@@ -36,7 +36,7 @@ struct VehicleClock::State {
     nodes.push_back({start, 0});
   }
 
-  /// As one block: there are many, and the state is hashed often.
+  /// Visits the rows as one block, as there are many and the state is hashed often.
   template <typename Row>
   static void visit_block(StateArchive& archive, std::deque<Row>& rows) {
     constexpr std::size_t words = sizeof(Row) / sizeof(std::uint64_t);
@@ -54,7 +54,7 @@ struct VehicleClock::State {
   double wander_s(Time at) const {
     if (nodes.size() == 1 || at <= nodes.front().at) return nodes.front().wander_s;
     auto end = std::upper_bound(nodes.begin(), nodes.end(), at, [](Time t, const Node& node) { return t < node.at; });
-    if (end == nodes.end()) --end;  // beyond what is planned it continues as in the last interval
+    if (end == nodes.end()) --end;  // after the last node, extrapolate the last interval
     const Node& from = *(end - 1);
     const double share = to_seconds(at - from.at) / to_seconds(end->at - from.at);
     return from.wander_s + share * (end->wander_s - from.wander_s);
@@ -63,7 +63,7 @@ struct VehicleClock::State {
   const Steer* steer_at(Time at) const {
     for (auto steer = steers.rbegin(); steer != steers.rend(); ++steer)
       if (steer->after < at) return &*steer;
-    // Older than what is kept: the oldest that is kept is nearer to the truth than no correction at all.
+    // Before the history, the oldest correction is a better estimate than none.
     return forgot_steers ? &steers.front() : nullptr;
   }
 
@@ -91,11 +91,11 @@ struct VehicleClock::State {
   std::deque<Node> nodes;
   std::deque<Steer> steers;
   bool forgot_steers = false;
-  // The loop of the discipline.
+  // State of the control loop of the discipline.
   DisciplineParams loop;
   std::optional<Time> first_fix, last_fix;
-  double learnt_rate = 0;      ///< takes the place of the oscillator's drift
-  double last_measured_s = 0;  ///< left over after the last fix had its full effect
+  double learnt_rate = 0;      ///< estimate that compensates the oscillator's drift
+  double last_measured_s = 0;  ///< residual error after the correction of the last fix
   bool rate_is_unknown = true;
 };
 
@@ -124,7 +124,8 @@ Time VehicleClock::reading(Time at) const {
 
 Time VehicleClock::true_time(Time reading) const {
   if (!state_) return reading;
-  // The error changes by less than half of the time: each turn leaves less than half of the mistake.
+  // Fixed-point iteration: the error changes by less than half of the time, so that each iteration at least halves the
+  // deviation.
   Time at = reading - from_seconds(state_->error_s(reading));
   for (int i = 0; i < 40; ++i) {
     const Time next = reading - from_seconds(state_->error_s(at));
@@ -164,25 +165,28 @@ void VehicleClock::discipline(Time now, double measured_error_s, const Disciplin
   State& state = *state_;
   const double dt_s = params.interval_s;
   state.loop = params;
-  // The correction that begins at `now` continues from the one before, at its end.
+  // The correction that starts at `now` continues from the end of the previous one.
   const State::Steer* before = state.steer_at(now + Time{1});
   double offset_s = before ? before->offset_s + before->rate * to_seconds(now - before->after) : 0;
   if (!state.first_fix) state.first_fix = now;
   double left_s = measured_error_s;
+  // Correct a large error by a step.
   if (std::abs(measured_error_s) > params.step_above_s) {
     offset_s -= measured_error_s;
     left_s = 0;
     state.rate_is_unknown = true;
   }
-  // Poles of the loop, both: what is left of an error after an interval.  From x' = x + dt (d - kp x / dt) and
-  // d' = d - ki x / dt of phase x and frequency d: kp = 1 - pole^2, ki = (1 - pole)^2.
+  // Double pole of the loop: remaining fraction of an error after an interval.
+  // From x' = x + dt (d - kp x / dt) and d' = d - ki x / dt of phase x and frequency d: kp = 1 - pole^2, ki = (1 -
+  // pole)^2.
   const double pole = std::exp(-dt_s / params.time_constant_s);
   const double kp = 1 - pole * pole;
   const double ki = (1 - pole) * (1 - pole);
   if (left_s != measured_error_s) {
-    // Stepped; the next fix tells the rate.
+    // After a step the next fix gives the rate.
   } else if (state.rate_is_unknown && state.last_fix && now > *state.last_fix) {
-    // What two fixes report the rate spares a drift of many ppm the loop's time, when it stands out of the jitter.
+    // Estimate the rate from two fixes when it exceeds the jitter: the loop would need long to learn a drift of many
+    // ppm.
     const double rate = (measured_error_s - state.last_measured_s) / to_seconds(now - *state.last_fix);
     if (std::abs(rate) > 5 * std::sqrt(2.0) * params.pps_std_s / dt_s) state.learnt_rate -= rate;
     state.rate_is_unknown = false;
@@ -193,7 +197,7 @@ void VehicleClock::discipline(Time now, double measured_error_s, const Disciplin
   const double slew = std::clamp(-kp * left_s / dt_s, -max_slew, max_slew);
   state.last_measured_s = left_s + slew * dt_s;
   state.last_fix = now;
-  // The slew lasts until the next fix; when none comes the clock continues with the rate it has learnt.
+  // The slew lasts until the next fix; without one, the clock continues with the learnt rate.
   while (!state.steers.empty() && state.steers.back().after >= now) state.steers.pop_back();
   state.steers.push_back({now, offset_s, state.learnt_rate + slew});
   state.steers.push_back({now + from_seconds(dt_s), offset_s + (state.learnt_rate + slew) * dt_s, state.learnt_rate});
@@ -210,6 +214,7 @@ double VehicleClock::since_fix_s(Time now) const {
 
 double VehicleClock::estimated_std_s(Time now) const {
   if (!state_) return 0;
+  // Variances of the free-running oscillator.
   const ClockConfig& c = state_->config;
   const double white = c.white_fm * c.white_fm, walk = c.random_walk_fm * c.random_walk_fm;
   const double floor = c.flicker_floor * c.flicker_floor;
@@ -222,9 +227,9 @@ double VehicleClock::estimated_std_s(Time now) const {
     const double tau_s = state_->loop.time_constant_s;
     const double pps = state_->loop.pps_std_s * state_->loop.pps_std_s;
     const double jitter = pps * state_->loop.interval_s;
-    // Responses of the critically damped loop to white noise of the pulse, and of the oscillator's frequency.
+    // Responses of the critically damped loop to white noise of the pulse, and to noise of the oscillator's frequency.
     phase = 5 * jitter / (4 * tau_s) + white * tau_s / 4 + walk * std::pow(tau_s, 3) / 4 + floor * tau_s * tau_s;
-    // What two fixes reported the drift, or what was known before, and what the loop has left of it.
+    // Variance of the drift from the first two fixes, or from the data sheet, and its remainder after the loop.
     const double reported =
         state_->rate_is_unknown ? rate : std::min(rate, 50 * pps / std::pow(state_->loop.interval_s, 2));
     const double times = to_seconds(*state_->last_fix - *state_->first_fix) / tau_s;
@@ -238,6 +243,7 @@ double VehicleClock::estimated_std_s(Time now) const {
 void VehicleClock::visit_state(StateArchive& archive) {
   if (!state_) return;
   State& s = *state_;
+  // Oscillator, history and loop.
   archive(s.oscillator, s.now);
   State::visit_block(archive, s.nodes);
   State::visit_block(archive, s.steers);
@@ -247,6 +253,7 @@ void VehicleClock::visit_state(StateArchive& archive) {
   if (archive.restoring() && (s.nodes.empty() || (s.forgot_steers && s.steers.empty())))
     archive.fail("a clock without its history");
   if (!archive.restoring()) return;
+  // Check the restored history.
   const auto usable = [](Time at, double number) {
     return at <= StateArchive::max_time && at >= -StateArchive::max_time && std::abs(number) < 1e30;
   };

@@ -7,12 +7,12 @@
 
 namespace sim {
 
-/// A body and the water around it, as a step finds them.
+/// Motion of a body and of the surrounding water at the start of a step.
 struct BodyInWater {
   LocalWater water;  ///< at the origin of the body
   BodyMotion motion;
-  Vector3d v_B = Vector3d::Zero();  ///< of the body's origin through the water, in its own axes
-  Vector3d w_B = Vector3d::Zero();  ///< its angular velocity, in its own axes
+  Vector3d v_B = Vector3d::Zero();  ///< velocity of the origin relative to the water, in body axes
+  Vector3d w_B = Vector3d::Zero();  ///< angular velocity of the body, in body axes
   bool known = false;  ///< false: hydrodynamics do not apply to this body, and the other members are unused
 };
 

@@ -13,8 +13,8 @@ namespace sim {
 
 namespace {
 
-/// The share of its lift that a hull keeps at an angle of attack of 0 to 90 degrees: all of it up to 45, none across
-/// the flow, where what was ahead becomes astern.
+/// Fraction of the lift that a hull keeps at an angle of attack of 0 to 90 degrees: all up to 45, none across the flow,
+/// where bow and stern exchange roles.
 double kept_lift(double alpha_rad) {
   constexpr double stall_rad = std::numbers::pi / 4;
   const double stalled = std::clamp(std::abs(alpha_rad) / stall_rad - 1, 0.0, 1.0);
@@ -25,7 +25,7 @@ double signed_square(double x) {
   return std::abs(x) * x;
 }
 
-/// The integrals of |v + x r| (v + x r) and of x times that over x from a to b, when v + x r has one sign there.
+/// Adds the integrals from a to b of |v + x r| (v + x r) and of x times that, where v + x r has one sign.
 void add_piece(double sign, double v, double r, double a, double b, double& force, double& moment) {
   const double d1 = b - a, d2 = (b * b - a * a) / 2, d3 = (b * b * b - a * a * a) / 3,
                d4 = (b * b * b * b - a * a * a * a) / 4;
@@ -66,24 +66,27 @@ StripSum add_up_strips(double v, double r, double half_length, int strips) {
 
 CoefficientModel::CoefficientModel(const HydrodynamicsConfig& config, double gravity_mps2)
     : config_(config), gravity_mps2_(gravity_mps2) {
+  // Mass matrix: rigid body and added mass.
   const Matrix3d S = cross_matrix(config.center_of_mass_m);
   const double m = config.mass_kg;
-  const Matrix3d inertia_O = config.inertia_kgm2 - m * S * S;  // about the origin
+  const Matrix3d inertia_O = config.inertia_kgm2 - m * S * S;  // parallel axis theorem: about the origin
   Matrix6d rigid;
   rigid << m * Matrix3d::Identity(), -m * S, m * S, inertia_O;
   mass_ = rigid + config.added_mass;
   mass_inverse_ = mass_.inverse();
   weight_N_ = config.weight_N.value_or(m * gravity_mps2);
   const double any_density = 1025;
-  // Below 0: of its volume, in whatever water there is.
+  // Negative: computed from the volume and the density of the water.
   buoyancy_N_ = config.buoyancy_N ? *config.buoyancy_N : config.volume_m3 ? -1 : weight_N_;
   const double volume = config.volume_m3.value_or(m / any_density);
   height_m_ = config.hull_height_m.value_or(2 * std::cbrt(volume * 3 / (4 * std::numbers::pi)));
+  // Damping: diagonals and rates.
   fold_derivatives();
   linear_diagonal_ = config_.linear_damping.diagonal();
   quadratic_diagonal_ = config_.quadratic_damping.diagonal();
   diagonal_damping_ = config_.linear_damping.isDiagonal(0) && config_.quadratic_damping.isDiagonal(0);
   find_rates();
+  // Coriolis forces and published variants.
   added_mass_is_diagonal_ = config.added_mass.isDiagonal(0);
   const PublishedQuirks& quirks = config.quirks;
   coriolis_ = quirks.added_mass_coriolis;
@@ -92,7 +95,7 @@ CoefficientModel::CoefficientModel(const HydrodynamicsConfig& config, double gra
   fade_by_speed_in_water_ = quirks.fade_speed == PublishedQuirks::FadeSpeed::water;
 }
 
-/// Terms such as X_u and X_uu are damping.
+/// Moves derivatives such as X_u and X_uu to the damping matrices.
 void CoefficientModel::fold_derivatives() {
   std::erase_if(config_.derivatives, [&](const DerivativeTerm& term) {
     if (term.row != term.first) return false;
@@ -106,6 +109,7 @@ void CoefficientModel::fold_derivatives() {
 void CoefficientModel::find_rates() {
   const Vector6d mass = mass_.diagonal();
   linear_rate_ = linear_diagonal_.cwiseQuotient(mass);
+  // Cross flow adds to quadratic damping.
   Vector6d quadratic = quadratic_diagonal_;
   if (config_.cross_flow) {
     const CrossFlowConfig& hull = *config_.cross_flow;
@@ -115,7 +119,7 @@ void CoefficientModel::find_rates() {
     const double any_density = 1025, L = hull.length_m;
     const double drag = 0.5 * hull.density_kgpm3.value_or(any_density) * hull.height_m * max;
     for (const int across : {1, 2}) quadratic[across] += drag * L;
-    // The integral of |x|^3 over the hull.
+    // Integral of |x|^3 over the hull.
     for (const int turning : {4, 5}) quadratic[turning] += drag * L * L * L * L / 32;
   }
   quadratic_rate_ = quadratic.cwiseQuotient(mass);
@@ -123,6 +127,7 @@ void CoefficientModel::find_rates() {
 
 void CoefficientModel::find_turning() {
   const Vector6d mass = mass_.diagonal();
+  // Ratios of masses and of moments of inertia bound the rates.
   const bool munk = coriolis_ == Coriolis::full;
   double lightest_share = 1;
   for (int i = 0; i < 3; ++i) {
@@ -131,7 +136,7 @@ void CoefficientModel::find_turning() {
     spin_ratio_ = std::max(spin_ratio_, std::abs(mass[3 + j] - mass[3 + k]) / mass[3 + i]);
     if (munk) munk_radpm_ = std::max(munk_radpm_, std::sqrt(std::abs(mass[j] - mass[k]) / mass[3 + i]));
   }
-  constexpr double max = 4;  // of a hull; beyond it an axis is probably constrained by a mass
+  constexpr double max = 4;  // of a hull; a larger ratio is probably a mass that constrains an axis
   lightest_share = std::min(lightest_share, max);
   spin_ratio_ = std::clamp(spin_ratio_, lightest_share, max);
   munk_radpm_ *= std::sqrt(lightest_share);
@@ -139,6 +144,7 @@ void CoefficientModel::find_turning() {
 
 CoefficientModel::StepLimit CoefficientModel::max_step() const {
   const double damping = spectral_radius(mass_inverse_ * config_.linear_damping);
+  // Stiffness of the waterline, or of weight and buoyancy.
   Matrix6d stiffness = Matrix6d::Zero();
   if (config_.waterline) {
     const WaterlineConfig& plane = *config_.waterline;
@@ -149,15 +155,16 @@ CoefficientModel::StepLimit CoefficientModel::max_step() const {
                            (buoyancy_N_ < 0 ? weight_N_ : buoyancy_N_) * config_.center_of_buoyancy_m.z();
     stiffness(3, 3) = stiffness(4, 4) = std::abs(upright);
   }
-  // A spring is followed by a semi-implicit step while h omega < 2.
+  // Semi-implicit Euler is stable for a spring while h omega < 2.
   const double restoring = std::sqrt(spectral_radius(mass_inverse_ * stiffness));
+  // Report the smaller of both limits.
   const double fastest = std::max(damping, restoring);
   return {fastest > 0 ? 2 / fastest : 1e9, damping >= restoring ? "forces of linear damping" : "restoring forces"};
 }
 
 double CoefficientModel::immersed(const CraftState& state) const {
   if (config_.waterline) {
-    // Floating as it should or deeper counts as immersed; beyond that it is on its way into the air.
+    // 1 up to a rise by the draft, at which the hull leaves the water; falls to 0 over one more draft.
     const double draft = config_.mass_kg * gravity_mps2_ / config_.waterline->heave_Npm;
     return std::clamp(2 + state.depth_m / draft, 0.0, 1.0);
   }
@@ -167,7 +174,7 @@ double CoefficientModel::immersed(const CraftState& state) const {
   return share * share * (3 - 2 * share);
 }
 
-/// d/dt of the velocity of the water in the axes of the body, which turn.
+/// Rate of change of the water velocity in body axes, due to their rotation.
 Vector3d CoefficientModel::water_turning(const CraftState& state) const {
   const Vector3d w = state.nu.tail<3>();
   const Vector3d& v_c = state.v_water;
@@ -193,15 +200,16 @@ Vector6d CoefficientModel::stiff_acceleration(const CraftState& state, const Vec
   Vector6d nu_r = state.nu;
   nu_r.head<3>() -= state.v_water;
   const double share = immersed(state);
+  // Backward Euler for damping.
   const Matrix6d mass = mass_ - (1 - share) * config_.added_mass;
   Matrix6d left = mass;
   const Vector6d rates = share * (linear_rate_ + 2 * quadratic_rate_.cwiseProduct(nu_r.cwiseAbs()));
   left.diagonal() += step_s * rates.cwiseProduct(mass_.diagonal());
   Vector6d nu_dot = left.llt().solve(total_forces(state, tau, nu_r, share));
   nu_dot.head<3>() += water_turning(state);
-  // Coriolis forces do no work: what they would add to the energy in so long a step is taken out again.
+  // Coriolis forces do no work: limit the kinetic energy at the end of the step to the work of the other forces.
   const Vector3d turned = Vector3d(state.nu.tail<3>()).cross(Vector3d(state.nu.head<3>()));
-  Vector6d change = nu_dot;  // of the velocities as one sees them who does not turn along
+  Vector6d change = nu_dot;  // of the velocities in non-rotating axes
   change.head<3>() += turned;
   Vector6d after = nu_r + step_s * change;
   const double power = std::max(nu_r.dot(tau + forces(state, nu_r)), 0.0);
@@ -218,14 +226,14 @@ Vector6d CoefficientModel::total_forces(const CraftState& state, const Vector6d&
   const Vector3d w = state.nu.tail<3>();
   const Vector3d v_r = nu_r.head<3>();
   Vector6d total = tau + forces(state, nu_r);
-  // Rigid body, in the parametrization in which its Coriolis matrix does not depend on the linear velocity, so that it
-  // may act on the relative velocity (Fossen 2011, property 8.1).
+  // Rigid-body Coriolis forces, in the parametrization whose matrix does not depend on the linear velocity, so that it
+  // can be used with the relative velocity (Fossen 2011, property 8.1).
   const Vector3d& r_g = config_.center_of_mass_m;
   const double m = config_.mass_kg;
   const Vector3d f = m * w.cross(v_r + w.cross(r_g));
   total.head<3>() -= f;
   total.tail<3>() -= w.cross(config_.inertia_kgm2 * w) + r_g.cross(f);
-  // Added mass: Kirchhoff's equations.  It goes as the craft leaves the water.
+  // Added-mass Coriolis forces: Kirchhoff's equations.  They fade as the craft leaves the water.
   const Matrix6d& A = config_.added_mass;
   Vector3d a, b;
   if (added_mass_is_diagonal_) {
@@ -251,7 +259,7 @@ Vector6d CoefficientModel::total_forces(const CraftState& state, const Vector6d&
       break;
   }
   if (!state.a_water.isZero(0)) {
-    // Water that accelerates carries along what it would have filled (Froude-Krylov) and the added mass.
+    // Accelerated water acts on the displaced mass (Froude-Krylov) and on the added mass.
     Vector6d accelerated = Vector6d::Zero();
     accelerated.head<3>() = state.a_water;
     total += share * (config_.added_mass * accelerated);
@@ -273,17 +281,20 @@ Vector6d CoefficientModel::forces(const CraftState& state, const Vector6d& nu_r)
 
 Vector6d CoefficientModel::damping(const CraftState& state, const Vector6d& nu_r) const {
   Vector6d tau;
+  // Linear and quadratic damping.
   if (diagonal_damping_) {
     tau = -(linear_diagonal_ + quadratic_diagonal_.cwiseProduct(nu_r.cwiseAbs())).cwiseProduct(nu_r);
   } else {
     tau = -config_.linear_damping * nu_r - config_.quadratic_damping * nu_r.cwiseAbs().cwiseProduct(nu_r);
   }
+  // Variants of published models.
   const PublishedQuirks& quirks = config_.quirks;
   if (quirks.surge_damping_fade_spm > 0) {
     const double speed = fade_by_speed_in_water_ ? nu_r.head<3>().norm()
                                                  : std::sqrt(std::max(0.0, state.nu[0] + state.nu[1] * state.nu[1]));
     tau[0] += config_.linear_damping(0, 0) * nu_r[0] * (1 - std::exp(-quirks.surge_damping_fade_spm * speed));
   }
+  // Derivatives that are not pure damping, cross flow and hull lift.
   for (const DerivativeTerm& term : config_.derivatives) {
     const double first = term.absolute ? std::abs(nu_r[term.first]) : nu_r[term.first];
     tau[term.row] += term.coefficient * first * (term.second < 0 ? 1 : nu_r[term.second]);
@@ -305,6 +316,7 @@ double CoefficientModel::cross_flow_drag(double speed) const {
   return table[i - 1] + along * (table[i + 1] - table[i - 1]);
 }
 
+/// Adds the cross-flow drag by strip theory (Fossen 2011).
 void CoefficientModel::add_cross_flow(const Vector6d& nu_r, double density, Vector6d& tau) const {
   const CrossFlowConfig& hull = *config_.cross_flow;
   const double scale =
@@ -320,23 +332,26 @@ void CoefficientModel::add_cross_flow(const Vector6d& nu_r, double density, Vect
   tau[4] -= scale * vertical.moment;
 }
 
+/// Adds lift and drag of the hull in its vertical plane, by the angle of attack.
 void CoefficientModel::add_hull_lift(const Vector6d& nu_r, double density, Vector6d& tau) const {
   const HullLiftConfig& hull = *config_.hull_lift;
   const double u = nu_r[0], w = nu_r[2];
   const double square = nu_r.head<3>().squaredNorm(), in_plane = std::sqrt(u * u + w * w);
   if (in_plane < 1e-12) return;
   const double pressure = 0.5 * density * square * hull.area_m2;
-  // A hull that goes astern is taken for its mirror image: the angle is that between its axis and its way.
+  // A hull that moves astern is treated as its mirror image: alpha is the angle between its axis and its motion.
   const double alpha = std::atan2(w, std::abs(u));
-  // The lift goes when the flow leaves the hull; the drag that came with it stays.
+  // The lift is lost when the flow separates; the induced drag remains.
   const double C_L = hull.lift_slope * alpha;
   const double lift = pressure * C_L * kept_lift(alpha);
   const double drag = pressure * (hull.drag_coefficient + hull.induced_drag * C_L * C_L);
+  // Rotate lift and drag into body axes.
   const double cosine = u / in_plane, sine = w / in_plane;
   tau[0] += -drag * cosine + (u < 0 ? -lift : lift) * sine;
   tau[2] += -drag * sine - lift * std::abs(cosine);
 }
 
+/// Adds the wind forces (Fossen 2011, eq. 8.23 to 8.30).
 void CoefficientModel::add_windage(const CraftState& state, Vector6d& tau) const {
   constexpr double air_density_kgpm3 = 1.225;
   const WindageConfig& area = *config_.windage;
@@ -346,23 +361,25 @@ void CoefficientModel::add_windage(const CraftState& state, Vector6d& tau) const
   const double sideways = pressure_per_speed * area.sway_coefficient * area.lateral_area_m2 * v;
   tau[0] += pressure_per_speed * area.surge_coefficient * area.frontal_area_m2 * u;
   tau[1] += sideways;
-  tau[3] += sideways * area.height_m;  // over the origin: -z
-  // sin(2 angle) = 2 u v / speed^2, of the wind as it blows; q takes the square out again.
+  tau[3] += sideways * area.height_m;  // above the origin: -z
+  // With sin(2 angle) = 2 u v / speed^2, the squared speed of the dynamic pressure cancels.
   tau[5] += air_density_kgpm3 * area.yaw_coefficient * area.lateral_area_m2 * area.length_m * -u * v;
 }
 
 void CoefficientModel::add_restoring(const CraftState& state, Vector6d& tau) const {
   if (config_.waterline) {
     const WaterlineConfig& plane = *config_.waterline;
+    // Attitude relative to the surface.
     const double roll = std::atan2(state.down.y(), state.down.z()) - state.surface_roll_rad;
     const double pitch = std::asin(std::clamp(-state.down.x(), -1.0, 1.0)) - state.surface_pitch_rad;
     const double weight = config_.mass_kg * gravity_mps2_;
-    // The springs hold while it floats.  Out of the water nothing but its weight pulls it down.
+    // The springs act while the craft floats; out of the water only its weight acts.
     const double share = immersed(state);
     const double heave = std::max(state.depth_m, -weight / plane.heave_Npm);
     tau[2] -= share * (plane.heave_Npm * heave + plane.heave_pitch_N * pitch);
     tau[3] -= share * (plane.roll_Nmprad * roll);
     tau[4] -= share * (plane.pitch_Nmprad * pitch + plane.heave_pitch_N * heave);
+    // Weight of a load.
     if (plane.load_kg > 0) {
       const Vector3d load = share * plane.load_kg * gravity_mps2_ * state.down;
       const Vector3d moment = plane.load_at_m.cross(load);
@@ -370,6 +387,7 @@ void CoefficientModel::add_restoring(const CraftState& state, Vector6d& tau) con
       tau[3] += moment.x();
       tau[4] += moment.y();
     }
+    // Weight of a craft that has left the water.
     if (share < 1) {
       const Vector3d falling = (1 - share) * weight * state.down;
       tau.head<3>() += falling;
@@ -377,6 +395,7 @@ void CoefficientModel::add_restoring(const CraftState& state, Vector6d& tau) con
     }
     return;
   }
+  // Weight and buoyancy of a craft without waterline.
   const Vector3d weight = weight_N_ * state.down;
   const double full = buoyancy_N_ >= 0 ? buoyancy_N_ : *config_.volume_m3 * state.density_kgpm3 * gravity_mps2_;
   const Vector3d buoyancy = -full * immersed(state) * state.down;
@@ -384,7 +403,7 @@ void CoefficientModel::add_restoring(const CraftState& state, Vector6d& tau) con
   tau.tail<3>() += config_.center_of_mass_m.cross(weight) + config_.center_of_buoyancy_m.cross(buoyancy);
 }
 
-/// Of water, when all of the craft is under it.  One with a waterline floats: it displaces its mass.
+/// Displaced mass of water of the fully submerged craft.  A craft with a waterline floats and displaces its own mass.
 double CoefficientModel::displaced_kg(const CraftState& state) const {
   if (config_.waterline) return config_.mass_kg;
   return buoyancy_N_ >= 0 ? buoyancy_N_ / gravity_mps2_ : *config_.volume_m3 * state.density_kgpm3;

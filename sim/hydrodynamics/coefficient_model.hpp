@@ -9,69 +9,73 @@
 
 namespace sim {
 
-/// How a craft lies in the water, in forward-right-down.
+/// State of a craft relative to the water, in forward-right-down axes.
 struct CraftState {
   Vector6d nu;                        ///< velocity over ground of the origin, then angular velocity; m/s, rad/s
   Vector3d v_water;                   ///< of the water at the origin, m/s
-  Vector3d v_air = Vector3d::Zero();  ///< of the wind, m/s; looked at where there is windage
+  Vector3d v_air = Vector3d::Zero();  ///< of the wind, m/s; used with windage only
   Vector3d a_water;                   ///< acceleration of the water in waves, m/s^2
   Vector3d down;                      ///< unit vector towards the centre of the earth
   double depth_m = 0;                 ///< of the origin below the surface
-  double surface_roll_rad = 0, surface_pitch_rad = 0;  ///< of the surface along its water plane, as roll and pitch
+  double surface_roll_rad = 0, surface_pitch_rad = 0;  ///< slope of the surface at its water plane
   double density_kgpm3 = 0;                            ///< of the water
 };
 
-/// The equations of motion of a marine craft (Fossen 2011, eq. 8.1 to 8.8 in relative velocity): rigid body and added
-/// mass, Coriolis of both, damping, restoring.  All in forward-right-down about the origin of the body.  Holds no
-/// state: vehicles that are alike share one.
+/// Equations of motion of a marine craft (Fossen 2011, eq. 8.1 to 8.8 in relative velocity): rigid-body and added mass,
+/// Coriolis forces of both, damping, restoring forces.  All in forward-right-down axes about the origin of the body.
+/// The model has no state, so that identical vehicles share one.
 class CoefficientModel {
  public:
   CoefficientModel(const HydrodynamicsConfig& config, double gravity_mps2);
 
-  /// d(nu)/dt under the forces `tau` (N, N m about the origin) of everything but the water, weight and buoyancy.
+  /// Returns d(nu)/dt under the forces `tau` (N, N m about the origin), which exclude those of the water, weight and
+  /// buoyancy.
   Vector6d acceleration(const CraftState& state, const Vector6d& tau) const;
-  /// The same for a step that is too long for this velocity: damping is that at the end of the step, linearised
-  /// (backward Euler), and Coriolis forces add no energy, so that the body is not thrown about at any speed.
+  /// The same for a step that is too long for this velocity: damping is linearised and evaluated at the end of the step
+  /// (backward Euler), and Coriolis forces add no energy, so that the motion is stable at any speed.
   Vector6d stiff_acceleration(const CraftState& state, const Vector6d& tau, double step_s) const;
-  /// The hydrodynamic forces except those proportional to acceleration, with weight and buoyancy.
+  /// Returns the hydrodynamic forces except those proportional to acceleration, plus weight and buoyancy.
   Vector6d forces(const CraftState& state, const Vector6d& nu_r) const;
 
-  /// The wrench about the centre of mass, in these axes, that gives a body of mass `mass_kg` and inertia `inertia`
-  /// about its centre of mass this acceleration.
+  /// Returns the wrench about the centre of mass, in these axes, that gives this acceleration to a body of mass
+  /// `mass_kg` and inertia `inertia` about its centre of mass.
   Vector6d equivalent_wrench(const Vector6d& nu_dot, const Vector3d& v, const Vector3d& w, double mass_kg,
                              const Matrix3d& inertia) const;
 
   const HydrodynamicsConfig& config() const { return config_; }
   bool current_by_yaw_only() const { return current_by_yaw_only_; }
-  const Matrix6d& mass() const { return mass_; }  ///< rigid and added
+  const Matrix6d& mass() const { return mass_; }  ///< rigid-body and added mass
   double weight_N() const { return weight_N_; }
   double buoyancy_N() const { return buoyancy_N_; }
 
-  /// The longest step that follows damping and restoring forces (2 over the fastest rate), and what needs it.
+  /// Largest step that resolves linear damping and restoring forces (2 over the fastest rate), and the forces that
+  /// limit it.
   struct StepLimit {
     double step_s;
     const char* why;
   };
   StepLimit max_step() const;
-  /// The fastest rate at this velocity in the water, of damping or of Coriolis forces, 1/s.  An explicit step has to be
-  /// shorter than 1 over it.
+  /// Fastest rate of damping or Coriolis forces at this velocity relative to the water, 1/s.  An explicit step must be
+  /// shorter than its inverse.
   double fastest_rate(const Vector6d& nu_r) const {
     return std::max((linear_rate_ + quadratic_rate_.cwiseProduct(nu_r.cwiseAbs())).maxCoeff(), turning_rate(nu_r));
   }
 
-  /// Share of the hull under water, 0 to 1.
+  /// Submerged fraction of the hull, 0 to 1.
   double immersed(const CraftState& state) const;
 
  private:
   using Coriolis = PublishedQuirks::Coriolis;
-  /// All forces at this moment, and d(nu)/dt of the water in the axes of the body.
+  /// Sum of all forces.
   Vector6d total_forces(const CraftState& state, const Vector6d& tau, const Vector6d& nu_r, double share) const;
   Vector3d water_turning(const CraftState& state) const;
+  /// Damping forces of a fully submerged craft.
   Vector6d damping(const CraftState& state, const Vector6d& nu_r) const;
   void add_cross_flow(const Vector6d& nu_r, double density, Vector6d& tau) const;
   void add_hull_lift(const Vector6d& nu_r, double density, Vector6d& tau) const;
   void add_windage(const CraftState& state, Vector6d& tau) const;
   void add_restoring(const CraftState& state, Vector6d& tau) const;
+  /// Drag coefficient of the cross flow at this speed, from the table over the Reynolds number.
   double cross_flow_drag(double speed) const;
   double displaced_kg(const CraftState& state) const;
   void fold_derivatives();
@@ -87,9 +91,9 @@ class CoefficientModel {
   Matrix6d mass_inverse_;
   double weight_N_, buoyancy_N_, height_m_;
   Vector6d linear_diagonal_, quadratic_diagonal_;
-  Vector6d linear_rate_, quadratic_rate_;  // damping over mass, axis by axis
-  double spin_ratio_ = 1;                  // rate at which Coriolis forces turn velocities, over the angular velocity
-  double munk_radpm_ = 0;                  // angular frequency by speed at which the Munk moment turns the body
+  Vector6d linear_rate_, quadratic_rate_;  // damping over mass, per axis
+  double spin_ratio_ = 1;                  // rate of Coriolis forces over the angular velocity
+  double munk_radpm_ = 0;                  // angular frequency due to the Munk moment over the speed
   bool diagonal_damping_;
   bool added_mass_is_diagonal_;
   Coriolis coriolis_;

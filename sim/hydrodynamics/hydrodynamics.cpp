@@ -17,7 +17,7 @@ namespace sim {
 
 namespace {
 
-/// Takes forward-left-up to forward-right-down and back.
+/// Converts between forward-left-up and forward-right-down.
 Vector3d flipped(const Vector3d& v) {
   return {v.x(), -v.y(), -v.z()};
 }
@@ -111,9 +111,11 @@ CraftState Hydrodynamics::state_of(const CoefficientModel& model, const BodyInWa
   const BodyMotion& motion = around.motion;
   const LocalWater& water = around.water;
   const Matrix3d& R_WB = motion.R_WB;
+  // Velocity and attitude.
   CraftState state;
   state.nu << flipped(R_WB.transpose() * motion.v_WB_W), flipped(around.w_B);
   state.down = {-R_WB(2, 0), R_WB(2, 1), R_WB(2, 2)};
+  // Velocity of the water, in body axes.
   if (model.current_by_yaw_only()) {
     const double heading = std::atan2(R_WB(0, 0), R_WB(1, 0));
     const double north = water.velocity_W.y(), east = water.velocity_W.x();
@@ -122,6 +124,7 @@ CraftState Hydrodynamics::state_of(const CoefficientModel& model, const BodyInWa
   } else {
     state.v_water = state.nu.head<3>() - flipped(around.v_B);
   }
+  // Acceleration of the water, and wind.
   if (medium_.has_waves())
     state.a_water = flipped(R_WB.transpose() * water.acceleration_W);
   else
@@ -130,6 +133,7 @@ CraftState Hydrodynamics::state_of(const CoefficientModel& model, const BodyInWa
     const double height_m = model.config().windage->height_m;
     state.v_air = flipped(R_WB.transpose() * medium_.air_velocity_W(motion.p_WB + Vector3d(0, 0, height_m)));
   }
+  // Depth, and slope of the surface at the water plane.
   state.depth_m = water.surface_m - motion.p_WB.z();
   state.density_kgpm3 = water.density_kgpm3;
   if (model.config().waterline && medium_.has_waves()) {
@@ -168,16 +172,19 @@ void Hydrodynamics::step_crafts() {
     const CoefficientModel& model = *craft.model;
     const BodyInWater& around = around_[static_cast<std::size_t>(body.number())];
     const Matrix3d& R_WB = around.motion.R_WB;
+    // State relative to the water, and stiffness of the step.
     const CraftState state = state_of(model, around);
     Vector6d nu_r = state.nu;
     nu_r.head<3>() -= state.v_water;
     const double fastest = model.fastest_rate(nu_r);
     const bool stiff = !(fastest * step_s_ < 1) && model.immersed(state) > 0;
     if (stiff && !craft.stiffness_warned) warn_of_stiffness(craft, nu_r, fastest);
+    // Actuator forces, moved to the origin.
     const Vector3d force = flipped(R_WB.transpose() * body.applied_force_W());
     Vector6d tau;
     tau << force, flipped(R_WB.transpose() * body.applied_torque_W()) + model.config().center_of_mass_m.cross(force);
     const Vector6d nu_dot = stiff ? model.stiff_acceleration(state, tau, step_s_) : model.acceleration(state, tau);
+    // Wrench on the rigid body that gives this acceleration.
     const Vector6d wrench = model.equivalent_wrench(nu_dot, state.nu.head<3>(), state.nu.tail<3>(), body.mass_kg(),
                                                     model.config().inertia_kgm2);
     body.set_applied_W(R_WB * flipped(wrench.head<3>()), R_WB * flipped(wrench.tail<3>()));

@@ -17,35 +17,35 @@
 
 namespace sim {
 
-/// What the water does to the bodies of a world: stage 3 of a step.
+/// Hydrodynamic forces on the bodies of a world: stage 3 of a step.
 class Hydrodynamics {
  public:
-  /// Called during a step with warnings: who and what.
+  /// Receives warnings during a step: name of the body, and text.
   using Warn = std::function<void(const std::string& who, const std::string& text)>;
 
-  /// `notice` may be empty.
+  /// `warn` may be empty.
   Hydrodynamics(const Medium& medium, double gravity_mps2, double step_s, Warn warn = {});
 
   /// Adds a free body; no effect for one without hydrodynamics.  Throws ConfigError.
   void add_body(Body& body, const BodyConfig& config);
-  /// The bodies of a group are about to go.
+  /// Removes the bodies of a group, before they are destroyed.
   void remove_group(int group);
 
-  /// Looks at the water around each body, before actuators act on it.
+  /// Updates the water around each body, before actuators act on it.
   void begin_step();
-  /// The water at a body's origin in this step.
+  /// Water at a body's origin in this step.
   const LocalWater& water_at(const Body& body) const { return around(body).water; }
-  /// `known` is false for a body that the water does nothing to.
+  /// Motion of a body and of the water around it; `known` is false for a body without hydrodynamics.
   const BodyInWater& around(const Body& body) const {
     const auto number = static_cast<std::size_t>(body.number());
     return number < around_.size() ? around_[number] : nowhere_;
   }
-  /// Adds what the water does to the forces that actuators have put on the bodies in this step.
+  /// Adds the hydrodynamic forces to those that actuators applied to the bodies in this step.
   void step(double gravity_mps2);
-  /// What was found about bodies since the last call; each is one line.
+  /// Returns the warnings about bodies since the last call, one line each.
   std::vector<std::string> take_warnings() { return std::exchange(warnings_, {}); }
 
-  /// The water last seen by bodies in the air, and the warnings already given.
+  /// Visits the last water values of bodies in the air, and which warnings were given.
   void visit_state(StateArchive& archive);
 
  private:
@@ -56,8 +56,8 @@ class Hydrodynamics {
   };
   struct Wetted {
     Body* body;
-    double radius_m;                // about its origin: higher over the highest crest the water does not concern it
-    bool left_the_current = false;  // was said
+    double radius_m;                // bounding radius about its origin
+    bool left_the_current = false;  // a warning was given
   };
   void add_craft(Body& body, const HydrodynamicsConfig& config);
   void step_crafts();
@@ -69,14 +69,14 @@ class Hydrodynamics {
   const Medium& medium_;
   double gravity_mps2_;
   double step_s_;
-  std::vector<CoefficientBody> crafts_;  // in the order in which they came
+  std::vector<CoefficientBody> crafts_;  // in order of addition
   ImmersedBodies floaters_;              // bodies without coefficients
   std::vector<BodyInWater> around_;      // by body number
   const BodyInWater nowhere_;
   std::vector<Wetted> wetted_;  // bodies whose water begin_step() updates
   std::vector<std::string> warnings_;
   Warn warn_;
-  // Vehicles that are alike share a model.
+  // Models, shared by identical vehicles.
   std::map<const HydrodynamicsConfig*, std::weak_ptr<const CoefficientModel>> models_;
 };
 

@@ -12,16 +12,16 @@ namespace sim {
 
 namespace {
 
-/// In waves a part is cut into sections of this length, but not into more than 8.
+/// Length of the sections into which a part is cut in waves; at most 8 sections.
 constexpr double section_m = 0.25;
 
 }  // namespace
 
-/// Sums over the pieces of a body, about its centre of mass, in the world's axes.
+/// Sums over the pieces of a body, about its centre of mass, in world axes.
 struct ImmersedBodies::Wrench {
   Matrix3d R_WB;
   Vector3d p_WB, p_WC, v_WC_W, w_W;
-  Vector3d force_N = Vector3d::Zero(), torque_Nm = Vector3d::Zero();  ///< all but drag
+  Vector3d force_N = Vector3d::Zero(), torque_Nm = Vector3d::Zero();  ///< without drag
   double lift_N = 0;                                                  ///< buoyancy, upwards
   double added_kg = 0;                                                ///< added mass
   double solver_mass_kg = 0;                                          ///< of add_stiffness(), upwards
@@ -65,15 +65,16 @@ std::vector<ImmersedPiece> ImmersedBodies::pieces_of(const Body& body, const Bod
   return pieces;
 }
 
-/// A body that is light for its water line can have swings faster than the step can follow: semi-implicit Euler does up
-/// to h w = 2.  From sqrt(2) on these springs are followed by backward Euler, which is stable for any, and brakes.
+/// Finds hydrostatic stiffness that the step cannot resolve: a light body with a large water plane may oscillate faster
+/// than semi-implicit Euler can follow, h w <= 2.  From h w = sqrt(2) on, these springs are integrated by backward
+/// Euler, which is stable for any stiffness, and adds damping.
 void ImmersedBodies::find_stiffness(ImmersedBody& body, double gravity_mps2, std::vector<std::string>& warnings) const {
   const LocalWater water = medium_.water_at(body.body->X_WB().translation());
   const double pressure = water.density_kgpm3 * std::abs(gravity_mps2);  // per metre
   double heave_Npm = 0;
   Vector3d turn_Nmprad = Vector3d::Zero();
   for (const ImmersedPiece& piece : body.pieces) {
-    // The largest water planes that the extents in the axes of the body allow.
+    // Upper bounds of the water planes from the extents in body axes.
     const Vector3d size = piece.R_BP.cwiseAbs() * piece.size_m;
     heave_Npm += pressure * size.prod() / size.minCoeff();
     const Vector3d p_CP = piece.p_BP - body.body->p_BC();
@@ -82,6 +83,7 @@ void ImmersedBodies::find_stiffness(ImmersedBody& body, double gravity_mps2, std
         turn_Nmprad[i] =
             std::max(turn_Nmprad[i], pressure * size[i] * size[j] * (size[j] * size[j] / 12 + p_CP[j] * p_CP[j]));
   }
+  // Compare the squared frequencies with the limit of the step.
   const double max = 2 / (step_s_ * step_s_);
   double fastest = heave_Npm / body.body->mass_kg();
   if (fastest > max) body.stiff_Npm = heave_Npm;
@@ -125,9 +127,9 @@ void ImmersedBodies::step_body(const ImmersedBody& body, double gravity_mps2, co
   apply(*body.body, gravity_mps2, sum);
 }
 
-/// The force of the spring at the end of the step, for heave and for turning about level axes.  Heave is braked four
-/// times as much as by backward Euler, so that a body comes up to its water line without shooting through it.  One that
-/// leaves the water within the step, with speed from below, keeps its speed: buoyancy and drag fade together.
+/// Adds the spring forces at the end of the step, for heave and for rotation about horizontal axes.  Heave is damped
+/// four times as much as by backward Euler, so that a body rises to its water line without overshoot.  A body that
+/// would leave the water within the step from below keeps its speed: buoyancy and drag fade together.
 void ImmersedBodies::add_stiffness(const ImmersedBody& body, const LocalWater& water, Wrench& sum) const {
   const double h = step_s_;
   Matrix3d turning = sum.R_WB * body.stiff_Nmprad.asDiagonal() * sum.R_WB.transpose();
@@ -147,11 +149,12 @@ void ImmersedBodies::add_stiffness(const ImmersedBody& body, const LocalWater& w
   sum.solver_mass_kg = brake * h * h * body.stiff_Npm;
 }
 
-/// ODE knows rigid mass only: solves with the added mass, and hands over the force that gives this acceleration.
+/// Applies the sum to the body.  ODE has no added mass: the acceleration is solved with added mass, and the force that
+/// gives it to the rigid body is applied.
 void ImmersedBodies::apply(Body& body, double gravity_mps2, const Wrench& sum) {
   const double mass = body.mass_kg();
   const Matrix3d I_W = sum.R_WB * body.inertia_C_B() * sum.R_WB.transpose();
-  const Vector3d weight(0, 0, -mass * gravity_mps2);  // ODE adds it, and this torque too
+  const Vector3d weight(0, 0, -mass * gravity_mps2);  // ODE adds the weight, and the gyroscopic torque below
   const Vector3d gyroscopic = sum.w_W.cross(I_W * sum.w_W);
   Vector6d f;
   f << body.applied_force_W() + sum.force_N + weight, body.applied_torque_W() + sum.torque_Nm - gyroscopic;
@@ -177,7 +180,8 @@ Matrix6d ImmersedBodies::Wrench::mass_matrix(double mass_kg, const Matrix3d& I_W
   return M;
 }
 
-/// Of the mass matrix [D, -S; S, J] the upper left is diagonal: (J + S D^-1 S) w' = t - S D^-1 f, v' = D^-1 (f + S w').
+/// Solves for the acceleration.  In the mass matrix [D, -S; S, J], D is diagonal: (J + S D^-1 S) w' = t - S D^-1 f, v'
+/// = D^-1 (f + S w').
 Vector6d ImmersedBodies::Wrench::acceleration(double mass_kg, const Matrix3d& I_W, const Vector6d& f) const {
   const double mass = mass_kg + added_kg;
   const Vector3d by_mass(1 / mass, 1 / mass, 1 / (mass + solver_mass_kg));
@@ -202,7 +206,7 @@ WaterPlane ImmersedBodies::surface_at(const ImmersedPiece& piece, const Vector3d
 void ImmersedBodies::add_piece(const ImmersedPiece& piece, double gravity_mps2, const LocalWater& at_origin,
                                Wrench& sum) {
   const Vector3d p_BP_W = sum.R_WB * piece.p_BP, p_WP = sum.p_WB + p_BP_W;
-  // Near the origin of the body the water is that of the origin, unless there are waves.
+  // Near the origin of the body the water values of the origin are used, unless there are waves.
   constexpr double near_m = 0.5;
   const bool looks = medium_.has_waves() || p_BP_W.squaredNorm() > near_m * near_m;
   const LocalWater water = looks ? medium_.water_at(p_WP) : at_origin;
@@ -218,13 +222,13 @@ void ImmersedBodies::add_piece(const ImmersedPiece& piece, double gravity_mps2, 
   sum.wet = true;
   const Vector3d at_CP_W = p_WP + R_WP * immersed.centroid_m - sum.p_WC;
   const double displaced_kg = water.density_kgpm3 * immersed.volume_m3;
-  // Froude and Krylov: the pressure that accelerates the water pushes what is in its place.
+  // Buoyancy and Froude-Krylov force: the pressure gradient that accelerates the water acts on the displaced volume.
   const Vector3d lift = displaced_kg * (Vector3d(0, 0, gravity_mps2) + water.acceleration_W);
   sum.force_N += lift;
   sum.lift_N += lift.z();
   sum.torque_Nm += at_CP_W.cross(lift);
   const double share = immersed.volume_m3 / piece.whole.volume_m3;
-  // The pressure on a round side goes through its axis, however deep it lies.
+  // The pressure on a round side acts through its axis, at any depth.
   Vector3d pressed_P = immersed.centroid_m;
   if (piece.shape == ImmersedPiece::Shape::round) pressed_P.x() = pressed_P.y() = 0;
   if (piece.shape == ImmersedPiece::Shape::sphere) pressed_P.setZero();
@@ -233,7 +237,7 @@ void ImmersedBodies::add_piece(const ImmersedPiece& piece, double gravity_mps2, 
     sum.add_added_mass(piece.added_mass_coefficient * displaced_kg, at_CP_W, water.acceleration_W);
 }
 
-/// Water that goes along sits as a mass at the centroid of what is under water.
+/// Adds the added mass as a point mass at the centroid of the submerged volume.
 void ImmersedBodies::Wrench::add_added_mass(double mass_kg, const Vector3d& at_CP_W, const Vector3d& a_fluid_W) {
   added_kg += mass_kg;
   added_moment_kgm += mass_kg * at_CP_W;
@@ -243,7 +247,7 @@ void ImmersedBodies::Wrench::add_added_mass(double mass_kg, const Vector3d& at_C
   torque_Nm += at_CP_W.cross(force);
 }
 
-/// On the parts over water of a body that swims.
+/// Adds the wind drag on the parts above water of a floating body.
 void ImmersedBodies::add_wind(const ImmersedBody& body, const Wrench& sum) {
   const Vector3d wind_W = medium_.air_velocity_W(sum.p_WC);
   if (wind_W.isZero(0)) return;

@@ -13,25 +13,25 @@
 
 namespace sim {
 
-/// Buoyancy and drag of free bodies without coefficients of their own, part by part.  docs/models/marine.md has the
+/// Buoyancy and drag of free bodies without hydrodynamic coefficients, part by part.  docs/models/marine.md has the
 /// model.
 class ImmersedBodies {
  public:
   ImmersedBodies(const Medium& medium, double step_s) : medium_(medium), step_s_(step_s) {}
 
-  /// How far from the origin of the body water can touch it, m; 0 for one of which no part displaces water, which is
-  /// left out.  Appends what is to be said about it to `warnings`.  Throws ConfigError (meshes).
+  /// Adds a body and returns its bounding radius about the origin, m; 0 for a body without displacing parts, which is
+  /// not added.  Appends warnings about it.  Throws ConfigError (meshes).
   double add(Body& body, const BodyConfig& config, double gravity_mps2, std::vector<std::string>& warnings);
   void remove_group(int group);
-  /// Adds to the forces on each body.  `around`: by body number.
+  /// Adds the water forces to the forces on each body.  `around`: by body number.
   void step(double gravity_mps2, std::span<const BodyInWater> around);
 
  private:
-  /// What a step needs of a body, side by side.
+  /// Data of a body for each step.
   struct ImmersedBody {
     Body* body = nullptr;
-    double radius_m = 0;  ///< about the origin of the body: no part is farther away
-    // Springs of its water line that are too stiff for the step, see find_stiffness(); 0: none.
+    double radius_m = 0;  ///< bounding radius about the origin of the body
+    // Hydrostatic stiffness that is too high for the step, see find_stiffness(); 0: none.
     bool stiff = false;
     double stiff_Npm = 0;
     Vector3d stiff_Nmprad = Vector3d::Zero();  ///< about the axes of the body
@@ -51,9 +51,9 @@ class ImmersedBodies {
 
   const Medium& medium_;
   double step_s_;
-  std::vector<ImmersedBody> bodies_;  // in the order in which they came
+  std::vector<ImmersedBody> bodies_;  // in order of addition
   PieceMeshes meshes_;
-  ImmersedDrag drag_;  // of the body that is at hand
+  ImmersedDrag drag_;  // of the present body
 };
 
 }  // namespace sim

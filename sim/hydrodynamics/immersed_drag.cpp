@@ -9,7 +9,7 @@ namespace sim {
 
 namespace {
 
-/// Skin friction: a drag that grows with the speed instead of its square below this speed.  Without it no swing ends.
+/// Skin friction: below this speed drag is linear instead of quadratic, so that oscillations decay.
 constexpr double slow_mps = 0.005;
 
 }  // namespace
@@ -37,6 +37,7 @@ void ImmersedDrag::add(const ImmersedPiece& piece, double share, double density_
                        const Vector3d& at_CP_W, const Matrix3d& R_WP) {
   parts_.push_back({&piece, R_WP, at_CP_W, v_fluid_W, 0.5 * density_kgpm3 * share, 0, 0});
   Part& part = parts_.back();
+  // Drag with the velocities at the start of the step.
   const Vector3d w_W = twist_.tail<3>();
   const Vector3d v_P = R_WP.transpose() * (twist_.head<3>() + w_W.cross(at_CP_W) - v_fluid_W);
   const Vector3d w_P = R_WP.transpose() * w_W;
@@ -46,6 +47,7 @@ void ImmersedDrag::add(const ImmersedPiece& piece, double share, double density_
   const Vector3d turning = -part.pressure * part.rate * piece.angular_drag_area_m5.cwiseProduct(w_P);
   force_N_ += force;
   torque_Nm_ += at_CP_W.cross(force) + R_WP * turning;
+  // Bounds of its derivatives.
   const double by_speed = 2 * part.pressure * piece.drag_area_m2.maxCoeff();
   const Vector3d by_rate = 2 * part.pressure * piece.R_BP.cwiseAbs2() * piece.angular_drag_area_m5;
   const Vector3d arm_squared_B = (R_WB_.transpose() * at_CP_W).cwiseAbs2();
@@ -60,20 +62,21 @@ void ImmersedDrag::add(const ImmersedPiece& piece, double share, double density_
 
 bool ImmersedDrag::too_stiff(double mass_kg, const Vector3d& inertia_kgm2, double dv_mps, const Vector3d& dw_radps,
                              double step_s) const {
-  constexpr double max = 0.25;  // of a velocity that drag may take away in a step
+  constexpr double max = 0.25;  // fraction of a velocity that drag may remove in a step
   const double faster = dv_mps + dw_radps.dot(reach_m_);
   if (step_s * (linear_kgps_ + linear_kgpm_ * faster) > max * mass_kg) return true;
   const Vector3d rates = angular_Nms_ + angular_by_speed_Ns2_ * faster + angular_by_rate_Nms2_.cwiseProduct(dw_radps);
   return (step_s * rates - max * inertia_kgm2).maxCoeff() > 0;
 }
 
-/// The factors `speed` and `rate` of the end of the step are found by iteration.  With the geometric mean of two
-/// guesses the error of their logarithms halves each time at least: for M v' = F - k s v the new s falls with the old
-/// one, by at most its own ratio.
+/// Finds the factors `speed` and `rate` at the end of the step by iteration.  With the geometric mean of two iterates
+/// the error of their logarithms at least halves each time: for M v' = F - k s v the new s falls with the old one, by
+/// at most its own ratio.
 Vector6d ImmersedDrag::acceleration(const Matrix6d& M, const Vector6d& other, double step_s) {
   constexpr int iterations = 10;
   Vector6d a = Vector6d::Zero();
   for (int i = 0; i < iterations; ++i) {
+    // Linear system with the present factors.
     Matrix6d system = M;
     Vector6d f = other;
     for (const Part& part : parts_) {
@@ -91,6 +94,7 @@ Vector6d ImmersedDrag::acceleration(const Matrix6d& M, const Vector6d& other, do
       system.topRightCorner<3, 3>() += step_s * SD.transpose();
       system.bottomRightCorner<3, 3>() += step_s * (turning - SD * S);
     }
+    // Solve, and update the factors with the velocities at the end.
     a = system.llt().solve(f);
     const Vector6d end = twist_ + step_s * a;
     for (Part& part : parts_) {

@@ -20,7 +20,8 @@ Vector3d drag_of(const PartConfig& part) {
   return given.size() == 1 ? Vector3d(Vector3d::Constant(given[0])) : Vector3d(given[0], given[1], given[2]);
 }
 
-/// Strips of the faces along an axis of rotation, each in flow of its own speed: the integral of |r|^3 over a side.
+/// Angular drag areas by strip theory: each strip of a face has its own flow speed, which gives the integral of
+/// |r|^3 over a side.
 Vector3d angular_drag(const Vector3d& C, const Vector3d& size) {
   Vector3d drag;
   for (int i = 0; i < 3; ++i) {
@@ -30,7 +31,7 @@ Vector3d angular_drag(const Vector3d& C, const Vector3d& size) {
   return drag;
 }
 
-/// What spins about its own axis has skin friction only.
+/// Fraction of the angular drag for rotation about the axis of symmetry: skin friction only.
 constexpr double spin_share = 0.05;
 
 ImmersedPiece sphere_piece(const PartConfig& part, const Vector3d& C) {
@@ -52,8 +53,8 @@ ImmersedPiece box_piece(const Vector3d& size, const Vector3d& C) {
   return piece;
 }
 
-/// `low` and `high` along the axis of the part.  The middle of a section, not that of the part, is where the water is
-/// looked up.
+/// Section of a cylinder or capsule from `low` to `high` along its axis.  The water is evaluated at the centre of the
+/// section, not of the part.
 ImmersedPiece round_piece(const PartConfig& part, double low, double high, const Vector3d& C) {
   ImmersedPiece piece;
   piece.shape = ImmersedPiece::Shape::round;
@@ -106,7 +107,7 @@ std::shared_ptr<const Mesh> closed_mesh(const PartConfig& part, const std::strin
   return nullptr;
 }
 
-/// Lowest and highest corner along the axes of a part that is not a sphere.
+/// Lower and upper corner in the axes of a part that is not a sphere.
 std::pair<Vector3d, Vector3d> extent_of(const PartConfig& part, const Mesh* mesh) {
   Vector3d low = -part.size_m / 2, high = part.size_m / 2;
   if (mesh != nullptr) {
@@ -126,10 +127,10 @@ std::pair<Vector3d, Vector3d> extent_of(const PartConfig& part, const Mesh* mesh
 struct Section {
   int axis;
   double from, length;
-  bool whole;  ///< it is all of the part
+  bool whole;  ///< the section is the whole part
 };
 
-/// The section of a part; empty: nothing of it is there.
+/// Returns a section of a part; empty when it has no volume.
 std::optional<ImmersedPiece> section_piece(const PartConfig& part, const Mesh* mesh, const Section& section,
                                            const Vector3d& C) {
   const auto [axis, from, length, whole] = section;
@@ -159,7 +160,7 @@ std::optional<ImmersedPiece> section_piece(const PartConfig& part, const Mesh* m
   return std::nullopt;
 }
 
-/// The pieces in the frame of the part.
+/// Returns the pieces in the frame of the part.
 std::vector<ImmersedPiece> pieces_in_part(const PartConfig& part, double max_m, const Mesh* mesh) {
   const Vector3d C = drag_of(part);
   if (part.shape == PartShape::sphere) return {sphere_piece(part, C)};
@@ -169,7 +170,7 @@ std::vector<ImmersedPiece> pieces_in_part(const PartConfig& part, double max_m, 
   const double whole = high[axis] - low[axis];
   const int sections = static_cast<int>(std::clamp(std::ceil(whole / max_m), 1.0, 8.0));
   const double from = low[axis], length = whole / sections;
-  Vector3d shared_ends = Vector3d::Ones();  // all sections together have one end against the flow
+  Vector3d shared_ends = Vector3d::Ones();  // the sections share the drag of one end face
   shared_ends[axis] = 1.0 / sections;
   const Vector3d C_section = C.cwiseProduct(shared_ends);
   std::vector<ImmersedPiece> pieces;
@@ -193,7 +194,7 @@ ImmersedVolume ImmersedPiece::immersed(const WaterPlane& plane) const {
     case Shape::round:
       break;
   }
-  // The solid is about the middle of the part, the piece about its own.
+  // The solid is relative to the centre of the part, the piece to its own centre.
   const double shift = (round.low_m + round.high_m) / 2;
   ImmersedVolume volume = immersed_round(round, {plane.normal, plane.level_m + shift * plane.normal.z()});
   if (volume.volume_m3 > 0) volume.centroid_m.z() -= shift;

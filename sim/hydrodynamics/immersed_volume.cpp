@@ -10,15 +10,16 @@ namespace sim {
 
 namespace {
 
-/// Sums the tetrahedra between the wet faces of a closed surface and a point of the water plane: those of the face
-/// that the plane itself would add are flat.  What is left is the volume under water (divergence theorem).
+/// Sums the tetrahedra between the submerged faces of a closed surface and a point of the water plane; those of the
+/// water plane itself have no volume.  The sum is the submerged volume (divergence theorem).
 class WetFaces {
  public:
   explicit WetFaces(const WaterPlane& plane) : plane_(plane), apex_(plane.level_m * plane.normal) {}
 
-  /// A convex face of three or four corners, counter-clockwise seen from outside.
+  /// Adds a convex face of three or four corners, counter-clockwise seen from outside.
   template <std::size_t n>
   void add(const std::array<Vector3d, n>& corners) {
+    // Depths of the corners.
     std::array<double, n> depth;
     bool all = true, none = true;
     for (std::size_t i = 0; i < n; ++i) {
@@ -27,6 +28,7 @@ class WetFaces {
       none &= depth[i] <= 0;
     }
     if (none) return;
+    // Clip the face at the water plane.
     std::array<Vector3d, n + 2> wet;
     std::size_t count = 0;
     for (std::size_t i = 0; i < n; ++i) {
@@ -38,6 +40,7 @@ class WetFaces {
       }
     }
     for (std::size_t i = 2; i < count; ++i) {
+      // Tetrahedron from the apex to a triangle of the clipped face.
       const double det = wet[0].dot(wet[i - 1].cross(wet[i]));
       volume_ += det / 6;
       first_ += det / 24 * (wet[0] + wet[i - 1] + wet[i]);
@@ -59,6 +62,7 @@ class WetFaces {
 }  // namespace
 
 ImmersedVolume immersed_sphere(double radius_m, const WaterPlane& plane) {
+  // Spherical cap: volume and centroid.
   const double height = std::clamp(radius_m + plane.level_m, 0.0, 2 * radius_m);  // of the cap under water
   if (height == 0) return {};
   const double volume = std::numbers::pi * height * height * (3 * radius_m - height) / 3;
@@ -107,7 +111,7 @@ class RoundSum {
     if (across_ > 0) direction_ = Vector3d(plane.normal.x(), plane.normal.y(), 0) / across_;
   }
 
-  /// A stretch of the cylinder.
+  /// Adds a stretch of the cylinder.
   void add_cylinder(double low, double high) {
     if (!(high > low)) return;
     center_ = 0;
@@ -118,7 +122,7 @@ class RoundSum {
       for (const double side : {-1.0, 1.0}) cuts[count++] = (level_ - side * radius_ * across_) / along_;
     add_between(low, high, cuts, count);
   }
-  /// A stretch of the sphere about (0, 0, center).
+  /// Adds a stretch of the sphere about (0, 0, center).
   void add_sphere(double low, double high, double center) {
     if (!(high > low)) return;
     center_ = center;
@@ -158,10 +162,10 @@ class RoundSum {
     add_stretch(from, high);
   }
 
-  /// Wholly under water, wholly over it, or cut all along.
+  /// Adds a stretch that is entirely under water, entirely above it, or cut over its whole length.
   void add_stretch(double low, double high) {
     const double middle = (low + high) / 2;
-    const double over = level_ - along_ * middle;  // times `across`: of the surface over the axis
+    const double over = level_ - along_ * middle;  // height of the surface over the axis, times `across`
     const double radius = radius_at(middle);
     if (over <= -radius * across_) return;
     if (over >= radius * across_)
@@ -185,8 +189,8 @@ class RoundSum {
   }
 
   void add_segments(double low, double high) {
-    // Gauss-Legendre, 8 points on [0, 1].  The area of a segment grows with the power 3/2 where the surface reaches
-    // the solid; in u, with z a smooth step of u, that is not a singularity.
+    // Gauss-Legendre quadrature, 8 points on [0, 1].  The area of a segment grows with the power 3/2 where the surface
+    // reaches the solid; with z a smooth step of u, the integrand in u is not singular.
     static constexpr double at[4] = {0.019855071751231912, 0.10166676129318664, 0.2372337950418355, 0.4082826787521751};
     static constexpr double weight[4] = {0.05061426814518813, 0.11119051722668724, 0.15685332293894363,
                                          0.18134189168918100};
@@ -232,18 +236,19 @@ ImmersedVolume immersed_round(const RoundSolid& solid, const WaterPlane& plane) 
 
 namespace {
 
-/// Keeps what is on the lower side (side 1) or the upper side (side -1) of a plane across an axis, and closes it.
+/// Keeps the lower side (side 1) or the upper side (side -1) of a plane across an axis, and closes the mesh.
 Mesh cut(const Mesh& mesh, int axis, double at_m, double side) {
   Mesh kept;
   const auto add_vertex = [&](const Vector3d& p) {
     kept.vertices_m.push_back(p);
     return static_cast<std::uint32_t>(kept.vertices_m.size() - 1);
   };
-  // Each edge along the cut makes a triangle with a point of the cut; those outside the solid cancel each other.
+  // Each edge along the cut makes a triangle with one point of the cut; the areas outside the solid cancel.
   const std::uint32_t hub = 0;
   bool has_hub = false;
   kept.vertices_m.emplace_back(Vector3d::Zero());
   for (const auto& t : mesh.triangles) {
+    // Clip the triangle.
     std::array<std::uint32_t, 4> wet{};
     std::array<bool, 4> on_cut{};
     std::size_t count = 0;
@@ -259,13 +264,14 @@ Mesh cut(const Mesh& mesh, int axis, double at_m, double side) {
       on_cut[count] = true;
       wet[count++] = add_vertex(crossing);
     }
+    // Add the clipped face, and the closing triangle.
     for (std::size_t i = 2; i < count; ++i) kept.triangles.push_back({wet[0], wet[i - 1], wet[i]});
     for (std::size_t i = 0; i < count; ++i) {
       const std::size_t next = (i + 1) % count;
       if (on_cut[i] && on_cut[next]) kept.triangles.push_back({hub, wet[next], wet[i]});
     }
   }
-  if (!has_hub && kept.vertices_m.size() > 1) kept.vertices_m[hub] = kept.vertices_m[1];  // nothing was cut
+  if (!has_hub && kept.vertices_m.size() > 1) kept.vertices_m[hub] = kept.vertices_m[1];  // no triangle was cut
   return kept;
 }
 

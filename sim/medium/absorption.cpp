@@ -8,7 +8,7 @@ namespace sim {
 
 namespace {
 
-/// What a substance absorbs that follows the pressure of sound at frequencies well below `relaxation_kHz`.
+/// Relaxation term f_r f^2 / (f_r^2 + f^2) of a substance.
 double relaxation(double f_kHz, double relaxation_kHz) {
   return relaxation_kHz * f_kHz * f_kHz / (relaxation_kHz * relaxation_kHz + f_kHz * f_kHz);
 }

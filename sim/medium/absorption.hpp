@@ -3,7 +3,7 @@
 
 namespace sim {
 
-/// Sea water as far as sound is absorbed by it.
+/// Properties of sea water that determine the absorption of sound.
 struct SeaWater {
   double temperature_C = 10;
   double salinity_psu = 35;
@@ -11,7 +11,7 @@ struct SeaWater {
   double pH = 8;
 };
 
-/// Absorption of sound in the sea by W. H. Thorp's formula, dB/km: 4 C and 1 km deep, 0.1 to 50 kHz (Deep-sea sound
+/// Absorption of sound in the sea by W. H. Thorp's formula, dB/km: at 4 C and 1 km depth, 0.1 to 50 kHz (Deep-sea sound
 /// attenuation in the sub- and low-kilocycle-per-second region, JASA 38, 1965, in the metric form of Urick).
 double thorp_dBpkm(double frequency_kHz);
 

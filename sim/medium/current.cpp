@@ -29,9 +29,9 @@ Vector3d of_profile(const std::vector<CurrentLayerConfig>& rows, double depth_m)
   return a.velocity_mps + (b.velocity_mps - a.velocity_mps) * ((depth_m - a.depth_m) / (b.depth_m - a.depth_m));
 }
 
-/// Speed over the highest speed, at a distance from the middle over that of the highest speed.
+/// Speed of a vortex relative to its peak, at a radius relative to that of the peak.
 double vortex_speed(CurrentConfig::Core core, double ratio) {
-  // By its peak: the speed is highest where d/dr of (1 - e^(-a r^2)) / r is 0, at a = 1.25643.
+  // Lamb-Oseen vortex normalized by its peak: d/dr of (1 - e^(-a r^2)) / r is 0 at r = 1 for a = 1.25643.
   constexpr double a = 1.2564312086261697;
   switch (core) {
     case CurrentConfig::Core::lamb_oseen:
@@ -55,6 +55,7 @@ double wind_driven_speed_mps(double surface_speed_mps, double depth_m, double re
 
 Current::Current(const std::vector<CurrentConfig>& entries, const std::vector<TideConfig>& tides, std::uint64_t seed)
     : tides_(tides) {
+  // Sort the entries by their dependence on time and position.
   for (std::size_t i = 0; i < entries.size(); ++i) {
     const CurrentConfig& entry = entries[i];
     switch (entry.type) {
@@ -86,6 +87,7 @@ Current::Current(const std::vector<CurrentConfig>& entries, const std::vector<Ti
         break;
     }
   }
+  // Note whether the velocity depends on position.
   varies_ = !by_depth_.empty() || !vortices_.empty() || !grids_.empty();
   advance_to(Time{0});
 }
@@ -106,6 +108,7 @@ void Current::advance_to(Time now) {
 
 Vector3d Current::local_W(double x_m, double y_m, double depth_m) const {
   Vector3d sum = Vector3d::Zero();
+  // Currents that depend on depth.
   for (const CurrentConfig& part : by_depth_) {
     switch (part.type) {
       case CurrentConfig::Type::profile:
@@ -125,6 +128,7 @@ Vector3d Current::local_W(double x_m, double y_m, double depth_m) const {
         break;  // none of by_depth_
     }
   }
+  // Currents that depend on the horizontal position.
   for (const Vortex& vortex : vortices_) {
     const Eigen::Vector2d r = Eigen::Vector2d(x_m, y_m) - vortex.center_m;
     const double ratio = r.norm() / vortex.core_radius_m;

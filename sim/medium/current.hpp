@@ -12,29 +12,29 @@
 
 namespace sim {
 
-/// How the water flows without waves: the sum of the entries of `current:` and of the tides.
+/// Current: velocity of the water without waves, the sum of the entries of `current:` and of the tidal currents.
 class Current {
  public:
-  /// Throws ConfigError (files).
+  /// Reads the files of gridded currents.  Throws ConfigError.
   Current(const std::vector<CurrentConfig>& entries, const std::vector<TideConfig>& tides, std::uint64_t seed);
 
-  /// Not back in time.
+  /// Advances to a time, which must not decrease.
   void advance_to(Time now);
-  /// m/s in the world; `depth_m` below the surface, what is above flows as the surface does.
+  /// Velocity in the world, m/s.  `depth_m`: below the surface; negative depths have the velocity at the surface.
   Vector3d velocity_W(double x_m, double y_m, double depth_m) const {
     return varies_ ? uniform_W_ + local_W(x_m, y_m, depth_m) : uniform_W_;
   }
-  /// All grids reach there.
+  /// Whether all grids contain the point.
   bool known(double x_m, double y_m) const;
-  /// Of the tides over the still surface.
+  /// Tidal elevation over the still surface.
   static double tide_m(const std::vector<TideConfig>& tides, Time at);
-  /// After restoring the flow follows at the next advance_to().
+  /// Visits the state; velocities are updated by the next advance_to().
   void visit_state(StateArchive& archive) {
     for (Wandering& part : wandering_) archive(part.errors);
   }
 
  private:
-  /// A speed and a direction that wander, as a velocity.
+  /// Current whose speed and direction are Gauss-Markov processes.
   struct Wandering {
     double speed_mps, direction_rad;
     GaussMarkov errors;  ///< of speed, direction, vertical velocity
@@ -53,13 +53,13 @@ class Current {
   std::vector<CurrentConfig> by_depth_;
   std::vector<Vortex> vortices_;
   std::vector<CurrentGrid> grids_;
-  bool varies_ = false;  ///< with the place
+  bool varies_ = false;  ///< in space
   Vector3d uniform_W_ = Vector3d::Zero();
 };
 
-/// Speed at a depth of the tidal profile of DNV-RP-C205: V0 ((H - z) / H)^exponent; 0 at the bottom H and below.
+/// Speed at a depth for the tidal profile of DNV-RP-C205: V0 ((H - z) / H)^exponent; 0 at the bottom H and below.
 double power_law_speed_mps(double surface_speed_mps, double depth_m, double water_depth_m, double exponent);
-/// Speed at a depth of the wind-driven profile of DNV-RP-C205: V0 (d0 - z) / d0; 0 from d0 on.
+/// Speed at a depth for the wind-driven profile of DNV-RP-C205: V0 (d0 - z) / d0; 0 from d0 on.
 double wind_driven_speed_mps(double surface_speed_mps, double depth_m, double reference_depth_m);
 
 }  // namespace sim

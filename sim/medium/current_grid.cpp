@@ -48,7 +48,7 @@ std::string bytes_of(const std::string& path) {
   return whole_file<TerrainError>(path);
 }
 
-/// Columns may come in any order; others are left out.
+/// Reads the rows of a CSV file.  Columns may have any order; unknown ones are ignored.
 std::vector<CsvRow> parse_rows(std::string_view text) {
   constexpr std::array<const char*, 4> names{"x_m", "y_m", "east_mps", "north_mps"};
   std::array<std::size_t, 4> columns{};
@@ -60,6 +60,7 @@ std::vector<CsvRow> parse_rows(std::string_view text) {
     text.remove_prefix(end == text.npos ? text.size() : end + 1);
     if (line.empty() || line[0] == '#') continue;
     const auto cells = split(line);
+    // Header: find the columns.
     if (!has_header) {
       for (std::size_t i = 0; i < names.size(); ++i) {
         const auto found = std::find(cells.begin(), cells.end(), names[i]);
@@ -71,6 +72,7 @@ std::vector<CsvRow> parse_rows(std::string_view text) {
       has_header = true;
       continue;
     }
+    // Row: parse and check the values.
     std::array<double, 4> values{};
     for (std::size_t i = 0; i < names.size(); ++i) {
       if (columns[i] >= cells.size()) fail(number, "'" + std::string(names[i]) + "' is missing");
@@ -86,7 +88,7 @@ std::vector<CsvRow> parse_rows(std::string_view text) {
   return rows;
 }
 
-/// The sorted places of the rows along one axis; they must be equally far apart.
+/// Returns the sorted coordinates of the rows along one axis; they must be equally spaced.
 std::vector<double> places_along(const std::vector<CsvRow>& rows, double CsvRow::*axis, const char* name) {
   std::vector<double> places;
   for (const CsvRow& row : rows) places.push_back(row.*axis);
@@ -127,6 +129,7 @@ CurrentGrid::CurrentGrid(const CurrentConfig& config) : edge_(config.outside == 
 void CurrentGrid::read_csv(std::string_view text) {
   const std::vector<CsvRow> rows = parse_rows(text);
   if (rows.empty()) throw TerrainError("has no rows");
+  // Determine the grid.
   const auto xs = places_along(rows, &CsvRow::x_m, "x_m"), ys = places_along(rows, &CsvRow::y_m, "y_m");
   if (xs.size() * ys.size() != rows.size())
     throw TerrainError("must have one row for each of " + std::to_string(xs.size()) + " x " +
@@ -137,6 +140,7 @@ void CurrentGrid::read_csv(std::string_view text) {
   south_m_ = ys[0];
   cell_x_m_ = (xs.back() - xs[0]) / (columns_ - 1);
   cell_y_m_ = (ys.back() - ys[0]) / (rows_ - 1);
+  // Fill the grid; each point must occur once.
   velocities_mps_.resize(rows.size());
   std::vector<bool> filled(rows.size(), false);
   for (const CsvRow& row : rows) {

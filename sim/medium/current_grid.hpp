@@ -10,24 +10,24 @@
 
 namespace sim {
 
-/// A current by place, the same at every depth and time: bilinear between the points of a regular grid.
+/// Current that varies horizontally, constant over depth and time: bilinear interpolation in a regular grid.
 class CurrentGrid {
  public:
-  /// Reads the files of a current of type grid.  Throws TerrainError, which names the file.
+  /// Reads the files of a current of type grid.  Throws TerrainError with the name of the file.
   explicit CurrentGrid(const CurrentConfig& config);
 
   bool contains(double x_m, double y_m) const {
     return x_m >= west_m_ && y_m >= south_m_ && x_m <= west_m_ + (columns_ - 1) * cell_x_m_ &&
            y_m <= south_m_ + (rows_ - 1) * cell_y_m_;
   }
-  /// m/s, in the world.
+  /// Velocity in the world, m/s.
   Vector3d velocity_W(double x_m, double y_m) const;
 
  private:
   void read_csv(std::string_view text);
   void read_esri(const std::string& east_path, const std::string& north_path);
 
-  bool edge_;  ///< beyond the border as at it; else nothing flows there
+  bool edge_;  ///< outside, the velocity at the border; else zero
   int columns_ = 0, rows_ = 0;
   double west_m_ = 0, south_m_ = 0, cell_x_m_ = 1, cell_y_m_ = 1;
   std::vector<Eigen::Vector2d> velocities_mps_;  ///< rows from south to north, each from west to east

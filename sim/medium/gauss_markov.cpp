@@ -26,9 +26,9 @@ Vector3d GaussMarkov::draw(std::int64_t tick) {
 void GaussMarkov::advance_to(Time now) {
   const std::int64_t desired = now.count() / tick_us_;
   const double dt_s = static_cast<double>(tick_us_) * 1e-6;
-  // What was more than 1300 correlation times ago, e^-1300 of it, has been rounded away: the values are the same.
+  // Values from more than 1300 correlation times ago have a weight of e^-1300, below rounding, and are skipped.
   constexpr std::int64_t remembered_ticks = 1 << 16;
-  // Only a forged snapshot is ahead of the time.
+  // Only a forged snapshot has a tick in the future.
   tick_ = std::clamp(tick_, desired - remembered_ticks, desired);
   for (; tick_ < desired; ++tick_) {
     from_ = to_;

@@ -29,7 +29,7 @@ void check_depths(ParamReader& in, const std::vector<Layer>& rows) {
     }
 }
 
-/// A column of the profile is there in all rows or in none.
+/// Checks that a column of the profile is in all rows or in none.
 void check_column(ParamReader& in, const std::vector<WaterLayerConfig>& rows,
                   std::optional<double> WaterLayerConfig::*column, const char* key) {
   const auto given =
@@ -54,6 +54,7 @@ void WaterLayerConfig::read(ParamReader& in) {
 }
 
 void WaterConfig::read(ParamReader& in) {
+  // Surface, density, temperature and salinity.
   in.read("surface_m", surface_m, between(-1e6, 1e6), "height of the still surface in the world");
   in.read_choice("density", density, {{"constant", Density::constant}, {"eos80", Density::eos80}},
                  "constant: density_kgpm3; eos80: from temperature, salinity and pressure");
@@ -61,10 +62,12 @@ void WaterConfig::read(ParamReader& in) {
   in.read("temperature_C", temperature_C, between(-5, 100), "temperature of the water");
   in.read("salinity_psu", salinity_psu, between(0, 400), "salinity of the water");
   in.read_list("profile", profile, "row", "temperature and salinity by depth, linear in between");
+  // Speed of sound.
   in.read_choice("sound_speed", sound,
                  {{"mackenzie", SoundSpeed::mackenzie}, {"medwin", SoundSpeed::medwin}, {"unesco", SoundSpeed::unesco}},
                  "equation, where no number is given");
   in.read("sound_speed_mps", sound_speed_mps, between(100, 10000), "the same everywhere");
+  // Check that the keys are consistent.
   if (in.describing()) return;
   check_depths(in, profile);
   check_column(in, profile, &WaterLayerConfig::density_kgpm3, "density_kgpm3");
@@ -123,6 +126,7 @@ void CurrentConfig::read(ParamReader& in) {
   if (place.file) directory = std::filesystem::path(*place.file).parent_path().string();
   in.read_choice("type", type, current_type_words, "how this part of the current flows");
   in.read("velocity_mps", velocity_mps, between(-100, 100), "constant: east, north, up");
+  // Velocity profiles over the depth.
   in.read_list("profile", profile, "row", "profile: velocities by depth, linear in between");
   in.read("speed_mps", speed_mps, between(0, 100), "power_law, wind_driven: at the surface; gauss_markov: mean");
   in.read_deg("direction_deg", direction_rad, between(-360, 360),
@@ -130,15 +134,18 @@ void CurrentConfig::read(ParamReader& in) {
   in.read("water_depth_m", water_depth_m, above_to(0, 12000), "power_law: depth of the bottom");
   in.read("exponent", exponent, between(0, 10), "power_law");
   in.read("reference_depth_m", reference_depth_m, above_to(0, 12000), "wind_driven: no current below");
+  // Gauss-Markov process.
   in.read("std_mps", std_mps, between(0, 10), "gauss_markov: of the speed, over a long time");
   in.read_deg("direction_std_deg", direction_std_rad, between(0, 180), "gauss_markov: of the direction");
   in.read("vertical_std_mps", vertical_std_mps, between(0, 10), "gauss_markov: of the vertical velocity");
   in.read("correlation_time_s", correlation_time_s, between(0.05, 1e7), "gauss_markov: 1 / mu");
+  // Vortex.
   read_pair(in, "center_m", center_m, "vortex: east, north");
   in.read("peak_speed_mps", peak_speed_mps, between(-100, 100), "vortex: positive turns counter-clockwise");
   in.read("core_radius_m", core_radius_m, above_to(0, 1e7), "vortex: where it is fastest");
   in.read_choice("core", core, {{"lamb_oseen", Core::lamb_oseen}, {"rankine", Core::rankine}},
                  "vortex: profile of the speed over the radius");
+  // Grid.
   in.read_path("file", file, PathUse::read,
                "grid: CSV with columns x_m, y_m, east_mps, north_mps; relative to this file");
   in.read_path("east_file", east_file, PathUse::read, "grid: ESRI ASCII grid of the velocity to the east, m/s");
@@ -179,12 +186,14 @@ void GustConfig::read(ParamReader& in) {
 
 void WindConfig::read(ParamReader& in) {
   keep_place(in, place);
+  // Mean wind.
   in.read("velocity_mps", velocity_mps, between(-120, 120), "east, north, up, at the reference height");
   in.read("speed_mps", speed_mps, between(0, 120), "instead of 'velocity_mps'");
   in.read_deg("direction_deg", direction_rad, between(-360, 360),
               "direction towards which it blows, counter-clockwise from east");
   in.read("from_compass_deg", from_compass_deg, between(-360, 360),
           "direction from which it blows, clockwise from north, as in forecasts");
+  // Profile over the height, and gusts.
   in.read_choice("profile", profile, {{"uniform", Profile::uniform}, {"power", Profile::power}, {"log", Profile::log}},
                  "profile of the mean over the height");
   in.read("reference_height_m", reference_height_m, above_to(0.001, 1000),
@@ -233,7 +242,7 @@ void check_keys_of_waves(ParamReader& in, WavesConfig::Type type) {
 }
 
 /// Sets height and period of a sea state: the middle of the range of heights and the most probable period in the open
-/// North Atlantic (Lee and Bales 1984, as in STANAG 4194; sea states 0 and 1 have no period there: that of 2).
+/// North Atlantic (Lee and Bales 1984, as in STANAG 4194; sea states 0 and 1 have no period there and use that of 2).
 void take_sea_state(WavesConfig& waves) {
   constexpr double hs_m[] = {0, 0.05, 0.3, 0.88, 1.88, 3.25, 5, 7.5, 11.5};
   constexpr double tp_s[] = {7.5, 7.5, 7.5, 7.5, 8.8, 9.7, 12.4, 15, 16.4};
@@ -246,9 +255,11 @@ void take_sea_state(WavesConfig& waves) {
 void WavesConfig::read(ParamReader& in) {
   keep_place(in, place);
   in.read_choice("type", type, waves_type_words, "one wave, or a sea by its spectrum");
+  // Regular wave.
   in.read("height_m", height_m, between(0, 40), "regular: crest over trough");
   in.read("period_s", period_s, between(0.2, 60), "regular");
   in.read_deg("phase_deg", phase_rad, between(-360, 360), "regular: at the origin at time 0; 0: a crest");
+  // Irregular sea.
   in.read("hs_m", hs_m, between(0, 40), "significant wave height");
   in.read("tp_s", tp_s, between(0.2, 60), "peak period");
   in.read("gamma", gamma, between(1, 10), "jonswap: peak enhancement factor gamma; 1: as pierson_moskowitz");
@@ -269,7 +280,7 @@ void WavesConfig::read(ParamReader& in) {
 
 namespace {
 
-/// A list with one entry may leave out the list around it.
+/// Reads a list, which may be given as a single map when it has one entry.
 template <typename Entry>
 void read_one_or_more(ParamReader& in, const char* key, std::vector<Entry>& entries, const char* kind,
                       const char* meaning) {

@@ -11,9 +11,9 @@
 
 namespace sim {
 
-// Directions are those towards which something moves, counter-clockwise from east.
+// Directions are those of motion (where to), counter-clockwise from east.
 
-/// A row of `profile:` of the water.
+/// Row of `profile:` of the water.
 struct WaterLayerConfig {
   double depth_m = 0;  ///< below the surface
   double temperature_C = 10;
@@ -30,50 +30,50 @@ struct WaterConfig {
 
   double surface_m = 0;                      ///< height of the still surface in the world
   double density_kgpm3 = 1025;               ///< sea water
-  Density density = Density::constant;       ///< where no profile says it
+  Density density = Density::constant;       ///< unless the profile has densities
   double temperature_C = 10;                 ///< without profile
   double salinity_psu = 35;                  ///< without profile
-  std::vector<WaterLayerConfig> profile;     ///< by depth; linear between rows, the ends continue
-  SoundSpeed sound = SoundSpeed::mackenzie;  ///< where neither profile nor constant say it
-  std::optional<double> sound_speed_mps;     ///< the same everywhere
+  std::vector<WaterLayerConfig> profile;     ///< by depth; linear between rows, constant beyond the ends
+  SoundSpeed sound = SoundSpeed::mackenzie;  ///< unless profile or constant are given
+  std::optional<double> sound_speed_mps;     ///< constant
   void read(ParamReader& in);
 };
 
-/// A row of `profile:` of a current.
+/// Row of `profile:` of a current.
 struct CurrentLayerConfig {
   double depth_m = 0;
   Vector3d velocity_mps = Vector3d::Zero();
   void read(ParamReader& in);
 };
 
-/// An entry of `current:` of a medium.
+/// Entry of `current:` of a medium.
 struct CurrentConfig {
   enum class Type { constant, profile, power_law, wind_driven, gauss_markov, vortex, grid };
   enum class Core { lamb_oseen, rankine };
   enum class Outside {
-    zero,  ///< nothing flows beyond the border
-    edge,  ///< it flows there as at the border
+    zero,  ///< no current beyond the border
+    edge,  ///< velocity at the border
   };
 
   Type type = Type::constant;
   Vector3d velocity_mps = Vector3d::Zero();  ///< constant: east, north, up
   std::vector<CurrentLayerConfig> profile;   ///< profile
   double speed_mps = 0;                      ///< power_law, wind_driven: at the surface; gauss_markov: mean
-  double direction_rad = 0;                  ///< of these
+  double direction_rad = 0;                  ///< of these three types
   double water_depth_m = 50;                 ///< power_law
   double exponent = 1.0 / 7;                 ///< power_law
-  double reference_depth_m = 50;             ///< wind_driven: nothing flows below
+  double reference_depth_m = 50;             ///< wind_driven: no current below
   double std_mps = 0.05;                     ///< gauss_markov: of the speed, stationary
   double direction_std_rad = 0;              ///< gauss_markov
   double vertical_std_mps = 0;               ///< gauss_markov
   double correlation_time_s = 50;            ///< gauss_markov
   std::vector<double> center_m{0, 0};        ///< vortex
   double peak_speed_mps = 0.5;               ///< vortex: counter-clockwise when positive
-  double core_radius_m = 10;                 ///< vortex: where the speed is highest
+  double core_radius_m = 10;                 ///< vortex: radius of the peak speed
   Core core = Core::lamb_oseen;              ///< vortex
   std::string file;                          ///< grid: CSV
   std::string east_file, north_file;         ///< grid: ESRI ASCII grids
-  std::vector<double> map_origin_m{0, 0};    ///< grid: place in the file of the world's origin
+  std::vector<double> map_origin_m{0, 0};    ///< grid: position of the world's origin in the file
   Outside outside = Outside::zero;           ///< grid
 
   SourcePlace place;
@@ -81,14 +81,14 @@ struct CurrentConfig {
   void read(ParamReader& in);
 };
 
-/// An entry of `tides:` of a medium.
+/// Entry of `tides:` of a medium.
 struct TideConfig {
   double amplitude_m = 0;
   double period_s = 44714;  ///< the M2 tide: 12 h 25.2 min
   double phase_rad = 0;     ///< at time 0; high water at 0
-  double current_mps = 0;   ///< highest speed
+  double current_mps = 0;   ///< peak speed
   double current_direction_rad = 0;
-  double current_lead_rad = 0;  ///< of the current's highest speed before high water
+  double current_lead_rad = 0;  ///< phase lead of the peak current over high water
   void read(ParamReader& in);
 };
 
@@ -98,7 +98,7 @@ struct GustConfig {
   double across_std_mps = 0;
   double vertical_std_mps = 0;
   std::optional<double> correlation_time_s;
-  std::optional<double> length_m;  ///< correlation length: the time is this by the mean speed
+  std::optional<double> length_m;  ///< correlation length: time = length / mean speed
   void read(ParamReader& in);
 };
 
@@ -117,7 +117,7 @@ struct WindConfig {
   std::optional<GustConfig> gusts;
   SourcePlace place;
   void read(ParamReader& in);
-  /// At the reference height, without gusts.
+  /// Mean wind at the reference height, without gusts.
   Vector3d mean_mps() const;
 };
 
@@ -133,9 +133,9 @@ struct WavesConfig {
   double hs_m = 1;                  ///< irregular: significant wave height, 4 standard deviations of the elevation
   double tp_s = 6;                  ///< irregular: peak period
   double gamma = 3.3;               ///< jonswap: peak enhancement
-  std::int64_t sea_state = 0;       ///< irregular: 0 to 8 sets hs_m and tp_s when it is given
+  std::int64_t sea_state = 0;       ///< irregular: 0 to 8; sets hs_m and tp_s when given
   int components = 200;             ///< irregular
-  double cutoff = 10;               ///< irregular: highest frequency by the peak frequency
+  double cutoff = 10;               ///< irregular: highest frequency over the peak frequency
   std::optional<double> spreading;  ///< irregular: s of cos^2s(half angle); unset: long-crested
   double direction_rad = 0;
   std::optional<double> water_depth_m;  ///< unset: deep
@@ -145,9 +145,9 @@ struct WavesConfig {
 
 /// `medium:` of a world.
 struct MediumConfig {
-  std::optional<WaterConfig> water;    ///< unset: the world is dry
-  std::vector<CurrentConfig> current;  ///< adds up
-  std::vector<TideConfig> tides;       ///< adds up
+  std::optional<WaterConfig> water;    ///< unset: no water
+  std::vector<CurrentConfig> current;  ///< sum of the entries
+  std::vector<TideConfig> tides;       ///< sum of the entries
   std::optional<WavesConfig> waves;
   std::optional<WindConfig> wind;
   void read(ParamReader& in);

@@ -8,12 +8,12 @@ namespace sim {
 
 namespace {
 
-/// Conductivity at this temperature over that at 15 C, at 35 psu and 0 dbar.
+/// Conductivity at this temperature relative to that at 15 C, at 35 psu and 0 dbar.
 double temperature_ratio(double T) {
   return 0.6766097 + T * (2.00564e-2 + T * (1.104259e-4 + T * (-6.9698e-7 + T * 1.0031e-9)));
 }
 
-// The effect of pressure: ratio / ratio at 0 dbar = 1 + pressure_term / (pressure_b + pressure_a * ratio).
+// Effect of pressure: ratio / (ratio at 0 dbar) = 1 + pressure_term / (pressure_b + pressure_a * ratio).
 double pressure_term(double p) {
   return p * (2.070e-5 + p * (-6.370e-10 + p * 3.989e-15));
 }
@@ -24,7 +24,7 @@ double pressure_b(double T) {
   return 1 + T * (3.426e-2 + 4.464e-4 * T);
 }
 
-/// Salinity over the root x of the conductivity ratio at this temperature, and its slope.
+/// Salinity as a function of the square root x of the conductivity ratio at this temperature, and its derivative.
 struct SalinityOfRoot {
   double salinity_psu, slope;
 };
@@ -40,7 +40,7 @@ SalinityOfRoot salinity_of_root(double x, double T) {
   return result;
 }
 
-/// Where the formulas have poles is far beyond any water.
+/// Limits the temperature to a range without poles of the formulas, far beyond any water.
 double usable_temperature(double temperature_C) {
   return std::clamp(temperature_C, -10.0, 60.0);
 }
@@ -60,12 +60,12 @@ double conductivity_Spm(double salinity_psu, double temperature_C, double pressu
   if (!(salinity_psu > 0)) return 0;
   const double T = usable_temperature(temperature_C), p = std::max(pressure_dbar, 0.0);
   double root = std::sqrt(salinity_psu / 35);
-  for (int i = 0; i < 10; ++i) {  // it grows steadily beyond its first percent: four steps do
+  for (int i = 0; i < 10; ++i) {  // monotonic above 1 %: four steps converge
     const SalinityOfRoot at = salinity_of_root(root, T);
     root = std::max(root - (at.salinity_psu - salinity_psu) / at.slope, 0.01);
   }
   const double without_pressure = root * root * temperature_ratio(T);
-  // ratio = without_pressure (1 + term / (b + a ratio)) is a quadratic in the ratio.
+  // Solve ratio = without_pressure (1 + term / (b + a ratio)), which is quadratic in the ratio.
   const double a = pressure_a(T), b = pressure_b(T) - a * without_pressure;
   const double c = without_pressure * (pressure_b(T) + pressure_term(p));
   return standard_conductivity_Spm * (-b + std::sqrt(b * b + 4 * a * c)) / (2 * a);

@@ -7,7 +7,8 @@ namespace sim {
 
 namespace {
 
-// Water that sinks warms by 0.15 K per km at most and expands by 2e-4 per K: 3e-5 kg/m^3 per m.
+// Margin for well-mixed water: adiabatic warming of at most 0.15 K per km and an expansion of 2e-4 per K give 3e-5
+// kg/m^3 per m.
 constexpr double mixed_kgpm4 = 5e-5;
 
 }  // namespace

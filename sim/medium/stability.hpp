@@ -8,8 +8,8 @@
 
 namespace sim {
 
-/// Depth (m) of the first row of the profile whose water is lighter than that of the row above it.  By an equation of
-/// state: at the same pressure, by more than where water is mixed well.  `column`: of this water.
+/// Depth (m) of the first row of the profile whose water is lighter than that of the row above it.  With an equation of
+/// state, densities are compared at the same pressure, with a margin for well-mixed water.  `column`: of this water.
 std::optional<double> unstable_at_m(const WaterConfig& water, const WaterColumn& column);
 
 }  // namespace sim

@@ -11,7 +11,7 @@ namespace sim {
 namespace {
 
 constexpr double deepest_m = 12000;
-constexpr double spacing_m = 20;  ///< of the rows that the pressure is integrated over
+constexpr double spacing_m = 20;  ///< of the rows for the integration of the pressure
 
 double mix(double a, double b, double share) {
   return a + (b - a) * share;
@@ -23,12 +23,14 @@ WaterColumn::WaterColumn(const WaterConfig& config, double gravity_mps2)
     : config_(config), gravity_mps2_(gravity_mps2) {
   const bool density_rows = !config.profile.empty() && config.profile[0].density_kgpm3;
   same_density_ = config.density == WaterConfig::Density::constant && !density_rows;
+  // Rows of the configuration.
   std::vector<Row> given;
   if (config.profile.empty())
     given.push_back({0, config.temperature_C, config.salinity_psu, 0, config.density_kgpm3, 0});
   for (const WaterLayerConfig& layer : config.profile)
     given.push_back({layer.depth_m, layer.temperature_C, layer.salinity_psu, layer.sound_speed_mps.value_or(0),
                      layer.density_kgpm3.value_or(config.density_kgpm3), 0});
+  // Refine them to a spacing for the integration of the pressure, from the surface on.
   Row top = given[0];
   top.depth_m = 0;
   std::vector<Row> all{top};
@@ -64,8 +66,7 @@ void WaterColumn::integrate() {
     }
     const Row& above = rows_[i - 1];
     const double weight = gravity_mps2_ * (row.depth_m - above.depth_m);
-    // Density and pressure depend on each other; the compression by 20 m of water is 1e-4, so that this converges at
-    // once.
+    // Density and pressure depend on each other; as 20 m of water compress it by 1e-4, the iteration converges at once.
     double density = eos80 ? above.density_kgpm3 : row.density_kgpm3;
     for (int round = 0; round < 4; ++round) {
       row.pressure_Pa = above.pressure_Pa + weight * (above.density_kgpm3 + density) / 2;
@@ -120,9 +121,10 @@ double WaterColumn::sound_speed_mps(double depth_m) const {
 
 double WaterColumn::mean_slowness_spm(double depth_m, double other_depth_m) const {
   const double high_m = std::min(depth_m, other_depth_m), low_m = std::max(depth_m, other_depth_m);
-  // Over less than a millimetre the mean is the middle, to rounding.
+  // Over less than a millimetre the value in the middle is exact to rounding.
   if (config_.sound_speed_mps || low_m - high_m < 1e-3) return 1 / sound_speed_mps((high_m + low_m) / 2);
-  // Gauss's rule of 3 points in each piece: 5 more digits than the speed has between rows that are 20 m apart.
+  // Gauss-Legendre quadrature with 3 points per interval: its error is 5 digits below the variation of the speed in 20
+  // m.
   constexpr double point = 0.7745966692414834;  // sqrt(3 / 5)
   double time_s = 0, from_m = high_m;
   const auto add_to = [&](double to_m) {

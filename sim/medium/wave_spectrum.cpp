@@ -12,7 +12,7 @@ namespace {
 
 constexpr double two_pi = 2 * std::numbers::pi;
 
-/// Running integrals of a positive function over equal steps, by the trapezoidal rule, scaled to end at 1.
+/// Cumulative integrals of a positive function by the trapezoidal rule, normalized to end at 1.
 std::vector<double> running_share(const std::vector<double>& density, const std::vector<double>& at) {
   std::vector<double> sums(density.size(), 0);
   for (std::size_t i = 1; i < density.size(); ++i)
@@ -21,7 +21,7 @@ std::vector<double> running_share(const std::vector<double>& density, const std:
   return sums;
 }
 
-/// Linear in a table whose `from` grows.
+/// Linear interpolation in a table with increasing `from`.
 double looked_up(const std::vector<double>& from, const std::vector<double>& to, double value) {
   const auto above = std::upper_bound(from.begin() + 1, from.end() - 1, value);
   const auto i = static_cast<std::size_t>(above - from.begin());
@@ -30,7 +30,7 @@ double looked_up(const std::vector<double>& from, const std::vector<double>& to,
   return to[i - 1] + (to[i] - to[i - 1]) * share;
 }
 
-/// Directions of the density cos^2s(angle / 2), by the inverse of its running integral.
+/// Directions with the density cos^2s(angle / 2), drawn by the inverse of its cumulative integral.
 class Spreading {
  public:
   explicit Spreading(double s) {
@@ -67,7 +67,7 @@ double jonswap_m2s(double omega, double hs_m, double tp_s, double gamma) {
 double wave_number(double omega, double gravity_mps2, double depth_m) {
   const double deep = omega * omega / gravity_mps2;
   if (!std::isfinite(depth_m) || deep * depth_m > 40) return deep;
-  // Newton on f = k tanh(k h) - w^2/g, from the larger of the limits for deep and shallow water.
+  // Newton's method on f = k tanh(k h) - w^2/g, from the larger of the deep- and shallow-water limits.
   double k = std::max(deep, omega / std::sqrt(gravity_mps2 * depth_m));
   for (int i = 0; i < 50; ++i) {
     const double t = std::tanh(k * depth_m);
@@ -85,10 +85,11 @@ std::vector<WaveComponent> make_waves(const WavesConfig& config, double gravity_
     return {{omega, wave_number(omega, gravity_mps2, depth_m), config.height_m / 2, config.direction_rad,
              config.phase_rad}};
   }
+  // Tabulate the spectra of elevation and vertical speed.
   const double gamma = config.type == WavesConfig::Type::jonswap ? config.gamma : 1;
   const double peak = two_pi / config.tp_s;
   constexpr int points = 20001;
-  constexpr double lowest = 0.3;  // e^-150 of energy is below
+  constexpr double lowest = 0.3;  // the energy below is a factor e^-150
   std::vector<double> omegas, energy, speed;
   for (int i = 0; i < points; ++i) {
     const double omega = peak * lowest * std::pow(config.cutoff / lowest, static_cast<double>(i) / (points - 1));
@@ -96,11 +97,13 @@ std::vector<WaveComponent> make_waves(const WavesConfig& config, double gravity_
     energy.push_back(jonswap_m2s(omega, 1, config.tp_s, gamma));
     speed.push_back(omega * omega * energy.back());
   }
+  // Cumulative energy, and the measure that divides the bins.
   const std::vector<double> energy_below = running_share(energy, omegas);
   std::vector<double> measure = running_share(speed, omegas);
   for (std::size_t i = 0; i < measure.size(); ++i) measure[i] = (measure[i] + energy_below[i]) / 2;
   std::optional<Spreading> spreading;
   if (config.spreading) spreading.emplace(*config.spreading);
+  // Draw one wave per bin.
   std::vector<WaveComponent> waves;
   double low_energy = 0;
   for (int i = 0; i < config.components; ++i) {

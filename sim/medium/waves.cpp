@@ -10,8 +10,8 @@
 
 #include "sim/config/message_text.hpp"
 
-// The loops over waves are written for the vectorizer: no branches, no calls, sums by lanes, in an order that does not
-// depend on the width of the machine's vectors.
+// The loops over waves are written for vectorization: without branches and calls, with sums by lanes, in an order that
+// does not depend on the vector width of the processor.
 
 namespace sim {
 
@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::size_t lanes = 8;
 constexpr std::size_t max = (WavesConfig::max_components + lanes - 1) / lanes * lanes;
-constexpr double round_magic = 6755399441055744.0;  // 1.5 * 2^52: adding it rounds to a whole number
+constexpr double round_magic = 6755399441055744.0;  // 1.5 * 2^52: adding it rounds to an integer
 
 /// Sine of pi u for |u| <= 1/2 (Taylor; error below 1e-11).
 inline double sin_pi(double u) {
@@ -48,7 +48,7 @@ inline double cos_pi(double u) {
   return p * x2 + 1.0;
 }
 
-/// e^-x for x >= 0 (relative error below 1e-10); from 700 on as at 700, which is nothing.
+/// e^-x for x >= 0 (relative error below 1e-10); x is limited to 700, where the value is negligible.
 inline double exp_minus(double x) {
   const double t = -std::numbers::log2e * (x < 700 ? x : 700);
   const double shifted = t + round_magic;
@@ -64,7 +64,7 @@ inline double exp_minus(double x) {
   p = p * r + 0.5;
   p = p * r + 1.0;
   p = p * r + 1.0;
-  // The whole part stands in the low bits of `shifted`; it goes to the exponent.
+  // The integer part is in the low bits of `shifted`; add it to the exponent.
   return std::bit_cast<double>(std::bit_cast<std::int64_t>(p) + (std::bit_cast<std::int64_t>(shifted) << 52));
 }
 
@@ -74,13 +74,13 @@ inline double sum_of(const Lanes& sums) {
   return ((sums[0] + sums[4]) + (sums[1] + sums[5])) + ((sums[2] + sums[6]) + (sums[3] + sums[7]));
 }
 
-/// The angle's fraction of a turn, in [-1/2, 1/2].
+/// Fraction of a turn, in [-1/2, 1/2].
 inline double wrapped(double turns) {
   return turns - ((turns + round_magic) - round_magic);
 }
 
-/// Waves steeper than these break: a regular one by Miche 1944, H / L = 0.142 tanh(k h); a sea by DNV-RP-C205, 3.5.4,
-/// 2 pi Hs / (g Tp^2) = 1/15.
+/// Throws ConfigError for waves above the breaking limit: a regular wave by Miche 1944, H / L = 0.142 tanh(k h); a sea
+/// by DNV-RP-C205, 3.5.4, 2 pi Hs / (g Tp^2) = 1/15.
 void check_steepness(const WavesConfig& config, double gravity_mps2) {
   const double depth_m = config.water_depth_m.value_or(std::numeric_limits<double>::infinity());
   const auto fail = [&](const std::string& text) { throw_config_error(config.place, "medium: waves", text); };
@@ -107,9 +107,11 @@ void check_steepness(const WavesConfig& config, double gravity_mps2) {
 Waves::Waves(const WavesConfig& config, double gravity_mps2, std::uint64_t seed)
     : depth_m_(config.water_depth_m.value_or(std::numeric_limits<double>::infinity())) {
   check_steepness(config, gravity_mps2);
+  // Draw the components.
   Random random(seed, "medium/waves");
   random.begin_step(0);
   components_ = make_waves(config, gravity_mps2, random);
+  // Store them by lanes, with precomputed factors.
   const std::size_t padded = (components_.size() + lanes - 1) / lanes * lanes;
   const double per_turn = 1 / (2 * std::numbers::pi);
   for (std::size_t i = 0; i < padded; ++i) {
@@ -176,6 +178,7 @@ WaveMotion Waves::at(double x_m, double y_m, double z_m) const {
   alignas(64) double cosines[max], sines[max];
   const std::size_t count = k_.size();
   WaveMotion motion;
+  // Phases and elevation.
   Lanes elevation{};
   {
     const double *kx = kx_.data(), *ky = ky_.data(), *now = turns_.data(), *amplitude = amplitude_.data();
@@ -191,9 +194,9 @@ WaveMotion Waves::at(double x_m, double y_m, double z_m) const {
   motion.elevation_m = sum_of(elevation);
   double below_m = std::max(0.0, motion.elevation_m - z_m);
   const bool deep = std::isinf(depth_m_);
-  // Wheeler: the water between the bottom and the surface is stretched to that up to the still surface.
+  // Wheeler stretching: map the depth between bottom and instantaneous surface to that of still water.
   if (!deep) below_m = std::min(below_m * depth_m_ / std::max(1e-3, depth_m_ + motion.elevation_m), depth_m_);
-  // Waves that are too short to reach down there: e^-25 is 1e-11.
+  // Skip waves too short to reach this depth: e^-25 is 1e-11.
   std::size_t reach = count;
   if (deep && below_m > 0) {
     const auto end = std::upper_bound(k_.begin(), k_.end(), 25 / below_m);
@@ -204,6 +207,7 @@ WaveMotion Waves::at(double x_m, double y_m, double z_m) const {
   const double *two_kh = two_k_depth_.data(), *by_sinh = by_sinh_.data(), *by_cosh = by_cosh_.data();
   const double *v = speed_.data(), *v_x = speed_x_.data(), *v_y = speed_y_.data();
   const double *a = acceleration_.data(), *a_x = acceleration_x_.data(), *a_y = acceleration_y_.data();
+  // Decay of the motion with depth.
   alignas(64) double cosh_by_sinh[max], sinh_by_sinh[max], cosh_by_cosh[max];
   if (deep) {
     for (std::size_t i = 0; i < reach; ++i) sinh_by_sinh[i] = exp_minus(k[i] * below_m);
@@ -215,6 +219,7 @@ WaveMotion Waves::at(double x_m, double y_m, double z_m) const {
       cosh_by_cosh[i] = (down + up) * by_cosh[i];
     }
   }
+  // Sum pressure, velocity and acceleration over the waves.
   const double *level = deep ? sinh_by_sinh : cosh_by_sinh, *push = deep ? sinh_by_sinh : cosh_by_cosh;
   for (std::size_t i = 0; i < reach; i += lanes)
     for (std::size_t lane = 0; lane < lanes; ++lane) {
@@ -223,7 +228,7 @@ WaveMotion Waves::at(double x_m, double y_m, double z_m) const {
       head[lane] += amplitude[n] * push[n] * cosines[n];
       vx[lane] += v_x[n] * c;
       vy[lane] += v_y[n] * c;
-      // The phase falls with time: w = d(elevation)/dt = amplitude omega sin.
+      // The phase decreases with time: w = d(elevation)/dt = amplitude omega sin.
       vz[lane] += v[n] * sinh_by_sinh[n] * sines[n];
       ax[lane] += a_x[n] * s;
       ay[lane] += a_y[n] * s;

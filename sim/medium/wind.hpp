@@ -9,16 +9,16 @@
 
 namespace sim {
 
-/// How the air moves: a mean by height, and gusts that are the same everywhere.
+/// Wind: a mean that depends on height, and gusts that are uniform in space.
 class Wind {
  public:
   Wind(const WindConfig& config, std::uint64_t seed);
 
-  /// Not back in time.
+  /// Advances to a time, which must not decrease.
   void advance_to(Time now);
-  /// m/s in the world, at a height over the still water (over z = 0 in a world without).
+  /// Velocity in the world, m/s, at a height above the still water (above z = 0 in a world without water).
   Vector3d velocity_W(double height_m) const;
-  /// After restoring the gust follows at the next advance_to().
+  /// Visits the state; the gust is updated by the next advance_to().
   void visit_state(StateArchive& archive) {
     if (gusts_) archive(*gusts_);
   }

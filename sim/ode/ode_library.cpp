@@ -26,7 +26,7 @@ std::string formatted(const char* text, va_list arguments) {
   return buffer;
 }
 
-// "LCP internal error, s <= 0" comes by the hundred from stacks of boxes that stand well: say it once.
+// "LCP internal error, s <= 0" occurs hundreds of times in stable stacks of boxes, so that only the first is logged.
 void on_message(int, const char* text, va_list arguments) {
   if (message_count++ == 0) spdlog::debug("ODE: {} (further messages are only counted)", formatted(text, arguments));
 }
@@ -35,7 +35,8 @@ void on_message(int, const char* text, va_list arguments) {
   throw PhysicsFault("ODE: " + formatted(text, arguments));
 }
 
-// ODE asks for memory of each body, geom and joint by itself, and walks through them several times in a step.
+// Objects up to this size get step memory: ODE allocates each body, geom and joint separately, and visits them several
+// times in a step.
 constexpr std::size_t max_object_bytes = 4096;
 
 void* allocate(std::size_t bytes) {

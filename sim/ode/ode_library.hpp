@@ -8,10 +8,10 @@
 
 namespace sim {
 
-/// Starts ODE once per process, and makes its errors exceptions (PhysicsFault) instead of abort().  Call
-/// before any other use of ODE; cheap when ODE runs already.
+/// Starts ODE once per process, and turns its errors into exceptions (PhysicsFault) instead of abort().  Call before
+/// any other use of ODE; further calls are cheap.
 void start_ode();
-/// Messages that ODE printed so far in this process.
+/// Number of messages that ODE has printed in this process.
 std::int64_t ode_messages();
 
 struct WorldDeleter {

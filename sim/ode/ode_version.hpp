@@ -3,7 +3,7 @@
 
 namespace sim {
 
-/// How the ODE in use was built: its version, precision and options, in ODE's words.
+/// Returns the version, precision and build options of the ODE library in use, in ODE's format.
 const char* ode_configuration();
 
 }  // namespace sim

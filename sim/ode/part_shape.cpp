@@ -22,8 +22,8 @@ TriMeshDataHandle make_trimesh_data(const Mesh& mesh) {
 
 namespace {
 
-/// The outermost vertices of a mesh in directions that are spread evenly over the sphere (Fibonacci lattice): what it
-/// stands on, whatever way up it lies.
+/// Outermost vertices of a mesh in directions spread evenly over the sphere (Fibonacci lattice): its possible contact
+/// points in any attitude.
 std::vector<Vector3d> extremes_of(const Mesh& mesh) {
   constexpr int directions = 64;
   std::vector<std::uint32_t> found;
@@ -49,7 +49,7 @@ std::vector<Vector3d> extremes_of(const Mesh& mesh) {
 CollisionMesh::CollisionMesh(Mesh loaded) : mesh(std::move(loaded)), closed(is_closed(mesh)) {
   if (closed) solid = solid_of(mesh);
   if (solid.volume_m3 < 0) {
-    // Triangles that face inwards would pull others in instead of pushing them out.
+    // Triangles that face inwards would attract other bodies instead of pushing them out.
     turn_inside_out(mesh);
     solid = solid_of(mesh);
   }
@@ -87,7 +87,7 @@ GeomHandle make_geom(const PartConfig& part, const CollisionMesh* mesh) {
     case PartShape::plane:
       return GeomHandle(dCreatePlane(nullptr, 0, 0, 1, 0));
     case PartShape::mesh:
-    case PartShape::terrain:  // is made from its heights, elsewhere
+    case PartShape::terrain:  // made by make_terrain_geom
       break;
   }
   assert(part.shape == PartShape::mesh && mesh != nullptr);
@@ -96,7 +96,7 @@ GeomHandle make_geom(const PartConfig& part, const CollisionMesh* mesh) {
 
 namespace {
 
-/// Of the shape in its own frame, with density 1.
+/// Mass of the shape in its own frame, with density 1.
 dMass unit_density_mass(const PartConfig& part, const CollisionMesh* mesh) {
   dMass mass;
   dMassSetZero(&mass);
@@ -116,6 +116,7 @@ dMass unit_density_mass(const PartConfig& part, const CollisionMesh* mesh) {
       break;
     case PartShape::mesh: {
       if (mesh == nullptr) break;
+      // Volume, inertia and centroid of the solid.
       const MeshSolid& solid = mesh->solid;
       dMassSetParameters(&mass, solid.volume_m3, 0, 0, 0, solid.inertia(0, 0), solid.inertia(1, 1), solid.inertia(2, 2),
                          solid.inertia(0, 1), solid.inertia(0, 2), solid.inertia(1, 2));

@@ -14,10 +14,10 @@
 
 namespace sim {
 
-/// Makes ODE's form of a mesh.  ODE keeps pointers into `mesh`.
+/// Creates ODE's data of a mesh.  ODE keeps pointers into `mesh`.
 TriMeshDataHandle make_trimesh_data(const Mesh& mesh);
 
-/// A triangle mesh that ODE can collide.  ODE keeps pointers into `mesh`.
+/// Triangle mesh for ODE's collisions.  ODE keeps pointers into `mesh`.
 struct CollisionMesh {
   explicit CollisionMesh(Mesh loaded);
   CollisionMesh(const CollisionMesh&) = delete;
@@ -27,26 +27,27 @@ struct CollisionMesh {
   bool closed = false;
   MeshSolid solid;
   TriMeshDataHandle data;
-  std::vector<Vector3d> extremes_m;  ///< the outermost vertices in 64 directions, each once
+  std::vector<Vector3d> extremes_m;  ///< outermost vertices in 64 directions, without duplicates
 };
 
-/// Each mesh file is loaded once, however many parts use it.
+/// Cache that loads each mesh file once for all parts that use it.
 class MeshCache {
  public:
-  /// Throws ConfigError at the part.
+  /// Returns the mesh of a part.  Throws ConfigError at the part.
   const CollisionMesh& get(const PartConfig& part, const std::string& who);
-  /// By ODE's data; null when it is none of these.
+  /// Finds a mesh by its ODE data; null when it is not in the cache.
   const CollisionMesh* find(dTriMeshDataID data) const;
 
  private:
   std::map<std::pair<std::string, double>, std::unique_ptr<CollisionMesh>> meshes_;
 };
 
-/// The part's geom, at the origin and in no space, of any shape but terrain.  `mesh` is null unless it is a mesh.
+/// Creates the geom of a part of any shape except terrain, at the origin and in no space.  `mesh` is null unless the
+/// shape is a mesh.
 GeomHandle make_geom(const PartConfig& part, const CollisionMesh* mesh);
 
-/// Mass, centre of mass and inertia of the part, in the frame of the body (about its origin); mass 0 when the
-/// part has neither mass nor density.  Throws ConfigError at the part for a mesh that encloses no solid.
+/// Mass, centre of mass and inertia of the part in the body frame (inertia about its origin); mass 0 when the part has
+/// neither mass nor density.  Throws ConfigError at the part for a mesh that is not closed.
 dMass part_mass(const PartConfig& part, const CollisionMesh* mesh, const std::string& who);
 
 }  // namespace sim

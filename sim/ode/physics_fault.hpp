@@ -5,7 +5,8 @@
 
 namespace sim {
 
-/// A body became NaN or flew off, or ODE gave up.  The world cannot be stepped any further.
+/// Error of the physics: the state of a body is NaN or out of bounds, or ODE failed.  The world cannot be stepped
+/// further.
 class PhysicsFault : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

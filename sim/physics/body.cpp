@@ -54,7 +54,7 @@ Vector3d Body::velocity_at_W(const Vector3d& p_B) const {
 }
 
 void Body::add_force_W(const Vector3d& force_N, const Vector3d& at_W) {
-  // Before ODE sees it: ODE would abort the step later and could not say whose force it was.
+  // Checked before the call of ODE, which would abort later in the step without the name of the body.
   if (!force_N.allFinite() || !at_W.allFinite())
     throw PhysicsFault("body '" + name_ + "': a force on it is not finite");
   if (!free()) return;
@@ -133,12 +133,12 @@ void Body::start_kinematic_step() {
   dBodySetAngularVel(ode_.get(), 0, 0, 0);
 }
 
-/// ODE arrived there except for rounding, which would add up, also in a body at rest: ODE normalizes the quaternion in
-/// each step, and that is not idempotent.
+/// Sets the exact target pose.  ODE reaches it except for rounding, which would accumulate, also in a body at rest: ODE
+/// normalizes the quaternion in each step, and that is not idempotent.
 void Body::end_kinematic_step() {
   place_ode_body(seat_X_WB_);
   move_is_due_ = false;
-  // ODE need not step it: it steps a disabled body all the same where a free one touches it.
+  // Disabled bodies cost less: ODE still steps one in contact with a free body.
   dBodyDisable(ode_.get());
 }
 
@@ -157,12 +157,12 @@ void Body::set_gravity(bool on) {
 
 namespace {
 
-/// ODE aborts in mid-step on what is not a number, and squares what is huge.
+/// Whether all numbers are finite and can be squared; otherwise ODE aborts within a step.
 bool is_usable(std::span<const double> numbers) {
   return std::all_of(numbers.begin(), numbers.end(), [](double number) { return std::abs(number) < 1e30; });
 }
 
-/// Rounding makes far smaller errors: ODE normalizes in each step.
+/// Tolerance of a restored rotation.  Rounding errors are far smaller, as ODE normalizes in each step.
 constexpr double rotation_tolerance = 1e-6;
 
 bool is_rotation(const Matrix3d& R) {
@@ -175,8 +175,8 @@ bool is_pose(const Pose& X) {
 
 }  // namespace
 
-// ODE's setters normalize the quaternion, which is not idempotent: a restored world would continue from other bits.  So
-// they are written where ODE has them; dBodySetPosition then tells ODE that geoms moved.
+// ODE's setters normalize the quaternion, which is not idempotent: a restored world would differ in the last bits.  The
+// numbers are therefore written directly into ODE's memory; dBodySetPosition then marks the geoms as moved.
 void Body::visit_state(StateArchive& archive) {
   if (fixed()) {
     Pose X_WB = seat_X_WB_;
@@ -193,6 +193,7 @@ void Body::visit_state(StateArchive& archive) {
     Pose::MatrixType seat_X_WB;
     bool enabled, move_is_due;
   } rest = {};
+  // Copy the motion out of ODE, and visit it as one block.
   const auto each = [&](const auto& copy) {
     copy(motion.p_WC, p_WC_, 3);
     copy(motion.q_WB, dBodyGetQuaternion(ode_.get()), 4);
@@ -202,6 +203,7 @@ void Body::visit_state(StateArchive& archive) {
   };
   each([](double* to, const dReal* from, int count) { std::copy_n(from, count, to); });
   archive.raw(&motion, sizeof motion);
+  // Visit the applied forces, and the target pose of a kinematic body.
   std::copy_n(dBodyGetForce(ode_.get()), 3, rest.force_N);
   std::copy_n(dBodyGetTorque(ode_.get()), 3, rest.torque_Nm);
   rest.seat_X_WB = seat_X_WB_.matrix();
@@ -210,6 +212,7 @@ void Body::visit_state(StateArchive& archive) {
   archive.unhashed(rest.force_N, rest.torque_Nm, rest.enabled, rest.move_is_due);
   if (kinematic()) archive.unhashed(rest.seat_X_WB);
   if (!archive.restoring()) return;
+  // Check the restored numbers.
   const Eigen::Map<const Eigen::Vector4d> q_WB(motion.q_WB);
   Pose seat_X_WB = Pose::Identity();
   seat_X_WB.matrix() = rest.seat_X_WB;
@@ -218,6 +221,7 @@ void Body::visit_state(StateArchive& archive) {
     archive.fail("'" + name_ + "' has an invalid pose");
   if (!is_usable(motion.v_WC_W) || !is_usable(motion.w_WB_W) || !is_usable(rest.force_N) || !is_usable(rest.torque_Nm))
     archive.fail("'" + name_ + "' has an invalid velocity or force");
+  // Write them back into ODE.
   each([](const double* from, const dReal* to, int count) { std::copy_n(from, count, const_cast<dReal*>(to)); });
   dBodySetPosition(ode_.get(), motion.p_WC[0], motion.p_WC[1], motion.p_WC[2]);
   dBodySetForce(ode_.get(), rest.force_N[0], rest.force_N[1], rest.force_N[2]);
@@ -253,11 +257,12 @@ Vector3d solve(const Vector3d& a, const Vector3d& b, const Vector3d& c, const Ve
 
 }  // namespace
 
-// ODE's own gyroscopic term is an implicit Euler step that brakes: a body tumbling at 10 rad/s lost 11 % of
-// its energy in 10 s.  Without the term it does not precess at all.  The implicit midpoint rule for I w' + w
-// x I w = 0 in the body's axes keeps energy and angular momentum; the torque makes ODE's step arrive at its
-// result.
+// Implicit midpoint rule for I w' + w x I w = 0 in the axes of the body, which conserves energy and angular momentum;
+// the torque added makes ODE's step reach its result.  ODE's own gyroscopic term is an implicit Euler step with
+// numerical damping: a body tumbling at 10 rad/s lost 11 % of its energy in 10 s.  Without any such term the body does
+// not precess.
 void Body::add_gyroscopic_torque(double step_s) {
+  // Angular velocity and momentum in the axes of the body.
   const Vector3d x = Vector3d(R_WB_[0], R_WB_[4], R_WB_[8]), y = Vector3d(R_WB_[1], R_WB_[5], R_WB_[9]),
                  z = Vector3d(R_WB_[2], R_WB_[6], R_WB_[10]);
   const Vector3d w_W = Vector3d(w_WB_W_[0], w_WB_W_[1], w_WB_W_[2]);
@@ -265,16 +270,16 @@ void Body::add_gyroscopic_torque(double step_s) {
   const Vector3d I_x = inertia_C_B_.col(0), I_y = inertia_C_B_.col(1), I_z = inertia_C_B_.col(2);
   const auto times_inertia = [&](const Vector3d& v) -> Vector3d { return v.x() * I_x + v.y() * I_y + v.z() * I_z; };
   const Vector3d momentum = times_inertia(w);
-  // Nothing to do for a body at rest, or one that spins about a principal axis.
+  // No torque for a body at rest or in rotation about a principal axis.
   constexpr double negligible = 1e-10;
   const double h = step_s;
   if (h * h * w.cross(momentum).squaredNorm() <= negligible * negligible * momentum.squaredNorm()) return;
   Vector3d next = w;
-  for (int i = 0; i < 4; ++i) {  // Newton's method
+  for (int i = 0; i < 4; ++i) {  // Newton's method for the angular velocity at the end of the step
     const Vector3d mid = (w + next) / 2;
     const Vector3d I_mid = times_inertia(mid);
     const Vector3d residual = times_inertia(next - w) + h * mid.cross(I_mid);
-    // Columns of the derivative I + h/2 ([mid] I - [I mid]).
+    // Columns of the Jacobian I + h/2 ([mid] I - [I mid]).
     const Vector3d a = I_x + h / 2 * (mid.cross(I_x) - I_mid.cross(Vector3d::UnitX()));
     const Vector3d b = I_y + h / 2 * (mid.cross(I_y) - I_mid.cross(Vector3d::UnitY()));
     const Vector3d c = I_z + h / 2 * (mid.cross(I_z) - I_mid.cross(Vector3d::UnitZ()));
@@ -282,9 +287,10 @@ void Body::add_gyroscopic_torque(double step_s) {
     next -= change;
     if (change.squaredNorm() <= 1e-16 * next.squaredNorm()) break;  // the next change would be below rounding
   }
+  // Torque that gives this change of angular momentum in one step.
   const Vector3d torque_B = times_inertia(next - w) / h;
   const Vector3d torque_W = torque_B.x() * x + torque_B.y() * y + torque_B.z() * z;
-  // With h w far above 1 Newton's method may end anywhere; no step can follow such a spin.
+  // For h w far above 1 Newton's method may diverge; such a rotation cannot be resolved by the step.
   if (torque_W.allFinite()) dBodyAddTorque(ode_.get(), torque_W.x(), torque_W.y(), torque_W.z());
 }
 

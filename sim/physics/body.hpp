@@ -9,7 +9,7 @@
 #include "sim/base/step_memory.hpp"
 #include "sim/physics/motion.hpp"
 
-struct dxBody;  // ODE's, whose headers only the sources of physics read
+struct dxBody;  // of ODE; only the sources of physics include its headers
 struct dxGeom;
 
 namespace sim {
@@ -22,14 +22,14 @@ struct BodyDeleter {
 };
 using BodyHandle = std::unique_ptr<dxBody, BodyDeleter>;
 
-/// Where a body is and how it moves.
+/// Pose and velocities of a body frame B in the world.
 struct BodyMotion {
   Matrix3d R_WB = Matrix3d::Identity();
   Vector3d p_WB = Vector3d::Zero(), v_WB_W = Vector3d::Zero(), w_WB_W = Vector3d::Zero();
 };
 
-/// One ODE body, free or kinematic, or a fixed one without.  ODE's frame sits at the centre of mass; this class speaks
-/// of the body frame B that the vehicle file defines.
+/// Rigid body: an ODE body, free or kinematic, or a fixed body without one.  ODE's frame has its origin at the centre
+/// of mass; this class uses the body frame B that the vehicle file defines.
 class Body : public VisitedInSteps {
  public:
   const std::string& name() const { return name_; }  ///< such as `rover1/chassis`
@@ -43,39 +43,44 @@ class Body : public VisitedInSteps {
   const Vector3d& p_BC() const { return p_BC_; }                ///< centre of mass in B
   const Matrix3d& inertia_C_B() const { return inertia_C_B_; }  ///< about the centre of mass, axes of B, kg m^2
 
+  /// Pose of the body frame.
   Pose X_WB() const;
-  /// Velocity of the origin of B.  A kinematic body keeps that of the last step until the next one.
+  /// Velocity of the origin of B.  A kinematic body keeps the velocity of the last step until the next step.
   Vector3d v_WB_W() const;
+  /// Angular velocity.
   Vector3d w_WB_W() const;
-  /// All of this at once, which is cheaper.
+  /// Pose and velocities together; cheaper than the separate calls.
   BodyMotion motion() const;
-  /// Velocity of a point of the body given in B.
+  /// Velocity of a point fixed in the body, given in B.
   Vector3d velocity_at_W(const Vector3d& p_B) const;
 
-  /// Forces act during the next step, and have no effect on a body that is not free.  Not finite: PhysicsFault.
+  /// Add a force at a point, or a torque, for the next step.  No effect on a body that is not free.  Throw PhysicsFault
+  /// when a number is not finite.
   void add_force_W(const Vector3d& force_N, const Vector3d& at_W);
   void add_torque_W(const Vector3d& torque_Nm);
-  /// What was added for the next step: the force, and the torque about the centre of mass.
+  /// Sum of what was added for the next step: force, and torque about the centre of mass.
   Vector3d applied_force_W() const;
   Vector3d applied_torque_W() const;
-  /// Takes the place of all that was added for the next step.  Not finite: PhysicsFault.
+  /// Replaces the force and torque added for the next step.  Throws PhysicsFault when a number is not finite.
   void set_applied_W(const Vector3d& force_N, const Vector3d& torque_Nm);
-  /// Puts the body frame at a pose.  A fixed or kinematic body takes its parts along; what it touches sees no
-  /// velocity.  A free body alone: PhysicsWorld::move_group takes the whole vehicle.
+  /// Sets the pose of the body frame.  The parts of a fixed or kinematic body move with it; bodies in contact with it
+  /// see no velocity.  For a free body, only this body moves: PhysicsWorld::move_group moves the whole vehicle.
   void set_pose(const Pose& X_WB);
-  /// Moves a kinematic body so that the next step, of `step_s`, ends with its frame at this pose: at one velocity, and
-  /// turning the shorter way.  What it touches sees that velocity, which has the bound of every body: for a jump there
-  /// is set_pose.  Without a call it stands still in a step.
+  /// Moves a kinematic body so that the next step, of `step_s`, ends with its frame at this pose, at constant velocity
+  /// and along the shorter rotation.  Bodies in contact see that velocity, which is limited as for every body; use
+  /// set_pose for a jump.  A body without a call does not move in the step.
   void move_to(const Pose& X_WB_at_end, double step_s);
-  /// The same for callers that have the velocities of the step: linear of the origin of B, and angular.
+  /// The same, with the velocities of the step given: linear of the origin of B, and angular.
   void move_to(const Pose& X_WB_at_end, const Vector3d& v_WB_W, const Vector3d& w_WB_W);
-  /// Of a free body; others do not take it.
+  /// Sets the velocities of a free body; no effect on other bodies.
   void set_velocity_W(const Vector3d& v_WB_W, const Vector3d& w_WB_W);
 
-  /// Off: the caller adds weight and the torque -w x I w itself (a model of added mass needs both off).
+  /// Switch gravity or the gyroscopic torque on or off.  When off, the caller adds the weight or the torque -w x I w
+  /// itself (a model of added mass needs both off).
   void set_gravity(bool on);
   void set_gyroscopic(bool on) { gyroscopic_ = on; }
 
+  /// Saves, hashes or restores the state of the body.
   void visit_state(StateArchive& archive);
 
  private:
@@ -93,9 +98,9 @@ class Body : public VisitedInSteps {
   void end_kinematic_step();
   void add_gyroscopic_torque(double step_s);
 
-  // What each step needs, side by side.
+  // Members used in each step, adjacent in memory.
   BodyHandle ode_;
-  // Into the ODE body, which does not move in memory.
+  // Pointers into the ODE body, whose address is stable.
   const double* p_WC_ = nullptr;
   const double* v_WC_W_ = nullptr;
   const double* w_WB_W_ = nullptr;
@@ -110,9 +115,9 @@ class Body : public VisitedInSteps {
   std::string name_;
   double mass_kg_ = 0;
   Vector3d p_BC_ = Vector3d::Zero();
-  Pose seat_X_WB_ = Pose::Identity();  // where a fixed body is, and where a kinematic one is after the next step
+  Pose seat_X_WB_ = Pose::Identity();  // of a fixed body now; of a kinematic body after the next step
   std::vector<FixedGeom> fixed_geoms_;
-  SceneMoves* moves_ = nullptr;  // of the world: the scene looks again when something was moved
+  SceneMoves* moves_ = nullptr;  // of the world: counts moves, so that the scene is updated
 };
 
 }  // namespace sim

@@ -18,7 +18,7 @@ dSpaceID create_space(PhysicsConfig::Space kind) {
     case PhysicsConfig::Space::sap:
       return dSweepAndPruneSpaceCreate(nullptr, dSAP_AXES_XYZ);
     case PhysicsConfig::Space::quadtree: {
-      // What lies outside is found too, only slower.
+      // Geoms outside this square are found too, at a higher cost.
       const dVector3 center = {0, 0, 0, 0}, extents = {1024, 1024, 1024, 0};
       return dQuadTreeSpaceCreate(nullptr, center, extents, 7);
     }
@@ -32,7 +32,7 @@ dSpaceID create_space(PhysicsConfig::Space kind) {
 
 SpaceHandle make_space(PhysicsConfig::Space kind) {
   const dSpaceID space = create_space(kind);
-  dSpaceSetCleanup(space, 0);  // geoms have owners of their own
+  dSpaceSetCleanup(space, 0);  // geoms are owned by GeomHandle
   return SpaceHandle(space);
 }
 
@@ -71,7 +71,7 @@ void Collider::add_part(int number, const CollisionPart& part, GeomHandle geom, 
   parts_[number].geom = geom.get();
   dGeomSetData(geom.get(), reinterpret_cast<void*>(static_cast<std::intptr_t>(number)));
   dGeomSetCategoryBits(geom.get(), part.category);
-  // Parts that nothing can push do not search for contacts, so the space drops pairs of two such parts at once.
+  // Parts of bodies that are not free have no collide bits, so that the space drops pairs of two such parts at once.
   const unsigned long collides = motion == Motion::free ? part.collides_with : 0;
   dGeomSetCollideBits(geom.get(), collides);
   Group& group = groups_[part.group];
@@ -81,7 +81,7 @@ void Collider::add_part(int number, const CollisionPart& part, GeomHandle geom, 
     dGeomSetCollideBits(as_geom, dGeomGetCollideBits(as_geom) | collides);
     dSpaceAdd(group.space.get(), geom.get());
   } else {
-    // Straight into the world's space: one box around all of a harbour would keep nothing apart.
+    // Added directly to the world's space: a single bounding box around, say, a whole harbour would exclude nothing.
     group.fixed.push_back(geom.get());
   }
   slot(geoms_, number) = std::move(geom);
@@ -159,7 +159,7 @@ AlignedBox box_of(dGeomID geom) {
 }  // namespace
 
 Collider::Overlap Collider::deepest_overlap(int group) const {
-  // Few parts stand near those of the group; the others are looked at once.
+  // Collect the parts of the group, and those of other groups near them.
   std::vector<std::pair<const CollisionPart*, AlignedBox>> own_parts, others;
   for (const CollisionPart& part : parts_)
     if (part.geom != nullptr && part.group == group) own_parts.emplace_back(&part, box_of(part.geom));
@@ -173,6 +173,7 @@ Collider::Overlap Collider::deepest_overlap(int group) const {
     if (std::any_of(own_parts.begin(), own_parts.end(), [&](const auto& own) { return own.second.meets(box); }))
       others.emplace_back(&part, box);
   }
+  // Find the maximum contact depth over all pairs.
   Overlap deepest;
   std::vector<dContactGeom> touching(8);
   for (const auto& [own, own_box] : own_parts)
@@ -205,7 +206,7 @@ void Collider::add_pair(int first, int second) {
   const CollisionPart& b = parts_[second];
   if (a.body == b.body) return;
   if (!free(a) && !free(b)) return;
-  // Both must want the contact.
+  // Each part must accept the category of the other.
   if ((a.category & b.collides_with) == 0 || (b.category & a.collides_with) == 0) return;
   if (a.group == b.group && !groups_[a.group].self_collision) return;
   const std::vector<int>& joined = joined_[a.body];
@@ -219,8 +220,7 @@ void Collider::sort_pairs() {
     std::sort(pairs_.begin(), pairs_.end());
     return;
   }
-  // Many pairs: counting sort by the second part, then by the first; half the time of std::sort at 1000
-  // robots.
+  // Many pairs: counting sort by the second part, then by the first; half the time of std::sort with 1000 robots.
   sorted_.resize(pairs_.size());
   for (const int shift : {0, 32}) {
     starts_.assign(numbers + 1, 0);
@@ -244,11 +244,13 @@ int Collider::touch(int first, int second, dWorldID world, dJointGroupID contact
   const int count =
       dCollide(part_a.geom, part_b.geom, static_cast<int>(touching_.size()), &touching_[0].geom, sizeof(dContact));
   if (count == 0) return 0;
+  // Select the contact parameters, which depend on position on terrain.
   const Surface* surface = &table_.of(part_a.material, part_b.material);
   const bool by_place = part_a.terrain || part_b.terrain;
   const CollisionBody& a = bodies_[part_a.body];
   const CollisionBody& b = bodies_[part_b.body];
   const bool note = watchers_ > 0 && watched(part_a, part_b);
+  // Make a contact joint for each point.
   int rows = 0;
   for (int i = 0; i < count; ++i) {
     dContact& contact = touching_[i];
@@ -261,7 +263,7 @@ int Collider::touch(int first, int second, dWorldID world, dJointGroupID contact
     dJointAttach(joint, a.ode, b.ode);
     if (!note) continue;
     const dContactGeom& at = contact.geom;
-    // Of a null and a body ODE takes the body first.
+    // With one null body, ODE makes the other its first body.
     watched_.push_back({joint,
                         {{first, second}, to_eigen(at.pos), to_eigen(at.normal), at.depth, Vector3d::Zero()},
                         a.ode == nullptr});
@@ -270,9 +272,10 @@ int Collider::touch(int first, int second, dWorldID world, dJointGroupID contact
   return count;
 }
 
-// ODE keeps a part that has sunk in less than the surface layer from sinking further, and nothing brings it back to
-// that layer: where the ground bends away it drifts off within steps, falls, and lands, over and over.  Free to sink
-// back to the layer within the step it follows the ground as long as its weight holds it there.
+// Lets a part within the surface layer sink to its full depth in one step, so that its weight keeps it on the ground.
+// Without this, ODE stops a part that has penetrated less than the surface layer from sinking further, and nothing
+// returns it to that depth: where the ground curves away, the part separates within a few steps, falls and lands,
+// repeatedly.
 void Collider::follow_ground(dContact& contact) const {
   const double to_layer_m = surface_layer_m_ - contact.geom.depth;
   if (!(to_layer_m > 0)) return;
@@ -280,9 +283,9 @@ void Collider::follow_ground(dContact& contact) const {
   contact.surface.motionN = -to_layer_m / step_s_;
 }
 
-// ODE bounds friction along two axes by itself (a pyramid), which across the corners is up to 1.41 times too
-// strong. With one axis along the slip the bound is Coulomb's.  The slip meant is the one that a step without
-// friction would end with, so that a body at rest on a slope starts to slide at the right angle.
+// Aligns one friction axis with the slip, for Coulomb's bound.  ODE limits friction along two axes independently (a
+// friction pyramid), which along the diagonals is up to 1.41 times too strong.  The slip is that at the end of a step
+// without friction, so that a body at rest on a slope starts to slide at the right angle.
 void Collider::align_friction(dContact& contact, const CollisionBody& a, const CollisionBody& b) const {
   const Vector3d at = to_eigen(contact.geom.pos);
   const auto free_velocity = [&](const CollisionBody& body) -> Vector3d {

@@ -18,7 +18,7 @@ namespace sim {
 
 struct CollisionTerrain;
 
-/// What the collider needs to know of a part.
+/// Properties of a part that the collider uses.
 struct CollisionPart {
   dGeomID geom = nullptr;
   int body = -1;
@@ -26,10 +26,10 @@ struct CollisionPart {
   int material = 0;
   std::uint32_t category = 1;
   std::uint32_t collides_with = ~0u;
-  const CollisionTerrain* terrain = nullptr;  ///< of a part of shape terrain, whose material depends on the place
+  const CollisionTerrain* terrain = nullptr;  ///< for a part of shape terrain: its material depends on position
 };
 
-/// The moving state of a body, for the speed of a contact point; all null for a fixed body.
+/// Motion state of a body, used for the velocity of a contact point; all null for a fixed body.
 struct CollisionBody {
   bool free = false;  ///< neither fixed nor kinematic
   dBodyID ode = nullptr;
@@ -39,43 +39,48 @@ struct CollisionBody {
   double inverse_mass = 0;
 };
 
-/// Finds the parts that touch and makes contact joints.
+/// Finds the parts in contact and makes contact joints.
 ///
-/// The order of contacts decides the last bits of a step, and each kind of space has its own order.  So
-/// pairs are collected first, the lower part number first, sorted, and only then looked at closely.
+/// The order of contacts affects the last bits of a step, and each kind of space has its own order.  Pairs are
+/// therefore collected first, with the lower part number first, then sorted, and only then tested in detail.
 class Collider {
  public:
   Collider(const PhysicsConfig& config, ContactTable table);
 
-  // Numbers of groups, bodies and parts are assigned by the caller, who may reuse those of removed entities.
+  // The caller assigns the numbers of groups, bodies and parts, and may reuse those of removed ones.
+  /// Adds an empty group with its own collision space.
   void add_group(int group, bool self_collision);
-  /// Takes the geom into its group's space.  A moving geom must be attached to its body and posed.
+  /// Adds the geom to the space of its group.  A moving geom must be attached to its body and have its pose.
   void add_part(int number, const CollisionPart& part, GeomHandle geom, Motion motion);
+  /// Adds a body, whose pointers must stay valid until remove_group.
   void add_body(int number, const CollisionBody& body);
-  /// Bodies joined by a joint do not collide.
+  /// Excludes contacts between two bodies connected by a joint.
   void join(int first, int second);
+  /// Adds the space and the fixed parts of the group to the world's space.
   void close_group(int group);
-  /// Destroys the geoms of all parts of a group.  To be called before its ODE bodies are destroyed.
+  /// Destroys the geoms of all parts of a group.  Call before its ODE bodies are destroyed.
   void remove_group(int group, std::span<const int> bodies, std::span<const int> parts);
 
   void add_surfaces(const std::vector<MaterialConfig>& materials, const std::vector<ContactConfig>& contacts) {
     table_.add(materials, contacts);
   }
   void set_gravity(double gravity_mps2);
-  /// Maximum penetration of the parts of a group into those of another; group -1: none.
+  /// Maximum penetration of the parts of a group into the parts of another group; group -1: none.
   struct Overlap {
     int group = -1;
     double depth_m = 0;
   };
   Overlap deepest_overlap(int group) const;
 
-  /// The contacts of watched groups are noted in each step.  Counted: several may watch one group.
+  /// Start and stop recording the contacts of a group in each step.  Calls are counted: a group can have several
+  /// watchers.
   void watch(int group);
   void unwatch(int group);
-  /// After the solver, before the contact joints go: forces of the watched contacts of this step.
+  /// Returns the forces of the watched contacts of this step.  Call after the solver and before the contact joints are
+  /// destroyed.
   void read_forces(std::vector<ContactReport>& reports) const;
 
-  /// Makes the contact joints of a step and counts their rows; returns how many.
+  /// Makes the contact joints of a step and adds their rows to the islands; returns the number of contacts.
   int collide(dWorldID world, dJointGroupID contacts, Islands& islands);
 
   const ContactTable& table() const { return table_; }
@@ -84,7 +89,7 @@ class Collider {
  private:
   struct Group {
     SpaceHandle space;
-    std::vector<dGeomID> fixed;  // wait for close_group
+    std::vector<dGeomID> fixed;  // until close_group adds them to the world's space
     bool self_collision = false;
     int watchers = 0;
   };
@@ -92,7 +97,7 @@ class Collider {
   struct WatchedContact {
     dJointID joint;
     ContactReport report;
-    bool turned;  // ODE's first body is that of the second part
+    bool turned;  // ODE's first body belongs to the second part
   };
 
   const Surface& surface_at(const CollisionPart& a, const CollisionPart& b, const dContactGeom& contact) const;
@@ -111,7 +116,7 @@ class Collider {
   double step_s_;
   double surface_layer_m_;
   double gravity_mps2_;
-  double still_mps_;  // slower slip has no direction worth following
+  double still_mps_;  // below this slip speed friction has no direction
   SpaceHandle space_;
   std::vector<Group> groups_;
   std::vector<GeomHandle> geoms_;
@@ -123,7 +128,7 @@ class Collider {
   std::vector<dContact> touching_;
   int watchers_ = 0;  // of all groups
   std::vector<WatchedContact> watched_;
-  std::vector<dJointFeedback> feedback_;  // of watched_; sized once per step, as ODE keeps addresses
+  std::vector<dJointFeedback> feedback_;  // of watched_; sized once per step because ODE keeps pointers to it
 };
 
 }  // namespace sim

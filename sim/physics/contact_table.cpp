@@ -10,11 +10,12 @@ namespace {
 Surface make_surface(const ContactConfig& config) {
   Surface surface;
   dSurfaceParameters& p = surface.parameters;
-  // Approx1: friction is a coefficient; without it mu would be a force in newtons.
+  // Approx1: mu is a friction coefficient; otherwise it would be a force in newtons.
   p.mode = dContactApprox1;
   p.mu = p.mu2 = config.friction;
   surface.friction = config.friction > 0;
   if (surface.friction) surface.rows += 2;
+  // Optional bounce, softness, rolling friction and slip.
   if (config.bounce > 0) {
     p.mode |= dContactBounce;
     p.bounce = config.bounce;
@@ -29,7 +30,7 @@ Surface make_surface(const ContactConfig& config) {
     p.soft_cfm = *config.soft_cfm;
   }
   if (config.rolling_friction_m > 0 || config.spinning_friction_m > 0) {
-    // With one value for all axes ODE would take rho for spinning too.
+    // dContactAxisDep: otherwise ODE would use rho for spinning friction too.
     p.mode |= dContactRolling | dContactAxisDep;
     p.rho = p.rho2 = config.rolling_friction_m;
     p.rhoN = config.spinning_friction_m;
@@ -61,7 +62,7 @@ void ContactTable::add(const std::vector<MaterialConfig>& materials, const std::
   for (const ContactConfig& contact : contacts)
     if (std::find(contacts_.begin(), contacts_.end(), contact) == contacts_.end())
       contacts_.insert(contacts_.begin() + static_cast<std::ptrdiff_t>(added_++), contact);
-  // The second vehicle of a kind brings nothing new.
+  // A second vehicle of the same kind adds no materials or contacts.
   if (contacts_.size() > known || static_cast<int>(materials_.size()) > count_) compute_surfaces();
 }
 

@@ -10,25 +10,25 @@
 
 namespace sim {
 
-/// What ODE needs to know of a contact of two materials.
+/// ODE contact parameters of two materials.
 struct Surface {
   dSurfaceParameters parameters = {};
   int rows = 1;  ///< constraint rows of one contact
   bool friction = false;
 };
 
-/// A surface for each pair of materials, computed once.
+/// Contact parameters of each pair of materials, computed once.
 class ContactTable {
  public:
   ContactTable(const std::vector<MaterialConfig>& materials, const std::vector<ContactConfig>& contacts);
-  /// More of them.  Numbers of known materials are stable; the contacts given at construction take precedence over
-  /// later ones.
+  /// Adds materials and contacts.  Numbers of known materials are stable; the contacts given at construction take
+  /// precedence over later ones.
   void add(const std::vector<MaterialConfig>& materials, const std::vector<ContactConfig>& contacts);
   const Surface& of(int first, int second) const { return surfaces_[first * count_ + second]; }
   int materials() const { return count_; }
-  /// By number; 0 is `default`.
+  /// Material by number; 0 is `default`.
   const MaterialConfig& material(int number) const { return materials_[static_cast<std::size_t>(number)]; }
-  /// Number of a material; `default` is always there.  Throws std::out_of_range.
+  /// Number of a material; `default` always exists.  Throws std::out_of_range.
   int number_of(const std::string& material) const;
 
  private:
@@ -37,8 +37,8 @@ class ContactTable {
   void compute_surfaces();
 
   std::vector<MaterialConfig> materials_;
-  std::vector<ContactConfig> contacts_;  // in the order of precedence: the added ones, then those of construction
-  std::size_t added_ = 0;                // how many of them were added
+  std::vector<ContactConfig> contacts_;  // by precedence: added ones, then those of construction
+  std::size_t added_ = 0;                // number of added contacts
   int count_ = 0;
   std::vector<Surface> surfaces_;
 };

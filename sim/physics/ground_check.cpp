@@ -8,31 +8,34 @@
 #include "sim/ode/ode_math.hpp"
 #include "sim/physics/physics_world_impl.hpp"
 
-// Pairs of terrain and parts that are known to be bad; the figures behind the rules are in docs/models/terrain.md.
+// Warnings about pairs of terrain and parts with poor contact or a high cost; docs/models/terrain.md has the
+// measurements behind the rules.
 
 namespace sim {
 namespace {
 
-/// A part that can stand on the ground.
+/// Part that can be in contact with the ground.
 struct Stander {
   std::string name;
   int geom_class = 0;
-  Vector3d size_m = Vector3d::Zero();  ///< box: its lengths; sphere, cylinder: radius first
+  Vector3d size_m = Vector3d::Zero();  ///< box: side lengths; sphere, cylinder: radius first
   bool wheel = false;
-  bool hard = false;  ///< its contacts with this ground have no softness of their own
+  bool hard = false;  ///< its contacts with this ground have no soft_cfm
 };
 
-/// What is wrong with a part on a ground; `it` stands for the part.
+/// Warnings about part `it` on a terrain.
 std::vector<std::string> warnings_about(const CollisionTerrain& ground, const Stander& it) {
   const double cell_m = ground.terrain.grid.cell_m;
   std::vector<std::string> found;
   switch (ground.collision) {
     case TerrainCollision::smooth:
+      // One contact point per wheel: small bumps are missed.
       if (it.wheel && cell_m < it.size_m.x() / 4)
         found.push_back("cells of " + number_text(cell_m) + " m are much smaller than a wheel of radius " +
                         number_text(it.size_m.x()) + " m, which touches the ground at one point: bumps may be missed");
       break;
     case TerrainCollision::facets: {
+      // Many facets below a part are slow; hard contacts at their edges oscillate.
       if (it.wheel && cell_m < 2 * it.size_m.x())
         found.push_back("facets of " + number_text(cell_m) + " m are smaller than a wheel of " +
                         number_text(2 * it.size_m.x()) + " m, which costs their square: use collision: smooth");
@@ -79,21 +82,23 @@ Vector3d size_of(dGeomID geom) {
 std::vector<std::string> PhysicsWorld::ground_warnings() const {
   const Impl& all = *impl_;
   if (all.terrains.empty()) return {};
-  std::set<dBodyID> hinged;  // asked, never iterated
+  // Find the bodies on joints that can carry a wheel.
+  std::set<dBodyID> hinged;  // never iterated, as the order of pointers varies
   for (const auto& joint : all.joints)
     if (joint && joint_info(joint->type()).carries_a_wheel)
       for (const int end : {0, 1}) hinged.insert(dJointGetBody(joint->ode_.get(), end));
 
-  std::set<int> angular;  // bodies that have other parts than spheres and cylinders: no wheels
+  std::set<int> angular;  // bodies with parts other than spheres and cylinders: not wheels
   for (std::size_t i = 0; i < all.parts.size(); ++i) {
     if (all.parts[i].group < 0) continue;
     const int geom_class = dGeomGetClass(all.collider.parts()[i].geom);
     if (geom_class != dSphereClass && geom_class != dCylinderClass) angular.insert(all.parts[i].body);
   }
 
+  // Check each free part on each terrain.
   std::vector<std::string> warnings;
   for (const auto& [number, ground] : all.terrains) {
-    std::map<std::string, std::pair<std::string, int>> named;  // warning: the first part, how many
+    std::map<std::string, std::pair<std::string, int>> named;  // by warning: name of the first part, number of parts
     const CollisionPart& under = all.collider.parts()[static_cast<std::size_t>(number)];
     for (std::size_t i = 0; i < all.parts.size(); ++i) {
       const CollisionPart& part = all.collider.parts()[i];
@@ -108,6 +113,7 @@ std::vector<std::string> PhysicsWorld::ground_warnings() const {
         if (count++ == 0) first = it.name;
       }
     }
+    // Report equal warnings once.
     for (const auto& [warning, parts] : named)
       warnings.push_back("terrain '" + all.parts[static_cast<std::size_t>(number)].name + "' under '" + parts.first +
                          "'" + (parts.second > 1 ? " and " + std::to_string(parts.second - 1) + " more" : "") + ": " +

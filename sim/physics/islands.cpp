@@ -26,7 +26,7 @@ void Islands::remove_bodies(std::span<const int> bodies) {
 }
 
 void Islands::begin_step() {
-  // Once for all joints that were added: a step then starts with paths of length one.
+  // Compress the paths once after joints were added: each step then starts with paths of length one.
   if (!paths_are_short_)
     for (int body = 0; body < static_cast<int>(joint_parent_.size()); ++body) root(joint_parent_, body);
   paths_are_short_ = true;

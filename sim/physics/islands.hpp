@@ -6,31 +6,32 @@
 
 namespace sim {
 
-/// Counts the constraint rows of each island (bodies connected by joints and contacts) before a step, for
-/// WorldStep costs the cube of them.  Joints stay, contacts are new in each step.
+/// Counts the constraint rows of each island (bodies connected by joints and contacts) before a step: the cost of
+/// WorldStep grows with the cube of this number.  Joints persist between steps, contacts do not.
 ///
-/// A kinematic body connects like a free one, a fixed one does not: ODE walks from joint to joint over every ODE body
-/// that it meets, whatever its mass (seen by experiment: ODE wakes a disabled body across a kinematic one).  So all
-/// that stands on one kinematic platform is one island.
+/// A kinematic body connects like a free body, a fixed body does not: ODE walks from joint to joint over every ODE body
+/// that it meets, whatever its mass (found by experiment: ODE enables a disabled body across a kinematic one).  All
+/// bodies that stand on one kinematic platform are therefore one island.
 class Islands {
  public:
-  /// Numbers may be used again after remove_bodies.
+  /// Adds a moving body.  Numbers can be reused after remove_bodies.
   void add_body(int body);
   /// Connects two moving bodies; `second` -1: the world.
   void add_joint(int first, int second, int rows);
-  /// Removes bodies with all that joints connect to them: no joint may connect them to a remaining body.
+  /// Removes bodies and the joints between them; no joint may connect them to a remaining body.
   void remove_bodies(std::span<const int> bodies);
 
-  /// Forgets the contacts of the last step.
+  /// Clears the contacts of the last step.
   void begin_step();
-  /// A contact between two bodies; either may be -1: fixed.
+  /// Adds a contact between two bodies; -1 means a fixed body.
   void add_contact(int first, int second, int rows);
+  /// Number of constraint rows of the largest island.
   int max_rows() const { return largest_; }
-  /// Of the island that a moving body is in, with the contacts of this step.
+  /// Number of constraint rows of the island of a moving body, with the contacts of this step.
   int rows_of(int body) { return rows_[static_cast<std::size_t>(root(parent_, body))]; }
-  /// It was there when the last step began.
+  /// Whether the body existed at the start of the last step.
   bool knows(int body) const { return static_cast<std::size_t>(body) < parent_.size(); }
-  /// One of the bodies of its island, the same for all of them, with the contacts of this step.
+  /// Representative body of the island of a body, with the contacts of this step; the same for all its bodies.
   int first_of(int body) { return root(parent_, body); }
 
  private:
@@ -40,7 +41,7 @@ class Islands {
   std::vector<int> joint_parent_, joint_rows_;  // with joints only
   std::vector<int> parent_, rows_;              // with the contacts of this step
   int joint_max_ = 0;
-  bool paths_are_short_ = true;  // every body points at its root
+  bool paths_are_short_ = true;  // every body points to its root
   int largest_ = 0;
 };
 

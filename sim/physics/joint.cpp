@@ -29,12 +29,13 @@ int axes_of(JointType type, bool ball_motor) {
   return 0;
 }
 
-/// All axes of a ball are configured alike.
+/// Configuration of an axis; all axes of a ball share one.
 const JointAxisConfig& axis_config(const JointConfig& config, int axis) {
   return axis == 0 || config.type == JointType::ball ? config.axis1 : config.axis2;
 }
 
-/// Where its axes are: ODE does not measure that of a motor with axes of ours, and needs it for the stops.
+/// Sets the angles of a ball's motor.  ODE does not measure the angles of a motor in user mode, and needs them for the
+/// stops.
 void set_ball_angles(dJointID motor, double sign, std::span<const double> position) {
   for (int axis = 0; motor != nullptr && axis < dJointGetAMotorNumAxes(motor); ++axis)
     dJointSetAMotorAngle(motor, axis, sign * position[static_cast<std::size_t>(axis)]);
@@ -56,7 +57,7 @@ Joint::~Joint() = default;
 Joint::Joint(dWorldID world, std::string name, const JointConfig& config, dBodyID first, dBodyID second,
              const Pose& X_WV)
     : name_(std::move(name)), type_(config.type), axes_(axes_of(config.type, config.motor)) {
-  // ODE gets the moving body first: with the world first it would turn some signs around, but not all.
+  // ODE gets the moving body first: with the world first it would invert some of the signs.
   sign_ = first != nullptr && second != nullptr ? -1 : 1;
   if (first == nullptr) std::swap(first, second);
   create(world, config, X_WV, first, second);
@@ -64,6 +65,7 @@ Joint::Joint(dWorldID world, std::string name, const JointConfig& config, dBodyI
   const Pose X_WC = ode_pose(loaded_);
   p_CA_C_ = X_WC.inverse() * (X_WV * config.anchor_m);
   if (second == nullptr) world_side_ = std::make_unique<WorldSide>(WorldSide{config, X_WV, X_WC});
+  // Apply the configuration, and note the initial angles and stops.
   for (int axis = 0; axis < axes_; ++axis) configure_axis(axis_config(config, axis), axis);
   for (int axis = 0; axis < axes_; ++axis) {
     wrapped_[axis] = wrapped_position(axis);
@@ -72,6 +74,7 @@ Joint::Joint(dWorldID world, std::string name, const JointConfig& config, dBodyI
 }
 
 void Joint::create(dWorldID world, const JointConfig& config, const Pose& X_WV, dBodyID first, dBodyID second) {
+  // Anchor and axes in the world.
   const Vector3d anchor = X_WV * config.anchor_m;
   const Vector3d axis1 = (X_WV.linear() * config.axis1.axis).normalized();
   const Vector3d axis2 = (X_WV.linear() * config.axis2.axis).normalized();
@@ -113,7 +116,8 @@ void Joint::create(dWorldID world, const JointConfig& config, const Pose& X_WV, 
   }
 }
 
-/// An angular motor whose axes the first body takes along; ODE cannot measure its angles, so each step tells it.
+/// Creates an angular motor with axes fixed to the first body.  ODE cannot measure its angles, so that they are set in
+/// each step.
 void Joint::create_ball_motor(dWorldID world, const Pose& X_WV, dBodyID first, dBodyID second) {
   const dJointID motor = dJointCreateAMotor(world, nullptr);
   ball_motor_.reset(motor);
@@ -130,7 +134,8 @@ void Joint::create_ball_motor(dWorldID world, const Pose& X_WV, dBodyID first, d
   R_FS_ = R_WF.transpose() * ode_pose(second != nullptr ? second : first).linear();
 }
 
-/// How the second body has turned on the first since the joint was made: axis times angle, along the ball's axes.
+/// Rotation of the second body relative to the first since the joint was created: rotation vector along the ball's
+/// axes.
 Vector3d Joint::rotation_of_ball() const {
   const dBodyID first = dJointGetBody(ode_.get(), 0), second = dJointGetBody(ode_.get(), 1);
   const Matrix3d R_WF = second != nullptr ? Matrix3d(ode_pose(first).linear()) : Matrix3d(Matrix3d::Identity());
@@ -156,7 +161,7 @@ void Joint::configure_axis(const JointAxisConfig& config, int axis) {
 }
 
 void Joint::place_stops(std::optional<double> low, std::optional<double> high, int axis) {
-  // Counted the other way round, the low stop is the high one.
+  // With the opposite sign the low stop is the high one.
   if (sign_ < 0) std::swap(low, high);
   put_stops({low ? sign_ * *low : -dInfinity, high ? sign_ * *high : dInfinity}, axis);
 }
@@ -165,12 +170,12 @@ void Joint::put_stops(const OdeStops& stops, int axis) {
   const OdeStops before = stops_of(axis);
   set_parameter(dParamLoStop, stops.low, axis);
   set_parameter(dParamHiStop, stops.high, axis);
-  // ODE moves the one stop when the other would come to lie beyond it.
+  // ODE moves one stop when the other one would be beyond it.
   if (stops.low <= stops.high) set_parameter(dParamLoStop, stops.low, axis);
   const OdeStops after = stops_of(axis);
   const bool had_stops = before.low > -dInfinity || before.high < dInfinity;
   if (!had_stops || after.low > -dInfinity || after.high < dInfinity) return;
-  // ODE forgets that an axis is at a stop only when it looks again, and without any stop it does not look.
+  // ODE clears the state "at a stop" only when it tests the stops, and without any stop it does not test.
   set_parameter(dParamHiStop, dInfinity, axis);
   set_parameter(dParamLoStop, stop_never_reached(), axis);
 }
@@ -278,6 +283,7 @@ void Joint::update_position(double step_s) {
     return;
   }
   for (int axis = 0; axis < axes_; ++axis) {
+    // Free wheels are integrated; other angles are measured.
     const double expected = velocity(axis) * step_s;
     if (type_ == JointType::hinge2 && axis == 1) {
       position_[1] += expected;
@@ -285,7 +291,7 @@ void Joint::update_position(double step_s) {
     }
     const double wrapped = wrapped_position(axis);
     double moved = wrapped - wrapped_[axis];
-    // ODE's angle jumps at pi.  The rate says how many turns the step made; the angle says the rest exactly.
+    // ODE's angle wraps at pi.  The rate gives the number of turns in the step; the angle gives the exact remainder.
     if (std::abs(moved - expected) > std::numbers::pi)
       moved += 2 * std::numbers::pi * std::round((expected - moved) / (2 * std::numbers::pi));
     wrapped_[axis] = wrapped;
@@ -337,8 +343,8 @@ Vector3d Joint::axis_W(int axis) const {
   return to_eigen(out);
 }
 
-/// ODE keeps the world's side of a joint in the world's frame and counts from the pose at which the joint was made.
-/// So the joint is made again, with its body moved to where it was then.
+/// Moves the world side of a joint.  ODE stores it in the world frame and measures from the pose at which the joint was
+/// created, so that the joint is created again, with its body temporarily at that pose.
 void Joint::move_world_side(const Pose& X_move_W) {
   if (world_side_) make_again(X_move_W * world_side_->X_WV, X_move_W * world_side_->X_WC);
 }
@@ -347,6 +353,7 @@ void Joint::make_again(const Pose& X_WV, const Pose& X_WC) {
   WorldSide& side = *world_side_;
   side.X_WV = X_WV;
   side.X_WC = X_WC;
+  // Save stops and motor set-points.
   OdeStops stops[max_axes];
   double velocity[max_axes], max_force[max_axes];
   for (int axis = 0; axis < axes_; ++axis) {
@@ -354,18 +361,20 @@ void Joint::make_again(const Pose& X_WV, const Pose& X_WC) {
     velocity[axis] = motor_velocity_[axis];
     max_force[axis] = motor_max_force_[axis];
   }
+  // Create the joint with the body at its creation pose.
   const Vector3d p_now = to_eigen(dBodyGetPosition(loaded_));
   dQuaternion q_now, q_made;
   dBodyCopyQuaternion(loaded_, q_now);
   to_ode(to_quaternion(side.X_WC.linear()), q_made);
   set_ode_pose(loaded_, side.X_WC.translation(), q_made);
   create(dBodyGetWorld(loaded_), side.config, side.X_WV, loaded_, nullptr);
+  // Move the body back, and restore stops and motor set-points.
   set_ode_pose(loaded_, p_now, q_now);
   for (int axis = 0; axis < axes_; ++axis) {
     configure_axis(axis_config(side.config, axis), axis);
     put_stops(stops[axis], axis);
     set_motor(velocity[axis], max_force[axis], axis);
-    // ODE's joint is another one, also where the configuration has no motor.
+    // The new ODE joint needs these values even when set_motor finds no change.
     set_parameter(dParamVel, sign_ * velocity[axis], axis);
     set_parameter(dParamFMax, max_force[axis], axis);
   }
@@ -388,7 +397,7 @@ void Joint::visit_state(StateArchive& archive) {
   visit_load(archive);
 }
 
-/// State only since they were set at run time; else they are those of the configuration.
+/// Visits the stops: state when they were set at run time, else those of the configuration.
 void Joint::visit_stops(StateArchive& archive, int axis) {
   OdeStops stops = stops_of(axis);
   if (stops_were_set_) {

@@ -11,7 +11,7 @@
 #include "sim/base/math.hpp"
 #include "sim/model/physics_config.hpp"
 
-struct dxBody;  // ODE's, whose headers only the sources of physics read
+struct dxBody;  // of ODE; only the sources of physics include its headers
 struct dxJoint;
 struct dxWorld;
 
@@ -24,12 +24,13 @@ struct JointDeleter {
 };
 using JointHandle = std::unique_ptr<dxJoint, JointDeleter>;
 
-/// One ODE joint.  Axis 0 is the first (or only) axis, axis 1 the second of hinge2 and universal.  A ball with a motor
-/// has three: x, y and z of the vehicle's frame when the joint was created, fixed to the first body.
+/// Joint between two bodies, or a body and the world, as an ODE joint.  Axis 0 is the first (or only) axis, axis 1 the
+/// second of hinge2 and universal.  A ball with a motor has three: x, y and z of the vehicle frame when the joint was
+/// created, fixed to the first body.
 ///
-/// Signs: a joint counts how its second body moves relative to its first, right-handed about (or along) the axis: a
-/// wheel that is the second body, with axis +y, rolls forward at positive speed.  A joint to the world or to a fixed
-/// body counts how the moving body moves.
+/// Sign convention: positions and velocities are those of the second body relative to the first, right-handed about (or
+/// along) the axis: a wheel that is the second body, with axis +y, rolls forward at positive speed.  For a joint to the
+/// world or to a fixed body they are those of the moving body.
 class Joint {
  public:
   ~Joint();
@@ -38,50 +39,55 @@ class Joint {
 
   const std::string& name() const { return name_; }  ///< such as `rover1/left`
   JointType type() const { return type_; }
-  /// 0 fixed, and ball without a motor; 1 hinge and slider; 2 hinge2 and universal; 3 ball with a motor.
+  /// Number of axes: 0 for fixed, and ball without a motor; 1 for hinge and slider; 2 for hinge2 and universal; 3 for
+  /// ball with a motor.
   int axes() const { return axes_; }
 
-  /// Angle since the joint was made, not wrapped (rad), or position of a slider (m).  Hinge2's second axis is a
-  /// free wheel: its angle is summed from its rate.  Of a ball: components of the rotation vector, of up to pi.
+  /// Angle since the joint was created, not wrapped (rad), or position of a slider (m).  The second axis of hinge2 is a
+  /// free wheel: its angle is integrated from its rate.  For a ball: components of the rotation vector, with norm up to
+  /// pi.
   double position(int axis = 0) const { return position_[axis]; }
+  /// Rate of the position (rad/s, or m/s for a slider).
   double velocity(int axis = 0) const;
+  /// Sets the velocity and the maximum torque (N m) or force (N) of the motor of an axis.
   void set_motor(double velocity, double max_force, int axis = 0);
   double motor_velocity(int axis = 0) const { return motor_velocity_[axis]; }
   double motor_max_force(int axis = 0) const { return motor_max_force_[axis]; }
-  /// Torque (N m) or force (N) about or along an axis, for the next step.
+  /// Adds a torque (N m) about an axis or a force (N) along it, for the next step.
   void add_effort(double effort, int axis = 0);
-  /// Where the axis stops, in the joint's own sign (rad, or m of a slider); nullopt: nowhere.  Low above high: neither
-  /// stop works.  Hinge2's second axis has no stops.
+  /// Sets the stops of an axis, in the joint's sign (rad, or m for a slider); nullopt: no stop.  With low above high
+  /// neither stop has an effect.  The second axis of hinge2 has no stops.
   void set_stops(std::optional<double> low, std::optional<double> high, int axis = 0);
 
-  /// From the next step on ODE is asked for the load; before, it reads zero.
+  /// Switches the measurement of the load on, from the next step; until then the load reads zero.
   void measure_load();
-  /// What the joint applied in the last step on its second body; where only one body moves, on that one.  All that
-  /// goes through the joint: constraint, motor, stops and efforts.  The torque is about the joint's anchor, which the
-  /// body takes along.
+  /// Force and torque that the joint applied to its second body in the last step, or to the only moving body.  They
+  /// include the constraint, motor, stops and efforts.  The torque is about the joint's anchor, which moves with that
+  /// body.
   Vector3d force_W_N() const;
   Vector3d torque_W_Nm() const;
-  /// Of that, what motor, stops and add_effort applied about or along an axis, in the joint's sign.
+  /// Part of the load applied by motor, stops and add_effort about or along an axis, in the joint's sign.
   double effort(int axis = 0) const;
 
-  /// Restoring needs a joint that was made, and moved by move_group, as the one that was saved.
+  /// Saves, hashes or restores the state.  To restore, the joint must have been created, and moved by move_group, like
+  /// the saved one.
   void visit_state(StateArchive& archive);
 
  private:
   friend class PhysicsWorld;
   static constexpr int max_axes = 3;
   struct Load;  // sim/physics/joint_load.hpp
-  /// Of a joint to the world: how it was made, so that it can be made again elsewhere.
+  /// Creation data of a joint to the world, from which it can be created again at another place.
   struct WorldSide {
     JointConfig config;
     Pose X_WV;
-    Pose X_WC;  // of the body that moves, when the joint was made
+    Pose X_WC;  // of the moving body when the joint was created
   };
-  /// As ODE counts and signs them.
+  /// Stops in ODE's sign and units.
   struct OdeStops {
     double low = -std::numeric_limits<double>::infinity(), high = std::numeric_limits<double>::infinity();
   };
-  /// Attaches at the poses the bodies have now.  `second` null: the world.
+  /// Attaches the bodies at their present poses.  `second` null: the world.
   Joint(dxWorld* world, std::string name, const JointConfig& config, dxBody* first, dxBody* second, const Pose& X_WV);
   void create(dxWorld* world, const JointConfig& config, const Pose& X_WV, dxBody* first, dxBody* second);
   void create_ball_motor(dxWorld* world, const Pose& X_WV, dxBody* first, dxBody* second);
@@ -89,13 +95,13 @@ class Joint {
   void configure_axis(const JointAxisConfig& config, int axis);
   void place_stops(std::optional<double> low, std::optional<double> high, int axis);
   void put_stops(const OdeStops& stops, int axis);
-  OdeStops stops_of(int axis) const;  ///< stops without effect are reported as none
+  OdeStops stops_of(int axis) const;  ///< none where the stops have no effect
   double stop_never_reached() const;
   void visit_stops(StateArchive& archive, int axis);
   void visit_load(StateArchive& archive);
   void measure_no_load();
   void set_parameter(int parameter, double value, int axis);
-  int max_rows() const;  ///< constraint rows, with motors and stops all at work
+  int max_rows() const;  ///< constraint rows with all motors and stops active
   double wrapped_position(int axis) const;
   double get_parameter(int parameter, int axis) const;
   Vector3d axis_W(int axis) const;
@@ -105,22 +111,22 @@ class Joint {
   double motor_at_stop(int axis) const;
   void move_world_side(const Pose& X_move_W);
   void make_again(const Pose& X_WV, const Pose& X_WC);
-  void update_position(double step_s);  ///< after each step; integrates differences, for ODE wraps at pi
+  void update_position(double step_s);  ///< after each step; sums differences because ODE wraps at pi
 
   std::string name_;
   JointType type_;
   JointHandle ode_;
   JointHandle ball_motor_;                    // ODE's angular motor
   Matrix3d R_F_axes_ = Matrix3d::Identity();  // the ball's axes in the frame of its first body (or the world)
-  Matrix3d R_FS_ = Matrix3d::Identity();      // of its second body, when the joint was made
+  Matrix3d R_FS_ = Matrix3d::Identity();      // of its second body when the joint was created
   int axes_ = 0;
-  double sign_ = 1;  // ODE counts the first body relative to the second
+  double sign_ = 1;  // ODE measures the first body relative to the second
   double position_[max_axes] = {};
   double wrapped_[max_axes] = {};
   double motor_velocity_[max_axes] = {};
   double motor_max_force_[max_axes] = {};
   std::array<OdeStops, max_axes> configured_stops_;
-  bool stops_were_set_ = false;                     ///< at run time
+  bool stops_were_set_ = false;                     ///< set_stops() was called
   dxBody* loaded_ = nullptr;                        // whose load is measured
   Vector3d p_CA_C_ = Vector3d::Zero();              // the anchor in ODE's frame of the loaded body
   std::unique_ptr<Load> load_;                      // when it is measured

@@ -9,7 +9,7 @@
 #include "sim/physics/physics_world.hpp"
 #include "sim/state/state_archive.hpp"
 
-// Efforts on a joint, and what goes through it.
+// Efforts on a joint, and its load.
 
 namespace sim {
 
@@ -57,7 +57,7 @@ void Joint::request_load() {
 void Joint::note_before_step() {
   const Pose X_WC = ode_pose(loaded_);
   load_->p_CA_W = X_WC.linear() * p_CA_C_;
-  // ODE lets forces along a slider act half way between the two bodies, so that none of them is turned.
+  // ODE applies forces along a slider half way between the two bodies, so that neither of them is rotated.
   const dBodyID other = world_side_ ? loaded_ : dJointGetBody(ode_.get(), 0);
   load_->p_AM_W = (to_eigen(dBodyGetPosition(other)) - X_WC.translation()) / 2 - load_->p_CA_W;
   for (int axis = 0; axis < axes_; ++axis) {
@@ -66,8 +66,8 @@ void Joint::note_before_step() {
   }
 }
 
-/// Where an axis is at a stop, ODE gives the row of its motor to the stop and lets the motor act as a force from
-/// outside, so that it is not in the feedback (dxJointLimitMotor::addLimot).
+/// Motor effort that is missing in the feedback.  At a stop, ODE uses the row of the motor for the stop and applies the
+/// motor as an external force (dxJointLimitMotor::addLimot).
 double Joint::motor_at_stop(int axis) const {
   const double max_force = get_parameter(dParamFMax, axis);
   const double low = get_parameter(dParamLoStop, axis), high = get_parameter(dParamHiStop, axis);
@@ -85,14 +85,17 @@ double Joint::motor_at_stop(int axis) const {
 void Joint::note_load() {
   Load& load = *load_;
   const bool first = world_side_ != nullptr;
+  // Constraint force and torque, moved to the anchor.
   load.force_W_N = to_eigen(first ? load.feedback.f1 : load.feedback.f2);
   load.torque_W_Nm = to_eigen(first ? load.feedback.t1 : load.feedback.t2) - load.p_CA_W.cross(load.force_W_N);
   if (ball_motor_) load.torque_W_Nm += to_eigen(first ? load.motor_feedback.t1 : load.motor_feedback.t2);
   for (int axis = 0; axis < axes_; ++axis) {
+    // Add the efforts that are missing in ODE's feedback.
     const Vector3d beside_W = load.beside[axis] * load.axis_W[axis];
     if (type_ == JointType::slider) load.force_W_N += beside_W;
     load.torque_W_Nm += type_ == JointType::slider ? Vector3d(load.p_AM_W.cross(beside_W)) : beside_W;
   }
+  // Project the load on the axes.
   const Vector3d& along = type_ == JointType::slider ? load.force_W_N : load.torque_W_Nm;
   if (type_ == JointType::ball) {
     for (int axis = 0; axis < axes_; ++axis) load.effort[axis] = along.dot(load.axis_W[axis]);
@@ -101,7 +104,7 @@ void Joint::note_load() {
   const Vector3d &a = load.axis_W[0], &b = load.axis_W[1];
   load.effort[0] = axes_ > 0 ? along.dot(a) : 0;
   if (axes_ < 2) return;
-  // The constraint's torque is at right angles to both axes, the axes not always to each other.
+  // The constraint torque is perpendicular to both axes, which need not be perpendicular to each other.
   const double cosine = a.dot(b), scale = 1 / (1 - cosine * cosine);
   load.effort[0] = scale * (along.dot(a) - cosine * along.dot(b));
   load.effort[1] = scale * (along.dot(b) - cosine * along.dot(a));

@@ -5,9 +5,9 @@ namespace sim {
 
 /// How a body moves.
 enum class Motion {
-  free,       ///< by forces
-  fixed,      ///< not at all, except by Body::set_pose; no mass, no ODE body
-  kinematic,  ///< as Body::move_to says; pushes others and is not pushed
+  free,       ///< moves by forces
+  fixed,      ///< does not move, except by Body::set_pose; no mass, no ODE body
+  kinematic,  ///< as prescribed by Body::move_to; pushes other bodies and is not pushed
 };
 
 }  // namespace sim

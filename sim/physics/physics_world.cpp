@@ -17,7 +17,7 @@ namespace sim {
 
 namespace {
 
-/// A seed for QuickStep's shuffle that depends on nothing but the world's seed and the step.
+/// Seed of QuickStep's shuffle; depends only on the world's seed and the step.
 unsigned long step_seed(std::uint64_t seed, std::int64_t step_number) {
   StateHash hash;
   hash.add(seed);
@@ -49,7 +49,7 @@ void PhysicsWorld::start_again(const PhysicsConfig& config, const std::vector<Ma
   dWorldSetContactMaxCorrectingVel(world, config.contact_max_correcting_velocity_mps);
   dWorldSetContactSurfaceLayer(world, config.contact_surface_layer_m);
   dWorldSetQuickStepNumIterations(world, config.quick_iterations);
-  // ODE's auto-disable keeps hidden counters, which a snapshot could not restore.
+  // ODE's auto-disable has internal counters that a snapshot could not restore.
   dWorldSetAutoDisableFlag(world, 0);
   impl_->scene = make_world_scene(config.rays, impl_->moves);
 }
@@ -60,8 +60,8 @@ PhysicsWorld::~PhysicsWorld() {
 
 void PhysicsWorld::discard() {
   if (!impl_ || !impl_->broken) return impl_.reset();
-  // A world that was left in mid-step trips ODE's asserts when it is destroyed.  What is ODE's of it stays, where leak
-  // checkers see it.
+  // A world in which a step failed triggers ODE's asserts when it is destroyed.  It is therefore kept, reachable for
+  // leak checkers.
   impl_->scene.reset();
   static std::mutex mutex;
   static std::vector<Impl*>& left_behind = *new std::vector<Impl*>;  // also after the end of main()
@@ -163,13 +163,15 @@ void PhysicsWorld::Impl::solve(std::int64_t step_number) {
   const double step_s = config.step_s;
   for (Body* body : moving)
     if (body->gyroscopic_) body->add_gyroscopic_torque(step_s);
+  // Record the poses at the start of the step for the joint loads.
   for (Joint* joint : measured_joints) joint->note_before_step();
-  // WorldStep is exact and costs the cube of an island's rows; the rows decide, never the time it takes.
+  // Select the solver.  WorldStep is exact and its cost grows with the cube of an island's rows; the selection depends
+  // on the rows only, never on measured time.
   const bool some_too_large =
       config.solver == PhysicsConfig::Solver::automatic && counts.max_island_rows > config.quick_above_rows;
   counts.quick = config.solver == PhysicsConfig::Solver::quick || some_too_large;
   if (counts.quick) dRandSetSeed(step_seed(seed, step_number));
-  const bool nothing_is_free = moving.size() == kinematic.size();  // then ODE would but look at each body
+  const bool nothing_is_free = moving.size() == kinematic.size();  // then ODE would only visit each body
   if (nothing_is_free)
     counts.quick = false;
   else if (some_too_large)
@@ -178,13 +180,14 @@ void PhysicsWorld::Impl::solve(std::int64_t step_number) {
     dWorldQuickStep(world.get(), step_s);
   else
     dWorldStep(world.get(), step_s);
+  // Read contact forces and joint loads.
   collider.read_forces(contact_reports);
   dJointGroupEmpty(contacts.get());
   for (Joint* joint : measured_joints) joint->note_load();
 }
 
-/// QuickStep for the islands with too many rows, WorldStep for the others.  ODE leaves out the bodies that are
-/// disabled, and nothing connects two islands.
+/// Uses QuickStep for the islands with too many rows, WorldStep for the others.  ODE skips disabled bodies, and nothing
+/// connects two islands.
 void PhysicsWorld::Impl::step_islands_by_size() {
   ++quick_steps;
   large_.clear();
@@ -200,8 +203,8 @@ void PhysicsWorld::Impl::step_islands_by_size() {
   step_all_but(small_, [this] { dWorldQuickStep(world.get(), config.step_s); });
 }
 
-/// Checks the bodies and lets the joints follow: a group's joints right after its bodies, which are in the
-/// cache then.
+/// Checks the bodies and updates the joint positions; a group's joints right after its bodies, which are then in the
+/// cache.
 void PhysicsWorld::Impl::finish(std::int64_t step_number) {
   for (Body* body : kinematic) body->end_kinematic_step();
   auto joint = joints_with_axes.begin();
@@ -218,7 +221,8 @@ void PhysicsWorld::Impl::finish(std::int64_t step_number) {
 
 bool PhysicsWorld::Impl::out_of_bounds(const Body& body) const {
   const auto square = [](const dReal* v) { return v[0] * v[0] + v[1] * v[1] + v[2] * v[2]; };
-  // Written so that NaN is out.  A rotation rate has no bound of its own, but must stay a number.
+  // Comparisons with NaN are false, so that NaN is out of bounds.  Angular velocity has no configured bound, but must
+  // be finite.
   return !(square(body.v_WC_W_) <= config.max_speed_mps * config.max_speed_mps &&
            square(body.p_WC_) <= config.max_distance_m * config.max_distance_m && square(body.w_WB_W_) < 1e300);
 }
@@ -239,8 +243,8 @@ void PhysicsWorld::Impl::fault(const Body& body, std::int64_t step_number) const
   throw PhysicsFault("body '" + body.name() + "': " + text + " at step " + std::to_string(step_number));
 }
 
-/// The lightest and the heaviest body of the island where they differ most: what a solver that fails fails for, unless
-/// something is not finite.  With the words around them, or empty.
+/// Names the lightest and the heaviest body of the island with the largest mass ratio: the usual cause when the solver
+/// fails with finite inputs.  Returns the beginning of an error message, or an empty text.
 std::string PhysicsWorld::Impl::suspects() {
   std::map<int, std::pair<const Body*, const Body*>> islands_by_first;  // lightest, heaviest
   for (const Body* body : moving) {
@@ -249,6 +253,7 @@ std::string PhysicsWorld::Impl::suspects() {
     if (lightest == nullptr || body->mass_kg_ < lightest->mass_kg_) lightest = body;
     if (heaviest == nullptr || body->mass_kg_ > heaviest->mass_kg_) heaviest = body;
   }
+  // Find the island with the largest mass ratio.
   const auto ratio = [](const auto& island) { return island.second.second->mass_kg_ / island.second.first->mass_kg_; };
   const auto worst = std::max_element(islands_by_first.begin(), islands_by_first.end(),
                                       [&](const auto& a, const auto& b) { return ratio(a) < ratio(b); });
@@ -290,7 +295,7 @@ Pose PhysicsWorld::X_WP(int part) const {
 std::optional<Eigen::AlignedBox3d> PhysicsWorld::bounds_W(int part) const {
   if (impl_->parts[static_cast<std::size_t>(part)].plane) return std::nullopt;
   if (const auto ground = impl_->terrains.find(part); ground != impl_->terrains.end()) {
-    // Its geom reaches far below the surface.
+    // The geom extends far below the surface, so use the vertices.
     Eigen::AlignedBox3d box;
     const Pose X_WP_now = X_WP(part);
     for (const Vector3d& vertex : ground->second->mesh.vertices_m) box.extend(X_WP_now * vertex);

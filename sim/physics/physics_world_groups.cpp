@@ -8,7 +8,7 @@
 #include "sim/ode/ode_math.hpp"
 #include "sim/physics/physics_world_impl.hpp"
 
-// What comes into the world and goes: groups, their bodies, parts and joints.
+// Addition and removal of groups, their bodies, parts and joints.
 
 namespace sim {
 
@@ -36,18 +36,21 @@ PhysicsWorld::Impl::Group& PhysicsWorld::Impl::group(int number) {
 
 Body& PhysicsWorld::add_body(int group, const BodyConfig& config, const Pose& X_WV, Motion motion) {
   Impl::Group& owner = impl_->group(group);
+  // Create the body.
   std::unique_ptr<Body> owned(new Body);
   Body& body = *owned;
   body.name_ = owner.name + "/" + config.name;
-  body.number_ = impl_->body_numbers.next();  // taken when all went well
+  body.number_ = impl_->body_numbers.next();  // taken only on success
   body.group_ = group;
   body.motion_ = motion;
   body.moves_ = &impl_->moves;
   if (motion != Motion::fixed) impl_->attach_ode_body(body);
+  // Add parts and mass, and register with collider and islands.
   impl_->add_parts(body, config);
   impl_->collider.add_body(body.number_, {body.free(), body.ode_.get(), body.p_WC_, body.v_WC_W_, body.w_WB_W_,
                                           body.mass_kg_ > 0 ? 1 / body.mass_kg_ : 0});
   impl_->islands.add_body(body.number_);
+  // Insert into the lists in the order of groups.
   const auto by_group = [](int number, const Body* other) { return number < other->group_; };
   const auto keep_order = [&](std::vector<Body*>& bodies) {
     bodies.insert(std::upper_bound(bodies.begin(), bodies.end(), group, by_group), &body);
@@ -67,18 +70,18 @@ void PhysicsWorld::Impl::attach_ode_body(Body& body) {
   body.R_WB_ = dBodyGetRotation(ode);
   body.v_WC_W_ = dBodyGetLinearVel(ode);
   body.w_WB_W_ = dBodyGetAngularVel(ode);
-  // Our own gyroscopic torque, see Body::add_gyroscopic_torque.
+  // Replaced by Body::add_gyroscopic_torque.
   dBodySetGyroscopicMode(ode, 0);
   if (!body.kinematic()) return;
   body.gyroscopic_ = false;
   dBodySetKinematic(ode);
   dBodySetGravityMode(ode, 0);
-  // A step then turns it by exactly its angular velocity.
+  // Makes a step rotate the body by exactly its angular velocity.
   dBodySetFiniteRotationMode(ode, 1);
 }
 
 void PhysicsWorld::Impl::add_parts(Body& body, const BodyConfig& config_) {
-  // Checked and made first, added after: an exception leaves no half body behind.
+  // All parts are checked and created before any is added, so that an exception leaves no incomplete body.
   std::vector<NewPart> made;
   dMass total;
   dMassSetZero(&total);
@@ -114,11 +117,12 @@ PhysicsWorld::Impl::NewPart PhysicsWorld::Impl::make_part(const Body& body, cons
 void PhysicsWorld::Impl::add_part(Body& body, const BodyConfig& config_, std::size_t index, NewPart made) {
   const PartConfig& part = config_.parts[index];
   const dGeomID geom = made.geom.get();
+  // Place the geom on the body.
   const Pose X_BG = make_pose(part.position_m, part.rpy_rad);
   if (body.fixed()) {
     body.fixed_geoms_.push_back({geom, X_BG, part.shape == PartShape::plane});
   } else {
-    // An offset of nothing would still cost a product of matrices in each step.
+    // A zero offset would still cost a matrix product in each step.
     const Vector3d p_CG = X_BG.translation() - body.p_BC_;
     dGeomSetBody(geom, body.ode_.get());
     if (!p_CG.isZero(0)) dGeomSetOffsetPosition(geom, p_CG.x(), p_CG.y(), p_CG.z());
@@ -126,6 +130,7 @@ void PhysicsWorld::Impl::add_part(Body& body, const BodyConfig& config_, std::si
     to_ode(to_quaternion(X_BG.linear()), q);
     if (!part.rpy_rad.isZero(0)) dGeomSetOffsetQuaternion(geom, q);
   }
+  // Number and describe the part.
   const CollisionPart collision{geom,
                                 body.number_,
                                 body.group_,
@@ -143,6 +148,7 @@ void PhysicsWorld::Impl::add_part(Body& body, const BodyConfig& config_, std::si
                          X_BG,
                          parse_color(part.color),
                          part.shape == PartShape::plane};
+  // Add the part to the scene and the collider.
   scene->add_part(number,
                   {geom, body.group_, collision.category, collision.material,
                    collider.table().material(collision.material).transmits(), !body.fixed(),
@@ -156,7 +162,7 @@ void PhysicsWorld::Impl::add_part(Body& body, const BodyConfig& config_, std::si
 
 namespace {
 
-/// Mass, centre of mass and inertia as a body's hydrodynamics say, in axes of the body.
+/// Mass, centre of mass and inertia given in a body's hydrodynamics, in body axes.
 dMass published_mass(const HydrodynamicsConfig& config) {
   const auto flip = [](int i) { return i == 0 ? 1.0 : -1.0; };  // forward-right-down to forward-left-up
   dMass mass;
@@ -175,22 +181,24 @@ dMass published_mass(const HydrodynamicsConfig& config) {
 }  // namespace
 
 void PhysicsWorld::Impl::set_mass(Body& body, const BodyConfig& config_, const dMass& of_parts) {
+  // Use the given mass, or the sum of the parts.
   const bool published = config_.hydrodynamics && config_.hydrodynamics->mass_kg > 0;
   const dMass total = published ? published_mass(*config_.hydrodynamics) : of_parts;
   if (!(total.mass > 0)) {
     const SourcePlace place = config_.parts.empty() ? config_.place : config_.parts.front().place;
     throw_config_error(place, "body '" + body.name() + "'", "has no mass: give a part mass_kg or density_kgpm3");
   }
+  // Move the inertia to the centre of mass.
   dMass mass = total;
   body.mass_kg_ = mass.mass;
   body.p_BC_ = to_eigen(mass.c);
   dMassTranslate(&mass, -mass.c[0], -mass.c[1], -mass.c[2]);
   mass.c[0] = mass.c[1] = mass.c[2] = 0;  // exactly, or ODE aborts
   body.inertia_C_B_ = rotation_to_eigen(mass.I);
-  // Spheres and cubes turn the same about any axis: no gyroscopic torque.
+  // With equal moments, as of spheres and cubes, the gyroscopic torque is zero.
   const double mean = body.inertia_C_B_.trace() / 3;
   body.gyroscopic_ = !body.inertia_C_B_.isApprox(mean * Matrix3d::Identity(), 1e-12);
-  // ODE would end the program or the run over its inverse, and could not say whose it is.
+  // Check the range in which ODE can invert the inertia; ODE's own error would not name the body.
   const Vector3d moments =
       Eigen::SelfAdjointEigenSolver<Matrix3d>(body.inertia_C_B_, Eigen::EigenvaluesOnly).eigenvalues();
   const bool solvable = mass.mass < 1e30 && moments.minCoeff() > 1e-60 && moments.maxCoeff() < 1e60;
@@ -204,9 +212,10 @@ void PhysicsWorld::Impl::set_mass(Body& body, const BodyConfig& config_, const d
 
 Joint& PhysicsWorld::add_joint(int group, const JointConfig& config, Body& first, Body* second, const Pose& X_WV) {
   Impl::Group& owner = impl_->group(group);
-  assert(first.group_ == group && (!second || second->group_ == group));  // or a removal would leave half a joint
+  assert(first.group_ == group && (!second || second->group_ == group));  // else a removal leaves a dangling joint
   const std::string name = owner.name + "/" + config.name;
   const dBodyID a = first.ode_.get(), b = second ? second->ode_.get() : nullptr;
+  // Check that ODE can make this joint.
   if (!first.free() && !(second && second->free()))
     throw_config_error({}, "joint '" + name + "'", "joins two bodies that are fixed or kinematic");
   if (config.type == JointType::hinge2 && (!a || !b))
@@ -214,8 +223,9 @@ Joint& PhysicsWorld::add_joint(int group, const JointConfig& config, Body& first
   if (second == &first) throw_config_error({}, "joint '" + name + "'", "joins a body to itself");
   std::unique_ptr<Joint> owned(new Joint(impl_->world.get(), name, config, a, b, X_WV));
   Joint& joint = *owned;
-  // Without it a wheel turns too little in each step: 7 % at 100 rad/s and 10 ms.
+  // Without finite rotation a wheel turns too little in each step: 7 % at 100 rad/s and 10 ms.
   if (joint_info(config.type).carries_a_wheel) dBodySetFiniteRotationMode(b ? b : a, 1);
+  // Register the joint with islands, collider and the lists of a step.
   impl_->islands.add_joint(a ? first.number_ : -1, b ? second->number_ : -1, joint.max_rows());
   if (second) impl_->collider.join(first.number_, second->number_);
   joint.measured_joints_ = &impl_->measured_joints;
@@ -253,7 +263,7 @@ void PhysicsWorld::remove_group(int group) {
   all.group_numbers.give_back(group);
 }
 
-/// Takes a group's bodies and joints out of the lists that a step goes through.
+/// Removes a group's bodies and joints from the lists used in each step.
 void PhysicsWorld::Impl::remove_from_lists(int group_number) {
   const auto in_group = [&](const Body* body) { return body->group_ == group_number; };
   std::erase_if(moving, in_group);

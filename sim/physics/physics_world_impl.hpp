@@ -20,7 +20,7 @@ namespace sim {
 
 // Members are destroyed from the last to the first: joints and bodies before their world.
 struct PhysicsWorld::Impl {
-  /// What belongs to a group, by number.
+  /// Bodies, parts and joints of a group, by number.
   struct Group {
     std::string name;
     bool in_use = false;
@@ -35,7 +35,7 @@ struct PhysicsWorld::Impl {
   std::vector<std::string> categories = {"solid"};
   MeshCache meshes;
   std::map<int, std::unique_ptr<CollisionTerrain>> terrains;  // by part; outlive the geoms of collider and scene
-  // ODE's default threading is shared by all worlds of the process; two worlds in two threads then abort.
+  // ODE's default threading is shared by all worlds of the process, and two worlds in two threads would abort.
   ThreadingHandle threading{dThreadingAllocateSelfThreadedImplementation()};
   WorldHandle world{dWorldCreate()};
   JointGroupHandle contacts{dJointGroupCreate(0)};
@@ -46,27 +46,27 @@ struct PhysicsWorld::Impl {
   std::vector<std::unique_ptr<Body>> bodies;
   std::vector<std::unique_ptr<Joint>> joints;
   FreeNumbers group_numbers, part_numbers, body_numbers, joint_numbers;
-  // What a step goes through, in order of groups.
+  // Lists for the loops of a step, in order of groups.
   std::vector<Body*> moving;                             // free and kinematic
   std::vector<std::pair<int, Joint*>> joints_with_axes;  // with their groups
   std::vector<Body*> kinematic;
   std::vector<Joint*> measured_joints;
   std::vector<ContactReport> contact_reports;
   double gravity_mps2 = config.gravity_mps2;
-  bool gravity_was_set = false;  ///< at run time
+  bool gravity_was_set = false;  ///< set_gravity() was called
   SceneMoves moves;
   std::unique_ptr<WorldScene> scene;
-  std::vector<dBodyID> large_, small_;  // by the rows of their islands, used from step to step
+  std::vector<dBodyID> large_, small_;  // bodies by the rows of their islands; buffers reused in each step
   StepCounts counts;
   std::int64_t quick_steps = 0;
-  bool broken = false;  ///< ODE threw in mid-step
+  bool broken = false;  ///< ODE threw an error within a step
 
   std::uint32_t category_bit(const std::string& name) const;
   std::uint32_t category_bits(const std::vector<std::string>& names) const;
   Group& group(int number);
   void attach_ode_body(Body& body);
   void add_parts(Body& body, const BodyConfig& config);
-  /// A part that was checked, on its way into the world.
+  /// Checked part that is not yet in the world.
   struct NewPart {
     GeomHandle geom;
     const CollisionMesh* mesh = nullptr;

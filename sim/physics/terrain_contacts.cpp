@@ -1,7 +1,6 @@
-// SPDX-License-Identifier: BSD-3-Clause
-// Contacts with the smooth surface of terrain.  Every shape is asked at a bounded number of places, so that a contact
-// costs the same for any size of cells.  Depths are along the normal of the surface there; all below is ground, so
-// that what sank in is pushed out however deep it is.
+// Contacts with the smooth surface of terrain.  Each shape is tested at a bounded number of points, so that the cost of
+// a contact does not depend on the cell size.  Depths are along the normal of the surface at the point; everything
+// below is solid, so that a part is pushed out from any depth.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,14 +12,14 @@ namespace sim {
 namespace {
 
 constexpr int max_touches = 80;
-/// A probe between others counts only when the ground bulges there by more than this; on a plane it says nothing new.
+/// A point between others adds a contact only where the ground is higher by more than this than their plane.
 constexpr double bulge_m = 1e-6;
 
-/// A point of a shape and the ground.
+/// Contact candidate: a point of a shape, and the ground there.
 struct Touch {
   Vector3d position_T;
   Vector3d normal_T;  ///< of the ground, upwards
-  double depth_m;     ///< below zero: above the ground
+  double depth_m;     ///< negative above the ground
 };
 
 Touch no_touch() {
@@ -32,8 +31,8 @@ class Touches {
   void add(const Touch& touch) {
     if (touch.depth_m >= 0 && count_ < max_touches) all_[static_cast<std::size_t>(count_++)] = touch;
   }
-  /// Brings the deepest and then, one by one, those farthest from the ones before to the front.  A few contacts then
-  /// hold as much as all of them.
+  /// Moves the deepest point to the front, and then repeatedly the point farthest from those selected.  A few contacts
+  /// then support a shape as well as all of them.
   int choose(int max) {
     std::array<double, max_touches> away;
     std::fill_n(away.begin(), count_, 1e30);
@@ -56,7 +55,7 @@ class Touches {
   int count_ = 0;
 };
 
-/// A point of a shape.  The depth is exact to the first order in the bend of the ground.
+/// Contact of a point.  The depth is exact to first order in the curvature of the ground.
 Touch touch_at(const HeightGrid& grid, const Vector3d& p_T) {
   if (!grid.contains(p_T.x(), p_T.y())) return no_touch();
   const SurfacePoint surface = grid.smooth_at(p_T.x(), p_T.y());
@@ -64,15 +63,16 @@ Touch touch_at(const HeightGrid& grid, const Vector3d& p_T) {
   return {p_T, normal_T, (surface.height_m - p_T.z()) * normal_T.z()};
 }
 
-/// The point of the ground nearest to the centre of a sphere, by Newton's method on the squared distance.  Where the
-/// ground bends so much that this has no single lowest place, the bend is left out (Gauss-Newton).
+/// Point of the ground nearest to the centre of a sphere, by Newton's method on the squared distance.  Where the
+/// Hessian is not positive definite due to curvature, the curvature is left out (Gauss-Newton).
 Touch touch_sphere(const HeightGrid& grid, const Vector3d& c_T, double radius_m) {
   if (!grid.contains(c_T.x(), c_T.y())) return no_touch();
   SurfacePoint surface = grid.smooth_at(c_T.x(), c_T.y());
-  // No point of the ground that is farther off sideways can be nearer than the one below or above.
+  // The nearest point cannot be farther away horizontally than the vertical distance to the ground.
   const double reach_m = std::abs(surface.height_m - c_T.z());
-  double x = 0, y = 0;  // from the centre
+  double x = 0, y = 0;  // relative to the centre
   for (int i = 0; i < 4; ++i) {
+    // Gradient and Hessian of half the squared distance.
     const double up = surface.height_m - c_T.z();
     const double g_x = x + up * surface.slope_x, g_y = y + up * surface.slope_y;
     const double a = 1 + surface.slope_x * surface.slope_x, b = surface.slope_x * surface.slope_y,
@@ -83,6 +83,7 @@ Touch touch_sphere(const HeightGrid& grid, const Vector3d& c_T, double radius_m)
       h_xy = b;
       h_yy = c;
     }
+    // Newton step, limited to the reach.
     const double det = h_xx * h_yy - h_xy * h_xy;
     const double step_x = (h_xy * g_y - h_yy * g_x) / det, step_y = (h_xy * g_x - h_xx * g_y) / det;
     if (step_x * step_x + step_y * step_y <= 1e-18 * radius_m * radius_m) break;
@@ -95,19 +96,20 @@ Touch touch_sphere(const HeightGrid& grid, const Vector3d& c_T, double radius_m)
     }
     surface = grid.smooth_at(c_T.x() + x, c_T.y() + y);
   }
+  // Depth along the normal at the nearest point.
   const Vector3d normal_T = surface.normal();
   const double height_m = normal_T.dot(Vector3d(-x, -y, c_T.z() - surface.height_m));
   return {c_T - radius_m * normal_T, normal_T, radius_m - height_m};
 }
 
-/// The point of a circle that is deepest in the ground: the lowest against the normal, which is looked up there again.
+/// Deepest point of a circle in the ground: the lowest point along the normal, iterated with the normal at that point.
 Touch touch_rim(const HeightGrid& grid, const Vector3d& c_T, const Vector3d& axis_T, double radius_m) {
   Touch deepest = no_touch();
   Vector3d normal_T = grid.smooth_at(c_T.x(), c_T.y()).normal();
   for (int i = 0; i < 4; ++i) {
     const Vector3d down_T = normal_T.dot(axis_T) * axis_T - normal_T;
     const double length = down_T.norm();
-    if (length < 1e-3) break;  // the circle lies flat: no point of it is the lowest
+    if (length < 1e-3) break;  // the circle is parallel to the ground: no lowest point
     const Touch touch = touch_at(grid, c_T + radius_m / length * down_T);
     if (touch.depth_m > deepest.depth_m) deepest = touch;
     const bool settled = (touch.normal_T - normal_T).squaredNorm() < 1e-20;
@@ -117,13 +119,14 @@ Touch touch_rim(const HeightGrid& grid, const Vector3d& c_T, const Vector3d& axi
   return deepest;
 }
 
-/// The two ends of a line of equal cross-sections, and of those between the deepest, where the ground bulges.
-/// `at(s)` is the touch at s from -1 to 1.
+/// Adds the contacts of a prism-like shape: both ends, and between them the deepest point where the ground is higher
+/// than their line. `at(s)` is the contact at s from -1 to 1.
 template <typename At>
 void touch_along(const HeightGrid& grid, double length_m, Touches& touches, At&& at) {
   const Touch first = at(-1.0), last = at(1.0);
   touches.add(first);
   touches.add(last);
+  // Deepest point above the line between the ends.
   const int between = std::clamp(static_cast<int>(length_m / grid.cell_m), 1, 7);
   Touch deepest = no_touch();
   double max_m = bulge_m;
@@ -138,7 +141,7 @@ void touch_along(const HeightGrid& grid, double length_m, Touches& touches, At&&
   touches.add(deepest);
 }
 
-/// Where a shape is, in the frame of the terrain.
+/// Pose of a shape in the frame of the terrain.
 struct Seat {
   Vector3d p_T;
   Matrix3d R_TG;
@@ -158,7 +161,8 @@ void touch_cylinder(const HeightGrid& grid, dGeomID geom, const Seat& seat, Touc
   const Vector3d half_T = length_m / 2 * axis_T;
   touch_along(grid, length_m, touches,
               [&](double s) { return touch_rim(grid, seat.p_T + s * half_T, axis_T, radius_m); });
-  // Within 30 degrees of standing on its end: four places of the lower rim, and the middle of the end on a bump.
+  // Axis within 30 degrees of the normal: four points of the lower rim, and the centre of the end where the ground is
+  // higher.
   const double upright = axis_T.dot(grid.smooth_at(seat.p_T.x(), seat.p_T.y()).normal());
   if (std::abs(upright) < 0.866) return;
   const Vector3d end_T = seat.p_T - std::copysign(1.0, upright) * half_T;
@@ -172,14 +176,14 @@ void touch_cylinder(const HeightGrid& grid, dGeomID geom, const Seat& seat, Touc
   if (const Touch middle = touch_at(grid, end_T); middle.depth_m > rim_m + bulge_m) touches.add(middle);
 }
 
-/// The corners; and on the face that looks down, places at the distance of cells, at most 7 x 7, where the ground
-/// bulges above the plane of its corners.
+/// Contacts of a box: its corners, and on the face that points down a grid of points spaced by cells, at most 7 x 7,
+/// where the ground is higher than the plane of the corners.
 void touch_box(const HeightGrid& grid, dGeomID geom, const Seat& seat, Touches& touches) {
   dVector3 lengths;
   dGeomBoxGetLengths(geom, lengths);
   const Vector3d half(lengths[0] / 2, lengths[1] / 2, lengths[2] / 2);
   const Vector3d down_G = -(seat.R_TG.transpose() * grid.smooth_at(seat.p_T.x(), seat.p_T.y()).normal());
-  int k = 0;  // the axis that looks down most
+  int k = 0;  // the axis closest to downwards
   down_G.cwiseAbs().maxCoeff(&k);
   const int i = (k + 1) % 3, j = (k + 2) % 3;
   const double bottom = std::copysign(half[k], down_G[k]);
@@ -190,6 +194,7 @@ void touch_box(const HeightGrid& grid, dGeomID geom, const Seat& seat, Touches& 
     p_G[k] = height;
     return touch_at(grid, seat.p_T + seat.R_TG * p_G);
   };
+  // Add the corners of the lower and the upper face.
   double corner_m[2][2];
   for (const int s : {0, 1})
     for (const int t : {0, 1}) {
@@ -198,6 +203,7 @@ void touch_box(const HeightGrid& grid, dGeomID geom, const Seat& seat, Touches& 
       touches.add(corner);
       touches.add(at(2 * s - 1, 2 * t - 1, -bottom));
     }
+  // Add the points between them where the ground bulges.
   const auto gaps = [&](int axis) {
     return std::clamp(static_cast<int>(std::ceil(2 * half[axis] / grid.cell_m)), 1, 6);
   };
@@ -223,6 +229,7 @@ void touch_mesh(const CollisionTerrain& terrain, dGeomID geom, const Seat& seat,
 int collide_with_smooth(const CollisionTerrain& terrain, dGeomID o1, dGeomID o2, int flags, dContactGeom* contacts,
                         int skip) {
   const HeightGrid& grid = terrain.terrain.grid;
+  // Pose of the shape in the frame of the terrain.
   const Matrix3d R_WT = rotation_to_eigen(dGeomGetRotation(o1));
   const Vector3d p_WT = to_eigen(dGeomGetPosition(o1));
   const Seat seat{R_WT.transpose() * (to_eigen(dGeomGetPosition(o2)) - p_WT),
@@ -244,6 +251,7 @@ int collide_with_smooth(const CollisionTerrain& terrain, dGeomID o1, dGeomID o2,
     default:
       touch_mesh(terrain, o2, seat, touches);
   }
+  // Write the selected contacts in ODE's format.
   const int count = touches.choose(flags & 0xffff);
   for (int i = 0; i < count; ++i) {
     auto& contact =

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double thickness_m = 100;
 
-/// ODE's rows run from north to south, ours from south to north.
+/// Height for ODE, whose rows run from north to south; rows of HeightGrid run from south to north.
 dReal height_for_ode(void* user, int column, int row) {
   const HeightGrid& grid = static_cast<const CollisionTerrain*>(user)->terrain.grid;
   return grid.at(column, grid.rows - 1 - row);
@@ -34,7 +34,7 @@ const CollisionTerrain& terrain_of(dGeomID geom) {
   return *static_cast<ClassData*>(dGeomGetClassData(geom))->terrain;
 }
 
-/// ODE's heightfield has y up and its middle at its origin.
+/// Poses ODE's heightfield, which has y up and its origin in its centre.
 void place_heightfield(const CollisionTerrain& terrain, dGeomID at) {
   const HeightGrid& grid = terrain.terrain.grid;
   const Matrix3d R_WT = rotation_to_eigen(dGeomGetRotation(at));
@@ -84,7 +84,7 @@ void box_around(dGeomID geom, dReal box[6]) {
   }
 }
 
-/// Made known to ODE once in a process, which has room for four classes.
+/// Geom class of terrain, registered once per process; ODE has room for four classes.
 int terrain_class() {
   static const int number = [] {
     dGeomClass terrain{};

@@ -9,8 +9,8 @@ namespace sim {
 
 namespace {
 
-/// theta[k] / dt: the sum of the first k samples.  Without their mean, which no Allan deviation sees, the sums stay
-/// small and keep their digits.
+/// Sums of the first k samples, theta[k] / dt.  The mean is removed, which does not affect an Allan deviation, so that
+/// the sums stay small and accurate.
 std::vector<double> running_sum(std::span<const double> samples) {
   double mean = 0;
   for (const double sample : samples) mean += sample / static_cast<double>(samples.size());

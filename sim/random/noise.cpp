@@ -49,13 +49,14 @@ void Noise::apply(std::span<double> values, double dt_s, Random& random) {
   advance(dt_s, random);
   const NoiseParams& p = params_;
   const NoiseFault fault = fault_ ? *fault_ : NoiseFault{};
+  // Scale error, bias and slow errors.
   std::size_t state = 0;
   for (double& value : values) {
     const Slow& slow = slow_[state];
     if (++state == slow_.size()) state = 0;
     value = value * (1 + p.scale_error) + slow.bias + fault.factor * (slow.walk + slow.gauss_markov) + fault.bias;
   }
-  // One loop for each part: a scan of hundreds of beams asks for each part once, not once for each beam.
+  // One loop per part, so that a scan of hundreds of beams tests each part once.
   if (p.gaussian_std > 0)
     for (double& value : values) value += fault.factor * p.gaussian_std * random.gaussian();
   if (p.uniform_half_width > 0)
@@ -74,7 +75,7 @@ void Noise::apply(double& value, double dt_s, Random& random) {
 }
 
 void Noise::plan(double dt_s) {
-  // Samples come at a steady rate: the roots and exponentials are the same from call to call.
+  // Samples usually have a constant rate, so that these coefficients are reused.
   planned_dt_s_ = dt_s;
   walk_root_s_ = std::sqrt(dt_s);
   kept_ = std::exp(-dt_s / params_.gauss_markov_time_s);
@@ -93,8 +94,8 @@ void Noise::advance(double dt_s, Random& random) {
     for (Slow& slow : slow_) slow.walk += step_std * random.gaussian();
   }
   if (p.gauss_markov_std > 0) {
-    // The exact solution over dt keeps the standard deviation for any dt.  The first value is drawn from the
-    // stationary distribution: an instrument has been on for a while when the run starts.
+    // Exact discretisation keeps the standard deviation for any dt.  The first value is drawn from the stationary
+    // distribution, as of an instrument that has been on for a long time.
     const double kept = started_ ? kept_ : 0;
     const double fresh_std = started_ ? fresh_std_ : p.gauss_markov_std;
     for (Slow& slow : slow_) slow.gauss_markov = kept * slow.gauss_markov + fresh_std * random.gaussian();

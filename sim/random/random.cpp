@@ -9,7 +9,7 @@ namespace sim {
 
 namespace {
 
-/// The finalizer of SplitMix64: neighbouring seeds give keys that have nothing in common.
+/// Finalizer of SplitMix64: keys of neighbouring seeds are unrelated.
 std::uint64_t mixed(std::uint64_t word) {
   word += 0x9e3779b97f4a7c15ULL;
   word = (word ^ (word >> 30)) * 0xbf58476d1ce4e5b9ULL;
@@ -24,7 +24,7 @@ std::uint32_t high_word(std::uint64_t word) {
   return static_cast<std::uint32_t>(word >> 32);
 }
 
-/// c[0] + c[1] x + c[2] x^2 + ...
+/// Evaluates c[0] + c[1] x + c[2] x^2 + ... in nested form.
 template <std::size_t N>
 double polynomial(const double (&c)[N], double x) {
   double sum = c[N - 1];
@@ -47,7 +47,7 @@ Random::Random(std::uint64_t seed, std::string_view name) {
   const std::uint64_t key = mixed(mixed(seed) ^ hash_text(name));
   key_[0] = low_word(key);
   key_[1] = high_word(key);
-  begin_step(-1);  // what is drawn while the world is built repeats in no step
+  begin_step(-1);  // draws during construction differ from those of any step
 }
 
 void Random::begin_step(std::int64_t step) {
@@ -76,7 +76,7 @@ std::uint64_t Random::bits() {
 }
 
 double Random::uniform() {
-  // The middles of 2^52 equal intervals: with 53 bits the last middle would round to 1.
+  // Midpoints of 2^52 equal intervals: with 53 bits the last midpoint would round to 1.
   return (static_cast<double>(bits() >> 12) + 0.5) * 0x1p-52;
 }
 
@@ -85,8 +85,8 @@ double Random::gaussian() {
 }
 
 std::uint32_t Random::integer_below(std::uint32_t n) {
-  // Lemire 2019, "Fast random integer generation in an interval": the high word of a product, without bias
-  // because the low words that would come once too often are refused.
+  // Lemire 2019, "Fast random integer generation in an interval": the high word of a product; rejection of the low
+  // words that would be over-represented removes the bias.
   const std::uint32_t refused_below = (0u - n) % n;
   std::uint64_t product;
   do {
@@ -130,11 +130,13 @@ double normal_quantile(double p) {
                                  1.84631831751005468180e-5,
                                  1.42151175831644588870e-7,
                                  2.04426310338993978564e-15};
+  // Central region.
   const double q = p - 0.5;
   if (std::abs(q) <= 0.425) {
     const double r = 0.180625 - q * q;
     return q * polynomial(a, r) / polynomial(b, r);
   }
+  // Tails.
   const double r = std::sqrt(-std::log(q < 0 ? p : 1 - p));
   const double magnitude =
       r <= 5 ? polynomial(c, r - 1.6) / polynomial(d, r - 1.6) : polynomial(e, r - 5) / polynomial(f, r - 5);

@@ -8,12 +8,12 @@
 
 namespace sim {
 
-/// 64-bit FNV-1a of a text: the same on every machine.
+/// Returns the 64-bit FNV-1a hash of a text; equal on every machine.
 std::uint64_t hash_text(std::string_view text);
 
-/// A counter-based random stream (Philox 4x32-10, Salmon et al., SC'11).  The key is (seed, name); the counter is
-/// (step, number of the draw), so the draws of a device at a step are independent of everything else in the world: a
-/// new device does not change the noise of others, and the number of threads does not matter.
+/// Counter-based random stream (Philox 4x32-10, Salmon et al., SC'11).  The key is (seed, name); the counter is (step,
+/// number of the draw), so that the draws of a device at a step are independent of everything else in the world: a new
+/// device does not change the noise of others, and the number of threads has no effect.
 class Random {
  public:
   /// `name`: such as "auv1/lidar".
@@ -21,17 +21,17 @@ class Random {
 
   /// Starts the draws of a step.  Call before the first draw of each step.
   void begin_step(std::int64_t step);
-  /// 64 random bits.
+  /// Returns 64 random bits.
   std::uint64_t bits();
-  /// Uniform in (0, 1), never 0 or 1.
+  /// Returns a uniform number in (0, 1), never 0 or 1.
   double uniform();
-  /// Standard normal, by inversion of the normal distribution (Wichura 1988, algorithm AS 241, PPND16); the
-  /// standard library's sequence is not specified.
+  /// Returns a standard normal number, by inversion of the normal distribution (Wichura 1988, algorithm AS 241,
+  /// PPND16); the sequence of the standard library is not specified.
   double gaussian();
-  /// Uniform integer in [0, n).  n > 0.
+  /// Returns a uniform integer in [0, n).  n > 0.
   std::uint32_t integer_below(std::uint32_t n);
 
-  /// Where it is within a step.  Owners that begin a step before each draw need not visit it.
+  /// Visits the position within a step.  Owners that call begin_step() before each draw need not visit it.
   void visit_state(StateArchive& archive) {
     archive(counter_, block_, used_);
     archive.require(used_, 0, 2, "a place in a block of random numbers");

@@ -14,7 +14,7 @@ struct DeviceDeleter {
 };
 using DeviceHandle = std::unique_ptr<RTCDeviceTy, DeviceDeleter>;
 
-/// rtcNewDevice's own `threads` would limit TBB in the whole process, so it is not set.
+/// The option `threads` of rtcNewDevice is not set, as it would limit TBB in the whole process.
 DeviceHandle make_device() {
   DeviceHandle device(rtcNewDevice(__builtin_cpu_supports("avx2") ? "isa=avx2" : ""));
   if (!device)

@@ -16,12 +16,12 @@ struct EmbreeGeometryDeleter {
 using EmbreeSceneHandle = std::unique_ptr<RTCSceneTy, EmbreeSceneDeleter>;
 using EmbreeGeometryHandle = std::unique_ptr<RTCGeometryTy, EmbreeGeometryDeleter>;
 
-/// The device of this process.  It is bound to AVX2 where there is AVX2: another instruction set rounds hits on
-/// triangles another way.
+/// Embree device of this process.  It is restricted to AVX2 where available: other instruction sets round hits on
+/// triangles differently.
 RTCDevice embree_device();
-/// Throws std::runtime_error with Embree's text when a call of this thread failed.
+/// Throws std::runtime_error with Embree's message when a call of this thread failed.
 void check_embree();
-/// Builds on the calling thread alone, so that a step does not wait for workers that are busy elsewhere.
+/// Builds a scene on the calling thread alone, so that a step does not wait for busy worker threads.
 void commit_alone(RTCScene scene);
 
 }  // namespace sim

@@ -10,7 +10,7 @@
 
 namespace sim {
 
-// Parts that come, go and move.
+// Addition, removal and motion of parts.
 
 void EmbreeScene::add_group(int group) {
   slot(open_, group).clear();
@@ -58,7 +58,7 @@ EmbreeScene::Layer& EmbreeScene::layer_of(const RayShape& shape, const ScenePart
   return part.mesh != nullptr && part.mesh->triangles.size() >= many ? terrain_ : fixed_;
 }
 
-/// The last shape takes its place.
+/// Removes a shape; the last shape replaces it.
 void EmbreeScene::remove_shape(Part& part) {
   Layer& layer = *part.layer;
   parts_[layer.shapes.back().part].at = part.at;
@@ -115,18 +115,20 @@ void EmbreeScene::choose_origin(Layer& layer) {
   layer.radius_m = (high - low).norm() / 2 + widest_m;
 }
 
-/// A tree that shapes have only moved in is widened, which is some ten times faster than a new one; but when they have
-/// moved by about their own width, rays would look at too many of them.
+/// Builds or refits the tree.  A refit is some ten times faster than a build; but after motions of about the width of
+/// the shapes, rays would test too many of them.
 void EmbreeScene::build(Layer& layer) {
+  // Create the scene.
   if (!layer.scene) {
     layer.scene.reset(rtcNewScene(embree_device()));
     check_embree();
     if (layer.moves) {
-      // Only both together make Embree widen a tree instead of building it.
+      // Embree refits a tree only with both of these settings.
       rtcSetSceneFlags(layer.scene.get(), RTC_SCENE_FLAG_DYNAMIC);
       rtcSetSceneBuildQuality(layer.scene.get(), RTC_BUILD_QUALITY_LOW);
     }
   }
+  // Build a new tree after changes or large motions.
   if (!layer.geometry || layer.changed || layer.travelled_m > layer.half_width_m) {
     if (layer.geometry) rtcDetachGeometry(layer.scene.get(), 0);
     layer.geometry.reset(rtcNewGeometry(embree_device(), RTC_GEOMETRY_TYPE_USER));
@@ -140,6 +142,7 @@ void EmbreeScene::build(Layer& layer) {
     rtcAttachGeometryByID(layer.scene.get(), layer.geometry.get(), 0);
     layer.travelled_m = 0;
   }
+  // Build or refit.
   rtcCommitGeometry(layer.geometry.get());
   commit_alone(layer.scene.get());
 }
@@ -156,9 +159,9 @@ void EmbreeScene::bounds_of(const RTCBoundsFunctionArguments* arguments) {
   out.upper_x = high.x(), out.upper_y = high.y(), out.upper_z = high.z();
 }
 
-// Rays.
+// Ray casting.
 
-/// A packet on its way through a layer.  Callbacks know it by its first member.
+/// Query of a packet in a layer.  Callbacks get it by its first member.
 struct EmbreeScene::Query {
   Query(const Layer& layer, RayPacket& rays_, unsigned lanes, const RayFilter& filter_)
       : rays(rays_), filter(filter_), floats(layer.radius_m) {
@@ -177,7 +180,7 @@ struct EmbreeScene::Query {
   FloatRays floats;
 };
 
-/// Notes nearer hits on the shape; returns the lanes that have one.
+/// Records nearer hits on the shape; returns the lanes that have one.
 unsigned EmbreeScene::cast_at(const RayShape& shape, RayPacket& rays, unsigned lanes) {
   if (shape.kind == RayShape::Kind::mesh) return shape.mesh->cast(shape, rays, lanes);
   alignas(64) double range_m[RayPacket::size];
@@ -206,7 +209,7 @@ unsigned EmbreeScene::blocked_by(const RayShape& shape, RayPacket& rays, unsigne
 
 namespace {
 
-/// The lanes that a callback is asked about.
+/// Returns the active lanes of a callback.
 unsigned lanes_of(const int* valid, RTCRayN* rays, unsigned count) {
   unsigned lanes = 0;
   for (unsigned i = 0; i < count; ++i)
@@ -302,8 +305,8 @@ std::optional<RayHit> EmbreeScene::cast(const Vector3d& origin_W, const Vector3d
 
 namespace {
 
-/// Calls use(first, rays, lanes) for packets of the rays that set(lane, number) gives.  Rays without length are left
-/// out.
+/// Calls use(first, rays, lanes) for packets of the rays that set(lane, number) gives.  Rays of zero length are
+/// skipped.
 template <typename Set, typename Use>
 void for_packets(std::size_t count, bool coherent, Set&& set, Use&& use) {
   RayPacket rays;
@@ -320,7 +323,7 @@ void for_packets(std::size_t count, bool coherent, Set&& set, Use&& use) {
   }
 }
 
-/// A fleet has many sensors of one kind: the sines of the last fan of this thread often serve the next.
+/// Cache of sines and cosines of the last fan of this thread, as a fleet has many equal sensors.
 struct FanDirections {
   double first_angle_rad = 0, step_rad = 0;
   std::vector<std::array<double, 2>> cos_sin;
@@ -347,7 +350,7 @@ void EmbreeScene::cast_fan(const Fan& fan, const RayFilter& filter, std::span<Ra
   directions.update(fan);
   const Matrix3d R_WS = fan.X_WS.linear();
   const Vector3d p_WS = fan.X_WS.translation();
-  // A packet whose rays are farther apart (2.5 degrees) is faster ray by ray.
+  // With larger angles between rays (2.5 degrees) single rays are faster than packets.
   constexpr double together_rad = 0.044;
   for_packets(
       static_cast<std::size_t>(fan.count), std::abs(fan.step_rad) < together_rad,

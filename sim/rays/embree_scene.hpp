@@ -14,9 +14,9 @@
 
 namespace sim {
 
-/// Rays by Embree.  Embree only finds, in single precision, what a ray may hit; where it does is computed in double by
-/// RayShape and TriangleScene.  So a result depends only on the ray and the parts: not on the processor, on other
-/// rays cast with it, or on the history of the tree over the parts.
+/// Ray casting with Embree.  Embree finds in single precision only which shapes a ray may hit; RayShape and
+/// TriangleScene compute the hit in double precision.  A result thus depends only on the ray and the parts: not on the
+/// processor, on other rays cast with it, or on the history of the tree.
 class EmbreeScene final : public WorldScene {
  public:
   explicit EmbreeScene(const SceneMoves& moves) : moves_(moves) { moving_.moves = true; }
@@ -38,29 +38,29 @@ class EmbreeScene final : public WorldScene {
  private:
   struct Query;
 
-  /// Shapes under one tree.
+  /// Shapes in one bounding volume hierarchy (tree).
   struct Layer {
-    /// Planes have no end, and for few shapes a tree does not pay.
+    /// Whether no tree is used: for planes, which are infinite, and for few shapes, for which a tree is slower.
     bool few() const { return shapes.size() <= 4 || shapes.front().kind == RayShape::Kind::plane; }
 
     bool moves = false;
     std::vector<RayShape> shapes;
-    std::vector<dxGeom*> geoms;  // of each
+    std::vector<dxGeom*> geoms;  // of each shape
     EmbreeSceneHandle scene;
     EmbreeGeometryHandle geometry;
-    Vector3d origin_W = Vector3d::Zero();  // what the tree counts from
-    double radius_m = 0;                   // of the sphere around the origin with all shapes in it
+    Vector3d origin_W = Vector3d::Zero();  // origin of the coordinates in the tree
+    double radius_m = 0;                   // of a sphere around the origin that contains all shapes
     std::uint64_t seen = ~std::uint64_t{0};
     bool changed = false;     // shapes were added or removed
     double travelled_m = 0;   // sum over shapes since the tree was built
-    double half_width_m = 0;  // sum over shapes
+    double half_width_m = 0;  // sum of the radii of the shapes
   };
   struct Part {
     ScenePart part;
-    Layer* layer = nullptr;  // null: rays do not see it
-    std::size_t at = 0;      // in the layer
+    Layer* layer = nullptr;  // null: invisible to rays
+    std::size_t at = 0;      // index in the layer
   };
-  /// The triangles of a mesh and how many parts have it.
+  /// Triangles of a mesh, and the number of parts that use it.
   struct SharedMesh {
     std::unique_ptr<TriangleScene> triangles;
     int users = 0;
@@ -80,15 +80,16 @@ class EmbreeScene final : public WorldScene {
   static unsigned blocked_by(const RayShape& shape, RayPacket& rays, unsigned lanes);
   void cast_packet(RayPacket& rays, unsigned lanes, const RayFilter& filter) const;
   unsigned blocked_packet(RayPacket& rays, unsigned lanes, const RayFilter& filter) const;
-  /// Fast intersections first: terrain takes longest, and less so for rays that are already shortened.
+  /// Layers in order of the cost of intersections: terrain is last, and is cheaper for rays that other hits have
+  /// shortened.
   std::array<const Layer*, 4> in_order() const { return {&planes_, &moving_, &fixed_, &terrain_}; }
   RayHit hit_of(const RayPacket& rays, int lane) const;
 
   const SceneMoves& moves_;
   std::vector<Part> parts_;
-  std::vector<std::vector<int>> open_;  // by group: parts not yet seen
+  std::vector<std::vector<int>> open_;  // by group: parts not yet visible
   std::map<const Mesh*, SharedMesh> meshes_;
-  /// Terrain: large meshes that do not move.
+  /// terrain_: large meshes that do not move.
   mutable Layer planes_, moving_, fixed_, terrain_;
 };
 

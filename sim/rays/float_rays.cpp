@@ -6,13 +6,13 @@
 
 namespace sim {
 
-/// Without branches, so that the compiler makes one loop over all lanes of it.
+/// Sets all lanes without branches, so that the compiler makes vector loops over lanes.
 [[gnu::always_inline]] inline void FloatRays::aim_all(FloatRays& out, const double (&from)[3][RayPacket::size],
                                                       const double (&direction)[3][RayPacket::size],
                                                       const double (&range_m)[RayPacket::size], unsigned lanes) {
   constexpr int n = RayPacket::size;
   const double margin_m = out.margin_m_, square_radius_m2 = out.square_radius_m2_;
-  // The same as set_start.
+  // Start of each ray, as in set_start.
   double start_m[n], over[n];
   for (int i = 0; i < n; ++i) {
     const double x = from[0][i], y = from[1][i], z = from[2][i];
@@ -32,6 +32,7 @@ namespace sim {
       const double outside = (along > 0) & (rest >= 0) ? enter : std::numeric_limits<double>::quiet_NaN();
       start_m[i] = over[i] <= 0 ? -margin_m : outside;
     }
+  // Round to single precision, and drop invalid rays.
   float origin[3][n], ray_direction[3][n], limit_m[n];
   std::uint32_t good[n];  // all bits or none
   for (int axis = 0; axis < 3; ++axis)
@@ -42,14 +43,14 @@ namespace sim {
   for (int i = 0; i < n; ++i)
     limit_m[i] = static_cast<float>(range_m[i] - start_m[i]) * (1 + 0x1p-21f) + static_cast<float>(margin_m);
   for (int i = 0; i < n; ++i) {
-    // Written so that NaN is left out.
+    // The condition is false for NaN.
     const float sum =
         origin[0][i] + origin[1][i] + origin[2][i] + ray_direction[0][i] + ray_direction[1][i] + ray_direction[2][i];
     const std::uint32_t finite = std::abs(sum) < std::numeric_limits<float>::infinity() ? ~0u : 0;
     const std::uint32_t ahead = limit_m[i] >= 0 ? ~0u : 0;
     good[i] = finite & ahead & (0u - (lanes >> i & 1u));
   }
-  // Embree even checks numbers that it is configured to ignore, and where it has no packets of eight it ignores the
+  // Fill all lanes with valid numbers: Embree checks even masked lanes, and without packets of eight it ignores the
   // mask.
   RTCRay8& rays = *reinterpret_cast<RTCRay8*>(out.data_);
   const auto fill = [&](float(&to)[n], const float(&value)[n], float otherwise) {

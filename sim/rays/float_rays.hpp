@@ -10,19 +10,19 @@
 
 namespace sim {
 
-/// A packet of rays in single precision, as Embree wants it, to find what a ray may hit.  Each ray starts where it
-/// enters the sphere around all there is to hit, so that no number is larger than that sphere.
+/// Packet of rays in single precision, in Embree's format, to find what a ray may hit.  Each ray starts where it enters
+/// the sphere around all shapes, so that no coordinate is larger than its radius.
 class FloatRays {
  public:
-  /// How far a float ray may be from the true one, as a part of the radius.  Its origin and its direction are rounded
-  /// (2^-24 each, over up to two radii), and the tests of Embree's boxes add a few roundings more: about 15 in all.
+  /// Maximum deviation of a float ray from the exact ray, relative to the radius.  Origin and direction are rounded
+  /// (2^-24 each, over up to two radii), and Embree's box tests add a few roundings: about 15 in all.
   static constexpr double rounding = 1e-6;
 
   explicit FloatRays(double radius_m)
       : margin_m_(static_cast<float>(2 * rounding * radius_m)), square_radius_m2_(radius_m * radius_m) {}
 
-  /// Takes over the rays of `lanes` (bits), seen from the centre of the sphere: x of all lanes, y, z.  The other lanes
-  /// hold any numbers.  Rays that pass the sphere or end before it are left out.  A lone ray is not packed.
+  /// Sets the rays of `lanes` (bits), relative to the centre of the sphere: x of all lanes, y, z.  The other lanes may
+  /// hold any numbers.  Rays that miss the sphere or end before it are dropped.  A single ray is not packed.
   void aim(const double (&from)[3][RayPacket::size], const double (&direction)[3][RayPacket::size],
            const double (&range_m)[RayPacket::size], unsigned lanes) {
     if (std::has_single_bit(lanes)) {
@@ -38,16 +38,16 @@ class FloatRays {
     best(*this, from, direction, range_m, lanes);
   }
 
-  /// Embree's tfar of a ray whose nearest hit is at `range_m`: long enough for all that could be nearer.
+  /// Returns Embree's tfar of a ray whose nearest hit is at `range_m`: long enough for all hits that could be nearer.
   float limit_m(int lane, double range_m) const {
     return static_cast<float>(range_m - start_m_[lane]) * (1 + 0x1p-21f) + margin_m_;
   }
 
-  /// Two hits may be in the wrong order by rounding when their tfar differ by less.
+  /// Difference of tfar below which rounding may exchange the order of two hits.
   float margin_m() const { return margin_m_; }
   double start_m(int lane) const { return start_m_[lane]; }
 
-  /// `context` starts a struct of the caller's, which the callbacks get.
+  /// Finds hits.  `context` is the first member of a struct of the caller, which the callbacks get.
   void intersect(RTCScene scene, RTCIntersectContext& context) {
     if (none()) return;
     if (count_ == 1)
@@ -64,8 +64,8 @@ class FloatRays {
   }
 
  private:
-  /// A ray starts where it enters the sphere, or a little before its origin: the rounded origin must not lie behind a
-  /// surface that the true one is in front of.  NaN, which no ray passes on, when it misses the sphere.
+  /// Sets the start of a ray to where it enters the sphere, or slightly before its origin: the rounded origin must not
+  /// be behind a surface that the exact one is in front of.  NaN, which Embree skips, when it misses the sphere.
   void set_start(int lane, const Vector3d& from, const Vector3d& direction) {
     start_m_[lane] = -margin_m_;
     if (from.squaredNorm() <= square_radius_m2_) return;
@@ -75,7 +75,7 @@ class FloatRays {
   }
   void fill_one(int lane, const double (&from)[3][RayPacket::size], const double (&direction)[3][RayPacket::size],
                 double range_m) {
-    // As RTCRay has it: origin, tnear, direction, time, tfar, mask, id, flags.
+    // Layout of RTCRay: origin, tnear, direction, time, tfar, mask, id, flags.
     float sum = 0;
     for (int axis = 0; axis < 3; ++axis) {
       data_[axis] = static_cast<float>(from[axis][lane] + start_m_[lane] * direction[axis][lane]);
@@ -88,7 +88,7 @@ class FloatRays {
     ray.mask = ~0u;
     ray.id = static_cast<unsigned>(lane);
     ray.flags = 0;
-    // Written so that NaN is left out.
+    // The condition is false for NaN.
     valid_[0] = ray.tfar >= 0 && std::abs(sum) < std::numeric_limits<float>::infinity() ? -1 : 0;
   }
   using Aim = void(FloatRays& out, const double (&from)[3][RayPacket::size],

@@ -25,7 +25,7 @@ double distance(const AlignedBox& box, const Vector3d& from) {
   return (box.low - from).cwiseMax(from - box.high).cwiseMax(0.0).norm();
 }
 
-/// How far along a ray its first point inside the box lies; infinity when it misses.
+/// Range at which a ray enters the box; infinity when it misses.
 double entry_range(const AlignedBox& box, const Vector3d& origin, const Vector3d& direction) {
   double enter = 0, leave = infinity;
   for (int i = 0; i < 3; ++i) {
@@ -94,7 +94,7 @@ void OdeScene::remove_group(int group, std::span<const int> parts) {
   }
 }
 
-/// The last cluster takes its place; what a ray hits does not depend on the order of clusters.
+/// Removes a cluster; the last cluster replaces it.  Hits do not depend on the order of clusters.
 void OdeScene::remove_cluster(int layer, int number) {
   std::vector<Cluster>& clusters = layers_[layer].clusters;
   for (const int part : clusters[number].parts) parts_[part].cluster = -1;
@@ -111,7 +111,8 @@ void OdeScene::refresh() const {
   refresh(layers_[1], moves_.fixed);
 }
 
-/// Terrain collides by geoms of our own or by ODE's heightfield, which rays cannot use.
+/// Makes and places the triangles of terrain, whose geom (of the simulator's own class, or ODE's heightfield) rays
+/// cannot hit.
 void OdeScene::place_triangles(Part& part) {
   if (part.mesh == nullptr || part.kind < dFirstUserClass) return;
   if (!part.triangles) {
@@ -152,7 +153,7 @@ bool OdeScene::hit(int part, const Vector3d& origin_W, const Vector3d& direction
   const Part& target = parts_[part];
   const dGeomID geom = target.triangles ? target.triangles->geom.get() : target.geom;
   if (dCollide(ray_.get(), geom, 1, &contact, sizeof contact) == 0) return false;
-  // Of two parts that share a surface the one with the lower number is hit, whatever the order of looking.
+  // Where two parts share a surface the one with the lower number is hit, whatever the order of tests.
   if (contact.depth > nearest.range_m ||
       (contact.depth == nearest.range_m && part >= nearest.part && nearest.part >= 0))
     return false;
@@ -186,6 +187,7 @@ std::optional<RayHit> OdeScene::cast(const Vector3d& origin_W, const Vector3d& d
   const Vector3d end_W = origin_W + range_max_m * direction_W;
   find_candidates({origin_W.cwiseMin(end_W), origin_W.cwiseMax(end_W)}, filter, origin_W, range_max_m);
   for (const Candidate& candidate : candidates_) {
+    // Skip boxes behind the nearest hit.
     if (candidate.nearest_m > nearest.range_m) break;
     const Layer& layer = layers_[candidate.layer];
     if (entry_range(layer.grid.box(candidate.cluster), origin_W, direction_W) > nearest.range_m) continue;
@@ -199,7 +201,7 @@ std::optional<RayHit> OdeScene::cast(const Vector3d& origin_W, const Vector3d& d
 }
 
 const std::vector<Vector3d>& OdeScene::directions(const Fan& fan) const {
-  // A fleet has many sensors of one kind: the sines of the last fan often serve the next.
+  // Reuse the sines and cosines of the last fan, as a fleet has many equal sensors.
   if (fan.first_angle_rad != directions_of_.first_angle_rad || fan.step_rad != directions_of_.step_rad ||
       fan.count != directions_of_.count) {
     directions_S_.clear();
@@ -220,7 +222,7 @@ struct OdeScene::FanSearch {
   const std::vector<Vector3d>& directions_S;
   Matrix3d R_SW = fan.X_WS.linear().transpose();
   Vector3d p_WS = fan.X_WS.translation();
-  double tilt = std::hypot(R_SW(0, 2), R_SW(1, 2));  // how much of the world's z the plane of the fan sees
+  double tilt = std::hypot(R_SW(0, 2), R_SW(1, 2));  // projection of the world's z axis on the plane of the fan
 
   AlignedBox around() const;
   bool crosses(const AlignedBox& box) const;
@@ -231,33 +233,35 @@ struct OdeScene::FanSearch {
   void try_plane(int part);
 };
 
-/// Around the disc that the beams can reach.
+/// Bounding box of the disc that the beams can reach.
 AlignedBox OdeScene::FanSearch::around() const {
   const Vector3d z_W = R_SW.row(2).transpose();
   const Vector3d half = fan.range_max_m * (1 - z_W.array().square()).max(0).sqrt().matrix();
   return {p_WS - half, p_WS + half};
 }
 
-/// The plane of the fan cuts the box.  The margin is for rounding.
+/// Whether the plane of the fan intersects the box, with a margin for rounding.
 bool OdeScene::FanSearch::crosses(const AlignedBox& box) const {
   const double height = R_SW.row(2).dot(box.center() - p_WS);
   return std::abs(height) <= R_SW.row(2).cwiseAbs().dot(box.half_extents()) + 1e-9;
 }
 
-/// Calls use(first, last) for the beams that point at the circle around the box, seen along z of S.
+/// Calls use(first, last) for the beams that point at the circle around the box, projected along z of S.
 template <typename Use>
 void OdeScene::FanSearch::beams_towards(const AlignedBox& box, Use&& use) const {
+  // Circle around the box in the plane of the fan.
   const Vector3d half = box.half_extents();
   const Vector3d to_center = box.center() - p_WS;
   const double x = R_SW.row(0).dot(to_center), y = R_SW.row(1).dot(to_center);
   const double radius = std::sqrt(half.x() * half.x() + half.y() * half.y()) + half.z() * tilt;
   const double away = std::sqrt(x * x + y * y);
   if (away <= radius * (1 + 1e-9) || !(fan.step_rad > 0) || fan.count == 1) return use(0, fan.count - 1);
-  // asin s <= s + 0.5708 s^3 on [0, 1], with equality at both ends.
+  // Angular half width, with the bound asin s <= s + 0.5708 s^3 on [0, 1], which is exact at both ends.
   const double s = radius / away;
   const double half_width = s + 0.5708 * s * s * s + 1e-9;
   const double center = std::atan2(y, x) - fan.first_angle_rad;
   const double span = (fan.count - 1) * fan.step_rad;
+  // Beam numbers, for each turn of the fan.
   constexpr double turn = 2 * std::numbers::pi;
   for (double at = center + turn * std::ceil((-half_width - center) / turn); at - half_width <= span; at += turn) {
     const int first = static_cast<int>(std::ceil(std::max(0.0, (at - half_width) / fan.step_rad)));
@@ -293,7 +297,7 @@ void OdeScene::FanSearch::try_plane(int part) {
   dGeomPlaneGetParams(scene.parts_[part].geom, plane);
   const Vector3d normal_S = R_SW * to_eigen(plane);
   const double height = to_eigen(plane).dot(p_WS) - plane[3];
-  // A level fan over level ground: no beam comes down within range.
+  // Skip a plane that no beam reaches within range, such as the ground below a horizontal fan.
   if (std::hypot(normal_S.x(), normal_S.y()) * fan.range_max_m < std::abs(height)) return;
   for (int i = 0; i < fan.count; ++i) {
     const double range = -height / normal_S.dot(directions_S[i]);
@@ -308,6 +312,7 @@ void OdeScene::cast_fan(const Fan& fan, const RayFilter& filter, std::span<RayHi
   std::fill(hits.begin(), hits.end(), RayHit{});
   if (fan.count <= 0 || !(fan.range_max_m > 0)) return;
   refresh();
+  // Planes first, then candidates by distance.
   FanSearch search{*this, fan, filter, hits, directions(fan)};
   for (const int plane : planes_)
     if (stops(parts_[plane], filter)) search.try_plane(plane);
@@ -315,7 +320,7 @@ void OdeScene::cast_fan(const Fan& fan, const RayFilter& filter, std::span<RayHi
   double farthest_m = infinity;
   for (std::size_t i = 0; i < candidates_.size(); ++i) {
     const Candidate& candidate = candidates_[i];
-    // In a room or a crowd all beams end soon, and what lies behind need not be looked at.
+    // Stop when all beams end before the next candidate, as in a room or a crowd.
     if (i % 16 == 15)
       farthest_m = std::max_element(hits.begin(), hits.end(), [](const RayHit& a, const RayHit& b) {
                      return a.range_m < b.range_m;

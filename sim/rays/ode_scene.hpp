@@ -15,11 +15,10 @@
 
 namespace sim {
 
-/// Rays against the collision geoms.  Not for two threads at once: the ray and the lists are used over and
-/// over.
+/// Ray casting against ODE's collision geoms.  Not thread-safe: the ray and the lists are reused.
 ///
-/// A search finds the boxes around groups (vehicles, with all their moving parts) and fixed parts that it may
-/// meet, looks at the nearest first, and drops what lies behind hits found already.
+/// A search finds the bounding boxes of groups (vehicles, with all their moving parts) and fixed parts on the ray,
+/// tests the nearest first, and skips those behind a hit.
 class OdeScene final : public WorldScene {
  public:
   explicit OdeScene(const SceneMoves& moves);
@@ -36,21 +35,21 @@ class OdeScene final : public WorldScene {
   void prepare() const override { refresh(); }
 
  private:
-  /// Triangles for rays alone.
+  /// Triangles used only for rays.
   struct TriangleGeom {
     TriMeshDataHandle data;
     GeomHandle geom;
   };
   struct Part : ScenePart {
     int kind = -1;                            // ODE's class of geom
-    int layer = -1, cluster = -1;             // where rays find it; -1: not closed yet, a plane, or removed
-    std::shared_ptr<TriangleGeom> triangles;  // of terrain, whose geom rays cannot hit; made by the first query
+    int layer = -1, cluster = -1;             // -1: not closed yet, a plane, or removed
+    std::shared_ptr<TriangleGeom> triangles;  // of terrain, whose geom rays cannot hit; made on first use
   };
-  /// Parts that are found together: the moving ones of a group, or one fixed part.
+  /// Parts with a common bounding box: the moving ones of a group, or one fixed part.
   struct Cluster {
     std::vector<int> parts;
     int group;
-    std::uint32_t categories;  // of all of its parts
+    std::uint32_t categories;  // of all its parts
   };
   struct Layer {
     std::vector<Cluster> clusters;
@@ -61,7 +60,7 @@ class OdeScene final : public WorldScene {
     double nearest_m;
     int layer, cluster;
   };
-  /// A fan under way.
+  /// Search for the hits of a fan.
   struct FanSearch;
 
   void add_cluster(int layer, Cluster cluster);
@@ -83,7 +82,7 @@ class OdeScene final : public WorldScene {
 
   const SceneMoves& moves_;
   mutable std::vector<Part> parts_;
-  std::vector<std::vector<int>> open_;  // by group: moving parts not yet seen
+  std::vector<std::vector<int>> open_;  // by group: moving parts not yet visible
   std::vector<int> open_fixed_;
   std::vector<int> planes_;
   mutable Layer layers_[2];  // moving, fixed

@@ -17,10 +17,10 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 using Kind = RayShape::Kind;
 
-// The functions below are written without branches, so that the compiler makes one loop over all lanes of them.
+// The functions below have no branches, so that the compiler makes vector loops over lanes.
 #define SHOAL_INLINE [[gnu::always_inline]] inline
 
-/// The part of a ray inside a convex body; empty when enter > leave.
+/// Interval of a ray inside a convex body; empty when enter > leave.
 struct Inside {
   double enter, leave;
 };
@@ -32,7 +32,7 @@ SHOAL_INLINE double smaller(double a, double b) {
   return a < b ? a : b;
 }
 
-/// A ray as seen from the shape.
+/// Ray in the frame of the shape.
 struct LocalRay {
   double x, y, z, vx, vy, vz;
 };
@@ -47,10 +47,10 @@ SHOAL_INLINE LocalRay to_local(const RayShape& shape, const RayPacket& rays, int
           a[0] * vx + a[1] * vy + a[2] * vz, a[3] * vx + a[4] * vy + a[5] * vz, a[6] * vx + a[7] * vy + a[8] * vz};
 }
 
-/// Cuts off what lies outside -half..half along one axis.  A ray along the face (0 / 0) counts as inside: a comparison
-/// with NaN changes nothing.
+/// Limits the interval to -half..half along one axis.  A ray in the plane of a face (0 / 0) counts as inside:
+/// comparisons with NaN change nothing.
 SHOAL_INLINE Inside cut(Inside in, double from, double direction, double half) {
-  const double inverse = 1 / (direction + 0.0);  // -0 becomes 0, as `ahead` has it
+  const double inverse = 1 / (direction + 0.0);  // -0 becomes 0, consistent with `ahead`
   const double ahead = direction < 0 ? -half : half;
   const double enter = (-ahead - from) * inverse, leave = (ahead - from) * inverse;
   return {larger(enter, in.enter), smaller(leave, in.leave)};
@@ -63,7 +63,7 @@ SHOAL_INLINE Inside in_box(const RayShape& shape, const LocalRay& r) {
   return cut(in, r.z, r.vz, shape.size[2]);
 }
 
-/// From the point of the ray that is nearest to the centre: what is far away loses no digits to squares.
+/// Computed from the point of the ray nearest to the centre, so that distant origins lose no digits by squaring.
 SHOAL_INLINE Inside in_sphere(double x, double y, double z, double vx, double vy, double vz, double square_radius) {
   const double along = -(x * vx + y * vy + z * vz);
   const double px = x + along * vx, py = y + along * vy, pz = z + along * vz;
@@ -77,7 +77,7 @@ SHOAL_INLINE Inside in_cylinder(const RayShape& shape, const LocalRay& r) {
   const double inverse = 1 / a;
   const double along = -(r.x * r.vx + r.y * r.vy) * inverse;
   const double cross = r.x * r.vy - r.y * r.vx;
-  // A ray along the axis has no direction in the plane; then the distance of its origin counts.
+  // For a ray along the axis, use the distance of its origin from the axis.
   const double distance = a > 0 ? cross * cross * inverse : r.x * r.x + r.y * r.y;
   const double rest = shape.size[1] - distance;
   const double half = std::sqrt(larger(rest, 0) * inverse);
@@ -85,12 +85,12 @@ SHOAL_INLINE Inside in_cylinder(const RayShape& shape, const LocalRay& r) {
   return cut({rest < 0 ? infinity : enter, rest < 0 ? -infinity : leave}, r.z, r.vz, shape.size[2]);
 }
 
-/// The union of a cylinder and two spheres is convex.
+/// Union of a cylinder and two spheres, which is convex.
 SHOAL_INLINE Inside in_capsule(const RayShape& shape, const LocalRay& r) {
   const Inside middle = in_cylinder(shape, r);
   const Inside low = in_sphere(r.x, r.y, r.z + shape.size[2], r.vx, r.vy, r.vz, shape.size[1]);
   const Inside high = in_sphere(r.x, r.y, r.z - shape.size[2], r.vx, r.vy, r.vz, shape.size[1]);
-  // A missed cylinder may have enter > leave with either anywhere.
+  // For a missed cylinder, enter > leave, with any values.
   const bool through = middle.enter <= middle.leave;
   return {smaller(smaller(through ? middle.enter : infinity, low.enter), high.enter),
           larger(larger(through ? middle.leave : -infinity, low.leave), high.leave)};
@@ -125,7 +125,7 @@ SHOAL_INLINE double range_to(const RayShape& shape, const RayPacket& rays, int l
   }
 }
 
-/// Most shapes that a tree proposes are missed by far, which costs less to find out.
+/// Whether a ray clearly misses the shape: a cheap test, as most candidates of a tree are missed by far.
 SHOAL_INLINE bool passes_by(const RayShape& shape, const RayPacket& rays, int lane) {
   const double x = rays.origin[0][lane] - shape.center[0];
   const double y = rays.origin[1][lane] - shape.center[1];
@@ -191,7 +191,7 @@ void see_sse2(const RayShape& shape, const RayPacket& rays, double (&from)[3][Ra
   transform_all_to(shape, rays, from, direction);
 }
 
-// Equal bits: AVX2 alone brings no fused multiply-add.
+// The results have equal bits: AVX2 alone has no fused multiply-add.
 
 [[gnu::target("avx2")]] void ranges_avx2(const RayShape& shape, const RayPacket& rays, unsigned lanes,
                                          double (&range_m)[RayPacket::size]) {
@@ -247,20 +247,23 @@ double RayShape::reach_m() const {
 
 namespace {
 
-/// Kind and sizes.
+/// Sets kind and sizes of the shape from the geom.
 void take_sizes(RayShape& shape, int number, const ScenePart& part, const TriangleScene* mesh) {
+  // Sizes of a sphere, capsule or cylinder.
   const auto round = [&](Kind kind, double radius_m, double length_m) {
     shape.kind = kind;
     shape.size = {radius_m, radius_m * radius_m, length_m / 2};
   };
   dReal radius = 0, length = 0;
   dVector3 lengths;
+  // Mesh: its bounding box.
   if (mesh != nullptr) {
     shape.kind = Kind::mesh;
     const Vector3d half = mesh->half_extents_m();
     shape.size = {half.x(), half.y(), half.z()};
     return;
   }
+  // Other shapes: sizes of the geom.
   switch (dGeomGetClass(part.geom)) {
     case dBoxClass:
       dGeomBoxGetLengths(part.geom, lengths);
@@ -297,7 +300,7 @@ RayShape make_ray_shape(int number, const ScenePart& part, const TriangleScene* 
   shape.transmits = part.transmits;
   shape.mesh = mesh;
   take_sizes(shape, number, part, mesh);
-  // With room for rounding, over any distance that there is.
+  // Includes a margin for rounding at any distance.
   if (shape.kind != Kind::plane) shape.misses_beyond_m2 = std::pow(1.001 * shape.reach_m() + 1e-3, 2);
   return shape;
 }
@@ -339,7 +342,7 @@ Vector3d normal_at(const RayShape& shape, const Vector3d& point_W) {
     const double distance = out.norm();
     return end > distance - shape.size[0] ? up : Vector3d(out / distance);
   }
-  // The face of the box that the point is on, or next to by rounding.
+  // Face of the box that the point is on, or next to by rounding.
   const double px = x.dot(to_point), py = y.dot(to_point);
   const double over_x = std::abs(px) - shape.size[0], over_y = std::abs(py) - shape.size[1];
   if (over_x >= over_y && over_x >= end) return px < 0 ? Vector3d(-x) : x;

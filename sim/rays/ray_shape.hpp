@@ -14,14 +14,13 @@ namespace sim {
 
 class TriangleScene;
 
-/// A part as rays meet it: its shape where it is now, in the world, and what it lets through.
+/// Part for ray casting: its shape with its present pose in the world, and its transmission.
 struct alignas(32) RayShape {
   enum class Kind : std::uint8_t { box, sphere, capsule, cylinder, plane, mesh };
 
-  std::array<double, 3> center{};  ///< plane: any point of it
-  std::array<double, 9>
-      axes{};  ///< x, y and z axis of the shape in the world, one after the other; plane: z is its normal
-  /// Box and mesh: half lengths.  Round ones: radius, radius squared, half length.
+  std::array<double, 3> center{};  ///< plane: any point on it
+  std::array<double, 9> axes{};    ///< x, y and z axis of the shape in the world; plane: z is its normal
+  /// Box and mesh: half lengths.  Sphere, capsule and cylinder: radius, radius squared, half length.
   std::array<double, 3> size{};
   int part = -1;
   int group = -1;
@@ -30,7 +29,7 @@ struct alignas(32) RayShape {
   Kind kind = Kind::box;
   std::uint8_t transmits = 0;
   const TriangleScene* mesh = nullptr;
-  /// A ray whose line passes the centre at more than this, squared, misses.
+  /// Squared distance of a ray's line from the centre above which it misses.
   double misses_beyond_m2 = std::numeric_limits<double>::infinity();
 
   bool stops(const RayFilter& filter) const {
@@ -39,16 +38,16 @@ struct alignas(32) RayShape {
   }
   Vector3d center_W() const { return {center[0], center[1], center[2]}; }
   Vector3d axis_W(int number) const { return {axes[3 * number], axes[3 * number + 1], axes[3 * number + 2]}; }
-  /// The farthest that it reaches from its centre.  Not of a plane.
+  /// Bounding radius about the centre.  Not for a plane.
   double reach_m() const;
-  /// How far it reaches from its centre along the axes of the world.  Not of a plane.
+  /// Half extents along the axes of the world.  Not for a plane.
   Vector3d half_extents_W() const;
 };
 
-/// Kind and sizes of the part's geom; `mesh` is of the part's mesh, if it has one.
-/// Throws std::logic_error for a geom without ray intersection.
+/// Makes a shape with kind and sizes of the part's geom; `mesh`: triangles of the part's mesh, if it has one.  Throws
+/// std::logic_error for a geom without ray intersection.
 RayShape make_ray_shape(int number, const ScenePart& part, const TriangleScene* mesh);
-/// Takes over the pose of the geom.
+/// Copies the pose of the geom to the shape.
 void follow(RayShape& shape, dxGeom* geom);
 
 /// Up to eight rays, one per lane, and their nearest hits so far.
@@ -57,8 +56,8 @@ struct alignas(64) RayPacket {
   static constexpr int no_part = std::numeric_limits<int>::max();
 
   double origin[3][size];     ///< x of all lanes, y of all lanes, z
-  double direction[3][size];  ///< of unit length
-  double range_m[size];       ///< of the nearest hit; at first the longest range
+  double direction[3][size];  ///< unit vectors
+  double range_m[size];       ///< of the nearest hit; initially the maximum range
   const RayShape* shape[size];
   std::uint32_t triangle[size];  ///< of a hit mesh
   int part[size];
@@ -72,7 +71,7 @@ struct alignas(64) RayPacket {
     range_m[lane] = range_max_m;
     part[lane] = no_part;
   }
-  /// Every lane that is not in use has to hold numbers, too.
+  /// Fills an unused lane with valid numbers.
   void repeat(int from, int to) {
     for (int i = 0; i < 3; ++i) {
       origin[i][to] = origin[i][from];
@@ -81,7 +80,7 @@ struct alignas(64) RayPacket {
     range_m[to] = -1;
     part[to] = no_part;
   }
-  /// Of two hits at one range that of the lower part counts.
+  /// Whether a hit is nearer than the present one; at equal range the lower part number counts.
   bool nearer(int lane, double range, int number) const {
     return range < range_m[lane] || (range == range_m[lane] && number < part[lane]);
   }
@@ -95,11 +94,11 @@ struct alignas(64) RayPacket {
   Vector3d direction_W(int lane) const { return {direction[0][lane], direction[1][lane], direction[2][lane]}; }
 };
 
-/// Distance at which each lane of `lanes` (bits) hits the shape, which must not be a mesh: where it enters in front
-/// of its origin, or leaves when it starts inside; infinity when it misses.  The bits are the same however many lanes
-/// there are. Other elements of `range_m` are left or filled with anything.
+/// Computes the range at which each lane of `lanes` (bits) hits the shape, which must not be a mesh: where it enters in
+/// front of its origin, or leaves when it starts inside; infinity when it misses.  The bits of the result do not depend
+/// on the number of lanes.  Other elements of `range_m` are undefined.
 void find_ranges(const RayShape& shape, const RayPacket& rays, unsigned lanes, double (&range_m)[RayPacket::size]);
-/// All lanes in the frame of the shape, which is not a plane: x of all lanes, y, z.
+/// Transforms all lanes to the frame of the shape, which is not a plane: x of all lanes, y, z.
 void transform_to(const RayShape& shape, const RayPacket& rays, double (&from)[3][RayPacket::size],
                   double (&direction)[3][RayPacket::size]);
 /// Outward normal of a shape that is not a mesh, at a point on it.

@@ -9,7 +9,7 @@
 
 namespace sim {
 
-/// Rays in the frame of the mesh, from its centre.  Callbacks know it by its first member.
+/// Query of a packet: rays in the frame of the mesh, relative to its centre.  Callbacks get it by its first member.
 struct TriangleScene::Query {
   Query(const TriangleScene& scene_, const RayShape& shape, const RayPacket& rays_, unsigned lanes)
       : scene(scene_), rays(rays_), floats(scene_.radius_m_) {
@@ -24,7 +24,7 @@ struct TriangleScene::Query {
   }
   Vector3d from_M(int lane) const { return {from[0][lane], from[1][lane], from[2][lane]}; }
   Vector3d direction_M(int lane) const { return {direction[0][lane], direction[1][lane], direction[2][lane]}; }
-  /// So near to the start that rounding may hide on which side of it the triangle is.
+  /// Whether a hit is so near to the start that rounding may put it on the wrong side.
   bool at_start(float tfar) const { return tfar <= 4 * floats.margin_m(); }
   void note(int lane, float tfar, std::uint32_t triangle);
 
@@ -35,8 +35,8 @@ struct TriangleScene::Query {
   double from[3][RayPacket::size], direction[3][RayPacket::size];
   FloatRays floats;
 
-  /// Triangles that a ray hits at about the same range: those that share the edge or the corner that it hits.  Which
-  /// of them is the nearest is found in double when all are known; what Embree finds first must not count.
+  /// Triangles that a ray hits at about the same range: those that share the edge or corner that it hits.  The nearest
+  /// one is determined in double precision when all are known, so that the order of Embree's results has no effect.
   struct Candidate {
     float tfar;
     std::uint32_t triangle;
@@ -59,13 +59,14 @@ void TriangleScene::Query::note(int lane, float tfar, std::uint32_t triangle) {
     all[count++] = {tfar, triangle};
     return;
   }
-  // The last of them gives way, whatever the order in which they come.
+  // Replace the farthest candidate, independent of the order of arrival.
   Candidate* const last = std::max_element(all, all + max);
   *last = std::min(*last, Candidate{tfar, triangle});
 }
 
 TriangleScene::TriangleScene(const Mesh& mesh) : mesh_(mesh), scene_(rtcNewScene(embree_device())) {
   check_embree();
+  // Bounding box.
   Vector3d low = Vector3d::Constant(std::numeric_limits<double>::max()), high = -low;
   for (const Vector3d& vertex : mesh.vertices_m) {
     low = low.cwiseMin(vertex);
@@ -77,6 +78,7 @@ TriangleScene::TriangleScene(const Mesh& mesh) : mesh_(mesh), scene_(rtcNewScene
   radius_m_ = half_extents_m_.norm();
 
   const EmbreeGeometryHandle geometry(rtcNewGeometry(embree_device(), RTC_GEOMETRY_TYPE_TRIANGLE));
+  // Copy the vertices relative to the centre, and share the triangles.
   auto* vertices =
       static_cast<float*>(rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                                                   3 * sizeof(float), std::max<std::size_t>(1, mesh.vertices_m.size())));
@@ -86,17 +88,18 @@ TriangleScene::TriangleScene(const Mesh& mesh) : mesh_(mesh), scene_(rtcNewScene
   if (!mesh.triangles.empty())
     rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh.triangles.data(), 0,
                                sizeof mesh.triangles[0], mesh.triangles.size());
+  // Set the callbacks, and build the tree.
   rtcSetGeometryIntersectFilterFunction(geometry.get(), filter_cast);
   rtcSetGeometryOccludedFilterFunction(geometry.get(), filter_blocked);
   rtcCommitGeometry(geometry.get());
   rtcAttachGeometry(scene_.get(), geometry.get());
-  // Robust: no ray slips through between two triangles.
+  // Robust: no ray passes between two adjacent triangles.
   rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
   commit_alone(scene_.get());
 }
 
-/// Range to the plane of the triangle, and within what the triangle takes up along the ray: of a triangle seen
-/// edge-on the plane alone says little.
+/// Range to the plane of the triangle, limited to the extent of the triangle along the ray: for a triangle seen edge-on
+/// the range to the plane is inaccurate.
 double TriangleScene::find_range(const Vector3d& from_M, const Vector3d& direction_M, std::uint32_t triangle) const {
   const auto& corners = mesh_.triangles[triangle];
   const Vector3d from = from_M + center_m_;
@@ -122,9 +125,9 @@ void TriangleScene::filter_cast(const RTCFilterFunctionNArguments* arguments) {
       continue;
     }
     query.note(lane, tfar, triangle);
-    // In double it is looked at after this query.
+    // The triangle is used in double precision after this query.
     __builtin_prefetch(&query.scene.mesh_.triangles[triangle]);
-    // Long enough for all candidates.
+    // Keep the ray long enough for all candidates.
     tfar = query.nearest[lane] + query.floats.margin_m();
   }
 }
@@ -132,6 +135,7 @@ void TriangleScene::filter_cast(const RTCFilterFunctionNArguments* arguments) {
 unsigned TriangleScene::cast(const RayShape& shape, RayPacket& rays, unsigned lanes) const {
   Query query(*this, shape, rays, lanes);
   query.floats.intersect(scene_.get(), query.context);
+  // Load the vertices of the candidates into the cache.
   for (unsigned rest = lanes; rest != 0; rest &= rest - 1) {
     const int lane = std::countr_zero(rest);
     for (int i = 0; i < query.found[lane]; ++i)
@@ -142,10 +146,11 @@ unsigned TriangleScene::cast(const RayShape& shape, RayPacket& rays, unsigned la
   for (; lanes != 0; lanes &= lanes - 1) {
     const int lane = std::countr_zero(lanes);
     for (int i = 0; i < query.found[lane]; ++i) {
+      // Compute the candidate in double precision, and keep the nearest.
       const auto [tfar, triangle] = query.candidates[lane][i];
       if (tfar > query.nearest[lane] + query.floats.margin_m()) continue;
       const double range_m = find_range(query.from_M(lane), query.direction_M(lane), triangle);
-      // Of two triangles at one range the lower number counts.
+      // At equal range the lower triangle number counts.
       const bool same = range_m == rays.range_m[lane] && rays.part[lane] == shape.part;
       if (!(range_m >= 0) || !(rays.nearer(lane, range_m, shape.part) || (same && triangle < rays.triangle[lane])))
         continue;
@@ -165,7 +170,7 @@ void TriangleScene::filter_blocked(const RTCFilterFunctionNArguments* arguments)
     const float tfar = RTCRayN_tfar(arguments->ray, n, i);
     const double limit_m = query.rays.range_m[lane];
     bool blocked = true;
-    // In the middle of the ray rounding decides nothing.
+    // Check in double precision near both ends of the ray; in between rounding has no effect.
     if (query.at_start(tfar) || tfar + 4 * query.floats.margin_m() >= query.floats.limit_m(lane, limit_m)) {
       const double range_m =
           query.scene.find_range(query.from_M(lane), query.direction_M(lane), RTCHitN_primID(arguments->hit, n, i));

@@ -10,22 +10,22 @@
 
 namespace sim {
 
-/// The triangles of a mesh as rays find them, for all parts that have this mesh, wherever they are.  Embree finds in
-/// single precision which triangles a ray may hit; where is computed in double from the mesh's own vertices.
+/// Triangles of a mesh for ray casting, shared by all parts with this mesh.  Embree finds in single precision which
+/// triangles a ray may hit; the hit is computed in double precision from the vertices of the mesh.
 class TriangleScene {
  public:
   /// Keeps a reference to the mesh.
   explicit TriangleScene(const Mesh& mesh);
 
-  /// Of the box around the mesh, in its frame.
+  /// Centre and half extents of the bounding box of the mesh, in its frame.
   const Vector3d& center_m() const { return center_m_; }
   const Vector3d& half_extents_m() const { return half_extents_m_; }
 
-  /// Notes nearer hits on the part `shape` in the packet; returns the lanes (bits) that have one.
+  /// Records nearer hits on the part `shape` in the packet; returns the lanes (bits) that have one.
   unsigned cast(const RayShape& shape, RayPacket& rays, unsigned lanes) const;
-  /// The lanes of `lanes` that hit the part within their range.
+  /// Returns the lanes of `lanes` that hit the part within their range.
   unsigned find_blocked(const RayShape& shape, const RayPacket& rays, unsigned lanes) const;
-  /// Of unit length, in the frame of the mesh.
+  /// Unit normal of a triangle, in the frame of the mesh.
   Vector3d normal(std::uint32_t triangle) const;
 
  private:
