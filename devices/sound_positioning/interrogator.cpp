@@ -73,7 +73,7 @@ void Interrogator::receive(const sim::Reception& received) {
   const auto answer = decode_answer(received.signal.payload);
   if (!answer || answer->ping != number_) return;
   const double turnaround_s = std::max(answer->turnaround_s, params_.ping_s);
-  const sim::Vector3d p_ST_W = received.p_sent_W - received.p_begun_W;
+  const sim::Vector3d p_ST_W = received.p_sent_W - received.p_started_W;
   const double distance_m = (answer->out_m + p_ST_W.norm()) / 2;
   std::erase(waiting_for_, received.source);
   if (distance_m > params_.range_max_m) return;

@@ -61,7 +61,7 @@ void Transponder::receive(const sim::Reception& received) {
   answer.network = params_.network;
   answer.code = received.source;
   answer.payload = encode_answer({decode_ping(received.signal.payload), params_.turnaround_s,
-                                  (received.p_begun_W - received.p_sent_W).norm(), params_.code});
+                                  (received.p_started_W - received.p_sent_W).norm(), params_.code});
   transducer_.transmit(std::move(answer), at);
 }
 

@@ -397,7 +397,7 @@ void AcousticChannel::approach(int number, Time due) {
     if (arrival) {
       flight.travel_time_s = arrival->travel_time_s;
       flight.started = std::max(due, sending.sent + from_seconds(arrival->travel_time_s));
-      flight.p_begun_W = to->p_W(flight.started);
+      flight.p_started_W = to->p_W(flight.started);
     } else {
       set_receiver(flight, nullptr);  // faster than sound: the body has diverged
     }

@@ -98,7 +98,7 @@ class AcousticChannel {
     int to = -1;  // number of the transducer; -1: removed
     Time started{0}, ended{0};
     double travel_time_s = 0;
-    Vector3d p_begun_W = Vector3d::Zero();
+    Vector3d p_started_W = Vector3d::Zero();
     double closing_mps = 0;
     Decibels level{0}, snr{0};
     SignalLoss loss = SignalLoss::none;

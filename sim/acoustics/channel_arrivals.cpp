@@ -67,19 +67,19 @@ PowerRatio AcousticChannel::compute_level(Flight& flight, const Sending& sending
   const Transducer& to = *receiver_of(flight);
   const Signal& signal = sending.signal;
   // Range, direction, Doppler and end of the signal.
-  const Vector3d displacement_W = flight.p_begun_W - sending.p_W;
+  const Vector3d displacement_W = flight.p_started_W - sending.p_W;
   const double range_m = displacement_W.norm();
   const Vector3d direction_W = range_m > 0 ? Vector3d(displacement_W / range_m) : Vector3d(Vector3d::UnitX());
   const Vector3d v_to_W = to.v_W();
   flight.closing_mps = closing_speed_mps(direction_W, sending.v_W, v_to_W);
-  const double c = around_.medium.sound_speed_mps(flight.p_begun_W);
+  const double c = around_.medium.sound_speed_mps(flight.p_started_W);
   const double squeezed = doppler_factor(direction_W, sending.v_W, v_to_W, c);
   flight.ended = flight.started + from_seconds(to_seconds(signal.duration) / squeezed);
 
   // Path gain and losses of the link.
   Random random = propagation_.draws() ? stream(to, sending, false) : Random(0, {});
   const Propagation::Gain gain =
-      propagation_.gain(sending.p_W, sending.group, flight.p_begun_W, to.group(), signal.centre_Hz, random);
+      propagation_.gain(sending.p_W, sending.group, flight.p_started_W, to.group(), signal.centre_Hz, random);
   double loss_probability = 0;
   Decibels level = signal.source_level - link_loss(to, sending, loss_probability);
   // Directivity at both ends.
@@ -97,7 +97,7 @@ PowerRatio AcousticChannel::compute_level(Flight& flight, const Sending& sending
 
 SignalLoss AcousticChannel::obstacle(const Flight& flight) const {
   const Transducer& to = *receiver_of(flight);
-  if (!around_.medium.in_water(flight.p_begun_W)) return SignalLoss::out_of_water;
+  if (!around_.medium.in_water(flight.p_started_W)) return SignalLoss::out_of_water;
   if (!to.works()) return SignalLoss::receiver_off;
   if (flight.loss != SignalLoss::none) return flight.loss;  // blocked
   // SignalReceiver::take() tests this too; but an undetectable signal counts as lost in noise whatever the causes
@@ -120,11 +120,11 @@ void AcousticChannel::begin(int number) {
   const Vector3d p_W = to.p_W(flight.started);
   // The position is as predicted except for rotation in this short time; after a jump of the transducer, predict the
   // arrival again.
-  if (!flight.delayed && (p_W - flight.p_begun_W).norm() > 0.01) {
+  if (!flight.delayed && (p_W - flight.p_started_W).norm() > 0.01) {
     approach(number, flight.started);
     return;
   }
-  flight.p_begun_W = p_W;
+  flight.p_started_W = p_W;
   // Drop signals beyond the maximum range.
   if (config_.range_max_m && (p_W - sending.p_W).norm() > *config_.range_max_m) {
     if (flight.meant) ++to.counts_.lost[static_cast<std::size_t>(SignalLoss::range)];
@@ -143,7 +143,7 @@ void AcousticChannel::begin(int number) {
   }
   // Start the reception.
   flight.listened = to.listener_.listens_to(sending.signal);
-  flight.present = flight.loss == SignalLoss::none && around_.medium.in_water(flight.p_begun_W);
+  flight.present = flight.loss == SignalLoss::none && around_.medium.in_water(flight.p_started_W);
   const PowerRatio power = to_power(flight.level);
   if (flight.present)
     to.receiver_.begin({number, sending.signal.centre_Hz, sending.signal.bandwidth_Hz, power + disturbing, flight.ended,
@@ -166,7 +166,7 @@ void AcousticChannel::take(int number, Flight& flight, const Sending& sending, P
   Transducer& to = *receiver_of(flight);
   TakenSignal taken;
   taken.sound = {number, signal.centre_Hz, signal.bandwidth_Hz, power, flight.ended};
-  taken.noise = noise_at(to, flight.p_begun_W, signal);
+  taken.noise = noise_at(to, flight.p_started_W, signal);
   taken.disturbing = disturbing;
   taken.modulation = signal.modulation;
   taken.bit_rate_bps = signal.bit_rate_bps;
@@ -224,7 +224,7 @@ void AcousticChannel::end(int number) {
                         !to->works() || !around_.medium.in_water(to->p_W(flight.ended));
       if (!deaf)
         to->listener_.receive({sending.signal, sending.source, sending.number, sending.sent, flight.started,
-                               flight.ended, flight.travel_time_s, sending.p_W, flight.p_begun_W, flight.level,
+                               flight.ended, flight.travel_time_s, sending.p_W, flight.p_started_W, flight.level,
                                flight.snr, sinr, flight.closing_mps, flight.loss, flight.detected});
     }
   }

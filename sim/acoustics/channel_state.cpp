@@ -28,7 +28,7 @@ void AcousticChannel::Sending::visit_state(StateArchive& archive) {
 }
 
 void AcousticChannel::Flight::visit_state(StateArchive& archive) {
-  archive(sending, started, ended, travel_time_s, p_begun_W, closing_mps, level, snr, loss, listened, present, detected,
+  archive(sending, started, ended, travel_time_s, p_started_W, closing_mps, level, snr, loss, listened, present, detected,
           delayed, meant);
   if (archive.restoring()) check_loss(loss, archive);
 }

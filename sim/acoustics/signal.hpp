@@ -95,7 +95,7 @@ struct Reception {
   Time started{0}, ended{0};              ///< start and end at the receiver
   double travel_time_s = 0;               ///< from `sent` to `started`, not rounded
   Vector3d p_sent_W = Vector3d::Zero();   ///< position of the sender at `sent`
-  Vector3d p_begun_W = Vector3d::Zero();  ///< position of the receiver at `started`
+  Vector3d p_started_W = Vector3d::Zero();  ///< position of the receiver at `started`
   Decibels level{0};                      ///< re 1 uPa at the receiver, including its directivity
   Decibels snr{0};                        ///< signal-to-noise ratio in the band of the signal
   Decibels sinr{0};                       ///< minimum signal to interference-plus-noise ratio

@@ -15,7 +15,7 @@ void ReceiverConfig::read(ParamReader& in) {
   in.read("protection_dB", protection_dB, between(-60, 200),
           "a message is lost unless it is this much stronger than all other signals in its band together");
   in.read("doppler_limit_mps", doppler_limit_mps, between(0, 1000), "maximum closing or opening speed that it tracks");
-  in.read("directivity", directivity, "for sending and receiving; its axis is x of the device");
+  in.read("directivity", directivity, "directivity for sending and receiving; its axis is x of the device");
 }
 
 Transducer::Transducer(AcousticListener& listener, const ReceiverConfig& config, SoundSite site)

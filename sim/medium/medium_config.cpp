@@ -272,7 +272,7 @@ void WavesConfig::read(ParamReader& in) {
   in.read_deg("direction_deg", direction_rad, between(-360, 360),
               "direction towards which they travel, counter-clockwise from east");
   in.read("water_depth_m", water_depth_m, above_to(0.01, 12000),
-          "water depth of the bottom, for the waves; absent: deep");
+          "water depth for the waves; absent: deep water");
   if (in.describing()) return;
   check_keys_of_waves(in, type);
   if (in.has("sea_state")) take_sea_state(*this);

@@ -56,7 +56,7 @@ void TextureConfig::read(ParamReader& in) {
 
 void LaserSurface::read(ParamReader& in) {
   in.read("reflectivity", reflectivity, between(0, 1), "share of a laser's power that is reflected diffusely");
-  in.read("gloss", gloss, between(0, 1), "share of it that is reflected specularly, and returns at normal incidence only");
+  in.read("gloss", gloss, between(0, 1), "specular share of it, which returns at normal incidence only");
 }
 
 void SoundSurface::read(ParamReader& in) {

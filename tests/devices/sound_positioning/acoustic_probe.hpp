@@ -19,7 +19,7 @@ class AcousticProbe final : public sim::AcousticListener {
     std::string source;
     sim::Time sent{0}, started{0}, ended{0};
     double travel_time_s = 0, closing_mps = 0;
-    sim::Vector3d p_sent_W = sim::Vector3d::Zero(), p_begun_W = sim::Vector3d::Zero();
+    sim::Vector3d p_sent_W = sim::Vector3d::Zero(), p_started_W = sim::Vector3d::Zero();
     double level_dB = 0, snr_dB = 0, sinr_dB = 0;
     sim::SignalLoss loss = sim::SignalLoss::none;
   };
@@ -30,7 +30,7 @@ class AcousticProbe final : public sim::AcousticListener {
   bool listens_to(const sim::Signal&) const override { return listening; }
   void receive(const sim::Reception& received) override {
     all.push_back({received.signal, received.source, received.sent, received.started, received.ended,
-                   received.travel_time_s, received.closing_mps, received.p_sent_W, received.p_begun_W,
+                   received.travel_time_s, received.closing_mps, received.p_sent_W, received.p_started_W,
                    received.level.dB(), received.snr.dB(), received.sinr.dB(), received.loss});
   }
   /// A signal to be noticed, from now on.

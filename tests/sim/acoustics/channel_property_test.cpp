@@ -114,11 +114,11 @@ RC_GTEST_PROP(AcousticChannel, NeitherOutrunsTheSpeedsOfSoundOnTheWayNorLagsThem
   double slowest_mps = 1e9, fastest_mps = 0;
   for (int i = 0; i <= 100; ++i) {
     const double share = i / 100.0;
-    const double c = test.world.medium().sound_speed_mps((1 - share) * received.p_sent_W + share * received.p_begun_W);
+    const double c = test.world.medium().sound_speed_mps((1 - share) * received.p_sent_W + share * received.p_started_W);
     slowest_mps = std::min(slowest_mps, c);
     fastest_mps = std::max(fastest_mps, c);
   }
-  const double distance_m = (received.p_begun_W - received.p_sent_W).norm();
+  const double distance_m = (received.p_started_W - received.p_sent_W).norm();
   // The places are those at whole microseconds: 20 um; between two samples of 100 the speed bends by less than 1e-4.
   RC_ASSERT(received.travel_time_s > distance_m / fastest_mps * (1 - 1e-4) - 2e-6);
   RC_ASSERT(received.travel_time_s < distance_m / slowest_mps * (1 + 1e-4) + 2e-6);
@@ -330,7 +330,7 @@ RC_GTEST_PROP(AcousticChannel, SomeOneWhoIsPutElsewhereReceivesNoSoonerThanSound
   RC_ASSERT(b.all.size() <= 1u);
   for (const Probed& received : b.all)
     RC_ASSERT(sim::to_seconds(received.started - received.sent) >
-              (received.p_begun_W - received.p_sent_W).norm() / 1500 - 1e-6);
+              (received.p_started_W - received.p_sent_W).norm() / 1500 - 1e-6);
   // And the next one is received as if nothing had happened.
   b.all.clear();
   a.send(AcousticProbe::tone());
