@@ -58,8 +58,8 @@ void read_accel(sim::ParamReader& in, InertialParams& accel) {
   read_in(in, "accel_resolution_mg", accel.resolution, unit::mg, "step of the output; 0: none");
 }
 
-double time_constant_s(double bandwidth_hz) {
-  return bandwidth_hz > 0 ? 1 / (2 * std::numbers::pi * bandwidth_hz) : 0;
+double time_constant_s(double bandwidth_Hz) {
+  return bandwidth_Hz > 0 ? 1 / (2 * std::numbers::pi * bandwidth_Hz) : 0;
 }
 
 }  // namespace
@@ -74,7 +74,7 @@ void Imu::Params::read(sim::ParamReader& in) {
     gyro = unit.gyro;
     accel = unit.accel;
   }
-  in.read_or_word("bandwidth_hz", bandwidth_hz, sim::above(0), {"unlimited"},
+  in.read_or_word("bandwidth_Hz", bandwidth_Hz, sim::above(0), {"unlimited"},
                   "bandwidth of a first-order low pass on the true values");
   in.read("gyro_noise", gyro_noise, "further error of each axis, rad/s");
   read_gyro(in, gyro);
@@ -84,14 +84,14 @@ void Imu::Params::read(sim::ParamReader& in) {
 
 Imu::Imu(const Params& params, const sim::DeviceContext& context)
     : strapdown_(context),
-      gyro_filter_(time_constant_s(params.bandwidth_hz)),
-      accel_filter_(time_constant_s(params.bandwidth_hz)),
+      gyro_filter_(time_constant_s(params.bandwidth_Hz)),
+      accel_filter_(time_constant_s(params.bandwidth_Hz)),
       gyro_errors_(params.gyro, params.gyro_noise, context),
       accel_errors_(params.accel, params.accel_noise, context) {}
 
 void Imu::change(const Params& params) {
-  gyro_filter_.change(time_constant_s(params.bandwidth_hz));
-  accel_filter_.change(time_constant_s(params.bandwidth_hz));
+  gyro_filter_.change(time_constant_s(params.bandwidth_Hz));
+  accel_filter_.change(time_constant_s(params.bandwidth_Hz));
   gyro_errors_.change(params.gyro, params.gyro_noise);
   accel_errors_.change(params.accel, params.accel_noise);
 }

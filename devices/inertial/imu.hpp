@@ -13,7 +13,7 @@ class Imu final : public sim::Sensor {
   static constexpr double default_rate_hz = 100;
   struct Params {
     std::string preset = "ideal";
-    double bandwidth_hz = 0;      ///< bandwidth of the output low-pass filter; 0: none
+    double bandwidth_Hz = 0;      ///< bandwidth of the output low-pass filter; 0: none
     sim::NoiseParams gyro_noise;  ///< rad/s, in addition to the errors of the data sheet
     InertialParams gyro;
     sim::NoiseParams accel_noise;  ///< m/s^2

@@ -15,7 +15,7 @@ void WheelEncoder::Params::read(sim::ParamReader& in) {
   in.require("joints");
   in.read_references("joints", joints, "joint", "joints of the wheels, in the order of the report");
   if (!in.describing() && in.has("joints") && joints.empty()) in.error("joints", "'joints' must name a joint");
-  in.read("ticks_per_turn", ticks_per_turn, sim::at_least(1), "ticks in one turn of a wheel");
+  in.read("ticks_per_revolution", ticks_per_revolution, sim::at_least(1), "ticks in one turn of a wheel");
   in.read("missed_ticks", missed_ticks, sim::between(0, 1), "probability that a tick is not counted");
   in.read("noise", noise, "error of the angle a wheel turned between two samples, rad");
 }
@@ -46,7 +46,7 @@ WheelEncoder::WheelEncoder(const Params& params, const sim::DeviceContext& conte
       rates_radps_(wheels_.size()) {}
 
 std::int64_t WheelEncoder::ticks_at(double angle_rad) const {
-  return static_cast<std::int64_t>(std::floor(angle_rad / (2 * std::numbers::pi) * params_.ticks_per_turn));
+  return static_cast<std::int64_t>(std::floor(angle_rad / (2 * std::numbers::pi) * params_.ticks_per_revolution));
 }
 
 void WheelEncoder::measure(const sim::SenseContext&) {
@@ -89,7 +89,7 @@ void WheelEncoder::disturb(double dt_s, sim::Random& random) {
     const std::int64_t counted = passed < 0 ? passed + missed : passed - missed;
     counted_[i] += counted;
     ticks_[i] = counted_[i];
-    const double rad = static_cast<double>(counted) * 2 * std::numbers::pi / params_.ticks_per_turn;
+    const double rad = static_cast<double>(counted) * 2 * std::numbers::pi / params_.ticks_per_revolution;
     rates_radps_[i] = dt_s > 0 ? rad / dt_s : 0;
   }
 }

@@ -12,10 +12,10 @@ class WheelEncoder final : public sim::Sensor {
  public:
   static constexpr const char* meaning = "Ticks of wheels, counted from the turning of their joints.";
   static constexpr double default_rate_hz = 50;
-  static constexpr const char* fixed_keys[] = {"joints", "ticks_per_turn"};
+  static constexpr const char* fixed_keys[] = {"joints", "ticks_per_revolution"};
   struct Params {
     std::vector<std::string> joints;
-    int ticks_per_turn = 1024;
+    int ticks_per_revolution = 1024;
     double missed_ticks = 0;
     sim::NoiseParams noise;  ///< error of the rotation of each wheel between two samples, rad
     void read(sim::ParamReader& in);

@@ -32,7 +32,7 @@ void Odometry::Params::read(sim::ParamReader& in) {
   in.read_reference("right_joint", right_joint, "joint", "hinge of the right wheel");
   in.read("wheel_radius_m", wheel_radius_m, sim::above(0), "assumed radius of the wheels; unset: as in the vehicle");
   in.read("track_m", track_m, sim::above(0), "assumed distance between the wheels; unset: as given by the joints");
-  in.read("ticks_per_turn", ticks_per_turn, sim::at_least(1), "encoder ticks in one turn of a wheel");
+  in.read("ticks_per_revolution", ticks_per_revolution, sim::at_least(1), "encoder ticks in one turn of a wheel");
   in.read("noise", noise, "error of the angle a wheel turned between two samples, rad");
 }
 
@@ -78,7 +78,7 @@ void Odometry::disturb(double dt_s, sim::Random& random) {
   double turned[2] = {angles[0] - wheel_rad_[0], angles[1] - wheel_rad_[1]};
   noise_.apply(std::span<double>(turned), dt_s, random);
   // Convert to whole ticks.
-  const double rad_per_tick = 2 * std::numbers::pi / params_.ticks_per_turn;
+  const double rad_per_tick = 2 * std::numbers::pi / params_.ticks_per_revolution;
   std::int64_t ticks[2];
   for (int side = 0; side < 2; ++side) {
     wheel_rad_[side] = angles[side];

@@ -20,7 +20,7 @@ class Odometry final : public sim::Sensor {
     std::string left_joint;
     std::string right_joint;
     std::optional<double> wheel_radius_m, track_m;  ///< assumed; unset: as in the vehicle
-    int ticks_per_turn = 1024;
+    int ticks_per_revolution = 1024;
     sim::NoiseParams noise;  ///< error of the angle of each wheel between samples, rad
     void read(sim::ParamReader& in);
   };

@@ -20,7 +20,7 @@ void AcousticsConfig::read(ParamReader& in) {
   in.read("fading", fading, "fading of the level");
   in.read("occlusion", occlusion, "terrain, objects and hulls block sound");
   in.read("occlusion_loss_dB", occlusion_loss_dB, between(0, 1000), "loss through obstacles; unset: nothing passes");
-  in.read("inaudible_dB", inaudible_dB, between(0, 100), "signals this far below the ambient noise are ignored");
+  in.read("negligible_dB", negligible_dB, between(0, 100), "signals this far below the ambient noise are ignored");
   in.read("range_max_m", range_max_m, above(0), "maximum range of reception");
   in.read_list("links", links, "link", "losses of single links");
 }

@@ -138,7 +138,7 @@ Decibels AcousticChannel::min_level(double frequency_Hz) const {
 
 Decibels AcousticChannel::compute_min_level(double frequency_Hz) const {
   examined_ += static_cast<std::int64_t>(transducers_.size());
-  double below_dB = config_.inaudible_dB;
+  double below_dB = config_.negligible_dB;
   for (const Transducer* each : transducers_)
     if (each != nullptr)
       below_dB = std::max(below_dB, each->noise_reduction(frequency_Hz).dB() - each->config().detection_dB);

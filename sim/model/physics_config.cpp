@@ -51,7 +51,7 @@ void ContactConfig::read(ParamReader& in) {
   }
   in.read("friction", friction, at_least(0), "Coulomb's coefficient of friction");
   in.read("bounce", bounce, sim::between(0, 1), "coefficient of restitution");
-  in.read("bounce_velocity_mps", bounce_velocity_mps, at_least(0), "minimum impact speed for a bounce");
+  in.read("restitution_velocity_mps", restitution_velocity_mps, at_least(0), "minimum impact speed for a bounce");
   in.read("soft_erp", soft_erp, sim::between(0, 1), "erp of these contacts, instead of the world's");
   in.read("soft_cfm", soft_cfm, sim::between(0, 1), "cfm of these contacts, instead of the world's");
   in.read("rolling_friction_m", rolling_friction_m, at_least(0), "lever of rolling resistance");

@@ -51,7 +51,7 @@ struct ContactConfig {
   std::vector<std::string> between = {"any", "any"};  ///< two names of materials, or `any`
   double friction = 0.8;                              ///< Coulomb friction coefficient (ODE's dContactApprox1)
   double bounce = 0;                                  ///< coefficient of restitution, 0 to 1
-  double bounce_velocity_mps = 0.1;                   ///< minimum impact speed for a bounce
+  double restitution_velocity_mps = 0.1;                   ///< minimum impact speed for a bounce
   std::optional<double> soft_erp;                     ///< unset: erp of the world
   std::optional<double> soft_cfm;                     ///< unset: cfm of the world
   double rolling_friction_m = 0;                      ///< rolling resistance as a lever, m (ODE's rho)

@@ -19,7 +19,7 @@ Surface make_surface(const ContactConfig& config) {
   if (config.bounce > 0) {
     p.mode |= dContactBounce;
     p.bounce = config.bounce;
-    p.bounce_vel = config.bounce_velocity_mps;
+    p.bounce_vel = config.restitution_velocity_mps;
   }
   if (config.soft_erp) {
     p.mode |= dContactSoftERP;

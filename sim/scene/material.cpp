@@ -73,17 +73,17 @@ void MaterialConfig::read(ParamReader& in) {
   in.read("texture", texture, "pattern in images");
   in.read("laser", laser, "reflection of laser beams");
   in.read("sound", sound, "reflection of sound");
-  in.read("lets_through", lets_through, "what passes through it: light, laser, sound");
-  for (const std::string& word : lets_through)
+  in.read("transparent_to", transparent_to, "what passes through it: light, laser, sound");
+  for (const std::string& word : transparent_to)
     if (!in.describing() &&
         std::none_of(std::begin(ray_kinds), std::end(ray_kinds), [&](const auto& kind) { return word == kind.first; }))
-      in.error("lets_through", "'lets_through' must name light, laser or sound, got '" + word + "'");
+      in.error("transparent_to", "'transparent_to' must name light, laser or sound, got '" + word + "'");
 }
 
 std::uint8_t MaterialConfig::transmits() const {
   std::uint8_t bits = 0;
   for (const auto& [word, kind] : ray_kinds)
-    if (std::find(lets_through.begin(), lets_through.end(), word) != lets_through.end())
+    if (std::find(transparent_to.begin(), transparent_to.end(), word) != transparent_to.end())
       bits |= static_cast<std::uint8_t>(kind);
   return bits;
 }

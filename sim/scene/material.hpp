@@ -48,7 +48,7 @@ struct MaterialConfig {
   TextureConfig texture;
   LaserSurface laser;
   SoundSurface sound;
-  std::vector<std::string> lets_through;  ///< transmitted kinds of ray: light, laser, sound
+  std::vector<std::string> transparent_to;  ///< transmitted kinds of ray: light, laser, sound
 
   void read(ParamReader& in);
   /// Returns a bit mask of the transmitted kinds of ray (RayKind).

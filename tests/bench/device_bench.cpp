@@ -61,7 +61,7 @@ void BM_ImuLayerWithNoise(benchmark::State& state) {
 }
 void BM_ImuLayerWithEverything(benchmark::State& state) {
   ImuLayer(state,
-           ", preset: bmi088, bandwidth_hz: 50, gyro_noise: {gaussian_std: 1e-3, gauss_markov_std: 1e-4}, "
+           ", preset: bmi088, bandwidth_Hz: 50, gyro_noise: {gaussian_std: 1e-3, gauss_markov_std: 1e-4}, "
            "accel_noise: {gaussian_std: 1e-2, gauss_markov_std: 1e-3}, accel_bias_instability_ug: 20");
 }
 BENCHMARK(BM_ImuLayer)->UseManualTime()->Unit(benchmark::kMicrosecond)->Iterations(400);

@@ -163,7 +163,7 @@ TEST(DeviceState, SensorsKeepTheirDriftsFiltersAndLastSamples) {
   const std::string noise = "{random_walk_std: 0.1, gauss_markov_std: 0.2, gauss_markov_time_s: 1, gaussian_std: 0.1}";
   SavedRun run(
       test::box_world("        - {name: push, type: body_wrench}\n"
-                      "        - {name: imu, type: imu, preset: vn100, bandwidth_hz: 4, rate_hz: 70}\n"
+                      "        - {name: imu, type: imu, preset: vn100, bandwidth_Hz: 4, rate_hz: 70}\n"
                       "        - {name: ahrs, type: ahrs, heading_drift_deg_per_h: 900, tilt_noise: " +
                           noise +
                           ", rate_hz: 30}\n"

@@ -82,7 +82,7 @@ TEST(WheelGeometry, ChangesWithTheValuesThatAreSet) {
 
 TEST(WheelGeometry, IsWhatOdometryBelievesIn) {
   const std::string odometry =
-      "        - {name: odometry, type: odometry, left_joint: left, right_joint: right, ticks_per_turn: 100000";
+      "        - {name: odometry, type: odometry, left_joint: left, right_joint: right, ticks_per_revolution: 100000";
   const auto yaml = [&](const std::string& keys) { return test::rover_world(odometry + keys + "}\n"); };
   // Worn tyres and an eighth of a track: the first is usual, the second a mistake.
   EXPECT_EQ(warnings_of(yaml("")), "");

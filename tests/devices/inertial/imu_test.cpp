@@ -119,7 +119,7 @@ TEST(Imu, AForceThroughTheMiddleIsFeltAsAcceleration) {
 
 TEST(Imu, TheLowPassLagsAsItsTimeConstantSays) {
   // 1 / (2 pi 1 Hz) = 0.159 s; a step of the rate at t = 0.1 s.
-  test::TestWorld test(test::box_world(imu(", bandwidth_hz: 1"), weightless));
+  test::TestWorld test(test::box_world(imu(", bandwidth_Hz: 1"), weightless));
   test::Listener<shoal::imu_t> reports(test, "r1.imu");
   test::Listener<shoal::imu_t> truths(test, "r1.imu.truth");
   test.run_for(0.1);

@@ -21,7 +21,7 @@ void turn(test::TestWorld& test, double radps) {
 }
 
 TEST(WheelEncoder, CountsTheTurnsOfTheJointInWholeTicks) {
-  test::TestWorld test(test::rover_world(encoder(", ticks_per_turn: 500")));
+  test::TestWorld test(test::rover_world(encoder(", ticks_per_revolution: 500")));
   test::Listener<shoal::wheel_encoder_t> reports(test, "r1.encoder"), truths(test, "r1.encoder.truth");
   for (const double radps : {7.0, -9.0}) {
     turn(test, radps);
@@ -40,7 +40,7 @@ TEST(WheelEncoder, CountsTheTurnsOfTheJointInWholeTicks) {
 }
 
 TEST(WheelEncoder, MissesTicksWithTheProbabilityAskedFor) {
-  test::TestWorld test(test::rover_world(encoder(", ticks_per_turn: 1000, missed_ticks: 0.1")));
+  test::TestWorld test(test::rover_world(encoder(", ticks_per_revolution: 1000, missed_ticks: 0.1")));
   test::Listener<shoal::wheel_encoder_t> reports(test, "r1.encoder"), truths(test, "r1.encoder.truth");
   turn(test, 20);
   test.run_for(10);
@@ -51,7 +51,7 @@ TEST(WheelEncoder, MissesTicksWithTheProbabilityAskedFor) {
 }
 
 TEST(WheelEncoder, ErrorsOfTheAngleAddUp) {
-  test::TestWorld test(test::rover_world(encoder(", ticks_per_turn: 100000, noise: {gaussian_std: 0.01}")));
+  test::TestWorld test(test::rover_world(encoder(", ticks_per_revolution: 100000, noise: {gaussian_std: 0.01}")));
   test::Listener<shoal::wheel_encoder_t> reports(test, "r1.encoder"), truths(test, "r1.encoder.truth");
   test.run_for(20);
   const auto measured = reports.take_all(), truth = truths.take_all();
@@ -76,7 +76,7 @@ TEST(WheelEncoder, SaysWhatIsWrongWithItsParameters) {
   };
   EXPECT_THAT(error_of(""), testing::HasSubstr("device 'encoder': missing key 'joints'"));
   EXPECT_THAT(error_of(", joints: []"), testing::HasSubstr("'joints' must name a joint"));
-  EXPECT_THAT(error_of(", joints: [left], ticks_per_turn: 0"), testing::HasSubstr("'ticks_per_turn' must be >= 1"));
+  EXPECT_THAT(error_of(", joints: [left], ticks_per_revolution: 0"), testing::HasSubstr("'ticks_per_revolution' must be >= 1"));
   EXPECT_THAT(error_of(", joints: [middle]"), testing::HasSubstr("'joints' names no joint 'middle'"));
 }
 

@@ -21,7 +21,7 @@ void drive(test::TestWorld& test, double forward_mps, double turn_radps, double 
 }
 
 TEST(Odometry, CountsTheTicksOfTheWheels) {
-  test::TestWorld test(test::rover_world(devices(", ticks_per_turn: 100")));
+  test::TestWorld test(test::rover_world(devices(", ticks_per_revolution: 100")));
   test::Listener<shoal::odometry_t> reports(test, "r1.odometry");
   drive(test, 0.5, 0, 4);
   const auto last = reports.last();
@@ -34,7 +34,7 @@ TEST(Odometry, CountsTheTicksOfTheWheels) {
 }
 
 TEST(Odometry, AgreesWithTheTruthOnAnArcWithoutSlip) {
-  test::TestWorld test(test::rover_world(devices(", ticks_per_turn: 100000")));
+  test::TestWorld test(test::rover_world(devices(", ticks_per_revolution: 100000")));
   test::Listener<shoal::odometry_t> reports(test, "r1.odometry");
   test::Listener<shoal::odometry_t> truths(test, "r1.odometry.truth");
   drive(test, 0.4, 0.5, 10);
@@ -49,7 +49,7 @@ TEST(Odometry, AgreesWithTheTruthOnAnArcWithoutSlip) {
 }
 
 TEST(Odometry, AWrongWheelRadiusScalesTheDistance) {
-  test::TestWorld test(test::rover_world(devices(", wheel_radius_m: 0.101, ticks_per_turn: 100000")));
+  test::TestWorld test(test::rover_world(devices(", wheel_radius_m: 0.101, ticks_per_revolution: 100000")));
   test::Listener<shoal::odometry_t> reports(test, "r1.odometry");
   test::Listener<shoal::odometry_t> truths(test, "r1.odometry.truth");
   drive(test, 0.5, 0, 8);
@@ -57,7 +57,7 @@ TEST(Odometry, AWrongWheelRadiusScalesTheDistance) {
 }
 
 TEST(Odometry, NoiseOfTheWheelAnglesGrowsAsARandomWalk) {
-  test::TestWorld test(test::rover_world(devices(", ticks_per_turn: 1000000, noise: {gaussian_std: 0.01}")));
+  test::TestWorld test(test::rover_world(devices(", ticks_per_revolution: 1000000, noise: {gaussian_std: 0.01}")));
   test::Listener<shoal::odometry_t> reports(test, "r1.odometry");
   test.run_for(20);  // standing: 1000 samples
   double sum = 0;

@@ -21,7 +21,7 @@ std::string lidar_of(const std::string& more) {
 constexpr const char* surfaces =
     ", {name: white, laser: {reflectivity: 0.8}}, {name: grey, laser: {reflectivity: 0.2}}"
     ", {name: dark, laser: {reflectivity: 0.05}}, {name: mirror, laser: {reflectivity: 0.8, gloss: 1}}"
-    ", {name: glass, lets_through: [laser]}";
+    ", {name: glass, transparent_to: [laser]}";
 
 TEST(LaserReturn, ADarkWallVanishesWhereTheEquationSays) {
   const auto range_at = [](double wall_m) {

@@ -104,7 +104,7 @@ TEST(Sonar, SoundPassesWhatLetsItThrough) {
       "  - {name: net, fixed: true, position_m: [2, 0, 0], parts: [{shape: box, size_m: [0.1, 9, 9], material: "
       "net}]}\n";
   EXPECT_NEAR(
-      first_truth<sonar_range_t>(ranging_world("type: sonar", net + wall_at(5), ", {name: net, lets_through: [sound]}"))
+      first_truth<sonar_range_t>(ranging_world("type: sonar", net + wall_at(5), ", {name: net, transparent_to: [sound]}"))
           .range_m,
       5, 1e-2);
 }

@@ -250,7 +250,7 @@ TEST(Renderer, SaysWhichTextureCannotBeRead) {
 TEST(Renderer, WhatLetsLightThroughIsNotSeen) {
   MaterialConfig glass;
   glass.name = "glass";
-  glass.lets_through = {"light"};
+  glass.transparent_to = {"light"};
   auto world = world_of(glass);
   PartConfig pane = box({0.1, 4, 4}, 0);
   pane.material = "glass";

@@ -249,7 +249,7 @@ TEST_P(Ray, ReportsTheMaterialAndPassesWhatLetsItThrough) {
   PhysicsConfig config;
   config.rays = GetParam();
   sim::MaterialConfig glass{"glass"}, wood{"wood"};
-  glass.lets_through = {"laser", "light"};
+  glass.transparent_to = {"laser", "light"};
   PhysicsWorld world(config, {glass, wood}, {}, {}, 1);
   PartConfig pane = box({0.1, 2, 2}, 0), door = box({0.1, 2, 2}, 0);
   pane.material = "glass";

@@ -20,7 +20,7 @@ TEST(DeviceChange, RefusesKeysThatOnlyConstructionUses) {
                                          {"joint_state", "effort", "false"},
                                          {"joint_load, joint: left", "joint", "right"},
                                          {"wheel_encoder, joints: [left]", "joints", "[right]"},
-                                         {"wheel_encoder, joints: [left]", "ticks_per_turn", "7"},
+                                         {"wheel_encoder, joints: [left]", "ticks_per_revolution", "7"},
                                          {"bumper", "parts", "[chassis/hull]"},
                                          {ackermann, "left_steer_joint", "right"},
                                          {ackermann, "right_steer_joint", "left"},

@@ -17,8 +17,8 @@ class TiltMetric final : public Metric {
   static constexpr const char* meaning = "tilt of the first body of a vehicle";
   static std::vector<sim::FigureKind> figures() {
     return {{"max_deg", "deg", "largest angle between its z axis and the vertical"},
-            {"rms_deg", "deg", "root mean square of the pitch about its mean"},
-            {"mean_deg", "deg", "mean pitch, positive with the nose down"},
+            {"pitch_std_deg", "deg", "root mean square of the pitch about its mean"},
+            {"pitch_mean_deg", "deg", "mean pitch, positive with the nose down"},
             {"fell_s", "s", "simulated time when it tilted more than 45 degrees; none: it did not fall"}};
   }
   struct Params final : sim::MetricParams {
@@ -57,8 +57,8 @@ class TiltMetric final : public Metric {
   void add_figures(Figures& figures) const override {
     constexpr double degrees = 180 / std::numbers::pi;
     const bool any = count_ > 0;
-    add(figures, "mean_deg", any ? mean_rad_ * degrees : no_figure);
-    add(figures, "rms_deg", any ? std::sqrt(square_rad2_ / static_cast<double>(count_)) * degrees : no_figure);
+    add(figures, "pitch_mean_deg", any ? mean_rad_ * degrees : no_figure);
+    add(figures, "pitch_std_deg", any ? std::sqrt(square_rad2_ / static_cast<double>(count_)) * degrees : no_figure);
     add(figures, "max_deg", any ? max_rad_ * degrees : no_figure);
     add(figures, "fell_s", fell_s_);
   }

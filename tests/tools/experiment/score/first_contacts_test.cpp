@@ -46,7 +46,7 @@ struct WatchedWorld {
 std::string balls(int count, double apart_m) {
   std::string yaml =
       "shoal: 1\nphysics: {step_s: 0.01, gravity_mps2: 0}\ncontacts: [{between: [any, any], bounce: 1, friction: 0, "
-      "bounce_velocity_mps: 0.01}]\n"
+      "restitution_velocity_mps: 0.01}]\n"
       "objects: [{name: rock, fixed: true, position_m: [-3, 0, 0], parts: [{shape: box}]}]\nvehicles:\n";
   for (int i = 0; i < count; ++i)
     yaml +=

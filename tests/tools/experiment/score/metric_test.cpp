@@ -584,11 +584,11 @@ TEST(Tilt, ReportsMeanSpreadAndFallOfASteadyTurn) {
   const auto figures = scoring.figures();
   constexpr double degrees = 180 / std::numbers::pi;
   // Leans from 0 to 1 rad, evenly: the mean is 1/2, the spread 1 / sqrt(12); 0.1 %: the steps, and a turn in steps.
-  EXPECT_NEAR(figures.at("all.mean_deg"), 0.5 * degrees, 1e-3 * degrees);
-  EXPECT_NEAR(figures.at("all.rms_deg"), degrees / std::sqrt(12), 1e-3 * degrees);
+  EXPECT_NEAR(figures.at("all.pitch_mean_deg"), 0.5 * degrees, 1e-3 * degrees);
+  EXPECT_NEAR(figures.at("all.pitch_std_deg"), degrees / std::sqrt(12), 1e-3 * degrees);
   EXPECT_NEAR(figures.at("all.max_deg"), degrees, 1e-3 * degrees);
   EXPECT_NEAR(figures.at("all.fell_s"), std::numbers::pi / 4, 2e-3);
-  for (const char* figure : {"mean_deg", "rms_deg", "max_deg", "fell_s"})
+  for (const char* figure : {"pitch_mean_deg", "pitch_std_deg", "max_deg", "fell_s"})
     EXPECT_TRUE(std::isnan(figures.at(std::string("late.") + figure))) << figure;
 }
 
