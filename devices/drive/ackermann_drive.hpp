@@ -78,7 +78,7 @@ class AckermannDrive final : public sim::Actuator {
   sim::Joint* steer_[2];  ///< left, right
   std::vector<DrivenWheel> wheels_;
   double target_mps_ = 0, target_steering_rad_ = 0;
-  double speed_mps_ = 0, steering_rad_ = 0;  ///< present set points, which approach the targets
+  double speed_mps_ = 0, steering_rad_ = 0;  ///< present setpoints, which approach the targets
   bool coasting_ = false;
 };
 

@@ -41,7 +41,7 @@ class NaiveDrive final : public sim::Actuator {
   void make_safe(sim::SafeState safe) override;
   void visit_state(sim::StateArchive& archive) override;
 
-  /// Commands speed, heading and depth.  NaN keeps a set point.  In water a depth below 0 is set to 0.
+  /// Commands speed, heading and depth.  NaN keeps a setpoint.  In water a depth below 0 is set to 0.
   void set_helm(double speed_mps, double heading_rad, double depth_m);
   /// Commands the controls, each from -1 to 1; positive rudder turns counter-clockwise, positive elevator causes a
   /// dive.

@@ -63,9 +63,9 @@ void JointServo::Params::read(sim::ParamReader& in) {
   in.read("low", low, sim::any_number(), "lower limit of the position, rad or m; unset: the joint's stop");
   in.read("high", high, sim::any_number(), "upper limit of the position; unset: the joint's stop");
   in.read("max_velocity", max_velocity, sim::above(0),
-          "maximum velocity of the set point, and beyond which an effort no longer acts");
+          "maximum velocity of the setpoint, and beyond which an effort no longer acts");
   in.read("max_acceleration", max_acceleration, sim::above(0),
-          "maximum acceleration of the set point; unset: no limit");
+          "maximum acceleration of the setpoint; unset: no limit");
   in.read("max_effort", max_effort, sim::above(0), "maximum effort, N m or N");
   in.read("park_position", park_position, sim::any_number(), "position of the safe state 'park', rad or m");
   power.read(in);
@@ -148,7 +148,7 @@ void JointServo::act(const sim::ActContext& context) {
     follows_ = true;
     if (max_effort > 0) applied_ = cut_effort(max_effort);
   } else {
-    // The velocity motor moves the joint during the whole step, from the set point at its start.
+    // The velocity motor moves the joint during the whole step, from the setpoint at its start.
     const bool was_following = follows_;
     const double error_before = was_following ? 0 : error();
     move_set_point(context.step_s);

@@ -31,8 +31,8 @@ class SetPoint {
 
 /// Servo that drives one axis of a joint to a position, at a velocity or with an effort.
 ///
-/// Position and velocity commands move a set point with limited velocity and acceleration.  `control: velocity` uses
-/// the velocity motor of the physics: velocity = set point velocity + kp * error.  `control: pid` applies the effort kp
+/// Position and velocity commands move a setpoint with limited velocity and acceleration.  `control: velocity` uses
+/// the velocity motor of the physics: velocity = setpoint velocity + kp * error.  `control: pid` applies the effort kp
 /// * error + ki * integral of the error + kd * velocity error.  An effort command applies that effort.
 class JointServo final : public sim::Actuator {
  public:
@@ -93,7 +93,7 @@ class JointServo final : public sim::Actuator {
   Mode mode_ = Mode::position;  ///< until the first command it holds its position
   double target_ = 0;           ///< target in the unit of the mode
   SetPoint set_point_;
-  bool follows_ = false;  ///< without effort the set point tracks the joint, to avoid a jump afterwards
+  bool follows_ = false;  ///< without effort the setpoint tracks the joint, to avoid a jump afterwards
   double integral_ = 0;   ///< effort
   double applied_ = 0;    ///< effort of the last step, when applied by this class
 };

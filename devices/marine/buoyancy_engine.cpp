@@ -15,7 +15,7 @@ void BuoyancyEngine::Params::read(sim::ParamReader& in) {
   in.read("rate_m3ps", rate_m3ps, sim::above(0), "rate of the pump, m^3/s");
   in.read("initial_m3", initial_m3, sim::between(-1e6, 1e6), "volume at the start");
   in.read("park_m3", park_m3, sim::between(-1e6, 1e6),
-          "volume of the safe state park; absent: max_m3, so that it surfaces");
+          "volume of the safe state park; unset: max_m3, so that it surfaces");
   in.read("efficiency", efficiency, sim::above_to(0, 1), "work against the pressure over energy from the battery");
   lag.read(in);
   if (in.describing()) return;

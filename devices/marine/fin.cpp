@@ -32,7 +32,7 @@ void Fin::Params::read(sim::ParamReader& in) {
   in.read("density_kgpm3", density_kgpm3, sim::above(0), "instead of the water's");
   in.read("coefficients", coefficients, "model coefficients: about the body's origin, times angle and speed squared");
   in.read_deg("limit_deg", limit_rad, sim::above_to(0, 90), "maximum deflection to each side");
-  in.read("rate_limit_degps", rate_limit_degps, sim::above(0), "rate limit of its servo; absent: no limit");
+  in.read("rate_limit_degps", rate_limit_degps, sim::above(0), "rate limit of its servo; unset: no limit");
   lag.read(in);
   if (in.describing()) return;
   if (model == Model::coefficients && !coefficients)

@@ -10,7 +10,7 @@ namespace devices {
 void FoilParams::read(sim::ParamReader& in) {
   in.read("aspect_ratio", aspect_ratio, sim::above_to(0, 100), "square of the span over the area");
   in.read("lift_slope", lift_slope, sim::between(0, 20),
-          "dC_L/d(angle), per rad; absent: pi AR / (1 + sqrt(1 + (AR/2)^2))");
+          "dC_L/d(angle), per rad; unset: pi AR / (1 + sqrt(1 + (AR/2)^2))");
   in.read_deg("stall_deg", stall_rad, sim::above_to(0, 89), "angle of attack at which the flow starts to separate");
   in.read_deg("stall_width_deg", stall_width_rad, sim::above_to(0, 89),
               "width of the transition from there to a plate across the flow");

@@ -19,7 +19,7 @@ void check_table(sim::ParamReader& in, const std::vector<double>& table) {
   }
   for (std::size_t i = 2; i < table.size(); i += 2)
     if (!(table[i] > table[i - 2]))
-      in.error("table", "the levels of 'table' must grow, got " + sim::number_text(table[i - 2]) + " before " +
+      in.error("table", "the levels of 'table' must increase, got " + sim::number_text(table[i - 2]) + " before " +
                             sim::number_text(table[i]));
 }
 
@@ -36,10 +36,10 @@ void Thruster::Params::read(sim::ParamReader& in) {
       "unit of a command; effort is -1 to 1; also the unit of the levels below");
   // Level: limits, dead band and lag.
   in.read("max", max, sim::above_to(0, 1e6), "largest level; 1 of an effort");
-  in.read("min", min, sim::between(-1e6, 0), "largest level astern; absent: -max");
+  in.read("min", min, sim::between(-1e6, 0), "largest level astern; unset: -max");
   in.read("dead_band", dead_band, sim::at_least(0), "commands smaller than this are 0");
   lag.read(in);
-  in.read("rate_limit", rate_limit, sim::above(0), "maximum change of the level per second; absent: no limit");
+  in.read("rate_limit", rate_limit, sim::above(0), "maximum change of the level per second; unset: no limit");
   // Thrust curve.
   if (command == Command::thrust_N) curve = Curve::direct;
   in.read_choice(
@@ -47,7 +47,7 @@ void Thruster::Params::read(sim::ParamReader& in) {
       {{"quadratic", Curve::quadratic}, {"table", Curve::table}, {"kt_kq", Curve::kt_kq}, {"direct", Curve::direct}},
       "how the level determines the thrust; direct only with commands of thrust_N, and always then");
   in.read("ahead", ahead, sim::between(0, 1e6), "quadratic: N per level squared");
-  in.read("astern", astern, sim::between(0, 1e6), "quadratic, at levels below 0; absent: as ahead");
+  in.read("astern", astern, sim::between(0, 1e6), "quadratic, at levels below 0; unset: as ahead");
   in.read("inflow_loss", inflow_loss, sim::between(0, 1e6), "quadratic: N lost per level and m/s of inflow");
   in.read("table", table, sim::between(-1e6, 1e6), "table: pairs of level and thrust in N, by growing level");
   in.read("diameter_m", diameter_m, sim::above_to(0, 100), "diameter of the propeller");

@@ -13,8 +13,8 @@ namespace devices {
 void ImagingSonar::Params::read(sim::ParamReader& in) {
   in.read("beams", beams, sim::between(1, 4096), "number of columns of the image");
   in.read_deg("fov_deg", fov_rad, sim::above_to(0, 360), "bearings from the first beam to the last");
-  in.read_deg("vertical_deg", vertical_rad, sim::above_to(0, 90), "height of a beam, at -3 dB");
-  in.read("elevation_rays", elevation_rays, sim::between(1, 2000), "rays over the height of a beam");
+  in.read_deg("vertical_deg", vertical_rad, sim::above_to(0, 90), "vertical beamwidth at -3 dB");
+  in.read("elevation_rays", elevation_rays, sim::between(1, 2000), "rays over the vertical beamwidth");
   in.read("beam_rays", beam_rays, sim::between(1, 20), "rays over the width of a beam");
   sonar.read(in);
   image.read(in, sonar);

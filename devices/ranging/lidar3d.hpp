@@ -14,7 +14,7 @@ namespace devices {
 /// begins before the run or without power lacks the columns of that time.
 class Lidar3d final : public sim::Sensor {
  public:
-  static constexpr const char* meaning = "Multi-ring laser scanner: a point cloud for each turn of its head.";
+  static constexpr const char* meaning = "Multi-ring laser scanner: a point cloud for each revolution.";
   static constexpr double default_rate_hz = 10;
   static constexpr bool casts_rays = true;
   static constexpr bool sweeps = true;

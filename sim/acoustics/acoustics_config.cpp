@@ -4,8 +4,8 @@
 namespace sim {
 
 void LinkConfig::read(ParamReader& in) {
-  in.read("from", from, "sender: a vehicle, or vehicle/device; absent: any");
-  in.read("to", to, "receiver: a vehicle, or vehicle/device; absent: any");
+  in.read("from", from, "sender: a vehicle, or vehicle/device; unset: any");
+  in.read("to", to, "receiver: a vehicle, or vehicle/device; unset: any");
   in.read("both_ways", both_ways, "also from `to` to `from`");
   in.read("loss_probability", loss_probability, between(0, 1),
           "loss probability of each signal that would be understood");
@@ -15,8 +15,8 @@ void LinkConfig::read(ParamReader& in) {
 void AcousticsConfig::read(ParamReader& in) {
   in.read("spreading", spreading, "spreading loss of sound with range");
   in.read("absorption", absorption, "absorption of sound with range");
-  in.read("noise", noise, "noise of the sea");
-  in.read("multipath", multipath, "echoes of surface and bottom; absent: the direct path alone");
+  in.read("noise", noise, "ambient noise of the sea");
+  in.read("multipath", multipath, "echoes of surface and bottom; unset: the direct path alone");
   in.read("fading", fading, "fading of the level");
   in.read("occlusion", occlusion, "terrain, objects and hulls block sound");
   in.read("occlusion_loss_dB", occlusion_loss_dB, between(0, 1000), "loss through obstacles; unset: nothing passes");

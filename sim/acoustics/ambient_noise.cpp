@@ -38,7 +38,7 @@ Decibels AmbientNoise::band_level(double centre_Hz, double bandwidth_Hz) const {
 void NoiseConfig::read(ParamReader& in) {
   in.read("shipping", shipping, between(0, 1), "shipping noise; 0: none; 1: heavy");
   in.read("wind_mps", wind_mps, between(0, 60),
-          "wind speed that makes the noise; absent: the mean wind of the medium, at 10 m");
+          "wind speed that makes the noise; unset: the mean wind of the medium, at 10 m");
   in.read("offset_dB", offset_dB, between(-200, 200), "added to the whole spectrum");
 }
 

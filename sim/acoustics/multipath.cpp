@@ -43,7 +43,7 @@ void image_paths(double source_depth_m, double receiver_depth_m, double horizont
 }
 
 void BottomConfig::read(ParamReader& in) {
-  in.read("loss_dB", loss_dB, between(0, 200), "loss of each bounce, at any angle; absent: by the sediment below");
+  in.read("loss_dB", loss_dB, between(0, 200), "loss of each bounce, at any angle; unset: by the sediment below");
   in.read("density_ratio", density_ratio, above_to(0, 10),
           "density ratio of sediment over water; sand 1.9, silt 1.5, clay 1.3");
   in.read("speed_ratio", speed_ratio, between(0.5, 5),
@@ -58,11 +58,11 @@ void MultipathConfig::read(ParamReader& in) {
   in.read("max_bounces", max_bounces, between(0, 20), "at surface and bottom together; 0: the direct path alone");
   in.read("window_s", window_s, between(0, 10), "echoes later than this after the first arrival are interference");
   in.read("water_depth_m", water_depth_m, above_to(0, 12000),
-          "depth of a flat bottom; absent: the terrain below the middle of the path; without terrain there is no "
+          "depth of a flat bottom; unset: the terrain below the middle of the path; without terrain there is no "
           "bottom echo");
-  in.read("surface_loss_dB", surface_loss_dB, between(0, 200), "surface loss of each bounce; absent: by the roughness");
+  in.read("surface_loss_dB", surface_loss_dB, between(0, 200), "surface loss of each bounce; unset: by the roughness");
   in.read("surface_roughness_m", surface_roughness_m, between(0, 20),
-          "rms height of the waves; absent: that of a fully developed sea under the wind");
+          "rms height of the waves; unset: that of a fully developed sea under the wind");
   in.read("bottom", bottom, "reflection of sound by the bottom");
   in.read_choice("phases", phases, {{"random", Phases::random}, {"geometric", Phases::geometric}},
                  "random: each path has its own phase for each packet; geometric: by the lengths");

@@ -65,7 +65,7 @@ class AddAction final : public Action {
       return in.read_reference(key, name_, "object", "");
     auto added = std::make_shared<ObjectConfig>();
     in.read(key, *added, "");
-    if (added->count != 1) in.error(key, "'count' does not belong to an object that an action adds");
+    if (added->count != 1) in.error(key, "'count' does not apply to an object that an action adds");
     name_ = added->name;
     object_ = std::move(added);
   }

@@ -13,7 +13,7 @@ namespace {
 
 class FaultAction final : public Action {
  public:
-  static constexpr const char* meaning = "begins a fault of a device";
+  static constexpr const char* meaning = "sets a fault of a device";
   static constexpr const char* main_key = "device";
   static constexpr bool main_alone = false;
 

@@ -27,7 +27,7 @@ class OneOfAction final : public Action {
       in.error(main, "'" + std::string(main) + "' must have at least one list of actions");
     if (!in.has("weights")) return;
     if (in.child("weights")->items.size() != count)
-      in.error("weights", "'weights' must have one number for each of the " + std::to_string(count) + " lists");
+      in.error("weights", "'weights' must have as many numbers as 'choices' has lists, " + std::to_string(count));
     else if (!weights_.empty() && std::accumulate(weights_.begin(), weights_.end(), 0.0) <= 0)
       in.error("weights", "'weights' must not all be 0");
   }

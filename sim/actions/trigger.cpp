@@ -11,7 +11,7 @@ namespace {
 
 class TriggerAction final : public Action {
  public:
-  static constexpr const char* meaning = "lets another event fire now";
+  static constexpr const char* meaning = "fires another event now";
   static constexpr const char* main_key = "event";
   static constexpr bool main_alone = true;
 

@@ -45,7 +45,7 @@ void OpticsConfig::read(ParamReader& in) {
   in.read("height", height, between(1, max_image_side_px), "rows");
   in.read_choice("lens", lens, lens_words, "projection of angles onto the image");
   in.read_deg("fov_deg", fov_rad, above_to(0, 359),
-              "horizontal angle of view, without the distortion; a pinhole's is < 180");
+              "horizontal field of view, without the distortion; a pinhole's is < 180");
   in.read("focal_px", focal_px, above(0), "focal length, or fx and fy, instead of fov_deg");
   in.read("principal_px", principal_px, between(-max_image_side_px, 2 * max_image_side_px),
           "principal point, from the outer corner of the image; unset: its middle");

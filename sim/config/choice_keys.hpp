@@ -12,7 +12,7 @@ namespace sim {
 
 using ChoiceKeys = std::vector<const char*>;
 
-/// Reports keys that apply only to other values of an enum, such as `'gamma' is not for type regular`: a key without
+/// Reports keys that apply only to other values of an enum, such as `'gamma' does not apply to type regular`: a key without
 /// effect is most likely meant for another value.  `keys_of` returns the keys of a value that are not common to all
 /// values; it is a switch without default, so that the compiler requires an entry for a new value.  `what`: the key of
 /// the enum.
@@ -24,7 +24,7 @@ void refuse_keys_of_others(ParamReader& in, std::string_view what, const ChoiceW
   for (const ChoiceWord<Enum>& each : words)
     for (const char* key : keys_of(each.value))
       if (done.insert(key).second && in.has(key))
-        in.error(key, "'" + std::string(key) + "' is not for " + std::string(what) + " " +
+        in.error(key, "'" + std::string(key) + "' does not apply to " + std::string(what) + " " +
                           std::string(word_of(words, value)));
 }
 

@@ -15,7 +15,7 @@ void FaultConfig::read(ParamReader& in) {
   in.read("effectiveness", effectiveness, between(0, 1), "partial: the share of its effort that the actuator gives");
   const auto belongs_to = [&](const char* key, std::initializer_list<FaultKind> kinds) {
     if (in.has(key) && in.has("kind") && std::find(kinds.begin(), kinds.end(), kind) == kinds.end())
-      in.error(key, std::string("'") + key + "' does not belong to a fault of this kind");
+      in.error(key, std::string("'") + key + "' does not apply to a fault of this kind");
   };
   belongs_to("quantity", {FaultKind::biased, FaultKind::degraded});
   belongs_to("bias", {FaultKind::biased});

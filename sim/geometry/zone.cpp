@@ -16,7 +16,7 @@ void check_keys(ParamReader& in, ZoneShape shape) {
   const std::string word(word_of(zone_shape_words, shape));
   const auto belongs_to = [&](const char* key, std::initializer_list<ZoneShape> shapes, bool required) {
     const bool belongs = std::find(shapes.begin(), shapes.end(), shape) != shapes.end();
-    if (in.has(key) && !belongs) in.error(key, "'" + std::string(key) + "' does not belong to a " + word);
+    if (in.has(key) && !belongs) in.error(key, "'" + std::string(key) + "' does not apply to a " + word);
     if (!in.describing() && !in.has(key) && belongs && required) in.error("a " + word + " needs '" + key + "'");
   };
   belongs_to("size_m", {ZoneShape::box}, true);

@@ -77,7 +77,7 @@ void WaterConfig::read(ParamReader& in) {
     in.error("density", "'density' eos80 computes the density; leave out 'density_kgpm3'");
   if (!profile.empty())
     for (const char* key : {"temperature_C", "salinity_psu"})
-      if (in.has(key)) in.error(key, "'" + std::string(key) + "' is not for water with a 'profile'");
+      if (in.has(key)) in.error(key, "'" + std::string(key) + "' does not apply to water with a 'profile'");
   if (density_rows && in.has("density_kgpm3")) in.error("density_kgpm3", "'profile' already gives 'density_kgpm3'");
   if (sound_speed_mps && !profile.empty() && profile[0].sound_speed_mps)
     in.error("sound_speed_mps", "'profile' already gives 'sound_speed_mps'");
@@ -200,7 +200,7 @@ void WindConfig::read(ParamReader& in) {
           "height of the given wind over the still water");
   in.read("exponent", exponent, between(0, 1), "power");
   in.read("roughness_m", roughness_m, between(1e-7, 10), "log: roughness length; below the reference height");
-  in.read("gusts", gusts, "absent: steady");
+  in.read("gusts", gusts, "unset: steady");
   if (in.describing()) return;
   if (in.has("velocity_mps") && in.has("speed_mps"))
     in.error("speed_mps", "'speed_mps' and 'velocity_mps' exclude each other");
@@ -268,11 +268,11 @@ void WavesConfig::read(ParamReader& in) {
   in.read("components", components, between(1, max_components), "number of wave components");
   in.read("cutoff", cutoff, between(1.5, 50), "highest frequency relative to the peak frequency");
   in.read("spreading", spreading, between(0.5, 1000),
-          "exponent s of the spreading cos^2s of half the angle; absent: long-crested");
+          "exponent s of the spreading cos^2s of half the angle; unset: long-crested");
   in.read_deg("direction_deg", direction_rad, between(-360, 360),
               "direction towards which they travel, counter-clockwise from east");
   in.read("water_depth_m", water_depth_m, above_to(0.01, 12000),
-          "water depth for the waves; absent: deep water");
+          "water depth for the waves; unset: deep water");
   if (in.describing()) return;
   check_keys_of_waves(in, type);
   if (in.has("sea_state")) take_sea_state(*this);
@@ -298,11 +298,11 @@ void read_one_or_more(ParamReader& in, const char* key, std::vector<Entry>& entr
 }  // namespace
 
 void MediumConfig::read(ParamReader& in) {
-  in.read("water", water, "the sea, a lake or a tank; absent: the world is dry");
+  in.read("water", water, "the sea, a lake or a tank; unset: the world is dry");
   read_one_or_more(in, "current", current, "current", "how the water flows; the entries add up");
   read_one_or_more(in, "tides", tides, "tide", "tidal constituents of surface and current; the entries add up");
-  in.read("waves", waves, "absent: the surface is flat");
-  in.read("wind", wind, "absent: still air");
+  in.read("waves", waves, "unset: the surface is flat");
+  in.read("wind", wind, "unset: still air");
   if (in.describing()) return;
   for (const char* key : {"current", "tides", "waves"})
     if (in.has(key) && !water) in.error(key, "'" + std::string(key) + "' needs 'water'");

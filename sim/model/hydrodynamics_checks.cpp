@@ -62,8 +62,8 @@ void check_added_mass(const Matrix6d& A, ParamReader& in) {
   // Check that the matrix is positive semi-definite.
   const double min = smallest_eigenvalue(A);
   if (!not_negative(min, A))
-    in.error(key, "the matrix of added mass has a negative eigenvalue, " + computed_text(min) +
-                      ": its couplings are too large for its diagonal");
+    in.error(key, "the added-mass matrix is not positive semi-definite, eigenvalue " + computed_text(min) +
+                      ": its off-diagonal terms are too large");
 }
 
 void check_inertia(const HydrodynamicsConfig& config, ParamReader& in) {

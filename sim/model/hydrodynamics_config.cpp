@@ -107,7 +107,7 @@ void CrossFlowConfig::read(ParamReader& in) {
     in.error("drag_coefficient", "'drag_coefficient' must be one number or pairs, got " + std::to_string(count));
   for (std::size_t i = 2; count > 2 && count % 2 == 0 && i < count; i += 2)
     if (drag_coefficient[i] < drag_coefficient[i - 2])
-      in.error("drag_coefficient", "the Reynolds numbers of 'drag_coefficient' must grow, got " +
+      in.error("drag_coefficient", "the Reynolds numbers of 'drag_coefficient' must increase, got " +
                                        number_text(drag_coefficient[i - 2]) + " before " +
                                        number_text(drag_coefficient[i]));
   in.read("reynolds_length_m", reynolds_length_m, above(0), "length in the Reynolds number");
@@ -185,11 +185,11 @@ void HydrodynamicsConfig::read(ParamReader& in) {
                  "point that the inertia is about");
   // Weight and buoyancy.
   in.read("weight_N", weight_N, above(0), "instead of mass times gravity");
-  in.read("buoyancy_N", buoyancy_N, at_least(0), "buoyancy of the whole vehicle under water; absent: of volume_m3");
-  in.read("volume_m3", volume_m3, above(0), "volume of displaced water; absent: it floats in balance");
+  in.read("buoyancy_N", buoyancy_N, at_least(0), "buoyancy of the whole vehicle under water; unset: of volume_m3");
+  in.read("volume_m3", volume_m3, above(0), "volume of displaced water; unset: it floats in balance");
   if (buoyancy_N && volume_m3) in.error("volume_m3", "needs either 'buoyancy_N' or 'volume_m3', not both");
   in.read("center_of_buoyancy_m", center_of_buoyancy_m, between(-1000, 1000), "in the body's frame");
-  in.read("hull_height_m", hull_height_m, above(0), "over which it emerges; absent: of a ball of its volume");
+  in.read("hull_height_m", hull_height_m, above(0), "over which it emerges; unset: of a ball of its volume");
   in.read("hull_length_m", hull_length_m, at_least(0), "over which it emerges when it stands upright");
   // Added mass.
   read_matrix<6>(in, "added_mass", added_mass, "6 numbers (diagonal) or 36, row by row; positive as mass");

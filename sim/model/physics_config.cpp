@@ -70,7 +70,7 @@ Rule part_length() {
 void check_keys_of_shape(ParamReader& in, PartShape shape) {
   const std::string word(word_of(part_shape_words, shape));
   for (const char* key : keys_of_some_shapes())
-    if (in.has(key) && !has_key(shape, key)) in.error(key, std::string("'") + key + "' is not for shape " + word);
+    if (in.has(key) && !has_key(shape, key)) in.error(key, std::string("'") + key + "' does not apply to shape " + word);
 }
 
 }  // namespace
@@ -193,7 +193,7 @@ void check_axes(ParamReader& in, const JointConfig& joint) {
   // ODE measures angles from -pi to pi, so a stop outside this range would have no effect.
   for (const auto& stop : {joint.axis1.low_stop, joint.axis1.high_stop, joint.axis2.low_stop, joint.axis2.high_stop})
     if (stop && std::abs(*stop) > std::numbers::pi)
-      in.error("stops of an angle must lie between -pi and pi, got " + number_text(*stop));
+      in.error("stops of a rotational axis are in rad and must lie between -pi and pi, got " + number_text(*stop));
 }
 
 }  // namespace

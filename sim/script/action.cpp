@@ -48,15 +48,15 @@ const ActionKind* find_kind(ParamReader& in) {
   }
   // Check that there is exactly one.
   if (entries.empty())
-    in.error("an action must have one key, its word, got {}; known actions: " +
+    in.error("an action must have exactly one key, its type, got {}; known actions: " +
              list_text(ActionRegistry::instance().words()));
   else if (kind == nullptr)
     in.error(unknown_action(entries.front().key));
   else if (!other.empty())
-    in.error("an action must have one key, its word, got '" + kind->word + "' and '" + other +
+    in.error("an action must have exactly one key, its type, got '" + kind->word + "' and '" + other +
              "'; each action is an item of the list");
   else if (entries.size() > 1)
-    in.error("an action must have one key, its word" + advice(*in.node(), *kind));
+    in.error("an action must have exactly one key, its type" + advice(*in.node(), *kind));
   else
     return kind;
   return nullptr;

@@ -54,17 +54,17 @@ void ActorConfig::check_points(ParamReader& in) {
   const char* desired = timed ? "poses" : "points";
   const char* other = timed ? "points" : "poses";
   // Report keys of other kinds of path.
-  if (in.has(other)) in.error(other, "'" + std::string(other) + "' does not belong to a path of this kind");
+  if (in.has(other)) in.error(other, "'" + std::string(other) + "' does not apply to a path of this kind");
   if (timed)
     for (const char* key : {"rpy_deg", "speed_mps"})
-      if (in.has(key)) in.error(key, "'" + std::string(key) + "' does not belong to a path of this kind");
+      if (in.has(key)) in.error(key, "'" + std::string(key) + "' does not apply to a path of this kind");
   // Check consecutive points.
   const std::size_t count = timed ? poses.size() : points_m.size();
   if (count < 2)
     return in.error(desired, "'" + std::string(desired) + "' must have at least 2, got " + std::to_string(count));
   for (std::size_t i = 0; i + 1 < count; ++i) {
     const std::string where = std::to_string(i + 1) + " and " + std::to_string(i + 2);
-    if (timed && poses[i + 1].at_s <= poses[i].at_s) in.error("poses", "'at_s' must grow: poses " + where);
+    if (timed && poses[i + 1].at_s <= poses[i].at_s) in.error("poses", "'at_s' must increase: poses " + where);
     const double max_mps = 1000;
     if (timed && (poses[i + 1].position_m - poses[i].position_m).norm() > max_mps * (poses[i + 1].at_s - poses[i].at_s))
       in.error("poses", "poses " + where + " are too far apart for their times: at most 1000 m/s");

@@ -109,7 +109,7 @@ void EventConfig::read(ParamReader& in) {
   if (times == 0) times = static_cast<std::int64_t>(at_s.size());
   in.read("probability", probability, between(0, 1), "probability of firing");
   in.require("do");
-  read_actions(in, "do", actions, "what happens, in this order: actions, each a map of one key, its word");
+  read_actions(in, "do", actions, "what happens, in this order: actions, each a map of one key, its type");
 }
 
 void EventConfig::read_times(ParamReader& in) {

@@ -47,7 +47,7 @@ TEST(SegwayRun, ItsProgramSaysWhatIsWrongWithItsOptions) {
       {{}, "--name is required"},
       {{"--name", "s", "--speeds", "[[1]]"}, "--speeds: 'speeds[1]' must be 2 to 3 numbers, got 1"},
       {{"--name", "s", "--speeds", "[[1,x]]"}, "item 2 of 'speeds[1]' must be a number, got 'x'"},
-      {{"--name", "s", "--speeds", "[[2,1],[1,0]]"}, "the times of the speeds must grow"},
+      {{"--name", "s", "--speeds", "[[2,1],[1,0]]"}, "the times of the speeds must increase"},
       {{"--name", "s", "--kp-Nm-per-rad", "nan"}, "--kp-Nm-per-rad: must be from 0 to 10000, got 'nan'"},
       {{"--name", "s", "--period-s", "0"}, "--period-s"},
   };

@@ -180,7 +180,7 @@ void add_control_command(CLI::App& app, int& exit_code) {
       ->add_option("COMMAND", arguments->command,
                    command_line::alternatives(known_requests) + " (docs/reference/messages.md)")
       ->required();
-  command->add_option("TEXT", arguments->text, "text of the request; @FILE: what is in the file; -: standard input");
+  command->add_option("TEXT", arguments->text, "text of the request; @FILE: contents of the file; -: standard input");
   command->add_option("--value", arguments->value, "number of the request: steps, speed (or max), seconds")
       ->type_name("NUMBER")
       ->transform(command_line::number_or_word(-1e12, 1e12, "max").description(""));

@@ -34,7 +34,7 @@ std::string unknown_name(const std::string& name) {
 }  // namespace
 
 void add_describe_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("describe", "Say what a device, a message, a program or a file's keys are");
+  CLI::App* command = app.add_subcommand("describe", "Describe a device, a message, a program or the keys of a file");
   add_log_level_option(*command);
   const auto name = std::make_shared<std::string>();
   const auto page = std::make_shared<std::string>();

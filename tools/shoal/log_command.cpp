@@ -194,7 +194,7 @@ void add_common(CLI::App& command, LogArguments& arguments) {
 }
 
 void add_info_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("info", "Channels, rates, types, and the run that made it");
+  CLI::App* command = app.add_subcommand("info", "Channels, rates, types, and the run that wrote the log");
   const auto arguments = std::make_shared<LogArguments>();
   add_common(*command, *arguments);
   add_types_option(*command, arguments->lcm_files);
@@ -261,7 +261,7 @@ void add_image_command(CLI::App& app, int& exit_code) {
 }  // namespace
 
 void add_log_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("log", "Look into LCM event logs");
+  CLI::App* command = app.add_subcommand("log", "Inspect LCM event logs");
   command->require_subcommand(1);
   add_info_command(*command, exit_code);
   add_csv_command(*command, exit_code);

@@ -39,7 +39,7 @@ int run(int argc, char** argv) {
         "shoal snap worlds/coop_land.yaml --at 10 --out coop_land.png", "shoal describe lidar"},
        {{0, "success"},
         {1, "a pass rule failed, or a comparison found a difference"},
-        {2, "wrong usage, or a mistake in a file of the user"},
+        {2, "wrong usage, or an error in an input file"},
         {3, "physics fault"},
         {4, "bus or file error"},
         {5, "time-out"},

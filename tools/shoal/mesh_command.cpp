@@ -66,10 +66,10 @@ void add_mesh_command(CLI::App& app, int& exit_code) {
   // Options.
   command->add_option("FILE", options->file, "mesh of any format that Assimp reads: DAE, FBX, GLB, OBJ, PLY, STL, ...")
       ->required();
-  command->add_option("--out", options->out, "write it as this file, .stl (binary) or .obj")->type_name("FILE");
+  command->add_option("--out", options->out, "output file, .stl (binary) or .obj")->type_name("FILE");
   command
       ->add_option("--scale", options->import.scale,
-                   "numbers of the file times this are metres; Collada's own unit is applied")
+                   "factor from units of the file to metres; Collada's own unit is applied")
       ->type_name("FACTOR")
       ->check(number_from(1e-9, 1e9))
       ->capture_default_str();

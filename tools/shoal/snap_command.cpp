@@ -244,7 +244,7 @@ void add_view_options(CLI::App& command, SnapArguments& arguments) {
   CLI::Option* look =
       command.add_option("--look", arguments.look, "point that the camera looks at, m")->type_name("X,Y,Z");
   CLI::Option* fov =
-      command.add_option("--fov", arguments.fov_deg, "horizontal angle of view, degrees")->type_name("DEG");
+      command.add_option("--fov", arguments.fov_deg, "horizontal field of view, degrees")->type_name("DEG");
   CLI::Option* size = command.add_option("--size", arguments.size, "of the image in pixels")->type_name("WIDTHxHEIGHT");
   eye->needs(look);
   look->needs(eye);

@@ -250,7 +250,7 @@ TEST(Thruster, SaysWhatIsWrongWithItsParameters) {
   EXPECT_THAT(error("command: thrust_N, max: 5, curve: quadratic"), HasSubstr("'curve' direct belongs to"));
   EXPECT_THAT(error("curve: table"), HasSubstr("'table' must be two or more pairs of level and thrust, got 0 numbers"));
   EXPECT_THAT(error("curve: table, table: [0, 0, -1, 5]"),
-              HasSubstr("the levels of 'table' must grow, got 0 before -1"));
+              HasSubstr("the levels of 'table' must increase, got 0 before -1"));
   EXPECT_THAT(error("curve: kt_kq"), HasSubstr("'full_speed_rpm' is missing"));
   EXPECT_THAT(error("lag_s: 1, natural_frequency_radps: 5"), HasSubstr("exclude each other"));
   EXPECT_THAT(error("thrust_deduction: 1"), HasSubstr("'thrust_deduction' must be >= 0 and <= 0.99, got 1"));

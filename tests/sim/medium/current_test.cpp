@@ -220,7 +220,7 @@ objects:
 
 TEST(Current, KeysOfOtherTypesAreRefused) {
   EXPECT_THAT(error_of("{water: {}, current: [{type: vortex, std_mps: 1}]}"),
-              HasSubstr("'std_mps' is not for type vortex"));
+              HasSubstr("'std_mps' does not apply to type vortex"));
   EXPECT_THAT(error_of("{water: {}, current: [{type: grid}]}"), HasSubstr("needs either 'file' or both"));
   EXPECT_THAT(error_of("{water: {}, current: [{type: profile}]}"), HasSubstr("needs the key 'profile'"));
 }

@@ -304,7 +304,7 @@ TEST(Waves, ThatWouldBreakAreRefused) {
   EXPECT_THAT(error_of("{water: {}, waves: {hs_m: 2, tp_s: 4}}"), HasSubstr("is above the breaking limit of a sea with 'tp_s' 4, 1.664 m"));
   EXPECT_THAT(error_of("{water: {}, waves: {hs_m: 2, tp_s: 8, water_depth_m: 2}}"), HasSubstr("0.6 of the depth"));
   EXPECT_THAT(error_of("{water: {}, waves: {tp_s: 0}}"), HasSubstr("'tp_s' must be >= 0.2"));
-  EXPECT_THAT(error_of("{water: {}, waves: {type: regular, hs_m: 1}}"), HasSubstr("'hs_m' is not for type regular"));
+  EXPECT_THAT(error_of("{water: {}, waves: {type: regular, hs_m: 1}}"), HasSubstr("'hs_m' does not apply to type regular"));
   EXPECT_THAT(error_of("{water: {}, waves: {sea_state: 3, hs_m: 1}}"), HasSubstr("leave out 'hs_m' and 'tp_s'"));
 }
 

@@ -38,7 +38,7 @@ TEST(HydrodynamicsChecks, AddedMassIsSymmetric) {
 TEST(HydrodynamicsChecks, AddedMassIsNotNegativeInAnyDirection) {
   // The block [[4, 6], [6, 4]] has the eigenvalues 10 and -2.  With 20 kg of body, all of it would be positive.
   EXPECT_THAT(error_of(inertia + ", derivatives: {Y_vdot: -4, N_rdot: -4, Y_rdot: -6, N_vdot: -6}"),
-              HasSubstr("the matrix of added mass has a negative eigenvalue, -2: its couplings are too large"));
+              HasSubstr("the added-mass matrix is not positive semi-definite, eigenvalue -2: its off-diagonal terms are too large"));
   // A flat plate off its origin: 4 * 9 = 6 * 6, an eigenvalue of 0.
   EXPECT_EQ(error_of(inertia + ", derivatives: {Y_vdot: -4, N_rdot: -9, Y_rdot: -6, N_vdot: -6}"), "");
 }

@@ -68,9 +68,9 @@ TEST(PartConfig, ContradictionsAreErrors) {
   EXPECT_NE(error_of<sim::PartConfig>("{size_m: [1, 0, 1]}"), "no error");
   EXPECT_NE(error_of<sim::PartConfig>("{mass_kg: -1}"), "no error");
   EXPECT_EQ(error_of<sim::PartConfig>("{shape: sphere, size_m: [1, 1, 1]}"),
-            "worlds/test.yaml:1:25: 'size_m' is not for shape sphere");
+            "worlds/test.yaml:1:25: 'size_m' does not apply to shape sphere");
   EXPECT_EQ(error_of<sim::PartConfig>("{shape: plane, mass_kg: 1}"),
-            "worlds/test.yaml:1:25: 'mass_kg' is not for shape plane");
+            "worlds/test.yaml:1:25: 'mass_kg' does not apply to shape plane");
   EXPECT_NE(error_of<sim::PartConfig>("{shape: mesh}").find("a part of shape mesh needs the key 'mesh'"),
             std::string::npos);
   EXPECT_NE(error_of<sim::PartConfig>("{color: red}").find("'color' must look like #rrggbb"), std::string::npos);

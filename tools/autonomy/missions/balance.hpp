@@ -40,7 +40,7 @@ class Balance {
     double ki_rad_per_m = 0.02;
     double max_tilt_rad = 0.2;  ///< of the desired tilt, from the balanced one
     double max_acceleration_mps2 = 0.5;
-    double turn_gain_Nms_per_rad = 40;  ///< torque between the wheels for the error of the turn rate
+    double turn_gain_Nms_per_rad = 40;  ///< differential wheel torque per yaw rate error
     double turn_ki_Nm_per_rad = 120;    ///< gain of its integral: wide wheels scrub on the ground
     double rate_filter_s = 0.005;       ///< low pass on the rate of the tilt
     double speed_filter_s = 0.05;       ///< low pass on speed and turn rate

@@ -73,18 +73,18 @@ void declare_gains(command_line::DeclaredOptions& declared, Options& options) {
   autonomy::Balance::Params& gains = options.balance;
   declared.number("balanced_tilt_deg", options.balanced_tilt_deg, -45, 45,
                   "tilt, positive forward, at which its centre of mass is over its axle");
-  declared.number("kp_Nm_per_rad", gains.kp_Nm_per_rad, 0, 1e4, "torque of both wheels for the error of the tilt");
-  declared.number("kd_Nms_per_rad", gains.kd_Nms_per_rad, 0, 1e4, "torque for the rate of the tilt");
-  declared.number("kv_rad_per_mps", gains.kv_rad_per_mps, 0, 10, "tilt setpoint for the error of the speed");
-  declared.number("ki_rad_per_m", gains.ki_rad_per_m, 0, 10, "tilt setpoint for the integral of that error");
+  declared.number("kp_Nm_per_rad", gains.kp_Nm_per_rad, 0, 1e4, "torque of both wheels per tilt error");
+  declared.number("kd_Nms_per_rad", gains.kd_Nms_per_rad, 0, 1e4, "torque of both wheels per tilt rate");
+  declared.number("kv_rad_per_mps", gains.kv_rad_per_mps, 0, 10, "tilt setpoint per speed error");
+  declared.number("ki_rad_per_m", gains.ki_rad_per_m, 0, 10, "tilt setpoint per integral of that error");
   declared.number("max_tilt_rad", gains.max_tilt_rad, 0.01, 0.7, "limit of the tilt setpoint, from the balanced tilt");
   declared.number("max_acceleration_mps2", gains.max_acceleration_mps2, 0.01, 10, "limit of the speed setpoint");
   declared.number("turn_gain_Nms_per_rad", gains.turn_gain_Nms_per_rad, 0, 1e4,
-                  "torque between the wheels for the error of the turn rate");
+                  "differential wheel torque per yaw rate error");
   declared.number("turn_ki_Nm_per_rad", gains.turn_ki_Nm_per_rad, 0, 1e4,
-                  "torque between the wheels for the integral of that error");
-  declared.number("rate_filter_s", gains.rate_filter_s, 0, 1, "time constant of the low pass on the rate of the tilt");
-  declared.number("speed_filter_s", gains.speed_filter_s, 0, 1, "time constant of the low pass on speed and turn rate");
+                  "differential wheel torque per integral of that error");
+  declared.number("rate_filter_s", gains.rate_filter_s, 0, 1, "time constant of the low-pass filter of the tilt rate");
+  declared.number("speed_filter_s", gains.speed_filter_s, 0, 1, "time constant of the low-pass filter of speed and turn rate");
   declared.number("wheel_radius_m", gains.wheel_radius_m, 0.01, 10, "radius of its wheels");
   declared.number("track_m", gains.track_m, 0.01, 10, "distance between the wheels");
   declared.number("max_torque_Nm", gains.max_torque_Nm, 0.1, 1e4, "limit of the torque of each wheel");

@@ -17,7 +17,7 @@ class TiltMetric final : public Metric {
   static constexpr const char* meaning = "tilt of the first body of a vehicle";
   static std::vector<sim::FigureKind> figures() {
     return {{"max_deg", "deg", "largest angle between its z axis and the vertical"},
-            {"pitch_std_deg", "deg", "root mean square of the pitch about its mean"},
+            {"pitch_std_deg", "deg", "standard deviation of the pitch"},
             {"pitch_mean_deg", "deg", "mean pitch, positive with the nose down"},
             {"fell_s", "s", "simulated time when it tilted more than 45 degrees; none: it did not fall"}};
   }
@@ -51,7 +51,7 @@ class TiltMetric final : public Metric {
     archive(count_, mean_rad_, square_rad2_, max_rad_, fell_s_);
   }
   std::string why_none(const std::string& figure) const override {
-    return figure == "fell_s" && count_ > 0 ? "it did not fall" : "the vehicle was not there";
+    return figure == "fell_s" && count_ > 0 ? "it did not fall" : "the vehicle did not exist";
   }
 
   void add_figures(Figures& figures) const override {
