@@ -63,7 +63,7 @@ class LockstepService {
   LockstepService& operator=(const LockstepService&) = delete;
   ~LockstepService();
 
-  /// Returns the name of a link in texts: `the world's bus`, or `bus 'NAME'`.
+  /// Returns the name of a link for messages: `the world's bus`, or `bus 'NAME'`.
   const std::string& called(int link) const;
   /// Returns whether a client on a link must receive every message of this channel.
   bool has_receiver(std::string_view channel, int link = 0) const { return lockstep_.has_receiver(link, channel); }

@@ -28,7 +28,7 @@ class ClientInbox {
     std::uint64_t unnamed = 0;    ///< messages that no tick named, from senders that the simulator does not receive
   };
 
-  /// Returns whether ticks name the messages of a channel: all channels except those of the handshake and its reports.
+  /// Returns whether ticks list the messages of a channel: all channels except those of the handshake and its reports.
   static bool is_named(std::string_view channel);
   /// Adds a channel whose messages ticks name by its index.
   void add_channel(const std::string& channel);

@@ -122,7 +122,7 @@ class MicromodemProtocol : private MicromodemPending {
   /// not.
   void restart(sim::Time up);
   void receive(const MicromodemPacket& packet, const MicromodemArrival& arrival);
-  /// Handles the answer of a transponder (0: the first).
+  /// Handles the reply of a transponder, counted from 0.
   void beacon_answered(int beacon, sim::Time started);
 
   int address() const { return settings_.get("SRC"); }

@@ -3,6 +3,7 @@
 
 #include "sim/bus/utime_stamp.hpp"
 #include "sim/config/message_text.hpp"
+#include "sim/device/device_registry.hpp"
 #include "sim/director/action_run.hpp"
 #include "sim/director/stage.hpp"
 #include "sim/script/action_registry.hpp"
@@ -36,6 +37,7 @@ class PublishAction final : public Action {
   void check(const ActionCheck& check) override {
     const EncodeMessage& encode = check.world().encode_message;
     if (!encode) return check.error("messages cannot be encoded here");
+    check_device(check);
     Diagnostics found(check.entry().who);
     payload_ = encode(type_, value_, found);
     for (const std::string& line : found.lines()) check.diagnostics().error({}, "", line);
@@ -51,6 +53,19 @@ class PublishAction final : public Action {
   void add_channels(std::set<std::string>& channels) const override { channels.insert(channel_); }
 
  private:
+  /// Reports a message of a type that the device with this command channel does not take.
+  void check_device(const ActionCheck& check) const {
+    for (const VehicleInstance& vehicle : check.world().vehicles)
+      for (const DeviceConfig& device : vehicle.config->devices) {
+        if (device.device_type == nullptr || !device.device_type->takes_commands()) continue;
+        if (device_channel(check.world().channels, vehicle.name, device, ChannelKind::command) != channel_) continue;
+        const std::string accepted = device.device_type->command_messages;
+        if ((", " + accepted + ",").find(", " + type_ + ",") == std::string::npos)
+          check.error("device '" + vehicle.name + "/" + device.name + "' takes " + accepted + " on '" + channel_ +
+                      "', not '" + shortened(printable(type_)) + "'");
+      }
+  }
+
   void read_channel(ParamReader& in, const char* key) {
     in.read(key, channel_, "the message's channel, 1 to 63 characters");
     if (!in.has(key)) return;

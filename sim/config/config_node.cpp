@@ -42,7 +42,7 @@ std::string no_item_text(const ConfigNode& list, const std::string& list_name, c
     if (const std::string* name = name_of(item)) names.push_back(*name);
   std::string text = "'" + shortened(list_name) + "' has no item '" + shortened(key) + "'; ";
   if (names.empty() && !list.items.empty()) return text + "items: 1 to " + std::to_string(list.items.size());
-  return text + "items: " + list_text(names);
+  return text + "items: " + list_text(names) + did_you_mean(key, names);
 }
 
 /// Replaces ${names} below one node.

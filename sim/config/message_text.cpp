@@ -9,6 +9,7 @@
 #include <numeric>
 #include <utility>
 
+#include "sim/config/other_names.hpp"
 #include "sim/config/yaml_writer.hpp"
 
 namespace sim {
@@ -23,6 +24,15 @@ constexpr std::string_view units[] = {
     "dB",  "deg", "degC",    "degps", "dps", "ft", "g",   "h",     "hz",     "kHz", "kPa", "kg",  "km",
     "kmh", "kn",  "knots",   "kph",   "lx",  "m",  "m2",  "m3",    "min",    "mm",  "mph", "mps", "mps2",
     "ms",  "ns",  "percent", "ppm",   "psu", "px", "rad", "radps", "radps2", "rpm", "s",   "uT",  "us"};
+
+/// A unit as text, such as m/s for mps.
+std::string unit_text(std::string_view unit) {
+  constexpr std::pair<std::string_view, std::string_view> texts[] = {
+      {"mps", "m/s"}, {"mps2", "m/s^2"}, {"radps", "rad/s"}, {"radps2", "rad/s^2"}, {"degps", "deg/s"}, {"Nm", "N m"}};
+  for (const auto& [name, text] : texts)
+    if (name == unit) return std::string(text);
+  return std::string(unit);
+}
 
 /// A name without the unit at its end, and the unit; empty: it has none.
 std::pair<std::string_view, std::string_view> split_unit(std::string_view name) {
@@ -161,11 +171,18 @@ std::string closest_name(std::string_view misspelt, const std::vector<std::strin
 }
 
 std::string did_you_mean(std::string_view misspelt, const std::vector<std::string>& names) {
+  const auto is_there = [&](std::string_view name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  };
+  if (const std::string_view now = renamed_to(misspelt); is_there(now))
+    return "; write '" + std::string(now) + "' ('shoal upgrade' rewrites it)";
+  if (const std::string_view here = synonym_of(misspelt); is_there(here))
+    return "; did you mean '" + std::string(here) + "'?";
   const auto [stem, unit] = split_unit(misspelt);
   for (const std::string& name : names) {
     const auto [other_stem, other_unit] = split_unit(name);
     if (other_stem != stem || other_unit == unit) continue;
-    const std::string in_unit = unit.empty() || other_unit.empty() ? "" : ", in " + std::string(other_unit);
+    const std::string in_unit = unit.empty() || other_unit.empty() ? "" : ", in " + unit_text(other_unit);
     return "; did you mean '" + name + "'" + in_unit + "?";
   }
   const std::string meant = closest_name(misspelt, names);

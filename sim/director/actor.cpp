@@ -21,7 +21,7 @@ double Actor::progress_at(Time now) const {
   if (!moving_ || now <= since_) return from_;
   const double progress = from_ + direction_ * rate_ * to_seconds(now - since_);
   if (config_.ends == PathEnds::stop) return std::clamp(progress, 0.0, length);
-  const double period = config_.ends == PathEnds::bounce ? 2 * length : length;
+  const double period = config_.ends == PathEnds::reverse ? 2 * length : length;
   return progress - period * std::floor(progress / period);
 }
 
@@ -39,7 +39,7 @@ void Actor::command(ActorCommand command, Time now) {
   anchor(now);
   moving_ = command != ActorCommand::stop;
   if (command == ActorCommand::start || command == ActorCommand::stop) return;
-  // On the return path of a bounce only the position counts, not the number of passes.
+  // On the return path only the position counts, not the number of passes.
   if (from_ > path_.length()) from_ = 2 * path_.length() - from_;
   direction_ = command == ActorCommand::forward ? 1 : -1;
 }

@@ -33,7 +33,7 @@ class Actor {
   Path path_;
   double rate_;      ///< of the path parameter, per second
   Time since_{0};    ///< time of the last command
-  double from_ = 0;  ///< progress at the last command; bounce: up to twice the length, forward and back
+  double from_ = 0;  ///< progress at the last command; reverse: up to twice the length, forward and back
   int direction_ = 1;
   bool moving_ = true;
   // Body of the object, looked up by name again after entities were added or removed.

@@ -50,7 +50,7 @@ void ContactConfig::read(ParamReader& in) {
     between = {"any", "any"};
   }
   in.read("friction", friction, at_least(0), "Coulomb's coefficient of friction");
-  in.read("bounce", bounce, sim::between(0, 1), "coefficient of restitution");
+  in.read("restitution", restitution, sim::between(0, 1), "coefficient of restitution");
   in.read("restitution_velocity_mps", restitution_velocity_mps, at_least(0), "minimum impact speed for a bounce");
   in.read("soft_erp", soft_erp, sim::between(0, 1), "erp of these contacts, instead of the world's");
   in.read("soft_cfm", soft_cfm, sim::between(0, 1), "cfm of these contacts, instead of the world's");
@@ -70,7 +70,8 @@ Rule part_length() {
 void check_keys_of_shape(ParamReader& in, PartShape shape) {
   const std::string word(word_of(part_shape_words, shape));
   for (const char* key : keys_of_some_shapes())
-    if (in.has(key) && !has_key(shape, key)) in.error(key, std::string("'") + key + "' does not apply to shape " + word);
+    if (in.has(key) && !has_key(shape, key))
+      in.error(key, std::string("'") + key + "' does not apply to shape " + word);
 }
 
 }  // namespace
@@ -170,7 +171,7 @@ void JointAxisConfig::read(ParamReader& in) {
                              number_text(*high_stop));
   in.read("motor_velocity", motor_velocity, any_number(), "speed of the motor at the start, rad/s or m/s");
   in.read("motor_max_force", motor_max_force, at_least(0), "N m, or N of a slider; 0: no motor until a device sets it");
-  in.read("bounce", bounce, between(0, 1), "restitution at the stops");
+  in.read("restitution", restitution, between(0, 1), "restitution at the stops");
   in.read("erp", erp, between(0, 1), "error reduction of the joint, instead of the world's");
   in.read("cfm", cfm, between(0, 1), "softness of the motor");
   in.read("stop_erp", stop_erp, between(0, 1), "error reduction at the stops");

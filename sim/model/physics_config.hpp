@@ -50,8 +50,8 @@ struct PhysicsConfig {
 struct ContactConfig {
   std::vector<std::string> between = {"any", "any"};  ///< two names of materials, or `any`
   double friction = 0.8;                              ///< Coulomb friction coefficient (ODE's dContactApprox1)
-  double bounce = 0;                                  ///< coefficient of restitution, 0 to 1
-  double restitution_velocity_mps = 0.1;                   ///< minimum impact speed for a bounce
+  double restitution = 0;                             ///< coefficient of restitution, 0 to 1
+  double restitution_velocity_mps = 0.1;              ///< minimum impact speed for a bounce
   std::optional<double> soft_erp;                     ///< unset: erp of the world
   std::optional<double> soft_cfm;                     ///< unset: cfm of the world
   double rolling_friction_m = 0;                      ///< rolling resistance as a lever, m (ODE's rho)
@@ -116,7 +116,7 @@ struct JointAxisConfig {
   std::optional<double> high_stop;
   double motor_velocity = 0;   ///< rad/s, or m/s of a slider
   double motor_max_force = 0;  ///< N m, or N of a slider; 0: no motor
-  std::optional<double> bounce, cfm, stop_erp, stop_cfm, fudge_factor, suspension_erp, suspension_cfm, erp;
+  std::optional<double> restitution, cfm, stop_erp, stop_cfm, fudge_factor, suspension_erp, suspension_cfm, erp;
 
   void read(ParamReader& in);
 };

@@ -15,10 +15,10 @@ Surface make_surface(const ContactConfig& config) {
   p.mu = p.mu2 = config.friction;
   surface.friction = config.friction > 0;
   if (surface.friction) surface.rows += 2;
-  // Optional bounce, softness, rolling friction and slip.
-  if (config.bounce > 0) {
+  // Optional restitution, softness, rolling friction and slip.
+  if (config.restitution > 0) {
     p.mode |= dContactBounce;
-    p.bounce = config.bounce;
+    p.bounce = config.restitution;
     p.bounce_vel = config.restitution_velocity_mps;
   }
   if (config.soft_erp) {

@@ -149,7 +149,7 @@ void Joint::configure_axis(const JointAxisConfig& config, int axis) {
     if (value) set_parameter(parameter, *value, axis);
   };
   place_stops(config.low_stop, config.high_stop, axis);
-  set(dParamBounce, config.bounce);
+  set(dParamBounce, config.restitution);
   set(dParamCFM, config.cfm);
   set(dParamERP, config.erp);
   set(dParamStopERP, config.stop_erp);

@@ -56,6 +56,13 @@ const ConfigNode* value_of(const ProgramDeclaration& declaration, const ConfigNo
   return arg != nullptr && arg->initial ? &*arg->initial : nullptr;
 }
 
+/// Whether a missing argument is there under a misspelt name, which has been reported.
+bool is_misspelt(const ProgramDeclaration& declaration, const ConfigNode& args, const std::string& name) {
+  return std::any_of(args.entries.begin(), args.entries.end(), [&](const ConfigNode::Entry& entry) {
+    return declaration.find(entry.key) == nullptr && !did_you_mean(entry.key, {name}).empty();
+  });
+}
+
 void check_unknown(const ProgramDeclaration& declaration, const ConfigNode& args, const std::string& who,
                    Diagnostics& diagnostics) {
   constexpr std::size_t max_unknown = 20;
@@ -77,7 +84,8 @@ void check_together(const ProgramDeclaration& declaration, const ConfigNode& arg
                     const std::string& who, Diagnostics& diagnostics) {
   for (const ArgDeclaration& arg : declaration.args) {
     const ConfigNode* value = args.find(arg.name);
-    if (arg.required && value == nullptr) diagnostics.error(place, who, "missing argument '" + arg.name + "'");
+    if (arg.required && value == nullptr && !is_misspelt(declaration, args, arg.name))
+      diagnostics.error(place, who, "missing argument '" + arg.name + "'");
     if (value == nullptr) continue;
     for (const std::string& needed : arg.needs)
       if (args.find(needed) == nullptr)

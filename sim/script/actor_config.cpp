@@ -41,7 +41,7 @@ void ActorConfig::read(ParamReader& in) {
   if (in.has("rpy_deg")) rpy_rad = fixed_rpy_rad;
   // Motion along the path.
   in.read("speed_mps", speed_mps, above_to(0, 1000), "waypoints, spline: along the path");
-  in.read_choice("ends", ends, {{"loop", PathEnds::loop}, {"bounce", PathEnds::bounce}, {"stop", PathEnds::stop}},
+  in.read_choice("ends", ends, {{"loop", PathEnds::loop}, {"reverse", PathEnds::reverse}, {"stop", PathEnds::stop}},
                  "at the end: continue with the first point, return along the path, or stop");
   in.read("start_s", start_s, between(0, 1e9), "start time; it waits at the first point until then");
   in.read_choice("starts", starts, {{"moving", ActorStart::moving}, {"waiting", ActorStart::waiting}},

@@ -12,7 +12,7 @@
 namespace sim {
 
 /// Behaviour of an actor at the end of its path.
-enum class PathEnds { loop, bounce, stop };
+enum class PathEnds { loop, reverse, stop };
 
 enum class ActorCommand {
   start,    ///< continue in the previous direction

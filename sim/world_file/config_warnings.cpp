@@ -60,14 +60,14 @@ class ConfigCheck {
       if (!event.fires_by_itself() && !triggered.contains(event.name))
         warnings_.warn(
             event.place, "event '" + event.name + "'",
-            "it has no 'at', 'every' or 'when', and no event triggers it: only a request can, `shoal control "
+            "it has no 'at', 'every' or 'when', and no event triggers it: only a request can fire it, `shoal control "
             "do`");
       const bool late = !event.at_s.empty() &&
                         std::all_of(event.at_s.begin(), event.at_s.end(), [&](double at_s) { return at_s > end_s_; });
       if (end_s_ > 0 && late)
         warnings_.warn(event.place, "event '" + event.name + "'",
-                       "it is for " + number_text(*std::min_element(event.at_s.begin(), event.at_s.end())) +
-                           " s, and the run ends at " + number_text(end_s_) + " s");
+                       "it fires at " + number_text(*std::min_element(event.at_s.begin(), event.at_s.end())) +
+                           " s, but the run ends at " + number_text(end_s_) + " s");
     }
   }
 

@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/world_file/file_kind.hpp"
 
+#include <filesystem>
+#include <fstream>
+
 namespace sim {
 
 namespace {
+
+constexpr std::size_t max_kind_bytes = std::size_t{1} << 20;
 
 const char* name_of(FileKind kind) {
   switch (kind) {
@@ -33,6 +38,15 @@ const char* advice_for(FileKind kind) {
   return "`shoal check FILE` checks it";
 }
 
+/// `a world, not a vehicle`; empty: it is of this kind, or no key decides.
+std::string other_kind_text(const ConfigNode& root, FileKind expected) {
+  const FileKind kind = kind_of_file(root);
+  // A study without its keys is a study with missing keys.
+  const bool is_evident = kind != FileKind::world || root.find("vehicles") != nullptr;
+  if (kind == expected || !is_evident) return {};
+  return std::string(name_of(kind)) + ", not " + name_of(expected);
+}
+
 }  // namespace
 
 FileKind kind_of_file(const ConfigNode& root) {
@@ -44,12 +58,19 @@ FileKind kind_of_file(const ConfigNode& root) {
 }
 
 void require_file_kind(const ConfigNode& root, FileKind expected, const SourcePlace& file) {
-  const FileKind kind = kind_of_file(root);
-  // A study without its keys is a study with missing keys.
-  const bool is_evident = kind != FileKind::world || root.find("vehicles") != nullptr;
-  if (kind == expected || !is_evident) return;
-  throw_config_error(file, "",
-                     std::string("this is ") + name_of(kind) + ", not " + name_of(expected) + "; " + advice_for(kind));
+  const std::string text = other_kind_text(root, expected);
+  if (!text.empty()) throw_config_error(file, "", "this is " + text + "; " + advice_for(kind_of_file(root)));
+}
+
+std::string other_kind(const std::string& path, FileKind expected) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) return {};
+  std::ifstream in(path, std::ios::binary);
+  std::string text(max_kind_bytes, '\0');
+  in.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(in.gcount()));
+  Diagnostics ignored;
+  return other_kind_text(parse_config_text(text, path, ignored), expected);
 }
 
 }  // namespace sim

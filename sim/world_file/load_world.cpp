@@ -343,17 +343,17 @@ namespace {
 
 /// Returns the whole contents of a pipe or device.
 std::string text_of(const std::string& path) {
-  constexpr std::size_t max_bytes = std::size_t{64} << 20;
+  constexpr std::size_t max_world_bytes = std::size_t{64} << 20;
   const SourcePlace place{intern_file_name(path), 0, 0};
   std::ifstream in(path, std::ios::binary);
   if (!in) throw_config_error(place, "", "cannot read the file");
   std::string text;
   char block[1 << 16];
-  while (in && text.size() <= max_bytes) {
+  while (in && text.size() <= max_world_bytes) {
     in.read(block, sizeof block);
     text.append(block, static_cast<std::size_t>(in.gcount()));
   }
-  if (text.size() > max_bytes) throw_config_error(place, "", "the file is larger than 64 MB");
+  if (text.size() > max_world_bytes) throw_config_error(place, "", "the file is larger than 64 MB");
   return text;
 }
 

@@ -43,7 +43,8 @@ void MetricConfig::read(ParamReader& in) {
                "name of the metric; gives NAME.FIGURE for each figure of its type, see docs/guides/scoring.md");
   // Report files of version 0.1.
   if (!in.describing() && !in.has("type")) {
-    in.error("missing key 'type'; write 'type: " + type_of_old_files + "'");
+    in.error("missing key 'type'; " +
+             (in.has("channel") ? "write 'type: " + type_of_old_files + "'" : "types: " + list_text(registry.words())));
     // Further errors, of keys and of rules that name its figures, would obscure this one.
     for (const ConfigNode::Entry& entry : in.node()->entries) in.child(entry.key.c_str());
     kind = registry.find(type_of_old_files);

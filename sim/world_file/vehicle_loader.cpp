@@ -11,6 +11,7 @@
 #include "sim/config/shipped_files.hpp"
 #include "sim/device/device_registry.hpp"
 #include "sim/world_file/data_files.hpp"
+#include "sim/world_file/file_kind.hpp"
 
 namespace sim {
 
@@ -145,6 +146,10 @@ const ConfigNode* VehicleLoader::model_of(const VehicleEntry& entry, const std::
     return nullptr;
   }
   if (!may_read(entry, path, who)) return nullptr;
+  if (const std::string other = files_.contains(path) ? "" : other_kind(path, FileKind::vehicle); !other.empty()) {
+    diagnostics_.error(entry.file_place, who, "'" + shortened(entry.file) + "' is " + other);
+    return nullptr;
+  }
   auto [at, fresh] = files_.try_emplace(path);
   if (fresh) at->second = load_config_file(path, diagnostics_, Origin::file);
   return at->second.kind == ConfigNode::Kind::map ? &at->second : nullptr;

@@ -9,7 +9,9 @@
 #include <memory>
 #include <stdexcept>
 
+#include "messages/yaml/message_writer.hpp"
 #include "sim/config/shipped_files.hpp"
+#include "sim/world_file/load_world.hpp"
 #include "tools/shoal/commands.hpp"
 #include "tools/shoal/output_file.hpp"
 #include "tools/shoal/start_files.hpp"
@@ -75,12 +77,30 @@ std::string vehicle_name(const NewArguments& arguments) {
   return stem + (std::isdigit(static_cast<unsigned char>(stem.back())) != 0 ? "_1" : "1");
 }
 
+/// Throws UsageError when the world cannot be loaded with the vehicle of the command line.
+void check_vehicle(const NewArguments& arguments, const std::string& text) {
+  sim::LoadOptions options;
+  options.encode_message = shoal::encode_own_message;
+  sim::Warnings ignored;  // `shoal check` shows them
+  options.warnings = &ignored;
+  const std::string path = (fs::path(arguments.folder) / (arguments.name + ".yaml")).lexically_normal().string();
+  try {
+    sim::load_world_text(text, path, options);
+  } catch (const sim::ConfigError& error) {
+    const std::string hint = arguments.under_water ? "; such a world needs a vehicle with an autopilot" : "";
+    throw command_line::UsageError("--vehicle '" + arguments.vehicle + "' does not fit this world" + hint + ": " +
+                                   error.lines().front());
+  }
+}
+
 int new_world(const NewArguments& arguments) {
   const std::string vehicle = vehicle_file(arguments);
   const std::string schema = schema_file("world");
   const std::string text =
       arguments.under_water ? start_sea(arguments.name, vehicle, schema) : start_world(arguments.name, vehicle, schema);
-  return write_yaml(arguments, replaced(text, arguments.under_water ? "auv1" : "rover1", vehicle_name(arguments)));
+  const std::string named = replaced(text, arguments.under_water ? "auv1" : "rover1", vehicle_name(arguments));
+  if (!arguments.vehicle.empty()) check_vehicle(arguments, named);
+  return write_yaml(arguments, named);
 }
 
 int new_program(const NewArguments& arguments) {

@@ -123,7 +123,7 @@ TEST(Bumper, ATouchBetweenTwoSamplesIsReported) {
   // Ten samples a second; the sled bounces off at once.
   std::string world = sled_world(", parts: [base/front], rate_hz: 10, phase_s: 0");
   world.replace(world.find("[{between: [slick, any], friction: 0}]"), 38,
-                "[{between: [slick, any], friction: 0, bounce: 1}]");
+                "[{between: [slick, any], friction: 0, restitution: 1}]");
   test::TestWorld test(world);
   test::Listener<shoal::bumper_t> reports(test, "s1.bumper");
   push(test, 1);

@@ -79,7 +79,7 @@ TEST(Contact, BallBouncesToAQuarterOfItsHeight) {
   PhysicsConfig config;
   config.step_s = 0.0005;
   ContactConfig contact;
-  contact.bounce = 0.5;
+  contact.restitution = 0.5;
   const auto world = make_world(config, {contact});
   add_ground(*world);
   const sim::Body& ball = add(*world, body("ball", {sphere(0.1, 1)}), translation(0, 0, 1.1));

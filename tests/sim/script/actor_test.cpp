@@ -37,7 +37,7 @@ TEST(Actor, IsOnItsPathAtEachOfTenThousandSteps) {
 }
 
 TEST(Actor, ThatBouncesComesTheSameWayBack) {
-  test::TestWorld test(actor_world("points: [[0, 0, 1], [4, 0, 1]], speed_mps: 1, ends: bounce"));
+  test::TestWorld test(actor_world("points: [[0, 0, 1], [4, 0, 1]], speed_mps: 1, ends: reverse"));
   test.run_for(5);
   EXPECT_NEAR(cart(test).translation().x(), 3, 1e-9);
   test.run_for(4);  // 9 m of 8 there and back

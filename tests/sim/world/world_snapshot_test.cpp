@@ -35,7 +35,7 @@ objects:
   - {name: crate, position_m: [0, 4, 0.3], count: 5, placement: {pattern: line, spacing_m: 0.3},
      parts: [{shape: box, size_m: [0.4, 0.4, 0.4], mass_kg: 2}]}
   - {name: late, present: false, position_m: [2, 3, 1], parts: [{shape: sphere, radius_m: 0.2, mass_kg: 1}]}
-actors: [{name: porter, object: gate, points: [[6, 0, 0.5], [6, 3, 0.5]], ends: bounce, speed_mps: 0.7}]
+actors: [{name: porter, object: gate, points: [[6, 0, 0.5], [6, 3, 0.5]], ends: reverse, speed_mps: 0.7}]
 zones: [{name: dock, shape: box, position_m: [0, 0, 0], size_m: [3, 3, 3], finish: true, speed_limit_mps: 0.1}]
 vehicles:
   - name: rover

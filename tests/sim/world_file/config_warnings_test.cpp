@@ -87,7 +87,7 @@ TEST(ConfigWarnings, ReportMetricsAndEventsAfterTheEnd) {
                   gps, "metrics: [{name: error, type: position_error, vehicle: r1, channel: r1.gps, from_s: 300}]\n")),
               HasSubstr("'from_s' 300 is not before the end of the run at 300 s: nothing counts"));
   EXPECT_THAT(warnings_of_file(world(gps, "events: [{name: late, at: [310, 320], do: [{log: late}]}]\n")),
-              HasSubstr("event 'late': it is for 310 s, and the run ends at 300 s"));
+              HasSubstr("event 'late': it fires at 310 s, but the run ends at 300 s"));
   EXPECT_EQ(warnings_of_file(world(gps, "events: [{name: some, at: [10, 320], do: [{log: late}]}]\n")), "");
 }
 

@@ -38,7 +38,7 @@ class CoopAuv {
     MarineEkf::Params filter;
     bool use_ranges = true;
     bool steer_by_dead_reckoning = false;
-    double sound_speed_mps = 1500;   ///< assumed for ranges
+    double sound_speed_mps = 1500;   ///< converts travel times to ranges
     double range_std_m = 1.0;        ///< of one range
     double sound_speed_std = 0.001;  ///< of the range
     double yaw_offset_rad = 0;       ///< added to the measured heading

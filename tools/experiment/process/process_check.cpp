@@ -168,7 +168,7 @@ void check_names(const std::vector<Program>& programs, sim::Warnings& warnings) 
     const std::string &client = program.config().client, vehicle = program.vehicle();
     if (program.is_shipped() && !client.empty() && !vehicle.empty() && client != vehicle)
       warnings.warn(program.place("name"), program.who(),
-                    "the run waits for client '" + client + "', and it joins as '" + vehicle + "'");
+                    "the run waits for client '" + client + "', but its program joins as '" + vehicle + "'");
   }
 }
 

@@ -21,7 +21,7 @@ std::string no_declaration(const std::string& program, const std::vector<std::st
   const std::string name = sim::shortened(sim::printable(program));
   std::string text = "no declaration '" + name + sim::declaration_ending + "'";
   if (program.find('/') == std::string::npos) {
-    text += " in " + sim::list_text(folders, 4);
+    text += " beside shoal or in PATH";
     const std::string meant =
         folders.empty() ? "" : sim::closest_name(program, sim::declared_programs(folders.front()));
     if (!meant.empty()) return text + "; did you mean '" + meant + "'?";

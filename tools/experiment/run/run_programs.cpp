@@ -16,7 +16,9 @@ std::vector<std::string> RunPrograms::start() {
   std::vector<std::string> awaited = options_.await;
   if (!options_.launch) {
     if (!config_.processes.empty() && !options_.quiet)
-      spdlog::info("the world names {} processes; --launch starts them", config_.processes.size());
+      spdlog::info("the world names {} {}; --launch starts {}", config_.processes.size(),
+                   config_.processes.size() == 1 ? "process" : "processes",
+                   config_.processes.size() == 1 ? "it" : "them");
     return awaited;
   }
   for (sim::ProcessConfig process : config_.processes) {

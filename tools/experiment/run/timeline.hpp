@@ -5,7 +5,7 @@
 
 namespace tools {
 
-/// Interface of a run for moves of its world in time.
+/// Interface to rewind and restore a run.
 class Timeline {
  public:
   virtual ~Timeline() = default;

@@ -275,16 +275,34 @@ std::vector<std::int64_t> parse_seeds(const std::string& text) {
 namespace {
 
 /// Checks that the world is in the study's folder or the one above, because errors quote its text.
+/// Names of the YAML files in the folder of a file.
+std::vector<std::string> files_beside(const std::string& file) {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(fs::path(file).parent_path() / ".", error))
+    if (entry.path().extension() == ".yaml") names.push_back(entry.path().filename().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
 void check_world_file(const std::string& world, const std::string& study, const sim::ConfigNode& root,
                       const sim::LoadOptions& load) {
   const fs::path folder = fs::path(study).parent_path();
   std::vector<std::string> folders{folder.string(), (folder / "..").string()};
   if (!sim::shipped_folder().empty()) folders.push_back(sim::shipped_folder() + "/worlds");
   const sim::FileAccess access(std::move(folders), load.allow_paths, {});
-  if (!load.only_own_files || access.may_read(world)) return;
-  sim::throw_config_error(root.find("world")->place, "",
-                          "'world' must lie below the folder of the study or the one above it, be a shipped one, or "
-                          "lie below a folder given with --allow-path");
+  const sim::SourcePlace& place = root.find("world")->place;
+  if (load.only_own_files && !access.may_read(world))
+    sim::throw_config_error(place, "",
+                            "'world' must lie below the folder of the study or the one above it, be a shipped one, or "
+                            "lie below a folder given with --allow-path");
+  std::error_code error;
+  if (!fs::exists(world, error))
+    sim::throw_config_error(place, "",
+                            "'world': there is no file '" + sim::shortened(sim::printable(world)) + "'" +
+                                sim::did_you_mean(fs::path(world).filename().string(), files_beside(world)));
+  if (const std::string other = sim::other_kind(world, sim::FileKind::world); !other.empty())
+    sim::throw_config_error(place, "", "'world': '" + sim::shortened(sim::printable(world)) + "' is " + other);
 }
 
 /// Loads the world of a case.  Errors in a value of `set:` name its place in the study.

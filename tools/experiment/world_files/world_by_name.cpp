@@ -48,6 +48,14 @@ std::vector<ShippedFile> named_files(ShippedKind kind) {
   return files;
 }
 
+/// What to do about a name of which there is no file of the right kind.
+std::string advice(const std::string& name, const std::string& meant, const std::string& lists) {
+  for (const ShippedKind kind : {ShippedKind::world, ShippedKind::vehicle, ShippedKind::study})
+    for (const ShippedFile& file : named_files(kind))
+      if (file.name == name) return "'" + name + "' is a shipped " + words_of(kind).one;
+  return meant.empty() ? "see " + lists : "did you mean '" + meant + "'?";
+}
+
 [[noreturn]] void refuse_name(std::initializer_list<ShippedKind> kinds, const std::string& given) {
   std::string what, lists;
   std::vector<std::string> names;
@@ -58,10 +66,11 @@ std::vector<ShippedFile> named_files(ShippedKind kind) {
     for (const ShippedFile& file : named_files(kind)) names.push_back(file.name);
   }
   const std::string name = sim::shortened(sim::printable(given));
-  const std::string meant = sim::closest_name(given, names);
+  const std::string stem = fs::path(given).stem().string();
+  const std::string file = fs::path(given).has_extension() ? "" : ", nor '" + name + ending + "'";
   sim::throw_config_error({}, "'" + name + "'",
-                          "there is no such file here, nor '" + name + ending + "', nor a shipped " + what +
-                              " of this name; " + (meant.empty() ? "see " + lists : "did you mean '" + meant + "'?"));
+                          "there is no such file here" + file + ", nor a shipped " + what + " of this name; " +
+                              advice(stem, sim::closest_name(stem, names), lists));
 }
 
 /// A shipped file by its path in the sources, such as `worlds/coop_land.yaml`.
@@ -86,13 +95,16 @@ std::vector<ShippedFile> shipped_files(ShippedKind kind) {
 
 std::string file_by_name(std::initializer_list<ShippedKind> kinds, const std::string& given) {
   std::error_code error;
-  const bool bare = !given.empty() && given.find('/') == std::string::npos && !fs::path(given).has_extension();
+  const fs::path path(given);
+  const bool bare =
+      !given.empty() && given.find('/') == std::string::npos && (!path.has_extension() || path.extension() == ending);
   if (fs::is_regular_file(given, error)) return given;
   if (!bare) return shipped_path(kinds, given).value_or(given);
+  if (fs::exists(given, error)) return given;  // a folder or a pipe, which its reader reports
   if (fs::is_regular_file(given + ending, error)) return given + ending;
   for (const ShippedKind kind : kinds)
     for (const ShippedFile& file : named_files(kind))
-      if (file.name == given) return file.path;
+      if (file.name == path.stem()) return file.path;
   refuse_name(kinds, given);
 }
 

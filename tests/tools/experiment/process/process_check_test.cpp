@@ -86,7 +86,7 @@ TEST(ProcessCheck, ReportsSomeOneToFollowWhoNeverSends) {
 
 TEST(ProcessCheck, ReportsAClientThatJoinsByAnotherName) {
   EXPECT_THAT(warnings_of({{"boat1", sender("boat2", 0, 2)}}),
-              HasSubstr("process 'boat1': the run waits for client 'boat1', and it joins as 'boat2'"));
+              HasSubstr("process 'boat1': the run waits for client 'boat1', but its program joins as 'boat2'"));
 }
 
 TEST(ProcessCheck, ReportsAMetricOfAChannelOnWhichNoneOfThemPublishes) {

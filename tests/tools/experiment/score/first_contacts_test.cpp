@@ -45,7 +45,8 @@ struct WatchedWorld {
 /// Balls of 0.5 m radius in free space along x, `count` of them, `apart_m` from middle to middle; a rock at x = -3.
 std::string balls(int count, double apart_m) {
   std::string yaml =
-      "shoal: 1\nphysics: {step_s: 0.01, gravity_mps2: 0}\ncontacts: [{between: [any, any], bounce: 1, friction: 0, "
+      "shoal: 1\nphysics: {step_s: 0.01, gravity_mps2: 0}\ncontacts: [{between: [any, any], restitution: 1, friction: "
+      "0, "
       "restitution_velocity_mps: 0.01}]\n"
       "objects: [{name: rock, fixed: true, position_m: [-3, 0, 0], parts: [{shape: box}]}]\nvehicles:\n";
   for (int i = 0; i < count; ++i)
@@ -94,7 +95,7 @@ TEST(FirstContacts, LeaveOutWheelsOnTheFloor) {
 TEST(FirstContacts, LeaveOutWhatAVehicleStandsOn) {
   std::string yaml = balls(1, 0);
   yaml.replace(yaml.find("gravity_mps2: 0"), 15, "gravity_mps2: 9.8");
-  yaml.replace(yaml.find("bounce: 1"), 9, "bounce: 0");
+  yaml.replace(yaml.find("restitution: 1"), 14, "restitution: 0");
   yaml.replace(yaml.find("[-3, 0, 0]"), 10, "[0, 0, -1]");
   WatchedWorld watched(yaml);
   watched.run_for(1);
@@ -130,7 +131,7 @@ TEST(FirstContacts, GoBackWithTheWorld) {
 TEST(FirstContacts, CountAFallThatEndsRightAfterAWayBack) {
   std::string yaml = balls(1, 0);
   yaml.replace(yaml.find("gravity_mps2: 0"), 15, "gravity_mps2: 9.8");
-  yaml.replace(yaml.find("bounce: 1"), 9, "bounce: 0");
+  yaml.replace(yaml.find("restitution: 1"), 14, "restitution: 0");
   yaml.replace(yaml.find("[-3, 0, 0]"), 10, "[0, 0, -2]");  // the ball falls 1 m, for 0.45 s
   WatchedWorld watched(yaml);
   watched.run_for(0.4);

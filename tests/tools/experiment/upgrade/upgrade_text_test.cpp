@@ -379,13 +379,30 @@ TEST(UpgradeOfNames, RenamesMetricsFiguresChannelsAndKeysOfVersion01) {
             "metrics: [{name: lean, type: tilt, vehicle: v}, {name: m, type: messages, channel: sim.inputs}]\n"
             "events: [{when: message on sim.audit, do: [{log: lean}]}]\n"
             "pass: [lean.max_deg < 30, c.max_gap_s < 1, c.max_gap_s < 1]\n");
-  EXPECT_EQ(upgraded("world: living_warehouse\nfigures: [passed, c.longest_gap_s, c.longest_gap_s_too]\n"
-                     "pictures: [{name: gap, figure: c.longest_gap_s}]\n"
-                     "pass: [max(a.c.longest_gap_s) < 2, {case: a, figure: c.longest_gap_s, statistic: max, below: 2}]\n",
-                     FileKind::study),
-            "world: dynamic_warehouse\nfigures: [passed, c.max_gap_s, c.longest_gap_s_too]\n"
-            "plots: [{name: gap, figure: c.max_gap_s}]\n"
-            "pass: [max(a.c.max_gap_s) < 2, max(a.c.max_gap_s) < 2]\n");
+  EXPECT_EQ(
+      upgraded("world: ../living_warehouse.yaml\nfigures: [passed, c.longest_gap_s, c.longest_gap_s_too]\n"
+               "pictures: [{name: gap, figure: c.longest_gap_s}]\n"
+               "pass: [max(a.c.longest_gap_s) < 2, {case: a, figure: c.longest_gap_s, statistic: max, below: 2}]\n",
+               FileKind::study),
+      "world: ../dynamic_warehouse.yaml\nfigures: [passed, c.max_gap_s, c.longest_gap_s_too]\n"
+      "plots: [{name: gap, figure: c.max_gap_s}]\n"
+      "pass: [max(a.c.max_gap_s) < 2, max(a.c.max_gap_s) < 2]\n");
+}
+
+TEST(UpgradeOfNames, RenamesKeysOfDevicesMaterialsContactsAndActors) {
+  EXPECT_EQ(upgraded("devices: [{type: odometry, ticks_per_turn: 9}, {type: imu, bandwidth_hz: 0}]\n"
+                     "materials: [{name: glass, lets_through: [laser]}]\n"
+                     "contacts: [{between: [a, b], bounce: 0.5, bounce_velocity_mps: 1}]\n"
+                     "joints: [{name: j, bounce: 1, axis2: {bounce: 0}}]\n",
+                     FileKind::vehicle),
+            "devices: [{type: odometry, ticks_per_revolution: 9}, {type: imu, bandwidth_Hz: unlimited}]\n"
+            "materials: [{name: glass, transparent_to: [laser]}]\n"
+            "contacts: [{between: [a, b], restitution: 0.5, restitution_velocity_mps: 1}]\n"
+            "joints: [{name: j, restitution: 1, axis2: {restitution: 0}}]\n");
+  EXPECT_EQ(upgraded("vehicles: [{overrides: {devices.imu.bandwidth_hz: 40}}]\nacoustics: {inaudible_dB: 3}\n"
+                     "actors: [{name: a, ends: bounce}]\npass: [t.rms_deg < 3]\n"),
+            "vehicles: [{overrides: {devices.imu.bandwidth_Hz: 40}}]\nacoustics: {negligible_dB: 3}\n"
+            "actors: [{name: a, ends: reverse}]\npass: [t.pitch_std_deg < 3]\n");
 }
 
 TEST(UpgradeOfNames, RefusesAKeyThatIsThereUnderBothNames) {
