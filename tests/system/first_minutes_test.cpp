@@ -180,4 +180,35 @@ TEST(Waiting, ARequestMayBeMadeBeforeTheRunHasStarted) {
   EXPECT_EQ(run.wait(), 0) << run.errors();
 }
 
+TEST(FileKinds, AreToldApartWithTheCommandForEach) {
+  const ScratchFolder folder;
+  const auto errors = [](const std::vector<std::string>& arguments) {
+    const Ended ended = run_shoal(arguments);
+    EXPECT_EQ(ended.exit_code, 2);
+    return ended.errors;
+  };
+  const std::string study = source("worlds/studies/coop_land.yaml"), vehicle = source("vehicles/rover.yaml");
+  EXPECT_EQ(errors({"run", study}), study + ": this is a study, not a world; `shoal study FILE` runs it\n");
+  EXPECT_THAT(errors({"run", vehicle}), HasSubstr(": this is a vehicle, not a world; "));
+  EXPECT_THAT(errors({"study", source("worlds/minimal.yaml")}), HasSubstr(": this is a world, not a study; "));
+  EXPECT_THAT(errors({"run", "rover"}), HasSubstr("; 'rover' is a shipped vehicle\n"));
+
+  write_file(folder.file("a.yaml"), "shoal: 1\nvehicles:\n  - {name: r, file: b.yaml}\n");
+  write_file(folder.file("b.yaml"), "shoal: 1\nvehicles: []\n");
+  EXPECT_EQ(errors({"check", folder.file("a.yaml")}),
+            folder.file("a.yaml") + ":3:21: vehicle 'r': 'b.yaml' is a world, not a vehicle\n");
+  write_file(folder.file("s.yaml"), "shoal: 1\nstudy: s\nworld: c.yaml\ncases: [{name: x}]\n");
+  EXPECT_EQ(errors({"check", folder.file("s.yaml")}), folder.file("s.yaml") + ":3:8: 'world': there is no file '" +
+                                                          folder.file("c.yaml") + "'; did you mean 'a.yaml'?\n");
+}
+
+TEST(New, WritesNoWorldThatItsVehicleDoesNotFit) {
+  const ScratchFolder folder;
+  const Ended ended =
+      run_shoal({"new", "world", "bay", "--under-water", "--vehicle", "remus100.yaml", "--folder", folder.file("")});
+  EXPECT_EQ(ended.exit_code, 2);
+  EXPECT_THAT(ended.errors, HasSubstr("does not fit this world; such a world needs a vehicle with an autopilot: "));
+  EXPECT_FALSE(std::filesystem::exists(folder.file("bay.yaml")));
+}
+
 }  // namespace

@@ -324,6 +324,9 @@ TEST(RunAction, SaysWhatIsWrongInOneLine) {
               testing::HasSubstr("'body' cannot change while the device runs"));
   EXPECT_THAT(failure(test.world, "{publish: {channel: x, type: shoal.twist_command_t, value: {forward: 1}}}"),
               testing::HasSubstr("shoal.twist_command_t: unknown member 'forward'"));
+  EXPECT_THAT(failure(test.world, "{publish: {channel: r1.drive.cmd, type: shoal.gps_data_t}}"),
+              testing::AllOf(testing::HasSubstr("device 'r1/drive' takes shoal.twist_command_t"),
+                             testing::HasSubstr("on 'r1.drive.cmd', not 'shoal.gps_data_t'")));
 }
 
 TEST(World, WithEverythingOnHasTheSameHashesTwice) {
