@@ -32,7 +32,7 @@ void ActorConfig::read(ParamReader& in) {
   in.read_choice("path", path,
                  {{"waypoints", PathKind::waypoints}, {"spline", PathKind::spline}, {"timed", PathKind::timed}},
                  "straight lines; a smooth curve through the points; poses at times");
-  read_points(in, "points", points_m, 3, "waypoints, spline: points of the path");
+  read_points(in, "points", points_m, 3, "waypoints, spline: positions to pass");
   std::vector<ReadTimedPose> timed;
   in.read_list("poses", timed, "pose", "timed: poses at times, linear in between");
   poses.assign(timed.begin(), timed.end());

@@ -120,6 +120,7 @@ TEST(New, TouchesNoFileThatIsThere) {
 
 TEST(New, NamesTheVehicleOfAWorldAfterItsFile) {
   const ScratchFolder folder;
+  ASSERT_EQ(shoal_in(folder.file(""), "new vehicle digger").exit_code, 0);
   for (const auto& [vehicle, name] : {std::pair<std::string, std::string>{"digger.yaml", "digger1"},
                                       {"digger", "digger1"},
                                       {"remus100", "remus100_1"}}) {
@@ -197,7 +198,7 @@ TEST(FileKinds, AreToldApartWithTheCommandForEach) {
   write_file(folder.file("b.yaml"), "shoal: 1\nvehicles: []\n");
   EXPECT_EQ(errors({"check", folder.file("a.yaml")}),
             folder.file("a.yaml") + ":3:21: vehicle 'r': 'b.yaml' is a world, not a vehicle\n");
-  write_file(folder.file("s.yaml"), "shoal: 1\nstudy: s\nworld: c.yaml\ncases: [{name: x}]\n");
+  write_file(folder.file("s.yaml"), "shoal: 1\nstudy: s\nworld: c.yaml\nseeds: 1-2\ncases: [{name: x}]\n");
   EXPECT_EQ(errors({"check", folder.file("s.yaml")}), folder.file("s.yaml") + ":3:8: 'world': there is no file '" +
                                                           folder.file("c.yaml") + "'; did you mean 'a.yaml'?\n");
 }

@@ -120,7 +120,7 @@ TEST(Water, BadColumnsAreRefused) {
               HasSubstr("'density_kgpm3' must be in all rows"));
   EXPECT_THAT(error_of("water: {density: eos80, density_kgpm3: 1000}"), HasSubstr("leave out 'density_kgpm3'"));
   EXPECT_THAT(error_of("water: {temperature_C: 4, profile: [{depth_m: 0}]}"),
-              HasSubstr("not for water with a 'profile'"));
+              HasSubstr("does not apply to water with a 'profile'"));
   EXPECT_THAT(error_of("waves: {type: jonswap}"), HasSubstr("'waves' needs 'water'"));
 }
 

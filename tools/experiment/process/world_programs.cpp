@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/experiment/process/world_programs.hpp"
 
+#include <algorithm>
+
 #include "sim/config/message_text.hpp"
 #include "sim/program/find_program.hpp"
 #include "sim/program/program_args.hpp"
@@ -21,7 +23,10 @@ std::string no_declaration(const std::string& program, const std::vector<std::st
   const std::string name = sim::shortened(sim::printable(program));
   std::string text = "no declaration '" + name + sim::declaration_ending + "'";
   if (program.find('/') == std::string::npos) {
-    text += " beside shoal or in PATH";
+    std::vector<std::string> looked;  // PATH may name a folder twice
+    for (const std::string& folder : folders)
+      if (std::find(looked.begin(), looked.end(), folder) == looked.end()) looked.push_back(folder);
+    text += " in " + sim::list_text(looked, 4);
     const std::string meant =
         folders.empty() ? "" : sim::closest_name(program, sim::declared_programs(folders.front()));
     if (!meant.empty()) return text + "; did you mean '" + meant + "'?";

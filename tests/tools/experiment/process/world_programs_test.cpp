@@ -27,7 +27,9 @@ class WorldPrograms : public testing::Test {
   ~WorldPrograms() override { fs::remove_all(folder_); }
 
   void write(const std::string& name, const std::string& args) {
-    std::ofstream(folder_ / (name + ".args.yaml")) << "shoal_args: 1\nprogram: " << fs::path(name).filename().string() << "\n" << args;
+    std::ofstream(folder_ / (name + ".args.yaml"))
+        << "shoal_args: 1\nprogram: " << fs::path(name).filename().string() << "\n"
+        << args;
   }
   sim::LoadedWorld load(const std::string& processes, const std::vector<std::string>& sets = {}) {
     return sim::load_world_text("shoal: 1\nprocesses:\n" + processes, "worlds/test.yaml", {sets, {}});
@@ -64,8 +66,8 @@ TEST_F(WorldPrograms, WrongArgumentsAreNamedWithTheirPlaceAndAllAtOnce) {
                      "  - {name: p, program: pilot, args: {speed: 1}}\n"),
               ElementsAre("worlds/test.yaml:3:81: process 'rover1': program 'shoal-rover': 'waypoints_m[2]' must be 2 "
                           "numbers, got 1",
-                          "worlds/test.yaml:4:38: process 'p': program 'pilot': unknown argument 'speed'; known "
-                          "arguments: speed_mps"));
+                          "worlds/test.yaml:4:38: process 'p': program 'pilot': unknown argument 'speed'; did you "
+                          "mean 'speed_mps'?"));
   EXPECT_THAT(errors("  - {name: r, program: shoal-rover}\n"),
               ElementsAre("worlds/test.yaml:3:24: process 'r': program 'shoal-rover': missing argument 'name'"));
 }
