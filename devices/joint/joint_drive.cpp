@@ -108,7 +108,8 @@ void JointDrive::check_stops(const Axis& axis, const Settings& settings) const {
     if (std::isnan(stop)) continue;
     if (!axis.has_stops) throw std::runtime_error(text("the wheel of a hinge2 has no stops"));
     if (sim::joint_info(joint_.type()).turns && std::isfinite(stop) && std::abs(stop) > std::numbers::pi)
-      throw std::runtime_error(text("stops of a rotational axis are in rad and must lie between -pi and pi, got " + sim::number_text(stop)));
+      throw std::runtime_error(
+          text("stops of a rotational axis are in rad and must lie between -pi and pi, got " + sim::number_text(stop)));
   }
   if (settings.low_stop == std::numeric_limits<double>::infinity() ||
       settings.high_stop == -std::numeric_limits<double>::infinity())

@@ -64,8 +64,7 @@ void JointServo::Params::read(sim::ParamReader& in) {
   in.read("high", high, sim::any_number(), "upper limit of the position; unset: the joint's stop");
   in.read("max_velocity", max_velocity, sim::above(0),
           "maximum velocity of the setpoint, and beyond which an effort no longer acts");
-  in.read("max_acceleration", max_acceleration, sim::above(0),
-          "maximum acceleration of the setpoint; unset: no limit");
+  in.read("max_acceleration", max_acceleration, sim::above(0), "maximum acceleration of the setpoint; unset: no limit");
   in.read("max_effort", max_effort, sim::above(0), "maximum effort, N m or N");
   in.read("park_position", park_position, sim::any_number(), "position of the safe state 'park', rad or m");
   power.read(in);

@@ -13,7 +13,8 @@ namespace devices {
 /// exceeds E^2 / 4R, the voltage drops to E / 2, and the power is limited to that value.
 class Battery final : public sim::Sensor {
  public:
-  static constexpr const char* meaning = "Battery of the vehicle: drained by its devices; when it is empty, they are off.";
+  static constexpr const char* meaning =
+      "Battery of the vehicle: drained by its devices; when it is empty, they are off.";
   static constexpr double default_rate_hz = 1;
   static constexpr bool always_on = true;
   static constexpr const char* fixed_keys[] = {"initial_charge"};

@@ -30,12 +30,14 @@ void LaserParams::read(sim::ParamReader& in) {
   in.read("range_min_m", range_min_m, sim::at_least(0), "minimum range: closer hits report this");
   in.read("range_max_m", range_max_m, sim::above(0), "maximum range: a ray that hits nothing reports this");
   in.read("resolution_m", resolution_m, sim::at_least(0), "ranges are rounded to multiples of this; 0: not");
-  in.read("range_std_m", range_std_m, sim::at_least(0), "standard deviation of the white range noise at zero range ...");
+  in.read("range_std_m", range_std_m, sim::at_least(0),
+          "standard deviation of the white range noise at zero range ...");
   in.read("range_std_per_m", range_std_per_m, sim::between(0, 1),
           "... and the increase of its standard deviation per metre");
   // Detection and beam.
   in.read_or_word("range_at_10_percent_m", dark_range_m, sim::above(0), {"unlimited"},
-                  "largest range at which a surface of reflectivity 0.1 is detected at normal incidence; unlimited: every surface is");
+                  "largest range at which a surface of reflectivity 0.1 is detected at normal incidence; unlimited: "
+                  "every surface is");
   in.read_deg("beam_divergence_deg", beam_divergence_rad, sim::between(0, 30), "full divergence angle of a beam");
   in.read("beam_samples", beam_samples, sim::between(1, 100), "rays that sample a beam; 1: its axis only");
   in.read(

@@ -31,7 +31,7 @@ struct AcousticsConfig {
   FadingConfig fading;
   bool occlusion = true;                    ///< terrain, objects and hulls block sound
   std::optional<double> occlusion_loss_dB;  ///< loss through obstacles; unset: no transmission
-  double negligible_dB = 10;                 ///< signals this far below the noise are ignored
+  double negligible_dB = 10;                ///< signals this far below the noise are ignored
   std::optional<double> range_max_m;        ///< maximum range of reception
   std::vector<LinkConfig> links;
   void read(ParamReader& in);

@@ -28,8 +28,8 @@ void AcousticChannel::Sending::visit_state(StateArchive& archive) {
 }
 
 void AcousticChannel::Flight::visit_state(StateArchive& archive) {
-  archive(sending, started, ended, travel_time_s, p_started_W, closing_mps, level, snr, loss, listened, present, detected,
-          delayed, meant);
+  archive(sending, started, ended, travel_time_s, p_started_W, closing_mps, level, snr, loss, listened, present,
+          detected, delayed, meant);
   if (archive.restoring()) check_loss(loss, archive);
 }
 

@@ -89,17 +89,17 @@ const char* signal_loss_word(SignalLoss loss);
 /// Reception of a signal by a listening transducer.
 struct Reception {
   const Signal& signal;
-  std::string source;                     ///< sending vehicle and device, such as `auv1/modem`
-  int from = -1;                          ///< number of the sending transducer
-  Time sent{0};                           ///< start of transmission
-  Time started{0}, ended{0};              ///< start and end at the receiver
-  double travel_time_s = 0;               ///< from `sent` to `started`, not rounded
-  Vector3d p_sent_W = Vector3d::Zero();   ///< position of the sender at `sent`
+  std::string source;                       ///< sending vehicle and device, such as `auv1/modem`
+  int from = -1;                            ///< number of the sending transducer
+  Time sent{0};                             ///< start of transmission
+  Time started{0}, ended{0};                ///< start and end at the receiver
+  double travel_time_s = 0;                 ///< from `sent` to `started`, not rounded
+  Vector3d p_sent_W = Vector3d::Zero();     ///< position of the sender at `sent`
   Vector3d p_started_W = Vector3d::Zero();  ///< position of the receiver at `started`
-  Decibels level{0};                      ///< re 1 uPa at the receiver, including its directivity
-  Decibels snr{0};                        ///< signal-to-noise ratio in the band of the signal
-  Decibels sinr{0};                       ///< minimum signal to interference-plus-noise ratio
-  double closing_mps = 0;                 ///< closing speed of sender and receiver (Doppler)
+  Decibels level{0};                        ///< re 1 uPa at the receiver, including its directivity
+  Decibels snr{0};                          ///< signal-to-noise ratio in the band of the signal
+  Decibels sinr{0};                         ///< minimum signal to interference-plus-noise ratio
+  double closing_mps = 0;                   ///< closing speed of sender and receiver (Doppler)
   SignalLoss loss = SignalLoss::none;
   bool detected = false;  ///< the receiver locked on to it, decoded or not
 

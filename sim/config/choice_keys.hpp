@@ -12,10 +12,10 @@ namespace sim {
 
 using ChoiceKeys = std::vector<const char*>;
 
-/// Reports keys that apply only to other values of an enum, such as `'gamma' does not apply to type regular`: a key without
-/// effect is most likely meant for another value.  `keys_of` returns the keys of a value that are not common to all
-/// values; it is a switch without default, so that the compiler requires an entry for a new value.  `what`: the key of
-/// the enum.
+/// Reports keys that apply only to other values of an enum, such as `'gamma' does not apply to type regular`: a key
+/// without effect is most likely meant for another value.  `keys_of` returns the keys of a value that are not common to
+/// all values; it is a switch without default, so that the compiler requires an entry for a new value.  `what`: the key
+/// of the enum.
 template <typename Enum, typename KeysOf>
 void refuse_keys_of_others(ParamReader& in, std::string_view what, const ChoiceWords<Enum>& words, Enum value,
                            const KeysOf& keys_of) {

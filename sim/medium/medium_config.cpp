@@ -271,8 +271,7 @@ void WavesConfig::read(ParamReader& in) {
           "exponent s of the spreading cos^2s of half the angle; unset: long-crested");
   in.read_deg("direction_deg", direction_rad, between(-360, 360),
               "direction towards which they travel, counter-clockwise from east");
-  in.read("water_depth_m", water_depth_m, above_to(0.01, 12000),
-          "water depth for the waves; unset: deep water");
+  in.read("water_depth_m", water_depth_m, above_to(0.01, 12000), "water depth for the waves; unset: deep water");
   if (in.describing()) return;
   check_keys_of_waves(in, type);
   if (in.has("sea_state")) take_sea_state(*this);

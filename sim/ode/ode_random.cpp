@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // QuickStep shuffles its rows with ODE's random numbers, whose seed is global to the process.  libode calls these
 // functions through its symbol table, so that the definitions here replace them: the same numbers, with a seed per
 // thread.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Contacts with the smooth surface of terrain.  Each shape is tested at a bounded number of points, so that the cost of
 // a contact does not depend on the cell size.  Depths are along the normal of the surface at the point; everything
 // below is solid, so that a part is pushed out from any depth.

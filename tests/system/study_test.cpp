@@ -81,8 +81,9 @@ TEST(Study, SaysThatACaseWhoseSettingDoesNothingDoesNotDiffer) {
   const StudyFolder study("seeds: [1, 2]\ncases: [{name: a}, {name: b, set: {description: other}}]\n");
   const Ended ended = study.run();
   EXPECT_EQ(ended.exit_code, 0) << ended.errors;
-  EXPECT_THAT(ended.output, HasSubstr("note: cases 'a', 'b' do not differ: all runs gave the same result, although their "
-                                      "settings differ"));
+  EXPECT_THAT(ended.output,
+              HasSubstr("note: cases 'a', 'b' do not differ: all runs gave the same result, although their "
+                        "settings differ"));
   EXPECT_EQ(run_shoal({"report", study.folder.file("out")}).exit_code, 0);
   EXPECT_THAT(study.text("report.html"), HasSubstr("do not differ"));
 }

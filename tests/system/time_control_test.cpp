@@ -482,7 +482,8 @@ TEST(Restore, WithLockstepClientsGoesOnlyWhereTheRunHasBeenAndRemembers) {
     const Ended ended = control({"restore", name});
     EXPECT_EQ(ended.exit_code, 1) << ended.output;
     EXPECT_EQ(std::count(ended.errors.begin(), ended.errors.end(), '\n'), 1) << ended.errors;
-    EXPECT_THAT(ended.errors, HasSubstr("the lockstep clients (pilot) cannot be restored to a state that they never had"));
+    EXPECT_THAT(ended.errors,
+                HasSubstr("the lockstep clients (pilot) cannot be restored to a state that they never had"));
     return ended.errors;
   };
   live.run_until("2");

@@ -151,7 +151,8 @@ void add_medium_command(CLI::App& app, int& exit_code) {
       ->type_name("S")
       ->check(number_from(0, 1e6))
       ->capture_default_str();
-  CLI::Option* profile = command->add_flag("--profile", arguments->profile, "print a vertical profile from the surface to --at");
+  CLI::Option* profile =
+      command->add_flag("--profile", arguments->profile, "print a vertical profile from the surface to --at");
   command->add_option("--waves", arguments->waves_s, "height and period of the waves there over this time, s")
       ->type_name("S")
       ->check(number_from(1, 1e5))

@@ -76,7 +76,8 @@ TEST(WheelEncoder, SaysWhatIsWrongWithItsParameters) {
   };
   EXPECT_THAT(error_of(""), testing::HasSubstr("device 'encoder': missing key 'joints'"));
   EXPECT_THAT(error_of(", joints: []"), testing::HasSubstr("'joints' must name a joint"));
-  EXPECT_THAT(error_of(", joints: [left], ticks_per_revolution: 0"), testing::HasSubstr("'ticks_per_revolution' must be >= 1"));
+  EXPECT_THAT(error_of(", joints: [left], ticks_per_revolution: 0"),
+              testing::HasSubstr("'ticks_per_revolution' must be >= 1"));
   EXPECT_THAT(error_of(", joints: [middle]"), testing::HasSubstr("'joints' names no joint 'middle'"));
 }
 

@@ -103,10 +103,10 @@ TEST(Sonar, SoundPassesWhatLetsItThrough) {
   const std::string net =
       "  - {name: net, fixed: true, position_m: [2, 0, 0], parts: [{shape: box, size_m: [0.1, 9, 9], material: "
       "net}]}\n";
-  EXPECT_NEAR(
-      first_truth<sonar_range_t>(ranging_world("type: sonar", net + wall_at(5), ", {name: net, transparent_to: [sound]}"))
-          .range_m,
-      5, 1e-2);
+  EXPECT_NEAR(first_truth<sonar_range_t>(
+                  ranging_world("type: sonar", net + wall_at(5), ", {name: net, transparent_to: [sound]}"))
+                  .range_m,
+              5, 1e-2);
 }
 
 TEST(Sonar, SaysWhatIsWrongWithItsParameters) {

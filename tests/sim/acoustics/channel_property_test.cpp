@@ -114,7 +114,8 @@ RC_GTEST_PROP(AcousticChannel, NeitherOutrunsTheSpeedsOfSoundOnTheWayNorLagsThem
   double slowest_mps = 1e9, fastest_mps = 0;
   for (int i = 0; i <= 100; ++i) {
     const double share = i / 100.0;
-    const double c = test.world.medium().sound_speed_mps((1 - share) * received.p_sent_W + share * received.p_started_W);
+    const double c =
+        test.world.medium().sound_speed_mps((1 - share) * received.p_sent_W + share * received.p_started_W);
     slowest_mps = std::min(slowest_mps, c);
     fastest_mps = std::max(fastest_mps, c);
   }

@@ -65,8 +65,9 @@ TEST(SetConfigPath, WhatItMakesPointsToItsPlace) {
 }
 
 TEST(SetConfigPath, ReportsAnItemThatDoesNotExist) {
-  EXPECT_EQ(set(world, "vehicles.rover2.file", "x").errors,
-            Lines{"--set vehicles.rover2.file: 'vehicles' has no item 'rover2'; items: rover1; did you mean 'rover1'?"});
+  EXPECT_EQ(
+      set(world, "vehicles.rover2.file", "x").errors,
+      Lines{"--set vehicles.rover2.file: 'vehicles' has no item 'rover2'; items: rover1; did you mean 'rover1'?"});
   EXPECT_EQ(set(world, "numbers.4", "x").errors, Lines{"--set numbers.4: 'numbers' has no item '4'; items: 1 to 3"});
   EXPECT_EQ(set(world, "numbers.0", "x").errors, Lines{"--set numbers.0: 'numbers' has no item '0'; items: 1 to 3"});
   EXPECT_EQ(set("a: []\n", "a.b", "x").errors, Lines{"--set a.b: 'a' has no item 'b'; items: none"});

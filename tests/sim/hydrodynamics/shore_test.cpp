@@ -86,7 +86,8 @@ TEST(Shore, SaysThatThereIsNoBottomBelowANewcomerToo) {
   instance.X_WV.translation().x() = 5;
   testing::internal::CaptureStdout();
   test.world.editor().add_vehicle(instance);
-  EXPECT_THAT(testing::internal::GetCapturedStdout(), HasSubstr("there is no bottom below vehicle 'auv2': downward-looking sensors there detect nothing"));
+  EXPECT_THAT(testing::internal::GetCapturedStdout(),
+              HasSubstr("there is no bottom below vehicle 'auv2': downward-looking sensors there detect nothing"));
   ASSERT_EQ(sim::bottom_warnings(test.world).size(), 1u);
   EXPECT_THAT(sim::bottom_warnings(test.world)[0], HasSubstr("'auv1' (nor below 1 more)"));
 }

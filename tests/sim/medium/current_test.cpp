@@ -185,7 +185,8 @@ TEST(Current, BadGridsAreRefusedWithTheLine) {
   EXPECT_THAT(error(header + "0,0,1\n"), HasSubstr("line 2: 'north_mps' is missing"));
   EXPECT_THAT(error(header + "0,0,1,1\n0,1,1,1\n1,0,1,1\n"), HasSubstr("one row for each of 2 x 2 points, has 3"));
   EXPECT_THAT(error(header + "0,0,1,1\n0,1,1,1\n1,0,1,1\n1,0,1,1\n"), HasSubstr("has the point 1, 0 twice"));
-  EXPECT_THAT(error(header + "0,0,1,1\n1,0,1,1\n3,0,1,1\n0,1,1,1\n1,1,1,1\n3,1,1,1\n"), HasSubstr("is not a regular grid"));
+  EXPECT_THAT(error(header + "0,0,1,1\n1,0,1,1\n3,0,1,1\n0,1,1,1\n1,1,1,1\n3,1,1,1\n"),
+              HasSubstr("is not a regular grid"));
   EXPECT_THAT(error(header + "0,0,101,1\n0,1,1,1\n1,0,1,1\n1,1,1,1\n"), HasSubstr("a current of 101 m/s"));
   EXPECT_THAT(error(""), HasSubstr("has no rows"));
 }

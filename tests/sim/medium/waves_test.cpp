@@ -301,10 +301,12 @@ TEST(Waves, ThatWouldBreakAreRefused) {
   // 0.142 of 39.02 m; g 4^2 / (2 pi 15); 0.6 of 2 m.
   EXPECT_THAT(error_of("{water: {}, waves: {type: regular, height_m: 6, period_s: 5}}"),
               HasSubstr("'height_m' 6 is above the breaking limit of a wave of 5 s, 5.54 m"));
-  EXPECT_THAT(error_of("{water: {}, waves: {hs_m: 2, tp_s: 4}}"), HasSubstr("is above the breaking limit of a sea with 'tp_s' 4, 1.664 m"));
+  EXPECT_THAT(error_of("{water: {}, waves: {hs_m: 2, tp_s: 4}}"),
+              HasSubstr("is above the breaking limit of a sea with 'tp_s' 4, 1.664 m"));
   EXPECT_THAT(error_of("{water: {}, waves: {hs_m: 2, tp_s: 8, water_depth_m: 2}}"), HasSubstr("0.6 of the depth"));
   EXPECT_THAT(error_of("{water: {}, waves: {tp_s: 0}}"), HasSubstr("'tp_s' must be >= 0.2"));
-  EXPECT_THAT(error_of("{water: {}, waves: {type: regular, hs_m: 1}}"), HasSubstr("'hs_m' does not apply to type regular"));
+  EXPECT_THAT(error_of("{water: {}, waves: {type: regular, hs_m: 1}}"),
+              HasSubstr("'hs_m' does not apply to type regular"));
   EXPECT_THAT(error_of("{water: {}, waves: {sea_state: 3, hs_m: 1}}"), HasSubstr("leave out 'hs_m' and 'tp_s'"));
 }
 

@@ -37,8 +37,10 @@ TEST(HydrodynamicsChecks, AddedMassIsSymmetric) {
 
 TEST(HydrodynamicsChecks, AddedMassIsNotNegativeInAnyDirection) {
   // The block [[4, 6], [6, 4]] has the eigenvalues 10 and -2.  With 20 kg of body, all of it would be positive.
-  EXPECT_THAT(error_of(inertia + ", derivatives: {Y_vdot: -4, N_rdot: -4, Y_rdot: -6, N_vdot: -6}"),
-              HasSubstr("the added-mass matrix is not positive semi-definite, eigenvalue -2: its off-diagonal terms are too large"));
+  EXPECT_THAT(
+      error_of(inertia + ", derivatives: {Y_vdot: -4, N_rdot: -4, Y_rdot: -6, N_vdot: -6}"),
+      HasSubstr(
+          "the added-mass matrix is not positive semi-definite, eigenvalue -2: its off-diagonal terms are too large"));
   // A flat plate off its origin: 4 * 9 = 6 * 6, an eigenvalue of 0.
   EXPECT_EQ(error_of(inertia + ", derivatives: {Y_vdot: -4, N_rdot: -9, Y_rdot: -6, N_vdot: -6}"), "");
 }
@@ -50,8 +52,10 @@ TEST(HydrodynamicsChecks, DampingBrakesEveryMotion) {
            ", 0, 0, 0, 2]";
   };
   // Half of 4 + 3 beside 2 and 2: 2 - 3.5.
-  EXPECT_THAT(error_of(couplings(4, 3)),
-              HasSubstr("the symmetric part of 'linear_damping' has a negative eigenvalue, -1.5: it would accelerate some motions"));
+  EXPECT_THAT(
+      error_of(couplings(4, 3)),
+      HasSubstr(
+          "the symmetric part of 'linear_damping' has a negative eigenvalue, -1.5: it would accelerate some motions"));
   // What has opposite signs takes no energy and brings none, however large.
   EXPECT_EQ(error_of(couplings(40, -40)), "");
 }
@@ -76,8 +80,9 @@ TEST(HydrodynamicsChecks, InertiaIsPositiveDefinite) {
 }
 
 TEST(HydrodynamicsChecks, DampingBrakes) {
-  EXPECT_THAT(error_of(inertia + ", linear_damping: [-1, 2, 3, 1, 1, 1]"),
-              HasSubstr("'linear_damping' must be >= 0 in surge, got -1: a negative value would accelerate the vehicle"));
+  EXPECT_THAT(
+      error_of(inertia + ", linear_damping: [-1, 2, 3, 1, 1, 1]"),
+      HasSubstr("'linear_damping' must be >= 0 in surge, got -1: a negative value would accelerate the vehicle"));
   EXPECT_THAT(error_of(inertia + ", quadratic_damping: [1, 2, 3, 1, -4, 1]"),
               HasSubstr("'quadratic_damping' must be >= 0 in pitch"));
   EXPECT_THAT(error_of(inertia + ", derivatives: {X_uu: 1.62}"),

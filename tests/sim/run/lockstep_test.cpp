@@ -62,7 +62,8 @@ TEST(Lockstep, RefusesWrongAnswersAndSaysWhy) {
   lockstep.join("a", session(7), 1, 0);
   lockstep.send_request(3);
   const auto refused = Lockstep::Verdict::refused;
-  EXPECT_THAT(answer(lockstep, {"b", 3, 0, 0}, 3, refused), HasSubstr("'b' acknowledges a tick, but is not a lockstep client"));
+  EXPECT_THAT(answer(lockstep, {"b", 3, 0, 0}, 3, refused),
+              HasSubstr("'b' acknowledges a tick, but is not a lockstep client"));
   EXPECT_THAT(answer(lockstep, {"a", 4, 7, 1}, 3, refused), HasSubstr("step 4, which is in the future"));
   EXPECT_THAT(answer(lockstep, {"a", 3, 8, 1}, 3, refused), HasSubstr("in session 8, which is not the one"));
   EXPECT_THAT(answer(lockstep, {"a", 3, 7, 2}, 3, refused), HasSubstr("tick 2, which was not sent to it"));

@@ -25,7 +25,8 @@ double share(double time_s, double time_constant_s) {
 
 void check_speeds(const std::vector<SpeedPoint>& points) {
   for (std::size_t i = 1; i < points.size(); ++i)
-    if (!(points[i].from_s > points[i - 1].from_s)) throw std::invalid_argument("the times of the speeds must increase");
+    if (!(points[i].from_s > points[i - 1].from_s))
+      throw std::invalid_argument("the times of the speeds must increase");
 }
 
 Balance::Balance(const Params& params) : params_(params) {

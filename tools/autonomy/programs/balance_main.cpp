@@ -84,7 +84,8 @@ void declare_gains(command_line::DeclaredOptions& declared, Options& options) {
   declared.number("turn_ki_Nm_per_rad", gains.turn_ki_Nm_per_rad, 0, 1e4,
                   "differential wheel torque per integral of that error");
   declared.number("rate_filter_s", gains.rate_filter_s, 0, 1, "time constant of the low-pass filter of the tilt rate");
-  declared.number("speed_filter_s", gains.speed_filter_s, 0, 1, "time constant of the low-pass filter of speed and turn rate");
+  declared.number("speed_filter_s", gains.speed_filter_s, 0, 1,
+                  "time constant of the low-pass filter of speed and turn rate");
   declared.number("wheel_radius_m", gains.wheel_radius_m, 0.01, 10, "radius of its wheels");
   declared.number("track_m", gains.track_m, 0.01, 10, "distance between the wheels");
   declared.number("max_torque_Nm", gains.max_torque_Nm, 0.1, 1e4, "limit of the torque of each wheel");

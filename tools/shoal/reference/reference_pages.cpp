@@ -113,7 +113,8 @@ std::string world_format_page() {
          "`vehicles.rover7.devices.lidar.rate_hz` with --set, `rover7/devices.lidar.rate_hz` in `overrides:`.\n"
          "* A vehicle file is looked up beside the world file, then in `../vehicles`, then among the shipped ones "
          "(`shoal list`).\n"
-         "* Where two materials touch, the entry of `contacts` that names both takes precedence over one with `any`; among "
+         "* Where two materials touch, the entry of `contacts` that names both takes precedence over one with `any`; "
+         "among "
          "equals the last one wins.\n\n"
          "## World\n\n" +
          sim::markdown_table(params_of<sim::WorldConfig>()) + "\n## Vehicle\n\n" +

@@ -435,8 +435,8 @@ TEST_F(ReplayTest, ALogOfAnotherVersionIsRefusedByItsName) {
 }
 
 TEST_F(ReplayTest, ARecordOfVersion010IsRefusedByItsName) {
-  log = test_support::source_path("tests/golden/records/version_0_1_0.lcm");
-  EXPECT_THAT(error(), HasSubstr("version_0_1_0.lcm: was written by shoal 0.1.0 ("));
+  log = test_support::source_path("tests/golden/records/version_0_1_0.log");
+  EXPECT_THAT(error(), HasSubstr("version_0_1_0.log: was written by shoal 0.1.0 ("));
 }
 
 }  // namespace
