@@ -32,6 +32,7 @@ sim::Bytes MicromodemPacket::payload() const {
 }
 
 std::optional<MicromodemPacket> MicromodemPacket::read(const std::string& code, const sim::Bytes& payload) {
+  // Header of the code.
   std::istringstream text(code);
   std::string word;
   int kind = 0;
@@ -41,6 +42,7 @@ std::optional<MicromodemPacket> MicromodemPacket::read(const std::string& code, 
       packet.value >> frames;
   if (!text || word != packet_mark || kind < 0 || kind > static_cast<int>(Kind::mini)) return {};
   packet.kind = static_cast<Kind>(kind);
+  // Frames, whose bytes follow each other in the payload.
   std::size_t at = 0;
   for (std::size_t i = 0; i < frames; ++i) {
     Frame frame;

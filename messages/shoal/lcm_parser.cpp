@@ -249,6 +249,7 @@ class Parser {
   Dimension parse_dimension(MessageSchema& schema, const Constants& constants) {
     Dimension dimension;
     dimension.text = token_.text;
+    // Constant size: a number, or the name of a constant.
     std::optional<std::int64_t> size = integer(token_.text);
     if (const auto it = constants.find(token_.text); it != constants.end()) size = it->second;
     if (size) {
@@ -258,6 +259,7 @@ class Parser {
       advance();
       return dimension;
     }
+    // Variable size: an integer member declared before.
     const auto length = std::find_if(schema.members.begin(), schema.members.end(),
                                      [&](const Member& m) { return m.name == token_.text; });
     if (length == schema.members.end()) fail("array size '" + token_.text + "' is not a member declared before");

@@ -88,6 +88,7 @@ FoundProgram find_program(const std::string& program, const std::vector<std::str
 ProgramDeclaration read_declaration_file(const std::string& path, Diagnostics& diagnostics) {
   const SourcePlace whole{intern_file_name(path), 0, 0};
   std::error_code error;
+  // Read the file, bounded.
   if (!fs::is_regular_file(path, error)) {
     diagnostics.error(whole, "", "must be a regular file");
     return {};
@@ -104,6 +105,7 @@ ProgramDeclaration read_declaration_file(const std::string& path, Diagnostics& d
   std::string text(max_bytes + 1, '\0');
   in.read(text.data(), static_cast<std::streamsize>(text.size()));
   text.resize(static_cast<std::size_t>(in.gcount()));  // it may have grown since
+  // Parse it, and compare its program with the name of the file.
   ProgramDeclaration declaration = read_declaration(text, path, diagnostics);
   const std::string name = fs::path(path).filename().string();
   const std::string program =

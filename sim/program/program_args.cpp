@@ -9,6 +9,9 @@ namespace sim {
 
 namespace {
 
+/// Unknown arguments that are reported.
+constexpr std::size_t max_unknown = 20;
+
 using Kind = ConfigNode::Kind;
 
 // Maximum length of a word on a Linux command line (MAX_ARG_STRLEN, 32 pages with the terminating zero).
@@ -58,14 +61,17 @@ const ConfigNode* value_of(const ProgramDeclaration& declaration, const ConfigNo
 
 /// Whether a missing argument is there under a misspelt name, which has been reported.
 bool is_misspelt(const ProgramDeclaration& declaration, const ConfigNode& args, const std::string& name) {
-  return std::any_of(args.entries.begin(), args.entries.end(), [&](const ConfigNode::Entry& entry) {
-    return declaration.find(entry.key) == nullptr && !did_you_mean(entry.key, {name}).empty();
-  });
+  std::size_t unknown = 0;
+  for (const ConfigNode::Entry& entry : args.entries) {
+    if (declaration.find(entry.key) != nullptr) continue;
+    if (++unknown > max_unknown) return false;
+    if (!did_you_mean(entry.key, {name}).empty()) return true;
+  }
+  return false;
 }
 
 void check_unknown(const ProgramDeclaration& declaration, const ConfigNode& args, const std::string& who,
                    Diagnostics& diagnostics) {
-  constexpr std::size_t max_unknown = 20;
   std::vector<std::string> known;
   for (const ArgDeclaration& arg : declaration.args) known.push_back(arg.name);
   std::size_t unknown = 0;
