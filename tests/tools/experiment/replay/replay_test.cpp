@@ -359,7 +359,9 @@ TEST_F(ReplayTest, OneLostMessageNamesItsStep) {
   bridges::EventLogReader reader(whole);
   while (const auto event = reader.next()) stamps[event->channel].push_back((event->utime - epoch) / 10'000);
   log = folder.file("lossy.lcm");
-  for (const auto& [channel, steps_of] : stamps) {
+  for (const auto& entry : stamps) {
+    const std::string& channel = entry.first;  // clang 14 captures no structured binding
+    const std::vector<std::int64_t>& steps_of = entry.second;
     if (channel == "sim.info") continue;
     for (const std::size_t number : {std::size_t{0}, steps_of.size() / 2, steps_of.size() - 1}) {
       SCOPED_TRACE(channel + ", number " + std::to_string(number));
