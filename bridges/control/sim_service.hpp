@@ -29,6 +29,7 @@ struct ServiceLinks {
   /// Buses of single vehicles, on which the service only publishes sim.clock and answers join, leave and alive on
   /// sim.control.  In the order of the lockstep.
   std::vector<sim::Bus*> vehicle_buses = {};
+  std::function<void()> publish_scene = {};  ///< publishes the scene for viewers again; empty: there is none
 };
 
 /// Service on the channels of the simulator: publishes sim.info, sim.clock and sim.state, and answers requests on
@@ -116,6 +117,7 @@ class SimService {
   bool muted_ = false;
   std::int64_t info_step_ = -1;  // step of the last sim.info
   const OtherSimulators* const others_;
+  const std::function<void()> publish_scene_;
   bool warned_of_another_ = false;
   std::vector<Link> links_;  // the bus of the world is the first
   RunAudit audit_;

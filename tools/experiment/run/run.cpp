@@ -12,6 +12,7 @@
 #include "tools/experiment/results/results_world.hpp"
 #include "tools/experiment/results/run_error.hpp"
 #include "tools/experiment/run/run_ports.hpp"
+#include "tools/experiment/run/scores_message.hpp"
 #include "tools/experiment/snapshot/run_identity.hpp"
 
 namespace tools {
@@ -38,6 +39,9 @@ Run::Run(const sim::LoadedWorld& loaded, const RunOptions& options)
       scoring_(
           world_,
           options.quiet ? FirstContacts::Report() : [this](const std::string& line) { progress_.report(line); }),
+      view_(
+          buses_.outer(), world_, [this](shoal::sim_scores_t& message) { fill_scores(scoring_, message); },
+          [this] { return has_listeners(); }),
       inputs_(buses_, journal_, service_, lockstep_),
       branch_log_(buses_, journal_, options.record, options.overwrite),
       time_(world_, control_, scoring_, service_, inputs_, time_options(), *this),
@@ -80,6 +84,7 @@ std::vector<bridges::LockstepBus> Run::lockstep_buses() {
 
 bridges::ServiceLinks Run::service_links() {
   bridges::ServiceLinks links{&journal_, &others_};
+  links.publish_scene = [this] { view_.request_scene(); };
   for (const sim::BusConfig& bus : loaded_.config.buses) links.vehicle_buses.push_back(&buses_.network(bus.name));
   return links;
 }
@@ -254,6 +259,7 @@ void Run::end_of_step() {
   service_.publish_step();
   journal_.after_step();
   if (steps_taken_ > 0) scoring_.after_step();
+  view_.after_step();
   if (results_ && steps_taken_ > 0) results_->after_step();
   buses_.end_of_step();
   time_.after_step();

@@ -9,6 +9,7 @@
 #include "bridges/control/sim_service.hpp"
 #include "bridges/lockstep/lockstep_service.hpp"
 #include "bridges/log/run_journal.hpp"
+#include "bridges/view/view_publisher.hpp"
 #include "sim/run/run_control.hpp"
 #include "tools/experiment/results/results.hpp"
 #include "tools/experiment/run/branch_log.hpp"
@@ -87,6 +88,7 @@ class Run final : private Timeline {
   bridges::LockstepService lockstep_;
   bridges::SimService service_;
   Scoring scoring_;
+  bridges::ViewPublisher view_;
   RunInputs inputs_;
   BranchLog branch_log_;
   TimeControl time_;

@@ -44,6 +44,8 @@ void Run::publish_snapshot() {
 
 void Run::start_branch(bool ours) {
   branch_log_.branch(control_.branch);
+  view_.set_branch(control_.branch);
+  view_.discard();
   lockstep_.set_branch(control_.branch);
   buses_.set_time(world_.now());
   service_.report_changes();
