@@ -304,6 +304,15 @@ bool SimService::leave(int link, const shoal::sim_control_request_t& request) {
   return true;
 }
 
+std::string SimService::execute_local(const shoal::sim_control_request_t& request, TimeMachine* machine) {
+  const std::string& command = request.command;
+  if (command == "join" || command == "leave" || command == "follow")
+    throw std::runtime_error("'" + command + "' is for programs only");
+  const std::optional<std::string> text = execute(links_.front(), request, machine);
+  note(request, "");
+  return text.value_or("");
+}
+
 void SimService::execute_again(const shoal::sim_control_request_t& request) {
   const std::string& command = request.command;
   if (command == "spawn")

@@ -63,6 +63,9 @@ class SimService {
   /// Answers the requests that have arrived.  `machine` executes those about simulated time: pause, resume, step,
   /// speed, until, where, snapshot, restore and rewind; null: not supported.
   void handle_requests(TimeMachine* machine = nullptr);
+  /// Executes a request of a user at this process, such as of the live page, as one on sim.control, and returns the
+  /// reply.  Throws std::runtime_error with the reason when it is refused.
+  std::string execute_local(const shoal::sim_control_request_t& request, TimeMachine* machine);
   /// Handles the exit of a client: it leaves the lockstep, and its vehicles are removed.
   void client_exited(const std::string& client);
 

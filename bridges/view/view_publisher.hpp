@@ -46,6 +46,13 @@ class ViewPublisher final : public sim::WorldObserver {
   void set_branch(std::int32_t branch) { branch_ = branch; }
   /// Discards what was observed while a part of the run was computed again.
   void discard();
+  /// Returns the revision of the scene to which the movable bodies belong.
+  std::int32_t revision() const { return revision_; }
+  /// Calls `use` with the pose of each movable body, in the order of the scene.
+  template <typename Use>
+  void for_each_movable(Use&& use) const {
+    for (const Movable& each : movables_) use(each.body->X_WB());
+  }
   /// Returns how many messages were left out because a step had too many.
   std::int64_t left_out() const { return left_out_; }
 

@@ -50,6 +50,10 @@ class Run final : private Timeline {
   void hold_here() override;
   void start_branch(bool ours) override;
   std::vector<bridges::LockstepBus> lockstep_buses();
+  std::unique_ptr<RunView> make_page() const;
+  TapBus::Listener page_tap();
+  /// Carries out the requests of the pages.
+  void serve_page();
   bridges::ServiceLinks service_links();
   /// Publishes the state from which the run continues, so that a log that starts here can be replayed.
   void publish_snapshot();
@@ -78,7 +82,8 @@ class Run final : private Timeline {
 
   const sim::LoadedWorld& loaded_;
   const RunOptions& options_;
-  const std::string files_;  ///< hashes of the files that the world names
+  std::unique_ptr<RunView> page_;  ///< live page; null: none.  Outlives the buses, which it taps.
+  const std::string files_;        ///< hashes of the files that the world names
   RunBuses buses_;
   bridges::OtherSimulators others_;  ///< queried before the world is built
   sim::RunControl control_;
