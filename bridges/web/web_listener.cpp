@@ -119,6 +119,7 @@ class WebSocketPeer final : public Peer, public WebLink, public std::enable_shar
   void read();
   void send();
   void begin_close(const websocket::close_reason& reason);
+  void leave_session();
   void end();
 
   Hub& hub_;
@@ -155,6 +156,10 @@ void WebSocketPeer::start(const http::request<http::empty_body>& request) {
 void WebSocketPeer::opened() {
   if (hub_.ends) return;
   session_ = chosen_.protocol->open(*this);
+  // A client that says goodbye has left, even if it does not close its socket.
+  socket_.control_callback([this](websocket::frame_type kind, boost::string_view) {
+    if (kind == websocket::frame_type::close) leave_session();
+  });
   await_greeting();
   read();
   send();
@@ -218,11 +223,15 @@ void WebSocketPeer::begin_close(const websocket::close_reason& reason) {
   socket_.async_close(reason, [self = shared_from_this()](error_code) { self->end(); });
 }
 
-/// The client has left: the session ends now, this object when its last operation has returned.
-void WebSocketPeer::end() {
+void WebSocketPeer::leave_session() {
   closing_ = true;
   session_.reset();
   greeting_.cancel();
+}
+
+/// The client has left: the session ends now, this object when its last operation has returned.
+void WebSocketPeer::end() {
+  leave_session();
   cut();
 }
 
