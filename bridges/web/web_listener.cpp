@@ -58,10 +58,16 @@ struct Hub {
   HttpSite& site;
   std::size_t max_clients;
   net::io_context context{1};
+  net::steady_timer farewell{context};  // at the end: for peers that do not say goodbye
   std::set<Peer*> peers{};
   std::size_t clients = 0;
   int last_number = 0;
   bool ends = false;
+
+  void remove(Peer* peer) {
+    peers.erase(peer);
+    if (ends && peers.empty()) farewell.cancel();
+  }
 };
 
 std::vector<std::string_view> values_of(const http::fields& fields, http::field name) {
@@ -100,8 +106,8 @@ class WebSocketPeer final : public Peer, public WebLink, public std::enable_shar
   }
   ~WebSocketPeer() override {
     session_.reset();
-    hub_.peers.erase(this);
     --hub_.clients;
+    hub_.remove(this);
   }
 
   void start(const http::request<http::empty_body>& request);
@@ -243,7 +249,7 @@ void WebSocketPeer::cut() {
 class HttpPeer final : public Peer, public std::enable_shared_from_this<HttpPeer> {
  public:
   HttpPeer(Hub& hub, tcp::socket&& socket) : hub_(hub), stream_(std::move(socket)) { hub_.peers.insert(this); }
-  ~HttpPeer() override { hub_.peers.erase(this); }
+  ~HttpPeer() override { hub_.remove(this); }
 
   void read();
   void leave() override { cut(); }
@@ -346,7 +352,7 @@ tcp::acceptor listen_at(net::io_context& context, const std::string& address, st
 
 struct WebListener::Impl {
   Impl(const ListenOptions& options, HttpSite& site)
-      : hub{site, options.max_clients}, guard(hub.context.get_executor()), pause(hub.context), farewell(hub.context) {
+      : hub{site, options.max_clients}, guard(hub.context.get_executor()), pause(hub.context) {
     open(options);
     for (tcp::acceptor& acceptor : acceptors) accept(acceptor);
     start_thread();
@@ -363,7 +369,7 @@ struct WebListener::Impl {
   Hub hub;
   std::list<tcp::acceptor> acceptors;
   net::executor_work_guard<net::io_context::executor_type> guard;
-  net::steady_timer pause, farewell;
+  net::steady_timer pause;
   std::uint16_t port = 0;
   std::thread thread;
 };
@@ -448,8 +454,8 @@ void WebListener::Impl::end() {
   if (hub.peers.empty()) return;
 
   // Who does not say goodbye is cut off
-  farewell.expires_after(farewell_time);
-  farewell.async_wait([this](error_code) {
+  hub.farewell.expires_after(farewell_time);
+  hub.farewell.async_wait([this](error_code) {
     for (Peer* peer : std::vector<Peer*>(hub.peers.begin(), hub.peers.end())) peer->cut();
   });
 }
