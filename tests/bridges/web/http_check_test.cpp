@@ -28,6 +28,7 @@ TEST(HttpCheck, OtherHostsAreRefused) {
                            "[1.2.3.4]", "a b", "a@b", "a/b", "a:80:80", "\xc3\xa9"})
     EXPECT_EQ(host_of(text), std::nullopt) << text;
   EXPECT_EQ(host_of(std::string(300, 'a')), std::nullopt);
+  EXPECT_EQ(host_of(std::string("[::1\0/ x]", 9)), std::nullopt);
 }
 
 TEST(HttpCheck, OnlyNamesOfThisServerAreItsHosts) {
