@@ -17,8 +17,10 @@ constexpr int max_depth = 16;
 constexpr std::size_t longest_op = 32, longest_id = 64, longest_token = 256;
 
 Json parse_object(std::string_view text) {
-  const auto check_depth = [](int depth, Json::parse_event_t /*event*/, Json& /*parsed*/) {
-    if (depth > max_depth) throw WebError("message is nested more than " + std::to_string(max_depth) + " deep");
+  const auto check_depth = [](int depth, Json::parse_event_t event, Json& /*parsed*/) {
+    const bool opens = event == Json::parse_event_t::object_start || event == Json::parse_event_t::array_start;
+    if (opens && depth >= max_depth)
+      throw WebError("message is nested more than " + std::to_string(max_depth) + " deep");
     return true;
   };
   try {

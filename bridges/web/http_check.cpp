@@ -96,8 +96,10 @@ std::optional<std::string> host_of(std::string_view authority) {
 }
 
 bool is_address(std::string_view host) {
+  // inet_pton() reads to the first zero byte.
+  if (host.find_first_not_of("0123456789abcdefABCDEF:.") != std::string_view::npos) return false;
   std::array<unsigned char, sizeof(in6_addr)> bytes{};
-  const std::string text(host.substr(0, longest_host));
+  const std::string text(host);
   return inet_pton(AF_INET, text.c_str(), bytes.data()) == 1 || inet_pton(AF_INET6, text.c_str(), bytes.data()) == 1;
 }
 

@@ -268,7 +268,11 @@ bool ViewSession::take(Text bytes, bool is_text, WebFrame& frame) {
 /// Returns the first retained text that the page has not got, in the order of their first retain.
 ViewSession::Text ViewSession::next_retained() {
   const auto& retained = protocol_.retained_;
-  if (!greeted_ || revision_seen_ == protocol_.revision_) return nullptr;
+  if (!greeted_) return nullptr;
+  if (revision_seen_ == protocol_.revision_) {
+    complete_ = true;
+    return nullptr;
+  }
   revisions_sent_.resize(retained.size());
   for (std::size_t i = 0; i < retained.size(); ++i) {
     if (revisions_sent_[i] == retained[i].revision) continue;

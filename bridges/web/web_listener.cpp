@@ -58,10 +58,16 @@ struct Hub {
   HttpSite& site;
   std::size_t max_clients;
   net::io_context context{1};
+  net::steady_timer farewell{context};  // at the end: for peers that do not say goodbye
   std::set<Peer*> peers{};
   std::size_t clients = 0;
   int last_number = 0;
   bool ends = false;
+
+  void remove(Peer* peer) {
+    peers.erase(peer);
+    if (ends && peers.empty()) farewell.cancel();
+  }
 };
 
 std::vector<std::string_view> values_of(const http::fields& fields, http::field name) {
@@ -100,8 +106,8 @@ class WebSocketPeer final : public Peer, public WebLink, public std::enable_shar
   }
   ~WebSocketPeer() override {
     session_.reset();
-    hub_.peers.erase(this);
     --hub_.clients;
+    hub_.remove(this);
   }
 
   void start(const http::request<http::empty_body>& request);
@@ -119,6 +125,7 @@ class WebSocketPeer final : public Peer, public WebLink, public std::enable_shar
   void read();
   void send();
   void begin_close(const websocket::close_reason& reason);
+  void leave_session();
   void end();
 
   Hub& hub_;
@@ -155,6 +162,10 @@ void WebSocketPeer::start(const http::request<http::empty_body>& request) {
 void WebSocketPeer::opened() {
   if (hub_.ends) return;
   session_ = chosen_.protocol->open(*this);
+  // A client that says goodbye has left, even if it does not close its socket.
+  socket_.control_callback([this](websocket::frame_type kind, boost::string_view) {
+    if (kind == websocket::frame_type::close) leave_session();
+  });
   await_greeting();
   read();
   send();
@@ -218,11 +229,15 @@ void WebSocketPeer::begin_close(const websocket::close_reason& reason) {
   socket_.async_close(reason, [self = shared_from_this()](error_code) { self->end(); });
 }
 
-/// The client has left: the session ends now, this object when its last operation has returned.
-void WebSocketPeer::end() {
+void WebSocketPeer::leave_session() {
   closing_ = true;
   session_.reset();
   greeting_.cancel();
+}
+
+/// The client has left: the session ends now, this object when its last operation has returned.
+void WebSocketPeer::end() {
+  leave_session();
   cut();
 }
 
@@ -234,7 +249,7 @@ void WebSocketPeer::cut() {
 class HttpPeer final : public Peer, public std::enable_shared_from_this<HttpPeer> {
  public:
   HttpPeer(Hub& hub, tcp::socket&& socket) : hub_(hub), stream_(std::move(socket)) { hub_.peers.insert(this); }
-  ~HttpPeer() override { hub_.peers.erase(this); }
+  ~HttpPeer() override { hub_.remove(this); }
 
   void read();
   void leave() override { cut(); }
@@ -337,7 +352,7 @@ tcp::acceptor listen_at(net::io_context& context, const std::string& address, st
 
 struct WebListener::Impl {
   Impl(const ListenOptions& options, HttpSite& site)
-      : hub{site, options.max_clients}, guard(hub.context.get_executor()), pause(hub.context), farewell(hub.context) {
+      : hub{site, options.max_clients}, guard(hub.context.get_executor()), pause(hub.context) {
     open(options);
     for (tcp::acceptor& acceptor : acceptors) accept(acceptor);
     start_thread();
@@ -354,7 +369,7 @@ struct WebListener::Impl {
   Hub hub;
   std::list<tcp::acceptor> acceptors;
   net::executor_work_guard<net::io_context::executor_type> guard;
-  net::steady_timer pause, farewell;
+  net::steady_timer pause;
   std::uint16_t port = 0;
   std::thread thread;
 };
@@ -439,8 +454,8 @@ void WebListener::Impl::end() {
   if (hub.peers.empty()) return;
 
   // Who does not say goodbye is cut off
-  farewell.expires_after(farewell_time);
-  farewell.async_wait([this](error_code) {
+  hub.farewell.expires_after(farewell_time);
+  hub.farewell.async_wait([this](error_code) {
     for (Peer* peer : std::vector<Peer*>(hub.peers.begin(), hub.peers.end())) peer->cut();
   });
 }

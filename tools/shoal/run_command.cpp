@@ -128,7 +128,7 @@ void add_snapshot_options(CLI::App& command, RunArguments& arguments) {
 }
 
 void add_output_options(CLI::App& command, RunArguments& arguments) {
-  command.add_option("--record", arguments.run.record, "write an LCM event log, stamped with simulated time")
+  command.add_option("--record", arguments.run.record, "write an LCM event log, or an MCAP file (*.mcap)")
       ->type_name("FILE");
   command.add_flag("--overwrite", arguments.run.overwrite, "the record may replace a file");
   command.add_flag("--special-files", arguments.run.special_files,

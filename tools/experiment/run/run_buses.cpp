@@ -129,12 +129,12 @@ void RunBuses::hand_over_record() {
 }
 
 RunBuses::RecordMark RunBuses::record_mark() const {
-  return main_.recorder ? RecordMark{main_.recorder->recorded(), main_.recorder->bytes()} : RecordMark{};
+  return main_.recorder ? RecordMark{main_.recorder->recorded(), main_.recorder->position()} : RecordMark{};
 }
 
 void RunBuses::prepare_record(const std::string& path, const RecordMark& mark, bool overwrite) {
   if (!main_.recorder) return;
-  main_.recorder->prepare(path, mark.events, mark.bytes,
+  main_.recorder->prepare(path, mark.events, mark.position,
                           overwrite ? bridges::Existing::overwrite : bridges::Existing::refuse);
 }
 

@@ -61,7 +61,7 @@ class RunBuses {
   void hand_over_record();
   /// Position in the record.
   struct RecordMark {
-    std::uint64_t events = 0, bytes = 0;
+    std::uint64_t events = 0, position = 0;
   };
   RecordMark record_mark() const;
   /// Prepares another record, which starts with the present one's up to a mark.  Throws BusError.
