@@ -177,22 +177,28 @@ void ViewMessages::take_estimate(std::string_view channel, std::span<const std::
   const double* const p = estimate.position_m;
   for (int i = 0; i < 3; ++i)
     if (!std::isfinite(p[i])) return;
-  // The vehicle is the part of the channel before its last dot.
-  const std::size_t dot = channel.rfind('.');
+  // The vehicle is the part of the channel before its last dot.  Of several estimates of a vehicle the page shows that
+  // on VEHICLE.estimate, else the first.
+  const std::string vehicle(channel.substr(0, channel.rfind('.')));
+  constexpr std::size_t max_vehicles = 10'000;
+  if (estimates_.size() >= max_vehicles && !estimates_.contains(vehicle)) return;
+  Estimate& shown = estimates_[vehicle];
+  if (shown.channel.empty() || channel == vehicle + ".estimate") shown.channel = channel;
+  if (shown.channel != channel) return;
   const double half_rad = std::isfinite(estimate.yaw_rad) ? estimate.yaw_rad / 2 : 0;
-  Json item{{"vehicle", std::string(channel.substr(0, dot))},
+  Json item{{"vehicle", vehicle},
             {"channel", std::string(channel)},
             {"time_us", time_us(estimate.utime)},
             {"pose", {p[0], p[1], p[2], std::cos(half_rad), 0, 0, std::sin(half_rad)}},
             {"covariance_m2", std::move(covariance)}};
-  constexpr std::size_t max_channels = 10'000;
-  if (estimates_.size() < max_channels) estimates_[std::string(channel)] = {json_text(item), true};
+  shown.json = json_text(item);
+  shown.is_new = true;
 }
 
 void ViewMessages::flush() {
   // Estimates, the newest of each channel.
   std::string items;
-  for (auto& [channel, estimate] : estimates_) {
+  for (auto& [vehicle, estimate] : estimates_) {
     if (!std::exchange(estimate.is_new, false)) continue;
     items += (items.empty() ? "" : ",") + estimate.json;
   }

@@ -54,7 +54,7 @@ class ViewMessages {
     std::vector<std::vector<float>> orientation;
   };
   struct Estimate {
-    std::string json;
+    std::string channel, json;
     bool is_new = false;
   };
 
@@ -77,7 +77,7 @@ class ViewMessages {
   bool paused_ = false, jump_ = false;
   std::optional<Poses> poses_;  // newest that were not sent
   StateFrame frame_;
-  std::map<std::string, Estimate, std::less<>> estimates_;  // newest by channel
+  std::map<std::string, Estimate, std::less<>> estimates_;  // newest by vehicle
   std::int64_t bad_messages_ = 0;
 };
 
