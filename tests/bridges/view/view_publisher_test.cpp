@@ -5,11 +5,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "shoal/modem_send_t.hpp"
 #include "shoal/sim_asset_t.hpp"
 #include "shoal/sim_scene_t.hpp"
 #include "sim/world/world_state.hpp"
-#include "tests/devices/world_fixture.hpp"
+#include "tests/devices/comms/modem_fixture.hpp"
 #include "tests/scratch_folder.hpp"
 
 namespace {
@@ -143,22 +142,14 @@ TEST(ViewPublisher, FaultsAreEvents) {
   EXPECT_EQ(events[1].text, "silent");
 }
 
-/// Three modems in a row, 1500 m apart: the first sends, and the middle one begins to send before the signal arrives.
-const char* const three_modems = R"(
-shoal: 1
-physics: {gravity_mps2: 0}
-medium: {water: {level_m: 100, sound_speed: {model: constant, value_mps: 1500}}}
-vehicles:
-  - {name: a, position_m: [0, 0, 0], model: &m {shoal: 1, vehicle: v, bodies: [{name: b, parts: [{shape: sphere, radius_m: 0.1, mass_kg: 4.3}]}], devices: [{name: modem, type: acoustic_modem, source_level_dB: 190}]}}
-  - {name: b, position_m: [750, 0, 0], model: *m}
-  - {name: c, position_m: [1500, 0, 0], model: *m}
-)";
+/// Three modems in a row, 750 m apart: the first sends, and the middle one begins to send before the signal arrives.
+const std::string three_modems = test::modem_sea({{"a", "[0, 0, -50]", "{name: modem, type: acoustic_modem}", ""},
+                                                  {"b", "[750, 0, -50]", "{name: modem, type: acoustic_modem}", ""},
+                                                  {"c", "[1500, 0, -50]", "{name: modem, type: acoustic_modem}", ""}});
 
 TEST(ViewPublisher, ASoundHasItsResultAtEachReceiver) {
   ViewedWorld viewed(three_modems);
-  shoal::modem_send_t send;
-  send.size = 4;
-  send.payload.resize(4);
+  const shoal::modem_send_t send = test::bytes_to("four");
   viewed.test.send("a.modem.cmd", send);
   viewed.run_for(0.3);
   viewed.test.send("b.modem.cmd", send);
@@ -184,8 +175,7 @@ TEST(ViewPublisher, DoesNotChangeTheRun) {
     test::TestWorld test(three_modems);
     std::optional<bridges::ViewPublisher> view;
     if (viewed_too) view.emplace(test.bus, test.world, bridges::ViewPublisher::FillScores(), [] { return true; });
-    shoal::modem_send_t send;
-    test.send("a.modem.cmd", send);
+    test.send("a.modem.cmd", test::bytes_to("four"));
     for (int i = 0; i < 500; ++i) {
       test.world.step();
       if (view) view->after_step();
