@@ -34,6 +34,8 @@ export class MockServer {
   /** script: {scene, posesAt(t_s), hello, source, assets: Map}. */
   constructor(script, token = 'secret') {
     this.script = script;
+    // The scene has the poses at its time, as that of a real server.
+    script.posesAt(0).forEach((pose, i) => { script.scene.bodies[i].pose = pose; });
     this.token = token;
     this.clients = new Set();
     this.received = [];

@@ -105,7 +105,7 @@ export class Cameras {
   fit(sphere) {
     if (!this.controls.enabled) this.setMode('orbit', null);
     const aspect = Math.min(1, this.camera.aspect);
-    const distance_m = 1.15 * Math.max(sphere.radius, 0.5) / Math.sin(FOV_DEG * Math.PI / 360) / aspect;
+    const distance_m = 1.45 * Math.max(sphere.radius, 0.5) / Math.sin(FOV_DEG * Math.PI / 360) / aspect;
     const direction = this.mode === 'top' ? new Vector3(0, -1e-4, 1) : new Vector3(-0.55, -0.75, 0.5);
     this.controls.target.copy(sphere.center);
     this.camera.position.copy(sphere.center).addScaledVector(direction.normalize(), distance_m);

@@ -119,6 +119,8 @@ class App {
     if (!this.data || state.revision !== this.data.revision) return;
     const before_us = this.playback.newest?.time_us ?? 0;
     this.playback.push(state, performance.now());
+    this.fitDue ||= this.fitPending;
+    this.fitPending = false;
     // The time went back, or was set: what belongs to another time goes.
     if (state.jump || state.time_us < before_us) {
       this.sounds.clear();
@@ -187,6 +189,7 @@ class App {
     this.fit();
     const view = this.address.get('view');
     if (view) this.setView(view);
+    else this.fitPending = true;  // again with the first state
   }
 
   /** What the page knows of a vehicle. */
@@ -338,6 +341,10 @@ class App {
     if (!this.data) return;
     const moved = this.playback.sample(start_ms);
     if (moved) this.move();
+    if (moved && this.fitDue) {
+      this.fitDue = false;
+      this.fit();
+    }
     this.cameras.update(dt_s, this.vehicle, this.bodies.X_WB);
     this.showMode();
     const key = this.viewKey();
@@ -439,7 +446,7 @@ class App {
         Math.max(1, this.camera.position.distanceTo(sound.at));
     const width_px = Math.min(40, Math.max(1.5, (outer_m - inner_m) * metre_px));
     const color = {ping: '#f0e442', answer: '#009e73', noise: '#cc79a7'}[sound.kind] ?? '#56b4e9';
-    this.labels.circle(sound.at, middle_m, color, width_px, 0.5);
+    this.labels.circle(sound.at, middle_m, color, width_px, 0.38);
   }
 
   drawNames() {
@@ -470,7 +477,7 @@ class App {
       frames: this.drawn, ticks: this.frames, cpu_ms: sorted[sorted.length >> 1] ?? null, software: this.software,
       draw_calls: this.renderer.info.render.calls, triangles: this.renderer.info.render.triangles,
       scene: this.data && {world: this.data.world, revision: this.data.revision},
-      time_us: this.playback.time_us, connected: this.connection.isOpen, banner: $('banner').textContent,
+      tape: this.picking.text(), time_us: this.playback.time_us, connected: this.connection.isOpen, banner: $('banner').textContent,
       control: this.timeBar.hello.control === true, selected: this.selected,
       camera: {
         mode: this.cameras.mode, position: world(this.camera.position), target: world(this.cameras.focus),

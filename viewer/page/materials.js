@@ -87,7 +87,7 @@ vec3 albedo() {
     vec2 f = fwidth(vP.xy);
     float fine = max(lineShare(vP.x, f.x), lineShare(vP.y, f.y));
     float coarse = max(lineShare(vP.x / 10.0, f.x / 10.0), lineShare(vP.y / 10.0, f.y / 10.0));
-    return vColor * (1.0 - 0.35 * fine) * (1.0 - 0.2 * coarse);
+    return vColor * (1.0 - 0.35 * fine) * (1.0 - 0.25 * coarse * smoothstep(0.02, 0.08, max(f.x, f.y)));
   #endif
   #ifdef CONTOUR
     // Contour lines: one and a half pixels wide, every contour_m.

@@ -114,6 +114,13 @@ export class VehicleList {
   }
 }
 
+/** Range of an axis: a constant gets some space. */
+function plotRange(plot, low, high) {
+  if (low === null || high === null) return [0, 1];
+  const pad = Math.max(0.05 * (high - low), 0.05 * Math.abs(high), 0.01);
+  return [low - pad, high + pad];
+}
+
 /** Details of the selected vehicle. */
 export class Details {
   constructor(lookThrough) {
@@ -216,8 +223,8 @@ export class Details {
       this.look = look;
       const axis = {stroke: quiet, grid: {stroke: 'rgba(128,150,165,0.2)'}, ticks: {show: false}, font: '11px system-ui'};
       this.plot = new uPlot({
-        width: place.clientWidth, height: 120, legend: {show: false}, cursor: {show: false}, scales: {x: {time: false}},
-        axes: [{...axis, size: 22}, {...axis, size: 44}], series: [{}, {stroke: color, width: 1.5}],
+        width: place.clientWidth, height: 120, legend: {show: false}, cursor: {show: false}, scales: {x: {time: false}, y: {range: plotRange}},
+        axes: [{...axis, size: 22}, {...axis, size: 44}], series: [{}, {stroke: color, width: 1.5, points: {show: false}}],
       }, [[], []], place);
     }
     this.plot.setData([this.history[0], this.history[column]]);

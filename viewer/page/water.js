@@ -55,10 +55,13 @@ void main() {
     float fresnel = 0.02 + 0.98 * pow(1.0 - cosine, 5.0);
     vec3 mirrored = reflect(-toEye, normal);
     mirrored.z = abs(mirrored.z);
-    float open = 0.75 + 0.25 * normal.z + 1.6 * dot(normal.xy, toSun.xy) * 0.25;
-    vec3 body = waterColor * (0.75 + 0.7 * open);
+    // Light scattered back by the water: more where the surface faces the sun or the viewer.
+    float lit = clamp(0.55 + 1.3 * dot(normal.xy, toSun.xy) + 0.8 * vWave.z / (abs(vWave.z) + 1.0), 0.15, 1.4);
+    vec3 body = waterColor * vec3(0.55, 0.75, 0.9) * (0.35 + lit);
     color.rgb = mix(body, airColor(mirrored), fresnel);
-    color.a = clamp(0.42 + fresnel, 0.0, 1.0);
+    float glint = raisedTo64(max(0.0, dot(mirrored, toSun)));
+    color.rgb += sunColor * 0.5 * glint;
+    color.a = clamp(0.55 + fresnel + glint, 0.0, 1.0);
     float far = smoothstep(0.1, 1.0, distance_m / haze_m);
     color = mix(color, vec4(airColor(normalize(vec3(-toEye.xy, 0.0))), 1.0), far);
   } else {
