@@ -428,7 +428,7 @@ describe('safety and reach', () => {
 
   it('fits a phone without sideways scrolling', async () => {
     await withPage(scenes.land(), async (page) => {
-      for (const open_panel of [null, '#fold-left', '#fold-right', '#show']) {
+      for (const open_panel of [null, '#fold-left', '#fold-left', '#fold-right', '#fold-right', '#show']) {
         if (open_panel) await page.click(open_panel);
         const out = await page.evaluate(() => [...document.querySelectorAll('body *')].filter((one) => one.checkVisibility())
             .filter((one) => {

@@ -101,11 +101,11 @@ export class Cameras {
     this.camera.position.copy(at).add(offset);
   }
 
-  /** Shows a sphere as a whole. */
-  fit(sphere) {
+  /** Shows a sphere as a whole; aspect_free: that of the part of the page that no panel covers. */
+  fit(sphere, aspect_free) {
     if (!this.controls.enabled) this.setMode('orbit', null);
-    const aspect = Math.min(1, this.camera.aspect);
-    const distance_m = 1.45 * Math.max(sphere.radius, 0.5) / Math.sin(FOV_DEG * Math.PI / 360) / aspect;
+    const aspect = Math.max(0.3, Math.min(1, aspect_free));
+    const distance_m = 1.3 * Math.max(sphere.radius, 0.5) / Math.sin(FOV_DEG * Math.PI / 360) / aspect;
     const direction = this.mode === 'top' ? new Vector3(0, -1e-4, 1) : new Vector3(-0.55, -0.75, 0.5);
     this.controls.target.copy(sphere.center);
     this.camera.position.copy(sphere.center).addScaledVector(direction.normalize(), distance_m);

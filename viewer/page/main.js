@@ -12,7 +12,7 @@ import {Details, Events, Legend, Scores, VehicleList, formatTime} from './panels
 import {Picking} from './picking.js';
 import {Playback} from './playback.js';
 import {readScene} from './protocol.js';
-import {Address, Options, Tabs, Theme, setUpFolds, setUpKeyList} from './settings.js';
+import {Address, Options, Tabs, Theme, coveredWidth, setUpFolds, setUpKeyList} from './settings.js';
 import {Assets} from './shapes.js';
 import {Sounds} from './sounds.js';
 import {TimeBar} from './time_bar.js';
@@ -20,6 +20,9 @@ import {Trails, trailColor} from './trails.js';
 import {Water} from './water.js';
 
 const $ = (id) => document.getElementById(id);
+
+/** More vehicles than this have names only where they are near. */
+const MANY = 60;
 
 /** Is WebGL drawn by the processor?  Then shadows and fine water are off. */
 function isSoftware(gl) {
@@ -255,7 +258,7 @@ class App {
   /** Shows all that moves. */
   fit() {
     const sphere = this.bodies.boundingSphere();
-    this.cameras.fit(sphere);
+    this.cameras.fit(sphere, (innerWidth - coveredWidth()) / innerHeight);
     this.showMode();
     this.dirty = true;
   }
@@ -459,8 +462,13 @@ class App {
       labels.text(selected.at, selected.name + error, {color: selected.color, dy: -22, bold: true});
     }
     if (!this.options.get('labels')) return;
-    for (const vehicle of this.vehicles)
-      if (vehicle !== selected) labels.text(vehicle.at, vehicle.name, {color: vehicle.color, dy: -16});
+    // Of many vehicles only those that are near have their names.
+    const metre_px = this.camera.projectionMatrix.elements[5] * innerHeight / 2;
+    for (const vehicle of this.vehicles) {
+      const seen_px = vehicle.radius_m * metre_px / vehicle.at.distanceTo(this.camera.position);
+      if (vehicle === selected || (this.vehicles.length > MANY && seen_px < 6)) continue;
+      labels.text(vehicle.at, vehicle.name, {color: vehicle.color, dy: -16});
+    }
     if (this.zones.root.visible) for (const zone of this.zones.labels ?? []) labels.text(zone.at, zone.text, {color: '#cc79a7'});
   }
 

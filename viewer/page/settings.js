@@ -84,19 +84,33 @@ export class Options {
   }
 }
 
-/** Folding of the panels at the sides. */
+function fold(side, folded) {
+  const button = $(`fold-${side}`);
+  $(`${side}-body`).hidden = folded;
+  $(side).classList.toggle('folded', folded);
+  button.setAttribute('aria-expanded', !folded);
+  button.textContent = folded ? '+' : '–';
+}
+
+/** Folding of the panels at the sides; on a phone one of them is open at most. */
 export function setUpFolds() {
-  for (const side of ['left', 'right']) {
-    const button = $(`fold-${side}`);
-    const fold = (folded) => {
-      $(`${side}-body`).hidden = folded;
-      $(side).classList.toggle('folded', folded);
-      button.setAttribute('aria-expanded', !folded);
-      button.textContent = folded ? '+' : '–';
-    };
-    button.addEventListener('click', () => fold(!$(`${side}-body`).hidden));
-    if (innerWidth <= 760) fold(true);
+  const narrow = () => innerWidth <= 760;
+  for (const [side, other] of [['left', 'right'], ['right', 'left']]) {
+    $(`fold-${side}`).addEventListener('click', () => {
+      const open = $(`${side}-body`).hidden;
+      fold(side, !open);
+      if (!narrow()) return;
+      fold(other, true);
+      $(other).hidden = open;
+    });
+    if (narrow()) fold(side, true);
   }
+}
+
+/** Width of the scene that panels cover, in pixels. */
+export function coveredWidth() {
+  if (innerWidth <= 760) return 0;
+  return ['left', 'right'].reduce((sum, side) => sum + ($(`${side}-body`).hidden ? 0 : $(side).offsetWidth), 0);
 }
 
 /** Tabs of the details; arrow keys go from tab to tab. */
