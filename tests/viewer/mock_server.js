@@ -106,12 +106,12 @@ export class MockServer {
       client.greeted = true;
       this.sendState(client, true);
     }
-    if (message.op === 'control' && client.control) this.obey(client, message);
+    if (message.op === 'control' && client.control) this.execute(client, message);
     if (message.op === 'seek' && client.control) this.show(message.time_us);
     if (message.op === 'play' && client.control) [this.paused, this.speed] = [message.paused, message.speed];
   }
 
-  obey(client, {id, command, value}) {
+  execute(client, {id, command, value}) {
     if (command === 'pause' || command === 'resume') this.paused = command === 'pause';
     else if (command === 'speed') this.speed = value;
     else if (command === 'step') this.show(this.time_us + value * 10000, false);

@@ -82,7 +82,7 @@ describe('scene', () => {
     });
   });
 
-  it('reports broken messages and goes on', async () => {
+  it('reports broken messages and continues', async () => {
     await withPage(scenes.land(), async (page, server) => {
       for (const {socket} of server.clients) {
         for (const junk of ['{', '[]', '{"op": 3}', '{"op": "later", "x": 1}', '{"op":"sounds"}', '{"op":"estimates","items":[{}]}'])
@@ -231,7 +231,7 @@ describe('steering', () => {
       assert.equal(server.speed, 4);
       await page.focus('#view');
       await page.keyboard.press(' ');
-      await page.waitForFunction(() => document.getElementById('play').getAttribute('aria-label') === 'Go on');
+      await page.waitForFunction(() => document.getElementById('play').getAttribute('aria-label') === 'Continue');
       // Back to 2 s by the time line, after a confirmation.
       await page.$eval('#seek', (seek) => {
         seek.value = 2000;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Pictures of the page for people: node screenshots.js [FOLDER] [NAME ...]
+// Images of the page for people: node screenshots.js [FOLDER] [NAME ...]
 import {mkdirSync} from 'node:fs';
 import {faultsOf, launch, open, until} from './browser.js';
 import {MockServer} from './mock_server.js';
@@ -19,7 +19,7 @@ const SCORES = {op: 'scores', time_us: 0, metrics: [{name: 'auv1_error', figures
                 rules: [{rule: 'auv1_error.rms_m < 2', holds: true, value: 1.234, bound: 2}, {rule: 'contacts == 0', holds: false, value: 2, bound: 0}]};
 
 /** What to take: scene, size, and what to do before. */
-const PICTURES = {
+const SHOTS = {
   land: {script: scenes.land(), select: 'rover1', play_s: 4},
   land_dark: {script: scenes.land(), dark: true, select: 'rover2', play_s: 4, keys: ['f']},
   land_wide: {script: scenes.land(), play_s: 1, view: 'orbit,-14,-30,9,0,0,0'},
@@ -39,31 +39,31 @@ const PICTURES = {
 const [folder = 'screenshots', ...names] = process.argv.slice(2);
 mkdirSync(folder, {recursive: true});
 const browser = await launch();
-for (const [name, picture] of Object.entries(PICTURES)) {
+for (const [name, shot] of Object.entries(SHOTS)) {
   if (names.length && !names.includes(name)) continue;
-  const server = await new MockServer(picture.script).listen();
-  const {width = 1200, height = 750, dark = false} = picture;
+  const server = await new MockServer(shot.script).listen();
+  const {width = 1200, height = 750, dark = false} = shot;
   const page = await open(browser, `${server.url}#t=secret`, {width, height, dark});
   await until(page, (p) => p.scene !== null && p.frames > 1);
-  if (picture.select) await page.evaluate((one) => window.shoal.select(one), picture.select);
-  if (picture.shadows !== false) await page.evaluate(() => document.getElementById('o-shadows').click());
-  for (const key of picture.keys ?? []) await page.keyboard.press(key);
-  if (picture.open) await page.click('#fold-right');
+  if (shot.select) await page.evaluate((one) => window.shoal.select(one), shot.select);
+  if (shot.shadows !== false) await page.evaluate(() => document.getElementById('o-shadows').click());
+  for (const key of shot.keys ?? []) await page.keyboard.press(key);
+  if (shot.open) await page.click('#fold-right');
   server.send(SCORES);
-  if (picture.play_s) {
+  if (shot.play_s) {
     server.paused = false;
-    await until(page, `(p) => p.time_us >= ${picture.play_s * 1e6}`);
+    await until(page, `(p) => p.time_us >= ${shot.play_s * 1e6}`);
     server.paused = true;
     server.show(server.time_us, false);
   } else {
     // Some seconds in steps, for the trails.
-    for (let t_us = 0; t_us <= picture.time_us; t_us += 1e5) {
+    for (let t_us = 0; t_us <= shot.time_us; t_us += 1e5) {
       server.show(t_us, false);
       await until(page, `(p) => p.time_us === ${t_us}`);
     }
   }
-  if (picture.view) await page.evaluate((view) => window.shoal.setView(view), picture.view);
-  if (picture.send) {
+  if (shot.view) await page.evaluate((view) => window.shoal.setView(view), shot.view);
+  if (shot.send) {
     server.send({op: 'estimates', items: ESTIMATES});
     server.send({op: 'sounds', items: sound(2e6 - 15000)});
     server.send({op: 'receptions', items: receptions(2e6 - 500)});

@@ -18,9 +18,9 @@ export function matrixOf(pose, scale = ONE) {
 /** Distance between contour lines of a terrain: 1, 2 or 5 times a power of ten, about a twentieth of its relief. */
 function contourDistance(geometry) {
   geometry.computeBoundingBox();
-  const wanted = Math.max(0.05, (geometry.boundingBox.max.z - geometry.boundingBox.min.z) / 20);
-  const ten = Math.pow(10, Math.floor(Math.log10(wanted)));
-  return ten * [1, 2, 5, 10].find((step) => step * ten >= wanted);
+  const desired = Math.max(0.05, (geometry.boundingBox.max.z - geometry.boundingBox.min.z) / 20);
+  const ten = Math.pow(10, Math.floor(Math.log10(desired)));
+  return ten * [1, 2, 5, 10].find((step) => step * ten >= desired);
 }
 
 /** All bodies of a scene, drawn; X_WB has the matrix of each body by its number. */

@@ -111,6 +111,7 @@ export class Estimates {
       const vehicle = this.vehicles[this.byName?.get(item.vehicle)];
       if (!vehicle || !Array.isArray(item.pose) || item.pose.length !== 7 || !item.pose.every(Number.isFinite)) continue;
       vehicle.estimate = item;
+      vehicle.truth = null;
       vehicle.X_WV = matrixOf(item.pose);
       const e = vehicle.X_WV.elements;
       e[12] -= this.origin.x, e[13] -= this.origin.y, e[14] -= this.origin.z;
@@ -137,8 +138,8 @@ export class Estimates {
       }
   }
 
-  /** Draws the estimates beside the true poses of the vehicles. */
-  update(X_WVs) {
+  /** Draws the estimates beside the true poses; truthAt(i, time_us) is the place of a vehicle then, null: unknown. */
+  update(X_WVs, truthAt) {
     const lines = this.line.geometry.attributes.position;
     const matrix = new Matrix4();
     let ellipsoids = 0, count = 0;
@@ -146,7 +147,9 @@ export class Estimates {
       if (vehicle.ghost) vehicle.ghost.visible = this.showGhosts && vehicle.estimate !== null;
       if (!vehicle.estimate) return;
       const at = new Vector3().setFromMatrixPosition(vehicle.X_WV);
-      const truth = new Vector3().setFromMatrixPosition(X_WVs[i]);
+      // The error is that at the time of the estimate: the vehicle has moved on since.
+      vehicle.truth ??= truthAt(i, vehicle.estimate.time_us);
+      const truth = vehicle.truth ?? new Vector3().setFromMatrixPosition(X_WVs[i]);
       vehicle.error_m = at.distanceTo(truth);
       if (vehicle.ghost) vehicle.ghost.matrix.multiplyMatrices(vehicle.X_WV, vehicle.X_VB);
       if (this.showGhosts) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Text over the scene, on a canvas of its own: names, errors in metres, marks of sounds, the measuring tape.
+// Text over the scene, on its own canvas: names, errors in metres, marks of sounds, the measuring tape.
 import {Vector3} from './vendor/three.js';
 
 const LABELS_MAX = 80;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The live page: brings the parts together and draws the frames.
-import {NoToneMapping, PCFShadowMap, Scene, Vector3, WebGLRenderer} from './vendor/three.js';
+import {NoToneMapping, PCFShadowMap, Quaternion, Scene, Vector3, WebGLRenderer} from './vendor/three.js';
 import {Bodies, matrixOf, radiusOf} from './bodies.js';
 import {Cameras, MODES} from './cameras.js';
 import {Connection} from './connection.js';
@@ -391,6 +391,15 @@ class App {
                                                                               null)));
   }
 
+  /** Position of the frame of a vehicle at a time not long ago; null: unknown. */
+  truthAt(vehicle, time_us) {
+    const slot = this.bodies.movable.indexOf(vehicle.body);
+    const pose = slot < 0 ? null : this.playback.poseAt(slot, time_us);
+    if (!pose) return null;
+    const offset = new Vector3().setFromMatrixPosition(vehicle.X_BV);
+    return offset.applyQuaternion(new Quaternion(pose[3], pose[4], pose[5], pose[6])).add(new Vector3(...pose.slice(0, 3)));
+  }
+
   /** Draws a frame. */
   draw() {
     const {time_us} = this.playback;
@@ -402,7 +411,7 @@ class App {
     this.bodies.follow(this.camera);
     this.water.update(time_us, this.camera);
     this.sounds.update(time_us, this.playback.newest?.speed ?? 1);
-    this.estimates.update(X_WVs);
+    this.estimates.update(X_WVs, (i, at_us) => this.truthAt(this.vehicles[i], at_us));
     this.views.update(this.bodies.X_WB, this.selected);
     this.trails.update(time_us);
     this.estimateTrails.update(time_us);

@@ -83,10 +83,10 @@ export class VehicleList {
   }
 
   filter() {
-    const wanted = $('search').value.trim().toLowerCase();
-    for (const item of this.items) item.hidden = !item.dataset.name.toLowerCase().includes(wanted);
+    const desired = $('search').value.trim().toLowerCase();
+    for (const item of this.items) item.hidden = !item.dataset.name.toLowerCase().includes(desired);
     const shown = this.shown().length;
-    $('count').textContent = wanted ? `${shown} of ${this.items.length}` : `${this.items.length}`;
+    $('count').textContent = desired ? `${shown} of ${this.items.length}` : `${this.items.length}`;
   }
 
   shown() { return this.items.filter((item) => !item.hidden); }

@@ -57,6 +57,17 @@ export class Playback {
     return true;
   }
 
+  /** Pose x, y, z, qx, qy, qz, qw of a movable body at a time within the buffer; null outside of it. */
+  poseAt(body, time_us) {
+    const next = this.states.findIndex((state) => state.time_us >= time_us);
+    if (next < 0 || (next === 0 && this.states[0].time_us > time_us)) return null;
+    const b = this.states[next], a = this.states[Math.max(0, next - 1)];
+    const share = b.time_us > a.time_us ? (time_us - a.time_us) / (b.time_us - a.time_us) : 1;
+    const pose = b.poses.slice(7 * body, 7 * body + 7);
+    for (let k = 0; k < 3; ++k) pose[k] = (1 - share) * a.poses[7 * body + k] + share * pose[k];
+    return pose;
+  }
+
   interpolate(a, b, share) {
     if (this.poses.length !== a.length) this.poses = new Float32Array(a.length);
     const to = this.poses;

@@ -6,7 +6,7 @@ const THEME_KEY = 'shoal.theme';
 
 /** Keys of the page, for the list under `?`. */
 export const KEYS = [
-  ['Space', 'pause or go on'], ['.', 'one step; with Shift: ten'], [', and ;', 'log: one second back, ten seconds back'],
+  ['Space', 'pause or continue'], ['.', 'one step; with Shift: ten'], [', and ;', 'log: one second back, ten seconds back'],
   ['[ and ]', 'vehicle before, next vehicle'], ['F', 'follow the selected vehicle'],
   ['C', 'chase it: follow its heading too'], ['Home', 'show all vehicles'],
   ['1 … 6', 'orbit, top, follow, chase, first person, fly'], ['W A S D Q E', 'fly; Shift is faster'],

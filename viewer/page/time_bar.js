@@ -15,7 +15,7 @@ export class TimeBar {
     this.status = {paused: false, speed: 1};
     this.dragging = false;
     this.wanted_us = null;
-    this.asked = new Map();
+    this.requests = new Map();
     this.listen();
     this.setHello(this.hello);
   }
@@ -35,7 +35,7 @@ export class TimeBar {
     });
     $('seek').addEventListener('change', () => { if (this.isLog) this.dragging = false; });
     $('rewind').addEventListener('click', () => {
-      this.ask('rewind', this.wanted_us / 1e6);
+      this.request('rewind', this.wanted_us / 1e6);
       this.endRewind();
     });
     $('cancel').addEventListener('click', () => this.endRewind());
@@ -64,7 +64,7 @@ export class TimeBar {
   setStatus(status) {
     this.status = status;
     $('play').firstElementChild.textContent = status.paused ? '▶' : '❚❚';
-    $('play').setAttribute('aria-label', status.paused ? 'Go on' : 'Pause');
+    $('play').setAttribute('aria-label', status.paused ? 'Continue' : 'Pause');
     const speed = status.speed ?? 0;
     const known = [...$('speed').options].some((option) => Number(option.value) === speed);
     if (!known) $('speed').append(new Option(`${+speed.toPrecision(3)}×`, speed));
@@ -101,18 +101,18 @@ export class TimeBar {
     seek.setAttribute('aria-valuetext', text);
   }
 
-  ask(command, value = 0) {
+  request(command, value = 0) {
     if (!this.hello.control) {
       this.toast('read-only: open the address with the token to steer the run');
       return;
     }
-    this.asked.set(this.connection.control(command, value), command);
+    this.requests.set(this.connection.control(command, value), command);
   }
 
   /** Takes the answer to a request. */
   reply(message) {
-    const command = this.asked.get(message.id);
-    this.asked.delete(message.id);
+    const command = this.requests.get(message.id);
+    this.requests.delete(message.id);
     if (!message.ok) this.toast(`${command ?? 'request'}: ${message.text}`);
   }
 
@@ -123,16 +123,16 @@ export class TimeBar {
 
   togglePlay() {
     if (this.isLog) this.play({paused: !this.status.paused});
-    else this.ask(this.status.paused ? 'resume' : 'pause');
+    else this.request(this.status.paused ? 'resume' : 'pause');
   }
 
   step(count) {
-    if (!this.isLog) this.ask('step', count);
+    if (!this.isLog) this.request('step', count);
   }
 
   setSpeed(speed) {
     if (this.isLog) this.play({speed});
-    else this.ask('speed', speed);
+    else this.request('speed', speed);
   }
 
   /** Moves a log by some seconds. */
