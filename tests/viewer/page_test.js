@@ -2,9 +2,10 @@
 // The live page in Chromium against the mock server.  A test fails on any console error, page error, refused content,
 // foreign request or missing file.
 import assert from 'node:assert/strict';
-import {gzipSync} from 'node:zlib';
-import {after, before, describe, it} from 'node:test';
 import {readFile} from 'node:fs/promises';
+import {after, before, describe, it} from 'node:test';
+import {gzipSync} from 'node:zlib';
+
 import {faultsOf, launch, open, until} from './browser.js';
 import {MockServer} from './mock_server.js';
 import * as scenes from './scenes.js';
@@ -36,8 +37,12 @@ const near = (actual, expected, tolerance, what) =>
 
 const text = (page, selector) => page.$eval(selector, (element) => element.textContent);
 
-before(async () => { browser = await launch(); });
-after(async () => { await browser.close(); });
+before(async () => {
+  browser = await launch();
+});
+after(async () => {
+  await browser.close();
+});
 
 describe('scene', () => {
   it('draws every body where the state says, at the right pixel', async () => {
@@ -76,8 +81,9 @@ describe('scene', () => {
       const bad = structuredClone(server.script.scene);
       bad.bodies[1].parts[0].size_m = [1, 'x', 1];
       server.send(bad);
-      await page.waitForFunction(() => /body 'rover2\/chassis', part 0: 'size_m' must be 3 numbers/
-          .test(document.getElementById('events').textContent));
+      await page.waitForFunction(
+          () => /body 'rover2\/chassis', part 0: 'size_m' must be 3 numbers/.test(
+              document.getElementById('events').textContent));
       assert.equal((await page.evaluate(() => window.shoal.probe())).bodies.length, 5);
     });
   });
@@ -85,9 +91,12 @@ describe('scene', () => {
   it('reports broken messages and continues', async () => {
     await withPage(scenes.land(), async (page, server) => {
       for (const {socket} of server.clients) {
-        for (const junk of ['{', '[]', '{"op": 3}', '{"op": "later", "x": 1}', '{"op":"sounds"}', '{"op":"estimates","items":[{}]}'])
+        for (const junk
+                 of ['{', '[]', '{"op": 3}', '{"op": "later", "x": 1}', '{"op":"sounds"}',
+                     '{"op":"estimates","items":[{}]}'])
           socket.send(junk);
-        for (const bytes of [[], [1], [9, ...Array(40).fill(0)], [1, ...Array(50).fill(255)]]) socket.send(Buffer.from(bytes));
+        for (const bytes of [[], [1], [9, ...Array(40).fill(0)], [1, ...Array(50).fill(255)]])
+          socket.send(Buffer.from(bytes));
       }
       const probe = await show(page, server, 3);
       assert.equal(probe.connected, true);
@@ -111,8 +120,18 @@ describe('scene', () => {
 describe('sound', () => {
   it('expands by the sound speed, as thick as it lasts', async () => {
     await withPage(scenes.underwater(), async (page, server) => {
-      server.send({op: 'sounds', items: [{id: 7, source: 'auv1', position_m: [0, 0, -10], time_us: 1e6, duration_us: 20000,
-                                          sound_speed_mps: 1500, kind: 'ping'}]});
+      server.send({
+        op: 'sounds',
+        items: [{
+          id: 7,
+          source: 'auv1',
+          position_m: [0, 0, -10],
+          time_us: 1e6,
+          duration_us: 20000,
+          sound_speed_mps: 1500,
+          kind: 'ping'
+        }]
+      });
       for (const after_s of [0.01, 0.03, 0.06]) {
         const probe = await show(page, server, 1 + after_s, false);
         assert.equal(probe.sounds.length, 1);
@@ -125,10 +144,15 @@ describe('sound', () => {
   it('marks what became of it at each receiver, in a sign and a legend', async () => {
     await withPage(scenes.underwater(), async (page, server) => {
       await show(page, server, 2);
-      const reception = (to, position_m, outcome) => ({id: 1, to, position_m, time_us: 1.9e6, travel_s: 0.02, snr_dB: 9, outcome});
-      server.send({op: 'receptions', items: [reception('auv2', [20, 12, -14], 'interference'),
-                                             reception('auv3', [-18, 10, -8], 'interference'),
-                                             reception('auv1', [0, 0, -10], 'half_duplex')]});
+      const reception = (to, position_m, outcome) =>
+          ({id: 1, to, position_m, time_us: 1.9e6, travel_s: 0.02, snr_dB: 9, outcome});
+      server.send({
+        op: 'receptions',
+        items: [
+          reception('auv2', [20, 12, -14], 'interference'), reception('auv3', [-18, 10, -8], 'interference'),
+          reception('auv1', [0, 0, -10], 'half_duplex')
+        ]
+      });
       const probe = await until(page, (p) => p.marks.length === 3);
       assert.equal(probe.marks.filter((mark) => mark.outcome === 'interference').length, 2);
       assert.match(await text(page, '#legend'), /collision.*receiver was sending|receiver was sending.*collision/);
@@ -143,12 +167,15 @@ describe('estimates', () => {
       // R diag(4, 1, 0.25) R' with R: 30 degrees about z, so eigenvalues and axes are known.
       const c = Math.cos(Math.PI / 6), s = Math.sin(Math.PI / 6);
       const covariance_m2 = [4 * c * c + s * s, 3 * c * s, 0, 3 * c * s, 4 * s * s + c * c, 0, 0, 0, 0.25];
-      server.send({op: 'estimates', items: [{vehicle: 'auv1', time_us: 2e6, pose: [3, 4, -10, 1, 0, 0, 0], covariance_m2}]});
+      server.send(
+          {op: 'estimates', items: [{vehicle: 'auv1', time_us: 2e6, pose: [3, 4, -10, 1, 0, 0, 0], covariance_m2}]});
       const {estimates: [estimate]} = await until(page, (p) => p.estimates.length === 1 && p.estimates[0].error_m > 0);
       near(estimate.error_m, 5, 1e-3, 'error');
       const order = [0, 1, 2].sort((a, b) => estimate.axes_m[b] - estimate.axes_m[a]);
       [2, 1, 0.5].forEach((length_m, i) => near(estimate.axes_m[order[i]], length_m, 1e-6, `axis ${i}`));
-      near(Math.abs(estimate.axes[0][order[0]] * c + estimate.axes[1][order[0]] * s), 1, 1e-6, 'long axis at 30 degrees');
+      near(
+          Math.abs(estimate.axes[0][order[0]] * c + estimate.axes[1][order[0]] * s), 1, 1e-6,
+          'long axis at 30 degrees');
     });
   });
 });
@@ -247,7 +274,8 @@ describe('steering', () => {
     await withPage(scenes.land(), async (page, server) => {
       assert.equal((await page.evaluate(() => window.shoal.probe())).control, false);
       assert.equal(await text(page, '#badge'), 'read-only');
-      const disabled = await page.$$eval('#play, #step1, #step10, #speed, #seek', (all) => all.every((one) => one.disabled));
+      const disabled =
+          await page.$$eval('#play, #step1, #step10, #speed, #seek', (all) => all.every((one) => one.disabled));
       assert.ok(disabled);
       await page.focus('#view');
       await page.keyboard.press(' ');
@@ -306,8 +334,9 @@ describe('views', () => {
     await withPage(scenes.underwater(), async (page, server) => {
       await page.evaluate(() => window.shoal.select('auv2'));
       for (let t_s = 0; t_s <= 2; t_s += 0.25) await show(page, server, t_s, false);
-      const rows = await page.$$eval('#values tr', (lines) => Object.fromEntries(
-          lines.map((line) => [line.cells[0].textContent, line.cells[1].textContent])));
+      const rows = await page.$$eval(
+          '#values tr',
+          (lines) => Object.fromEntries(lines.map((line) => [line.cells[0].textContent, line.cells[1].textContent])));
       assert.equal(rows['x east, m'], '23.00');
       assert.equal(rows['depth, m'], '14.00');
       assert.equal(rows['speed, m/s'], '1.50');
@@ -355,8 +384,9 @@ describe('views', () => {
       const ahead = (p) => p.camera.target.map((value, i) => value - p.camera.position[i]);
       near(ahead(probe)[1], 1, 1e-3, 'rover1 starts northward');
       await page.click('#devices button');
-      probe = await until(page, (p) => p.camera.mode === 'device' && Math.abs(p.camera.fov_deg - 51.566) < 0.01,
-                          'the field of view of the camera: 0.9 rad');
+      probe = await until(
+          page, (p) => p.camera.mode === 'device' && Math.abs(p.camera.fov_deg - 51.566) < 0.01,
+          'the field of view of the camera: 0.9 rad');
       [2, 0.25, 0.44].forEach((value, i) => near(probe.camera.position[i], value, 2e-3, `position ${i}`));
     });
   });
@@ -397,7 +427,11 @@ describe('safety and reach', () => {
     await withPage(script, async (page, server) => {
       await page.evaluate((name) => window.shoal.select(name), script.name);
       server.send({op: 'events', items: [{time_us: 0, kind: 'event', who: script.name, text: script.name}]});
-      server.send({op: 'scores', metrics: [{name: script.name, figures: {[script.name]: 1}}], rules: [{rule: script.name, holds: true}]});
+      server.send({
+        op: 'scores',
+        metrics: [{name: script.name, figures: {[script.name]: 1}}],
+        rules: [{rule: script.name, holds: true}]
+      });
       server.send({op: 'error', text: script.name});
       await show(page, server, 1);
       assert.equal(await text(page, '#name'), script.name);
@@ -409,12 +443,15 @@ describe('safety and reach', () => {
   it('reaches every control by Tab, each with a name', async () => {
     await withPage(scenes.land(), async (page) => {
       await page.evaluate(() => window.shoal.select('rover1'));
-      const controls = await page.evaluate(() => [...document.querySelectorAll('button, input, select, a[href], [tabindex="0"]')]
-          .filter((one) => !one.disabled && one.checkVisibility()).map((one) => {
-            one.dataset.number = String(document.querySelectorAll('[data-number]').length);
-            const label = one.getAttribute('aria-label') || one.textContent.trim() || one.labels?.[0]?.textContent.trim();
-            return {number: one.dataset.number, name: label || one.title || one.id, named: Boolean(label)};
-          }));
+      const controls = await page.evaluate(
+          () => [...document.querySelectorAll('button, input, select, a[href], [tabindex="0"]')]
+                    .filter((one) => !one.disabled && one.checkVisibility())
+                    .map((one) => {
+                      one.dataset.number = String(document.querySelectorAll('[data-number]').length);
+                      const label = one.getAttribute('aria-label') || one.textContent.trim() ||
+                          one.labels?.[0]?.textContent.trim();
+                      return {number: one.dataset.number, name: label || one.title || one.id, named: Boolean(label)};
+                    }));
       assert.ok(controls.length > 20);
       assert.deepEqual(controls.filter((one) => !one.named), []);
       const reached = new Set();
@@ -430,11 +467,14 @@ describe('safety and reach', () => {
     await withPage(scenes.land(), async (page) => {
       for (const open_panel of [null, '#fold-left', '#fold-left', '#fold-right', '#fold-right', '#show']) {
         if (open_panel) await page.click(open_panel);
-        const out = await page.evaluate(() => [...document.querySelectorAll('body *')].filter((one) => one.checkVisibility())
-            .filter((one) => {
-              const box = one.getBoundingClientRect();
-              return one.id !== 'skip' && (box.right > innerWidth + 1 || box.left < -1);
-            }).map((one) => one.id || one.className || one.tagName));
+        const out = await page.evaluate(
+            () => [...document.querySelectorAll('body *')]
+                      .filter((one) => one.checkVisibility())
+                      .filter((one) => {
+                        const box = one.getBoundingClientRect();
+                        return one.id !== 'skip' && (box.right > innerWidth + 1 || box.left < -1);
+                      })
+                      .map((one) => one.id || one.className || one.tagName));
         assert.deepEqual(out, [], `after ${open_panel}`);
       }
     }, {width: 390, height: 844});
@@ -474,7 +514,8 @@ describe('load', () => {
       server.paused = false;
       const probe = await until(page, (p) => p.time_us > 3e6 && p.frames > 20, 'a thousand vehicles', 60000);
       console.log(`1000 vehicles: ${probe.cpu_ms.toFixed(1)} ms of the page's processor time per frame, ${
-          probe.draw_calls} draw calls, ${(probe.frames / probe.time_us * 1e6).toFixed(0)} frames/s${probe.software ? ' (no GPU)' : ''}`);
+          probe.draw_calls} draw calls, ${(probe.frames / probe.time_us * 1e6).toFixed(0)} frames/s${
+          probe.software ? ' (no GPU)' : ''}`);
       assert.equal(probe.vehicles.length, 1000);
       assert.ok(probe.draw_calls < 40, `${probe.draw_calls} draw calls`);
       const i = 537, t_s = probe.time_us / 1e6;

@@ -2,13 +2,18 @@
 // The live page of a running server: SHOAL_VIEW_URL, set by tools/test_page --server.
 import assert from 'node:assert/strict';
 import {after, before, it} from 'node:test';
+
 import {faultsOf, launch, open, until} from './browser.js';
 
 const url = process.env.SHOAL_VIEW_URL;
 let browser;
 
-before(async () => { browser = await launch(); });
-after(async () => { await browser.close(); });
+before(async () => {
+  browser = await launch();
+});
+after(async () => {
+  await browser.close();
+});
 
 it('shows a scene that moves, and nothing goes wrong', async () => {
   const page = await open(browser, url);

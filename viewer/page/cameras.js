@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Cameras: orbit, top, follow (position), chase (pose), first person, fly, and through a camera of a vehicle.
-import {Matrix4, OrbitControls, PerspectiveCamera, Quaternion, Vector3} from './vendor/three.js';
 import {matrixOf} from './bodies.js';
+import {Matrix4, OrbitControls, PerspectiveCamera, Quaternion, Vector3} from './vendor/three.js';
 
 /** Modes of the camera and what they are for. */
 export const MODES = {
@@ -43,8 +43,12 @@ export class Cameras {
   listen() {
     // Look around with the pointer where the orbit is off.
     let from = null;
-    this.element.addEventListener('pointerdown', (event) => { from = [event.clientX, event.clientY]; });
-    addEventListener('pointerup', () => { from = null; });
+    this.element.addEventListener('pointerdown', (event) => {
+      from = [event.clientX, event.clientY];
+    });
+    addEventListener('pointerup', () => {
+      from = null;
+    });
     addEventListener('pointermove', (event) => {
       if (!from || !['first', 'fly'].includes(this.mode)) return;
       this.look.yaw -= (event.clientX - from[0]) * 0.004;
@@ -220,6 +224,4 @@ export class Cameras {
 }
 
 /** Yaw of a vehicle, counter-clockwise from east. */
-export function headingOf(X) {
-  return Math.atan2(X.elements[1], X.elements[0]);
-}
+export function headingOf(X) { return Math.atan2(X.elements[1], X.elements[0]); }

@@ -91,8 +91,10 @@ export class Labels {
       const angle = 2 * Math.PI * i / 96;
       point.set(centre.x + radius_m * Math.cos(angle), centre.y + radius_m * Math.sin(angle), centre.z);
       const at = this.project(point, this.camera);
-      if (at && drawing) c.lineTo(at[0], at[1]);
-      else if (at) c.moveTo(at[0], at[1]);
+      if (at && drawing)
+        c.lineTo(at[0], at[1]);
+      else if (at)
+        c.moveTo(at[0], at[1]);
       drawing = at !== null;
     }
     c.globalAlpha = alpha;

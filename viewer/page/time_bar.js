@@ -29,11 +29,15 @@ export class TimeBar {
     $('seek').addEventListener('input', () => {
       this.dragging = true;
       this.wanted_us = Number($('seek').value) * 1000;
-      if (this.isLog) this.connection.send({op: 'seek', time_us: this.wanted_us});
-      else this.offerRewind();
+      if (this.isLog)
+        this.connection.send({op: 'seek', time_us: this.wanted_us});
+      else
+        this.offerRewind();
       $('time').textContent = formatTime(this.wanted_us);
     });
-    $('seek').addEventListener('change', () => { if (this.isLog) this.dragging = false; });
+    $('seek').addEventListener('change', () => {
+      if (this.isLog) this.dragging = false;
+    });
     $('rewind').addEventListener('click', () => {
       this.request('rewind', this.wanted_us / 1e6);
       this.endRewind();
@@ -55,8 +59,8 @@ export class TimeBar {
     $('speed').replaceChildren(...choices.map((speed) => new Option(speed === 0 ? 'max' : `${speed}×`, speed)));
     $('badge').hidden = may && !this.isLog;
     $('badge').textContent = may ? 'log' : 'read-only';
-    $('badge').title = may ? String(hello.name ?? '') :
-                             'To steer, open the whole address that shoal printed, with #t=... at its end';
+    $('badge').title =
+        may ? String(hello.name ?? '') : 'To steer, open the whole address that shoal printed, with #t=... at its end';
     this.endRewind();
   }
 
@@ -67,7 +71,7 @@ export class TimeBar {
     $('play').setAttribute('aria-label', status.paused ? 'Continue' : 'Pause');
     const speed = status.speed ?? 0;
     const known = [...$('speed').options].some((option) => Number(option.value) === speed);
-    if (!known) $('speed').append(new Option(`${+speed.toPrecision(3)}×`, speed));
+    if (!known) $('speed').append(new Option(`${+ speed.toPrecision(3)}×`, speed));
     if (document.activeElement !== $('speed')) $('speed').value = String(speed);
     this.describe();
   }
@@ -75,9 +79,12 @@ export class TimeBar {
   describe() {
     const {status} = this;
     const parts = [];
-    if (status.ended) parts.push(`ended: ${status.ended}`);
-    else if (status.paused) parts.push('paused');
-    else if (Number.isFinite(status.rate)) parts.push(`runs at ${+status.rate.toPrecision(2)}×`);
+    if (status.ended)
+      parts.push(`ended: ${status.ended}`);
+    else if (status.paused)
+      parts.push('paused');
+    else if (Number.isFinite(status.rate))
+      parts.push(`runs at ${+ status.rate.toPrecision(2)}×`);
     if (status.waits_for) parts.push(`waits for ${status.waits_for}`);
     if (status.branch) parts.push(`branch ${status.branch}`);
     if (Number.isFinite(status.step)) parts.push(`step ${status.step}`);
@@ -122,8 +129,10 @@ export class TimeBar {
   }
 
   togglePlay() {
-    if (this.isLog) this.play({paused: !this.status.paused});
-    else this.request(this.status.paused ? 'resume' : 'pause');
+    if (this.isLog)
+      this.play({paused: !this.status.paused});
+    else
+      this.request(this.status.paused ? 'resume' : 'pause');
   }
 
   step(count) {
@@ -131,8 +140,10 @@ export class TimeBar {
   }
 
   setSpeed(speed) {
-    if (this.isLog) this.play({speed});
-    else this.request('speed', speed);
+    if (this.isLog)
+      this.play({speed});
+    else
+      this.request('speed', speed);
   }
 
   /** Moves a log by some seconds. */
