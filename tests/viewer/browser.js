@@ -16,7 +16,9 @@ export async function launch() {
 export async function open(browser, url, {width = 960, height = 600, dark = false, allowed = null} = {}) {
   const page = await browser.newPage();
   page.faults = [];
-  const fault = (text) => { if (!allowed?.test(text)) page.faults.push(text); };
+  const fault = (text) => {
+    if (!allowed?.test(text)) page.faults.push(text);
+  };
   const origin = url.startsWith('file:') ? null : new URL(url).origin;
   page.on('console', (message) => {
     if (['error', 'warn'].includes(message.type()) && !/GPU stall|GL Driver Message/.test(message.text()))
@@ -27,7 +29,9 @@ export async function open(browser, url, {width = 960, height = 600, dark = fals
     const at = request.url();
     if (/^https?:/.test(at) && new URL(at).origin !== origin) fault(`foreign request: ${at}`);
   });
-  page.on('response', (response) => { if (response.status() >= 400) fault(`HTTP ${response.status()}: ${response.url()}`); });
+  page.on('response', (response) => {
+    if (response.status() >= 400) fault(`HTTP ${response.status()}: ${response.url()}`);
+  });
   page.on('requestfailed', (request) => fault(`failed: ${request.url()} ${request.failure()?.errorText}`));
   await page.setViewport({width, height, deviceScaleFactor: 1});
   await page.emulateMediaFeatures([{name: 'prefers-color-scheme', value: dark ? 'dark' : 'light'}]);
@@ -54,6 +58,4 @@ export async function until(page, holds, what = String(holds), timeout = 30000) 
 }
 
 /** Everything that should not have happened on a page. */
-export async function faultsOf(page) {
-  return [...page.faults, ...(await page.evaluate(() => window.policyReports))];
-}
+export async function faultsOf(page) { return [...page.faults, ...(await page.evaluate(() => window.policyReports))]; }

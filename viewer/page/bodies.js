@@ -1,26 +1,35 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The bodies of the scene: parts of the same shape and look are instances of one mesh.
-import {
-  Box3, Color, DynamicDrawUsage, Group, InstancedMesh, Matrix4, Mesh, Quaternion, Sphere, Vector3,
-} from './vendor/three.js';
-import {Surfaces, defaultColor} from './materials.js';
+import {defaultColor, Surfaces} from './materials.js';
 import {radialGrid, simpleShape} from './shapes.js';
+import {
+  Box3,
+  Color,
+  DynamicDrawUsage,
+  Group,
+  InstancedMesh,
+  Matrix4,
+  Mesh,
+  Quaternion,
+  Sphere,
+  Vector3,
+} from './vendor/three.js';
 
 const ONE = new Vector3(1, 1, 1);
 const PLANE_REACH_M = 30000;
 
 /** Returns the matrix of a pose [x, y, z, qw, qx, qy, qz]. */
 export function matrixOf(pose, scale = ONE) {
-  return new Matrix4().compose(new Vector3(pose[0], pose[1], pose[2]),
-                               new Quaternion(pose[4], pose[5], pose[6], pose[3]), scale);
+  return new Matrix4().compose(
+      new Vector3(pose[0], pose[1], pose[2]), new Quaternion(pose[4], pose[5], pose[6], pose[3]), scale);
 }
 
 /** Distance between contour lines of a terrain: 1, 2 or 5 times a power of ten, about a twentieth of its relief. */
 function contourDistance(geometry) {
   geometry.computeBoundingBox();
-  const wanted = Math.max(0.05, (geometry.boundingBox.max.z - geometry.boundingBox.min.z) / 20);
-  const ten = Math.pow(10, Math.floor(Math.log10(wanted)));
-  return ten * [1, 2, 5, 10].find((step) => step * ten >= wanted);
+  const desired = Math.max(0.05, (geometry.boundingBox.max.z - geometry.boundingBox.min.z) / 20);
+  const ten = Math.pow(10, Math.floor(Math.log10(desired)));
+  return ten * [1, 2, 5, 10].find((step) => step * ten >= desired);
 }
 
 /** All bodies of a scene, drawn; X_WB has the matrix of each body by its number. */
@@ -84,8 +93,10 @@ export class Bodies {
         groups.get(key).instances.push({body: body.index, X_BP, color: this.colorOf(body, part)});
       }
     for (const group of groups.values())
-      if (group.geometry) this.addGroup(group);
-      else this.loadGroup(group, this.revision);
+      if (group.geometry)
+        this.addGroup(group);
+      else
+        this.loadGroup(group, this.revision);
   }
 
   colorOf(body, part) {
@@ -136,7 +147,8 @@ export class Bodies {
       const count = Math.min(this.movable.length, poses.length / 7);
       for (let i = 0; i < count; ++i) setMatrix(this.X_WB[this.movable[i]].elements, poses, 7 * i);
     }
-    for (const group of this.groups) if (!group.fixed || !poses) this.place(group);
+    for (const group of this.groups)
+      if (!group.fixed || !poses) this.place(group);
   }
 
   place(group) {
@@ -222,8 +234,10 @@ export function ghostOf(body, assets, material) {
       mesh.matrix.copy(matrixOf(part.pose, new Vector3(...scale)));
       ghost.add(mesh);
     };
-    if (part.shape === 'mesh') assets.geometry(part.asset).then((geometry) => geometry && add(geometry, [1, 1, 1]));
-    else add(simpleShape(part).geometry, simpleShape(part).scale);
+    if (part.shape === 'mesh')
+      assets.geometry(part.asset).then((geometry) => geometry && add(geometry, [1, 1, 1]));
+    else
+      add(simpleShape(part).geometry, simpleShape(part).scale);
   }
   ghost.matrixAutoUpdate = false;
   return ghost;

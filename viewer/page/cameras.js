@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Cameras: orbit, top, follow (position), chase (pose), first person, fly, and through a camera of a vehicle.
-import {Matrix4, OrbitControls, PerspectiveCamera, Quaternion, Vector3} from './vendor/three.js';
 import {matrixOf} from './bodies.js';
+import {Matrix4, OrbitControls, PerspectiveCamera, Quaternion, Vector3} from './vendor/three.js';
 
 /** Modes of the camera and what they are for. */
 export const MODES = {
@@ -43,8 +43,12 @@ export class Cameras {
   listen() {
     // Look around with the pointer where the orbit is off.
     let from = null;
-    this.element.addEventListener('pointerdown', (event) => { from = [event.clientX, event.clientY]; });
-    addEventListener('pointerup', () => { from = null; });
+    this.element.addEventListener('pointerdown', (event) => {
+      from = [event.clientX, event.clientY];
+    });
+    addEventListener('pointerup', () => {
+      from = null;
+    });
     addEventListener('pointermove', (event) => {
       if (!from || !['first', 'fly'].includes(this.mode)) return;
       this.look.yaw -= (event.clientX - from[0]) * 0.004;
@@ -101,11 +105,11 @@ export class Cameras {
     this.camera.position.copy(at).add(offset);
   }
 
-  /** Shows a sphere as a whole. */
-  fit(sphere) {
+  /** Shows a sphere as a whole; aspect_free: that of the part of the page that no panel covers. */
+  fit(sphere, aspect_free) {
     if (!this.controls.enabled) this.setMode('orbit', null);
-    const aspect = Math.min(1, this.camera.aspect);
-    const distance_m = 1.15 * Math.max(sphere.radius, 0.5) / Math.sin(FOV_DEG * Math.PI / 360) / aspect;
+    const aspect = Math.max(0.3, Math.min(1, aspect_free));
+    const distance_m = 1.3 * Math.max(sphere.radius, 0.5) / Math.sin(FOV_DEG * Math.PI / 360) / aspect;
     const direction = this.mode === 'top' ? new Vector3(0, -1e-4, 1) : new Vector3(-0.55, -0.75, 0.5);
     this.controls.target.copy(sphere.center);
     this.camera.position.copy(sphere.center).addScaledVector(direction.normalize(), distance_m);
@@ -220,6 +224,4 @@ export class Cameras {
 }
 
 /** Yaw of a vehicle, counter-clockwise from east. */
-export function headingOf(X) {
-  return Math.atan2(X.elements[1], X.elements[0]);
-}
+export function headingOf(X) { return Math.atan2(X.elements[1], X.elements[0]); }

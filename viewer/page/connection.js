@@ -20,7 +20,9 @@ export class Connection {
     this.attempts = 0;
     this.unacknowledged = [];
     this.nextId = 1;
-    document.addEventListener('visibilitychange', () => { this.heardAt_ms = performance.now(); });
+    document.addEventListener('visibilitychange', () => {
+      this.heardAt_ms = performance.now();
+    });
     this.open();
   }
 

@@ -1,7 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Light, sky and water between the camera and what it sees: uniforms that all materials share, and the sky itself.
 // The sky is that of Shoal's own renderer (sim/camera/renderer.cpp).
-import {Color, DirectionalLight, Matrix4, Mesh, PlaneGeometry, ShaderMaterial, Vector3, Vector4} from './vendor/three.js';
+import {
+  Color,
+  DirectionalLight,
+  Matrix4,
+  Mesh,
+  PlaneGeometry,
+  ShaderMaterial,
+  Vector3,
+  Vector4
+} from './vendor/three.js';
 
 /** Uniforms shared, by reference, by all materials of the scene. */
 export const env = {
@@ -17,7 +26,7 @@ export const env = {
 };
 
 /** Declarations and functions of the shaders: skyColor(direction), throughWater(color, position), toneOut. */
-export const ENV_GLSL = /* glsl */`
+export const ENV_GLSL = /* glsl */ `
 uniform vec3 toSun, sunColor, zenith, horizon, waterColor;
 uniform float skyStrength, haze_m;
 uniform vec4 water;
@@ -48,7 +57,7 @@ vec3 throughWater(vec3 color, vec3 p) {
 }
 `;
 
-const SKY_VERTEX = /* glsl */`
+const SKY_VERTEX = /* glsl */ `
 varying vec3 vFar;
 uniform mat4 unproject;
 void main() {
@@ -56,7 +65,7 @@ void main() {
   vFar = far.xyz / far.w;
   gl_Position = vec4(position.xy, 1.0, 1.0);
 }`;
-const SKY_FRAGMENT = /* glsl */`
+const SKY_FRAGMENT = /* glsl */ `
 ${ENV_GLSL}
 varying vec3 vFar;
 void main() {
@@ -70,8 +79,11 @@ export class Environment {
     // The sky: a rectangle on the far plane, drawn first.
     this.unproject = {value: new Matrix4()};
     const material = new ShaderMaterial({
-      uniforms: {...env, unproject: this.unproject}, vertexShader: SKY_VERTEX, fragmentShader: SKY_FRAGMENT,
-      depthWrite: false, depthTest: false,
+      uniforms: {...env, unproject: this.unproject},
+      vertexShader: SKY_VERTEX,
+      fragmentShader: SKY_FRAGMENT,
+      depthWrite: false,
+      depthTest: false,
     });
     this.sky = new Mesh(new PlaneGeometry(2, 2), material);
     this.sky.frustumCulled = false;

@@ -1,15 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Estimates of vehicles beside the truth: a ghost, ellipsoids of 1, 2 and 3 standard deviations, a line of the error.
-import {
-  BufferAttribute, BufferGeometry, DoubleSide, DynamicDrawUsage, Group, InstancedMesh, LineBasicMaterial, LineSegments,
-  Matrix4, ShaderMaterial, SphereGeometry, Vector3,
-} from './vendor/three.js';
 import {ghostOf, matrixOf} from './bodies.js';
+import {
+  BufferAttribute,
+  BufferGeometry,
+  DoubleSide,
+  DynamicDrawUsage,
+  Group,
+  InstancedMesh,
+  LineBasicMaterial,
+  LineSegments,
+  Matrix4,
+  ShaderMaterial,
+  SphereGeometry,
+  Vector3,
+} from './vendor/three.js';
 
 const GHOSTS_MAX = 60;
 const AXIS_MIN_M = 1e-3;
 
-const VERTEX = /* glsl */`
+const VERTEX = /* glsl */ `
 varying vec3 vNormal, vWorld;
 void main() {
   vec4 world = modelMatrix * vec4(position, 1.0);
@@ -23,7 +33,7 @@ void main() {
   vWorld = world.xyz;
   gl_Position = projectionMatrix * viewMatrix * world;
 }`;
-const FRAGMENT = /* glsl */`
+const FRAGMENT = /* glsl */ `
 uniform vec3 color;
 uniform float opacity, rimPower;
 varying vec3 vNormal, vWorld;
@@ -36,7 +46,11 @@ void main() {
 function glass(color, opacity, rimPower) {
   return new ShaderMaterial({
     uniforms: {color: {value: new Vector3(...color)}, opacity: {value: opacity}, rimPower: {value: rimPower}},
-    vertexShader: VERTEX, fragmentShader: FRAGMENT, transparent: true, depthWrite: false, side: DoubleSide,
+    vertexShader: VERTEX,
+    fragmentShader: FRAGMENT,
+    transparent: true,
+    depthWrite: false,
+    side: DoubleSide,
   });
 }
 
@@ -85,9 +99,13 @@ export class Estimates {
     this.origin = new Vector3(...data.origin_m);
     this.byName = new Map(data.vehicles.map((vehicle, i) => [vehicle.name, i]));
     this.vehicles = data.vehicles.map((vehicle) => ({
-      name: vehicle.name, body: data.bodies[vehicle.body], X_VB: matrixOf(vehicle.pose).invert(), estimate: null,
-      ghost: null, axes: null,
-    }));
+                                        name: vehicle.name,
+                                        body: data.bodies[vehicle.body],
+                                        X_VB: matrixOf(vehicle.pose).invert(),
+                                        estimate: null,
+                                        ghost: null,
+                                        axes: null,
+                                      }));
     // Room for an ellipsoid of each size, and a line, for each vehicle.
     for (const cloud of this.clouds) {
       cloud.mesh.dispose();
@@ -109,8 +127,10 @@ export class Estimates {
   add(items) {
     for (const item of items) {
       const vehicle = this.vehicles[this.byName?.get(item.vehicle)];
-      if (!vehicle || !Array.isArray(item.pose) || item.pose.length !== 7 || !item.pose.every(Number.isFinite)) continue;
+      if (!vehicle || !Array.isArray(item.pose) || item.pose.length !== 7 || !item.pose.every(Number.isFinite))
+        continue;
       vehicle.estimate = item;
+      vehicle.truth = null;
       vehicle.X_WV = matrixOf(item.pose);
       const e = vehicle.X_WV.elements;
       e[12] -= this.origin.x, e[13] -= this.origin.y, e[14] -= this.origin.z;
@@ -137,8 +157,8 @@ export class Estimates {
       }
   }
 
-  /** Draws the estimates beside the true poses of the vehicles. */
-  update(X_WVs) {
+  /** Draws the estimates beside the true poses; truthAt(i, time_us) is the place of a vehicle then, null: unknown. */
+  update(X_WVs, truthAt) {
     const lines = this.line.geometry.attributes.position;
     const matrix = new Matrix4();
     let ellipsoids = 0, count = 0;
@@ -146,7 +166,9 @@ export class Estimates {
       if (vehicle.ghost) vehicle.ghost.visible = this.showGhosts && vehicle.estimate !== null;
       if (!vehicle.estimate) return;
       const at = new Vector3().setFromMatrixPosition(vehicle.X_WV);
-      const truth = new Vector3().setFromMatrixPosition(X_WVs[i]);
+      // The error is that at the time of the estimate: the vehicle has moved on since.
+      vehicle.truth ??= truthAt(i, vehicle.estimate.time_us);
+      const truth = vehicle.truth ?? new Vector3().setFromMatrixPosition(X_WVs[i]);
       vehicle.error_m = at.distanceTo(truth);
       if (vehicle.ghost) vehicle.ghost.matrix.multiplyMatrices(vehicle.X_WV, vehicle.X_VB);
       if (this.showGhosts) {
@@ -157,9 +179,9 @@ export class Estimates {
       const {lengths_m, vectors} = vehicle.axes;
       for (const {sigmas, mesh} of this.clouds) {
         const [a, b, c] = lengths_m.map((length_m) => Math.max(AXIS_MIN_M, sigmas * length_m));
-        matrix.set(vectors[0][0] * a, vectors[0][1] * b, vectors[0][2] * c, at.x,
-                   vectors[1][0] * a, vectors[1][1] * b, vectors[1][2] * c, at.y,
-                   vectors[2][0] * a, vectors[2][1] * b, vectors[2][2] * c, at.z, 0, 0, 0, 1);
+        matrix.set(
+            vectors[0][0] * a, vectors[0][1] * b, vectors[0][2] * c, at.x, vectors[1][0] * a, vectors[1][1] * b,
+            vectors[1][2] * c, at.y, vectors[2][0] * a, vectors[2][1] * b, vectors[2][2] * c, at.z, 0, 0, 0, 1);
         mesh.setMatrixAt(ellipsoids, matrix);
       }
       ++ellipsoids;

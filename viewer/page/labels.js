@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Text over the scene, on a canvas of its own: names, errors in metres, marks of sounds, the measuring tape.
+// Text over the scene, on its own canvas: names, errors in metres, marks of sounds, the measuring tape.
 import {Vector3} from './vendor/three.js';
 
 const LABELS_MAX = 80;
@@ -91,8 +91,10 @@ export class Labels {
       const angle = 2 * Math.PI * i / 96;
       point.set(centre.x + radius_m * Math.cos(angle), centre.y + radius_m * Math.sin(angle), centre.z);
       const at = this.project(point, this.camera);
-      if (at && drawing) c.lineTo(at[0], at[1]);
-      else if (at) c.moveTo(at[0], at[1]);
+      if (at && drawing)
+        c.lineTo(at[0], at[1]);
+      else if (at)
+        c.moveTo(at[0], at[1]);
       drawing = at !== null;
     }
     c.globalAlpha = alpha;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The live page: brings the parts together and draws the frames.
-import {NoToneMapping, PCFShadowMap, Scene, Vector3, WebGLRenderer} from './vendor/three.js';
 import {Bodies, matrixOf, radiusOf} from './bodies.js';
 import {Cameras, MODES} from './cameras.js';
 import {Connection} from './connection.js';
@@ -8,18 +7,22 @@ import {Environment} from './environment.js';
 import {Estimates} from './estimates.js';
 import {Labels} from './labels.js';
 import {Dots, FieldsOfView, SelectionRing, Zones} from './overlays.js';
-import {Details, Events, Legend, Scores, VehicleList, formatTime} from './panels.js';
+import {Details, Events, formatTime, Legend, Scores, VehicleList} from './panels.js';
 import {Picking} from './picking.js';
 import {Playback} from './playback.js';
 import {readScene} from './protocol.js';
-import {Address, Options, Tabs, Theme, setUpFolds, setUpKeyList} from './settings.js';
+import {Address, coveredWidth, Options, setUpFolds, setUpKeyList, Tabs, Theme} from './settings.js';
 import {Assets} from './shapes.js';
 import {Sounds} from './sounds.js';
 import {TimeBar} from './time_bar.js';
-import {Trails, trailColor} from './trails.js';
+import {trailColor, Trails} from './trails.js';
+import {NoToneMapping, PCFShadowMap, Quaternion, Scene, Vector3, WebGLRenderer} from './vendor/three.js';
 import {Water} from './water.js';
 
 const $ = (id) => document.getElementById(id);
+
+/** More vehicles than this have names only where they are near. */
+const MANY = 60;
 
 /** Is WebGL drawn by the processor?  Then shadows and fine water are off. */
 function isSoftware(gl) {
@@ -57,7 +60,9 @@ class App {
     this.renderer.shadowMap.enabled = true;
     this.renderer.shadowMap.type = PCFShadowMap;
     this.scene = new Scene();
-    this.assets = new Assets('asset', (text) => this.problem(text), () => { this.dirty = true; });
+    this.assets = new Assets('asset', (text) => this.problem(text), () => {
+      this.dirty = true;
+    });
     this.environment = new Environment(this.scene);
     this.bodies = new Bodies(this.scene, this.assets);
     this.water = new Water(this.scene, this.software);
@@ -82,7 +87,9 @@ class App {
     this.scores = new Scores();
     this.events = new Events();
     this.legend = new Legend();
-    this.theme = new Theme(() => { this.dirty = true; });
+    this.theme = new Theme(() => {
+      this.dirty = true;
+    });
     this.options = new Options(() => this.applyOptions());
     this.tabs = new Tabs();
     setUpFolds();
@@ -103,7 +110,8 @@ class App {
     url.protocol = url.protocol === 'https:' ? 'wss:' : 'ws:';
     url.hash = '';
     this.connection = new Connection(url.href, this.address.token, {
-      state: (state) => this.takeState(state), message: (message) => this.take(message),
+      state: (state) => this.takeState(state),
+      message: (message) => this.take(message),
       problem: (text) => this.problem(text),
     });
     this.timeBar = new TimeBar(this.connection, (text) => Events.toast(text));
@@ -119,6 +127,8 @@ class App {
     if (!this.data || state.revision !== this.data.revision) return;
     const before_us = this.playback.newest?.time_us ?? 0;
     this.playback.push(state, performance.now());
+    this.fitDue ||= this.fitPending;
+    this.fitPending = false;
     // The time went back, or was set: what belongs to another time goes.
     if (state.jump || state.time_us < before_us) {
       this.sounds.clear();
@@ -162,7 +172,8 @@ class App {
     this.extent_m = this.cameras.extent_m = Math.max(2, sphere.radius);
     this.vehicles = data.vehicles.map((vehicle) => this.describe(vehicle));
     this.byName = new Map(this.vehicles.map((vehicle) => [vehicle.name, vehicle]));
-    this.owners = new Map(this.vehicles.map((vehicle) => [data.bodies[vehicle.body].owner || vehicle.name, vehicle.name]));
+    this.owners =
+        new Map(this.vehicles.map((vehicle) => [data.bodies[vehicle.body].owner || vehicle.name, vehicle.name]));
     // Everything else that is drawn.
     this.environment.setScene(data, this.extent_m);
     this.water.setScene(data);
@@ -186,7 +197,10 @@ class App {
     if (same) return;
     this.fit();
     const view = this.address.get('view');
-    if (view) this.setView(view);
+    if (view)
+      this.setView(view);
+    else
+      this.fitPending = true;  // again with the first state
   }
 
   /** What the page knows of a vehicle. */
@@ -194,8 +208,14 @@ class App {
     const own = this.data.bodies[vehicle.body];
     const first = own.parts.find((part) => part.color) ?? own.parts[0];
     const color = first ? `#${this.bodies.colorOf(own, first).getHexString()}` : '#888888';
-    return {...vehicle, color, radius_m: Math.max(0.1, radiusOf(own)), X_BV: matrixOf(vehicle.pose),
-            X_WV: matrixOf(vehicle.pose), at: new Vector3()};
+    return {
+      ...vehicle,
+      color,
+      radius_m: Math.max(0.1, radiusOf(own)),
+      X_BV: matrixOf(vehicle.pose),
+      X_WV: matrixOf(vehicle.pose),
+      at: new Vector3()
+    };
   }
 
   /** Name of the vehicle that a body belongs to; null: none. */
@@ -241,6 +261,7 @@ class App {
 
   setView(text) {
     this.cameras.setView(text, this.vehicle);
+    this.cameras.update(0, this.vehicle, this.bodies.X_WB);
     this.showMode();
   }
 
@@ -252,7 +273,7 @@ class App {
   /** Shows all that moves. */
   fit() {
     const sphere = this.bodies.boundingSphere();
-    this.cameras.fit(sphere);
+    this.cameras.fit(sphere, (innerWidth - coveredWidth()) / innerHeight);
     this.showMode();
     this.dirty = true;
   }
@@ -290,12 +311,25 @@ class App {
       if (name !== null) this.select(name);
     };
     const actions = {
-      ' ': () => onButton || this.timeBar.togglePlay(), '.': () => this.timeBar.step(1), ':': () => this.timeBar.step(10),
-      '>': () => this.timeBar.step(10), ',': () => this.timeBar.skip(-1), ';': () => this.timeBar.skip(-10),
-      '[': () => next(-1), ']': () => next(1), f: () => this.setMode('follow'), c: () => this.setMode('chase'),
-      Home: () => this.fit(), m: () => this.measure(), v: () => this.options.toggle(), t: () => this.theme.toggle(),
-      l: () => this.options.set('labels', !this.options.get('labels')), '?': () => $('keys').showModal(),
-      '+': () => this.cameras.zoom(0.8), '=': () => this.cameras.zoom(0.8), '-': () => this.cameras.zoom(1.25),
+      ' ': () => onButton || this.timeBar.togglePlay(),
+      '.': () => this.timeBar.step(1),
+      ':': () => this.timeBar.step(10),
+      '>': () => this.timeBar.step(10),
+      ',': () => this.timeBar.skip(-1),
+      ';': () => this.timeBar.skip(-10),
+      '[': () => next(-1),
+      ']': () => next(1),
+      f: () => this.setMode('follow'),
+      c: () => this.setMode('chase'),
+      Home: () => this.fit(),
+      m: () => this.measure(),
+      v: () => this.options.toggle(),
+      t: () => this.theme.toggle(),
+      l: () => this.options.set('labels', !this.options.get('labels')),
+      '?': () => $('keys').showModal(),
+      '+': () => this.cameras.zoom(0.8),
+      '=': () => this.cameras.zoom(0.8),
+      '-': () => this.cameras.zoom(1.25),
       '/': () => {
         if ($('left-body').hidden) $('fold-left').click();
         $('search').focus();
@@ -310,10 +344,14 @@ class App {
   }
 
   escape(event) {
-    if (!$('options').hidden) this.options.toggle(false);
-    else if (this.picking.measuring) this.measure(false);
-    else if (event.target === $('search')) $('view').focus();
-    else if (!$('keys').open) this.select(null);
+    if (!$('options').hidden)
+      this.options.toggle(false);
+    else if (this.picking.measuring)
+      this.measure(false);
+    else if (event.target === $('search'))
+      $('view').focus();
+    else if (!$('keys').open)
+      this.select(null);
   }
 
   resize() {
@@ -338,6 +376,10 @@ class App {
     if (!this.data) return;
     const moved = this.playback.sample(start_ms);
     if (moved) this.move();
+    if (moved && this.fitDue) {
+      this.fitDue = false;
+      this.fit();
+    }
     this.cameras.update(dt_s, this.vehicle, this.bodies.X_WB);
     this.showMode();
     const key = this.viewKey();
@@ -353,11 +395,13 @@ class App {
   }
 
   viewKey() {
-    return `${this.camera.matrixWorld.elements.map((x) => x.toFixed(5)).join()} ${this.camera.fov} ${this.picking.points.length}`;
+    return `${this.camera.matrixWorld.elements.map((x) => x.toFixed(5)).join()} ${this.camera.fov} ${
+        this.picking.points.length}`;
   }
 
   writeAddress(now_ms) {
-    this.address.write({view: this.cameras.mode === 'device' ? '' : this.cameras.view(), select: this.selected}, now_ms);
+    this.address.write(
+        {view: this.cameras.mode === 'device' ? '' : this.cameras.view(), select: this.selected}, now_ms);
   }
 
   showBanner() {
@@ -377,8 +421,18 @@ class App {
     }
     this.trails.sample(time_us, this.vehicles.map((vehicle) => vehicle.at));
     const estimates = this.estimates.vehicles;
-    this.estimateTrails.sample(time_us, estimates.map((one) => (one.estimate ? new Vector3().setFromMatrixPosition(one.X_WV) :
-                                                                              null)));
+    this.estimateTrails.sample(
+        time_us, estimates.map((one) => (one.estimate ? new Vector3().setFromMatrixPosition(one.X_WV) : null)));
+  }
+
+  /** Position of the frame of a vehicle at a time not long ago; null: unknown. */
+  truthAt(vehicle, time_us) {
+    const slot = this.bodies.movable.indexOf(vehicle.body);
+    const pose = slot < 0 ? null : this.playback.poseAt(slot, time_us);
+    if (!pose) return null;
+    const offset = new Vector3().setFromMatrixPosition(vehicle.X_BV);
+    return offset.applyQuaternion(new Quaternion(pose[3], pose[4], pose[5], pose[6]))
+        .add(new Vector3(...pose.slice(0, 3)));
   }
 
   /** Draws a frame. */
@@ -392,7 +446,7 @@ class App {
     this.bodies.follow(this.camera);
     this.water.update(time_us, this.camera);
     this.sounds.update(time_us, this.playback.newest?.speed ?? 1);
-    this.estimates.update(X_WVs);
+    this.estimates.update(X_WVs, (i, at_us) => this.truthAt(this.vehicles[i], at_us));
     this.views.update(this.bodies.X_WB, this.selected);
     this.trails.update(time_us);
     this.estimateTrails.update(time_us);
@@ -439,7 +493,7 @@ class App {
         Math.max(1, this.camera.position.distanceTo(sound.at));
     const width_px = Math.min(40, Math.max(1.5, (outer_m - inner_m) * metre_px));
     const color = {ping: '#f0e442', answer: '#009e73', noise: '#cc79a7'}[sound.kind] ?? '#56b4e9';
-    this.labels.circle(sound.at, middle_m, color, width_px, 0.5);
+    this.labels.circle(sound.at, middle_m, color, width_px, 0.38);
   }
 
   drawNames() {
@@ -452,9 +506,15 @@ class App {
       labels.text(selected.at, selected.name + error, {color: selected.color, dy: -22, bold: true});
     }
     if (!this.options.get('labels')) return;
-    for (const vehicle of this.vehicles)
-      if (vehicle !== selected) labels.text(vehicle.at, vehicle.name, {color: vehicle.color, dy: -16});
-    if (this.zones.root.visible) for (const zone of this.zones.labels ?? []) labels.text(zone.at, zone.text, {color: '#cc79a7'});
+    // Of many vehicles only those that are near have their names.
+    const metre_px = this.camera.projectionMatrix.elements[5] * innerHeight / 2;
+    for (const vehicle of this.vehicles) {
+      const seen_px = vehicle.radius_m * metre_px / vehicle.at.distanceTo(this.camera.position);
+      if (vehicle === selected || (this.vehicles.length > MANY && seen_px < 6)) continue;
+      labels.text(vehicle.at, vehicle.name, {color: vehicle.color, dy: -16});
+    }
+    if (this.zones.root.visible)
+      for (const zone of this.zones.labels ?? []) labels.text(zone.at, zone.text, {color: '#cc79a7'});
   }
 
   /** Position of a vehicle on the page; null: not in view. */
@@ -467,28 +527,48 @@ class App {
     const world = (point) => point.clone().add(origin).toArray();
     const place = new Vector3();
     return {
-      frames: this.drawn, ticks: this.frames, cpu_ms: sorted[sorted.length >> 1] ?? null, software: this.software,
-      draw_calls: this.renderer.info.render.calls, triangles: this.renderer.info.render.triangles,
+      frames: this.drawn,
+      ticks: this.frames,
+      cpu_ms: sorted[sorted.length >> 1] ?? null,
+      software: this.software,
+      draw_calls: this.renderer.info.render.calls,
+      triangles: this.renderer.info.render.triangles,
       scene: this.data && {world: this.data.world, revision: this.data.revision},
-      time_us: this.playback.time_us, connected: this.connection.isOpen, banner: $('banner').textContent,
-      control: this.timeBar.hello.control === true, selected: this.selected,
+      tape: this.picking.text(),
+      time_us: this.playback.time_us,
+      connected: this.connection.isOpen,
+      banner: $('banner').textContent,
+      control: this.timeBar.hello.control === true,
+      selected: this.selected,
       camera: {
-        mode: this.cameras.mode, position: world(this.camera.position), target: world(this.cameras.focus),
+        mode: this.cameras.mode,
+        position: world(this.camera.position),
+        target: world(this.cameras.focus),
         fov_deg: this.camera.fov,
       },
       bodies: this.bodies.X_WB.map((X, i) => ({
-        name: this.bodies.list[i].name, position: world(place.setFromMatrixPosition(X)),
-        pixel: this.labels.project(place, this.camera),
-      })),
+                                     name: this.bodies.list[i].name,
+                                     position: world(place.setFromMatrixPosition(X)),
+                                     pixel: this.labels.project(place, this.camera),
+                                   })),
       vehicles: this.vehicles.map((vehicle, i) => ({
-        name: vehicle.name, position: world(vehicle.at), pixel: this.pixelOf(vehicle), trail: this.trails.describe(i),
-      })),
+                                    name: vehicle.name,
+                                    position: world(vehicle.at),
+                                    pixel: this.pixelOf(vehicle),
+                                    trail: this.trails.describe(i),
+                                  })),
       estimates: this.estimates.vehicles.filter((one) => one.estimate).map((one) => ({
-        vehicle: one.name, error_m: one.error_m, axes_m: one.axes?.lengths_m ?? null, axes: one.axes?.vectors ?? null,
-      })),
+                                                                             vehicle: one.name,
+                                                                             error_m: one.error_m,
+                                                                             axes_m: one.axes?.lengths_m ?? null,
+                                                                             axes: one.axes?.vectors ?? null,
+                                                                           })),
       sounds: this.sounds.rings.map((ring) => ({
-        id: ring.sound.id, outer_m: ring.outer_m, inner_m: ring.inner_m, center: world(ring.sound.at),
-      })),
+                                      id: ring.sound.id,
+                                      outer_m: ring.outer_m,
+                                      inner_m: ring.inner_m,
+                                      center: world(ring.sound.at),
+                                    })),
       marks: (this.sounds.visibleMarks ?? []).map((mark) => ({outcome: mark.outcome, position: world(mark.at)})),
     };
   }

@@ -1,18 +1,27 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The material of bodies: light and textures as in Shoal's own renderer (sim/camera/renderer.cpp), so that the page
 // and `shoal snap` look alike.
+import {env, ENV_GLSL} from './environment.js';
 import {
-  Color, DoubleSide, LinearFilter, LinearMipmapLinearFilter, RepeatWrapping, SRGBColorSpace, ShaderMaterial, Texture,
-  UniformsLib, UniformsUtils, Vector3,
+  Color,
+  DoubleSide,
+  LinearFilter,
+  LinearMipmapLinearFilter,
+  RepeatWrapping,
+  ShaderMaterial,
+  SRGBColorSpace,
+  Texture,
+  UniformsLib,
+  UniformsUtils,
+  Vector3,
 } from './vendor/three.js';
-import {ENV_GLSL, env} from './environment.js';
 
 /** Default colors: of fixed parts, of planes, and of the movable parts of each vehicle in turn. */
 const FIXED_COLOR = '#b2aa9c';
 const PLANE_COLOR = '#c4c6c4';
 const GROUP_COLORS = ['#4678be', '#d66a3e', '#5c9c58', '#be4a60', '#8666b0', '#3a969e', '#d2aa46', '#7c7064'];
 
-const VERTEX = /* glsl */`
+const VERTEX = /* glsl */ `
 #include <common>
 #include <shadowmap_pars_vertex>
 varying vec3 vP, vNormalP, vWorld, vNormalW, vColor;
@@ -41,7 +50,7 @@ void main() {
   #include <shadowmap_vertex>
 }`;
 
-const FRAGMENT = /* glsl */`
+const FRAGMENT = /* glsl */ `
 #include <common>
 #include <bsdfs>
 #include <lights_pars_begin>
@@ -87,7 +96,7 @@ vec3 albedo() {
     vec2 f = fwidth(vP.xy);
     float fine = max(lineShare(vP.x, f.x), lineShare(vP.y, f.y));
     float coarse = max(lineShare(vP.x / 10.0, f.x / 10.0), lineShare(vP.y / 10.0, f.y / 10.0));
-    return vColor * (1.0 - 0.35 * fine) * (1.0 - 0.2 * coarse);
+    return vColor * (1.0 - 0.35 * fine) * (1.0 - 0.25 * coarse * smoothstep(0.02, 0.08, max(f.x, f.y)));
   #endif
   #ifdef CONTOUR
     // Contour lines: one and a half pixels wide, every contour_m.
@@ -155,14 +164,21 @@ export class Surfaces {
     if (known) return known;
     // Choose the code of the shader by the pattern.
     const defines = {};
-    if (texture) defines[texture.pattern.toUpperCase()] = 1;
-    else if (part.shape === 'plane' && plain) defines.GRID = 1;
+    if (texture)
+      defines[texture.pattern.toUpperCase()] = 1;
+    else if (part.shape === 'plane' && plain)
+      defines.GRID = 1;
     if (contour_m > 0 && !texture) defines.CONTOUR = 1;
     if (flat) defines.FLAT = 1;
     const material = new ShaderMaterial({
-      defines, lights: true, side: DoubleSide, vertexShader: VERTEX, fragmentShader: FRAGMENT,
+      defines,
+      lights: true,
+      side: DoubleSide,
+      vertexShader: VERTEX,
+      fragmentShader: FRAGMENT,
       uniforms: {
-        ...UniformsUtils.merge([UniformsLib.lights]), ...env,
+        ...UniformsUtils.merge([UniformsLib.lights]),
+        ...env,
         color0: {value: new Color(texture?.colors?.[0] ?? '#ffffff')},
         color1: {value: new Color(texture?.colors?.[1] ?? '#202020')},
         textureSize_m: {value: texture?.size_m ?? 1},

@@ -1,10 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Drawings that explain the scene: fields of view of devices, zones, dots and rings of vehicles.
-import {
-  BufferAttribute, BufferGeometry, DoubleSide, Group, LineBasicMaterial, LineSegments, Matrix4, Mesh,
-  MeshBasicMaterial, Points, ShaderMaterial, Vector3,
-} from './vendor/three.js';
 import {matrixOf} from './bodies.js';
+import {
+  BufferAttribute,
+  BufferGeometry,
+  DoubleSide,
+  Group,
+  LineBasicMaterial,
+  LineSegments,
+  Matrix4,
+  Mesh,
+  MeshBasicMaterial,
+  Points,
+  ShaderMaterial,
+  Vector3,
+} from './vendor/three.js';
 
 const VIEWS_MAX = 400;
 const ARC_STEPS = 48;
@@ -34,8 +44,7 @@ export function fieldOfViewLines(view) {
   }
   if (view.kind === 'cone') {
     const x = r * Math.cos(view.half_angle_rad), radius_m = r * Math.sin(view.half_angle_rad);
-    const edge = (share) =>
-        [x, radius_m * Math.cos(2 * Math.PI * share), radius_m * Math.sin(2 * Math.PI * share)];
+    const edge = (share) => [x, radius_m * Math.cos(2 * Math.PI * share), radius_m * Math.sin(2 * Math.PI * share)];
     const points = along(edge);
     for (let i = 0; i < 8; ++i) points.push(0, 0, 0, ...edge(i / 8));
     return points;
@@ -91,8 +100,8 @@ export class Zones {
   constructor(scene) {
     this.root = new Group();
     this.lines = new LineBasicMaterial({color: '#cc79a7'});
-    this.walls = new MeshBasicMaterial({color: '#cc79a7', transparent: true, opacity: 0.10, side: DoubleSide,
-                                        depthWrite: false});
+    this.walls = new MeshBasicMaterial(
+        {color: '#cc79a7', transparent: true, opacity: 0.10, side: DoubleSide, depthWrite: false});
     scene.add(this.root);
   }
 
@@ -114,13 +123,14 @@ export class Zones {
         wall.push(...a, low, ...b, low, ...b, high, ...a, low, ...b, high, ...a, high);
       });
       this.root.add(new LineSegments(segments(rim), this.lines), new Mesh(segments(wall), this.walls));
-      const centre = corners.reduce((sum, c) => [sum[0] + c[0] / corners.length, sum[1] + c[1] / corners.length], [0, 0]);
+      const centre =
+          corners.reduce((sum, c) => [sum[0] + c[0] / corners.length, sum[1] + c[1] / corners.length], [0, 0]);
       this.labels.push({text: zone.name, at: new Vector3(centre[0], centre[1], high)});
     }
   }
 }
 
-const DOT_VERTEX = /* glsl */`
+const DOT_VERTEX = /* glsl */ `
 attribute vec3 tint;
 attribute float radius_m;
 uniform float pixels;
@@ -132,12 +142,13 @@ void main() {
   float seen_px = pixels * radius_m / gl_Position.w;
   vTint = vec4(tint, 1.0 - smoothstep(3.0, 7.0, seen_px));
 }`;
-const DOT_FRAGMENT = /* glsl */`
+const DOT_FRAGMENT = /* glsl */ `
 varying vec4 vTint;
 void main() {
   float off = length(gl_PointCoord - 0.5) * 2.0;
   if (off > 1.0 || vTint.a < 0.02) discard;
-  gl_FragColor = vec4(mix(vTint.rgb, vec3(1.0), smoothstep(0.55, 0.75, off)), vTint.a * (1.0 - smoothstep(0.85, 1.0, off)));
+  float alpha = vTint.a * (1.0 - smoothstep(0.85, 1.0, off));
+  gl_FragColor = vec4(mix(vTint.rgb, vec3(1.0), smoothstep(0.55, 0.75, off)), alpha);
   #include <colorspace_fragment>
 }`;
 
@@ -146,7 +157,10 @@ export class Dots {
   constructor(scene) {
     this.pixels = {value: 1};
     const material = new ShaderMaterial({
-      uniforms: {pixels: this.pixels}, vertexShader: DOT_VERTEX, fragmentShader: DOT_FRAGMENT, transparent: true,
+      uniforms: {pixels: this.pixels},
+      vertexShader: DOT_VERTEX,
+      fragmentShader: DOT_FRAGMENT,
+      transparent: true,
       depthWrite: false,
     });
     this.points = new Points(new BufferGeometry(), material);
@@ -179,8 +193,8 @@ export class SelectionRing {
   constructor(scene) {
     const curve = (share) => [Math.cos(2 * Math.PI * share), Math.sin(2 * Math.PI * share), 0];
     const points = [...along(curve, 64), 1, 0, 0, 1.35, 0, 0];
-    this.lines = new LineSegments(segments(points), new LineBasicMaterial({color: '#ffd166', depthTest: false,
-                                                                           transparent: true, opacity: 0.9}));
+    this.lines = new LineSegments(
+        segments(points), new LineBasicMaterial({color: '#ffd166', depthTest: false, transparent: true, opacity: 0.9}));
     this.lines.matrixAutoUpdate = false;
     this.lines.frustumCulled = false;
     this.lines.renderOrder = 35;
@@ -192,7 +206,8 @@ export class SelectionRing {
     this.lines.visible = X_WV !== null && !hidden;
     if (!this.lines.visible) return;
     const at = new Vector3().setFromMatrixPosition(X_WV);
-    const metre_px = camera.projectionMatrix.elements[5] * height_px / 2 / Math.max(0.01, at.distanceTo(camera.position));
+    const metre_px =
+        camera.projectionMatrix.elements[5] * height_px / 2 / Math.max(0.01, at.distanceTo(camera.position));
     const size_m = Math.max(1.25 * radius_m, 16 / metre_px);
     const yaw = Math.atan2(X_WV.elements[1], X_WV.elements[0]);
     this.lines.matrix.copy(new Matrix4().makeRotationZ(yaw).scale(new Vector3(size_m, size_m, size_m))).setPosition(at);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The panels: vehicles with search, details of the selected one with a plot, scores, events.  Text from the server
 // enters the page by textContent only.
-import uPlot from './vendor/uplot.js';
 import {headingOf} from './cameras.js';
 import {OUTCOMES} from './sounds.js';
+import uPlot from './vendor/uplot.js';
 
 const EVENTS_MAX = 500;
 const PLOT_SAMPLES = 300;
@@ -31,7 +31,8 @@ export function formatNumber(value) {
   if (typeof value === 'boolean') return value ? 'yes' : 'no';
   if (typeof value !== 'number' || !Number.isFinite(value)) return String(value);
   const size = Math.abs(value);
-  return size !== 0 && (size < 0.001 || size >= 1e6) ? value.toExponential(2) : String(+value.toFixed(size < 10 ? 3 : 2));
+  return size !== 0 && (size < 0.001 || size >= 1e6) ? value.toExponential(2) :
+                                                       String(+value.toFixed(size < 10 ? 3 : 2));
 }
 
 /** The list of vehicles: one stop of the Tab key, arrows move in it. */
@@ -83,10 +84,10 @@ export class VehicleList {
   }
 
   filter() {
-    const wanted = $('search').value.trim().toLowerCase();
-    for (const item of this.items) item.hidden = !item.dataset.name.toLowerCase().includes(wanted);
+    const desired = $('search').value.trim().toLowerCase();
+    for (const item of this.items) item.hidden = !item.dataset.name.toLowerCase().includes(desired);
     const shown = this.shown().length;
-    $('count').textContent = wanted ? `${shown} of ${this.items.length}` : `${this.items.length}`;
+    $('count').textContent = desired ? `${shown} of ${this.items.length}` : `${this.items.length}`;
   }
 
   shown() { return this.items.filter((item) => !item.hidden); }
@@ -112,6 +113,13 @@ export class VehicleList {
       item.scrollIntoView({block: 'nearest'});
     }
   }
+}
+
+/** Range of an axis: a constant gets some space. */
+function plotRange(plot, low, high) {
+  if (low === null || high === null) return [0, 1];
+  const pad = Math.max(0.05 * (high - low), 0.05 * Math.abs(high), 0.01);
+  return [low - pad, high + pad];
 }
 
 /** Details of the selected vehicle. */
@@ -196,7 +204,10 @@ export class Details {
   remember(time_us, z, error_m) {
     const [times, speeds, heights, errors] = this.history;
     const t_s = time_us / 1e6;
-    if (times.length && t_s < times[times.length - 1]) this.history.forEach((column) => { column.length = 0; });
+    if (times.length && t_s < times[times.length - 1])
+      this.history.forEach((column) => {
+        column.length = 0;
+      });
     if (times.length && t_s - times[times.length - 1] < 0.2) return;
     times.push(t_s), speeds.push(this.speed_mps), heights.push(z), errors.push(error_m);
     if (times.length > PLOT_SAMPLES) this.history.forEach((column) => column.shift());
@@ -214,11 +225,19 @@ export class Details {
     if (this.look !== look) {
       this.plot?.destroy();
       this.look = look;
-      const axis = {stroke: quiet, grid: {stroke: 'rgba(128,150,165,0.2)'}, ticks: {show: false}, font: '11px system-ui'};
-      this.plot = new uPlot({
-        width: place.clientWidth, height: 120, legend: {show: false}, cursor: {show: false}, scales: {x: {time: false}},
-        axes: [{...axis, size: 22}, {...axis, size: 44}], series: [{}, {stroke: color, width: 1.5}],
-      }, [[], []], place);
+      const axis =
+          {stroke: quiet, grid: {stroke: 'rgba(128,150,165,0.2)'}, ticks: {show: false}, font: '11px system-ui'};
+      this.plot = new uPlot(
+          {
+            width: place.clientWidth,
+            height: 120,
+            legend: {show: false},
+            cursor: {show: false},
+            scales: {x: {time: false}, y: {range: plotRange}},
+            axes: [{...axis, size: 22}, {...axis, size: 44}],
+            series: [{}, {stroke: color, width: 1.5, points: {show: false}}],
+          },
+          [[], []], place);
     }
     this.plot.setData([this.history[0], this.history[column]]);
   }
@@ -258,7 +277,8 @@ export class Events {
       const line = document.createElement('li');
       const time = element('time', Number.isFinite(item.time_us) ? formatTime(item.time_us) : '');
       const who = item.who ? `${item.who}: ` : '';
-      line.append(time, element('span', `${who}${item.text ?? item.kind ?? ''}`, item.kind === 'problem' ? 'problem' : ''));
+      line.append(
+          time, element('span', `${who}${item.text ?? item.kind ?? ''}`, item.kind === 'problem' ? 'problem' : ''));
       $('events').prepend(line);
     }
     while ($('events').children.length > EVENTS_MAX) $('events').lastChild.remove();
@@ -289,7 +309,8 @@ export class Legend {
 
   add(outcomes) {
     const before = this.seen.size;
-    for (const outcome of outcomes) if (OUTCOMES[outcome]) this.seen.add(outcome);
+    for (const outcome of outcomes)
+      if (OUTCOMES[outcome]) this.seen.add(outcome);
     if (this.seen.size === before) return;
     $('legend').hidden = false;
     $('legend').replaceChildren(...Object.keys(OUTCOMES).filter((name) => this.seen.has(name)).map((name) => {

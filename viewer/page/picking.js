@@ -16,7 +16,9 @@ export class Picking {
     this.measuring = false;
     this.points = [];
     let down = null;
-    element.addEventListener('pointerdown', (event) => { down = [event.clientX, event.clientY]; });
+    element.addEventListener('pointerdown', (event) => {
+      down = [event.clientX, event.clientY];
+    });
     element.addEventListener('pointerup', (event) => {
       const still = down && Math.hypot(event.clientX - down[0], event.clientY - down[1]) < CLICK_PX;
       down = null;

@@ -8,9 +8,7 @@ const SPEED_MAX = 4;
 
 /** Buffer of states; sample() gives the poses for a wall time. */
 export class Playback {
-  constructor() {
-    this.clear();
-  }
+  constructor() { this.clear(); }
 
   /** Forgets all states: another scene. */
   clear() {
@@ -43,7 +41,8 @@ export class Playback {
     const rate = (newest.time_us - before.time_us) / 1000 / Math.max(1, newest.wall_ms - before.wall_ms);
     const smooth = !newest.paused && !newest.jump && rate <= SPEED_MAX;
     const wanted_ms = wall_ms - DELAY_MS;
-    if (smooth) while (i > 0 && this.states[i].wall_ms > wanted_ms) --i;
+    if (smooth)
+      while (i > 0 && this.states[i].wall_ms > wanted_ms) --i;
     const a = this.states[i], b = this.states[Math.min(i + 1, last)];
     const span_ms = b.wall_ms - a.wall_ms;
     const share = smooth && span_ms > 0 ? Math.min(1, Math.max(0, (wanted_ms - a.wall_ms) / span_ms)) : 0;
@@ -55,6 +54,17 @@ export class Playback {
     this.interpolate(a.poses, b.poses, share);
     ++this.version;
     return true;
+  }
+
+  /** Pose x, y, z, qx, qy, qz, qw of a movable body at a time within the buffer; null outside of it. */
+  poseAt(body, time_us) {
+    const next = this.states.findIndex((state) => state.time_us >= time_us);
+    if (next < 0 || (next === 0 && this.states[0].time_us > time_us)) return null;
+    const b = this.states[next], a = this.states[Math.max(0, next - 1)];
+    const share = b.time_us > a.time_us ? (time_us - a.time_us) / (b.time_us - a.time_us) : 1;
+    const pose = b.poses.slice(7 * body, 7 * body + 7);
+    for (let k = 0; k < 3; ++k) pose[k] = (1 - share) * a.poses[7 * body + k] + share * pose[k];
+    return pose;
   }
 
   interpolate(a, b, share) {

@@ -50,7 +50,7 @@ export function parseMessage(text) {
     throw new ProtocolError(`text message: ${error.message}`);
   }
   if (typeof message !== 'object' || message === null || typeof message.op !== 'string')
-    throw new ProtocolError("text message: 'op' is missing");
+    throw new ProtocolError('text message: \'op\' is missing');
   return message;
 }
 
@@ -64,26 +64,30 @@ function require(holds, where, rule, value) {
 /** Returns the numbers of a pose [x, y, z, qw, qx, qy, qz]; the identity where it is absent. */
 function readPose(value, where) {
   if (value === undefined || value === null) return [0, 0, 0, 1, 0, 0, 0];
-  require(isNumbers(value, 7), where, "'pose' must be 7 numbers", value);
+  require(isNumbers(value, 7), where, '\'pose\' must be 7 numbers', value);
   return value;
 }
 
 function readPart(part, materials, where) {
   require(SHAPES.has(part.shape), where, `'shape' must be one of ${[...SHAPES].join(', ')}`, part.shape);
-  if (part.shape === 'box') require(isNumbers(part.size_m, 3), where, "'size_m' must be 3 numbers", part.size_m);
+  if (part.shape === 'box') require(isNumbers(part.size_m, 3), where, '\'size_m\' must be 3 numbers', part.size_m);
   if (['sphere', 'capsule', 'cylinder'].includes(part.shape))
-    require(part.radius_m > 0, where, "'radius_m' must be > 0", part.radius_m);
+    require(part.radius_m > 0, where, '\'radius_m\' must be > 0', part.radius_m);
   if (['capsule', 'cylinder'].includes(part.shape))
-    require(part.length_m >= 0, where, "'length_m' must be >= 0", part.length_m);
+    require(part.length_m >= 0, where, '\'length_m\' must be >= 0', part.length_m);
   if (['mesh', 'terrain'].includes(part.shape))
-    require(/^[0-9a-f]{16}$/.test(part.asset), where, "'asset' must be 16 hexadecimal digits", part.asset);
+    require(/^[0-9a-f]{16}$/.test(part.asset), where, '\'asset\' must be 16 hexadecimal digits', part.asset);
   return {...part, pose: readPose(part.pose, where), material: materials[part.material] ?? {}};
 }
 
 function readBody(body, index, materials) {
   const name = String(body.name ?? index), where = `body '${name}'`;
   return {
-    ...body, name, index, fixed: body.fixed === true, owner: String(body.owner ?? ''),
+    ...body,
+    name,
+    index,
+    fixed: body.fixed === true,
+    owner: String(body.owner ?? ''),
     pose: readPose(body.pose, where),
     parts: (body.parts ?? []).map((part, i) => readPart(part, materials, `${where}, part ${i}`)),
   };
@@ -91,10 +95,10 @@ function readBody(body, index, materials) {
 
 function readVehicle(vehicle, bodies) {
   const where = `vehicle '${vehicle.name}'`;
-  require(bodies[vehicle.body] !== undefined, where, "'body' must be the number of a body", vehicle.body);
+  require(bodies[vehicle.body] !== undefined, where, '\'body\' must be the number of a body', vehicle.body);
   const devices = (vehicle.devices ?? []).map((device) => {
     const at = `${where}, device '${device.name}'`;
-    require(bodies[device.body] !== undefined, at, "'body' must be the number of a body", device.body);
+    require(bodies[device.body] !== undefined, at, '\'body\' must be the number of a body', device.body);
     return {...device, name: String(device.name), pose: readPose(device.pose, at)};
   });
   return {...vehicle, name: String(vehicle.name), pose: readPose(vehicle.pose, where), devices};
@@ -126,7 +130,12 @@ export function readScene(message) {
     world: String(message.world ?? ''),
     origin_m: isNumbers(message.origin_m, 3) ? message.origin_m : [0, 0, 0],
     light: {
-      to_sun: [0.5, -0.4, 0.7], sun: 0.9, sky: 0.4, zenith: '#5b8fd6', horizon: '#d6e4f0', shadows: true,
+      to_sun: [0.5, -0.4, 0.7],
+      sun: 0.9,
+      sky: 0.4,
+      zenith: '#5b8fd6',
+      horizon: '#d6e4f0',
+      shadows: true,
       ...message.light,
     },
     bodies,

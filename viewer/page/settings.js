@@ -6,12 +6,23 @@ const THEME_KEY = 'shoal.theme';
 
 /** Keys of the page, for the list under `?`. */
 export const KEYS = [
-  ['Space', 'pause or go on'], ['.', 'one step; with Shift: ten'], [', and ;', 'log: one second back, ten seconds back'],
-  ['[ and ]', 'vehicle before, next vehicle'], ['F', 'follow the selected vehicle'],
-  ['C', 'chase it: follow its heading too'], ['Home', 'show all vehicles'],
-  ['1 … 6', 'orbit, top, follow, chase, first person, fly'], ['W A S D Q E', 'fly; Shift is faster'],
-  ['Arrows', 'move the view'], ['+ and –', 'zoom'], ['M', 'measure between two points'], ['V', 'what is drawn'],
-  ['L', 'names on or off'], ['T', 'light or dark'], ['/', 'search a vehicle'], ['Esc', 'release the vehicle, close'],
+  ['Space', 'pause or continue'],
+  ['.', 'one step; with Shift: ten'],
+  [', and ;', 'log: one second back, ten seconds back'],
+  ['[ and ]', 'vehicle before, next vehicle'],
+  ['F', 'follow the selected vehicle'],
+  ['C', 'chase it: follow its heading too'],
+  ['Home', 'show all vehicles'],
+  ['1 … 6', 'orbit, top, follow, chase, first person, fly'],
+  ['W A S D Q E', 'fly; Shift is faster'],
+  ['Arrows', 'move the view'],
+  ['+ and –', 'zoom'],
+  ['M', 'measure between two points'],
+  ['V', 'what is drawn'],
+  ['L', 'names on or off'],
+  ['T', 'light or dark'],
+  ['/', 'search a vehicle'],
+  ['Esc', 'release the vehicle, close'],
   ['?', 'this list'],
 ];
 
@@ -37,7 +48,9 @@ export class Theme {
   constructor(changed) {
     this.changed = changed;
     const dark = matchMedia('(prefers-color-scheme: dark)');
-    dark.addEventListener('change', () => { if (!remembered()) this.set(dark.matches ? 'dark' : 'light'); });
+    dark.addEventListener('change', () => {
+      if (!remembered()) this.set(dark.matches ? 'dark' : 'light');
+    });
     this.set(remembered() ?? (dark.matches ? 'dark' : 'light'));
     $('theme').addEventListener('click', () => this.toggle());
   }
@@ -78,25 +91,41 @@ export class Options {
   /** Sets a switch. */
   set(name, value) {
     const input = $(`o-${name}`);
-    if (input.type === 'checkbox') input.checked = value;
-    else input.value = value;
+    if (input.type === 'checkbox')
+      input.checked = value;
+    else
+      input.value = value;
     input.dispatchEvent(new Event('input'));
   }
 }
 
-/** Folding of the panels at the sides. */
+function fold(side, folded) {
+  const button = $(`fold-${side}`);
+  $(`${side}-body`).hidden = folded;
+  $(side).classList.toggle('folded', folded);
+  button.setAttribute('aria-expanded', !folded);
+  button.textContent = folded ? '+' : '–';
+}
+
+/** Folding of the panels at the sides; on a phone one of them is open at most. */
 export function setUpFolds() {
-  for (const side of ['left', 'right']) {
-    const button = $(`fold-${side}`);
-    const fold = (folded) => {
-      $(`${side}-body`).hidden = folded;
-      $(side).classList.toggle('folded', folded);
-      button.setAttribute('aria-expanded', !folded);
-      button.textContent = folded ? '+' : '–';
-    };
-    button.addEventListener('click', () => fold(!$(`${side}-body`).hidden));
-    if (innerWidth <= 760) fold(true);
+  const narrow = () => innerWidth <= 760;
+  for (const [side, other] of [['left', 'right'], ['right', 'left']]) {
+    $(`fold-${side}`).addEventListener('click', () => {
+      const open = $(`${side}-body`).hidden;
+      fold(side, !open);
+      if (!narrow()) return;
+      fold(other, true);
+      $(other).hidden = open;
+    });
+    if (narrow()) fold(side, true);
   }
+}
+
+/** Width of the scene that panels cover, in pixels. */
+export function coveredWidth() {
+  if (innerWidth <= 760) return 0;
+  return ['left', 'right'].reduce((sum, side) => sum + ($(`${side}-body`).hidden ? 0 : $(side).offsetWidth), 0);
 }
 
 /** Tabs of the details; arrow keys go from tab to tab. */
@@ -153,8 +182,10 @@ export class Address {
     if (now_ms - this.written_ms < 500) return;
     this.written_ms = now_ms;
     for (const [name, value] of Object.entries(changes))
-      if (value) this.values.set(name, value);
-      else this.values.delete(name);
+      if (value)
+        this.values.set(name, value);
+      else
+        this.values.delete(name);
     const text = `#${this.values.toString().replaceAll('%2C', ',')}`;
     if (text !== location.hash && (text !== '#' || location.hash !== '')) history.replaceState(null, '', text);
   }

@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Geometries of parts, and the assets (meshes, height grids, images) that the server sends for them.
 import {
-  BoxGeometry, BufferAttribute, BufferGeometry, CapsuleGeometry, CylinderGeometry, SphereGeometry,
+  BoxGeometry,
+  BufferAttribute,
+  BufferGeometry,
+  CapsuleGeometry,
+  CylinderGeometry,
+  SphereGeometry,
 } from './vendor/three.js';
 
 /** Samples of a height grid drawn along one side; finer grids are thinned out. */
@@ -132,7 +137,8 @@ export class Assets {
   /** Forgets what a scene does not name. */
   keep(hashes) {
     for (const map of [this.bytes, this.geometries])
-      for (const hash of map.keys()) if (!hashes.has(hash)) map.delete(hash);
+      for (const hash of map.keys())
+        if (!hashes.has(hash)) map.delete(hash);
   }
 }
 
@@ -150,8 +156,10 @@ export function radialGrid(rings, sectors, first_m, last_m) {
     for (let i = 0; i < sectors; ++i) {
       const a = 1 + ring * sectors, b = a + sectors, next = (i + 1) % sectors;
       // Odd rings are turned by half a sector.
-      if (ring % 2 === 0) corners.push(a + i, b + i, a + next, a + next, b + i, b + next);
-      else corners.push(a + i, b + i, b + next, a + i, b + next, a + next);
+      if (ring % 2 === 0)
+        corners.push(a + i, b + i, a + next, a + next, b + i, b + next);
+      else
+        corners.push(a + i, b + i, b + next, a + i, b + next, a + next);
     }
   const geometry = new BufferGeometry();
   geometry.setAttribute('position', new BufferAttribute(points, 3));
@@ -181,5 +189,9 @@ export function simpleShape(part, coarse = false) {
   }
   // The caps of a capsule would be squeezed by a scale.
   const key = `capsule ${r} ${l}`;
-  return {key, geometry: share(key, (n) => new CapsuleGeometry(r, l, 12 * n, 32 * n).rotateX(Math.PI / 2)), scale: [1, 1, 1]};
+  return {
+    key,
+    geometry: share(key, (n) => new CapsuleGeometry(r, l, 12 * n, 32 * n).rotateX(Math.PI / 2)),
+    scale: [1, 1, 1]
+  };
 }

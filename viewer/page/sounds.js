@@ -1,9 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Sound under water: each transmission is a shell that expands with the sound speed, as thick as it lasts; a mark at
 // each receiver shows what became of it.
-import {DoubleSide, DynamicDrawUsage, InstancedBufferAttribute, InstancedMesh, Matrix4, ShaderMaterial, SphereGeometry,
-        Vector3} from './vendor/three.js';
-import {ENV_GLSL, env} from './environment.js';
+import {env, ENV_GLSL} from './environment.js';
+import {
+  DoubleSide,
+  DynamicDrawUsage,
+  InstancedBufferAttribute,
+  InstancedMesh,
+  Matrix4,
+  ShaderMaterial,
+  SphereGeometry,
+  Vector3
+} from './vendor/three.js';
 
 const SOUNDS_MAX = 256;
 const MARKS_MAX = 400;
@@ -27,9 +35,14 @@ export const OUTCOMES = {
   range: {color: '#999999', sign: '…', text: 'out of range'},
 };
 /** Colors of the shells by kind. */
-const KINDS = {message: '#56b4e9', ping: '#f0e442', answer: '#009e73', noise: '#cc79a7'};
+const KINDS = {
+  message: '#56b4e9',
+  ping: '#f0e442',
+  answer: '#009e73',
+  noise: '#cc79a7'
+};
 
-const VERTEX = /* glsl */`
+const VERTEX = /* glsl */ `
 attribute vec4 tint;
 varying vec3 vWorld, vNormal;
 varying vec4 vTint;
@@ -40,7 +53,7 @@ void main() {
   vTint = tint;
   gl_Position = projectionMatrix * viewMatrix * world;
 }`;
-const FRAGMENT = /* glsl */`
+const FRAGMENT = /* glsl */ `
 ${ENV_GLSL}
 varying vec3 vWorld, vNormal;
 varying vec4 vTint;
@@ -56,7 +69,11 @@ void main() {
 export class Sounds {
   constructor(scene) {
     const material = new ShaderMaterial({
-      uniforms: env, vertexShader: VERTEX, fragmentShader: FRAGMENT, side: DoubleSide, transparent: true,
+      uniforms: env,
+      vertexShader: VERTEX,
+      fragmentShader: FRAGMENT,
+      side: DoubleSide,
+      transparent: true,
       depthWrite: false,
     });
     this.mesh = new InstancedMesh(new SphereGeometry(1, 64, 40), material, 2 * SOUNDS_MAX);
@@ -101,7 +118,8 @@ export class Sounds {
     for (const item of items) {
       if (!Array.isArray(item.position_m)) continue;
       const at = new Vector3(...item.position_m.map((x, i) => x - this.origin_m[i]));
-      this.marks.push({...item, at, look: OUTCOMES[item.outcome] ?? {color: '#999999', sign: '?', text: item.outcome}});
+      this.marks.push(
+          {...item, at, look: OUTCOMES[item.outcome] ?? { color: '#999999', sign: '?', text: item.outcome }});
       // The sound is drawn as far as it was received.
       const sound = this.sounds.findLast((one) => one.id === item.id);
       if (sound) sound.reach_m = Math.max(sound.reach_m, 1.2 * sound.at.distanceTo(at));

@@ -15,7 +15,7 @@ export class TimeBar {
     this.status = {paused: false, speed: 1};
     this.dragging = false;
     this.wanted_us = null;
-    this.asked = new Map();
+    this.requests = new Map();
     this.listen();
     this.setHello(this.hello);
   }
@@ -29,13 +29,17 @@ export class TimeBar {
     $('seek').addEventListener('input', () => {
       this.dragging = true;
       this.wanted_us = Number($('seek').value) * 1000;
-      if (this.isLog) this.connection.send({op: 'seek', time_us: this.wanted_us});
-      else this.offerRewind();
+      if (this.isLog)
+        this.connection.send({op: 'seek', time_us: this.wanted_us});
+      else
+        this.offerRewind();
       $('time').textContent = formatTime(this.wanted_us);
     });
-    $('seek').addEventListener('change', () => { if (this.isLog) this.dragging = false; });
+    $('seek').addEventListener('change', () => {
+      if (this.isLog) this.dragging = false;
+    });
     $('rewind').addEventListener('click', () => {
-      this.ask('rewind', this.wanted_us / 1e6);
+      this.request('rewind', this.wanted_us / 1e6);
       this.endRewind();
     });
     $('cancel').addEventListener('click', () => this.endRewind());
@@ -55,8 +59,8 @@ export class TimeBar {
     $('speed').replaceChildren(...choices.map((speed) => new Option(speed === 0 ? 'max' : `${speed}×`, speed)));
     $('badge').hidden = may && !this.isLog;
     $('badge').textContent = may ? 'log' : 'read-only';
-    $('badge').title = may ? String(hello.name ?? '') :
-                             'To steer, open the whole address that shoal printed, with #t=... at its end';
+    $('badge').title =
+        may ? String(hello.name ?? '') : 'To steer, open the whole address that shoal printed, with #t=... at its end';
     this.endRewind();
   }
 
@@ -64,10 +68,10 @@ export class TimeBar {
   setStatus(status) {
     this.status = status;
     $('play').firstElementChild.textContent = status.paused ? '▶' : '❚❚';
-    $('play').setAttribute('aria-label', status.paused ? 'Go on' : 'Pause');
+    $('play').setAttribute('aria-label', status.paused ? 'Continue' : 'Pause');
     const speed = status.speed ?? 0;
     const known = [...$('speed').options].some((option) => Number(option.value) === speed);
-    if (!known) $('speed').append(new Option(`${+speed.toPrecision(3)}×`, speed));
+    if (!known) $('speed').append(new Option(`${+ speed.toPrecision(3)}×`, speed));
     if (document.activeElement !== $('speed')) $('speed').value = String(speed);
     this.describe();
   }
@@ -75,9 +79,12 @@ export class TimeBar {
   describe() {
     const {status} = this;
     const parts = [];
-    if (status.ended) parts.push(`ended: ${status.ended}`);
-    else if (status.paused) parts.push('paused');
-    else if (Number.isFinite(status.rate)) parts.push(`runs at ${+status.rate.toPrecision(2)}×`);
+    if (status.ended)
+      parts.push(`ended: ${status.ended}`);
+    else if (status.paused)
+      parts.push('paused');
+    else if (Number.isFinite(status.rate))
+      parts.push(`runs at ${+ status.rate.toPrecision(2)}×`);
     if (status.waits_for) parts.push(`waits for ${status.waits_for}`);
     if (status.branch) parts.push(`branch ${status.branch}`);
     if (Number.isFinite(status.step)) parts.push(`step ${status.step}`);
@@ -101,18 +108,18 @@ export class TimeBar {
     seek.setAttribute('aria-valuetext', text);
   }
 
-  ask(command, value = 0) {
+  request(command, value = 0) {
     if (!this.hello.control) {
       this.toast('read-only: open the address with the token to steer the run');
       return;
     }
-    this.asked.set(this.connection.control(command, value), command);
+    this.requests.set(this.connection.control(command, value), command);
   }
 
   /** Takes the answer to a request. */
   reply(message) {
-    const command = this.asked.get(message.id);
-    this.asked.delete(message.id);
+    const command = this.requests.get(message.id);
+    this.requests.delete(message.id);
     if (!message.ok) this.toast(`${command ?? 'request'}: ${message.text}`);
   }
 
@@ -122,17 +129,21 @@ export class TimeBar {
   }
 
   togglePlay() {
-    if (this.isLog) this.play({paused: !this.status.paused});
-    else this.ask(this.status.paused ? 'resume' : 'pause');
+    if (this.isLog)
+      this.play({paused: !this.status.paused});
+    else
+      this.request(this.status.paused ? 'resume' : 'pause');
   }
 
   step(count) {
-    if (!this.isLog) this.ask('step', count);
+    if (!this.isLog) this.request('step', count);
   }
 
   setSpeed(speed) {
-    if (this.isLog) this.play({speed});
-    else this.ask('speed', speed);
+    if (this.isLog)
+      this.play({speed});
+    else
+      this.request('speed', speed);
   }
 
   /** Moves a log by some seconds. */

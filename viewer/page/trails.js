@@ -1,13 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Trails of all vehicles in one set of line segments: a ring of samples, each with one segment for each vehicle, so
 // that a new sample is one range of memory.
-import {BufferAttribute, BufferGeometry, Color, DynamicDrawUsage, LineSegments, ShaderMaterial, Vector3}
-  from './vendor/three.js';
+import {
+  BufferAttribute,
+  BufferGeometry,
+  Color,
+  DynamicDrawUsage,
+  LineSegments,
+  ShaderMaterial,
+  Vector3
+} from './vendor/three.js';
 
 const SEGMENTS_MAX = 150000;
 const SAMPLES_MAX = 1500;
 
-const VERTEX = /* glsl */`
+const VERTEX = /* glsl */ `
 attribute float stamp;
 attribute vec3 tint;
 uniform float now, length_s;
@@ -17,7 +24,7 @@ void main() {
   vColor = vec4(tint, age < 0.0 || age > 1.0 ? 0.0 : 0.25 + 0.75 * (1.0 - age));
   gl_Position = projectionMatrix * viewMatrix * vec4(position, 1.0);
 }`;
-const FRAGMENT = /* glsl */`
+const FRAGMENT = /* glsl */ `
 varying vec4 vColor;
 void main() {
   if (vColor.a <= 0.01) discard;
@@ -29,8 +36,11 @@ void main() {
 export class Trails {
   constructor(scene) {
     this.material = new ShaderMaterial({
-      uniforms: {now: {value: 0}, length_s: {value: 60}}, vertexShader: VERTEX,
-      fragmentShader: FRAGMENT, transparent: true, depthWrite: false,
+      uniforms: {now: {value: 0}, length_s: {value: 60}},
+      vertexShader: VERTEX,
+      fragmentShader: FRAGMENT,
+      transparent: true,
+      depthWrite: false,
     });
     this.lines = new LineSegments(new BufferGeometry(), this.material);
     this.lines.frustumCulled = false;
@@ -105,12 +115,11 @@ export class Trails {
   describe(i) {
     let points = 0;
     const oldest_s = this.material.uniforms.now.value - this.length_s;
-    for (let s = 0; s < this.samples; ++s) if (this.stamp.array[2 * (s * this.count + i)] >= oldest_s) ++points;
+    for (let s = 0; s < this.samples; ++s)
+      if (this.stamp.array[2 * (s * this.count + i)] >= oldest_s) ++points;
     return {points, last: this.last[i]?.toArray() ?? null};
   }
 }
 
 /** Returns a color for the trail of a vehicle. */
-export function trailColor(color) {
-  return new Color(color).lerp(new Color('#ffffff'), 0.15);
-}
+export function trailColor(color) { return new Color(color).lerp(new Color('#ffffff'), 0.15); }

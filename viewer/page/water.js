@@ -1,15 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The water surface with the waves of the run: elevation = sum of a cos(k (x cos d + y sin d) - omega t + phase).
-import {
-  DataTexture, DoubleSide, FloatType, Mesh, NearestFilter, OrthographicCamera, PlaneGeometry, RGBAFormat, Scene,
-  ShaderMaterial, Vector3, WebGLRenderTarget,
-} from './vendor/three.js';
-import {ENV_GLSL, env} from './environment.js';
+import {env, ENV_GLSL} from './environment.js';
 import {radialGrid} from './shapes.js';
+import {
+  DataTexture,
+  DoubleSide,
+  FloatType,
+  Mesh,
+  NearestFilter,
+  OrthographicCamera,
+  PlaneGeometry,
+  RGBAFormat,
+  Scene,
+  ShaderMaterial,
+  Vector3,
+  WebGLRenderTarget,
+} from './vendor/three.js';
 
 const REACH_M = 25000;
 
-const WAVE_GLSL = /* glsl */`
+const WAVE_GLSL = /* glsl */ `
 uniform sampler2D waves;  // for each wave: k cos d, k sin d, phase now, amplitude; sorted by k
 uniform int waveCount;
 // Returns slope x, slope y and elevation at a position; waves that the cells are too coarse for are left out.
@@ -26,7 +36,7 @@ vec3 waveAt(vec2 p, float cell_m) {
   return sum;
 }`;
 
-const VERTEX = /* glsl */`
+const VERTEX = /* glsl */ `
 ${WAVE_GLSL}
 uniform vec3 centre;
 uniform float cells;
@@ -40,7 +50,7 @@ void main() {
   gl_Position = projectionMatrix * viewMatrix * vec4(vWorld, 1.0);
 }`;
 
-const FRAGMENT = /* glsl */`
+const FRAGMENT = /* glsl */ `
 ${ENV_GLSL}
 varying vec3 vWorld;
 varying vec3 vWave;
@@ -55,10 +65,13 @@ void main() {
     float fresnel = 0.02 + 0.98 * pow(1.0 - cosine, 5.0);
     vec3 mirrored = reflect(-toEye, normal);
     mirrored.z = abs(mirrored.z);
-    float open = 0.75 + 0.25 * normal.z + 1.6 * dot(normal.xy, toSun.xy) * 0.25;
-    vec3 body = waterColor * (0.75 + 0.7 * open);
+    // Light scattered back by the water: more where the surface faces the sun or the viewer.
+    float lit = clamp(0.55 + 1.3 * dot(normal.xy, toSun.xy) + 0.8 * vWave.z / (abs(vWave.z) + 1.0), 0.15, 1.4);
+    vec3 body = waterColor * vec3(0.55, 0.75, 0.9) * (0.35 + lit);
     color.rgb = mix(body, airColor(mirrored), fresnel);
-    color.a = clamp(0.42 + fresnel, 0.0, 1.0);
+    float glint = raisedTo64(max(0.0, dot(mirrored, toSun)));
+    color.rgb += sunColor * 0.5 * glint;
+    color.a = clamp(0.55 + fresnel + glint, 0.0, 1.0);
     float far = smoothstep(0.1, 1.0, distance_m / haze_m);
     color = mix(color, vec4(airColor(normalize(vec3(-toEye.xy, 0.0))), 1.0), far);
   } else {
@@ -72,7 +85,7 @@ void main() {
   #include <colorspace_fragment>
 }`;
 
-const PROBE_FRAGMENT = /* glsl */`
+const PROBE_FRAGMENT = /* glsl */ `
 ${WAVE_GLSL}
 uniform sampler2D points;
 void main() { gl_FragColor = vec4(waveAt(texelFetch(points, ivec2(gl_FragCoord.xy), 0).xy, 0.0), 1.0); }`;
@@ -81,14 +94,22 @@ void main() { gl_FragColor = vec4(waveAt(texelFetch(points, ivec2(gl_FragCoord.x
 export class Water {
   constructor(scene, coarse) {
     this.uniforms = {
-      ...env, waves: {value: null}, waveCount: {value: 0}, centre: {value: new Vector3()}, cells: {value: 0},
+      ...env,
+      waves: {value: null},
+      waveCount: {value: 0},
+      centre: {value: new Vector3()},
+      cells: {value: 0},
     };
     const rings = coarse ? 90 : 240, sectors = coarse ? 96 : 256;
     const growth = Math.pow(REACH_M / 0.3, 1 / (rings - 1));
     // Size of a cell relative to its distance from the centre.
     this.uniforms.cells.value = Math.min(growth - 1, 2 * Math.PI / sectors);
     const material = new ShaderMaterial({
-      uniforms: this.uniforms, vertexShader: VERTEX, fragmentShader: FRAGMENT, side: DoubleSide, transparent: true,
+      uniforms: this.uniforms,
+      vertexShader: VERTEX,
+      fragmentShader: FRAGMENT,
+      side: DoubleSide,
+      transparent: true,
       depthWrite: false,
     });
     this.mesh = new Mesh(radialGrid(rings, sectors, 0.3, REACH_M), material);
@@ -107,8 +128,8 @@ export class Water {
     this.origin_m = data.origin_m;
     this.waves = [...(data.water?.waves ?? [])].sort((a, b) => a.k_radpm - b.k_radpm);
     this.uniforms.waves.value?.dispose();
-    const texture = new DataTexture(new Float32Array(4 * Math.max(1, this.waves.length)), Math.max(1, this.waves.length),
-                                    1, RGBAFormat, FloatType);
+    const texture = new DataTexture(
+        new Float32Array(4 * Math.max(1, this.waves.length)), Math.max(1, this.waves.length), 1, RGBAFormat, FloatType);
     texture.minFilter = texture.magFilter = NearestFilter;
     this.uniforms.waves.value = texture;
     this.uniforms.waveCount.value = this.waves.length;
@@ -146,7 +167,8 @@ export class Water {
     // Draw one pixel for each position into an image of floats.
     const target = new WebGLRenderTarget(points.length, 1, {type: FloatType, depthBuffer: false});
     const material = new ShaderMaterial({
-      uniforms: {...this.uniforms, points: {value: input}}, fragmentShader: PROBE_FRAGMENT,
+      uniforms: {...this.uniforms, points: {value: input}},
+      fragmentShader: PROBE_FRAGMENT,
       vertexShader: 'void main() { gl_Position = vec4(position.xy, 0.0, 1.0); }',
     });
     const scene = new Scene();
