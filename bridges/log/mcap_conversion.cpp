@@ -19,13 +19,13 @@ McapConverted convert_to_mcap(const McapConversion& conversion, const shoal::Mes
   };
   // Convert the events.
   McapConverted converted;
-  std::map<std::string, bool, std::less<>> wanted;
+  std::map<std::string, bool, std::less<>> converts;
   LogEventView event;
   while (log.next(event)) {
     if (conversion.progress) conversion.progress(event.offset, log.file_bytes());
     if (conversion.wants) {
-      auto known = wanted.find(event.channel);
-      if (known == wanted.end()) known = wanted.emplace(event.channel, conversion.wants(event.channel)).first;
+      auto known = converts.find(event.channel);
+      if (known == converts.end()) known = converts.emplace(event.channel, conversion.wants(event.channel)).first;
       if (!known->second) continue;
     }
     require(out.write(event.utime, event.channel, event.payload));

@@ -42,7 +42,7 @@ std::string field_name(std::string_view name) {
   return field.empty() ? "x" : field;
 }
 
-/// Capital first letters, without underscores and the ending _t.
+/// Words with capital initials, without underscores and the ending _t.
 std::string camel_case(std::string_view name) {
   if (name.ends_with("_t")) name.remove_suffix(2);
   std::string camel;

@@ -16,9 +16,11 @@ inline constexpr std::array<double, 9> unknown_3x3{};
 
 /// Appends builtin_interfaces/Time.
 inline void put_time(CdrWriter& out, std::int64_t utime) {
-  const std::int64_t us = ((utime % 1'000'000) + 1'000'000) % 1'000'000;
-  out.put(static_cast<std::int32_t>((utime - us) / 1'000'000));
-  out.put(static_cast<std::uint32_t>(us * 1000));
+  constexpr std::int64_t us_per_s = 1'000'000;
+  const std::int64_t us = utime % us_per_s;  // negative before the epoch
+  const std::int64_t borrowed = us < 0 ? 1 : 0;
+  out.put(static_cast<std::int32_t>(utime / us_per_s - borrowed));
+  out.put(static_cast<std::uint32_t>((us + borrowed * us_per_s) * 1000));
 }
 
 /// Appends std_msgs/Header.

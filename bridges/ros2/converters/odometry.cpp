@@ -26,7 +26,7 @@ bool write_pose(const shoal::pose_t& message, std::string_view channel, CdrWrite
   return true;
 }
 
-/// Dead reckoning from its start pose, a frame of its own.
+/// Dead reckoning from its start pose, its own frame.
 bool write_wheel_odometry(const shoal::odometry_t& message, std::string_view channel, CdrWriter& out) {
   put_header(out, message.utime, frame_of(channel) + "/start");
   out.put(std::string_view(frame_of(channel)));
