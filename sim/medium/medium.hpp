@@ -49,6 +49,12 @@ class Medium {
   double surface_m(double x_m, double y_m) const;
   /// The same at a given time.
   double surface_m(double x_m, double y_m, Time at) const;
+  /// Height of the surface without waves, at this time, tide included.
+  double still_surface_m() const { return still_m_; }
+  /// Components of the waves; empty: calm.
+  std::vector<WaveComponent> wave_components() const {
+    return waves_ ? waves_->components() : std::vector<WaveComponent>();
+  }
   /// Upper bound of the surface height at this time.
   double highest_surface_m() const { return still_m_ + (waves_ ? waves_->highest_m() : 0); }
   /// Depth below the instantaneous surface, m; negative in the air, minus infinity in a world without water.
