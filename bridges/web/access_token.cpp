@@ -34,7 +34,7 @@ bool is_token_character(char c) {
 
 AccessToken::AccessToken(std::string given) : text_(given.empty() ? random_token() : std::move(given)) {
   if (text_.size() < 16 || text_.size() > 128 || !std::all_of(text_.begin(), text_.end(), is_token_character))
-    throw WebError("token of the page: must be 16 to 128 letters, digits, '-' or '_', got a text of " +
+    throw WebError("token of the page: must be 16 to 128 characters a-z, A-Z, 0-9, '-' or '_', got a text of " +
                    std::to_string(text_.size()) + " bytes");
 }
 

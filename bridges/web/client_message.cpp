@@ -39,8 +39,7 @@ std::string op_of(const Json& message) {
   if (op == message.end() || !op->is_string()) throw WebError("message must have a text 'op'");
   const auto& text = op->get_ref<const std::string&>();
   const bool plain = std::all_of(text.begin(), text.end(), [](char c) { return (c >= 'a' && c <= 'z') || c == '_'; });
-  if (text.empty() || text.size() > longest_op || !plain)
-    throw WebError("'op' must be 1 to 32 lower-case letters or '_'");
+  if (text.empty() || text.size() > longest_op || !plain) throw WebError("'op' must be 1 to 32 characters a-z or '_'");
   return text;
 }
 

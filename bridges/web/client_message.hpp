@@ -10,7 +10,7 @@ namespace bridges {
 
 /// Message of a page, as far as the server understands it.
 struct ClientMessage {
-  std::string op;                         ///< kind: 1 to 32 characters, lower-case letters and `_`
+  std::string op;                         ///< kind: 1 to 32 characters a-z and `_`
   std::string token;                      ///< of `hello`; empty: none
   std::optional<std::uint32_t> sequence;  ///< of `ack`
   std::string id;                         ///< key `id` as JSON, for the reply: a number or a text; else `null`

@@ -71,7 +71,7 @@ std::optional<OriginParts> parts_of_origin(std::string_view origin) {
   return OriginParts{lower(origin.substr(0, end)), origin.substr(end + 3)};
 }
 
-/// Returns the quality of one part of a list of codings: false for `q=0`.
+/// Returns the quality of one part of a list of encodings: false for `q=0`.
 bool is_acceptable(std::string_view parameters) {
   const std::size_t q = parameters.find("q=");
   if (q == std::string_view::npos) return true;

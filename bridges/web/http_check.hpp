@@ -11,7 +11,7 @@ namespace bridges {
 
 /// Rules of who may use the server, by the headers of a request.
 struct AccessRules {
-  std::string host;                  ///< host that the server was told to listen at
+  std::string host;                  ///< host at which the server listens
   std::vector<std::string> origins;  ///< further origins, as is_origin() accepts them
 };
 
@@ -35,7 +35,7 @@ bool is_origin_allowed(std::string_view origin, std::string_view host, const Acc
 bool is_origin(std::string_view text);
 
 /// Returns the path of a request target, without its query; nothing if it does not begin with `/` or has characters
-/// other than letters, digits and `-._~/`.
+/// other than a-z, A-Z, 0-9 and `-._~/`.
 std::optional<std::string_view> path_of(std::string_view target);
 /// Returns the hash of a path `/asset/HASH`, with 16 lower-case hexadecimal digits; nothing for another path.
 std::optional<std::uint64_t> asset_of(std::string_view path);

@@ -12,7 +12,7 @@ namespace bridges {
 
 namespace {
 
-/// After this many bytes of texts a state is sent before further texts, so that events cannot stop the picture.
+/// After this many bytes of texts a state is sent before further texts, so that events cannot stop the motion.
 constexpr std::size_t texts_between_states = 256 * 1024;
 
 constexpr std::string_view no_token =

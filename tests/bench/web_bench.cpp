@@ -104,8 +104,10 @@ Figures run(bridges::WebServer& server, double seconds) {
     ++figures.sent;
     for (std::size_t i = 0; i < 4; ++i) state[4 + i] = static_cast<std::byte>(figures.sent >> (8 * i));
     const double before = thread_cpu_s();
-    server.send_state(state);
-    server.send_text(event);
+    if (server.clients() > 0) {
+      server.send_state(state);
+      server.send_text(event);
+    }
     sender_s += thread_cpu_s() - before;
     std::this_thread::sleep_until(begin + figures.sent * period);
   }

@@ -35,8 +35,8 @@ TEST(ClientMessage, ErrorsSayWhatIsExpected) {
   EXPECT_EQ(error_of("[]"), "message must be a JSON object, got array");
   EXPECT_EQ(error_of("{}"), "message must have a text 'op'");
   EXPECT_EQ(error_of(R"({"op":5})"), "message must have a text 'op'");
-  EXPECT_EQ(error_of(R"({"op":""})"), "'op' must be 1 to 32 lower-case letters or '_'");
-  EXPECT_EQ(error_of(R"({"op":"A"})"), "'op' must be 1 to 32 lower-case letters or '_'");
+  EXPECT_EQ(error_of(R"({"op":""})"), "'op' must be 1 to 32 characters a-z or '_'");
+  EXPECT_EQ(error_of(R"({"op":"A"})"), "'op' must be 1 to 32 characters a-z or '_'");
   EXPECT_EQ(error_of(R"({"op":"hello","token":5})"), "'token' of hello must be a text of at most 256 bytes");
   EXPECT_EQ(error_of(R"({"op":"ack","sequence":4294967296})"),
             "'sequence' of ack must be an integer from 0 to 4294967295");

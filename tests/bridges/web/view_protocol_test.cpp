@@ -114,15 +114,15 @@ TEST_F(ViewProtocolTest, ARetainedTextIsSentAgainWhenItChanges) {
 
 TEST_F(ViewProtocolTest, HelloSaysWhoMayControl) {
   protocol_.retain("hello", R"({"op":"hello","version":1})");
-  Page owner(protocol_, 1), visitor(protocol_, 2), stranger(protocol_, 3);
+  Page owner(protocol_, 1), visitor(protocol_, 2), guesser(protocol_, 3);
   owner.hello();
   visitor.send({{"op", "hello"}});
-  stranger.hello("0123456789abcdeF");
+  guesser.hello("0123456789abcdeF");
   EXPECT_EQ(owner.next_json()["control"], true);
   EXPECT_EQ(visitor.next_json()["control"], false);
   EXPECT_EQ(visitor.next(), "");
-  EXPECT_EQ(stranger.next_json()["control"], false);
-  const Json error = stranger.next_json();
+  EXPECT_EQ(guesser.next_json()["control"], false);
+  const Json error = guesser.next_json();
   EXPECT_EQ(error["op"], "error");
   EXPECT_THAT(error["text"].get<std::string>(), HasSubstr("wrong token"));
 }

@@ -134,7 +134,7 @@ TEST_F(WebServerTest, WithoutAFolderItServesThePageInTheProgram) {
   WebServer server(embedded);
   const Answer answer = Client(server.port()).get("/");
   EXPECT_EQ(answer.status, 200);
-  EXPECT_THAT(answer.body, HasSubstr("<!doctype html>"));
+  EXPECT_THAT(answer.body, HasSubstr("<title>Shoal</title>"));
 }
 
 TEST_F(WebServerTest, AssetsAreServedByTheirHash) {
