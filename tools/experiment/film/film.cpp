@@ -2,6 +2,7 @@
 #include "tools/experiment/film/film.hpp"
 
 #include <spdlog/fmt/fmt.h>
+#include <spdlog/spdlog.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -132,6 +133,9 @@ class Film {
 
   /// Runs to the first frame, and makes the cameras.
   void start() {
+    if (const std::size_t programs = world_.config().processes.size(); programs > 0 && source_->log().empty())
+      spdlog::warn("a world is shown without its {} programs; record a run with them: shoal run --launch --record",
+                   programs);
     const double begin_s = sim::to_seconds(world_.now());
     if (options_.from_s < begin_s)
       throw std::runtime_error(fmt::format("{}: begins at {:.6g} s, after --from", options_.source, begin_s));

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/experiment/film/film_source.hpp"
 
-#include <spdlog/spdlog.h>
-
 #include <array>
 #include <fstream>
 #include <limits>
@@ -22,9 +20,6 @@ class WorldSource final : public FilmSource {
  public:
   explicit WorldSource(sim::LoadedWorld loaded) : loaded_(std::move(loaded)), world_(loaded_.config, bus_) {
     world_.use_threads(0);
-    if (!loaded_.config.processes.empty())
-      spdlog::warn("a world is shown without its {} programs; record a run with them: shoal run --launch --record",
-                   loaded_.config.processes.size());
   }
 
   sim::World& world() override { return world_; }
