@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 
 #include "sim/base/math.hpp"
 #include "sim/base/time.hpp"
@@ -49,12 +50,10 @@ class Medium {
   double surface_m(double x_m, double y_m) const;
   /// The same at a given time.
   double surface_m(double x_m, double y_m, Time at) const;
-  /// Height of the surface without waves, at this time, tide included.
+  /// Height of the surface without waves; minus infinity in a world without water.
   double still_surface_m() const { return still_m_; }
-  /// Components of the waves; empty: calm.
-  std::vector<WaveComponent> wave_components() const {
-    return waves_ ? waves_->components() : std::vector<WaveComponent>();
-  }
+  /// Waves of the run, sorted by wave number; empty: none.
+  std::span<const WaveComponent> wave_components() const;
   /// Upper bound of the surface height at this time.
   double highest_surface_m() const { return still_m_ + (waves_ ? waves_->highest_m() : 0); }
   /// Depth below the instantaneous surface, m; negative in the air, minus infinity in a world without water.
