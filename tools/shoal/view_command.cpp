@@ -4,8 +4,10 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <cmath>
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <thread>
 
 #include "bridges/lcm/lcm_listener.hpp"
@@ -24,12 +26,25 @@ namespace {
 struct ViewArguments {
   std::string log;
   std::string lcm_url;
+  std::optional<double> duration_s;
   ViewOptions view;
 };
 
 using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds tick{33};
+
+/// Wall time until which the page is served.
+class Deadline {
+ public:
+  explicit Deadline(const std::optional<double>& duration_s) {
+    if (duration_s) end_ = Clock::now() + std::chrono::milliseconds(std::llround(1000 * *duration_s));
+  }
+  bool goes_on() const { return caught_signal() == 0 && (!end_ || Clock::now() < *end_); }
+
+ private:
+  std::optional<Clock::time_point> end_;
+};
 
 void announce(const std::string& url) {
   std::cout << "live page: " << url << "\nCtrl-C ends it\n" << std::flush;
@@ -50,7 +65,8 @@ int view_log(const ViewArguments& arguments) {
   LogView view(arguments.log, index, arguments.view, short_version());
   announce(view.url());
   // Play in steps of wall time.
-  for (auto before = Clock::now(); caught_signal() == 0;) {
+  const Deadline deadline(arguments.duration_s);
+  for (auto before = Clock::now(); deadline.goes_on();) {
     std::this_thread::sleep_until(before + tick);
     const auto now = Clock::now();
     view.advance(std::chrono::duration<double>(now - before).count());
@@ -77,7 +93,8 @@ int view_bus(const ViewArguments& arguments) {
   announce(view.url());
   constexpr std::chrono::seconds ask_interval{2};
   Clock::time_point next_flush = Clock::now(), next_request = next_flush;
-  while (caught_signal() == 0) {
+  const Deadline deadline(arguments.duration_s);
+  while (deadline.goes_on()) {
     const auto now = Clock::now();
     if (now >= next_flush) {
       view.flush();
@@ -109,10 +126,13 @@ void add_view_command(CLI::App& app, int& exit_code) {
   add_log_level_option(*command);
   command->add_option("LOG", arguments->log, "log of a run; without it what is on the bus is shown");
   add_lcm_url_option(*command, arguments->lcm_url);
+  command->add_option("--duration", arguments->duration_s, "seconds of wall time; without it until Ctrl-C")
+      ->type_name("S")
+      ->check(number_from(0.001, 1e9));
   add_page_options(*command, arguments->view);
   command_line::set_help_end(
       *command, {{"shoal view coop.lcm", "shoal view", "shoal view --lcm-url udpm://239.255.76.67:7668?ttl=0"},
-                 {{0, "ended by Ctrl-C"},
+                 {{0, "ended by Ctrl-C or --duration"},
                   {2, "wrong usage"},
                   {4, "the log cannot be read or has nothing to show, or the bus or the port fails"}},
                  {}});
