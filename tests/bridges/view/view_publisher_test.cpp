@@ -9,7 +9,6 @@
 #include "shoal/sim_scene_t.hpp"
 #include "sim/world/world_state.hpp"
 #include "tests/devices/comms/modem_fixture.hpp"
-#include "tests/scratch_folder.hpp"
 
 namespace {
 
@@ -115,7 +114,6 @@ TEST(ViewPublisher, ANewObjectMakesAnotherRevision) {
 
 /// A viewer that starts later asks for it.
 TEST(ViewPublisher, TheSceneAndItsAssetsComeAgainOnRequest) {
-  const ScratchFolder folder;
   ViewedWorld viewed(
       "shoal: 1\nobjects: [{name: hill, fixed: true, parts: [{shape: terrain, terrain: {source: slope, "
       "angle_deg: 10, cell_m: 1, size_m: [4, 2]}}]}]\n");

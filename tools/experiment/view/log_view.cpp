@@ -92,10 +92,14 @@ void LogView::advance(double wall_s) {
   } else if (!paused_ && loop_ && clients > 0) {
     seek(index_.start_us());
   }
-  if (std::exchange(status_is_old_, false)) send_status();
+  constexpr double status_interval_s = 1;
+  since_status_s_ += wall_s;
+  if (status_is_old_ || since_status_s_ > status_interval_s) send_status();
 }
 
 void LogView::send_status() {
+  status_is_old_ = false;
+  since_status_s_ = 0;
   const bool at_end = now_us_ >= static_cast<double>(index_.end_us());
   server_.retain("status", json_text({{"op", "status"},
                                       {"time_us", static_cast<std::int64_t>(now_us_)},
@@ -165,6 +169,27 @@ void BusView::flush() {
                              {"text", "this page watches a bus; steer the run with 'shoal control'"}}));
   }
   messages_.flush();
+  constexpr std::chrono::milliseconds status_interval{500};
+  if (Clock::now() - status_at_ > status_interval) send_status();
+}
+
+void BusView::send_status() {
+  const Clock::time_point now = Clock::now();
+  const double wall_s = std::chrono::duration<double>(now - status_at_).count();
+  const double simulated_s = 1e-6 * static_cast<double>(messages_.newest_us() - status_us_);
+  constexpr double longest_s = 5;  // since the status before: else there was none
+  const bool known = wall_s < longest_s && simulated_s >= 0;
+  status_at_ = now;
+  status_us_ = messages_.newest_us();
+  server_.retain("status", json_text({{"op", "status"},
+                                      {"time_us", messages_.newest_us()},
+                                      {"step", nullptr},
+                                      {"branch", messages_.branch()},
+                                      {"paused", known && simulated_s == 0},
+                                      {"speed", nullptr},
+                                      {"rate", known ? simulated_s / wall_s : 0},
+                                      {"waits_for", ""},
+                                      {"ended", nullptr}}));
 }
 
 }  // namespace tools

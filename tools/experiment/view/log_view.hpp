@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <string>
 
@@ -40,6 +41,7 @@ class LogView {
   bool paused_ = false, loop_ = false;
   int clients_ = 0;
   bool status_is_old_ = true;
+  double since_status_s_ = 0;
 };
 
 /// Live page of what is on a bus: of a run in another process.
@@ -54,12 +56,18 @@ class BusView {
   bool has_scene() const { return messages_.has_scene(); }
 
  private:
+  using Clock = std::chrono::steady_clock;
+
   void send_hello();
+  void send_status();
 
   bridges::WebServer server_;
   ViewMessages messages_{server_, ViewMessages::Frames::from_bodies};
   const std::string version_, bus_;
   std::string world_;
+  // For the rate of simulated time.
+  Clock::time_point status_at_{};
+  std::int64_t status_us_ = 0;
 };
 
 }  // namespace tools

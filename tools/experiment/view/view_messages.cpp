@@ -103,6 +103,8 @@ void ViewMessages::take_asset(std::span<const std::byte> payload) {
 
 void ViewMessages::take_bodies(std::span<const std::byte> payload) {
   auto message = shoal::decode<shoal::sim_bodies_t>(payload, shoal::Finite::required);
+  newest_us_ = time_us(message.utime);
+  branch_ = message.branch;
   poses_ = Poses{time_us(message.utime), message.branch, message.revision, std::move(message.position_m),
                  std::move(message.orientation)};
 }

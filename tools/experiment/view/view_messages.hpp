@@ -41,6 +41,9 @@ class ViewMessages {
   /// Sets the UTC of simulated time 0, us since 1970, which message stamps include.
   void set_epoch(std::int64_t epoch_us) { epoch_us_ = epoch_us; }
   std::int64_t epoch_us() const { return epoch_us_; }
+  /// Return simulated time and branch of the newest `sim.bodies`.
+  std::int64_t newest_us() const { return newest_us_; }
+  std::int32_t branch() const { return branch_; }
   /// Returns whether a scene has arrived.
   bool has_scene() const { return !scene_.empty(); }
   /// Returns the number of messages that could not be read.
@@ -76,6 +79,8 @@ class ViewMessages {
   float speed_ = 1;
   bool paused_ = false, jump_ = false;
   std::optional<Poses> poses_;  // newest that were not sent
+  std::int64_t newest_us_ = 0;
+  std::int32_t branch_ = 0;
   StateFrame frame_;
   std::map<std::string, Estimate, std::less<>> estimates_;  // newest by vehicle
   std::int64_t bad_messages_ = 0;

@@ -34,7 +34,7 @@ struct Log {
       view.after_step();
     }
   }
-  ScratchFolder folder;
+  test_support::ScratchFolder folder;
   const std::string path = folder.file("run.lcm");
 };
 
@@ -118,7 +118,7 @@ TEST(LogIndex, KnowsTheSpanAndTheEventsOfALog) {
 }
 
 TEST(LogIndex, SaysWhatALogLacks) {
-  const ScratchFolder folder;
+  const test_support::ScratchFolder folder;
   const std::string path = folder.file("empty.lcm");
   { test::RecordedRun run("shoal: 1\n", path); }
   try {
