@@ -24,6 +24,9 @@ const $ = (id) => document.getElementById(id);
 /** More vehicles than this have names only where they are near. */
 const MANY = 60;
 
+/** Colors of vehicles that have none of their own (after Okabe and Ito 2008). */
+const PALETTE = ['#56b4e9', '#009e73', '#d55e00', '#cc79a7', '#0072b2', '#8c6bb1', '#66a61e', '#a6761d'];
+
 /** Is WebGL drawn by the processor?  Then shadows and fine water are off. */
 function isSoftware(gl) {
   const info = gl.getExtension('WEBGL_debug_renderer_info');
@@ -170,6 +173,7 @@ class App {
     this.bodies.setScene(data);
     const sphere = this.bodies.boundingSphere();
     this.extent_m = this.cameras.extent_m = Math.max(2, sphere.radius);
+    this.colors = new Set();
     this.vehicles = data.vehicles.map((vehicle) => this.describe(vehicle));
     this.byName = new Map(this.vehicles.map((vehicle) => [vehicle.name, vehicle]));
     this.owners =
@@ -201,13 +205,14 @@ class App {
       this.setView(view);
     else
       this.fitPending = true;  // again with the first state
+    // One vehicle alone: follow it.
+    if (!view && this.vehicles.length === 1) this.follow(this.vehicles[0].name);
   }
 
   /** What the page knows of a vehicle. */
   describe(vehicle) {
     const own = this.data.bodies[vehicle.body];
-    const first = own.parts.find((part) => part.color) ?? own.parts[0];
-    const color = first ? `#${this.bodies.colorOf(own, first).getHexString()}` : '#888888';
+    const color = this.pickColor(own);
     return {
       ...vehicle,
       color,
@@ -216,6 +221,21 @@ class App {
       X_WV: matrixOf(vehicle.pose),
       at: new Vector3()
     };
+  }
+
+  /** Color of a vehicle in lists and trails: that of its body, if it is bright and no other vehicle has it. */
+  pickColor(body) {
+    const hsl = {};
+    const own = body.parts.map((part) => this.bodies.colorOf(body, part)).find((color) => {
+      color.getHSL(hsl);
+      return hsl.s > 0.4 && hsl.l > 0.12 && hsl.l < 0.8 && (hsl.h < 0.08 || hsl.h > 0.18);  // yellow: estimates
+    });
+    const name = own ? `#${own.getHexString()}` : '';
+    const color = own && !this.colors.has(name) ?
+        name :
+        PALETTE.find((one) => !this.colors.has(one)) ?? PALETTE[this.colors.size % PALETTE.length];
+    this.colors.add(color);
+    return color;
   }
 
   /** Name of the vehicle that a body belongs to; null: none. */
@@ -273,6 +293,7 @@ class App {
   /** Shows all that moves. */
   fit() {
     const sphere = this.bodies.boundingSphere();
+    sphere.radius = Math.max(sphere.radius, ...this.vehicles.slice(0, 1).map((vehicle) => 3 * vehicle.radius_m));
     this.cameras.fit(sphere, (innerWidth - coveredWidth()) / innerHeight);
     this.showMode();
     this.dirty = true;

@@ -27,13 +27,7 @@ export class TimeBar {
     $('speed').addEventListener('change', () => this.setSpeed(Number($('speed').value)));
     $('loop').addEventListener('change', () => this.play({}));
     $('seek').addEventListener('input', () => {
-      this.dragging = true;
-      this.wanted_us = Number($('seek').value) * 1000;
-      if (this.isLog)
-        this.connection.send({op: 'seek', time_us: this.wanted_us});
-      else
-        this.offerRewind();
-      $('time').textContent = formatTime(this.wanted_us);
+      this.dragTo(Number($('seek').value) * 1000);
     });
     $('seek').addEventListener('change', () => {
       if (this.isLog) this.dragging = false;
@@ -43,6 +37,18 @@ export class TimeBar {
       this.endRewind();
     });
     $('cancel').addEventListener('click', () => this.endRewind());
+  }
+
+  /** Takes a time picked on the line: a log goes there at once, a run offers to rewind. */
+  dragTo(wanted_us) {
+    this.wanted_us = wanted_us;
+    this.dragging = this.isLog || wanted_us < this.shown_us;
+    if (this.isLog) this.connection.send({op: 'seek', time_us: wanted_us});
+    if (!this.isLog && this.dragging)
+      this.offerRewind();
+    else if (!this.isLog)
+      this.endRewind();
+    $('time').textContent = formatTime(wanted_us);
   }
 
   get isLog() { return this.hello.source === 'log'; }
@@ -96,11 +102,11 @@ export class TimeBar {
   /** Shows a time. */
   update(time_us) {
     if (this.dragging) return;
+    this.shown_us = time_us;
     const text = formatTime(time_us);
     if ($('time').textContent !== text) $('time').textContent = text;
     // The line of a run ends now, that of a log at its end.
     const start_us = this.hello.start_us ?? 0, end_us = Math.max(this.hello.end_us ?? time_us, start_us + 1000);
-    this.latest_us = Math.max(this.latest_us ?? 0, time_us);
     const seek = $('seek');
     seek.min = Math.floor(start_us / 1000);
     seek.max = Math.ceil((this.isLog ? end_us : Math.max(end_us, time_us)) / 1000);
