@@ -464,7 +464,7 @@ class App {
     const height_px = innerHeight * this.renderer.getPixelRatio();
     // Everything that depends on the time or the camera.
     this.environment.update(this.camera, focus, distance_m, this.options.get('shadows'));
-    this.bodies.follow(this.camera);
+    this.bodies.follow(this.camera, distance_m);
     this.water.update(time_us, this.camera);
     this.sounds.update(time_us, this.playback.newest?.speed ?? 1);
     this.estimates.update(X_WVs, (i, at_us) => this.truthAt(this.vehicles[i], at_us));
