@@ -10,6 +10,7 @@ import {Dots, FieldsOfView, SelectionRing, Zones} from './overlays.js';
 import {Details, Events, formatTime, Legend, Scores, VehicleList} from './panels.js';
 import {Picking} from './picking.js';
 import {Playback} from './playback.js';
+import {probe} from './probe.js';
 import {readScene} from './protocol.js';
 import {Address, coveredWidth, Options, setUpFolds, setUpKeyList, Tabs, Theme} from './settings.js';
 import {Assets} from './shapes.js';
@@ -26,6 +27,9 @@ const MANY = 60;
 
 /** Colors of vehicles that have none of their own (after Okabe and Ito 2008). */
 const PALETTE = ['#56b4e9', '#009e73', '#d55e00', '#cc79a7', '#0072b2', '#8c6bb1', '#66a61e', '#a6761d'];
+
+/** Frames that take longer are drawn with half the resolution. */
+const SLOW_MS = 160;
 
 /** Is WebGL drawn by the processor?  Then shadows and fine water are off. */
 function isSoftware(gl) {
@@ -45,7 +49,7 @@ class App {
     this.frames = 0;
     this.drawn = 0;
     this.cpu_ms = [];
-    this.last_ms = performance.now();
+    this.last_ms = this.changed_ms = performance.now();
     this.setUpScene();
     this.setUpPanels();
     this.setUpConnection();
@@ -130,6 +134,7 @@ class App {
     if (!this.data || state.revision !== this.data.revision) return;
     const before_us = this.playback.newest?.time_us ?? 0;
     this.playback.push(state, performance.now());
+    this.timeBar.setNewest(state.time_us);
     this.fitDue ||= this.fitPending;
     this.fitPending = false;
     // The time went back, or was set: what belongs to another time goes.
@@ -376,13 +381,35 @@ class App {
   }
 
   resize() {
-    const ratio = Math.min(devicePixelRatio, this.software ? 1 : 2);
-    this.renderer.setPixelRatio(ratio);
+    this.sharp = true;
+    this.interval_ms = 0;
+    this.setResolution();
     this.renderer.setSize(innerWidth, innerHeight, false);
     this.labels.resize(innerWidth, innerHeight, devicePixelRatio);
     this.camera.aspect = innerWidth / innerHeight;
     this.camera.updateProjectionMatrix();
     this.dirty = true;
+  }
+
+  setResolution() {
+    const full = Math.min(devicePixelRatio, this.software ? 1 : 2);
+    this.renderer.setPixelRatio(this.sharp ? full : 0.5 * full);
+  }
+
+  /** Draws coarsely while frames take long, and sharply again once nothing moves. */
+  adaptResolution(changes, now_ms) {
+    if (changes) {
+      // Only intervals between frames that follow each other count.
+      const interval_ms = now_ms - this.changed_ms;
+      if (interval_ms < 2000) this.interval_ms += 0.2 * (interval_ms - this.interval_ms);
+      this.changed_ms = now_ms;
+    }
+    const idle = now_ms - this.changed_ms > 400;
+    const sharp = idle || this.interval_ms < (this.sharp ? SLOW_MS : SLOW_MS / 4);
+    if (sharp === this.sharp) return;
+    this.sharp = sharp;
+    this.dirty = true;
+    this.setResolution();
   }
 
   /** One frame: take the newest states, move, draw if anything changed. */
@@ -404,6 +431,7 @@ class App {
     this.cameras.update(dt_s, this.vehicle, this.bodies.X_WB);
     this.showMode();
     const key = this.viewKey();
+    this.adaptResolution(moved || key !== this.drawnKey, now_ms);
     if (moved || this.dirty || key !== this.drawnKey) {
       this.drawnKey = key;
       this.dirty = false;
@@ -540,66 +568,24 @@ class App {
 
   /** Position of a vehicle on the page; null: not in view. */
   pixelOf(vehicle) { return this.labels.project(vehicle.at, this.camera); }
+}
 
-  /** Numbers of what is drawn, for tests: positions in the world, pixels, sizes. */
-  probe() {
-    const sorted = [...this.cpu_ms].sort((a, b) => a - b);
-    const origin = new Vector3(...(this.data?.origin_m ?? [0, 0, 0]));
-    const world = (point) => point.clone().add(origin).toArray();
-    const place = new Vector3();
-    return {
-      frames: this.drawn,
-      ticks: this.frames,
-      cpu_ms: sorted[sorted.length >> 1] ?? null,
-      software: this.software,
-      draw_calls: this.renderer.info.render.calls,
-      triangles: this.renderer.info.render.triangles,
-      scene: this.data && {world: this.data.world, revision: this.data.revision},
-      tape: this.picking.text(),
-      time_us: this.playback.time_us,
-      connected: this.connection.isOpen,
-      banner: $('banner').textContent,
-      control: this.timeBar.hello.control === true,
-      selected: this.selected,
-      camera: {
-        mode: this.cameras.mode,
-        position: world(this.camera.position),
-        target: world(this.cameras.focus),
-        fov_deg: this.camera.fov,
-      },
-      bodies: this.bodies.X_WB.map((X, i) => ({
-                                     name: this.bodies.list[i].name,
-                                     position: world(place.setFromMatrixPosition(X)),
-                                     pixel: this.labels.project(place, this.camera),
-                                   })),
-      vehicles: this.vehicles.map((vehicle, i) => ({
-                                    name: vehicle.name,
-                                    position: world(vehicle.at),
-                                    pixel: this.pixelOf(vehicle),
-                                    trail: this.trails.describe(i),
-                                  })),
-      estimates: this.estimates.vehicles.filter((one) => one.estimate).map((one) => ({
-                                                                             vehicle: one.name,
-                                                                             error_m: one.error_m,
-                                                                             axes_m: one.axes?.lengths_m ?? null,
-                                                                             axes: one.axes?.vectors ?? null,
-                                                                           })),
-      sounds: this.sounds.rings.map((ring) => ({
-                                      id: ring.sound.id,
-                                      outer_m: ring.outer_m,
-                                      inner_m: ring.inner_m,
-                                      center: world(ring.sound.at),
-                                    })),
-      marks: (this.sounds.visibleMarks ?? []).map((mark) => ({outcome: mark.outcome, position: world(mark.at)})),
+/** Starts the page; where there is no WebGL it says so. */
+function start() {
+  try {
+    const app = new App();
+    // For tests, and for the console.
+    window.shoal = {
+      probe: () => probe(app),
+      waterHeights: (points, time_us) => app.water.heights(app.renderer, points, time_us),
+      setView: (text) => app.setView(text),
+      select: (name) => app.select(name),
     };
+  } catch (error) {
+    $('banner').textContent = `this page cannot draw: ${error.message}`;
+    $('banner').hidden = false;
+    throw error;
   }
 }
 
-const app = new App();
-/** For tests: numbers of what is drawn, and heights of the water as the shader has them. */
-window.shoal = {
-  probe: () => app.probe(),
-  waterHeights: (points, time_us) => app.water.heights(app.renderer, points, time_us),
-  setView: (text) => app.setView(text),
-  select: (name) => app.select(name),
-};
+start();

@@ -14,7 +14,8 @@ export class TimeBar {
     this.hello = {source: 'run', control: false};
     this.status = {paused: false, speed: 1};
     this.dragging = false;
-    this.wanted_us = null;
+    this.wanted_us = this.rewind_us = null;
+    this.newest_us = this.shown_us = 0;
     this.requests = new Map();
     this.listen();
     this.setHello(this.hello);
@@ -32,10 +33,7 @@ export class TimeBar {
     $('seek').addEventListener('change', () => {
       if (this.isLog) this.dragging = false;
     });
-    $('rewind').addEventListener('click', () => {
-      this.request('rewind', this.wanted_us / 1e6);
-      this.endRewind();
-    });
+    $('rewind').addEventListener('click', () => this.rewind());
     $('cancel').addEventListener('click', () => this.endRewind());
   }
 
@@ -70,6 +68,9 @@ export class TimeBar {
     this.endRewind();
   }
 
+  /** Takes the time of the newest state. */
+  setNewest(time_us) { this.newest_us = time_us; }
+
   /** Takes a message `status`. */
   setStatus(status) {
     this.status = status;
@@ -79,6 +80,7 @@ export class TimeBar {
     const known = [...$('speed').options].some((option) => Number(option.value) === speed);
     if (!known) $('speed').append(new Option(`${+ speed.toPrecision(3)}×`, speed));
     if (document.activeElement !== $('speed')) $('speed').value = String(speed);
+    this.rewindIfPaused();
     this.describe();
   }
 
@@ -157,6 +159,21 @@ export class TimeBar {
     if (!this.isLog) return;
     const wanted_us = Math.max(this.hello.start_us ?? 0, Number($('seek').value) * 1000 + seconds * 1e6);
     this.connection.send({op: 'seek', time_us: Math.min(wanted_us, this.hello.end_us ?? wanted_us)});
+  }
+
+  /** Rewinds the run to the time picked.  A request gives the seconds back from the present: the run pauses first. */
+  rewind() {
+    this.rewind_us = this.wanted_us;
+    this.endRewind();
+    if (!this.status.paused) this.request('pause');
+    this.rewindIfPaused();
+  }
+
+  rewindIfPaused() {
+    if (this.rewind_us === null || !this.status.paused) return;
+    const back_us = Math.max(this.newest_us, this.status.time_us ?? 0) - this.rewind_us;
+    this.rewind_us = null;
+    if (back_us > 0) this.request('rewind', back_us / 1e6);
   }
 
   offerRewind() {
