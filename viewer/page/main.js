@@ -5,14 +5,14 @@ import {Cameras, MODES} from './cameras.js';
 import {Connection} from './connection.js';
 import {Environment} from './environment.js';
 import {Estimates} from './estimates.js';
-import {Labels} from './labels.js';
+import {drawAnnotations, Labels} from './labels.js';
 import {Dots, FieldsOfView, SelectionRing, Zones} from './overlays.js';
 import {Details, Events, formatTime, Legend, Scores, VehicleList} from './panels.js';
 import {Picking} from './picking.js';
 import {Playback} from './playback.js';
 import {probe} from './probe.js';
 import {readScene} from './protocol.js';
-import {Address, coveredWidth, Options, setUpFolds, setUpKeyList, Tabs, Theme} from './settings.js';
+import {Address, coveredWidth, Options, pressKey, setUpFolds, setUpKeyList, Tabs, Theme} from './settings.js';
 import {Assets} from './shapes.js';
 import {Sounds} from './sounds.js';
 import {TimeBar} from './time_bar.js';
@@ -21,9 +21,6 @@ import {NoToneMapping, PCFShadowMap, Quaternion, Scene, Vector3, WebGLRenderer} 
 import {Water} from './water.js';
 
 const $ = (id) => document.getElementById(id);
-
-/** More vehicles than this have names only where they are near. */
-const MANY = 60;
 
 /** Colors of vehicles that have none of their own (after Okabe and Ito 2008). */
 const PALETTE = ['#56b4e9', '#009e73', '#d55e00', '#cc79a7', '#0072b2', '#8c6bb1', '#66a61e', '#a6761d'];
@@ -53,7 +50,7 @@ class App {
     this.setUpScene();
     this.setUpPanels();
     this.setUpConnection();
-    addEventListener('keydown', (event) => this.key(event));
+    addEventListener('keydown', (event) => pressKey(this, event));
     addEventListener('resize', () => this.resize());
     this.resize();
     requestAnimationFrame((now_ms) => this.frame(now_ms));
@@ -327,59 +324,6 @@ class App {
     this.dirty = true;
   }
 
-  key(event) {
-    const typing = /^(INPUT|SELECT|TEXTAREA)$/.test(event.target.tagName) && event.target.type !== 'checkbox';
-    if (event.key === 'Escape') this.escape(event);
-    if (typing || event.ctrlKey || event.metaKey || event.altKey || $('keys').open) return;
-    const onButton = event.target.tagName === 'BUTTON';
-    const next = (step) => {
-      const name = this.list.neighbour(step);
-      if (name !== null) this.select(name);
-    };
-    const actions = {
-      ' ': () => onButton || this.timeBar.togglePlay(),
-      '.': () => this.timeBar.step(1),
-      ':': () => this.timeBar.step(10),
-      '>': () => this.timeBar.step(10),
-      ',': () => this.timeBar.skip(-1),
-      ';': () => this.timeBar.skip(-10),
-      '[': () => next(-1),
-      ']': () => next(1),
-      f: () => this.setMode('follow'),
-      c: () => this.setMode('chase'),
-      Home: () => this.fit(),
-      m: () => this.measure(),
-      v: () => this.options.toggle(),
-      t: () => this.theme.toggle(),
-      l: () => this.options.set('labels', !this.options.get('labels')),
-      '?': () => $('keys').showModal(),
-      '+': () => this.cameras.zoom(0.8),
-      '=': () => this.cameras.zoom(0.8),
-      '-': () => this.cameras.zoom(1.25),
-      '/': () => {
-        if ($('left-body').hidden) $('fold-left').click();
-        $('search').focus();
-      },
-    };
-    ['orbit', 'top', 'follow', 'chase', 'first', 'fly'].forEach((mode, i) => {
-      actions[String(i + 1)] = () => this.setMode(mode);
-    });
-    if (!Object.hasOwn(actions, event.key) || (this.cameras.mode === 'fly' && /^[wasdqe]$/.test(event.key))) return;
-    actions[event.key]();
-    if (!(event.key === ' ' && onButton)) event.preventDefault();
-  }
-
-  escape(event) {
-    if (!$('options').hidden)
-      this.options.toggle(false);
-    else if (this.picking.measuring)
-      this.measure(false);
-    else if (event.target === $('search'))
-      $('view').focus();
-    else if (!$('keys').open)
-      this.select(null);
-  }
-
   resize() {
     this.sharp = true;
     this.interval_ms = 0;
@@ -505,7 +449,7 @@ class App {
     const onBoard = ['first', 'device'].includes(this.cameras.mode);
     this.ring.update(vehicle?.X_WV ?? null, vehicle?.radius_m ?? 1, this.camera, height_px, onBoard);
     this.renderer.render(this.scene, this.camera);
-    this.drawLabels();
+    drawAnnotations(this);
     this.updatePanels(time_us);
   }
 
@@ -515,55 +459,6 @@ class App {
     if (!vehicle) return;
     const estimate = this.estimates.vehicles[this.estimates.byName.get(vehicle.name)];
     this.details.update(time_us, vehicle.X_WV, this.data.origin_m, estimate, this.data.water);
-  }
-
-  drawLabels() {
-    const {labels} = this;
-    labels.begin(this.camera, this.theme.colors);
-    for (const ring of this.sounds.shown ? this.sounds.rings : []) this.drawRing(ring);
-    for (const mark of this.sounds.visibleMarks ?? []) {
-      const snr = Number.isFinite(mark.snr_dB) ? ` ${mark.snr_dB.toFixed(0)} dB` : '';
-      labels.mark(mark.at, mark.look, `${mark.look.text}${snr}`);
-    }
-    if (this.picking.points.length === 2) {
-      labels.line(...this.picking.points, '#ffd166');
-      const middle = this.picking.points[0].clone().add(this.picking.points[1]).multiplyScalar(0.5);
-      labels.text(middle, this.picking.text(), {bold: true});
-    } else if (this.picking.points.length === 1) {
-      labels.text(this.picking.points[0], '× first point', {bold: true});
-    }
-    this.drawNames();
-  }
-
-  /** The front of a sound at the depth of its source, as wide as the sound lasts. */
-  drawRing({sound, outer_m, inner_m}) {
-    const middle_m = (outer_m + inner_m) / 2;
-    const metre_px = this.camera.projectionMatrix.elements[5] * innerHeight / 2 /
-        Math.max(1, this.camera.position.distanceTo(sound.at));
-    const width_px = Math.min(40, Math.max(1.5, (outer_m - inner_m) * metre_px));
-    const color = {ping: '#f0e442', answer: '#009e73', noise: '#cc79a7'}[sound.kind] ?? '#56b4e9';
-    this.labels.circle(sound.at, middle_m, color, width_px, 0.38);
-  }
-
-  drawNames() {
-    const {labels} = this;
-    const selected = this.vehicle;
-    const onBoard = ['first', 'device'].includes(this.cameras.mode);
-    if (selected && !onBoard) {
-      const estimate = this.estimates.vehicles[this.estimates.byName.get(selected.name)];
-      const error = estimate?.estimate && this.estimates.showGhosts ? `  error ${estimate.error_m.toFixed(2)} m` : '';
-      labels.text(selected.at, selected.name + error, {color: selected.color, dy: -22, bold: true});
-    }
-    if (!this.options.get('labels')) return;
-    // Of many vehicles only those that are near have their names.
-    const metre_px = this.camera.projectionMatrix.elements[5] * innerHeight / 2;
-    for (const vehicle of this.vehicles) {
-      const seen_px = vehicle.radius_m * metre_px / vehicle.at.distanceTo(this.camera.position);
-      if (vehicle === selected || (this.vehicles.length > MANY && seen_px < 6)) continue;
-      labels.text(vehicle.at, vehicle.name, {color: vehicle.color, dy: -16});
-    }
-    if (this.zones.root.visible)
-      for (const zone of this.zones.labels ?? []) labels.text(zone.at, zone.text, {color: '#cc79a7'});
   }
 
   /** Position of a vehicle on the page; null: not in view. */
