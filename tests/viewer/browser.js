@@ -9,12 +9,15 @@ const FLAGS = ['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swift
 /** Starts Chromium without a screen. */
 export async function launch() {
   if (!existsSync(CHROMIUM)) throw new Error(`${CHROMIUM} is missing: apt-get install chromium, or set CHROMIUM`);
-  return puppeteer.launch({executablePath: CHROMIUM, headless: true, args: FLAGS, protocolTimeout: 120000});
+  return puppeteer.launch({executablePath: CHROMIUM, headless: true, args: FLAGS, protocolTimeout: 180000});
 }
 
 /** Opens a URL; page.faults has everything that should not happen, but for texts that match `allowed`. */
 export async function open(browser, url, {width = 960, height = 600, dark = false, allowed = null} = {}) {
   const page = await browser.newPage();
+  // Generous: a machine that compiles at the same time is slow.
+  page.setDefaultTimeout(60000);
+  page.setDefaultNavigationTimeout(120000);
   page.faults = [];
   const fault = (text) => {
     if (!allowed?.test(text)) page.faults.push(text);
@@ -47,7 +50,7 @@ export async function open(browser, url, {width = 960, height = 600, dark = fals
 }
 
 /** Waits until a function of the probe gives true; returns the probe. */
-export async function until(page, holds, what = String(holds), timeout = 30000) {
+export async function until(page, holds, what = String(holds), timeout = 90000) {
   try {
     await page.waitForFunction(`window.shoal && (${holds})(window.shoal.probe())`, {timeout, polling: 50});
   } catch (error) {

@@ -144,7 +144,7 @@ export class MockServer {
     else if (command === 'step')
       this.show(this.time_us + value * 10000, false);
     else if (command === 'rewind')
-      this.show(value * 1e6);
+      this.show(this.time_us - value * 1e6);
     else
       return this.sendTo(client, {op: 'reply', id, ok: false, text: `unknown command '${command}'`});
     this.sendTo(client, {op: 'reply', id, ok: true, text: ''});

@@ -24,10 +24,9 @@ export function matrixOf(pose, scale = ONE) {
       new Vector3(pose[0], pose[1], pose[2]), new Quaternion(pose[4], pose[5], pose[6], pose[3]), scale);
 }
 
-/** Distance between contour lines of a terrain: 1, 2 or 5 times a power of ten, about a twentieth of its relief. */
-function contourDistance(geometry) {
-  geometry.computeBoundingBox();
-  const desired = Math.max(0.05, (geometry.boundingBox.max.z - geometry.boundingBox.min.z) / 20);
+/** Distance between contour lines for a view: 1, 2 or 5 times a power of ten. */
+function contourDistance(view_m) {
+  const desired = Math.max(0.05, 0.03 * view_m);
   const ten = Math.pow(10, Math.floor(Math.log10(desired)));
   return ten * [1, 2, 5, 10].find((step) => step * ten >= desired);
 }
@@ -113,8 +112,8 @@ export class Bodies {
   }
 
   addGroup(group) {
-    const contour_m = group.part.shape === 'terrain' ? contourDistance(group.geometry) : 0;
-    const mesh = new InstancedMesh(group.geometry, this.surfaces.get(group.part, {contour_m}), group.instances.length);
+    const contours = group.part.shape === 'terrain';
+    const mesh = new InstancedMesh(group.geometry, this.surfaces.get(group.part, {contours}), group.instances.length);
     mesh.instanceMatrix.setUsage(DynamicDrawUsage);
     group.instances.forEach((instance, i) => mesh.setColorAt(i, instance.color));
     mesh.frustumCulled = false;
@@ -161,8 +160,9 @@ export class Bodies {
     group.mesh.boundingSphere = null;
   }
 
-  /** Keeps the infinite planes under the camera. */
-  follow(camera) {
+  /** Keeps the infinite planes under the camera, and contour lines apart for a view from some distance. */
+  follow(camera, distance_m) {
+    this.surfaces.contour_m.value = contourDistance(distance_m);
     for (const {mesh, body, X_BP} of this.planes) {
       const X_WP = this.X_WB[body].clone().multiply(X_BP);
       const at = camera.position.clone().applyMatrix4(X_WP.clone().invert());

@@ -3,6 +3,8 @@
 import {Vector3} from './vendor/three.js';
 
 const LABELS_MAX = 80;
+/** More vehicles than this have names only where they are near. */
+const MANY = 60;
 const FONT = '12px system-ui, sans-serif';
 
 /** Canvas over the scene. */
@@ -124,4 +126,54 @@ export class Labels {
       c.fill();
     }
   }
+}
+
+/** Draws all texts and marks of the page over its scene. */
+export function drawAnnotations(app) {
+  const {labels} = app;
+  labels.begin(app.camera, app.theme.colors);
+  for (const ring of app.sounds.shown ? app.sounds.rings : []) drawRing(app, ring);
+  for (const mark of app.sounds.visibleMarks ?? []) {
+    const snr = Number.isFinite(mark.snr_dB) ? ` ${mark.snr_dB.toFixed(0)} dB` : '';
+    labels.mark(mark.at, mark.look, `${mark.look.text}${snr}`);
+  }
+  if (app.picking.points.length === 2) {
+    labels.line(...app.picking.points, '#ffd166');
+    const middle = app.picking.points[0].clone().add(app.picking.points[1]).multiplyScalar(0.5);
+    labels.text(middle, app.picking.text(), {bold: true});
+  } else if (app.picking.points.length === 1) {
+    labels.text(app.picking.points[0], '× first point', {bold: true});
+  }
+  drawNames(app);
+}
+
+/** The front of a sound at the depth of its source, as wide as the sound lasts. */
+function drawRing(app, {sound, outer_m, inner_m}) {
+  const middle_m = (outer_m + inner_m) / 2;
+  const metre_px =
+      app.camera.projectionMatrix.elements[5] * innerHeight / 2 / Math.max(1, app.camera.position.distanceTo(sound.at));
+  const width_px = Math.min(40, Math.max(1.5, (outer_m - inner_m) * metre_px));
+  const color = {ping: '#f0e442', answer: '#009e73', noise: '#cc79a7'}[sound.kind] ?? '#56b4e9';
+  app.labels.circle(sound.at, middle_m, color, width_px, 0.38);
+}
+
+function drawNames(app) {
+  const {labels} = app;
+  const selected = app.vehicle;
+  const onBoard = ['first', 'device'].includes(app.cameras.mode);
+  if (selected && !onBoard) {
+    const estimate = app.estimates.vehicles[app.estimates.byName.get(selected.name)];
+    const error = estimate?.estimate && app.estimates.showGhosts ? `  error ${estimate.error_m.toFixed(2)} m` : '';
+    labels.text(selected.at, selected.name + error, {color: selected.color, dy: -22, bold: true});
+  }
+  if (!app.options.get('labels')) return;
+  // Of many vehicles only those that are near have their names.
+  const metre_px = app.camera.projectionMatrix.elements[5] * innerHeight / 2;
+  for (const vehicle of app.vehicles) {
+    const seen_px = vehicle.radius_m * metre_px / vehicle.at.distanceTo(app.camera.position);
+    if (vehicle === selected || (app.vehicles.length > MANY && seen_px < 6)) continue;
+    labels.text(vehicle.at, vehicle.name, {color: vehicle.color, dy: -16});
+  }
+  if (app.zones.root.visible)
+    for (const zone of app.zones.labels ?? []) labels.text(zone.at, zone.text, {color: '#cc79a7'});
 }

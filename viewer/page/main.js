@@ -5,13 +5,14 @@ import {Cameras, MODES} from './cameras.js';
 import {Connection} from './connection.js';
 import {Environment} from './environment.js';
 import {Estimates} from './estimates.js';
-import {Labels} from './labels.js';
+import {drawAnnotations, Labels} from './labels.js';
 import {Dots, FieldsOfView, SelectionRing, Zones} from './overlays.js';
 import {Details, Events, formatTime, Legend, Scores, VehicleList} from './panels.js';
 import {Picking} from './picking.js';
 import {Playback} from './playback.js';
+import {probe} from './probe.js';
 import {readScene} from './protocol.js';
-import {Address, coveredWidth, Options, setUpFolds, setUpKeyList, Tabs, Theme} from './settings.js';
+import {Address, coveredWidth, Options, pressKey, setUpFolds, setUpKeyList, Tabs, Theme} from './settings.js';
 import {Assets} from './shapes.js';
 import {Sounds} from './sounds.js';
 import {TimeBar} from './time_bar.js';
@@ -21,8 +22,11 @@ import {Water} from './water.js';
 
 const $ = (id) => document.getElementById(id);
 
-/** More vehicles than this have names only where they are near. */
-const MANY = 60;
+/** Colors of vehicles that have none of their own (after Okabe and Ito 2008). */
+const PALETTE = ['#56b4e9', '#009e73', '#d55e00', '#cc79a7', '#0072b2', '#8c6bb1', '#66a61e', '#a6761d'];
+
+/** Frames that take longer are drawn with half the resolution. */
+const SLOW_MS = 160;
 
 /** Is WebGL drawn by the processor?  Then shadows and fine water are off. */
 function isSoftware(gl) {
@@ -42,11 +46,11 @@ class App {
     this.frames = 0;
     this.drawn = 0;
     this.cpu_ms = [];
-    this.last_ms = performance.now();
+    this.last_ms = this.changed_ms = performance.now();
     this.setUpScene();
     this.setUpPanels();
     this.setUpConnection();
-    addEventListener('keydown', (event) => this.key(event));
+    addEventListener('keydown', (event) => pressKey(this, event));
     addEventListener('resize', () => this.resize());
     this.resize();
     requestAnimationFrame((now_ms) => this.frame(now_ms));
@@ -127,6 +131,7 @@ class App {
     if (!this.data || state.revision !== this.data.revision) return;
     const before_us = this.playback.newest?.time_us ?? 0;
     this.playback.push(state, performance.now());
+    this.timeBar.setNewest(state.time_us);
     this.fitDue ||= this.fitPending;
     this.fitPending = false;
     // The time went back, or was set: what belongs to another time goes.
@@ -170,6 +175,7 @@ class App {
     this.bodies.setScene(data);
     const sphere = this.bodies.boundingSphere();
     this.extent_m = this.cameras.extent_m = Math.max(2, sphere.radius);
+    this.colors = new Set();
     this.vehicles = data.vehicles.map((vehicle) => this.describe(vehicle));
     this.byName = new Map(this.vehicles.map((vehicle) => [vehicle.name, vehicle]));
     this.owners =
@@ -201,13 +207,14 @@ class App {
       this.setView(view);
     else
       this.fitPending = true;  // again with the first state
+    // One vehicle alone: follow it.
+    if (!view && this.vehicles.length === 1) this.follow(this.vehicles[0].name);
   }
 
   /** What the page knows of a vehicle. */
   describe(vehicle) {
     const own = this.data.bodies[vehicle.body];
-    const first = own.parts.find((part) => part.color) ?? own.parts[0];
-    const color = first ? `#${this.bodies.colorOf(own, first).getHexString()}` : '#888888';
+    const color = this.pickColor(own);
     return {
       ...vehicle,
       color,
@@ -216,6 +223,21 @@ class App {
       X_WV: matrixOf(vehicle.pose),
       at: new Vector3()
     };
+  }
+
+  /** Color of a vehicle in lists and trails: that of its body, if it is bright and no other vehicle has it. */
+  pickColor(body) {
+    const hsl = {};
+    const own = body.parts.map((part) => this.bodies.colorOf(body, part)).find((color) => {
+      color.getHSL(hsl);
+      return hsl.s > 0.4 && hsl.l > 0.12 && hsl.l < 0.8 && (hsl.h < 0.08 || hsl.h > 0.18);  // yellow: estimates
+    });
+    const name = own ? `#${own.getHexString()}` : '';
+    const color = own && !this.colors.has(name) ?
+        name :
+        PALETTE.find((one) => !this.colors.has(one)) ?? PALETTE[this.colors.size % PALETTE.length];
+    this.colors.add(color);
+    return color;
   }
 
   /** Name of the vehicle that a body belongs to; null: none. */
@@ -273,6 +295,7 @@ class App {
   /** Shows all that moves. */
   fit() {
     const sphere = this.bodies.boundingSphere();
+    sphere.radius = Math.max(sphere.radius, ...this.vehicles.slice(0, 1).map((vehicle) => 3 * vehicle.radius_m));
     this.cameras.fit(sphere, (innerWidth - coveredWidth()) / innerHeight);
     this.showMode();
     this.dirty = true;
@@ -301,67 +324,36 @@ class App {
     this.dirty = true;
   }
 
-  key(event) {
-    const typing = /^(INPUT|SELECT|TEXTAREA)$/.test(event.target.tagName) && event.target.type !== 'checkbox';
-    if (event.key === 'Escape') this.escape(event);
-    if (typing || event.ctrlKey || event.metaKey || event.altKey || $('keys').open) return;
-    const onButton = event.target.tagName === 'BUTTON';
-    const next = (step) => {
-      const name = this.list.neighbour(step);
-      if (name !== null) this.select(name);
-    };
-    const actions = {
-      ' ': () => onButton || this.timeBar.togglePlay(),
-      '.': () => this.timeBar.step(1),
-      ':': () => this.timeBar.step(10),
-      '>': () => this.timeBar.step(10),
-      ',': () => this.timeBar.skip(-1),
-      ';': () => this.timeBar.skip(-10),
-      '[': () => next(-1),
-      ']': () => next(1),
-      f: () => this.setMode('follow'),
-      c: () => this.setMode('chase'),
-      Home: () => this.fit(),
-      m: () => this.measure(),
-      v: () => this.options.toggle(),
-      t: () => this.theme.toggle(),
-      l: () => this.options.set('labels', !this.options.get('labels')),
-      '?': () => $('keys').showModal(),
-      '+': () => this.cameras.zoom(0.8),
-      '=': () => this.cameras.zoom(0.8),
-      '-': () => this.cameras.zoom(1.25),
-      '/': () => {
-        if ($('left-body').hidden) $('fold-left').click();
-        $('search').focus();
-      },
-    };
-    ['orbit', 'top', 'follow', 'chase', 'first', 'fly'].forEach((mode, i) => {
-      actions[String(i + 1)] = () => this.setMode(mode);
-    });
-    if (!Object.hasOwn(actions, event.key) || (this.cameras.mode === 'fly' && /^[wasdqe]$/.test(event.key))) return;
-    actions[event.key]();
-    if (!(event.key === ' ' && onButton)) event.preventDefault();
-  }
-
-  escape(event) {
-    if (!$('options').hidden)
-      this.options.toggle(false);
-    else if (this.picking.measuring)
-      this.measure(false);
-    else if (event.target === $('search'))
-      $('view').focus();
-    else if (!$('keys').open)
-      this.select(null);
-  }
-
   resize() {
-    const ratio = Math.min(devicePixelRatio, this.software ? 1 : 2);
-    this.renderer.setPixelRatio(ratio);
+    this.sharp = true;
+    this.interval_ms = 0;
+    this.setResolution();
     this.renderer.setSize(innerWidth, innerHeight, false);
     this.labels.resize(innerWidth, innerHeight, devicePixelRatio);
     this.camera.aspect = innerWidth / innerHeight;
     this.camera.updateProjectionMatrix();
     this.dirty = true;
+  }
+
+  setResolution() {
+    const full = Math.min(devicePixelRatio, this.software ? 1 : 2);
+    this.renderer.setPixelRatio(this.sharp ? full : 0.5 * full);
+  }
+
+  /** Draws coarsely while frames take long, and sharply again once nothing moves. */
+  adaptResolution(changes, now_ms) {
+    if (changes) {
+      // Only intervals between frames that follow each other count.
+      const interval_ms = now_ms - this.changed_ms;
+      if (interval_ms < 2000) this.interval_ms += 0.2 * (interval_ms - this.interval_ms);
+      this.changed_ms = now_ms;
+    }
+    const idle = now_ms - this.changed_ms > 400;
+    const sharp = idle || this.interval_ms < (this.sharp ? SLOW_MS : SLOW_MS / 4);
+    if (sharp === this.sharp) return;
+    this.sharp = sharp;
+    this.dirty = true;
+    this.setResolution();
   }
 
   /** One frame: take the newest states, move, draw if anything changed. */
@@ -383,6 +375,7 @@ class App {
     this.cameras.update(dt_s, this.vehicle, this.bodies.X_WB);
     this.showMode();
     const key = this.viewKey();
+    this.adaptResolution(moved || key !== this.drawnKey, now_ms);
     if (moved || this.dirty || key !== this.drawnKey) {
       this.drawnKey = key;
       this.dirty = false;
@@ -443,7 +436,7 @@ class App {
     const height_px = innerHeight * this.renderer.getPixelRatio();
     // Everything that depends on the time or the camera.
     this.environment.update(this.camera, focus, distance_m, this.options.get('shadows'));
-    this.bodies.follow(this.camera);
+    this.bodies.follow(this.camera, distance_m);
     this.water.update(time_us, this.camera);
     this.sounds.update(time_us, this.playback.newest?.speed ?? 1);
     this.estimates.update(X_WVs, (i, at_us) => this.truthAt(this.vehicles[i], at_us));
@@ -456,7 +449,7 @@ class App {
     const onBoard = ['first', 'device'].includes(this.cameras.mode);
     this.ring.update(vehicle?.X_WV ?? null, vehicle?.radius_m ?? 1, this.camera, height_px, onBoard);
     this.renderer.render(this.scene, this.camera);
-    this.drawLabels();
+    drawAnnotations(this);
     this.updatePanels(time_us);
   }
 
@@ -468,117 +461,26 @@ class App {
     this.details.update(time_us, vehicle.X_WV, this.data.origin_m, estimate, this.data.water);
   }
 
-  drawLabels() {
-    const {labels} = this;
-    labels.begin(this.camera, this.theme.colors);
-    for (const ring of this.sounds.shown ? this.sounds.rings : []) this.drawRing(ring);
-    for (const mark of this.sounds.visibleMarks ?? []) {
-      const snr = Number.isFinite(mark.snr_dB) ? ` ${mark.snr_dB.toFixed(0)} dB` : '';
-      labels.mark(mark.at, mark.look, `${mark.look.text}${snr}`);
-    }
-    if (this.picking.points.length === 2) {
-      labels.line(...this.picking.points, '#ffd166');
-      const middle = this.picking.points[0].clone().add(this.picking.points[1]).multiplyScalar(0.5);
-      labels.text(middle, this.picking.text(), {bold: true});
-    } else if (this.picking.points.length === 1) {
-      labels.text(this.picking.points[0], '× first point', {bold: true});
-    }
-    this.drawNames();
-  }
-
-  /** The front of a sound at the depth of its source, as wide as the sound lasts. */
-  drawRing({sound, outer_m, inner_m}) {
-    const middle_m = (outer_m + inner_m) / 2;
-    const metre_px = this.camera.projectionMatrix.elements[5] * innerHeight / 2 /
-        Math.max(1, this.camera.position.distanceTo(sound.at));
-    const width_px = Math.min(40, Math.max(1.5, (outer_m - inner_m) * metre_px));
-    const color = {ping: '#f0e442', answer: '#009e73', noise: '#cc79a7'}[sound.kind] ?? '#56b4e9';
-    this.labels.circle(sound.at, middle_m, color, width_px, 0.38);
-  }
-
-  drawNames() {
-    const {labels} = this;
-    const selected = this.vehicle;
-    const onBoard = ['first', 'device'].includes(this.cameras.mode);
-    if (selected && !onBoard) {
-      const estimate = this.estimates.vehicles[this.estimates.byName.get(selected.name)];
-      const error = estimate?.estimate && this.estimates.showGhosts ? `  error ${estimate.error_m.toFixed(2)} m` : '';
-      labels.text(selected.at, selected.name + error, {color: selected.color, dy: -22, bold: true});
-    }
-    if (!this.options.get('labels')) return;
-    // Of many vehicles only those that are near have their names.
-    const metre_px = this.camera.projectionMatrix.elements[5] * innerHeight / 2;
-    for (const vehicle of this.vehicles) {
-      const seen_px = vehicle.radius_m * metre_px / vehicle.at.distanceTo(this.camera.position);
-      if (vehicle === selected || (this.vehicles.length > MANY && seen_px < 6)) continue;
-      labels.text(vehicle.at, vehicle.name, {color: vehicle.color, dy: -16});
-    }
-    if (this.zones.root.visible)
-      for (const zone of this.zones.labels ?? []) labels.text(zone.at, zone.text, {color: '#cc79a7'});
-  }
-
   /** Position of a vehicle on the page; null: not in view. */
   pixelOf(vehicle) { return this.labels.project(vehicle.at, this.camera); }
+}
 
-  /** Numbers of what is drawn, for tests: positions in the world, pixels, sizes. */
-  probe() {
-    const sorted = [...this.cpu_ms].sort((a, b) => a - b);
-    const origin = new Vector3(...(this.data?.origin_m ?? [0, 0, 0]));
-    const world = (point) => point.clone().add(origin).toArray();
-    const place = new Vector3();
-    return {
-      frames: this.drawn,
-      ticks: this.frames,
-      cpu_ms: sorted[sorted.length >> 1] ?? null,
-      software: this.software,
-      draw_calls: this.renderer.info.render.calls,
-      triangles: this.renderer.info.render.triangles,
-      scene: this.data && {world: this.data.world, revision: this.data.revision},
-      tape: this.picking.text(),
-      time_us: this.playback.time_us,
-      connected: this.connection.isOpen,
-      banner: $('banner').textContent,
-      control: this.timeBar.hello.control === true,
-      selected: this.selected,
-      camera: {
-        mode: this.cameras.mode,
-        position: world(this.camera.position),
-        target: world(this.cameras.focus),
-        fov_deg: this.camera.fov,
-      },
-      bodies: this.bodies.X_WB.map((X, i) => ({
-                                     name: this.bodies.list[i].name,
-                                     position: world(place.setFromMatrixPosition(X)),
-                                     pixel: this.labels.project(place, this.camera),
-                                   })),
-      vehicles: this.vehicles.map((vehicle, i) => ({
-                                    name: vehicle.name,
-                                    position: world(vehicle.at),
-                                    pixel: this.pixelOf(vehicle),
-                                    trail: this.trails.describe(i),
-                                  })),
-      estimates: this.estimates.vehicles.filter((one) => one.estimate).map((one) => ({
-                                                                             vehicle: one.name,
-                                                                             error_m: one.error_m,
-                                                                             axes_m: one.axes?.lengths_m ?? null,
-                                                                             axes: one.axes?.vectors ?? null,
-                                                                           })),
-      sounds: this.sounds.rings.map((ring) => ({
-                                      id: ring.sound.id,
-                                      outer_m: ring.outer_m,
-                                      inner_m: ring.inner_m,
-                                      center: world(ring.sound.at),
-                                    })),
-      marks: (this.sounds.visibleMarks ?? []).map((mark) => ({outcome: mark.outcome, position: world(mark.at)})),
+/** Starts the page; where there is no WebGL it says so. */
+function start() {
+  try {
+    const app = new App();
+    // For tests, and for the console.
+    window.shoal = {
+      probe: () => probe(app),
+      waterHeights: (points, time_us) => app.water.heights(app.renderer, points, time_us),
+      setView: (text) => app.setView(text),
+      select: (name) => app.select(name),
     };
+  } catch (error) {
+    $('banner').textContent = `this page cannot draw: ${error.message}`;
+    $('banner').hidden = false;
+    throw error;
   }
 }
 
-const app = new App();
-/** For tests: numbers of what is drawn, and heights of the water as the shader has them. */
-window.shoal = {
-  probe: () => app.probe(),
-  waterHeights: (points, time_us) => app.water.heights(app.renderer, points, time_us),
-  setView: (text) => app.setView(text),
-  select: (name) => app.select(name),
-};
+start();

@@ -110,9 +110,6 @@ void main() {
   vec3 own = albedo();
   vec3 toEye = normalize(cameraPosition - vWorld);
   vec3 normal = normalize(vNormalW);
-  #ifdef FLAT
-    normal = normalize(cross(dFdx(vWorld), dFdy(vWorld)));
-  #endif
   if (dot(normal, toEye) < 0.0) normal = -normal;
   vec3 light = own * (skyStrength * (0.45 + 0.275 * (1.0 + normal.z)));
   float toward = dot(normal, toSun);
@@ -140,6 +137,7 @@ export function defaultColor(body, part, group) {
 export class Surfaces {
   constructor(assets) {
     this.assets = assets;
+    this.contour_m = {value: 1};
     this.clear();
   }
 
@@ -156,10 +154,10 @@ export class Surfaces {
   }
 
   /** Returns the material of a part. */
-  get(part, {flat = false, contour_m = 0} = {}) {
+  get(part, {contours = false} = {}) {
     const texture = part.color ? null : part.material.texture ?? null;
     const plain = !part.color && !texture && !part.material.color;
-    const key = Surfaces.key(part, plain) + flat + contour_m;
+    const key = Surfaces.key(part, plain) + contours;
     const known = this.materials.get(key);
     if (known) return known;
     // Choose the code of the shader by the pattern.
@@ -168,8 +166,7 @@ export class Surfaces {
       defines[texture.pattern.toUpperCase()] = 1;
     else if (part.shape === 'plane' && plain)
       defines.GRID = 1;
-    if (contour_m > 0 && !texture) defines.CONTOUR = 1;
-    if (flat) defines.FLAT = 1;
+    if (contours && !texture) defines.CONTOUR = 1;
     const material = new ShaderMaterial({
       defines,
       lights: true,
@@ -184,7 +181,7 @@ export class Surfaces {
         textureSize_m: {value: texture?.size_m ?? 1},
         gloss: {value: part.material.gloss ?? 0},
         opacity: {value: 1},
-        contour_m: {value: contour_m || 1},
+        contour_m: this.contour_m,
         image: {value: null},
         offset: {value: new Vector3()},
       },

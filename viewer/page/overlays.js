@@ -140,7 +140,7 @@ void main() {
   gl_PointSize = 9.0;
   // Only where the vehicle itself is too small to see.
   float seen_px = pixels * radius_m / gl_Position.w;
-  vTint = vec4(tint, 1.0 - smoothstep(3.0, 7.0, seen_px));
+  vTint = vec4(tint, 1.0 - smoothstep(5.0, 11.0, seen_px));
 }`;
 const DOT_FRAGMENT = /* glsl */ `
 varying vec4 vTint;

@@ -187,7 +187,7 @@ export class Details {
       this.row('estimate error, m', estimate.error_m.toFixed(2));
       if (estimate.axes)
         this.row('1σ axes, m', [...estimate.axes.lengths_m].sort((a, b) => b - a).map((x) => x.toFixed(2)).join(' · '));
-      this.row('estimate age, s', ((time_us - estimate.estimate.time_us) / 1e6).toFixed(1));
+      this.row('estimate age, s', Math.max(0, (time_us - estimate.estimate.time_us) / 1e6).toFixed(1));
     }
     this.remember(time_us, p[2], estimate?.estimate ? estimate.error_m : null);
   }

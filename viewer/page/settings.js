@@ -26,6 +26,60 @@ export const KEYS = [
   ['?', 'this list'],
 ];
 
+/** Carries out what a key stands for, unless it is typed into a field. */
+export function pressKey(app, event) {
+  const typing = /^(INPUT|SELECT|TEXTAREA)$/.test(event.target.tagName) && event.target.type !== 'checkbox';
+  if (event.key === 'Escape') escape(app, event);
+  if (typing || event.ctrlKey || event.metaKey || event.altKey || $('keys').open) return;
+  const onButton = event.target.tagName === 'BUTTON';
+  const next = (step) => {
+    const name = app.list.neighbour(step);
+    if (name !== null) app.select(name);
+  };
+  const actions = {
+    ' ': () => onButton || app.timeBar.togglePlay(),
+    '.': () => app.timeBar.step(1),
+    ':': () => app.timeBar.step(10),
+    '>': () => app.timeBar.step(10),
+    ',': () => app.timeBar.skip(-1),
+    ';': () => app.timeBar.skip(-10),
+    '[': () => next(-1),
+    ']': () => next(1),
+    f: () => app.setMode('follow'),
+    c: () => app.setMode('chase'),
+    Home: () => app.fit(),
+    m: () => app.measure(),
+    v: () => app.options.toggle(),
+    t: () => app.theme.toggle(),
+    l: () => app.options.set('labels', !app.options.get('labels')),
+    '?': () => $('keys').showModal(),
+    '+': () => app.cameras.zoom(0.8),
+    '=': () => app.cameras.zoom(0.8),
+    '-': () => app.cameras.zoom(1.25),
+    '/': () => {
+      if ($('left-body').hidden) $('fold-left').click();
+      $('search').focus();
+    },
+  };
+  ['orbit', 'top', 'follow', 'chase', 'first', 'fly'].forEach((mode, i) => {
+    actions[String(i + 1)] = () => app.setMode(mode);
+  });
+  if (!Object.hasOwn(actions, event.key) || (app.cameras.mode === 'fly' && /^[wasdqe]$/.test(event.key))) return;
+  actions[event.key]();
+  if (!(event.key === ' ' && onButton)) event.preventDefault();
+}
+
+function escape(app, event) {
+  if (!$('options').hidden)
+    app.options.toggle(false);
+  else if (app.picking.measuring)
+    app.measure(false);
+  else if (event.target === $('search'))
+    $('view').focus();
+  else if (!$('keys').open)
+    app.select(null);
+}
+
 /** Remembers a choice in the browser, if it lets us. */
 function remember(value) {
   try {

@@ -14,7 +14,8 @@ export class TimeBar {
     this.hello = {source: 'run', control: false};
     this.status = {paused: false, speed: 1};
     this.dragging = false;
-    this.wanted_us = null;
+    this.wanted_us = this.rewind_us = null;
+    this.newest_us = this.shown_us = 0;
     this.requests = new Map();
     this.listen();
     this.setHello(this.hello);
@@ -27,22 +28,25 @@ export class TimeBar {
     $('speed').addEventListener('change', () => this.setSpeed(Number($('speed').value)));
     $('loop').addEventListener('change', () => this.play({}));
     $('seek').addEventListener('input', () => {
-      this.dragging = true;
-      this.wanted_us = Number($('seek').value) * 1000;
-      if (this.isLog)
-        this.connection.send({op: 'seek', time_us: this.wanted_us});
-      else
-        this.offerRewind();
-      $('time').textContent = formatTime(this.wanted_us);
+      this.dragTo(Number($('seek').value) * 1000);
     });
     $('seek').addEventListener('change', () => {
       if (this.isLog) this.dragging = false;
     });
-    $('rewind').addEventListener('click', () => {
-      this.request('rewind', this.wanted_us / 1e6);
-      this.endRewind();
-    });
+    $('rewind').addEventListener('click', () => this.rewind());
     $('cancel').addEventListener('click', () => this.endRewind());
+  }
+
+  /** Takes a time picked on the line: a log goes there at once, a run offers to rewind. */
+  dragTo(wanted_us) {
+    this.wanted_us = wanted_us;
+    this.dragging = this.isLog || wanted_us < this.shown_us;
+    if (this.isLog) this.connection.send({op: 'seek', time_us: wanted_us});
+    if (!this.isLog && this.dragging)
+      this.offerRewind();
+    else if (!this.isLog)
+      this.endRewind();
+    $('time').textContent = formatTime(wanted_us);
   }
 
   get isLog() { return this.hello.source === 'log'; }
@@ -64,6 +68,9 @@ export class TimeBar {
     this.endRewind();
   }
 
+  /** Takes the time of the newest state. */
+  setNewest(time_us) { this.newest_us = time_us; }
+
   /** Takes a message `status`. */
   setStatus(status) {
     this.status = status;
@@ -73,6 +80,7 @@ export class TimeBar {
     const known = [...$('speed').options].some((option) => Number(option.value) === speed);
     if (!known) $('speed').append(new Option(`${+ speed.toPrecision(3)}×`, speed));
     if (document.activeElement !== $('speed')) $('speed').value = String(speed);
+    this.rewindIfPaused();
     this.describe();
   }
 
@@ -96,11 +104,11 @@ export class TimeBar {
   /** Shows a time. */
   update(time_us) {
     if (this.dragging) return;
+    this.shown_us = time_us;
     const text = formatTime(time_us);
     if ($('time').textContent !== text) $('time').textContent = text;
     // The line of a run ends now, that of a log at its end.
     const start_us = this.hello.start_us ?? 0, end_us = Math.max(this.hello.end_us ?? time_us, start_us + 1000);
-    this.latest_us = Math.max(this.latest_us ?? 0, time_us);
     const seek = $('seek');
     seek.min = Math.floor(start_us / 1000);
     seek.max = Math.ceil((this.isLog ? end_us : Math.max(end_us, time_us)) / 1000);
@@ -151,6 +159,21 @@ export class TimeBar {
     if (!this.isLog) return;
     const wanted_us = Math.max(this.hello.start_us ?? 0, Number($('seek').value) * 1000 + seconds * 1e6);
     this.connection.send({op: 'seek', time_us: Math.min(wanted_us, this.hello.end_us ?? wanted_us)});
+  }
+
+  /** Rewinds the run to the time picked.  A request gives the seconds back from the present: the run pauses first. */
+  rewind() {
+    this.rewind_us = this.wanted_us;
+    this.endRewind();
+    if (!this.status.paused) this.request('pause');
+    this.rewindIfPaused();
+  }
+
+  rewindIfPaused() {
+    if (this.rewind_us === null || !this.status.paused) return;
+    const back_us = Math.max(this.newest_us, this.status.time_us ?? 0) - this.rewind_us;
+    this.rewind_us = null;
+    if (back_us > 0) this.request('rewind', back_us / 1e6);
   }
 
   offerRewind() {

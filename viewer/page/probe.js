@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// window.shoal.probe(): what the tests of the page read.
+import {Vector3} from './vendor/three.js';
+
+/** Numbers of what a page draws, for tests: positions in the world, pixels, sizes. */
+export function probe(app) {
+  const sorted = [...app.cpu_ms].sort((a, b) => a - b);
+  const origin = new Vector3(...(app.data?.origin_m ?? [0, 0, 0]));
+  const world = (point) => point.clone().add(origin).toArray();
+  const place = new Vector3();
+  return {
+    frames: app.drawn,
+    ticks: app.frames,
+    cpu_ms: sorted[sorted.length >> 1] ?? null,
+    software: app.software,
+    draw_calls: app.renderer.info.render.calls,
+    triangles: app.renderer.info.render.triangles,
+    scene: app.data && {world: app.data.world, revision: app.data.revision},
+    tape: app.picking.text(),
+    time_us: app.playback.time_us,
+    connected: app.connection.isOpen,
+    banner: document.getElementById('banner').textContent,
+    control: app.timeBar.hello.control === true,
+    selected: app.selected,
+    camera: {
+      mode: app.cameras.mode,
+      position: world(app.camera.position),
+      target: world(app.cameras.focus),
+      fov_deg: app.camera.fov,
+    },
+    bodies: app.bodies.X_WB.map((X, i) => ({
+                                  name: app.bodies.list[i].name,
+                                  position: world(place.setFromMatrixPosition(X)),
+                                  pixel: app.labels.project(place, app.camera),
+                                })),
+    vehicles: app.vehicles.map((vehicle, i) => ({
+                                 name: vehicle.name,
+                                 position: world(vehicle.at),
+                                 pixel: app.pixelOf(vehicle),
+                                 trail: app.trails.describe(i),
+                               })),
+    estimates: app.estimates.vehicles.filter((one) => one.estimate).map((one) => ({
+                                                                          vehicle: one.name,
+                                                                          error_m: one.error_m,
+                                                                          axes_m: one.axes?.lengths_m ?? null,
+                                                                          axes: one.axes?.vectors ?? null,
+                                                                        })),
+    sounds: app.sounds.rings.map((ring) => ({
+                                   id: ring.sound.id,
+                                   outer_m: ring.outer_m,
+                                   inner_m: ring.inner_m,
+                                   center: world(ring.sound.at),
+                                 })),
+    marks: (app.sounds.visibleMarks ?? []).map((mark) => ({outcome: mark.outcome, position: world(mark.at)})),
+  };
+}
