@@ -85,6 +85,12 @@ bool EventLogReader::next(LogEventView& event) {
   return false;
 }
 
+void EventLogReader::seek(std::uint64_t offset) {
+  at_ = std::min(offset, file_bytes_);
+  buffer_start_ = at_;
+  buffered_ = 0;
+}
+
 std::size_t EventLogReader::fill(std::size_t size) {
   const std::size_t skipped = static_cast<std::size_t>(at_ - buffer_start_);
   std::size_t there = skipped <= buffered_ ? buffered_ - skipped : 0;

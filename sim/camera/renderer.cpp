@@ -5,6 +5,8 @@
 #include <array>
 #include <limits>
 
+#include "sim/camera/water_view.hpp"
+
 namespace sim {
 
 namespace {
@@ -100,11 +102,10 @@ void Renderer::clear(Frame& frame) const {
     image.width = rays_->width, image.height = rays_->height, image.channels = channels;
     image.data.assign(image.size(), value);
   };
-  if (options_.kind == ImageKind::color)
-    empty(frame.light, 3, 0.0F);
-  else if (options_.kind == ImageKind::depth)
+  if (options_.kind == ImageKind::color) empty(frame.light, 3, 0.0F);
+  if (options_.kind == ImageKind::depth || (options_.kind == ImageKind::color && options_.with_depth))
     empty(frame.depth_m, 1, nothing_seen_m);
-  else
+  if (options_.kind == ImageKind::parts || options_.kind == ImageKind::groups)
     empty(frame.labels, 1, std::uint16_t{0});
 }
 
@@ -132,6 +133,7 @@ void Renderer::render_rows(const Pose& X_WS, int first, int end, float weight, F
       if (options_.kind == ImageKind::color) {
         find_shadows(tile);
         fill_light(tile, weight, frame);
+        if (options_.with_depth) fill_values(tile, frame);
       } else {
         fill_values(tile, frame);
       }
@@ -192,16 +194,28 @@ void Renderer::fill_light(Tile& tile, float weight, Frame& frame) {
     for (int column = 0; column < tile.columns; ++column, ++place) {
       const int i = tile.number[place];
       if (i < 0) continue;
-      const RayHit& hit = tile.hits[i];
-      const Ray& ray = tile.rays[i];
-      LinearColor light;
-      if (hit.hit())
-        light = shade(hit, ray, tile.in_shadow[i] != 0, rays_->pixel_angle * static_cast<float>(hit.range_m));
-      else
-        light = sky(ray.direction_W.cast<float>());
+      const LinearColor light = light_on(tile.rays[i], tile.hits[i], tile.in_shadow[i] != 0);
       float* rgb = frame.light.at((tile.column + column) / n, (tile.row + row) / n);
       for (int channel = 0; channel < 3; ++channel) rgb[channel] += share * light[channel];
     }
+}
+
+LinearColor Renderer::light_on(const Ray& ray, const RayHit& hit, bool in_shadow) {
+  const WaterView* water = options_.water;
+  const double crossing_m = water ? water->crossing_m(ray.direction_W, std::min(hit.range_m, ray.range_max_m)) : 0;
+  LinearColor light;
+  if (hit.hit())
+    light = shade(hit, ray, in_shadow, rays_->pixel_angle * static_cast<float>(hit.range_m));
+  else if (!water || !(crossing_m < hit.range_m))
+    light = sky(ray.direction_W.cast<float>());
+  else
+    light.setZero();
+  if (!water) return light;
+  // Less daylight reaches what is under water.
+  const double end_z_m = ray.origin_W.z() + hit.range_m * ray.direction_W.z();
+  if (hit.hit()) light = light.cwiseProduct(water->daylight(end_z_m));
+  return water->light(ray.direction_W, crossing_m, hit.range_m, light,
+                      [this](const Eigen::Vector3f& direction_W) { return sky(direction_W); });
 }
 
 void Renderer::fill_values(const Tile& tile, Frame& frame) const {
@@ -212,7 +226,7 @@ void Renderer::fill_values(const Tile& tile, Frame& frame) const {
       const int i = tile.number[place];
       const int u = (tile.column + column) / n, v = (tile.row + row) / n;
       const bool seen = i >= 0 && tile.hits[i].hit();
-      if (options_.kind == ImageKind::depth) {
+      if (options_.kind == ImageKind::depth || options_.kind == ImageKind::color) {
         const double factor = seen && !options_.depth_along_ray ? static_cast<double>(tile.along_axis[i]) : 1.0;
         *frame.depth_m.at(u, v) = seen ? static_cast<float>(tile.hits[i].range_m * factor) : nothing_seen_m;
         continue;

@@ -13,6 +13,8 @@
 
 namespace sim {
 
+class WaterView;
+
 /// Quantity stored in the pixels of an image.
 enum class ImageKind { color, depth, parts, groups };
 
@@ -24,6 +26,9 @@ struct RenderOptions {
   double range_max_m = 10'000;   ///< along the ray; parts beyond it are invisible
   bool depth_along_ray = false;  ///< true: depth is the range; false: distance along the optical axis (x of S)
   LightConfig light;
+  // Not used by cameras of vehicles.
+  const WaterView* water = nullptr;  ///< water in color images; null: it is invisible.  Must outlive the renderer
+  bool with_depth = false;           ///< color images have depth, too
 };
 
 /// Image being rendered.  Depending on the kind of the image one member is filled and the others stay empty: `light`
@@ -89,6 +94,8 @@ class Renderer {
   LinearColor sky(const Eigen::Vector3f& direction_W) const;
   /// Returns the light reflected at a hit.
   LinearColor shade(const RayHit& hit, const Ray& ray, bool in_shadow, float footprint_m);
+  /// Returns the light on a ray, with that of the water.
+  LinearColor light_on(const Ray& ray, const RayHit& hit, bool in_shadow);
   /// Collects the rays of a tile.
   void gather(Tile& tile, const Pose& X_WS) const;
   /// Casts the rays of a tile.

@@ -43,6 +43,10 @@ void Medium::advance_to(Time now) {
   if (wind_) wind_->advance_to(now);
 }
 
+std::span<const WaveComponent> Medium::wave_components() const {
+  return waves_ ? std::span<const WaveComponent>(waves_->components()) : std::span<const WaveComponent>();
+}
+
 double Medium::surface_m(double x_m, double y_m) const {
   return waves_ ? still_m_ + waves_->elevation_m(x_m, y_m) : still_m_;
 }

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 
 #include "sim/base/math.hpp"
 #include "sim/base/time.hpp"
@@ -49,6 +50,10 @@ class Medium {
   double surface_m(double x_m, double y_m) const;
   /// The same at a given time.
   double surface_m(double x_m, double y_m, Time at) const;
+  /// Height of the surface without waves; minus infinity in a world without water.
+  double still_surface_m() const { return still_m_; }
+  /// Waves of the run, sorted by wave number; empty: none.
+  std::span<const WaveComponent> wave_components() const;
   /// Upper bound of the surface height at this time.
   double highest_surface_m() const { return still_m_ + (waves_ ? waves_->highest_m() : 0); }
   /// Depth below the instantaneous surface, m; negative in the air, minus infinity in a world without water.

@@ -52,7 +52,9 @@ int run(int argc, char** argv) {
   tools::add_run_command(app, exit_code);
   tools::add_replay_command(app, exit_code);
   tools::add_check_command(app, exit_code);
+  tools::add_view_command(app, exit_code);
   tools::add_snap_command(app, exit_code);
+  tools::add_film_command(app, exit_code);
   tools::add_snapshot_command(app, exit_code);
   tools::add_describe_command(app, exit_code);
   tools::add_list_command(app, exit_code);

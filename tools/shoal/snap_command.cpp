@@ -7,25 +7,25 @@
 #include <memory>
 #include <optional>
 
-#include "devices/ranging/camera.hpp"
-#include "messages/yaml/message_writer.hpp"
-#include "sim/bus/in_process_bus.hpp"
-#include "sim/camera/renderer.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/image/image_file.hpp"
 #include "sim/world/world.hpp"
 #include "sim/world_file/load_world.hpp"
+#include "tools/experiment/film/camera_rig.hpp"
+#include "tools/experiment/film/film_source.hpp"
+#include "tools/experiment/film/overlay.hpp"
+#include "tools/experiment/film/scene_painter.hpp"
 #include "tools/experiment/images/overview.hpp"
-#include "tools/experiment/world_files/world_by_name.hpp"
 #include "tools/shoal/commands.hpp"
 #include "tools/shoal/output_file.hpp"
+#include "tools/shoal/picture_options.hpp"
 
 namespace tools {
 
 namespace {
 
 struct SnapArguments {
-  std::string world;
+  std::string world, log;
   sim::LoadOptions load;
   double at_s = 0;
   std::optional<double> every_s;
@@ -35,16 +35,18 @@ struct SnapArguments {
   std::optional<int> antialias;
   bool all = false;
   int quality = 90;
+  std::string visibility, overlays = "none";
+  // What the texts above give.
+  std::optional<double> visibility_m;
+  OverlayChoice overlay;
+
+  /// Returns the log or the world.
+  const std::string& source() const { return log.empty() ? world : log; }
 };
 
-/// Camera and its pose.
-struct View {
-  sim::OpticsConfig optics;
-  sim::Pose X_WS = sim::Pose::Identity();
-  sim::RenderOptions options;
-  bool grey = false;
-  int antialias = 2;
-  float gain = 1;
+/// View of an image, and which vehicles it shows badly.
+struct SnapView {
+  SceneView scene;
   std::optional<Overview> overview;
 };
 
@@ -75,65 +77,40 @@ sim::Vector3d parse_point(const char* option, const std::string& text) {
   return {numbers[0], numbers[1], numbers[2]};
 }
 
-const devices::Camera& find_camera(const sim::World& world, const std::string& name, const sim::MountedDevice*& found) {
-  std::string cameras;
-  for (const auto& device : world.devices()) {
-    if (!device) continue;
-    const auto* camera = dynamic_cast<const devices::Camera*>(device->sensor());
-    if (!camera) continue;
-    std::string dotted = device->vehicle().name() + "." + device->config().name;
-    if (name == dotted || name == device->full_name()) {
-      found = device.get();
-      return *camera;
-    }
-    cameras += (cameras.empty() ? "" : ", ") + dotted;
-  }
-  throw CLI::ValidationError("--from",
-                             "there is no camera '" + name + "'" +
-                                 (cameras.empty() ? "; this world has none, see --eye" : "; there are: " + cameras));
-}
-
-/// Returns the view of a camera at its present pose: its lens and exposure, without noise, blur and rolling shutter.
-View view_of_camera(const sim::World& world, const std::string& name) {
-  const sim::MountedDevice* device = nullptr;
-  const devices::Camera& camera = find_camera(world, name, device);
-  const sim::DeviceConfig& config = device->config();
-  const sim::Vehicle& vehicle = device->vehicle();
-  const sim::Body& body = config.body.empty() ? vehicle.base() : vehicle.body(config.body);
-  View view;
-  view.optics = camera.params().optics;
-  view.X_WS = body.X_WB() * config.X_BS();
-  view.options = camera.render_options();
-  view.grey = camera.params().image == devices::Camera::Kind::grey;
-  view.antialias = camera.params().antialias;
-  view.gain = static_cast<float>(camera.params().exposure.gain);
-  return view;
-}
-
-View free_view(const SnapArguments& arguments, const sim::World& world) {
-  const Numbers size = parse_numbers("--size", arguments.size, 'x', 2, "such as 1280x720");
-  View view;
-  for (const double side : size)
-    if (!(side >= 1 && side <= sim::max_image_side_px) || side != std::floor(side))
-      throw CLI::ValidationError(
-          "--size", fmt::format("must be 1 to {} pixels a side, got '{}'", sim::max_image_side_px, arguments.size));
-  view.optics.width = static_cast<int>(size[0]);
-  view.optics.height = static_cast<int>(size[1]);
-  view.optics.fov_rad = sim::degrees_to_radians(arguments.fov_deg);
-  view.options.light = world.config().light;
+SnapView free_view(const SnapArguments& arguments, const sim::World& world) {
+  const PictureSize size = parse_picture_size(arguments.size);
+  SnapView view;
+  view.scene.optics.width = size.width;
+  view.scene.optics.height = size.height;
+  view.scene.optics.fov_rad = sim::degrees_to_radians(arguments.fov_deg);
+  view.scene.options.light = world.config().light;
+  view.scene.visibility_m = arguments.visibility_m;
   if (arguments.eye.empty()) {
-    view.overview = overview_of(world, view.optics, arguments.all);
-    view.X_WS = view.overview->X_WS;
+    view.overview = overview_of(world, view.scene.optics, arguments.all);
+    view.scene.X_WS = view.overview->X_WS;
     return view;
   }
   const sim::Vector3d eye_W = parse_point("--eye", arguments.eye), look_W = parse_point("--look", arguments.look);
   if ((look_W - eye_W).norm() < 1e-6) throw CLI::ValidationError("--look", "must not be the point of --eye");
-  view.X_WS = look_at(eye_W, look_W);
+  view.scene.X_WS = look_at(eye_W, look_W);
   return view;
 }
 
-View make_view(const SnapArguments& arguments, const sim::World& world) {
-  View view = arguments.from.empty() ? free_view(arguments, world) : view_of_camera(world, arguments.from);
+/// Returns the view of a camera of a vehicle; with --visibility, with water, which the camera itself does not see.
+SnapView camera_view(const SnapArguments& arguments, const sim::World& world) {
+  try {
+    SnapView view{view_of_camera(world, arguments.from), std::nullopt};
+    if (!arguments.visibility.empty()) view.scene.visibility_m = arguments.visibility_m;
+    return view;
+  } catch (const CameraError& error) {
+    const std::string text = error.what();
+    throw CLI::ValidationError("--from", text + (text.ends_with("has none") ? ", see --eye" : ""));
+  }
+}
+
+SnapView make_view(const SnapArguments& arguments, const sim::World& world) {
+  SnapView made = arguments.from.empty() ? free_view(arguments, world) : camera_view(arguments, world);
+  SceneView& view = made.scene;
   if (!arguments.image.empty()) {
     view.grey = arguments.image == "grey";
     view.options.kind = arguments.image == "depth"                   ? sim::ImageKind::depth
@@ -146,19 +123,7 @@ View make_view(const SnapArguments& arguments, const sim::World& world) {
   const std::int64_t rays = std::int64_t{view.optics.width} * view.optics.height * view.antialias * view.antialias;
   if (rays > 4 * sim::max_image_pixels)
     throw CLI::ValidationError("--size", "with --antialias makes more than 64000000 rays in an image");
-  return view;
-}
-
-sim::Image8 render_view(const sim::World& world, const View& view, sim::TextureLibrary& textures) {
-  const auto rays = sim::make_pixel_rays(sim::Optics(view.optics), view.antialias);
-  // The library outlives the renderer, which requires shared ownership.
-  const std::shared_ptr<sim::TextureLibrary> shared(&textures, [](sim::TextureLibrary*) {});
-  sim::Renderer renderer(world.physics(), rays, view.options, shared);
-  sim::Frame frame;
-  renderer.render(view.X_WS, frame);
-  if (view.options.kind == sim::ImageKind::depth) return sim::depth_image(frame.depth_m);
-  if (view.options.kind != sim::ImageKind::color) return sim::label_image(frame.labels);
-  return sim::develop(view.grey ? sim::grey_of(frame.light) : frame.light, view.gain);
+  return made;
 }
 
 /// `image.png`, or `image_0003.png` for one of several.
@@ -172,7 +137,7 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 }
 
 /// Reports vehicles that cannot be seen in an automatic view.
-void warn(const View& view) {
+void warn(const SnapView& view) {
   if (!view.overview) return;
   if (!view.overview->hidden.empty())
     spdlog::warn("hidden behind something in this view: {}; see --eye and --look",
@@ -182,24 +147,48 @@ void warn(const View& view) {
                  sim::list_text(view.overview->tiny, 8));
 }
 
-void take_one(const SnapArguments& arguments, const sim::World& world, const std::string& path,
-              sim::TextureLibrary& textures) {
-  const View view = make_view(arguments, world);
+void take_one(const SnapArguments& arguments, const sim::World& world, const std::string& path, ScenePainter& painter,
+              Overlay& overlay) {
+  const SnapView view = make_view(arguments, world);
   warn(view);
   const auto start = std::chrono::steady_clock::now();
-  const sim::Image8 output = render_view(world, view, textures);
+  ScenePicture& picture = painter.paint(view.scene);
+  overlay.observe();
+  if (arguments.overlay.any() && view.scene.options.kind == sim::ImageKind::color)
+    overlay.draw(picture, view.scene);
+  const sim::Image8& output = picture.image;
   const double render_s = seconds_since(start);
   try {
     sim::write_image(path, output, arguments.quality);
   } catch (const sim::ImageError& error) {
     throw std::runtime_error(path + ": " + error.what());  // the main program returns exit code 4 for it
   }
-  const sim::Vector3d p_W = view.X_WS.translation();
+  const sim::Vector3d p_W = view.scene.X_WS.translation();
   std::cout << fmt::format(
-      "{}: {}x{}, {} at {:.3f} s from {}, rendered in {:.2f} s\n", path, output.width, output.height, arguments.world,
+      "{}: {}x{}, {} at {:.3f} s from {}, rendered in {:.2f} s\n", path, output.width, output.height, arguments.source(),
       sim::to_seconds(world.now()),
       arguments.from.empty() ? fmt::format("({:.2f}, {:.2f}, {:.2f})", p_W.x(), p_W.y(), p_W.z()) : arguments.from,
       render_s);
+}
+
+/// Runs to the times of the images, and takes them.
+void take_all(const SnapArguments& arguments, FilmSource& source) {
+  constexpr double trail_s = 60;
+  LogEstimates estimates;
+  if (arguments.overlay.ellipses && !source.log().empty())
+    estimates = LogEstimates(source.log(), arguments.at_s - trail_s, std::max(arguments.at_s, arguments.until_s), 0.5);
+  Overlay overlay(source.world(), {arguments.overlay, trail_s, 2000, ""}, std::move(estimates));
+  ScenePainter painter(source.world());
+  int number = 0;
+  for (double at_s = arguments.at_s; number == 0 || at_s <= arguments.until_s + 1e-9; ++number) {
+    while (source.world().now() < sim::from_seconds(at_s) && source.step())
+      if (arguments.overlay.any() && sim::to_seconds(source.world().now()) > at_s - trail_s) overlay.observe();
+    if (source.world().now() < sim::from_seconds(at_s)) return spdlog::warn("the log ends before {:.6g} s", at_s);
+    take_one(arguments, source.world(), arguments.every_s ? numbered(arguments.out, number) : arguments.out, painter,
+             overlay);
+    if (!arguments.every_s) return;
+    at_s = arguments.at_s + (number + 1) * *arguments.every_s;
+  }
 }
 
 int snap(SnapArguments& arguments) {
@@ -208,24 +197,22 @@ int snap(SnapArguments& arguments) {
     throw CLI::ValidationError("--out", "must end in .png, .jpg or .jpeg, got '" + arguments.out + "'");
   if (arguments.every_s && arguments.until_s < arguments.at_s)
     throw CLI::ValidationError("--until", "must not be before --at");
-  // Load the world.
-  arguments.load.encode_message = shoal::encode_own_message;
-  const sim::LoadedWorld loaded = sim::load_world(world_file(arguments.world), arguments.load);
-  sim::InProcessBus bus;
-  sim::World world(loaded.config, bus);
-  world.use_threads(0);
-  make_view(arguments, world);  // reports errors of the view before a long run
+  if (arguments.world.empty() == arguments.log.empty())
+    throw CLI::ValidationError("WORLD", "either a world or --log LOG must be given");
+  arguments.visibility_m = parse_visibility(arguments.visibility);
+  arguments.overlay = parse_overlay_option(arguments.overlays);
+  // Load the world, or the log.
+  if (!arguments.log.empty() && !is_event_log(arguments.log))
+    throw std::runtime_error(arguments.log + ": is not an LCM log: it cannot be read, or begins with something else");
+  const std::unique_ptr<FilmSource> source = open_film_source(arguments.source(), arguments.load);
+  if (sim::from_seconds(arguments.at_s) < source->world().now() || arguments.at_s > source->end_s() + 1e-9)
+    throw std::runtime_error(fmt::format("{}: the log goes from {:.6g} s to {:.6g} s, --at is {:.6g} s",
+                                         arguments.log, sim::to_seconds(source->world().now()), source->end_s(),
+                                         arguments.at_s));
+  make_view(arguments, source->world());  // reports errors of the view before a long run
   check_writable(arguments.every_s ? numbered(arguments.out, 0) : arguments.out);
-  // Take the images.
-  sim::TextureLibrary textures;
   try {
-    int number = 0;
-    for (double at_s = arguments.at_s; number == 0 || at_s <= arguments.until_s + 1e-9; ++number) {
-      while (world.now() < sim::from_seconds(at_s)) world.step();
-      take_one(arguments, world, arguments.every_s ? numbered(arguments.out, number) : arguments.out, textures);
-      if (!arguments.every_s) break;
-      at_s = arguments.at_s + (number + 1) * *arguments.every_s;
-    }
+    take_all(arguments, *source);
   } catch (const sim::PhysicsFault& fault) {
     std::cerr << "shoal: " << fault.what() << '\n';
     return exit_physics;
@@ -271,11 +258,14 @@ void add_view_options(CLI::App& command, SnapArguments& arguments) {
 }  // namespace
 
 void add_snap_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("snap", "Run a world as fast as possible, without a bus, and render an image");
+  CLI::App* command = app.add_subcommand("snap", "Run a world as fast as possible, without a bus, or a log again, and render an image");
   const auto arguments = std::make_shared<SnapArguments>();
   add_log_level_option(*command);
   // Output and times.
-  command->add_option("WORLD", arguments->world, "world file, or the name of a shipped world")->required();
+  command->add_option("WORLD", arguments->world, "world file, or the name of a shipped world");
+  command->add_option("--log", arguments->log,
+                      "log of shoal run --record instead of a world: its run, with what its programs did")
+      ->type_name("LOG");
   command->add_option("--out", arguments->out, "file of the image: .png, .jpg or .jpeg")->type_name("FILE")->required();
   command->add_option("--at", arguments->at_s, "simulated time, s")
       ->type_name("S")
@@ -291,6 +281,8 @@ void add_snap_command(CLI::App& app, int& exit_code) {
   until->check(number_from(0, 1e9))->needs(every);
   // View and world.
   add_view_options(*command, *arguments);
+  add_visibility_option(*command, arguments->visibility);
+  add_overlay_option(*command, arguments->overlays)->capture_default_str();
   command->add_option("--seed", arguments->load.seed, "seed of every random stream")
       ->type_name("N")
       ->check(command_line::seed());
@@ -302,11 +294,12 @@ void add_snap_command(CLI::App& app, int& exit_code) {
       *command, {{"shoal snap worlds/coop_land.yaml --out coop_land.png",
                   "shoal snap worlds/dynamic_warehouse.yaml --at 12.5 --eye -6,-8,5 --look 4,2,0 --out hall.jpg",
                   "shoal snap worlds/proving_ground.yaml --at 3 --from turntable.camera --out seen.png",
+                  "shoal snap --log run.lcm --at 40 --overlay trails,ellipses,labels --out run.png",
                   "shoal snap worlds/arm_reach.yaml --every 0.5 --until 5 --size 640x480 --out reach.png"},
                  {{0, "success"},
                   {2, "wrong usage, or a mistake in the world"},
                   {3, "physics fault"},
-                  {4, "the image cannot be written"}},
+                  {4, "the image cannot be written, or the log cannot be replayed"}},
                  {}});
   command->callback([arguments, &exit_code] { exit_code = snap(*arguments); });
 }

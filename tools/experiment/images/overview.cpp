@@ -131,4 +131,11 @@ Overview overview_of(const sim::World& world, const sim::OpticsConfig& optics, b
   return *best;
 }
 
+sim::Pose framing_pose(const sim::World& world, const sim::OpticsConfig& optics, const sim::Vector3d& back_W,
+                       const std::string& vehicle) {
+  std::vector<Subject> subjects = subjects_of(world, false);
+  if (!vehicle.empty()) std::erase_if(subjects, [&](const Subject& each) { return each.name != vehicle; });
+  return camera_pose_for(framed(subjects), back_W, optics);
+}
+
 }  // namespace tools

@@ -29,4 +29,9 @@ sim::Pose look_at(const sim::Vector3d& eye_W, const sim::Vector3d& look_W);
 /// of them are. In a world without vehicles, and with `everything`, all objects except planes are included.
 Overview overview_of(const sim::World& world, const sim::OpticsConfig& optics, bool everything = false);
 
+/// Returns the pose from which all vehicles, or one, are inside the image, with some of their surroundings: in the
+/// direction `back_W` from them.  In a world without vehicles all objects except planes are.
+sim::Pose framing_pose(const sim::World& world, const sim::OpticsConfig& optics, const sim::Vector3d& back_W,
+                       const std::string& vehicle = "");
+
 }  // namespace tools

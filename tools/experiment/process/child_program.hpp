@@ -14,9 +14,10 @@ struct ChildProgram {
   std::vector<std::string> arguments;    ///< the first is the program name (argv[0])
   std::vector<std::string> environment;  ///< `NAME=value`
   std::string log;                       ///< file for its output; empty: our output
+  int input = -1;                        ///< descriptor of its standard input; -1: empty
 };
 
-/// Starts a program in its own process group, with empty standard input and default signal handling.  It receives
+/// Starts a program in its own process group, with default signal handling.  It receives
 /// SIGTERM when the thread that starts it ends for any reason.  Returns 0, or the error as in errno.
 int start_child(const ChildProgram& program, pid_t& pid);
 

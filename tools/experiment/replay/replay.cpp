@@ -10,18 +10,12 @@
 #include <memory>
 #include <set>
 
-#include "bridges/control/sim_service.hpp"
-#include "bridges/lockstep/lockstep_service.hpp"
-#include "bridges/log/run_journal.hpp"
 #include "messages/yaml/message_writer.hpp"
-#include "shoal/message_codec.hpp"
-#include "sim/bus/in_process_bus.hpp"
-#include "sim/bus/message_gate.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/world/world_state.hpp"
 #include "tools/experiment/replay/line_difference.hpp"
 #include "tools/experiment/replay/replay_messages.hpp"
-#include "tools/experiment/replay/replay_ports.hpp"
+#include "tools/experiment/replay/replayed_world.hpp"
 #include "tools/experiment/run/runner.hpp"
 #include "tools/experiment/snapshot/run_identity.hpp"
 #include "tools/experiment/snapshot/world_difference.hpp"
@@ -31,57 +25,17 @@ namespace tools {
 
 namespace {
 
-using bridges::RunJournal;
-using Input = ReplayLog::Input;
-
-/// Bus without other participants.
-struct Line {
-  std::unique_ptr<sim::InProcessBus> network = std::make_unique<sim::InProcessBus>();
-  std::unique_ptr<sim::MessageGate> gate = std::make_unique<sim::MessageGate>(*network);
-};
-
-/// Returns the world to run: that of the log, or a replacement.
-sim::LoadedWorld load(const ReplayLog& log, const ReplayOptions& options) {
-  sim::LoadOptions load = options.load;
-  load.serial_ports = false;
-  load.encode_message = shoal::encode_own_message;
-  if (!options.world.empty()) {
-    sim::LoadedWorld loaded = sim::load_world(options.world, load);
-    if (static_cast<std::int64_t>(loaded.config.run.seed) == log.info.seed) return loaded;
-    load.seed = log.info.seed;  // it is then part of the resolved world
-    return sim::load_world(options.world, load);
-  }
-  const std::vector<std::string> changed = changed_files(log.info.files);
-  if (!changed.empty()) {
-    std::string text = log.path + ": these input files changed since the run was recorded:";
-    for (const std::string& file : changed) text += "\n  " + sim::printable(file);
-    throw std::runtime_error(text);
-  }
-  allow_files(log.info.files, load);
-  sim::LoadedWorld loaded = sim::load_world_text(log.info.resolved_config, log.path + ": sim.info", load);
-  loaded.config.name = log.info.world;
-  return loaded;
-}
-
 class Replay {
  public:
   explicit Replay(const ReplayOptions& options)
       : options_(options),
         log_(read_replay_log(options.log)),
-        loaded_(load(log_, options)),
         messages_(log_),
-        main_(make_line()),
-        others_(make_others()),
-        world_(loaded_.config, *main_.gate, serial_.opener(),
-               [this](const std::string& name) -> sim::Bus& { return *others_.at(name).gate; }),
-        service_(*main_.gate, *main_.network, world_, control_, lockstep_,
-                 {sim::to_yaml(loaded_.resolved), version_text(), build_text(), log_.info.files}) {
-    check_times();
-    restore();
-    world_.use_threads(options.threads);
-    for (const Input& input : log_.inputs)
-      if (input.bus == RunJournal::serial_bus) serial_.add(input);
-  }
+        replayed_(log_, {options.world, options.load, options.threads},
+                  [this](std::string_view channel, std::span<const std::byte> payload) {
+                    messages_.published(channel, payload, replayed_.world().step_number());
+                  }),
+        world_(replayed_.world()) {}
 
   ReplayOutcome run() {
     const auto begin = std::chrono::steady_clock::now();
@@ -90,14 +44,11 @@ class Replay {
     outcome_.begin_step = world_.step_number();
     Progress progress(static_cast<double>(last) * outcome_.step_s, options_.quiet);
     // Deliver the inputs and step, as in the run.
-    hand_over(RunJournal::before_first_reports);
+    replayed_.start();
     after_step();
     try {
       while (world_.step_number() < last && caught_signal() == 0) {
-        hand_over(world_.step_number());
-        for_each_line([](Line& line) { line.gate->admit(); });
-        serial_.begin_step(world_.step_number());
-        world_.step();
+        replayed_.step();
         after_step();
         progress.update(world_.now(), messages_.equal(), control_, false);
       }
@@ -114,60 +65,6 @@ class Replay {
   }
 
  private:
-  Line make_line() {
-    Line line;
-    line.gate->set_watch([this](std::string_view channel, std::span<const std::byte> payload) {
-      messages_.published(channel, payload, world_.step_number());
-    });
-    return line;
-  }
-  std::map<std::string, Line> make_others() {
-    std::map<std::string, Line> others;
-    for (const sim::BusConfig& bus : loaded_.config.buses) others.emplace(bus.name, make_line());
-    return others;
-  }
-  template <typename Use>
-  void for_each_line(Use&& use) {
-    use(main_);
-    for (auto& [name, line] : others_) use(line);
-  }
-
-  void check_times() const {
-    if (world_.step_time().count() != log_.info.step_us)
-      throw std::runtime_error(
-          fmt::format("{}: its run has steps of {} us, the world here of {} us: there is nothing to "
-                      "compare",
-                      log_.path, log_.info.step_us, world_.step_time().count()));
-    if (world_.epoch_us() != log_.info.epoch_utime)
-      throw std::runtime_error(fmt::format("{}: its run has the epoch {}, the world here {}: all stamps would differ",
-                                           log_.path, log_.info.epoch_utime, world_.epoch_us()));
-    if (!log_.bad_snapshot.empty() && !log_.snapshot && log_.usable_step() < log_.last_step)
-      throw std::runtime_error(log_.path + ": cannot be replayed: " + log_.bad_snapshot);
-    if (log_.proven_step && *log_.proven_step <= log_.begin_step() && log_.usable_step() < log_.last_step)
-      throw std::runtime_error(log_.path + ": cannot be replayed from the start: " + log_.holes.front() +
-                               "; the log starts later than the run");
-    if (log_.last_step == log_.begin_step() && !log_.hashes.contains(log_.begin_step()))
-      throw std::runtime_error(log_.path + ": ends before the first step");
-  }
-
-  /// Restores the snapshot with which the run, or the branch, started.
-  void restore() {
-    if (!log_.snapshot) return;
-    const std::string who = log_.path + ": sim.snapshot";
-    check_version(*log_.snapshot, who, short_version());
-    try {
-      world_.state().restore(log_.snapshot->state);
-      auto owners = sim::StateArchive::restorer(log_.snapshot->owners);
-      owners.section("owners");
-      service_.visit_state(owners);
-      owners.end();
-    } catch (const sim::SnapshotError& error) {
-      throw std::runtime_error(who + ": " + error.what());
-    }
-    if (world_.state().hash() != log_.snapshot->state_hash && options_.load.sets.empty() && options_.world.empty())
-      throw std::runtime_error(who + ": its state hash after restoring differs from the one that was written");
-  }
-
   std::int64_t last_step() {
     std::int64_t last = log_.usable_step();
     if (options_.until_s) {
@@ -183,42 +80,12 @@ class Replay {
     return last;
   }
 
-  /// Delivers the inputs of the world before this step.
-  void hand_over(std::int64_t step) {
-    for (; next_input_ < log_.inputs.size() && log_.inputs[next_input_].step <= step; ++next_input_) {
-      const Input& input = log_.inputs[next_input_];
-      if (input.bus == RunJournal::serial_bus) continue;
-      if (input.bus.empty() && input.channel == RunJournal::request_channel) {
-        execute(input);
-        continue;
-      }
-      const auto other = input.bus.empty() ? others_.end() : others_.find(input.bus);
-      if (!input.bus.empty() && other == others_.end()) {
-        note("the world here has no bus '" + sim::printable(sim::shortened(input.bus)) +
-             "': its inputs are not delivered");
-        continue;
-      }
-      sim::MessageGate& gate = input.bus.empty() ? *main_.gate : *other->second.gate;
-      gate.waiting().push_back({input.channel, input.payload});
-    }
-  }
-
   /// Executes the requests after the last step.
   void finish() {
-    hand_over(world_.step_number());
+    replayed_.finish();
     if (!outcome_.first) report_first_messages();
     const auto last = log_.hashes.find(world_.step_number());
     if (last != log_.hashes.end() && last->second.after_inputs) compare_hashes(last->second);
-  }
-
-  void execute(const Input& input) {
-    try {
-      service_.execute_again(shoal::decode<shoal::sim_control_request_t>(input.payload, shoal::Finite::any));
-    } catch (const shoal::MessageError& error) {
-      note(std::string("a request in the log cannot be read: ") + error.what());
-    } catch (const std::exception&) {
-      // It was rejected in the run as well, or the state will differ.
-    }
   }
 
   void note(const std::string& text) {
@@ -227,7 +94,6 @@ class Replay {
   }
 
   void after_step() {
-    service_.publish_step();
     if (!outcome_.first) report_first_messages();
     while (next_hash_ != log_.hashes.end() && next_hash_->first < world_.step_number()) ++next_hash_;
     const bool due = next_hash_ != log_.hashes.end() && next_hash_->first == world_.step_number();
@@ -343,14 +209,14 @@ class Replay {
       load.encode_message = shoal::encode_own_message;
       const sim::WorldConfig logged =
           sim::load_world_text(log_.info.resolved_config, log_.path + ": sim.info", load).config;
-      for (const std::string& entity : entities_only_in(logged, loaded_.config))
+      for (const std::string& entity : entities_only_in(logged, replayed_.loaded().config))
         world.push_back("only in the log: " + entity);
-      for (const std::string& entity : entities_only_in(loaded_.config, logged))
+      for (const std::string& entity : entities_only_in(replayed_.loaded().config, logged))
         world.push_back("only here: " + entity);
     } catch (const std::exception&) {
       // A mesh of the log may be missing; its lines can be compared nevertheless.
     }
-    for (std::string& line : line_difference(log_.info.resolved_config, sim::to_yaml(loaded_.resolved), max_lines))
+    for (std::string& line : line_difference(log_.info.resolved_config, sim::to_yaml(replayed_.loaded().resolved), max_lines))
       world.push_back(std::move(line));
   }
 
@@ -365,6 +231,7 @@ class Replay {
 
   void report_log() {
     // Gaps of the log.
+    for (const std::string& text : replayed_.notes()) note(text);
     if (!log_.cut.empty()) note(log_.cut);
     for (const std::string& hole : log_.holes) note(hole);
     if (!outcome_.complete && !log_.holes.empty())
@@ -424,17 +291,11 @@ class Replay {
 
   const ReplayOptions& options_;
   ReplayLog log_;
-  sim::LoadedWorld loaded_;
   ReplayOutcome outcome_;
   ReplayMessages messages_;
-  ReplayPorts serial_;
-  Line main_;
-  std::map<std::string, Line> others_;
+  ReplayedWorld replayed_;
+  sim::World& world_;
   sim::RunControl control_;
-  sim::World world_;
-  bridges::LockstepService lockstep_{world_, control_};  // no client joins
-  bridges::SimService service_;
-  std::size_t next_input_ = 0;
   std::map<std::int64_t, ReplayLog::Hashes>::const_iterator next_hash_ = log_.hashes.begin();
   bool cut_ = false;
   std::vector<std::string> parts_;

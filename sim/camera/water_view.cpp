@@ -1,0 +1,283 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sim/camera/water_view.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <numbers>
+
+namespace sim {
+
+namespace {
+
+constexpr int grid_points = 128;
+constexpr double grid_range_m = 2500;  ///< waves farther away only roughen the surface
+constexpr float refractive_index = 1.34F;
+constexpr float reflected_at_right_angle = 0.021F;  ///< ((n - 1) / (n + 1))^2
+
+/// e^x for x <= 0 to 0.1 %: 2^n by the exponent, times a polynomial for the rest.
+float fast_exp(float x) {
+  const float turns = std::max(x * 1.442695F, -126.0F);
+  const float whole = std::floor(turns);
+  const float rest = turns - whole;
+  const float power = 1 + rest * (0.695976F + rest * (0.226173F + rest * 0.0780245F));
+  return std::bit_cast<float>((static_cast<std::int32_t>(whole) + 127) << 23) * power;
+}
+
+LinearColor fast_exp(const LinearColor& x) {
+  return {fast_exp(x.x()), fast_exp(x.y()), fast_exp(x.z())};
+}
+
+/// Share of light that the surface reflects (Schlick 1994).
+float reflected(float cosine) {
+  const float rest = 1 - std::clamp(cosine, 0.0F, 1.0F);
+  const float square = rest * rest;
+  return reflected_at_right_angle + (1 - reflected_at_right_angle) * square * square * rest;
+}
+
+/// Share of a wave that a grid shows: all of it from 8 points in a wave length on, nothing below 4.
+double shown_share(double k_radpm, double spacing_m) {
+  const double points = 2 * std::numbers::pi / (k_radpm * spacing_m);
+  return std::clamp((points - 4) / 4, 0.0, 1.0);
+}
+
+}  // namespace
+
+WaterOptics water_optics(double visibility_m) {
+  const LinearColor pure_absorption(0.340F, 0.0565F, 0.00922F), pure_scattering(0.0010F, 0.0019F, 0.0045F);
+  const LinearColor dissolved(0.003F, 0.015F, 0.06F);  // absorption per scattering of particles
+  constexpr double clearest_m = 60;
+  // The particles make up what pure water lacks of the attenuation at 550 nm.
+  const auto wanted = static_cast<float>(4.8 / std::min(visibility_m, clearest_m));
+  const float particles = std::max(0.0F, (wanted - pure_absorption.y() - pure_scattering.y()) / (1 + dissolved.y()));
+  WaterOptics optics;
+  optics.absorption = pure_absorption + particles * dissolved;
+  optics.scattering = pure_scattering + LinearColor::Constant(particles);
+  const auto thinner = static_cast<float>(std::min(1.0, clearest_m / visibility_m));
+  optics.absorption *= thinner;
+  optics.scattering *= thinner;
+  optics.attenuation = optics.absorption + optics.scattering;
+  const auto squares = optics.absorption.array().square() + 0.256F * (optics.absorption.array() * optics.scattering.array());
+  optics.downward = squares.sqrt().matrix();
+  return optics;
+}
+
+WaterView::WaterView(const Medium& medium, const LightConfig& light, double visibility_m)
+    : medium_(medium),
+      optics_(water_optics(visibility_m)),
+      to_sun_W_(light.to_sun_W().cast<float>()),
+      sun_(LinearColor(1.0F, 0.97F, 0.91F) * static_cast<float>(light.to_sun_W().z() > 0 ? light.sun : 0.0)),
+      day_(static_cast<float>(light.sky + std::max(0.0, light.to_sun_W().z()) * light.sun)),
+      wind_slope_(static_cast<float>(0.003 + 0.00512 * medium.mean_wind_mps())) {}
+
+void WaterView::update(const Vector3d& eye_W) {
+  // Place of the camera.
+  eye_W_ = eye_W;
+  now_s_ = to_seconds(medium_.now());
+  level_m_ = medium_.still_surface_m();
+  highest_m_ = medium_.highest_surface_m() - level_m_;
+  is_under_ = medium_.in_water(eye_W);
+  const float least = optics_.downward.minCoeff();
+  const auto depth_m = static_cast<float>(std::max(0.0, level_m_ - eye_W.z()));
+  gain_ = is_under_ ? std::min(1.6F / fast_exp(-least * depth_m), 1e4F) : 1;
+  // Grids, each twice as wide as the one before.
+  levels_.clear();
+  if (!medium_.has_waves()) return;
+  const double height_m = std::abs(eye_W.z() - level_m_);
+  double spacing_m = std::clamp(0.02 * height_m, 0.06, 2.0);
+  for (double half_m = 0; half_m < grid_range_m; spacing_m *= 2) {
+    half_m = 0.5 * grid_points * spacing_m;
+    levels_.emplace_back().spacing_m = spacing_m;
+    fill(levels_.back());
+  }
+}
+
+void WaterView::fill(Level& level) const {
+  level.points.assign(std::size_t{grid_points} * grid_points, Eigen::Vector3f::Zero());
+  level.rough = 0;
+  const double start_x_m = eye_W_.x() - 0.5 * grid_points * level.spacing_m;
+  const double start_y_m = eye_W_.y() - 0.5 * grid_points * level.spacing_m;
+  for (const WaveComponent& wave : medium_.wave_components()) {
+    const double share = shown_share(wave.k_radpm, level.spacing_m);
+    const double slope = wave.amplitude_m * wave.k_radpm;
+    level.rough += static_cast<float>((1 - share * share) * slope * slope / 2);
+    if (share == 0) continue;
+    // The phase advances by the same angle from point to point: a rotation of (cos, sin).
+    const double kx = wave.k_radpm * std::cos(wave.direction_rad), ky = wave.k_radpm * std::sin(wave.direction_rad);
+    const auto turn_cos = static_cast<float>(std::cos(kx * level.spacing_m));
+    const auto turn_sin = static_cast<float>(std::sin(kx * level.spacing_m));
+    const auto slope_x = static_cast<float>(-wave.amplitude_m * kx * share);
+    const auto slope_y = static_cast<float>(-wave.amplitude_m * ky * share);
+    const auto amplitude_m = static_cast<float>(wave.amplitude_m * share);
+    Eigen::Vector3f* point = level.points.data();
+    for (int row = 0; row < grid_points; ++row) {
+      const double phase = kx * start_x_m + ky * (start_y_m + row * level.spacing_m) - wave.omega_radps * now_s_ +
+                           wave.phase_rad;
+      auto cosine = static_cast<float>(std::cos(phase)), sine = static_cast<float>(std::sin(phase));
+      for (int column = 0; column < grid_points; ++column, ++point) {
+        *point += Eigen::Vector3f(amplitude_m * cosine, slope_x * sine, slope_y * sine);
+        const float next = cosine * turn_cos - sine * turn_sin;
+        sine = sine * turn_cos + cosine * turn_sin;
+        cosine = next;
+      }
+    }
+  }
+}
+
+WaterView::Surface WaterView::sample(const Level& level, double x_m, double y_m) const {
+  // Bilinear between the four points around the place.
+  const auto scale = static_cast<float>(1 / level.spacing_m);
+  const float u = static_cast<float>(x_m - eye_W_.x()) * scale + 0.5F * grid_points;
+  const float v = static_cast<float>(y_m - eye_W_.y()) * scale + 0.5F * grid_points;
+  const int column = std::clamp(static_cast<int>(u), 0, grid_points - 2);
+  const int row = std::clamp(static_cast<int>(v), 0, grid_points - 2);
+  const float right = std::clamp(u - static_cast<float>(column), 0.0F, 1.0F);
+  const float up = std::clamp(v - static_cast<float>(row), 0.0F, 1.0F);
+  const Eigen::Vector3f* at = level.points.data() + row * grid_points + column;
+  const Eigen::Vector3f low = at[0] + right * (at[1] - at[0]);
+  const Eigen::Vector3f high = at[grid_points] + right * (at[grid_points + 1] - at[grid_points]);
+  const Eigen::Vector3f value = low + up * (high - low);
+  return {value.x(), value.y(), value.z(), level.rough};
+}
+
+WaterView::Surface WaterView::surface_at(const Vector3d& p_W) const {
+  if (levels_.empty()) return {};
+  const double away_m = std::max(std::abs(p_W.x() - eye_W_.x()), std::abs(p_W.y() - eye_W_.y()));
+  // The finest grid that holds the place, blended into the next one.
+  const double fine_m = 0.48 * grid_points * levels_.front().spacing_m;
+  const double place = std::max(0.0, std::log2(std::max(away_m, 1e-9) / fine_m) + 1);
+  const auto number = static_cast<std::size_t>(place);
+  if (number + 1 >= levels_.size()) return {0, 0, 0, levels_.back().rough};
+  const auto share = static_cast<float>(place - static_cast<double>(number));
+  const Surface near = sample(levels_[number], p_W.x(), p_W.y());
+  if (share < 0.5F) return near;
+  const Surface far = sample(levels_[number + 1], p_W.x(), p_W.y());
+  const float blend = 2 * share - 1;
+  return {near.elevation_m + blend * (far.elevation_m - near.elevation_m),
+          near.slope_x + blend * (far.slope_x - near.slope_x), near.slope_y + blend * (far.slope_y - near.slope_y),
+          near.rough + blend * (far.rough - near.rough)};
+}
+
+double WaterView::crossing_m(const Vector3d& direction_W, double range_max_m) const {
+  constexpr double none = std::numeric_limits<double>::infinity();
+  if (levels_.empty()) {
+    const double range_m = (level_m_ - eye_W_.z()) / direction_W.z();
+    return range_m > 0 && range_m < range_max_m ? range_m : none;
+  }
+  return wave_crossing_m(direction_W, range_max_m);
+}
+
+double WaterView::wave_crossing_m(const Vector3d& direction_W, double range_max_m) const {
+  constexpr double none = std::numeric_limits<double>::infinity();
+  // Interval in which the ray is between the highest crest and the deepest trough.
+  const double z_m = eye_W_.z() - level_m_, down = direction_W.z();
+  double from_m = 0, to_m = std::min(range_max_m, 4 * grid_range_m);
+  if (std::abs(down) > 1e-9) {
+    const double a_m = (highest_m_ - z_m) / down, b_m = (-highest_m_ - z_m) / down;
+    from_m = std::max(0.0, std::min(a_m, b_m));
+    to_m = std::min(range_max_m, std::max(a_m, b_m));
+  } else if (std::abs(z_m) > highest_m_) {
+    return none;
+  }
+  if (from_m >= to_m) return none;
+  // March until the side changes, in steps that grow with the range, then halve the interval.
+  const auto height_over_m = [&](double range_m) {
+    const Vector3d p_W = eye_W_ + range_m * direction_W;
+    return p_W.z() - level_m_ - static_cast<double>(surface_at(p_W).elevation_m);
+  };
+  const double side = is_under_ ? -1 : 1;
+  double last_m = from_m, last_height_m = side * height_over_m(from_m);
+  if (last_height_m < 0) return from_m > 0 ? from_m : none;
+  for (int i = 0; i < 96 && last_m < to_m; ++i) {
+    const double step_m = std::max({0.6 * last_height_m, 0.04 * last_m, 2 * levels_.front().spacing_m});
+    const double next_m = std::min(to_m, last_m + step_m);
+    const double height_m = side * height_over_m(next_m);
+    if (height_m < 0) {
+      const double share = last_height_m / (last_height_m - height_m);
+      return last_m + share * (next_m - last_m);
+    }
+    last_m = next_m, last_height_m = height_m;
+  }
+  const double flat_m = -z_m / down;
+  return flat_m > 0 && flat_m < range_max_m ? flat_m : none;
+}
+
+LinearColor WaterView::daylight(double z_m) const {
+  const auto depth_m = static_cast<float>(level_m_ - z_m);
+  if (depth_m <= 0) return LinearColor::Ones();
+  return fast_exp(-optics_.downward * depth_m);
+}
+
+LinearColor WaterView::share_after(float path_m) const {
+  return fast_exp(-optics_.attenuation * std::min(path_m, 1e4F));
+}
+
+LinearColor WaterView::veil(double from_z_m, float down, float path_m) const {
+  // Daylight scattered into the ray: integral of scattering times what is left of the light, over the path.
+  const Eigen::Array3f rate = (optics_.attenuation + down * optics_.downward).array().max(1e-4F);
+  const Eigen::Array3f left = fast_exp(LinearColor(-rate * std::min(path_m, 1e4F))).array();
+  const Eigen::Array3f source = 0.25F * day_ * optics_.scattering.array() * daylight(from_z_m).array();
+  return source * (1 - left) / rate;
+}
+
+WaterView::Crossing WaterView::from_above(const Vector3d& direction_W, double crossing_m, double range_m) const {
+  Crossing light;
+  if (!(crossing_m < range_m)) return light;
+  // Reflection of the sky and of the sun, whose image is spread by waves that are too small to be seen.
+  const Vector3d p_W = eye_W_ + crossing_m * direction_W;
+  const Surface surface = surface_at(p_W);
+  const Eigen::Vector3f direction = direction_W.cast<float>();
+  Eigen::Vector3f normal = surface.normal_W();
+  const float toward = std::max(-normal.dot(direction), 0.02F);
+  const float mirrored = reflected(toward);
+  Eigen::Vector3f mirror = direction + 2 * toward * normal;
+  mirror.z() = std::max(mirror.z(), 0.02F);
+  light.sky_share = mirrored;
+  light.sky_direction_W = mirror.normalized();
+  const Eigen::Vector3f half = (to_sun_W_ - direction).normalized();
+  const float cosine = std::max(half.dot(normal), 0.05F), square = cosine * cosine;
+  const float rough = wind_slope_ + surface.rough;
+  const float facets = fast_exp((1 - 1 / square) / rough) / (rough * square * square);
+  light.own = sun_ * std::min(4.0F, 0.25F * facets * reflected(half.dot(to_sun_W_)) / std::max(toward, 0.2F));
+  // What comes out of the water.
+  const auto path_m = static_cast<float>(range_m - crossing_m);
+  const auto down = static_cast<float>(std::max(0.0, -direction_W.z()));
+  light.own += (1 - mirrored) * veil(level_m_, down, path_m);
+  light.passed = (1 - mirrored) * share_after(path_m);
+  return light;
+}
+
+WaterView::Crossing WaterView::from_below(const Vector3d& direction_W, double crossing_m, double range_m) const {
+  Crossing light;
+  const bool leaves = crossing_m < range_m;
+  const auto path_m = static_cast<float>(leaves ? crossing_m : range_m);
+  const auto down = static_cast<float>(-direction_W.z());
+  light.own = veil(eye_W_.z(), down, path_m);
+  light.passed = share_after(path_m);
+  if (!leaves) return light;
+  // Snell's window: the sky within 48 degrees of the zenith; outside of it the surface mirrors the water.
+  const Eigen::Vector3f normal = -surface_at(eye_W_ + crossing_m * direction_W).normal_W();
+  const Eigen::Vector3f direction = direction_W.cast<float>();
+  const float toward = std::max(-normal.dot(direction), 0.0F);
+  const float square = 1 - refractive_index * refractive_index * (1 - toward * toward);
+  const LinearColor arriving = light.passed;
+  if (square <= 0) {
+    const Eigen::Vector3f mirror = direction + 2 * toward * normal;
+    light.own += arriving.cwiseProduct(veil(level_m_, -std::min(mirror.z(), 0.0F), 1e4F));
+    light.passed = LinearColor::Zero();
+    return light;
+  }
+  const Eigen::Vector3f refracted =
+      refractive_index * direction + (refractive_index * toward - std::sqrt(square)) * normal;
+  const float mirrored = reflected(std::sqrt(square));
+  light.own += mirrored * arriving.cwiseProduct(veil(level_m_, 1, 1e4F));
+  light.passed *= 1 - mirrored;
+  if (std::isfinite(range_m)) return light;  // something above the water
+  light.through = light.passed;
+  light.passed = LinearColor::Zero();
+  light.sky_share = 1;
+  light.sky_direction_W = refracted.normalized();
+  return light;
+}
+
+}  // namespace sim

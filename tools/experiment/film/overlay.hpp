@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <deque>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "sim/world/world.hpp"
+#include "tools/experiment/film/log_estimates.hpp"
+#include "tools/experiment/film/overlay_canvas.hpp"
+
+namespace tools {
+
+/// Signs that are drawn over pictures.
+struct OverlayChoice {
+  bool trails = false;    ///< paths of the vehicles
+  bool ellipses = false;  ///< estimates of a log: position, its covariance (3 sigma) and its error
+  bool pings = false;     ///< sound in the water as spheres that expand
+  bool labels = false;    ///< names of the vehicles
+  bool clock = false;     ///< simulated time
+
+  bool any() const { return trails || ellipses || pings || labels || clock; }
+};
+
+/// Parses `trails,labels` and so on, `all` or `none`.  Throws std::invalid_argument.
+OverlayChoice parse_overlays(const std::string& text);
+
+/// Sound that a transducer sent.
+struct FilmPing {
+  sim::Vector3d position_W = sim::Vector3d::Zero();
+  double start_s = 0;
+  double duration_s = 0;
+  double speed_mps = 1500;
+};
+
+/// Overlays of the pictures of a run.
+class Overlay {
+ public:
+  struct Settings {
+    OverlayChoice choice;
+    double trail_s = 60;  ///< simulated time that a trail covers
+    double ping_range_m = 2000;
+    std::string title;  ///< beside the clock
+  };
+
+  /// `world` must outlive this.
+  Overlay(const sim::World& world, Settings settings, LogEstimates estimates);
+
+  /// Notes where the vehicles are.  To be called at least once before each picture; between pictures it makes trails
+  /// smoother.
+  void observe();
+  /// Adds a sound.
+  void add(const FilmPing& ping) { pings_.push_back(ping); }
+  /// Draws into a color image of the present state of the world.
+  void draw(ScenePicture& picture, const SceneView& view) const;
+
+ private:
+  /// Path of a vehicle, or of its estimate.
+  struct Trail {
+    sim::Color color;
+    std::deque<std::pair<double, sim::Vector3d>> points_W;  // by time
+  };
+
+  static void extend(Trail& trail, double now_s, const sim::Vector3d& p_W, double trail_s);
+  void draw_trails(OverlayCanvas& canvas) const;
+  void draw_estimates(OverlayCanvas& canvas) const;
+  void draw_pings(OverlayCanvas& canvas) const;
+  void draw_labels(OverlayCanvas& canvas, const SceneView& view) const;
+  void draw_clock(OverlayCanvas& canvas, const SceneView& view) const;
+
+  const sim::World& world_;
+  Settings settings_;
+  LogEstimates estimates_;
+  std::map<std::string, Trail> trails_, estimate_trails_;
+  std::vector<FilmPing> pings_;
+};
+
+}  // namespace tools

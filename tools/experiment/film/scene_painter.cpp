@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/experiment/film/scene_painter.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+
+namespace tools {
+
+namespace {
+
+/// Rows that a thread renders at once: whole tiles.
+constexpr int strip_rows = 8;
+
+}  // namespace
+
+/// Renderers of the views with one lens and one set of options.
+struct ScenePainter::Lens {
+  std::string key;
+  std::unique_ptr<sim::WaterView> water;
+  std::vector<std::unique_ptr<sim::Renderer>> renderers;  // of the strips, by turns
+};
+
+ScenePainter::ScenePainter(const sim::World& world, int threads)
+    : world_(world), threads_(threads), textures_(std::make_shared<sim::TextureLibrary>()) {}
+
+ScenePainter::~ScenePainter() = default;
+
+ScenePainter::Lens& ScenePainter::lens_of(const SceneView& view) {
+  constexpr std::size_t max_lenses = 8;
+  // A view that zooms has another lens in each image.
+  const std::string key =
+      fmt::format("{} {} {} {} {} {} {}", view.optics.text(), view.antialias, static_cast<int>(view.options.kind),
+                  view.options.filter.categories, view.options.filter.exclude_group, view.options.range_max_m,
+                  view.visibility_m.value_or(0));
+  const auto known = std::find_if(lenses_.begin(), lenses_.end(), [&](const auto& lens) { return lens->key == key; });
+  if (known != lenses_.end()) return **known;
+  if (lenses_.size() >= max_lenses) lenses_.erase(lenses_.begin());
+  // Rays and renderers, one for each thread.
+  auto lens = std::make_unique<Lens>();
+  lens->key = key;
+  sim::RenderOptions options = view.options;
+  options.with_depth = options.kind == sim::ImageKind::color;
+  if (options.with_depth && view.visibility_m && world_.medium().has_water()) {
+    lens->water = std::make_unique<sim::WaterView>(world_.medium(), options.light, *view.visibility_m);
+    options.water = lens->water.get();
+  }
+  const auto rays = sim::make_pixel_rays(sim::Optics(view.optics), view.antialias);
+  for (int i = 0; i < std::max(1, threads_.threads()); ++i)
+    lens->renderers.push_back(std::make_unique<sim::Renderer>(world_.physics(), rays, options, textures_));
+  lenses_.push_back(std::move(lens));
+  return *lenses_.back();
+}
+
+void ScenePainter::render(Lens& lens, const SceneView& view) {
+  if (lens.water) lens.water->update(view.X_WS.translation());
+  world_.scene().prepare();
+  lens.renderers.front()->clear(frame_);
+  const int height = view.optics.height;
+  if (!world_.scene().concurrent()) {
+    lens.renderers.front()->render_rows(view.X_WS, 0, height, 1, frame_);
+    return;
+  }
+  // Each renderer takes every n-th strip, so that costly parts of the image are shared.
+  const int count = static_cast<int>(lens.renderers.size());
+  threads_.for_each(static_cast<std::size_t>(count), [&](std::size_t i) {
+    for (int row = static_cast<int>(i) * strip_rows; row < height; row += count * strip_rows)
+      lens.renderers[i]->render_rows(view.X_WS, row, std::min(row + strip_rows, height), 1, frame_);
+  });
+}
+
+ScenePicture& ScenePainter::paint(const SceneView& view) {
+  Lens& lens = lens_of(view);
+  render(lens, view);
+  if (view.options.kind == sim::ImageKind::depth) {
+    picture_.image = sim::depth_image(frame_.depth_m);
+  } else if (view.options.kind != sim::ImageKind::color) {
+    picture_.image = sim::label_image(frame_.labels);
+  } else {
+    const float gain = view.gain * (lens.water ? lens.water->gain() : 1.0F);
+    picture_.image = sim::develop(view.grey ? sim::grey_of(frame_.light) : frame_.light, gain);
+    std::swap(picture_.depth_m, frame_.depth_m);
+  }
+  return picture_;
+}
+
+}  // namespace tools

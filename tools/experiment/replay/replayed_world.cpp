@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/experiment/replay/replayed_world.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "bridges/log/run_journal.hpp"
+#include "messages/yaml/message_writer.hpp"
+#include "shoal/message_codec.hpp"
+#include "sim/config/message_text.hpp"
+#include "sim/world/world_state.hpp"
+#include "tools/experiment/run/runner.hpp"
+#include "tools/experiment/snapshot/run_identity.hpp"
+
+namespace tools {
+
+namespace {
+
+using bridges::RunJournal;
+
+/// Returns the world to run: that of the log, or a replacement.
+sim::LoadedWorld load(const ReplayLog& log, const ReplayedWorld::Options& options) {
+  sim::LoadOptions load = options.load;
+  load.serial_ports = false;
+  load.encode_message = shoal::encode_own_message;
+  if (!options.world.empty()) {
+    sim::LoadedWorld loaded = sim::load_world(options.world, load);
+    if (static_cast<std::int64_t>(loaded.config.run.seed) == log.info.seed) return loaded;
+    load.seed = log.info.seed;  // it is then part of the resolved world
+    return sim::load_world(options.world, load);
+  }
+  const std::vector<std::string> changed = changed_files(log.info.files);
+  if (!changed.empty()) {
+    std::string text = log.path + ": these input files changed since the run was recorded:";
+    for (const std::string& file : changed) text += "\n  " + sim::printable(file);
+    throw std::runtime_error(text);
+  }
+  allow_files(log.info.files, load);
+  sim::LoadedWorld loaded = sim::load_world_text(log.info.resolved_config, log.path + ": sim.info", load);
+  loaded.config.name = log.info.world;
+  return loaded;
+}
+
+}  // namespace
+
+ReplayedWorld::ReplayedWorld(const ReplayLog& log, const Options& options, Watch watch)
+    : log_(log),
+      loaded_(load(log_, options)),
+      watch_(std::move(watch)),
+      main_(make_line()),
+      others_(make_others()),
+      world_(loaded_.config, *main_.gate, serial_.opener(),
+             [this](const std::string& name) -> sim::Bus& { return *others_.at(name).gate; }),
+      service_(*main_.gate, *main_.network, world_, control_, lockstep_,
+               {sim::to_yaml(loaded_.resolved), version_text(), build_text(), log_.info.files}) {
+  check_times();
+  restore(options.load.sets.empty() && options.world.empty());
+  world_.use_threads(options.threads);
+  for (const ReplayLog::Input& input : log_.inputs)
+    if (input.bus == RunJournal::serial_bus) serial_.add(input);
+}
+
+ReplayedWorld::Line ReplayedWorld::make_line() {
+  Line line;
+  if (watch_)
+    line.gate->set_watch(
+        [this](std::string_view channel, std::span<const std::byte> payload) { watch_(channel, payload); });
+  return line;
+}
+
+std::map<std::string, ReplayedWorld::Line> ReplayedWorld::make_others() {
+  std::map<std::string, Line> others;
+  for (const sim::BusConfig& bus : loaded_.config.buses) others.emplace(bus.name, make_line());
+  return others;
+}
+
+void ReplayedWorld::check_times() const {
+  if (world_.step_time().count() != log_.info.step_us)
+    throw std::runtime_error(
+        fmt::format("{}: its run has steps of {} us, the world here of {} us: there is nothing to "
+                    "compare",
+                    log_.path, log_.info.step_us, world_.step_time().count()));
+  if (world_.epoch_us() != log_.info.epoch_utime)
+    throw std::runtime_error(fmt::format("{}: its run has the epoch {}, the world here {}: all stamps would differ",
+                                         log_.path, log_.info.epoch_utime, world_.epoch_us()));
+  if (!log_.bad_snapshot.empty() && !log_.snapshot && log_.usable_step() < log_.last_step)
+    throw std::runtime_error(log_.path + ": cannot be replayed: " + log_.bad_snapshot);
+  if (log_.proven_step && *log_.proven_step <= log_.begin_step() && log_.usable_step() < log_.last_step)
+    throw std::runtime_error(log_.path + ": cannot be replayed from the start: " + log_.holes.front() +
+                             "; the log starts later than the run");
+  if (log_.last_step == log_.begin_step() && !log_.hashes.contains(log_.begin_step()))
+    throw std::runtime_error(log_.path + ": ends before the first step");
+}
+
+void ReplayedWorld::restore(bool same_world) {
+  if (!log_.snapshot) return;
+  const std::string who = log_.path + ": sim.snapshot";
+  check_version(*log_.snapshot, who, short_version());
+  try {
+    world_.state().restore(log_.snapshot->state);
+    auto owners = sim::StateArchive::restorer(log_.snapshot->owners);
+    owners.section("owners");
+    service_.visit_state(owners);
+    owners.end();
+  } catch (const sim::SnapshotError& error) {
+    throw std::runtime_error(who + ": " + error.what());
+  }
+  if (same_world && world_.state().hash() != log_.snapshot->state_hash)
+    throw std::runtime_error(who + ": its state hash after restoring differs from the one that was written");
+}
+
+void ReplayedWorld::start() {
+  deliver(RunJournal::before_first_reports);
+  service_.publish_step();
+}
+
+void ReplayedWorld::step() {
+  deliver(world_.step_number());
+  main_.gate->admit();
+  for (auto& [name, line] : others_) line.gate->admit();
+  serial_.begin_step(world_.step_number());
+  world_.step();
+  service_.publish_step();
+}
+
+void ReplayedWorld::deliver(std::int64_t step) {
+  for (; next_input_ < log_.inputs.size() && log_.inputs[next_input_].step <= step; ++next_input_) {
+    const ReplayLog::Input& input = log_.inputs[next_input_];
+    if (input.bus == RunJournal::serial_bus) continue;
+    if (input.bus.empty() && input.channel == RunJournal::request_channel) {
+      execute(input);
+      continue;
+    }
+    const auto other = input.bus.empty() ? others_.end() : others_.find(input.bus);
+    if (!input.bus.empty() && other == others_.end()) {
+      note("the world here has no bus '" + sim::printable(sim::shortened(input.bus)) +
+           "': its inputs are not delivered");
+      continue;
+    }
+    sim::MessageGate& gate = input.bus.empty() ? *main_.gate : *other->second.gate;
+    gate.waiting().push_back({input.channel, input.payload});
+  }
+}
+
+void ReplayedWorld::execute(const ReplayLog::Input& input) {
+  try {
+    service_.execute_again(shoal::decode<shoal::sim_control_request_t>(input.payload, shoal::Finite::any));
+  } catch (const shoal::MessageError& error) {
+    note(std::string("a request in the log cannot be read: ") + error.what());
+  } catch (const std::exception&) {
+    // It was rejected in the run as well, or the state will differ.
+  }
+}
+
+void ReplayedWorld::note(const std::string& text) {
+  if (notes_.size() < 20 && std::find(notes_.begin(), notes_.end(), text) == notes_.end()) notes_.push_back(text);
+}
+
+}  // namespace tools

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+
+#include "tools/experiment/film/overlay.hpp"
+
+namespace tools {
+
+// Options that snap and film share.
+
+/// Size of an image in pixels.
+struct PictureSize {
+  int width = 0;
+  int height = 0;
+};
+
+/// Parses `--size`, such as 1280x720.  Throws CLI::ValidationError.
+PictureSize parse_picture_size(const std::string& text);
+
+/// Adds `--visibility M`.
+void add_visibility_option(CLI::App& command, std::string& text);
+/// Parses it: metres, or `none` for invisible water; 60 without it.  Throws CLI::ValidationError.
+std::optional<double> parse_visibility(const std::string& text);
+
+/// Adds `--overlay LIST`.
+CLI::Option* add_overlay_option(CLI::App& command, std::string& text);
+/// Parses it.  Throws CLI::ValidationError.
+OverlayChoice parse_overlay_option(const std::string& text);
+
+}  // namespace tools
