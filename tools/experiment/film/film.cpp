@@ -136,9 +136,9 @@ class Film {
     if (const std::size_t programs = world_.config().processes.size(); programs > 0 && source_->log().empty())
       spdlog::warn("a world is shown without its {} programs; record a run with them: shoal run --launch --record",
                    programs);
-    const double begin_s = sim::to_seconds(world_.now());
-    if (options_.from_s < begin_s)
-      throw std::runtime_error(fmt::format("{}: begins at {:.6g} s, after --from", options_.source, begin_s));
+    const double start_s = sim::to_seconds(world_.now());
+    if (options_.from_s < start_s)
+      throw std::runtime_error(fmt::format("{}: begins at {:.6g} s, after --from", options_.source, start_s));
     if (until_s_ < options_.from_s || !advance(options_.from_s))
       throw std::runtime_error(fmt::format("{}: ends at {:.6g} s, before --from", options_.source,
                                            std::min(until_s_, sim::to_seconds(world_.now()))));
@@ -154,9 +154,9 @@ class Film {
     if (!options_.split || rigs_.size() > 1) return;
     const std::string on_board = first_camera(world_, rigs_.front()->subject());
     if (on_board.empty())
-      throw CameraError(rigs_.front()->subject().empty() ? "--split: no vehicle has a camera"
-                                                         : "--split: vehicle '" + rigs_.front()->subject() +
-                                                               "' has no camera");
+      throw CameraError(rigs_.front()->subject().empty()
+                            ? "--split: no vehicle has a camera"
+                            : "--split: vehicle '" + rigs_.front()->subject() + "' has no camera");
     rigs_.push_back(make_camera_rig("from:" + on_board, world_, like));
   }
 
@@ -179,9 +179,9 @@ class Film {
     frame_ = sim::Image8(options_.format.width, options_.format.height, 3);
     for (std::size_t i = 0; i < rigs_.size(); ++i) {
       const SceneView view = rigs_[i]->view(film_step_s);
-      ScenePicture& picture = painter_.paint(view);
-      if (options_.overlays.any() && view.options.kind == sim::ImageKind::color) overlay_.draw(picture, view);
-      place(picture.image, static_cast<int>(i) * columns, columns, frame_);
+      RenderedScene& rendered = painter_.paint(view);
+      if (options_.overlays.any() && view.options.kind == sim::ImageKind::color) overlay_.draw(rendered, view);
+      place(rendered.image, static_cast<int>(i) * columns, columns, frame_);
     }
     return frame_;
   }
@@ -201,10 +201,11 @@ class Film {
 }  // namespace
 
 std::string FilmOutcome::to_text(const FilmOptions& options) const {
-  std::string text = fmt::format("{}: {} frames of {}x{}, {:.1f} s of film for {:.1f} s of the run, in {:.1f} s ({:.0f} "
-                                 "frames/s)\n",
-                                 options.out, frames, options.format.width, options.format.height, film_s, sim_s, wall_s,
-                                 wall_s > 0 ? static_cast<double>(frames) / wall_s : 0.0);
+  std::string text = fmt::format(
+      "{}: {} frames of {}x{}, {:.1f} s of film for {:.1f} s of the run, in {:.1f} s ({:.0f} "
+      "frames/s)\n",
+      options.out, frames, options.format.width, options.format.height, film_s, sim_s, wall_s,
+      wall_s > 0 ? static_cast<double>(frames) / wall_s : 0.0);
   if (!note.empty()) text += "note: " + note + "\n";
   return text;
 }
