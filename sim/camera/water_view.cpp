@@ -87,6 +87,10 @@ void WaterView::update(const Vector3d& eye_W) {
   // Grids, each twice as wide as the one before.
   levels_.clear();
   if (!medium_.has_waves()) return;
+  double slopes = 0;
+  for (const WaveComponent& wave : medium_.wave_components())
+    slopes += std::pow(wave.amplitude_m * wave.k_radpm, 2) / 2;
+  steep_ = 2 * std::sqrt(slopes);
   const double height_m = std::abs(eye_W.z() - level_m_);
   double spacing_m = std::clamp(0.02 * height_m, 0.06, 2.0);
   for (double half_m = 0; half_m < grid_range_m; spacing_m *= 2) {
@@ -220,22 +224,21 @@ double WaterView::wave_crossing_m(const Vector3d& direction_W, double range_max_
     return none;
   }
   if (from_m >= to_m) return none;
-  // March until the side changes, in steps that grow with the range, then halve the interval.
+  // Approach the surface by steps that cannot cross waves of a usual slope, until it is nearer than a pixel is wide, or
+  // crossed after all.
+  const double side = is_under_ ? -1 : 1;
   const auto height_over_m = [&](double range_m) {
     const Vector3d p_W = eye_W_ + range_m * direction_W;
-    return p_W.z() - level_m_ - static_cast<double>(elevation_m(p_W));
+    return side * (p_W.z() - level_m_ - static_cast<double>(elevation_m(p_W)));
   };
-  const double side = is_under_ ? -1 : 1;
-  double last_m = from_m, last_height_m = side * height_over_m(from_m);
+  const double closing = std::abs(down) + steep_ * std::sqrt(std::max(0.0, 1 - down * down));
+  double last_m = from_m, last_height_m = height_over_m(from_m);
   if (last_height_m < 0) return from_m > 0 ? from_m : none;
-  for (int i = 0; i < 64 && last_m < to_m; ++i) {
-    const double step_m = std::max({last_height_m, 0.04 * last_m, 2 * levels_.front().spacing_m});
-    const double next_m = std::min(to_m, last_m + step_m);
-    const double height_m = side * height_over_m(next_m);
-    if (height_m < 0) {
-      const double share = last_height_m / (last_height_m - height_m);
-      return last_m + share * (next_m - last_m);
-    }
+  for (int i = 0; i < 48 && last_m < to_m; ++i) {
+    if (last_height_m < 0.001 * last_m) return last_m + last_height_m / closing;
+    const double next_m = std::min(to_m, last_m + std::max(last_height_m / closing, 0.004 * last_m + 0.005));
+    const double height_m = height_over_m(next_m);
+    if (height_m < 0) return last_m + last_height_m / (last_height_m - height_m) * (next_m - last_m);
     last_m = next_m, last_height_m = height_m;
   }
   const double flat_m = -z_m / down;

@@ -118,6 +118,7 @@ class WaterView {
   bool is_under_ = false;
   float gain_ = 1;
   double now_s_ = 0;
+  double steep_ = 0;  // slope that waves seldom exceed: twice the root mean square
   LinearColor at_surface_ = LinearColor::Zero(), at_eye_ = LinearColor::Zero();  // daylight scattered per metre
   std::vector<Level> levels_;
 };

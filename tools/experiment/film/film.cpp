@@ -141,7 +141,7 @@ class Film {
       throw std::runtime_error(fmt::format("{}: begins at {:.6g} s, after --from", options_.source, start_s));
     if (until_s_ < options_.from_s || !advance(options_.from_s))
       throw std::runtime_error(fmt::format("{}: ends at {:.6g} s, before --from", options_.source,
-                                           std::min(until_s_, sim::to_seconds(world_.now()))));
+                                           until_s_ < options_.from_s ? until_s_ : sim::to_seconds(world_.now())));
     SceneView like;
     like.optics.width = options_.format.width;
     like.optics.height = options_.format.height;
@@ -155,8 +155,8 @@ class Film {
     const std::string on_board = first_camera(world_, rigs_.front()->subject());
     if (on_board.empty())
       throw CameraError(rigs_.front()->subject().empty()
-                            ? "--split: no vehicle has a camera"
-                            : "--split: vehicle '" + rigs_.front()->subject() + "' has no camera");
+                            ? "no vehicle has a camera for --split 2"
+                            : "vehicle '" + rigs_.front()->subject() + "' has no camera for --split 2");
     rigs_.push_back(make_camera_rig("from:" + on_board, world_, like));
   }
 

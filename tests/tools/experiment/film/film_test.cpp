@@ -152,7 +152,7 @@ TEST_F(FilmTest, NamesVehiclesAndCamerasThatAreMissing) {
   EXPECT_THAT(with_camera("no.yaml"), HasSubstr("no.yaml"));
   tools::FilmOptions film = options("a.avi");
   film.split = true;
-  EXPECT_THAT(film_error(film), HasSubstr("--split: vehicle 'r1' has no camera"));
+  EXPECT_THAT(film_error(film), HasSubstr("vehicle 'r1' has no camera for --split 2"));
   EXPECT_FALSE(std::filesystem::exists(folder.file("a.avi")));
 }
 
