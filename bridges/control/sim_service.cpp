@@ -36,6 +36,7 @@ SimService::SimService(sim::Bus& bus, sim::Bus& network, sim::World& world, sim:
       spawned_vehicles_(world, bus, links.journal),
       journal_(links.journal),
       others_(links.others),
+      publish_scene_(links.publish_scene),
       audit_(bus, world),
       spawns_("spawn requests", "spawns_per_client", world.config().limits.spawns_per_client),
       rewinds_("rewind and restore requests", "rewinds_per_client", world.config().limits.rewinds_per_client) {
@@ -285,10 +286,12 @@ std::optional<std::string> SimService::execute(Link& link, const shoal::sim_cont
     return spawned_vehicles_.describe(request.client, request.text);
   } else if (command == "do") {
     spawned_vehicles_.act(request.client, request.text);
+  } else if (command == "scene") {
+    if (publish_scene_) publish_scene_();
   } else if (command != "alive") {
     throw std::runtime_error("unknown command '" + sim::shortened(sim::printable(command)) +
                              "'; known commands: alive, describe, do, follow, join, leave, pause, quit, "
-                             "remove, restore, resume, rewind, snapshot, spawn, speed, step, until, where");
+                             "remove, restore, resume, rewind, scene, snapshot, spawn, speed, step, until, where");
   }
   return "";
 }
@@ -299,6 +302,15 @@ bool SimService::leave(int link, const shoal::sim_control_request_t& request) {
   if ((takes_part || !has_spawned) && !lockstep_.leave(link, request)) return false;
   if (link == 0) spawned_vehicles_.remove_vehicles_of(request.client);
   return true;
+}
+
+std::string SimService::execute_local(const shoal::sim_control_request_t& request, TimeMachine* machine) {
+  const std::string& command = request.command;
+  if (command == "join" || command == "leave" || command == "follow")
+    throw std::runtime_error("'" + command + "' is for programs only");
+  const std::optional<std::string> text = execute(links_.front(), request, machine);
+  note(request, "");
+  return text.value_or("");
 }
 
 void SimService::execute_again(const shoal::sim_control_request_t& request) {

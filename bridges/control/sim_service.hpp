@@ -29,6 +29,7 @@ struct ServiceLinks {
   /// Buses of single vehicles, on which the service only publishes sim.clock and answers join, leave and alive on
   /// sim.control.  In the order of the lockstep.
   std::vector<sim::Bus*> vehicle_buses = {};
+  std::function<void()> publish_scene = {};  ///< publishes the scene for viewers again; empty: there is none
 };
 
 /// Service on the channels of the simulator: publishes sim.info, sim.clock and sim.state, and answers requests on
@@ -62,6 +63,9 @@ class SimService {
   /// Answers the requests that have arrived.  `machine` executes those about simulated time: pause, resume, step,
   /// speed, until, where, snapshot, restore and rewind; null: not supported.
   void handle_requests(TimeMachine* machine = nullptr);
+  /// Executes a request of a user at this process, such as of the live page, as one on sim.control, and returns the
+  /// reply.  Throws std::runtime_error with the reason when it is refused.
+  std::string execute_local(const shoal::sim_control_request_t& request, TimeMachine* machine);
   /// Handles the exit of a client: it leaves the lockstep, and its vehicles are removed.
   void client_exited(const std::string& client);
 
@@ -116,6 +120,7 @@ class SimService {
   bool muted_ = false;
   std::int64_t info_step_ = -1;  // step of the last sim.info
   const OtherSimulators* const others_;
+  const std::function<void()> publish_scene_;
   bool warned_of_another_ = false;
   std::vector<Link> links_;  // the bus of the world is the first
   RunAudit audit_;

@@ -10,6 +10,8 @@
 #include <cerrno>
 #include <cstring>
 
+#include "bridges/mcap/mcap_format.hpp"
+
 namespace bridges {
 namespace {
 
@@ -42,6 +44,12 @@ EventLogReader::EventLogReader(const std::string& path)
   if (fstat(file_.number(), &status) != 0) throw BusError(path + ": " + std::strerror(errno));
   if (!S_ISREG(status.st_mode)) throw BusError(path + ": is not a regular file");
   file_bytes_ = static_cast<std::uint64_t>(status.st_size);
+  const bool is_mcap = fill(mcap::magic.size()) >= mcap::magic.size() &&
+                       std::memcmp(here(), mcap::magic.data(), mcap::magic.size()) == 0;
+  if (is_mcap)
+    throw BusError(path +
+                   ": is an MCAP file, which lacks data that only the LCM event log of a run has; record with "
+                   "--record NAME.lcm, and convert with shoal log mcap");
 }
 
 std::optional<LogEvent> EventLogReader::next() {
@@ -75,6 +83,12 @@ bool EventLogReader::next(LogEventView& event) {
     }
   }
   return false;
+}
+
+void EventLogReader::seek(std::uint64_t offset) {
+  at_ = std::min(offset, file_bytes_);
+  buffer_start_ = at_;
+  buffered_ = 0;
 }
 
 std::size_t EventLogReader::fill(std::size_t size) {

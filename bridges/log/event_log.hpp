@@ -44,6 +44,8 @@ class EventLogReader {
   std::optional<LogEvent> next();
   /// Reads the next event without a copy; returns false at the end.
   bool next(LogEventView& event);
+  /// Continues at the event that begins at this offset in the file.
+  void seek(std::uint64_t offset);
   /// Returns the problems found so far, such as `byte 4711: 28 bytes between events were skipped`.
   const std::vector<std::string>& problems() const { return problems_; }
   std::uint64_t file_bytes() const { return file_bytes_; }

@@ -1,41 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bridges/log/recording_bus.hpp"
 
-#include <fcntl.h>
-#include <unistd.h>
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <utility>
-#include <vector>
-
-#include "bridges/base/file_lock.hpp"
-#include "bridges/log/event_log.hpp"
 
 namespace bridges {
 namespace {
 
-/// Bytes of an event header: sync word, number, time, two lengths.
-constexpr std::uint64_t event_head_bytes = 28;
-constexpr std::size_t copied_at_once = std::size_t{1} << 20;
 constexpr std::chrono::milliseconds shortest_pause{50};
 constexpr std::chrono::milliseconds max_buffered{250};
-
-std::unique_ptr<EventLogWriter> create(const std::string& path, Existing existing) {
-  // O_EXCL checks and creates atomically; a device such as /dev/full is never created.
-  const int flags = O_WRONLY | O_CREAT | O_CLOEXEC | (existing == Existing::refuse ? O_EXCL : 0);
-  FileDescriptor file(open(path.c_str(), flags, 0666));
-  if (file.number() < 0 && errno == EEXIST)
-    throw BusError(path + ": already exists; choose another name or pass --overwrite");
-  if (file.number() < 0) throw BusError(path + ": " + std::strerror(errno));
-  if (const auto owner = lock_against_others(file.number()))
-    throw BusError(path + ": " + *owner + " is recording into it; choose another name");
-  // Truncate only now, to keep the record of another run.  A device has no length.
-  if (ftruncate(file.number(), 0) != 0 && errno != EINVAL) throw BusError(path + ": " + std::strerror(errno));
-  return std::make_unique<EventLogWriter>(std::move(file));
-}
 
 }  // namespace
 
@@ -46,7 +24,7 @@ RecordingBus::RecordingBus(std::unique_ptr<sim::Bus> inner, const std::string& p
 }
 
 RecordingBus::RecordingBus(sim::Bus& inner, const std::string& path, std::int64_t epoch_utime, Existing existing)
-    : inner_(inner), path_(path), epoch_utime_(epoch_utime), utime_(epoch_utime), log_(create(path, existing)) {}
+    : inner_(inner), path_(path), epoch_utime_(epoch_utime), utime_(epoch_utime), log_(create_record(path, existing)) {}
 
 RecordingBus::RecordingBus(sim::Bus& inner, RecordingBus& first) : inner_(inner), first_(&first) {}
 
@@ -75,7 +53,6 @@ void RecordingBus::record(std::string_view channel, std::span<const std::byte> p
   errno = 0;
   if (!log_->write(static_cast<std::int64_t>(recorded_), utime_, channel, payload)) return fail(errno);
   ++recorded_;
-  bytes_ += event_head_bytes + channel.size() + payload.size();
   // Write once per simulated second, at limited intervals, so that a killed run loses little, and `tail` can follow the
   // file.
   if (const std::int64_t second = (utime_ - epoch_utime_) / 1'000'000; second > checked_s_) {
@@ -103,21 +80,13 @@ void RecordingBus::hand_over_after(std::chrono::milliseconds pause) {
   if (!log_->hand_over()) fail(errno);
 }
 
-void RecordingBus::prepare(const std::string& path, std::uint64_t events, std::uint64_t bytes, Existing existing) {
+void RecordingBus::prepare(const std::string& path, std::uint64_t events, std::uint64_t position, Existing existing) {
   give_up();
   if (!log_ || error_) return;
+  errno = 0;
   if (!log_->flush()) return fail(errno);
-  next_.emplace(Next{path, events, bytes, create(path, existing)});
-  const FileDescriptor from(open(path_.c_str(), O_RDONLY | O_CLOEXEC));
-  sim::Bytes part(copied_at_once);
-  std::uint64_t left = from.number() < 0 ? bytes + 1 : bytes;
-  while (left > 0 && from.number() >= 0) {
-    const ssize_t got = ::read(from.number(), part.data(), std::min<std::uint64_t>(left, part.size()));
-    if (got < 0 && errno == EINTR) continue;
-    if (got <= 0 || !next_->log->write({part.data(), static_cast<std::size_t>(got)})) break;
-    left -= static_cast<std::uint64_t>(got);
-  }
-  if (left == 0 && next_->log->flush()) return;  // a full disk is detected here
+  next_ = Next{path, events, log_->branch_to(path, position, existing)};
+  if (next_->log) return;
   give_up();
   throw BusError(path + ": cannot copy " + path_ + " into it");
 }
@@ -134,7 +103,6 @@ void RecordingBus::go_on() {
   log_ = std::move(next_->log);
   path_ = next_->path;
   recorded_ = next_->events;
-  bytes_ = next_->bytes;
   next_.reset();
   utime_ = epoch_utime_;  // after a rewind the next set_time() sets the time
   checked_s_ = 0;
@@ -147,7 +115,8 @@ void RecordingBus::fail(int error_number) {
 void RecordingBus::close() {
   if (!log_) return;
   errno = 0;
-  if (!error_ && !log_->flush()) fail(errno);
+  if (!error_ && !log_->finish()) fail(errno);
+  for (const std::string& problem : log_->problems()) spdlog::warn("{}: {}", path_, problem);
   log_.reset();
 }
 

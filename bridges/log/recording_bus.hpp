@@ -10,17 +10,15 @@
 #include <string_view>
 
 #include "bridges/base/bus_error.hpp"
+#include "bridges/log/record_file.hpp"
 #include "sim/bus/bus.hpp"
 #include "sim/bus/message_gate.hpp"
 
 namespace bridges {
 
-class EventLogWriter;
-
-enum class Existing { refuse, overwrite };
-
-/// Bus that records its messages in an LCM event log, with the time stamp epoch + simulated time: lcm-logplayer plays
-/// it back at the right speed, and two equal runs produce equal files.  Not thread-safe. Records the messages published
+/// Bus that records its messages in an LCM event log or, by the name of the file, in an MCAP file.  The time stamp is
+/// epoch + simulated time: lcm-logplayer plays a log back at the right speed, and two equal runs produce equal files.
+/// Not thread-safe.  Records the messages published
 /// here and those admitted by the gate in front of this bus, because only these determine the simulation.
 class RecordingBus final : public sim::Bus {
  public:
@@ -51,11 +49,11 @@ class RecordingBus final : public sim::Bus {
   /// readable.
   std::optional<std::string> error() const { return error_; }
   std::uint64_t recorded() const { return recorded_; }
-  /// Returns the size of the log so far.
-  std::uint64_t bytes() const { return bytes_; }
-  /// Prepares another log that starts with a copy of the first `events` events, of `bytes` bytes.  The present log
+  /// Returns the end of the log so far, for prepare().
+  std::uint64_t position() const { return log_ ? log_->position() : 0; }
+  /// Prepares another log that starts with a copy of the first `events` events, up to `position`.  The present log
   /// continues until go_on().  Throws BusError when the file cannot be completed.
-  void prepare(const std::string& path, std::uint64_t events, std::uint64_t bytes, Existing existing);
+  void prepare(const std::string& path, std::uint64_t events, std::uint64_t position, Existing existing);
   /// Closes the log and continues in the prepared one.
   void go_on();
   /// Removes the prepared log.
@@ -70,8 +68,8 @@ class RecordingBus final : public sim::Bus {
  private:
   struct Next {
     std::string path;
-    std::uint64_t events, bytes;
-    std::unique_ptr<EventLogWriter> log;
+    std::uint64_t events = 0;
+    std::unique_ptr<RecordFile> log;
   };
 
   void record(std::string_view channel, std::span<const std::byte> payload);
@@ -86,11 +84,10 @@ class RecordingBus final : public sim::Bus {
   std::int64_t utime_ = 0;      // utime of the last event; never decreases
   std::int64_t checked_s_ = 0;  // simulated second of the last check whether to hand over
   std::chrono::steady_clock::time_point handed_over_;
-  std::unique_ptr<EventLogWriter> log_;
+  std::unique_ptr<RecordFile> log_;
   std::optional<Next> next_;  // prepared
   std::optional<std::string> error_;
   std::uint64_t recorded_ = 0;
-  std::uint64_t bytes_ = 0;
 };
 
 }  // namespace bridges

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <optional>
 #include <string>
 #include <vector>
@@ -65,6 +66,11 @@ class Dvl final : public sim::Sensor {
   }
   void measure(const sim::SenseContext& context) override;
   void disturb(double dt_s, sim::Random& random) override;
+  std::optional<sim::FieldOfView> field_of_view() const override {
+    sim::FieldOfView view{sim::FieldOfView::Kind::beams, params_.altitude_max_m / std::cos(params_.beam_angle_rad)};
+    view.directions_S.assign(beams_S_.begin(), beams_S_.end());
+    return view;
+  }
   std::int64_t rays() const override { return dvl_beams; }
   void visit_state(sim::StateArchive& archive) override;
   const Reading& reading() const { return reading_; }

@@ -145,6 +145,14 @@ Camera::Camera(const Params& params, const sim::DeviceContext& context)
   depth_m_ = frame_.depth_m;
 }
 
+std::optional<sim::FieldOfView> Camera::field_of_view() const {
+  const sim::Optics optics(params_.optics);
+  sim::FieldOfView view{sim::FieldOfView::Kind::frustum, params_.range_max_m};
+  view.horizontal_rad = 2 * std::atan(optics.width() / (2 * optics.focal_x_px()));
+  view.vertical_rad = 2 * std::atan(optics.height() / (2 * optics.focal_y_px()));
+  return view;
+}
+
 void Camera::change(const Params& params) {
   params_ = params;
   SharedByCameras& shared = shared_.of(shared_by_cameras);

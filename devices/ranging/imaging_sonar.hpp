@@ -31,6 +31,12 @@ class ImagingSonar final : public sim::Sensor {
   void change(const Params& params);
   void measure(const sim::SenseContext& context) override;
   void disturb(double dt_s, sim::Random& random) override;
+  std::optional<sim::FieldOfView> field_of_view() const override {
+    sim::FieldOfView view{sim::FieldOfView::Kind::fan, params_.sonar.range_max_m};
+    view.from_rad = -params_.fov_rad / 2;
+    view.to_rad = params_.fov_rad / 2;
+    return view;
+  }
   std::int64_t rays() const override { return static_cast<std::int64_t>(rays_S_.size()); }
   void visit_state(sim::StateArchive& archive) override { archive(receiver_, bins_); }
 

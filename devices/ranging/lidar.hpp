@@ -30,6 +30,12 @@ class Lidar final : public sim::Sensor {
   void change(const Params& params);
   void measure(const sim::SenseContext& context) override;
   void disturb(double dt_s, sim::Random& random) override;
+  std::optional<sim::FieldOfView> field_of_view() const override {
+    sim::FieldOfView view{sim::FieldOfView::Kind::fan, params_.laser.range_max_m};
+    view.from_rad = fan_.first_angle_rad;
+    view.to_rad = fan_.first_angle_rad + (fan_.count - 1) * fan_.step_rad;
+    return view;
+  }
   std::int64_t rays() const override { return static_cast<std::int64_t>(hits_.size()); }
   void visit_state(sim::StateArchive& archive) override;
 

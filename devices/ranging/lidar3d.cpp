@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "devices/common/param_checks.hpp"
 #include "devices/ranging/lidar_presets.hpp"
@@ -60,6 +61,13 @@ void Lidar3d::Params::read(sim::ParamReader& in) {
 Lidar3d::Lidar3d(const Params& params, const sim::DeviceContext& context)
     : config_(context.config), receiver_(params.laser, context) {
   change(params);
+}
+
+std::optional<sim::FieldOfView> Lidar3d::field_of_view() const {
+  sim::FieldOfView view{sim::FieldOfView::Kind::fan, params_.laser.range_max_m};
+  view.from_rad = -std::numbers::pi;
+  view.to_rad = std::numbers::pi;
+  return view;
 }
 
 void Lidar3d::change(const Params& params) {

@@ -35,6 +35,7 @@ class Lidar3d final : public sim::Sensor {
   void sweep(const sim::SweepContext& context) override;
   void measure(const sim::SenseContext& context) override;
   void disturb(double dt_s, sim::Random& random) override;
+  std::optional<sim::FieldOfView> field_of_view() const override;
   std::int64_t rays() const override;
   void visit_state(sim::StateArchive& archive) override;
 

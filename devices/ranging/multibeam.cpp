@@ -35,6 +35,17 @@ Multibeam::Multibeam(const Params& params, const sim::DeviceContext& context)
   change(params);
 }
 
+/// Returns the edges of the swath and a few beams between them.
+std::optional<sim::FieldOfView> Multibeam::field_of_view() const {
+  constexpr int shown = 9;
+  sim::FieldOfView view{sim::FieldOfView::Kind::beams, params_.sonar.range_max_m};
+  for (int i = 0; i < shown; ++i) {
+    const double angle_rad = params_.swath_rad * (static_cast<double>(i) / (shown - 1) - 0.5);
+    view.directions_S.emplace_back(0, std::sin(angle_rad), -std::cos(angle_rad));
+  }
+  return view;
+}
+
 void Multibeam::change(const Params& params) {
   params_ = params;
   receiver_.change(params.sonar);

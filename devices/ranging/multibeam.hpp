@@ -37,6 +37,7 @@ class Multibeam final : public sim::Sensor {
   auto noises() { return std::tie(noise_, strength_noise_); }
   void measure(const sim::SenseContext& context) override;
   void disturb(double dt_s, sim::Random& random) override;
+  std::optional<sim::FieldOfView> field_of_view() const override;
   std::int64_t rays() const override { return static_cast<std::int64_t>(rays_S_.size()); }
   void visit_state(sim::StateArchive& archive) override;
 

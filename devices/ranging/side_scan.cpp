@@ -31,6 +31,17 @@ SideScan::SideScan(const Params& params, const sim::DeviceContext& context)
   change(params);
 }
 
+/// Returns the edges and the axis of both beams.
+std::optional<sim::FieldOfView> SideScan::field_of_view() const {
+  sim::FieldOfView view{sim::FieldOfView::Kind::beams, params_.sonar.range_max_m};
+  for (const double side : {1.0, -1.0})
+    for (const double share : {-0.5, 0.0, 0.5}) {
+      const double down_rad = params_.depression_rad + share * params_.vertical_rad;
+      view.directions_S.emplace_back(0, side * std::cos(down_rad), -std::sin(down_rad));
+    }
+  return view;
+}
+
 void SideScan::change(const Params& params) {
   params_ = params;
   receiver_.change(params.sonar);

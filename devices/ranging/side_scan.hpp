@@ -32,6 +32,7 @@ class SideScan final : public sim::Sensor {
   void change(const Params& params);
   void measure(const sim::SenseContext& context) override;
   void disturb(double dt_s, sim::Random& random) override;
+  std::optional<sim::FieldOfView> field_of_view() const override;
   std::int64_t rays() const override { return static_cast<std::int64_t>(rays_S_.size()); }
   void visit_state(sim::StateArchive& archive) override;
 

@@ -29,6 +29,12 @@ class RangeSonar : public sim::Sensor {
   auto noises() { return std::tie(noise_, strength_noise_); }
   void measure(const sim::SenseContext& context) override;
   void disturb(double dt_s, sim::Random& random) override;
+  std::optional<sim::FieldOfView> field_of_view() const override {
+    sim::FieldOfView view{sim::FieldOfView::Kind::cone, params_.sonar.range_max_m};
+    view.half_angle_rad = params_.beam_rad / 2;
+    view.axis_S = axis_S_;
+    return view;
+  }
   std::int64_t rays() const override { return static_cast<std::int64_t>(rays_S_.size()); }
   void visit_state(sim::StateArchive& archive) override;
 

@@ -317,6 +317,10 @@ void AcousticChannel::emit(int number, Time now) {
     Transducer* to = transducers_[static_cast<std::size_t>(listener)];
     if (to != nullptr && to != from && (to->p_W(sending.sent) - sending.p_W).norm() <= reach_m) send_to(number, *to);
   }
+  if (observer_ != nullptr) {
+    report_sent(sending);
+    report_beyond_range(sending, reach_m);
+  }
   release(number);
 }
 

@@ -13,6 +13,7 @@
 #include "sim/acoustics/neighbourhood.hpp"
 #include "sim/acoustics/propagation.hpp"
 #include "sim/acoustics/signal.hpp"
+#include "sim/acoustics/sound_observer.hpp"
 #include "sim/acoustics/transducer.hpp"
 #include "sim/event/event_queue.hpp"
 #include "sim/medium/medium.hpp"
@@ -42,6 +43,8 @@ class AcousticChannel {
   bool has_water() const { return around_.medium.has_water(); }
   /// Handles an event of the channel; `now` is the end of the step that just ended.
   void handle(const Event& event, Time now);
+  /// Sets an observer of all signals; null: none.  It must outlive the channel or be removed.
+  void set_observer(SoundObserver* observer) { observer_ = observer; }
   /// Discards the list of neighbours.  Call after a transducer was moved.
   void discard_places() { neighbours_age_ = -1; }
   /// Discards the minimum signal levels and the list of neighbours.  Call after a receiver changed.
@@ -147,6 +150,10 @@ class AcousticChannel {
   Decibels min_level(double frequency_Hz) const;
   Decibels compute_min_level(double frequency_Hz) const;
   void end(int flight);
+  // Reports to the observer; they change nothing.
+  void report_sent(const Sending& sending) const;
+  void report_beyond_range(const Sending& sending, double reach_m) const;
+  void report_arrival(const Flight& flight, const Sending& sending, const Transducer& to) const;
   /// Computes level, end and Doppler of a flight.  Returns the power of interfering echoes, re 1 uPa^2. `later_s`:
   /// delay of the first arrival when it is an echo.
   PowerRatio compute_level(Flight& flight, const Sending& sending, double& later_s);
@@ -191,6 +198,7 @@ class AcousticChannel {
   std::map<std::string, std::map<std::string, std::int64_t>> messages_;  // sent, by group and address
   mutable std::vector<std::pair<double, Decibels>> min_levels_;          // cache by frequency
   mutable std::int64_t examined_ = 0;
+  SoundObserver* observer_ = nullptr;
   bool watching_ = false;  // a watch_event is scheduled
   Transducer::Counts removed_;
   std::vector<int> near_;

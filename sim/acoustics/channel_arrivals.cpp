@@ -128,6 +128,8 @@ void AcousticChannel::begin(int number) {
   // Drop signals beyond the maximum range.
   if (config_.range_max_m && (p_W - sending.p_W).norm() > *config_.range_max_m) {
     if (flight.meant) ++to.counts_.lost[static_cast<std::size_t>(SignalLoss::range)];
+    flight.loss = SignalLoss::range;
+    if (observer_ != nullptr && flight.meant) report_arrival(flight, sending, to);
     end(number);
     return;
   }
@@ -217,6 +219,7 @@ void AcousticChannel::end(int number) {
         ++to->counts_.understood;
         to->counts_.understood_bytes += static_cast<std::int64_t>(sending.signal.payload.size());
       }
+      if (observer_ != nullptr) report_arrival(flight, sending, *to);
       // Notify the listener unless the receiver itself cannot receive: the end of a signal is received when only the
       // sender left the water.
       const bool out_itself = flight.loss == SignalLoss::out_of_water && sending.cut != SignalLoss::out_of_water;
@@ -233,6 +236,27 @@ void AcousticChannel::end(int number) {
   free_flights_.push_back(number);
   flights_[static_cast<std::size_t>(number)] = {};
   release(of);
+}
+
+void AcousticChannel::report_sent(const Sending& sending) const {
+  observer_->sound_sent({sending.signal, sending.source, sending.sequence, sending.sent, sending.p_W,
+                         around_.medium.sound_speed_mps(sending.p_W)});
+}
+
+void AcousticChannel::report_beyond_range(const Sending& sending, double reach_m) const {
+  if (sending.signal.kind != Signal::Kind::message) return;
+  for (const Transducer* to : transducers_) {
+    if (to == nullptr || to == sending.from || !to->is_meant_by(sending.signal)) continue;
+    const Vector3d p_W = to->p_W(sending.sent);
+    if ((p_W - sending.p_W).norm() <= reach_m) continue;
+    observer_->sound_arrived({sending.source, sending.sequence, to->full_name(), true, sending.sent, sending.sent, 0,
+                              p_W, 0, SignalLoss::range});
+  }
+}
+
+void AcousticChannel::report_arrival(const Flight& flight, const Sending& sending, const Transducer& to) const {
+  observer_->sound_arrived({sending.source, sending.sequence, to.full_name(), flight.meant, flight.started,
+                            flight.ended, flight.travel_time_s, flight.p_started_W, flight.snr.dB(), flight.loss});
 }
 
 }  // namespace sim

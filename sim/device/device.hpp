@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -10,6 +11,7 @@
 #include "sim/base/step_memory.hpp"
 #include "sim/base/time.hpp"
 #include "sim/bus/bus.hpp"
+#include "sim/device/field_of_view.hpp"
 #include "sim/random/random.hpp"
 #include "sim/state/state_archive.hpp"
 
@@ -60,6 +62,8 @@ class Sensor {
   virtual void disturb(double dt_s, Random& random) = 0;
   /// Returns the approximate number of rays of a sample, which decides whether the work is shared among threads.
   virtual std::int64_t rays() const { return 0; }
+  /// Returns the region that the sensor observes, for viewers; none: it has none.
+  virtual std::optional<FieldOfView> field_of_view() const { return std::nullopt; }
   /// Returns whether the sensor detects the bottom without casting rays as scanners do: a world without a bottom then
   /// causes a warning.
   virtual bool needs_bottom() const { return false; }

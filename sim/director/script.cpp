@@ -6,6 +6,7 @@
 
 #include "sim/director/action_run.hpp"
 #include "sim/director/stage.hpp"
+#include "sim/director/world_observer.hpp"
 #include "sim/vehicle/entities.hpp"
 #include "sim/vehicle/mounted_device.hpp"
 #include "sim/vehicle/world_warnings.hpp"
@@ -150,6 +151,8 @@ void Script::fire(std::size_t i, int depth) {
   EventState& event = events_[i];
   ++firings_;
   event.start_draws(stage_.clock().step_number);
+  if (WorldObserver* const observer = stage_.observer())
+    observer->happened({Occurrence::Kind::event, event.config.name, ""});
   carry_out(event.config.actions, {*this, stage_, "event '" + event.config.name + "'", event.random, nullptr, depth});
   for (const int next : event.fired_by_this) attempt(static_cast<std::size_t>(next), depth + 1);
 }

@@ -5,6 +5,7 @@
 #include "sim/director/action_run.hpp"
 #include "sim/director/script.hpp"
 #include "sim/director/stage.hpp"
+#include "sim/director/world_observer.hpp"
 #include "sim/vehicle/world_warnings.hpp"
 
 // Functions of the script for the actions of events, which are in sim/actions.
@@ -68,6 +69,8 @@ void Script::log(const std::string& who, const std::string& text) {
     spdlog::warn("events have logged {} lines; further lines are left out", max_lines);
   else
     spdlog::info("{}{}{} (at {:.3f} s)", who, who.empty() ? "" : ": ", printable(text), to_seconds(stage_.now()));
+  if (WorldObserver* const observer = stage_.observer(); observer != nullptr && log_lines_ <= max_lines)
+    observer->happened({Occurrence::Kind::event, who, printable(text)});
 }
 
 }  // namespace sim

@@ -16,6 +16,7 @@ class Bus;
 class Diagnostics;
 class Entities;
 class PhysicsWorld;
+class WorldObserver;
 class WorldWarnings;
 struct ConfigNode;
 struct EndOfRun;
@@ -37,6 +38,8 @@ class Stage {
   /// Returns the bus of a channel: that of the vehicle whose device uses it, else that of the world.
   virtual Bus& bus_of_channel(const std::string& channel) = 0;
   virtual WorldWarnings& warnings() = 0;
+  /// Returns the observer of the world; null: none.
+  virtual WorldObserver* observer() const = 0;
   Time now() const { return clock().now(); }
 
   /// Removes a vehicle.  Throws WorldError when there is none, or when a metric scores it.

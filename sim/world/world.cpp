@@ -40,6 +40,11 @@ void World::use_threads(int threads) {
   parts_->schedule.use_threads(threads);
 }
 
+void World::set_observer(WorldObserver* observer) {
+  parts_->observer = observer;
+  parts_->acoustics->set_observer(observer);
+}
+
 void World::step() {
   WorldParts& parts = *parts_;
   if (!parts.script) throw SnapshotError("the world was lost when a snapshot was restored");

@@ -30,6 +30,7 @@ class AcousticChannel;
 class WorldBuilder;
 class WorldEditor;
 class WorldJournal;
+class WorldObserver;
 class WorldState;
 struct WorldParts;
 struct ZoneRecord;
@@ -54,6 +55,9 @@ class World {
 
   /// Sets the number of threads for sensors that cast rays; 0: one for each processor.  Results do not depend on it.
   void use_threads(int threads);
+  /// Sets the observer of sounds and occurrences, which must outlive the world or be removed by null.  Results do not
+  /// depend on it.
+  void set_observer(WorldObserver* observer);
 
   /// Runs stages 1 to 7 of a step: messages, act, medium, script, physics, sense, report.  Throws PhysicsFault.
   void step();

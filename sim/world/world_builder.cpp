@@ -27,6 +27,7 @@ void WorldBuilder::build() {
       [&parts = parts_](const std::string& who, const std::string& text) { parts.warnings.warn(who, text); });
   parts_.acoustics = std::make_unique<AcousticChannel>(
       config.acoustics, AcousticSurroundings{parts_.medium, parts_.physics, parts_.events, parts_.seed()});
+  parts_.acoustics->set_observer(parts_.observer);
   parts_.surfaces.start(config);
   add_objects();
   add_vehicles();

@@ -15,6 +15,14 @@
 
 namespace sim {
 
+WorldObserver* WorldEditor::observer() const {
+  return parts_.observer;
+}
+
+void WorldEditor::report(Occurrence::Kind kind, const std::string& who, const std::string& text) const {
+  if (parts_.observer != nullptr) parts_.observer->happened({kind, who, text});
+}
+
 void WorldEditor::check_new_vehicle(const VehicleInstance& instance) const {
   const std::string who = "vehicle " + shown_name(instance.name);
   parts_.entities.check_new_name(instance.name, instance.place, who);
@@ -69,6 +77,7 @@ const Vehicle& WorldEditor::add_vehicle(const VehicleInstance& instance) {
        {parts_.hydrodynamics->take_warnings(), bottom_warnings(world_, vehicle)})
     for (const std::string& warning : found) parts_.warnings.building().warn({}, "", warning);
   builder_.sort_devices();
+  report(Occurrence::Kind::added, instance.name, "vehicle");
   return vehicle;
 }
 
@@ -110,6 +119,7 @@ void WorldEditor::remove_vehicle(const std::string& name) {
   builder_.dismantle(vehicle);
   journal_.vehicle_removed(own_name);
   builder_.sort_devices();
+  report(Occurrence::Kind::removed, own_name, "vehicle");
 }
 
 void WorldEditor::move_vehicle(const std::string& name, const Pose& X_WV) {
@@ -117,6 +127,7 @@ void WorldEditor::move_vehicle(const std::string& name, const Pose& X_WV) {
   parts_.physics.move_group(vehicle.group(), X_WV * vehicle.X_WV().inverse());
   if (parts_.physics.anchored(vehicle.group())) journal_.anchored_vehicle_moved(vehicle);
   parts_.acoustics->discard_places();
+  report(Occurrence::Kind::moved, vehicle.name(), "vehicle");
 }
 
 const WorldObject& WorldEditor::add_object(const ObjectConfig& config, const std::string& name, const Pose& X_WE) {
@@ -127,6 +138,7 @@ const WorldObject& WorldEditor::add_object(const ObjectConfig& config, const std
   check_limit("parts in an object", config.parts.size(), limits.parts, config.place, who);
   const WorldObject& object = builder_.place_object(config, name, X_WE);
   journal_.object_added(config, object, X_WE);
+  report(Occurrence::Kind::added, name, "object");
   return object;
 }
 
@@ -135,12 +147,14 @@ void WorldEditor::remove_object(const std::string& name) {
   const std::string own_name = object.name;  // the argument may refer to the name of the object
   builder_.dismantle(object);
   journal_.object_removed(own_name);
+  report(Occurrence::Kind::removed, own_name, "object");
 }
 
 void WorldEditor::move_object(const std::string& name, const Pose& X_WE) {
   const WorldObject& object = parts_.entities.object_named(name);
   object.body->set_pose(X_WE);
   object.body->set_velocity_W(Vector3d::Zero(), Vector3d::Zero());
+  report(Occurrence::Kind::moved, object.name, "object");
 }
 
 void WorldEditor::set_fault(const std::string& device, const FaultConfig& fault) {
@@ -148,20 +162,24 @@ void WorldEditor::set_fault(const std::string& device, const FaultConfig& fault)
   const std::string error = fault_misfit(*mounted.config().device_type, fault);
   if (!error.empty()) throw WorldError("device " + shown_name(device) + ": " + error);
   mounted.set_fault(fault);
+  report(Occurrence::Kind::fault, mounted.full_name(), std::string(word_of(fault_kind_words, fault.kind)));
 }
 
 void WorldEditor::clear_faults(const std::string& device) {
   parts_.entities.device_named(device).clear_faults();
+  report(Occurrence::Kind::fault, device, "cleared");
 }
 
 bool WorldEditor::change_device(const std::string& full_name, const ConfigNode& values, Diagnostics& diagnostics) {
   const bool changed = builder_.change_device(full_name, values, diagnostics);
   if (changed) journal_.device_changed(full_name, values);
+  if (changed) report(Occurrence::Kind::changed, full_name, "parameters");
   return changed;
 }
 
 void WorldEditor::set_gravity(double gravity_mps2) {
   parts_.physics.set_gravity(gravity_mps2);
+  report(Occurrence::Kind::changed, "gravity", number_text(gravity_mps2) + " m/s2");
 }
 
 void WorldEditor::publish(const std::string& channel, std::span<const std::byte> payload) {
@@ -169,7 +187,9 @@ void WorldEditor::publish(const std::string& channel, std::span<const std::byte>
 }
 
 void WorldEditor::end(const EndOfRun& end) {
-  if (!parts_.ended) parts_.ended = end;
+  if (parts_.ended) return;
+  parts_.ended = end;
+  report(Occurrence::Kind::ended, "", end.text);
 }
 
 void WorldEditor::run_action(const ConfigNode& action) {

@@ -7,6 +7,7 @@
 #include "sim/base/math.hpp"
 #include "sim/bus/bus.hpp"
 #include "sim/director/stage.hpp"
+#include "sim/director/world_observer.hpp"
 #include "sim/vehicle/end_of_run.hpp"
 #include "sim/vehicle/world_error.hpp"
 
@@ -40,6 +41,7 @@ class WorldEditor final : public Stage {
   PhysicsWorld& physics() override;
   Bus& bus_of_channel(const std::string& channel) override;
   WorldWarnings& warnings() override;
+  WorldObserver* observer() const override;
 
   /// Adds a vehicle.  Throws ConfigError (names and channels in use, meshes, masses, limits, contacts that
   /// would change the surfaces of others, an occupied place); the vehicle is then not added.
@@ -61,6 +63,7 @@ class WorldEditor final : public Stage {
   void run_action(const ConfigNode& action);
 
  private:
+  void report(Occurrence::Kind kind, const std::string& who, const std::string& text = "") const;
   void check_new_vehicle(const VehicleInstance& instance) const;
   void check_place_is_free(Vehicle& vehicle, const VehicleInstance& instance);
 

@@ -7,6 +7,7 @@
 #include "sim/acoustics/channel.hpp"
 #include "sim/base/geodesy.hpp"
 #include "sim/director/script.hpp"
+#include "sim/director/world_observer.hpp"
 #include "sim/event/event_queue.hpp"
 #include "sim/hydrodynamics/hydrodynamics.hpp"
 #include "sim/medium/medium.hpp"
@@ -59,6 +60,7 @@ struct WorldParts {
   StepSchedule schedule;
   std::unique_ptr<Script> script;  ///< null: the world was lost in a failed restore
   std::optional<EndOfRun> ended;
+  WorldObserver* observer = nullptr;  ///< null: none
 };
 
 }  // namespace sim

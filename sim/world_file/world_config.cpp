@@ -192,6 +192,16 @@ void read_script(ParamReader& in, WorldConfig& world) {
 
 }  // namespace
 
+void ViewConfig::read(ParamReader& in) {
+  in.read("scene", scene, "sim.scene and sim.asset: shapes, materials, devices, water, zones");
+  in.read_or_word("bodies_rate_hz", bodies_rate_hz, above_to(0, 1000), {"never"},
+                  "rate of sim.bodies: poses of all bodies");
+  in.read("sounds", sounds, "sim.sound and sim.sound.arrival: acoustic signals and their outcomes");
+  in.read("events", events, "sim.event: events, faults, additions and removals");
+  in.read_or_word("scores_rate_hz", scores_rate_hz, above_to(0, 1000), {"never"},
+                  "rate of sim.scores: figures and rules");
+}
+
 void WorldConfig::read(ParamReader& in) {
   // Identification.
   in.require("shoal");
@@ -220,6 +230,7 @@ void WorldConfig::read(ParamReader& in) {
   in.read("channels", channels, "names of the channels");
   in.read("run", run, "defaults of a run, which the command line can override");
   in.read_or_word("state_rate_hz", state_rate_hz, above_to(0, 1e6), {"never"}, "rate of sim.state and sim.clock");
+  in.read("view", view, "messages for viewers; no result depends on them");
   in.read_paths("plugins", plugins,
                 "libraries with devices, beside this file or installed; only with --launch or --plugin");
   // Objects, buses and vehicles, with the names that scripts use.

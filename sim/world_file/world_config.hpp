@@ -49,6 +49,16 @@ struct ChannelConfig {
   void read(ParamReader& in);
 };
 
+/// Section `view:`: messages for viewers, which describe what happens in the world.
+struct ViewConfig {
+  bool scene = true;           ///< sim.scene and sim.asset
+  double bodies_rate_hz = 10;  ///< rate of sim.bodies; 0: never
+  bool sounds = true;          ///< sim.sound and sim.sound.arrival
+  bool events = true;          ///< sim.event
+  double scores_rate_hz = 1;   ///< rate of sim.scores; 0: never
+  void read(ParamReader& in);
+};
+
 /// An entry of `vehicles:`.
 struct VehicleEntry {
   std::string name;
@@ -157,6 +167,7 @@ struct WorldConfig {
   bool bodies_only_of_many = false;
   EncodeMessage encode_message;  ///< encoder for actions that publish; empty: they cannot publish
   double state_rate_hz = 10;     ///< rate of sim.state and sim.clock
+  ViewConfig view;
 
   void read(ParamReader& in);
 };

@@ -122,6 +122,9 @@ class Interrupt(unittest.TestCase):
                 left, shown = attempt.left(), attempt.end()
             codes[code] = codes.get(code, 0) + 1
             print(f"{i}: {at_s:.2f} s: exit code {code}, {len(left)} left", flush=True)
+            # A second signal that came late, on a busy machine, ends the run at once: only its processes must be gone.
+            if again_s and "ended by another signal" in shown:
+                left = [each for each in left if each.startswith("process")]
             # Before it catches signals it ends by this one; it may also have been over before.
             if left or code not in (130, -signal.SIGINT, 0, 1):
                 wrong.append(f"{i}: {at_s:.3f} of {length_s:.3f} s, again after {again_s}: exit code {code}, {left}\n{shown}")

@@ -49,6 +49,7 @@ void add_types_option(CLI::App& command, std::vector<std::string>& lcm_files);
 
 /// Each function adds a sub-command.  When chosen, the command sets `exit_code`.
 void add_run_command(CLI::App& app, int& exit_code);
+void add_view_command(CLI::App& app, int& exit_code);
 void add_replay_command(CLI::App& app, int& exit_code);
 void add_check_command(CLI::App& app, int& exit_code);
 void add_snap_command(CLI::App& app, int& exit_code);
@@ -60,6 +61,7 @@ void add_spy_command(CLI::App& app, int& exit_code);
 void add_control_command(CLI::App& app, int& exit_code);
 void add_doctor_command(CLI::App& app, int& exit_code);
 void add_log_command(CLI::App& app, int& exit_code);
+void add_log_mcap_command(CLI::App& app, int& exit_code);
 void add_acoustics_command(CLI::App& app, int& exit_code);
 void add_bench_command(CLI::App& app, int& exit_code);
 void add_mesh_command(CLI::App& app, int& exit_code);

@@ -39,9 +39,9 @@ struct ControlArguments {
   bool hold_here = false;
 };
 
-const std::vector<std::string> known_requests = {"pause", "resume", "step",     "speed",   "quit",
-                                                 "until", "rewind", "snapshot", "restore", "where",
-                                                 "spawn", "remove", "describe", "do",      "leave"};
+const std::vector<std::string> known_requests = {"pause",  "resume",   "step",    "speed", "quit",  "until",
+                                                 "rewind", "snapshot", "restore", "where", "scene", "spawn",
+                                                 "remove", "describe", "do",      "leave"};
 
 /// Reads the text: `@FILE` is replaced by the content of the file, `-` by standard input.
 std::string text_of(const std::string& argument) {

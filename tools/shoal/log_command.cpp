@@ -261,18 +261,20 @@ void add_image_command(CLI::App& app, int& exit_code) {
 }  // namespace
 
 void add_log_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("log", "Inspect LCM event logs");
+  CLI::App* command = app.add_subcommand("log", "Inspect and convert LCM event logs");
   command->require_subcommand(1);
   add_info_command(*command, exit_code);
   add_csv_command(*command, exit_code);
   add_allan_command(*command, exit_code);
   add_image_command(*command, exit_code);
-  command_line::set_help_end(*command,
-                             {{"shoal log info run.lcm", "shoal log csv run.lcm rover1.odometry > odometry.csv",
-                               "shoal log allan run.lcm bench.imu --png allan.png",
-                               "shoal log image run.lcm auv1.side_scan --png side_scan.png"},
-                              log_codes,
-                              {}});
+  add_log_mcap_command(*command, exit_code);
+  command_line::set_help_end(
+      *command,
+      {{"shoal log info run.lcm", "shoal log csv run.lcm rover1.odometry > odometry.csv",
+        "shoal log allan run.lcm bench.imu --png allan.png",
+        "shoal log image run.lcm auv1.side_scan --png side_scan.png", "shoal log mcap run.lcm --out run.mcap"},
+       log_codes,
+       {}});
 }
 
 }  // namespace tools

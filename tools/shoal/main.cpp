@@ -52,6 +52,7 @@ int run(int argc, char** argv) {
   tools::add_run_command(app, exit_code);
   tools::add_replay_command(app, exit_code);
   tools::add_check_command(app, exit_code);
+  tools::add_view_command(app, exit_code);
   tools::add_snap_command(app, exit_code);
   tools::add_film_command(app, exit_code);
   tools::add_snapshot_command(app, exit_code);

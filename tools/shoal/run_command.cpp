@@ -15,6 +15,7 @@
 #include "tools/experiment/world_files/world_by_name.hpp"
 #include "tools/shoal/commands.hpp"
 #include "tools/shoal/speed_option.hpp"
+#include "tools/shoal/view_options.hpp"
 
 namespace tools {
 
@@ -28,6 +29,8 @@ struct RunArguments {
   std::string from;
   std::string snapshot_at;
   std::optional<double> duration_s;
+  bool with_page = false;
+  ViewOptions view;
 };
 
 /// Parses times in s: `10,20.5`.
@@ -72,9 +75,15 @@ int run(RunArguments& arguments) {
   const bool nowhere = arguments.run.snapshots.empty() && arguments.run.results.empty();
   if (nowhere && (!arguments.snapshot_at.empty() || arguments.run.snapshot_every_s))
     throw CLI::ValidationError("--snapshot-at", "needs --snapshots DIR or --results DIR");
+  if (arguments.with_page) arguments.run.view = arguments.view;
   // Load and run the world.
   sim::LoadedWorld loaded =
       arguments.from.empty() ? sim::load_world(world_file(arguments.world), arguments.load) : load_from(arguments);
+  // As fast as possible there is little to see.
+  if (arguments.with_page && arguments.speed.empty() && loaded.config.run.speed == 0) {
+    arguments.run.speed = 1;
+    spdlog::info("--view: the run goes at real time; --speed max lets it go as fast as possible");
+  }
   read_programs(loaded, {arguments.run.launch, arguments.load.allow_paths});
   catch_signals(true);
   const Summary summary = run_world(loaded, arguments.run);
@@ -119,7 +128,7 @@ void add_snapshot_options(CLI::App& command, RunArguments& arguments) {
 }
 
 void add_output_options(CLI::App& command, RunArguments& arguments) {
-  command.add_option("--record", arguments.run.record, "write an LCM event log, stamped with simulated time")
+  command.add_option("--record", arguments.run.record, "write an LCM event log, or an MCAP file (*.mcap)")
       ->type_name("FILE");
   command.add_flag("--overwrite", arguments.run.overwrite, "the record may replace a file");
   command.add_flag("--special-files", arguments.run.special_files,
@@ -197,6 +206,8 @@ void add_run_command(CLI::App& app, int& exit_code) {
       "--no-keys", [arguments] { arguments->run.keys = false; }, "ignore the keys of the terminal");
   add_bus_options(*command, *arguments);
   add_output_options(*command, *arguments);
+  command->add_flag("--view", arguments->with_page, "serve a live page of the run in 3-D, and print its address");
+  add_page_options(*command, arguments->view);
   add_snapshot_options(*command, *arguments);
   add_threads_option(*command, arguments->run.threads);
   add_plugin_option(*command);
@@ -204,6 +215,7 @@ void add_run_command(CLI::App& app, int& exit_code) {
   command_line::set_help_end(
       *command, {{"shoal run worlds/minimal.yaml --duration 10 --speed 1",
                   "shoal run worlds/coop_land.yaml --launch --results results/coop_land --record coop.lcm",
+                  "shoal run worlds/coop_underwater.yaml --launch --view",
                   "shoal run worlds/coop_land.yaml --duration 20 --snapshot-at 10 --snapshots snaps",
                   "shoal run --from snaps/branch0_step1000.snapshot --set vehicles.rover3.devices.lidar.rate_hz=5",
                   "shoal run worlds/coop_land.yaml --seed 7 --set vehicles.rover3.devices.modem.loss_probability=0.2"},

@@ -31,9 +31,9 @@ TEST(RecordBranch, BeginsWithACopyAndContinuesFromThere) {
   bridges::RecordingBus bus(network, folder.file("a.lcm"), 1'000);
   bus.publish("x", bytes_of("one"), sim::Time{10});
   const std::uint64_t events = bus.recorded();
-  const std::uint64_t bytes = bus.bytes();
+  const std::uint64_t position = bus.position();
   bus.publish("x", bytes_of("two"), sim::Time{20});
-  bus.prepare(folder.file("b.lcm"), events, bytes, bridges::Existing::refuse);
+  bus.prepare(folder.file("b.lcm"), events, position, bridges::Existing::refuse);
   bus.go_on();
   bus.publish("x", bytes_of("other"), sim::Time{15});
   bus.close();
@@ -59,7 +59,7 @@ TEST(RecordBranch, TheOldRecordContinuesWhenTheNewOneIsNotWanted) {
   sim::InProcessBus network;
   bridges::RecordingBus bus(network, folder.file("a.lcm"), 0);
   bus.publish("x", bytes_of("one"), sim::Time{10});
-  bus.prepare(folder.file("b.lcm"), bus.recorded(), bus.bytes(), bridges::Existing::refuse);
+  bus.prepare(folder.file("b.lcm"), bus.recorded(), bus.position(), bridges::Existing::refuse);
   EXPECT_TRUE(std::filesystem::exists(folder.file("b.lcm")));
   bus.give_up();
   EXPECT_FALSE(std::filesystem::exists(folder.file("b.lcm")));
@@ -76,7 +76,7 @@ TEST(RecordBranch, ACopyThatDoesNotFitOnTheDiskIsRefused) {
   bus.publish("x", bytes_of("one"), sim::Time{10});
   // A link, as what was prepared without success is removed.
   std::filesystem::create_symlink("/dev/full", folder.file("full"));
-  EXPECT_THROW(bus.prepare(folder.file("full"), bus.recorded(), bus.bytes(), bridges::Existing::overwrite),
+  EXPECT_THROW(bus.prepare(folder.file("full"), bus.recorded(), bus.position(), bridges::Existing::overwrite),
                bridges::BusError);
   EXPECT_EQ(bus.error(), std::nullopt);
 }

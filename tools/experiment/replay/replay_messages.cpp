@@ -24,12 +24,14 @@ constexpr std::size_t max_queued_bytes = std::size_t{256} << 20;
 /// In a record, messages published in a step have the time stamp of this step or the next.
 constexpr std::int64_t steps_ahead = 2;
 
-/// Returns whether a channel belongs to the run itself: another run has other messages on it.
+/// Returns whether a channel belongs to the run itself, so that another run has other messages on it, or describes the
+/// world for viewers, which a replay does not do: state and hashes prove the same.
 bool is_of_the_run(std::string_view channel) {
   if (!channel.starts_with("sim.")) return false;
-  static constexpr std::array<std::string_view, 11> names{
-      "sim.ack",   "sim.control", "sim.control.reply", "sim.hash",     "sim.info", "sim.inputs",
-      "sim.audit", "sim.resend",  "sim.resent",        "sim.snapshot", "sim.tick"};
+  static constexpr std::array<std::string_view, 18> names{
+      "sim.ack",   "sim.control", "sim.control.reply", "sim.hash",          "sim.info",  "sim.inputs",
+      "sim.audit", "sim.resend",  "sim.resent",        "sim.snapshot",      "sim.tick",  "sim.scene",
+      "sim.asset", "sim.bodies",  "sim.sound",         "sim.sound.arrival", "sim.event", "sim.scores"};
   return std::find(names.begin(), names.end(), channel) != names.end();
 }
 

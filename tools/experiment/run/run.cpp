@@ -12,6 +12,7 @@
 #include "tools/experiment/results/results_world.hpp"
 #include "tools/experiment/results/run_error.hpp"
 #include "tools/experiment/run/run_ports.hpp"
+#include "tools/experiment/run/scores_message.hpp"
 #include "tools/experiment/snapshot/run_identity.hpp"
 
 namespace tools {
@@ -25,8 +26,9 @@ using Clock = std::chrono::steady_clock;
 Run::Run(const sim::LoadedWorld& loaded, const RunOptions& options)
     : loaded_(loaded),
       options_(options),
+      page_(make_page()),
       files_(files_text(loaded.resolved)),
-      buses_(loaded.config, options),
+      buses_(loaded.config, options, page_tap()),
       others_(buses_.networks(), options.lcm_shared),
       world_(loaded.config, buses_.outer(),
              options.serial_ports ? ports_.wrap(serial_ports_of(loaded.config, options)) : sim::PortOpener(),
@@ -38,6 +40,9 @@ Run::Run(const sim::LoadedWorld& loaded, const RunOptions& options)
       scoring_(
           world_,
           options.quiet ? FirstContacts::Report() : [this](const std::string& line) { progress_.report(line); }),
+      view_(
+          buses_.outer(), world_, [this](shoal::sim_scores_t& message) { fill_scores(scoring_, message); },
+          [this] { return has_listeners(); }),
       inputs_(buses_, journal_, service_, lockstep_),
       branch_log_(buses_, journal_, options.record, options.overwrite),
       time_(world_, control_, scoring_, service_, inputs_, time_options(), *this),
@@ -80,6 +85,7 @@ std::vector<bridges::LockstepBus> Run::lockstep_buses() {
 
 bridges::ServiceLinks Run::service_links() {
   bridges::ServiceLinks links{&journal_, &others_};
+  links.publish_scene = [this] { view_.request_scene(); };
   for (const sim::BusConfig& bus : loaded_.config.buses) links.vehicle_buses.push_back(&buses_.network(bus.name));
   return links;
 }
@@ -98,7 +104,7 @@ std::unique_ptr<RunKeyFile> Run::make_key() {
 TimeControl::Options Run::time_options() const {
   constexpr double usual_rewind_s = 60;
   const bool accepts_requests =
-      options_.bus != "none" || (options_.keys && !options_.quiet && TerminalKeys::possible());
+      options_.view || options_.bus != "none" || (options_.keys && !options_.quiet && TerminalKeys::possible());
   TimeControl::Options time;
   time.rewind_s = options_.rewind_s.value_or(accepts_requests ? usual_rewind_s : 0);
   time.max_bytes = static_cast<std::size_t>(options_.rewind_MB * 1e6);
@@ -111,8 +117,34 @@ TimeControl::Options Run::time_options() const {
   return time;
 }
 
+std::unique_ptr<RunView> Run::make_page() const {
+  return options_.view ? std::make_unique<RunView>(*options_.view, short_version()) : nullptr;
+}
+
+TapBus::Listener Run::page_tap() {
+  if (!page_) return {};
+  return [this](std::string_view channel, std::span<const std::byte> payload) { page_->message(channel, payload); };
+}
+
+void Run::serve_page() {
+  page_->serve(world_, view_, control_, service_.waits_for(),
+               [this](const std::string& command, double value, const std::string& text) -> RunView::Answer {
+                 shoal::sim_control_request_t request;
+                 request.client = "live page";
+                 request.command = command;
+                 request.value = value;
+                 request.text = text;
+                 try {
+                   return {true, service_.execute_local(request, &time_)};
+                 } catch (const std::runtime_error& error) {
+                   return {false, error.what()};
+                 }
+               });
+}
+
 void Run::execute() {
   service_.handle_requests(&time_);
+  if (page_) serve_page();
   if (keys_) keys_->read();
   if (!time_.broken().empty()) throw RunError(3, "fault", time_.broken());
 }
@@ -124,6 +156,7 @@ Summary Run::go() {
     start_clients();
     loop();
     summary.ended = how_ended();
+    if (page_) page_->ended(world_, control_, summary.ended);
     if (caught_signal() != 0) summary.exit_code = 128 + caught_signal();
   } catch (const RunError& error) {
     summary.fail(error.exit_code, error.ended, error.what());
@@ -193,6 +226,10 @@ void Run::await(const std::vector<std::string>& clients) {
 
 void Run::loop() {
   journal_.start();
+  if (page_) {
+    page_->start(world_, duration_s_);
+    progress_.report("live page: " + page_->url());
+  }
   end_of_step();
   const sim::Time end = duration_s_ > 0 ? sim::from_seconds(duration_s_) : sim::Time::max();
   while (may_continue() && !world_.ended() && world_.now() < end) {
@@ -247,6 +284,8 @@ void Run::admit_messages() {
   buses_.set_time(world_.now());
   buses_.admit([this](const std::string& bus, std::span<const sim::MessageGate::Delivery> inputs) {
     journal_.admitted(bus, inputs);
+    if (!page_) return;
+    for (const sim::MessageGate::Delivery& input : inputs) page_->message(input.channel, input.payload);
   });
 }
 
@@ -254,6 +293,8 @@ void Run::end_of_step() {
   service_.publish_step();
   journal_.after_step();
   if (steps_taken_ > 0) scoring_.after_step();
+  view_.after_step();
+  if (page_) page_->after_step(world_, view_, control_);
   if (results_ && steps_taken_ > 0) results_->after_step();
   buses_.end_of_step();
   time_.after_step();

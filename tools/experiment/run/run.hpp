@@ -9,6 +9,7 @@
 #include "bridges/control/sim_service.hpp"
 #include "bridges/lockstep/lockstep_service.hpp"
 #include "bridges/log/run_journal.hpp"
+#include "bridges/view/view_publisher.hpp"
 #include "sim/run/run_control.hpp"
 #include "tools/experiment/results/results.hpp"
 #include "tools/experiment/run/branch_log.hpp"
@@ -49,6 +50,10 @@ class Run final : private Timeline {
   void hold_here() override;
   void start_branch(bool ours) override;
   std::vector<bridges::LockstepBus> lockstep_buses();
+  std::unique_ptr<RunView> make_page() const;
+  TapBus::Listener page_tap();
+  /// Carries out the requests of the pages.
+  void serve_page();
   bridges::ServiceLinks service_links();
   /// Publishes the state from which the run continues, so that a log that starts here can be replayed.
   void publish_snapshot();
@@ -77,7 +82,8 @@ class Run final : private Timeline {
 
   const sim::LoadedWorld& loaded_;
   const RunOptions& options_;
-  const std::string files_;  ///< hashes of the files that the world names
+  std::unique_ptr<RunView> page_;  ///< live page; null: none.  Outlives the buses, which it taps.
+  const std::string files_;        ///< hashes of the files that the world names
   RunBuses buses_;
   bridges::OtherSimulators others_;  ///< queried before the world is built
   sim::RunControl control_;
@@ -87,6 +93,7 @@ class Run final : private Timeline {
   bridges::LockstepService lockstep_;
   bridges::SimService service_;
   Scoring scoring_;
+  bridges::ViewPublisher view_;
   RunInputs inputs_;
   BranchLog branch_log_;
   TimeControl time_;

@@ -25,14 +25,14 @@ void check_record(const std::string& path) {
 
 }  // namespace
 
-RunBuses::RunBuses(const sim::WorldConfig& world, const RunOptions& options) {
+RunBuses::RunBuses(const sim::WorldConfig& world, const RunOptions& options, const TapBus::Listener& tap) {
   main_ = open(options.lcm_url, options);
   if (!options.record.empty() && !options.special_files) check_record(options.record);
   if (!options.record.empty())
     main_.recorder = std::make_unique<bridges::RecordingBus>(
         *main_.network, options.record, world.epoch_us,
         options.overwrite ? bridges::Existing::overwrite : bridges::Existing::refuse);
-  main_.close_gate();
+  main_.close_gate(tap);
   std::map<std::string, std::string> names{{main_.lcm ? main_.lcm->url() : "", "the world's"}};
   for (const sim::BusConfig& bus : world.buses) {
     Link link = open(bus.lcm_url, options);
@@ -43,7 +43,7 @@ RunBuses::RunBuses(const sim::WorldConfig& world, const RunOptions& options) {
                                 link.lcm->url());
     }
     if (main_.recorder) link.recorder = std::make_unique<bridges::RecordingBus>(*link.network, *main_.recorder);
-    link.close_gate();
+    link.close_gate(tap);
     others_.emplace(bus.name, std::move(link));
   }
 }
@@ -129,12 +129,12 @@ void RunBuses::hand_over_record() {
 }
 
 RunBuses::RecordMark RunBuses::record_mark() const {
-  return main_.recorder ? RecordMark{main_.recorder->recorded(), main_.recorder->bytes()} : RecordMark{};
+  return main_.recorder ? RecordMark{main_.recorder->recorded(), main_.recorder->position()} : RecordMark{};
 }
 
 void RunBuses::prepare_record(const std::string& path, const RecordMark& mark, bool overwrite) {
   if (!main_.recorder) return;
-  main_.recorder->prepare(path, mark.events, mark.bytes,
+  main_.recorder->prepare(path, mark.events, mark.position,
                           overwrite ? bridges::Existing::overwrite : bridges::Existing::refuse);
 }
 

@@ -18,14 +18,15 @@
 #include "sim/world_file/world_config.hpp"
 #include "tools/experiment/run/mute_bus.hpp"
 #include "tools/experiment/run/runner.hpp"
+#include "tools/experiment/run/tap_bus.hpp"
 
 namespace tools {
 
 /// Buses of a run: that of the world, and those of single vehicles.  With a record, all are written into one log.
 class RunBuses {
  public:
-  /// Throws BusError.
-  RunBuses(const sim::WorldConfig& world, const RunOptions& options);
+  /// `tap`: receives what the simulation publishes on any bus; empty: none.  Throws BusError.
+  RunBuses(const sim::WorldConfig& world, const RunOptions& options, const TapBus::Listener& tap = {});
 
   /// The world's bus, recorded, behind its gate.
   sim::Bus& outer() { return main_.outer(); }
@@ -60,7 +61,7 @@ class RunBuses {
   void hand_over_record();
   /// Position in the record.
   struct RecordMark {
-    std::uint64_t events = 0, bytes = 0;
+    std::uint64_t events = 0, position = 0;
   };
   RecordMark record_mark() const;
   /// Prepares another record, which starts with the present one's up to a mark.  Throws BusError.
@@ -79,11 +80,17 @@ class RunBuses {
     std::unique_ptr<sim::Bus> network;
     bridges::LcmBus* lcm = nullptr;  ///< the same, when it is LCM
     std::unique_ptr<bridges::RecordingBus> recorder;
+    std::unique_ptr<TapBus> tap;  ///< null: none
     std::unique_ptr<MuteBus> mute;
     std::unique_ptr<sim::MessageGate> gate;
     sim::Bus& outer() { return *gate; }
-    void close_gate() {
-      mute = std::make_unique<MuteBus>(recorder ? static_cast<sim::Bus&>(*recorder) : *network);
+    void close_gate(const TapBus::Listener& listener) {
+      sim::Bus* inner = recorder ? static_cast<sim::Bus*>(recorder.get()) : network.get();
+      if (listener) {
+        tap = std::make_unique<TapBus>(*inner, listener);
+        inner = tap.get();
+      }
+      mute = std::make_unique<MuteBus>(*inner);
       gate = std::make_unique<sim::MessageGate>(*mute);
     }
   };

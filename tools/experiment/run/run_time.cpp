@@ -30,7 +30,7 @@ void Run::hold_here() {
 }
 
 bool Run::has_listeners() {
-  return buses_.over_lcm() || !options_.record.empty();
+  return buses_.over_lcm() || !options_.record.empty() || page_ != nullptr;
 }
 
 void Run::publish_snapshot() {
@@ -44,6 +44,9 @@ void Run::publish_snapshot() {
 
 void Run::start_branch(bool ours) {
   branch_log_.branch(control_.branch);
+  view_.set_branch(control_.branch);
+  view_.discard();
+  if (page_) page_->moved();
   lockstep_.set_branch(control_.branch);
   buses_.set_time(world_.now());
   service_.report_changes();

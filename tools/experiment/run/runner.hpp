@@ -9,6 +9,7 @@
 #include "tools/experiment/process/signals.hpp"
 #include "tools/experiment/results/results.hpp"
 #include "tools/experiment/snapshot/snapshot_file.hpp"
+#include "tools/experiment/view/run_view.hpp"
 
 namespace tools {
 
@@ -41,6 +42,7 @@ struct RunOptions {
   std::optional<double> snapshot_every_s;  ///< interval of snapshot files
   std::optional<double> rewind_s;          ///< longest rewind; unset: 60 s when requests are possible
   double rewind_MB = 64;                   ///< memory for rewinding
+  std::optional<ViewOptions> view;         ///< the live page; unset: none
 };
 
 /// Runs a world to its end: builds it, opens the bus and the record, starts the processes, steps, paces, waits for

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bridges/ros2/cdr_transcoder.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+
+#include "bridges/ros2/cdr_writer.hpp"
+
+namespace bridges::ros2 {
+namespace {
+
+using shoal::Member;
+using shoal::WireType;
+
+/// Traversal of a valid payload, whose lengths need no further check.
+class Transcoder {
+ public:
+  Transcoder(std::span<const std::byte> payload, CdrWriter& out)
+      : at_(payload.data() + sizeof(std::uint64_t)), out_(out) {}
+
+  /// Returns false when the output is too large.
+  bool transcode(const shoal::MessageSchema& schema) {
+    if (schema.members.empty()) out_.put(std::uint8_t{0});  // only_member
+    std::vector<std::int64_t> lengths(static_cast<std::size_t>(schema.length_slots));
+    return std::all_of(schema.members.begin(), schema.members.end(),
+                       [&](const Member& member) { return transcode(member, lengths); });
+  }
+
+ private:
+  bool transcode(const Member& member, std::vector<std::int64_t>& lengths) {
+    std::size_t count = 1;
+    for (const shoal::Dimension& dimension : member.dimensions)
+      count *= static_cast<std::size_t>(
+          dimension.is_variable() ? lengths[static_cast<std::size_t>(dimension.length_slot)] : dimension.constant);
+    if (member.is_variable()) out_.put_count(count);
+    if (member.type == WireType::compound) {
+      for (std::size_t i = 0; i < count; ++i)
+        if (!transcode(*member.compound)) return false;
+    } else if (member.type == WireType::string) {
+      for (std::size_t i = 0; i < count; ++i) copy_string();
+    } else {
+      const std::size_t size = shoal::wire_size(member.type);
+      if (member.length_slot >= 0) lengths[static_cast<std::size_t>(member.length_slot)] = integer(size);
+      copy_numbers(member.type, count, size);
+    }
+    return out_.size() <= max_cdr_bytes;
+  }
+
+  /// Reads the length of an array, an integer of any size.
+  std::int64_t integer(std::size_t size) const {
+    std::uint64_t value = 0;
+    for (std::size_t i = 0; i < size; ++i) value = value << 8 | std::to_integer<std::uint64_t>(at_[i]);
+    const unsigned unused = static_cast<unsigned>(64 - 8 * size);
+    return static_cast<std::int64_t>(value << unused) >> unused;
+  }
+
+  /// Both formats store a string as its length with the final NUL, and its bytes.
+  void copy_string() {
+    const auto size = static_cast<std::size_t>(integer(4));
+    out_.put(std::string_view(reinterpret_cast<const char*>(at_ + 4), size - 1));
+    at_ += 4 + size;
+  }
+
+  /// Reverses the bytes of each number: LCM is big-endian.
+  void copy_numbers(WireType type, std::size_t count, std::size_t size) {
+    std::byte* to = out_.room(count, size);
+    if (type == WireType::boolean)
+      std::transform(at_, at_ + count, to, [](std::byte b) { return b == std::byte{0} ? b : std::byte{1}; });
+    else if (size == 1)
+      std::copy_n(at_, count, to);
+    else if (size == 2)
+      swap_all<std::uint16_t>(to, count);
+    else if (size == 4)
+      swap_all<std::uint32_t>(to, count);
+    else
+      swap_all<std::uint64_t>(to, count);
+    at_ += count * size;
+  }
+
+  template <class T>
+  void swap_all(std::byte* to, std::size_t count) const {
+    for (std::size_t i = 0; i < count; ++i) {
+      T value;
+      std::memcpy(&value, at_ + i * sizeof value, sizeof value);
+      if constexpr (sizeof value == 2)
+        value = __builtin_bswap16(value);
+      else if constexpr (sizeof value == 4)
+        value = __builtin_bswap32(value);
+      else
+        value = __builtin_bswap64(value);
+      std::memcpy(to + i * sizeof value, &value, sizeof value);
+    }
+  }
+
+  const std::byte* at_;
+  CdrWriter& out_;
+};
+
+}  // namespace
+
+std::optional<std::string> to_cdr(const shoal::MessageSchema& schema, std::span<const std::byte> payload,
+                                  std::vector<std::byte>& out) {
+  out.clear();
+  if (auto error = shoal::validate(schema, payload, shoal::Finite::any)) return error;
+  CdrWriter writer(out);
+  if (Transcoder(payload, writer).transcode(schema)) return std::nullopt;
+  out.clear();
+  return schema.name + " is larger than " + std::to_string(max_cdr_bytes) + " bytes in CDR";
+}
+
+}  // namespace bridges::ros2

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+#include "bridges/ros2/cdr_writer.hpp"
+#include "bridges/ros2/ros2_names.hpp"
+
+namespace bridges::ros2 {
+
+inline constexpr const char* world_frame = "world";
+inline constexpr std::array<double, 9> unknown_3x3{};
+
+/// Appends builtin_interfaces/Time.
+inline void put_time(CdrWriter& out, std::int64_t utime) {
+  constexpr std::int64_t us_per_s = 1'000'000;
+  const std::int64_t us = utime % us_per_s;  // negative before the epoch
+  const std::int64_t borrowed = us < 0 ? 1 : 0;
+  out.put(static_cast<std::int32_t>(utime / us_per_s - borrowed));
+  out.put(static_cast<std::uint32_t>((us + borrowed * us_per_s) * 1000));
+}
+
+/// Appends std_msgs/Header.
+inline void put_header(CdrWriter& out, std::int64_t utime, std::string_view frame) {
+  put_time(out, utime);
+  out.put(frame);
+}
+
+/// Appends an array of fixed size, such as geometry_msgs/Vector3 and covariances.
+template <std::size_t size>
+void put_numbers(CdrWriter& out, const double (&values)[size]) {
+  out.put_array(std::span<const double>(values));
+}
+
+/// Appends geometry_msgs/Quaternion, with w last, of w, x, y, z.
+inline void put_quaternion(CdrWriter& out, std::span<const double, 4> wxyz) {
+  for (const std::size_t i : {1u, 2u, 3u, 0u}) out.put(wxyz[i]);
+}
+
+/// Appends a matrix of 6 x 6 with the covariance of the position; that of the rotation is zero.
+inline void put_position_covariance(CdrWriter& out, std::span<const double, 9> covariance) {
+  for (std::size_t row = 0; row < 6; ++row)
+    for (std::size_t column = 0; column < 6; ++column)
+      out.put(row < 3 && column < 3 ? covariance[3 * row + column] : 0.0);
+}
+
+/// Appends a matrix of 6 x 6 zeros: unknown.
+inline void put_unknown_6x6(CdrWriter& out) {
+  put_position_covariance(out, unknown_3x3);
+}
+
+}  // namespace bridges::ros2

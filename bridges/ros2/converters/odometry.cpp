@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <Eigen/Geometry>
+#include <cmath>
+
+#include "bridges/ros2/converter.hpp"
+#include "bridges/ros2/converters/common_parts.hpp"
+#include "shoal/odometry_t.hpp"
+#include "shoal/pose_t.hpp"
+
+namespace bridges::ros2 {
+namespace {
+
+/// Velocities of nav_msgs/Odometry are in the axes of the moving frame, those of pose_t in the world frame.
+bool write_pose(const shoal::pose_t& message, std::string_view channel, CdrWriter& out) {
+  put_header(out, message.utime, world_frame);
+  out.put(std::string_view(frame_of(channel)));
+  put_numbers(out, message.pos);
+  put_quaternion(out, message.orientation);
+  put_unknown_6x6(out);
+  const double* q = message.orientation;
+  const Eigen::Quaterniond to_body = Eigen::Quaterniond(q[0], q[1], q[2], q[3]).conjugate();
+  const Eigen::Vector3d v = to_body * Eigen::Vector3d(message.vel);
+  const Eigen::Vector3d w = to_body * Eigen::Vector3d(message.rotation_rate);
+  put_numbers(out, {v.x(), v.y(), v.z(), w.x(), w.y(), w.z()});
+  put_unknown_6x6(out);
+  return true;
+}
+
+/// Dead reckoning from its start pose, its own frame.
+bool write_wheel_odometry(const shoal::odometry_t& message, std::string_view channel, CdrWriter& out) {
+  put_header(out, message.utime, frame_of(channel) + "/start");
+  out.put(std::string_view(frame_of(channel)));
+  put_numbers(out, {message.x_m, message.y_m, 0});
+  put_numbers(out, {0, 0, std::sin(message.theta_rad / 2), std::cos(message.theta_rad / 2)});
+  put_unknown_6x6(out);
+  put_numbers(out, {message.forward_mps, 0, 0, 0, 0, message.turn_radps});
+  put_unknown_6x6(out);
+  return true;
+}
+
+SHOAL_ROS2_CONVERTER(write_pose, "nav_msgs/msg/Odometry", "odometry");
+SHOAL_ROS2_CONVERTER(write_wheel_odometry, "nav_msgs/msg/Odometry", "odometry");
+
+}  // namespace
+}  // namespace bridges::ros2

@@ -1,0 +1,302 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bridges/web/view_protocol.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <string>
+
+#include "bridges/web/client_message.hpp"
+#include "bridges/web/web_error.hpp"
+
+namespace bridges {
+
+namespace {
+
+/// After this many bytes of texts a state is sent before further texts, so that events cannot stop the motion.
+constexpr std::size_t texts_between_states = 256 * 1024;
+
+constexpr std::string_view no_token =
+    "this page is read-only: open the address that was printed at the start, with its #t=";
+
+std::shared_ptr<const std::string> shared(std::string text) {
+  return std::make_shared<const std::string>(std::move(text));
+}
+
+/// Bytes 4 to 7 of the head of a state.
+std::uint32_t sequence_of_state(const std::string& state) {
+  std::uint32_t sequence = 0;
+  for (std::size_t i = 8; i-- > 4;)
+    sequence = sequence << 8 | (i < state.size() ? static_cast<unsigned char>(state[i]) : 0u);
+  return sequence;
+}
+
+/// Requests that change what others see, or the run.
+bool needs_control(const std::string& op) {
+  return op == "control" || op == "play" || op == "seek";
+}
+
+}  // namespace
+
+// --- Functions for all threads
+
+void ViewProtocol::send_state(std::span<const std::byte> state) {
+  if (clients() == 0) return;
+  auto text = shared(std::string(reinterpret_cast<const char*>(state.data()), state.size()));
+  {
+    const std::lock_guard lock(box_mutex_);
+    box_.state.swap(text);
+  }
+  wake();
+}
+
+void ViewProtocol::send_text(std::string json) {
+  if (clients() == 0) return;
+  const std::size_t bytes = json.size();
+  auto text = shared(std::move(json));
+  {
+    const std::lock_guard lock(box_mutex_);
+    // The thread of the server empties the box at once unless the machine is overloaded.
+    if (box_.bytes + bytes > max_queued_bytes) {
+      ++box_.dropped;
+    } else {
+      box_.bytes += bytes;
+      box_.texts.push_back(std::move(text));
+    }
+  }
+  wake();
+}
+
+void ViewProtocol::retain(std::string_view op, std::string json) {
+  Retained retained{std::string(op), nullptr, nullptr, 0};
+  if (op == "hello") {
+    retained.text = shared(with_control(json, false));
+    retained.text_of_controller = shared(with_control(json, true));
+  } else {
+    retained.text = shared(std::move(json));
+  }
+  {
+    const std::lock_guard lock(box_mutex_);
+    const auto same =
+        std::find_if(box_.retained.begin(), box_.retained.end(), [&](const Retained& other) { return other.op == op; });
+    if (same != box_.retained.end())
+      *same = std::move(retained);
+    else
+      box_.retained.push_back(std::move(retained));
+  }
+  // A page that says hello after this check finds the text in the box.
+  if (clients() > 0) wake();
+}
+
+void ViewProtocol::reply(int client, std::string json) {
+  if (clients() == 0) return;
+  auto text = shared(std::move(json));
+  {
+    const std::lock_guard lock(box_mutex_);
+    if (box_.bytes + text->size() > max_queued_bytes) {
+      ++box_.dropped;
+    } else {
+      box_.bytes += text->size();
+      box_.replies.emplace_back(client, std::move(text));
+    }
+  }
+  wake();
+}
+
+std::optional<ViewRequest> ViewProtocol::take_request() {
+  if (!has_requests_.load()) return std::nullopt;
+  const std::lock_guard lock(request_mutex_);
+  if (requests_.empty()) return std::nullopt;
+  ViewRequest request = std::move(requests_.front());
+  requests_.pop_front();
+  has_requests_ = !requests_.empty();
+  const auto waiting = waiting_requests_.find(request.client);
+  if (waiting != waiting_requests_.end() && --waiting->second == 0) waiting_requests_.erase(waiting);
+  return request;
+}
+
+void ViewProtocol::wake() {
+  if (!awake_.exchange(true)) post_([this] { deliver(); });
+}
+
+// --- Functions of the thread of the server
+
+std::unique_ptr<WebSession> ViewProtocol::open(WebLink& link) {
+  auto session = std::make_unique<ViewSession>(*this, link);
+  sessions_.push_back(session.get());
+  return session;
+}
+
+void ViewProtocol::deliver() {
+  // Take what the other threads have sent
+  awake_ = false;
+  Box box;
+  {
+    const std::lock_guard lock(box_mutex_);
+    std::swap(box, box_);
+  }
+  for (Retained& retained : box.retained) keep(std::move(retained));
+  if (box.state) last_state_ = box.state;
+
+  // Pass it on
+  for (ViewSession* session : sessions_) {
+    if (!session->greeted_) continue;
+    session->dropped_ += box.dropped;
+    for (const Text& text : box.texts) session->push(text);
+    for (const auto& reply : box.replies)
+      if (reply.first == session->link_.number()) session->push(reply.second);
+    if (box.state) session->set_state(box.state);
+    session->link_.wake();
+  }
+}
+
+void ViewProtocol::keep(Retained retained) {
+  retained.revision = ++revision_;
+  const auto same =
+      std::find_if(retained_.begin(), retained_.end(), [&](const Retained& other) { return other.op == retained.op; });
+  if (same != retained_.end())
+    *same = std::move(retained);
+  else
+    retained_.push_back(std::move(retained));
+}
+
+void ViewProtocol::greeted() {
+  ++clients_;
+  deliver();  // texts and states of before are not for the new page
+}
+
+void ViewProtocol::left(const ViewSession& session, bool was_greeted) {
+  sessions_.erase(std::find(sessions_.begin(), sessions_.end(), &session));
+  if (!was_greeted) return;
+  add_request({session.link_.number(), session.may_control_, "left", ""});
+  if (--clients_ == 0) last_state_.reset();
+}
+
+bool ViewProtocol::add_request(ViewRequest request) {
+  const std::lock_guard lock(request_mutex_);
+  std::size_t& waiting = waiting_requests_[request.client];
+  if (waiting >= max_waiting_requests && request.op != "left") return false;
+  ++waiting;
+  requests_.push_back(std::move(request));
+  has_requests_ = true;
+  return true;
+}
+
+// --- One page
+
+ViewSession::~ViewSession() {
+  protocol_.left(*this, greeted_);
+}
+
+void ViewSession::receive(std::string_view bytes, bool is_text) {
+  try {
+    if (!is_text) throw WebError("binary messages are not part of shoal.view.v1");
+    const ClientMessage message = parse_client_message(bytes);
+    if (!greeted_ && message.op != "hello")
+      throw WebError("the first message must be 'hello', got '" + message.op + "'");
+    if (message.op == "hello") return greet(message.token);
+    if (message.op == "ack") return acknowledge(*message.sequence);
+    request({link_.number(), may_control_, message.op, std::string(bytes)}, message.id);
+  } catch (const WebError& error) {
+    push(shared(error_message(error.what())));
+    if (!greeted_) link_.close(WebClose::policy, "no valid hello");
+  }
+  link_.wake();
+}
+
+void ViewSession::greet(std::string_view token) {
+  if (greeted_) throw WebError("a second 'hello'");
+  may_control_ = protocol_.token_.matches(token);
+  if (protocol_.token_to_read_ && !may_control_)
+    throw WebError("the token of the address is needed: it ends with #t=...");
+
+  // The new page first gets what is retained, then the last state
+  protocol_.greeted();
+  greeted_ = true;
+  if (!may_control_ && !token.empty()) push(shared(error_message("wrong token: " + std::string(no_token))));
+  if (protocol_.last_state_) set_state(protocol_.last_state_);
+  link_.wake();
+}
+
+void ViewSession::acknowledge(std::uint32_t sequence) {
+  const auto found = std::find(unacknowledged_.begin(), unacknowledged_.end(), sequence);
+  if (found == unacknowledged_.end()) return;
+  unacknowledged_.erase(unacknowledged_.begin(), found + 1);
+  link_.wake();
+}
+
+void ViewSession::request(ViewRequest request, const std::string& id) {
+  if (needs_control(request.op) && !may_control_) return push(shared(refusal_message(id, no_token)));
+  if (!protocol_.add_request(std::move(request)))
+    push(shared(refusal_message(
+        id, "too many requests: " + std::to_string(ViewProtocol::max_waiting_requests) + " of this page are waiting")));
+}
+
+void ViewSession::push(Text text) {
+  drop_oldest(text->size());
+  if (text->size() > ViewProtocol::max_queued_bytes) {
+    ++dropped_;
+    return;
+  }
+  queued_bytes_ += text->size();
+  texts_.push_back(std::move(text));
+}
+
+void ViewSession::drop_oldest(std::size_t room_for) {
+  while (!texts_.empty() && queued_bytes_ + room_for > ViewProtocol::max_queued_bytes) {
+    queued_bytes_ -= texts_.front()->size();
+    texts_.pop_front();
+    ++dropped_;
+  }
+}
+
+bool ViewSession::next(WebFrame& frame) {
+  const bool state_first = complete_ && bytes_since_state_ >= texts_between_states;
+  if (state_first)
+    if (Text state = next_state()) return take(std::move(state), false, frame);
+  if (Text text = next_retained()) return take(std::move(text), true, frame);
+  if (Text text = next_text()) return take(std::move(text), true, frame);
+  if (Text state = next_state()) return take(std::move(state), false, frame);
+  return false;
+}
+
+bool ViewSession::take(Text bytes, bool is_text, WebFrame& frame) {
+  bytes_since_state_ = is_text ? bytes_since_state_ + bytes->size() : 0;
+  frame = {std::move(bytes), is_text};
+  return true;
+}
+
+/// Returns the first retained text that the page has not got, in the order of their first retain.
+ViewSession::Text ViewSession::next_retained() {
+  const auto& retained = protocol_.retained_;
+  if (!greeted_) return nullptr;
+  if (revision_seen_ == protocol_.revision_) {
+    complete_ = true;
+    return nullptr;
+  }
+  revisions_sent_.resize(retained.size());
+  for (std::size_t i = 0; i < retained.size(); ++i) {
+    if (revisions_sent_[i] == retained[i].revision) continue;
+    revisions_sent_[i] = retained[i].revision;
+    return may_control_ && retained[i].text_of_controller ? retained[i].text_of_controller : retained[i].text;
+  }
+  revision_seen_ = protocol_.revision_;
+  complete_ = true;
+  return nullptr;
+}
+
+ViewSession::Text ViewSession::next_text() {
+  if (dropped_ > 0) return shared("{\"op\":\"dropped\",\"count\":" + std::to_string(std::exchange(dropped_, 0)) + "}");
+  if (texts_.empty()) return nullptr;
+  Text text = std::move(texts_.front());
+  texts_.pop_front();
+  queued_bytes_ -= text->size();
+  return text;
+}
+
+ViewSession::Text ViewSession::next_state() {
+  if (!state_ || unacknowledged_.size() >= ViewProtocol::max_unacknowledged) return nullptr;
+  unacknowledged_.push_back(sequence_of_state(*state_));
+  return std::exchange(state_, nullptr);
+}
+
+}  // namespace bridges

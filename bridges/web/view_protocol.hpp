@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "bridges/web/access_token.hpp"
+#include "bridges/web/view_request.hpp"
+#include "bridges/web/web_protocol.hpp"
+
+namespace bridges {
+
+class ViewSession;
+
+/// Subprotocol of the live page (docs/develop/view_protocol.md), without the network: what each page gets, and when.
+/// Its functions for the simulation only put a message into a box under a lock and wake the thread of the server; in
+/// this thread deliver() passes the messages on to the sessions.
+class ViewProtocol final : public WebProtocol {
+ public:
+  static constexpr std::size_t max_queued_bytes = std::size_t{8} << 20;  ///< texts that wait for one page
+  static constexpr std::size_t max_unacknowledged = 2;                   ///< states
+  static constexpr std::size_t max_waiting_requests = 32;                ///< of one page
+
+  /// Function that runs work in the thread of the server.
+  using Post = std::function<void(std::function<void()>)>;
+
+  /// `token_to_read`: pages without the token are closed.  `post`: may be set later, before the first client.
+  ViewProtocol(const AccessToken& token, bool token_to_read) : token_(token), token_to_read_(token_to_read) {}
+  /// Sets how to reach the thread of the server.
+  void set_post(Post post) { post_ = std::move(post); }
+
+  std::unique_ptr<WebSession> open(WebLink& link) override;
+
+  /// As in WebServer.
+  int clients() const { return clients_.load(); }
+  void send_state(std::span<const std::byte> state);
+  void send_text(std::string json);
+  void retain(std::string_view op, std::string json);
+  void reply(int client, std::string json);
+  std::optional<ViewRequest> take_request();
+
+ private:
+  friend class ViewSession;
+  using Text = std::shared_ptr<const std::string>;
+
+  /// Text that every page gets; for `hello` the second one is that of a page that may control.
+  struct Retained {
+    std::string op;
+    Text text, text_of_controller;
+    std::uint64_t revision = 0;
+  };
+  /// What the other threads have sent since deliver().
+  struct Box {
+    Text state;
+    std::vector<Text> texts;
+    std::size_t bytes = 0;
+    std::uint64_t dropped = 0;
+    std::vector<Retained> retained;
+    std::vector<std::pair<int, Text>> replies;
+  };
+
+  void wake();
+  void deliver();
+  void keep(Retained retained);
+  bool add_request(ViewRequest request);
+  void greeted();
+  void left(const ViewSession& session, bool was_greeted);
+
+  const AccessToken& token_;
+  const bool token_to_read_;
+  Post post_;
+  std::atomic<int> clients_ = 0;
+  std::atomic<bool> awake_ = false;
+  std::mutex box_mutex_;
+  Box box_;
+  std::mutex request_mutex_;
+  std::deque<ViewRequest> requests_;
+  std::map<int, std::size_t> waiting_requests_;  // by client
+  std::atomic<bool> has_requests_ = false;
+
+  // Of the thread of the server:
+  std::vector<Retained> retained_;
+  std::uint64_t revision_ = 0;
+  Text last_state_;
+  std::vector<ViewSession*> sessions_;
+};
+
+/// One page.
+class ViewSession final : public WebSession {
+ public:
+  ViewSession(ViewProtocol& protocol, WebLink& link) : protocol_(protocol), link_(link) {}
+  ~ViewSession() override;
+  void receive(std::string_view bytes, bool is_text) override;
+  bool next(WebFrame& frame) override;
+  bool awaits_greeting() const override { return !greeted_; }
+
+ private:
+  friend class ViewProtocol;
+  using Text = ViewProtocol::Text;
+
+  void greet(std::string_view token);
+  void acknowledge(std::uint32_t sequence);
+  void request(ViewRequest request, const std::string& id);
+  void push(Text text);
+  void drop_oldest(std::size_t room_for);
+  void set_state(const Text& state) { state_ = state; }
+  bool take(Text bytes, bool is_text, WebFrame& frame);
+  Text next_retained();
+  Text next_text();
+  Text next_state();
+
+  ViewProtocol& protocol_;
+  WebLink& link_;
+  bool greeted_ = false;
+  bool may_control_ = false;
+  std::vector<std::uint64_t> revisions_sent_;  // of the retained texts, in their order
+  std::uint64_t revision_seen_ = 0;
+  bool complete_ = false;  // every retained text has been sent once
+  std::deque<Text> texts_;
+  std::size_t queued_bytes_ = 0;
+  std::uint64_t dropped_ = 0;
+  std::size_t bytes_since_state_ = 0;
+  Text state_;
+  std::deque<std::uint32_t> unacknowledged_;
+};
+
+}  // namespace bridges

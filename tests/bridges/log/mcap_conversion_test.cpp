@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bridges/log/mcap_conversion.hpp"
+
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "bridges/log/event_log.hpp"
+#include "bridges/log/recording_bus.hpp"
+#include "bridges/mcap/mcap_reader.hpp"
+#include "shoal/message_codec.hpp"
+#include "shoal/utime_t.hpp"
+#include "sim/bus/in_process_bus.hpp"
+#include "tests/bridges/lcm/lcm_test_support.hpp"
+
+namespace {
+
+using lcm_test::bytes_of;
+using lcm_test::ScratchFolder;
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+void record_clocks(const std::string& path, int count) {
+  sim::InProcessBus network;
+  bridges::RecordingBus bus(network, path, 1'000'000);
+  for (int i = 0; i < count; ++i) {
+    bus.publish(i % 2 == 0 ? "sim.clock" : "other", shoal::encode(shoal::utime_t{i}), sim::Time(i * 10'000));
+    bus.end_of_step();
+  }
+  bus.publish("odd", bytes_of("no message"), sim::Time(count * 10'000));
+  bus.close();
+  EXPECT_EQ(bus.error(), std::nullopt);
+}
+
+std::string file_content(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+std::uint64_t count_messages(const std::string& path) {
+  bridges::mcap::McapReader reader(path);
+  std::uint64_t messages = 0;
+  for (bridges::mcap::McapReader::Item item; (item = reader.next()) != bridges::mcap::McapReader::Item::end;)
+    messages += item == bridges::mcap::McapReader::Item::message;
+  EXPECT_TRUE(reader.complete());
+  return messages;
+}
+
+TEST(McapConversion, GivesTheBytesOfADirectRecord) {
+  const ScratchFolder folder;
+  record_clocks(folder.file("a.lcm"), 3000);
+  record_clocks(folder.file("direct.mcap"), 3000);
+  const auto converted =
+      bridges::convert_to_mcap({folder.file("a.lcm"), folder.file("a.mcap"), {}, {}, {}}, shoal::embedded_types());
+  EXPECT_EQ(converted.events, 3001u);
+  EXPECT_EQ(converted.messages, 3001u + 1500u);  // with /clock
+  EXPECT_EQ(converted.not_decoded, 1u);
+  EXPECT_EQ(converted.bytes, std::filesystem::file_size(folder.file("a.mcap")));
+  EXPECT_EQ(count_messages(folder.file("a.mcap")), converted.messages);
+  EXPECT_TRUE(file_content(folder.file("a.mcap")) == file_content(folder.file("direct.mcap")));
+}
+
+TEST(McapConversion, TakesOnlyTheWantedChannels) {
+  const ScratchFolder folder;
+  record_clocks(folder.file("a.lcm"), 10);
+  std::uint64_t last = 0;
+  const auto converted = bridges::convert_to_mcap({folder.file("a.lcm"),
+                                                   folder.file("a.mcap"),
+                                                   {},
+                                                   [](std::string_view channel) { return channel == "other"; },
+                                                   [&](std::uint64_t done, std::uint64_t total) {
+                                                     EXPECT_LT(done, total);
+                                                     last = done;
+                                                   }},
+                                                  shoal::embedded_types());
+  EXPECT_EQ(converted.events, 5u);
+  EXPECT_EQ(converted.channels, 1u);
+  EXPECT_GT(last, 0u);
+}
+
+TEST(McapConversion, RefusesAnExistingFileAndAnMcapFileAsLog) {
+  const ScratchFolder folder;
+  record_clocks(folder.file("a.lcm"), 10);
+  record_clocks(folder.file("b.mcap"), 10);
+  const auto convert = [&](const std::string& log, const std::string& out) {
+    bridges::convert_to_mcap({folder.file(log), folder.file(out), {}, {}, {}}, shoal::embedded_types());
+  };
+  EXPECT_THAT([&] { convert("a.lcm", "b.mcap"); }, ThrowsMessage<bridges::BusError>(HasSubstr("already exists")));
+  EXPECT_THAT([&] { convert("b.mcap", "c.mcap"); }, ThrowsMessage<bridges::BusError>(HasSubstr("is an MCAP file")));
+}
+
+TEST(RecordBranch, AnMcapRecordContinuesInAnotherFile) {
+  const ScratchFolder folder;
+  sim::InProcessBus network;
+  bridges::RecordingBus bus(network, folder.file("a.mcap"), 0);
+  bus.publish("x", shoal::encode(shoal::utime_t{1}), sim::Time{10});
+  const std::uint64_t events = bus.recorded();
+  const std::uint64_t position = bus.position();
+  bus.publish("x", shoal::encode(shoal::utime_t{2}), sim::Time{20});
+  bus.prepare(folder.file("b.mcap"), events, position, bridges::Existing::refuse);
+  bus.publish("x", shoal::encode(shoal::utime_t{3}), sim::Time{30});
+  bus.go_on();
+  bus.publish("x", shoal::encode(shoal::utime_t{4}), sim::Time{15});
+  bus.close();
+  EXPECT_EQ(bus.error(), std::nullopt);
+  EXPECT_EQ(count_messages(folder.file("a.mcap")), 3u);
+  EXPECT_EQ(count_messages(folder.file("b.mcap")), 2u);
+}
+
+}  // namespace

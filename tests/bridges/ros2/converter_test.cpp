@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bridges/ros2/converter.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "shoal/battery_t.hpp"
+#include "shoal/dvl_t.hpp"
+#include "shoal/estimate_t.hpp"
+#include "shoal/gps_data_t.hpp"
+#include "shoal/image_t.hpp"
+#include "shoal/multibeam_t.hpp"
+#include "shoal/planar_lidar_t.hpp"
+#include "shoal/point_cloud_t.hpp"
+#include "shoal/pose_t.hpp"
+#include "shoal/sim_info_t.hpp"
+#include "shoal/sim_state_t.hpp"
+#include "shoal/sonar_range_t.hpp"
+#include "shoal/utime_t.hpp"
+
+namespace {
+
+using namespace bridges::ros2;
+
+/// Reads CDR back, with its alignment.
+class CdrReader {
+ public:
+  explicit CdrReader(std::vector<std::byte> cdr) : cdr_(std::move(cdr)) {}
+  template <class T>
+  T number() {
+    at_ = (at_ - 4 + sizeof(T) - 1) / sizeof(T) * sizeof(T) + 4;
+    T value{};
+    EXPECT_LE(at_ + sizeof value, cdr_.size());
+    if (at_ + sizeof value <= cdr_.size()) std::memcpy(&value, cdr_.data() + at_, sizeof value);
+    at_ += sizeof value;
+    return value;
+  }
+  std::string text() {
+    const auto size = number<std::uint32_t>();
+    std::string value(reinterpret_cast<const char*>(cdr_.data() + at_), size - 1);
+    at_ += size;
+    return value;
+  }
+  template <class T>
+  void skip(int count) {
+    for (int i = 0; i < count; ++i) number<T>();
+  }
+  bool at_end() const { return at_ == cdr_.size(); }
+
+ private:
+  std::vector<std::byte> cdr_;
+  std::size_t at_ = 4;
+};
+
+/// Converts a message; nothing when the converter does not apply.
+template <class Message>
+std::optional<CdrReader> converted(const Message& message, const std::string& topic,
+                                   const std::string& channel = "auv1.x") {
+  for (const Converter* each : ConverterTable::instance().of(std::string("shoal.") + Message::getTypeName())) {
+    if (each->topic != topic) continue;
+    std::vector<std::byte> cdr;
+    if (!each->convert(shoal::encode(message), channel, cdr)) return std::nullopt;
+    return CdrReader(cdr);
+  }
+  ADD_FAILURE() << "no converter to " << topic;
+  return std::nullopt;
+}
+
+/// Reads a header with the time 1.5 s.
+void expect_header(CdrReader& in, const std::string& frame) {
+  EXPECT_EQ(in.number<std::int32_t>(), 1);
+  EXPECT_EQ(in.number<std::uint32_t>(), 500'000'000u);
+  EXPECT_EQ(in.text(), frame);
+}
+
+TEST(Ros2Converter, TimeBeforeTheEpochHasPositiveNanoseconds) {
+  auto in = converted(shoal::utime_t{-1}, "/clock", "sim.clock");
+  EXPECT_EQ(in->number<std::int32_t>(), -1);
+  EXPECT_EQ(in->number<std::uint32_t>(), 999'999'000u);
+}
+
+TEST(Ros2Converter, OnlyTheClockOfTheSimulatorIsTheClock) {
+  EXPECT_TRUE(converted(shoal::utime_t{5}, "/clock", "sim.clock"));
+  EXPECT_FALSE(converted(shoal::utime_t{5}, "/clock", "auv1.beat"));
+}
+
+TEST(Ros2Converter, PosesOfVehiclesAreTransformsWithWLast) {
+  shoal::sim_state_t state{1'500'000, 0, 1, {"auv1"}, {{1, 2, 3}}, {{0.5, -0.5, 0.5, 0.25}}, {{0, 0, 0}}, {{0, 0, 0}}};
+  auto in = converted(state, "/tf");
+  EXPECT_EQ(in->number<std::uint32_t>(), 1u);
+  expect_header(*in, "world");
+  EXPECT_EQ(in->text(), "auv1");
+  for (const double value : {1.0, 2.0, 3.0, -0.5, 0.5, 0.25, 0.5}) EXPECT_EQ(in->number<double>(), value);
+  EXPECT_TRUE(in->at_end());
+}
+
+TEST(Ros2Converter, AFixHasVariancesOfItsAccuracy) {
+  shoal::gps_data_t gps{};
+  gps.utime = 1'500'000;
+  gps.gps_lock = 2;
+  gps.latitude = 47;
+  gps.longitude = 8;
+  gps.elev = 400;
+  gps.horizontal_accuracy = 3;
+  gps.vertical_accuracy = 5;
+  auto in = converted(gps, "fix", "auv1.gps");
+  expect_header(*in, "auv1/gps");
+  EXPECT_EQ(in->number<std::int8_t>(), 2);  // ground-based augmentation
+  EXPECT_EQ(in->number<std::uint16_t>(), 1);
+  for (const double value : {47.0, 8.0, 400.0, 9.0, 0.0, 0.0, 0.0, 9.0, 0.0, 0.0, 0.0, 25.0})
+    EXPECT_EQ(in->number<double>(), value);
+  EXPECT_EQ(in->number<std::uint8_t>(), 2);  // the diagonal is known
+  EXPECT_TRUE(in->at_end());
+}
+
+TEST(Ros2Converter, TheLastBeamOfAScanIsAtItsLargestAngle) {
+  auto in = converted(shoal::planar_lidar_t{1'500'000, 3, {1, 2, 3}, 0, {}, -1.0f, 0.5f}, "scan");
+  expect_header(*in, "auv1/x");
+  for (const float value : {-1.0f, 0.0f, 0.5f, 0.0f, 0.0f, 0.0f}) EXPECT_EQ(in->number<float>(), value);
+  EXPECT_EQ(in->number<float>(), std::numeric_limits<float>::infinity());
+  EXPECT_EQ(in->number<std::uint32_t>(), 3u);
+  for (const float value : {1.0f, 2.0f, 3.0f}) EXPECT_EQ(in->number<float>(), value);
+  EXPECT_EQ(in->number<std::uint32_t>(), 0u);
+  EXPECT_TRUE(in->at_end());
+}
+
+TEST(Ros2Converter, PointsHaveTheirColumns) {
+  auto in = converted(shoal::point_cloud_t{1'500'000, 1, {1}, {2}, {3}, {0.5f}, {7}, {-20}}, "points");
+  expect_header(*in, "auv1/x");
+  EXPECT_EQ(in->number<std::uint32_t>(), 1u);
+  EXPECT_EQ(in->number<std::uint32_t>(), 1u);
+  ASSERT_EQ(in->number<std::uint32_t>(), 6u);
+  std::uint32_t end = 0;
+  for (const char* name : {"x", "y", "z", "intensity", "time_us", "ring"}) {
+    EXPECT_EQ(in->text(), name);
+    EXPECT_EQ(in->number<std::uint32_t>(), end);
+    const int datatype = in->number<std::uint8_t>();
+    end += datatype == 4 ? 2 : 4;
+    EXPECT_EQ(in->number<std::uint32_t>(), 1u);
+  }
+  EXPECT_EQ(in->number<std::uint8_t>(), 0);
+  EXPECT_EQ(in->number<std::uint32_t>(), end);
+  EXPECT_EQ(in->number<std::uint32_t>(), end);
+  ASSERT_EQ(in->number<std::uint32_t>(), 22u);
+  in->skip<std::uint8_t>(22);
+  EXPECT_EQ(in->number<std::uint8_t>(), 1);
+  EXPECT_TRUE(in->at_end());
+}
+
+TEST(Ros2Converter, OnlyBeamsWithAnEchoArePoints) {
+  shoal::multibeam_t ping{1'500'000, 2, {0.0f, 0.5f}, {10.0f, 20.0f}, {60.0f, 70.0f}, {0, 1}};
+  auto in = converted(ping, "points");
+  expect_header(*in, "auv1/x");
+  in->number<std::uint32_t>();
+  EXPECT_EQ(in->number<std::uint32_t>(), 1u);  // width
+  ASSERT_EQ(in->number<std::uint32_t>(), 4u);
+  for (int i = 0; i < 4; ++i) {
+    in->text();
+    in->number<std::uint32_t>();
+    in->number<std::uint8_t>();
+    in->number<std::uint32_t>();
+  }
+  in->skip<std::uint8_t>(1);
+  in->skip<std::uint32_t>(2);
+  ASSERT_EQ(in->number<std::uint32_t>(), 16u);
+  EXPECT_EQ(in->number<float>(), 0.0f);
+  EXPECT_FLOAT_EQ(in->number<float>(), 20.0f * std::sin(0.5f));   // to port
+  EXPECT_FLOAT_EQ(in->number<float>(), -20.0f * std::cos(0.5f));  // down
+  EXPECT_EQ(in->number<float>(), 70.0f);
+}
+
+TEST(Ros2Converter, ImagesAreRawOrCompressedByTheirFormat) {
+  shoal::image_t image{};
+  image.utime = 1'500'000;
+  image.width = 2;
+  image.height = 1;
+  image.row_stride = 6;
+  image.pixelformat = 859981650;  // RGB
+  image.size = 6;
+  image.data = {1, 2, 3, 4, 5, 6};
+  auto in = converted(image, "image");
+  EXPECT_FALSE(converted(image, "compressed"));
+  expect_header(*in, "auv1/x");
+  EXPECT_EQ(in->number<std::uint32_t>(), 1u);
+  EXPECT_EQ(in->number<std::uint32_t>(), 2u);
+  EXPECT_EQ(in->text(), "rgb8");
+  EXPECT_EQ(in->number<std::uint8_t>(), 0);
+  EXPECT_EQ(in->number<std::uint32_t>(), 6u);
+  EXPECT_EQ(in->number<std::uint32_t>(), 6u);
+  image.row_stride = 5;
+  EXPECT_FALSE(converted(image, "image"));  // rows overlap
+  image.pixelformat = 1196444237;           // JPEG
+  auto jpeg = converted(image, "compressed");
+  expect_header(*jpeg, "auv1/x");
+  EXPECT_EQ(jpeg->text(), "jpeg");
+}
+
+TEST(Ros2Converter, AnEstimateIsAPoseInTheWorldWithItsCovariance) {
+  shoal::estimate_t estimate{1'500'000, {1, 2, 3}, {1, 2, 3, 4, 5, 6, 7, 8, 9}, {0, 0, 0}, M_PI, 0};
+  auto in = converted(estimate, "pose");
+  expect_header(*in, "world");
+  for (const double value : {1.0, 2.0, 3.0, 0.0, 0.0, 1.0}) EXPECT_EQ(in->number<double>(), value);
+  EXPECT_NEAR(in->number<double>(), 0.0, 1e-15);  // cos(pi/2)
+  const double rows[3][6] = {{1, 2, 3, 0, 0, 0}, {4, 5, 6, 0, 0, 0}, {7, 8, 9, 0, 0, 0}};
+  for (const auto& row : rows)
+    for (const double value : row) EXPECT_EQ(in->number<double>(), value);
+  in->skip<double>(18);
+  EXPECT_TRUE(in->at_end());
+}
+
+TEST(Ros2Converter, VelocitiesOfOdometryAreInTheAxesOfTheVehicle) {
+  // Heading north (yaw 90 degrees) with 2 m/s to the north: forward.
+  const double half = std::sqrt(0.5);
+  shoal::pose_t pose{1'500'000, {0, 0, 0}, {0, 2, 0}, {half, 0, 0, half}, {0, 0, 1}, {0, 0, 0}};
+  auto in = converted(pose, "odometry");
+  expect_header(*in, "world");
+  EXPECT_EQ(in->text(), "auv1/x");
+  in->skip<double>(7 + 36);
+  for (const double value : {2.0, 0.0, 0.0, 0.0, 0.0, 1.0}) EXPECT_NEAR(in->number<double>(), value, 1e-12);
+  in->skip<double>(36);
+  EXPECT_TRUE(in->at_end());
+}
+
+TEST(Ros2Converter, ASonarWithoutAnEchoReportsAnInfiniteRange) {
+  auto in = converted(shoal::sonar_range_t{1'500'000, 50, 0, 0}, "range");
+  expect_header(*in, "auv1/x");
+  in->skip<std::uint8_t>(1);
+  in->skip<float>(3);
+  EXPECT_EQ(in->number<float>(), std::numeric_limits<float>::infinity());
+}
+
+TEST(Ros2Converter, ADischargingBatteryHasANegativeCurrent) {
+  auto in = converted(shoal::battery_t{1'500'000, 12, 2, 0.5, 0, 0}, "battery");
+  expect_header(*in, "auv1/x");
+  EXPECT_EQ(in->number<float>(), 12.0f);
+  EXPECT_TRUE(std::isnan(in->number<float>()));
+  EXPECT_EQ(in->number<float>(), -2.0f);
+}
+
+TEST(Ros2Converter, ADvlWithoutBottomLockGivesNoVelocity) {
+  shoal::dvl_t dvl{};
+  EXPECT_FALSE(converted(dvl, "velocity"));
+  dvl.bottom_lock = 1;
+  EXPECT_TRUE(converted(dvl, "velocity"));
+}
+
+TEST(Ros2Converter, DevicesOnTheBaseHaveFramesInTheirVehicle) {
+  shoal::sim_info_t info{};
+  info.utime = 1'500'000;
+  info.resolved_config =
+      "vehicles:\n- name: a\n  model:\n    bodies:\n    - {name: base, position_m: [0, 0, 1]}\n    - {name: arm}\n"
+      "    devices:\n    - {name: lidar, position_m: [0.5, 0, 0], rpy_deg: [0, 0, 180]}\n"
+      "    - {name: gripper, body: arm}\n    - {name: gps, channel: fixes}\n";
+  auto in = converted(info, "/tf_static", "sim.info");
+  ASSERT_EQ(in->number<std::uint32_t>(), 2u);
+  expect_header(*in, "a");
+  EXPECT_EQ(in->text(), "a/lidar");
+  for (const double value : {0.5, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0}) EXPECT_NEAR(in->number<double>(), value, 1e-15);
+  expect_header(*in, "a");
+  EXPECT_EQ(in->text(), "fixes");
+  info.resolved_config = "vehicles: [ {";
+  EXPECT_FALSE(converted(info, "/tf_static", "sim.info"));
+}
+
+TEST(Ros2Converter, TheTopicIsBelowTheChannelOrCommon) {
+  EXPECT_EQ((Converter{"", "", "scan", {}}.topic_for("rover1.lidar")), "/rover1/lidar/scan");
+  EXPECT_EQ((Converter{"", "", "/tf", {}}.topic_for("sim.state")), "/tf");
+}
+
+}  // namespace

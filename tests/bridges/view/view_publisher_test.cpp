@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bridges/view/view_publisher.hpp"
+
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "shoal/sim_asset_t.hpp"
+#include "shoal/sim_scene_t.hpp"
+#include "sim/world/world_state.hpp"
+#include "tests/devices/comms/modem_fixture.hpp"
+#include "tests/scratch_folder.hpp"
+
+namespace {
+
+using Json = nlohmann::json;
+
+/// A world whose view is published, with everything that it publishes.
+struct ViewedWorld {
+  explicit ViewedWorld(const std::string& yaml) : test(yaml) { view.after_step(); }
+  void run_for(double time_s) {
+    const sim::Time end = test.world.now() + sim::from_seconds(time_s);
+    while (test.world.now() < end) {
+      test.world.step();
+      view.after_step();
+    }
+  }
+  Json last_scene() { return Json::parse(scenes.last().scene); }
+
+  test::TestWorld test;
+  test::Listener<shoal::sim_scene_t> scenes{test, "sim.scene"};
+  test::Listener<shoal::sim_asset_t> assets{test, "sim.asset"};
+  test::Listener<shoal::sim_bodies_t> bodies{test, "sim.bodies"};
+  test::Listener<shoal::sim_sound_t> sounds{test, "sim.sound"};
+  test::Listener<shoal::sim_sound_arrival_t> arrivals{test, "sim.sound.arrival"};
+  test::Listener<shoal::sim_event_t> events{test, "sim.event"};
+  bridges::ViewPublisher view{test.bus, test.world, {}, [] { return true; }};
+};
+
+/// A rover on the ground, and a ball that falls beside it.
+const std::string rover_and_ball =
+    test::rover_world("        - {name: lidar, type: lidar, body: chassis, fov_deg: 90, beams: 3, range_max_m: 8}\n",
+                      "  - {name: ball, position_m: [3, 0, 1], parts: [{shape: sphere, radius_m: 0.1, mass_kg: 1}]}\n");
+
+TEST(ViewPublisher, TheSceneHasEveryBodyInTheOrderOfItsNumber) {
+  ViewedWorld viewed(rover_and_ball);
+  const Json scene = viewed.last_scene();
+  ASSERT_EQ(scene["bodies"].size(), 5u);  // ground, ball, chassis and two wheels
+  for (std::size_t i = 1; i < scene["bodies"].size(); ++i)
+    EXPECT_LT(scene["bodies"][i - 1]["id"], scene["bodies"][i]["id"]);
+  const auto of = [&](const std::string& name) {
+    for (const Json& body : scene["bodies"])
+      if (body["name"] == name) return body;
+    return Json();
+  };
+  EXPECT_EQ(of("r1/chassis")["parts"].size(), 3u);
+  EXPECT_EQ(of("r1/chassis")["parts"][0]["size_m"], Json({0.4, 0.3, 0.1}));
+  EXPECT_EQ(of("r1/chassis")["owner"], "r1");
+  const Json& lidar = scene["vehicles"][0]["devices"][0];
+  EXPECT_EQ(lidar["type"], "lidar");
+  EXPECT_EQ(lidar["channels"], Json({"r1.lidar"}));
+  EXPECT_EQ(lidar["field_of_view"]["range_m"], 8);
+  EXPECT_NEAR(lidar["field_of_view"]["to_rad"].get<double>(), 0.7854, 1e-3);
+}
+
+TEST(ViewPublisher, BodiesAreTheMovableOnesOfTheSceneAtTheirPoses) {
+  ViewedWorld viewed(rover_and_ball);
+  const Json scene = viewed.last_scene();
+  viewed.run_for(0.1);
+  const shoal::sim_bodies_t bodies = viewed.bodies.last();
+  std::vector<int> movable;
+  for (const Json& body : scene["bodies"])
+    if (!body["fixed"].get<bool>()) movable.push_back(body["id"]);
+  EXPECT_EQ(bodies.body, std::vector<std::int32_t>(movable.begin(), movable.end()));
+  EXPECT_EQ(bodies.revision, scene["revision"]);
+  for (std::size_t i = 0; i < movable.size(); ++i) {
+    const sim::Vector3d p_W =
+        viewed.test.world.physics().bodies()[static_cast<std::size_t>(movable[i])]->X_WB().translation();
+    for (int axis = 0; axis < 3; ++axis) EXPECT_EQ(bodies.position_m[i][static_cast<std::size_t>(axis)], p_W[axis]);
+  }
+}
+
+TEST(ViewPublisher, PublishesBodiesAtTheirRate) {
+  ViewedWorld viewed(rover_and_ball + "view: {bodies_rate_hz: 20}\n");
+  viewed.run_for(1);
+  EXPECT_EQ(viewed.bodies.take_all().size(), 21u);
+}
+
+TEST(ViewPublisher, PublishesNothingThatIsSwitchedOff) {
+  ViewedWorld viewed(rover_and_ball +
+                     "view: {scene: false, bodies_rate_hz: never, sounds: false, events: false}\n"
+                     "events: [{name: e, at_s: 0.05, do: [{log: now}]}]\n");
+  viewed.run_for(0.2);
+  EXPECT_TRUE(viewed.scenes.take_all().empty());
+  EXPECT_TRUE(viewed.bodies.take_all().empty());
+  EXPECT_TRUE(viewed.events.take_all().empty());
+}
+
+TEST(ViewPublisher, ANewObjectMakesAnotherRevision) {
+  ViewedWorld viewed(
+      rover_and_ball +
+      "events: [{name: more, at_s: 1, do: [{add: {name: box, position_m: [5, 0, 1], parts: [{shape: box, "
+      "mass_kg: 1}]}}]}]\n");
+  viewed.run_for(0.9);
+  const std::vector<shoal::sim_scene_t> first = viewed.scenes.take_all();
+  ASSERT_EQ(first.size(), 1u);
+  viewed.run_for(0.3);
+  const shoal::sim_scene_t second = viewed.scenes.last();
+  EXPECT_GT(second.revision, first.front().revision);
+  EXPECT_EQ(viewed.bodies.last().count, 5);
+  std::vector<std::string> kinds;
+  for (const shoal::sim_event_t& event : viewed.events.take_all()) kinds.push_back(event.kind + " " + event.who);
+  EXPECT_THAT(kinds, testing::ElementsAre("event more", "added box"));
+}
+
+/// A viewer that starts later asks for it.
+TEST(ViewPublisher, TheSceneAndItsAssetsComeAgainOnRequest) {
+  const ScratchFolder folder;
+  ViewedWorld viewed(
+      "shoal: 1\nobjects: [{name: hill, fixed: true, parts: [{shape: terrain, terrain: {source: slope, "
+      "angle_deg: 10, cell_m: 1, size_m: [4, 2]}}]}]\n");
+  const std::vector<shoal::sim_asset_t> assets = viewed.assets.take_all();
+  ASSERT_EQ(assets.size(), 1u);
+  EXPECT_EQ(viewed.last_scene()["bodies"][0]["parts"][0]["asset"], assets.front().hash);
+  EXPECT_EQ(assets.front().size, 28 + 4 * 5 * 3);  // seven words, 5 x 3 heights
+  viewed.run_for(0.1);
+  EXPECT_TRUE(viewed.scenes.take_all().empty());
+  viewed.view.request_scene();
+  viewed.run_for(0.1);
+  EXPECT_EQ(viewed.scenes.take_all().size(), 1u);
+  EXPECT_EQ(viewed.assets.take_all().size(), 1u);
+}
+
+TEST(ViewPublisher, FaultsAreEvents) {
+  ViewedWorld viewed(rover_and_ball +
+                     "events: [{name: dark, at_s: 0.1, do: [{fault: {device: r1.lidar, kind: silent}}]}]\n");
+  viewed.run_for(0.2);
+  const std::vector<shoal::sim_event_t> events = viewed.events.take_all();
+  ASSERT_EQ(events.size(), 2u);
+  EXPECT_EQ(events[1].kind, "fault");
+  EXPECT_EQ(events[1].who, "r1/lidar");
+  EXPECT_EQ(events[1].text, "silent");
+}
+
+/// Three modems in a row, 750 m apart: the first sends, and the middle one begins to send before the signal arrives.
+const std::string three_modems = test::modem_sea({{"a", "[0, 0, -50]", "{name: modem, type: acoustic_modem}", ""},
+                                                  {"b", "[750, 0, -50]", "{name: modem, type: acoustic_modem}", ""},
+                                                  {"c", "[1500, 0, -50]", "{name: modem, type: acoustic_modem}", ""}});
+
+TEST(ViewPublisher, ASoundHasItsResultAtEachReceiver) {
+  ViewedWorld viewed(three_modems);
+  const shoal::modem_send_t send = test::bytes_to("four");
+  viewed.test.send("a.modem.cmd", send);
+  viewed.run_for(0.3);
+  viewed.test.send("b.modem.cmd", send);
+  viewed.run_for(20);
+  const std::vector<shoal::sim_sound_t> sounds = viewed.sounds.take_all();
+  ASSERT_EQ(sounds.size(), 2u);
+  EXPECT_EQ(sounds[0].source, "a/modem");
+  EXPECT_EQ(sounds[0].kind, "message");
+  EXPECT_NEAR(sounds[0].sound_speed_mps, 1500, 0.1);
+  std::map<std::string, std::string> outcome;
+  for (const shoal::sim_sound_arrival_t& arrival : viewed.arrivals.take_all()) {
+    outcome[arrival.source + ">" + arrival.receiver] = arrival.outcome;
+    const double distance_m = std::abs(arrival.position_m[0] - (arrival.source == "a/modem" ? 0 : 750));
+    EXPECT_NEAR(arrival.travel_time_s, distance_m / 1500, 1e-3) << arrival.source << arrival.receiver;
+  }
+  EXPECT_EQ(outcome["a/modem>b/modem"], "half_duplex");
+  EXPECT_EQ(outcome["b/modem>a/modem"], "half_duplex") << "a still sends when the sound of b arrives";
+  EXPECT_EQ(outcome.size(), 4u);
+}
+
+TEST(ViewPublisher, DoesNotChangeTheRun) {
+  const auto hash_of = [](bool viewed_too) {
+    test::TestWorld test(three_modems);
+    std::optional<bridges::ViewPublisher> view;
+    if (viewed_too) view.emplace(test.bus, test.world, bridges::ViewPublisher::FillScores(), [] { return true; });
+    test.send("a.modem.cmd", test::bytes_to("four"));
+    for (int i = 0; i < 500; ++i) {
+      test.world.step();
+      if (view) view->after_step();
+    }
+    return test.world.state().run_hash();
+  };
+  EXPECT_EQ(hash_of(true), hash_of(false));
+}
+
+TEST(ViewPublisher, MakesNothingWhileNothingIsObserved) {
+  test::TestWorld test(rover_and_ball);
+  bridges::ViewPublisher view(test.bus, test.world, {}, [] { return false; });
+  test::Listener<shoal::sim_scene_t> scenes(test, "sim.scene");
+  view.after_step();
+  EXPECT_TRUE(scenes.take_all().empty());
+}
+
+}  // namespace

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <nlohmann/json.hpp>
+
+#include "bridges/web/client_message.hpp"
+#include "bridges/web/view_protocol.hpp"
+#include "bridges/web/web_error.hpp"
+#include "tests/fuzz/fuzz_target.hpp"
+
+// Messages of a page: each line is one, to a session of the live page; a line that begins with a zero byte is binary.
+
+namespace {
+
+class FuzzLink final : public bridges::WebLink {
+ public:
+  int number() const override { return 1; }
+  void wake() override {}
+  void close(bridges::WebClose, std::string) override {}
+};
+
+void check_message(std::string_view text) {
+  fuzz::allow<bridges::WebError>([&] {
+    const bridges::ClientMessage message = bridges::parse_client_message(text);
+    fuzz::require(!message.op.empty() && message.op.size() <= 32, "the kind of a message is bounded");
+    fuzz::require(message.token.size() <= 256 && message.id.size() <= 64, "what is kept of a message is bounded");
+    const auto refusal = nlohmann::json::parse(bridges::refusal_message(message.id, text));
+    fuzz::require(refusal.at("id").dump() == message.id, "a refusal has the id of the message");
+  });
+}
+
+}  // namespace
+
+SHOAL_FUZZ_TARGET(view_message) {
+  static const bridges::AccessToken token("0123456789abcdef");
+  bridges::ViewProtocol protocol(token, false);
+  protocol.set_post([](const std::function<void()>&) {});
+  FuzzLink link;
+  const auto session = protocol.open(link);
+  std::string_view text = fuzz::text_of(input);
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    const std::string_view line = text.substr(0, end);
+    check_message(line);
+    session->receive(line, !line.starts_with('\0'));
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  bridges::WebFrame frame;
+  while (session->next(frame))
+    fuzz::require(nlohmann::json::parse(*frame.bytes).is_object(), "a page gets JSON objects");
+  std::size_t requests = 0;
+  while (const auto request = protocol.take_request()) {
+    ++requests;
+    fuzz::require(request->may_control || (request->op != "control" && request->op != "play" && request->op != "seek"),
+                  "a read-only page does not steer");
+  }
+  fuzz::require(requests <= bridges::ViewProtocol::max_waiting_requests, "waiting requests are bounded");
+}

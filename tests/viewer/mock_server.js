@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A server for tests that speaks docs/develop/view_protocol.md: it serves viewer/page and plays scenes made by hand.
+import {readFile} from 'node:fs/promises';
+import {createServer} from 'node:http';
+import {extname, join, normalize} from 'node:path';
+import {fileURLToPath} from 'node:url';
+import {WebSocketServer} from 'ws';
+
+const PAGE = fileURLToPath(new URL('../../viewer/page/', import.meta.url));
+const TYPES = {
+  '.html': 'text/html; charset=utf-8',
+  '.js': 'text/javascript',
+  '.css': 'text/css',
+  '.txt': 'text/plain'
+};
+const POLICY = 'default-src \'self\'; connect-src \'self\'; img-src \'self\' blob: data:; frame-ancestors \'none\'';
+
+/** Encodes a state; poses: a list of [x, y, z, qw, qx, qy, qz]. */
+export function encodeState(
+    {sequence, time_us, revision = 1, branch = 0, paused = false, jump = false, speed = 1, poses}) {
+  const buffer = Buffer.alloc(32 + 20 * poses.length);
+  buffer.writeUInt8(1, 0);
+  buffer.writeUInt8((paused ? 1 : 0) | (jump ? 2 : 0), 1);
+  buffer.writeUInt32LE(sequence, 4);
+  buffer.writeBigInt64LE(BigInt(Math.round(time_us)), 8);
+  buffer.writeInt32LE(branch, 16);
+  buffer.writeUInt32LE(revision, 20);
+  buffer.writeUInt32LE(poses.length, 24);
+  buffer.writeFloatLE(speed, 28);
+  poses.forEach((pose, i) => {
+    const at = 32 + 20 * i;
+    for (let k = 0; k < 3; ++k) buffer.writeFloatLE(pose[k], at + 4 * k);
+    for (let k = 0; k < 4; ++k) buffer.writeInt16LE(Math.round(pose[3 + k] * 32767), at + 12 + 2 * k);
+  });
+  return buffer;
+}
+
+/** Server of one scene.  play(): sends states by the wall clock; show(time_us): sends one state, paused. */
+export class MockServer {
+  /** script: {scene, posesAt(t_s), hello, source, assets: Map}. */
+  constructor(script, token = 'secret') {
+    this.script = script;
+    // The scene has the poses at its time, as that of a real server.
+    script.posesAt(0).forEach((pose, i) => {
+      script.scene.bodies[i].pose = pose;
+    });
+    this.token = token;
+    this.clients = new Set();
+    this.received = [];
+    this.requests = [];
+    this.sequence = 0;
+    this.time_us = 0;
+    this.paused = true;
+    this.speed = 1;
+    this.frozen = false;
+    this.http = createServer((request, response) => this.answer(request, response));
+    this.sockets = new WebSocketServer({
+      server: this.http,
+      handleProtocols: (names) => (names.has('shoal.view.v1') ? 'shoal.view.v1' : false),
+    });
+    this.sockets.on('connection', (socket) => this.join(socket));
+  }
+
+  async listen(port = 0) {
+    await new Promise((resolve) => {
+      this.http.listen(port, '127.0.0.1', resolve);
+    });
+    this.port = this.http.address().port;
+    this.url = `http://127.0.0.1:${this.port}/`;
+    this.heartbeat = setInterval(() => this.tick(), 33);
+    return this;
+  }
+
+  async close() {
+    clearInterval(this.heartbeat);
+    for (const client of this.clients) client.socket.terminate();
+    this.sockets.close();
+    this.http.closeAllConnections();
+    await new Promise((resolve) => {
+      this.http.close(resolve);
+    });
+  }
+
+  async answer(request, response) {
+    const path = new URL(request.url, 'http://x').pathname;
+    this.requests.push(path);
+    const asset = this.script.assets?.get(path.replace('/asset/', ''));
+    const file = join(PAGE, normalize(path === '/' ? '/index.html' : path));
+    const headers = {
+      'Content-Security-Policy': POLICY,
+      'X-Content-Type-Options': 'nosniff',
+      'Cache-Control': 'no-cache',
+      'Cross-Origin-Resource-Policy': 'same-origin',
+    };
+    try {
+      const body = asset ?? (file.startsWith(PAGE) ? await readFile(file) : null);
+      response.writeHead(200, {...headers, 'Content-Type': asset ? 'application/octet-stream' : TYPES[extname(file)]});
+      response.end(body);
+    } catch {
+      response.writeHead(404, headers);
+      response.end('not found');
+    }
+  }
+
+  join(socket) {
+    const client = {socket, control: false, unacknowledged: 0, last: null};
+    this.clients.add(client);
+    socket.on('message', (data) => this.take(client, JSON.parse(data)));
+    socket.on('close', () => this.clients.delete(client));
+  }
+
+  take(client, message) {
+    this.received.push(message);
+    if (message.op === 'ack') client.unacknowledged = Math.max(0, client.unacknowledged - 1);
+    if (message.op === 'hello') {
+      client.control = message.token === this.token;
+      this.sendTo(client, {
+        op: 'hello',
+        version: 1,
+        shoal: '0.2.0',
+        source: 'run',
+        world: this.script.scene.world,
+        epoch_us: 0,
+        start_us: 0,
+        end_us: null,
+        ...this.script.hello,
+        control: client.control
+      });
+      this.sendTo(client, this.script.scene);
+      this.sendStatus(client);
+      client.greeted = true;
+      this.sendState(client, true);
+    }
+    if (message.op === 'control' && client.control) this.execute(client, message);
+    if (message.op === 'seek' && client.control) this.show(message.time_us);
+    if (message.op === 'play' && client.control) [this.paused, this.speed] = [message.paused, message.speed];
+  }
+
+  execute(client, {id, command, value}) {
+    if (command === 'pause' || command === 'resume')
+      this.paused = command === 'pause';
+    else if (command === 'speed')
+      this.speed = value;
+    else if (command === 'step')
+      this.show(this.time_us + value * 10000, false);
+    else if (command === 'rewind')
+      this.show(value * 1e6);
+    else
+      return this.sendTo(client, {op: 'reply', id, ok: false, text: `unknown command '${command}'`});
+    this.sendTo(client, {op: 'reply', id, ok: true, text: ''});
+    for (const one of this.clients) this.sendStatus(one);
+    return undefined;
+  }
+
+  sendTo(client, message) {
+    if (!this.frozen) client.socket.send(JSON.stringify(message));
+  }
+
+  /** Sends a text message to all pages. */
+  send(message) {
+    for (const client of this.clients) this.sendTo(client, message);
+  }
+
+  sendStatus(client) {
+    this.sendTo(client, {
+      op: 'status',
+      time_us: this.time_us,
+      step: Math.round(this.time_us / 10000),
+      branch: 0,
+      paused: this.paused,
+      speed: this.speed,
+      rate: this.paused ? 0 : this.speed,
+      waits_for: '',
+      ended: null
+    });
+  }
+
+  sendState(client, jump = false) {
+    if (this.frozen || !client.greeted || client.unacknowledged >= 2) return;
+    ++client.unacknowledged;
+    const poses = this.script.posesAt(this.time_us / 1e6);
+    client.socket.send(encodeState({
+      sequence: ++this.sequence,
+      time_us: this.time_us,
+      revision: this.script.scene.revision,
+      paused: this.paused,
+      jump,
+      speed: this.speed,
+      poses,
+    }));
+  }
+
+  tick() {
+    const now_ms = performance.now();
+    const passed_ms = now_ms - (this.ticked_ms ?? now_ms);
+    this.ticked_ms = now_ms;
+    if (!this.paused) {
+      this.time_us += 1000 * passed_ms * this.speed;
+      for (const client of this.clients) this.sendState(client);
+    }
+    if (now_ms - (this.told_ms ?? 0) < 500) return;
+    this.told_ms = now_ms;
+    for (const client of this.clients)
+      if (client.greeted) this.sendStatus(client);
+  }
+
+  /** Sets the time and sends this one state. */
+  show(time_us, jump = true) {
+    this.time_us = time_us;
+    for (const client of this.clients) this.sendState(client, jump);
+  }
+}

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "sim/bus/bus.hpp"
+
+namespace tools {
+
+/// Bus that also passes what is published to a listener.
+class TapBus final : public sim::Bus {
+ public:
+  using Listener = std::function<void(std::string_view channel, std::span<const std::byte> payload)>;
+
+  /// `inner` must outlive this.
+  TapBus(sim::Bus& inner, Listener listener) : inner_(inner), listener_(std::move(listener)) {}
+
+  void publish(std::string_view channel, std::span<const std::byte> payload, sim::Time at) override {
+    listener_(channel, payload);
+    inner_.publish(channel, payload, at);
+  }
+  std::unique_ptr<sim::Mailbox> open_mailbox(const std::string& channel,
+                                             std::size_t capacity = default_mailbox_capacity) override {
+    return inner_.open_mailbox(channel, capacity);
+  }
+  void end_of_step() override { inner_.end_of_step(); }
+  sim::BusCounts counts() const override { return inner_.counts(); }
+
+ private:
+  sim::Bus& inner_;
+  const Listener listener_;
+};
+
+}  // namespace tools

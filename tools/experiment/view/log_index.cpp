@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/experiment/view/log_index.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "bridges/log/event_log.hpp"
+#include "shoal/message_codec.hpp"
+#include "shoal/sim_event_t.hpp"
+#include "shoal/sim_info_t.hpp"
+
+namespace tools {
+
+std::optional<std::int64_t> stamp_of(const std::byte* payload, std::size_t size) {
+  constexpr std::size_t fingerprint_bytes = 8, stamp_bytes = 8;
+  if (size < fingerprint_bytes + stamp_bytes) return std::nullopt;
+  std::uint64_t value = 0;
+  for (std::size_t i = 0; i < stamp_bytes; ++i)
+    value = value << 8 | std::to_integer<std::uint64_t>(payload[fingerprint_bytes + i]);
+  return static_cast<std::int64_t>(value);
+}
+
+const LogIndex::Mark* LogIndex::last(const std::vector<Mark>& marks, std::int64_t time_us) {
+  const auto after = std::upper_bound(marks.begin(), marks.end(), time_us,
+                                      [](std::int64_t time, const Mark& mark) { return time < mark.time_us; });
+  return after == marks.begin() ? &*after : &*std::prev(after);
+}
+
+std::optional<LogIndex::Mark> LogIndex::scores_at(std::int64_t time_us) const {
+  if (scores_.empty() || scores_.front().time_us > time_us) return std::nullopt;
+  return *last(scores_, time_us);
+}
+
+void LogIndex::add(std::vector<Mark>& marks, const Mark& mark) {
+  while (!marks.empty() && marks.back().time_us > mark.time_us) marks.pop_back();  // the run was rewound
+  marks.push_back(mark);
+}
+
+LogIndex::LogIndex(const std::string& path, const std::function<void(double share)>& progress) {
+  bridges::EventLogReader reader(path);
+  bridges::LogEventView event;
+  std::int64_t number = 0;
+  while (reader.next(event)) {
+    constexpr std::int64_t events_per_report = 1 << 16;
+    if (progress && ++number % events_per_report == 0)
+      progress(static_cast<double>(event.offset) / static_cast<double>(reader.file_bytes()));
+    if (!event.channel.starts_with("sim.")) continue;
+    const auto stamp = stamp_of(event.payload.data(), event.payload.size());
+    if (!stamp) continue;
+    const Mark mark{*stamp - epoch_us_, event.offset};
+    try {
+      if (event.channel == "sim.info") {
+        const auto info = shoal::decode<shoal::sim_info_t>(event.payload, shoal::Finite::any);
+        epoch_us_ = info.epoch_utime;
+        world_ = info.world;
+      } else if (event.channel == "sim.bodies") {
+        add(bodies_, mark);
+      } else if (event.channel == "sim.scene") {
+        add(scenes_, mark);
+      } else if (event.channel == "sim.scores") {
+        add(scores_, mark);
+      } else if (event.channel == "sim.asset") {
+        assets_.push_back(event.offset);
+      } else if (event.channel == "sim.event" && occasions_.size() < max_occasions) {
+        const auto occasion = shoal::decode<shoal::sim_event_t>(event.payload, shoal::Finite::any);
+        occasions_.push_back({mark.time_us, occasion.kind, occasion.who, occasion.text});
+      }
+    } catch (const shoal::MessageError& error) {
+      problems_.push_back(std::string(event.channel) + ": " + error.what());
+    }
+  }
+  for (const std::string& problem : reader.problems()) problems_.push_back(problem);
+  check(path);
+}
+
+void LogIndex::check(const std::string& path) const {
+  if (!scenes_.empty() && !bodies_.empty()) return;
+  const std::string missing = scenes_.empty() && bodies_.empty() ? "neither sim.scene nor sim.bodies"
+                              : scenes_.empty()                  ? "no sim.scene"
+                                                                 : "no sim.bodies";
+  throw std::runtime_error(
+      path + ": has " + missing +
+      ", so there is nothing to show: it was recorded by an earlier version of Shoal, with 'view:' "
+      "switched off, or by a logger that was started after the run");
+}
+
+}  // namespace tools

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/experiment/view/log_view.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "shoal/message_codec.hpp"
+#include "shoal/sim_info_t.hpp"
+#include "tools/experiment/view/view_json.hpp"
+
+namespace tools {
+
+namespace {
+
+using Json = nlohmann::json;
+
+/// Part of the log before a time that is read after a jump, for estimates and sounds that are still visible.
+constexpr std::int64_t before_us = 3'000'000;
+
+Json hello_json(const std::string& version, const char* source, const std::string& world, std::int64_t epoch_us) {
+  return {{"op", "hello"},  {"version", 1},         {"shoal", version}, {"source", source},
+          {"world", world}, {"epoch_us", epoch_us}, {"start_us", 0},    {"end_us", nullptr}};
+}
+
+}  // namespace
+
+LogView::LogView(const std::string& path, const LogIndex& index, const ViewOptions& options, const std::string& version)
+    : index_(index),
+      reader_(path),
+      looking_(path),
+      server_(web_options(options)),
+      now_us_(static_cast<double>(index.start_us())) {
+  messages_.set_epoch(index.epoch_us());
+  Json hello = hello_json(version, "log", index.world(), index.epoch_us());
+  hello["name"] = std::filesystem::path(path).filename().string();
+  hello["start_us"] = index.start_us();
+  hello["end_us"] = index.end_us();
+  server_.retain("hello", json_text(hello));
+  // Assets, and the events of the whole log for the time line.
+  for (const std::uint64_t offset : index.assets()) send_event_at(offset);
+  Json items = Json::array();
+  for (const LogIndex::Occasion& each : index.occasions())
+    items.push_back({{"time_us", each.time_us}, {"kind", each.kind}, {"who", each.who}, {"text", each.text}});
+  if (!items.empty()) server_.retain("events", json_text({{"op", "events"}, {"items", std::move(items)}}));
+  seek(index.start_us());
+}
+
+void LogView::send_event_at(std::uint64_t offset) {
+  looking_.seek(offset);
+  bridges::LogEventView event;
+  if (looking_.next(event)) messages_.take(event.channel, event.payload);
+}
+
+void LogView::seek(std::int64_t time_us) {
+  time_us = std::clamp(time_us, index_.start_us(), index_.end_us());
+  now_us_ = static_cast<double>(time_us);
+  // What holds at this time, then what happened shortly before it.
+  send_event_at(index_.scene_at(time_us).offset);
+  if (const auto scores = index_.scores_at(time_us)) send_event_at(scores->offset);
+  reader_.seek(index_.bodies_at(time_us - before_us).offset);
+  messages_.mark_jump();
+  play_to(time_us);
+  status_is_old_ = true;
+}
+
+void LogView::play_to(std::int64_t time_us) {
+  const std::uint64_t last = index_.bodies_at(time_us).offset;
+  bridges::LogEventView event;
+  while (reader_.next(event)) {
+    // Events were retained for the whole log.
+    if (event.channel != "sim.event" && event.channel != "sim.asset") messages_.take(event.channel, event.payload);
+    if (event.offset >= last) break;
+  }
+  messages_.set_pace(static_cast<float>(speed_), paused_);
+  messages_.flush();
+}
+
+void LogView::advance(double wall_s) {
+  while (const auto request = server_.take_request()) handle(*request);
+  // A page that has just opened gets the present state.
+  const int clients = server_.clients();
+  if (clients > clients_) seek(static_cast<std::int64_t>(now_us_));
+  clients_ = clients;
+  const auto end = static_cast<double>(index_.end_us());
+  if (!paused_ && now_us_ < end && clients > 0) {
+    const auto before = static_cast<std::int64_t>(now_us_);
+    now_us_ = std::min(end, now_us_ + 1e6 * speed_ * wall_s);
+    const auto now = static_cast<std::int64_t>(now_us_);
+    if (index_.bodies_at(now).offset != index_.bodies_at(before).offset) play_to(now);
+    status_is_old_ = true;
+  } else if (!paused_ && loop_ && clients > 0) {
+    seek(index_.start_us());
+  }
+  if (std::exchange(status_is_old_, false)) send_status();
+}
+
+void LogView::send_status() {
+  const bool at_end = now_us_ >= static_cast<double>(index_.end_us());
+  server_.retain("status", json_text({{"op", "status"},
+                                      {"time_us", static_cast<std::int64_t>(now_us_)},
+                                      {"step", nullptr},
+                                      {"branch", 0},
+                                      {"paused", paused_ || at_end},
+                                      {"speed", speed_},
+                                      {"rate", paused_ || at_end ? 0 : speed_},
+                                      {"waits_for", ""},
+                                      {"ended", nullptr}}));
+}
+
+void LogView::handle(const bridges::ViewRequest& request) {
+  const Json message = Json::parse(request.text, nullptr, false);
+  if (!message.is_object()) return;
+  try {
+    if (request.op == "seek") {
+      const double time_us = message.value("time_us", now_us_);
+      if (std::isfinite(time_us)) seek(static_cast<std::int64_t>(std::clamp(time_us, -1e18, 1e18)));
+    } else if (request.op == "play") {
+      speed_ = std::clamp(message.value("speed", speed_), 0.01, 1000.0);
+      paused_ = message.value("paused", paused_);
+      loop_ = message.value("loop", loop_);
+      if (!paused_ && now_us_ >= static_cast<double>(index_.end_us())) seek(index_.start_us());
+      status_is_old_ = true;
+    } else if (request.op == "control") {
+      server_.reply(request.client, json_text({{"op", "reply"},
+                                               {"id", message.value("id", Json())},
+                                               {"ok", false},
+                                               {"text", "this is a log: a run of it is not there to be steered"}}));
+    }
+  } catch (const Json::exception&) {
+    server_.reply(request.client,
+                  json_text({{"op", "error"}, {"text", "'" + request.op + "' has a value of a wrong kind"}}));
+  }
+}
+
+BusView::BusView(const ViewOptions& options, const std::string& version, const std::string& bus)
+    : server_(web_options(options)), version_(version), bus_(bus) {
+  send_hello();
+}
+
+void BusView::send_hello() {
+  Json hello = hello_json(version_, "bus", world_.empty() ? bus_ : world_, messages_.epoch_us());
+  hello["name"] = bus_;
+  server_.retain("hello", json_text(hello));
+}
+
+void BusView::message(std::string_view channel, std::span<const std::byte> payload) {
+  messages_.take(channel, payload);
+  if (channel != "sim.info") return;
+  try {
+    const auto info = shoal::decode<shoal::sim_info_t>(payload, shoal::Finite::any);
+    if (std::exchange(world_, info.world) != info.world) send_hello();
+  } catch (const shoal::MessageError&) {  // counted by take()
+  }
+}
+
+void BusView::flush() {
+  while (const auto request = server_.take_request()) {
+    if (request->op != "control") continue;
+    const Json message = Json::parse(request->text, nullptr, false);
+    server_.reply(request->client,
+                  json_text({{"op", "reply"},
+                             {"id", message.is_object() ? message.value("id", Json()) : Json()},
+                             {"ok", false},
+                             {"text", "this page watches a bus; steer the run with 'shoal control'"}}));
+  }
+  messages_.flush();
+}
+
+}  // namespace tools

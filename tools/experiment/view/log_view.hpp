@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "bridges/log/event_log.hpp"
+#include "bridges/web/web_server.hpp"
+#include "tools/experiment/view/log_index.hpp"
+#include "tools/experiment/view/run_view.hpp"
+#include "tools/experiment/view/view_messages.hpp"
+
+namespace tools {
+
+/// Live page of a log: plays it at any speed, and shows any time of it.
+class LogView {
+ public:
+  /// `index` is that of the file `path`.  Both must outlive this.  Throws bridges::WebError, BusError.
+  LogView(const std::string& path, const LogIndex& index, const ViewOptions& options, const std::string& version);
+
+  std::string url() const { return server_.url(); }
+  /// Plays the next part, as much as `wall_s` allows, and carries out the requests of the pages.
+  void advance(double wall_s);
+  /// Shows a time; outside of the log its start or end.
+  void seek(std::int64_t time_us);
+
+ private:
+  void handle(const bridges::ViewRequest& request);
+  void send_event_at(std::uint64_t offset);
+  /// Passes messages on, up to the last pose at or before a time.
+  void play_to(std::int64_t time_us);
+  void send_status();
+
+  const LogIndex& index_;
+  bridges::EventLogReader reader_, looking_;
+  bridges::WebServer server_;
+  ViewMessages messages_{server_, ViewMessages::Frames::from_bodies};
+  double now_us_;
+  double speed_ = 1;
+  bool paused_ = false, loop_ = false;
+  int clients_ = 0;
+  bool status_is_old_ = true;
+};
+
+/// Live page of what is on a bus: of a run in another process.
+class BusView {
+ public:
+  BusView(const ViewOptions& options, const std::string& version, const std::string& bus);
+
+  std::string url() const { return server_.url(); }
+  void message(std::string_view channel, std::span<const std::byte> payload);
+  /// Sends the newest state, and answers the requests of the pages.  Call some thirty times per second.
+  void flush();
+  bool has_scene() const { return messages_.has_scene(); }
+
+ private:
+  void send_hello();
+
+  bridges::WebServer server_;
+  ViewMessages messages_{server_, ViewMessages::Frames::from_bodies};
+  const std::string version_, bus_;
+  std::string world_;
+};
+
+}  // namespace tools

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/experiment/view/run_view.hpp"
+
+#include <cmath>
+
+#include "tools/experiment/view/view_json.hpp"
+
+namespace tools {
+
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr std::chrono::milliseconds frame_interval{33};
+constexpr std::chrono::milliseconds status_interval{200};
+
+}  // namespace
+
+bridges::WebOptions web_options(const ViewOptions& options) {
+  bridges::WebOptions web;
+  web.host = options.host;
+  web.port = options.port;
+  web.port_tries = options.port_tries;
+  web.origins = options.origins;
+  web.page_directory = options.page_directory;
+  return web;
+}
+
+RunView::RunView(const ViewOptions& options, const std::string& version)
+    : server_(web_options(options)), version_(version) {}
+
+void RunView::start(const sim::World& world, std::optional<double> duration_s) {
+  messages_.set_epoch(world.epoch_us());
+  Json hello{{"op", "hello"},
+             {"version", 1},
+             {"shoal", version_},
+             {"source", "run"},
+             {"world", world.config().name},
+             {"epoch_us", world.epoch_us()},
+             {"start_us", world.now().count()},
+             {"end_us", nullptr}};
+  if (duration_s && *duration_s > 0) hello["end_us"] = sim::from_seconds(*duration_s).count();
+  server_.retain("hello", json_text(hello));
+}
+
+void RunView::after_step(const sim::World& world, const bridges::ViewPublisher& publisher,
+                         const sim::RunControl& control) {
+  if (server_.clients() == 0) return;
+  if (Clock::now() < next_frame_ && !jump_) return;
+  send_state(world, publisher, control);
+}
+
+void RunView::send_state(const sim::World& world, const bridges::ViewPublisher& publisher,
+                         const sim::RunControl& control) {
+  next_frame_ = Clock::now() + frame_interval;
+  sent_step_ = world.step_number();
+  frame_.begin({world.now().count(), control.branch, static_cast<std::uint32_t>(publisher.revision()),
+                static_cast<float>(control.speed), control.paused, std::exchange(jump_, false)});
+  publisher.for_each_movable(
+      [&](const sim::Pose& X_WB) { frame_.add(X_WB.translation(), sim::Quaterniond(X_WB.linear())); });
+  server_.send_state(frame_.end());
+  messages_.flush();
+}
+
+void RunView::send_status(const sim::World& world, const sim::RunControl& control, const std::string& waits_for,
+                          const std::string& ended) {
+  const Clock::time_point now = Clock::now();
+  next_status_ = now + status_interval;
+  // Rate of simulated time since a second ago.
+  const double wall_s = std::chrono::duration<double>(now - rate_since_).count();
+  if (wall_s > 1 || world.now() < rate_from_) {
+    constexpr double longest_s = 5;  // else there was no page for a while
+    rate_ = wall_s < longest_s ? sim::to_seconds(world.now() - rate_from_) / wall_s : control.speed;
+    rate_since_ = now;
+    rate_from_ = world.now();
+  }
+  const Json status{{"op", "status"},
+                    {"time_us", world.now().count()},
+                    {"step", world.step_number()},
+                    {"branch", control.branch},
+                    {"paused", control.paused},
+                    {"speed", control.speed > 0 ? Json(control.speed) : Json(nullptr)},
+                    {"rate", std::max(0.0, rate_)},
+                    {"waits_for", waits_for},
+                    {"ended", ended.empty() ? Json(nullptr) : Json(ended)}};
+  server_.retain("status", json_text(status));
+}
+
+void RunView::handle(const bridges::ViewRequest& request, const Execute& execute) {
+  const Json message = Json::parse(request.text, nullptr, false);
+  if (request.op != "control" || !message.is_object()) return;
+  Json reply{{"op", "reply"}, {"id", message.value("id", Json())}};
+  try {
+    const Answer answer = execute(message.value("command", ""), message.value("value", 0.0), message.value("text", ""));
+    reply["ok"] = answer.ok;
+    reply["text"] = answer.text;
+  } catch (const Json::exception&) {
+    reply["ok"] = false;
+    reply["text"] = "'command' and 'text' must be texts, and 'value' a number";
+  }
+  server_.reply(request.client, json_text(reply));
+}
+
+void RunView::serve(const sim::World& world, const bridges::ViewPublisher& publisher, const sim::RunControl& control,
+                    const std::string& waits_for, const Execute& execute) {
+  constexpr int max_at_once = 50;
+  bool handled = false;
+  for (int i = 0; i < max_at_once; ++i) {
+    const auto request = server_.take_request();
+    if (!request) break;
+    if (request->op == "left") continue;
+    handle(*request, execute);
+    handled = true;
+  }
+  if (server_.clients() == 0) return;
+  const Clock::time_point now = Clock::now();
+  if (handled || now >= next_status_) send_status(world, control, waits_for, "");
+  // While the run is paused, a page that has just opened needs the state too.
+  if (now >= next_frame_ && (jump_ || control.paused || sent_step_ != world.step_number()))
+    send_state(world, publisher, control);
+}
+
+void RunView::ended(const sim::World& world, const sim::RunControl& control, const std::string& why) {
+  send_status(world, control, "", why);
+}
+
+}  // namespace tools

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "bridges/view/view_publisher.hpp"
+#include "bridges/web/web_server.hpp"
+#include "sim/run/run_control.hpp"
+#include "sim/world/world.hpp"
+#include "tools/experiment/view/state_frame.hpp"
+#include "tools/experiment/view/view_messages.hpp"
+
+namespace tools {
+
+/// Options of the live page.
+struct ViewOptions {
+  std::string host = "127.0.0.1";    ///< address to listen at; another than loopback lets other machines see the run
+  std::uint16_t port = 8765;         ///< first port to try
+  int port_tries = 20;               ///< 1: this port or none
+  std::vector<std::string> origins;  ///< web sites whose pages may connect
+  std::string page_directory;        ///< folder with the page; empty: the page in the program
+};
+
+/// Returns the settings of the server.
+bridges::WebOptions web_options(const ViewOptions& options);
+
+/// Live page of a run: sends the state of the world at up to 30 Hz of wall time, and passes requests of the pages on.
+/// The run does not depend on it; without a page it does nothing.
+class RunView {
+ public:
+  /// Answer to a request: whether it was carried out, and the text of the reply.
+  struct Answer {
+    bool ok = true;
+    std::string text;
+  };
+  /// Executes a request of `sim.control`; none: it is still undecided.
+  using Execute = std::function<Answer(const std::string& command, double value, const std::string& text)>;
+
+  /// Starts the server.  Throws bridges::WebError.
+  RunView(const ViewOptions& options, const std::string& version);
+
+  std::string url() const { return server_.url(); }
+  /// Introduces the world to the pages; before the first step.
+  void start(const sim::World& world, std::optional<double> duration_s);
+  /// Takes a message on a bus of the run.
+  void message(std::string_view channel, std::span<const std::byte> payload) { messages_.take(channel, payload); }
+  /// Sends the present state, when a frame is due.
+  void after_step(const sim::World& world, const bridges::ViewPublisher& publisher, const sim::RunControl& control);
+  /// Carries out the requests of the pages, and sends the status when it has changed.
+  void serve(const sim::World& world, const bridges::ViewPublisher& publisher, const sim::RunControl& control,
+             const std::string& waits_for, const Execute& execute);
+  /// Announces that the time of the world was set.
+  void moved() { jump_ = true; }
+  /// Announces the end of the run, and why.
+  void ended(const sim::World& world, const sim::RunControl& control, const std::string& why);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void send_state(const sim::World& world, const bridges::ViewPublisher& publisher, const sim::RunControl& control);
+  void send_status(const sim::World& world, const sim::RunControl& control, const std::string& waits_for,
+                   const std::string& ended);
+  void handle(const bridges::ViewRequest& request, const Execute& execute);
+
+  bridges::WebServer server_;
+  ViewMessages messages_{server_, ViewMessages::Frames::from_elsewhere};
+  const std::string version_;
+  StateFrame frame_;
+  bool jump_ = false;
+  Clock::time_point next_frame_{}, next_status_{};
+  std::int64_t sent_step_ = -1;
+  // For the rate of simulated time.
+  Clock::time_point rate_since_{};
+  sim::Time rate_from_{0};
+  double rate_ = 0;
+};
+
+}  // namespace tools

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/experiment/view/state_frame.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+
+namespace tools {
+
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "frames are little-endian");
+
+constexpr std::size_t head_bytes = 32, body_bytes = 20;
+constexpr std::uint8_t state_kind = 1;
+constexpr std::uint8_t paused_flag = 1, jump_flag = 2;
+
+/// Offsets in the head.
+enum HeadAt : std::size_t {
+  kind_at = 0,
+  flags_at = 1,
+  sequence_at = 4,
+  time_at = 8,
+  branch_at = 16,
+  revision_at = 20,
+  count_at = 24,
+  speed_at = 28
+};
+
+}  // namespace
+
+template <typename Number>
+void StateFrame::put(std::size_t at, Number number) {
+  std::memcpy(bytes_.data() + at, &number, sizeof number);
+}
+
+void StateFrame::begin(const Head& head) {
+  bytes_.assign(head_bytes, std::byte{0});
+  count_ = 0;
+  put(kind_at, state_kind);
+  put(flags_at, static_cast<std::uint8_t>((head.paused ? paused_flag : 0) | (head.jump ? jump_flag : 0)));
+  put(time_at, head.time_us);
+  put(branch_at, head.branch);
+  put(revision_at, head.revision);
+  put(speed_at, head.speed);
+}
+
+void StateFrame::add(const sim::Vector3d& p_W, const sim::Quaterniond& q_WB) {
+  std::size_t at = bytes_.size();
+  bytes_.resize(at + body_bytes);
+  for (int axis = 0; axis < 3; ++axis, at += 4) put(at, static_cast<float>(p_W[axis]));
+  for (const double part : {q_WB.w(), q_WB.x(), q_WB.y(), q_WB.z()}) {
+    put(at, static_cast<std::int16_t>(std::lround(32767 * std::clamp(part, -1.0, 1.0))));
+    at += 2;
+  }
+  ++count_;
+}
+
+std::span<const std::byte> StateFrame::end() {
+  put(count_at, count_);
+  put(sequence_at, ++sequence_);
+  return bytes_;
+}
+
+}  // namespace tools

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <spdlog/fmt/fmt.h>
+#include <spdlog/spdlog.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cmath>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <thread>
+
+#include "bridges/lcm/lcm_listener.hpp"
+#include "shoal/message_codec.hpp"
+#include "shoal/sim_control_request_t.hpp"
+#include "tools/experiment/process/signals.hpp"
+#include "tools/experiment/run/runner.hpp"
+#include "tools/experiment/view/log_view.hpp"
+#include "tools/shoal/commands.hpp"
+#include "tools/shoal/view_options.hpp"
+
+namespace tools {
+
+namespace {
+
+struct ViewArguments {
+  std::string log;
+  std::string lcm_url;
+  std::optional<double> duration_s;
+  ViewOptions view;
+};
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::chrono::milliseconds tick{33};
+
+/// Wall time until which the page is served.
+class Deadline {
+ public:
+  explicit Deadline(const std::optional<double>& duration_s) {
+    if (duration_s) end_ = Clock::now() + std::chrono::milliseconds(std::llround(1000 * *duration_s));
+  }
+  bool goes_on() const { return caught_signal() == 0 && (!end_ || Clock::now() < *end_); }
+
+ private:
+  std::optional<Clock::time_point> end_;
+};
+
+void announce(const std::string& url) {
+  std::cout << "live page: " << url << "\nCtrl-C ends it\n" << std::flush;
+}
+
+int view_log(const ViewArguments& arguments) {
+  const bool terminal = isatty(STDERR_FILENO) != 0;
+  const auto begin = Clock::now();
+  const LogIndex index(arguments.log, [&](double share) {
+    if (terminal) std::cerr << fmt::format("\rreading {}: {:.0f} %", arguments.log, 100 * share) << std::flush;
+  });
+  if (terminal) std::cerr << "\r\033[K";
+  for (const std::string& problem : index.problems()) spdlog::warn("{}: {}", arguments.log, problem);
+  std::cout << fmt::format("{}: {}, {:.3f} to {:.3f} s, {} events of the world, read in {:.2f} s\n", arguments.log,
+                           index.world().empty() ? "a run" : "world " + index.world(),
+                           static_cast<double>(index.start_us()) / 1e6, static_cast<double>(index.end_us()) / 1e6,
+                           index.occasions().size(), std::chrono::duration<double>(Clock::now() - begin).count());
+  LogView view(arguments.log, index, arguments.view, short_version());
+  announce(view.url());
+  // Play in steps of wall time.
+  const Deadline deadline(arguments.duration_s);
+  for (auto before = Clock::now(); deadline.goes_on();) {
+    std::this_thread::sleep_until(before + tick);
+    const auto now = Clock::now();
+    view.advance(std::chrono::duration<double>(now - before).count());
+    before = now;
+  }
+  return exit_ok;
+}
+
+/// Asks a run that has already begun for its scene.
+void ask_for_scene(bridges::LcmListener& lcm) {
+  shoal::sim_control_request_t request;
+  request.client = fmt::format("shoal-view-{}", getpid());
+  request.command = "scene";
+  request.id = 1;
+  sim::Bytes payload;
+  shoal::encode_into(request, payload);
+  lcm.publish("sim.control", payload);
+}
+
+int view_bus(const ViewArguments& arguments) {
+  bridges::LcmListener lcm(arguments.lcm_url);
+  lcm.listen_to_all();
+  BusView view(arguments.view, short_version(), lcm.url());
+  announce(view.url());
+  constexpr std::chrono::seconds ask_interval{2};
+  Clock::time_point next_flush = Clock::now(), next_request = next_flush;
+  const Deadline deadline(arguments.duration_s);
+  while (deadline.goes_on()) {
+    const auto now = Clock::now();
+    if (now >= next_flush) {
+      view.flush();
+      next_flush = now + tick;
+    }
+    if (!view.has_scene() && now >= next_request) {
+      ask_for_scene(lcm);
+      next_request = now + ask_interval;
+    }
+    const auto wait = std::chrono::duration_cast<std::chrono::milliseconds>(next_flush - Clock::now());
+    if (const auto message = lcm.next(std::max(wait, std::chrono::milliseconds(1))))
+      view.message(message->channel, message->payload);
+  }
+  return exit_ok;
+}
+
+int view(const ViewArguments& arguments) {
+  if (!arguments.log.empty() && !arguments.lcm_url.empty())
+    throw CLI::ValidationError("--lcm-url", "cannot be given with a LOG");
+  catch_signals(true);
+  return arguments.log.empty() ? view_bus(arguments) : view_log(arguments);
+}
+
+}  // namespace
+
+void add_view_command(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand("view", "Serve a live page of a log, or of a run in another process, in 3-D");
+  const auto arguments = std::make_shared<ViewArguments>();
+  add_log_level_option(*command);
+  command->add_option("LOG", arguments->log, "log of a run; without it what is on the bus is shown");
+  add_lcm_url_option(*command, arguments->lcm_url);
+  command->add_option("--duration", arguments->duration_s, "seconds of wall time; without it until Ctrl-C")
+      ->type_name("S")
+      ->check(number_from(0.001, 1e9));
+  add_page_options(*command, arguments->view);
+  command_line::set_help_end(
+      *command, {{"shoal view coop.lcm", "shoal view", "shoal view --lcm-url udpm://239.255.76.67:7668?ttl=0"},
+                 {{0, "ended by Ctrl-C or --duration"},
+                  {2, "wrong usage"},
+                  {4, "the log cannot be read or has nothing to show, or the bus or the port fails"}},
+                 {}});
+  command->callback([arguments, &exit_code] { exit_code = view(*arguments); });
+}
+
+}  // namespace tools

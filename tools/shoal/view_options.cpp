@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/shoal/view_options.hpp"
+
+#include "tools/command_line/checks.hpp"
+
+namespace tools {
+
+void add_page_options(CLI::App& command, ViewOptions& view) {
+  command
+      .add_option("--view-port", view.port, "port of the live page; the next free one if it is taken; 0: any free one")
+      ->type_name("PORT")
+      ->check(command_line::whole_from(0, 65535))
+      ->capture_default_str();
+  command
+      .add_option("--view-host", view.host,
+                  "address at which the live page listens; another than of this machine demands the token to read, too")
+      ->type_name("ADDRESS")
+      ->capture_default_str();
+  command.add_option("--view-origin", view.origins, "further web site whose pages may connect")
+      ->type_name("URL")
+      ->type_size(1)
+      ->allow_extra_args(false);
+  command.add_option("--view-page", view.page_directory, "folder with the page, for its development")->type_name("DIR");
+}
+
+}  // namespace tools

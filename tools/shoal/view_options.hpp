@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include "tools/experiment/view/run_view.hpp"
+
+namespace tools {
+
+/// Adds the options of the live page, except the one that opens it.
+void add_page_options(CLI::App& command, ViewOptions& view);
+
+}  // namespace tools

@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The bodies of the scene: parts of the same shape and look are instances of one mesh.
+import {defaultColor, Surfaces} from './materials.js';
+import {radialGrid, simpleShape} from './shapes.js';
+import {
+  Box3,
+  Color,
+  DynamicDrawUsage,
+  Group,
+  InstancedMesh,
+  Matrix4,
+  Mesh,
+  Quaternion,
+  Sphere,
+  Vector3,
+} from './vendor/three.js';
+
+const ONE = new Vector3(1, 1, 1);
+const PLANE_REACH_M = 30000;
+
+/** Returns the matrix of a pose [x, y, z, qw, qx, qy, qz]. */
+export function matrixOf(pose, scale = ONE) {
+  return new Matrix4().compose(
+      new Vector3(pose[0], pose[1], pose[2]), new Quaternion(pose[4], pose[5], pose[6], pose[3]), scale);
+}
+
+/** Distance between contour lines of a terrain: 1, 2 or 5 times a power of ten, about a twentieth of its relief. */
+function contourDistance(geometry) {
+  geometry.computeBoundingBox();
+  const desired = Math.max(0.05, (geometry.boundingBox.max.z - geometry.boundingBox.min.z) / 20);
+  const ten = Math.pow(10, Math.floor(Math.log10(desired)));
+  return ten * [1, 2, 5, 10].find((step) => step * ten >= desired);
+}
+
+/** All bodies of a scene, drawn; X_WB has the matrix of each body by its number. */
+export class Bodies {
+  constructor(scene, assets) {
+    this.surfaces = new Surfaces(assets);
+    this.assets = assets;
+    this.root = new Group();
+    scene.add(this.root);
+    this.clear();
+  }
+
+  /** Removes all bodies. */
+  clear() {
+    this.root.traverse((object) => object.dispose?.());
+    this.root.clear();
+    this.surfaces.clear();
+    this.list = [];
+    this.X_WB = [];
+    this.groups = [];
+    this.planes = [];
+    this.revision = null;
+  }
+
+  /** Builds the bodies of a checked scene. */
+  setScene(data) {
+    this.clear();
+    this.revision = data.revision;
+    this.list = data.bodies;
+    this.origin = new Vector3(...data.origin_m);
+    // Vehicles differ in their default color.
+    const owners = new Map();
+    this.groupOf = data.bodies.map((body) => {
+      if (!owners.has(body.owner)) owners.set(body.owner, owners.size);
+      return owners.get(body.owner);
+    });
+    this.movable = data.bodies.filter((body) => !body.fixed).map((body) => body.index);
+    this.X_WB = data.bodies.map((body) => this.relative(matrixOf(body.pose)));
+    this.gather();
+    this.update(null);
+  }
+
+  relative(X_W) {
+    X_W.elements[12] -= this.origin.x, X_W.elements[13] -= this.origin.y, X_W.elements[14] -= this.origin.z;
+    return X_W;
+  }
+
+  /** Sorts the parts into groups of instances, and loads the shapes that come as assets. */
+  gather() {
+    const groups = new Map();
+    for (const body of this.list)
+      for (const part of body.parts) {
+        if (part.shape === 'plane') this.addPlane(body, part);
+        const shape = ['mesh', 'terrain'].includes(part.shape) ? {key: part.asset, scale: [1, 1, 1]} :
+            part.shape === 'plane'                             ? null :
+                                                                 simpleShape(part, this.list.length > 300);
+        if (!shape) continue;
+        const key = `${shape.key} ${Surfaces.key(part, false)} ${body.fixed}`;
+        if (!groups.has(key)) groups.set(key, {part, fixed: body.fixed, geometry: shape.geometry, instances: []});
+        const X_BP = matrixOf(part.pose, new Vector3(...shape.scale));
+        groups.get(key).instances.push({body: body.index, X_BP, color: this.colorOf(body, part)});
+      }
+    for (const group of groups.values())
+      if (group.geometry)
+        this.addGroup(group);
+      else
+        this.loadGroup(group, this.revision);
+  }
+
+  colorOf(body, part) {
+    const color = part.color || part.material.color || defaultColor(body, part, this.groupOf[body.index]);
+    return new Color(color);
+  }
+
+  async loadGroup(group, revision) {
+    const geometry = await this.assets.geometry(group.part.asset);
+    if (!geometry || revision !== this.revision) return;
+    group.geometry = geometry;
+    this.addGroup(group);
+    this.assets.changed();
+  }
+
+  addGroup(group) {
+    const contour_m = group.part.shape === 'terrain' ? contourDistance(group.geometry) : 0;
+    const mesh = new InstancedMesh(group.geometry, this.surfaces.get(group.part, {contour_m}), group.instances.length);
+    mesh.instanceMatrix.setUsage(DynamicDrawUsage);
+    group.instances.forEach((instance, i) => mesh.setColorAt(i, instance.color));
+    mesh.frustumCulled = false;
+    mesh.castShadow = mesh.receiveShadow = true;
+    mesh.matrixAutoUpdate = false;
+    mesh.userData.bodies = group.instances.map((instance) => instance.body);
+    group.mesh = mesh;
+    this.root.add(mesh);
+    this.groups.push(group);
+    this.place(group);
+  }
+
+  addPlane(body, part) {
+    const mesh = new InstancedMesh(radialGrid(40, 64, 0.5, PLANE_REACH_M), this.surfaces.get(part), 1);
+    mesh.setColorAt(0, this.colorOf(body, part));
+    mesh.frustumCulled = false;
+    mesh.receiveShadow = true;
+    mesh.userData = {bodies: [body.index], offset: new Vector3()};
+    mesh.onBeforeRender = () => {
+      mesh.material.uniforms.offset.value.copy(mesh.userData.offset);
+      mesh.material.uniformsNeedUpdate = true;
+    };
+    this.planes.push({mesh, body: body.index, X_BP: matrixOf(part.pose)});
+    this.root.add(mesh);
+  }
+
+  /** Sets the matrices of the movable bodies from poses x, y, z, qx, qy, qz, qw; null: only redraws. */
+  update(poses) {
+    if (poses) {
+      const count = Math.min(this.movable.length, poses.length / 7);
+      for (let i = 0; i < count; ++i) setMatrix(this.X_WB[this.movable[i]].elements, poses, 7 * i);
+    }
+    for (const group of this.groups)
+      if (!group.fixed || !poses) this.place(group);
+  }
+
+  place(group) {
+    const to = group.mesh.instanceMatrix.array;
+    for (let i = 0; i < group.instances.length; ++i) {
+      const {body, X_BP} = group.instances[i];
+      multiplyAffine(this.X_WB[body].elements, X_BP.elements, to, 16 * i);
+    }
+    group.mesh.instanceMatrix.needsUpdate = true;
+    group.mesh.boundingSphere = null;
+  }
+
+  /** Keeps the infinite planes under the camera. */
+  follow(camera) {
+    for (const {mesh, body, X_BP} of this.planes) {
+      const X_WP = this.X_WB[body].clone().multiply(X_BP);
+      const at = camera.position.clone().applyMatrix4(X_WP.clone().invert());
+      mesh.userData.offset.set(Math.round(at.x), Math.round(at.y), 0);
+      const {x, y} = mesh.userData.offset;
+      mesh.setMatrixAt(0, X_WP.multiply(new Matrix4().makeTranslation(x, y, 0)));
+      mesh.instanceMatrix.needsUpdate = true;
+      mesh.boundingSphere = null;
+    }
+  }
+
+  /** Returns the sphere around movable bodies, or around all if none moves. */
+  boundingSphere() {
+    const box = new Box3();
+    const moving = this.list.filter((body) => !body.fixed);
+    for (const body of moving.length ? moving : this.list) {
+      const at = new Vector3().setFromMatrixPosition(this.X_WB[body.index]);
+      const radius_m = radiusOf(body);
+      box.expandByPoint(at.clone().addScalar(radius_m)).expandByPoint(at.clone().addScalar(-radius_m));
+    }
+    return box.isEmpty() ? new Sphere(new Vector3(), 10) : box.getBoundingSphere(new Sphere());
+  }
+
+  /** Returns objects for rays of the mouse. */
+  get pickable() { return [...this.groups.map((group) => group.mesh), ...this.planes.map((plane) => plane.mesh)]; }
+}
+
+/** Radius of the sphere around the origin of a body that contains its parts; 1 m for meshes. */
+export function radiusOf(body) {
+  let radius_m = 0.05;
+  for (const part of body.parts) {
+    if (part.shape === 'plane' || part.shape === 'terrain') continue;
+    const own_m = part.shape === 'box' ? 0.5 * Math.hypot(...part.size_m) :
+        part.shape === 'mesh'          ? 1 :
+                                         part.radius_m + 0.5 * (part.length_m ?? 0);
+    radius_m = Math.max(radius_m, Math.hypot(part.pose[0], part.pose[1], part.pose[2]) + own_m);
+  }
+  return radius_m;
+}
+
+/** Writes the matrix of the pose at poses[at] into 16 elements. */
+function setMatrix(to, poses, at) {
+  const x = poses[at + 3], y = poses[at + 4], z = poses[at + 5], w = poses[at + 6];
+  to[0] = 1 - 2 * (y * y + z * z), to[1] = 2 * (x * y + w * z), to[2] = 2 * (x * z - w * y);
+  to[4] = 2 * (x * y - w * z), to[5] = 1 - 2 * (x * x + z * z), to[6] = 2 * (y * z + w * x);
+  to[8] = 2 * (x * z + w * y), to[9] = 2 * (y * z - w * x), to[10] = 1 - 2 * (x * x + y * y);
+  to[12] = poses[at], to[13] = poses[at + 1], to[14] = poses[at + 2];
+}
+
+/** Multiplies two affine matrices into to[at], ... */
+function multiplyAffine(a, b, to, at) {
+  for (let column = 0; column < 16; column += 4) {
+    const x = b[column], y = b[column + 1], z = b[column + 2], w = column === 12 ? 1 : 0;
+    to[at + column] = a[0] * x + a[4] * y + a[8] * z + a[12] * w;
+    to[at + column + 1] = a[1] * x + a[5] * y + a[9] * z + a[13] * w;
+    to[at + column + 2] = a[2] * x + a[6] * y + a[10] * z + a[14] * w;
+    to[at + column + 3] = w;
+  }
+}
+
+/** Returns transparent copies of the parts of a body: a mesh for each, in the frame of the body. */
+export function ghostOf(body, assets, material) {
+  const ghost = new Group();
+  for (const part of body.parts) {
+    if (part.shape === 'plane' || part.shape === 'terrain') continue;
+    const add = (geometry, scale) => {
+      const mesh = new Mesh(geometry, material);
+      mesh.matrixAutoUpdate = false;
+      mesh.matrix.copy(matrixOf(part.pose, new Vector3(...scale)));
+      ghost.add(mesh);
+    };
+    if (part.shape === 'mesh')
+      assets.geometry(part.asset).then((geometry) => geometry && add(geometry, [1, 1, 1]));
+    else
+      add(simpleShape(part).geometry, simpleShape(part).scale);
+  }
+  ghost.matrixAutoUpdate = false;
+  return ghost;
+}

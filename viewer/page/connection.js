@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The WebSocket to the server: opens it again after 1, 2, 4, 8 s, and tells how fresh its data are.
+import {decodeState, parseMessage, ProtocolError} from './protocol.js';
+
+const PROTOCOL = 'shoal.view.v1';
+const RETRY_S = [1, 2, 4, 8];
+/** A server sends a status every second; after this time without any message it is said not to answer. */
+const SILENCE_MS = 3000;
+
+/** Connection to the server.  Events: handlers.state(state), handlers.message(object), handlers.problem(text). */
+export class Connection {
+  constructor(url, token, handlers) {
+    this.url = url;
+    this.token = token;
+    this.handlers = handlers;
+    this.socket = null;
+    this.everOpened = false;
+    this.lostAt_ms = null;
+    this.heardAt_ms = performance.now();
+    this.attempts = 0;
+    this.unacknowledged = [];
+    this.nextId = 1;
+    document.addEventListener('visibilitychange', () => {
+      this.heardAt_ms = performance.now();
+    });
+    this.open();
+  }
+
+  /** Tries to connect now. */
+  open() {
+    clearTimeout(this.timer);
+    const socket = new WebSocket(this.url, PROTOCOL);
+    socket.binaryType = 'arraybuffer';
+    socket.onopen = () => {
+      this.everOpened = true;
+      this.lostAt_ms = null;
+      this.attempts = 0;
+      this.heardAt_ms = performance.now();
+      this.unacknowledged = [];
+      this.send({op: 'hello', token: this.token});
+    };
+    socket.onmessage = (event) => this.receive(event.data);
+    socket.onclose = () => this.lost();
+    this.socket = socket;
+  }
+
+  lost() {
+    this.lostAt_ms ??= performance.now();
+    const wait_s = RETRY_S[Math.min(this.attempts++, RETRY_S.length - 1)];
+    this.retryAt_ms = performance.now() + 1000 * wait_s;
+    this.timer = setTimeout(() => this.open(), 1000 * wait_s);
+  }
+
+  receive(data) {
+    this.heardAt_ms = performance.now();
+    try {
+      if (data instanceof ArrayBuffer) {
+        const state = decodeState(data);
+        this.unacknowledged.push(state.sequence);
+        this.handlers.state(state);
+      } else {
+        this.handlers.message(parseMessage(data));
+      }
+    } catch (error) {
+      if (!(error instanceof ProtocolError)) throw error;
+      this.handlers.problem(error.message);
+    }
+  }
+
+  /** Acknowledges the states received since the last call; a hidden page draws no frame and so asks for no more. */
+  acknowledge() {
+    for (const sequence of this.unacknowledged) this.send({op: 'ack', sequence});
+    this.unacknowledged.length = 0;
+  }
+
+  /** Sends a message; without a connection it is dropped. */
+  send(message) {
+    if (this.socket?.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(message));
+  }
+
+  /** Sends a request to steer the run; returns its id. */
+  control(command, value = 0, text = '') {
+    const id = this.nextId++;
+    this.send({op: 'control', id, command, value, text});
+    return id;
+  }
+
+  get isOpen() { return this.socket?.readyState === WebSocket.OPEN; }
+
+  /** Seconds since the last message, or since the connection was lost; 0 while data arrive. */
+  staleFor_s(now_ms = performance.now()) {
+    if (this.lostAt_ms !== null) return (now_ms - this.lostAt_ms) / 1000;
+    const silent_ms = now_ms - this.heardAt_ms;
+    return this.everOpened && !document.hidden && silent_ms > SILENCE_MS ? silent_ms / 1000 : 0;
+  }
+
+  /** Text of the banner; empty while all is well. */
+  banner(time_text, now_ms = performance.now()) {
+    const stale_s = this.staleFor_s(now_ms);
+    if (stale_s === 0) return '';
+    const shown = this.everOpened ? `, showing t = ${time_text}` : '';
+    if (this.lostAt_ms === null) return `no data for ${stale_s.toFixed(0)} s: the server does not answer${shown}`;
+    return this.everOpened ? `disconnected since ${stale_s.toFixed(0)} s${shown}` : 'no server answers; trying again';
+  }
+}

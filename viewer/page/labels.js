@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Text over the scene, on its own canvas: names, errors in metres, marks of sounds, the measuring tape.
+import {Vector3} from './vendor/three.js';
+
+const LABELS_MAX = 80;
+const FONT = '12px system-ui, sans-serif';
+
+/** Canvas over the scene. */
+export class Labels {
+  constructor(canvas) {
+    this.canvas = canvas;
+    this.context = canvas.getContext('2d');
+    this.at = new Vector3();
+  }
+
+  /** Takes the size of the page, in CSS pixels. */
+  resize(width, height, ratio) {
+    this.canvas.width = width * ratio;
+    this.canvas.height = height * ratio;
+    this.width = width, this.height = height, this.ratio = ratio;
+  }
+
+  /** Returns the position of a point in CSS pixels; null behind the camera or far outside. */
+  project(point, camera) {
+    this.at.copy(point).applyMatrix4(camera.matrixWorldInverse);
+    if (this.at.z > -camera.near) return null;
+    this.at.applyMatrix4(camera.projectionMatrix);
+    if (Math.abs(this.at.x) > 1.5 || Math.abs(this.at.y) > 1.5) return null;
+    return [(0.5 + 0.5 * this.at.x) * this.width, (0.5 - 0.5 * this.at.y) * this.height];
+  }
+
+  /** Starts a frame. */
+  begin(camera, colors) {
+    this.camera = camera;
+    this.colors = colors;
+    this.context.setTransform(this.ratio, 0, 0, this.ratio, 0, 0);
+    this.context.clearRect(0, 0, this.width, this.height);
+    this.context.font = FONT;
+    this.context.textBaseline = 'middle';
+    this.used = [];
+  }
+
+  /** Draws a text beside a point, on a small plate; returns false where another label has the place. */
+  text(point, text, {color = null, dx = 10, dy = 0, bold = false} = {}) {
+    const at = this.project(point, this.camera);
+    if (!at || this.used.length >= LABELS_MAX) return false;
+    const c = this.context;
+    c.font = bold ? `600 ${FONT}` : FONT;
+    const x = at[0] + dx, y = at[1] + dy, width = c.measureText(text).width + 10;
+    if (!bold && this.used.some((box) => Math.abs(box[1] - y) < 17 && x < box[2] && x + width > box[0])) return false;
+    this.used.push([x, y, x + width]);
+    c.fillStyle = this.colors.plate;
+    c.beginPath();
+    c.roundRect(x, y - 9, width, 18, 4);
+    c.fill();
+    if (color) {
+      c.fillStyle = color;
+      c.fillRect(x, y - 9, 3, 18);
+    }
+    c.fillStyle = this.colors.text;
+    c.fillText(text, x + 6, y + 0.5);
+    return true;
+  }
+
+  /** Draws a sign in a disc at a point: its color and its sign both say what it is. */
+  mark(point, look, text) {
+    const at = this.project(point, this.camera);
+    if (!at) return;
+    const c = this.context;
+    c.beginPath();
+    c.arc(at[0], at[1] - 18, 9, 0, 2 * Math.PI);
+    c.fillStyle = look.color;
+    c.fill();
+    c.lineWidth = 1.5;
+    c.strokeStyle = '#ffffff';
+    c.stroke();
+    c.fillStyle = '#000000';
+    c.textAlign = 'center';
+    c.font = `600 ${FONT}`;
+    c.fillText(look.sign, at[0], at[1] - 17.5);
+    c.textAlign = 'left';
+    if (text) this.text(point, text, {dx: 14, dy: -18});
+  }
+
+  /** Draws a horizontal circle about a point, such as the front of a sound. */
+  circle(centre, radius_m, color, width_px, alpha) {
+    const c = this.context, point = new Vector3();
+    c.beginPath();
+    let drawing = false;
+    for (let i = 0; i <= 96; ++i) {
+      const angle = 2 * Math.PI * i / 96;
+      point.set(centre.x + radius_m * Math.cos(angle), centre.y + radius_m * Math.sin(angle), centre.z);
+      const at = this.project(point, this.camera);
+      if (at && drawing)
+        c.lineTo(at[0], at[1]);
+      else if (at)
+        c.moveTo(at[0], at[1]);
+      drawing = at !== null;
+    }
+    c.globalAlpha = alpha;
+    c.strokeStyle = color;
+    c.lineWidth = width_px;
+    c.stroke();
+    c.globalAlpha = 1;
+  }
+
+  /** Draws a line between two points. */
+  line(a, b, color) {
+    const from = this.project(a, this.camera), to = this.project(b, this.camera);
+    if (!from || !to) return;
+    const c = this.context;
+    c.strokeStyle = color;
+    c.lineWidth = 2;
+    c.setLineDash([6, 4]);
+    c.beginPath();
+    c.moveTo(...from);
+    c.lineTo(...to);
+    c.stroke();
+    c.setLineDash([]);
+    for (const [x, y] of [from, to]) {
+      c.fillStyle = color;
+      c.beginPath();
+      c.arc(x, y, 4, 0, 2 * Math.PI);
+      c.fill();
+    }
+  }
+}

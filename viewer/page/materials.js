@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The material of bodies: light and textures as in Shoal's own renderer (sim/camera/renderer.cpp), so that the page
+// and `shoal snap` look alike.
+import {env, ENV_GLSL} from './environment.js';
+import {
+  Color,
+  DoubleSide,
+  LinearFilter,
+  LinearMipmapLinearFilter,
+  RepeatWrapping,
+  ShaderMaterial,
+  SRGBColorSpace,
+  Texture,
+  UniformsLib,
+  UniformsUtils,
+  Vector3,
+} from './vendor/three.js';
+
+/** Default colors: of fixed parts, of planes, and of the movable parts of each vehicle in turn. */
+const FIXED_COLOR = '#b2aa9c';
+const PLANE_COLOR = '#c4c6c4';
+const GROUP_COLORS = ['#4678be', '#d66a3e', '#5c9c58', '#be4a60', '#8666b0', '#3a969e', '#d2aa46', '#7c7064'];
+
+const VERTEX = /* glsl */ `
+#include <common>
+#include <shadowmap_pars_vertex>
+varying vec3 vP, vNormalP, vWorld, vNormalW, vColor;
+uniform vec3 offset;
+void main() {
+  // Instances are scaled: positions in metres in the frame of the part.
+  vec3 size = vec3(1.0);
+  mat4 toWorld = modelMatrix;
+  #ifdef USE_INSTANCING
+    toWorld = modelMatrix * instanceMatrix;
+    size = vec3(length(instanceMatrix[0].xyz), length(instanceMatrix[1].xyz), length(instanceMatrix[2].xyz));
+  #endif
+  vP = position * size + offset;
+  vNormalP = normal / size;
+  vec4 worldPosition = toWorld * vec4(position, 1.0);
+  vWorld = worldPosition.xyz;
+  vNormalW = mat3(toWorld) * (normal / (size * size));
+  #ifdef USE_INSTANCING_COLOR
+    vColor = instanceColor;
+  #else
+    vColor = vec3(0.6);
+  #endif
+  vec4 mvPosition = viewMatrix * worldPosition;
+  vec3 transformedNormal = normalize(mat3(viewMatrix) * vNormalW);
+  gl_Position = projectionMatrix * mvPosition;
+  #include <shadowmap_vertex>
+}`;
+
+const FRAGMENT = /* glsl */ `
+#include <common>
+#include <bsdfs>
+#include <lights_pars_begin>
+#include <shadowmap_pars_fragment>
+#include <shadowmask_pars_fragment>
+${ENV_GLSL}
+varying vec3 vP, vNormalP, vWorld, vNormalW, vColor;
+uniform vec3 color0, color1;
+uniform float textureSize_m, gloss, opacity, contour_m;
+uniform sampler2D image;
+
+// Share of a footprint that lines of width 0.02 at the whole numbers cover.
+float lineShare(float x, float footprint) {
+  float seen = max(footprint, 0.005);
+  return clamp((0.5 * (0.02 + seen) - abs(x - round(x))) / seen, 0.0, min(1.0, 0.02 / seen));
+}
+float integral(float t) { float whole = floor(t / 2.0); return whole + max(0.0, t - 2.0 * whole - 1.0); }
+// Share of the second color in a footprint, where fields of length 1 alternate.
+float shareOfSecond(float x, float w) {
+  w = max(w, 1e-4);
+  x = mod(x, 64.0);
+  return clamp((integral(x + 0.5 * w) - integral(x - 0.5 * w)) / w, 0.0, 1.0);
+}
+vec3 albedo() {
+  vec3 n = abs(vNormalP);
+  bool alongX = n.x >= n.y && n.x >= n.z, alongZ = !alongX && n.z >= n.y;
+  vec2 uv = vec2(alongX ? vP.y : vP.x, alongZ ? vP.y : vP.z);
+  vec2 footprint = max(fwidth(vP.xy), fwidth(vP.yz));
+  #ifdef CHECKER
+    float w = max(footprint.x, footprint.y) / textureSize_m;
+    float a = shareOfSecond(uv.x / textureSize_m, w), b = shareOfSecond(uv.y / textureSize_m, w);
+    return mix(color0, color1, a * (1.0 - b) + b * (1.0 - a));
+  #endif
+  #ifdef STRIPES
+    float w = max(footprint.x, footprint.y) / textureSize_m;
+    return mix(color0, color1, shareOfSecond(uv.x / textureSize_m, w));
+  #endif
+  #ifdef IMAGE
+    ivec2 pixels = textureSize(image, 0);
+    return texture2D(image, vec2(uv.x, uv.y * float(pixels.x) / float(pixels.y)) / textureSize_m).rgb;
+  #endif
+  #ifdef GRID
+    vec2 f = fwidth(vP.xy);
+    float fine = max(lineShare(vP.x, f.x), lineShare(vP.y, f.y));
+    float coarse = max(lineShare(vP.x / 10.0, f.x / 10.0), lineShare(vP.y / 10.0, f.y / 10.0));
+    return vColor * (1.0 - 0.35 * fine) * (1.0 - 0.25 * coarse * smoothstep(0.02, 0.08, max(f.x, f.y)));
+  #endif
+  #ifdef CONTOUR
+    // Contour lines: one and a half pixels wide, every contour_m.
+    float level = vP.z / contour_m, width = max(fwidth(level), 1e-5);
+    float line = 1.0 - smoothstep(0.6, 1.5, abs(level - round(level)) / width);
+    return vColor * (1.0 - 0.22 * line * clamp(0.35 / width, 0.0, 1.0));
+  #endif
+  return vColor;
+}
+void main() {
+  vec3 own = albedo();
+  vec3 toEye = normalize(cameraPosition - vWorld);
+  vec3 normal = normalize(vNormalW);
+  #ifdef FLAT
+    normal = normalize(cross(dFdx(vWorld), dFdy(vWorld)));
+  #endif
+  if (dot(normal, toEye) < 0.0) normal = -normal;
+  vec3 light = own * (skyStrength * (0.45 + 0.275 * (1.0 + normal.z)));
+  float toward = dot(normal, toSun);
+  if (toSun.z > 0.0 && toward > 0.0) {
+    float lit = getShadowMask();
+    light += lit * own * sunColor * toward;
+    if (gloss > 0.0) light += lit * sunColor * gloss * raisedTo64(max(0.0, dot(normal, normalize(toSun + toEye))));
+  }
+  #ifdef GRID
+    // The infinite plane ends in the colors of the horizon.
+    float far = distance(cameraPosition, vWorld) / haze_m;
+    light = mix(light, airColor(normalize(vec3(-toEye.xy, max(-toEye.z, 0.0)))), smoothstep(0.15, 1.0, far));
+  #endif
+  gl_FragColor = vec4(throughWater(light, vWorld), opacity);
+  #include <colorspace_fragment>
+}`;
+
+/** Returns the default color of a part without its own color and without one of its material. */
+export function defaultColor(body, part, group) {
+  if (!body.fixed) return GROUP_COLORS[group % GROUP_COLORS.length];
+  return part.shape === 'plane' ? PLANE_COLOR : FIXED_COLOR;
+}
+
+/** Materials of surfaces, one for each kind of pattern. */
+export class Surfaces {
+  constructor(assets) {
+    this.assets = assets;
+    this.clear();
+  }
+
+  /** Forgets all materials: another scene. */
+  clear() {
+    for (const material of this.materials?.values() ?? []) material.dispose();
+    this.materials = new Map();
+  }
+
+  /** Returns a name of the look of a part: parts with the same name share a material. */
+  static key(part, plain) {
+    const texture = part.color ? null : part.material.texture;
+    return JSON.stringify([texture ?? 0, part.material.gloss ?? 0, plain ? part.shape : 0]);
+  }
+
+  /** Returns the material of a part. */
+  get(part, {flat = false, contour_m = 0} = {}) {
+    const texture = part.color ? null : part.material.texture ?? null;
+    const plain = !part.color && !texture && !part.material.color;
+    const key = Surfaces.key(part, plain) + flat + contour_m;
+    const known = this.materials.get(key);
+    if (known) return known;
+    // Choose the code of the shader by the pattern.
+    const defines = {};
+    if (texture)
+      defines[texture.pattern.toUpperCase()] = 1;
+    else if (part.shape === 'plane' && plain)
+      defines.GRID = 1;
+    if (contour_m > 0 && !texture) defines.CONTOUR = 1;
+    if (flat) defines.FLAT = 1;
+    const material = new ShaderMaterial({
+      defines,
+      lights: true,
+      side: DoubleSide,
+      vertexShader: VERTEX,
+      fragmentShader: FRAGMENT,
+      uniforms: {
+        ...UniformsUtils.merge([UniformsLib.lights]),
+        ...env,
+        color0: {value: new Color(texture?.colors?.[0] ?? '#ffffff')},
+        color1: {value: new Color(texture?.colors?.[1] ?? '#202020')},
+        textureSize_m: {value: texture?.size_m ?? 1},
+        gloss: {value: part.material.gloss ?? 0},
+        opacity: {value: 1},
+        contour_m: {value: contour_m || 1},
+        image: {value: null},
+        offset: {value: new Vector3()},
+      },
+    });
+    if (texture?.pattern === 'image') this.loadImage(texture.asset, material);
+    this.materials.set(key, material);
+    return material;
+  }
+
+  async loadImage(hash, material) {
+    const bitmap = await this.assets.image(hash);
+    if (!bitmap) return;
+    const image = new Texture(bitmap);
+    image.wrapS = image.wrapT = RepeatWrapping;
+    image.colorSpace = SRGBColorSpace;
+    image.flipY = false;  // the bitmap is made upside down already
+    image.minFilter = LinearMipmapLinearFilter;
+    image.magFilter = LinearFilter;
+    image.anisotropy = 4;
+    image.needsUpdate = true;
+    material.uniforms.image.value = image;
+    this.assets.changed();
+  }
+}

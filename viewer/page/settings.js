@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the user chose: theme, what is drawn, keys; and the view in the fragment of the address.
+
+const $ = (id) => document.getElementById(id);
+const THEME_KEY = 'shoal.theme';
+
+/** Keys of the page, for the list under `?`. */
+export const KEYS = [
+  ['Space', 'pause or continue'],
+  ['.', 'one step; with Shift: ten'],
+  [', and ;', 'log: one second back, ten seconds back'],
+  ['[ and ]', 'vehicle before, next vehicle'],
+  ['F', 'follow the selected vehicle'],
+  ['C', 'chase it: follow its heading too'],
+  ['Home', 'show all vehicles'],
+  ['1 … 6', 'orbit, top, follow, chase, first person, fly'],
+  ['W A S D Q E', 'fly; Shift is faster'],
+  ['Arrows', 'move the view'],
+  ['+ and –', 'zoom'],
+  ['M', 'measure between two points'],
+  ['V', 'what is drawn'],
+  ['L', 'names on or off'],
+  ['T', 'light or dark'],
+  ['/', 'search a vehicle'],
+  ['Esc', 'release the vehicle, close'],
+  ['?', 'this list'],
+];
+
+/** Remembers a choice in the browser, if it lets us. */
+function remember(value) {
+  try {
+    localStorage.setItem(THEME_KEY, value);
+  } catch {
+    // Storage is off: the choice lasts as long as the page.
+  }
+}
+
+function remembered() {
+  try {
+    return localStorage.getItem(THEME_KEY);
+  } catch {
+    return null;
+  }
+}
+
+/** Light and dark. */
+export class Theme {
+  constructor(changed) {
+    this.changed = changed;
+    const dark = matchMedia('(prefers-color-scheme: dark)');
+    dark.addEventListener('change', () => {
+      if (!remembered()) this.set(dark.matches ? 'dark' : 'light');
+    });
+    this.set(remembered() ?? (dark.matches ? 'dark' : 'light'));
+    $('theme').addEventListener('click', () => this.toggle());
+  }
+
+  set(name) {
+    this.name = name === 'dark' ? 'dark' : 'light';
+    document.documentElement.dataset.theme = this.name;
+    this.colors = this.name === 'dark' ? {plate: 'rgba(16,25,33,0.80)', text: '#e6eef3'} :
+                                         {plate: 'rgba(250,252,253,0.86)', text: '#14212b'};
+    this.changed();
+  }
+
+  toggle() {
+    this.set(this.name === 'dark' ? 'light' : 'dark');
+    remember(this.name);
+  }
+}
+
+/** Switches under "Show"; changed() is called after each change. */
+export class Options {
+  constructor(changed) {
+    for (const input of $('options').querySelectorAll('input, select')) input.addEventListener('input', changed);
+    $('show').addEventListener('click', () => this.toggle());
+  }
+
+  toggle(open = $('options').hidden) {
+    $('options').hidden = !open;
+    $('show').setAttribute('aria-expanded', open);
+    if (open) $('o-labels').focus();
+  }
+
+  /** Value of a switch. */
+  get(name) {
+    const input = $(`o-${name}`);
+    return input.type === 'checkbox' ? input.checked : input.value;
+  }
+
+  /** Sets a switch. */
+  set(name, value) {
+    const input = $(`o-${name}`);
+    if (input.type === 'checkbox')
+      input.checked = value;
+    else
+      input.value = value;
+    input.dispatchEvent(new Event('input'));
+  }
+}
+
+function fold(side, folded) {
+  const button = $(`fold-${side}`);
+  $(`${side}-body`).hidden = folded;
+  $(side).classList.toggle('folded', folded);
+  button.setAttribute('aria-expanded', !folded);
+  button.textContent = folded ? '+' : '–';
+}
+
+/** Folding of the panels at the sides; on a phone one of them is open at most. */
+export function setUpFolds() {
+  const narrow = () => innerWidth <= 760;
+  for (const [side, other] of [['left', 'right'], ['right', 'left']]) {
+    $(`fold-${side}`).addEventListener('click', () => {
+      const open = $(`${side}-body`).hidden;
+      fold(side, !open);
+      if (!narrow()) return;
+      fold(other, true);
+      $(other).hidden = open;
+    });
+    if (narrow()) fold(side, true);
+  }
+}
+
+/** Width of the scene that panels cover, in pixels. */
+export function coveredWidth() {
+  if (innerWidth <= 760) return 0;
+  return ['left', 'right'].reduce((sum, side) => sum + ($(`${side}-body`).hidden ? 0 : $(side).offsetWidth), 0);
+}
+
+/** Tabs of the details; arrow keys go from tab to tab. */
+export class Tabs {
+  constructor() {
+    this.tabs = [...$('tabs').children];
+    for (const tab of this.tabs) {
+      tab.addEventListener('click', () => this.show(tab));
+      tab.addEventListener('keydown', (event) => {
+        const step = {ArrowRight: 1, ArrowLeft: -1}[event.key];
+        if (!step) return;
+        const next = this.tabs[(this.tabs.indexOf(tab) + step + this.tabs.length) % this.tabs.length];
+        this.show(next);
+        next.focus();
+        event.stopPropagation();
+      });
+    }
+  }
+
+  show(chosen) {
+    for (const tab of this.tabs) {
+      tab.setAttribute('aria-selected', tab === chosen);
+      $(tab.getAttribute('aria-controls')).hidden = tab !== chosen;
+    }
+    if ($('right-body').hidden) $('fold-right').click();
+  }
+}
+
+/** List of keys. */
+export function setUpKeyList() {
+  for (const [key, text] of KEYS) {
+    const line = $('key-table').tBodies[0].insertRow();
+    const head = document.createElement('th'), name = document.createElement('kbd');
+    name.textContent = key;
+    head.append(name);
+    line.append(head);
+    line.insertCell().textContent = text;
+  }
+  $('help').addEventListener('click', () => $('keys').showModal());
+}
+
+/** The fragment of the address: #t=TOKEN&view=...&select=...  The token stays as it is. */
+export class Address {
+  constructor() {
+    this.values = new URLSearchParams(location.hash.slice(1));
+    this.token = this.values.get('t') ?? '';
+    this.written_ms = 0;
+  }
+
+  get(name) { return this.values.get(name); }
+
+  /** Writes a view, at most twice a second: browsers refuse more. */
+  write(changes, now_ms) {
+    if (now_ms - this.written_ms < 500) return;
+    this.written_ms = now_ms;
+    for (const [name, value] of Object.entries(changes))
+      if (value)
+        this.values.set(name, value);
+      else
+        this.values.delete(name);
+    const text = `#${this.values.toString().replaceAll('%2C', ',')}`;
+    if (text !== location.hash && (text !== '#' || location.hash !== '')) history.replaceState(null, '', text);
+  }
+}

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The bar at the bottom: pause, step, speed; the time line of a log, or rewinding a run.
+import {formatTime} from './panels.js';
+
+const RUN_SPEEDS = [0.1, 0.25, 0.5, 1, 2, 4, 8, 16, 32, 0];
+const LOG_SPEEDS = [0.01, 0.1, 0.25, 0.5, 1, 2, 4, 8, 16, 64, 256, 1000];
+const $ = (id) => document.getElementById(id);
+
+/** Bar of the time; it sends requests through a Connection. */
+export class TimeBar {
+  constructor(connection, toast) {
+    this.connection = connection;
+    this.toast = toast;
+    this.hello = {source: 'run', control: false};
+    this.status = {paused: false, speed: 1};
+    this.dragging = false;
+    this.wanted_us = null;
+    this.requests = new Map();
+    this.listen();
+    this.setHello(this.hello);
+  }
+
+  listen() {
+    $('play').addEventListener('click', () => this.togglePlay());
+    $('step1').addEventListener('click', () => this.step(1));
+    $('step10').addEventListener('click', () => this.step(10));
+    $('speed').addEventListener('change', () => this.setSpeed(Number($('speed').value)));
+    $('loop').addEventListener('change', () => this.play({}));
+    $('seek').addEventListener('input', () => {
+      this.dragging = true;
+      this.wanted_us = Number($('seek').value) * 1000;
+      if (this.isLog)
+        this.connection.send({op: 'seek', time_us: this.wanted_us});
+      else
+        this.offerRewind();
+      $('time').textContent = formatTime(this.wanted_us);
+    });
+    $('seek').addEventListener('change', () => {
+      if (this.isLog) this.dragging = false;
+    });
+    $('rewind').addEventListener('click', () => {
+      this.request('rewind', this.wanted_us / 1e6);
+      this.endRewind();
+    });
+    $('cancel').addEventListener('click', () => this.endRewind());
+  }
+
+  get isLog() { return this.hello.source === 'log'; }
+
+  /** Takes what the server is and whether this page may steer it. */
+  setHello(hello) {
+    this.hello = hello;
+    const may = hello.control === true;
+    for (const id of ['play', 'speed', 'seek', 'loop']) $(id).disabled = !may;
+    for (const id of ['step1', 'step10']) $(id).disabled = !may || this.isLog;
+    for (const id of ['step1', 'step10']) $(id).hidden = this.isLog;
+    $('loop-label').hidden = !this.isLog;
+    const choices = this.isLog ? LOG_SPEEDS : RUN_SPEEDS;
+    $('speed').replaceChildren(...choices.map((speed) => new Option(speed === 0 ? 'max' : `${speed}×`, speed)));
+    $('badge').hidden = may && !this.isLog;
+    $('badge').textContent = may ? 'log' : 'read-only';
+    $('badge').title =
+        may ? String(hello.name ?? '') : 'To steer, open the whole address that shoal printed, with #t=... at its end';
+    this.endRewind();
+  }
+
+  /** Takes a message `status`. */
+  setStatus(status) {
+    this.status = status;
+    $('play').firstElementChild.textContent = status.paused ? '▶' : '❚❚';
+    $('play').setAttribute('aria-label', status.paused ? 'Continue' : 'Pause');
+    const speed = status.speed ?? 0;
+    const known = [...$('speed').options].some((option) => Number(option.value) === speed);
+    if (!known) $('speed').append(new Option(`${+ speed.toPrecision(3)}×`, speed));
+    if (document.activeElement !== $('speed')) $('speed').value = String(speed);
+    this.describe();
+  }
+
+  describe() {
+    const {status} = this;
+    const parts = [];
+    if (status.ended)
+      parts.push(`ended: ${status.ended}`);
+    else if (status.paused)
+      parts.push('paused');
+    else if (Number.isFinite(status.rate))
+      parts.push(`runs at ${+ status.rate.toPrecision(2)}×`);
+    if (status.waits_for) parts.push(`waits for ${status.waits_for}`);
+    if (status.branch) parts.push(`branch ${status.branch}`);
+    if (Number.isFinite(status.step)) parts.push(`step ${status.step}`);
+    const text = parts.join(' · ');
+    if ($('status').textContent !== text) $('status').textContent = text;
+    $('status').title = text;
+  }
+
+  /** Shows a time. */
+  update(time_us) {
+    if (this.dragging) return;
+    const text = formatTime(time_us);
+    if ($('time').textContent !== text) $('time').textContent = text;
+    // The line of a run ends now, that of a log at its end.
+    const start_us = this.hello.start_us ?? 0, end_us = Math.max(this.hello.end_us ?? time_us, start_us + 1000);
+    this.latest_us = Math.max(this.latest_us ?? 0, time_us);
+    const seek = $('seek');
+    seek.min = Math.floor(start_us / 1000);
+    seek.max = Math.ceil((this.isLog ? end_us : Math.max(end_us, time_us)) / 1000);
+    seek.value = Math.round(time_us / 1000);
+    seek.setAttribute('aria-valuetext', text);
+  }
+
+  request(command, value = 0) {
+    if (!this.hello.control) {
+      this.toast('read-only: open the address with the token to steer the run');
+      return;
+    }
+    this.requests.set(this.connection.control(command, value), command);
+  }
+
+  /** Takes the answer to a request. */
+  reply(message) {
+    const command = this.requests.get(message.id);
+    this.requests.delete(message.id);
+    if (!message.ok) this.toast(`${command ?? 'request'}: ${message.text}`);
+  }
+
+  play(change) {
+    const speed = Number($('speed').value) || 1;
+    this.connection.send({op: 'play', speed, paused: this.status.paused, loop: $('loop').checked, ...change});
+  }
+
+  togglePlay() {
+    if (this.isLog)
+      this.play({paused: !this.status.paused});
+    else
+      this.request(this.status.paused ? 'resume' : 'pause');
+  }
+
+  step(count) {
+    if (!this.isLog) this.request('step', count);
+  }
+
+  setSpeed(speed) {
+    if (this.isLog)
+      this.play({speed});
+    else
+      this.request('speed', speed);
+  }
+
+  /** Moves a log by some seconds. */
+  skip(seconds) {
+    if (!this.isLog) return;
+    const wanted_us = Math.max(this.hello.start_us ?? 0, Number($('seek').value) * 1000 + seconds * 1e6);
+    this.connection.send({op: 'seek', time_us: Math.min(wanted_us, this.hello.end_us ?? wanted_us)});
+  }
+
+  offerRewind() {
+    $('rewind').hidden = $('cancel').hidden = false;
+    $('rewind').textContent = `Rewind to ${formatTime(this.wanted_us)}`;
+  }
+
+  endRewind() {
+    this.dragging = false;
+    $('rewind').hidden = $('cancel').hidden = true;
+  }
+}
