@@ -14,6 +14,7 @@
 #include "tools/experiment/film/camera_rig.hpp"
 #include "tools/experiment/film/film_source.hpp"
 #include "tools/experiment/film/overlay.hpp"
+#include "tools/experiment/film/ping_observer.hpp"
 #include "tools/experiment/film/scene_painter.hpp"
 #include "tools/experiment/images/overview.hpp"
 #include "tools/shoal/commands.hpp"
@@ -177,6 +178,7 @@ void take_all(const SnapArguments& arguments, FilmSource& source) {
   if (arguments.overlay.ellipses && !source.log().empty())
     estimates = LogEstimates(source.log(), arguments.at_s - trail_s, std::max(arguments.at_s, arguments.until_s), 0.5);
   Overlay overlay(source.world(), {arguments.overlay, trail_s, 2000, ""}, std::move(estimates));
+  const PingObserver pings(source.world(), overlay);
   ScenePainter painter(source.world());
   int number = 0;
   for (double at_s = arguments.at_s; number == 0 || at_s <= arguments.until_s + 1e-9; ++number) {

@@ -13,6 +13,7 @@
 
 #include "tools/experiment/film/camera_rig.hpp"
 #include "tools/experiment/film/film_source.hpp"
+#include "tools/experiment/film/ping_observer.hpp"
 #include "tools/experiment/film/scene_painter.hpp"
 #include "tools/experiment/process/signals.hpp"
 
@@ -192,6 +193,7 @@ class Film {
   double until_s_;
   ScenePainter painter_;
   Overlay overlay_;
+  PingObserver pings_{world_, overlay_};
   std::vector<std::unique_ptr<CameraRig>> rigs_;
   sim::Image8 frame_;
   double observed_s_ = -1;

@@ -15,6 +15,7 @@ namespace {
 
 constexpr double max_estimate_age_s = 30;
 constexpr std::size_t max_trail_points = 4000;
+constexpr std::size_t max_pings = 500;
 /// Colors that differ for most color-blind people, too (Okabe and Ito 2008).
 constexpr sim::Color vehicle_colors[] = {{86, 180, 233}, {230, 159, 0},   {0, 200, 140},   {240, 228, 66},
                                          {213, 94, 0},   {204, 121, 167}, {120, 140, 255}, {230, 230, 230}};
@@ -56,6 +57,11 @@ void Overlay::extend(Trail& trail, double now_s, const sim::Vector3d& p_W, doubl
   if (!points_W.empty() && points_W.back().first >= now_s) return;
   points_W.emplace_back(now_s, p_W);
   while (points_W.front().first < now_s - trail_s || points_W.size() > max_trail_points) points_W.pop_front();
+}
+
+void Overlay::add(const FilmPing& ping) {
+  pings_.push_back(ping);
+  if (pings_.size() > max_pings) pings_.pop_front();
 }
 
 void Overlay::observe() {

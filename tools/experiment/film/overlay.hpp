@@ -50,8 +50,8 @@ class Overlay {
   /// Notes where the vehicles are.  To be called at least once before each image; between images it makes trails
   /// smoother.
   void observe();
-  /// Adds a sound.
-  void add(const FilmPing& ping) { pings_.push_back(ping); }
+  /// Adds a sound.  Of very many the last ones are drawn.
+  void add(const FilmPing& ping);
   /// Draws into a color image of the present state of the world.
   void draw(RenderedScene& rendered, const SceneView& view) const;
 
@@ -73,7 +73,7 @@ class Overlay {
   Settings settings_;
   LogEstimates estimates_;
   std::map<std::string, Trail> trails_, estimate_trails_;
-  std::vector<FilmPing> pings_;
+  std::deque<FilmPing> pings_;
 };
 
 }  // namespace tools
