@@ -105,8 +105,7 @@ void Renderer::clear(Frame& frame) const {
   if (options_.kind == ImageKind::color) empty(frame.light, 3, 0.0F);
   if (options_.kind == ImageKind::depth || (options_.kind == ImageKind::color && options_.with_depth))
     empty(frame.depth_m, 1, nothing_seen_m);
-  if (options_.kind == ImageKind::parts || options_.kind == ImageKind::groups)
-    empty(frame.labels, 1, std::uint16_t{0});
+  if (options_.kind == ImageKind::parts || options_.kind == ImageKind::groups) empty(frame.labels, 1, std::uint16_t{0});
 }
 
 void Renderer::render(const Pose& X_WS, Frame& frame) {

@@ -11,21 +11,22 @@ namespace sim {
 namespace {
 
 constexpr int grid_points = 128;
+constexpr int lanes = 8;
 constexpr double grid_range_m = 2500;  ///< waves farther away only roughen the surface
 constexpr float refractive_index = 1.34F;
 constexpr float reflected_at_right_angle = 0.021F;  ///< ((n - 1) / (n + 1))^2
 
-/// e^x for x <= 0 to 0.1 %: 2^n by the exponent, times a polynomial for the rest.
-float fast_exp(float x) {
-  const float turns = std::max(x * 1.442695F, -126.0F);
-  const float whole = std::floor(turns);
-  const float rest = turns - whole;
+/// e^x for x <= 0 to 0.1 %: 2^n by the exponent of a float, times a polynomial for the rest.
+inline float exponential(float x) {
+  const float turns = std::max(x * 1.442695F, -125.0F);
+  const int whole = static_cast<int>(turns) - 1;
+  const float rest = turns - static_cast<float>(whole);  // 0 to 1
   const float power = 1 + rest * (0.695976F + rest * (0.226173F + rest * 0.0780245F));
-  return std::bit_cast<float>((static_cast<std::int32_t>(whole) + 127) << 23) * power;
+  return std::bit_cast<float>((whole + 127) << 23) * power;
 }
 
-LinearColor fast_exp(const LinearColor& x) {
-  return {fast_exp(x.x()), fast_exp(x.y()), fast_exp(x.z())};
+inline LinearColor exponential(const LinearColor& x) {
+  return {exponential(x.x()), exponential(x.y()), exponential(x.z())};
 }
 
 /// Share of light that the surface reflects (Schlick 1994).
@@ -48,8 +49,8 @@ WaterOptics water_optics(double visibility_m) {
   const LinearColor dissolved(0.003F, 0.015F, 0.06F);  // absorption per scattering of particles
   constexpr double clearest_m = 60;
   // The particles make up what pure water lacks of the attenuation at 550 nm.
-  const auto wanted = static_cast<float>(4.8 / std::min(visibility_m, clearest_m));
-  const float particles = std::max(0.0F, (wanted - pure_absorption.y() - pure_scattering.y()) / (1 + dissolved.y()));
+  const auto desired = static_cast<float>(4.8 / std::min(visibility_m, clearest_m));
+  const float particles = std::max(0.0F, (desired - pure_absorption.y() - pure_scattering.y()) / (1 + dissolved.y()));
   WaterOptics optics;
   optics.absorption = pure_absorption + particles * dissolved;
   optics.scattering = pure_scattering + LinearColor::Constant(particles);
@@ -57,7 +58,8 @@ WaterOptics water_optics(double visibility_m) {
   optics.absorption *= thinner;
   optics.scattering *= thinner;
   optics.attenuation = optics.absorption + optics.scattering;
-  const auto squares = optics.absorption.array().square() + 0.256F * (optics.absorption.array() * optics.scattering.array());
+  const auto squares =
+      optics.absorption.array().square() + 0.256F * (optics.absorption.array() * optics.scattering.array());
   optics.downward = squares.sqrt().matrix();
   return optics;
 }
@@ -77,12 +79,18 @@ void WaterView::update(const Vector3d& eye_W) {
   level_m_ = medium_.still_surface_m();
   highest_m_ = medium_.highest_surface_m() - level_m_;
   is_under_ = medium_.in_water(eye_W);
-  const float least = optics_.downward.minCoeff();
+  const float min_downward = optics_.downward.minCoeff();
   const auto depth_m = static_cast<float>(std::max(0.0, level_m_ - eye_W.z()));
-  gain_ = is_under_ ? std::min(1.6F / fast_exp(-least * depth_m), 1e4F) : 1;
+  gain_ = is_under_ ? std::min(1.6F / std::exp(-min_downward * depth_m), 1e4F) : 1;
+  at_surface_ = 0.25F * day_ * optics_.scattering;
+  at_eye_ = at_surface_.cwiseProduct(daylight(eye_W.z()));
   // Grids, each twice as wide as the one before.
   levels_.clear();
   if (!medium_.has_waves()) return;
+  double slopes = 0;
+  for (const WaveComponent& wave : medium_.wave_components())
+    slopes += std::pow(wave.amplitude_m * wave.k_radpm, 2) / 2;
+  steep_ = 2 * std::sqrt(slopes);
   const double height_m = std::abs(eye_W.z() - level_m_);
   double spacing_m = std::clamp(0.02 * height_m, 0.06, 2.0);
   for (double half_m = 0; half_m < grid_range_m; spacing_m *= 2) {
@@ -93,8 +101,12 @@ void WaterView::update(const Vector3d& eye_W) {
 }
 
 void WaterView::fill(Level& level) const {
-  level.points.assign(std::size_t{grid_points} * grid_points, Eigen::Vector3f::Zero());
+  level.points.assign(std::size_t{grid_points} * grid_points, {});
   level.rough = 0;
+  // Eight columns at a time.
+  using Lanes = Eigen::Array<float, lanes, 1>;
+  const Lanes column = Lanes::LinSpaced(0, lanes - 1);
+  std::vector<Lanes> sums(3 * std::size_t{grid_points} * grid_points / lanes, Lanes::Zero());
   const double start_x_m = eye_W_.x() - 0.5 * grid_points * level.spacing_m;
   const double start_y_m = eye_W_.y() - 0.5 * grid_points * level.spacing_m;
   for (const WaveComponent& wave : medium_.wave_components()) {
@@ -104,51 +116,83 @@ void WaterView::fill(Level& level) const {
     if (share == 0) continue;
     // The phase advances by the same angle from point to point: a rotation of (cos, sin).
     const double kx = wave.k_radpm * std::cos(wave.direction_rad), ky = wave.k_radpm * std::sin(wave.direction_rad);
-    const auto turn_cos = static_cast<float>(std::cos(kx * level.spacing_m));
-    const auto turn_sin = static_cast<float>(std::sin(kx * level.spacing_m));
+    const auto turn_cos = static_cast<float>(std::cos(lanes * kx * level.spacing_m));
+    const auto turn_sin = static_cast<float>(std::sin(lanes * kx * level.spacing_m));
+    const Lanes ahead = static_cast<float>(kx * level.spacing_m) * column;
+    const Lanes ahead_cos = ahead.cos(), ahead_sin = ahead.sin();
     const auto slope_x = static_cast<float>(-wave.amplitude_m * kx * share);
     const auto slope_y = static_cast<float>(-wave.amplitude_m * ky * share);
     const auto amplitude_m = static_cast<float>(wave.amplitude_m * share);
-    Eigen::Vector3f* point = level.points.data();
+    Lanes* sum = sums.data();
     for (int row = 0; row < grid_points; ++row) {
-      const double phase = kx * start_x_m + ky * (start_y_m + row * level.spacing_m) - wave.omega_radps * now_s_ +
-                           wave.phase_rad;
-      auto cosine = static_cast<float>(std::cos(phase)), sine = static_cast<float>(std::sin(phase));
-      for (int column = 0; column < grid_points; ++column, ++point) {
-        *point += Eigen::Vector3f(amplitude_m * cosine, slope_x * sine, slope_y * sine);
-        const float next = cosine * turn_cos - sine * turn_sin;
+      const double phase =
+          kx * start_x_m + ky * (start_y_m + row * level.spacing_m) - wave.omega_radps * now_s_ + wave.phase_rad;
+      const auto phase_cos = static_cast<float>(std::cos(phase)), phase_sin = static_cast<float>(std::sin(phase));
+      Lanes cosine = phase_cos * ahead_cos - phase_sin * ahead_sin;
+      Lanes sine = phase_sin * ahead_cos + phase_cos * ahead_sin;
+      for (int i = 0; i < grid_points / lanes; ++i, sum += 3) {
+        sum[0] += amplitude_m * cosine;
+        sum[1] += slope_x * sine;
+        sum[2] += slope_y * sine;
+        const Lanes next = cosine * turn_cos - sine * turn_sin;
         sine = sine * turn_cos + cosine * turn_sin;
         cosine = next;
       }
     }
   }
+  for (std::size_t i = 0; i < level.points.size(); ++i) {
+    const Lanes* sum = sums.data() + 3 * (i / lanes);
+    const auto lane = static_cast<Eigen::Index>(i % lanes);
+    level.points[i] = {sum[0][lane], sum[1][lane], sum[2][lane]};
+  }
 }
 
-WaterView::Surface WaterView::sample(const Level& level, double x_m, double y_m) const {
-  // Bilinear between the four points around the place.
+WaterView::Cell WaterView::cell_of(const Level& level, double x_m, double y_m) const {
   const auto scale = static_cast<float>(1 / level.spacing_m);
   const float u = static_cast<float>(x_m - eye_W_.x()) * scale + 0.5F * grid_points;
   const float v = static_cast<float>(y_m - eye_W_.y()) * scale + 0.5F * grid_points;
   const int column = std::clamp(static_cast<int>(u), 0, grid_points - 2);
   const int row = std::clamp(static_cast<int>(v), 0, grid_points - 2);
-  const float right = std::clamp(u - static_cast<float>(column), 0.0F, 1.0F);
-  const float up = std::clamp(v - static_cast<float>(row), 0.0F, 1.0F);
-  const Eigen::Vector3f* at = level.points.data() + row * grid_points + column;
-  const Eigen::Vector3f low = at[0] + right * (at[1] - at[0]);
-  const Eigen::Vector3f high = at[grid_points] + right * (at[grid_points + 1] - at[grid_points]);
-  const Eigen::Vector3f value = low + up * (high - low);
-  return {value.x(), value.y(), value.z(), level.rough};
+  return {level.points.data() + row * grid_points + column, std::clamp(u - static_cast<float>(column), 0.0F, 1.0F),
+          std::clamp(v - static_cast<float>(row), 0.0F, 1.0F)};
+}
+
+WaterView::Surface WaterView::sample(const Level& level, double x_m, double y_m) const {
+  const Cell cell = cell_of(level, x_m, y_m);
+  const auto between = [&](float Point::*member) {
+    const Point* at = cell.corner;
+    const float low = at[0].*member + cell.right * (at[1].*member - at[0].*member);
+    at += grid_points;
+    const float high = at[0].*member + cell.right * (at[1].*member - at[0].*member);
+    return low + cell.up * (high - low);
+  };
+  return {between(&Point::elevation_m), between(&Point::slope_x), between(&Point::slope_y), level.rough};
+}
+
+WaterView::Place WaterView::place_of(const Vector3d& p_W) const {
+  // The finest grid that holds the place, by the exponent of a float.
+  const auto away_m = static_cast<float>(std::max(std::abs(p_W.x() - eye_W_.x()), std::abs(p_W.y() - eye_W_.y())));
+  const float ratio = away_m / static_cast<float>(0.48 * grid_points * levels_.front().spacing_m);
+  if (ratio < 1) return {0, ratio};
+  const auto bits = std::bit_cast<std::uint32_t>(ratio);
+  return {(bits >> 23) - 126, static_cast<float>(bits & 0x7FFFFF) / 0x800000};
+}
+
+float WaterView::elevation_m(const Vector3d& p_W) const {
+  const std::size_t number = place_of(p_W).level;
+  if (number + 1 >= levels_.size()) return 0;
+  const Cell cell = cell_of(levels_[number], p_W.x(), p_W.y());
+  const Point* at = cell.corner;
+  const float low = at[0].elevation_m + cell.right * (at[1].elevation_m - at[0].elevation_m);
+  at += grid_points;
+  const float high = at[0].elevation_m + cell.right * (at[1].elevation_m - at[0].elevation_m);
+  return low + cell.up * (high - low);
 }
 
 WaterView::Surface WaterView::surface_at(const Vector3d& p_W) const {
   if (levels_.empty()) return {};
-  const double away_m = std::max(std::abs(p_W.x() - eye_W_.x()), std::abs(p_W.y() - eye_W_.y()));
-  // The finest grid that holds the place, blended into the next one.
-  const double fine_m = 0.48 * grid_points * levels_.front().spacing_m;
-  const double place = std::max(0.0, std::log2(std::max(away_m, 1e-9) / fine_m) + 1);
-  const auto number = static_cast<std::size_t>(place);
+  const auto [number, share] = place_of(p_W);
   if (number + 1 >= levels_.size()) return {0, 0, 0, levels_.back().rough};
-  const auto share = static_cast<float>(place - static_cast<double>(number));
   const Surface near = sample(levels_[number], p_W.x(), p_W.y());
   if (share < 0.5F) return near;
   const Surface far = sample(levels_[number + 1], p_W.x(), p_W.y());
@@ -180,22 +224,21 @@ double WaterView::wave_crossing_m(const Vector3d& direction_W, double range_max_
     return none;
   }
   if (from_m >= to_m) return none;
-  // March until the side changes, in steps that grow with the range, then halve the interval.
+  // Approach the surface by steps that cannot cross waves of a usual slope, until it is nearer than a pixel is wide, or
+  // crossed after all.
+  const double side = is_under_ ? -1 : 1;
   const auto height_over_m = [&](double range_m) {
     const Vector3d p_W = eye_W_ + range_m * direction_W;
-    return p_W.z() - level_m_ - static_cast<double>(surface_at(p_W).elevation_m);
+    return side * (p_W.z() - level_m_ - static_cast<double>(elevation_m(p_W)));
   };
-  const double side = is_under_ ? -1 : 1;
-  double last_m = from_m, last_height_m = side * height_over_m(from_m);
+  const double closing = std::abs(down) + steep_ * std::sqrt(std::max(0.0, 1 - down * down));
+  double last_m = from_m, last_height_m = height_over_m(from_m);
   if (last_height_m < 0) return from_m > 0 ? from_m : none;
-  for (int i = 0; i < 96 && last_m < to_m; ++i) {
-    const double step_m = std::max({0.6 * last_height_m, 0.04 * last_m, 2 * levels_.front().spacing_m});
-    const double next_m = std::min(to_m, last_m + step_m);
-    const double height_m = side * height_over_m(next_m);
-    if (height_m < 0) {
-      const double share = last_height_m / (last_height_m - height_m);
-      return last_m + share * (next_m - last_m);
-    }
+  for (int i = 0; i < 48 && last_m < to_m; ++i) {
+    if (last_height_m < 0.001 * last_m) return last_m + last_height_m / closing;
+    const double next_m = std::min(to_m, last_m + std::max(last_height_m / closing, 0.004 * last_m + 0.005));
+    const double height_m = height_over_m(next_m);
+    if (height_m < 0) return last_m + last_height_m / (last_height_m - height_m) * (next_m - last_m);
     last_m = next_m, last_height_m = height_m;
   }
   const double flat_m = -z_m / down;
@@ -205,19 +248,18 @@ double WaterView::wave_crossing_m(const Vector3d& direction_W, double range_max_
 LinearColor WaterView::daylight(double z_m) const {
   const auto depth_m = static_cast<float>(level_m_ - z_m);
   if (depth_m <= 0) return LinearColor::Ones();
-  return fast_exp(-optics_.downward * depth_m);
+  return exponential(-optics_.downward * depth_m);
 }
 
 LinearColor WaterView::share_after(float path_m) const {
-  return fast_exp(-optics_.attenuation * std::min(path_m, 1e4F));
+  return exponential(-optics_.attenuation * std::min(path_m, 1e4F));
 }
 
-LinearColor WaterView::veil(double from_z_m, float down, float path_m) const {
+LinearColor WaterView::veil(const LinearColor& source, float down, float path_m) const {
   // Daylight scattered into the ray: integral of scattering times what is left of the light, over the path.
-  const Eigen::Array3f rate = (optics_.attenuation + down * optics_.downward).array().max(1e-4F);
-  const Eigen::Array3f left = fast_exp(LinearColor(-rate * std::min(path_m, 1e4F))).array();
-  const Eigen::Array3f source = 0.25F * day_ * optics_.scattering.array() * daylight(from_z_m).array();
-  return source * (1 - left) / rate;
+  const LinearColor rate = (optics_.attenuation + down * optics_.downward).cwiseMax(1e-4F);
+  const LinearColor left = exponential(-rate * std::min(path_m, 1e4F));
+  return source.cwiseProduct(LinearColor::Ones() - left).cwiseQuotient(rate);
 }
 
 WaterView::Crossing WaterView::from_above(const Vector3d& direction_W, double crossing_m, double range_m) const {
@@ -237,12 +279,12 @@ WaterView::Crossing WaterView::from_above(const Vector3d& direction_W, double cr
   const Eigen::Vector3f half = (to_sun_W_ - direction).normalized();
   const float cosine = std::max(half.dot(normal), 0.05F), square = cosine * cosine;
   const float rough = wind_slope_ + surface.rough;
-  const float facets = fast_exp((1 - 1 / square) / rough) / (rough * square * square);
+  const float facets = std::exp((1 - 1 / square) / rough) / (rough * square * square);
   light.own = sun_ * std::min(4.0F, 0.25F * facets * reflected(half.dot(to_sun_W_)) / std::max(toward, 0.2F));
   // What comes out of the water.
   const auto path_m = static_cast<float>(range_m - crossing_m);
   const auto down = static_cast<float>(std::max(0.0, -direction_W.z()));
-  light.own += (1 - mirrored) * veil(level_m_, down, path_m);
+  light.own += (1 - mirrored) * veil(at_surface_, down, path_m);
   light.passed = (1 - mirrored) * share_after(path_m);
   return light;
 }
@@ -252,7 +294,7 @@ WaterView::Crossing WaterView::from_below(const Vector3d& direction_W, double cr
   const bool leaves = crossing_m < range_m;
   const auto path_m = static_cast<float>(leaves ? crossing_m : range_m);
   const auto down = static_cast<float>(-direction_W.z());
-  light.own = veil(eye_W_.z(), down, path_m);
+  light.own = veil(at_eye_, down, path_m);
   light.passed = share_after(path_m);
   if (!leaves) return light;
   // Snell's window: the sky within 48 degrees of the zenith; outside of it the surface mirrors the water.
@@ -263,14 +305,14 @@ WaterView::Crossing WaterView::from_below(const Vector3d& direction_W, double cr
   const LinearColor arriving = light.passed;
   if (square <= 0) {
     const Eigen::Vector3f mirror = direction + 2 * toward * normal;
-    light.own += arriving.cwiseProduct(veil(level_m_, -std::min(mirror.z(), 0.0F), 1e4F));
+    light.own += arriving.cwiseProduct(veil(at_surface_, -std::min(mirror.z(), 0.0F), 1e4F));
     light.passed = LinearColor::Zero();
     return light;
   }
   const Eigen::Vector3f refracted =
       refractive_index * direction + (refractive_index * toward - std::sqrt(square)) * normal;
   const float mirrored = reflected(std::sqrt(square));
-  light.own += mirrored * arriving.cwiseProduct(veil(level_m_, 1, 1e4F));
+  light.own += mirrored * arriving.cwiseProduct(veil(at_surface_, 1, 1e4F));
   light.passed *= 1 - mirrored;
   if (std::isfinite(range_m)) return light;  // something above the water
   light.through = light.passed;

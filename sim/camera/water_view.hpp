@@ -51,19 +51,23 @@ class WaterView {
   template <typename Sky>
   LinearColor light(const Vector3d& direction_W, double crossing_m, double range_m, const LinearColor& seen,
                     Sky&& sky) const {
-    const Crossing at = is_under_ ? from_below(direction_W, crossing_m, range_m)
-                                  : from_above(direction_W, crossing_m, range_m);
+    const Crossing at =
+        is_under_ ? from_below(direction_W, crossing_m, range_m) : from_above(direction_W, crossing_m, range_m);
     LinearColor sum = at.own + at.passed.cwiseProduct(seen);
     if (at.sky_share > 0) sum += at.through.cwiseProduct(at.sky_share * sky(at.sky_direction_W));
     return sum;
   }
 
  private:
-  /// Waves on a square grid around the camera: elevation and slopes.
+  /// Surface at a point of a grid.
+  struct Point {
+    float elevation_m = 0, slope_x = 0, slope_y = 0;
+  };
+  /// Waves on a square grid around the camera, row by row from the south-west.
   struct Level {
     double spacing_m = 0;
-    std::vector<Eigen::Vector3f> points;  // elevation, slope along x, slope along y; row by row from the south-west
-    float rough = 0;                      // mean square slope of the waves that the grid cannot show
+    std::vector<Point> points;
+    float rough = 0;  // mean square slope of the waves that the grid cannot show
   };
   struct Surface {
     float elevation_m = 0, slope_x = 0, slope_y = 0, rough = 0;
@@ -78,12 +82,27 @@ class WaterView {
     Eigen::Vector3f sky_direction_W = Eigen::Vector3f::UnitZ();
   };
 
+  /// South-west corner of the cell that contains a place, and the place in it, 0 to 1.
+  struct Cell {
+    const Point* corner = nullptr;
+    float right = 0, up = 0;
+  };
+  /// Finest grid for a place, and how far it is towards the border of this grid, 0 to 1.
+  struct Place {
+    std::size_t level = 0;
+    float share = 0;
+  };
+
   void fill(Level& level) const;
+  Cell cell_of(const Level& level, double x_m, double y_m) const;
+  Place place_of(const Vector3d& p_W) const;
+  float elevation_m(const Vector3d& p_W) const;
   Surface sample(const Level& level, double x_m, double y_m) const;
   Surface surface_at(const Vector3d& p_W) const;
   double wave_crossing_m(const Vector3d& direction_W, double range_max_m) const;
   LinearColor share_after(float path_m) const;
-  LinearColor veil(double from_z_m, float down, float path_m) const;
+  /// Returns the daylight that the water scatters into a ray; `source`: per metre at its start.
+  LinearColor veil(const LinearColor& source, float down, float path_m) const;
   Crossing from_above(const Vector3d& direction_W, double crossing_m, double range_m) const;
   Crossing from_below(const Vector3d& direction_W, double crossing_m, double range_m) const;
 
@@ -91,14 +110,16 @@ class WaterView {
   WaterOptics optics_;
   Eigen::Vector3f to_sun_W_;
   LinearColor sun_;
-  float day_;                // strength of daylight on the surface
-  float wind_slope_ = 0;     // mean square slope of ripples (Cox and Munk 1954)
+  float day_;             // strength of daylight on the surface
+  float wind_slope_ = 0;  // mean square slope of ripples (Cox and Munk 1954)
   Vector3d eye_W_ = Vector3d::Zero();
-  double level_m_ = 0;       // of the still surface
-  double highest_m_ = 0;     // bound of waves over it
+  double level_m_ = 0;    // of the still surface
+  double highest_m_ = 0;  // bound of waves over it
   bool is_under_ = false;
   float gain_ = 1;
   double now_s_ = 0;
+  double steep_ = 0;  // slope that waves seldom exceed: twice the root mean square
+  LinearColor at_surface_ = LinearColor::Zero(), at_eye_ = LinearColor::Zero();  // daylight scattered per metre
   std::vector<Level> levels_;
 };
 

@@ -9,7 +9,7 @@
 #include "tools/experiment/film/film.hpp"
 #include "tools/experiment/process/signals.hpp"
 #include "tools/shoal/commands.hpp"
-#include "tools/shoal/picture_options.hpp"
+#include "tools/shoal/image_options.hpp"
 
 namespace tools {
 
@@ -25,7 +25,7 @@ struct FilmArguments {
 int film(FilmArguments& arguments) {
   // Options of which the text is parsed.
   FilmOptions& film = arguments.film;
-  const PictureSize size = parse_picture_size(arguments.size);
+  const ImageSize size = parse_image_size(arguments.size);
   film.format.width = size.width;
   film.format.height = size.height;
   film.fov_rad = sim::degrees_to_radians(arguments.fov_deg);
@@ -64,8 +64,7 @@ void add_film_options(CLI::App& command, FilmArguments& arguments) {
       ->type_name("CAMERA")
       ->type_size(1)
       ->allow_extra_args(false);
-  command
-      .add_option("--split", arguments.split, "2: beside the camera that of the vehicle, on board")
+  command.add_option("--split", arguments.split, "2: beside the camera that of the vehicle, on board")
       ->type_name("N")
       ->check(whole_from(1, 2));
   command.add_option("--from", film.from_s, "simulated time of the first frame, s")
@@ -83,7 +82,9 @@ void add_film_options(CLI::App& command, FilmArguments& arguments) {
       ->type_name("N")
       ->check(whole_from(1, 240))
       ->capture_default_str();
-  command.add_option("--size", arguments.size, "of the film in pixels")->type_name("WIDTHxHEIGHT")->capture_default_str();
+  command.add_option("--size", arguments.size, "of the film in pixels")
+      ->type_name("WIDTHxHEIGHT")
+      ->capture_default_str();
   command.add_option("--fov", arguments.fov_deg, "horizontal field of view, degrees")
       ->type_name("DEG")
       ->check(number_from(1, 170))

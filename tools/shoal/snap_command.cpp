@@ -14,11 +14,12 @@
 #include "tools/experiment/film/camera_rig.hpp"
 #include "tools/experiment/film/film_source.hpp"
 #include "tools/experiment/film/overlay.hpp"
+#include "tools/experiment/film/ping_observer.hpp"
 #include "tools/experiment/film/scene_painter.hpp"
 #include "tools/experiment/images/overview.hpp"
 #include "tools/shoal/commands.hpp"
+#include "tools/shoal/image_options.hpp"
 #include "tools/shoal/output_file.hpp"
-#include "tools/shoal/picture_options.hpp"
 
 namespace tools {
 
@@ -78,7 +79,7 @@ sim::Vector3d parse_point(const char* option, const std::string& text) {
 }
 
 SnapView free_view(const SnapArguments& arguments, const sim::World& world) {
-  const PictureSize size = parse_picture_size(arguments.size);
+  const ImageSize size = parse_image_size(arguments.size);
   SnapView view;
   view.scene.optics.width = size.width;
   view.scene.optics.height = size.height;
@@ -152,11 +153,10 @@ void take_one(const SnapArguments& arguments, const sim::World& world, const std
   const SnapView view = make_view(arguments, world);
   warn(view);
   const auto start = std::chrono::steady_clock::now();
-  ScenePicture& picture = painter.paint(view.scene);
+  RenderedScene& rendered = painter.paint(view.scene);
   overlay.observe();
-  if (arguments.overlay.any() && view.scene.options.kind == sim::ImageKind::color)
-    overlay.draw(picture, view.scene);
-  const sim::Image8& output = picture.image;
+  if (arguments.overlay.any() && view.scene.options.kind == sim::ImageKind::color) overlay.draw(rendered, view.scene);
+  const sim::Image8& output = rendered.image;
   const double render_s = seconds_since(start);
   try {
     sim::write_image(path, output, arguments.quality);
@@ -165,8 +165,8 @@ void take_one(const SnapArguments& arguments, const sim::World& world, const std
   }
   const sim::Vector3d p_W = view.scene.X_WS.translation();
   std::cout << fmt::format(
-      "{}: {}x{}, {} at {:.3f} s from {}, rendered in {:.2f} s\n", path, output.width, output.height, arguments.source(),
-      sim::to_seconds(world.now()),
+      "{}: {}x{}, {} at {:.3f} s from {}, rendered in {:.2f} s\n", path, output.width, output.height,
+      arguments.source(), sim::to_seconds(world.now()),
       arguments.from.empty() ? fmt::format("({:.2f}, {:.2f}, {:.2f})", p_W.x(), p_W.y(), p_W.z()) : arguments.from,
       render_s);
 }
@@ -178,6 +178,7 @@ void take_all(const SnapArguments& arguments, FilmSource& source) {
   if (arguments.overlay.ellipses && !source.log().empty())
     estimates = LogEstimates(source.log(), arguments.at_s - trail_s, std::max(arguments.at_s, arguments.until_s), 0.5);
   Overlay overlay(source.world(), {arguments.overlay, trail_s, 2000, ""}, std::move(estimates));
+  const PingObserver pings(source.world(), overlay);
   ScenePainter painter(source.world());
   int number = 0;
   for (double at_s = arguments.at_s; number == 0 || at_s <= arguments.until_s + 1e-9; ++number) {
@@ -206,9 +207,8 @@ int snap(SnapArguments& arguments) {
     throw std::runtime_error(arguments.log + ": is not an LCM log: it cannot be read, or begins with something else");
   const std::unique_ptr<FilmSource> source = open_film_source(arguments.source(), arguments.load);
   if (sim::from_seconds(arguments.at_s) < source->world().now() || arguments.at_s > source->end_s() + 1e-9)
-    throw std::runtime_error(fmt::format("{}: the log goes from {:.6g} s to {:.6g} s, --at is {:.6g} s",
-                                         arguments.log, sim::to_seconds(source->world().now()), source->end_s(),
-                                         arguments.at_s));
+    throw std::runtime_error(fmt::format("{}: the log goes from {:.6g} s to {:.6g} s, --at is {:.6g} s", arguments.log,
+                                         sim::to_seconds(source->world().now()), source->end_s(), arguments.at_s));
   make_view(arguments, source->world());  // reports errors of the view before a long run
   check_writable(arguments.every_s ? numbered(arguments.out, 0) : arguments.out);
   try {
@@ -258,13 +258,15 @@ void add_view_options(CLI::App& command, SnapArguments& arguments) {
 }  // namespace
 
 void add_snap_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("snap", "Run a world as fast as possible, without a bus, or a log again, and render an image");
+  CLI::App* command =
+      app.add_subcommand("snap", "Run a world as fast as possible, without a bus, or a log again, and render an image");
   const auto arguments = std::make_shared<SnapArguments>();
   add_log_level_option(*command);
   // Output and times.
   command->add_option("WORLD", arguments->world, "world file, or the name of a shipped world");
-  command->add_option("--log", arguments->log,
-                      "log of shoal run --record instead of a world: its run, with what its programs did")
+  command
+      ->add_option("--log", arguments->log,
+                   "log of shoal run --record instead of a world: its run, with what its programs did")
       ->type_name("LOG");
   command->add_option("--out", arguments->out, "file of the image: .png, .jpg or .jpeg")->type_name("FILE")->required();
   command->add_option("--at", arguments->at_s, "simulated time, s")

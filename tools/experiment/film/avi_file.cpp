@@ -72,8 +72,8 @@ std::string AviFile::header() const {
   const std::string stream = "vidsMJPG" + u32(0) + u32(0) + u32(0) + u32(1) + u32(fps) + u32(0) + u32(frames) +
                              u32(max_frame_bytes_) + u32(0xFFFFFFFF) + u32(0) + u16(0) + u16(0) + u16(width) +
                              u16(height);
-  const std::string form = u32(40) + u32(width) + u32(height) + u16(1) + u16(24) + "MJPG" + u32(width * height * 3) +
-                           std::string(16, '\0');
+  const std::string form =
+      u32(40) + u32(width) + u32(height) + u16(1) + u16(24) + "MJPG" + u32(width * height * 3) + std::string(16, '\0');
   const std::string list = chunk("LIST", "strl" + chunk("strh", stream) + chunk("strf", form));
   const std::string head = chunk("LIST", "hdrl" + chunk("avih", main) + list);
   // The list of frames, whose content follows, and the index after it.

@@ -11,7 +11,7 @@
 
 namespace tools {
 
-/// Writer of AVI files (RIFF, version 1) with Motion JPEG, which most players show without a codec of their own.
+/// Writer of AVI files (RIFF, version 1) with Motion JPEG, which most players show.
 class AviFile final : public FilmWriter {
  public:
   AviFile(std::string file, const FilmFormat& format);
@@ -34,7 +34,7 @@ class AviFile final : public FilmWriter {
   FilmFormat format_;
   std::FILE* out_;
   std::vector<Entry> entries_;
-  std::uint64_t data_bytes_ = 0;   // of all frames with their heads
+  std::uint64_t data_bytes_ = 0;  // of all frames with their heads
   std::uint32_t max_frame_bytes_ = 0;
   sim::Bytes jpeg_;
 };

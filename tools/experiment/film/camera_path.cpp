@@ -45,7 +45,8 @@ CameraKey CameraPath::at(double time_s) const {
   CameraKey key;
   key.at_s = time_s;
   key.eye_m = h0 * from.eye_m + h1 * to.eye_m + g0 * (to.eye_m - before.eye_m) + g1 * (behind.eye_m - from.eye_m);
-  key.look_m = h0 * from.look_m + h1 * to.look_m + g0 * (to.look_m - before.look_m) + g1 * (behind.look_m - from.look_m);
+  key.look_m =
+      h0 * from.look_m + h1 * to.look_m + g0 * (to.look_m - before.look_m) + g1 * (behind.look_m - from.look_m);
   key.fov_rad = from.fov_rad + u * (to.fov_rad - from.fov_rad);
   if ((key.look_m - key.eye_m).norm() < 1e-3) key.look_m = key.eye_m + (to.look_m - to.eye_m);
   return key;

@@ -28,8 +28,8 @@ class CameraRig {
 };
 
 /// Makes a camera: `all` (every vehicle in view), `top` or `top:VEHICLE` (from above, north is up), `chase:VEHICLE`,
-/// `orbit:VEHICLE`, `from:VEHICLE/CAMERA`, or a file of key poses, *.yaml.  `like`: size, field of view, antialiasing and
-/// water.  `world` must outlive it.  Throws CameraError, and sim::ConfigError for a file.
+/// `orbit:VEHICLE`, `from:VEHICLE/CAMERA`, or a file of key poses, *.yaml.  `like`: size, field of view, rays per pixel
+/// and water.  `world` must outlive it.  Throws CameraError, and sim::ConfigError for a file.
 std::unique_ptr<CameraRig> make_camera_rig(const std::string& text, const sim::World& world, const SceneView& like);
 
 /// Returns the view of a camera of a vehicle, `VEHICLE/CAMERA` or `VEHICLE.CAMERA`, at its present pose: its lens and

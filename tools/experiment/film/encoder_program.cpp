@@ -23,10 +23,22 @@ namespace {
 
 std::vector<std::string> arguments_of(const FilmFormat& format, const std::vector<std::string>& codec,
                                       const std::string& part) {
-  std::vector<std::string> arguments{"ffmpeg",  "-hide_banner", "-loglevel", "error", "-y",
-                                     "-f",      "rawvideo",     "-pix_fmt",  "rgb24", "-s",
+  std::vector<std::string> arguments{"ffmpeg",
+                                     "-hide_banner",
+                                     "-loglevel",
+                                     "error",
+                                     "-y",
+                                     "-f",
+                                     "rawvideo",
+                                     "-pix_fmt",
+                                     "rgb24",
+                                     "-s",
                                      fmt::format("{}x{}", format.width, format.height),
-                                     "-r",      fmt::format("{}", format.fps), "-i", "pipe:0", "-an"};
+                                     "-r",
+                                     fmt::format("{}", format.fps),
+                                     "-i",
+                                     "pipe:0",
+                                     "-an"};
   arguments.insert(arguments.end(), codec.begin(), codec.end());
   arguments.push_back("file:" + part);
   return arguments;

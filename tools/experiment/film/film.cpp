@@ -13,6 +13,7 @@
 
 #include "tools/experiment/film/camera_rig.hpp"
 #include "tools/experiment/film/film_source.hpp"
+#include "tools/experiment/film/ping_observer.hpp"
 #include "tools/experiment/film/scene_painter.hpp"
 #include "tools/experiment/process/signals.hpp"
 
@@ -136,12 +137,12 @@ class Film {
     if (const std::size_t programs = world_.config().processes.size(); programs > 0 && source_->log().empty())
       spdlog::warn("a world is shown without its {} programs; record a run with them: shoal run --launch --record",
                    programs);
-    const double begin_s = sim::to_seconds(world_.now());
-    if (options_.from_s < begin_s)
-      throw std::runtime_error(fmt::format("{}: begins at {:.6g} s, after --from", options_.source, begin_s));
+    const double start_s = sim::to_seconds(world_.now());
+    if (options_.from_s < start_s)
+      throw std::runtime_error(fmt::format("{}: begins at {:.6g} s, after --from", options_.source, start_s));
     if (until_s_ < options_.from_s || !advance(options_.from_s))
       throw std::runtime_error(fmt::format("{}: ends at {:.6g} s, before --from", options_.source,
-                                           std::min(until_s_, sim::to_seconds(world_.now()))));
+                                           until_s_ < options_.from_s ? until_s_ : sim::to_seconds(world_.now())));
     SceneView like;
     like.optics.width = options_.format.width;
     like.optics.height = options_.format.height;
@@ -154,9 +155,9 @@ class Film {
     if (!options_.split || rigs_.size() > 1) return;
     const std::string on_board = first_camera(world_, rigs_.front()->subject());
     if (on_board.empty())
-      throw CameraError(rigs_.front()->subject().empty() ? "--split: no vehicle has a camera"
-                                                         : "--split: vehicle '" + rigs_.front()->subject() +
-                                                               "' has no camera");
+      throw CameraError(rigs_.front()->subject().empty()
+                            ? "no vehicle has a camera for --split 2"
+                            : "vehicle '" + rigs_.front()->subject() + "' has no camera for --split 2");
     rigs_.push_back(make_camera_rig("from:" + on_board, world_, like));
   }
 
@@ -179,9 +180,9 @@ class Film {
     frame_ = sim::Image8(options_.format.width, options_.format.height, 3);
     for (std::size_t i = 0; i < rigs_.size(); ++i) {
       const SceneView view = rigs_[i]->view(film_step_s);
-      ScenePicture& picture = painter_.paint(view);
-      if (options_.overlays.any() && view.options.kind == sim::ImageKind::color) overlay_.draw(picture, view);
-      place(picture.image, static_cast<int>(i) * columns, columns, frame_);
+      RenderedScene& rendered = painter_.paint(view);
+      if (options_.overlays.any() && view.options.kind == sim::ImageKind::color) overlay_.draw(rendered, view);
+      place(rendered.image, static_cast<int>(i) * columns, columns, frame_);
     }
     return frame_;
   }
@@ -192,6 +193,7 @@ class Film {
   double until_s_;
   ScenePainter painter_;
   Overlay overlay_;
+  PingObserver pings_{world_, overlay_};
   std::vector<std::unique_ptr<CameraRig>> rigs_;
   sim::Image8 frame_;
   double observed_s_ = -1;
@@ -201,10 +203,11 @@ class Film {
 }  // namespace
 
 std::string FilmOutcome::to_text(const FilmOptions& options) const {
-  std::string text = fmt::format("{}: {} frames of {}x{}, {:.1f} s of film for {:.1f} s of the run, in {:.1f} s ({:.0f} "
-                                 "frames/s)\n",
-                                 options.out, frames, options.format.width, options.format.height, film_s, sim_s, wall_s,
-                                 wall_s > 0 ? static_cast<double>(frames) / wall_s : 0.0);
+  std::string text = fmt::format(
+      "{}: {} frames of {}x{}, {:.1f} s of film for {:.1f} s of the run, in {:.1f} s ({:.0f} "
+      "frames/s)\n",
+      options.out, frames, options.format.width, options.format.height, film_s, sim_s, wall_s,
+      wall_s > 0 ? static_cast<double>(frames) / wall_s : 0.0);
   if (!note.empty()) text += "note: " + note + "\n";
   return text;
 }

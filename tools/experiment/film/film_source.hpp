@@ -9,7 +9,7 @@
 
 namespace tools {
 
-/// Run to be shown in pictures: a world that is run without programs, or the world of a log, which is run again with
+/// Run to be shown in images: a world that is run without programs, or the world of a log, which is run again with
 /// the inputs that it recorded.  Neither is changed by being shown.
 class FilmSource {
  public:

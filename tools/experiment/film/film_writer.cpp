@@ -58,15 +58,16 @@ FilmKind kind_of(const std::string& file) {
   if (ending == ".webm") return FilmKind::webm;
   if (ending == ".avi") return FilmKind::avi;
   if (ending == ".png") return FilmKind::png;
-  throw std::invalid_argument("must end in .mp4, .webm, .avi, .png or a slash (a folder for images), got '" + file + "'");
+  throw std::invalid_argument("must end in .mp4, .webm, .avi, .png or a slash (a folder for images), got '" + file +
+                              "'");
 }
 
 std::vector<std::string> codec_of(FilmKind kind) {
   if (kind == FilmKind::mp4)
-    return {"-c:v", "libx264", "-preset", "veryfast", "-crf", "20", "-pix_fmt", "yuv420p", "-movflags", "+faststart",
-            "-f", "mp4"};
-  return {"-c:v", "libvpx-vp9", "-deadline", "realtime", "-cpu-used", "8", "-row-mt", "1", "-crf", "32", "-b:v", "0",
-          "-pix_fmt", "yuv420p", "-f", "webm"};
+    return {"-c:v",     "libx264", "-preset",   "veryfast",   "-crf", "20",
+            "-pix_fmt", "yuv420p", "-movflags", "+faststart", "-f",   "mp4"};
+  return {"-c:v", "libvpx-vp9", "-deadline", "realtime", "-cpu-used", "8",       "-row-mt", "1",
+          "-crf", "32",         "-b:v",      "0",        "-pix_fmt",  "yuv420p", "-f",      "webm"};
 }
 
 }  // namespace
@@ -75,11 +76,12 @@ void check_film_file(const std::string& file, const FilmFormat& format) {
   const FilmKind kind = kind_of(file);
   const bool encoded = kind == FilmKind::mp4 || kind == FilmKind::webm;
   if (encoded && (format.width % 2 != 0 || format.height % 2 != 0))
-    throw std::invalid_argument(fmt::format("needs an even width and height, got {}x{}: '{}'", format.width,
-                                            format.height, file));
+    throw std::invalid_argument(
+        fmt::format("needs an even width and height, got {}x{}: '{}'", format.width, format.height, file));
   if (encoded && !has_ffmpeg())
-    throw FilmError(file + ": needs the program ffmpeg (apt install ffmpeg); without it write an .avi or a folder of "
-                           "images, which ends in a slash");
+    throw FilmError(file +
+                    ": needs the program ffmpeg (apt install ffmpeg); without it write an .avi or a folder of "
+                    "images, which ends in a slash");
   if (kind == FilmKind::folder) return;
   // Where it goes.
   std::error_code error;
@@ -92,12 +94,15 @@ void check_film_file(const std::string& file, const FilmFormat& format) {
 std::unique_ptr<FilmWriter> make_film_writer(const std::string& file, const FilmFormat& format) {
   check_film_file(file, format);
   switch (const FilmKind kind = kind_of(file)) {
-    case FilmKind::avi: return std::make_unique<AviFile>(file, format);
+    case FilmKind::avi:
+      return std::make_unique<AviFile>(file, format);
     case FilmKind::png:
       return std::make_unique<PngFrames>(file.substr(0, file.size() - 4) + "_", fs::path());
-    case FilmKind::folder: return std::make_unique<PngFrames>(file + "frame_", fs::path(file));
+    case FilmKind::folder:
+      return std::make_unique<PngFrames>(file + "frame_", fs::path(file));
     case FilmKind::mp4:
-    case FilmKind::webm: return std::make_unique<EncoderProgram>(file, format, codec_of(kind));
+    case FilmKind::webm:
+      return std::make_unique<EncoderProgram>(file, format, codec_of(kind));
   }
   throw std::invalid_argument("unknown kind of film");
 }

@@ -23,8 +23,8 @@ struct FilmEstimate {
 class LogEstimates {
  public:
   LogEstimates() = default;
-  /// Reads the estimates of a log from `from_s` to `until_s`, at most one of a vehicle in each `interval_s`.  Of several
-  /// branches the last one counts.  Throws bridges::BusError when the log cannot be read.
+  /// Reads the estimates of a log from `from_s` to `until_s`, at most one of a vehicle in each `interval_s`.  Of
+  /// several branches the last one counts.  Throws bridges::BusError when the log cannot be read.
   LogEstimates(const std::string& log, double from_s, double until_s, double interval_s);
 
   /// Returns the last estimate of a vehicle up to a time, none older than `max_age_s`.

@@ -15,8 +15,9 @@ namespace {
 
 constexpr double max_estimate_age_s = 30;
 constexpr std::size_t max_trail_points = 4000;
+constexpr std::size_t max_pings = 500;
 /// Colors that differ for most color-blind people, too (Okabe and Ito 2008).
-constexpr sim::Color vehicle_colors[] = {{86, 180, 233}, {230, 159, 0},   {0, 200, 140},  {240, 228, 66},
+constexpr sim::Color vehicle_colors[] = {{86, 180, 233}, {230, 159, 0},   {0, 200, 140},   {240, 228, 66},
                                          {213, 94, 0},   {204, 121, 167}, {120, 140, 255}, {230, 230, 230}};
 constexpr sim::Color estimate_color{255, 90, 160};
 constexpr sim::Color ping_color{255, 255, 160};
@@ -35,8 +36,10 @@ OverlayChoice parse_overlays(const std::string& text) {
     if (word == "none") continue;
     const bool all = word == "all";
     if (!all && word != "trails" && word != "ellipses" && word != "pings" && word != "labels" && word != "clock")
-      throw std::invalid_argument("must be trails, ellipses, pings, labels and clock, separated by commas, all or none, "
-                                  "got '" + text + "'");
+      throw std::invalid_argument(
+          "must be trails, ellipses, pings, labels and clock, separated by commas, all or none, "
+          "got '" +
+          text + "'");
     choice.trails |= all || word == "trails";
     choice.ellipses |= all || word == "ellipses";
     choice.pings |= all || word == "pings";
@@ -54,6 +57,11 @@ void Overlay::extend(Trail& trail, double now_s, const sim::Vector3d& p_W, doubl
   if (!points_W.empty() && points_W.back().first >= now_s) return;
   points_W.emplace_back(now_s, p_W);
   while (points_W.front().first < now_s - trail_s || points_W.size() > max_trail_points) points_W.pop_front();
+}
+
+void Overlay::add(const FilmPing& ping) {
+  pings_.push_back(ping);
+  if (pings_.size() > max_pings) pings_.pop_front();
 }
 
 void Overlay::observe() {
@@ -76,8 +84,8 @@ void Overlay::observe() {
   });
 }
 
-void Overlay::draw(ScenePicture& picture, const SceneView& view) const {
-  OverlayCanvas canvas(picture, view);
+void Overlay::draw(RenderedScene& rendered, const SceneView& view) const {
+  OverlayCanvas canvas(rendered, view);
   if (settings_.choice.pings) draw_pings(canvas);
   if (settings_.choice.trails) draw_trails(canvas);
   if (settings_.choice.ellipses) draw_estimates(canvas);
@@ -163,8 +171,8 @@ void Overlay::draw_labels(OverlayCanvas& canvas, const SceneView& view) const {
 void Overlay::draw_clock(OverlayCanvas& canvas, const SceneView& view) const {
   const double now_s = sim::to_seconds(world_.now());
   const int minutes = static_cast<int>(now_s / 60);
-  const std::string time = minutes > 0 ? fmt::format("{}:{:04.1f}", minutes, now_s - 60.0 * minutes)
-                                       : fmt::format("{:.1f} s", now_s);
+  const std::string time =
+      minutes > 0 ? fmt::format("{}:{:04.1f}", minutes, now_s - 60.0 * minutes) : fmt::format("{:.1f} s", now_s);
   const float margin = 1.6F * canvas.text_height();
   const auto height = static_cast<float>(view.optics.height);
   canvas.text(margin, height - margin, time + (settings_.title.empty() ? "" : "  " + settings_.title), {});

@@ -12,7 +12,7 @@
 
 namespace tools {
 
-/// Signs that are drawn over pictures.
+/// Signs that are drawn over images.
 struct OverlayChoice {
   bool trails = false;    ///< paths of the vehicles
   bool ellipses = false;  ///< estimates of a log: position, its covariance (3 sigma) and its error
@@ -34,7 +34,7 @@ struct FilmPing {
   double speed_mps = 1500;
 };
 
-/// Overlays of the pictures of a run.
+/// Overlays of the images of a run.
 class Overlay {
  public:
   struct Settings {
@@ -47,13 +47,13 @@ class Overlay {
   /// `world` must outlive this.
   Overlay(const sim::World& world, Settings settings, LogEstimates estimates);
 
-  /// Notes where the vehicles are.  To be called at least once before each picture; between pictures it makes trails
+  /// Notes where the vehicles are.  To be called at least once before each image; between images it makes trails
   /// smoother.
   void observe();
-  /// Adds a sound.
-  void add(const FilmPing& ping) { pings_.push_back(ping); }
+  /// Adds a sound.  Of very many the last ones are drawn.
+  void add(const FilmPing& ping);
   /// Draws into a color image of the present state of the world.
-  void draw(ScenePicture& picture, const SceneView& view) const;
+  void draw(RenderedScene& rendered, const SceneView& view) const;
 
  private:
   /// Path of a vehicle, or of its estimate.
@@ -73,7 +73,7 @@ class Overlay {
   Settings settings_;
   LogEstimates estimates_;
   std::map<std::string, Trail> trails_, estimate_trails_;
-  std::vector<FilmPing> pings_;
+  std::deque<FilmPing> pings_;
 };
 
 }  // namespace tools

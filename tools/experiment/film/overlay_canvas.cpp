@@ -16,9 +16,9 @@ constexpr double nearest_m = 0.02;  ///< lines closer to the camera are cut off
 
 }  // namespace
 
-OverlayCanvas::OverlayCanvas(ScenePicture& picture, const SceneView& view)
-    : image_(picture.image),
-      depth_m_(picture.depth_m),
+OverlayCanvas::OverlayCanvas(RenderedScene& rendered, const SceneView& view)
+    : image_(rendered.image),
+      depth_m_(rendered.depth_m),
       optics_(view.optics),
       X_SW_(view.X_WS.inverse()),
       straight_(view.optics.lens == sim::OpticsConfig::Lens::pinhole && view.optics.distortion.empty()),
@@ -136,7 +136,8 @@ void OverlayCanvas::blend(int column, int row, float opacity, const Pen& pen) {
   std::uint8_t* pixel = image_.at(column, row);
   for (int channel = 0; channel < std::min(image_.channels, 3); ++channel) {
     const float before = pixel[channel];
-    pixel[channel] = static_cast<std::uint8_t>(std::lround(before + opacity * (static_cast<float>(pen.color[static_cast<std::size_t>(channel)]) - before)));
+    pixel[channel] = static_cast<std::uint8_t>(
+        std::lround(before + opacity * (static_cast<float>(pen.color[static_cast<std::size_t>(channel)]) - before)));
   }
 }
 
@@ -164,7 +165,8 @@ void OverlayCanvas::segment(const Place& from, const Place& to, const Pen& pen, 
       const float u = flat ? centre : static_cast<float>(j) + 0.5F, v = flat ? static_cast<float>(j) + 0.5F : centre;
       float at = 0;
       if (length > 1e-3F)
-        at = std::clamp(((u - from.u) * (to.u - from.u) + (v - from.v) * (to.v - from.v)) / (length * length), 0.0F, 1.0F);
+        at = std::clamp(((u - from.u) * (to.u - from.u) + (v - from.v) * (to.v - from.v)) / (length * length), 0.0F,
+                        1.0F);
       const float away = std::hypot(u - from.u - at * (to.u - from.u), v - from.v - at * (to.v - from.v));
       const float covered = std::clamp(half + 0.5F - away, 0.0F, 1.0F);
       if (covered <= 0) continue;

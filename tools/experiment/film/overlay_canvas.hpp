@@ -23,8 +23,8 @@ struct Pen {
 /// Drawing in an image of a scene: points of the world are projected, and compared with the depth of the image.
 class OverlayCanvas {
  public:
-  /// `picture` is drawn into and must outlive this; `view` is the camera with which it was painted.
-  OverlayCanvas(ScenePicture& picture, const SceneView& view);
+  /// `rendered` is drawn into and must outlive this; `view` is the camera with which it was painted.
+  OverlayCanvas(RenderedScene& rendered, const SceneView& view);
 
   /// Draws a line between two points of the world.
   void line(const sim::Vector3d& from_W, const sim::Vector3d& to_W, const Pen& pen);

@@ -69,19 +69,19 @@ void ScenePainter::render(Lens& lens, const SceneView& view) {
   });
 }
 
-ScenePicture& ScenePainter::paint(const SceneView& view) {
+RenderedScene& ScenePainter::paint(const SceneView& view) {
   Lens& lens = lens_of(view);
   render(lens, view);
   if (view.options.kind == sim::ImageKind::depth) {
-    picture_.image = sim::depth_image(frame_.depth_m);
+    rendered_.image = sim::depth_image(frame_.depth_m);
   } else if (view.options.kind != sim::ImageKind::color) {
-    picture_.image = sim::label_image(frame_.labels);
+    rendered_.image = sim::label_image(frame_.labels);
   } else {
     const float gain = view.gain * (lens.water ? lens.water->gain() : 1.0F);
-    picture_.image = sim::develop(view.grey ? sim::grey_of(frame_.light) : frame_.light, gain);
-    std::swap(picture_.depth_m, frame_.depth_m);
+    rendered_.image = sim::develop(view.grey ? sim::grey_of(frame_.light) : frame_.light, gain);
+    std::swap(rendered_.depth_m, frame_.depth_m);
   }
-  return picture_;
+  return rendered_;
 }
 
 }  // namespace tools

@@ -26,7 +26,7 @@ struct SceneView {
 };
 
 /// Image of a scene with the distance of each pixel along the optical axis (infinity: nothing there), for overlays.
-struct ScenePicture {
+struct RenderedScene {
   sim::Image8 image;
   sim::FloatImage depth_m;  ///< of color images
 };
@@ -38,8 +38,8 @@ class ScenePainter {
   explicit ScenePainter(const sim::World& world, int threads = 0);
   ~ScenePainter();
 
-  /// Renders the world in its present state.  The picture is valid until the next call.
-  ScenePicture& paint(const SceneView& view);
+  /// Renders the world in its present state.  The image is valid until the next call.
+  RenderedScene& paint(const SceneView& view);
 
  private:
   struct Lens;
@@ -52,7 +52,7 @@ class ScenePainter {
   std::shared_ptr<sim::TextureLibrary> textures_;
   std::vector<std::unique_ptr<Lens>> lenses_;
   sim::Frame frame_;
-  ScenePicture picture_;
+  RenderedScene rendered_;
 };
 
 }  // namespace tools

@@ -41,7 +41,8 @@ void take_usual_signals() {
 void become(const ChildProgram& program, char* const* arguments, char* const* environment, pid_t parent) {
   if (setpgid(0, 0) != 0 || prctl(PR_SET_PDEATHSIG, SIGTERM) != 0) return;
   if (getppid() != parent) _exit(128 + SIGTERM);  // it ended before it could be monitored
-  if (program.input >= 0 ? dup2(program.input, STDIN_FILENO) < 0 : !open_as(STDIN_FILENO, "/dev/null", O_RDONLY)) return;
+  if (program.input >= 0 ? dup2(program.input, STDIN_FILENO) < 0 : !open_as(STDIN_FILENO, "/dev/null", O_RDONLY))
+    return;
   if (!program.log.empty()) {
     if (!open_as(STDOUT_FILENO, program.log.c_str(), O_WRONLY | O_CREAT | O_TRUNC)) return;
     if (dup2(STDOUT_FILENO, STDERR_FILENO) < 0) return;

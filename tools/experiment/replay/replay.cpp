@@ -216,7 +216,8 @@ class Replay {
     } catch (const std::exception&) {
       // A mesh of the log may be missing; its lines can be compared nevertheless.
     }
-    for (std::string& line : line_difference(log_.info.resolved_config, sim::to_yaml(replayed_.loaded().resolved), max_lines))
+    for (std::string& line :
+         line_difference(log_.info.resolved_config, sim::to_yaml(replayed_.loaded().resolved), max_lines))
       world.push_back(std::move(line));
   }
 

@@ -12,13 +12,13 @@ namespace tools {
 // Options that snap and film share.
 
 /// Size of an image in pixels.
-struct PictureSize {
+struct ImageSize {
   int width = 0;
   int height = 0;
 };
 
 /// Parses `--size`, such as 1280x720.  Throws CLI::ValidationError.
-PictureSize parse_picture_size(const std::string& text);
+ImageSize parse_image_size(const std::string& text);
 
 /// Adds `--visibility M`.
 void add_visibility_option(CLI::App& command, std::string& text);

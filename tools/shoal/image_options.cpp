@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tools/shoal/picture_options.hpp"
+#include "tools/shoal/image_options.hpp"
 
 #include <spdlog/fmt/fmt.h>
 
@@ -9,8 +9,8 @@
 
 namespace tools {
 
-PictureSize parse_picture_size(const std::string& text) {
-  PictureSize size;
+ImageSize parse_image_size(const std::string& text) {
+  ImageSize size;
   const char* end = text.data() + text.size();
   const auto [after_width, width_error] = std::from_chars(text.data(), end, size.width);
   if (width_error != std::errc{} || after_width == end || *after_width != 'x')
