@@ -60,10 +60,10 @@ void ViewPublisher::publish_all(const char* channel, std::vector<Message>& messa
   messages.clear();
 }
 
-/// Returns a new message with its step; null when it is not wanted or the step has too many.
+/// Returns a new message with its step; null when it is switched off or the step has too many.
 template <typename Message>
-Message* ViewPublisher::add(bool wanted, std::vector<Message>& messages) {
-  if (!wanted || !is_observed_()) return nullptr;
+Message* ViewPublisher::add(bool enabled, std::vector<Message>& messages) {
+  if (!enabled || !is_observed_()) return nullptr;
   if (messages.size() >= max_per_step) {
     ++left_out_;
     return nullptr;

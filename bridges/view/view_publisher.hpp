@@ -79,7 +79,7 @@ class ViewPublisher final : public sim::WorldObserver {
   template <typename Message>
   void publish_all(const char* channel, std::vector<Message>& messages);
   template <typename Message>
-  Message* add(bool wanted, std::vector<Message>& messages);
+  Message* add(bool enabled, std::vector<Message>& messages);
 
   sim::Bus& bus_;
   sim::World& world_;

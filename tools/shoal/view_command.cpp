@@ -54,7 +54,7 @@ int view_log(const ViewArguments& arguments) {
   const bool terminal = isatty(STDERR_FILENO) != 0;
   const auto begin = Clock::now();
   const LogIndex index(arguments.log, [&](double share) {
-    if (terminal) std::cerr << fmt::format("\rreading {}: {:.0f} %", arguments.log, 100 * share) << std::flush;
+    if (terminal) std::cerr << fmt::format("\r{}: {:.0f} % read", arguments.log, 100 * share) << std::flush;
   });
   if (terminal) std::cerr << "\r\033[K";
   for (const std::string& problem : index.problems()) spdlog::warn("{}: {}", arguments.log, problem);

@@ -129,7 +129,7 @@ void LogView::handle(const bridges::ViewRequest& request) {
       server_.reply(request.client, json_text({{"op", "reply"},
                                                {"id", message.value("id", Json())},
                                                {"ok", false},
-                                               {"text", "this is a log: a run of it is not there to be steered"}}));
+                                               {"text", "this is a log, which cannot be steered"}}));
     }
   } catch (const Json::exception&) {
     server_.reply(request.client,
@@ -177,8 +177,8 @@ void BusView::send_status() {
   const Clock::time_point now = Clock::now();
   const double wall_s = std::chrono::duration<double>(now - status_at_).count();
   const double simulated_s = 1e-6 * static_cast<double>(messages_.newest_us() - status_us_);
-  constexpr double longest_s = 5;  // since the status before: else there was none
-  const bool known = wall_s < longest_s && simulated_s >= 0;
+  constexpr double max_wall_s = 5;  // since the status before: else there was none
+  const bool known = wall_s < max_wall_s && simulated_s >= 0;
   status_at_ = now;
   status_us_ = messages_.newest_us();
   server_.retain("status", json_text({{"op", "status"},

@@ -69,8 +69,8 @@ void RunView::send_status(const sim::World& world, const sim::RunControl& contro
   // Rate of simulated time since a second ago.
   const double wall_s = std::chrono::duration<double>(now - rate_since_).count();
   if (wall_s > 1 || world.now() < rate_from_) {
-    constexpr double longest_s = 5;  // else there was no page for a while
-    rate_ = wall_s < longest_s ? sim::to_seconds(world.now() - rate_from_) / wall_s : control.speed;
+    constexpr double max_wall_s = 5;  // else there was no page for a while
+    rate_ = wall_s < max_wall_s ? sim::to_seconds(world.now() - rate_from_) / wall_s : control.speed;
     rate_since_ = now;
     rate_from_ = world.now();
   }
