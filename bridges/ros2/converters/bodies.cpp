@@ -16,7 +16,7 @@ std::string scene_text(const Json& item, const char* key) {
   return value != item.end() && value->is_string() ? value->get<std::string>() : "";
 }
 
-/// Remembers the frames of the bodies of a scene; it is not a message of its own.
+/// Remembers the frames of the bodies of a scene; it gives no message itself.
 bool read_scene(const shoal::sim_scene_t& message, ConverterContext& context, CdrWriter&) {
   context.body_frames.clear();
   context.scene_revision = message.revision;
