@@ -75,7 +75,7 @@ McapRecord::Route* McapRecord::route_of(std::string_view channel, const shoal::M
 bool McapRecord::write_standard(Route& route, std::string_view channel, std::uint64_t time_ns,
                                 std::span<const std::byte> payload) {
   for (Route::Standard& each : route.standard) {
-    if (!each.converter->convert(payload, channel, cdr_)) continue;
+    if (!each.converter->convert(payload, channel, context_, cdr_)) continue;
     if (each.channel == 0) each.channel = standard_channel(*each.converter, channel);
     if (each.channel != 0 && !file_.write(each.channel, time_ns, cdr_)) return false;
   }
@@ -146,6 +146,7 @@ std::unique_ptr<McapRecord> McapRecord::branch(const std::string& path, std::uin
   next->raw_channels_ = raw_channels_;
   next->common_channels_ = common_channels_;
   next->topic_owners_ = topic_owners_;
+  next->context_ = context_;
   next->branch_ = branch_;
   McapReader from(path);
   bool written = true;

@@ -69,7 +69,8 @@ class McapRecord {
   std::map<std::string, std::uint16_t, std::less<>> raw_channels_;
   std::map<std::string, std::uint16_t> common_channels_;  // topics that several LCM channels share, such as /tf
   std::map<std::string, std::string> topic_owners_;       // LCM channel and type of each topic
-  std::optional<std::int32_t> branch_;                    // of the last sim.info
+  ros2::ConverterContext context_;
+  std::optional<std::int32_t> branch_;  // of the last sim.info
   std::uint64_t not_decoded_ = 0;
   std::vector<std::string> problems_;
   std::vector<std::byte> cdr_;

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <span>
 #include <string>
@@ -15,6 +17,13 @@
 
 namespace bridges::ros2 {
 
+/// What earlier messages of a record tell a converter.
+struct ConverterContext {
+  /// Coordinate frames of the bodies of the last `sim.scene`, by their numbers, and its revision.
+  std::map<std::int32_t, std::string> body_frames;
+  std::int32_t scene_revision = -1;
+};
+
 /// Conversion of the messages of an LCM type into a standard type of ROS 2.
 struct Converter {
   std::string lcm_type;  ///< such as "shoal.gps_data_t"
@@ -22,7 +31,8 @@ struct Converter {
   std::string topic;     ///< "fix": /CHANNEL/fix; with a leading slash: this topic for all channels
   /// Converts a valid payload; returns false when the standard type cannot express the message.  May throw
   /// shoal::MessageError.
-  std::function<bool(std::span<const std::byte> payload, std::string_view channel, std::vector<std::byte>& cdr)>
+  std::function<bool(std::span<const std::byte> payload, std::string_view channel, ConverterContext& context,
+                     std::vector<std::byte>& cdr)>
       convert;
 
   /// Topic of the converted messages of a channel.
@@ -52,18 +62,30 @@ bool add_converter(const char* message, const char* ros_type, const char* topic,
 template <class Message>
 bool add_converter(const char* ros_type, const char* topic,
                    bool (*write)(const Message& message, std::string_view channel, CdrWriter& out)) {
-  return add_converter(
-      Message::getTypeName(), ros_type, topic,
-      [write](std::span<const std::byte> payload, std::string_view channel, std::vector<std::byte>& cdr) {
-        CdrWriter out(cdr);
-        return write(shoal::decode<Message>(payload, shoal::Finite::any), channel, out);
-      });
+  return add_converter(Message::getTypeName(), ros_type, topic,
+                       [write](std::span<const std::byte> payload, std::string_view channel, ConverterContext&,
+                               std::vector<std::byte>& cdr) {
+                         CdrWriter out(cdr);
+                         return write(shoal::decode<Message>(payload, shoal::Finite::any), channel, out);
+                       });
+}
+
+template <class Message>
+bool add_converter(const char* ros_type, const char* topic,
+                   bool (*write)(const Message& message, ConverterContext& context, CdrWriter& out)) {
+  return add_converter(Message::getTypeName(), ros_type, topic,
+                       [write](std::span<const std::byte> payload, std::string_view, ConverterContext& context,
+                               std::vector<std::byte>& cdr) {
+                         CdrWriter out(cdr);
+                         return write(shoal::decode<Message>(payload, shoal::Finite::any), context, out);
+                       });
 }
 
 }  // namespace detail
 
 /// Registers a converter, in its own file of bridges/ros2/converters.  `write` is a function
-/// `bool write(const Message&, std::string_view channel, CdrWriter&)`, which appends the standard message.
+/// `bool write(const Message&, std::string_view channel, CdrWriter&)`, which appends the standard message, or one that
+/// takes a ConverterContext& in place of the channel.
 #define SHOAL_ROS2_CONVERTER(write, ros_type, topic) \
   [[maybe_unused]] static const bool registered_##write = ::bridges::ros2::detail::add_converter(ros_type, topic, write)
 

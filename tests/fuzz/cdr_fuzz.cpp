@@ -35,6 +35,9 @@ SHOAL_FUZZ_TARGET(cdr) {
   if (error) return;
   // An element grows at most from 1 byte to 8 with padding; a type without members becomes a byte.
   fuzz::require(cdr.size() <= 8 * payload.size() + 65536, "the size of CDR is bounded by that of the payload");
+  bridges::ros2::ConverterContext context;
+  context.body_frames = {{0, "a/body/base"}, {1, "b"}};
+  context.scene_revision = 0;
   for (const bridges::ros2::Converter* converter : bridges::ros2::ConverterTable::instance().of(schema.name))
-    fuzz::allow<shoal::MessageError>([&] { converter->convert(payload, channel, cdr); });
+    fuzz::allow<shoal::MessageError>([&] { converter->convert(payload, channel, context, cdr); });
 }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "bridges/ros2/cdr_writer.hpp"
@@ -13,6 +14,11 @@ namespace bridges::ros2 {
 
 inline constexpr const char* world_frame = "world";
 inline constexpr std::array<double, 9> unknown_3x3{};
+
+/// Frame of a body: `rover1/body/base`, so that no device has the same.
+inline std::string body_frame(std::string_view owner, std::string_view body) {
+  return owner.empty() ? "body/" + std::string(body) : std::string(owner) + "/body/" + std::string(body);
+}
 
 /// Appends builtin_interfaces/Time.
 inline void put_time(CdrWriter& out, std::int64_t utime) {

@@ -2,6 +2,7 @@
 #include "bridges/ros2/converter.hpp"
 #include "bridges/ros2/converters/common_parts.hpp"
 #include "shoal/sim_audit_t.hpp"
+#include "shoal/sim_event_t.hpp"
 #include "shoal/sim_vehicle_t.hpp"
 
 namespace bridges::ros2 {
@@ -30,6 +31,13 @@ bool write_vehicle_log(const shoal::sim_vehicle_t& message, std::string_view, Cd
   return true;
 }
 
+bool write_event(const shoal::sim_event_t& message, std::string_view, CdrWriter& out) {
+  put_log(out, message.utime, message.kind == "fault" ? log_warn : log_info, message.who,
+          message.text.empty() ? message.kind : message.kind + ": " + message.text);
+  return true;
+}
+
+SHOAL_ROS2_CONVERTER(write_event, "rcl_interfaces/msg/Log", "/rosout");
 SHOAL_ROS2_CONVERTER(write_audit, "rcl_interfaces/msg/Log", "/rosout");
 SHOAL_ROS2_CONVERTER(write_vehicle_log, "rcl_interfaces/msg/Log", "/rosout");
 

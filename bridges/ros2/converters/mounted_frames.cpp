@@ -12,10 +12,10 @@
 namespace bridges::ros2 {
 namespace {
 
-/// Frame of a device that does not move in its vehicle.
+/// Frame of a device in that of its vehicle, or of a body that may move in the vehicle.
 struct MountedFrame {
-  std::string vehicle, frame;
-  sim::Pose X_VS;
+  std::string parent, frame;
+  sim::Pose pose;
 };
 
 /// Returns a list of three numbers; zeros when there is none.
@@ -48,19 +48,20 @@ const std::vector<sim::ConfigNode>& items_at(const sim::ConfigNode& node, std::s
   return list != nullptr ? list->items : none;
 }
 
-/// Appends the frames of the devices of a vehicle on its base, which is its first body: others may move.
+/// Appends the frames of the devices of a vehicle.  The first body is the base, in which the vehicle frame is fixed.
 void add_frames(const sim::ConfigNode& vehicle, std::vector<MountedFrame>& frames) {
   const std::string name = text_at(vehicle, "name");
   const sim::ConfigNode* model = vehicle.find("model");
   if (name.empty() || model == nullptr || items_at(*model, "bodies").empty()) return;
   const sim::ConfigNode& base = items_at(*model, "bodies").front();
-  const sim::Pose X_VB = pose_of(base);
   for (const sim::ConfigNode& device : items_at(*model, "devices")) {
     const std::string body = text_at(device, "body");
-    if (!body.empty() && body != text_at(base, "name")) continue;
     const std::string channel = text_at(device, "channel");
-    frames.push_back(
-        {name, frame_of(channel.empty() ? name + "." + text_at(device, "name") : channel), X_VB * pose_of(device)});
+    const std::string frame = frame_of(channel.empty() ? name + "." + text_at(device, "name") : channel);
+    if (body.empty() || body == text_at(base, "name"))
+      frames.push_back({name, frame, pose_of(base) * pose_of(device)});
+    else
+      frames.push_back({body_frame(name, body), frame, pose_of(device)});
   }
 }
 
@@ -73,7 +74,7 @@ std::vector<MountedFrame> frames_of(const std::string& world) {
   return frames;
 }
 
-/// Where the sensors of the vehicles are mounted, in the vehicle frame.
+/// Where the devices of the vehicles are mounted.
 bool write_frames(const shoal::sim_info_t& message, std::string_view channel, CdrWriter& out) {
   // The same world is in every sim.info of a run.
   struct Parsed {
@@ -86,10 +87,10 @@ bool write_frames(const shoal::sim_info_t& message, std::string_view channel, Cd
     last = Parsed{message.resolved_config, frames_of(message.resolved_config)};
   out.put_count(last->frames.size());
   for (const MountedFrame& each : last->frames) {
-    put_header(out, message.utime, each.vehicle);
+    put_header(out, message.utime, each.parent);
     out.put(std::string_view(each.frame));
-    const sim::Vector3d p = each.X_VS.translation();
-    const Eigen::Quaterniond q(each.X_VS.linear());
+    const sim::Vector3d p = each.pose.translation();
+    const Eigen::Quaterniond q(each.pose.linear());
     put_numbers(out, {p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w()});
   }
   return !last->frames.empty();

@@ -14,7 +14,10 @@
 #include "shoal/planar_lidar_t.hpp"
 #include "shoal/point_cloud_t.hpp"
 #include "shoal/pose_t.hpp"
+#include "shoal/sim_bodies_t.hpp"
+#include "shoal/sim_event_t.hpp"
 #include "shoal/sim_info_t.hpp"
+#include "shoal/sim_scene_t.hpp"
 #include "shoal/sim_state_t.hpp"
 #include "shoal/sonar_range_t.hpp"
 #include "shoal/utime_t.hpp"
@@ -56,11 +59,13 @@ class CdrReader {
 /// Converts a message; nothing when the converter does not apply.
 template <class Message>
 std::optional<CdrReader> converted(const Message& message, const std::string& topic,
-                                   const std::string& channel = "auv1.x") {
+                                   const std::string& channel = "auv1.x", ConverterContext* context = nullptr) {
+  ConverterContext fresh;
   for (const Converter* each : ConverterTable::instance().of(std::string("shoal.") + Message::getTypeName())) {
     if (each->topic != topic) continue;
     std::vector<std::byte> cdr;
-    if (!each->convert(shoal::encode(message), channel, cdr)) return std::nullopt;
+    if (!each->convert(shoal::encode(message), channel, context != nullptr ? *context : fresh, cdr))
+      return std::nullopt;
     return CdrReader(cdr);
   }
   ADD_FAILURE() << "no converter to " << topic;
@@ -245,7 +250,7 @@ TEST(Ros2Converter, ADvlWithoutBottomLockGivesNoVelocity) {
   EXPECT_TRUE(converted(dvl, "velocity"));
 }
 
-TEST(Ros2Converter, DevicesOnTheBaseHaveFramesInTheirVehicle) {
+TEST(Ros2Converter, DevicesHaveFramesInTheirVehicleOrInAMovingBody) {
   shoal::sim_info_t info{};
   info.utime = 1'500'000;
   info.resolved_config =
@@ -253,14 +258,54 @@ TEST(Ros2Converter, DevicesOnTheBaseHaveFramesInTheirVehicle) {
       "    devices:\n    - {name: lidar, position_m: [0.5, 0, 0], rpy_deg: [0, 0, 180]}\n"
       "    - {name: gripper, body: arm}\n    - {name: gps, channel: fixes}\n";
   auto in = converted(info, "/tf_static", "sim.info");
-  ASSERT_EQ(in->number<std::uint32_t>(), 2u);
+  ASSERT_EQ(in->number<std::uint32_t>(), 3u);
   expect_header(*in, "a");
   EXPECT_EQ(in->text(), "a/lidar");
   for (const double value : {0.5, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0}) EXPECT_NEAR(in->number<double>(), value, 1e-15);
+  expect_header(*in, "a/body/arm");
+  EXPECT_EQ(in->text(), "a/gripper");
+  in->skip<double>(7);
   expect_header(*in, "a");
   EXPECT_EQ(in->text(), "fixes");
   info.resolved_config = "vehicles: [ {";
   EXPECT_FALSE(converted(info, "/tf_static", "sim.info"));
+}
+
+TEST(Ros2Converter, BodiesAreTransformsNamedByTheSceneBefore) {
+  ConverterContext context;
+  shoal::sim_scene_t scene{};
+  scene.revision = 3;
+  scene.scene = R"({"bodies": [{"id": 4, "name": "a/arm", "owner": "a"}, {"id": 6, "name": "ball", "owner": ""}, 7]})";
+  EXPECT_FALSE(converted(scene, "/tf", "sim.scene", &context));
+  shoal::sim_bodies_t bodies{1'500'000,
+                             0,
+                             0,
+                             3,
+                             3,
+                             {4, 5, 6},
+                             {{1, 2, 3}, {0, 0, 0}, {4, 5, 6}},
+                             {{0.5f, -0.5f, 0.5f, 0.25f}, {1, 0, 0, 0}, {1, 0, 0, 0}}};
+  auto in = converted(bodies, "/tf", "sim.bodies", &context);
+  ASSERT_EQ(in->number<std::uint32_t>(), 2u);  // body 5 is not in the scene
+  expect_header(*in, "world");
+  EXPECT_EQ(in->text(), "a/body/arm");
+  for (const double value : {1.0, 2.0, 3.0, -0.5, 0.5, 0.25, 0.5}) EXPECT_EQ(in->number<double>(), value);
+  expect_header(*in, "world");
+  EXPECT_EQ(in->text(), "body/ball");
+  bodies.revision = 4;
+  EXPECT_FALSE(converted(bodies, "/tf", "sim.bodies", &context));  // of a scene that is not known
+  scene.scene = "[";
+  EXPECT_FALSE(converted(scene, "/tf", "sim.scene", &context));
+  EXPECT_TRUE(context.body_frames.empty());
+}
+
+TEST(Ros2Converter, AFaultIsAWarningInTheLog) {
+  auto in = converted(shoal::sim_event_t{1'500'000, 0, "fault", "a/lidar", "stuck"}, "/rosout", "sim.event");
+  EXPECT_EQ(in->number<std::int32_t>(), 1);
+  EXPECT_EQ(in->number<std::uint32_t>(), 500'000'000u);
+  EXPECT_EQ(in->number<std::uint8_t>(), 30);
+  EXPECT_EQ(in->text(), "a/lidar");
+  EXPECT_EQ(in->text(), "fault: stuck");
 }
 
 TEST(Ros2Converter, TheTopicIsBelowTheChannelOrCommon) {
