@@ -17,13 +17,16 @@ struct FieldOfView {
     beams,    ///< single directions
   };
 
-  Kind kind = Kind::beams;
-  double range_m = 0;
-  double from_rad = 0, to_rad = 0;              ///< fan: from +x, counter-clockwise about +z
-  double half_angle_rad = 0;                    ///< cone
-  Vector3d axis_S = Vector3d::UnitX();          ///< cone
-  double horizontal_rad = 0, vertical_rad = 0;  ///< frustum: full angles
-  std::vector<Vector3d> directions_S = {};      ///< beams: unit vectors
+  Kind kind = Kind::beams;                  ///< form of the region
+  double range_m = 0;                       ///< largest distance from S
+  double from_rad = 0;                      ///< fan: first angle from +x, counter-clockwise about +z
+  double to_rad = 0;                        ///< fan: last angle
+  double half_angle_rad = 0;                ///< cone
+  Vector3d axis_S = Vector3d::UnitX();      ///< cone
+  double horizontal_rad = 0;                ///< frustum: full angle across
+  double vertical_rad = 0;                  ///< frustum: full angle from bottom to top
+  std::vector<Vector3d> directions_S = {};  ///< beams: unit vectors
+};                                          ///< beams: unit vectors
 };
 
 }  // namespace sim

@@ -132,7 +132,7 @@ TEST_F(LiveRun, RefusesWhatItDoesNotUnderstand) {
   EXPECT_EQ(
       unknown.text,
       "unknown command 'fly'; known commands: alive, describe, do, follow, join, leave, pause, quit, remove, restore, "
-      "resume, rewind, snapshot, spawn, speed, step, until, where");
+      "resume, rewind, scene, snapshot, spawn, speed, step, until, where");
   EXPECT_FALSE(request("speed", -1).ok);
   EXPECT_FALSE(request("step", 0).ok);
   EXPECT_FALSE(request("step", 1e300).ok);

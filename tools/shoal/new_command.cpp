@@ -14,8 +14,8 @@
 #include "sim/world_file/load_world.hpp"
 #include "tools/shoal/commands.hpp"
 #include "tools/shoal/output_file.hpp"
-#include "tools/shoal/start_files.hpp"
-#include "tools/shoal/start_program.hpp"
+#include "tools/shoal/start/start_files.hpp"
+#include "tools/shoal/start/start_program.hpp"
 
 namespace tools {
 

@@ -88,7 +88,7 @@ TEST(ViewPublisher, PublishesBodiesAtTheirRate) {
 TEST(ViewPublisher, PublishesNothingThatIsSwitchedOff) {
   ViewedWorld viewed(rover_and_ball +
                      "view: {scene: false, bodies_rate_hz: never, sounds: false, events: false}\n"
-                     "events: [{name: e, at_s: 0.05, do: [{log: now}]}]\n");
+                     "events: [{name: e, at: 0.05, do: [{log: now}]}]\n");
   viewed.run_for(0.2);
   EXPECT_TRUE(viewed.scenes.take_all().empty());
   EXPECT_TRUE(viewed.bodies.take_all().empty());
@@ -98,8 +98,8 @@ TEST(ViewPublisher, PublishesNothingThatIsSwitchedOff) {
 TEST(ViewPublisher, ANewObjectMakesAnotherRevision) {
   ViewedWorld viewed(
       rover_and_ball +
-      "events: [{name: more, at_s: 1, do: [{add: {name: box, position_m: [5, 0, 1], parts: [{shape: box, "
-      "mass_kg: 1}]}}]}]\n");
+      "events: [{name: more, at: 1, do: [{add: {object: {name: box, position_m: [5, 0, 1], parts: [{shape: box, "
+      "mass_kg: 1}]}}}]}]\n");
   viewed.run_for(0.9);
   const std::vector<shoal::sim_scene_t> first = viewed.scenes.take_all();
   ASSERT_EQ(first.size(), 1u);
@@ -131,7 +131,7 @@ TEST(ViewPublisher, TheSceneAndItsAssetsComeAgainOnRequest) {
 
 TEST(ViewPublisher, FaultsAreEvents) {
   ViewedWorld viewed(rover_and_ball +
-                     "events: [{name: dark, at_s: 0.1, do: [{fault: {device: r1.lidar, kind: silent}}]}]\n");
+                     "events: [{name: dark, at: 0.1, do: [{fault: {device: r1.lidar, kind: silent}}]}]\n");
   viewed.run_for(0.2);
   const std::vector<shoal::sim_event_t> events = viewed.events.take_all();
   ASSERT_EQ(events.size(), 2u);

@@ -291,9 +291,9 @@ void Run::admit_messages() {
 
 void Run::end_of_step() {
   service_.publish_step();
-  journal_.after_step();
   if (steps_taken_ > 0) scoring_.after_step();
   view_.after_step();
+  journal_.after_step();  // in a record, what it publishes ends a step
   if (page_) page_->after_step(world_, view_, control_);
   if (results_ && steps_taken_ > 0) results_->after_step();
   buses_.end_of_step();

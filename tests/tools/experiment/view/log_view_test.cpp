@@ -25,7 +25,7 @@ struct Log {
     test::RecordedRun run(
         "shoal: 1\nname: fall\nphysics: {step_s: 0.01}\nobjects: [{name: ball, position_m: [1, 2, 100], parts: "
         "[{shape: "
-        "sphere, mass_kg: 1}]}]\nevents: [{name: half, at_s: 1, do: [{log: one second}]}]\n",
+        "sphere, mass_kg: 1}]}]\nevents: [{name: half, at: 1, do: [{log: one second}]}]\n",
         path);
     bridges::ViewPublisher view(run.gate, run.world, {}, [] { return true; });
     view.after_step();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tools/shoal/start_program.hpp"
+#include "tools/shoal/start/start_program.hpp"
 
 #include <filesystem>
 #include <fstream>

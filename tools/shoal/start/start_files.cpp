@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tools/shoal/start_files.hpp"
+#include "tools/shoal/start/start_files.hpp"
 
 namespace tools {
 
