@@ -26,7 +26,6 @@ struct FieldOfView {
   double horizontal_rad = 0;                ///< frustum: full angle across
   double vertical_rad = 0;                  ///< frustum: full angle from bottom to top
   std::vector<Vector3d> directions_S = {};  ///< beams: unit vectors
-};                                          ///< beams: unit vectors
 };
 
 }  // namespace sim
