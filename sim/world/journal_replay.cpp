@@ -43,7 +43,7 @@ void JournalReplay::replay(std::span<const std::byte> bytes, std::int64_t last_s
   } catch (const WorldError& error) {
     throw SnapshotError(std::string("changes before the snapshot cannot be replayed: ") + error.what());
   } catch (const std::out_of_range& error) {
-    throw SnapshotError(std::string("what came to the world before the snapshot has an invalid value: numbers: ") +
+    throw SnapshotError(std::string("an input of the world before the snapshot has an invalid value: numbers: ") +
                         error.what());
   }
 }
@@ -54,7 +54,9 @@ void check_pose(const Pose& X_W) {
   const Matrix3d R = X_W.linear();
   const bool good = X_W.matrix().allFinite() && X_W.translation().cwiseAbs().maxCoeff() < 1e9 &&
                     (R.transpose() * R - Matrix3d::Identity()).cwiseAbs().maxCoeff() < 1e-3 && R.determinant() > 0;
-  if (!good) throw SnapshotError("the snapshot has an invalid value: something come to, or moved to, a pose");
+  if (!good)
+    throw SnapshotError(
+        "the snapshot has an invalid value: the pose at which something was added or to which it was moved");
 }
 
 }  // namespace
