@@ -102,6 +102,22 @@ void ViewProtocol::reply(int client, std::string json) {
   wake();
 }
 
+void ViewProtocol::send_message(int client, std::string_view channel, Text bytes) {
+  if (clients() == 0) return;
+  {
+    const std::lock_guard lock(box_mutex_);
+    Text& place = box_.messages[{client, std::string(channel)}];
+    const std::size_t present = place ? place->size() : 0;
+    if (box_.bytes - present + bytes->size() > max_queued_bytes) {
+      if (!place) box_.messages.erase({client, std::string(channel)});
+      return;
+    }
+    box_.bytes += bytes->size() - present;
+    place = std::move(bytes);
+  }
+  wake();
+}
+
 std::optional<ViewRequest> ViewProtocol::take_request() {
   if (!has_requests_.load()) return std::nullopt;
   const std::lock_guard lock(request_mutex_);
@@ -144,6 +160,8 @@ void ViewProtocol::deliver() {
     for (const Text& text : box.texts) session->push(text);
     for (const auto& reply : box.replies)
       if (reply.first == session->link_.number()) session->push(reply.second);
+    for (const auto& [place, bytes] : box.messages)
+      if (place.first == session->link_.number()) session->set_message(place.second, bytes);
     if (box.state) session->set_state(box.state);
     session->link_.wake();
   }
@@ -242,6 +260,7 @@ void ViewSession::push(Text text) {
 }
 
 void ViewSession::drop_oldest(std::size_t room_for) {
+  drop_messages(room_for);  // the next one on the channel replaces it
   while (!texts_.empty() && queued_bytes_ + room_for > ViewProtocol::max_queued_bytes) {
     queued_bytes_ -= texts_.front()->size();
     texts_.pop_front();
@@ -256,6 +275,7 @@ bool ViewSession::next(WebFrame& frame) {
   if (Text text = next_retained()) return take(std::move(text), true, frame);
   if (Text text = next_text()) return take(std::move(text), true, frame);
   if (Text state = next_state()) return take(std::move(state), false, frame);
+  if (Text message = next_message()) return take(std::move(message), false, frame);
   return false;
 }
 
@@ -297,6 +317,33 @@ ViewSession::Text ViewSession::next_state() {
   if (!state_ || unacknowledged_.size() >= ViewProtocol::max_unacknowledged) return nullptr;
   unacknowledged_.push_back(sequence_of_state(*state_));
   return std::exchange(state_, nullptr);
+}
+
+void ViewSession::set_message(const std::string& channel, const Text& bytes) {
+  const auto before = messages_.find(channel);
+  const std::size_t present = before == messages_.end() ? 0 : before->second->size();
+  if (queued_bytes_ - present + bytes->size() > ViewProtocol::max_queued_bytes) return;
+  queued_bytes_ += bytes->size() - present;
+  messages_[channel] = bytes;
+}
+
+void ViewSession::drop_messages(std::size_t room_for) {
+  while (!messages_.empty() && queued_bytes_ + room_for > ViewProtocol::max_queued_bytes) {
+    queued_bytes_ -= messages_.begin()->second->size();
+    messages_.erase(messages_.begin());
+  }
+}
+
+/// Takes the message of the next channel in turn, so that a busy channel does not stop the others.
+ViewSession::Text ViewSession::next_message() {
+  if (messages_.empty()) return nullptr;
+  auto next = messages_.upper_bound(last_channel_);
+  if (next == messages_.end()) next = messages_.begin();
+  last_channel_ = next->first;
+  Text bytes = std::move(next->second);
+  messages_.erase(next);
+  queued_bytes_ -= bytes->size();
+  return bytes;
 }
 
 }  // namespace bridges

@@ -29,7 +29,7 @@ class ViewSession;
 /// this thread deliver() passes the messages on to the sessions.
 class ViewProtocol final : public WebProtocol {
  public:
-  static constexpr std::size_t max_queued_bytes = std::size_t{8} << 20;  ///< texts that wait for one page
+  static constexpr std::size_t max_queued_bytes = std::size_t{8} << 20;  ///< texts and messages that wait for one page
   static constexpr std::size_t max_unacknowledged = 2;                   ///< states
   static constexpr std::size_t max_waiting_requests = 32;                ///< of one page
 
@@ -49,11 +49,14 @@ class ViewProtocol final : public WebProtocol {
   void send_text(std::string json);
   void retain(std::string_view op, std::string json);
   void reply(int client, std::string json);
+  void send_message(int client, std::string_view channel, std::shared_ptr<const std::string> bytes);
   std::optional<ViewRequest> take_request();
 
  private:
   friend class ViewSession;
   using Text = std::shared_ptr<const std::string>;
+  /// Client and channel.
+  using Place = std::pair<int, std::string>;
 
   /// Text that every page gets; for `hello` the second one is that of a page that may control.
   struct Retained {
@@ -69,6 +72,7 @@ class ViewProtocol final : public WebProtocol {
     std::uint64_t dropped = 0;
     std::vector<Retained> retained;
     std::vector<std::pair<int, Text>> replies;
+    std::map<Place, Text> messages;  // newest
   };
 
   void wake();
@@ -120,6 +124,9 @@ class ViewSession final : public WebSession {
   Text next_retained();
   Text next_text();
   Text next_state();
+  void set_message(const std::string& channel, const Text& bytes);
+  void drop_messages(std::size_t room_for);
+  Text next_message();
 
   ViewProtocol& protocol_;
   WebLink& link_;
@@ -134,6 +141,8 @@ class ViewSession final : public WebSession {
   std::size_t bytes_since_state_ = 0;
   Text state_;
   std::deque<std::uint32_t> unacknowledged_;
+  std::map<std::string, Text> messages_;  // newest that was not sent, by channel
+  std::string last_channel_;              // of the message that was sent last
 };
 
 }  // namespace bridges

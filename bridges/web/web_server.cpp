@@ -87,6 +87,10 @@ void WebServer::reply(int client, std::string json) {
   impl_->view->reply(client, std::move(json));
 }
 
+void WebServer::send_message(int client, std::string_view channel, std::shared_ptr<const std::string> bytes) {
+  impl_->view->send_message(client, channel, std::move(bytes));
+}
+
 void WebServer::add_protocol(std::string name, std::shared_ptr<WebProtocol> protocol) {
   impl_->site.add_protocol(std::move(name), std::move(protocol));
 }

@@ -71,6 +71,9 @@ class WebServer {
   std::optional<ViewRequest> take_request();
   /// Sends a JSON text to one page; without effect when it has left.
   void reply(int client, std::string json);
+  /// Sends a binary message of a channel to one page, after texts and states.  It replaces the one of this channel that
+  /// waits for the page; when 8 MB wait for the page it is lost.
+  void send_message(int client, std::string_view channel, std::shared_ptr<const std::string> bytes);
 
   /// Adds a WebSocket subprotocol.  If a client offers several, the one added first is used; `shoal.view.v1` is before
   /// all.

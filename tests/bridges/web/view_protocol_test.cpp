@@ -50,6 +50,16 @@ class Page final : public bridges::WebLink {
     for (std::string text; !(text = next()).empty();) texts.push_back(text);
     return texts;
   }
+  /// The same as it is.
+  std::string next_bytes() {
+    WebFrame frame;
+    return session_->next(frame) ? *frame.bytes : "";
+  }
+  std::vector<std::string> all_bytes() {
+    std::vector<std::string> bytes;
+    for (std::string next; !(next = next_bytes()).empty();) bytes.push_back(next);
+    return bytes;
+  }
   Json next_json() { return Json::parse(next()); }
   bool awaits_greeting() const { return session_->awaits_greeting(); }
   void leave() { session_.reset(); }
@@ -80,6 +90,10 @@ class ViewProtocolTest : public testing::Test {
   }
   void text(const std::string& json) {
     protocol_.send_text(json);
+    run();
+  }
+  void message(int client, const std::string& channel, const std::string& bytes) {
+    protocol_.send_message(client, channel, std::make_shared<const std::string>(bytes));
     run();
   }
 
@@ -328,6 +342,73 @@ TEST_F(ViewProtocolTest, InvalidMessagesAreAnsweredAndChangeNothing) {
 
 TEST_F(ViewProtocolTest, AHelloThatIsNoObjectIsAnError) {
   EXPECT_THROW(protocol_.retain("hello", "[]"), bridges::WebError);
+}
+
+// --- Messages of channels
+
+TEST_F(ViewProtocolTest, OnlyTheNewestMessageOfAChannelWaits) {
+  Page page(protocol_, 1);
+  page.hello();
+  message(1, "a", "a1");
+  message(1, "b", "b1");
+  message(1, "a", "a2");
+  EXPECT_THAT(page.all_bytes(), ElementsAre("a2", "b1"));
+}
+
+TEST_F(ViewProtocolTest, AMessageGoesToThePageThatSubscribed) {
+  Page page(protocol_, 1), other(protocol_, 2);
+  page.hello();
+  other.hello();
+  message(2, "a", "a1");
+  EXPECT_THAT(page.all_bytes(), IsEmpty());
+  EXPECT_THAT(other.all_bytes(), ElementsAre("a1"));
+}
+
+TEST_F(ViewProtocolTest, AStateGoesBeforeMessages) {
+  Page page(protocol_, 1);
+  page.hello();
+  message(1, "a", "a1");
+  state(7);
+  EXPECT_EQ(page.next(), "state 7");
+  EXPECT_THAT(page.all_bytes(), ElementsAre("a1"));
+}
+
+TEST_F(ViewProtocolTest, ABusyChannelDoesNotStopTheOthers) {
+  Page page(protocol_, 1);
+  page.hello();
+  message(1, "a", "a1");
+  message(1, "b", "b1");
+  EXPECT_EQ(page.next_bytes(), "a1");
+  message(1, "a", "a2");
+  EXPECT_THAT(page.all_bytes(), ElementsAre("b1", "a2"));
+}
+
+TEST_F(ViewProtocolTest, APageThatDoesNotReadLosesMessagesAndNotTexts) {
+  Page page(protocol_, 1);
+  page.hello();
+  text(R"({"op":"events"})");
+  for (int i = 0; i < 20; ++i) message(1, "image" + std::to_string(i), std::string(1 << 20, 'x'));
+  const auto got = page.all_bytes();
+  EXPECT_EQ(got.size(), 1u + 7);
+  EXPECT_EQ(got[0], R"({"op":"events"})");
+}
+
+TEST_F(ViewProtocolTest, TextsTakeTheRoomOfMessages) {
+  Page page(protocol_, 1);
+  page.hello();
+  message(1, "image", std::string(7 << 20, 'x'));
+  text(R"({"op":")" + std::string(2 << 20, 'y') + "\"}");
+  EXPECT_EQ(page.next().substr(0, 7), R"({"op":")");
+  EXPECT_THAT(page.all_bytes(), IsEmpty());
+}
+
+TEST_F(ViewProtocolTest, AMessageOfMoreThanTheBoundIsLost) {
+  Page page(protocol_, 1);
+  page.hello();
+  message(1, "image", std::string(9 << 20, 'x'));
+  EXPECT_THAT(page.all_bytes(), IsEmpty());
+  message(1, "image", "small");
+  EXPECT_THAT(page.all_bytes(), ElementsAre("small"));
 }
 
 }  // namespace

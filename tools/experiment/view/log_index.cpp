@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "bridges/log/event_log.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/sim_event_t.hpp"
 #include "shoal/sim_info_t.hpp"
@@ -18,6 +17,15 @@ std::optional<std::int64_t> stamp_of(const std::byte* payload, std::size_t size)
   for (std::size_t i = 0; i < stamp_bytes; ++i)
     value = value << 8 | std::to_integer<std::uint64_t>(payload[fingerprint_bytes + i]);
   return static_cast<std::int64_t>(value);
+}
+
+std::int64_t LogTime::of(const bridges::LogEventView& event) {
+  if (event.channel == "sim.bodies" || event.channel == "sim.clock")
+    if (const auto stamp = stamp_of(event.payload.data(), event.payload.size())) {
+      last_us_ = *stamp - epoch_us_;
+      is_record_ = event.utime == *stamp;
+    }
+  return is_record_ ? event.utime - epoch_us_ : last_us_;
 }
 
 const LogIndex::Mark* LogIndex::last(const std::vector<Mark>& marks, std::int64_t time_us) {
@@ -36,14 +44,24 @@ void LogIndex::add(std::vector<Mark>& marks, const Mark& mark) {
   marks.push_back(mark);
 }
 
+void LogIndex::mark_traffic(const Mark& mark, TrafficCounts& counts) {
+  if (traffic_.rewind(mark.time_us)) counts = traffic_.last();
+  constexpr std::int64_t interval_us = 1'000'000;
+  if (mark.time_us / interval_us != traffic_.last_us() / interval_us)
+    traffic_.mark(mark.time_us, mark.offset, counts);
+}
+
 LogIndex::LogIndex(const std::string& path, const std::function<void(double share)>& progress) {
   bridges::EventLogReader reader(path);
   bridges::LogEventView event;
   std::int64_t number = 0;
+  TrafficCounts counts;
   while (reader.next(event)) {
     constexpr std::int64_t events_per_report = 1 << 16;
     if (progress && ++number % events_per_report == 0)
       progress(static_cast<double>(event.offset) / static_cast<double>(reader.file_bytes()));
+    const bool is_bodies = event.channel == "sim.bodies";
+    if (!is_bodies) counts.take(event.channel, event.payload);
     if (!event.channel.starts_with("sim.")) continue;
     const auto stamp = stamp_of(event.payload.data(), event.payload.size());
     if (!stamp) continue;
@@ -53,8 +71,10 @@ LogIndex::LogIndex(const std::string& path, const std::function<void(double shar
         const auto info = shoal::decode<shoal::sim_info_t>(event.payload, shoal::Finite::any);
         epoch_us_ = info.epoch_utime;
         world_ = info.world;
-      } else if (event.channel == "sim.bodies") {
+      } else if (is_bodies) {
         add(bodies_, mark);
+        mark_traffic(mark, counts);
+        counts.take(event.channel, event.payload);
       } else if (event.channel == "sim.scene") {
         add(scenes_, mark);
       } else if (event.channel == "sim.scores") {

@@ -7,6 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "bridges/log/event_log.hpp"
+#include "tools/experiment/page_data/traffic_history.hpp"
+
 namespace tools {
 
 /// Where a log has what a viewer needs, by simulated time: found in one pass over the file.  Of a log with a rewind
@@ -42,10 +45,13 @@ class LogIndex {
   std::optional<Mark> scores_at(std::int64_t time_us) const;
   /// Returns the offsets of all assets.
   const std::vector<std::uint64_t>& assets() const { return assets_; }
+  /// Returns the counts of all messages before some event at or before a place in the log, at most a second earlier.
+  TrafficHistory::Point counts_before(std::uint64_t offset) const { return traffic_.before(offset); }
 
  private:
   static const Mark* last(const std::vector<Mark>& marks, std::int64_t time_us);
   static void add(std::vector<Mark>& marks, const Mark& mark);
+  void mark_traffic(const Mark& mark, TrafficCounts& counts);
   void check(const std::string& path) const;
 
   std::int64_t epoch_us_ = 0;
@@ -54,6 +60,21 @@ class LogIndex {
   std::vector<std::uint64_t> assets_;
   std::vector<Occasion> occasions_;
   std::vector<std::string> problems_;
+  TrafficHistory traffic_;
+};
+
+/// Simulated time at which the messages of a log were published.  A record of Shoal has it; in a log of another logger,
+/// which has the time of the wall, it is that of the `sim.bodies` or `sim.clock` before.
+class LogTime {
+ public:
+  explicit LogTime(std::int64_t epoch_us) : epoch_us_(epoch_us) {}
+  /// Returns the time of the next event, us.
+  std::int64_t of(const bridges::LogEventView& event);
+
+ private:
+  const std::int64_t epoch_us_;
+  std::int64_t last_us_ = 0;
+  bool is_record_ = false;
 };
 
 /// Returns the time stamp at the start of the payload of a `sim.*` message, us; none for a payload that is too short.

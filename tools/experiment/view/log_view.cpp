@@ -30,6 +30,8 @@ LogView::LogView(const std::string& path, const LogIndex& index, const ViewOptio
       reader_(path),
       looking_(path),
       server_(web_options(options)),
+      time_(index.epoch_us()),
+      series_(path, index, server_),
       now_us_(static_cast<double>(index.start_us())) {
   messages_.set_epoch(index.epoch_us());
   Json hello = hello_json(version, "log", index.world(), index.epoch_us());
@@ -58,7 +60,14 @@ void LogView::seek(std::int64_t time_us) {
   // What holds at this time, then what happened shortly before it.
   send_event_at(index_.scene_at(time_us).offset);
   if (const auto scores = index_.scores_at(time_us)) send_event_at(scores->offset);
-  reader_.seek(index_.bodies_at(time_us - before_us).offset);
+  const std::uint64_t from = index_.bodies_at(time_us - before_us).offset;
+  TrafficHistory::Point counted = index_.counts_before(from);
+  traffic_.set_counts(std::move(counted.counts));
+  traffic_.feed().forget();
+  reader_.seek(counted.offset);
+  bridges::LogEventView event;
+  while (reader_.next(event) && event.offset < from) traffic_.count(event.channel, event.payload);
+  reader_.seek(from);
   messages_.mark_jump();
   play_to(time_us);
   status_is_old_ = true;
@@ -70,10 +79,21 @@ void LogView::play_to(std::int64_t time_us) {
   while (reader_.next(event)) {
     // Events were retained for the whole log.
     if (event.channel != "sim.event" && event.channel != "sim.asset") messages_.take(event.channel, event.payload);
+    traffic_.take(event.channel, event.payload, time_.of(event));
     if (event.offset >= last) break;
   }
   messages_.set_pace(static_cast<float>(speed_), paused_);
   messages_.flush();
+}
+
+void LogView::fill_feed() {
+  const auto now_us = static_cast<std::int64_t>(now_us_);
+  const std::uint64_t last = index_.bodies_at(now_us).offset;
+  looking_.seek(index_.bodies_at(now_us - before_us).offset);
+  LogTime time(index_.epoch_us());
+  bridges::LogEventView event;
+  while (looking_.next(event) && event.offset <= last)
+    traffic_.feed().take(event.channel, event.payload, time.of(event));
 }
 
 void LogView::advance(double wall_s) {
@@ -92,6 +112,7 @@ void LogView::advance(double wall_s) {
   } else if (!paused_ && loop_ && clients > 0) {
     seek(index_.start_us());
   }
+  traffic_.flush(static_cast<std::int64_t>(now_us_), messages_.scene(), messages_.scene_number());
   constexpr double status_interval_s = 1;
   since_status_s_ += wall_s;
   if (status_is_old_ || since_status_s_ > status_interval_s) send_status();
@@ -113,6 +134,11 @@ void LogView::send_status() {
 }
 
 void LogView::handle(const bridges::ViewRequest& request) {
+  if (request.op == "series") return series_.request(request);
+  if (traffic_.handle(request)) {
+    if (request.op == "subscribe") fill_feed();
+    return;
+  }
   const Json message = Json::parse(request.text, nullptr, false);
   if (!message.is_object()) return;
   try {
@@ -150,6 +176,9 @@ void BusView::send_hello() {
 
 void BusView::message(std::string_view channel, std::span<const std::byte> payload) {
   messages_.take(channel, payload);
+  if (channel == "sim.clock" || channel == "sim.bodies")
+    if (const auto stamp = stamp_of(payload.data(), payload.size())) now_us_ = *stamp - messages_.epoch_us();
+  traffic_.take(channel, payload, now_us_);
   if (channel != "sim.info") return;
   try {
     const auto info = shoal::decode<shoal::sim_info_t>(payload, shoal::Finite::any);
@@ -160,7 +189,7 @@ void BusView::message(std::string_view channel, std::span<const std::byte> paylo
 
 void BusView::flush() {
   while (const auto request = server_.take_request()) {
-    if (request->op != "control") continue;
+    if (traffic_.handle(*request) || request->op != "control") continue;
     const Json message = Json::parse(request->text, nullptr, false);
     server_.reply(request->client,
                   json_text({{"op", "reply"},
@@ -169,6 +198,7 @@ void BusView::flush() {
                              {"text", "this page watches a bus; steer the run with 'shoal control'"}}));
   }
   messages_.flush();
+  traffic_.flush(now_us_, messages_.scene(), messages_.scene_number());
   constexpr std::chrono::milliseconds status_interval{500};
   if (Clock::now() - status_at_ > status_interval) send_status();
 }

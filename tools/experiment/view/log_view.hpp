@@ -8,6 +8,8 @@
 #include "bridges/log/event_log.hpp"
 #include "bridges/web/web_server.hpp"
 #include "tools/experiment/view/log_index.hpp"
+#include "tools/experiment/view/log_series.hpp"
+#include "tools/experiment/view/page_traffic.hpp"
 #include "tools/experiment/view/run_view.hpp"
 #include "tools/experiment/view/view_messages.hpp"
 
@@ -28,6 +30,8 @@ class LogView {
  private:
   void handle(const bridges::ViewRequest& request);
   void send_event_at(std::uint64_t offset);
+  /// Gives pages the last messages of their channels, after they have subscribed.
+  void fill_feed();
   /// Passes messages on, up to the last pose at or before a time.
   void play_to(std::int64_t time_us);
   void send_status();
@@ -36,6 +40,9 @@ class LogView {
   bridges::EventLogReader reader_, looking_;
   bridges::WebServer server_;
   ViewMessages messages_{server_, ViewMessages::Frames::from_bodies};
+  PageTraffic traffic_{server_, MessageFeed::Past::forgotten};
+  LogTime time_;
+  LogSeries series_;
   double now_us_;
   double speed_ = 1;
   bool paused_ = false, loop_ = false;
@@ -63,6 +70,8 @@ class BusView {
 
   bridges::WebServer server_;
   ViewMessages messages_{server_, ViewMessages::Frames::from_bodies};
+  PageTraffic traffic_{server_, MessageFeed::Past::forgotten};
+  std::int64_t now_us_ = 0;
   const std::string version_, bus_;
   std::string world_;
   // For the rate of simulated time.

@@ -60,6 +60,12 @@ void RunView::send_state(const sim::World& world, const bridges::ViewPublisher& 
       [&](const sim::Pose& X_WB) { frame_.add(X_WB.translation(), sim::Quaterniond(X_WB.linear())); });
   server_.send_state(frame_.end());
   messages_.flush();
+  flush_traffic(world);
+}
+
+void RunView::flush_traffic(const sim::World& world) {
+  next_traffic_ = Clock::now() + frame_interval;
+  traffic_.flush(world.now().count(), messages_.scene(), messages_.scene_number());
 }
 
 void RunView::send_status(const sim::World& world, const sim::RunControl& control, const std::string& waits_for,
@@ -108,7 +114,7 @@ void RunView::serve(const sim::World& world, const bridges::ViewPublisher& publi
   for (int i = 0; i < max_at_once; ++i) {
     const auto request = server_.take_request();
     if (!request) break;
-    if (request->op == "left") continue;
+    if (traffic_.handle(*request)) continue;
     handle(*request, execute);
     handled = true;
   }
@@ -118,6 +124,8 @@ void RunView::serve(const sim::World& world, const bridges::ViewPublisher& publi
   // While the run is paused, a page that has just opened needs the state too.
   if (now >= next_frame_ && (jump_ || control.paused || sent_step_ != world.step_number()))
     send_state(world, publisher, control);
+  else if (now >= next_traffic_)
+    flush_traffic(world);
 }
 
 void RunView::ended(const sim::World& world, const sim::RunControl& control, const std::string& why) {

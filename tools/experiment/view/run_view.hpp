@@ -12,6 +12,7 @@
 #include "bridges/web/web_server.hpp"
 #include "sim/run/run_control.hpp"
 #include "sim/world/world.hpp"
+#include "tools/experiment/view/page_traffic.hpp"
 #include "tools/experiment/view/state_frame.hpp"
 #include "tools/experiment/view/view_messages.hpp"
 
@@ -48,14 +49,20 @@ class RunView {
   /// Introduces the world to the pages; before the first step.
   void start(const sim::World& world, std::optional<double> duration_s);
   /// Takes a message on a bus of the run.
-  void message(std::string_view channel, std::span<const std::byte> payload) { messages_.take(channel, payload); }
+  void message(std::string_view channel, std::span<const std::byte> payload, sim::Time at) {
+    messages_.take(channel, payload);
+    traffic_.take(channel, payload, at.count());
+  }
   /// Sends the present state, when a frame is due.
   void after_step(const sim::World& world, const bridges::ViewPublisher& publisher, const sim::RunControl& control);
   /// Carries out the requests of the pages, and sends the status when it has changed.
   void serve(const sim::World& world, const bridges::ViewPublisher& publisher, const sim::RunControl& control,
              const std::string& waits_for, const Execute& execute);
   /// Announces that the time of the world was set.
-  void moved() { jump_ = true; }
+  void moved(sim::Time now) {
+    jump_ = true;
+    traffic_.feed().rewind(now.count());
+  }
   /// Announces the end of the run, and why.
   void ended(const sim::World& world, const sim::RunControl& control, const std::string& why);
 
@@ -63,16 +70,18 @@ class RunView {
   using Clock = std::chrono::steady_clock;
 
   void send_state(const sim::World& world, const bridges::ViewPublisher& publisher, const sim::RunControl& control);
+  void flush_traffic(const sim::World& world);
   void send_status(const sim::World& world, const sim::RunControl& control, const std::string& waits_for,
                    const std::string& ended);
   void handle(const bridges::ViewRequest& request, const Execute& execute);
 
   bridges::WebServer server_;
   ViewMessages messages_{server_, ViewMessages::Frames::from_elsewhere};
+  PageTraffic traffic_{server_, MessageFeed::Past::kept};
   const std::string version_;
   StateFrame frame_;
   bool jump_ = false;
-  Clock::time_point next_frame_{}, next_status_{};
+  Clock::time_point next_frame_{}, next_status_{}, next_traffic_{};
   std::int64_t sent_step_ = -1;
   // For the rate of simulated time.
   Clock::time_point rate_since_{};

@@ -89,6 +89,7 @@ void ViewMessages::take_scene(std::span<const std::byte> payload) {
   const Json json = Json::parse(message.scene);
   if (json.value("op", "") != "scene") throw std::runtime_error("sim.scene: not a scene");
   scene_ = message.scene;
+  ++scene_number_;
   server_.retain("scene", scene_);
 }
 

@@ -46,6 +46,9 @@ class ViewMessages {
   std::int32_t branch() const { return branch_; }
   /// Returns whether a scene has arrived.
   bool has_scene() const { return !scene_.empty(); }
+  /// Return the newest scene, and a number that changes with it.
+  const std::string& scene() const { return scene_; }
+  int scene_number() const { return scene_number_; }
   /// Returns the number of messages that could not be read.
   std::int64_t bad_messages() const { return bad_messages_; }
 
@@ -76,6 +79,7 @@ class ViewMessages {
   const Frames frames_;
   std::int64_t epoch_us_ = 0;
   std::string scene_;
+  int scene_number_ = 0;
   float speed_ = 1;
   bool paused_ = false, jump_ = false;
   std::optional<Poses> poses_;  // newest that were not sent

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <map>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "bridges/web/web_server.hpp"
+#include "tools/experiment/page_data/traffic_counts.hpp"
+#include "tools/experiment/view/message_feed.hpp"
+
+namespace tools {
+
+/// What pages see of the messages themselves: the channels with their counts, who heard whom, and the messages of the
+/// channels that a page has subscribed to.
+class PageTraffic {
+ public:
+  /// `server` must outlive this.
+  PageTraffic(bridges::WebServer& server, MessageFeed::Past past) : server_(server), feed_(server, past) {}
+
+  /// Takes a message that was published at a simulated time.
+  void take(std::string_view channel, std::span<const std::byte> payload, std::int64_t time_us);
+  /// Counts a message only.
+  void count(std::string_view channel, std::span<const std::byte> payload);
+  /// Carries out the requests `subscribe` and `left`, and refuses `series`; returns false for another request.
+  bool handle(const bridges::ViewRequest& request);
+  /// Sends what is due: messages, and once per second of wall time the counts if they have changed.  `scene`: JSON,
+  /// whose `number` changes with it.
+  void flush(std::int64_t time_us, const std::string& scene, int number);
+  /// Sets the counts, at another time of a log.
+  void set_counts(TrafficCounts counts);
+  MessageFeed& feed() { return feed_; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void send_counts(std::int64_t time_us);
+  void send_heard(std::int64_t time_us);
+  std::string vehicle_of(const std::string& channel) const;
+
+  bridges::WebServer& server_;
+  MessageFeed feed_;
+  TrafficCounts counts_;
+  bool channels_changed_ = false, heard_changed_ = false;
+  std::int64_t heard_sent_ = 0;
+  int clients_ = 0;
+  int scene_number_ = -1;
+  std::map<std::string, std::string, std::less<>> vehicles_;  // by channel; and each vehicle by its name
+  Clock::time_point next_counts_{};
+};
+
+/// Sends `{"op":"reply","ok":false}` with the id of the request.
+void refuse(bridges::WebServer& server, const bridges::ViewRequest& request, const std::string& text);
+
+}  // namespace tools
