@@ -125,7 +125,8 @@ export class Zones {
       this.root.add(new LineSegments(segments(rim), this.lines), new Mesh(segments(wall), this.walls));
       const centre =
           corners.reduce((sum, c) => [sum[0] + c[0] / corners.length, sum[1] + c[1] / corners.length], [0, 0]);
-      this.labels.push({text: zone.name, at: new Vector3(centre[0], centre[1], high)});
+      const text = zone.flags.includes('gps_denied') ? `${zone.name} ⊘ no GPS` : zone.name;
+      this.labels.push({text, at: new Vector3(centre[0], centre[1], high)});
     }
   }
 }
