@@ -9,6 +9,7 @@ import {
   LineSegments,
   Points,
   ShaderMaterial,
+  Sphere,
   Vector3
 } from './vendor/three.js';
 
@@ -133,8 +134,11 @@ function setPositions(object, positions) {
   if (!attribute || attribute.array.length < positions.length) {
     object.geometry.dispose();
     object.geometry = new BufferGeometry();
-    attribute = new BufferAttribute(new Float32Array(Math.ceil(1.3 * positions.length)), 3).setUsage(DynamicDrawUsage);
+    attribute =
+        new BufferAttribute(new Float32Array(3 * Math.ceil(0.4 * positions.length)), 3).setUsage(DynamicDrawUsage);
     object.geometry.setAttribute('position', attribute);
+    // Never culled: its true sphere does not matter.
+    object.geometry.boundingSphere = new Sphere();
   }
   attribute.array.set(positions);
   attribute.needsUpdate = true;
