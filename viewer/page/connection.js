@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The WebSocket to the server: opens it again after 1, 2, 4, 8 s, and tells how fresh its data are.
+import {decodeMessage} from './messages.js';
 import {decodeState, parseMessage, ProtocolError} from './protocol.js';
 
 const PROTOCOL = 'shoal.view.v1';
@@ -7,7 +8,10 @@ const RETRY_S = [1, 2, 4, 8];
 /** A server sends a status every second; after this time without any message it is said not to answer. */
 const SILENCE_MS = 3000;
 
-/** Connection to the server.  Events: handlers.state(state), handlers.message(object), handlers.problem(text). */
+/**
+ * Connection to the server.  Events: handlers.state(state), handlers.message(object), handlers.data(message of a
+ * channel), handlers.problem(text).
+ */
 export class Connection {
   constructor(url, token, handlers) {
     this.url = url;
@@ -54,7 +58,9 @@ export class Connection {
   receive(data) {
     this.heardAt_ms = performance.now();
     try {
-      if (data instanceof ArrayBuffer) {
+      if (data instanceof ArrayBuffer && data.byteLength > 0 && new Uint8Array(data)[0] === 2) {
+        this.handlers.data(decodeMessage(data));
+      } else if (data instanceof ArrayBuffer) {
         const state = decodeState(data);
         this.unacknowledged.push(state.sequence);
         this.handlers.state(state);

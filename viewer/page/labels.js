@@ -137,6 +137,7 @@ export function drawAnnotations(app) {
     const snr = Number.isFinite(mark.snr_dB) ? ` ${mark.snr_dB.toFixed(0)} dB` : '';
     labels.mark(mark.at, mark.look, `${mark.look.text}${snr}`);
   }
+  app.instruments.annotate(labels, app.playback.time_us);
   if (app.picking.points.length === 2) {
     labels.line(...app.picking.points, '#ffd166');
     const middle = app.picking.points[0].clone().add(app.picking.points[1]).multiplyScalar(0.5);

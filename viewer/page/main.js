@@ -5,6 +5,7 @@ import {Cameras, MODES} from './cameras.js';
 import {Connection} from './connection.js';
 import {Environment} from './environment.js';
 import {Estimates} from './estimates.js';
+import {Instruments} from './instruments.js';
 import {drawAnnotations, Labels} from './labels.js';
 import {Dots, FieldsOfView, SelectionRing, Zones} from './overlays.js';
 import {Details, Events, formatTime, Legend, Scores, VehicleList} from './panels.js';
@@ -50,6 +51,7 @@ class App {
     this.setUpScene();
     this.setUpPanels();
     this.setUpConnection();
+    this.instruments = new Instruments(this);
     addEventListener('keydown', (event) => pressKey(this, event));
     addEventListener('resize', () => this.resize());
     this.resize();
@@ -88,8 +90,8 @@ class App {
   setUpPanels() {
     this.list = new VehicleList((name) => this.select(name), (name) => this.follow(name));
     this.details = new Details((device) => this.lookThrough(device));
-    this.scores = new Scores();
-    this.events = new Events();
+    this.scores = new Scores((time_us) => this.timeBar.goTo(time_us));
+    this.events = new Events((time_us) => this.timeBar.goTo(time_us));
     this.legend = new Legend();
     this.theme = new Theme(() => {
       this.dirty = true;
@@ -116,6 +118,7 @@ class App {
     this.connection = new Connection(url.href, this.address.token, {
       state: (state) => this.takeState(state),
       message: (message) => this.take(message),
+      data: (message) => this.instruments.take(message),
       problem: (text) => this.problem(text),
     });
     this.timeBar = new TimeBar(this.connection, (text) => Events.toast(text));
@@ -140,6 +143,7 @@ class App {
       this.estimates.rewind(state.time_us);
       this.trails.clear();
       this.estimateTrails.clear();
+      this.instruments.rewind(state.time_us);
     }
   }
 
@@ -147,7 +151,10 @@ class App {
   take(message) {
     const items = Array.isArray(message.items) ? message.items : [];
     const handlers = {
-      hello: () => this.timeBar.setHello(message),
+      hello: () => {
+        this.timeBar.setHello(message);
+        this.instruments.greet();
+      },
       scene: () => this.setScene(readScene(message)),
       status: () => this.timeBar.setStatus(message),
       estimates: () => this.estimates.add(items),
@@ -161,6 +168,7 @@ class App {
       reply: () => this.timeBar.reply(message),
       error: () => this.problem(String(message.text)),
       dropped: () => this.problem(`the server dropped ${message.count} messages: this page is too slow`),
+      ...this.instruments.handlers(message),
     };
     if (Object.hasOwn(handlers, message.op)) handlers[message.op]();
     this.dirty = true;
@@ -187,6 +195,7 @@ class App {
     this.estimates.setScene(data);
     this.views.setScene(data);
     this.zones.setScene(data, this.extent_m);
+    this.instruments.setScene(data);
     const colors = this.vehicles.map((vehicle) => trailColor(vehicle.color));
     this.trails.reset(colors);
     this.estimateTrails.reset(colors.map(() => trailColor('#ffb000')));
@@ -198,7 +207,11 @@ class App {
     document.title = data.world ? `${data.world} – Shoal` : 'Shoal';
     this.list.setScene(this.vehicles);
     this.legend.clear();
-    if (!same) this.events.clear();
+    if (!same) {
+      this.events.clear();
+      this.scores.clear();
+      this.instruments.restart();
+    }
     this.select(this.byName.has(kept) ? kept : null);
     if (same) return;
     this.fit();
@@ -376,6 +389,7 @@ class App {
     this.showMode();
     const key = this.viewKey();
     this.adaptResolution(moved || key !== this.drawnKey, now_ms);
+    this.dirty = this.instruments.update(start_ms) || this.dirty;
     if (moved || this.dirty || key !== this.drawnKey) {
       this.drawnKey = key;
       this.dirty = false;
@@ -394,7 +408,12 @@ class App {
 
   writeAddress(now_ms) {
     this.address.write(
-        {view: this.cameras.mode === 'device' ? '' : this.cameras.view(), select: this.selected}, now_ms);
+        {
+          view: this.cameras.mode === 'device' ? '' : this.cameras.view(),
+          select: this.selected,
+          ...this.instruments.toAddress()
+        },
+        now_ms);
   }
 
   showBanner() {
@@ -450,6 +469,7 @@ class App {
     this.ring.update(vehicle?.X_WV ?? null, vehicle?.radius_m ?? 1, this.camera, height_px, onBoard);
     this.renderer.render(this.scene, this.camera);
     drawAnnotations(this);
+    this.instruments.recorder.frame();
     this.updatePanels(time_us);
   }
 
@@ -475,6 +495,8 @@ function start() {
       waterHeights: (points, time_us) => app.water.heights(app.renderer, points, time_us),
       setView: (text) => app.setView(text),
       select: (name) => app.select(name),
+      returnsOf: (channel) => app.instruments.returns.pointsOf(channel),
+      imageOf: (channel) => app.instruments.images.pictures.find((one) => one.channel === channel),
     };
   } catch (error) {
     $('banner').textContent = `this page cannot draw: ${error.message}`;

@@ -12,6 +12,7 @@ import {
   Mesh,
   MeshBasicMaterial,
   Points,
+  Quaternion,
   ShaderMaterial,
   Vector3,
 } from './vendor/three.js';
@@ -47,6 +48,10 @@ export function fieldOfViewLines(view) {
     const edge = (share) => [x, radius_m * Math.cos(2 * Math.PI * share), radius_m * Math.sin(2 * Math.PI * share)];
     const points = along(edge);
     for (let i = 0; i < 8; ++i) points.push(0, 0, 0, ...edge(i / 8));
+    // From x to the axis of the cone.
+    const turn = new Quaternion().setFromUnitVectors(new Vector3(1, 0, 0), new Vector3(...view.axis ?? [1, 0, 0]));
+    const point = new Vector3();
+    for (let i = 0; i < points.length; i += 3) point.fromArray(points, i).applyQuaternion(turn).toArray(points, i);
     return points;
   }
   if (view.kind === 'frustum') {
@@ -125,7 +130,8 @@ export class Zones {
       this.root.add(new LineSegments(segments(rim), this.lines), new Mesh(segments(wall), this.walls));
       const centre =
           corners.reduce((sum, c) => [sum[0] + c[0] / corners.length, sum[1] + c[1] / corners.length], [0, 0]);
-      this.labels.push({text: zone.name, at: new Vector3(centre[0], centre[1], high)});
+      const text = zone.flags.includes('gps_denied') ? `${zone.name} ⊘ no GPS` : zone.name;
+      this.labels.push({text, at: new Vector3(centre[0], centre[1], high)});
     }
   }
 }

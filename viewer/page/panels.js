@@ -243,11 +243,36 @@ export class Details {
   }
 }
 
-/** Scores and rules. */
+/** Scores and rules; goTo(time_us) is called for a moment that the user picks. */
 export class Scores {
+  constructor(goTo) {
+    this.goTo = goTo;
+    this.clear();
+  }
+
+  clear() {
+    this.moments = new Map();
+    this.set({});
+  }
+
+  /** Button for the moment at which a rule failed, or a maximum rose last, as far as this page has seen it. */
+  moment(key, holds, value, time_us) {
+    const before = this.moments.get(key);
+    const at_us = before && time_us < before.time_us ? null : before?.at_us ?? null;
+    const happened = holds === undefined ? before && value > before.value : before?.holds === true && holds === false;
+    this.moments.set(key, {holds, value, time_us, at_us: happened ? time_us : at_us});
+    const found_us = this.moments.get(key).at_us;
+    if (found_us === null) return '';
+    const button = element('button', formatTime(found_us), 'moment');
+    button.type = 'button';
+    button.title = holds === undefined ? 'Go to where this rose last' : 'Go to where this rule failed';
+    button.addEventListener('click', () => this.goTo(found_us));
+    return button;
+  }
+
   /** Takes a message `scores`. */
   set(message) {
-    const rules = message.rules ?? [], metrics = message.metrics ?? [];
+    const rules = message.rules ?? [], metrics = message.metrics ?? [], time_us = message.time_us ?? 0;
     $('no-scores').hidden = rules.length + metrics.length > 0;
     $('rules').replaceChildren(...rules.map((rule) => {
       const item = document.createElement('li');
@@ -256,12 +281,16 @@ export class Scores {
       mark.setAttribute('aria-label', rule.holds ? 'holds' : 'does not hold');
       const value = element('span', formatNumber(rule.value), 'quiet');
       value.title = `now ${formatNumber(rule.value)}, bound ${formatNumber(rule.bound)}`;
-      item.append(mark, element('span', String(rule.rule)), value);
+      const text = element('span', `${rule.rule} `);
+      text.append(this.moment(`rule ${rule.rule}`, rule.holds === true, null, time_us));
+      item.append(mark, text, value);
       return item;
     }));
     const lines = metrics.flatMap((metric) => Object.entries(metric.figures ?? {}).map(([name, value]) => {
       const line = document.createElement('tr');
-      line.append(element('th', `${metric.name} ${name}`), element('td', formatNumber(value)));
+      const head = element('th', `${metric.name} ${name} `);
+      if (/max/.test(name)) head.append(this.moment(`${metric.name} ${name}`, undefined, value, time_us));
+      line.append(head, element('td', formatNumber(value)));
       return line;
     }));
     $('metrics').tBodies[0].replaceChildren(...lines);
@@ -270,6 +299,26 @@ export class Scores {
 
 /** Events of the run, and problems of the page itself. */
 export class Events {
+  /** goTo(time_us) is called for an event that the user picks: by a click, or by arrow keys and Enter. */
+  constructor(goTo) {
+    const pick = (line) => {
+      if (line?.dataset.time) goTo(Number(line.dataset.time));
+    };
+    $('events').addEventListener('click', (event) => pick(event.target.closest('li')));
+    $('events').addEventListener('keydown', (event) => {
+      const now = $('events').querySelector('[aria-current]');
+      if (event.key === 'Enter') pick(now);
+      if (!['ArrowDown', 'ArrowUp'].includes(event.key)) return;
+      const next = event.key === 'ArrowDown' ? (now ? now.nextSibling : $('events').firstChild) : now?.previousSibling;
+      event.preventDefault();
+      event.stopPropagation();
+      if (!next) return;
+      now?.removeAttribute('aria-current');
+      next.setAttribute('aria-current', 'true');
+      next.scrollIntoView({block: 'nearest'});
+    });
+  }
+
   /** Adds events, the newest on top. */
   add(items) {
     $('no-events').hidden = true;
@@ -277,6 +326,7 @@ export class Events {
       const line = document.createElement('li');
       const time = element('time', Number.isFinite(item.time_us) ? formatTime(item.time_us) : '');
       const who = item.who ? `${item.who}: ` : '';
+      if (Number.isFinite(item.time_us)) line.dataset.time = item.time_us;
       line.append(
           time, element('span', `${who}${item.text ?? item.kind ?? ''}`, item.kind === 'problem' ? 'problem' : ''));
       $('events').prepend(line);

@@ -63,7 +63,15 @@ export class Playback {
     const b = this.states[next], a = this.states[Math.max(0, next - 1)];
     const share = b.time_us > a.time_us ? (time_us - a.time_us) / (b.time_us - a.time_us) : 1;
     const pose = b.poses.slice(7 * body, 7 * body + 7);
-    for (let k = 0; k < 3; ++k) pose[k] = (1 - share) * a.poses[7 * body + k] + share * pose[k];
+    const from = a.poses.subarray(7 * body, 7 * body + 7);
+    let dot = 0;
+    for (let k = 3; k < 7; ++k) dot += from[k] * pose[k];
+    let sum = 0;
+    for (let k = 0; k < 7; ++k) {
+      pose[k] = (1 - share) * from[k] + (k > 2 && dot < 0 ? -share : share) * pose[k];
+      if (k > 2) sum += pose[k] * pose[k];
+    }
+    for (let k = 3; k < 7; ++k) pose[k] /= Math.sqrt(sum || 1);
     return pose;
   }
 

@@ -51,6 +51,7 @@ export function probe(app) {
                                    inner_m: ring.inner_m,
                                    center: world(ring.sound.at),
                                  })),
+    ...app.instruments.probe(),
     marks: (app.sounds.visibleMarks ?? []).map((mark) => ({outcome: mark.outcome, position: world(mark.at)})),
   };
 }

@@ -116,7 +116,8 @@ function readWater(water) {
 
 function readZone(zone) {
   const polygon = (zone.polygon_m ?? []).filter((point) => isNumbers(point, 2));
-  return {name: String(zone.name ?? ''), polygon_m: polygon, z_m: zone.z_m ?? [null, null]};
+  const flags = Array.isArray(zone.flags) ? zone.flags.map(String) : [];
+  return {name: String(zone.name ?? ''), polygon_m: polygon, z_m: zone.z_m ?? [null, null], flags};
 }
 
 /** Checks a message `scene` and fills in what it may leave out; throws ProtocolError. */

@@ -19,6 +19,7 @@ export const KEYS = [
   ['+ and –', 'zoom'],
   ['M', 'measure between two points'],
   ['V', 'what is drawn'],
+  ['P', 'data: plots, images, clocks, traffic, water'],
   ['L', 'names on or off'],
   ['T', 'light or dark'],
   ['/', 'search a vehicle'],
@@ -50,6 +51,7 @@ export function pressKey(app, event) {
     Home: () => app.fit(),
     m: () => app.measure(),
     v: () => app.options.toggle(),
+    p: () => app.instruments.dock.toggle(),
     t: () => app.theme.toggle(),
     l: () => app.options.set('labels', !app.options.get('labels')),
     '?': () => $('keys').showModal(),
@@ -180,6 +182,21 @@ export function setUpFolds() {
 export function coveredWidth() {
   if (innerWidth <= 760) return 0;
   return ['left', 'right'].reduce((sum, side) => sum + ($(`${side}-body`).hidden ? 0 : $(side).offsetWidth), 0);
+}
+
+/** Which panels are open, such as "left,events"; empty as long as they are as at the start. */
+export function panelsText() {
+  const tab = document.querySelector('#tabs [aria-selected="true"]').id.replace('tab-', '');
+  const open = [$('left-body').hidden ? 'no-left' : 'left', $('right-body').hidden ? 'no-right' : tab].join();
+  return open === (innerWidth <= 760 ? 'no-left,no-right' : 'left,vehicle') ? '' : open;
+}
+
+/** Opens the panels that a text names. */
+export function setPanels(text) {
+  const [left, right] = text.split(',');
+  fold('left', left !== 'left');
+  if (right !== 'no-right') $('tabs').querySelector(`#tab-${CSS.escape(right ?? 'vehicle')}`)?.click();
+  fold('right', right === 'no-right');
 }
 
 /** Tabs of the details; arrow keys go from tab to tab. */

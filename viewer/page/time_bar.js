@@ -49,6 +49,14 @@ export class TimeBar {
     $('time').textContent = formatTime(wanted_us);
   }
 
+  /** Goes to a time that was picked elsewhere: in a plot, in a list. */
+  goTo(wanted_us) {
+    if (!this.hello.control) return;
+    $('seek').value = Math.round(wanted_us / 1000);
+    this.dragTo(wanted_us);
+    if (this.isLog) this.dragging = false;
+  }
+
   get isLog() { return this.hello.source === 'log'; }
 
   /** Takes what the server is and whether this page may steer it. */

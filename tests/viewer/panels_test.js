@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Panels of clocks, traffic and water; moments of scores and events; images, films, and who can reach all of it.
+import assert from 'node:assert/strict';
+import {describe, it} from 'node:test';
+
+import {until} from './browser.js';
+import * as scenes from './scenes.js';
+import {near, rowsOf, show, text, useBrowser, withPage} from './with_page.js';
+
+useBrowser();
+
+const SIZE = {
+  width: 1000,
+  height: 600
+};
+
+describe('data', () => {
+  it('has clocks, traffic, who heard whom, and the water', async () => {
+    const script = scenes.underwater();
+    script.scene.zones.push({name: 'cave', polygon_m: [[0, 0], [9, 0], [9, 9]], z_m: [null, 0], flags: ['gps_denied']});
+    await withPage(script, async (page, server) => {
+      await show(page, server, 2);
+      const channels = (t_s) => [
+          ['auv1.clock', 'shoal.clock_status_t', 'auv1', t_s, 50 * t_s],
+          ['auv1.clock.truth', 'shoal.clock_status_t', 'auv1', t_s, 50 * t_s],
+          ['auv2.clock', 'shoal.clock_status_t', 'auv2', 10 * t_s, 500 * t_s],
+          ['sim.state', 'shoal.sim_state_t', '', 20 * t_s, 40000 * t_s]];
+      server.sendChannels(2e6, channels(2));
+      // Clocks: with the truth, and by the estimate of the clock itself.
+      const status = {disciplined: true, since_fix_s: 0.5, estimated_std_s: 1e-4, error_s: 0.002, rate_error: 3e-6};
+      await server.publishOnceWanted('auv1.clock.truth', 'clock_status_t', 2e6, status);
+      await server.publishOnceWanted(
+          'auv2.clock', 'clock_status_t', 2e6,
+          {...status, disciplined: false, since_fix_s: -1, error_s: NaN, rate_error: NaN, estimated_std_s: 0.01});
+      await page.waitForFunction(() => /no/.test(document.querySelector('#dock-clocks tbody').textContent));
+      const clocks = await rowsOf(page, '#dock-clocks');
+      // Sound speed 1498.75 m/s at 10 m.
+      assert.deepEqual(clocks[0], ['auv1.clock', '2', '3', '✓ yes', '0.5', '0.1', '2.998']);
+      assert.deepEqual(clocks[1].slice(0, 6), ['auv2.clock', '–', '–', '✕ no', '–', '10']);
+      assert.match(clocks[1][6], /^± 14\.98$/);
+      // Traffic: rates by simulated time, sums by vehicle.
+      server.sendChannels(4e6, channels(4));
+      await page.click('#tab-traffic');
+      await page.waitForFunction(() => /1\.0/.test(document.querySelector('#dock-traffic tbody').textContent));
+      const rows = await rowsOf(page, '#dock-traffic section:first-child table');
+      assert.deepEqual(rows[0], ['auv1', '2.0', '100 B/s', '8', '400 B']);
+      assert.deepEqual(rows[3], ['auv2', '10', '500 B/s', '40', '2.0 kB']);
+      assert.deepEqual(rows[6], ['sim.state', '20', '40.0 kB/s', '80', '160.0 kB']);
+      server.send({
+        op: 'heard',
+        time_us: 4e6,
+        items: [
+          {from: 'auv1', to: 'auv2', sent: 10, received: 7, lost: {noise: 1, interference: 2}},
+          {from: 'auv2', to: 'auv1', sent: 4, received: 4, lost: {}}
+        ]
+      });
+      await page.waitForFunction(() => document.querySelectorAll('.matrix tr').length === 3);
+      assert.equal(await text(page, '.matrix tr:nth-child(2) td:nth-child(3)'), '7/10 ✕');
+      assert.equal(await text(page, '.matrix tr:nth-child(3) td:nth-child(2)'), '4/4');
+      assert.match(await text(page, '.losses'), /auv1 → auv2: ✕ collision 2, ≈ lost in noise 1/);
+      // Water.
+      await page.click('#tab-water');
+      await page.waitForFunction(() => document.querySelectorAll('#dock-water tbody tr').length === 3);
+      const [first] = await rowsOf(page, '#dock-water');
+      assert.deepEqual(first, ['auv1', '10.00', '1498.8']);
+      assert.match(await text(page, '#dock-water ul'), /No GPS in: cave/);
+    }, {...SIZE, fragment: '#t=secret&data=clocks'});
+  });
+
+  it('of another run replaces that of the run before', async () => {
+    await withPage(scenes.land(), async (page, server) => {
+      server.sendChannels(1e6, [['rover1.lidar', 'shoal.planar_lidar_t', 'rover1', 5, 100]]);
+      await page.waitForFunction(() => /rover1\.lidar/.test(document.querySelector('#dock-traffic').textContent));
+      server.script = scenes.surface();
+      server.send(server.script.scene);
+      await page.waitForFunction(() => !/rover1\.lidar/.test(document.querySelector('#dock-traffic').textContent));
+    }, {...SIZE, fragment: '#t=secret&data=traffic'});
+  });
+});
+
+describe('moments', () => {
+  it('at which rules failed and events happened are a click away', async () => {
+    const script = {...scenes.land(), hello: {source: 'log', end_us: 60e6, name: 'a.lcm'}};
+    await withPage(script, async (page, server) => {
+      const scores = (t_s, holds, max_m) => server.send({
+        op: 'scores',
+        time_us: t_s * 1e6,
+        rules: [{rule: 'contacts == 0', holds, value: holds ? 0 : 1, bound: 0}],
+        metrics: [{name: 'error', figures: {max_m, rms_m: 1}}]
+      });
+      scores(5, true, 1);
+      scores(12, false, 2);
+      scores(20, false, 2);
+      server.send({op: 'events', items: [{time_us: 33e6, kind: 'fault', who: 'rover1/lidar', text: 'silent'}]});
+      await page.click('#tab-scores');
+      await page.click('#rules .moment');
+      await until(page, (p) => p.time_us === 12e6, 'the time at which the rule failed');
+      assert.equal((await page.$$('#metrics .moment')).length, 1);
+      await page.click('#tab-events');
+      await page.focus('#events');
+      await page.keyboard.press('ArrowDown');
+      await page.keyboard.press('Enter');
+      await until(page, (p) => p.time_us === 33e6, 'the time of the event');
+    }, SIZE);
+  });
+});
+
+describe('files', () => {
+  it('of what is drawn are an image and a film', async () => {
+    await withPage(scenes.land(), async (page, server) => {
+      await show(page, server, 1);
+      await page.click('#show');
+      await page.click('#save-image');
+      const image = await until(page, (p) => p.saved?.type === 'image/png' && p.saved.bytes > 1000);
+      assert.equal(image.saved.name, 'test_land_1.00s.png');
+      await page.click('#record');
+      server.paused = false;
+      await until(page, (p) => p.time_us > 2.5e6, 'some frames');
+      await page.click('#stop');
+      const film = await until(page, (p) => p.saved?.type === 'video/webm' && p.saved.bytes > 500);
+      assert.match(film.saved.name, /^test_land_1\.00s\.webm$/);
+    }, {width: 400, height: 320});
+  });
+});
+
+describe('reach', () => {
+  it('of all controls of the data by Tab, without motion for those who want none', async () => {
+    await withPage(scenes.underwater(), async (page, server) => {
+      server.sendChannels(0, [['auv1.pose', 'shoal.pose_t', 'auv1'], ['auv1.cam', 'shoal.image_t', 'auv1']]);
+      for (const tab of ['plots', 'images', 'traffic']) {
+        await page.click(`#tab-${tab}`);
+        const missed = await page.evaluate(
+            () => [...document.querySelectorAll('#dock button, #dock input, #dock select')]
+                      .filter((one) => !one.disabled && one.checkVisibility())
+                      .filter((one) => {
+                        one.focus();
+                        const name = one.getAttribute('aria-label') || one.textContent.trim() || one.title;
+                        return document.activeElement !== one || one.tabIndex !== 0 || !name;
+                      })
+                      .map((one) => one.outerHTML));
+        assert.deepEqual(missed, []);
+      }
+      await page.emulateMediaFeatures([{name: 'prefers-reduced-motion', value: 'reduce'}]);
+      server.send({op: 'error', text: 'a note'});
+      await page.waitForSelector('#toasts div');
+      assert.equal(await page.evaluate(() => document.getAnimations().length), 0);
+    }, {...SIZE, fragment: '#t=secret&data=plots&plots=auv1.pose/pos[0]&panels=left,events'});
+  });
+
+  it('of the data on a phone, without sideways scrolling', async () => {
+    await withPage(scenes.underwater(), async (page, server) => {
+      server.sendChannels(
+          0, [['auv1.a_channel_with_a_very_long_name_of_its_own.truth', 'shoal.clock_status_t', 'auv1']]);
+      server.send({op: 'heard', items: [{from: 'auv1', to: 'auv2', sent: 1, received: 0, lost: {noise: 1}}]});
+      await page.click('#data');
+      for (const tab of ['plots', 'images', 'clocks', 'traffic', 'water']) {
+        await page.click(`#tab-${tab}`);
+        await show(page, server, 1);
+        const out = await page.evaluate(() => {
+          // What scrolls within a box of its own may be wider.
+          const inside = (one) => !one.parentElement.closest('.columns > section, #dock-tabs, #dock-clocks');
+          return [...document.querySelectorAll('body *')]
+              .filter((one) => one.checkVisibility() && inside(one))
+              .filter((one) => {
+                const box = one.getBoundingClientRect();
+                return one.id !== 'skip' && (box.right > innerWidth + 1 || box.left < -1);
+              })
+              .map((one) => one.id || one.className || one.tagName);
+        });
+        assert.deepEqual(out, [], tab);
+      }
+      assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth));
+      near((await page.$eval('#dock', (dock) => dock.getBoundingClientRect().width)), 378, 1, 'width of the panel');
+    }, {width: 390, height: 844});
+  });
+});

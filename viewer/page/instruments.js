@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Data of sensors on the page: the panel of plots, images, clocks, traffic and water; returns and ranges in the scene.
+import {Clocks} from './clocks.js';
+import {Dock} from './dock.js';
+import {Images} from './image_panel.js';
+import {Channels} from './messages.js';
+import {Plots} from './plots.js';
+import {Ranges} from './ranges.js';
+import {Recorder} from './recorder.js';
+import {Returns} from './returns.js';
+import {SensorPoses} from './sensor_poses.js';
+import {panelsText, setPanels} from './settings.js';
+import {Traffic} from './traffic.js';
+import {WaterPanel} from './water_panel.js';
+
+const LIST_MS = 500;
+
+/** Brings them together; the page calls this one only. */
+export class Instruments {
+  constructor(app) {
+    this.app = app;
+    app.channels = new Channels(app.connection, () => this.listChanged());
+    this.poses = new SensorPoses(app);
+    this.returns = new Returns(app, this.poses);
+    this.ranges = new Ranges(app, this.poses);
+    this.plots = new Plots(app);
+    this.images = new Images(app);
+    this.clocks = new Clocks(app);
+    this.traffic = new Traffic(app);
+    this.water = new WaterPanel(app);
+    this.recorder = new Recorder(app);
+    this.dock = new Dock([this.plots, this.images, this.clocks, this.traffic, this.water], () => {
+      app.dirty = true;
+    });
+    this.listed_ms = 0;
+    this.fromAddress();
+  }
+
+  /** Opens what the address names. */
+  fromAddress() {
+    const {address} = this.app;
+    if (address.get('plots')) this.plots.setText(address.get('plots'));
+    if (address.get('images')) this.images.setText(address.get('images'));
+    if (address.get('panels') !== null) setPanels(address.get('panels'));
+    this.dock.show(address.get('data'));
+  }
+
+  /** What the address shall have. */
+  toAddress() {
+    return {data: this.dock.open, plots: this.plots.text(), images: this.images.text(), panels: panelsText()};
+  }
+
+  /** Handlers of texts by their op. */
+  handlers(message) {
+    return {
+      channels: () => this.app.channels.setItems(message),
+      heard: () => this.traffic.setHeard(message),
+      series: () => this.plots.setSeries(message),
+    };
+  }
+
+  /** The server said hello: it knows nothing of what this page wants. */
+  greet() {
+    this.app.channels.subscribe(true);
+    this.plots.subscribe();
+    this.plots.request();
+  }
+
+  take(message) { this.app.channels.take(message); }
+
+  setScene(data) {
+    this.poses.setScene(data);
+    this.returns.clear();
+    this.ranges.clear();
+    this.water.setScene(data);
+    this.key = null;
+  }
+
+  /** Another run: nothing of the one before stays. */
+  restart() {
+    this.app.channels.clear();
+    this.traffic.clear();
+    this.plots.restart();
+    this.listChanged();
+  }
+
+  rewind(time_us) {
+    this.app.channels.rewind(time_us);
+    for (const part of [this.returns, this.ranges, this.plots]) part.rewind(time_us);
+  }
+
+  listChanged() { this.listStale = true; }
+
+  /** Before a frame: returns true if the scene has changed. */
+  update(now_ms) {
+    if (this.listStale && now_ms - this.listed_ms > LIST_MS) {
+      this.listStale = false;
+      this.listed_ms = now_ms;
+      this.dock.view?.changed?.();
+    }
+    const {options, selected, data} = this.app;
+    const key = JSON.stringify([options.get('returns'), options.get('ranges'), selected, data.revision]);
+    if (key !== this.key) {
+      this.key = key;
+      this.returns.subscribe(options.get('returns'));
+      this.ranges.subscribe(options.get('ranges'));
+    }
+    this.dock.update(now_ms);
+    const returned = this.returns.update(now_ms), ranged = this.ranges.update(now_ms);
+    return returned || ranged;
+  }
+
+  annotate(labels, time_us) { this.ranges.draw(labels, time_us); }
+
+  /** Numbers for tests. */
+  probe() {
+    const origin = this.app.data?.origin_m ?? [0, 0, 0];
+    return {
+      dock: this.dock.open,
+      plots: this.plots.plots.map((plot) => plot.traces.map((trace) => ({
+                                                              channel: trace.channel,
+                                                              field: trace.path,
+                                                              unit: trace.unit,
+                                                              count: trace.t_s.length,
+                                                              first_s: trace.t_s[0] ?? null,
+                                                              last_s: trace.t_s[trace.t_s.length - 1] ?? null,
+                                                            }))),
+      images: this.images.pictures.map(({channel, image, time_us}) => ({
+                                         channel,
+                                         time_us,
+                                         width: image?.width,
+                                         height: image?.height,
+                                       })),
+      returns: [...this.returns.drawn].map(([channel, one]) => ({
+                                             channel,
+                                             time_us: one.time_us,
+                                             count: one.points.geometry.drawRange.count,
+                                           })),
+      ranges: this.ranges.shown(this.app.playback.time_us).map((range) => ({
+                                                                 name: range.name,
+                                                                 range_m: range.range_m,
+                                                                 true_m: range.true_m,
+                                                                 centre: range.centre.toArray().map(
+                                                                     (x, i) => x + origin[i]),
+                                                               })),
+      saved: this.recorder.last,
+    };
+  }
+}
