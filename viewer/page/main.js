@@ -36,7 +36,9 @@ function isSoftware(gl) {
 
 /** The page. */
 class App {
-  constructor() {
+  /** `recording`: a run inside of the page; null: a server sends one. */
+  constructor(recording) {
+    this.recording = recording;
     this.address = new Address();
     this.playback = new Playback();
     this.data = null;
@@ -49,10 +51,10 @@ class App {
     this.last_ms = this.changed_ms = performance.now();
     this.setUpScene();
     this.setUpPanels();
-    this.setUpConnection();
     addEventListener('keydown', (event) => pressKey(this, event));
     addEventListener('resize', () => this.resize());
     this.resize();
+    this.setUpConnection();
     requestAnimationFrame((now_ms) => this.frame(now_ms));
   }
 
@@ -110,14 +112,22 @@ class App {
   }
 
   setUpConnection() {
-    const url = new URL('.', location.href);
-    url.protocol = url.protocol === 'https:' ? 'wss:' : 'ws:';
-    url.hash = '';
-    this.connection = new Connection(url.href, this.address.token, {
+    const handlers = {
       state: (state) => this.takeState(state),
       message: (message) => this.take(message),
       problem: (text) => this.problem(text),
-    });
+    };
+    if (this.recording) {
+      this.connection = this.recording;
+      this.timeBar = new TimeBar(this.connection, (text) => Events.toast(text));
+      this.assets.source = (hash) => this.recording.asset(hash);
+      this.recording.start(handlers);
+      return;
+    }
+    const url = new URL('.', location.href);
+    url.protocol = url.protocol === 'https:' ? 'wss:' : 'ws:';
+    url.hash = '';
+    this.connection = new Connection(url.href, this.address.token, handlers);
     this.timeBar = new TimeBar(this.connection, (text) => Events.toast(text));
   }
 
@@ -466,13 +476,17 @@ class App {
 }
 
 /** Starts the page; where there is no WebGL it says so. */
-function start() {
+async function start() {
   try {
-    const app = new App();
+    // Only a page that is one file has this module in use.
+    const run = window.shoalRecording;
+    const app = new App(run ? new (await import('./recording.js')).Recording(run) : null);
     // For tests, and for the console.
     window.shoal = {
       probe: () => probe(app),
       waterHeights: (points, time_us) => app.water.heights(app.renderer, points, time_us),
+      bodyMask: async (view) => (await import('./mask.js')).bodyMask(app, view),
+      bodies: () => app.data.bodies.map(({name, owner, parts}) => ({name, owner, parts})),
       setView: (text) => app.setView(text),
       select: (name) => app.select(name),
     };

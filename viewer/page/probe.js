@@ -36,6 +36,7 @@ export function probe(app) {
     vehicles: app.vehicles.map((vehicle, i) => ({
                                  name: vehicle.name,
                                  position: world(vehicle.at),
+                                 radius_m: vehicle.radius_m,
                                  pixel: app.pixelOf(vehicle),
                                  trail: app.trails.describe(i),
                                })),
