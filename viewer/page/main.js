@@ -487,6 +487,8 @@ async function start() {
       waterHeights: (points, time_us) => app.water.heights(app.renderer, points, time_us),
       bodyMask: async (view) => (await import('./mask.js')).bodyMask(app, view),
       bodies: () => app.data.bodies.map(({name, owner, parts}) => ({name, owner, parts})),
+      waterLevel: () => app.data.water?.level_m ?? null,
+      seek: (time_us) => app.connection.send({op: 'seek', time_us}),
       setView: (text) => app.setView(text),
       select: (name) => app.select(name),
     };
