@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "bridges/web/page_output.hpp"
 #include "bridges/web/view_request.hpp"
 #include "bridges/web/web_error.hpp"
 #include "bridges/web/web_protocol.hpp"
@@ -34,13 +35,13 @@ struct WebOptions {
 ///
 /// Clients that do not read cannot delay anything: the newest state replaces the one before, and texts are dropped when
 /// 8 MB of them wait for one client.
-class WebServer {
+class WebServer final : public PageOutput {
  public:
   /// Opens the port and starts the thread.  Throws WebError with the reason when no port is free or an option is
   /// invalid.
   explicit WebServer(const WebOptions& options);
   /// Says goodbye to the clients, for at most half a second, and joins the thread.
-  ~WebServer();
+  ~WebServer() override;
   WebServer(const WebServer&) = delete;
   WebServer& operator=(const WebServer&) = delete;
 
@@ -49,20 +50,20 @@ class WebServer {
   /// Returns the port in use.
   std::uint16_t port() const;
   /// Returns the number of pages that receive states.  An atomic read: callers skip all work when it is 0.
-  int clients() const;
+  int clients() const override;
 
   /// Sends a binary state frame to all pages; bytes 4 to 7 are its sequence number.  A page that has not acknowledged
   /// the last two states gets the newest one later.  Without clients nothing is copied.
-  void send_state(std::span<const std::byte> state);
+  void send_state(std::span<const std::byte> state) override;
   /// Sends a JSON text to the pages that are connected now.  If a page has not read 8 MB of texts its oldest texts are
   /// dropped, and it gets one `{"op":"dropped","count":n}` in their place.
-  void send_text(std::string json);
+  void send_text(std::string json) override;
   /// Sends a JSON text to all pages, and to each later one before anything else, in the order in which their `op` was
   /// retained first.  Replaces the previous text of this `op`.  In `hello` the server sets the key `control` for each
   /// page.  Throws WebError if a `hello` is not a JSON object.
-  void retain(std::string_view op, std::string json);
+  void retain(std::string_view op, std::string json) override;
   /// Makes bytes available as `GET /asset/HASH` (asset_name()).
-  void set_asset(std::uint64_t hash, std::span<const std::byte> bytes);
+  void set_asset(std::uint64_t hash, std::span<const std::byte> bytes) override;
   /// Removes all assets, for another scene.
   void clear_assets();
 

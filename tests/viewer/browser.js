@@ -22,7 +22,7 @@ export async function open(browser, url, {width = 960, height = 600, dark = fals
   const fault = (text) => {
     if (!allowed?.test(text)) page.faults.push(text);
   };
-  const origin = url.startsWith('file:') ? null : new URL(url).origin;
+  const origin = /^https?:/.test(url) ? new URL(url).origin : null;
   page.on('console', (message) => {
     if (['error', 'warn'].includes(message.type()) && !/GPU stall|GL Driver Message/.test(message.text()))
       fault(`console: ${message.text()}`);

@@ -7,6 +7,7 @@
 #include "sim/image/image.hpp"
 #include "tools/experiment/film/camera_rig.hpp"
 #include "tools/experiment/film/film.hpp"
+#include "tools/experiment/film/film_clips.hpp"
 #include "tools/experiment/process/signals.hpp"
 #include "tools/shoal/commands.hpp"
 #include "tools/shoal/image_options.hpp"
@@ -17,10 +18,27 @@ namespace {
 
 struct FilmArguments {
   FilmOptions film;
+  ClipOptions clips;
   std::string size = "640x480", overlays = "labels,clock", visibility;
   double fov_deg = 60;
   int split = 1;
 };
+
+/// Makes the film, or the clips.
+int render(const FilmArguments& arguments) {
+  if (!arguments.clips.directory.empty()) {
+    const ClipOutcome outcome = make_clips(arguments.film, arguments.clips);
+    std::cout << outcome.to_text();
+    return outcome.interrupted ? 128 + caught_signal() : exit_ok;
+  }
+  const FilmOutcome outcome = make_film(arguments.film);
+  if (outcome.interrupted) {
+    std::cerr << "shoal: interrupted after " << outcome.frames << " frames; there is no film\n";
+    return 128 + caught_signal();
+  }
+  std::cout << outcome.to_text(arguments.film);
+  return exit_ok;
+}
 
 int film(FilmArguments& arguments) {
   // Options of which the text is parsed.
@@ -34,19 +52,15 @@ int film(FilmArguments& arguments) {
   film.overlays = parse_overlay_option(arguments.overlays);
   if (film.cameras.empty()) film.cameras.push_back("all");
   if (film.cameras.size() > 2) throw CLI::ValidationError("--camera", "may be given twice at most");
+  if (film.out.empty() && arguments.clips.directory.empty())
+    throw CLI::ValidationError("--out", "is required, or --clips");
   if (film.until_s && *film.until_s < film.from_s) throw CLI::ValidationError("--to", "must not be before --from");
   catch_signals(true);
   // Film, with one error for each cause.
   try {
-    const FilmOutcome outcome = make_film(film);
-    if (outcome.interrupted) {
-      std::cerr << "shoal: interrupted after " << outcome.frames << " frames; there is no film\n";
-      return 128 + caught_signal();
-    }
-    std::cout << outcome.to_text(film);
-    return exit_ok;
+    return render(arguments);
   } catch (const std::invalid_argument& error) {
-    throw CLI::ValidationError("--out", error.what());
+    throw CLI::ValidationError(film.out.empty() ? "--clips-as" : "--out", error.what());
   } catch (const CameraError& error) {
     throw CLI::ValidationError("--camera", error.what());
   } catch (const sim::PhysicsFault& fault) {
@@ -99,6 +113,37 @@ void add_film_options(CLI::App& command, FilmArguments& arguments) {
   command.add_flag("--quiet", film.quiet, "no progress");
 }
 
+void add_clip_options(CLI::App& command, ClipOptions& clips) {
+  CLI::Option* directory =
+      command
+          .add_option("--clips", clips.directory,
+                      "instead of one film, a clip of each event of a log in this folder; the camera follows the "
+                      "vehicle that the event names")
+          ->type_name("DIR");
+  for (const char* other : {"--out", "--camera", "--split", "--from", "--to"})
+    directory->excludes(command.get_option(other));
+  command.add_option("--before", clips.before_s, "of a clip: simulated time before the event, s")
+      ->type_name("S")
+      ->check(number_from(0, 1e6))
+      ->capture_default_str()
+      ->needs(directory);
+  command.add_option("--after", clips.after_s, "and after it, s")
+      ->type_name("S")
+      ->check(number_from(0, 1e6))
+      ->capture_default_str()
+      ->needs(directory);
+  command.add_option("--max-clips", clips.max_clips, "the first events that get a clip")
+      ->type_name("N")
+      ->check(whole_from(1, 10'000))
+      ->capture_default_str()
+      ->needs(directory);
+  command.add_option("--clips-as", clips.ending, "kind of the clips: .mp4, .webm, .avi")
+      ->type_name("ENDING")
+      ->check(one_of({".mp4", ".webm", ".avi"}).description(""))
+      ->capture_default_str()
+      ->needs(directory);
+}
+
 }  // namespace
 
 void add_film_command(CLI::App& app, int& exit_code) {
@@ -110,9 +155,9 @@ void add_film_command(CLI::App& app, int& exit_code) {
   command
       ->add_option("--out", arguments->film.out,
                    "file: .mp4 or .webm (by ffmpeg), .avi, .png (NAME_00000.png and so on), or FOLDER/")
-      ->type_name("FILE")
-      ->required();
+      ->type_name("FILE");
   add_film_options(*command, *arguments);
+  add_clip_options(*command, arguments->clips);
   // World.
   command->add_option("--seed", arguments->film.load.seed, "seed of every random stream of a world")
       ->type_name("N")
@@ -125,6 +170,7 @@ void add_film_command(CLI::App& app, int& exit_code) {
       {{"shoal run coop_underwater --launch --record auv.lcm",
         "shoal film auv.lcm --camera chase:auv --speed 8 --out auv.mp4",
         "shoal film auv.lcm --camera top --overlay trails,ellipses,clock --speed 20 --from 40 --to 900 --out map.webm",
+        "shoal film auv.lcm --clips clips --before 5",
         "shoal film dynamic_warehouse --to 20 --size 1280x720 --antialias 2 --out hall.mp4",
         "shoal film erl_room --camera orbit:robot --split 2 --out room.avi"},
        {{0, "success"},

@@ -37,7 +37,9 @@ function isSoftware(gl) {
 
 /** The page. */
 class App {
-  constructor() {
+  /** `recording`: a run inside of the page; null: a server sends one. */
+  constructor(recording) {
+    this.recording = recording;
     this.address = new Address();
     this.playback = new Playback();
     this.data = null;
@@ -50,11 +52,12 @@ class App {
     this.last_ms = this.changed_ms = performance.now();
     this.setUpScene();
     this.setUpPanels();
-    this.setUpConnection();
-    this.instruments = new Instruments(this);
     addEventListener('keydown', (event) => pressKey(this, event));
     addEventListener('resize', () => this.resize());
     this.resize();
+    const handlers = this.setUpConnection();
+    this.instruments = new Instruments(this);
+    this.recording?.start(handlers);
     requestAnimationFrame((now_ms) => this.frame(now_ms));
   }
 
@@ -111,17 +114,26 @@ class App {
     this.applyOptions();
   }
 
+  /** Makes the connection, and returns the handlers of its messages. */
   setUpConnection() {
-    const url = new URL('.', location.href);
-    url.protocol = url.protocol === 'https:' ? 'wss:' : 'ws:';
-    url.hash = '';
-    this.connection = new Connection(url.href, this.address.token, {
+    const handlers = {
       state: (state) => this.takeState(state),
       message: (message) => this.take(message),
       data: (message) => this.instruments.take(message),
       problem: (text) => this.problem(text),
-    });
+    };
+    if (this.recording) {
+      this.connection = this.recording;
+      this.timeBar = new TimeBar(this.connection, (text) => Events.toast(text));
+      this.assets.source = (hash) => this.recording.asset(hash);
+      return handlers;
+    }
+    const url = new URL('.', location.href);
+    url.protocol = url.protocol === 'https:' ? 'wss:' : 'ws:';
+    url.hash = '';
+    this.connection = new Connection(url.href, this.address.token, handlers);
     this.timeBar = new TimeBar(this.connection, (text) => Events.toast(text));
+    return handlers;
   }
 
   /** Shows what is wrong: in the list of events, and for some seconds over the scene. */
@@ -486,13 +498,19 @@ class App {
 }
 
 /** Starts the page; where there is no WebGL it says so. */
-function start() {
+async function start() {
   try {
-    const app = new App();
+    // Only a page that is one file has this module in use.
+    const run = window.shoalRecording;
+    const app = new App(run ? new (await import('./recording.js')).Recording(run) : null);
     // For tests, and for the console.
     window.shoal = {
       probe: () => probe(app),
       waterHeights: (points, time_us) => app.water.heights(app.renderer, points, time_us),
+      bodyMask: async (view) => (await import('./mask.js')).bodyMask(app, view),
+      bodies: () => app.data.bodies.map(({name, owner, parts}) => ({name, owner, parts})),
+      waterLevel: () => app.data.water?.level_m ?? null,
+      seek: (time_us) => app.connection.send({op: 'seek', time_us}),
       setView: (text) => app.setView(text),
       select: (name) => app.select(name),
       returnsOf: (channel) => app.instruments.returns.pointsOf(channel),

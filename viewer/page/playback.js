@@ -77,24 +77,28 @@ export class Playback {
 
   interpolate(a, b, share) {
     if (this.poses.length !== a.length) this.poses = new Float32Array(a.length);
-    const to = this.poses;
-    if (share === 0 || share === 1) {
-      to.set(share === 0 ? a : b);
-      return;
+    mix(a, b, share, this.poses);
+  }
+}
+
+/** Writes poses between two into `to`; share: 0 is a, 1 is b. */
+export function mix(a, b, share, to) {
+  if (share === 0 || share === 1) {
+    to.set(share === 0 ? a : b);
+    return;
+  }
+  const rest = 1 - share;
+  for (let i = 0; i < to.length; i += 7) {
+    for (let k = i; k < i + 3; ++k) to[k] = rest * a[k] + share * b[k];
+    // Quaternion: linear, on the shorter arc, then normalized; states are close together.
+    const dot = a[i + 3] * b[i + 3] + a[i + 4] * b[i + 4] + a[i + 5] * b[i + 5] + a[i + 6] * b[i + 6];
+    const other = dot < 0 ? -share : share;
+    let sum = 0;
+    for (let k = i + 3; k < i + 7; ++k) {
+      to[k] = rest * a[k] + other * b[k];
+      sum += to[k] * to[k];
     }
-    const rest = 1 - share;
-    for (let i = 0; i < to.length; i += 7) {
-      for (let k = i; k < i + 3; ++k) to[k] = rest * a[k] + share * b[k];
-      // Quaternion: linear, on the shorter arc, then normalized; states are close together.
-      const dot = a[i + 3] * b[i + 3] + a[i + 4] * b[i + 4] + a[i + 5] * b[i + 5] + a[i + 6] * b[i + 6];
-      const other = dot < 0 ? -share : share;
-      let sum = 0;
-      for (let k = i + 3; k < i + 7; ++k) {
-        to[k] = rest * a[k] + other * b[k];
-        sum += to[k] * to[k];
-      }
-      const scale = 1 / Math.sqrt(sum || 1);
-      for (let k = i + 3; k < i + 7; ++k) to[k] *= scale;
-    }
+    const scale = 1 / Math.sqrt(sum || 1);
+    for (let k = i + 3; k < i + 7; ++k) to[k] *= scale;
   }
 }

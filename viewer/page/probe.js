@@ -18,6 +18,7 @@ export function probe(app) {
     scene: app.data && {world: app.data.world, revision: app.data.revision},
     tape: app.picking.text(),
     time_us: app.playback.time_us,
+    epoch_us: app.timeBar.hello.epoch_us ?? 0,
     connected: app.connection.isOpen,
     banner: document.getElementById('banner').textContent,
     control: app.timeBar.hello.control === true,
@@ -36,6 +37,7 @@ export function probe(app) {
     vehicles: app.vehicles.map((vehicle, i) => ({
                                  name: vehicle.name,
                                  position: world(vehicle.at),
+                                 radius_m: vehicle.radius_m,
                                  pixel: app.pixelOf(vehicle),
                                  trail: app.trails.describe(i),
                                })),

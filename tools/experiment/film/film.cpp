@@ -73,7 +73,7 @@ class Film {
         world_(source_->world()),
         until_s_(end(options, *source_)),
         painter_(world_, options.threads),
-        overlay_(world_, overlay_settings(), estimates()) {
+        overlay_(world_, film_overlay(options), estimates()) {
     start();
   }
 
@@ -119,14 +119,6 @@ class Film {
     return 1 + static_cast<std::int64_t>(std::floor((until_s_ - options_.from_s) / step_s() + 1e-9));
   }
 
-  Overlay::Settings overlay_settings() const {
-    Overlay::Settings settings;
-    settings.choice = options_.overlays;
-    settings.trail_s = std::max(20.0, 15 * options_.speed);
-    settings.title = options_.speed == 1 ? "" : fmt::format("x{:g}", options_.speed);
-    return settings;
-  }
-
   LogEstimates estimates() const {
     if (!options_.overlays.ellipses || source_->log().empty()) return {};
     return {source_->log(), options_.from_s - 60, until_s_, 0.5 * step_s()};
@@ -143,13 +135,7 @@ class Film {
     if (until_s_ < options_.from_s || !advance(options_.from_s))
       throw std::runtime_error(fmt::format("{}: ends at {:.6g} s, before --from", options_.source,
                                            until_s_ < options_.from_s ? until_s_ : sim::to_seconds(world_.now())));
-    SceneView like;
-    like.optics.width = options_.format.width;
-    like.optics.height = options_.format.height;
-    like.optics.fov_rad = options_.fov_rad;
-    like.antialias = options_.antialias;
-    like.visibility_m = options_.visibility_m;
-    like.options.light = world_.config().light;
+    SceneView like = film_view(options_, world_);
     if (options_.cameras.size() > 1 || options_.split) like.optics.width /= 2;
     for (const std::string& camera : options_.cameras) rigs_.push_back(make_camera_rig(camera, world_, like));
     if (!options_.split || rigs_.size() > 1) return;
@@ -210,6 +196,25 @@ std::string FilmOutcome::to_text(const FilmOptions& options) const {
       wall_s > 0 ? static_cast<double>(frames) / wall_s : 0.0);
   if (!note.empty()) text += "note: " + note + "\n";
   return text;
+}
+
+SceneView film_view(const FilmOptions& options, const sim::World& world) {
+  SceneView view;
+  view.optics.width = options.format.width;
+  view.optics.height = options.format.height;
+  view.optics.fov_rad = options.fov_rad;
+  view.antialias = options.antialias;
+  view.visibility_m = options.visibility_m;
+  view.options.light = world.config().light;
+  return view;
+}
+
+Overlay::Settings film_overlay(const FilmOptions& options) {
+  Overlay::Settings settings;
+  settings.choice = options.overlays;
+  settings.trail_s = std::max(20.0, 15 * options.speed);
+  settings.title = options.speed == 1 ? "" : fmt::format("x{:g}", options.speed);
+  return settings;
 }
 
 FilmOutcome make_film(const FilmOptions& options) {

@@ -9,6 +9,7 @@
 #include "sim/world_file/load_world.hpp"
 #include "tools/experiment/film/film_writer.hpp"
 #include "tools/experiment/film/overlay.hpp"
+#include "tools/experiment/film/scene_painter.hpp"
 
 namespace tools {
 
@@ -40,6 +41,11 @@ struct FilmOutcome {
   /// Returns `film.mp4: 300 frames of 640x480, 10.0 s, in 7.1 s (42 frames/s)`.
   std::string to_text(const FilmOptions& options) const;
 };
+
+/// Returns the lens of a film, without a pose.
+SceneView film_view(const FilmOptions& options, const sim::World& world);
+/// Returns the settings of the overlays of a film.
+Overlay::Settings film_overlay(const FilmOptions& options);
 
 /// Renders a film of a run.  Throws sim::ConfigError, std::invalid_argument and CameraError (options), FilmError and
 /// std::runtime_error (files), sim::PhysicsFault.

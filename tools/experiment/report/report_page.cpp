@@ -184,16 +184,19 @@ std::string made_by_html() {
   return paragraph(html_text("Made by shoal " + short_version() + "."), "soft small");
 }
 
-std::string run_report(const RunRecord& run) {
+std::string run_report(const RunRecord& run, const std::string& page_in_3d) {
   const std::vector<RunMetric> metrics = metrics_of(run);
+  const std::string link =
+      page_in_3d.empty() ? ""
+                         : paragraph("<a href=\"" + html_text(page_in_3d) + "\">Watch the run in three dimensions</a>");
   return html_page(title_of(run), "<h1>" + html_text(title_of(run)) + "</h1>\n" +
                                       (run.description.empty() ? "" : paragraph(html_text(run.description))) +
-                                      outcome_html(run, metrics) + run_plots_html(run) + warnings_html(run) +
+                                      outcome_html(run, metrics) + link + run_plots_html(run) + warnings_html(run) +
                                       figures_html(metrics, run.rules) + processes_html(run) + facts_html(run) +
                                       made_by_html());
 }
 
-std::string report_page(const std::vector<std::string>& directories) {
+std::string report_page(const std::vector<std::string>& directories, const std::string& page_in_3d) {
   std::vector<RunRecord> runs;
   for (const std::string& given : directories) {
     std::string directory = given;
@@ -208,7 +211,7 @@ std::string report_page(const std::vector<std::string>& directories) {
       throw std::runtime_error(given + ": is not a results folder: it has neither summary.json nor study.json");
     runs.push_back(read_run(directory));
   }
-  return runs.size() == 1 ? run_report(runs.front()) : comparison_report(runs);
+  return runs.size() == 1 ? run_report(runs.front(), page_in_3d) : comparison_report(runs);
 }
 
 }  // namespace tools

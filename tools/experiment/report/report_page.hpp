@@ -13,11 +13,12 @@ namespace tools {
 
 /// Returns a results directory as one HTML page that needs no network: verdict and plots first, then figures by metric,
 /// logs of programs and facts about the run.  Also accepts the directory of a study; several directories of runs are
-/// compared. Throws std::runtime_error with file and reason.
-std::string report_page(const std::vector<std::string>& directories);
+/// compared. Throws std::runtime_error with file and reason.  `page_in_3d`: address of the page of a single run that
+/// shows it in three dimensions, relative to this one; empty: there is none.
+std::string report_page(const std::vector<std::string>& directories, const std::string& page_in_3d = "");
 
 /// Returns the page of one run.
-std::string run_report(const RunRecord& run);
+std::string run_report(const RunRecord& run, const std::string& page_in_3d = "");
 /// Returns a page that compares runs side by side.
 std::string comparison_report(const std::vector<RunRecord>& runs);
 

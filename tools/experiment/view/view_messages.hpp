@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "bridges/web/web_server.hpp"
+#include "bridges/web/page_output.hpp"
 #include "sim/bus/bus.hpp"
 #include "tools/experiment/view/state_frame.hpp"
 
@@ -24,7 +24,7 @@ class ViewMessages {
   enum class Frames { from_bodies, from_elsewhere };
 
   /// `server` must outlive this.
-  ViewMessages(bridges::WebServer& server, Frames frames) : server_(server), frames_(frames) {}
+  ViewMessages(bridges::PageOutput& server, Frames frames) : server_(server), frames_(frames) {}
 
   /// Passes a message on.
   void take(std::string_view channel, std::span<const std::byte> payload);
@@ -75,7 +75,7 @@ class ViewMessages {
   void take_estimate(std::string_view channel, std::span<const std::byte> payload);
   std::int64_t time_us(std::int64_t utime) const { return utime - epoch_us_; }
 
-  bridges::WebServer& server_;
+  bridges::PageOutput& server_;
   const Frames frames_;
   std::int64_t epoch_us_ = 0;
   std::string scene_;
