@@ -123,7 +123,9 @@ std::unique_ptr<RunView> Run::make_page() const {
 
 TapBus::Listener Run::page_tap() {
   if (!page_) return {};
-  return [this](std::string_view channel, std::span<const std::byte> payload) { page_->message(channel, payload); };
+  return [this](std::string_view channel, std::span<const std::byte> payload, sim::Time at) {
+    page_->message(channel, payload, at);
+  };
 }
 
 void Run::serve_page() {
@@ -285,7 +287,7 @@ void Run::admit_messages() {
   buses_.admit([this](const std::string& bus, std::span<const sim::MessageGate::Delivery> inputs) {
     journal_.admitted(bus, inputs);
     if (!page_) return;
-    for (const sim::MessageGate::Delivery& input : inputs) page_->message(input.channel, input.payload);
+    for (const sim::MessageGate::Delivery& input : inputs) page_->message(input.channel, input.payload, world_.now());
   });
 }
 

@@ -14,13 +14,13 @@ namespace tools {
 /// Bus that also passes what is published to a listener.
 class TapBus final : public sim::Bus {
  public:
-  using Listener = std::function<void(std::string_view channel, std::span<const std::byte> payload)>;
+  using Listener = std::function<void(std::string_view channel, std::span<const std::byte> payload, sim::Time at)>;
 
   /// `inner` must outlive this.
   TapBus(sim::Bus& inner, Listener listener) : inner_(inner), listener_(std::move(listener)) {}
 
   void publish(std::string_view channel, std::span<const std::byte> payload, sim::Time at) override {
-    listener_(channel, payload);
+    listener_(channel, payload, at);
     inner_.publish(channel, payload, at);
   }
   std::unique_ptr<sim::Mailbox> open_mailbox(const std::string& channel,

@@ -7,6 +7,7 @@
 
 #include "bridges/log/event_log.hpp"
 #include "bridges/web/web_server.hpp"
+#include "tools/experiment/view/foxglove_view.hpp"
 #include "tools/experiment/view/log_index.hpp"
 #include "tools/experiment/view/run_view.hpp"
 #include "tools/experiment/view/view_messages.hpp"
@@ -28,6 +29,9 @@ class LogView {
  private:
   void handle(const bridges::ViewRequest& request);
   void send_event_at(std::uint64_t offset);
+  void serve_foxglove();
+  FoxgloveView::State foxglove_state() const;
+  void play_foxglove(const bridges::foxglove::PlaybackRequest& request);
   /// Passes messages on, up to the last pose at or before a time.
   void play_to(std::int64_t time_us);
   void send_status();
@@ -36,6 +40,8 @@ class LogView {
   bridges::EventLogReader reader_, looking_;
   bridges::WebServer server_;
   ViewMessages messages_{server_, ViewMessages::Frames::from_bodies};
+  FoxgloveView foxglove_{server_};
+  MessageTimes times_;
   double now_us_;
   double speed_ = 1;
   bool paused_ = false, loop_ = false;
@@ -63,6 +69,9 @@ class BusView {
 
   bridges::WebServer server_;
   ViewMessages messages_{server_, ViewMessages::Frames::from_bodies};
+  FoxgloveView foxglove_{server_};
+  MessageTimes times_;
+  std::int64_t newest_utime_ = 0;
   const std::string version_, bus_;
   std::string world_;
   // For the rate of simulated time.
