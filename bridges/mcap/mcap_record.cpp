@@ -5,10 +5,6 @@
 #include <limits>
 
 #include "bridges/mcap/mcap_reader.hpp"
-#include "bridges/ros2/cdr_transcoder.hpp"
-#include "bridges/ros2/ros2_names.hpp"
-#include "bridges/ros2/ros2_schema.hpp"
-#include "bridges/ros2/standard_types.hpp"
 #include "shoal/sim_info_t.hpp"
 
 namespace bridges::mcap {
@@ -30,100 +26,51 @@ std::uint64_t ns_of(std::int64_t utime) {
 
 }  // namespace
 
-McapRecord::McapRecord(FileDescriptor file, const shoal::MessageTypes& types) : types_(types), file_(std::move(file)) {}
+McapRecord::McapRecord(FileDescriptor file, const shoal::MessageTypes& types)
+    : types_(types), file_(std::move(file)), topics_(types) {}
 
 bool McapRecord::write(std::int64_t utime, std::string_view channel, std::span<const std::byte> payload) {
-  const std::uint64_t time_ns = ns_of(utime);
+  time_ns_ = ns_of(utime);
+  if (channel == "sim.info" && !write_info(payload)) return false;
+  return topics_.encode(channel, payload, *this);
+}
+
+bool McapRecord::take(const ros2::Topic& topic, std::span<const std::byte> bytes) {
+  if (topic.encoding == "lcm") ++not_decoded_;
+  const std::uint16_t channel = channel_of(topic);
+  return channel == 0 || file_.write(channel, time_ns_, bytes);
+}
+
+void McapRecord::invalid(std::string_view channel, const std::string& error) {
+  report(std::string(channel) + ": " + error);
+}
+
+std::uint16_t McapRecord::channel_of(const ros2::Topic& topic) {
+  if (channels_.size() <= topic.number) channels_.resize(topic.number + 1);
+  if (channels_[topic.number] != 0) return channels_[topic.number];
+  // Payloads as they are have no schema.
+  const bool is_raw = topic.encoding == "lcm";
+  TextMap metadata;
+  if (!topic.lcm_channel.empty()) metadata.emplace("lcm_channel", topic.lcm_channel);
+  if (!topic.lcm_type.empty()) metadata.emplace("lcm_type", topic.lcm_type);
+  if (!is_raw) metadata.emplace("offered_qos_profiles", topic.latched ? static_qos : "");
+  const std::uint16_t schema = is_raw ? 0 : file_.add_schema({topic.type, "ros2msg", topic.schema});
+  std::uint16_t channel = 0;
+  if (is_raw || schema != 0) channel = file_.add_channel({schema, topic.name, topic.encoding, std::move(metadata)});
+  if (channel == 0)
+    report(topic.name + ": more than 65535 channels are not recorded");
+  else if (is_raw)
+    report(topic.lcm_channel + ": messages that cannot be decoded are recorded as bytes on " + topic.name);
+  return channels_[topic.number] = channel;
+}
+
+bool McapRecord::write_info(std::span<const std::byte> payload) {
   const shoal::MessageSchema* schema = types_.find(static_cast<std::uint64_t>(shoal::fingerprint(payload)));
-  // Keep what cannot be transcoded.
-  if (schema == nullptr) return write_raw(channel, time_ns, payload);
-  if (const auto error = ros2::to_cdr(*schema, payload, cdr_)) {
-    report(std::string(channel) + ": " + *error);
-    return write_raw(channel, time_ns, payload);
-  }
-  // Write the message to its topics.
-  if (channel == "sim.info" && schema->name == "shoal.sim_info_t" && !write_info(time_ns, payload)) return false;
-  Route* route = route_of(channel, *schema);
-  if (route == nullptr) return true;
-  return file_.write(route->channel, time_ns, cdr_) && write_standard(*route, channel, time_ns, payload);
-}
-
-McapRecord::Route* McapRecord::route_of(std::string_view channel, const shoal::MessageSchema& schema) {
-  const auto of_channel = routes_.find(channel);
-  if (of_channel != routes_.end())
-    if (const auto known = of_channel->second.find(schema.fingerprint); known != of_channel->second.end())
-      return &known->second;
-  Route route;
-  route.schema = &schema;
-  const std::string type = ros2::type_name(schema.name);
-  const std::uint16_t number = file_.add_schema({type, "ros2msg", ros2::schema_text(schema)});
-  if (number > 0)
-    route.channel = file_.add_channel(
-        {number,
-         own_topic(ros2::topic_of(channel), std::string(channel) + " " + type),
-         "cdr",
-         {{"lcm_channel", std::string(channel)}, {"lcm_type", schema.name}, {"offered_qos_profiles", ""}}});
-  if (route.channel == 0) {
-    report(std::string(channel) + ": more than 65535 channels are not recorded");
-    return nullptr;
-  }
-  for (const ros2::Converter* converter : ros2::ConverterTable::instance().of(schema.name))
-    route.standard.push_back({converter, 0});
-  return &routes_[std::string(channel)].emplace(schema.fingerprint, std::move(route)).first->second;
-}
-
-bool McapRecord::write_standard(Route& route, std::string_view channel, std::uint64_t time_ns,
-                                std::span<const std::byte> payload) {
-  for (Route::Standard& each : route.standard) {
-    if (!each.converter->convert(payload, channel, context_, cdr_)) continue;
-    if (each.channel == 0) each.channel = standard_channel(*each.converter, channel);
-    if (each.channel != 0 && !file_.write(each.channel, time_ns, cdr_)) return false;
-  }
-  return true;
-}
-
-std::uint16_t McapRecord::standard_channel(const ros2::Converter& converter, std::string_view channel) {
-  const bool common = converter.topic.starts_with('/');
-  const std::string topic = converter.topic_for(channel);
-  if (common)
-    if (const auto known = common_channels_.find(topic); known != common_channels_.end()) return known->second;
-  const std::uint16_t schema =
-      file_.add_schema({converter.ros_type, "ros2msg", ros2::standard_schema_text(converter.ros_type)});
-  if (schema == 0) return 0;
-  const std::string owner = (common ? "" : std::string(channel)) + " " + converter.ros_type;
-  TextMap metadata{{"offered_qos_profiles", topic == "/tf_static" ? static_qos : ""}};
-  if (!common) metadata.emplace("lcm_channel", channel);
-  const std::uint16_t number = file_.add_channel({schema, own_topic(topic, owner), "cdr", std::move(metadata)});
-  if (common) common_channels_.emplace(topic, number);
-  return number;
-}
-
-bool McapRecord::write_raw(std::string_view channel, std::uint64_t time_ns, std::span<const std::byte> payload) {
-  ++not_decoded_;
-  auto known = raw_channels_.find(channel);
-  if (known == raw_channels_.end()) {
-    const std::string topic = own_topic(ros2::topic_of(channel) + "/bytes", std::string(channel) + " lcm");
-    const std::uint16_t number = file_.add_channel({0, topic, "lcm", {{"lcm_channel", std::string(channel)}}});
-    if (number == 0) return true;
-    report(std::string(channel) + ": messages that cannot be decoded are recorded as bytes on " + topic);
-    known = raw_channels_.emplace(channel, number).first;
-  }
-  return file_.write(known->second, time_ns, payload);
-}
-
-std::string McapRecord::own_topic(const std::string& topic, const std::string& owner) {
-  std::string own = topic;
-  for (int number = 2;; ++number) {
-    const auto [known, fresh] = topic_owners_.emplace(own, owner);
-    if (fresh || known->second == owner) return own;
-    own = topic + "_" + std::to_string(number);
-  }
-}
-
-bool McapRecord::write_info(std::uint64_t time_ns, std::span<const std::byte> payload) {
+  if (schema == nullptr || schema->name != "shoal.sim_info_t" || shoal::validate(*schema, payload, shoal::Finite::any))
+    return true;
   const auto info = shoal::decode<shoal::sim_info_t>(payload, shoal::Finite::any);
   if (branch_ == info.branch) return true;
-  if (!branch_ && !file_.write(Attachment{time_ns, time_ns, "world.yaml", "application/yaml", info.resolved_config}))
+  if (!branch_ && !file_.write(Attachment{time_ns_, time_ns_, "world.yaml", "application/yaml", info.resolved_config}))
     return false;
   branch_ = info.branch;
   return file_.write(Metadata{"shoal",
@@ -142,11 +89,8 @@ std::unique_ptr<McapRecord> McapRecord::branch(const std::string& path, std::uin
   if (!flush()) return nullptr;
   // Channels keep their numbers, and so do the messages that are copied.
   next->file_.add_all_of(file_);
-  next->routes_ = routes_;
-  next->raw_channels_ = raw_channels_;
-  next->common_channels_ = common_channels_;
-  next->topic_owners_ = topic_owners_;
-  next->context_ = context_;
+  next->topics_ = topics_;
+  next->channels_ = channels_;
   next->branch_ = branch_;
   McapReader from(path);
   bool written = true;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -19,9 +20,20 @@ namespace bridges::ros2 {
 
 /// What earlier messages of a record tell a converter.
 struct ConverterContext {
+  /// Part of a scene whose shape is an asset.
+  struct AssetPart {
+    std::string asset, frame, name;
+    std::int32_t id = 0;
+    std::array<double, 7> pose{};  ///< in the frame: x, y, z, qw, qx, qy, qz
+    std::array<float, 4> rgba{};
+  };
+
   /// Coordinate frames of the bodies of the last `sim.scene`, by their numbers, and its revision.
   std::map<std::int32_t, std::string> body_frames;
   std::int32_t scene_revision = -1;
+  /// Parts of the last `sim.scene`, and the contents of `sim.asset` by hash.
+  std::vector<AssetPart> asset_parts;
+  std::map<std::string, std::vector<std::uint8_t>, std::less<>> assets;
 };
 
 /// Conversion of the messages of an LCM type into a standard type of ROS 2.

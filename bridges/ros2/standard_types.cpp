@@ -79,6 +79,20 @@ constexpr std::array standard_types{
                  "uint8 POWER_SUPPLY_STATUS_DISCHARGING=2\nuint8 power_supply_status\n"
                  "uint8 power_supply_health\nuint8 power_supply_technology\nbool present\n"
                  "float32[] cell_voltage\nfloat32[] cell_temperature\nstring location\nstring serial_number\n"},
+    StandardType{"std_msgs/ColorRGBA", "float32 r\nfloat32 g\nfloat32 b\nfloat32 a\n"},
+    StandardType{"builtin_interfaces/Duration", "int32 sec\nuint32 nanosec\n"},
+    StandardType{"visualization_msgs/UVCoordinate", "float32 u\nfloat32 v\n"},
+    StandardType{"visualization_msgs/MeshFile", "string filename\nuint8[] data\n"},
+    StandardType{"visualization_msgs/Marker",
+                 "int32 CUBE=1\nint32 SPHERE=2\nint32 CYLINDER=3\nint32 LINE_STRIP=4\nint32 TRIANGLE_LIST=11\n"
+                 "int32 ADD=0\nint32 DELETE=2\nint32 DELETEALL=3\n"
+                 "std_msgs/Header header\nstring ns\nint32 id\nint32 type\nint32 action\ngeometry_msgs/Pose pose\n"
+                 "geometry_msgs/Vector3 scale\nstd_msgs/ColorRGBA color\nbuiltin_interfaces/Duration lifetime\n"
+                 "bool frame_locked\ngeometry_msgs/Point[] points\nstd_msgs/ColorRGBA[] colors\n"
+                 "string texture_resource\nsensor_msgs/CompressedImage texture\n"
+                 "visualization_msgs/UVCoordinate[] uv_coordinates\nstring text\nstring mesh_resource\n"
+                 "visualization_msgs/MeshFile mesh_file\nbool mesh_use_embedded_materials\n"},
+    StandardType{"visualization_msgs/MarkerArray", "visualization_msgs/Marker[] markers\n"},
     StandardType{"rosgraph_msgs/Clock", "builtin_interfaces/Time clock\n"},
     StandardType{"rcl_interfaces/Log",
                  "byte DEBUG=10\nbyte INFO=20\nbyte WARN=30\nbyte ERROR=40\nbyte FATAL=50\n"

@@ -184,24 +184,34 @@ void ViewPublisher::publish_scene() {
   }
 }
 
-void ViewPublisher::publish_bodies() {
-  bodies_.utime = utime(world_.now());
-  bodies_.step = world_.step_number();
-  bodies_.branch = branch_;
-  bodies_.revision = revision_;
+void ViewPublisher::fill_in_bodies(shoal::sim_bodiest& bodies) const {
+  bodies.utime = utime(world_.now());
+  bodies.step = world_.step_number();
+  bodies.branch = branch_;
+  bodies.revision = revision_;
   const std::size_t count = movables_.size();
-  bodies_.count = static_cast<std::int32_t>(count);
-  bodies_.body.resize(count);
-  bodies_.position_m.resize(count, std::vector<double>(3));
-  bodies_.orientation.resize(count, std::vector<float>(4));
+  bodies.count = static_cast<std::int32_t>(count);
+  bodies.body.resize(count);
+  bodies.position_m.resize(count, std::vector<double>(3));
+  bodies.orientation.resize(count, std::vector<float>(4));
   for (std::size_t i = 0; i < count; ++i) {
     const sim::Pose X_WB = movables_[i].body->X_WB();
     const sim::Quaterniond q(X_WB.linear());
-    bodies_.body[i] = movables_[i].number;
-    copy(X_WB.translation(), bodies_.position_m[i].data());
-    bodies_.orientation[i] = {static_cast<float>(q.w()), static_cast<float>(q.x()), static_cast<float>(q.y()),
-                              static_cast<float>(q.z())};
+    bodies.body[i] = movables_[i].number;
+    copy(X_WB.translation(), bodies.position_m[i].data());
+    bodies.orientation[i] = {static_cast<float>(q.w()), static_cast<float>(q.x()), static_cast<float>(q.y()),
+                             static_cast<float>(q.z())};
   }
+}
+
+shoal::sim_bodies_t ViewPublisher::bodies() const {
+  shoal::sim_bodies_t bodies;
+  fill_in_bodies(bodies);
+  return bodies;
+}
+
+void ViewPublisher::publish_bodies() {
+  fill_in_bodies(bodies_);
   publish("sim.bodies", bodies_);
 }
 

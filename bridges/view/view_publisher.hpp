@@ -53,6 +53,8 @@ class ViewPublisher final : public sim::WorldObserver {
   void for_each_movable(Use&& use) const {
     for (const Movable& each : movables_) use(each.body->X_WB());
   }
+  /// Returns the poses of all movable bodies at the present step.
+  shoal::sim_bodies_t bodies() const;
   /// Returns how many messages were left out because a step had too many.
   std::int64_t left_out() const { return left_out_; }
 
@@ -70,6 +72,7 @@ class ViewPublisher final : public sim::WorldObserver {
   void update_structure();
   void publish_scene();
   void publish_bodies();
+  void fill_in_bodies(shoal::sim_bodies_t& bodies) const;
   void publish_scores();
   bool due(double rate_hz) const;
   bool scores_are_due();

@@ -5,6 +5,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "bridges/web/client_json.hpp"
 #include "bridges/web/web_error.hpp"
 
 namespace bridges {
@@ -13,26 +14,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr int max_depth = 16;
 constexpr std::size_t longest_op = 32, longest_id = 64, longest_token = 256;
-
-Json parse_object(std::string_view text) {
-  const auto check_depth = [](int depth, Json::parse_event_t event, Json& /*parsed*/) {
-    const bool opens = event == Json::parse_event_t::object_start || event == Json::parse_event_t::array_start;
-    if (opens && depth >= max_depth)
-      throw WebError("message is nested more than " + std::to_string(max_depth) + " deep");
-    return true;
-  };
-  try {
-    Json message = Json::parse(text.begin(), text.end(), check_depth);
-    if (!message.is_object()) throw WebError("message must be a JSON object, got " + std::string(message.type_name()));
-    return message;
-  } catch (const Json::parse_error& error) {
-    throw WebError("message is not JSON: error at byte " + std::to_string(error.byte));
-  } catch (const Json::exception&) {
-    throw WebError("message is not JSON: a number is out of range");
-  }
-}
 
 std::string op_of(const Json& message) {
   const auto op = message.find("op");
@@ -69,7 +51,7 @@ std::string id_of(const Json& message) {
 }  // namespace
 
 ClientMessage parse_client_message(std::string_view text) {
-  const Json message = parse_object(text);
+  const Json message = parse_client_json(text);
   ClientMessage result;
   result.op = op_of(message);
   if (result.op == "hello") result.token = token_of(message);
@@ -88,7 +70,7 @@ std::string refusal_message(const std::string& id, std::string_view text) {
 }
 
 std::string with_control(const std::string& json, bool control) {
-  Json message = parse_object(json);
+  Json message = parse_client_json(json);
   message["control"] = control;
   return message.dump(-1, ' ', false, Json::error_handler_t::replace);
 }

@@ -35,6 +35,11 @@ std::string shown(std::string_view text) {
   return result;
 }
 
+std::string_view query_of(std::string_view target) {
+  const std::size_t begin = target.find('?');
+  return begin == std::string_view::npos ? std::string_view() : target.substr(begin + 1);
+}
+
 HttpAnswer wrong_host(const HttpRequest& request) {
   return plain_answer(403, "Host '" + (request.hosts.empty() ? "" : shown(request.hosts.front())) +
                                "': must be localhost, 127.0.0.1, [::1] or the host of this server\n");
@@ -119,7 +124,10 @@ std::variant<HttpAnswer, ChosenProtocol> HttpSite::choose(const HttpRequest& req
   const auto offered = header_list(request.subprotocols);
   std::string known;
   for (const ChosenProtocol& each : protocols_) {
-    if (std::find(offered.begin(), offered.end(), each.name) != offered.end()) return each;
+    if (std::find(offered.begin(), offered.end(), each.name) != offered.end()) {
+      if (each.protocol->admits(query_of(request.target))) return each;
+      return plain_answer(403, "the token of the page is needed: ws://HOST:PORT/?t=TOKEN\n");
+    }
     known += (known.empty() ? "" : ", ") + each.name;
   }
   return plain_answer(400, "subprotocol '" + shown(request.subprotocols) + "': must be one of: " + known + "\n");

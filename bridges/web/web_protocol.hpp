@@ -50,6 +50,9 @@ class WebProtocol {
   virtual ~WebProtocol() = default;
   /// Opens the session of a new client.  Called in the thread of the server; `link` lives longer than the session.
   virtual std::unique_ptr<WebSession> open(WebLink& link) = 0;
+  /// Returns false for a client that may not connect, by the query of its address, such as `t=TOKEN`.  Called in the
+  /// thread of the server.
+  virtual bool admits(std::string_view /*query*/) const { return true; }
   /// Returns the size of the largest message that a client may send.
   virtual std::size_t max_message_bytes() const { return 64 * 1024; }
 };

@@ -2,10 +2,10 @@
 // Reads MCAP files with the reference libraries: every message is decoded by the schema of its own channel.
 import { readFileSync } from "node:fs";
 
-import { parse } from "@foxglove/rosmsg";
-import { MessageReader, MessageWriter } from "@foxglove/rosmsg2-serialization";
 import { McapIndexedReader, McapStreamReader } from "@mcap/core";
 import { loadDecompressHandlers } from "@mcap/support";
+
+import { decoderOf } from "./decoder.mjs";
 
 /** Bytes in memory, as @mcap/core wants to read them. */
 class Memory {
@@ -18,21 +18,6 @@ class Memory {
   async read(offset, size) {
     return this.bytes.subarray(Number(offset), Number(offset + size));
   }
-}
-
-/** A decoder of the messages of a schema, which refuses one whose encoding by the reference library differs. */
-export function decoderOf(schema) {
-  const definitions = parse(new TextDecoder().decode(schema.data), { ros2: true });
-  const reader = new MessageReader(definitions);
-  const writer = new MessageWriter(definitions);
-  return (data) => {
-    const message = reader.readMessage(data);
-    const again = writer.writeMessage(message);
-    if (Buffer.compare(Buffer.from(again), Buffer.from(data)) !== 0) {
-      throw new Error(`${schema.name}: the reference library encodes ${again.length} other bytes than ${data.length}`);
-    }
-    return message;
-  };
 }
 
 /** All messages of a file by topic: [{time, message}], and its channels, attachments and metadata. */

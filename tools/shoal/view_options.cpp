@@ -20,6 +20,10 @@ void add_page_options(CLI::App& command, ViewOptions& view) {
       ->type_name("URL")
       ->type_size(1)
       ->allow_extra_args(false);
+  command.add_flag(
+      "--foxglove-control", view.foxglove_control,
+      "any program on this machine that connects as Foxglove does may pause, rewind and change the run, or "
+      "play the log");
   command.add_option("--view-page", view.page_directory, "folder with the page, for its development")->type_name("DIR");
 }
 

@@ -1,36 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <nlohmann/json.hpp>
-
 #include "bridges/ros2/converter.hpp"
 #include "bridges/ros2/converters/common_parts.hpp"
 #include "shoal/sim_bodies_t.hpp"
-#include "shoal/sim_scene_t.hpp"
 
 namespace bridges::ros2 {
 namespace {
-
-using Json = nlohmann::json;
-
-std::string scene_text(const Json& item, const char* key) {
-  const auto value = item.find(key);
-  return value != item.end() && value->is_string() ? value->get<std::string>() : "";
-}
-
-/// Remembers the frames of the bodies of a scene; it gives no message itself.
-bool read_scene(const shoal::sim_scene_t& message, ConverterContext& context, CdrWriter&) {
-  context.body_frames.clear();
-  context.scene_revision = message.revision;
-  const Json scene = Json::parse(message.scene, nullptr, false);
-  if (!scene.is_object() || !scene.contains("bodies") || !scene["bodies"].is_array()) return false;
-  for (const Json& body : scene["bodies"]) {
-    if (!body.is_object() || !body.contains("id") || !body["id"].is_number_integer()) continue;
-    const std::string owner = scene_text(body, "owner");
-    std::string name = scene_text(body, "name");
-    if (name.starts_with(owner + "/")) name.erase(0, owner.size() + 1);
-    context.body_frames.insert_or_assign(body["id"].get<std::int32_t>(), body_frame(owner, name));
-  }
-  return false;
-}
 
 /// True poses of the bodies that can move, as transforms from the world frame.
 bool write_bodies(const shoal::sim_bodies_t& message, ConverterContext& context, CdrWriter& out) {
@@ -50,7 +24,6 @@ bool write_bodies(const shoal::sim_bodies_t& message, ConverterContext& context,
   return !named.empty();
 }
 
-SHOAL_ROS2_CONVERTER(read_scene, "tf2_msgs/msg/TFMessage", "/tf");
 SHOAL_ROS2_CONVERTER(write_bodies, "tf2_msgs/msg/TFMessage", "/tf");
 
 }  // namespace

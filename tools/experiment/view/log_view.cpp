@@ -39,6 +39,9 @@ LogView::LogView(const std::string& path, const LogIndex& index, const ViewOptio
   hello["start_us"] = index.start_us();
   hello["end_us"] = index.end_us();
   server_.retain("hello", json_text(hello));
+  using bridges::foxglove::Control;
+  foxglove_.introduce(hello["name"], version, options.foxglove_control ? Control::playback : Control::none,
+                      index.epoch_us() + index.start_us(), index.epoch_us() + index.end_us());
   // Assets, and the events of the whole log for the time line.
   for (const std::uint64_t offset : index.assets()) send_event_at(offset);
   Json items = Json::array();
@@ -51,12 +54,15 @@ LogView::LogView(const std::string& path, const LogIndex& index, const ViewOptio
 void LogView::send_event_at(std::uint64_t offset) {
   looking_.seek(offset);
   bridges::LogEventView event;
-  if (looking_.next(event)) messages_.take(event.channel, event.payload);
+  if (!looking_.next(event)) return;
+  messages_.take(event.channel, event.payload);
+  foxglove_.message(times_.of(event.channel, event.payload, event.timestamp), event.channel, event.payload);
 }
 
 void LogView::seek(std::int64_t time_us) {
   time_us = std::clamp(time_us, index_.start_us(), index_.end_us());
   now_us_ = static_cast<double>(time_us);
+  foxglove_.jump(index_.epoch_us() + std::max(index_.start_us(), time_us - before_us));
   // What holds at this time, then what happened shortly before it.
   send_event_at(index_.scene_at(time_us).offset);
   if (const auto scores = index_.scores_at(time_us)) send_event_at(scores->offset);
@@ -80,6 +86,8 @@ void LogView::play_to(std::int64_t time_us) {
     // Events were retained for the whole log.
     if (event.channel != "sim.event" && event.channel != "sim.asset") messages_.take(event.channel, event.payload);
     traffic_.take(event.channel, event.payload, time_.of(event));
+    const std::int64_t utime = times_.of(event.channel, event.payload, event.timestamp);
+    if (event.channel != "sim.asset") foxglove_.message(utime, event.channel, event.payload);
     if (event.offset >= last) break;
   }
   messages_.set_pace(static_cast<float>(speed_), paused_);
@@ -98,8 +106,9 @@ void LogView::fill_feed() {
 
 void LogView::advance(double wall_s) {
   while (const auto request = server_.take_request()) handle(*request);
+  serve_foxglove();
   // A page that has just opened gets the present state.
-  const int clients = server_.clients();
+  const int clients = server_.clients() + foxglove_.clients();
   if (clients > clients_) seek(static_cast<std::int64_t>(now_us_));
   clients_ = clients;
   const auto end = static_cast<double>(index_.end_us());
@@ -116,6 +125,37 @@ void LogView::advance(double wall_s) {
   constexpr double status_interval_s = 1;
   since_status_s_ += wall_s;
   if (status_is_old_ || since_status_s_ > status_interval_s) send_status();
+}
+
+void LogView::serve_foxglove() {
+  foxglove_.serve([this] { return foxglove_state(); },
+                  [this](const FoxgloveView::Request& request) -> FoxgloveView::Answer {
+                    if (request.kind != FoxgloveView::Request::Kind::playback)
+                      return {false, "this is a log, which cannot be steered"};
+                    play_foxglove(request.playback);
+                    return {true, ""};
+                  });
+  // While nothing is played, new subscriptions need the messages of the present time.
+  const bool is_new = foxglove_.take_subscribed();
+  if (is_new && foxglove_state().status != FoxgloveView::State::Status::playing)
+    seek(static_cast<std::int64_t>(now_us_));
+  foxglove_.show_time(index_.epoch_us() + static_cast<std::int64_t>(now_us_));
+}
+
+FoxgloveView::State LogView::foxglove_state() const {
+  using Status = FoxgloveView::State::Status;
+  const bool at_end = now_us_ >= static_cast<double>(index_.end_us());
+  return {paused_  ? Status::paused
+          : at_end ? Status::ended
+                   : Status::playing,
+          index_.epoch_us() + static_cast<std::int64_t>(now_us_), speed_};
+}
+
+void LogView::play_foxglove(const bridges::foxglove::PlaybackRequest& request) {
+  speed_ = request.speed;
+  paused_ = !request.plays;
+  status_is_old_ = true;
+  if (request.seek_us) seek(*request.seek_us - index_.epoch_us());
 }
 
 void LogView::send_status() {
@@ -166,6 +206,7 @@ void LogView::handle(const bridges::ViewRequest& request) {
 BusView::BusView(const ViewOptions& options, const std::string& version, const std::string& bus)
     : server_(web_options(options)), version_(version), bus_(bus) {
   send_hello();
+  foxglove_.introduce(bus, version, bridges::foxglove::Control::none);
 }
 
 void BusView::send_hello() {
@@ -179,6 +220,16 @@ void BusView::message(std::string_view channel, std::span<const std::byte> paylo
   if (channel == "sim.clock" || channel == "sim.bodies")
     if (const auto stamp = stamp_of(payload.data(), payload.size())) now_us_ = *stamp - messages_.epoch_us();
   traffic_.take(channel, payload, now_us_);
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  const std::int64_t utime =
+      times_.of(channel, payload, std::chrono::duration_cast<std::chrono::microseconds>(now).count());
+  constexpr std::int64_t disorder_us = 500'000;  // of datagrams, and of the two clocks
+  if (utime < newest_utime_ - disorder_us) {
+    foxglove_.jump(utime);
+    newest_utime_ = utime;
+  }
+  newest_utime_ = std::max(newest_utime_, utime);
+  foxglove_.message(utime, channel, payload);
   if (channel != "sim.info") return;
   try {
     const auto info = shoal::decode<shoal::sim_info_t>(payload, shoal::Finite::any);
@@ -199,6 +250,7 @@ void BusView::flush() {
   }
   messages_.flush();
   traffic_.flush(now_us_, messages_.scene(), messages_.scene_number());
+  foxglove_.show_time(newest_utime_);
   constexpr std::chrono::milliseconds status_interval{500};
   if (Clock::now() - status_at_ > status_interval) send_status();
 }

@@ -7,6 +7,7 @@
 
 #include "bridges/log/event_log.hpp"
 #include "bridges/web/web_server.hpp"
+#include "tools/experiment/view/foxglove_view.hpp"
 #include "tools/experiment/view/log_index.hpp"
 #include "tools/experiment/view/log_series.hpp"
 #include "tools/experiment/view/page_traffic.hpp"
@@ -32,6 +33,9 @@ class LogView {
   void send_event_at(std::uint64_t offset);
   /// Gives pages the last messages of their channels, after they have subscribed.
   void fill_feed();
+  void serve_foxglove();
+  FoxgloveView::State foxglove_state() const;
+  void play_foxglove(const bridges::foxglove::PlaybackRequest& request);
   /// Passes messages on, up to the last pose at or before a time.
   void play_to(std::int64_t time_us);
   void send_status();
@@ -43,6 +47,8 @@ class LogView {
   PageTraffic traffic_{server_, MessageFeed::Past::forgotten};
   LogTime time_;
   LogSeries series_;
+  FoxgloveView foxglove_{server_};
+  MessageTimes times_;
   double now_us_;
   double speed_ = 1;
   bool paused_ = false, loop_ = false;
@@ -72,6 +78,9 @@ class BusView {
   ViewMessages messages_{server_, ViewMessages::Frames::from_bodies};
   PageTraffic traffic_{server_, MessageFeed::Past::forgotten};
   std::int64_t now_us_ = 0;
+  FoxgloveView foxglove_{server_};
+  MessageTimes times_;
+  std::int64_t newest_utime_ = 0;
   const std::string version_, bus_;
   std::string world_;
   // For the rate of simulated time.

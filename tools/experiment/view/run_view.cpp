@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "shoal/message_codec.hpp"
 #include "tools/experiment/view/view_json.hpp"
 
 namespace tools {
@@ -27,7 +28,7 @@ bridges::WebOptions web_options(const ViewOptions& options) {
 }
 
 RunView::RunView(const ViewOptions& options, const std::string& version)
-    : server_(web_options(options)), version_(version) {}
+    : server_(web_options(options)), foxglove_control_(options.foxglove_control), version_(version) {}
 
 void RunView::start(const sim::World& world, std::optional<double> duration_s) {
   messages_.set_epoch(world.epoch_us());
@@ -41,10 +42,22 @@ void RunView::start(const sim::World& world, std::optional<double> duration_s) {
              {"end_us", nullptr}};
   if (duration_s && *duration_s > 0) hello["end_us"] = sim::from_seconds(*duration_s).count();
   server_.retain("hello", json_text(hello));
+  using bridges::foxglove::Control;
+  foxglove_.introduce(world.config().name, version_, foxglove_control_ ? Control::run : Control::none);
+}
+
+void RunView::message(std::string_view channel, std::span<const std::byte> payload, sim::Time at) {
+  messages_.take(channel, payload);
+  traffic_.take(channel, payload, at.count());
+  const std::int64_t utime = messages_.epoch_us() + at.count();
+  if (at < message_time_) foxglove_.jump(utime);
+  message_time_ = at;
+  foxglove_.message(utime, channel, payload);
 }
 
 void RunView::after_step(const sim::World& world, const bridges::ViewPublisher& publisher,
                          const sim::RunControl& control) {
+  foxglove_.show_time(world.epoch_us() + world.now().count());
   if (server_.clients() == 0) return;
   if (Clock::now() < next_frame_ && !jump_) return;
   send_state(world, publisher, control);
@@ -118,6 +131,7 @@ void RunView::serve(const sim::World& world, const bridges::ViewPublisher& publi
     handle(*request, execute);
     handled = true;
   }
+  serve_foxglove(world, publisher, control, execute);
   if (server_.clients() == 0) return;
   const Clock::time_point now = Clock::now();
   if (handled || now >= next_status_) send_status(world, control, waits_for, "");
@@ -126,6 +140,24 @@ void RunView::serve(const sim::World& world, const bridges::ViewPublisher& publi
     send_state(world, publisher, control);
   else if (now >= next_traffic_)
     flush_traffic(world);
+}
+
+void RunView::serve_foxglove(const sim::World& world, const bridges::ViewPublisher& publisher,
+                             const sim::RunControl& control, const Execute& execute) {
+  const auto utime = [&] { return world.epoch_us() + world.now().count(); };
+  foxglove_.serve(
+      [&]() -> FoxgloveView::State {
+        using Status = FoxgloveView::State::Status;
+        return {control.paused ? Status::paused : Status::playing, utime(), control.speed};
+      },
+      [&](const FoxgloveView::Request& request) -> FoxgloveView::Answer {
+        const Answer answer = execute(request.command, request.value, request.text);
+        return {answer.ok, answer.text};
+      });
+  // While the run is paused, nothing else would say where the bodies are.
+  if (!control.paused) return;
+  foxglove_.show_time(utime());
+  if (foxglove_.take_subscribed()) foxglove_.message(utime(), "sim.bodies", shoal::encode(publisher.bodies()));
 }
 
 void RunView::ended(const sim::World& world, const sim::RunControl& control, const std::string& why) {

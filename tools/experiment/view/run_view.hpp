@@ -12,6 +12,7 @@
 #include "bridges/web/web_server.hpp"
 #include "sim/run/run_control.hpp"
 #include "sim/world/world.hpp"
+#include "tools/experiment/view/foxglove_view.hpp"
 #include "tools/experiment/view/page_traffic.hpp"
 #include "tools/experiment/view/state_frame.hpp"
 #include "tools/experiment/view/view_messages.hpp"
@@ -25,6 +26,7 @@ struct ViewOptions {
   int port_tries = 20;               ///< 1: this port or none
   std::vector<std::string> origins;  ///< web sites whose pages may connect
   std::string page_directory;        ///< folder with the page; empty: the page in the program
+  bool foxglove_control = false;     ///< clients of Foxglove may control the run or the playback
 };
 
 /// Returns the settings of the server.
@@ -49,10 +51,7 @@ class RunView {
   /// Introduces the world to the pages; before the first step.
   void start(const sim::World& world, std::optional<double> duration_s);
   /// Takes a message on a bus of the run.
-  void message(std::string_view channel, std::span<const std::byte> payload, sim::Time at) {
-    messages_.take(channel, payload);
-    traffic_.take(channel, payload, at.count());
-  }
+  void message(std::string_view channel, std::span<const std::byte> payload, sim::Time at);
   /// Sends the present state, when a frame is due.
   void after_step(const sim::World& world, const bridges::ViewPublisher& publisher, const sim::RunControl& control);
   /// Carries out the requests of the pages, and sends the status when it has changed.
@@ -74,10 +73,15 @@ class RunView {
   void send_status(const sim::World& world, const sim::RunControl& control, const std::string& waits_for,
                    const std::string& ended);
   void handle(const bridges::ViewRequest& request, const Execute& execute);
+  void serve_foxglove(const sim::World& world, const bridges::ViewPublisher& publisher, const sim::RunControl& control,
+                      const Execute& execute);
 
   bridges::WebServer server_;
   ViewMessages messages_{server_, ViewMessages::Frames::from_elsewhere};
   PageTraffic traffic_{server_, MessageFeed::Past::kept};
+  FoxgloveView foxglove_{server_};
+  const bool foxglove_control_;
+  sim::Time message_time_{0};  // of the newest message
   const std::string version_;
   StateFrame frame_;
   bool jump_ = false;

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "bridges/foxglove/foxglove_text.hpp"
+#include "bridges/ros2/topic_table.hpp"
+#include "bridges/web/web_protocol.hpp"
+
+namespace bridges::foxglove {
+
+class Session;
+
+/// Request of a client that may control.
+struct Request {
+  enum class Kind { service, parameter, playback };
+  int client = 0;  ///< number of the connection
+  Kind kind = Kind::service;
+  std::string command;  ///< of `sim.control`, except for a playback request
+  double value = 0;     ///< of the command
+  std::string text;     ///< of the command
+  PlaybackRequest playback;
+  ServiceCall call;                ///< of a service, without its payload
+  std::optional<std::string> id;   ///< of a parameter request that is answered
+  std::vector<std::string> names;  ///< of its parameters
+};
+
+/// Subprotocols `foxglove.sdk.v1` and `foxglove.websocket.v1`, which are the same, without the network: passes the
+/// messages of LCM channels on as topics in CDR (ros2::TopicTable), each only while a client has subscribed to it.
+///
+/// Its functions for all threads only put something into a box under a lock and wake the thread of the server, in which
+/// deliver() encodes it.  A client that does not read loses its oldest messages, and is told how many.
+class Protocol final : public WebProtocol, private ros2::TopicSink {
+ public:
+  static constexpr std::size_t max_queued_bytes = std::size_t{8} << 20;        ///< that wait for one client
+  static constexpr std::size_t max_queued_messages = 1024;                     ///< that wait for one client
+  static constexpr std::size_t max_latched_bytes = std::size_t{32} << 20;      ///< of latched topics, for one client
+  static constexpr std::size_t max_undelivered_bytes = std::size_t{16} << 20;  ///< in the box
+  static constexpr std::size_t max_undelivered_messages = 8192;                ///< in the box
+  static constexpr std::size_t max_waiting_requests = 32;                      ///< of one client
+  static constexpr std::size_t max_waiting_texts = 1000;                       ///< answers to one client
+  static constexpr std::size_t max_channels = 65'535;                          ///< further LCM channels have no topics
+
+  /// Function that runs work in the thread of the server.
+  using Post = std::function<void(std::function<void()>)>;
+
+  explicit Protocol(Post post) : post_(std::move(post)) {}
+  /// Demands a token in the address, `?t=TOKEN`; before the first client.
+  void require_token(std::function<bool(std::string_view)> is_token) { is_token_ = std::move(is_token); }
+
+  std::unique_ptr<WebSession> open(WebLink& link) override;
+  std::size_t max_message_bytes() const override { return max_client_message_bytes; }
+  bool admits(std::string_view query) const override;
+
+  // For all threads:
+
+  /// Returns the number of clients.
+  int clients() const { return clients_.load(); }
+  /// Returns the number of subscriptions so far: it increases with each.
+  std::uint64_t subscriptions() const { return subscriptions_.load(); }
+  /// Introduces the server to later clients, who wait for it.
+  void introduce(ServerInfo info);
+  /// Passes a message on, published at this UTC, us since 1970.
+  void message(std::int64_t utime, std::string_view channel, std::span<const std::byte> payload);
+  /// Sets the time that clients show.
+  void show_time(std::int64_t utime);
+  /// Announces that the time was set, so that later messages may be older than those before.
+  void jump(std::int64_t utime);
+  /// Sets what clients know of pause and speed.
+  void set_state(const PlaybackState& state);
+  /// Returns the next request, or nothing.
+  std::optional<Request> take_request();
+  /// Answers a request; without effect when the client has left.
+  void reply(const Request& request, bool ok, std::string text);
+
+ private:
+  friend class Session;
+  using Bytes = std::shared_ptr<const std::string>;
+
+  /// Message of a channel, or a jump if the channel is empty.
+  struct Entry {
+    std::int64_t utime = 0;
+    std::string channel;
+    std::vector<std::byte> payload;
+  };
+  struct Reply {
+    Request request;
+    bool ok = false;
+    std::string text;
+  };
+  /// What the other threads have sent since deliver().
+  struct Box {
+    std::vector<Entry> entries;
+    std::size_t bytes = 0;
+    std::uint64_t dropped = 0;
+    std::optional<ServerInfo> info;
+    std::optional<std::int64_t> time;
+    std::optional<PlaybackState> state;
+    std::vector<Reply> replies;
+  };
+  /// LCM channel, as the other threads see it.
+  struct Channel {
+    std::uint64_t fingerprint = 0;
+    std::uint64_t seen = 0;
+    bool wanted = false;  ///< somebody has subscribed to one of its topics
+  };
+  /// Session and topic to which a last message is sent again.
+  struct Target {
+    Session* session;
+    std::size_t topic;
+  };
+
+  void wake();
+  void deliver();
+  void process(Entry& entry);
+  void process_jump(std::int64_t utime);
+  void process(const Reply& reply);
+  void process(const PlaybackState& state);
+  void encode(const Entry& entry);
+  bool wants(const ros2::Topic& topic) override;
+  bool take(const ros2::Topic& topic, std::span<const std::byte> bytes) override;
+  void relate(const ros2::Topic& topic);
+  /// Counts a subscription that begins (1) or ends (-1).
+  void count_subscription(std::size_t topic, int change);
+  void update_wanted(const std::string& channel);
+  void send_latched(Session& session, std::size_t topic);
+  bool add_request(Request request);
+  void left(const Session& session);
+
+  const Post post_;
+  std::function<bool(std::string_view)> is_token_;  // empty: none is needed
+  std::atomic<int> clients_ = 0;
+  std::atomic<std::uint64_t> subscriptions_ = 0;
+  std::atomic<bool> awake_ = false;
+  std::mutex box_mutex_;
+  Box box_;
+  std::map<std::string, Channel, std::less<>> channels_;
+  std::mutex request_mutex_;
+  std::deque<Request> requests_;
+  std::map<int, std::size_t> waiting_requests_;  // by client
+  std::atomic<bool> has_requests_ = false;
+
+  // Of the thread of the server:
+  std::optional<ServerInfo> info_;
+  PlaybackState state_;
+  std::optional<std::int64_t> time_;
+  ros2::TopicTable table_;
+  std::vector<Session*> sessions_;
+  std::vector<int> subscribers_;  // by topic
+  std::vector<std::set<std::string>> channels_of_topic_;
+  std::map<std::string, std::set<std::size_t>, std::less<>> topics_of_channel_;
+  std::map<std::string, Entry, std::less<>> last_;  // of channels with latched topics
+  const Entry* present_ = nullptr;                  // that is being encoded
+  std::optional<Target> target_;
+};
+
+}  // namespace bridges::foxglove
