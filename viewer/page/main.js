@@ -3,8 +3,10 @@
 import {Bodies, matrixOf, radiusOf} from './bodies.js';
 import {Cameras, MODES} from './cameras.js';
 import {Connection} from './connection.js';
+import {Drive} from './drive.js';
 import {Environment} from './environment.js';
 import {Estimates} from './estimates.js';
+import {Forms} from './forms.js';
 import {drawAnnotations, Labels} from './labels.js';
 import {Dots, FieldsOfView, SelectionRing, Zones} from './overlays.js';
 import {Details, Events, formatTime, Legend, Scores, VehicleList} from './panels.js';
@@ -119,6 +121,8 @@ class App {
       problem: (text) => this.problem(text),
     });
     this.timeBar = new TimeBar(this.connection, (text) => Events.toast(text));
+    this.drive = new Drive(this.connection, (text) => Events.toast(text));
+    this.forms = new Forms(this.connection);
   }
 
   /** Shows what is wrong: in the list of events, and for some seconds over the scene. */
@@ -147,7 +151,11 @@ class App {
   take(message) {
     const items = Array.isArray(message.items) ? message.items : [];
     const handlers = {
-      hello: () => this.timeBar.setHello(message),
+      hello: () => [this.timeBar, this.drive, this.forms].forEach((part) => part.setHello(message)),
+      forms: () => {
+        this.drive.setDrives(message.drives);
+        this.forms.setForms(message);
+      },
       scene: () => this.setScene(readScene(message)),
       status: () => this.timeBar.setStatus(message),
       estimates: () => this.estimates.add(items),
@@ -158,7 +166,7 @@ class App {
       },
       events: () => this.events.add(items),
       scores: () => this.scores.set(message),
-      reply: () => this.timeBar.reply(message),
+      reply: () => this.drive.reply(message) || this.forms.reply(message) || this.timeBar.reply(message),
       error: () => this.problem(String(message.text)),
       dropped: () => this.problem(`the server dropped ${message.count} messages: this page is too slow`),
     };
@@ -197,6 +205,7 @@ class App {
     $('world').title = data.world;
     document.title = data.world ? `${data.world} – Shoal` : 'Shoal';
     this.list.setScene(this.vehicles);
+    this.forms.setVehicles(data.vehicles);
     this.legend.clear();
     if (!same) this.events.clear();
     this.select(this.byName.has(kept) ? kept : null);
@@ -254,6 +263,7 @@ class App {
     if (name === null && ['follow', 'chase', 'first', 'device'].includes(this.cameras.mode)) this.setMode('orbit');
     this.list.setSelected(name);
     this.details.setVehicle(this.vehicle);
+    this.drive.setVehicle(name);
     this.dirty = true;
   }
 
