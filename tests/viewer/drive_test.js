@@ -9,7 +9,7 @@ import {faultsOf, launch, open, until} from './browser.js';
 import {MockServer} from './mock_server.js';
 import * as scenes from './scenes.js';
 
-/** What a server tells of a world: two of its vehicles can be driven. */
+/** What a server sends about a world: two of its vehicles can be driven. */
 const FORMS = {
   op: 'forms',
   actions: [
@@ -118,7 +118,7 @@ describe('drive', () => {
       await arrives(() => lastOf(server)?.turn === 0.5, 'forward and turn');
       const {vehicle, kind, values} = drivesOf(server).at(-1);
       assert.deepEqual({vehicle, kind, values}, {vehicle: 'rover1', kind: 'twist', values: {forward: 0.5, turn: 0.5}});
-      // It goes on without further keys.
+      // It continues without further keys.
       const count = drivesOf(server).length;
       await arrives(() => drivesOf(server).length > count + 3, 'repeated messages');
       await page.keyboard.up('ArrowUp');
@@ -207,7 +207,7 @@ describe('drive', () => {
     });
   });
 
-  it('is not there on a page that may not steer', async () => {
+  it('does not exist on a page that may not steer', async () => {
     await withPage(async (page, server) => {
       assert.equal(await page.$eval('#drive', (one) => one.hidden), true);
       assert.equal(await page.$eval('#tab-act', (one) => one.hidden), true);
@@ -238,7 +238,7 @@ describe('forms', () => {
       await page.click('#tab-act');
       await page.select('#act-word', 'fault');
       await page.select('#act-fields [name="device"]', 'rover1/lidar');
-      // A lidar is no actuator: it cannot be dead.
+      // A lidar is not an actuator: it cannot be dead.
       const kinds = await page.$$eval('#act-fields [name="kind"] option', (all) => all.map((one) => one.value));
       assert.deepEqual(kinds, ['stuck', 'silent', 'biased']);
       assert.equal(await page.$eval('#act-fields [name="bias"]', (one) => one.checkVisibility()), false);

@@ -173,7 +173,7 @@ export class Drive {
 
   /** Sends the positions while the dead-man key is held, and once that it is not. */
   tick() {
-    if (!this.on || !this.connection.isOpen) return this.forget();
+    if (!this.on || !this.connection.isOpen) return this.drop();
     const values = this.values();
     if (values) {
       this.send(values);
@@ -190,7 +190,7 @@ export class Drive {
     $('drive-state').textContent = values ? shown.join(', ') : 'stopped';
   }
 
-  forget() {
+  drop() {
     this.sending = this.shift = this.button = false;
     this.down.clear();
   }
@@ -198,7 +198,7 @@ export class Drive {
   /** Lets go of everything. */
   release() {
     const sending = this.sending;
-    this.forget();
+    this.drop();
     if (sending) this.send({});
     this.showState(null);
   }

@@ -23,7 +23,7 @@ const SPAWN = {
 /** Longest list that is offered as a choice; longer ones are typed. */
 const CHOICES_MAX = 500;
 
-/** Writes a text as YAML: as it is where it is no number, word or sign of YAML, else in quotes. */
+/** Writes a text as YAML: as it is where it is not a number, word or sign of YAML, else in quotes. */
 export function yamlText(text) {
   const plain = /^[A-Za-z_][\w/.-]*$/.test(text) && !/^(true|false|null|yes|no|on|off|y|n)$/i.test(text);
   return plain ? text : JSON.stringify(text);

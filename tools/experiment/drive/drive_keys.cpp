@@ -18,7 +18,7 @@ std::string DriveKeyNames::next(char byte) {
     return {};
   }
   if (before == State::sequence) {
-    // Parameters go on; a letter or `~` ends the sequence.
+    // Parameters continue; a letter or `~` ends the sequence.
     if (byte >= ' ' && byte <= '?') state_ = State::sequence;
     switch (byte) {
       case 'A':

@@ -35,8 +35,8 @@ DriveValues Gamepad::values() const {
   for (const DriveProfile::PadAxis& axis : profile_.axes) {
     const auto position = positions_.find(axis.code);
     if (position == positions_.end()) continue;
-    const auto told = ranges_.find(axis.code);
-    const Range range = told == ranges_.end() ? Range{axis.low, axis.high} : told->second;
+    const auto reported = ranges_.find(axis.code);
+    const Range range = reported == ranges_.end() ? Range{axis.low, axis.high} : reported->second;
     const double deflection = std::clamp(2 * (position->second - range.low) / (range.high - range.low) - 1, -1.0, 1.0);
     // Beyond the dead band the rest of the way is the whole range.
     const double beyond = std::max(0.0, (std::abs(deflection) - profile_.dead_band) / (1 - profile_.dead_band));
