@@ -157,7 +157,7 @@ export class Forms {
         field.parentElement.hidden =
             !['device', 'kind'].includes(field.name) && !(FAULT_KEYS[before.kind] ?? []).includes(field.name);
     }
-    $('act-text').textContent = `shoal control ${this.command()} '${this.text()}'`;
+    $('act-text').textContent = `shoal control ${this.command()} '${this.text().replaceAll('\'', '\'\\\'\'')}'`;
     return undefined;
   }
 

@@ -102,8 +102,11 @@ void DriveProfile::Share::read(sim::ParamReader& in) {
   in.read_name("device", device, "device that is commanded");
   in.read_choice("part", part, drive_part_words,
                  "value: of an actuator commanded by one number; else a component of a wrench");
-  for (const auto& [key, gain] : {std::pair{"forward", &forward}, {"turn", &turn}, {"dive", &dive}, {"side", &side}})
-    in.read(key, *gain, sim::between(-1e9, 1e9), "command at full deflection of this axis, in the unit of the device");
+  const sim::Rule any_gain = sim::between(-1e9, 1e9);
+  in.read("forward", forward, any_gain, "command at full deflection of forward, in the unit of the device");
+  in.read("turn", turn, any_gain, "command at full deflection of turn");
+  in.read("dive", dive, any_gain, "command at full deflection of dive");
+  in.read("side", side, any_gain, "command at full deflection of side");
 }
 
 void DriveProfile::Craft::read(sim::ParamReader& in) {
