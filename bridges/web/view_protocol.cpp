@@ -32,7 +32,7 @@ std::uint32_t sequence_of_state(const std::string& state) {
 
 /// Requests that change what others see, or the run.
 bool needs_control(const std::string& op) {
-  return op == "control" || op == "play" || op == "seek";
+  return op == "control" || op == "play" || op == "seek" || op == "drive";
 }
 
 }  // namespace

@@ -168,6 +168,7 @@ export class MockServer {
         control: client.control
       });
       this.sendTo(client, this.script.scene);
+      if (this.script.forms) this.sendTo(client, this.script.forms);
       this.sendStatus(client);
       client.greeted = true;
       this.sendState(client, true);
@@ -188,7 +189,7 @@ export class MockServer {
       this.show(this.time_us + value * 10000, false);
     else if (command === 'rewind')
       this.show(this.time_us - value * 1e6);
-    else
+    else if (command !== 'do' && command !== 'spawn')
       return this.sendTo(client, {op: 'reply', id, ok: false, text: `unknown command '${command}'`});
     this.sendTo(client, {op: 'reply', id, ok: true, text: ''});
     for (const one of this.clients) this.sendStatus(one);

@@ -59,6 +59,7 @@ void add_list_command(CLI::App& app, int& exit_code);
 void add_snapshot_command(CLI::App& app, int& exit_code);
 void add_spy_command(CLI::App& app, int& exit_code);
 void add_control_command(CLI::App& app, int& exit_code);
+void add_drive_command(CLI::App& app, int& exit_code);
 void add_doctor_command(CLI::App& app, int& exit_code);
 void add_log_command(CLI::App& app, int& exit_code);
 void add_log_mcap_command(CLI::App& app, int& exit_code);

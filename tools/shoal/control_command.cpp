@@ -7,27 +7,19 @@
 #include <fstream>
 #include <iostream>
 #include <memory>
-#include <optional>
 #include <sstream>
 #include <thread>
 
-#include "bridges/lcm/lcm_listener.hpp"
-#include "bridges/lockstep_client/wait_warning.hpp"
-#include "bridges/signing/signed_message.hpp"
-#include "shoal/message_codec.hpp"
-#include "shoal/sim_control_reply_t.hpp"
-#include "shoal/sim_control_request_t.hpp"
 #include "sim/config/message_text.hpp"
 #include "tools/experiment/run/runner.hpp"
 #include "tools/shoal/commands.hpp"
+#include "tools/shoal/control_session.hpp"
 
 namespace tools {
 
 namespace {
 
 using namespace std::chrono_literals;
-using Clock = std::chrono::steady_clock;
-
 struct ControlArguments {
   std::string command;
   std::string text;
@@ -66,78 +58,6 @@ bool leaves_paused(const std::string& command, const std::string& reply) {
          reply.find(", paused") != std::string::npos;
 }
 
-/// Requests and their replies.  A request is sent again only if it was lost, because it might be executed twice: a run
-/// that has not started yet does not receive it.
-class Session {
- public:
-  explicit Session(const ControlArguments& arguments) : arguments_(arguments), lcm_(arguments.lcm_url) {
-    lcm_.listen("sim.control.reply");
-    const auto key = arguments.run.empty() ? bridges::run_key_from_environment() : bridges::read_run_key(arguments.run);
-    if (key) signer_.emplace(*key, arguments.client);
-  }
-
-  /// Returns the reply; nothing when none arrived in time.
-  std::optional<shoal::sim_control_reply_t> send_request(const std::string& command, const std::string& text,
-                                                         double value) {
-    const Clock::time_point deadline =
-        Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(arguments_.timeout_s));
-    bridges::WaitWarning audit_entry("shoal control: waiting for a simulator to answer on 'sim.control.reply', at " +
-                                     lcm_.url());
-    const std::int32_t request = ++id_, question = ++id_;
-    send(request, command, text, value);
-    // Requests are answered in order.  When the query, which changes nothing, is answered and the request is not, the
-    // simulator has not received the request.
-    while (Clock::now() < deadline && caught_signal() == 0) {
-      auto reply =
-          await_reply(request, question, std::min<Clock::time_point>(deadline, Clock::now() + 1s), audit_entry);
-      if (!reply) {
-        send(question, "alive", "", 0);
-        continue;
-      }
-      if (reply->id == request) return reply;
-      send(request, command, text, value);
-      return await_reply(request, request, deadline, audit_entry);
-    }
-    return std::nullopt;
-  }
-
-  const std::string& url() const { return lcm_.url(); }
-
- private:
-  void send(std::int32_t id, const std::string& command, const std::string& text, double value) {
-    shoal::sim_control_request_t request{};
-    request.id = id;
-    request.client = arguments_.client;
-    request.command = command;
-    request.text = text;
-    request.value = value;
-    const sim::Bytes payload = shoal::encode(request);
-    lcm_.publish("sim.control", signer_ ? signer_->sign("sim.control", payload) : payload);
-  }
-
-  /// Returns the reply to one of two requests.
-  std::optional<shoal::sim_control_reply_t> await_reply(std::int32_t id, std::int32_t other_id,
-                                                        Clock::time_point deadline, bridges::WaitWarning& audit_entry) {
-    while (Clock::now() < deadline && caught_signal() == 0) {
-      audit_entry.look();
-      const auto message = lcm_.next(50ms);
-      if (!message || message->channel != "sim.control.reply") continue;
-      try {
-        auto reply = shoal::decode<shoal::sim_control_reply_t>(message->payload, shoal::Finite::any);
-        if ((reply.id == id || reply.id == other_id) && reply.client == arguments_.client) return reply;
-      } catch (const shoal::MessageError&) {
-        // An unrelated message on the channel.
-      }
-    }
-    return std::nullopt;
-  }
-
-  const ControlArguments& arguments_;
-  bridges::LcmListener lcm_;
-  std::optional<bridges::MessageSigner> signer_;  // unset: there is no key
-  std::int32_t id_ = static_cast<std::int32_t>(getpid()) * 1000;
-};
-
 int control(const ControlArguments& arguments) {
   const bool known = std::find(known_requests.begin(), known_requests.end(), arguments.command) != known_requests.end();
   // Reject a misspelt request; the simulator decides about unknown ones.
@@ -147,11 +67,10 @@ int control(const ControlArguments& arguments) {
   // Send the request and print the reply.
   const std::string text = text_of(arguments.text);
   catch_signals(false);
-  Session session(arguments);
+  ControlSession session({arguments.client, arguments.lcm_url, arguments.run, arguments.timeout_s});
   const auto reply = session.send_request(arguments.command, text, arguments.value);
   if (!reply) {
-    std::cerr << "shoal control: no simulator answered within " << arguments.timeout_s << " s at " << session.url()
-              << "; is one running there? see `shoal doctor`\n";
+    std::cerr << "shoal control: " << session.no_answer() << '\n';
     return exit_timeout;
   }
   (reply->ok ? std::cout : std::cerr) << reply->text << (reply->text.empty() ? "ok\n" : "\n") << std::flush;

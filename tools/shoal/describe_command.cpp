@@ -9,6 +9,7 @@
 #include "sim/device/device_registry.hpp"
 #include "sim/program/find_program.hpp"
 #include "tools/command_line/text_layout.hpp"
+#include "tools/experiment/drive/drive_profile.hpp"
 #include "tools/experiment/study/study_config.hpp"
 #include "tools/shoal/commands.hpp"
 #include "tools/shoal/reference/json_schema.hpp"
@@ -31,6 +32,12 @@ std::string unknown_name(const std::string& name) {
          (meant.empty() ? "see `shoal list devices` and `shoal list messages`" : "did you mean '" + meant + "'?");
 }
 
+std::string schema_of(const std::string& file) {
+  if (file == "study") return study_schema(params_of<StudyConfig>());
+  if (file == "drive") return drive_schema(params_of<DriveProfile>());
+  return json_schema(file);
+}
+
 }  // namespace
 
 void add_describe_command(CLI::App& app, int& exit_code) {
@@ -49,7 +56,7 @@ void add_describe_command(CLI::App& app, int& exit_code) {
                                  ->check(one_of({"devices", "messages", "metrics", "programs", "world_format"}));
   CLI::Option* schema_option = command->add_option("--schema", *schema, "print the JSON Schema of a file's keys")
                                    ->type_name("FILE")
-                                   ->check(one_of({"world", "vehicle", "study"}));
+                                   ->check(one_of({"world", "vehicle", "study", "drive"}));
   name_option->excludes(page_option)->excludes(schema_option);
   page_option->excludes(schema_option);
   add_plugin_option(*command);
@@ -66,7 +73,7 @@ void add_describe_command(CLI::App& app, int& exit_code) {
       if (!page->empty())
         std::cout << reference_page(*page);
       else
-        std::cout << (*schema == "study" ? study_schema(params_of<StudyConfig>()) : json_schema(*schema));
+        std::cout << schema_of(*schema);
       return;
     }
     // Text about a name.

@@ -61,6 +61,7 @@ int run(int argc, char** argv) {
   tools::add_new_command(app, exit_code);
   tools::add_spy_command(app, exit_code);
   tools::add_control_command(app, exit_code);
+  tools::add_drive_command(app, exit_code);
   tools::add_doctor_command(app, exit_code);
   tools::add_log_command(app, exit_code);
   tools::add_bench_command(app, exit_code);

@@ -208,6 +208,10 @@ void add_run_command(CLI::App& app, int& exit_code) {
   add_output_options(*command, *arguments);
   command->add_flag("--view", arguments->with_page, "serve a live page of the run in 3-D, and print its address");
   add_page_options(*command, arguments->view);
+  command
+      ->add_option("--drive-profile", arguments->view.drive_profile,
+                   "profile by which pages drive vehicles; see `shoal drive --print-profile`")
+      ->type_name("FILE");
   add_snapshot_options(*command, *arguments);
   add_threads_option(*command, arguments->run.threads);
   add_plugin_option(*command);

@@ -3,8 +3,10 @@
 import {Bodies, matrixOf, radiusOf} from './bodies.js';
 import {Cameras, MODES} from './cameras.js';
 import {Connection} from './connection.js';
+import {Drive} from './drive.js';
 import {Environment} from './environment.js';
 import {Estimates} from './estimates.js';
+import {Forms} from './forms.js';
 import {Instruments} from './instruments.js';
 import {drawAnnotations, Labels} from './labels.js';
 import {Dots, FieldsOfView, SelectionRing, Zones} from './overlays.js';
@@ -124,15 +126,16 @@ class App {
     };
     if (this.recording) {
       this.connection = this.recording;
-      this.timeBar = new TimeBar(this.connection, (text) => Events.toast(text));
       this.assets.source = (hash) => this.recording.asset(hash);
-      return handlers;
+    } else {
+      const url = new URL('.', location.href);
+      url.protocol = url.protocol === 'https:' ? 'wss:' : 'ws:';
+      url.hash = '';
+      this.connection = new Connection(url.href, this.address.token, handlers);
     }
-    const url = new URL('.', location.href);
-    url.protocol = url.protocol === 'https:' ? 'wss:' : 'ws:';
-    url.hash = '';
-    this.connection = new Connection(url.href, this.address.token, handlers);
     this.timeBar = new TimeBar(this.connection, (text) => Events.toast(text));
+    this.drive = new Drive(this.connection, (text) => Events.toast(text));
+    this.forms = new Forms(this.connection);
     return handlers;
   }
 
@@ -164,8 +167,12 @@ class App {
     const items = Array.isArray(message.items) ? message.items : [];
     const handlers = {
       hello: () => {
-        this.timeBar.setHello(message);
+        [this.timeBar, this.drive, this.forms].forEach((part) => part.setHello(message));
         this.instruments.greet();
+      },
+      forms: () => {
+        this.drive.setDrives(message.drives);
+        this.forms.setForms(message);
       },
       scene: () => this.setScene(readScene(message)),
       status: () => this.timeBar.setStatus(message),
@@ -177,7 +184,7 @@ class App {
       },
       events: () => this.events.add(items),
       scores: () => this.scores.set(message),
-      reply: () => this.timeBar.reply(message),
+      reply: () => this.drive.reply(message) || this.forms.reply(message) || this.timeBar.reply(message),
       error: () => this.problem(String(message.text)),
       dropped: () => this.problem(`the server dropped ${message.count} messages: this page is too slow`),
       ...this.instruments.handlers(message),
@@ -218,6 +225,7 @@ class App {
     $('world').title = data.world;
     document.title = data.world ? `${data.world} – Shoal` : 'Shoal';
     this.list.setScene(this.vehicles);
+    this.forms.setVehicles(data.vehicles);
     this.legend.clear();
     if (!same) {
       this.events.clear();
@@ -279,6 +287,7 @@ class App {
     if (name === null && ['follow', 'chase', 'first', 'device'].includes(this.cameras.mode)) this.setMode('orbit');
     this.list.setSelected(name);
     this.details.setVehicle(this.vehicle);
+    this.drive.setVehicle(name);
     this.dirty = true;
   }
 

@@ -51,6 +51,7 @@ Run::Run(const sim::LoadedWorld& loaded, const RunOptions& options)
       key_file_(make_key()),
       programs_(loaded.config, options, buses_, key_file_ ? key_file_->key().text() : "") {
   world_.use_threads(options.threads);
+  if (page_) page_->allow_drive(drive_publisher());
   control_.speed = options.speed.value_or(loaded.config.run.speed);
   control_.paused = options.paused;
   if (options.from) {
@@ -125,6 +126,16 @@ TapBus::Listener Run::page_tap() {
   if (!page_) return {};
   return [this](std::string_view channel, std::span<const std::byte> payload, sim::Time at) {
     page_->message(channel, payload, at);
+  };
+}
+
+PageDrive::Publish Run::drive_publisher() {
+  return [this](const std::string& vehicle, const std::string& channel, std::span<const std::byte> payload) {
+    const auto& vehicles = loaded_.config.vehicles;
+    const auto placed = std::find_if(vehicles.begin(), vehicles.end(),
+                                     [&](const sim::VehicleInstance& one) { return one.name == vehicle; });
+    // Published on the network: for the world a message from outside, which waits at the gate and is in the journal.
+    buses_.network(placed == vehicles.end() ? "" : placed->bus).publish(channel, payload, world_.now());
   };
 }
 

@@ -52,6 +52,8 @@ class Run final : private Timeline {
   std::vector<bridges::LockstepBus> lockstep_buses();
   std::unique_ptr<RunView> make_page() const;
   TapBus::Listener page_tap();
+  /// Returns the way of commands of pages that drive: as messages from outside.
+  PageDrive::Publish drive_publisher();
   /// Carries out the requests of the pages.
   void serve_page();
   bridges::ServiceLinks service_links();

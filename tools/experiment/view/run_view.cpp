@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "shoal/message_codec.hpp"
+#include "tools/experiment/drive/drive_error.hpp"
+#include "tools/experiment/view/forms_text.hpp"
 #include "tools/experiment/view/view_json.hpp"
 
 namespace tools {
@@ -28,7 +30,10 @@ bridges::WebOptions web_options(const ViewOptions& options) {
 }
 
 RunView::RunView(const ViewOptions& options, const std::string& version)
-    : server_(web_options(options)), foxglove_control_(options.foxglove_control), version_(version) {}
+    : server_(web_options(options)),
+      foxglove_control_(options.foxglove_control),
+      version_(version),
+      drive_(read_drive_profile(options.drive_profile)) {}
 
 void RunView::start(const sim::World& world, std::optional<double> duration_s) {
   messages_.set_epoch(world.epoch_us());
@@ -120,6 +125,23 @@ void RunView::handle(const bridges::ViewRequest& request, const Execute& execute
   server_.reply(request.client, json_text(reply));
 }
 
+void RunView::drive(const bridges::ViewRequest& request, const sim::World& world) {
+  try {
+    if (!publish_drive_) throw DriveError("this run cannot be driven");
+    drive_.take(request.client, PageDrive::read(request.text), world, Clock::now());
+  } catch (const DriveError& error) {
+    const Json message = Json::parse(request.text, nullptr, false);
+    const Json id = message.is_object() ? message.value("id", Json()) : Json();
+    server_.reply(request.client, json_text({{"op", "reply"}, {"id", id}, {"ok", false}, {"text", error.what()}}));
+  }
+}
+
+void RunView::send_forms(const sim::World& world) {
+  if (forms_generation_ == world.generation()) return;
+  forms_generation_ = world.generation();
+  server_.retain("forms", forms_text(world, drive_.profile()));
+}
+
 void RunView::serve(const sim::World& world, const bridges::ViewPublisher& publisher, const sim::RunControl& control,
                     const std::string& waits_for, const Execute& execute) {
   constexpr int max_at_once = 50;
@@ -128,12 +150,22 @@ void RunView::serve(const sim::World& world, const bridges::ViewPublisher& publi
     const auto request = server_.take_request();
     if (!request) break;
     if (traffic_.handle(*request)) continue;
+    if (request->op == "left") {
+      drive_.left(request->client);
+      continue;
+    }
+    if (request->op == "drive") {
+      drive(*request, world);
+      continue;
+    }
     handle(*request, execute);
     handled = true;
   }
   serve_foxglove(world, publisher, control, execute);
-  if (server_.clients() == 0) return;
   const Clock::time_point now = Clock::now();
+  if (publish_drive_) drive_.run(world, now, control.paused, publish_drive_);
+  if (server_.clients() == 0) return;
+  send_forms(world);
   if (handled || now >= next_status_) send_status(world, control, waits_for, "");
   // While the run is paused, a page that has just opened needs the state too.
   if (now >= next_frame_ && (jump_ || control.paused || sent_step_ != world.step_number()))

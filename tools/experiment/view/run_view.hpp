@@ -13,6 +13,7 @@
 #include "sim/run/run_control.hpp"
 #include "sim/world/world.hpp"
 #include "tools/experiment/view/foxglove_view.hpp"
+#include "tools/experiment/view/page_drive.hpp"
 #include "tools/experiment/view/page_traffic.hpp"
 #include "tools/experiment/view/state_frame.hpp"
 #include "tools/experiment/view/view_messages.hpp"
@@ -27,6 +28,7 @@ struct ViewOptions {
   std::vector<std::string> origins;  ///< web sites whose pages may connect
   std::string page_directory;        ///< folder with the page; empty: the page in the program
   bool foxglove_control = false;     ///< clients of Foxglove may control the run or the playback
+  std::string drive_profile;         ///< file of the profile by which pages drive; empty: that of the program
 };
 
 /// Returns the settings of the server.
@@ -44,10 +46,12 @@ class RunView {
   /// Executes a request of `sim.control`; none: it is still undecided.
   using Execute = std::function<Answer(const std::string& command, double value, const std::string& text)>;
 
-  /// Starts the server.  Throws bridges::WebError.
+  /// Starts the server.  Throws bridges::WebError, and sim::ConfigError for the profile.
   RunView(const ViewOptions& options, const std::string& version);
 
   std::string url() const { return server_.url(); }
+  /// Lets pages drive vehicles: `publish` gives their commands to the run.
+  void allow_drive(PageDrive::Publish publish) { publish_drive_ = std::move(publish); }
   /// Introduces the world to the pages; before the first step.
   void start(const sim::World& world, std::optional<double> duration_s);
   /// Takes a message on a bus of the run.
@@ -75,6 +79,8 @@ class RunView {
   void handle(const bridges::ViewRequest& request, const Execute& execute);
   void serve_foxglove(const sim::World& world, const bridges::ViewPublisher& publisher, const sim::RunControl& control,
                       const Execute& execute);
+  void drive(const bridges::ViewRequest& request, const sim::World& world);
+  void send_forms(const sim::World& world);
 
   bridges::WebServer server_;
   ViewMessages messages_{server_, ViewMessages::Frames::from_elsewhere};
@@ -83,6 +89,9 @@ class RunView {
   const bool foxglove_control_;
   sim::Time message_time_{0};  // of the newest message
   const std::string version_;
+  PageDrive drive_;
+  PageDrive::Publish publish_drive_;               // empty: pages do not drive
+  std::optional<std::uint64_t> forms_generation_;  // of the world, of the last forms
   StateFrame frame_;
   bool jump_ = false;
   Clock::time_point next_frame_{}, next_status_{}, next_traffic_{};

@@ -350,6 +350,12 @@ std::string study_schema(const std::vector<sim::ParamInfo>& table) {
   return file_schema("study", writer, table, definitions).dump(1) + "\n";
 }
 
+std::string drive_schema(const std::vector<sim::ParamInfo>& table) {
+  Json definitions = Json::object();
+  const SchemaWriter writer(false, {}, definitions);
+  return file_schema("drive", writer, table, definitions).dump(1) + "\n";
+}
+
 std::string json_schema(const std::string& file) {
   if (file == "world") return world_schema().dump(1) + "\n";
   if (file == "vehicle") return vehicle_schema().dump(1) + "\n";

@@ -13,6 +13,7 @@
 #include "sim/device/device_registry.hpp"
 #include "sim/world_file/load_world.hpp"
 #include "tests/project_paths.hpp"
+#include "tools/experiment/drive/drive_profile.hpp"
 #include "tools/experiment/study/study_config.hpp"
 #include "tools/shoal/reference/param_tables.hpp"
 
@@ -76,13 +77,13 @@ std::string shipped_files() {
 }
 
 TEST(JsonSchema, InDocsIsUpToDate) {
-  for (const std::string file : {"world", "vehicle", "study"}) {
+  for (const std::string file : {"world", "vehicle", "study", "drive"}) {
     const std::string path = own_schemas + "/" + file + ".schema.json";
     std::ifstream in(path, std::ios::binary);
     const std::string text{std::istreambuf_iterator<char>(in), {}};
-    const bool of_study = file == "study";
-    const std::string made =
-        of_study ? tools::study_schema(tools::params_of<tools::StudyConfig>()) : tools::json_schema(file);
+    const std::string made = file == "study"   ? tools::study_schema(tools::params_of<tools::StudyConfig>())
+                             : file == "drive" ? tools::drive_schema(tools::params_of<tools::DriveProfile>())
+                                               : tools::json_schema(file);
     EXPECT_TRUE(text == made) << path << " is stale; type\n  build/release/bin/shoal describe --schema " << file
                               << " > docs/reference/schema/" << file << ".schema.json";
   }
