@@ -32,6 +32,7 @@ class ViewProtocol final : public WebProtocol {
   static constexpr std::size_t max_queued_bytes = std::size_t{8} << 20;  ///< texts that wait for one page
   static constexpr std::size_t max_unacknowledged = 2;                   ///< states
   static constexpr std::size_t max_waiting_requests = 32;                ///< of one page
+  static constexpr std::size_t max_own_states = 4;                       ///< that wait for the page that asked for them
 
   /// Function that runs work in the thread of the server.
   using Post = std::function<void(std::function<void()>)>;
@@ -49,6 +50,7 @@ class ViewProtocol final : public WebProtocol {
   void send_text(std::string json);
   void retain(std::string_view op, std::string json);
   void reply(int client, std::string json);
+  void send_state_to(int client, std::span<const std::byte> state);
   std::optional<ViewRequest> take_request();
 
  private:
@@ -69,6 +71,7 @@ class ViewProtocol final : public WebProtocol {
     std::uint64_t dropped = 0;
     std::vector<Retained> retained;
     std::vector<std::pair<int, Text>> replies;
+    std::vector<std::pair<int, Text>> own_states;
   };
 
   void wake();
@@ -115,11 +118,13 @@ class ViewSession final : public WebSession {
   void request(ViewRequest request, const std::string& id);
   void push(Text text);
   void drop_oldest(std::size_t room_for);
-  void set_state(const Text& state) { state_ = state; }
+  void set_state(Text state);
+  void add_own_state(Text state);
   bool take(Text bytes, bool is_text, WebFrame& frame);
   Text next_retained();
   Text next_text();
   Text next_state();
+  Text next_own_state();
 
   ViewProtocol& protocol_;
   WebLink& link_;
@@ -133,6 +138,7 @@ class ViewSession final : public WebSession {
   std::uint64_t dropped_ = 0;
   std::size_t bytes_since_state_ = 0;
   Text state_;
+  std::deque<Text> own_states_;
   std::deque<std::uint32_t> unacknowledged_;
 };
 

@@ -87,6 +87,10 @@ void WebServer::reply(int client, std::string json) {
   impl_->view->reply(client, std::move(json));
 }
 
+void WebServer::send_state_to(int client, std::span<const std::byte> state) {
+  impl_->view->send_state_to(client, state);
+}
+
 void WebServer::add_protocol(std::string name, std::shared_ptr<WebProtocol> protocol) {
   impl_->site.add_protocol(std::move(name), std::move(protocol));
 }

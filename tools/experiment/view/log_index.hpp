@@ -18,6 +18,11 @@ class LogIndex {
     std::int64_t time_us;
     std::uint64_t offset;  ///< in the file
   };
+  /// Hash of the state after a step.
+  struct Hash {
+    std::int64_t time_us, step;
+    std::uint64_t hash;
+  };
   /// Event of the world, for the time line.
   struct Occasion {
     std::int64_t time_us;
@@ -40,17 +45,22 @@ class LogIndex {
   Mark bodies_at(std::int64_t time_us) const { return *last(bodies_, time_us); }
   Mark scene_at(std::int64_t time_us) const { return *last(scenes_, time_us); }
   std::optional<Mark> scores_at(std::int64_t time_us) const;
+  const std::vector<Mark>& bodies() const { return bodies_; }
+  /// Returns the first hash of each step that has one, in the order of the steps.
+  const std::vector<Hash>& hashes() const { return hashes_; }
   /// Returns the offsets of all assets.
   const std::vector<std::uint64_t>& assets() const { return assets_; }
 
  private:
   static const Mark* last(const std::vector<Mark>& marks, std::int64_t time_us);
   static void add(std::vector<Mark>& marks, const Mark& mark);
+  void add_hash(const Hash& hash);
   void check(const std::string& path) const;
 
   std::int64_t epoch_us_ = 0;
   std::string world_;
   std::vector<Mark> bodies_, scenes_, scores_;
+  std::vector<Hash> hashes_;
   std::vector<std::uint64_t> assets_;
   std::vector<Occasion> occasions_;
   std::vector<std::string> problems_;

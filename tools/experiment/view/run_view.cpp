@@ -38,13 +38,27 @@ void RunView::start(const sim::World& world, std::optional<double> duration_s) {
              {"world", world.config().name},
              {"epoch_us", world.epoch_us()},
              {"start_us", world.now().count()},
+             {"past", true},
              {"end_us", nullptr}};
   if (duration_s && *duration_s > 0) hello["end_us"] = sim::from_seconds(*duration_s).count();
   server_.retain("hello", json_text(hello));
 }
 
+void RunView::message(std::string_view channel, std::span<const std::byte> payload) {
+  messages_.take(channel, payload);
+  if (channel == "sim.scene") past_.set_scene(messages_.scene());
+}
+
+void RunView::moved(const sim::World& world, const sim::RunControl& control, bool continues) {
+  jump_ = true;
+  past_.start_branch(control.branch, world.now().count(), last_us_, continues);
+  last_us_ = world.now().count();
+}
+
 void RunView::after_step(const sim::World& world, const bridges::ViewPublisher& publisher,
                          const sim::RunControl& control) {
+  last_us_ = world.now().count();
+  past_.remember(world, publisher);
   if (server_.clients() == 0) return;
   if (Clock::now() < next_frame_ && !jump_) return;
   send_state(world, publisher, control);
@@ -87,6 +101,7 @@ void RunView::send_status(const sim::World& world, const sim::RunControl& contro
 }
 
 void RunView::handle(const bridges::ViewRequest& request, const Execute& execute) {
+  if (request.op == "look") return past_.answer(request);
   const Json message = Json::parse(request.text, nullptr, false);
   if (request.op != "control" || !message.is_object()) return;
   Json reply{{"op", "reply"}, {"id", message.value("id", Json())}};
@@ -110,11 +125,12 @@ void RunView::serve(const sim::World& world, const bridges::ViewPublisher& publi
     if (!request) break;
     if (request->op == "left") continue;
     handle(*request, execute);
-    handled = true;
+    handled = handled || request->op != "look";
   }
   if (server_.clients() == 0) return;
   const Clock::time_point now = Clock::now();
   if (handled || now >= next_status_) send_status(world, control, waits_for, "");
+  past_.update(now);
   // While the run is paused, a page that has just opened needs the state too.
   if (now >= next_frame_ && (jump_ || control.paused || sent_step_ != world.step_number()))
     send_state(world, publisher, control);

@@ -12,6 +12,7 @@
 #include "bridges/web/web_server.hpp"
 #include "sim/run/run_control.hpp"
 #include "sim/world/world.hpp"
+#include "tools/experiment/view/past_view.hpp"
 #include "tools/experiment/view/state_frame.hpp"
 #include "tools/experiment/view/view_messages.hpp"
 
@@ -48,14 +49,14 @@ class RunView {
   /// Introduces the world to the pages; before the first step.
   void start(const sim::World& world, std::optional<double> duration_s);
   /// Takes a message on a bus of the run.
-  void message(std::string_view channel, std::span<const std::byte> payload) { messages_.take(channel, payload); }
-  /// Sends the present state, when a frame is due.
+  void message(std::string_view channel, std::span<const std::byte> payload);
+  /// Keeps the present poses for the past, and sends the present state, when a frame is due.
   void after_step(const sim::World& world, const bridges::ViewPublisher& publisher, const sim::RunControl& control);
   /// Carries out the requests of the pages, and sends the status when it has changed.
   void serve(const sim::World& world, const bridges::ViewPublisher& publisher, const sim::RunControl& control,
              const std::string& waits_for, const Execute& execute);
-  /// Announces that the time of the world was set.
-  void moved() { jump_ = true; }
+  /// Announces that the time of the world was set, and a branch started.  `continues`: at a step of this run.
+  void moved(const sim::World& world, const sim::RunControl& control, bool continues);
   /// Announces the end of the run, and why.
   void ended(const sim::World& world, const sim::RunControl& control, const std::string& why);
 
@@ -69,11 +70,13 @@ class RunView {
 
   bridges::WebServer server_;
   ViewMessages messages_{server_, ViewMessages::Frames::from_elsewhere};
+  PastView past_{server_};
   const std::string version_;
   StateFrame frame_;
   bool jump_ = false;
   Clock::time_point next_frame_{}, next_status_{};
   std::int64_t sent_step_ = -1;
+  std::int64_t last_us_ = 0;  // time of the last step
   // For the rate of simulated time.
   Clock::time_point rate_since_{};
   sim::Time rate_from_{0};

@@ -46,6 +46,8 @@ class ViewMessages {
   std::int32_t branch() const { return branch_; }
   /// Returns whether a scene has arrived.
   bool has_scene() const { return !scene_.empty(); }
+  /// Returns the newest scene: a JSON text.
+  const std::string& scene() const { return scene_; }
   /// Returns the number of messages that could not be read.
   std::int64_t bad_messages() const { return bad_messages_; }
 
