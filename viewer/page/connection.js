@@ -56,7 +56,7 @@ export class Connection {
     try {
       if (data instanceof ArrayBuffer) {
         const state = decodeState(data);
-        this.unacknowledged.push(state.sequence);
+        if (!state.past) this.unacknowledged.push(state.sequence);
         this.handlers.state(state);
       } else {
         this.handlers.message(parseMessage(data));
