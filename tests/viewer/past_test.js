@@ -167,7 +167,7 @@ describe('branches', () => {
       await page.waitForFunction(() => !document.getElementById('branches').hidden);
       assert.match(await text(page, '#branch-list'), /Branch 1.*3\.00 s – 9\.00 s.*differs from 4\.00 s/);
       await page.click('#branch-list [data-branch="1"]');
-      const probe = await until(page, (p) => p.ghosts.length === 5, 'ghosts');
+      const probe = await until(page, (p) => p.ghosts.length === 3, 'ghosts');
       const ghost = probe.ghosts.find((one) => one.name === probe.bodies[0].name);
       near(ghost.position[2] - probe.bodies[0].position[2], 1, 1e-3, 'height of the ghost');
       near(ghost.position[0], probe.bodies[0].position[0], 1e-3, 'x of the ghost');
@@ -175,7 +175,7 @@ describe('branches', () => {
           () => /rover1.*: 1 m apart/.test(document.getElementById('branch-distance').textContent));
       // The first difference, by its mark on the time line.
       await page.$eval('#marks .difference', (mark) => mark.click());
-      await until(page, (p) => p.past && p.time_us === 4e6 && p.ghosts.length === 5);
+      await until(page, (p) => p.past && p.time_us === 4e6 && p.ghosts.length === 3);
       await page.click('#branch-list [data-branch="1"]');
       await until(page, (p) => p.ghosts.length === 0, 'no ghosts');
     });
@@ -195,7 +195,7 @@ describe('branches', () => {
           {branch: 1, parent: null, name: '<i>b.lcm', start_us: 0, end_us: 60e6, differs_us: 2e6, differs_step: 200}
         ]
       });
-      const probe = await until(page, (p) => p.ghosts.length === 4, 'ghosts of the second log');
+      const probe = await until(page, (p) => p.ghosts.length === 2, 'ghosts of the second log');
       assert.ok(!probe.ghosts.some((ghost) => ghost.name === probe.bodies[1].name));
       assert.match(await text(page, '#branch-list'), /<i>b\.lcm.*differs from 2\.00 s \(step 200\)/);
       await page.click('#branch-list [data-time]');

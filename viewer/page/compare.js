@@ -44,8 +44,8 @@ export class Ghosts {
   build() {
     const bases = new Set(this.data.vehicles.map((vehicle) => vehicle.body));
     const movable = this.data.bodies.filter((body) => !body.fixed);
-    const order = movable.map((body, slot) => ({body, slot}))
-                      .sort((a, b) => bases.has(b.body.index) - bases.has(a.body.index));
+    const order =
+        movable.map((body, slot) => ({body, slot})).sort((a, b) => bases.has(b.body.index) - bases.has(a.body.index));
     this.ghosts = order.slice(0, GHOSTS_MAX).map(({body, slot}) => {
       const root = ghostOf(body, this.assets, this.material);
       root.visible = false;

@@ -54,18 +54,18 @@ void LogView::compare_with(const std::string& path, const LogIndex& index,
                            const std::optional<LogDifference>& difference) {
   other_.emplace(path, index);
   const auto item = [](int branch, const std::string& name, const LogIndex& of) {
-    return Json{{"branch", branch},           {"parent", nullptr},      {"name", name}, {"start_us", of.start_us()},
-                {"end_us", of.end_us()}, {"differs_us", nullptr}};
+    return Json{{"branch", branch},          {"parent", nullptr},     {"name", name},
+                {"start_us", of.start_us()}, {"end_us", of.end_us()}, {"differs_us", nullptr}};
   };
   Json items{item(0, name_, index_), item(1, std::filesystem::path(path).filename().string(), index)};
   if (difference) {
     items[1]["differs_us"] = difference->time_us;
     if (difference->step) items[1]["differs_step"] = *difference->step;
   }
-  server_.retain("branches", json_text({{"op", "branches"},
-                                        {"present", 0},
-                                        {"by", difference ? difference->by : ""},
-                                        {"items", std::move(items)}}));
+  server_.retain(
+      "branches",
+      json_text(
+          {{"op", "branches"}, {"present", 0}, {"by", difference ? difference->by : ""}, {"items", std::move(items)}}));
 }
 
 void LogView::look(const bridges::ViewRequest& request) {

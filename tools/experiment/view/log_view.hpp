@@ -22,8 +22,8 @@ class LogView {
   LogView(const std::string& path, const LogIndex& index, const ViewOptions& options, const std::string& version);
 
   std::string url() const { return server_.url(); }
-  /// Shows the bodies of another log at the same time, as branch 1; before the first advance().  `difference`: where the
-  /// two logs differ first.
+  /// Shows the bodies of another log at the same time, as branch 1; before the first advance().  `difference`: where
+  /// the two logs differ first.
   void compare_with(const std::string& path, const LogIndex& index, const std::optional<LogDifference>& difference);
   /// Plays the next part, as much as `wall_s` allows, and carries out the requests of the pages.
   void advance(double wall_s);

@@ -25,7 +25,7 @@ class PoseHistory {
   /// Poses at a time.
   struct State {
     std::int64_t time_us = 0;
-    std::uint32_t revision = 0;       ///< of the scene that has these bodies
+    std::uint32_t revision = 0;         ///< of the scene that has these bodies
     std::span<const std::byte> bodies;  ///< as in StateFrame::bodies(); valid until the history changes
   };
   static constexpr std::size_t usual_bytes = std::size_t{64} << 20;
@@ -38,7 +38,8 @@ class PoseHistory {
   /// Starts a branch; the one before ends at `left_us`.  `continues`: the states before its start are those of the
   /// branch before.
   void start_branch(std::int32_t number, std::int64_t start_us, std::int64_t left_us, bool continues);
-  /// Returns whether the poses after a step are to be kept: at the first step at or after each multiple of the interval.
+  /// Returns whether the poses after a step are to be kept: at the first step at or after each multiple of the
+  /// interval.
   bool is_due(std::int64_t time_us, std::int64_t step_us) const;
   /// Keeps poses of the present branch; times must increase.
   void add(std::int64_t time_us, std::uint32_t revision, std::span<const std::byte> bodies);

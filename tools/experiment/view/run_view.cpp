@@ -29,7 +29,7 @@ bridges::WebOptions web_options(const ViewOptions& options) {
 RunView::RunView(const ViewOptions& options, const std::string& version)
     : server_(web_options(options)), version_(version) {}
 
-void RunView::start(const sim::World& world, std::optional<double> duration_s) {
+void RunView::start(const sim::World& world, std::optional<double> duration_s, const Source& source) {
   messages_.set_epoch(world.epoch_us());
   Json hello{{"op", "hello"},
              {"version", 1},
@@ -41,7 +41,13 @@ void RunView::start(const sim::World& world, std::optional<double> duration_s) {
              {"past", true},
              {"end_us", nullptr}};
   if (duration_s && *duration_s > 0) hello["end_us"] = sim::from_seconds(*duration_s).count();
+  if (!source.record.empty()) hello["record"] = source.record;
+  if (!source.programs.empty()) hello["programs"] = source.programs;
   server_.retain("hello", json_text(hello));
+}
+
+void RunView::problem(const std::string& text) {
+  server_.send_text(json_text({{"op", "error"}, {"text", text}}));
 }
 
 void RunView::message(std::string_view channel, std::span<const std::byte> payload) {

@@ -25,6 +25,7 @@ struct ViewOptions {
   int port_tries = 20;               ///< 1: this port or none
   std::vector<std::string> origins;  ///< web sites whose pages may connect
   std::string page_directory;        ///< folder with the page; empty: the page in the program
+  std::function<void(const std::string& url)> opened = {};  ///< receives the address of the page of a run
 };
 
 /// Returns the settings of the server.
@@ -46,8 +47,19 @@ class RunView {
   RunView(const ViewOptions& options, const std::string& version);
 
   std::string url() const { return server_.url(); }
-  /// Introduces the world to the pages; before the first step.
-  void start(const sim::World& world, std::optional<double> duration_s);
+  /// What the run is, if it is not a usual one.
+  struct Source {
+    std::string record;    ///< `recorded`: a record that is run again; `branched`: it has left its record
+    std::string programs;  ///< where the messages of programs come from; empty: from programs
+  };
+  /// Introduces the world to the pages; before the first step, and when the source changes.
+  void start(const sim::World& world, std::optional<double> duration_s, const Source& source = {});
+  /// Shows an error on the pages.
+  void problem(const std::string& text);
+  /// Marks the next state as a jump in time, on the same branch.
+  void jump() { jump_ = true; }
+  /// Returns the number of pages.
+  int clients() const { return server_.clients(); }
   /// Takes a message on a bus of the run.
   void message(std::string_view channel, std::span<const std::byte> payload);
   /// Keeps the present poses for the past, and sends the present state, when a frame is due.

@@ -41,7 +41,7 @@ void StateFrame::begin(const Head& head) {
   count_ = 0;
   put(kind_at, state_kind);
   put(flags_at, static_cast<std::uint8_t>((head.paused ? paused_flag : 0) | (head.jump ? jump_flag : 0) |
-                                         (head.past ? past_flag : 0)));
+                                          (head.past ? past_flag : 0)));
   put(time_at, head.time_us);
   put(branch_at, head.branch);
   put(revision_at, head.revision);
