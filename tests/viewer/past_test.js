@@ -49,7 +49,7 @@ after(async () => {
 });
 
 describe('past', () => {
-  it('shows a time of the past while the run goes on, and the present again', async () => {
+  it('shows a time of the past while the run continues, and the present again', async () => {
     await withPage(run(), async (page, server) => {
       server.show(8e6);
       server.paused = false;
@@ -57,7 +57,7 @@ describe('past', () => {
       await pick(page, 3);
       const probe = await until(page, (p) => p.past && p.time_us === 3e6, 'three seconds');
       roverAt(3).forEach((value, i) => near(probe.bodies[0].position[i], value, 1e-3, `position ${i}`));
-      // The run was not touched: no request, and its time goes on.
+      // The run was not touched: no request, and its time continues.
       const later = await until(page, `(p) => p.newest_us > ${probe.newest_us + 3e5} && p.past`);
       assert.equal(later.time_us, 3e6);
       assert.ok(server.received.every((message) => message.op !== 'control'));

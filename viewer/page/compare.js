@@ -74,7 +74,7 @@ export class Ghosts {
     this.states = this.states.filter((one) => one.time_us !== state.time_us && one.poses.length === state.poses.length);
     this.states.push(state);
     this.states.sort((a, b) => a.time_us - b.time_us);
-    if (this.states.length > KEPT) this.states.splice(this.asked_us > state.time_us ? 0 : KEPT, 1);
+    if (this.states.length > KEPT) this.states.splice(this.shown_at_us > state.time_us ? 0 : KEPT, 1);
     this.looker.answered();
     this.stale = true;
     return true;
@@ -83,16 +83,16 @@ export class Ghosts {
   /** Moves the ghosts to a time, and asks for the states around it; returns true if they moved. */
   update(time_us) {
     if (this.branch === null || !this.data) return false;
-    this.asked_us = time_us;
+    this.shown_at_us = time_us;
     this.states = this.states.filter((one) => Math.abs(one.time_us - time_us) < 20 * INTERVAL_US);
     const next = this.states.findIndex((one) => one.time_us > time_us);
     const a = next < 0 ? this.states[this.states.length - 1] : this.states[next - 1];
     const b = next < 0 ? null : this.states[next];
     // The state at or before the time, then the one after it.
     if (!a || time_us - a.time_us > INTERVAL_US)
-      this.looker.ask(time_us, this.branch);
+      this.looker.request(time_us, this.branch);
     else if (!b)
-      this.looker.ask(a.time_us + INTERVAL_US, this.branch);
+      this.looker.request(a.time_us + INTERVAL_US, this.branch);
     this.looker.send();
     if (!a || (!this.stale && this.shown_us === time_us)) return false;
     this.stale = false;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The past of a run that goes on: poses that the server kept, asked for one at a time, and played back at a speed.
+// The past of a run that continues: poses that the server kept, requested one at a time, and played back at a speed.
 import {formatTime} from './panels.js';
 import {Playback} from './playback.js';
 
@@ -17,14 +17,14 @@ export class Looker {
   }
 
   reset() {
-    this.wanted = this.asked = null;
+    this.desired = this.requested = null;
     this.pending = false;
-    this.asked_ms = -1e9;
+    this.requested_ms = -1e9;
   }
 
   /** Asks for a time of a branch; null: the present one. */
-  ask(time_us, branch = null) {
-    this.wanted = {time_us: Math.round(time_us), branch};
+  request(time_us, branch = null) {
+    this.desired = {time_us: Math.round(time_us), branch};
     this.send();
   }
 
@@ -34,15 +34,15 @@ export class Looker {
     this.send();
   }
 
-  /** Sends what is wanted, if the answer to the request before has come. */
+  /** Sends what is desired, if the answer to the request before has come. */
   send(now_ms = performance.now()) {
-    if (!this.wanted || (this.pending && now_ms - this.asked_ms < PATIENCE_MS)) return;
-    if (now_ms - this.asked_ms < INTERVAL_MS) return;
-    const {time_us, branch} = this.wanted;
-    if (!this.pending && this.asked && this.asked.time_us === time_us && this.asked.branch === branch) return;
+    if (!this.desired || (this.pending && now_ms - this.requested_ms < PATIENCE_MS)) return;
+    if (now_ms - this.requested_ms < INTERVAL_MS) return;
+    const {time_us, branch} = this.desired;
+    if (!this.pending && this.requested && this.requested.time_us === time_us && this.requested.branch === branch) return;
     this.connection.send({op: 'look', time_us, ...(branch === null ? {} : {branch})});
-    this.asked = this.wanted;
-    this.asked_ms = now_ms;
+    this.requested = this.desired;
+    this.requested_ms = now_ms;
     this.pending = true;
   }
 }
@@ -75,7 +75,7 @@ export class Past {
       this.active = true;
       this.playback.clear();
     }
-    this.looker.ask(time_us);
+    this.looker.request(time_us);
     this.show();
     return undefined;
   }
@@ -102,7 +102,7 @@ export class Past {
     $('replay').textContent = this.playing ? 'Stop' : 'Play back';
   }
 
-  /** Takes a state of the past; returns false if it was not asked for. */
+  /** Takes a state of the past; returns false if it was not requested. */
   take(state, now_ms) {
     if (!this.active) return false;
     const before = this.playback.newest;
@@ -122,7 +122,7 @@ export class Past {
       this.time_us += 1000 * this.speed * Math.max(0, now_ms - this.ticked_ms);
       this.ticked_ms = now_ms;
       if (this.time_us >= this.newest_us()) return this.leave();
-      this.looker.ask(this.time_us);
+      this.looker.request(this.time_us);
     }
     this.looker.send(now_ms);
     const text = `past; the run is at ${formatTime(this.newest_us())}`;
@@ -133,7 +133,7 @@ export class Past {
   /** Asks again for the time shown: the scene has other bodies. */
   renew() {
     this.playback.clear();
-    this.looker.asked = null;
+    this.looker.requested = null;
     this.looker.pending = false;
   }
 

@@ -76,7 +76,7 @@ void ResimulatedRun::step() {
     faulty_ = true;
     control_.set_paused(true);
     catch_up_.reset();
-    return page_.problem(std::string("the world cannot go on: ") + error.what());
+    return page_.problem(std::string("the world cannot continue: ") + error.what());
   } catch (const std::runtime_error& error) {
     page_.problem(error.what());
   }

@@ -69,9 +69,9 @@ void LogView::compare_with(const std::string& path, const LogIndex& index,
 }
 
 void LogView::look(const bridges::ViewRequest& request) {
-  const LookRequest wanted = parse_look(request.text);
-  if (!wanted.time_us) return;
-  const std::int32_t branch = wanted.branch.value_or(0);
+  const LookRequest look = parse_look(request.text);
+  if (!look.time_us) return;
+  const std::int32_t branch = look.branch.value_or(0);
   if (branch < 0 || branch > (other_ ? 1 : 0))
     throw std::runtime_error("look: there is no log " + std::to_string(branch));
   // The bodies of either log, in the order of the scene that the pages show.
@@ -79,7 +79,7 @@ void LogView::look(const bridges::ViewRequest& request) {
   if (shown == nullptr) throw std::runtime_error("look: the poses of this time cannot be read");
   const std::vector<std::string> order = *shown->names;
   const auto revision = static_cast<std::uint32_t>(shown->message.revision);
-  const LogPoses::Poses* const poses = (branch == 1 ? *other_ : poses_).at(*wanted.time_us);
+  const LogPoses::Poses* const poses = (branch == 1 ? *other_ : poses_).at(*look.time_us);
   if (poses == nullptr) throw std::runtime_error("look: the poses of this time cannot be read");
   StateFrame::Head head;
   head.time_us = poses->time_us;

@@ -52,7 +52,7 @@ void PoseHistory::thin() {
   // Find the older half, by the order of recording.
   std::vector<std::uint64_t> numbers;
   for (const auto& [number, track] : tracks_)
-    for (const Kept& kept : track.states) numbers.push_back(kept.number);
+    for (const Saved& kept : track.states) numbers.push_back(kept.number);
   const auto middle = numbers.begin() + static_cast<std::ptrdiff_t>((numbers.size() + 1) / 2);
   if (numbers.size() < 3) return;
   std::nth_element(numbers.begin(), middle, numbers.end());
@@ -60,7 +60,7 @@ void PoseHistory::thin() {
   // Remove every second state of it; the start of the run is kept.
   bool removes = false;
   for (auto& [number, track] : tracks_) {
-    const auto end = std::remove_if(track.states.begin(), track.states.end(), [&](const Kept& kept) {
+    const auto end = std::remove_if(track.states.begin(), track.states.end(), [&](const Saved& kept) {
       if (kept.number >= newer || !std::exchange(removes, !removes)) return false;
       bytes_ -= kept.bytes();
       return true;
@@ -69,14 +69,14 @@ void PoseHistory::thin() {
   }
 }
 
-const PoseHistory::Kept* PoseHistory::last_until(const Track& track, std::int64_t time_us) const {
+const PoseHistory::Saved* PoseHistory::last_until(const Track& track, std::int64_t time_us) const {
   const auto after = std::upper_bound(track.states.begin(), track.states.end(), time_us,
-                                      [](std::int64_t time, const Kept& kept) { return time < kept.time_us; });
+                                      [](std::int64_t time, const Saved& kept) { return time < kept.time_us; });
   if (after != track.states.begin()) return &*std::prev(after);
   if (track.branch.parent) {
     const auto parent = tracks_.find(*track.branch.parent);
     if (parent != tracks_.end())
-      if (const Kept* const kept = last_until(parent->second, std::min(time_us, track.branch.start_us))) return kept;
+      if (const Saved* const kept = last_until(parent->second, std::min(time_us, track.branch.start_us))) return kept;
   }
   return track.states.empty() ? nullptr : &track.states.front();
 }
@@ -84,13 +84,13 @@ const PoseHistory::Kept* PoseHistory::last_until(const Track& track, std::int64_
 std::optional<PoseHistory::State> PoseHistory::at(std::int32_t branch, std::int64_t time_us) const {
   const auto track = tracks_.find(branch);
   if (track == tracks_.end()) return std::nullopt;
-  const Kept* const kept = last_until(track->second, time_us);
+  const Saved* const kept = last_until(track->second, time_us);
   if (kept == nullptr) return std::nullopt;
   return State{kept->time_us, kept->revision, kept->bodies};
 }
 
-std::vector<const PoseHistory::Kept*> PoseHistory::all_from(const Track& track, std::int64_t from_us) const {
-  std::vector<const Kept*> states;
+std::vector<const PoseHistory::Saved*> PoseHistory::all_from(const Track& track, std::int64_t from_us) const {
+  std::vector<const Saved*> states;
   // From the branch back to its ancestors: each has the times until the start of its child.
   std::int64_t until_us = std::numeric_limits<std::int64_t>::max();
   for (const Track* at = &track; at != nullptr;) {
@@ -128,7 +128,7 @@ std::optional<std::int64_t> PoseHistory::first_difference(std::int32_t one, std:
   const auto a = tracks_.find(one), b = tracks_.find(other);
   if (a == tracks_.end() || b == tracks_.end() || one == other) return std::nullopt;
   const std::int64_t fork_us = fork_of(one, other);
-  const std::vector<const Kept*> first = all_from(a->second, fork_us), second = all_from(b->second, fork_us);
+  const std::vector<const Saved*> first = all_from(a->second, fork_us), second = all_from(b->second, fork_us);
   // Compare the states of equal times.
   for (auto i = first.begin(), j = second.begin(); i != first.end() && j != second.end();) {
     if ((*i)->time_us != (*j)->time_us) {

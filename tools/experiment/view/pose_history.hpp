@@ -56,22 +56,22 @@ class PoseHistory {
   void clear();
 
  private:
-  struct Kept {
+  struct Saved {
     std::int64_t time_us = 0;
     std::uint32_t revision = 0;
     std::uint64_t number = 0;  // in the order of recording
     sim::Bytes bodies;
-    std::size_t bytes() const { return sizeof(Kept) + bodies.size(); }
+    std::size_t bytes() const { return sizeof(Saved) + bodies.size(); }
   };
   struct Track {
     Branch branch;
-    std::vector<Kept> states;
+    std::vector<Saved> states;
   };
 
   void thin();
-  const Kept* last_until(const Track& track, std::int64_t time_us) const;
+  const Saved* last_until(const Track& track, std::int64_t time_us) const;
   /// All states of a branch, with those of its ancestors before it, from a time on.
-  std::vector<const Kept*> all_from(const Track& track, std::int64_t from_us) const;
+  std::vector<const Saved*> all_from(const Track& track, std::int64_t from_us) const;
   std::int64_t fork_of(std::int32_t one, std::int32_t other) const;
 
   std::size_t max_bytes_, bytes_ = 0;

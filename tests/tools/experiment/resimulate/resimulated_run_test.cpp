@@ -68,7 +68,7 @@ TEST_F(ResimulatedRunTest, IsPausedSteppedAndTakenBack) {
 }
 
 TEST_F(ResimulatedRunTest, LeavesItsRecordForABranch) {
-  const std::string higher = "{move: {object: crate, position_m: [3, 0, 2]}}";
+  const std::string higher = "{move: {name: crate, position_m: [3, 0, 2]}}";
   const auto run = run_again();
   advance_to(*run, 100);
   run->execute("pause", 0, "");
@@ -80,7 +80,7 @@ TEST_F(ResimulatedRunTest, LeavesItsRecordForABranch) {
   advance_to(*run, test::steps);
   const std::uint64_t changed = run->world().state().hash();
   EXPECT_NE(changed, state_hash);
-  // It goes on after the end of its record, and back before that with the same change.
+  // It continues after the end of its record, and back before that with the same change.
   advance_to(*run, test::steps + 50);
   run->execute("rewind", 1, "");
   advance_to(*run, 250);

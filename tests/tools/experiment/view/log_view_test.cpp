@@ -174,7 +174,7 @@ TEST(LogView, ASeekShowsThePosesOfThatTime) {
 
 /// In the second log the ball is put 50 m higher after two seconds.
 TEST(LogView, ShowsASecondLogAtTheSameTimeAndWhereItDiffers) {
-  const Log log, other(", {name: lift, at: 2, do: [{move: {object: ball, position_m: [1, 2, 150]}}]}");
+  const Log log, other(", {name: lift, at: 2, do: [{move: {name: ball, position_m: [1, 2, 150]}}]}");
   const tools::LogIndex a(log.path), b(other.path);
   EXPECT_FALSE(tools::first_difference(log.path, a, log.path, a));
   const auto difference = tools::first_difference(log.path, a, other.path, b);
@@ -214,7 +214,7 @@ TEST(LogDifference, IsTheFirstHashThatDiffers) {
   };
   const std::string a = record("a.lcm", "");
   const std::string b =
-      record("b.lcm", "events: [{name: lift, at: 0.5, do: [{move: {object: ball, rpy_deg: [9, 0, 0]}}]}]\n");
+      record("b.lcm", "events: [{name: lift, at: 0.5, do: [{move: {name: ball, rpy_deg: [9, 0, 0]}}]}]\n");
   const tools::LogIndex index_a(a), index_b(b);
   ASSERT_EQ(index_a.hashes().size(), 11u);
   EXPECT_EQ(index_a.hashes()[3].step, 30);

@@ -128,7 +128,7 @@ TEST(PageRun, ListsItsBranchesAndWhereTheyDiffer) {
   run.page->control("rewind", 1.5);
   run.page->text("branches", [](const web_test::Json& message) { return message["present"] == 1; });
   // At 1.5 s the ball is moved; it falls on from there.
-  run.page->control("do", 0, "{move: {object: ball, position_m: [1, 2, 300]}}");
+  run.page->control("do", 0, "{move: {name: ball, position_m: [1, 2, 300]}}");
   const web_test::Json moved = run.page->reply();
   EXPECT_EQ(moved["ok"], true) << moved;
   run.step(100, 250);
