@@ -30,6 +30,21 @@ std::uint32_t sequence_of_state(const std::string& state) {
   return sequence;
 }
 
+/// Bit of byte 1 of the head: the time was set, so that the motion from the state before means nothing.
+constexpr unsigned char jump_flag = 2;
+
+/// Returns a state that takes the place of one that was not sent: a jump between them is not lost.
+std::shared_ptr<const std::string> in_place_of(const std::shared_ptr<const std::string>& unsent,
+                                               std::shared_ptr<const std::string> state) {
+  const auto jumps = [](const std::string& bytes) {
+    return bytes.size() > 1 && (static_cast<unsigned char>(bytes[1]) & jump_flag) != 0;
+  };
+  if (!unsent || !jumps(*unsent) || jumps(*state) || state->size() < 2) return state;
+  std::string marked = *state;
+  marked[1] = static_cast<char>(static_cast<unsigned char>(marked[1]) | jump_flag);
+  return shared(std::move(marked));
+}
+
 /// Requests that change what others see, or the run.
 bool needs_control(const std::string& op) {
   return op == "control" || op == "play" || op == "seek" || op == "drive";
@@ -44,7 +59,20 @@ void ViewProtocol::send_state(std::span<const std::byte> state) {
   auto text = shared(std::string(reinterpret_cast<const char*>(state.data()), state.size()));
   {
     const std::lock_guard lock(box_mutex_);
+    text = in_place_of(box_.state, std::move(text));
     box_.state.swap(text);
+  }
+  wake();
+}
+
+void ViewProtocol::send_state_to(int client, std::span<const std::byte> state) {
+  if (clients() == 0) return;
+  auto text = shared(std::string(reinterpret_cast<const char*>(state.data()), state.size()));
+  {
+    const std::lock_guard lock(box_mutex_);
+    if (box_.bytes + text->size() > max_queued_bytes && !box_.own_states.empty()) return;  // the page asks again
+    box_.bytes += text->size();
+    box_.own_states.emplace_back(client, std::move(text));
   }
   wake();
 }
@@ -162,6 +190,8 @@ void ViewProtocol::deliver() {
       if (reply.first == session->link_.number()) session->push(reply.second);
     for (const auto& [place, bytes] : box.messages)
       if (place.first == session->link_.number()) session->set_message(place.second, bytes);
+    for (const auto& own : box.own_states)
+      if (own.first == session->link_.number()) session->add_own_state(own.second);
     if (box.state) session->set_state(box.state);
     session->link_.wake();
   }
@@ -274,6 +304,7 @@ bool ViewSession::next(WebFrame& frame) {
     if (Text state = next_state()) return take(std::move(state), false, frame);
   if (Text text = next_retained()) return take(std::move(text), true, frame);
   if (Text text = next_text()) return take(std::move(text), true, frame);
+  if (Text state = next_own_state()) return take(std::move(state), false, frame);
   if (Text state = next_state()) return take(std::move(state), false, frame);
   if (Text message = next_message()) return take(std::move(message), false, frame);
   return false;
@@ -344,6 +375,22 @@ ViewSession::Text ViewSession::next_message() {
   messages_.erase(next);
   queued_bytes_ -= bytes->size();
   return bytes;
+}
+
+void ViewSession::set_state(Text state) {
+  state_ = in_place_of(state_, std::move(state));
+}
+
+void ViewSession::add_own_state(Text state) {
+  if (own_states_.size() >= ViewProtocol::max_own_states) own_states_.pop_front();
+  own_states_.push_back(std::move(state));
+}
+
+ViewSession::Text ViewSession::next_own_state() {
+  if (own_states_.empty()) return nullptr;
+  Text state = std::move(own_states_.front());
+  own_states_.pop_front();
+  return state;
 }
 
 }  // namespace bridges

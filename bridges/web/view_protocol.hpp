@@ -32,6 +32,7 @@ class ViewProtocol final : public WebProtocol {
   static constexpr std::size_t max_queued_bytes = std::size_t{8} << 20;  ///< texts and messages that wait for one page
   static constexpr std::size_t max_unacknowledged = 2;                   ///< states
   static constexpr std::size_t max_waiting_requests = 32;                ///< of one page
+  static constexpr std::size_t max_own_states = 4;                       ///< that wait for the page that asked for them
 
   /// Function that runs work in the thread of the server.
   using Post = std::function<void(std::function<void()>)>;
@@ -50,6 +51,7 @@ class ViewProtocol final : public WebProtocol {
   void retain(std::string_view op, std::string json);
   void reply(int client, std::string json);
   void send_message(int client, std::string_view channel, std::shared_ptr<const std::string> bytes);
+  void send_state_to(int client, std::span<const std::byte> state);
   std::optional<ViewRequest> take_request();
 
  private:
@@ -73,6 +75,7 @@ class ViewProtocol final : public WebProtocol {
     std::vector<Retained> retained;
     std::vector<std::pair<int, Text>> replies;
     std::map<Place, Text> messages;  // newest
+    std::vector<std::pair<int, Text>> own_states;
   };
 
   void wake();
@@ -119,7 +122,8 @@ class ViewSession final : public WebSession {
   void request(ViewRequest request, const std::string& id);
   void push(Text text);
   void drop_oldest(std::size_t room_for);
-  void set_state(const Text& state) { state_ = state; }
+  void set_state(Text state);
+  void add_own_state(Text state);
   bool take(Text bytes, bool is_text, WebFrame& frame);
   Text next_retained();
   Text next_text();
@@ -127,6 +131,7 @@ class ViewSession final : public WebSession {
   void set_message(const std::string& channel, const Text& bytes);
   void drop_messages(std::size_t room_for);
   Text next_message();
+  Text next_own_state();
 
   ViewProtocol& protocol_;
   WebLink& link_;
@@ -140,6 +145,7 @@ class ViewSession final : public WebSession {
   std::uint64_t dropped_ = 0;
   std::size_t bytes_since_state_ = 0;
   Text state_;
+  std::deque<Text> own_states_;
   std::deque<std::uint32_t> unacknowledged_;
   std::map<std::string, Text> messages_;  // newest that was not sent, by channel
   std::string last_channel_;              // of the message that was sent last

@@ -91,6 +91,10 @@ void WebServer::send_message(int client, std::string_view channel, std::shared_p
   impl_->view->send_message(client, channel, std::move(bytes));
 }
 
+void WebServer::send_state_to(int client, std::span<const std::byte> state) {
+  impl_->view->send_state_to(client, state);
+}
+
 void WebServer::add_protocol(std::string name, std::shared_ptr<WebProtocol> protocol) {
   impl_->site.add_protocol(std::move(name), std::move(protocol));
 }

@@ -76,6 +76,10 @@ class WebServer final : public PageOutput {
   /// waits for the page; when 8 MB wait for the page it is lost.
   void send_message(int client, std::string_view channel, std::shared_ptr<const std::string> bytes);
 
+  /// Sends a binary state to one page, which does not acknowledge it; without effect when it has left.  Four of them
+  /// wait for a page at most: a further one replaces the oldest.
+  void send_state_to(int client, std::span<const std::byte> state);
+
   /// Adds a WebSocket subprotocol.  If a client offers several, the one added first is used; `shoal.view.v1` is before
   /// all.
   void add_protocol(std::string name, std::shared_ptr<WebProtocol> protocol);

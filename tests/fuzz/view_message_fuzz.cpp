@@ -5,6 +5,7 @@
 #include "bridges/web/view_protocol.hpp"
 #include "bridges/web/web_error.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
+#include "tools/experiment/view/look_request.hpp"
 
 // Messages of a page: each line is one, to a session of the live page; a line that begins with a zero byte is binary.
 
@@ -24,6 +25,16 @@ void check_message(std::string_view text) {
     fuzz::require(message.token.size() <= 256 && message.id.size() <= 64, "what is kept of a message is bounded");
     const auto refusal = nlohmann::json::parse(bridges::refusal_message(message.id, text));
     fuzz::require(refusal.at("id").dump() == message.id, "a refusal has the id of the message");
+  });
+}
+
+/// A request for a time is read or refused, and its numbers are bounded.
+void check_look(const std::string& text) {
+  fuzz::allow<std::runtime_error>([&] {
+    const tools::LookRequest look = tools::parse_look(text);
+    if (look.time_us)
+      fuzz::require(std::abs(static_cast<double>(*look.time_us)) <= 1e18, "the time of a look is bounded");
+    fuzz::require(look.branch.value_or(0) >= 0, "a branch has a number from 0 on");
   });
 }
 
@@ -49,6 +60,7 @@ SHOAL_FUZZ_TARGET(view_message) {
   std::size_t requests = 0;
   while (const auto request = protocol.take_request()) {
     ++requests;
+    if (request->op == "look") check_look(request->text);
     const bool steers =
         request->op == "control" || request->op == "play" || request->op == "seek" || request->op == "drive";
     fuzz::require(request->may_control || !steers, "a read-only page does not steer");

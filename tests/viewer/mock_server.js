@@ -17,10 +17,10 @@ const POLICY = 'default-src \'self\'; connect-src \'self\'; img-src \'self\' blo
 
 /** Encodes a state; poses: a list of [x, y, z, qw, qx, qy, qz]. */
 export function encodeState(
-    {sequence, time_us, revision = 1, branch = 0, paused = false, jump = false, speed = 1, poses}) {
+    {sequence, time_us, revision = 1, branch = 0, paused = false, jump = false, past = false, speed = 1, poses}) {
   const buffer = Buffer.alloc(32 + 20 * poses.length);
   buffer.writeUInt8(1, 0);
-  buffer.writeUInt8((paused ? 1 : 0) | (jump ? 2 : 0), 1);
+  buffer.writeUInt8((paused ? 1 : 0) | (jump ? 2 : 0) | (past ? 4 : 0), 1);
   buffer.writeUInt32LE(sequence, 4);
   buffer.writeBigInt64LE(BigInt(Math.round(time_us)), 8);
   buffer.writeInt32LE(branch, 16);
@@ -176,8 +176,25 @@ export class MockServer {
     if (message.op === 'subscribe') client.channels = new Set(message.channels.map((channel) => channel.name));
     if (message.op === 'series') this.answerSeries(client, message);
     if (message.op === 'control' && client.control) this.execute(client, message);
+    if (message.op === 'look' && message.time_us !== null) this.answerLook(client, message);
     if (message.op === 'seek' && client.control) this.show(message.time_us);
     if (message.op === 'play' && client.control) [this.paused, this.speed] = [message.paused, message.speed];
+  }
+
+  /** Sends the state of ten per second at or before a time; another branch has its own poses. */
+  answerLook(client, {time_us, branch = 0}) {
+    if (this.deaf) return;
+    const kept_us = Math.floor(time_us / 100000) * 100000;
+    const posesAt = this.script.branches?.[branch] ?? this.script.posesAt;
+    client.socket.send(encodeState({
+      sequence: 0,
+      time_us: kept_us,
+      revision: this.script.scene.revision,
+      branch,
+      paused: true,
+      past: true,
+      poses: posesAt(kept_us / 1e6),
+    }));
   }
 
   execute(client, {id, command, value}) {

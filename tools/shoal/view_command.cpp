@@ -14,6 +14,7 @@
 #include "shoal/message_codec.hpp"
 #include "shoal/sim_control_request_t.hpp"
 #include "tools/experiment/process/signals.hpp"
+#include "tools/experiment/resimulate/resimulated_run.hpp"
 #include "tools/experiment/run/runner.hpp"
 #include "tools/experiment/view/log_view.hpp"
 #include "tools/shoal/commands.hpp"
@@ -24,7 +25,10 @@ namespace tools {
 namespace {
 
 struct ViewArguments {
-  std::string log;
+  std::vector<std::string> logs;
+  bool resimulate = false;
+  sim::LoadOptions load;
+  int threads = 0;
   std::string lcm_url;
   std::optional<double> duration_s;
   ViewOptions view;
@@ -50,19 +54,41 @@ void announce(const std::string& url) {
   std::cout << "live page: " << url << "\nCtrl-C ends it\n" << std::flush;
 }
 
-int view_log(const ViewArguments& arguments) {
+/// Reads a log and prints what it is.
+LogIndex read_index(const std::string& log) {
   const bool terminal = isatty(STDERR_FILENO) != 0;
   const auto begin = Clock::now();
-  const LogIndex index(arguments.log, [&](double share) {
-    if (terminal) std::cerr << fmt::format("\r{}: {:.0f} % read", arguments.log, 100 * share) << std::flush;
+  LogIndex index(log, [&](double share) {
+    if (terminal) std::cerr << fmt::format("\r{}: {:.0f} % read", log, 100 * share) << std::flush;
   });
   if (terminal) std::cerr << "\r\033[K";
-  for (const std::string& problem : index.problems()) spdlog::warn("{}: {}", arguments.log, problem);
-  std::cout << fmt::format("{}: {}, {:.3f} to {:.3f} s, {} events of the world, read in {:.2f} s\n", arguments.log,
+  for (const std::string& problem : index.problems()) spdlog::warn("{}: {}", log, problem);
+  std::cout << fmt::format("{}: {}, {:.3f} to {:.3f} s, {} events of the world, read in {:.2f} s\n", log,
                            index.world().empty() ? "a run" : "world " + index.world(),
                            static_cast<double>(index.start_us()) / 1e6, static_cast<double>(index.end_us()) / 1e6,
                            index.occasions().size(), std::chrono::duration<double>(Clock::now() - begin).count());
-  LogView view(arguments.log, index, arguments.view, short_version());
+  return index;
+}
+
+/// Finds and prints where two logs differ first.
+std::optional<LogDifference> compare(const ViewArguments& arguments, const LogIndex& a, const LogIndex& b) {
+  const auto difference = first_difference(arguments.logs[0], a, arguments.logs[1], b);
+  if (!difference)
+    std::cout << "no difference as far as both logs reach\n";
+  else
+    std::cout << fmt::format("first difference: {}{:.3f} s, by {}\n",
+                             difference->step ? fmt::format("step {}, ", *difference->step) : "",
+                             static_cast<double>(difference->time_us) / 1e6, difference->by);
+  return difference;
+}
+
+int view_log(const ViewArguments& arguments) {
+  const std::string& log = arguments.logs.front();
+  const LogIndex index = read_index(log);
+  std::optional<LogIndex> other;
+  if (arguments.logs.size() > 1) other = read_index(arguments.logs[1]);
+  LogView view(log, index, arguments.view, short_version());
+  if (other) view.compare_with(arguments.logs[1], *other, compare(arguments, index, *other));
   announce(view.url());
   // Play in steps of wall time.
   const Deadline deadline(arguments.duration_s);
@@ -72,6 +98,21 @@ int view_log(const ViewArguments& arguments) {
     view.advance(std::chrono::duration<double>(now - before).count());
     before = now;
   }
+  return exit_ok;
+}
+
+int view_again(const ViewArguments& arguments) {
+  ResimulatedRun::Options options;
+  options.log = arguments.logs.front();
+  options.load = arguments.load;
+  options.threads = arguments.threads;
+  options.view = arguments.view;
+  const auto run = std::make_unique<ResimulatedRun>(options, short_version());
+  std::cout << fmt::format("{}: world {}, run again up to {:.3f} s; programs: recorded commands\n", options.log,
+                           run->world().config().name, run->end_s());
+  announce(run->url());
+  const Deadline deadline(arguments.duration_s);
+  run->run([&] { return deadline.goes_on(); });
   return exit_ok;
 }
 
@@ -112,10 +153,13 @@ int view_bus(const ViewArguments& arguments) {
 }
 
 int view(const ViewArguments& arguments) {
-  if (!arguments.log.empty() && !arguments.lcm_url.empty())
+  if (!arguments.logs.empty() && !arguments.lcm_url.empty())
     throw CLI::ValidationError("--lcm-url", "cannot be given with a LOG");
+  if (arguments.resimulate && arguments.logs.size() != 1)
+    throw CLI::ValidationError("--resimulate", "needs one LOG, got " + std::to_string(arguments.logs.size()));
   catch_signals(true);
-  return arguments.log.empty() ? view_bus(arguments) : view_log(arguments);
+  if (arguments.resimulate) return view_again(arguments);
+  return arguments.logs.empty() ? view_bus(arguments) : view_log(arguments);
 }
 
 }  // namespace
@@ -124,14 +168,20 @@ void add_view_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("view", "Serve a live page of a log, or of a run in another process, in 3-D");
   const auto arguments = std::make_shared<ViewArguments>();
   add_log_level_option(*command);
-  command->add_option("LOG", arguments->log, "log of a run; without it what is on the bus is shown");
+  command->add_option("LOG", arguments->logs, "log of a run, or two to compare; without it what is on the bus is shown")
+      ->expected(0, 2);
+  command->add_flag("--resimulate", arguments->resimulate,
+                    "run the world of the log again, to see what was not recorded, and to branch from it");
+  add_allow_path_option(*command, arguments->load);
+  add_threads_option(*command, arguments->threads);
   add_lcm_url_option(*command, arguments->lcm_url);
   command->add_option("--duration", arguments->duration_s, "seconds of wall time; without it until Ctrl-C")
       ->type_name("S")
       ->check(number_from(0.001, 1e9));
   add_page_options(*command, arguments->view);
   command_line::set_help_end(
-      *command, {{"shoal view coop.lcm", "shoal view", "shoal view --lcm-url udpm://239.255.76.67:7668?ttl=0"},
+      *command, {{"shoal view coop.lcm", "shoal view before.lcm after.lcm", "shoal view coop.lcm --resimulate",
+                  "shoal view", "shoal view --lcm-url udpm://239.255.76.67:7668?ttl=0"},
                  {{0, "ended by Ctrl-C or --duration"},
                   {2, "wrong usage"},
                   {4, "the log cannot be read or has nothing to show, or the bus or the port fails"}},

@@ -62,7 +62,7 @@ export class Connection {
         this.handlers.data(decodeMessage(data));
       } else if (data instanceof ArrayBuffer) {
         const state = decodeState(data);
-        this.unacknowledged.push(state.sequence);
+        if (!state.past) this.unacknowledged.push(state.sequence);
         this.handlers.state(state);
       } else {
         this.handlers.message(parseMessage(data));

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The live page: brings the parts together and draws the frames.
 import {Bodies, matrixOf, radiusOf} from './bodies.js';
+import {Branches} from './branches.js';
 import {Cameras, MODES} from './cameras.js';
+import {Ghosts} from './compare.js';
 import {Connection} from './connection.js';
 import {Drive} from './drive.js';
 import {Environment} from './environment.js';
@@ -9,8 +11,10 @@ import {Estimates} from './estimates.js';
 import {Forms} from './forms.js';
 import {Instruments} from './instruments.js';
 import {drawAnnotations, Labels} from './labels.js';
+import {Marks} from './marks.js';
 import {Dots, FieldsOfView, SelectionRing, Zones} from './overlays.js';
 import {Details, Events, formatTime, Legend, Scores, VehicleList} from './panels.js';
+import {Past} from './past.js';
 import {Picking} from './picking.js';
 import {Playback} from './playback.js';
 import {probe} from './probe.js';
@@ -43,7 +47,7 @@ class App {
   constructor(recording) {
     this.recording = recording;
     this.address = new Address();
-    this.playback = new Playback();
+    this.live = new Playback();
     this.data = null;
     this.vehicles = [];
     this.selected = null;
@@ -136,6 +140,15 @@ class App {
     this.timeBar = new TimeBar(this.connection, (text) => Events.toast(text));
     this.drive = new Drive(this.connection, (text) => Events.toast(text));
     this.forms = new Forms(this.connection);
+    this.past = new Past(this.connection, () => this.jumpTo(this.playback.newest?.time_us ?? 0), () => this.newest_us);
+    this.ghosts = new Ghosts(this.scene, this.assets, this.connection);
+    const goTo = (time_us) => this.timeBar.goTo(time_us);
+    this.branches = new Branches((branch) => {
+      this.ghosts.show(branch);
+      this.dirty = true;
+    }, goTo);
+    this.marks = new Marks(goTo);
+    Object.assign(this.timeBar, {past: this.past, marks: this.marks});
     return handlers;
   }
 
@@ -147,42 +160,74 @@ class App {
 
   takeState(state) {
     if (!this.data || state.revision !== this.data.revision) return;
-    const before_us = this.playback.newest?.time_us ?? 0;
-    this.playback.push(state, performance.now());
+    if (state.past) {
+      if (this.ghosts.take(state) || this.past.take(state, performance.now())) this.dirty = true;
+      return;
+    }
+    const before_us = this.newest_us;
+    this.live.push(state, performance.now());
     this.timeBar.setNewest(state.time_us);
     this.fitDue ||= this.fitPending;
     this.fitPending = false;
     // The time went back, or was set: what belongs to another time goes.
-    if (state.jump || state.time_us < before_us) {
-      this.sounds.clear();
-      this.estimates.rewind(state.time_us);
-      this.trails.clear();
-      this.estimateTrails.clear();
-      this.instruments.rewind(state.time_us);
-    }
+    if (!this.past.active && (state.jump || state.time_us < before_us)) this.jumpTo(state.time_us);
+  }
+
+  /** What is drawn: the present, or the past that the page looks at. */
+  get playback() { return this.past?.shown ? this.past.playback : this.live; }
+
+  /** Time of the newest state of the run. */
+  get newest_us() { return this.live.newest?.time_us ?? 0; }
+
+  /** Removes what belongs to another time than the one shown from now on. */
+  jumpTo(time_us) {
+    this.sounds.clear();
+    this.estimates.rewind(time_us);
+    this.trails.clear();
+    this.estimateTrails.clear();
+    this.instruments.rewind(time_us);
+    this.live.drawn = this.past.playback.drawn = null;
+    this.dirty = true;
+  }
+
+  /** Takes events: for the list and the time line. */
+  addEvents(items) {
+    this.events.add(items);
+    this.marks.add(items);
+  }
+
+  /** Takes the greeting of a server, which may be another one than before. */
+  setHello(message) {
+    this.past.clear();
+    this.branches.clear();
+    [this.timeBar, this.drive, this.forms].forEach((part) => part.setHello(message));
+    this.instruments.greet();
+  }
+
+  setBranches(message) {
+    this.branches.set(message);
+    this.marks.setDifferences(this.branches.differences());
   }
 
   /** Handles a text message by its op; unknown ones are those of a later version. */
   take(message) {
     const items = Array.isArray(message.items) ? message.items : [];
     const handlers = {
-      hello: () => {
-        [this.timeBar, this.drive, this.forms].forEach((part) => part.setHello(message));
-        this.instruments.greet();
-      },
+      hello: () => this.setHello(message),
       forms: () => {
         this.drive.setDrives(message.drives);
         this.forms.setForms(message);
       },
       scene: () => this.setScene(readScene(message)),
       status: () => this.timeBar.setStatus(message),
-      estimates: () => this.estimates.add(items),
+      estimates: () => this.past.active || this.estimates.add(items),
       sounds: () => this.sounds.origin_m && this.sounds.add(items),
       receptions: () => {
         if (this.sounds.origin_m) this.sounds.addReceptions(items);
         this.legend.add(items.map((item) => item.outcome));
       },
-      events: () => this.events.add(items),
+      events: () => this.addEvents(items),
+      branches: () => this.setBranches(message),
       scores: () => this.scores.set(message),
       reply: () => this.drive.reply(message) || this.forms.reply(message) || this.timeBar.reply(message),
       error: () => this.problem(String(message.text)),
@@ -198,7 +243,12 @@ class App {
     const same = this.data?.world === data.world && this.vehicles.length > 0;
     const kept = this.selected ?? this.address.get('select');
     this.data = data;
-    this.playback.clear();
+    this.live.clear();
+    if (same)
+      this.past.renew();
+    else
+      this.past.clear();
+    this.ghosts.setScene(data);
     this.bodies.setScene(data);
     const sphere = this.bodies.boundingSphere();
     this.extent_m = this.cameras.extent_m = Math.max(2, sphere.radius);
@@ -231,6 +281,7 @@ class App {
       this.events.clear();
       this.scores.clear();
       this.instruments.restart();
+      this.marks.clear();
     }
     this.select(this.byName.has(kept) ? kept : null);
     if (same) return;
@@ -400,8 +451,10 @@ class App {
     ++this.frames;
     this.showBanner();
     if (!this.data) return;
+    this.past.tick(start_ms);
     const moved = this.playback.sample(start_ms);
     if (moved) this.move();
+    if (this.ghosts.update(this.playback.time_us)) this.dirty = true;
     if (moved && this.fitDue) {
       this.fitDue = false;
       this.fit();
@@ -497,6 +550,7 @@ class App {
   updatePanels(time_us) {
     this.timeBar.update(time_us);
     const vehicle = this.vehicle;
+    this.branches.setDistances(this.ghosts.distances(this.bodies.X_WB), vehicle?.body);
     if (!vehicle) return;
     const estimate = this.estimates.vehicles[this.estimates.byName.get(vehicle.name)];
     this.details.update(time_us, vehicle.X_WV, this.data.origin_m, estimate, this.data.water);

@@ -41,6 +41,10 @@ export function probe(app) {
                                  pixel: app.pixelOf(vehicle),
                                  trail: app.trails.describe(i),
                                })),
+    past: app.past.shown,
+    newest_us: app.newest_us,
+    ghosts: app.ghosts.ghosts.filter((ghost) => ghost.root.visible)
+                .map((ghost) => ({name: ghost.body.name, position: world(ghost.at)})),
     estimates: app.estimates.vehicles.filter((one) => one.estimate).map((one) => ({
                                                                           vehicle: one.name,
                                                                           error_m: one.error_m,

@@ -32,6 +32,7 @@ export function decodeState(buffer) {
   return {
     paused: (flags & 1) !== 0,
     jump: (flags & 2) !== 0,
+    past: (flags & 4) !== 0,
     sequence: view.getUint32(4, true),
     time_us: Number(view.getBigInt64(8, true)),
     branch: view.getInt32(16, true),

@@ -76,6 +76,8 @@ function escape(app, event) {
     app.options.toggle(false);
   else if (app.picking.measuring)
     app.measure(false);
+  else if (app.past.active)
+    app.past.leave();
   else if (event.target === $('search'))
     $('view').focus();
   else if (!$('keys').open)

@@ -34,12 +34,14 @@ export class TimeBar {
       if (this.isLog) this.dragging = false;
     });
     $('rewind').addEventListener('click', () => this.rewind());
+    $('branch').addEventListener('click', () => this.request('branch'));
     $('cancel').addEventListener('click', () => this.endRewind());
   }
 
   /** Takes a time picked on the line: a log goes there at once, a run offers to rewind. */
   dragTo(wanted_us) {
     this.wanted_us = wanted_us;
+    if (this.hello.past) return this.past.look(wanted_us);
     this.dragging = this.isLog || wanted_us < this.shown_us;
     if (this.isLog) this.connection.send({op: 'seek', time_us: wanted_us});
     if (!this.isLog && this.dragging)
@@ -47,6 +49,7 @@ export class TimeBar {
     else if (!this.isLog)
       this.endRewind();
     $('time').textContent = formatTime(wanted_us);
+    return undefined;
   }
 
   /** Goes to a time that was picked elsewhere: in a plot, in a list. */
@@ -69,6 +72,8 @@ export class TimeBar {
     $('loop-label').hidden = !this.isLog;
     const choices = this.isLog ? LOG_SPEEDS : RUN_SPEEDS;
     $('speed').replaceChildren(...choices.map((speed) => new Option(speed === 0 ? 'max' : `${speed}×`, speed)));
+    if (hello.past) $('seek').disabled = false;  // whoever may read may look
+    $('branch').hidden = !may || hello.record !== 'recorded';
     $('badge').hidden = may && !this.isLog;
     $('badge').textContent = may ? 'log' : 'read-only';
     $('badge').title =
@@ -101,6 +106,7 @@ export class TimeBar {
       parts.push('paused');
     else if (Number.isFinite(status.rate))
       parts.push(`runs at ${+ status.rate.toPrecision(2)}×`);
+    if (this.hello.programs) parts.push(`programs: ${this.hello.programs}`);
     if (status.waits_for) parts.push(`waits for ${status.waits_for}`);
     if (status.branch) parts.push(`branch ${status.branch}`);
     if (Number.isFinite(status.step)) parts.push(`step ${status.step}`);
@@ -113,13 +119,16 @@ export class TimeBar {
   update(time_us) {
     if (this.dragging) return;
     this.shown_us = time_us;
+    if (this.hello.past) this.offerRewindToPast(time_us);
     const text = formatTime(time_us);
     if ($('time').textContent !== text) $('time').textContent = text;
     // The line of a run ends now, that of a log at its end.
     const start_us = this.hello.start_us ?? 0, end_us = Math.max(this.hello.end_us ?? time_us, start_us + 1000);
     const seek = $('seek');
     seek.min = Math.floor(start_us / 1000);
-    seek.max = Math.ceil((this.isLog ? end_us : Math.max(end_us, time_us)) / 1000);
+    const last_us = this.isLog ? end_us : Math.max(end_us, time_us, this.newest_us);
+    seek.max = Math.ceil(last_us / 1000);
+    this.marks?.draw(start_us, last_us);
     seek.value = Math.round(time_us / 1000);
     seek.setAttribute('aria-valuetext', text);
   }
@@ -162,8 +171,18 @@ export class TimeBar {
       this.request('speed', speed);
   }
 
-  /** Moves a log by some seconds. */
+  /** Shows a time: of a log, or of the past of a run. */
+  goTo(time_us) {
+    if (this.isLog)
+      this.connection.send({op: 'seek', time_us});
+    else if (this.hello.past)
+      this.past.look(time_us);
+  }
+
+  /** Moves a log, or the past of a run, by some seconds. */
   skip(seconds) {
+    if (!this.isLog && this.past.active)
+      this.past.look(Math.max(this.hello.start_us ?? 0, this.shown_us + seconds * 1e6));
     if (!this.isLog) return;
     const wanted_us = Math.max(this.hello.start_us ?? 0, Number($('seek').value) * 1000 + seconds * 1e6);
     this.connection.send({op: 'seek', time_us: Math.min(wanted_us, this.hello.end_us ?? wanted_us)});
@@ -171,8 +190,9 @@ export class TimeBar {
 
   /** Rewinds the run to the time picked.  A request gives the seconds back from the present: the run pauses first. */
   rewind() {
-    this.rewind_us = this.wanted_us;
+    this.rewind_us = this.hello.past ? this.shown_us : this.wanted_us;
     this.endRewind();
+    this.past?.leave();
     if (!this.status.paused) this.request('pause');
     this.rewindIfPaused();
   }
@@ -182,6 +202,14 @@ export class TimeBar {
     const back_us = Math.max(this.newest_us, this.status.time_us ?? 0) - this.rewind_us;
     this.rewind_us = null;
     if (back_us > 0) this.request('rewind', back_us / 1e6);
+  }
+
+  /** While the past of a run is shown, the run can be rewound to it. */
+  offerRewindToPast(time_us) {
+    const may = this.past.shown && this.hello.control === true;
+    $('rewind').hidden = !may;
+    const text = `Rewind to ${formatTime(time_us)}`;
+    if (may && $('rewind').textContent !== text) $('rewind').textContent = text;
   }
 
   offerRewind() {

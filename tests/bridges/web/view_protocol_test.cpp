@@ -43,7 +43,9 @@ class Page final : public bridges::WebLink {
   std::string next() {
     WebFrame frame;
     if (!session_->next(frame)) return "";
-    return frame.is_text ? *frame.bytes : "state " + std::to_string(static_cast<int>(frame.bytes->at(4)));
+    if (frame.is_text) return *frame.bytes;
+    const int sequence = frame.bytes->at(4), flags = frame.bytes->at(1);
+    return "state " + std::to_string(sequence) + (flags != 0 ? " with flags " + std::to_string(flags) : "");
   }
   std::vector<std::string> all() {
     std::vector<std::string> texts;
@@ -82,10 +84,14 @@ class ViewProtocolTest : public testing::Test {
   void run() {
     for (const auto& work : std::exchange(posted_, {})) work();
   }
-  void state(int sequence) {
+  static std::vector<std::byte> state_bytes(int sequence, int flags = 0) {
     std::vector<std::byte> bytes(32);
+    bytes[1] = static_cast<std::byte>(flags);
     bytes[4] = static_cast<std::byte>(sequence);
-    protocol_.send_state(bytes);
+    return bytes;
+  }
+  void state(int sequence, int flags = 0) {
+    protocol_.send_state(state_bytes(sequence, flags));
     run();
   }
   void text(const std::string& json) {
@@ -124,6 +130,42 @@ TEST_F(ViewProtocolTest, ARetainedTextIsSentAgainWhenItChanges) {
   run();
   EXPECT_THAT(page.all(), ElementsAre(R"({"op":"status","step":3})"));
   EXPECT_THAT(page.all(), IsEmpty());
+}
+
+TEST_F(ViewProtocolTest, AJumpIsNotLostWithTheStateThatANewerOneReplaces) {
+  Page page(protocol_, 1);
+  page.hello();
+  const int jump = 2;
+  // In the box of the server.
+  protocol_.send_state(state_bytes(1, jump));
+  state(2);
+  EXPECT_EQ(page.next(), "state 2 with flags 2");
+  // Behind two states that the page has not acknowledged.
+  state(3);
+  EXPECT_EQ(page.next(), "state 3");
+  state(4, jump);
+  state(5);
+  state(6);
+  page.acknowledge(2);
+  EXPECT_EQ(page.next(), "state 6 with flags 2");
+  page.acknowledge(6);
+  state(7);
+  EXPECT_EQ(page.next(), "state 7");
+}
+
+TEST_F(ViewProtocolTest, AStateForOnePageNeedsNoAcknowledgementAndGoesToNoOther) {
+  Page page(protocol_, 1), other(protocol_, 2);
+  page.hello();
+  other.hello();
+  const int past = 4;
+  for (int i = 1; i <= 6; ++i) protocol_.send_state_to(1, state_bytes(i, past));
+  run();
+  // The oldest ones of too many are dropped.
+  EXPECT_THAT(page.all(), ElementsAre("state 3 with flags 4", "state 4 with flags 4", "state 5 with flags 4",
+                                      "state 6 with flags 4"));
+  EXPECT_THAT(other.all(), IsEmpty());
+  state(7);
+  EXPECT_EQ(page.next(), "state 7");
 }
 
 TEST_F(ViewProtocolTest, HelloSaysWhoMayControl) {

@@ -16,6 +16,7 @@ namespace tools {
 class ReplayPorts {
  public:
   void add(const ReplayLog::Input& input) { inputs_.add(input.step, input.channel, input.payload); }
+  void clear() { inputs_.clear(); }
   sim::PortOpener opener() {
     return [this](sim::PortKind, const std::string& path) { return std::make_unique<Port>(*this, path); };
   }

@@ -4,6 +4,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
+#include <cstring>
 #include <stdexcept>
 
 #include "bridges/log/run_journal.hpp"
@@ -21,7 +22,7 @@ namespace {
 using bridges::RunJournal;
 
 /// Returns the world to run: that of the log, or a replacement.
-sim::LoadedWorld load(const ReplayLog& log, const ReplayedWorld::Options& options) {
+sim::LoadedWorld load_world_of(const ReplayLog& log, const ReplayedWorld::Options& options) {
   sim::LoadOptions load = options.load;
   load.serial_ports = false;
   load.encode_message = shoal::encode_own_message;
@@ -47,8 +48,9 @@ sim::LoadedWorld load(const ReplayLog& log, const ReplayedWorld::Options& option
 
 ReplayedWorld::ReplayedWorld(const ReplayLog& log, const Options& options, Watch watch)
     : log_(log),
-      loaded_(load(log_, options)),
+      loaded_(load_world_of(log_, options)),
       watch_(std::move(watch)),
+      inputs_(options.inputs),
       main_(make_line()),
       others_(make_others()),
       world_(loaded_.config, *main_.gate, serial_.opener(),
@@ -58,8 +60,14 @@ ReplayedWorld::ReplayedWorld(const ReplayLog& log, const Options& options, Watch
   check_times();
   restore(options.load.sets.empty() && options.world.empty());
   world_.use_threads(options.threads);
+  add_serial_inputs(world_.step_number());
+}
+
+/// Gives the ports the bytes from a step on.
+void ReplayedWorld::add_serial_inputs(std::int64_t from_step) {
+  serial_.clear();
   for (const ReplayLog::Input& input : log_.inputs)
-    if (input.bus == RunJournal::serial_bus) serial_.add(input);
+    if (input.bus == RunJournal::serial_bus && input.step >= from_step) serial_.add(input);
 }
 
 ReplayedWorld::Line ReplayedWorld::make_line() {
@@ -118,11 +126,50 @@ void ReplayedWorld::start() {
 
 void ReplayedWorld::step() {
   deliver(world_.step_number());
-  main_.gate->admit();
-  for (auto& [name, line] : others_) line.gate->admit();
+  const auto pass = [this](std::span<const sim::MessageGate::Delivery> inputs) {
+    if (!inputs_) return;
+    for (const sim::MessageGate::Delivery& input : inputs) inputs_(input.channel, input.payload);
+  };
+  pass(main_.gate->admit());
+  for (auto& [name, line] : others_) pass(line.gate->admit());
   serial_.begin_step(world_.step_number());
   world_.step();
   service_.publish_step();
+}
+
+sim::Bytes ReplayedWorld::save() {
+  const sim::Bytes state = world_.state().snapshot();
+  auto owners = sim::StateArchive::saver();
+  owners.section("owners");
+  service_.visit_state(owners);
+  owners.end();
+  const sim::Bytes rest = owners.take_bytes();
+  // The state, the owners, and the size of the state at the end.
+  const std::uint64_t size = state.size();
+  sim::Bytes saved = state;
+  saved.insert(saved.end(), rest.begin(), rest.end());
+  const auto* const bytes = reinterpret_cast<const std::byte*>(&size);
+  saved.insert(saved.end(), bytes, bytes + sizeof size);
+  return saved;
+}
+
+void ReplayedWorld::load(const sim::Bytes& saved) {
+  std::uint64_t size = 0;
+  std::memcpy(&size, saved.data() + saved.size() - sizeof size, sizeof size);
+  const auto owners_at = saved.begin() + static_cast<std::ptrdiff_t>(size);
+  world_.state().restore({saved.begin(), owners_at});
+  auto owners = sim::StateArchive::restorer({owners_at, saved.end() - sizeof size});
+  owners.section("owners");
+  service_.visit_state(owners);
+  owners.end();
+  // The inputs before this step have been delivered.
+  const std::int64_t step = world_.step_number();
+  main_.gate->waiting().clear();
+  for (auto& [name, line] : others_) line.gate->waiting().clear();
+  const auto next = std::find_if(log_.inputs.begin(), log_.inputs.end(),
+                                 [step](const ReplayLog::Input& input) { return input.step >= step; });
+  next_input_ = static_cast<std::size_t>(next - log_.inputs.begin());
+  add_serial_inputs(step);
 }
 
 void ReplayedWorld::deliver(std::int64_t step) {

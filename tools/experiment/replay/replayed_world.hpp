@@ -32,6 +32,7 @@ class ReplayedWorld {
     std::string world;      ///< another world file; empty: the world in the log
     sim::LoadOptions load;  ///< its `sets` are applied to the world
     int threads = 0;        ///< threads for ray casting; 0: one for each processor
+    Watch inputs = {};      ///< receives the recorded messages that are delivered
   };
 
   /// Builds the world at the start of the log.  `log` must outlive this.  Throws std::runtime_error when the log cannot
@@ -41,6 +42,8 @@ class ReplayedWorld {
   sim::World& world() { return world_; }
   const sim::World& world() const { return world_; }
   const sim::LoadedWorld& loaded() const { return loaded_; }
+  /// Bus of the world; what is published on it goes to the watch.
+  sim::Bus& bus() { return *main_.gate; }
 
   /// Delivers the inputs before the first reports and publishes them.  To be called once, before step().
   void start();
@@ -48,6 +51,13 @@ class ReplayedWorld {
   void step();
   /// Executes the requests after the last step.
   void finish() { deliver(world_.step_number()); }
+  /// Executes a request that is not in the log, and returns the reply.  Throws std::runtime_error with the reason when
+  /// it is refused.
+  std::string request(const shoal::sim_control_request_t& request) { return service_.execute_local(request, nullptr); }
+  /// Saves the present state, and goes back to one that was saved; the inputs since then are delivered again.  Throws
+  /// sim::SnapshotError.
+  sim::Bytes save();
+  void load(const sim::Bytes& saved);
   /// Returns what could not be delivered.
   const std::vector<std::string>& notes() const { return notes_; }
 
@@ -61,6 +71,7 @@ class ReplayedWorld {
   Line make_line();
   std::map<std::string, Line> make_others();
   void check_times() const;
+  void add_serial_inputs(std::int64_t from_step);
   /// Restores the snapshot with which the run, or the branch, started.
   void restore(bool same_world);
   /// Delivers the inputs of the world before this step.
@@ -70,7 +81,7 @@ class ReplayedWorld {
 
   const ReplayLog& log_;
   sim::LoadedWorld loaded_;
-  Watch watch_;
+  Watch watch_, inputs_;
   ReplayPorts serial_;
   Line main_;
   std::map<std::string, Line> others_;

@@ -242,6 +242,7 @@ void Run::loop() {
   if (page_) {
     page_->start(world_, duration_s_);
     progress_.report("live page: " + page_->url());
+    if (options_.view->opened) options_.view->opened(page_->url());
   }
   end_of_step();
   const sim::Time end = duration_s_ > 0 ? sim::from_seconds(duration_s_) : sim::Time::max();

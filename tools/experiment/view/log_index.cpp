@@ -2,6 +2,7 @@
 #include "tools/experiment/view/log_index.hpp"
 
 #include <algorithm>
+#include <span>
 #include <stdexcept>
 
 #include "shoal/message_codec.hpp"
@@ -10,13 +11,24 @@
 
 namespace tools {
 
-std::optional<std::int64_t> stamp_of(const std::byte* payload, std::size_t size) {
-  constexpr std::size_t fingerprint_bytes = 8, stamp_bytes = 8;
-  if (size < fingerprint_bytes + stamp_bytes) return std::nullopt;
+namespace {
+
+constexpr std::size_t fingerprint_bytes = 8, word_bytes = 8;
+
+/// Big-endian number of eight bytes in a payload, at an offset after the fingerprint; none: the payload is too short.
+std::optional<std::uint64_t> word_of(std::span<const std::byte> payload, std::size_t offset) {
+  if (payload.size() < fingerprint_bytes + offset + word_bytes) return std::nullopt;
   std::uint64_t value = 0;
-  for (std::size_t i = 0; i < stamp_bytes; ++i)
-    value = value << 8 | std::to_integer<std::uint64_t>(payload[fingerprint_bytes + i]);
-  return static_cast<std::int64_t>(value);
+  for (std::size_t i = 0; i < word_bytes; ++i)
+    value = value << 8 | std::to_integer<std::uint64_t>(payload[fingerprint_bytes + offset + i]);
+  return value;
+}
+
+}  // namespace
+
+std::optional<std::int64_t> stamp_of(const std::byte* payload, std::size_t size) {
+  const auto word = word_of({payload, size}, 0);
+  return word ? std::optional(static_cast<std::int64_t>(*word)) : std::nullopt;
 }
 
 std::int64_t LogTime::of(const bridges::LogEventView& event) {
@@ -50,6 +62,12 @@ void LogIndex::mark_traffic(const Mark& mark, TrafficCounts& counts) {
   if (mark.time_us / interval_us != traffic_.last_us() / interval_us) traffic_.mark(mark.time_us, mark.offset, counts);
 }
 
+void LogIndex::add_hash(const Hash& hash) {
+  while (!hashes_.empty() && hashes_.back().time_us > hash.time_us) hashes_.pop_back();
+  // At its end a run writes another one, after the last requests.
+  if (hashes_.empty() || hashes_.back().time_us < hash.time_us) hashes_.push_back(hash);
+}
+
 LogIndex::LogIndex(const std::string& path, const std::function<void(double share)>& progress) {
   bridges::EventLogReader reader(path);
   bridges::LogEventView event;
@@ -78,6 +96,10 @@ LogIndex::LogIndex(const std::string& path, const std::function<void(double shar
         add(scenes_, mark);
       } else if (event.channel == "sim.scores") {
         add(scores_, mark);
+      } else if (event.channel == "sim.hash") {
+        constexpr std::size_t step_at = 8, hash_at = 28;  // after stamp, step, branch and number of inputs
+        const auto step = word_of(event.payload, step_at), hash = word_of(event.payload, hash_at);
+        if (step && hash) add_hash({mark.time_us, static_cast<std::int64_t>(*step), *hash});
       } else if (event.channel == "sim.asset") {
         assets_.push_back(event.offset);
       } else if (event.channel == "sim.event" && occasions_.size() < max_occasions) {

@@ -21,6 +21,11 @@ class LogIndex {
     std::int64_t time_us;
     std::uint64_t offset;  ///< in the file
   };
+  /// Hash of the state after a step.
+  struct Hash {
+    std::int64_t time_us, step;
+    std::uint64_t hash;
+  };
   /// Event of the world, for the time line.
   struct Occasion {
     std::int64_t time_us;
@@ -43,6 +48,9 @@ class LogIndex {
   Mark bodies_at(std::int64_t time_us) const { return *last(bodies_, time_us); }
   Mark scene_at(std::int64_t time_us) const { return *last(scenes_, time_us); }
   std::optional<Mark> scores_at(std::int64_t time_us) const;
+  const std::vector<Mark>& bodies() const { return bodies_; }
+  /// Returns the first hash of each step that has one, in the order of the steps.
+  const std::vector<Hash>& hashes() const { return hashes_; }
   /// Returns the offsets of all assets.
   const std::vector<std::uint64_t>& assets() const { return assets_; }
   /// Returns the counts of all messages before some event at or before a place in the log, at most a second earlier.
@@ -52,11 +60,13 @@ class LogIndex {
   static const Mark* last(const std::vector<Mark>& marks, std::int64_t time_us);
   static void add(std::vector<Mark>& marks, const Mark& mark);
   void mark_traffic(const Mark& mark, TrafficCounts& counts);
+  void add_hash(const Hash& hash);
   void check(const std::string& path) const;
 
   std::int64_t epoch_us_ = 0;
   std::string world_;
   std::vector<Mark> bodies_, scenes_, scores_;
+  std::vector<Hash> hashes_;
   std::vector<std::uint64_t> assets_;
   std::vector<Occasion> occasions_;
   std::vector<std::string> problems_;

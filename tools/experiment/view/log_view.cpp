@@ -7,6 +7,8 @@
 
 #include "shoal/message_codec.hpp"
 #include "shoal/sim_info_t.hpp"
+#include "tools/experiment/view/look_request.hpp"
+#include "tools/experiment/view/scene_names.hpp"
 #include "tools/experiment/view/view_json.hpp"
 
 namespace tools {
@@ -26,16 +28,18 @@ Json hello_json(const std::string& version, const char* source, const std::strin
 }  // namespace
 
 LogView::LogView(const std::string& path, const LogIndex& index, const ViewOptions& options, const std::string& version)
-    : index_(index),
+    : name_(std::filesystem::path(path).filename().string()),
+      index_(index),
       reader_(path),
       looking_(path),
       server_(web_options(options)),
       time_(index.epoch_us()),
       series_(path, index, server_),
+      poses_(path, index),
       now_us_(static_cast<double>(index.start_us())) {
   messages_.set_epoch(index.epoch_us());
   Json hello = hello_json(version, "log", index.world(), index.epoch_us());
-  hello["name"] = std::filesystem::path(path).filename().string();
+  hello["name"] = name_;
   hello["start_us"] = index.start_us();
   hello["end_us"] = index.end_us();
   server_.retain("hello", json_text(hello));
@@ -49,6 +53,47 @@ LogView::LogView(const std::string& path, const LogIndex& index, const ViewOptio
     items.push_back({{"time_us", each.time_us}, {"kind", each.kind}, {"who", each.who}, {"text", each.text}});
   if (!items.empty()) server_.retain("events", json_text({{"op", "events"}, {"items", std::move(items)}}));
   seek(index.start_us());
+}
+
+void LogView::compare_with(const std::string& path, const LogIndex& index,
+                           const std::optional<LogDifference>& difference) {
+  other_.emplace(path, index);
+  const auto item = [](int branch, const std::string& name, const LogIndex& of) {
+    return Json{{"branch", branch},          {"parent", nullptr},     {"name", name},
+                {"start_us", of.start_us()}, {"end_us", of.end_us()}, {"differs_us", nullptr}};
+  };
+  Json items{item(0, name_, index_), item(1, std::filesystem::path(path).filename().string(), index)};
+  if (difference) {
+    items[1]["differs_us"] = difference->time_us;
+    if (difference->step) items[1]["differs_step"] = *difference->step;
+  }
+  server_.retain(
+      "branches",
+      json_text(
+          {{"op", "branches"}, {"present", 0}, {"by", difference ? difference->by : ""}, {"items", std::move(items)}}));
+}
+
+void LogView::look(const bridges::ViewRequest& request) {
+  const LookRequest look = parse_look(request.text);
+  if (!look.time_us) return;
+  const std::int32_t branch = look.branch.value_or(0);
+  if (branch < 0 || branch > (other_ ? 1 : 0))
+    throw std::runtime_error("look: there is no log " + std::to_string(branch));
+  // The bodies of either log, in the order of the scene that the pages show.
+  const LogPoses::Poses* const shown = poses_.at(static_cast<std::int64_t>(now_us_));
+  if (shown == nullptr) throw std::runtime_error("look: the poses of this time cannot be read");
+  const std::vector<std::string> order = *shown->names;
+  const auto revision = static_cast<std::uint32_t>(shown->message.revision);
+  const LogPoses::Poses* const poses = (branch == 1 ? *other_ : poses_).at(*look.time_us);
+  if (poses == nullptr) throw std::runtime_error("look: the poses of this time cannot be read");
+  StateFrame::Head head;
+  head.time_us = poses->time_us;
+  head.branch = branch;
+  head.revision = revision;
+  head.paused = head.past = true;
+  past_.begin(head);
+  arrange(poses->bodies, *poses->names, order, past_);
+  server_.send_state_to(request.client, past_.end());
 }
 
 void LogView::send_event_at(std::uint64_t offset) {
@@ -182,7 +227,9 @@ void LogView::handle(const bridges::ViewRequest& request) {
   const Json message = Json::parse(request.text, nullptr, false);
   if (!message.is_object()) return;
   try {
-    if (request.op == "seek") {
+    if (request.op == "look") {
+      look(request);
+    } else if (request.op == "seek") {
       const double time_us = message.value("time_us", now_us_);
       if (std::isfinite(time_us)) seek(static_cast<std::int64_t>(std::clamp(time_us, -1e18, 1e18)));
     } else if (request.op == "play") {
@@ -200,6 +247,8 @@ void LogView::handle(const bridges::ViewRequest& request) {
   } catch (const Json::exception&) {
     server_.reply(request.client,
                   json_text({{"op", "error"}, {"text", "'" + request.op + "' has a value of a wrong kind"}}));
+  } catch (const std::runtime_error& error) {
+    server_.reply(request.client, json_text({{"op", "error"}, {"text", error.what()}}));
   }
 }
 

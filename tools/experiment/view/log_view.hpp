@@ -8,7 +8,9 @@
 #include "bridges/log/event_log.hpp"
 #include "bridges/web/web_server.hpp"
 #include "tools/experiment/view/foxglove_view.hpp"
+#include "tools/experiment/view/log_difference.hpp"
 #include "tools/experiment/view/log_index.hpp"
+#include "tools/experiment/view/log_poses.hpp"
 #include "tools/experiment/view/log_series.hpp"
 #include "tools/experiment/view/page_traffic.hpp"
 #include "tools/experiment/view/run_view.hpp"
@@ -23,6 +25,9 @@ class LogView {
   LogView(const std::string& path, const LogIndex& index, const ViewOptions& options, const std::string& version);
 
   std::string url() const { return server_.url(); }
+  /// Shows the bodies of another log at the same time, as branch 1; before the first advance().  `difference`: where
+  /// the two logs differ first.
+  void compare_with(const std::string& path, const LogIndex& index, const std::optional<LogDifference>& difference);
   /// Plays the next part, as much as `wall_s` allows, and carries out the requests of the pages.
   void advance(double wall_s);
   /// Shows a time; outside of the log its start or end.
@@ -30,6 +35,7 @@ class LogView {
 
  private:
   void handle(const bridges::ViewRequest& request);
+  void look(const bridges::ViewRequest& request);
   void send_event_at(std::uint64_t offset);
   /// Gives pages the last messages of their channels, after they have subscribed.
   void fill_feed();
@@ -40,6 +46,7 @@ class LogView {
   void play_to(std::int64_t time_us);
   void send_status();
 
+  const std::string name_;
   const LogIndex& index_;
   bridges::EventLogReader reader_, looking_;
   bridges::WebServer server_;
@@ -49,6 +56,9 @@ class LogView {
   LogSeries series_;
   FoxgloveView foxglove_{server_};
   MessageTimes times_;
+  LogPoses poses_;                 // for the requests `look`
+  std::optional<LogPoses> other_;  // of the log that this one is compared with
+  StateFrame past_;
   double now_us_;
   double speed_ = 1;
   bool paused_ = false, loop_ = false;

@@ -35,7 +35,7 @@ RunView::RunView(const ViewOptions& options, const std::string& version)
       version_(version),
       drive_(read_drive_profile(options.drive_profile)) {}
 
-void RunView::start(const sim::World& world, std::optional<double> duration_s) {
+void RunView::start(const sim::World& world, std::optional<double> duration_s, const Source& source) {
   messages_.set_epoch(world.epoch_us());
   Json hello{{"op", "hello"},
              {"version", 1},
@@ -44,8 +44,11 @@ void RunView::start(const sim::World& world, std::optional<double> duration_s) {
              {"world", world.config().name},
              {"epoch_us", world.epoch_us()},
              {"start_us", world.now().count()},
+             {"past", true},
              {"end_us", nullptr}};
   if (duration_s && *duration_s > 0) hello["end_us"] = sim::from_seconds(*duration_s).count();
+  if (!source.record.empty()) hello["record"] = source.record;
+  if (!source.programs.empty()) hello["programs"] = source.programs;
   server_.retain("hello", json_text(hello));
   using bridges::foxglove::Control;
   foxglove_.introduce(world.config().name, version_, foxglove_control_ ? Control::run : Control::none);
@@ -53,6 +56,7 @@ void RunView::start(const sim::World& world, std::optional<double> duration_s) {
 
 void RunView::message(std::string_view channel, std::span<const std::byte> payload, sim::Time at) {
   messages_.take(channel, payload);
+  if (channel == "sim.scene") past_.set_scene(messages_.scene());
   traffic_.take(channel, payload, at.count());
   const std::int64_t utime = messages_.epoch_us() + at.count();
   if (at < message_time_) foxglove_.jump(utime);
@@ -60,9 +64,22 @@ void RunView::message(std::string_view channel, std::span<const std::byte> paylo
   foxglove_.message(utime, channel, payload);
 }
 
+void RunView::problem(const std::string& text) {
+  server_.send_text(json_text({{"op", "error"}, {"text", text}}));
+}
+
+void RunView::moved(const sim::World& world, const sim::RunControl& control, bool continues) {
+  jump_ = true;
+  traffic_.feed().rewind(world.now().count());
+  past_.start_branch(control.branch, world.now().count(), last_us_, continues);
+  last_us_ = world.now().count();
+}
+
 void RunView::after_step(const sim::World& world, const bridges::ViewPublisher& publisher,
                          const sim::RunControl& control) {
   foxglove_.show_time(world.epoch_us() + world.now().count());
+  last_us_ = world.now().count();
+  past_.remember(world, publisher);
   if (server_.clients() == 0) return;
   if (Clock::now() < next_frame_ && !jump_) return;
   send_state(world, publisher, control);
@@ -111,6 +128,7 @@ void RunView::send_status(const sim::World& world, const sim::RunControl& contro
 }
 
 void RunView::handle(const bridges::ViewRequest& request, const Execute& execute) {
+  if (request.op == "look") return past_.answer(request);
   const Json message = Json::parse(request.text, nullptr, false);
   if (request.op != "control" || !message.is_object()) return;
   Json reply{{"op", "reply"}, {"id", message.value("id", Json())}};
@@ -159,7 +177,7 @@ void RunView::serve(const sim::World& world, const bridges::ViewPublisher& publi
       continue;
     }
     handle(*request, execute);
-    handled = true;
+    handled = handled || request->op != "look";
   }
   serve_foxglove(world, publisher, control, execute);
   const Clock::time_point now = Clock::now();
@@ -167,6 +185,7 @@ void RunView::serve(const sim::World& world, const bridges::ViewPublisher& publi
   if (server_.clients() == 0) return;
   send_forms(world);
   if (handled || now >= next_status_) send_status(world, control, waits_for, "");
+  past_.update(now);
   // While the run is paused, a page that has just opened needs the state too.
   if (now >= next_frame_ && (jump_ || control.paused || sent_step_ != world.step_number()))
     send_state(world, publisher, control);

@@ -15,6 +15,7 @@
 #include "tools/experiment/view/foxglove_view.hpp"
 #include "tools/experiment/view/page_drive.hpp"
 #include "tools/experiment/view/page_traffic.hpp"
+#include "tools/experiment/view/past_view.hpp"
 #include "tools/experiment/view/state_frame.hpp"
 #include "tools/experiment/view/view_messages.hpp"
 
@@ -29,6 +30,7 @@ struct ViewOptions {
   std::string page_directory;        ///< folder with the page; empty: the page in the program
   bool foxglove_control = false;     ///< clients of Foxglove may control the run or the playback
   std::string drive_profile;         ///< file of the profile by which pages drive; empty: that of the program
+  std::function<void(const std::string& url)> opened = {};  ///< receives the address of the page of a run
 };
 
 /// Returns the settings of the server.
@@ -50,22 +52,30 @@ class RunView {
   RunView(const ViewOptions& options, const std::string& version);
 
   std::string url() const { return server_.url(); }
+  /// What the run is, if it is not a usual one.
+  struct Source {
+    std::string record;    ///< `recorded`: a record that is run again; `branched`: it has left its record
+    std::string programs;  ///< where the messages of programs come from; empty: from programs
+  };
   /// Lets pages drive vehicles: `publish` gives their commands to the run.
   void allow_drive(PageDrive::Publish publish) { publish_drive_ = std::move(publish); }
-  /// Introduces the world to the pages; before the first step.
-  void start(const sim::World& world, std::optional<double> duration_s);
+  /// Introduces the world to the pages; before the first step, and when the source changes.
+  void start(const sim::World& world, std::optional<double> duration_s, const Source& source = {});
+  /// Shows an error on the pages.
+  void problem(const std::string& text);
+  /// Marks the next state as a jump in time, on the same branch.
+  void jump() { jump_ = true; }
+  /// Returns the number of pages.
+  int clients() const { return server_.clients(); }
   /// Takes a message on a bus of the run.
   void message(std::string_view channel, std::span<const std::byte> payload, sim::Time at);
-  /// Sends the present state, when a frame is due.
+  /// Keeps the present poses for the past, and sends the present state, when a frame is due.
   void after_step(const sim::World& world, const bridges::ViewPublisher& publisher, const sim::RunControl& control);
   /// Carries out the requests of the pages, and sends the status when it has changed.
   void serve(const sim::World& world, const bridges::ViewPublisher& publisher, const sim::RunControl& control,
              const std::string& waits_for, const Execute& execute);
-  /// Announces that the time of the world was set.
-  void moved(sim::Time now) {
-    jump_ = true;
-    traffic_.feed().rewind(now.count());
-  }
+  /// Announces that the time of the world was set, and a branch started.  `continues`: at a step of this run.
+  void moved(const sim::World& world, const sim::RunControl& control, bool continues);
   /// Announces the end of the run, and why.
   void ended(const sim::World& world, const sim::RunControl& control, const std::string& why);
 
@@ -88,6 +98,7 @@ class RunView {
   FoxgloveView foxglove_{server_};
   const bool foxglove_control_;
   sim::Time message_time_{0};  // of the newest message
+  PastView past_{server_};
   const std::string version_;
   PageDrive drive_;
   PageDrive::Publish publish_drive_;               // empty: pages do not drive
@@ -96,6 +107,7 @@ class RunView {
   bool jump_ = false;
   Clock::time_point next_frame_{}, next_status_{}, next_traffic_{};
   std::int64_t sent_step_ = -1;
+  std::int64_t last_us_ = 0;  // time of the last step
   // For the rate of simulated time.
   Clock::time_point rate_since_{};
   sim::Time rate_from_{0};

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 namespace tools {
 
@@ -12,9 +13,9 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "frames are little-endian");
 
-constexpr std::size_t head_bytes = 32, body_bytes = 20;
+constexpr std::size_t head_bytes = 32;
 constexpr std::uint8_t state_kind = 1;
-constexpr std::uint8_t paused_flag = 1, jump_flag = 2;
+constexpr std::uint8_t paused_flag = 1, jump_flag = 2, past_flag = 4;
 
 /// Offsets in the head.
 enum HeadAt : std::size_t {
@@ -39,7 +40,8 @@ void StateFrame::begin(const Head& head) {
   bytes_.assign(head_bytes, std::byte{0});
   count_ = 0;
   put(kind_at, state_kind);
-  put(flags_at, static_cast<std::uint8_t>((head.paused ? paused_flag : 0) | (head.jump ? jump_flag : 0)));
+  put(flags_at, static_cast<std::uint8_t>((head.paused ? paused_flag : 0) | (head.jump ? jump_flag : 0) |
+                                          (head.past ? past_flag : 0)));
   put(time_at, head.time_us);
   put(branch_at, head.branch);
   put(revision_at, head.revision);
@@ -55,6 +57,20 @@ void StateFrame::add(const sim::Vector3d& p_W, const sim::Quaterniond& q_WB) {
     at += 2;
   }
   ++count_;
+}
+
+void StateFrame::add(std::span<const std::byte> bodies) {
+  bytes_.insert(bytes_.end(), bodies.begin(), bodies.end());
+  count_ += static_cast<std::uint32_t>(bodies.size() / body_bytes);
+}
+
+void StateFrame::add_unknown() {
+  const double unknown = std::numeric_limits<double>::quiet_NaN();
+  add({unknown, unknown, unknown}, sim::Quaterniond::Identity());
+}
+
+std::span<const std::byte> StateFrame::bodies() const {
+  return std::span(bytes_).subspan(head_bytes);
 }
 
 std::span<const std::byte> StateFrame::end() {

@@ -14,6 +14,7 @@
 #include "tests/bridges/web/web_client.hpp"
 #include "tests/scratch_folder.hpp"
 #include "tests/tools/experiment/replay/recorded_run.hpp"
+#include "tools/experiment/replay/replay.hpp"
 
 namespace {
 
@@ -21,11 +22,12 @@ using testing::HasSubstr;
 
 /// A log of a ball that falls for three seconds, from 100 m, with an event after one.
 struct Log {
-  Log() {
+  explicit Log(const std::string& more = "") {
     test::RecordedRun run(
         "shoal: 1\nname: fall\nphysics: {step_s: 0.01}\nobjects: [{name: ball, position_m: [1, 2, 100], parts: "
         "[{shape: "
-        "sphere, mass_kg: 1}]}]\nevents: [{name: half, at: 1, do: [{log: one second}]}]\n",
+        "sphere, mass_kg: 1}]}]\nevents: [{name: half, at: 1, do: [{log: one second}]}" +
+            more + "]\n",
         path);
     bridges::ViewPublisher view(run.gate, run.world, {}, [] { return true; });
     view.after_step();
@@ -54,7 +56,9 @@ struct State {
 
 /// A page of the log, served in another thread.
 struct Page {
-  explicit Page(const Log& log) : index(log.path), view(log.path, index, options(), "test"), client(port()) {
+  explicit Page(const Log& log, const std::function<void(tools::LogView&)>& prepare = {})
+      : index(log.path), view(log.path, index, options(), "test"), client(port()) {
+    if (prepare) prepare(view);
     thread = std::thread([this] {
       while (!end) {
         view.advance(0.01);
@@ -83,20 +87,33 @@ struct Page {
   web_test::Json text(const std::string& op) {
     while (const auto frame = client.read_frame())
       if (frame->is_text() && frame->json()["op"] == op) return frame->json();
-    return {};
+    throw std::runtime_error("no '" + op + "'");
   }
-  /// Reads up to the state after a jump to a time.
-  State state_after_seek(std::int64_t time_us) {
-    client.send_json({{"op", "seek"}, {"time_us", time_us}});
+  /// Pauses the log, so that a state is that of the time sought, however busy the machine is.
+  void pause() {
+    client.send_json({{"op", "play"}, {"paused", true}});
+    while (!text("status").value("paused", false)) {
+    }
+  }
+  /// Reads the next state, and acknowledges one that was not asked for.
+  State next_state() {
     while (const auto frame = client.read_frame()) {
       if (frame->is_text()) continue;
       const State state(frame->payload);
       std::uint32_t sequence = 0;
       std::memcpy(&sequence, frame->payload.data() + 4, 4);
-      client.send_json({{"op", "ack"}, {"sequence", sequence}});
-      if ((state.flags & 2) != 0 && std::abs(state.time_us - time_us) <= 100'000) return state;
+      if ((state.flags & 4) == 0) client.send_json({{"op", "ack"}, {"sequence", sequence}});
+      return state;
     }
     throw std::runtime_error("no state");
+  }
+  /// Reads up to the state after a jump to a time, at most 0.1 s before it.
+  State state_after_seek(std::int64_t time_us) {
+    client.send_json({{"op", "seek"}, {"time_us", time_us}});
+    for (;;) {
+      const State state = next_state();
+      if ((state.flags & 2) != 0 && state.time_us <= time_us && time_us - state.time_us <= 100'000) return state;
+    }
   }
 
   tools::LogIndex index;
@@ -143,6 +160,7 @@ TEST(LogView, IntroducesTheLogAndItsScene) {
 TEST(LogView, ASeekShowsThePosesOfThatTime) {
   const Log log;
   Page page(log);
+  page.pause();
   std::mt19937 random(1);
   for (int i = 0; i < 50; ++i) {
     const std::int64_t time_us = random() % 3'000'000;
@@ -152,6 +170,66 @@ TEST(LogView, ASeekShowsThePosesOfThatTime) {
     EXPECT_LE(state.time_us, time_us);
     EXPECT_NEAR(state.z_m, 100 - 9.80665 * t_s * t_s / 2, 9.80665 * t_s * 0.01 / 2 + 1e-4);
   }
+}
+
+/// In the second log the ball is put 50 m higher after two seconds.
+TEST(LogView, ShowsASecondLogAtTheSameTimeAndWhereItDiffers) {
+  const Log log, other(", {name: lift, at: 2, do: [{move: {name: ball, position_m: [1, 2, 150]}}]}");
+  const tools::LogIndex a(log.path), b(other.path);
+  EXPECT_FALSE(tools::first_difference(log.path, a, log.path, a));
+  const auto difference = tools::first_difference(log.path, a, other.path, b);
+  ASSERT_TRUE(difference);
+  EXPECT_EQ(difference->by, "poses");
+  EXPECT_GE(difference->time_us, 2'000'000);
+  EXPECT_LE(difference->time_us, 2'100'000);
+  Page page(log, [&](tools::LogView& view) { view.compare_with(other.path, b, difference); });
+  page.pause();
+  const auto look = [&](int branch, std::int64_t time_us) {
+    page.client.send_json({{"op", "look"}, {"branch", branch}, {"time_us", time_us}});
+    for (;;)
+      if (const State state = page.next_state(); (state.flags & 4) != 0) return state;
+  };
+  EXPECT_EQ(look(0, 1'500'000).z_m, look(1, 1'500'000).z_m);
+  EXPECT_GT(look(1, 2'500'000).z_m, 100);
+  EXPECT_LT(look(0, 2'500'000).z_m, 90);
+  EXPECT_EQ(look(1, 2'500'000).count, 1u);
+  page.client.send_json({{"op", "look"}, {"branch", 2}, {"time_us", 0}});
+  EXPECT_EQ(page.text("error")["text"], "look: there is no log 2");
+}
+
+/// Logs with hashes, as `shoal run` writes them, differ where their hashes do.
+TEST(LogDifference, IsTheFirstHashThatDiffers) {
+  const test_support::ScratchFolder folder;
+  const auto record = [&](const std::string& name, const std::string& more) {
+    test::RecordedRun run(
+        "shoal: 1\nrun: {hash_every_steps: 10}\nphysics: {step_s: 0.01}\nobjects: [{name: ball, parts: [{shape: "
+        "sphere, mass_kg: 1}]}]\n" +
+            more,
+        folder.file(name));
+    bridges::ViewPublisher view(run.gate, run.world, {}, [] { return true; });
+    view.after_step();
+    run.run(100);
+    view.after_step();
+    return folder.file(name);
+  };
+  const std::string a = record("a.lcm", "");
+  const std::string b =
+      record("b.lcm", "events: [{name: lift, at: 0.5, do: [{move: {name: ball, rpy_deg: [9, 0, 0]}}]}]\n");
+  const tools::LogIndex index_a(a), index_b(b);
+  ASSERT_EQ(index_a.hashes().size(), 11u);
+  EXPECT_EQ(index_a.hashes()[3].step, 30);
+  const auto difference = tools::first_difference(a, index_a, b, index_b);
+  ASSERT_TRUE(difference);
+  EXPECT_EQ(difference->by, "sim.hash");
+  EXPECT_EQ(difference->time_us, 10'000 * *difference->step);
+  // The log of b, run again in the world of a, differs at this step too.
+  tools::ReplayOptions options;
+  options.log = b;
+  options.load.sets = {"events=[]"};
+  options.quiet = true;
+  const tools::ReplayOutcome replayed = tools::replay(options);
+  ASSERT_TRUE(replayed.first);
+  EXPECT_EQ(replayed.first->step, *difference->step);
 }
 
 TEST(LogView, RefusesToSteer) {

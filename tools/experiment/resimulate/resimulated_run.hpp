@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "bridges/view/view_publisher.hpp"
+#include "shoal/sim_control_request_t.hpp"
+#include "sim/run/run_control.hpp"
+#include "tools/experiment/replay/replay_log.hpp"
+#include "tools/experiment/replay/replayed_world.hpp"
+#include "tools/experiment/run/pacer.hpp"
+#include "tools/experiment/snapshot/snapshot_ring.hpp"
+#include "tools/experiment/view/run_view.hpp"
+
+namespace tools {
+
+/// Live page of a record that is run again: it shows what was never recorded, too.  Its pages pause it, step it, set
+/// its speed and go back in it; `branch` leaves the record: from then on they may change the world, while the messages
+/// of the programs remain those of the record.
+class ResimulatedRun {
+ public:
+  struct Options {
+    std::string log;
+    sim::LoadOptions load;
+    int threads = 0;  ///< threads for ray casting; 0: one for each processor
+    ViewOptions view;
+  };
+
+  /// Reads the log, builds its world and starts the server.  Throws std::runtime_error when the log cannot be replayed,
+  /// sim::ConfigError, bridges::WebError.
+  ResimulatedRun(const Options& options, const std::string& version);
+
+  std::string url() const { return page_.url(); }
+  const sim::World& world() const { return replayed_.world(); }
+  const sim::RunControl& control() const { return control_; }
+  double end_s() const;
+  /// Runs while `goes_on` returns true; afterwards the page is closed.
+  void run(const std::function<bool()>& goes_on);
+  /// Answers the pages, then takes the next step if it is due; returns the time until it is.
+  std::chrono::microseconds advance();
+  /// Executes a request of a page.  Throws std::runtime_error with the reason when it is refused.
+  std::string execute(const std::string& command, double value, const std::string& text);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void step();
+  void after_step();
+  bool at_end() const;
+  std::string branch();
+  std::string rewind(double seconds);
+  void arrive();
+  std::string change(const std::string& command, double value, const std::string& text);
+  std::string place() const;
+
+  ReplayLog log_;
+  RunView page_;
+  ReplayedWorld replayed_;
+  bridges::ViewPublisher view_;
+  sim::RunControl control_;
+  Pacer pacer_;
+  SnapshotRing snapshots_;
+  sim::Bytes first_;                                                   // state at the start
+  Clock::time_point not_before_{};                                     // wall time of the next snapshot
+  std::multimap<std::int64_t, shoal::sim_control_request_t> changes_;  // requests after the branch, by step
+  std::optional<std::int64_t> catch_up_;                               // step that is computed again without pace
+  bool branched_ = false, faulty_ = false;
+};
+
+}  // namespace tools
