@@ -55,7 +55,7 @@ export class Traffic {
     this.search.placeholder = 'Channels that contain …';
     this.search.setAttribute('aria-label', 'Search channels');
     this.search.addEventListener('input', () => this.changed());
-    this.table = table('Traffic by vehicle and channel', ['', 'msg/s', 'bytes/s', 'messages', 'bytes']);
+    this.table = table('Traffic by vehicle and channel', ['', 'msg/s', 'bytes/s', 'msg', 'bytes']);
     this.table.className = 'grid';
     this.cells = document.createElement('table');
     this.cells.setAttribute('aria-label', 'Who heard whom');
