@@ -39,6 +39,13 @@ function lidarScan(server) {
       'rover1.lidar', 'planar_lidar_t', 0, {utime: 0, ranges, rad0: -Math.PI / 2, radstep: Math.PI / 180});
 }
 
+/** The land with a lidar that sees its walls. */
+function far() {
+  const script = scenes.land(), [lidar] = script.scene.vehicles[0].devices;
+  lidar.field_of_view = {...lidar.field_of_view, range_m: 30};
+  return script;
+}
+
 /** A picture of a ramp with a disc, as an `image_t`. */
 function camera(kind) {
   const width = 160, height = 120, step = kind === 'depth' ? 4 : 3, data = Buffer.alloc(step * width * height);
@@ -136,7 +143,7 @@ const SHOTS = {
         '&select=rover1&data=plots&plots=rover1.pose/pos[0],rover1.pose/speed_mps,rover1.pose/pos_z_m;rover1.imu/gyro_z_radps',
     run: (server) => server.show(40e6)
   },
-  lidar: {script: scenes.land(), fragment: '&select=rover1&view=orbit,-1,-9,6,0,2,0', run: lidarScan},
+  lidar: {script: far(), fragment: '&select=rover1&view=orbit,-1,-9,6,0,2,0', run: lidarScan},
   camera: {
     script: scenes.land(),
     dark: true,

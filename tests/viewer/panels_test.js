@@ -70,10 +70,10 @@ describe('data', () => {
   it('of another run replaces that of the run before', async () => {
     await withPage(scenes.land(), async (page, server) => {
       server.sendChannels(1e6, [['rover1.lidar', 'shoal.planar_lidar_t', 'rover1', 5, 100]]);
-      await page.waitForFunction(() => /rover1\.lidar/.test(document.querySelector('#dock-traffic').textContent));
+      await page.waitForFunction(() => /lidar/.test(document.querySelector('#dock-traffic').textContent));
       server.script = scenes.surface();
       server.send(server.script.scene);
-      await page.waitForFunction(() => !/rover1\.lidar/.test(document.querySelector('#dock-traffic').textContent));
+      await page.waitForFunction(() => !/lidar/.test(document.querySelector('#dock-traffic').textContent));
     }, {...SIZE, fragment: '#t=secret&data=traffic'});
   });
 });

@@ -48,7 +48,8 @@ export class Clocks {
     this.table = table('Clocks of vehicles', HEADS);
     this.table.className = 'grid';
     this.note = element(
-        'p', '± : from the standard deviation that the clock itself estimates; its true error needs `truth: true`.',
+        'p',
+        '± : from the standard deviation that the clock itself estimates; its true error needs the truth channel of the clock.',
         'quiet');
     this.root.append(this.empty, this.table, this.note);
     this.open = false;

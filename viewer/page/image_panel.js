@@ -59,6 +59,7 @@ class Picture {
     this.image = image;
     this.time_us = time_us;
     [this.canvas.width, this.canvas.height] = [image.width, image.height];
+    this.canvas.style.setProperty('--aspect', image.width / image.height);
     this.canvas.getContext('2d', {willReadFrequently: true})
         .putImageData(new ImageData(image.rgba, image.width, image.height), 0, 0);
     this.caption.className = '';

@@ -139,10 +139,10 @@ class Plot {
                                    ...axis,
                                    scale: `y ${unit}`,
                                    side: i % 2 ? 1 : 3,
-                                   size: 50,
+                                   size: 38,
                                    grid: i === 0 ? grid : {show: false},
                                    label: unit || undefined,
-                                   labelSize: 16,
+                                   labelSize: 14,
                                    labelFont: '11px system-ui',
                                    labelGap: 0,
                                  }))

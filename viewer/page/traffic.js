@@ -55,7 +55,7 @@ export class Traffic {
     this.search.placeholder = 'Channels that contain …';
     this.search.setAttribute('aria-label', 'Search channels');
     this.search.addEventListener('input', () => this.changed());
-    this.table = table('Traffic by vehicle and channel', ['', 'msg/s', 'bytes/s', 'messages', 'bytes']);
+    this.table = table('Traffic by vehicle and channel', ['', 'msg/s', 'bytes/s', 'msg', 'bytes']);
     this.table.className = 'grid';
     this.cells = document.createElement('table');
     this.cells.setAttribute('aria-label', 'Who heard whom');
@@ -100,7 +100,7 @@ export class Traffic {
     for (const sum of byVehicle(shown)) {
       lines.push([element('strong', sum.vehicle || 'simulator and programs'), sum]);
       const own = shown.filter((row) => row.vehicle === sum.vehicle).sort((a, b) => (a.name < b.name ? -1 : 1));
-      for (const row of own) lines.push([row.name, row]);
+      for (const row of own) lines.push([this.head(row), row]);
     }
     const cells =
         lines.slice(0, ROWS_MAX)
@@ -110,6 +110,14 @@ export class Traffic {
                      formatNumber(row.count), formatBytes(row.bytes)]);
     if (lines.length > ROWS_MAX) cells.push([`… and ${lines.length - ROWS_MAX} more: search`, '', '', '', '']);
     fillTable(this.table, cells);
+  }
+
+  /** Name of a channel, without that of its vehicle. */
+  head({name, vehicle}) {
+    const made = element('span', vehicle && name.startsWith(`${vehicle}.`) ? name.slice(vehicle.length + 1) : name);
+    made.className = 'indent';
+    made.title = name;
+    return made;
   }
 
   /** The matrix: rows sent, columns received; the losses below it. */

@@ -39,6 +39,7 @@ export class WaterPanel {
     this.chart.append(element('h3', 'Sound speed, m/s, over depth, m'), this.canvas);
     this.side = element('section');
     this.depths = table('Sound speed at the vehicles', ['Vehicle', 'depth, m', 'sound, m/s']);
+    this.depths.className = 'grid';
     this.facts = element('ul');
     this.side.append(this.facts, this.depths);
     this.root.append(this.none, this.chart, this.side);
