@@ -15,7 +15,7 @@ bool is_kept(std::string_view channel) {
   return channel == "sim.info" || channel == "sim.scene" || channel == "sim.asset";
 }
 
-/// Messages of a channel that are examined although nobody has subscribed: the first ones, then some, because a
+/// Messages of a channel that are examined although no client has subscribed: the first ones, then some, because a
 /// standard type cannot express every message.
 bool is_examined(std::uint64_t seen) {
   constexpr std::uint64_t first = 20, every = 50;
@@ -50,13 +50,13 @@ void Protocol::message(std::int64_t utime, std::string_view channel, std::span<c
     if (is_new) state.fingerprint = fingerprint;
     const bool examined = is_new || (clients() > 0 && is_examined(state.seen));
     ++state.seen;
-    if (!kept && !state.wanted && !examined) return;
+    if (!kept && !state.subscribed && !examined) return;
 
     // The thread of the server empties the box at once unless the machine is overloaded
     const bool full =
         box_.bytes + payload.size() > max_undelivered_bytes || box_.entries.size() >= max_undelivered_messages;
     if (full && !kept) {
-      if (state.wanted) ++box_.dropped;
+      if (state.subscribed) ++box_.dropped;
       return;
     }
     box_.bytes += payload.size();
@@ -261,10 +261,10 @@ void Protocol::count_subscription(std::size_t topic, int change) {
 
 void Protocol::update_wanted(const std::string& channel) {
   const std::set<std::size_t>& topics = topics_of_channel_[channel];
-  const bool wanted =
+  const bool subscribed =
       std::any_of(topics.begin(), topics.end(), [this](std::size_t topic) { return subscribers_[topic] > 0; });
   const std::lock_guard lock(box_mutex_);
-  if (const auto known = channels_.find(channel); known != channels_.end()) known->second.wanted = wanted;
+  if (const auto known = channels_.find(channel); known != channels_.end()) known->second.subscribed = subscribed;
 }
 
 void Protocol::send_latched(Session& session, std::size_t topic) {

@@ -43,7 +43,7 @@ struct Request {
 /// messages of LCM channels on as topics in CDR (ros2::TopicTable), each only while a client has subscribed to it.
 ///
 /// Its functions for all threads only put something into a box under a lock and wake the thread of the server, in which
-/// deliver() encodes it.  A client that does not read loses its oldest messages, and is told how many.
+/// deliver() encodes it.  A client that does not read loses its oldest messages, and gets a warning with their number.
 class Protocol final : public WebProtocol, private ros2::TopicSink {
  public:
   static constexpr std::size_t max_queued_bytes = std::size_t{8} << 20;        ///< that wait for one client
@@ -116,7 +116,7 @@ class Protocol final : public WebProtocol, private ros2::TopicSink {
   struct Channel {
     std::uint64_t fingerprint = 0;
     std::uint64_t seen = 0;
-    bool wanted = false;  ///< somebody has subscribed to one of its topics
+    bool subscribed = false;  ///< a client has subscribed to one of its topics
   };
   /// Session and topic to which a last message is sent again.
   struct Target {

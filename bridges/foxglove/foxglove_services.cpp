@@ -44,7 +44,8 @@ ServiceArgument read_json(const Service& service, std::string_view payload) {
   const Json request = parse_client_json(payload);
   const auto value = request.find(service.member);
   if (service.argument == Argument::text) {
-    if (value == request.end() || !value->is_string() || value->get_ref<const std::string&>().size() > max_request_bytes)
+    if (value == request.end() || !value->is_string() ||
+        value->get_ref<const std::string&>().size() > max_request_bytes)
       refuse(service, "a text of at most 65536 bytes");
     return {0, value->get<std::string>()};
   }

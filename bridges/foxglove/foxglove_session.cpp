@@ -51,7 +51,7 @@ void Session::receive_text(std::string_view bytes) {
   } else if (message.op == "unsubscribeParameterUpdates" && may(Control::run)) {
     for (const std::string& name : message.names) parameters_.erase(name);
     gets_parameters_ = !parameters_.empty() && !message.names.empty();
-  } else if (message.op.ends_with("arameters") || message.op.ends_with("ParameterUpdates")) {
+  } else if (message.op.find("Parameter") != std::string::npos) {
     report(StatusLevel::error, message.op + ": " + std::string(control_is_off));
   } else {
     report(StatusLevel::warning, "'" + message.op + "' is not supported");
@@ -228,9 +228,9 @@ bool Session::next(WebFrame& frame) {
   if (time_) return give(time_data(*std::exchange(time_, std::nullopt)), false);
   for (const auto& [queue, bytes] : {std::pair{&latched_, &latched_bytes_}, {&data_, &data_bytes_}})
     while (!queue->empty()) {
-      const bool is_wanted = topic_of_.contains(queue->front().subscription);
+      const bool is_subscribed = topic_of_.contains(queue->front().subscription);
       std::string message = take(*queue, *bytes);
-      if (is_wanted) return give(std::move(message), false);
+      if (is_subscribed) return give(std::move(message), false);
     }
   return false;
 }

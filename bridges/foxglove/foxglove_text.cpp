@@ -117,13 +117,13 @@ std::string service_failure_text(std::uint32_t service, std::uint32_t call, std:
 
 std::string parameters_text(const PlaybackState& state, const std::vector<std::string>& names,
                             const std::optional<std::string>& id) {
-  const auto wanted = [&](const char* name) {
+  const auto is_asked_for = [&](const char* name) {
     return names.empty() || std::find(names.begin(), names.end(), name) != names.end();
   };
   Json parameters = Json::array();
-  if (wanted("paused"))
+  if (is_asked_for("paused"))
     parameters.push_back({{"name", "paused"}, {"value", state.status != PlaybackState::Status::playing}});
-  if (wanted("speed")) parameters.push_back({{"name", "speed"}, {"value", state.speed}, {"type", "float64"}});
+  if (is_asked_for("speed")) parameters.push_back({{"name", "speed"}, {"value", state.speed}, {"type", "float64"}});
   Json message{{"op", "parameterValues"}, {"parameters", std::move(parameters)}};
   if (id) message["id"] = *id;
   return text_of(message);

@@ -48,7 +48,7 @@ std::string status_text(StatusLevel level, std::string_view message, std::string
 std::string advertise_text(std::span<const ros2::Topic* const> topics);
 std::string advertise_services_text();
 std::string service_failure_text(std::uint32_t service, std::uint32_t call, std::string_view message);
-/// `names`: those that are wanted; empty: all.  `id`: of the request, if there is one.
+/// `names`: those that the client asked for; empty: all.  `id`: of the request, if there is one.
 std::string parameters_text(const PlaybackState& state, const std::vector<std::string>& names,
                             const std::optional<std::string>& id);
 

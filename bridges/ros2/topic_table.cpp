@@ -18,8 +18,8 @@ bool TopicTable::encode(std::string_view channel, std::span<const std::byte> pay
   if (const auto of_channel = routes_.find(channel); of_channel != routes_.end())
     if (const auto known = of_channel->second.find(schema->fingerprint); known != of_channel->second.end())
       route = &known->second;
-  const bool is_wanted = route == nullptr || sink.wants(topics_[route->topic]);
-  const auto error = is_wanted ? to_cdr(*schema, payload, cdr_) : shoal::validate(*schema, payload, shoal::Finite::any);
+  const bool is_taken = route == nullptr || sink.wants(topics_[route->topic]);
+  const auto error = is_taken ? to_cdr(*schema, payload, cdr_) : shoal::validate(*schema, payload, shoal::Finite::any);
   if (error) {
     sink.invalid(channel, *error);
     return keep_bytes(channel, payload, sink);
@@ -27,7 +27,7 @@ bool TopicTable::encode(std::string_view channel, std::span<const std::byte> pay
   // Pass it on to the topics of the message.
   if (route == nullptr) route = &route_of(channel, *schema);
   const Topic& topic = topics_[route->topic];
-  if (is_wanted && sink.wants(topic) && !sink.take(topic, cdr_)) return false;
+  if (is_taken && sink.wants(topic) && !sink.take(topic, cdr_)) return false;
   return encode_standard(*route, channel, payload, sink);
 }
 

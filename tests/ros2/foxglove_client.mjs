@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Client of Foxglove's WebSocket protocol, by its reference library: subscribes to every topic and decodes each message
 // by the schema that was advertised with it.
-import { FoxgloveClient } from "@foxglove/ws-protocol";
+import protocol from "@foxglove/ws-protocol";
 import { request } from "node:http";
 import { spawn } from "node:child_process";
 import WebSocket from "ws";
@@ -15,7 +15,7 @@ export function check(condition, text) {
   if (!condition) throw new Error(text);
 }
 
-/** Waits for a condition, at most `seconds`. */
+/** Waits for a condition, no longer than `seconds`. */
 export async function until(condition, what, seconds = 30) {
   const end = Date.now() + 1000 * seconds;
   for (;;) {
@@ -78,7 +78,7 @@ export function upgradeStatus(port, protocols, origin) {
 export class Viewer {
   constructor(port, protocols = [sdk, older]) {
     this.socket = new WebSocket(`ws://127.0.0.1:${port}`, protocols);
-    this.client = new FoxgloveClient({ ws: this.socket });
+    this.client = new protocol.FoxgloveClient({ ws: this.socket });
     this.topics = new Map(); // by name: {channel, messages, last, lastTime}
     this.bySubscription = new Map();
     this.services = new Map();
@@ -88,7 +88,7 @@ export class Viewer {
     this.errors = [];
     this.playback = [];
     this.messages = 0;
-    this.wanted = () => true;
+    this.selects = () => true;
     this.client.on("error", (error) => this.errors.push(error.message));
     this.client.on("serverInfo", (info) => (this.info = info));
     this.client.on("status", (status) => this.statuses.push(status));
@@ -99,7 +99,8 @@ export class Viewer {
     this.client.on("message", (event) => this.take(event));
     this.socket.on("message", (data, isBinary) => {
       // A playback state, which the library does not know.
-      if (isBinary && data[0] === 5) this.playback.push(data);
+      const bytes = Buffer.from(data);
+      if (isBinary && bytes[0] === 5) this.playback.push(bytes);
     });
     this.closed = new Promise((resolve) => this.socket.on("close", (code) => resolve((this.closeCode = code))));
   }
@@ -120,7 +121,7 @@ export class Viewer {
       const decode = decoderOf({ name: channel.schemaName, data: new TextEncoder().encode(channel.schema) });
       const topic = { channel, decode, messages: 0, kept: [] };
       this.topics.set(channel.topic, topic);
-      if (this.wanted(channel.topic)) this.subscribe(topic);
+      if (this.selects(channel.topic)) this.subscribe(topic);
     } catch (error) {
       this.errors.push(`${channel.topic}: ${error.message}`);
     }

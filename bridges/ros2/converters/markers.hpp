@@ -33,8 +33,8 @@ inline constexpr std::size_t max_marker_triangles = 100'000;
 /// Maximum number of rows and columns of a terrain; larger ones are thinned out.
 inline constexpr std::size_t max_marker_grid = 160;
 
-/// Returns the corners of the triangles of an asset (docs/develop/view_protocol.md); none of an image, of bytes that
-/// are no asset, and of a mesh with too many triangles.
+/// Returns the corners of the triangles of an asset (docs/develop/view_protocol.md); none of an image, of other
+/// bytes, and of a mesh with too many triangles.
 std::vector<sim::Vector3d> triangles_of_asset(std::span<const std::uint8_t> asset);
 /// Appends visualization_msgs/Marker.
 void put_marker(CdrWriter& out, std::int64_t utime, const Marker& marker);

@@ -124,10 +124,9 @@ TEST(FoxgloveServices, RefuseArgumentsOfAWrongForm) {
   EXPECT_THAT(error_of([&] { read_request(rewind, "cdr", header); }), HasSubstr("/shoal/rewind: 'seconds'"));
   EXPECT_THAT(error_of([&] { read_request(rewind, "cdr", "x"); }), HasSubstr("00 01 00 00"));
   EXPECT_THAT(error_of([&] { read_request(rewind, "protobuf", ""); }), HasSubstr("'cdr' or 'json'"));
-  EXPECT_THAT(error_of([&] {
-                read_request(rewind, "cdr", header + bytes_of_number(std::numeric_limits<double>::infinity()));
-              }),
-              HasSubstr("a finite number"));
+  EXPECT_THAT(
+      error_of([&] { read_request(rewind, "cdr", header + bytes_of_number(std::numeric_limits<double>::infinity())); }),
+      HasSubstr("a finite number"));
   EXPECT_THAT(error_of([&] { read_request(rewind, "json", R"({"seconds":"2"})"); }), HasSubstr("a number"));
   EXPECT_THAT(error_of([&] { read_request(*find_service(3), "json", R"({"steps":1.5})"); }), HasSubstr("an integer"));
   EXPECT_THAT(error_of([&] { read_request(*find_service(7), "cdr", header + bytes_of_number(std::uint32_t{9})); }),

@@ -271,9 +271,9 @@ TEST_F(FoxgloveProtocolTest, SubscriptionsThatMakeNoSenseAreRefused) {
   viewer.read();
   std::vector<std::string> messages;
   for (const Json& each : viewer.of("status")) messages.push_back(each["message"]);
-  EXPECT_THAT(messages, ElementsAre(HasSubstr("its id is in use"), HasSubstr("has one already"),
-                                    HasSubstr("no channel 1000"), HasSubstr("no subscription 9"),
-                                    HasSubstr("'fetchAsset' is not supported")));
+  EXPECT_THAT(messages,
+              ElementsAre(HasSubstr("its id is in use"), HasSubstr("has one already"), HasSubstr("no channel 1000"),
+                          HasSubstr("no subscription 9"), HasSubstr("'fetchAsset' is not supported")));
 }
 
 TEST_F(FoxgloveProtocolTest, WithoutPermissionNothingIsControlled) {

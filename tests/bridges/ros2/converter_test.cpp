@@ -343,7 +343,7 @@ std::string next_marker(CdrReader& in) {
   in.number<std::uint8_t>();
   if (action != 0) return read;
   return read + " x " + std::to_string(static_cast<int>(x_m)) + " width " + std::to_string(static_cast<int>(width_m)) +
-         " red " + std::to_string(static_cast<int>(255 * red)) + " points " + std::to_string(points);
+         " red " + std::to_string(std::lround(100 * red)) + " points " + std::to_string(points);
 }
 
 std::vector<std::string> markers_of(std::optional<CdrReader> in) {
@@ -365,13 +365,13 @@ TEST(Converter, PartsOfASceneAreMarkersInTheFramesOfTheirBodies) {
         {"shape":"sphere","radius_m":4,"pose":[1,0,0,1,0,0,0],"color":"#200000"}]}],
       "water":{"level_m":1},"zones":[{"name":"z","polygon_m":[[0,0],[1,0],[1,1]]}]})";
   EXPECT_THAT(markers_of(converted(scene, "/scene", "sim.scene")),
-              testing::ElementsAre("action 3", "auv1/body/hull auv1/body/hull 0 type 1 x 3 width 2 red 255 points 0",
-                                   "auv1/body/hull auv1/body/hull 3 type 3 x 0 width 4 red 16 points 0",
-                                   "auv1/body/hull auv1/body/hull 4 type 2 x 0 width 4 red 16 points 0",
-                                   "auv1/body/hull auv1/body/hull 5 type 2 x 0 width 4 red 16 points 0",
-                                   "world wall/body/wall 0 type 2 x 6 width 8 red 32 points 0",
-                                   "world water 0 type 1 x 0 width 400 red 38 points 0",
-                                   "world zones 0 type 4 x 0 width 0 red 229 points 4"));
+              testing::ElementsAre("action 3", "auv1/body/hull auv1/body/hull 0 type 1 x 3 width 2 red 100 points 0",
+                                   "auv1/body/hull auv1/body/hull 3 type 3 x 0 width 4 red 6 points 0",
+                                   "auv1/body/hull auv1/body/hull 4 type 2 x 0 width 4 red 6 points 0",
+                                   "auv1/body/hull auv1/body/hull 5 type 2 x 0 width 4 red 6 points 0",
+                                   "world wall/body/wall 0 type 2 x 6 width 8 red 13 points 0",
+                                   "world water 0 type 1 x 0 width 400 red 15 points 0",
+                                   "world zones 0 type 4 x 0 width 0 red 90 points 4"));
   scene.scene = R"({"bodies":[3,{"parts":[{"shape":"box"},7]}],"zones":{},"water":5})";
   EXPECT_THAT(markers_of(converted(scene, "/scene", "sim.scene")), testing::ElementsAre("action 3"));
   scene.scene = "[";
@@ -397,12 +397,11 @@ TEST(Converter, AMeshBecomesAMarkerWhenItsAssetArrives) {
   ConverterContext context;
   EXPECT_THAT(markers_of(converted(scene, "/scene", "sim.scene", &context)), testing::ElementsAre("action 3"));
   EXPECT_FALSE(converted(scene, "/tf", "sim.scene", &context));
-  const std::string marker = "world rock/body/rock 0 type 11 x 0 width 1 red 64 points 3";
+  const std::string marker = "world rock/body/rock 0 type 11 x 0 width 1 red 25 points 3";
   EXPECT_THAT(markers_of(converted(asset, "/scene", "sim.asset", &context)), testing::ElementsAre(marker));
   EXPECT_FALSE(converted(asset, "/tf", "sim.asset", &context));
   EXPECT_FALSE(converted(asset, "/scene", "sim.asset", &context));
-  EXPECT_THAT(markers_of(converted(scene, "/scene", "sim.scene", &context)),
-              testing::ElementsAre("action 3", marker));
+  EXPECT_THAT(markers_of(converted(scene, "/scene", "sim.scene", &context)), testing::ElementsAre("action 3", marker));
 
   // Corners that the mesh does not have
   context.assets.clear();

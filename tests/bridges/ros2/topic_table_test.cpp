@@ -16,7 +16,7 @@ using testing::IsEmpty;
 /// Takes the topics that it wants.
 class Sink final : public TopicSink {
  public:
-  bool wants(const Topic& topic) override { return all || topic.name == wanted; }
+  bool wants(const Topic& topic) override { return all || topic.name == selected; }
   bool take(const Topic& topic, std::span<const std::byte>) override {
     taken.push_back(topic.name);
     return true;
@@ -26,7 +26,7 @@ class Sink final : public TopicSink {
   }
 
   bool all = true;
-  std::string wanted;
+  std::string selected;
   std::vector<std::string> taken, problems;
 };
 
@@ -45,23 +45,23 @@ TEST(TopicTable, EncodesOnlyWhatIsWanted) {
   TopicTable table;
   Sink sink;
   sink.all = false;
-  sink.wanted = "/a/gps/fix";
+  sink.selected = "/a/gps/fix";
   table.encode("a.gps", shoal::encode(shoal::gps_data_t{}), sink);
   table.encode("a.gps", shoal::encode(shoal::gps_data_t{}), sink);
   EXPECT_THAT(sink.taken, ElementsAre("/a/gps/fix", "/a/gps/fix"));
-  sink.wanted = "";
+  sink.selected = "";
   table.encode("a.gps", shoal::encode(shoal::gps_data_t{}), sink);
   EXPECT_EQ(sink.taken.size(), 2u);
 }
 
-TEST(TopicTable, AnInvalidPayloadOfAnUnwantedTopicIsReported) {
+TEST(TopicTable, AnInvalidPayloadOfAnUnselectedTopicIsReported) {
   TopicTable table;
   Sink sink;
   table.encode("a.gps", shoal::encode(shoal::gps_data_t{}), sink);
   sink.all = false;
   sim::Bytes broken = shoal::encode(shoal::gps_data_t{});
   broken.pop_back();
-  sink.wanted = "/a/gps/fix";
+  sink.selected = "/a/gps/fix";
   sink.taken.clear();
   EXPECT_TRUE(table.encode("a.gps", broken, sink));
   EXPECT_EQ(sink.problems.size(), 1u);

@@ -101,7 +101,7 @@ void LogView::send_event_at(std::uint64_t offset) {
   bridges::LogEventView event;
   if (!looking_.next(event)) return;
   messages_.take(event.channel, event.payload);
-  foxglove_.message(times_.of(event.channel, event.payload, event.timestamp), event.channel, event.payload);
+  foxglove_.message(times_.of(event.channel, event.payload, event.utime), event.channel, event.payload);
 }
 
 void LogView::seek(std::int64_t time_us) {
@@ -131,7 +131,7 @@ void LogView::play_to(std::int64_t time_us) {
     // Events were retained for the whole log.
     if (event.channel != "sim.event" && event.channel != "sim.asset") messages_.take(event.channel, event.payload);
     traffic_.take(event.channel, event.payload, time_.of(event));
-    const std::int64_t utime = times_.of(event.channel, event.payload, event.timestamp);
+    const std::int64_t utime = times_.of(event.channel, event.payload, event.utime);
     if (event.channel != "sim.asset") foxglove_.message(utime, event.channel, event.payload);
     if (event.offset >= last) break;
   }
