@@ -134,7 +134,8 @@ class RemoteVehicle {
   }
   /// Takes the messages that have arrived.
   void take() {
-    while (const auto message = lcm_.next(0ms)) try {
+    while (const auto message = lcm_.next(0ms)) {
+      try {
         if (message->channel == "sim.vehicle")
           take_vehicle(shoal::decode<shoal::sim_vehicle_t>(message->payload, shoal::Finite::any));
         else
@@ -142,6 +143,7 @@ class RemoteVehicle {
       } catch (const shoal::MessageError& error) {
         spdlog::debug("{}: {}", message->channel, error.what());
       }
+    }
   }
   const std::optional<DrivenVehicle>& description() const { return description_; }
   bool removed() const { return removed_; }
@@ -163,7 +165,7 @@ class RemoteVehicle {
       if (message.vehicle[i] != name_) continue;
       const auto& q = message.orientation[i];
       const double yaw_rad = std::atan2(2 * (q[0] * q[3] + q[1] * q[2]), 1 - 2 * (q[2] * q[2] + q[3] * q[3]));
-      pose_ = DrivePose{yaw_rad, -message.position_m[i][2]};
+      pose_ = DrivePose{yaw_rad, -message.position_m[i][2]};  // the message does not have the level of the tide
     }
   }
 
@@ -189,7 +191,8 @@ std::optional<int> find_vehicle(const DriveArguments& arguments, RemoteVehicle& 
     return exit_failed;
   }
   // Its description comes on another channel.
-  for (const auto deadline = Clock::now() + 5s; !vehicle.description() && Clock::now() < deadline;) {
+  for (const auto deadline = Clock::now() + 5s;
+       !vehicle.description() && Clock::now() < deadline && caught_signal() == 0;) {
     vehicle.take();
     std::this_thread::sleep_for(5ms);
   }
