@@ -57,7 +57,8 @@ it('has the water surface of shoal medium within 1 cm at 100 points', async () =
 it('has a ping at each receiver when it arrives there, within 0.5 %', async () => {
   const log = join(folder, 'run.lcm');
   await shoal(
-      'run', 'coop_underwater', '--launch', '--duration', '40', '--quiet', '--results', folder, '--record', log);
+      'run', 'worlds/coop_underwater.yaml', '--launch', '--duration', '40', '--quiet', '--results', folder, '--record',
+      log);
   await shoal('report', folder);
   const sounds = await rowsOf(log, 'sim.sound'), arrivals = await rowsOf(log, 'sim.sound.arrival');
   const page = await open(browser, pathToFileURL(join(folder, 'run.html')).href, {width: 320, height: 240});
