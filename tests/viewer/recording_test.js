@@ -46,8 +46,8 @@ const pause = async (page) => {
 before(async () => {
   folder = await mkdtemp(join(tmpdir(), 'recording-'));
   await shoal(
-      'run', 'dynamic_warehouse', '--bus', 'none', '--duration', String(DURATION_S), '--quiet', '--results', folder,
-      '--record', join(folder, 'run.lcm'));
+      'run', 'worlds/dynamic_warehouse.yaml', '--bus', 'none', '--duration', String(DURATION_S), '--quiet', '--results',
+      folder, '--record', join(folder, 'run.lcm'));
   said = await shoal('report', folder);
   browser = await launch();
 });

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <spdlog/fmt/fmt.h>
+#include <spdlog/spdlog.h>
 #include <unistd.h>
 
 #include <cctype>
@@ -81,7 +82,7 @@ std::string page_in_3d(const ReportArguments& arguments) {
     return path;
   } catch (const std::runtime_error& reason) {
     if (wanted) throw;
-    std::cout << "no page in three dimensions: " << reason.what() << '\n';
+    spdlog::info("no page in three dimensions: {}", reason.what());
     return "";
   }
 }
