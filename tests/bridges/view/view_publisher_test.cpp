@@ -131,7 +131,7 @@ TEST(ViewPublisher, TheSceneAndItsAssetsComeAgainOnRequest) {
 
 TEST(ViewPublisher, FaultsAreEvents) {
   ViewedWorld viewed(rover_and_ball +
-                     "events: [{name: dark, at: 0.1, do: [{fault: {device: r1.lidar, kind: silent}}]}]\n");
+                     "events: [{name: dark, at: 0.1, do: [{fault: {device: r1/lidar, kind: silent}}]}]\n");
   viewed.run_for(0.2);
   const std::vector<shoal::sim_event_t> events = viewed.events.take_all();
   ASSERT_EQ(events.size(), 2u);
