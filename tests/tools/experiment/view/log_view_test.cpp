@@ -153,7 +153,7 @@ TEST(LogView, IntroducesTheLogAndItsScene) {
   EXPECT_EQ(hello["source"], "log");
   EXPECT_EQ(hello["name"], "run.lcm");
   EXPECT_EQ(hello["end_us"], 3'000'000);
-  EXPECT_EQ(page.text("scene")["bodies"][0]["name"], "ball");
+  EXPECT_EQ(page.text("scene")["bodies"][0]["name"], "ball/body");
 }
 
 /// z = 100 m - g t^2 / 2; the step of 10 ms is of first order: it adds at most g t h / 2.
