@@ -61,7 +61,7 @@ describe('past', () => {
       const later = await until(page, `(p) => p.newest_us > ${probe.newest_us + 3e5} && p.past`);
       assert.equal(later.time_us, 3e6);
       assert.ok(server.received.every((message) => message.op !== 'control'));
-      assert.match(await text(page, '#past'), /past; the run is at/);
+      assert.match(await text(page, '#past'), /past; run at/);
       await page.click('#live');
       await until(page, `(p) => !p.past && p.time_us > ${later.newest_us}`, 'the present');
       assert.ok(server.received.some((message) => message.op === 'look' && message.time_us === null));
