@@ -99,6 +99,7 @@ export class Past {
 
   show() {
     for (const id of ['live', 'replay', 'replay-speed', 'past']) $(id).hidden = !this.active;
+    $('status').hidden = this.active;  // room for the time line
     $('replay').textContent = this.playing ? 'Stop' : 'Play back';
   }
 
@@ -125,7 +126,7 @@ export class Past {
       this.looker.request(this.time_us);
     }
     this.looker.send(now_ms);
-    const text = `past; the run is at ${formatTime(this.newest_us())}`;
+    const text = `past; run at ${formatTime(this.newest_us())}`;
     if ($('past').textContent !== text) $('past').textContent = text;
     return undefined;
   }

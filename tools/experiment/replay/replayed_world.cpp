@@ -158,7 +158,8 @@ void ReplayedWorld::load(const sim::Bytes& saved) {
   std::memcpy(&size, saved.data() + saved.size() - sizeof size, sizeof size);
   const auto owners_at = saved.begin() + static_cast<std::ptrdiff_t>(size);
   world_.state().restore({saved.begin(), owners_at});
-  auto owners = sim::StateArchive::restorer({owners_at, saved.end() - sizeof size});
+  const sim::Bytes rest(owners_at, saved.end() - sizeof size);
+  auto owners = sim::StateArchive::restorer(rest);
   owners.section("owners");
   service_.visit_state(owners);
   owners.end();

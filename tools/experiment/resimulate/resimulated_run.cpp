@@ -17,6 +17,8 @@ namespace {
 
 using std::chrono::microseconds;
 
+/// Snapshots of the last ten minutes are kept; to go further back the run starts again.
+constexpr std::int64_t snapshots_us = 600'000'000;
 constexpr std::size_t max_snapshot_bytes = std::size_t{64} << 20;
 /// The interval between two snapshots is at least this multiple of the cost of the last one.
 constexpr int rest_per_snapshot = 80;
@@ -34,7 +36,7 @@ ResimulatedRun::ResimulatedRun(const Options& options, const std::string& versio
            [this](std::string_view channel, std::span<const std::byte> payload) { page_.message(channel, payload); }},
           [this](std::string_view channel, std::span<const std::byte> payload) { page_.message(channel, payload); }),
       view_(replayed_.bus(), replayed_.world(), {}, [] { return true; }),
-      snapshots_(std::numeric_limits<std::int64_t>::max(), max_snapshot_bytes) {
+      snapshots_(snapshots_us / world().step_time().count(), max_snapshot_bytes) {
   control_.speed = 1;
   page_.start(world(), end_s(), {"recorded", recorded_programs});
   replayed_.start();

@@ -5,6 +5,8 @@
 
 #include <atomic>
 #include <cstring>
+#include <fstream>
+#include <functional>
 #include <random>
 #include <thread>
 
@@ -153,7 +155,7 @@ TEST(LogView, IntroducesTheLogAndItsScene) {
   EXPECT_EQ(hello["source"], "log");
   EXPECT_EQ(hello["name"], "run.lcm");
   EXPECT_EQ(hello["end_us"], 3'000'000);
-  EXPECT_EQ(page.text("scene")["bodies"][0]["name"], "ball");
+  EXPECT_EQ(page.text("scene")["bodies"][0]["name"], "ball/body");
 }
 
 /// z = 100 m - g t^2 / 2; the step of 10 ms is of first order: it adds at most g t h / 2.
@@ -198,34 +200,45 @@ TEST(LogView, ShowsASecondLogAtTheSameTimeAndWhereItDiffers) {
 }
 
 /// Logs with hashes, as `shoal run` writes them, differ where their hashes do.
-TEST(LogDifference, IsTheFirstHashThatDiffers) {
-  const test_support::ScratchFolder folder;
-  const auto record = [&](const std::string& name, const std::string& more) {
-    test::RecordedRun run(
-        "shoal: 1\nrun: {hash_every_steps: 10}\nphysics: {step_s: 0.01}\nobjects: [{name: ball, parts: [{shape: "
-        "sphere, mass_kg: 1}]}]\n" +
-            more,
-        folder.file(name));
+class LogDifference : public testing::Test {
+ protected:
+  static std::string world(double mass_kg) {
+    return "shoal: 1\nrun: {hash_every_steps: 10}\nphysics: {step_s: 0.01}\nobjects: [{name: ball, parts: [{shape: "
+           "sphere, mass_kg: " +
+           std::to_string(mass_kg) + "}]}]\n";
+  }
+  /// Records a second; `lift_at`: step at which a client moves the ball.
+  std::string record(const std::string& name, double mass_kg, std::int64_t lift_at = -1) {
+    test::RecordedRun run(world(mass_kg), folder_.file(name));
     bridges::ViewPublisher view(run.gate, run.world, {}, [] { return true; });
     view.after_step();
-    run.run(100);
-    view.after_step();
-    return folder.file(name);
-  };
-  const std::string a = record("a.lcm", "");
-  const std::string b =
-      record("b.lcm", "events: [{name: lift, at: 0.5, do: [{move: {name: ball, rpy_deg: [9, 0, 0]}}]}]\n");
-  const tools::LogIndex index_a(a), index_b(b);
-  ASSERT_EQ(index_a.hashes().size(), 11u);
-  EXPECT_EQ(index_a.hashes()[3].step, 30);
-  const auto difference = tools::first_difference(a, index_a, b, index_b);
+    run.run(100, [&](std::int64_t step) {
+      if (step == lift_at) run.request("do", "{move: {name: ball, position_m: [0, 0, 9]}}");
+    });
+    return folder_.file(name);
+  }
+
+  test_support::ScratchFolder folder_;
+};
+
+TEST_F(LogDifference, IsTheFirstHashThatDiffers) {
+  const std::string a = record("a.lcm", 1), b = record("b.lcm", 1, 52);
+  const auto difference = tools::first_difference(a, tools::LogIndex(a), b, tools::LogIndex(b));
   ASSERT_TRUE(difference);
   EXPECT_EQ(difference->by, "sim.hash");
-  EXPECT_EQ(difference->time_us, 10'000 * *difference->step);
-  // The log of b, run again in the world of a, differs at this step too.
+  EXPECT_EQ(difference->step, 60);
+  EXPECT_EQ(difference->time_us, 600'000);
+}
+
+TEST_F(LogDifference, IsThatOfAReplay) {
+  const std::string a = record("a.lcm", 1), b = record("b.lcm", 2);
+  const auto difference = tools::first_difference(a, tools::LogIndex(a), b, tools::LogIndex(b));
+  ASSERT_TRUE(difference);
+  // The log of b in the world of a.
   tools::ReplayOptions options;
   options.log = b;
-  options.load.sets = {"events=[]"};
+  options.world = folder_.file("a.yaml");
+  std::ofstream(options.world) << world(1);
   options.quiet = true;
   const tools::ReplayOutcome replayed = tools::replay(options);
   ASSERT_TRUE(replayed.first);
