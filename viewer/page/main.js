@@ -496,7 +496,7 @@ function start() {
       setView: (text) => app.setView(text),
       select: (name) => app.select(name),
       returnsOf: (channel) => app.instruments.returns.pointsOf(channel),
-      imageOf: (channel) => app.instruments.images.pictures.find((one) => one.channel === channel),
+      imageOf: (channel) => app.instruments.images.views.find((one) => one.channel === channel),
     };
   } catch (error) {
     $('banner').textContent = `this page cannot draw: ${error.message}`;
