@@ -86,7 +86,8 @@ export class Instruments {
 
   rewind(time_us) {
     this.app.channels.rewind(time_us);
-    for (const part of [this.returns, this.ranges, this.plots]) part.rewind(time_us);
+    this.returns.rewind(time_us);
+    this.ranges.rewind(time_us);
   }
 
   listChanged() { this.listStale = true; }

@@ -407,6 +407,7 @@ class App {
   }
 
   writeAddress(now_ms) {
+    if (!this.address.due(now_ms)) return;
     this.address.write(
         {
           view: this.cameras.mode === 'device' ? '' : this.cameras.view(),

@@ -364,13 +364,6 @@ export class Plots {
   /** Goes to a time of a log; a run offers to rewind. */
   seek(t_s) { this.app.timeBar.goTo(Math.round(t_s * 1e6)); }
 
-  /** The time of a run was set back: what was later is another branch. */
-  rewind(time_us) {
-    if (!this.isLog)
-      for (const trace of this.traces()) trace.rewind(time_us / 1e6);
-    this.stale = true;
-  }
-
   /** Another scene. */
   restart() {
     this.fields.clear();
