@@ -55,7 +55,7 @@ describe('plots', () => {
       await show(page, server, 2);
       await server.publishOnceWanted('rover1.pose', 'pose_t', 2.5e6, pose(2.5));
       const {plots: [[trace]]} = await until(page, (p) => p.plots[0][0].last_s === 2.5);
-      assert.equal(trace.count, 4);  // 0 was the message before the field was chosen
+      assert.equal(trace.count, 3);  // of 1, 2 and 2.5 s
       await page.waitForFunction(() => location.hash.includes('plots=rover1.pose'));
     }, SIZE);
   });
