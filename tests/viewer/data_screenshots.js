@@ -46,7 +46,7 @@ function far() {
   return script;
 }
 
-/** A picture of a ramp with a disc, as an `image_t`. */
+/** A ramp with a disc, as an `image_t`. */
 function camera(kind) {
   const width = 160, height = 120, step = kind === 'depth' ? 4 : 3, data = Buffer.alloc(step * width * height);
   for (let v = 0; v < height; ++v)
@@ -123,7 +123,7 @@ async function clocks(server) {
       {...status, disciplined: false, since_fix_s: 831.2, error_s: null, rate_error: null, estimated_std_s: 0.0031});
 }
 
-function heard(server) {
+function receptions(server) {
   const names = ['auv1', 'auv2', 'auv3'];
   const items = names.flatMap(
       (from, i) =>
@@ -131,7 +131,7 @@ function heard(server) {
               .map(
                   (to, k) =>
                       ({from, to, sent: 40, received: 40 - 9 * i - 5 * k, lost: {noise: 5 * k, interference: 9 * i}})));
-  server.send({op: 'heard', time_us: 4e6, items});
+  server.sendPairs(items, 4e6);
   server.sendChannels(
       4e6, CHANNELS.map(([name, type, vehicle, count, bytes]) => [name, type, vehicle, 2 * count, 2 * bytes]));
 }
@@ -165,7 +165,7 @@ const SHOTS = {
     }
   },
   clocks: {script: scenes.underwater(), fragment: '&data=clocks', run: clocks},
-  traffic: {script: scenes.underwater(), fragment: '&data=traffic&select=auv1', run: heard},
+  traffic: {script: scenes.underwater(), fragment: '&data=traffic&select=auv1', run: receptions},
   water: {script: scenes.underwater(), fragment: '&data=water', run: () => {}},
   show: {script: scenes.land(), fragment: '', run: () => {}, click: '#show'},
   phone_plots: {
@@ -175,7 +175,7 @@ const SHOTS = {
     fragment: '&data=plots&plots=rover1.pose/pos[0],rover1.pose/speed_mps',
     run: () => {}
   },
-  phone_traffic: {script: scenes.underwater(), width: 390, height: 844, fragment: '&data=traffic', run: heard},
+  phone_traffic: {script: scenes.underwater(), width: 390, height: 844, fragment: '&data=traffic', run: receptions},
 };
 
 const [folder = 'screenshots', ...names] = process.argv.slice(2);

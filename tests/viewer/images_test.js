@@ -68,7 +68,7 @@ function png16(values) {
   ]);
 }
 
-/** Publishes an image and returns its picture on the page: {width, height, rgba, values}. */
+/** Publishes an image and returns its pixels on the page: {width, height, rgba, values}. */
 async function shown(page, server, channel, type, time_us, fields) {
   await server.publishOnceWanted(channel, type, time_us, fields);
   await until(page, `(p) => p.images.some((one) => one.channel === '${channel}' && one.time_us === ${time_us})`);

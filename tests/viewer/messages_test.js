@@ -81,29 +81,29 @@ describe('messages', () => {
       assert.ok(other.refused > 1000);
       const [client] = server.clients;
       client.socket.send(Buffer.from(whole.slice(0, 60)));
-      for (const junk
-               of ['{"op":"channels"}', '{"op":"channels","items":[null,{"name":1}]}', '{"op":"heard","items":[null]}',
-                   '{"op":"series","id":1}', '{"op":"heard"}'])
+      for (const junk of ['{"op":"channels"}', '{"op":"channels","items":[null,{"name":1}]}', '{"op":"series","id":1}'])
         client.socket.send(junk);
+      server.sendPairs([null]);
+      server.sendPairs();
       await page.waitForFunction(() => /message: header must fit/.test(document.getElementById('events').textContent));
       await show(page, server, 2);
     }, {width: 400, height: 300});
   });
 
-  it('are wanted only for what is open and selected', async () => {
+  it('are subscribed only for what is open and selected', async () => {
     await withPage(scenes.land(), async (page, server) => {
-      const wanted = () => server.received.findLast((message) => message.op === 'subscribe')?.channels ?? [];
+      const subscribed = () => server.received.findLast((message) => message.op === 'subscribe')?.channels ?? [];
       const settle = async (names) => {
-        for (let i = 0; i < 300 && wanted().map((one) => one.name).sort().join() !== names; ++i)
+        for (let i = 0; i < 300 && subscribed().map((one) => one.name).sort().join() !== names; ++i)
           await new Promise((resolve) => {
             setTimeout(resolve, 20);
           });
-        assert.equal(wanted().map((one) => one.name).sort().join(), names);
+        assert.equal(subscribed().map((one) => one.name).sort().join(), names);
       };
       await settle('');
       await page.evaluate(() => window.shoal.select('rover1'));
       await settle('rover1.lidar');
-      assert.ok(wanted()[0].rate_hz > 0 && wanted()[0].rate_hz <= 30);
+      assert.ok(subscribed()[0].rate_hz > 0 && subscribed()[0].rate_hz <= 30);
       server.sendChannels(1e6, [['rover1.front', 'shoal.image_t', 'rover1'], ['rover1.lidar', 'shoal.planar_lidar_t']]);
       await page.click('#data');
       await page.click('#tab-images');

@@ -246,6 +246,9 @@ export class MockServer {
     this.send({op: 'channels', time_us, items});
   }
 
+  /** Sends who received whom. */
+  sendPairs(items, time_us = 0) { this.send({op: 'heard', time_us, items}); }
+
   /** The samples of a log, by a function of the script of time in s. */
   answerSeries(client, {id, channel, field, from_us, to_us, points}) {
     const t_us = [...Array(points).keys()].map((i) => from_us + (to_us - from_us) * i / (points - 1));

@@ -15,7 +15,7 @@ const SIZE = {
 };
 
 describe('data', () => {
-  it('has clocks, traffic, who heard whom, and the water', async () => {
+  it('has clocks, traffic, who received whom, and the water', async () => {
     const script = scenes.underwater();
     script.scene.zones.push({name: 'cave', polygon_m: [[0, 0], [9, 0], [9, 9]], z_m: [null, 0], flags: ['gps_denied']});
     await withPage(script, async (page, server) => {
@@ -46,14 +46,12 @@ describe('data', () => {
       assert.deepEqual(rows[0], ['auv1', '2.0', '100 B/s', '8', '400 B']);
       assert.deepEqual(rows[3], ['auv2', '10', '500 B/s', '40', '2.0 kB']);
       assert.deepEqual(rows[6], ['sim.state', '20', '40.0 kB/s', '80', '160.0 kB']);
-      server.send({
-        op: 'heard',
-        time_us: 4e6,
-        items: [
-          {from: 'auv1', to: 'auv2', sent: 10, received: 7, lost: {noise: 1, interference: 2}},
-          {from: 'auv2', to: 'auv1', sent: 4, received: 4, lost: {}}
-        ]
-      });
+      server.sendPairs(
+          [
+            {from: 'auv1', to: 'auv2', sent: 10, received: 7, lost: {noise: 1, interference: 2}},
+            {from: 'auv2', to: 'auv1', sent: 4, received: 4, lost: {}}
+          ],
+          4e6);
       await page.waitForFunction(() => document.querySelectorAll('.matrix tr').length === 3);
       assert.equal(await text(page, '.matrix tr:nth-child(2) td:nth-child(3)'), '7/10 ✕');
       assert.equal(await text(page, '.matrix tr:nth-child(3) td:nth-child(2)'), '4/4');
@@ -151,13 +149,13 @@ describe('reach', () => {
     await withPage(scenes.underwater(), async (page, server) => {
       server.sendChannels(
           0, [['auv1.a_channel_with_a_very_long_name_of_its_own.truth', 'shoal.clock_status_t', 'auv1']]);
-      server.send({op: 'heard', items: [{from: 'auv1', to: 'auv2', sent: 1, received: 0, lost: {noise: 1}}]});
+      server.sendPairs([{from: 'auv1', to: 'auv2', sent: 1, received: 0, lost: {noise: 1}}]);
       await page.click('#data');
       for (const tab of ['plots', 'images', 'clocks', 'traffic', 'water']) {
         await page.click(`#tab-${tab}`);
         await show(page, server, 1);
         const out = await page.evaluate(() => {
-          // What scrolls within a box of its own may be wider.
+          // What scrolls within its own box may be wider.
           const inside = (one) => !one.parentElement.closest('.columns > section, #dock-tabs, #dock-clocks');
           return [...document.querySelectorAll('body *')]
               .filter((one) => one.checkVisibility() && inside(one))

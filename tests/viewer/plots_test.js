@@ -51,9 +51,11 @@ describe('plots', () => {
       await page.waitForFunction(
           () => document.querySelector('.plot-legend').textContent.includes('pos[1]8') &&
               document.querySelector('.plot-legend').textContent.includes('-0.757'));
-      // Back in time: another branch has no samples of this one.
+      // A run that was rewound: another branch has no samples of this one.
       await show(page, server, 2);
-      await until(page, (p) => p.plots[0][0].last_s === 2, 'samples after 2 s are gone');
+      await server.publishOnceWanted('rover1.pose', 'pose_t', 2.5e6, pose(2.5));
+      const {plots: [[trace]]} = await until(page, (p) => p.plots[0][0].last_s === 2.5);
+      assert.equal(trace.count, 3);  // of 1, 2 and 2.5 s
       await page.waitForFunction(() => location.hash.includes('plots=rover1.pose'));
     }, SIZE);
   });

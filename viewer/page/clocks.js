@@ -44,7 +44,7 @@ export class Clocks {
     this.name = 'clocks';
     this.title = 'Clocks';
     this.root = element('div');
-    this.empty = element('p', 'No vehicle of this run has a clock of its own.', 'quiet');
+    this.empty = element('p', 'No vehicle of this run has its own clock.', 'quiet');
     this.table = table('Clocks of vehicles', HEADS);
     this.table.className = 'grid';
     this.note = element(

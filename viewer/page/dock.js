@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The panel of data below the scene: tabs for plots, images, clocks, traffic, water; each shows a view of its own.
+// The panel of data below the scene: tabs for plots, images, clocks, traffic, water; each shows its own view.
 import {element} from './panels.js';
 
 const $ = (id) => document.getElementById(id);

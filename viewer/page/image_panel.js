@@ -10,7 +10,7 @@ const IMAGES_MAX = 4;
 const RATE_HZ = 10;
 
 /** One image. */
-class Picture {
+class ImageView {
   constructor(channel, remove) {
     this.channel = channel;
     this.root = element('figure');
@@ -93,11 +93,11 @@ export class Images {
     this.app = app;
     this.name = 'images';
     this.title = 'Images';
-    this.pictures = [];
+    this.views = [];
     this.root = element('div');
     this.list = choice('Channel of images', () => this.choose());
     this.empty = element('p', 'No camera or sonar of this run has sent an image yet.', 'quiet');
-    this.grid = element('div', '', 'pictures');
+    this.grid = element('div', '', 'image-grid');
     const form = element('div', '', 'form');
     form.append(this.list);
     this.root.append(form, this.empty, this.grid);
@@ -112,11 +112,11 @@ export class Images {
   /** Takes the list of channels; the first image comes by itself. */
   changed() {
     const rows = this.app.channels.ofTypes(TYPES);
-    const closed = rows.filter((row) => this.pictures.every((one) => one.channel !== row.name));
+    const closed = rows.filter((row) => this.views.every((one) => one.channel !== row.name));
     setChoices(this.list, [['', 'show …'], ...closed.map((row) => [row.name, row.name])]);
-    this.list.disabled = closed.length === 0 || this.pictures.length >= IMAGES_MAX;
+    this.list.disabled = closed.length === 0 || this.views.length >= IMAGES_MAX;
     this.empty.hidden = rows.length > 0;
-    if (this.open && !this.touched && this.pictures.length === 0 && rows.length > 0) this.add(rows[0].name);
+    if (this.open && !this.touched && this.views.length === 0 && rows.length > 0) this.add(rows[0].name);
     this.subscribe();
   }
 
@@ -128,30 +128,30 @@ export class Images {
   /** Shows a channel. */
   add(channel) {
     this.touched = true;
-    if (this.pictures.length >= IMAGES_MAX || this.pictures.some((one) => one.channel === channel)) return;
-    const picture = new Picture(channel, () => this.remove(picture));
-    this.pictures.push(picture);
-    this.grid.append(picture.root);
+    if (this.views.length >= IMAGES_MAX || this.views.some((one) => one.channel === channel)) return;
+    const view = new ImageView(channel, () => this.remove(view));
+    this.views.push(view);
+    this.grid.append(view.root);
     this.changed();
   }
 
-  remove(picture) {
-    picture.root.remove();
-    this.pictures = this.pictures.filter((one) => one !== picture);
+  remove(view) {
+    view.root.remove();
+    this.views = this.views.filter((one) => one !== view);
     this.changed();
     this.list.focus();
   }
 
   subscribe() {
-    const names = this.open ? this.pictures.map((picture) => picture.channel) : [];
+    const names = this.open ? this.views.map((view) => view.channel) : [];
     this.app.channels.want('images', names, RATE_HZ, (message) => {
-      this.pictures.find((picture) => picture.channel === message.channel)?.take(message);
+      this.views.find((view) => view.channel === message.channel)?.take(message);
     });
   }
 
   update() {}
 
-  text() { return this.pictures.map((picture) => encodeURIComponent(picture.channel)).join(','); }
+  text() { return this.views.map((view) => encodeURIComponent(view.channel)).join(','); }
 
   setText(text) {
     for (const channel of text.split(',').slice(0, IMAGES_MAX)) this.add(decodeURIComponent(channel));

@@ -125,12 +125,12 @@ function fromValues(values, width, height, unit, zeroIsNone) {
 
 /** Compressed pixels, by the browser. */
 async function fromFile(data, type) {
-  const picture =
+  const bitmap =
       await createImageBitmap(new Blob([data], {type}), {colorSpaceConversion: 'none', premultiplyAlpha: 'none'});
-  const {width, height} = picture;
+  const {width, height} = bitmap;
   const context = new OffscreenCanvas(width, height).getContext('2d', {willReadFrequently: true});
-  context.drawImage(picture, 0, 0);
-  picture.close();
+  context.drawImage(bitmap, 0, 0);
+  bitmap.close();
   return {width, height, rgba: context.getImageData(0, 0, width, height).data};
 }
 

@@ -45,7 +45,7 @@ export class Instruments {
     this.dock.show(address.get('data'));
   }
 
-  /** What the address shall have. */
+  /** What the address is to have. */
   toAddress() {
     return {data: this.dock.open, plots: this.plots.text(), images: this.images.text(), panels: panelsText()};
   }
@@ -54,7 +54,7 @@ export class Instruments {
   handlers(message) {
     return {
       channels: () => this.app.channels.setItems(message),
-      heard: () => this.traffic.setHeard(message),
+      heard: () => this.traffic.setReceptions(message),
       series: () => this.plots.setSeries(message),
     };
   }
@@ -86,7 +86,8 @@ export class Instruments {
 
   rewind(time_us) {
     this.app.channels.rewind(time_us);
-    for (const part of [this.returns, this.ranges, this.plots]) part.rewind(time_us);
+    this.returns.rewind(time_us);
+    this.ranges.rewind(time_us);
   }
 
   listChanged() { this.listStale = true; }
@@ -125,12 +126,12 @@ export class Instruments {
                                                               first_s: trace.t_s[0] ?? null,
                                                               last_s: trace.t_s[trace.t_s.length - 1] ?? null,
                                                             }))),
-      images: this.images.pictures.map(({channel, image, time_us}) => ({
-                                         channel,
-                                         time_us,
-                                         width: image?.width,
-                                         height: image?.height,
-                                       })),
+      images: this.images.views.map(({channel, image, time_us}) => ({
+                                      channel,
+                                      time_us,
+                                      width: image?.width,
+                                      height: image?.height,
+                                    })),
       returns: [...this.returns.drawn].map(([channel, one]) => ({
                                              channel,
                                              time_us: one.time_us,

@@ -481,6 +481,7 @@ class App {
   }
 
   writeAddress(now_ms) {
+    if (!this.address.due(now_ms)) return;
     this.address.write(
         {
           view: this.cameras.mode === 'device' ? '' : this.cameras.view(),
@@ -577,7 +578,7 @@ async function start() {
       setView: (text) => app.setView(text),
       select: (name) => app.select(name),
       returnsOf: (channel) => app.instruments.returns.pointsOf(channel),
-      imageOf: (channel) => app.instruments.images.pictures.find((one) => one.channel === channel),
+      imageOf: (channel) => app.instruments.images.views.find((one) => one.channel === channel),
     };
   } catch (error) {
     $('banner').textContent = `this page cannot draw: ${error.message}`;

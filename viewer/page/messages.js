@@ -208,9 +208,9 @@ export class Channels {
       for (const [name, rate_hz] of wish) rates.set(name, Math.max(rate_hz, rates.get(name) ?? 0));
     const channels = [...rates].map(([name, rate_hz]) => ({name, rate_hz}));
     const text = JSON.stringify(channels);
-    if (text === this.told && !again) return;
+    if (text === this.sent && !again) return;
     if (again && channels.length === 0) return;
-    this.told = text;
+    this.sent = text;
     this.connection.send({op: 'subscribe', channels});
     for (const name of this.newest.keys())
       if (!rates.has(name)) this.newest.delete(name);

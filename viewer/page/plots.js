@@ -106,7 +106,7 @@ class Plot {
     }));
   }
 
-  /** Makes the plot anew when its fields, size or colors changed, then draws its samples. */
+  /** Makes the plot again when its fields, size or colors changed, then draws its samples. */
   draw(quiet) {
     const width = this.place.clientWidth, height = Math.max(90, this.place.clientHeight);
     if (width === 0) return;
@@ -278,7 +278,7 @@ export class Plots {
       this.plots.push(new Plot(this));
       this.grid.append(this.plots[this.plots.length - 1].root);
     }
-    if (this.plots[number].traces.length >= FIELDS_MAX) this.app.problem(`a plot shows at most ${FIELDS_MAX} fields`);
+    if (this.plots[number].traces.length >= FIELDS_MAX) this.app.problem(`a plot has room for ${FIELDS_MAX} fields`);
     this.plots[number].add(channel, path);
     this.arrange();
     this.request();
@@ -363,13 +363,6 @@ export class Plots {
 
   /** Goes to a time of a log; a run offers to rewind. */
   seek(t_s) { this.app.timeBar.goTo(Math.round(t_s * 1e6)); }
-
-  /** The time of a run was set back: what was later is another branch. */
-  rewind(time_us) {
-    if (!this.isLog)
-      for (const trace of this.traces()) trace.rewind(time_us / 1e6);
-    this.stale = true;
-  }
 
   /** Another scene. */
   restart() {

@@ -70,7 +70,7 @@ export class Ranges {
 
   add(message) {
     const mounted = this.poses.byChannel.get(message.channel);
-    if (!mounted || !this.names.has(message.channel)) return;
+    if (!mounted || !this.names.has(message.channel) || this.poses.isFuture(message.time_us)) return;
     const time_us = this.poses.sampleTime(message, mounted);
     const X_WS = this.poses.sensorAt(mounted, time_us), centre = new Vector3().setFromMatrixPosition(X_WS);
     const origin_m = this.app.data.origin_m;

@@ -203,7 +203,7 @@ export class Returns {
       const mounted = this.poses.byChannel.get(channel);
       if (mounted && !this.poses.reached(message.time_us) && now_ms - at_ms < WAIT_MS) continue;
       this.pending.delete(channel);
-      if (!mounted || !this.names.has(channel)) continue;
+      if (!mounted || !this.names.has(channel) || this.poses.isFuture(message.time_us)) continue;
       this.draw(channel, mounted, message);
       changed = true;
     }

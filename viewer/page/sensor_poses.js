@@ -44,6 +44,12 @@ export class SensorPoses {
   /** Are the poses at a time known? */
   reached(time_us) { return (this.app.playback.newest?.time_us ?? -Infinity) >= time_us; }
 
+  /** Is a time later than what the page shows, because it shows the past of a run? */
+  isFuture(time_us) {
+    const newest = this.app.playback.newest;
+    return newest !== null && time_us > newest.time_us + 1e6 * Math.max(1, newest.speed || 100);
+  }
+
   /** Pose of a body at a time; that which is drawn where the page does not keep this time. */
   bodyAt(body, time_us) {
     const slot = this.slots.get(body);

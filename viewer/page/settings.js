@@ -250,9 +250,12 @@ export class Address {
 
   get(name) { return this.values.get(name); }
 
+  /** May a view be written again? */
+  due(now_ms) { return now_ms - this.written_ms >= 500; }
+
   /** Writes a view, at most twice a second: browsers refuse more. */
   write(changes, now_ms) {
-    if (now_ms - this.written_ms < 500) return;
+    if (!this.due(now_ms)) return;
     this.written_ms = now_ms;
     for (const [name, value] of Object.entries(changes))
       if (value)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Traffic: messages and bytes per second of each vehicle and channel, and who heard whom.
+// Traffic: messages and bytes per second of each vehicle and channel, and who received whom.
 import {fillTable, table} from './dock.js';
 import {element, formatNumber} from './panels.js';
 import {OUTCOMES} from './sounds.js';
@@ -58,15 +58,15 @@ export class Traffic {
     this.table = table('Traffic by vehicle and channel', ['', 'msg/s', 'bytes/s', 'msg', 'bytes']);
     this.table.className = 'grid';
     this.cells = document.createElement('table');
-    this.cells.setAttribute('aria-label', 'Who heard whom');
+    this.cells.setAttribute('aria-label', 'Who received whom');
     this.cells.className = 'matrix';
     this.note = element('p', 'No vehicle has sent anything to another yet.', 'quiet');
     this.lostList = element('ul', '', 'losses');
     const left = element('section'), right = element('section');
     left.append(this.search, this.table);
-    right.append(element('h3', 'Who heard whom: received / sent'), this.note, this.cells, this.lostList);
+    right.append(element('h3', 'Who received whom: received / sent'), this.note, this.cells, this.lostList);
     this.root.append(left, right);
-    this.heard = [];
+    this.pairs = [];
     this.stale = true;
   }
 
@@ -74,14 +74,14 @@ export class Traffic {
 
   changed() { this.stale = true; }
 
-  /** Takes a message `heard`. */
-  setHeard({items}) {
-    this.heard = (Array.isArray(items) ? items : []).filter((item) => item && item.from && item.to);
+  /** Takes the counts of all pairs of vehicles. */
+  setReceptions({items}) {
+    this.pairs = (Array.isArray(items) ? items : []).filter((item) => item && item.from && item.to);
     this.stale = true;
   }
 
   clear() {
-    this.heard = [];
+    this.pairs = [];
     this.stale = true;
   }
 
@@ -122,8 +122,8 @@ export class Traffic {
 
   /** The matrix: rows sent, columns received; the losses below it. */
   fillMatrix() {
-    const names = [...new Set(this.heard.flatMap((item) => [item.from, item.to]))].sort().slice(0, NAMES_MAX);
-    const pairs = new Map(this.heard.map((item) => [JSON.stringify([item.from, item.to]), item]));
+    const names = [...new Set(this.pairs.flatMap((item) => [item.from, item.to]))].sort().slice(0, NAMES_MAX);
+    const pairs = new Map(this.pairs.map((item) => [JSON.stringify([item.from, item.to]), item]));
     this.note.hidden = names.length > 0;
     const lines = names.map((from) => {
       const line = document.createElement('tr');
@@ -134,7 +134,7 @@ export class Traffic {
     const head = document.createElement('tr');
     head.append(element('th', names.length ? 'from ↓ to →' : ''), ...names.map((name) => element('th', name)));
     this.cells.replaceChildren(head, ...lines);
-    this.lostList.replaceChildren(...this.heard.filter((item) => losses(item).length).slice(0, ROWS_MAX).map((item) => {
+    this.lostList.replaceChildren(...this.pairs.filter((item) => losses(item).length).slice(0, ROWS_MAX).map((item) => {
       const text = losses(item).map((loss) => `${loss.sign} ${loss.text} ${loss.count}`).join(', ');
       return element('li', `${item.from} → ${item.to}: ${text}`);
     }));
