@@ -184,7 +184,7 @@ void ViewPublisher::publish_scene() {
   }
 }
 
-void ViewPublisher::fill_in_bodies(shoal::sim_bodiest& bodies) const {
+void ViewPublisher::fill_in_bodies(shoal::sim_bodies_t& bodies) const {
   bodies.utime = utime(world_.now());
   bodies.step = world_.step_number();
   bodies.branch = branch_;
