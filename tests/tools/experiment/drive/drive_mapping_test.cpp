@@ -170,7 +170,7 @@ TEST(DriveMapping, SaysWhatIsPossibleInstead) {
 TEST(DriveProfile, SaysLineColumnAndRule) {
   EXPECT_THAT(profile_error("rate_hz: 1\n"), HasSubstr("pad.yaml:1:10: drive profile: 'rate_hz' must be >= 5"));
   EXPECT_THAT(profile_error("hold_s: 0.5\n"), HasSubstr("pad.yaml:1:9: drive profile: 'hold_s' must be"));
-  EXPECT_THAT(profile_error("keys:\n  steps: [{key: w, axis: up}]\n"), HasSubstr("pad.yaml:2:27:"));
+  EXPECT_THAT(profile_error("keys:\n  steps: [{key: w, axis: up}]\n"), HasSubstr("pad.yaml:2:26:"));
   EXPECT_THAT(profile_error("keys:\n  steps: [{key: space, axis: turn}]\n"), HasSubstr("key 'space' has two meanings"));
   EXPECT_THAT(profile_error("keys: {hold: control}\n"), HasSubstr("'hold' must be one character"));
   EXPECT_THAT(profile_error("gamepad: {axes: [{code: 1, axis: turn, low: 5, high: 5}]}\n"),
