@@ -13,7 +13,7 @@
 namespace tools {
 
 /// Poses of all movable bodies of a run in the past, for each of its branches: ten times per simulated second, in
-/// bounded memory.  When it is full, every second state of the older half is removed.
+/// bounded memory.  When it is full, the states of the older half are kept further apart.
 class PoseHistory {
  public:
   /// Part of a run between two rewinds.
