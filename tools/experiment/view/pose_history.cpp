@@ -57,7 +57,14 @@ void PoseHistory::thin() {
   if (numbers.size() < 3) return;
   std::nth_element(numbers.begin(), middle, numbers.end());
   const std::uint64_t newer = *middle;
-  // Remove every second state of it; the start of the run is kept.
+  // Of it, keep states twice as far apart, or further, until an eighth of all is removed.
+  constexpr std::int64_t max_apart_us = 1'000'000'000'000'000;
+  for (std::int64_t apart_us = 2 * interval_us; apart_us < max_apart_us; apart_us *= 2)
+    if (keep_apart(newer, apart_us, false) > numbers.size() / 8) {
+      keep_apart(newer, apart_us, true);
+      return;
+    }
+  // Of many short branches, remove every second state.
   bool removes = false;
   for (auto& [number, track] : tracks_) {
     const auto end = std::remove_if(track.states.begin(), track.states.end(), [&](const Saved& kept) {
@@ -67,6 +74,29 @@ void PoseHistory::thin() {
     });
     track.states.erase(end, track.states.end());
   }
+}
+
+/// Removes, or only counts, states that are less than a time after the one before in their branch.
+std::size_t PoseHistory::keep_apart(std::uint64_t newer, std::int64_t apart_us, bool remove) {
+  std::size_t count = 0;
+  for (auto& [number, track] : tracks_) {
+    std::optional<std::int64_t> before_us;
+    const auto too_close = [&](const Saved& saved) {
+      if (saved.number >= newer) return false;
+      if (before_us && saved.time_us - *before_us < apart_us) {
+        ++count;
+        if (remove) bytes_ -= saved.bytes();
+        return true;
+      }
+      before_us = saved.time_us;
+      return false;
+    };
+    if (remove)
+      track.states.erase(std::remove_if(track.states.begin(), track.states.end(), too_close), track.states.end());
+    else
+      static_cast<void>(std::count_if(track.states.begin(), track.states.end(), too_close));
+  }
+  return count;
 }
 
 const PoseHistory::Saved* PoseHistory::last_until(const Track& track, std::int64_t time_us) const {

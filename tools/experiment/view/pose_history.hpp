@@ -13,7 +13,7 @@
 namespace tools {
 
 /// Poses of all movable bodies of a run in the past, for each of its branches: ten times per simulated second, in
-/// bounded memory.  When it is full, every second state of the older half is removed.
+/// bounded memory.  When it is full, the states of the older half are kept further apart.
 class PoseHistory {
  public:
   /// Part of a run between two rewinds.
@@ -69,6 +69,7 @@ class PoseHistory {
   };
 
   void thin();
+  std::size_t keep_apart(std::uint64_t newer, std::int64_t apart_us, bool remove);
   const Saved* last_until(const Track& track, std::int64_t time_us) const;
   /// All states of a branch, with those of its ancestors before it, from a time on.
   std::vector<const Saved*> all_from(const Track& track, std::int64_t from_us) const;

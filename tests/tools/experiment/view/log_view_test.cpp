@@ -202,14 +202,14 @@ TEST(LogView, ShowsASecondLogAtTheSameTimeAndWhereItDiffers) {
 /// Logs with hashes, as `shoal run` writes them, differ where their hashes do.
 class LogDifference : public testing::Test {
  protected:
-  static std::string world(double mass_kg) {
+  static std::string world(double z_m) {
     return "shoal: 1\nrun: {hash_every_steps: 10}\nphysics: {step_s: 0.01}\nobjects: [{name: ball, parts: [{shape: "
-           "sphere, mass_kg: " +
-           std::to_string(mass_kg) + "}]}]\n";
+           "sphere, mass_kg: 1}], position_m: [0, 0, " +
+           std::to_string(z_m) + "]}]\n";
   }
   /// Records a second; `lift_at`: step at which a client moves the ball.
-  std::string record(const std::string& name, double mass_kg, std::int64_t lift_at = -1) {
-    test::RecordedRun run(world(mass_kg), folder_.file(name));
+  std::string record(const std::string& name, double z_m, std::int64_t lift_at = -1) {
+    test::RecordedRun run(world(z_m), folder_.file(name));
     bridges::ViewPublisher view(run.gate, run.world, {}, [] { return true; });
     view.after_step();
     run.run(100, [&](std::int64_t step) {
