@@ -83,6 +83,12 @@ std::string vehicle_of_event(const Clip& event, const std::string& text, const L
   return "";
 }
 
+/// Returns the name of an event from the subject of what it writes into the log, `event 'NAME'`; else the subject.
+std::string subject_of(const std::string& who) {
+  constexpr std::string_view start = "event '";
+  return who.starts_with(start) && who.ends_with('\'') ? who.substr(start.size(), who.size() - start.size() - 1) : who;
+}
+
 /// Returns a text as part of a file name: letters, digits, `-` and `_`, at most 40.
 std::string plain(const std::string& text) {
   constexpr std::size_t max_letters = 40;
@@ -183,6 +189,7 @@ class Clips {
       if (!all && clip->clip().to_s >= until_s) return false;
       clip->finish();
       outcome.clips.push_back(clip->clip());
+      outcome.clips.back().to_s = std::min(clip->clip().to_s, sim::to_seconds(world_.now()));
       return true;
     });
   }
@@ -210,12 +217,16 @@ std::vector<Clip> find_clips(const std::string& log, const ClipOptions& options,
   for (std::size_t i = 0; i < found.events.size(); ++i) {
     Clip clip = found.events[i];
     clip.vehicle = vehicle_of_event(clip, found.texts[i], found);
+    clip.who = subject_of(clip.who);
     // Events that belong together, and limits.
-    const auto shares = [&](const Clip& one) {
+    const auto shared = std::find_if(clips.begin(), clips.end(), [&](const Clip& one) {
       return clip.at_s - one.at_s <= same_clip_s &&
-             (clip.vehicle.empty() ? one.who == clip.who : one.vehicle == clip.vehicle);
-    };
-    if (std::any_of(clips.begin(), clips.end(), shares)) continue;
+             (one.who == clip.who || (!clip.vehicle.empty() && one.vehicle == clip.vehicle));
+    });
+    if (shared != clips.end()) {
+      if (shared->vehicle.empty()) shared->vehicle = clip.vehicle;
+      continue;
+    }
     clip.from_s = std::max(0.0, clip.at_s - options.before_s);
     clip.to_s = clip.at_s + options.after_s;
     const auto overlapping =

@@ -59,6 +59,7 @@ TEST_F(FilmClips, AreNamedByTimeAndEventAndFollowItsVehicle) {
   tools::ClipOutcome outcome;
   const auto clips = find_clips(log, FilmClips::clips(), outcome);
   ASSERT_GE(clips.size(), 2U);
+  EXPECT_EQ(clips.size(), 2U) << "what an event logs belongs to it";
   EXPECT_THAT(clips[0].file, HasSubstr("clips/000001.0"));
   EXPECT_THAT(clips[0].file, HasSubstr("s_event_half.avi"));
   EXPECT_EQ(clips[0].vehicle, "");
