@@ -27,7 +27,7 @@ class DriveTest : public testing::Test {
  protected:
   DriveTest() : lcm_(own_url()) {
     lcm_.listen("sim.state");
-    lcm_.listen("rover1\\.drive\\.cmd");
+    lcm_.listen("rover1.drive.cmd");
   }
 
   void start(const std::vector<std::string>& options = {}) {
