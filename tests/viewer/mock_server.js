@@ -247,7 +247,7 @@ export class MockServer {
   }
 
   /** Sends who received whom. */
-  sendPairs(items, time_us = 0) { this.send({op: 'heard', time_us, items}); }
+  sendPairs(items, time_us = 0) { this.send({op: 'links', time_us, items}); }
 
   /** The samples of a log, by a function of the script of time in s. */
   answerSeries(client, {id, channel, field, from_us, to_us, points}) {

@@ -54,7 +54,7 @@ export class Instruments {
   handlers(message) {
     return {
       channels: () => this.app.channels.setItems(message),
-      heard: () => this.traffic.setReceptions(message),
+      links: () => this.traffic.setReceptions(message),
       series: () => this.plots.setSeries(message),
     };
   }

@@ -43,7 +43,7 @@ void TrafficCounts::take(std::string_view channel, std::span<const std::byte> pa
       take_radio_sent(channel, payload);
     else if (is_of_type<shoal::modem_received_t>(fingerprint))
       take_radio_received(channel, payload);
-  } catch (const shoal::MessageError&) {  // invalid: counted as a message, and heard by nobody
+  } catch (const shoal::MessageError&) {  // invalid: counted as a message, and received by nobody
   }
 }
 
@@ -76,13 +76,13 @@ void TrafficCounts::take_radio_received(std::string_view channel, std::span<cons
 
 void TrafficCounts::add_sent(const std::string& from, const std::string& to) {
   Names names{from, to};
-  ++heard_changes_;
+  ++link_changes_;
   if (sent_.size() < max_pairs || sent_.contains(names)) ++sent_[std::move(names)];
 }
 
 TrafficCounts::Pair* TrafficCounts::pair_of(const std::string& from, const std::string& to) {
   Names names{from, to};
-  ++heard_changes_;
+  ++link_changes_;
   if (pairs_.size() >= max_pairs && !pairs_.contains(names)) return nullptr;
   return &pairs_[std::move(names)];
 }

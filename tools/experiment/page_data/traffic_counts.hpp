@@ -13,7 +13,7 @@
 
 namespace tools {
 
-/// Counts of the messages on each channel, and of who heard whom.  A vehicle or device hears another by sound
+/// Counts of the messages on each channel, and of who received from whom.  A vehicle or device receives from another by sound
 /// (`sim.sound`, `sim.sound.arrival`) or by radio (`shoal.modem_received_t`).
 class TrafficCounts {
  public:
@@ -39,7 +39,7 @@ class TrafficCounts {
   /// Returns how many messages a sender has transmitted to a receiver or to all.
   std::int64_t sent(const Names& names) const;
   /// Returns a number that rises with each sound and each radio message.
-  std::int64_t heard_changes() const { return heard_changes_; }
+  std::int64_t link_changes() const { return link_changes_; }
 
  private:
   friend class TrafficHistory;
@@ -58,7 +58,7 @@ class TrafficCounts {
   std::unordered_map<std::string, Channel, TextHash, std::equal_to<>> channels_;
   std::map<Names, Pair> pairs_;
   std::map<Names, std::int64_t> sent_;  // to: empty for all
-  std::int64_t heard_changes_ = 0;
+  std::int64_t link_changes_ = 0;
 };
 
 /// Returns the part of a channel before its first dot: by default the name of its vehicle.

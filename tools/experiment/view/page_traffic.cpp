@@ -71,14 +71,14 @@ bool PageTraffic::handle(const bridges::ViewRequest& request) {
 
 void PageTraffic::set_counts(TrafficCounts counts) {
   counts_ = std::move(counts);
-  channels_changed_ = heard_changed_ = true;
+  channels_changed_ = links_changed_ = true;
   next_counts_ = {};
 }
 
 void PageTraffic::flush(std::int64_t time_us, const std::string& scene, int number) {
   const int clients = server_.clients();
   // A page that has just opened needs the counts now.
-  if (clients > std::exchange(clients_, clients)) channels_changed_ = heard_changed_ = true, next_counts_ = {};
+  if (clients > std::exchange(clients_, clients)) channels_changed_ = links_changed_ = true, next_counts_ = {};
   if (clients == 0) return;
   feed_.flush();
   const Clock::time_point now = Clock::now();
@@ -88,9 +88,9 @@ void PageTraffic::flush(std::int64_t time_us, const std::string& scene, int numb
     vehicles_ = vehicles_of(scene);
     channels_changed_ = true;
   }
-  if (counts_.heard_changes() != heard_sent_) heard_changed_ = true;
+  if (counts_.link_changes() != links_sent_) links_changed_ = true;
   if (std::exchange(channels_changed_, false)) send_counts(time_us);
-  if (std::exchange(heard_changed_, false)) send_heard(time_us);
+  if (std::exchange(links_changed_, false)) send_links(time_us);
 }
 
 std::string PageTraffic::vehicle_of(const std::string& channel) const {
@@ -116,8 +116,8 @@ void PageTraffic::send_counts(std::int64_t time_us) {
   server_.retain("channels", json_text({{"op", "channels"}, {"time_us", time_us}, {"items", std::move(items)}}));
 }
 
-void PageTraffic::send_heard(std::int64_t time_us) {
-  heard_sent_ = counts_.heard_changes();
+void PageTraffic::send_links(std::int64_t time_us) {
+  links_sent_ = counts_.link_changes();
   Json items = Json::array();
   for (const auto& [names, pair] : counts_.pairs()) {
     Json lost = Json::object();
@@ -128,7 +128,7 @@ void PageTraffic::send_heard(std::int64_t time_us) {
                      {"received", pair.received},
                      {"lost", std::move(lost)}});
   }
-  server_.retain("heard", json_text({{"op", "heard"}, {"time_us", time_us}, {"items", std::move(items)}}));
+  server_.retain("links", json_text({{"op", "links"}, {"time_us", time_us}, {"items", std::move(items)}}));
 }
 
 }  // namespace tools

@@ -14,7 +14,7 @@
 
 namespace tools {
 
-/// What pages see of the messages themselves: the channels with their counts, who heard whom, and the messages of the
+/// What pages see of the messages themselves: the channels with their counts, who received from whom, and the messages of the
 /// channels that a page has subscribed to.
 class PageTraffic {
  public:
@@ -38,14 +38,14 @@ class PageTraffic {
   using Clock = std::chrono::steady_clock;
 
   void send_counts(std::int64_t time_us);
-  void send_heard(std::int64_t time_us);
+  void send_links(std::int64_t time_us);
   std::string vehicle_of(const std::string& channel) const;
 
   bridges::WebServer& server_;
   MessageFeed feed_;
   TrafficCounts counts_;
-  bool channels_changed_ = false, heard_changed_ = false;
-  std::int64_t heard_sent_ = 0;
+  bool channels_changed_ = false, links_changed_ = false;
+  std::int64_t links_sent_ = 0;
   int clients_ = 0;
   int scene_number_ = -1;
   std::map<std::string, std::string, std::less<>> vehicles_;  // by channel; and each vehicle by its name
