@@ -2,8 +2,8 @@
 // The panels: vehicles with search, details of the selected one with a plot, scores, events.  Text from the server
 // enters the page by textContent only.
 import {headingOf} from './cameras.js';
+import {plotLibrary} from './plot_library.js';
 import {OUTCOMES} from './sounds.js';
-import uPlot from './vendor/uplot.js';
 
 const EVENTS_MAX = 500;
 const PLOT_SAMPLES = 300;
@@ -217,6 +217,8 @@ export class Details {
   drawPlot() {
     const place = $('plot');
     if (place.offsetParent === null || this.history[0].length < 2) return;
+    const Plot = plotLibrary(() => this.drawPlot());
+    if (!Plot) return;
     const column = {speed: 1, z: 2, error: 3}[$('quantity').value];
     const color = getComputedStyle(document.documentElement).getPropertyValue('--accent').trim();
     const quiet = getComputedStyle(document.documentElement).getPropertyValue('--quiet').trim();
@@ -227,7 +229,7 @@ export class Details {
       this.look = look;
       const axis =
           {stroke: quiet, grid: {stroke: 'rgba(128,150,165,0.2)'}, ticks: {show: false}, font: '11px system-ui'};
-      this.plot = new uPlot(
+      this.plot = new Plot(
           {
             width: place.clientWidth,
             height: 120,

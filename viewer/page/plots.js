@@ -3,7 +3,7 @@
 import {button, choice, setChoices} from './dock.js';
 import {numberAt, numericFields, unitOf} from './messages.js';
 import {element, formatNumber} from './panels.js';
-import uPlot from './vendor/uplot.js';
+import {plotLibrary} from './plot_library.js';
 
 const PLOTS_MAX = 4;
 const FIELDS_MAX = 6;
@@ -110,21 +110,23 @@ class Plot {
   draw(quiet) {
     const width = this.place.clientWidth, height = Math.max(90, this.place.clientHeight);
     if (width === 0) return;
+    const Library = plotLibrary(() => this.draw(quiet));
+    if (!Library) return;
     const key = JSON.stringify([width, height, quiet, this.traces.map((trace) => [trace.channel, trace.path])]);
-    if (key !== this.key) this.make(width, height, quiet);
+    if (key !== this.key) this.make(Library, width, height, quiet);
     this.key = key;
-    const data = this.traces.length ? uPlot.join(this.traces.map((trace) => [trace.t_s, trace.values])) : [[]];
+    const data = this.traces.length ? Library.join(this.traces.map((trace) => [trace.t_s, trace.values])) : [[]];
     this.plot.setData(data);
   }
 
-  make(width, height, quiet) {
+  make(Library, width, height, quiet) {
     this.plot?.destroy();
     const units = [...new Set(this.traces.map((trace) => trace.unit))];
     const axis = {stroke: quiet, ticks: {show: false}, font: '11px system-ui'};
     const grid = {stroke: 'rgba(128,150,165,0.2)'};
     const scales = Object.fromEntries(units.map((unit) => [`y ${unit}`, {range: padded}]));
     this.plot =
-        new uPlot(
+        new Library(
             {
               width,
               height,

@@ -30,11 +30,7 @@ constexpr microseconds paused_wait{20'000};
 ResimulatedRun::ResimulatedRun(const Options& options, const std::string& version)
     : log_(read_replay_log(options.log)),
       page_(options.view, version),
-      replayed_(
-          log_,
-          {"", options.load, options.threads,
-           [this](std::string_view channel, std::span<const std::byte> payload) { page_.message(channel, payload); }},
-          [this](std::string_view channel, std::span<const std::byte> payload) { page_.message(channel, payload); }),
+      replayed_(log_, {"", options.load, options.threads, page_tap()}, page_tap()),
       view_(replayed_.bus(), replayed_.world(), {}, [] { return true; }),
       snapshots_(snapshots_us / world().step_time().count(), max_snapshot_bytes) {
   control_.speed = 1;
@@ -42,6 +38,12 @@ ResimulatedRun::ResimulatedRun(const Options& options, const std::string& versio
   replayed_.start();
   first_ = replayed_.save();
   after_step();
+}
+
+ReplayedWorld::Watch ResimulatedRun::page_tap() {
+  return [this](std::string_view channel, std::span<const std::byte> payload) {
+    page_.message(channel, payload, world().now());
+  };
 }
 
 double ResimulatedRun::end_s() const {

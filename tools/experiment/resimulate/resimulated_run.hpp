@@ -51,6 +51,8 @@ class ResimulatedRun {
  private:
   using Clock = std::chrono::steady_clock;
 
+  /// Returns a function that passes messages of the world on to the pages.
+  ReplayedWorld::Watch page_tap();
   void step();
   void after_step();
   bool at_end() const;
