@@ -99,7 +99,7 @@ void Recording::read(const std::string& log, const std::function<void(double sha
     if (number++ % stride != 0) continue;
     messages.flush();
     if ((states_ + 1) * last_state_bytes_ <= limits_.state_bytes) continue;
-    if (thin()) stride *= 2, number = 1;
+    if (thin(false)) stride *= 2;
   }
   // The last state ends the time line.
   messages.flush();
@@ -115,15 +115,15 @@ void Recording::rewind(std::int64_t time_us) {
       std::count_if(entries_.begin(), entries_.end(), [](const Entry& entry) { return entry.kind == Kind::state; }));
 }
 
-bool Recording::thin() {
+bool Recording::thin(bool keep_last) {
   if (states_ <= 2) return false;
-  // States and groups of estimates are numbered separately; the last state stays.
+  // States and groups of estimates are numbered separately.
   std::size_t state = 0, estimates = 0;
   const std::size_t last = states_ - 1;
   std::erase_if(entries_, [&](const Entry& entry) {
     if (entry.kind == Kind::state) {
       const std::size_t number = state++;
-      const bool is_left_out = number % 2 == 1 && number != last;
+      const bool is_left_out = number % 2 == 1 && !(keep_last && number == last);
       states_ -= is_left_out ? 1 : 0;
       return is_left_out;
     }

@@ -35,8 +35,9 @@ class Recording final : public bridges::PageOutput {
   Recording(const std::string& log, const std::string& version, const Limits& limits,
             const std::function<void(double share)>& progress = {});
 
-  /// Keeps every second state and estimate.  Returns false when there are at most two.
-  bool thin();
+  /// Keeps every second state and estimate, and the last state if `keep_last`.  Returns false when there are at most
+  /// two.
+  bool thin(bool keep_last = true);
   /// Leaves out all sounds and receptions.  Returns false when there are none.
   bool drop_sounds();
 
