@@ -42,8 +42,8 @@ it('has the water surface of shoal medium within 1 cm at 100 points', async () =
         (all, times) => all.map((point, i) => window.shoal.waterHeights([point], times[i] * 1e6)[0]), points,
         points.map((_, i) => at_s(i)));
     for (let i = 0; i < points.length; ++i) {
-      const said = await shoal('medium', world, `--at=${points[i].join()},-5`, '--time', String(at_s(i)));
-      const expected_m = Number(/^surface\s+(\S+) m$/m.exec(said)[1]);
+      const output = await shoal('medium', world, `--at=${points[i].join()},-5`, '--time', String(at_s(i)));
+      const expected_m = Number(/^surface\s+(\S+) m$/m.exec(output)[1]);
       assert.ok(
           Math.abs(level_m + heights[i] - expected_m) < 0.01,
           `at ${points[i]}, ${at_s(i)} s: ${level_m + heights[i]}, expected ${expected_m}`);

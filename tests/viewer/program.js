@@ -18,15 +18,15 @@ export async function serve(...words) {
   const child = spawn(PROGRAM, words, {cwd: ROOT, stdio: ['ignore', 'pipe', 'pipe']});
   const ended = new Promise((done) => child.once('close', done));
   const url = await new Promise((done, failed) => {
-    let said = '';
-    const hear = (data) => {
-      said += data;
-      const found = /live page: (http:\S+)\s/.exec(said);
+    let output = '';
+    const receive = (data) => {
+      output += data;
+      const found = /live page: (http:\S+)\s/.exec(output);
       if (found) done(found[1]);
     };
-    child.stdout.on('data', hear);
-    child.stderr.on('data', hear);
-    ended.then((code) => failed(new Error(`shoal ${words.join(' ')}: exit code ${code}: ${said}`)));
+    child.stdout.on('data', receive);
+    child.stderr.on('data', receive);
+    ended.then((code) => failed(new Error(`shoal ${words.join(' ')}: exit code ${code}: ${output}`)));
   });
   return {
     url,

@@ -11,7 +11,7 @@ import {faultsOf, launch, open, until} from './browser.js';
 import {shoal} from './program.js';
 
 const DURATION_S = 20;
-let browser, folder, said;
+let browser, folder, output;
 
 /** Opens the page; counts every request but that of the file itself. */
 async function withPage(test) {
@@ -48,7 +48,7 @@ before(async () => {
   await shoal(
       'run', 'worlds/dynamic_warehouse.yaml', '--bus', 'none', '--duration', String(DURATION_S), '--quiet', '--results',
       folder, '--record', join(folder, 'run.lcm'));
-  said = await shoal('report', folder);
+  output = await shoal('report', folder);
   browser = await launch();
 });
 after(async () => {
@@ -58,7 +58,7 @@ after(async () => {
 
 describe('recording', () => {
   it('is beside the report, which links to it', async () => {
-    assert.match(said, /run\.html: the run in three dimensions, [\d.]+ MB, 0 to 20 s, \d+ states/);
+    assert.match(output, /run\.html: the run in three dimensions, [\d.]+ MB, 0 to 20 s, \d+ states/);
     assert.match(await readFile(join(folder, 'report.html'), 'utf8'), /<a href="run\.html">/);
     assert.ok((await readFile(join(folder, 'run.html'))).length < 20e6);
   });
@@ -97,7 +97,7 @@ describe('recording', () => {
     });
   });
 
-  it('has all cameras, and goes on to the end', async () => {
+  it('has all cameras, and plays to the end', async () => {
     await withPage(async (page) => {
       const name = (await page.evaluate(() => window.shoal.probe())).vehicles[0].name;
       await page.evaluate((one) => window.shoal.select(one), name);

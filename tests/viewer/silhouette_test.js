@@ -35,13 +35,13 @@ async function labelsOf(world, {eye, look}) {
 
 /** Bodies of the page, as a text for each pixel: the vehicle, or the name of the object; '': nothing. */
 async function ownersOf(page, view, bodies) {
-  const ids = await page.evaluate((wanted) => window.shoal.bodyMask(wanted), {...view, fov_deg: FOV_DEG, ...SIZE});
+  const ids = await page.evaluate((expected) => window.shoal.bodyMask(expected), {...view, fov_deg: FOV_DEG, ...SIZE});
   return ids.map((id) => (id === 0 ? '' : bodies[id - 1].owner || bodies[id - 1].name));
 }
 
 /**
  * Shares of pixels with the same thing on both sides, of those with something on either side: of all, and without the
- * ground.  The label of an owner is the one that most of its pixels have.
+ * ground.  The label of an owner is the one that best of its pixels have.
  */
 function compare(owners, labels, ground) {
   const common = new Map();
@@ -66,7 +66,7 @@ function compare(owners, labels, ground) {
     });
     return {share: either ? same / either : 1, pixels: either};
   };
-  return {all: share(false), things: share(true)};
+  return {all: share(false), entities: share(true)};
 }
 
 const DIRECTIONS = [[-0.55, -0.75, 0.5], [0.75, -0.55, 0.5], [0.55, 0.75, 0.5], [-0.75, 0.55, 0.5], [0.1, 0, 1]];
@@ -80,15 +80,15 @@ function viewFrom(look, distance_m, i) {
   };
 }
 
-/** Place close to a vehicle: of several the one that shows most of it and other things, for walls may hide it. */
+/** Place close to a vehicle: of several the one that shows best of it and other entities, for walls may hide it. */
 async function closeView(page, vehicle, bodies, ground) {
-  let best = null, most = -1;
-  for (let i = 0; i < DIRECTIONS.length && most < 2000; ++i)
+  let best = null, shown = -1;
+  for (let i = 0; i < DIRECTIONS.length && shown < 2000; ++i)
     for (const times of [4, 2]) {
       const view = viewFrom(vehicle.position, times * vehicle.radius_m, i);
       const pixels = (await ownersOf(page, view, bodies)).filter((owner) => owner !== '' && !ground.has(owner)).length;
-      if (pixels > most) [best, most] = [view, pixels];
-      if (most >= 2000) break;
+      if (pixels > shown) [best, shown] = [view, pixels];
+      if (shown >= 2000) break;
     }
   return best;
 }
@@ -124,12 +124,12 @@ describe('silhouettes', () => {
         const close = await closeView(page, probe.vehicles[0], bodies, ground);
         for (const [name, view] of Object.entries({close, far: farView(probe.vehicles)})) {
           const result = compare(await ownersOf(page, view, bodies), await labelsOf(world, view), ground);
-          const text = `${name}: ${(100 * result.all.share).toFixed(2)} % of ${
-              result.all.pixels} pixels, without the ${''}ground ${(100 * result.things.share).toFixed(2)} % of ${
-              result.things.pixels}`;
+          const text =
+              `${name}: ${(100 * result.all.share).toFixed(2)} % of ${result.all.pixels} pixels, without the ground ${
+                  (100 * result.entities.share).toFixed(2)} % of ${result.entities.pixels}`;
           console.log(`${basename(world)}, ${text}`);
           assert.ok(result.all.share >= SHARE_MIN, text);
-          if (name === 'close') assert.ok(result.things.pixels > 500 && result.things.share >= SHARE_MIN, text);
+          if (name === 'close') assert.ok(result.entities.pixels > 500 && result.entities.share >= SHARE_MIN, text);
         }
         assert.deepEqual(await faultsOf(page), []);
       } finally {

@@ -68,7 +68,7 @@ void make_page(const std::string& record, const std::string& directory, const st
 /// Makes the page in three dimensions, and returns its path; empty: there is none, as it has said.
 std::string page_in_3d(const ReportArguments& arguments) {
   const std::string& directory = arguments.directories.front();
-  const bool wanted = !arguments.record.empty() || !arguments.page.empty();
+  const bool demanded = !arguments.record.empty() || !arguments.page.empty();
   std::error_code error;
   if (arguments.no_page || !fs::exists(directory + "/summary.json", error) ||
       fs::exists(directory + "/study.json", error))
@@ -81,7 +81,7 @@ std::string page_in_3d(const ReportArguments& arguments) {
     make_page(record, directory, path);
     return path;
   } catch (const std::runtime_error& reason) {
-    if (wanted) throw;
+    if (demanded) throw;
     spdlog::info("no page in three dimensions: {}", reason.what());
     return "";
   }

@@ -39,7 +39,8 @@ export class Looker {
     if (!this.desired || (this.pending && now_ms - this.requested_ms < PATIENCE_MS)) return;
     if (now_ms - this.requested_ms < INTERVAL_MS) return;
     const {time_us, branch} = this.desired;
-    if (!this.pending && this.requested && this.requested.time_us === time_us && this.requested.branch === branch) return;
+    if (!this.pending && this.requested && this.requested.time_us === time_us && this.requested.branch === branch)
+      return;
     this.connection.send({op: 'look', time_us, ...(branch === null ? {} : {branch})});
     this.requested = this.desired;
     this.requested_ms = now_ms;

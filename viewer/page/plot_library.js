@@ -8,10 +8,7 @@ export function plotLibrary(ready) {
   if (library) return library;
   if (!waiting) {
     waiting = [];
-    import('./vendor/uplot.js').then((module) => {
-      library = module.default;
-      for (const call of waiting) call();
-    });
+import('./vendor/uplot.js').then((module) => {library = module.default; for (const call of waiting) call();});
   }
   waiting.push(ready);
   return null;

@@ -7,7 +7,7 @@ const HEAD_BYTES = 24;
 const TEXT = 1, STATE = 2, ASSET = 3, ESTIMATES = 4;
 /** After a jump, what happened in this time before is still visible. */
 const BEFORE_US = 3e6;
-/** A page that drew no frame for longer, such as a hidden one, goes on where it was. */
+/** A page that drew no frame for longer, such as a hidden one, continues where it was. */
 const FRAME_MAX_MS = 1000;
 
 /** Reads the entries: kind, time_us, bytes; in the order of their times. */
@@ -91,7 +91,7 @@ export class Recording {
     }
   }
 
-  /** Called once in a frame: goes on in time. */
+  /** Called once in a frame: advances its time. */
   acknowledge(wall_ms = performance.now()) {
     const dt_ms = Math.min(FRAME_MAX_MS, wall_ms - (this.wall_ms ?? wall_ms));
     this.wall_ms = wall_ms;

@@ -2,7 +2,7 @@
 // Starts a page that is one file (shoal report): makes modules of the texts in it.  This script stands in the page.
 (async () => {
   const banner = document.getElementById('banner');
-  const say = (text) => {
+  const show = (text) => {
     banner.textContent = text;
     banner.hidden = text === '';
   };
@@ -18,7 +18,7 @@
   };
 
   try {
-    say('loading the run');
+    show('loading the run');
     const modules = JSON.parse(new TextDecoder().decode(await unpack('modules')));
     // Relative imports become names of an import map: the address of a blob has no folder.
     const IMPORT = /(\bfrom\s*|\bimport\s*\(?\s*)(["'])(\.[^"']*)\2/g;
@@ -35,10 +35,10 @@
     map.textContent = JSON.stringify({imports});
     document.head.append(map);
     window.shoalRecording = await unpack('recording');
-    say('');
+    show('');
     await import('shoal:/main.js');
   } catch (error) {
-    say(`this page cannot show its run: ${error.message}`);
+    show(`this page cannot show its run: ${error.message}`);
     throw error;
   }
 })();

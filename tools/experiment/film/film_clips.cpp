@@ -71,9 +71,7 @@ LogEvents read_events(const std::string& log) {
 std::string vehicle_of_event(const Clip& event, const std::string& text, const LogEvents& log) {
   const std::string owner = event.who.substr(0, event.who.find('/'));
   if (log.vehicles.contains(owner)) return owner;
-  const auto is_letter = [](char letter) {
-    return std::isalnum(static_cast<unsigned char>(letter)) != 0 || letter == '_';
-  };
+  const auto is_letter = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; };
   for (const std::string& words : {event.who, text})
     for (const std::string& name : log.vehicles)
       for (std::size_t at = words.find(name); at != std::string::npos; at = words.find(name, at + 1)) {
@@ -93,8 +91,8 @@ std::string subject_of(const std::string& who) {
 std::string plain(const std::string& text) {
   constexpr std::size_t max_letters = 40;
   std::string name;
-  for (const char letter : text.substr(0, max_letters))
-    name += std::isalnum(static_cast<unsigned char>(letter)) != 0 || letter == '-' ? letter : '_';
+  for (const char c : text.substr(0, max_letters))
+    name += std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' ? c : '_';
   return name.empty() ? "event" : name;
 }
 

@@ -13,7 +13,8 @@
 
 namespace tools {
 
-/// Counts of the messages on each channel, and of who received from whom.  A vehicle or device receives from another by sound
+/// Counts of the messages on each channel, and of who received from whom.  A vehicle or device receives from another by
+/// sound
 /// (`sim.sound`, `sim.sound.arrival`) or by radio (`shoal.modem_received_t`).
 class TrafficCounts {
  public:

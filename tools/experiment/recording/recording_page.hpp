@@ -23,7 +23,7 @@ struct RecordingPage {
   std::string to_text() const;
 };
 
-/// Maximum size of a page: mail and chat programs take files of this size.
+/// Maximum size of a page: e-mail and chat programs take files of this size.
 constexpr std::size_t max_recording_page_bytes = 20'000'000;
 
 /// Makes the page of a log.  States are left out until it has at most `max_bytes`, then sounds.  Throws BusError and
