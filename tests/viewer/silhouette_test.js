@@ -80,7 +80,7 @@ function viewFrom(look, distance_m, i) {
   };
 }
 
-/** Place close to a vehicle: of several the one that shows best of it and other entities, for walls may hide it. */
+/** Place close to a vehicle: of several the one that shows the greatest part of it. */
 async function closeView(page, vehicle, bodies, ground) {
   let best = null, shown = -1;
   for (let i = 0; i < DIRECTIONS.length && shown < 2000; ++i)

@@ -14,6 +14,7 @@
 #include "tools/experiment/snapshot/run_identity.hpp"
 #include "tools/experiment/world_files/world_by_name.hpp"
 #include "tools/shoal/commands.hpp"
+#include "tools/shoal/run_watched.hpp"
 #include "tools/shoal/speed_option.hpp"
 #include "tools/shoal/view_options.hpp"
 
@@ -30,6 +31,7 @@ struct RunArguments {
   std::string snapshot_at;
   std::optional<double> duration_s;
   bool with_page = false;
+  bool watch = false;
   ViewOptions view;
 };
 
@@ -58,34 +60,22 @@ sim::LoadedWorld load_from(RunArguments& arguments) {
   return sim::load_world_text(arguments.run.from->resolved_world, arguments.from, arguments.load);
 }
 
-int run(RunArguments& arguments) {
-  // Transfer the options of the command line.
-  arguments.load.allow_plugins = arguments.run.launch;
-  arguments.load.serial_ports = arguments.run.serial_ports;
-  arguments.run.speed = parse_speed(arguments.speed);
-  arguments.run.duration_s = arguments.load.duration_s = arguments.duration_s;
-  arguments.load.encode_message = shoal::encode_own_message;
-  arguments.load.special_files = arguments.run.special_files;
-  // Check combinations of options.
-  if (arguments.world.empty() == arguments.from.empty())
-    throw command_line::UsageError("needs either a WORLD or --from FILE");
-  if (!arguments.run.await.empty() && arguments.run.bus == "none")
-    throw CLI::ValidationError("--await", "needs the LCM bus: clients cannot join on --bus none");
-  arguments.run.snapshot_at_s = parse_times(arguments.snapshot_at);
-  const bool nowhere = arguments.run.snapshots.empty() && arguments.run.results.empty();
-  if (nowhere && (!arguments.snapshot_at.empty() || arguments.run.snapshot_every_s))
-    throw CLI::ValidationError("--snapshot-at", "needs --snapshots DIR or --results DIR");
-  if (arguments.with_page) arguments.run.view = arguments.view;
-  // Load and run the world.
+/// Reads the world, and checks the arguments of its programs.
+sim::LoadedWorld load_with_programs(RunArguments& arguments) {
   sim::LoadedWorld loaded =
       arguments.from.empty() ? sim::load_world(world_file(arguments.world), arguments.load) : load_from(arguments);
+  read_programs(loaded, {arguments.run.launch, arguments.load.allow_paths});
+  return loaded;
+}
+
+/// Runs a world, and prints its summary.  Returns the exit code.
+int run_loaded(const sim::LoadedWorld& loaded, RunArguments& arguments) {
   // As fast as possible there is little to see.
+  arguments.run.speed = parse_speed(arguments.speed);
   if (arguments.with_page && arguments.speed.empty() && loaded.config.run.speed == 0) {
     arguments.run.speed = 1;
     spdlog::info("--view: the run goes at real time; --speed max lets it go as fast as possible");
   }
-  read_programs(loaded, {arguments.run.launch, arguments.load.allow_paths});
-  catch_signals(true);
   const Summary summary = run_world(loaded, arguments.run);
   if (!summary.error.empty()) std::cerr << "shoal: " << summary.error << '\n';
   // Print the summary even if it could not be saved: on stderr when stdout leads to the same full disk.
@@ -99,6 +89,37 @@ int run(RunArguments& arguments) {
   if (summary.ended == "fault" || summary.ended == "error")
     std::cerr << bug_hint(arguments.run.results, arguments.run.record) << '\n';
   return summary.exit_code;
+}
+
+int run(RunArguments& arguments) {
+  // Transfer the options of the command line.
+  arguments.load.allow_plugins = arguments.run.launch;
+  arguments.load.serial_ports = arguments.run.serial_ports;
+  arguments.run.duration_s = arguments.load.duration_s = arguments.duration_s;
+  arguments.load.encode_message = shoal::encode_own_message;
+  arguments.load.special_files = arguments.run.special_files;
+  // Check combinations of options.
+  if (arguments.world.empty() == arguments.from.empty())
+    throw command_line::UsageError("needs either a WORLD or --from FILE");
+  if (!arguments.run.await.empty() && arguments.run.bus == "none")
+    throw CLI::ValidationError("--await", "needs the LCM bus: clients cannot join on --bus none");
+  arguments.run.snapshot_at_s = parse_times(arguments.snapshot_at);
+  const bool nowhere = arguments.run.snapshots.empty() && arguments.run.results.empty();
+  if (nowhere && (!arguments.snapshot_at.empty() || arguments.run.snapshot_every_s))
+    throw CLI::ValidationError("--snapshot-at", "needs --snapshots DIR or --results DIR");
+  if (arguments.with_page) arguments.run.view = arguments.view;
+  const bool writes = !arguments.run.results.empty() || !arguments.run.record.empty();
+  if (arguments.watch && (writes || !arguments.from.empty()))
+    throw CLI::ValidationError("--watch", "cannot be given with --results, --record or --from");
+  if (arguments.watch) {
+    catch_signals(true);
+    return run_watched(
+        world_file(arguments.world), arguments.run, [&] { return load_with_programs(arguments); },
+        [&](const sim::LoadedWorld& loaded) { return run_loaded(loaded, arguments); });
+  }
+  const sim::LoadedWorld loaded = load_with_programs(arguments);
+  catch_signals(true);
+  return run_loaded(loaded, arguments);
 }
 
 void add_snapshot_options(CLI::App& command, RunArguments& arguments) {
@@ -207,6 +228,10 @@ void add_run_command(CLI::App& app, int& exit_code) {
   add_bus_options(*command, *arguments);
   add_output_options(*command, *arguments);
   command->add_flag("--view", arguments->with_page, "serve a live page of the run in 3-D, and print its address");
+  command
+      ->add_flag("--watch", arguments->watch,
+                 "with --view: run the world anew each time that one of its files is saved")
+      ->needs("--view");
   add_page_options(*command, arguments->view);
   command
       ->add_option("--drive-profile", arguments->view.drive_profile,
@@ -217,20 +242,21 @@ void add_run_command(CLI::App& app, int& exit_code) {
   add_plugin_option(*command);
   // End of the help and action.
   command_line::set_help_end(
-      *command, {{"shoal run worlds/minimal.yaml --duration 10 --speed 1",
-                  "shoal run worlds/coop_land.yaml --launch --results results/coop_land --record coop.lcm",
-                  "shoal run worlds/coop_underwater.yaml --launch --view",
-                  "shoal run worlds/coop_land.yaml --duration 20 --snapshot-at 10 --snapshots snaps",
-                  "shoal run --from snaps/branch0_step1000.snapshot --set vehicles.rover3.devices.lidar.rate_hz=5",
-                  "shoal run worlds/coop_land.yaml --seed 7 --set vehicles.rover3.devices.modem.loss_probability=0.2"},
-                 {{0, "the run ended; no rule of the world failed"},
-                  {1, "a rule of the world or one of its programs failed"},
-                  {2, "wrong usage, or a mistake in the world"},
-                  {3, "physics fault"},
-                  {4, "bus or file error"},
-                  {5, "a lockstep client did not join or answer in time, or a step took longer than 'limits' allows"},
-                  {129, "ended by SIGHUP; 130 by SIGINT; 143 by SIGTERM"}},
-                 {}});
+      *command,
+      {{"shoal run worlds/minimal.yaml --duration 10 --speed 1",
+        "shoal run worlds/coop_land.yaml --launch --results results/coop_land --record coop.lcm",
+        "shoal run worlds/coop_underwater.yaml --launch --view", "shoal run my_world.yaml --bus none --view --watch",
+        "shoal run worlds/coop_land.yaml --duration 20 --snapshot-at 10 --snapshots snaps",
+        "shoal run --from snaps/branch0_step1000.snapshot --set vehicles.rover3.devices.lidar.rate_hz=5",
+        "shoal run worlds/coop_land.yaml --seed 7 --set vehicles.rover3.devices.modem.loss_probability=0.2"},
+       {{0, "the run ended; no rule of the world failed"},
+        {1, "a rule of the world or one of its programs failed"},
+        {2, "wrong usage, or a mistake in the world"},
+        {3, "physics fault"},
+        {4, "bus or file error"},
+        {5, "a lockstep client did not join or answer in time, or a step took longer than 'limits' allows"},
+        {129, "ended by SIGHUP; 130 by SIGINT; 143 by SIGTERM"}},
+       {}});
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }
 

@@ -49,6 +49,7 @@ class App {
     this.address = new Address();
     this.live = new Playback();
     this.data = null;
+    this.noRun = '';  // why there is no run
     this.vehicles = [];
     this.selected = null;
     this.dirty = true;
@@ -201,6 +202,7 @@ class App {
     this.past.clear();
     this.branches.clear();
     [this.timeBar, this.drive, this.forms].forEach((part) => part.setHello(message));
+    this.noRun = String(message.problem ?? '');
     this.instruments.greet();
   }
 
@@ -492,7 +494,7 @@ class App {
   }
 
   showBanner() {
-    const text = this.connection.banner(formatTime(this.playback.time_us));
+    const text = this.connection.banner(formatTime(this.playback.time_us)) || this.noRun;
     if ($('banner').textContent === text) return;
     $('banner').textContent = text;
     $('banner').hidden = text === '';

@@ -189,11 +189,16 @@ Summary Run::go() {
 std::string Run::how_ended() const {
   if (caught_signal() != 0) return "signal";
   if (world_.ended()) return "event";
+  if (must_end()) return "changed";
   return control_.quit ? "quit" : "duration";
 }
 
+bool Run::must_end() const {
+  return caught_signal() != 0 || (options_.leave && options_.leave());
+}
+
 bool Run::may_continue() const {
-  return caught_signal() == 0 && !control_.quit;
+  return !control_.quit && !must_end();
 }
 
 void Run::start_clients() {
@@ -327,7 +332,7 @@ void Run::synchronize() {
                                                check_programs();
                                                check_bus();
                                                buses_.hand_over_record();
-                                               return caught_signal() == 0 && !time_.has_moved();
+                                               return !must_end() && !time_.has_moved();
                                              });
   synchronized_ = outcome == bridges::LockstepOutcome::done && !time_.has_moved();
 }

@@ -75,6 +75,8 @@ class Run final : private Timeline {
   /// `goes_on`: requests may still change the world.
   RunPrograms::Clients clients(bool goes_on);
   void check_programs();
+  /// Returns whether a signal, or the caller, ends the run.
+  bool must_end() const;
   bool may_continue() const;
   std::string how_ended() const;
   std::uint64_t messages() const;

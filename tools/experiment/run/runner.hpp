@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -43,6 +44,7 @@ struct RunOptions {
   std::optional<double> rewind_s;          ///< longest rewind; unset: 60 s when requests are possible
   double rewind_MB = 64;                   ///< memory for rewinding
   std::optional<ViewOptions> view;         ///< the live page; unset: none
+  std::function<bool()> leave = {};        ///< asked in each step: true ends the run; empty: nothing does so
 };
 
 /// Runs a world to its end: builds it, opens the bus and the record, starts the processes, steps, paces, waits for

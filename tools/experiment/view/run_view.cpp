@@ -25,6 +25,7 @@ bridges::WebOptions web_options(const ViewOptions& options) {
   web.port = options.port;
   web.port_tries = options.port_tries;
   web.origins = options.origins;
+  web.token = options.token;
   web.page_directory = options.page_directory;
   return web;
 }

@@ -27,6 +27,7 @@ struct ViewOptions {
   std::uint16_t port = 8765;         ///< first port to try
   int port_tries = 20;               ///< 1: this port or none
   std::vector<std::string> origins;  ///< web sites whose pages may connect
+  std::string token = {};            ///< what a page needs to steer; empty: 128 random bits
   std::string page_directory;        ///< folder with the page; empty: the page in the program
   bool foxglove_control = false;     ///< clients of Foxglove may control the run or the playback
   std::string drive_profile;         ///< file of the profile by which pages drive; empty: that of the program

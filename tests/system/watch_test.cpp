@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gmock/gmock.h>
+#include <signal.h>
+
+#include <filesystem>
+#include <string>
+
+#include "tests/bridges/web/web_client.hpp"
+#include "tests/system/shoal_program.hpp"
+
+// `shoal run --view --watch`.
+
+namespace {
+
+using namespace system_test;
+using testing::HasSubstr;
+using web_test::Json;
+
+/// World that is run again each time that it is saved.
+class WatchTest : public testing::Test {
+ protected:
+  /// Saves the world as an editor does: under another name, then renamed.
+  void save(const std::string& text) {
+    write_file(world_ + ".new", text);
+    std::filesystem::rename(world_ + ".new", world_);
+  }
+  static std::string world(const std::string& name, const std::string& more = "") {
+    return "shoal: 1\nname: " + name + "\nobjects: [{name: ball, parts: [{shape: sphere, mass_kg: 1}]" + more + "}]\n";
+  }
+  /// Returns the greeting of the page once it holds; it may have to connect again.
+  Json await_hello(const std::function<bool(const Json&)>& holds) {
+    Json found;
+    await(
+        [&] {
+          try {
+            const std::string errors = run_.errors();
+            const std::size_t port = errors.find("127.0.0.1:");
+            if (port == std::string::npos) return false;
+            web_test::Client page(static_cast<std::uint16_t>(std::stoi(errors.substr(port + 10))));
+            page.upgrade();
+            page.send_json({{"op", "hello"}, {"token", ""}});
+            const auto frame = page.read_frame();
+            if (!frame || !frame->is_text()) return false;
+            found = frame->json();
+            return found.value("op", "") == "hello" && holds(found);
+          } catch (const std::runtime_error&) {  // between two runs
+            return false;
+          }
+        },
+        timeout);
+    return found;
+  }
+
+  ScratchFolder folder_;
+  const std::string world_ = folder_.file("world.yaml");
+  struct Saved {
+    Saved(const std::string& path, const std::string& text) { write_file(path, text); }
+  } saved_{world_, world("first")};
+  Program run_{{built("shoal"), "run", world_, "--bus", "none", "--duration", "forever", "--view", "--view-port", "0",
+                "--watch"}};
+};
+
+TEST_F(WatchTest, ASavedWorldIsRunAnewAtTheSameAddress) {
+  EXPECT_EQ(await_hello([](const Json& hello) { return hello["world"] == "first"; })["world"], "first");
+  save(world("second"));
+  EXPECT_EQ(await_hello([](const Json& hello) { return hello["world"] == "second"; })["world"], "second");
+  kill(run_.pid(), SIGTERM);
+  EXPECT_EQ(run_.wait(), 128 + SIGTERM) << run_.errors();
+}
+
+TEST_F(WatchTest, ErrorsStandOnThePageUntilTheyAreMended) {
+  await_hello([](const Json& hello) { return hello["world"] == "first"; });
+  save(world("second", ", speed: 3"));
+  const Json wrong = await_hello([](const Json& hello) { return hello.contains("problem"); });
+  EXPECT_THAT(wrong.value("problem", ""), HasSubstr("world.yaml:3:71: object 'ball': unknown key 'speed'"));
+  save(world("third"));
+  const Json mended = await_hello([](const Json& hello) { return hello["world"] == "third"; });
+  EXPECT_FALSE(mended.contains("problem"));
+  kill(run_.pid(), SIGTERM);
+  EXPECT_EQ(run_.wait(), 128 + SIGTERM) << run_.errors();
+}
+
+TEST(Watch, DoesNotWriteResults) {
+  const Ended ended = run_shoal({"run", "minimal", "--view", "--watch", "--record", "x.lcm"});
+  EXPECT_EQ(ended.exit_code, 2);
+  EXPECT_THAT(ended.errors, HasSubstr("--watch: cannot be given with --results, --record or --from"));
+}
+
+}  // namespace
