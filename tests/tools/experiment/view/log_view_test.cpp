@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include <atomic>
+#include <cmath>
 #include <cstring>
 #include <fstream>
 #include <functional>
@@ -12,7 +13,10 @@
 
 #include "bridges/view/view_publisher.hpp"
 #include "shoal/message_codec.hpp"
+#include "shoal/pose_t.hpp"
 #include "shoal/sim_bodies_t.hpp"
+#include "shoal/sim_sound_arrival_t.hpp"
+#include "shoal/sim_sound_t.hpp"
 #include "tests/bridges/web/web_client.hpp"
 #include "tests/scratch_folder.hpp"
 #include "tests/tools/experiment/replay/recorded_run.hpp"
@@ -42,6 +46,61 @@ struct Log {
   const std::string path = folder.file("run.lcm");
 };
 
+/// The same log, with a pose of the ball on `ball.pose` each step, its height in `pos[2]`, and sounds from a to b: the
+/// k-th in the step 100 k, of which every second one is lost.
+struct TrafficLog {
+  TrafficLog() {
+    test::RecordedRun run(
+        "shoal: 1\nname: fall\nphysics: {step_s: 0.01}\nobjects: [{name: ball, position_m: [1, 2, 100], parts: "
+        "[{shape: "
+        "sphere, mass_kg: 1}]}]\n",
+        path);
+    bridges::ViewPublisher view(run.gate, run.world, {}, [] { return true; });
+    view.after_step();
+    for (int i = 1; i <= 1000; ++i) {
+      run.world.step();
+      publish(run, i);
+      view.after_step();
+    }
+  }
+  static void publish(test::RecordedRun& run, int step) {
+    const sim::Time now = run.world.now();
+    run.recorder.set_time(now);
+    shoal::pose_t pose{};
+    pose.utime = run.world.epoch_us() + now.count();
+    pose.pos[2] = height(step);
+    run.gate.publish("ball.pose", shoal::encode(pose), now);
+    if (step % 100 != 0) return;
+    shoal::sim_sound_t sound{};
+    sound.utime = pose.utime;
+    sound.source = "a/modem";
+    sound.kind = "message";
+    sound.sequence = step / 100;
+    run.gate.publish("sim.sound", shoal::encode(sound), now);
+    shoal::sim_sound_arrival_t arrival{};
+    arrival.utime = pose.utime;
+    arrival.source = "a/modem";
+    arrival.receiver = "b/modem";
+    arrival.outcome = step % 200 == 0 ? "noise" : "received";
+    run.gate.publish("sim.sound.arrival", shoal::encode(arrival), now);
+  }
+  static double height(int step) { return 50 * std::sin(0.37 * step); }
+  test_support::ScratchFolder folder;
+  const std::string path = folder.file("run.lcm");
+};
+
+/// Message frame of the page protocol.
+struct Message {
+  std::int64_t time_us = 0;
+  web_test::Json header;
+  explicit Message(const std::string& frame) {
+    std::uint32_t size = 0;
+    std::memcpy(&size, frame.data() + 4, 4);
+    std::memcpy(&time_us, frame.data() + 8, 8);
+    header = web_test::Json::parse(frame.substr(32, size));
+  }
+};
+
 /// State frame of the page protocol.
 struct State {
   std::uint8_t flags;
@@ -58,7 +117,8 @@ struct State {
 
 /// A page of the log, served in another thread.
 struct Page {
-  explicit Page(const Log& log, const std::function<void(tools::LogView&)>& prepare = {})
+  template <typename AnyLog>
+  explicit Page(const AnyLog& log, const std::function<void(tools::LogView&)>& prepare = {})
       : index(log.path), view(log.path, index, options(), "test"), client(port()) {
     if (prepare) prepare(view);
     thread = std::thread([this] {
@@ -97,10 +157,40 @@ struct Page {
     while (!text("status").value("paused", false)) {
     }
   }
+  /// Reads up to the text of a kind that satisfies a condition.
+  template <typename Condition>
+  web_test::Json text_when(const std::string& op, const Condition& condition) {
+    for (;;) {
+      const web_test::Json json = text(op);
+      if (json.is_null() || condition(json)) return json;
+    }
+  }
+  void subscribe(const std::string& channel, double rate_hz = 30) {
+    client.send_json({{"op", "subscribe"}, {"channels", {{{"name", channel}, {"rate_hz", rate_hz}}}}});
+  }
+  /// Reads up to the next message.
+  Message message() {
+    while (const auto frame = client.read_frame())
+      if (!frame->is_text() && frame->payload[0] == 2) return Message(frame->payload);
+    throw std::runtime_error("no message");
+  }
+  void seek(std::int64_t time_us) { client.send_json({{"op", "seek"}, {"time_us", time_us}}); }
+  web_test::Json series(std::int64_t from_us, std::int64_t to_us, int points, const std::string& field = "pos[2]") {
+    client.send_json({{"op", "series"},
+                      {"id", 5},
+                      {"channel", "ball.pose"},
+                      {"field", field},
+                      {"from_us", from_us},
+                      {"to_us", to_us},
+                      {"points", points}});
+    while (const auto frame = client.read_frame())
+      if (frame->is_text() && (frame->json()["op"] == "series" || frame->json()["op"] == "reply")) return frame->json();
+    return {};
+  }
   /// Reads the next state, and acknowledges one that was not asked for.
   State next_state() {
     while (const auto frame = client.read_frame()) {
-      if (frame->is_text()) continue;
+      if (frame->is_text() || frame->payload[0] != 1) continue;
       const State state(frame->payload);
       std::uint32_t sequence = 0;
       std::memcpy(&sequence, frame->payload.data() + 4, 4);
@@ -252,6 +342,134 @@ TEST(LogView, RefusesToSteer) {
   const auto reply = page.text("reply");
   EXPECT_EQ(reply["id"], 7);
   EXPECT_EQ(reply["ok"], false);
+}
+
+TEST(LogView, ASeekSendsTheLastMessageOfASubscribedChannel) {
+  const TrafficLog log;
+  Page page(log);
+  page.pause();
+  page.subscribe("ball.pose");
+  page.message();
+  for (const std::int64_t time_us : {5'000'000, 1'000'000, 9'000'000}) {
+    page.seek(time_us);
+    Message message = page.message();
+    while (std::abs(message.time_us - time_us) > 100'000) message = page.message();
+    EXPECT_LE(message.time_us, time_us);
+    EXPECT_EQ(message.header["channel"], "ball.pose");
+    EXPECT_EQ(message.header["type"], "shoal.pose_t");
+    EXPECT_DOUBLE_EQ(message.header["fields"]["pos"][2].get<double>(),
+                     TrafficLog::height(static_cast<int>(message.time_us / 10'000)));
+  }
+}
+
+TEST(LogView, ASubscriptionIsAnsweredWhileTheLogIsPaused) {
+  const TrafficLog log;
+  Page page(log);
+  page.pause();
+  page.state_after_seek(4'000'000);
+  page.subscribe("ball.pose", 1);
+  EXPECT_NEAR(static_cast<double>(page.message().time_us), 4e6, 1e5);
+}
+
+TEST(LogView, AnInvalidSubscriptionIsAnError) {
+  const TrafficLog log;
+  Page page(log);
+  page.subscribe("ball.pose", 1000);
+  EXPECT_THAT(page.text("error")["text"].get<std::string>(), HasSubstr("'rate_hz' must be above 0 and at most 30"));
+}
+
+TEST(LogView, CountsMessagesUpToTheTimeShown) {
+  const TrafficLog log;
+  Page page(log);
+  page.pause();
+  for (const std::int64_t time_us : {9'500'000, 500'000, 5'500'000}) {
+    page.seek(time_us);
+    const auto json = page.text_when("channels", [&](const auto& channels) { return channels["time_us"] == time_us; });
+    std::int64_t count = 0;
+    for (const auto& item : json["items"])
+      if (item["name"] == "ball.pose") {
+        count = item["count"];
+        EXPECT_EQ(item["type"], "shoal.pose_t");
+        EXPECT_EQ(item["bytes"], count * 144);
+      }
+    // Up to the last poses of the bodies at this time, some thirty per second.
+    EXPECT_NEAR(static_cast<double>(count), static_cast<double>(time_us) / 10'000, 5);
+  }
+}
+
+TEST(LogView, SaysWhoHeardWhomUpToTheTimeShown) {
+  const TrafficLog log;
+  Page page(log);
+  page.pause();
+  for (const int seconds : {9, 0, 4}) {
+    const std::int64_t time_us = seconds * 1'000'000 + 500'000;
+    page.seek(time_us);
+    const auto json = page.text_when("links", [&](const auto& links) { return links["time_us"] == time_us; });
+    if (seconds == 0) {
+      EXPECT_TRUE(json["items"].empty());
+      continue;
+    }
+    const int lost = seconds / 2;
+    EXPECT_EQ(json["items"], web_test::Json::array({{{"from", "a/modem"},
+                                                     {"to", "b/modem"},
+                                                     {"sent", seconds},
+                                                     {"received", seconds - lost},
+                                                     {"lost", {{"noise", lost}}}}}));
+  }
+}
+
+TEST(LogView, ASeriesHasEveryValueOfTheLog) {
+  const TrafficLog log;
+  Page page(log);
+  const auto series = page.series(1'000'000, 2'000'000, 4000);
+  EXPECT_EQ(series["id"], 5);
+  ASSERT_EQ(series["values"].size(), 101u);
+  for (std::size_t i = 0; i < 101; ++i) {
+    EXPECT_EQ(series["t_us"][i], 1'000'000 + 10'000 * static_cast<int>(i));
+    EXPECT_EQ(series["values"][i], TrafficLog::height(100 + static_cast<int>(i)));
+  }
+}
+
+TEST(LogView, ALongSeriesKeepsTheExtremesInAtMostThePointsAskedFor) {
+  const TrafficLog log;
+  Page page(log);
+  const auto series = page.series(0, 10'000'000, 20);
+  EXPECT_LE(series["values"].size(), 20u);
+  EXPECT_GE(series["values"].size(), 10u);
+  double largest = -1e9, smallest = 1e9, shown_largest = -1e9, shown_smallest = 1e9;
+  for (int i = 1; i <= 1000; ++i) {
+    largest = std::max(largest, TrafficLog::height(i));
+    smallest = std::min(smallest, TrafficLog::height(i));
+  }
+  std::int64_t before = 0;
+  for (std::size_t i = 0; i < series["values"].size(); ++i) {
+    shown_largest = std::max(shown_largest, series["values"][i].get<double>());
+    shown_smallest = std::min(shown_smallest, series["values"][i].get<double>());
+    EXPECT_GE(series["t_us"][i].get<std::int64_t>(), before);
+    before = series["t_us"][i];
+  }
+  EXPECT_EQ(shown_largest, largest);
+  EXPECT_EQ(shown_smallest, smallest);
+}
+
+TEST(LogView, ASeriesOfAFieldThatIsMissingSaysSo) {
+  const TrafficLog log;
+  Page page(log);
+  EXPECT_EQ(page.series(0, 10'000'000, 20, "pos[3]")["text"],
+            "series: shoal.pose_t on 'ball.pose' has no field 'pos[3]'");
+}
+
+TEST(LogSeries, WhatCannotBeReadInTimeIsAnError) {
+  const TrafficLog log;
+  const tools::LogIndex index(log.path);
+  bridges::EventLogReader reader(log.path);
+  const tools::SeriesRequest request{"1", "ball.pose", "pos[2]", 0, 10'000'000, 100};
+  try {
+    tools::read_series(reader, index, request, std::chrono::steady_clock::time_point());
+    FAIL();
+  } catch (const tools::PageRequestError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("cannot be read within a second; ask for a shorter range"));
+  }
 }
 
 }  // namespace
