@@ -2,11 +2,14 @@
 #include "bridges/log/record_file.hpp"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <optional>
+#include <string>
 #include <utility>
 
 #include "bridges/base/file_lock.hpp"
@@ -95,7 +98,10 @@ FileDescriptor create_record_file(const std::string& path, Existing existing) {
   if (file.number() < 0 && errno == EEXIST)
     throw BusError(path + ": already exists; choose another name or pass --overwrite");
   if (file.number() < 0) throw BusError(path + ": " + std::strerror(errno));
-  if (const auto owner = lock_against_others(file.number()))
+  // Runs do not mix in a device such as /dev/null.
+  struct stat kind = {};
+  const bool device = fstat(file.number(), &kind) == 0 && S_ISCHR(kind.st_mode);
+  if (const auto owner = device ? std::optional<std::string>() : lock_against_others(file.number()))
     throw BusError(path + ": " + *owner + " is recording into it; choose another name");
   // Truncate only now, to keep the record of another run.  A device has no length.
   if (ftruncate(file.number(), 0) != 0 && errno != EINVAL) throw BusError(path + ": " + std::strerror(errno));

@@ -5,7 +5,7 @@
 #include "bridges/web/view_protocol.hpp"
 #include "bridges/web/web_error.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
-#include "tools/experiment/view/look_request.hpp"
+#include "tools/experiment/page_data/look_request.hpp"
 
 // Messages of a page: each line is one, to a session of the live page; a line that begins with a zero byte is binary.
 

@@ -72,7 +72,7 @@ TEST_F(WatchTest, ErrorsStandOnThePageUntilTheyAreMended) {
   await_hello([](const Json& hello) { return hello["world"] == "first"; });
   save(world("second", ", speed: 3"));
   const Json wrong = await_hello([](const Json& hello) { return hello.contains("problem"); });
-  EXPECT_THAT(wrong.value("problem", ""), HasSubstr("world.yaml:3:71: object 'ball': unknown key 'speed'"));
+  EXPECT_THAT(wrong.value("problem", ""), HasSubstr("world.yaml:3:62: object 'ball': unknown key 'speed'"));
   save(world("third"));
   const Json mended = await_hello([](const Json& hello) { return hello["world"] == "third"; });
   EXPECT_FALSE(mended.contains("problem"));

@@ -17,7 +17,7 @@
 #include "tools/experiment/acoustics/acoustic_link.hpp"
 #include "tools/experiment/world_files/world_by_name.hpp"
 #include "tools/shoal/commands.hpp"
-#include "tools/shoal/output_file.hpp"
+#include "tools/shoal/options/output_file.hpp"
 
 namespace tools {
 

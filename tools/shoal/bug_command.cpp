@@ -8,7 +8,7 @@
 #include "bridges/base/bus_error.hpp"
 #include "tools/experiment/bug_report/bug_report.hpp"
 #include "tools/shoal/commands.hpp"
-#include "tools/shoal/output_file.hpp"
+#include "tools/shoal/options/output_file.hpp"
 
 namespace tools {
 

@@ -10,7 +10,7 @@
 #include "tools/experiment/film/film_clips.hpp"
 #include "tools/experiment/process/signals.hpp"
 #include "tools/shoal/commands.hpp"
-#include "tools/shoal/image_options.hpp"
+#include "tools/shoal/options/image_options.hpp"
 
 namespace tools {
 

@@ -17,7 +17,7 @@
 #include "tools/experiment/images/allan_table.hpp"
 #include "tools/experiment/images/log_image.hpp"
 #include "tools/shoal/commands.hpp"
-#include "tools/shoal/output_file.hpp"
+#include "tools/shoal/options/output_file.hpp"
 
 namespace tools {
 

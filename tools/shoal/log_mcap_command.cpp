@@ -9,7 +9,7 @@
 
 #include "bridges/log/mcap_conversion.hpp"
 #include "tools/shoal/commands.hpp"
-#include "tools/shoal/output_file.hpp"
+#include "tools/shoal/options/output_file.hpp"
 
 namespace tools {
 

@@ -13,7 +13,7 @@
 #include "sim/config/shipped_files.hpp"
 #include "sim/world_file/load_world.hpp"
 #include "tools/shoal/commands.hpp"
-#include "tools/shoal/output_file.hpp"
+#include "tools/shoal/options/output_file.hpp"
 #include "tools/shoal/start/start_files.hpp"
 #include "tools/shoal/start/start_program.hpp"
 

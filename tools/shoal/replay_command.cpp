@@ -12,8 +12,8 @@
 #include "tools/experiment/run/runner.hpp"
 #include "tools/experiment/world_files/world_by_name.hpp"
 #include "tools/shoal/commands.hpp"
-#include "tools/shoal/output_file.hpp"
-#include "tools/shoal/speed_option.hpp"
+#include "tools/shoal/options/output_file.hpp"
+#include "tools/shoal/options/speed_option.hpp"
 
 namespace tools {
 

@@ -17,7 +17,7 @@
 #include "tools/experiment/results/run_record.hpp"
 #include "tools/experiment/run/runner.hpp"
 #include "tools/shoal/commands.hpp"
-#include "tools/shoal/output_file.hpp"
+#include "tools/shoal/options/output_file.hpp"
 
 namespace tools {
 

@@ -14,9 +14,9 @@
 #include "tools/experiment/snapshot/run_identity.hpp"
 #include "tools/experiment/world_files/world_by_name.hpp"
 #include "tools/shoal/commands.hpp"
+#include "tools/shoal/options/speed_option.hpp"
+#include "tools/shoal/options/view_options.hpp"
 #include "tools/shoal/run_watched.hpp"
-#include "tools/shoal/speed_option.hpp"
-#include "tools/shoal/view_options.hpp"
 
 namespace tools {
 
@@ -193,18 +193,6 @@ void add_bus_options(CLI::App& command, RunArguments& arguments) {
 }
 
 }  // namespace
-
-std::optional<double> parse_speed(const std::string& text) {
-  if (text.empty()) return std::nullopt;
-  if (text == "max") return 0.0;
-  try {
-    std::size_t used = 0;
-    const double speed = std::stod(text, &used);
-    if (used == text.size() && speed >= 0.001 && speed <= 1e6) return speed;
-  } catch (const std::exception&) {
-  }
-  throw CLI::ValidationError("--speed", "must be from 0.001 to 1e6, or max, got '" + text + "'");
-}
 
 void add_run_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("run", "Run a world");

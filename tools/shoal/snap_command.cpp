@@ -18,8 +18,8 @@
 #include "tools/experiment/film/scene_painter.hpp"
 #include "tools/experiment/images/overview.hpp"
 #include "tools/shoal/commands.hpp"
-#include "tools/shoal/image_options.hpp"
-#include "tools/shoal/output_file.hpp"
+#include "tools/shoal/options/image_options.hpp"
+#include "tools/shoal/options/output_file.hpp"
 
 namespace tools {
 

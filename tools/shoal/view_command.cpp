@@ -18,7 +18,7 @@
 #include "tools/experiment/run/runner.hpp"
 #include "tools/experiment/view/log_view.hpp"
 #include "tools/shoal/commands.hpp"
-#include "tools/shoal/view_options.hpp"
+#include "tools/shoal/options/view_options.hpp"
 
 namespace tools {
 

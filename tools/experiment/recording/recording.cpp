@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "bridges/log/event_log.hpp"
+#include "tools/experiment/page_data/view_json.hpp"
 #include "tools/experiment/view/log_index.hpp"
-#include "tools/experiment/view/view_json.hpp"
 #include "tools/experiment/view/view_messages.hpp"
 
 namespace tools {

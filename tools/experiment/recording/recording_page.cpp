@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "tools/experiment/files/html.hpp"
-#include "tools/experiment/view/view_json.hpp"
+#include "tools/experiment/page_data/view_json.hpp"
 
 namespace tools {
 

@@ -7,8 +7,8 @@
 #include "sim/device/device_registry.hpp"
 #include "sim/script/action_registry.hpp"
 #include "tools/experiment/drive/drive_mapping.hpp"
+#include "tools/experiment/page_data/view_json.hpp"
 #include "tools/experiment/view/page_drive.hpp"
-#include "tools/experiment/view/view_json.hpp"
 
 namespace tools {
 

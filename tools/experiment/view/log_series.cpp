@@ -7,8 +7,8 @@
 #include <optional>
 
 #include "shoal/message_schema.hpp"
+#include "tools/experiment/page_data/view_json.hpp"
 #include "tools/experiment/view/page_traffic.hpp"
-#include "tools/experiment/view/view_json.hpp"
 
 namespace tools {
 

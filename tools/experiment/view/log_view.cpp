@@ -7,9 +7,9 @@
 
 #include "shoal/message_codec.hpp"
 #include "shoal/sim_info_t.hpp"
-#include "tools/experiment/view/look_request.hpp"
+#include "tools/experiment/page_data/look_request.hpp"
+#include "tools/experiment/page_data/view_json.hpp"
 #include "tools/experiment/view/scene_names.hpp"
-#include "tools/experiment/view/view_json.hpp"
 
 namespace tools {
 

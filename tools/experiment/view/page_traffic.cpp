@@ -7,7 +7,7 @@
 
 #include "shoal/message_schema.hpp"
 #include "tools/experiment/page_data/page_request.hpp"
-#include "tools/experiment/view/view_json.hpp"
+#include "tools/experiment/page_data/view_json.hpp"
 
 namespace tools {
 

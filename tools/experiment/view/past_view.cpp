@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "tools/experiment/view/view_json.hpp"
+#include "tools/experiment/page_data/view_json.hpp"
 
 namespace tools {
 

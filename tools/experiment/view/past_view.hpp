@@ -11,7 +11,7 @@
 #include "bridges/view/view_publisher.hpp"
 #include "bridges/web/web_server.hpp"
 #include "sim/world/world.hpp"
-#include "tools/experiment/view/look_request.hpp"
+#include "tools/experiment/page_data/look_request.hpp"
 #include "tools/experiment/view/pose_history.hpp"
 #include "tools/experiment/view/scene_names.hpp"
 #include "tools/experiment/view/state_frame.hpp"

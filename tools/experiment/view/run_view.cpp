@@ -5,8 +5,8 @@
 
 #include "shoal/message_codec.hpp"
 #include "tools/experiment/drive/drive_error.hpp"
+#include "tools/experiment/page_data/view_json.hpp"
 #include "tools/experiment/view/forms_text.hpp"
-#include "tools/experiment/view/view_json.hpp"
 
 namespace tools {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <unordered_map>
 
-#include "tools/experiment/view/view_json.hpp"
+#include "tools/experiment/page_data/view_json.hpp"
 
 namespace tools {
 

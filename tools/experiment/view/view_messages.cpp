@@ -14,7 +14,7 @@
 #include "shoal/sim_scores_t.hpp"
 #include "shoal/sim_sound_arrival_t.hpp"
 #include "shoal/sim_sound_t.hpp"
-#include "tools/experiment/view/view_json.hpp"
+#include "tools/experiment/page_data/view_json.hpp"
 
 namespace tools {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tools/shoal/view_options.hpp"
+#include "tools/shoal/options/view_options.hpp"
 
 #include "tools/command_line/checks.hpp"
 

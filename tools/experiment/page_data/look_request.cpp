@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tools/experiment/view/look_request.hpp"
+#include "tools/experiment/page_data/look_request.hpp"
 
 #include <cmath>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "tools/experiment/view/view_json.hpp"
+#include "tools/experiment/page_data/view_json.hpp"
 
 namespace tools {
 

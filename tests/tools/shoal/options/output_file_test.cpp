@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tools/shoal/output_file.hpp"
+#include "tools/shoal/options/output_file.hpp"
 
 #include <gtest/gtest.h>
 

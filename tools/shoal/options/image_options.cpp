@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tools/shoal/image_options.hpp"
+#include "tools/shoal/options/image_options.hpp"
 
 #include <spdlog/fmt/fmt.h>
 

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/shoal/options/speed_option.hpp"
+
+#include <CLI/CLI.hpp>
+
+namespace tools {
+
+std::optional<double> parse_speed(const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  if (text == "max") return 0.0;
+  try {
+    std::size_t used = 0;
+    const double speed = std::stod(text, &used);
+    if (used == text.size() && speed >= 0.001 && speed <= 1e6) return speed;
+  } catch (const std::exception&) {
+  }
+  throw CLI::ValidationError("--speed", "must be from 0.001 to 1e6, or max, got '" + text + "'");
+}
+
+}  // namespace tools
