@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <cstring>
 #include <nlohmann/json.hpp>
 
 #include "bridges/web/client_message.hpp"
 #include "bridges/web/view_protocol.hpp"
 #include "bridges/web/web_error.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
+#include "tools/experiment/page_data/message_frame.hpp"
+#include "tools/experiment/page_data/page_request.hpp"
 
 // Messages of a page: each line is one, to a session of the live page; a line that begins with a zero byte is binary.
+// The whole input is also the payload of a message that is shown on a page.
 
 namespace {
 
@@ -27,6 +31,44 @@ void check_message(std::string_view text) {
   });
 }
 
+void check_subscribe(std::string_view text) {
+  fuzz::allow<tools::PageRequestError>([&] {
+    const auto subscriptions = tools::parse_subscribe(text);
+    fuzz::require(subscriptions.size() <= tools::max_subscriptions, "the channels of a page are bounded");
+    for (const tools::Subscription& each : subscriptions) {
+      fuzz::require(!each.channel.empty() && each.channel.size() <= 63, "the name of a channel is bounded");
+      fuzz::require(each.rate_hz > 0 && each.rate_hz <= tools::max_subscription_rate_hz, "a rate is bounded");
+    }
+  });
+}
+
+void check_series(std::string_view text) {
+  fuzz::allow<tools::PageRequestError>([&] {
+    const tools::SeriesRequest series = tools::parse_series(text);
+    fuzz::require(series.from_us <= series.to_us, "a series has a range of time");
+    fuzz::require(series.points >= 2 && series.points <= tools::max_series_points, "the points are bounded");
+    nlohmann::json::parse(series.id);
+  });
+}
+
+/// Shows bytes as a message: as they are, and with the fingerprint of a type in place of the first eight.
+void check_frame(fuzz::Input input) {
+  std::vector<std::byte> payload(input.size());
+  std::memcpy(payload.data(), input.data(), input.size());
+  const auto& types = shoal::embedded_types().all();
+  auto type = types.begin();
+  if (!payload.empty()) std::advance(type, std::to_integer<std::size_t>(payload[0]) % types.size());
+  for (std::size_t i = 0; i < std::min<std::size_t>(8, payload.size()); ++i)
+    payload[i] = static_cast<std::byte>(type->second.fingerprint >> (56 - 8 * i));
+  for (const auto bytes : {std::as_bytes(input), std::as_bytes(std::span(payload))}) {
+    const std::string frame = tools::message_frame(shoal::embedded_types(), fuzz::text_of(input), bytes, 1);
+    std::uint32_t header_bytes = 0;
+    std::memcpy(&header_bytes, frame.data() + 4, sizeof header_bytes);
+    fuzz::require(header_bytes % 8 == 0 && 32 + header_bytes <= frame.size(), "the header is within the frame");
+    fuzz::require(nlohmann::json::parse(frame.substr(32, header_bytes)).contains("fields"), "a message has fields");
+  }
+}
+
 }  // namespace
 
 SHOAL_FUZZ_TARGET(view_message) {
@@ -40,9 +82,12 @@ SHOAL_FUZZ_TARGET(view_message) {
     const std::size_t end = std::min(text.find('\n'), text.size());
     const std::string_view line = text.substr(0, end);
     check_message(line);
+    check_subscribe(line);
+    check_series(line);
     session->receive(line, !line.starts_with('\0'));
     text.remove_prefix(std::min(end + 1, text.size()));
   }
+  check_frame(input);
   bridges::WebFrame frame;
   while (session->next(frame))
     fuzz::require(nlohmann::json::parse(*frame.bytes).is_object(), "a page gets JSON objects");

@@ -47,8 +47,7 @@ void LogIndex::add(std::vector<Mark>& marks, const Mark& mark) {
 void LogIndex::mark_traffic(const Mark& mark, TrafficCounts& counts) {
   if (traffic_.rewind(mark.time_us)) counts = traffic_.last();
   constexpr std::int64_t interval_us = 1'000'000;
-  if (mark.time_us / interval_us != traffic_.last_us() / interval_us)
-    traffic_.mark(mark.time_us, mark.offset, counts);
+  if (mark.time_us / interval_us != traffic_.last_us() / interval_us) traffic_.mark(mark.time_us, mark.offset, counts);
 }
 
 LogIndex::LogIndex(const std::string& path, const std::function<void(double share)>& progress) {

@@ -105,7 +105,8 @@ class FieldReader {
     if (numbers_ > 0) return;
     const std::string what = "series: ";
     if (messages_ == 0) throw PageRequestError(what + "no message on '" + request_.channel + "' in this range of time");
-    if (type_ == nullptr) throw PageRequestError(what + "the messages on '" + request_.channel + "' are of an unknown type");
+    if (type_ == nullptr)
+      throw PageRequestError(what + "the messages on '" + request_.channel + "' are of an unknown type");
     if (is_text_) throw PageRequestError(what + "'" + request_.field + "' of " + type_->name + " is not a number");
     throw PageRequestError(what + type_->name + " on '" + request_.channel + "' has no field '" + request_.field + "'");
   }

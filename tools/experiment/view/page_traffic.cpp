@@ -27,8 +27,7 @@ std::map<std::string, std::string, std::less<>> vehicles_of(const std::string& s
       const std::string name = vehicle.value("name", "");
       vehicles[name] = name;
       for (const Json& device : vehicle.value("devices", Json::array()))
-        for (const Json& channel : device.value("channels", Json::array()))
-          vehicles[channel.get<std::string>()] = name;
+        for (const Json& channel : device.value("channels", Json::array())) vehicles[channel.get<std::string>()] = name;
     }
   } catch (const Json::exception&) {  // a scene of another process: what was read up to here
   }
@@ -38,10 +37,9 @@ std::map<std::string, std::string, std::less<>> vehicles_of(const std::string& s
 }  // namespace
 
 void refuse(bridges::WebServer& server, const bridges::ViewRequest& request, const std::string& text) {
-  server.reply(request.client, json_text({{"op", "reply"},
-                                          {"id", Json::parse(request_id(request.text))},
-                                          {"ok", false},
-                                          {"text", text}}));
+  server.reply(
+      request.client,
+      json_text({{"op", "reply"}, {"id", Json::parse(request_id(request.text))}, {"ok", false}, {"text", text}}));
 }
 
 void PageTraffic::count(std::string_view channel, std::span<const std::byte> payload) {

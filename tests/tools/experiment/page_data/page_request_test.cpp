@@ -65,8 +65,7 @@ TEST(PageRequest, AnInvalidSeriesSaysWhatIsWrong) {
   EXPECT_EQ(error_of_series(Json::object()), "");
   EXPECT_EQ(error_of_series({{"from_us", 11}}), "series: 'from_us' 11 is after 'to_us' 10");
   EXPECT_EQ(error_of_series({{"points", 4001}}), "series: 'points' must be an integer from 2 to 4000, got 4001");
-  EXPECT_EQ(error_of_series({{"field", std::string(257, 'x')}}),
-            "series: 'field' must be a text of 1 to 256 bytes");
+  EXPECT_EQ(error_of_series({{"field", std::string(257, 'x')}}), "series: 'field' must be a text of 1 to 256 bytes");
   EXPECT_EQ(error_of_series({{"channel", nullptr}}), "series: 'channel' must be a text of 1 to 63 bytes");
 }
 

@@ -139,9 +139,15 @@ struct Page {
     const std::size_t colon = url.rfind(':');
     return static_cast<std::uint16_t>(std::stoi(url.substr(colon + 1)));
   }
+  /// Reads the next frame; nothing at the end of the connection.  The test may take twenty seconds: the status comes
+  /// again and again.
+  std::optional<web_test::Frame> frame() {
+    if (std::chrono::steady_clock::now() > deadline) throw std::runtime_error("what the test waits for has not come");
+    return client.read_frame();
+  }
   /// Reads up to the next text of a kind.
   web_test::Json text(const std::string& op) {
-    while (const auto frame = client.read_frame())
+    while (const auto frame = this->frame())
       if (frame->is_text() && frame->json()["op"] == op) return frame->json();
     return {};
   }
@@ -158,23 +164,28 @@ struct Page {
   }
   /// Reads up to the next message.
   Message message() {
-    while (const auto frame = client.read_frame())
+    while (const auto frame = this->frame())
       if (!frame->is_text() && frame->payload[0] == 2) return Message(frame->payload);
     throw std::runtime_error("no message");
   }
   void pause() { client.send_json({{"op", "play"}, {"paused", true}}); }
   void seek(std::int64_t time_us) { client.send_json({{"op", "seek"}, {"time_us", time_us}}); }
   web_test::Json series(std::int64_t from_us, std::int64_t to_us, int points, const std::string& field = "pos[2]") {
-    client.send_json({{"op", "series"}, {"id", 5}, {"channel", "ball.pose"}, {"field", field}, {"from_us", from_us},
-                      {"to_us", to_us}, {"points", points}});
-    while (const auto frame = client.read_frame())
+    client.send_json({{"op", "series"},
+                      {"id", 5},
+                      {"channel", "ball.pose"},
+                      {"field", field},
+                      {"from_us", from_us},
+                      {"to_us", to_us},
+                      {"points", points}});
+    while (const auto frame = this->frame())
       if (frame->is_text() && (frame->json()["op"] == "series" || frame->json()["op"] == "reply")) return frame->json();
     return {};
   }
   /// Reads up to the state after a jump to a time.
   State state_after_seek(std::int64_t time_us) {
     client.send_json({{"op", "seek"}, {"time_us", time_us}});
-    while (const auto frame = client.read_frame()) {
+    while (const auto frame = this->frame()) {
       if (frame->is_text() || frame->payload[0] != 1) continue;
       const State state(frame->payload);
       std::uint32_t sequence = 0;
@@ -188,6 +199,7 @@ struct Page {
   tools::LogIndex index;
   tools::LogView view;
   web_test::Client client;
+  const std::chrono::steady_clock::time_point deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
   std::atomic<bool> end = false;
   std::thread thread;
 };
@@ -254,7 +266,6 @@ TEST(LogView, ASeekSendsTheLastMessageOfASubscribedChannel) {
   Page page(log);
   page.pause();
   page.subscribe("ball.pose");
-  page.message();
   for (const std::int64_t time_us : {5'000'000, 1'000'000, 9'000'000}) {
     page.seek(time_us);
     Message message = page.message();
@@ -289,8 +300,7 @@ TEST(LogView, CountsMessagesUpToTheTimeShown) {
   page.pause();
   for (const std::int64_t time_us : {9'500'000, 500'000, 5'500'000}) {
     page.seek(time_us);
-    const auto json =
-        page.text_when("channels", [&](const auto& channels) { return channels["time_us"] == time_us; });
+    const auto json = page.text_when("channels", [&](const auto& channels) { return channels["time_us"] == time_us; });
     std::int64_t count = 0;
     for (const auto& item : json["items"])
       if (item["name"] == "ball.pose") {
