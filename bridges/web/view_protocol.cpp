@@ -30,6 +30,21 @@ std::uint32_t sequence_of_state(const std::string& state) {
   return sequence;
 }
 
+/// Returns the state that replaces another one, which may not have been sent.  If the time was set with that one (flag
+/// 2 of byte 1), it was also set with this one.
+std::shared_ptr<const std::string> replacing(const std::shared_ptr<const std::string>& before,
+                                             const std::shared_ptr<const std::string>& state) {
+  constexpr int jump_flag = 2;
+  constexpr std::size_t flags_at = 1;
+  const auto jumps = [](const std::string& bytes) {
+    return bytes.size() > flags_at && (bytes[flags_at] & jump_flag) != 0;
+  };
+  if (!before || !jumps(*before) || state->size() <= flags_at || jumps(*state)) return state;
+  std::string bytes = *state;
+  bytes[flags_at] = static_cast<char>(bytes[flags_at] | jump_flag);
+  return shared(std::move(bytes));
+}
+
 /// Requests that change what others see, or the run.
 bool needs_control(const std::string& op) {
   return op == "control" || op == "play" || op == "seek";
@@ -44,7 +59,7 @@ void ViewProtocol::send_state(std::span<const std::byte> state) {
   auto text = shared(std::string(reinterpret_cast<const char*>(state.data()), state.size()));
   {
     const std::lock_guard lock(box_mutex_);
-    box_.state.swap(text);
+    box_.state = replacing(box_.state, text);
   }
   wake();
 }
@@ -317,6 +332,10 @@ ViewSession::Text ViewSession::next_state() {
   if (!state_ || unacknowledged_.size() >= ViewProtocol::max_unacknowledged) return nullptr;
   unacknowledged_.push_back(sequence_of_state(*state_));
   return std::exchange(state_, nullptr);
+}
+
+void ViewSession::set_state(const Text& state) {
+  state_ = replacing(state_, state);
 }
 
 void ViewSession::set_message(const std::string& channel, const Text& bytes) {

@@ -119,7 +119,7 @@ class ViewSession final : public WebSession {
   void request(ViewRequest request, const std::string& id);
   void push(Text text);
   void drop_oldest(std::size_t room_for);
-  void set_state(const Text& state) { state_ = state; }
+  void set_state(const Text& state);
   bool take(Text bytes, bool is_text, WebFrame& frame);
   Text next_retained();
   Text next_text();

@@ -43,7 +43,7 @@ void TrafficCounts::take(std::string_view channel, std::span<const std::byte> pa
       take_radio_sent(channel, payload);
     else if (is_of_type<shoal::modem_received_t>(fingerprint))
       take_radio_received(channel, payload);
-  } catch (const shoal::MessageError&) {  // invalid: counted as a message, and heard by nobody
+  } catch (const shoal::MessageError&) {  // invalid: only counted as a message
   }
 }
 

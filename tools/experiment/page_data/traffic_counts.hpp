@@ -13,8 +13,8 @@
 
 namespace tools {
 
-/// Counts of the messages on each channel, and of who heard whom.  A vehicle or device hears another by sound
-/// (`sim.sound`, `sim.sound.arrival`) or by radio (`shoal.modem_received_t`).
+/// Counts of the messages on each channel, and of who received from whom: by sound
+/// (`sim.sound`, `sim.sound.arrival`), and by radio (`shoal.modem_received_t`).
 class TrafficCounts {
  public:
   /// Maximum number of channels, and of pairs; further ones are left out.

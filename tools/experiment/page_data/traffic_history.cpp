@@ -23,7 +23,7 @@ void TrafficHistory::for_each(Use&& use) {
     use(channel.bytes);
   }
   for (auto& [names, values] : sent_) use(values);
-  for (auto& [names, values] : heard_) use(values);
+  for (auto& [names, values] : received_) use(values);
 }
 
 void TrafficHistory::mark(std::int64_t time_us, std::uint64_t offset, const TrafficCounts& counts) {
@@ -37,8 +37,8 @@ void TrafficHistory::mark(std::int64_t time_us, std::uint64_t offset, const Traf
   }
   for (const auto& [names, number] : counts.sent_) set(sent_[names], marks, number);
   for (const auto& [names, pair] : counts.pairs()) {
-    set(heard_[{names.first, names.second, ""}], marks, pair.received);
-    for (const auto& [outcome, number] : pair.lost) set(heard_[{names.first, names.second, outcome}], marks, number);
+    set(received_[{names.first, names.second, ""}], marks, pair.received);
+    for (const auto& [outcome, number] : pair.lost) set(received_[{names.first, names.second, outcome}], marks, number);
   }
 }
 
@@ -62,7 +62,7 @@ TrafficCounts TrafficHistory::restore(std::size_t marks) const {
       counts.channels_[name] = {values.fingerprint, count, get(values.bytes, marks)};
   for (const auto& [names, values] : sent_)
     if (const std::int64_t number = get(values, marks); number > 0) counts.sent_[names] = number;
-  for (const auto& [key, values] : heard_) {
+  for (const auto& [key, values] : received_) {
     const std::int64_t number = get(values, marks);
     if (number == 0) continue;
     const auto& [from, to, outcome] = key;

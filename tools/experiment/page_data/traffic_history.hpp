@@ -56,7 +56,7 @@ class TrafficHistory {
   std::vector<Mark> marks_;
   std::map<std::string, ChannelValues, std::less<>> channels_;
   std::map<TrafficCounts::Names, Values> sent_;
-  std::map<std::tuple<std::string, std::string, std::string>, Values> heard_;  // last: outcome; empty: received
+  std::map<std::tuple<std::string, std::string, std::string>, Values> received_;  // last: outcome; empty: received
 };
 
 }  // namespace tools

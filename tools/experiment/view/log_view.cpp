@@ -63,7 +63,7 @@ void LogView::seek(std::int64_t time_us) {
   const std::uint64_t from = index_.bodies_at(time_us - before_us).offset;
   TrafficHistory::Point counted = index_.counts_before(from);
   traffic_.set_counts(std::move(counted.counts));
-  traffic_.feed().forget();
+  traffic_.feed().discard();
   reader_.seek(counted.offset);
   bridges::LogEventView event;
   while (reader_.next(event) && event.offset < from) traffic_.count(event.channel, event.payload);

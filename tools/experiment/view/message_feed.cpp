@@ -70,7 +70,7 @@ void MessageFeed::keep(std::string_view channel, std::span<const std::byte> payl
   }
 }
 
-void MessageFeed::forget() {
+void MessageFeed::discard() {
   for (auto& [name, channel] : channels_) channel = {};
   bytes_ = 0;
   for (auto& [client, readers] : readers_)
@@ -78,7 +78,7 @@ void MessageFeed::forget() {
 }
 
 void MessageFeed::rewind(std::int64_t time_us) {
-  forget();
+  discard();
   while (!past_.empty() && past_.back().time_us > time_us) {
     past_bytes_ -= past_.back().payload.size();
     past_.pop_back();

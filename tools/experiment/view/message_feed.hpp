@@ -38,7 +38,7 @@ class MessageFeed {
   /// Takes a message that was published at a simulated time.
   void take(std::string_view channel, std::span<const std::byte> payload, std::int64_t time_us);
   /// Forgets all messages: another time of a log follows.
-  void forget();
+  void discard();
   /// Goes back to what was newest at a time, and sends it at once.
   void rewind(std::int64_t time_us);
   /// Sends what is due.  Call some thirty times per second of wall time.

@@ -14,8 +14,8 @@
 
 namespace tools {
 
-/// What pages see of the messages themselves: the channels with their counts, who heard whom, and the messages of the
-/// channels that a page has subscribed to.
+/// What pages see of the messages themselves: the channels with their counts, who received from whom, and the messages
+/// of the channels that a page has subscribed to.
 class PageTraffic {
  public:
   /// `server` must outlive this.

@@ -320,7 +320,7 @@ TEST(LogView, SaysWhoHeardWhomUpToTheTimeShown) {
   for (const int seconds : {9, 0, 4}) {
     const std::int64_t time_us = seconds * 1'000'000 + 500'000;
     page.seek(time_us);
-    const auto json = page.text_when("heard", [&](const auto& heard) { return heard["time_us"] == time_us; });
+    const auto json = page.text_when("heard", [&](const auto& counts) { return counts["time_us"] == time_us; });
     if (seconds == 0) {
       EXPECT_TRUE(json["items"].empty());
       continue;
