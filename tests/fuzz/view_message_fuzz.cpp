@@ -47,7 +47,7 @@ void check_series(std::string_view text) {
     const tools::SeriesRequest series = tools::parse_series(text);
     fuzz::require(series.from_us <= series.to_us, "a series has a range of time");
     fuzz::require(series.points >= 2 && series.points <= tools::max_series_points, "the points are bounded");
-    nlohmann::json::parse(series.id);
+    fuzz::require(nlohmann::json::accept(series.id), "the id of an answer is JSON");
   });
 }
 

@@ -241,6 +241,7 @@ TEST(LogView, IntroducesTheLogAndItsScene) {
 TEST(LogView, ASeekShowsThePosesOfThatTime) {
   const Log log;
   Page page(log);
+  page.pause();  // else it has played on before the state is sent
   std::mt19937 random(1);
   for (int i = 0; i < 50; ++i) {
     const std::int64_t time_us = random() % 3'000'000;
