@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <cstring>
 #include <nlohmann/json.hpp>
 
 #include "bridges/web/client_message.hpp"
@@ -8,6 +9,7 @@
 #include "tools/experiment/page_data/look_request.hpp"
 
 // Messages of a page: each line is one, to a session of the live page; a line that begins with a zero byte is binary.
+// The whole input is also the payload of a message that is shown on a page.
 
 namespace {
 
@@ -51,9 +53,12 @@ SHOAL_FUZZ_TARGET(view_message) {
     const std::size_t end = std::min(text.find('\n'), text.size());
     const std::string_view line = text.substr(0, end);
     check_message(line);
+    check_subscribe(line);
+    check_series(line);
     session->receive(line, !line.starts_with('\0'));
     text.remove_prefix(std::min(end + 1, text.size()));
   }
+  check_frame(input);
   bridges::WebFrame frame;
   while (session->next(frame))
     fuzz::require(nlohmann::json::parse(*frame.bytes).is_object(), "a page gets JSON objects");

@@ -386,6 +386,22 @@ TEST_F(ViewProtocolTest, AHelloThatIsNoObjectIsAnError) {
   EXPECT_THROW(protocol_.retain("hello", "[]"), bridges::WebError);
 }
 
+TEST_F(ViewProtocolTest, AJumpInTimeIsNotLostWithTheStateThatItCameWith) {
+  Page page(protocol_, 1);
+  page.hello();
+  std::vector<std::byte> jump(32), after(32);
+  jump[1] = std::byte{2};
+  after[1] = std::byte{1};
+  after[4] = std::byte{7};
+  protocol_.send_state(jump);
+  run();
+  protocol_.send_state(after);
+  run();
+  const std::string got = page.next_bytes();
+  EXPECT_EQ(got[1], 3);
+  EXPECT_EQ(got[4], 7);
+}
+
 // --- Messages of channels
 
 TEST_F(ViewProtocolTest, OnlyTheNewestMessageOfAChannelWaits) {

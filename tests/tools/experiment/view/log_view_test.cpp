@@ -145,9 +145,15 @@ struct Page {
     const std::size_t colon = url.rfind(':');
     return static_cast<std::uint16_t>(std::stoi(url.substr(colon + 1)));
   }
+  /// Reads the next frame; nothing at the end of the connection.  The test may take twenty seconds: the status comes
+  /// again and again.
+  std::optional<web_test::Frame> frame() {
+    if (std::chrono::steady_clock::now() > deadline) throw std::runtime_error("what the test waits for has not come");
+    return client.read_frame();
+  }
   /// Reads up to the next text of a kind.
   web_test::Json text(const std::string& op) {
-    while (const auto frame = client.read_frame())
+    while (const auto frame = this->frame())
       if (frame->is_text() && frame->json()["op"] == op) return frame->json();
     throw std::runtime_error("no '" + op + "'");
   }
@@ -170,7 +176,7 @@ struct Page {
   }
   /// Reads up to the next message.
   Message message() {
-    while (const auto frame = client.read_frame())
+    while (const auto frame = this->frame())
       if (!frame->is_text() && frame->payload[0] == 2) return Message(frame->payload);
     throw std::runtime_error("no message");
   }
@@ -211,6 +217,7 @@ struct Page {
   tools::LogIndex index;
   tools::LogView view;
   web_test::Client client;
+  const std::chrono::steady_clock::time_point deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
   std::atomic<bool> end = false;
   std::thread thread;
 };
@@ -349,7 +356,6 @@ TEST(LogView, ASeekSendsTheLastMessageOfASubscribedChannel) {
   Page page(log);
   page.pause();
   page.subscribe("ball.pose");
-  page.message();
   for (const std::int64_t time_us : {5'000'000, 1'000'000, 9'000'000}) {
     page.seek(time_us);
     Message message = page.message();
