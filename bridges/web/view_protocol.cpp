@@ -350,10 +350,6 @@ ViewSession::Text ViewSession::next_state() {
   return std::exchange(state_, nullptr);
 }
 
-void ViewSession::set_state(const Text& state) {
-  state_ = replacing(state_, state);
-}
-
 void ViewSession::set_message(const std::string& channel, const Text& bytes) {
   const auto before = messages_.find(channel);
   const std::size_t present = before == messages_.end() ? 0 : before->second->size();

@@ -7,6 +7,8 @@
 #include "bridges/web/web_error.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
 #include "tools/experiment/page_data/look_request.hpp"
+#include "tools/experiment/page_data/message_frame.hpp"
+#include "tools/experiment/page_data/page_request.hpp"
 
 // Messages of a page: each line is one, to a session of the live page; a line that begins with a zero byte is binary.
 // The whole input is also the payload of a message that is shown on a page.
@@ -38,6 +40,44 @@ void check_look(const std::string& text) {
       fuzz::require(std::abs(static_cast<double>(*look.time_us)) <= 1e18, "the time of a look is bounded");
     fuzz::require(look.branch.value_or(0) >= 0, "a branch has a number from 0 on");
   });
+}
+
+void check_subscribe(std::string_view text) {
+  fuzz::allow<tools::PageRequestError>([&] {
+    const auto subscriptions = tools::parse_subscribe(text);
+    fuzz::require(subscriptions.size() <= tools::max_subscriptions, "the channels of a page are bounded");
+    for (const tools::Subscription& each : subscriptions) {
+      fuzz::require(!each.channel.empty() && each.channel.size() <= 63, "the name of a channel is bounded");
+      fuzz::require(each.rate_hz > 0 && each.rate_hz <= tools::max_subscription_rate_hz, "a rate is bounded");
+    }
+  });
+}
+
+void check_series(std::string_view text) {
+  fuzz::allow<tools::PageRequestError>([&] {
+    const tools::SeriesRequest series = tools::parse_series(text);
+    fuzz::require(series.from_us <= series.to_us, "a series has a range of time");
+    fuzz::require(series.points >= 2 && series.points <= tools::max_series_points, "the points are bounded");
+    fuzz::require(nlohmann::json::accept(series.id), "the id of an answer is JSON");
+  });
+}
+
+/// Shows bytes as a message: as they are, and with the fingerprint of a type in place of the first eight.
+void check_frame(fuzz::Input input) {
+  std::vector<std::byte> payload(input.size());
+  std::memcpy(payload.data(), input.data(), input.size());
+  const auto& types = shoal::embedded_types().all();
+  auto type = types.begin();
+  if (!payload.empty()) std::advance(type, std::to_integer<std::size_t>(payload[0]) % types.size());
+  for (std::size_t i = 0; i < std::min<std::size_t>(8, payload.size()); ++i)
+    payload[i] = static_cast<std::byte>(type->second.fingerprint >> (56 - 8 * i));
+  for (const auto bytes : {std::as_bytes(input), std::as_bytes(std::span(payload))}) {
+    const std::string frame = tools::message_frame(shoal::embedded_types(), fuzz::text_of(input), bytes, 1);
+    std::uint32_t header_bytes = 0;
+    std::memcpy(&header_bytes, frame.data() + 4, sizeof header_bytes);
+    fuzz::require(header_bytes % 8 == 0 && 32 + header_bytes <= frame.size(), "the header is within the frame");
+    fuzz::require(nlohmann::json::parse(frame.substr(32, header_bytes)).contains("fields"), "a message has fields");
+  }
 }
 
 }  // namespace
