@@ -218,7 +218,7 @@ void add_run_command(CLI::App& app, int& exit_code) {
   command->add_flag("--view", arguments->with_page, "serve a live page of the run in 3-D, and print its address");
   command
       ->add_flag("--watch", arguments->watch,
-                 "with --view: run the world anew each time that one of its files is saved")
+                 "with --view: run the world again each time that one of its files is saved")
       ->needs("--view");
   add_page_options(*command, arguments->view);
   command

@@ -59,9 +59,9 @@ struct Summary {
   std::int64_t modem_dropped_messages = 0;        ///< that waited in queues of modems that were full
   std::uint64_t serial_dropped_bytes = 0;         ///< not read by any program from pseudo-terminals and FIFOs
   std::optional<sim::EndOfRun> event;             ///< of the world that ended the run
-  std::string ended =
-      "duration";     ///< duration, event, quit, changed, signal, rewound, fault, bus, timeout, process, configuration, error
-  std::string error;  ///< why it ended early, empty when it did not
+  std::string ended = "duration";  ///< duration, event, quit, changed, signal, rewound, fault, bus, timeout, process,
+                                   ///< configuration, error
+  std::string error;               ///< why it ended early, empty when it did not
   int exit_code = 0;
   std::string version;      ///< of shoal
   std::int32_t branch = 0;  ///< number of earlier rewinds
@@ -77,7 +77,9 @@ struct Summary {
   /// Returns the reason for a run that was not judged: `the world has no rules`, `ended by quit at 23 of 150 s`.
   std::string why_not_judged() const;
   /// Returns whether a request, a key, a signal or a rewind to another branch ended the run: its remainder is unknown.
-  bool ended_by_hand() const { return ended == "quit" || ended == "changed" || ended == "signal" || ended == "rewound"; }
+  bool ended_by_hand() const {
+    return ended == "quit" || ended == "changed" || ended == "signal" || ended == "rewound";
+  }
   /// Adds each failed program as a failed rule.
   void judge_processes();
   /// Adds each client with two different answers to one tick under its name as a failed rule.
