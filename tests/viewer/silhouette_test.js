@@ -117,7 +117,7 @@ describe('silhouettes', () => {
       const server = await serve('run', world, '--view', '--view-port', '0', '--bus', 'none', '--paused', '--quiet');
       const page = await open(browser, server.url, SIZE);
       try {
-        const probe = await until(page, (p) => p.scene !== null && p.frames > 0, 'the first frame');
+        const probe = await until(page, (p) => p.scene !== null && p.placed && p.frames > 0, 'the first frame');
         const bodies = await page.evaluate(() => window.shoal.bodies());
         const isGround = (body) => body.parts.some((part) => ['plane', 'terrain'].includes(part.shape));
         const ground = new Set(bodies.filter(isGround).map((body) => body.owner || body.name));
