@@ -1,27 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The past of a run, its branches, and two logs, on the live page in Chromium against the mock server.
 import assert from 'node:assert/strict';
-import {after, before, describe, it} from 'node:test';
+import {describe, it} from 'node:test';
 
-import {faultsOf, launch, open, until} from './browser.js';
-import {MockServer} from './mock_server.js';
+import {until} from './browser.js';
 import * as scenes from './scenes.js';
+import {near, text, useBrowser, withPage} from './with_page.js';
 
-let browser;
-
-/** Opens the page of a script, runs a test, and checks that nothing went wrong in the page. */
-async function withPage(script, test, fragment = '#t=secret') {
-  const server = await new MockServer(script).listen();
-  const page = await open(browser, server.url + fragment);
-  try {
-    await until(page, (p) => p.scene !== null && p.frames > 0, 'the first frame');
-    await test(page, server);
-    assert.deepEqual(await faultsOf(page), []);
-  } finally {
-    await page.close();
-    await server.close();
-  }
-}
+useBrowser();
 
 /** A run whose server keeps the past. */
 const run = (more = {}) => ({...scenes.land(), hello: {past: true}, ...more});
@@ -32,21 +18,10 @@ const pick = (page, time_s) => page.$eval('#seek', (seek, value) => {
   seek.dispatchEvent(new Event('input'));
 }, 1000 * time_s);
 
-const text = (page, selector) => page.$eval(selector, (element) => element.textContent);
 const hidden = (page, selector) => page.$eval(selector, (element) => element.hidden);
-
-const near = (actual, expected, tolerance, what) =>
-    assert.ok(Math.abs(actual - expected) <= tolerance, `${what}: ${actual}, expected ${expected} +- ${tolerance}`);
 
 /** Where rover1 of the scene `land` is: on a circle of 2 m, once around in 20 s. */
 const roverAt = (t_s) => [2 * Math.cos(2 * Math.PI * t_s / 20), 2 * Math.sin(2 * Math.PI * t_s / 20)];
-
-before(async () => {
-  browser = await launch();
-});
-after(async () => {
-  await browser.close();
-});
 
 describe('past', () => {
   it('shows a time of the past while the run continues, and the present again', async () => {
@@ -110,7 +85,7 @@ describe('past', () => {
       await page.focus('#view');
       await page.keyboard.press('Escape');
       await until(page, (p) => !p.past && p.time_us === 8e6, 'the present');
-    }, '');
+    }, {fragment: ''});
   });
 
   it('asks again when an answer is lost', async () => {
