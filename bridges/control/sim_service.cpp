@@ -37,6 +37,7 @@ SimService::SimService(sim::Bus& bus, sim::Bus& network, sim::World& world, sim:
       journal_(links.journal),
       others_(links.others),
       publish_scene_(links.publish_scene),
+      bus_url_(links.bus_url),
       audit_(bus, world),
       spawns_("spawn requests", "spawns_per_client", world.config().limits.spawns_per_client),
       rewinds_("rewind and restore requests", "rewinds_per_client", world.config().limits.rewinds_per_client) {
@@ -136,7 +137,7 @@ void SimService::warn_client(const std::string& text) {
 }
 
 void SimService::handle_requests(TimeMachine* machine) {
-  spawned_vehicles_.remove_timed_out();
+  if (!repeating_) spawned_vehicles_.remove_timed_out();
   lockstep_.check_clock();
   // Limit the requests per step, so that a flood does not block the world; the others remain queued, and overflows are
   // counted.
@@ -284,16 +285,24 @@ std::optional<std::string> SimService::execute(Link& link, const shoal::sim_cont
     spawned_vehicles_.remove(request.client, request.text);
   } else if (command == "describe") {
     return spawned_vehicles_.describe(request.client, request.text);
+  } else if (command == "bus") {
+    return url_of(request.text);
   } else if (command == "do") {
     spawned_vehicles_.act(request.client, request.text);
   } else if (command == "scene") {
     if (publish_scene_) publish_scene_();
   } else if (command != "alive") {
     throw std::runtime_error("unknown command '" + sim::shortened(sim::printable(command)) +
-                             "'; known commands: alive, describe, do, follow, join, leave, pause, quit, "
+                             "'; known commands: alive, bus, describe, do, follow, join, leave, pause, quit, "
                              "remove, restore, resume, rewind, scene, snapshot, spawn, speed, step, until, where");
   }
   return "";
+}
+
+std::string SimService::url_of(const std::string& name) const {
+  const sim::Vehicle* vehicle = world_.find_vehicle(name);
+  if (vehicle == nullptr) throw sim::WorldError("there is no vehicle '" + sim::shortened(sim::printable(name)) + "'");
+  return bus_url_ ? bus_url_(vehicle->bus()) : "";
 }
 
 bool SimService::leave(int link, const shoal::sim_control_request_t& request) {

@@ -30,6 +30,8 @@ struct ServiceLinks {
   /// sim.control.  In the order of the lockstep.
   std::vector<sim::Bus*> vehicle_buses = {};
   std::function<void()> publish_scene = {};  ///< publishes the scene for viewers again; empty: there is none
+  /// Returns the LCM URL of the bus of a vehicle; empty when it is not an LCM bus.
+  std::function<std::string(sim::Bus&)> bus_url = {};
 };
 
 /// Service on the channels of the simulator: publishes sim.info, sim.clock and sim.state, and answers requests on
@@ -51,6 +53,8 @@ class SimService {
   void visit_state(sim::StateArchive& archive) { spawned_vehicles_.visit_state(archive); }
   /// Mutes the service: while muted, it publishes only on the bus of the world.
   void set_muted(bool muted) { muted_ = muted; }
+  /// Sets whether the steps of a record are repeated: then the record removes the vehicles of clients that are silent.
+  void set_repeating(bool repeating) { repeating_ = repeating; }
   /// Reports vehicles that were added or removed by a rewind; not recorded, because the record has only one timeline.
   void report_changes() { spawned_vehicles_.report_to_other_timeline(network_); }
   /// Publishes sim.info immediately, and not again at this step.
@@ -95,6 +99,8 @@ class SimService {
   /// Executes a request and returns the result; none while it is undecided and not answered yet.  Throws
   /// std::runtime_error with the reason when it is refused.
   std::optional<std::string> execute(Link& link, const shoal::sim_control_request_t& request, TimeMachine* machine);
+  /// Returns the LCM URL of the bus of a vehicle.
+  std::string url_of(const std::string& vehicle) const;
   /// Returns the quota of a command; null when it is unlimited.
   ClientAccounts* account_for(const std::string& command);
   bool releases_another(const shoal::sim_control_request_t& request) const;
@@ -117,10 +123,11 @@ class SimService {
   Info info_;
   SpawnedVehicles spawned_vehicles_;
   RunJournal* const journal_;
-  bool muted_ = false;
+  bool muted_ = false, repeating_ = false;
   std::int64_t info_step_ = -1;  // step of the last sim.info
   const OtherSimulators* const others_;
   const std::function<void()> publish_scene_;
+  const std::function<std::string(sim::Bus&)> bus_url_;
   bool warned_of_another_ = false;
   std::vector<Link> links_;  // the bus of the world is the first
   RunAudit audit_;

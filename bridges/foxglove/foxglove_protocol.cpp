@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bridges/foxglove/foxglove_protocol.hpp"
 
+#include <spdlog/spdlog.h>
+
 #include <algorithm>
+#include <utility>
 
 #include "bridges/foxglove/foxglove_services.hpp"
 #include "bridges/foxglove/foxglove_session.hpp"
@@ -145,6 +148,13 @@ void Protocol::left(const Session& session) {
   if (--clients_ == 0) time_.reset();  // it is not set any more
 }
 
+void Protocol::warn_of_drops() {
+  if (std::exchange(warned_of_drops_, true)) return;
+  spdlog::warn(
+      "a Foxglove client reads more slowly than messages come: some are dropped and the client is notified (further "
+      "clients are not reported here)");
+}
+
 void Protocol::deliver() {
   // Take what the other threads have sent
   awake_ = false;
@@ -164,7 +174,7 @@ void Protocol::deliver() {
   if (box.state) process(*box.state);
   for (const Reply& reply : box.replies) process(reply);
   for (Session* session : sessions_) {
-    session->dropped_ += box.dropped;
+    session->count_dropped(box.dropped);
     session->link_.wake();
   }
 }

@@ -140,6 +140,8 @@ class Protocol final : public WebProtocol, private ros2::TopicSink {
   void send_latched(Session& session, std::size_t topic);
   bool add_request(Request request);
   void left(const Session& session);
+  /// Warns once that a client does not get all messages.
+  void warn_of_drops();
 
   const Post post_;
   std::function<bool(std::string_view)> is_token_;  // empty: none is needed
@@ -160,6 +162,7 @@ class Protocol final : public WebProtocol, private ros2::TopicSink {
   std::optional<std::int64_t> time_;
   ros2::TopicTable table_;
   std::vector<Session*> sessions_;
+  bool warned_of_drops_ = false;
   std::vector<int> subscribers_;  // by topic
   std::vector<std::set<std::string>> channels_of_topic_;
   std::map<std::string, std::set<std::size_t>, std::less<>> topics_of_channel_;

@@ -167,7 +167,7 @@ void Session::push(const ros2::Topic& topic, std::int64_t utime, const Bytes& pa
          (data_.size() >= Protocol::max_queued_messages || data_bytes_ + bytes > Protocol::max_queued_bytes)) {
     data_bytes_ -= data_.front().payload->size() + message_bytes;
     data_.pop_front();
-    ++dropped_;
+    count_dropped(1);
   }
   data_bytes_ += bytes;
   data_.push_back(std::move(data));
@@ -186,10 +186,15 @@ void Session::push_latched(Data data) {
   const std::size_t bytes = data.payload->size() + message_bytes;
   while (!latched_.empty() && latched_bytes_ + bytes > Protocol::max_latched_bytes) {
     drop(latched_.begin());
-    ++dropped_;
+    count_dropped(1);
   }
   latched_bytes_ += bytes;
   latched_.push_back(std::move(data));
+}
+
+void Session::count_dropped(std::uint64_t count) {
+  dropped_ += count;
+  if (count > 0) protocol_.warn_of_drops();
 }
 
 void Session::jump(std::int64_t utime) {

@@ -51,6 +51,8 @@ class Session final : public WebSession {
   bool has_subscribed(std::size_t topic) const { return by_topic_.contains(topic); }
   void push(const ros2::Topic& topic, std::int64_t utime, const Bytes& payload, const std::string& channel);
   void push_latched(Data data);
+  /// Counts messages that this client does not get.
+  void count_dropped(std::uint64_t count);
   void jump(std::int64_t utime);
   void show_parameters(const PlaybackState& state);
   std::string next_advertisement();

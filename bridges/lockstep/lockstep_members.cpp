@@ -193,6 +193,14 @@ void LockstepService::client_exited(const std::string& client) {
   summary_of(client).ended = "its process ended";
 }
 
+void LockstepService::remove_all(const std::string& why) {
+  while (!lockstep_.empty()) discard(std::string(lockstep_.members().begin()->first), why);
+  for (const auto& link : links_) link->messages.clear();
+  dropped_.clear();
+  followers_.clear();
+  paused_here_ = false;
+}
+
 void LockstepService::discard(const std::string& client, const std::string& why) {
   if (const sim::LockstepMember* member = lockstep_.find(client)) {
     Link& link = link_of(member->link);

@@ -88,6 +88,8 @@ class LockstepService {
   /// Handles the exit of the process of a client: executes the agreed time-out action immediately; without one the
   /// world continues.
   void client_exited(const std::string& client);
+  /// Removes all clients, whose processes have been ended for this reason, and what they have sent.
+  void remove_all(const std::string& why);
   bool has(const std::string& client) const { return lockstep_.has(client); }
   /// Returns whether a client is in the lockstep on this link.
   bool has(const std::string& client, int link) const;

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "bridges/view/scene_assets.hpp"
+#include "bridges/view/scene_currents.hpp"
 #include "sim/device/device.hpp"
 #include "sim/world/world.hpp"
 
@@ -165,6 +166,8 @@ Json SceneWriter::vehicles() const {
                 {"pose", pose_json(config.X_BS())},
                 {"channels", Json::array()}};
       if (!device->report_channel().empty()) json["channels"].push_back(device->report_channel());
+      if (device->sensor() != nullptr && device->sensor()->data_rate_bps())
+        json["data_rate_bps"] = *device->sensor()->data_rate_bps();
       if (device->sensor() != nullptr)
         if (const auto view = device->sensor()->field_of_view()) json["field_of_view"] = field_of_view_json(*view);
       devices.push_back(std::move(json));
@@ -191,10 +194,17 @@ Json SceneWriter::water() const {
   const double level_m = medium.still_surface_m();
   Json profile = Json::array();
   for (const double depth_m : {0., 1., 2., 5., 10., 20., 30., 50., 75., 100., 150., 200., 300., 500., 1000.}) {
-    const double c = medium.sound_speed_mps({0, 0, level_m - depth_m});
+    // Of the water, also where it is below a trough of the waves.
+    const double c = 1 / medium.mean_slowness_spm(level_m - depth_m, level_m - depth_m);
     if (std::isfinite(c)) profile.push_back({level_m - depth_m, c});
   }
-  return {{"level_m", level_m}, {"waves", std::move(waves)}, {"sound_speed", std::move(profile)}};
+  const sim::MediumConfig& config = world_.config().medium;
+  return {{"level_m", level_m},
+          {"waves", std::move(waves)},
+          {"sound_speed", std::move(profile)},
+          {"mean_level_m", config.water->surface_m},
+          {"tides", tides_json(config.tides)},
+          {"currents", currents_json(config.current, *medium.current())}};
 }
 
 /// Writes each zone as a polygon in the world: zones that are tilted are drawn by their outline in the xy-plane.

@@ -143,6 +143,7 @@ void ViewPublisher::after_step() {
   const double share = std::min(1.0, static_cast<double>(max_bodies_at_full_rate) /
                                          static_cast<double>(std::max<std::size_t>(1, movables_.size())));
   if (due(world_.config().view.bodies_rate_hz * share)) publish_bodies();
+  publish_current();
   publish_all("sim.sound", sounds_);
   publish_all("sim.sound.arrival", arrivals_);
   publish_all("sim.event", events_);
@@ -213,6 +214,17 @@ shoal::sim_bodies_t ViewPublisher::bodies() const {
 void ViewPublisher::publish_bodies() {
   fill_in_bodies(bodies_);
   publish("sim.bodies", bodies_);
+}
+
+/// Publishes the part of the current that the scene cannot tell beforehand, because it is random.
+void ViewPublisher::publish_current() {
+  constexpr double rate_hz = 1;
+  const sim::Current* const current = world_.medium().current();
+  if (current == nullptr || !current->is_random() || !world_.config().view.scene || !due(rate_hz)) return;
+  current_.utime = utime(world_.now());
+  current_.step = world_.step_number();
+  copy(current->uniform_W(), current_.velocity_mps);
+  publish("sim.current", current_);
 }
 
 /// Figures are computed from all samples of a run: the interval grows with the time, so that their cost in all grows

@@ -10,6 +10,7 @@
 
 #include "bridges/view/scene_assets.hpp"
 #include "shoal/sim_bodies_t.hpp"
+#include "shoal/sim_current_t.hpp"
 #include "shoal/sim_event_t.hpp"
 #include "shoal/sim_scores_t.hpp"
 #include "shoal/sim_sound_arrival_t.hpp"
@@ -73,6 +74,7 @@ class ViewPublisher final : public sim::WorldObserver {
   void publish_scene();
   void publish_bodies();
   void fill_in_bodies(shoal::sim_bodies_t& bodies) const;
+  void publish_current();
   void publish_scores();
   bool due(double rate_hz) const;
   bool scores_are_due();
@@ -102,6 +104,7 @@ class ViewPublisher final : public sim::WorldObserver {
   std::vector<shoal::sim_sound_arrival_t> arrivals_;
   std::vector<shoal::sim_event_t> events_;
   shoal::sim_bodies_t bodies_;
+  shoal::sim_current_t current_;
   shoal::sim_scores_t scores_;
   std::int64_t left_out_ = 0;
   sim::Bytes buffer_;

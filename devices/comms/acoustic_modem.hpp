@@ -71,6 +71,7 @@ class AcousticModem final : public sim::Sensor, public MessageModem, private sim
   void measure(const sim::SenseContext& context) override;
   void disturb(double, sim::Random&) override {}
   void visit_state(sim::StateArchive& archive) override;
+  std::optional<double> data_rate_bps() const override { return params_.bit_rate_bps; }
 
   /// Returns the duration of the transmission of a message of this size.
   double duration_s(std::size_t bytes) const;

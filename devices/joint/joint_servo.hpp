@@ -4,47 +4,32 @@
 #include <optional>
 
 #include "devices/joint/joint_power.hpp"
+#include "devices/joint/servo_gear.hpp"
+#include "devices/joint/servo_overload.hpp"
+#include "devices/joint/set_point.hpp"
 #include "sim/vehicle/device_context.hpp"
 #include "sim/vehicle/vehicle.hpp"
 
 namespace devices {
-
-/// Set point with limited velocity and acceleration that comes to rest exactly at its target.
-class SetPoint {
- public:
-  double position = 0;
-  double velocity = 0;
-
-  struct Limits {
-    double velocity;
-    double acceleration;  ///< may be infinite
-  };
-  void visit_state(sim::StateArchive& archive) { archive(position, velocity); }
-  /// Runs one step towards a position.
-  void approach(double target, const Limits& limits, double step_s);
-  /// Runs one step at a velocity, within the position limits.
-  void run(double target_velocity, double low, double high, const Limits& limits, double step_s);
-
- private:
-  void advance(double desired_velocity, const Limits& limits, double step_s);
-};
 
 /// Servo that drives one axis of a joint to a position, at a velocity or with an effort.
 ///
 /// Position and velocity commands move a setpoint with limited velocity and acceleration.  `control: velocity` uses
 /// the velocity motor of the physics: velocity = setpoint velocity + kp * error.  `control: pid` applies the effort kp
 /// * error + ki * integral of the error + kd * velocity error.  An effort command applies that effort.
+/// The gear acts on the joint: docs/models/joint_servos.md.
 class JointServo final : public sim::Actuator {
  public:
   static constexpr const char* meaning = "Servo on one axis of a joint, commanded by position, velocity or effort.";
   static constexpr sim::SafeState safe_states[] = {sim::SafeState::hold, sim::SafeState::coast, sim::SafeState::stop,
                                                    sim::SafeState::park};
-  static constexpr const char* fixed_keys[] = {"joint", "axis"};
+  static constexpr const char* fixed_keys[] = {"joint", "axis", "alias"};
   enum class Mode { position, velocity, effort, coast };
   enum class Control { velocity, pid };
   struct Params {
     std::string joint;
     int axis = 0;
+    std::string alias;  ///< another name of the servo in groups and motion files; empty: none
     Control control = Control::velocity;
     double kp = 20;
     double ki = 0;
@@ -56,6 +41,10 @@ class JointServo final : public sim::Actuator {
     std::optional<double> max_acceleration;
     double max_effort = 10;
     double park_position = 0;
+    double deadband = 0;         ///< error of the position that is not corrected, rad or m
+    double command_quantum = 0;  ///< resolution of commanded positions, rad or m; 0: exact
+    ServoGear::Params gear;
+    std::optional<ServoOverload::Params> overload;
     MotorPower power;
     void read(sim::ParamReader& in);
   };
@@ -69,25 +58,36 @@ class JointServo final : public sim::Actuator {
   double power_W() const override;
   void visit_state(sim::StateArchive& archive) override;
 
-  /// Command a position, velocity or effort, which are limited.
+  /// Command a position, velocity or effort, which are limited.  Without effect while the overload protection has
+  /// switched the servo off.
   void set_position(double position);
   void set_velocity(double velocity);
   void set_effort(double effort);
-  void coast() { mode_ = Mode::coast; }
+  void coast();
+  /// Switches the servo on again after an overload: it holds its present position.  No effect while it is on.
+  void reset();
+  bool is_off() const { return overload_.is_off(); }
   const SetPoint& set_point() const { return set_point_; }
+  double joint_position() const { return joint_.position(params_.axis); }
+  const std::string& alias() const { return params_.alias; }
   double low() const { return low_; }
   double high() const { return high_; }
 
  private:
   void find_range();
   void move_set_point(double step_s);
-  double pid_effort(double max_effort, double step_s);
-  double cut_effort(double max_effort) const;
-  double error() const { return set_point_.position - joint_.position(params_.axis); }
+  double pid_effort(double step_s);
+  double cut_effort() const;
+  double error() const;
+  double free_velocity(double step_s) const;
+  void hold();
+  void watch_load(double step_s);
 
   Params params_;
   sim::Joint& joint_;
   const sim::Vehicle& vehicle_;
+  sim::WorldWarnings& warnings_;
+  std::string full_name_;
   std::optional<double> low_stop_, high_stop_;
   double low_, high_;
   Mode mode_ = Mode::position;  ///< until the first command it holds its position
@@ -96,6 +96,8 @@ class JointServo final : public sim::Actuator {
   bool follows_ = false;  ///< without effort the setpoint tracks the joint, to avoid a jump afterwards
   double integral_ = 0;   ///< effort
   double applied_ = 0;    ///< effort of the last step, when applied by this class
+  ServoGear gear_;
+  ServoOverload overload_;
 };
 
 /// Receives shoal.joint_servo_command_t, or shoal.joint_command_t for a velocity, distinguished by their fingerprints.

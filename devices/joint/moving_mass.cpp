@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/vehicle/device_context.hpp"
+
 namespace devices {
 
 void MovingMass::Params::read(sim::ParamReader& in) {

@@ -22,6 +22,9 @@ void WheelEncoder::Params::read(sim::ParamReader& in) {
 
 namespace {
 
+/// Largest count, which a double holds exactly: 30 000 years at 10 kHz.
+constexpr std::int64_t max_ticks = std::int64_t{1} << 53;
+
 std::vector<WheelEncoder::Wheel> wheels_of(const WheelEncoder::Params& params, const sim::DeviceContext& context) {
   std::vector<WheelEncoder::Wheel> wheels;
   for (const std::string& name : params.joints) {
@@ -46,7 +49,8 @@ WheelEncoder::WheelEncoder(const Params& params, const sim::DeviceContext& conte
       rates_radps_(wheels_.size()) {}
 
 std::int64_t WheelEncoder::ticks_at(double angle_rad) const {
-  return static_cast<std::int64_t>(std::floor(angle_rad / (2 * std::numbers::pi) * params_.ticks_per_revolution));
+  const double ticks = std::floor(angle_rad / (2 * std::numbers::pi) * params_.ticks_per_revolution);
+  return static_cast<std::int64_t>(std::clamp<double>(ticks, -max_ticks, max_ticks));
 }
 
 void WheelEncoder::measure(const sim::SenseContext&) {
@@ -96,7 +100,10 @@ void WheelEncoder::disturb(double dt_s, sim::Random& random) {
 
 void WheelEncoder::visit_state(sim::StateArchive& archive) {
   for (auto* angles : {&angles_rad_, &believed_rad_, &rates_radps_}) visit_same_size(archive, *angles, "wheels");
-  for (auto* counts : {&passed_, &counted_, &ticks_}) visit_same_size(archive, *counts, "wheels");
+  for (auto* counts : {&passed_, &counted_, &ticks_}) {
+    visit_same_size(archive, *counts, "wheels");
+    for (const std::int64_t count : *counts) archive.require(count, -max_ticks, max_ticks, "a count of ticks");
+  }
   archive(noise_);
 }
 

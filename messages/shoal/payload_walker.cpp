@@ -1,43 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstdio>
 #include <limits>
 #include <sstream>
 
 #include "shoal/message_schema.hpp"
+#include "shoal/wire_value.hpp"
 
 namespace shoal {
 namespace {
 
 constexpr int max_depth = 32;                    // limit of recursive types, and of the recursion here
 constexpr std::uint64_t max_empty_rows = 65536;  // limit of rows without bytes in the payload
-
-template <class T>
-T big_endian(const std::byte* at) {
-  T value = 0;
-  for (std::size_t i = 0; i < sizeof(T); ++i) value = static_cast<T>(value << 8 | std::to_integer<T>(at[i]));
-  return value;
-}
-
-std::int64_t read_integer(WireType type, const std::byte* at) {
-  switch (wire_size(type)) {
-    case 1:
-      return type == WireType::int8 ? static_cast<std::int8_t>(*at) : std::to_integer<std::int64_t>(*at);
-    case 2:
-      return static_cast<std::int16_t>(big_endian<std::uint16_t>(at));
-    case 4:
-      return static_cast<std::int32_t>(big_endian<std::uint32_t>(at));
-    default:
-      return static_cast<std::int64_t>(big_endian<std::uint64_t>(at));
-  }
-}
-
-double read_real(WireType type, const std::byte* at) {
-  return type == WireType::float32 ? std::bit_cast<float>(big_endian<std::uint32_t>(at))
-                                   : std::bit_cast<double>(big_endian<std::uint64_t>(at));
-}
 
 std::string hex(std::uint64_t value) {
   std::array<char, 20> text;

@@ -38,6 +38,8 @@ bool nan_means_as_before(const MessageSchema& schema, const Member& member) {
       {"shoal.helm_command_t", {"speed_mps", "heading_rad", "depth_m", "altitude_m"}},
       {"shoal.station_command_t", {"x_m", "y_m", "depth_m", "heading_rad"}},
       {"shoal.waypoints_command_t", {"depth_m", "speed_mps"}},
+      {"shoal.motion_command_t", {"from_s", "to_s", "rate"}},
+      {"shoal.joint_frames_t", {"position"}},
   };
   return std::any_of(table.begin(), table.end(), [&](const AsBefore& row) {
     return schema.name == row.type &&

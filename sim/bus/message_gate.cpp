@@ -182,7 +182,21 @@ const std::vector<MessageGate::Delivery>& MessageGate::admit() {
   admitted_.clear();
   admitted_.swap(waiting_);
   if (order_) order_(admitted_);
-  if (admitted_.empty()) return admitted_;
+  deliver_admitted();
+  return admitted_;
+}
+
+const std::vector<MessageGate::Delivery>& MessageGate::admit_instead(std::vector<Delivery>& messages) {
+  collect();
+  admitted_.clear();
+  admitted_.swap(messages);
+  messages.swap(waiting_);
+  if (order_) order_(messages);
+  deliver_admitted();
+  return admitted_;
+}
+
+void MessageGate::deliver_admitted() {
   std::erase_if(admitted_, [&](const Delivery& arrivals) {
     const auto known = by_name_.find(arrivals.channel);
     if (known == by_name_.end()) return true;
@@ -190,7 +204,6 @@ const std::vector<MessageGate::Delivery>& MessageGate::admit() {
     give(*known->second, arrivals.payload, true);
     return false;
   });
-  return admitted_;
 }
 
 void MessageGate::give(Channel& channel, std::span<const std::byte> payload, bool from_outside) {

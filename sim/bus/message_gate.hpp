@@ -51,6 +51,9 @@ class MessageGate final : public Bus {
   /// Collects messages and delivers all waiting ones to the mailboxes of their channels.  Returns the delivered
   /// messages, which are valid until the next call.  Messages on channels without a reader are dropped.
   const std::vector<Delivery>& admit();
+  /// As admit(), but delivers `messages` in place of those from outside, which are collected, put in order and returned
+  /// in `messages`.  For a run that repeats its record while programs follow it.
+  const std::vector<Delivery>& admit_instead(std::vector<Delivery>& messages);
 
   /// Callback of admit() between collection and delivery; may reorder, add and remove messages.
   using Order = std::function<void(std::vector<Delivery>& messages)>;
@@ -79,6 +82,7 @@ class MessageGate final : public Bus {
   static std::size_t bit_of(std::string_view channel);
   bool may_be_read(std::string_view channel) const { return bits_[bit_of(channel)]; }
   void drop_oldest(Channel& channel);
+  void deliver_admitted();
   void give(Channel& channel, std::span<const std::byte> payload, bool from_outside);
   void close(GateMailbox& mailbox);
 

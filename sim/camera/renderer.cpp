@@ -12,7 +12,7 @@ namespace sim {
 namespace {
 
 /// Rays per tile.  They have nearly the same direction, so that the scene can trace them as packets.
-constexpr int tile_rays = 64;
+constexpr int tile_rays = WaterRays::size;
 constexpr double shadow_range_m = 10'000;
 constexpr float nothing_seen_m = std::numeric_limits<float>::infinity();
 
@@ -52,6 +52,7 @@ struct Renderer::Tile {
   std::array<Ray, tile_rays> shadow_rays;
   std::array<int, tile_rays> shadow_of;  ///< index in `rays`
   std::array<std::uint8_t, tile_rays> blocked, in_shadow;
+  WaterRays water;
 };
 
 Renderer::Renderer(const PhysicsWorld& physics, std::shared_ptr<const PixelRays> rays, const RenderOptions& options,
@@ -60,14 +61,8 @@ Renderer::Renderer(const PhysicsWorld& physics, std::shared_ptr<const PixelRays>
       rays_(std::move(rays)),
       options_(options),
       textures_(std::move(textures)),
+      sky_(options.light),
       to_sun_W_(options.light.to_sun_W()),
-      to_sun_f_W_(to_sun_W_.cast<float>()),
-      sun_is_up_(to_sun_W_.z() > 0 && options.light.sun > 0),
-      // Slightly warmer than the sky.
-      sun_(LinearColor(1.0F, 0.97F, 0.91F) * static_cast<float>(options.light.sun)),
-      zenith_(linear_color(parse_color(options.light.zenith_color).value_or(Color{}))),
-      horizon_(linear_color(parse_color(options.light.horizon_color).value_or(Color{}))),
-      ground_(linear_color({118, 116, 110})),
       sky_strength_(static_cast<float>(options.light.sky)) {
   if (options_.kind != ImageKind::color) return;
   for (int i = 0; i < physics_.materials(); ++i) surfaces_.push_back(make_surface(i, true));
@@ -122,6 +117,7 @@ void Renderer::render_rows(const Pose& X_WS, int first, int end, float weight, F
   // Render tile by tile.
   Tile tile;
   posed_ = {};
+  paint_ = {};
   for (int row = first; row < end; row += high)
     for (int column = 0; column < rays_->width; column += wide) {
       tile.column = column * n, tile.row = row * n;
@@ -166,7 +162,7 @@ void Renderer::cast(Tile& tile) const {
 
 void Renderer::find_shadows(Tile& tile) const {
   std::fill_n(tile.in_shadow.begin(), tile.seeing, std::uint8_t{0});
-  if (!sun_is_up_ || !options_.light.shadows) return;
+  if (!sky_.sun_is_up() || !options_.light.shadows) return;
   std::size_t count = 0;
   for (int i = 0; i < tile.seeing; ++i) {
     const RayHit& hit = tile.hits[i];
@@ -188,33 +184,40 @@ void Renderer::find_shadows(Tile& tile) const {
 void Renderer::fill_light(Tile& tile, float weight, Frame& frame) {
   const int n = rays_->per_side;
   const float share = weight / static_cast<float>(n * n);
+  if (options_.water) light_water(tile);
   int place = 0;
   for (int row = 0; row < tile.rows; ++row)
     for (int column = 0; column < tile.columns; ++column, ++place) {
       const int i = tile.number[place];
       if (i < 0) continue;
-      const LinearColor light = light_on(tile.rays[i], tile.hits[i], tile.in_shadow[i] != 0);
+      LinearColor light;
+      if (options_.water)
+        light = {tile.water.light[0][i], tile.water.light[1][i], tile.water.light[2][i]};
+      else
+        light = light_on(tile.rays[i], tile.hits[i], tile.in_shadow[i] != 0);
       float* rgb = frame.light.at((tile.column + column) / n, (tile.row + row) / n);
       for (int channel = 0; channel < 3; ++channel) rgb[channel] += share * light[channel];
     }
 }
 
 LinearColor Renderer::light_on(const Ray& ray, const RayHit& hit, bool in_shadow) {
-  const WaterView* water = options_.water;
-  const double crossing_m = water ? water->crossing_m(ray.direction_W, std::min(hit.range_m, ray.range_max_m)) : 0;
-  LinearColor light;
-  if (hit.hit())
-    light = shade(hit, ray, in_shadow, rays_->pixel_angle * static_cast<float>(hit.range_m));
-  else if (!water || !(crossing_m < hit.range_m))
-    light = sky(ray.direction_W.cast<float>());
-  else
-    light.setZero();
-  if (!water) return light;
-  // Less daylight reaches what is under water.
-  const double end_z_m = ray.origin_W.z() + hit.range_m * ray.direction_W.z();
-  if (hit.hit()) light = light.cwiseProduct(water->daylight(end_z_m));
-  return water->light(ray.direction_W, crossing_m, hit.range_m, light,
-                      [this](const Eigen::Vector3f& direction_W) { return sky(direction_W); });
+  if (!hit.hit()) return sky_.from(ray.direction_W.cast<float>());
+  return shade(hit, ray, in_shadow, rays_->pixel_angle * static_cast<float>(hit.range_m));
+}
+
+void Renderer::light_water(Tile& tile) {
+  WaterRays& water = tile.water;
+  const auto count = static_cast<std::size_t>(tile.seeing);
+  for (std::size_t i = 0; i < count; ++i) water.range_m[i] = static_cast<float>(tile.hits[i].range_m);
+  options_.water->find_surface(std::span(tile.rays).first(count), water);
+  for (std::size_t i = 0; i < count; ++i) {
+    // The light of the sky through or from the surface is that of the water.
+    LinearColor light = LinearColor::Zero();
+    if (tile.hits[i].hit() || !(water.crossing_m[i] < water.range_m[i]))
+      light = light_on(tile.rays[i], tile.hits[i], tile.in_shadow[i] != 0);
+    for (int channel = 0; channel < 3; ++channel) water.light[channel][i] = light[channel];
+  }
+  options_.water->light(water);
 }
 
 void Renderer::fill_values(const Tile& tile, Frame& frame) const {
@@ -237,43 +240,38 @@ void Renderer::fill_values(const Tile& tile, Frame& frame) const {
     }
 }
 
-LinearColor Renderer::sky(const Eigen::Vector3f& direction_W) const {
-  const float up = direction_W.z();
-  LinearColor color = horizon_;
-  if (up >= 0)
-    color += std::sqrt(up) * (zenith_ - horizon_);
-  else
-    color -= up * (ground_ - horizon_);  // continuous at the horizon
-  // Add the disc of the sun and its halo.
-  if (!sun_is_up_) return color;
-  const float toward = direction_W.dot(to_sun_f_W_);
-  constexpr float disc = 0.99996F;  // cosine of half a degree: twice the angular radius of the sun
-  if (toward > disc) return sun_ * 1.5F;
-  if (toward > 0.9F && up > 0) color += raised_to_64(raised_to_64(toward)) * sun_ + 0.15F * raised_to_64(toward) * sun_;
-  return color;
-}
-
 const Pose& Renderer::X_PW(int part) {
   if (posed_.part != part) posed_ = {part, physics_.X_WP(part).inverse()};
   return posed_.X_PW;
 }
 
-LinearColor Renderer::albedo(const RayHit& hit, const Vector3d& p_W, float footprint_m) {
-  const PartInfo& part = physics_.parts()[static_cast<std::size_t>(hit.part)];
-  const Surface& material = surface(hit.material);
-  if (part.color) return linear_color(*part.color);
-  if (material.texture) {
-    const Pose& X_PW = this->X_PW(hit.part);
-    return material.texture->color(X_PW * p_W, X_PW.linear() * hit.normal_W, footprint_m);
-  }
-  if (material.has_color) return material.color;
+const Renderer::Paint& Renderer::paint(int part_number, int material_number) {
+  if (paint_.part == part_number && paint_.material == material_number) return paint_;
+  const PartInfo& part = physics_.parts()[static_cast<std::size_t>(part_number)];
+  const Surface& material = surface(material_number);
+  paint_ = {part_number, material_number, material.gloss, nullptr, false, material.color};
   const bool fixed = physics_.bodies()[static_cast<std::size_t>(part.body)]->fixed();
-  if (!fixed) return linear_color(group_colors[static_cast<std::size_t>(part.group) % std::size(group_colors)]);
-  if (!part.plane) return linear_color(fixed_color);
+  if (part.color) {
+    paint_.color = linear_color(*part.color);
+  } else if (material.texture) {
+    paint_.texture = material.texture.get();
+  } else if (!material.has_color && !fixed) {
+    paint_.color = linear_color(group_colors[static_cast<std::size_t>(part.group) % std::size(group_colors)]);
+  } else if (!material.has_color) {
+    paint_.grid = part.plane;
+    paint_.color = linear_color(part.plane ? ground_color : fixed_color);
+  }
+  return paint_;
+}
+
+LinearColor Renderer::albedo(const Paint& paint, const RayHit& hit, const Vector3d& p_W, float footprint_m) {
+  if (!paint.grid && paint.texture == nullptr) return paint.color;
+  const Pose& X_PW = this->X_PW(hit.part);
+  const Vector3d p_P = X_PW * p_W;
+  if (paint.texture != nullptr) return paint.texture->color(p_P, X_PW.linear() * hit.normal_W, footprint_m);
   // Planes show a grid of 1 m as a scale for distances.
-  const Vector3d p_P = X_PW(hit.part) * p_W;
   const float line = std::max(line_share(p_P.x(), footprint_m), line_share(p_P.y(), footprint_m));
-  return linear_color(ground_color) * (1 - 0.35F * line);
+  return paint.color * (1 - 0.35F * line);
 }
 
 LinearColor Renderer::shade(const RayHit& hit, const Ray& ray, bool in_shadow, float footprint_m) {
@@ -281,18 +279,18 @@ LinearColor Renderer::shade(const RayHit& hit, const Ray& ray, bool in_shadow, f
   const Eigen::Vector3f normal = hit.normal_W.cast<float>(), direction = ray.direction_W.cast<float>();
   // Footprint at grazing incidence: geometric mean of its two extents, a compromise between sharpness and aliasing.
   const float slant = std::max(0.05F, -normal.dot(direction));
-  const LinearColor own = albedo(hit, p_W, footprint_m / std::sqrt(slant));
+  const Paint& paint = this->paint(hit.part, hit.material);
+  const LinearColor own = albedo(paint, hit, p_W, footprint_m / std::sqrt(slant));
   // Ambient light by the share of the hemisphere that is sky; the ground reflects less.
   const float open = 0.5F * (1 + normal.z());
   LinearColor light = own * (sky_strength_ * (0.45F + 0.55F * open));
-  const float toward = normal.dot(to_sun_f_W_);
+  const float toward = normal.dot(sky_.to_sun_W());
   // Add diffuse light of the sun and the highlight (Blinn 1977).
-  if (!sun_is_up_ || in_shadow || toward <= 0) return light;
-  light += own.cwiseProduct(sun_) * toward;
-  const float gloss = surface(hit.material).gloss;
-  if (gloss > 0) {
-    const Eigen::Vector3f half = (to_sun_f_W_ - direction).normalized();
-    light += sun_ * (gloss * raised_to_64(std::max(0.0F, normal.dot(half))));
+  if (!sky_.sun_is_up() || in_shadow || toward <= 0) return light;
+  light += own.cwiseProduct(sky_.sun()) * toward;
+  if (paint.gloss > 0) {
+    const Eigen::Vector3f half = (sky_.to_sun_W() - direction).normalized();
+    light += sky_.sun() * (paint.gloss * raised_to_64(std::max(0.0F, normal.dot(half))));
   }
   return light;
 }
@@ -307,8 +305,20 @@ std::string Renderer::label_name(const PhysicsWorld& physics, ImageKind kind, st
 
 Image8 develop(const FloatImage& light, float gain) {
   Image8 image(light.width, light.height, light.channels);
-  for (std::size_t i = 0; i < image.data.size(); ++i) image.data[i] = srgb_from_linear(gain * light.data[i]);
+  develop_rows(light, gain, 0, light.height, image);
   return image;
+}
+
+void develop_rows(const FloatImage& light, float gain, int first, int end, Image8& image) {
+  const auto width = static_cast<std::size_t>(light.width);
+  for (int row = first; row < end; ++row) {
+    const float* from = light.data.data() + static_cast<std::size_t>(row) * width * light.channels;
+    std::uint8_t* to = image.data.data() + static_cast<std::size_t>(row) * width * image.channels;
+    if (light.channels == image.channels)
+      for (std::size_t i = 0; i < width * light.channels; ++i) to[i] = srgb_from_linear(gain * from[i]);
+    else
+      for (std::size_t i = 0; i < width; ++i) to[i] = srgb_from_linear(gain * luminance(from + 3 * i));
+  }
 }
 
 float auto_gain(const FloatImage& light) {

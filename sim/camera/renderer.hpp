@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sim/camera/optics.hpp"
+#include "sim/camera/sky_light.hpp"
 #include "sim/camera/texture.hpp"
 #include "sim/image/image.hpp"
 #include "sim/physics/physics_world.hpp"
@@ -82,20 +83,31 @@ class Renderer {
     Pose X_PW = Pose::Identity();
   };
 
+  /// Look of a material on a part.
+  struct Paint {
+    int part = -1, material = -1;
+    float gloss = 0;
+    const Texture* texture = nullptr;  // null: `color`
+    bool grid = false;                 // lines on the color
+    LinearColor color = LinearColor::Zero();
+  };
+
   /// Returns the properties of a material.  `strict`: an unreadable texture is an error.
   Surface make_surface(int material, bool strict) const;
   /// Returns the cached properties of a material.
   const Surface& surface(int material);
   /// Returns the inverse pose of a part, cached because neighbouring pixels mostly hit the same part.
   const Pose& X_PW(int part);
+  /// Returns the look of a material on a part, cached as its pose is.
+  const Paint& paint(int part, int material);
   /// Returns the diffuse color at a hit; `footprint_m`: size of the projected pixel.
-  LinearColor albedo(const RayHit& hit, const Vector3d& p_W, float footprint_m);
-  /// Returns the light of the sky in a direction.
-  LinearColor sky(const Eigen::Vector3f& direction_W) const;
+  LinearColor albedo(const Paint& paint, const RayHit& hit, const Vector3d& p_W, float footprint_m);
   /// Returns the light reflected at a hit.
   LinearColor shade(const RayHit& hit, const Ray& ray, bool in_shadow, float footprint_m);
-  /// Returns the light on a ray, with that of the water.
+  /// Returns the light on a ray, without water.
   LinearColor light_on(const Ray& ray, const RayHit& hit, bool in_shadow);
+  /// Computes the light on the rays of a tile, with that of the water.
+  void light_water(Tile& tile);
   /// Collects the rays of a tile.
   void gather(Tile& tile, const Pose& X_WS) const;
   /// Casts the rays of a tile.
@@ -112,16 +124,17 @@ class Renderer {
   RenderOptions options_;
   std::shared_ptr<TextureLibrary> textures_;
   std::vector<Surface> surfaces_;  // by material number
+  Paint paint_;                    // last one used
   PosedPart posed_;                // last part used while rows are rendered
+  SkyLight sky_;
   Vector3d to_sun_W_;
-  Eigen::Vector3f to_sun_f_W_;
-  bool sun_is_up_;
-  LinearColor sun_, zenith_, horizon_, ground_;
   float sky_strength_;
 };
 
 /// Converts linear light to sRGB: multiplied by `gain`, clipped at white.
 Image8 develop(const FloatImage& light, float gain);
+/// Does so in rows [first, end).  An `image` of one channel gets the luminance of light of three.
+void develop_rows(const FloatImage& light, float gain, int first, int end, Image8& image);
 /// Returns the gain that brings the mean luminance to middle grey, 18 %.
 float auto_gain(const FloatImage& light);
 /// Returns the luminance of an RGB image as one channel.

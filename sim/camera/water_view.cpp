@@ -13,28 +13,6 @@ namespace {
 constexpr int grid_points = 128;
 constexpr int lanes = 8;
 constexpr double grid_range_m = 2500;  ///< waves farther away only roughen the surface
-constexpr float refractive_index = 1.34F;
-constexpr float reflected_at_right_angle = 0.021F;  ///< ((n - 1) / (n + 1))^2
-
-/// e^x for x <= 0 to 0.1 %: 2^n by the exponent of a float, times a polynomial for the rest.
-inline float exponential(float x) {
-  const float turns = std::max(x * 1.442695F, -125.0F);
-  const int whole = static_cast<int>(turns) - 1;
-  const float rest = turns - static_cast<float>(whole);  // 0 to 1
-  const float power = 1 + rest * (0.695976F + rest * (0.226173F + rest * 0.0780245F));
-  return std::bit_cast<float>((whole + 127) << 23) * power;
-}
-
-inline LinearColor exponential(const LinearColor& x) {
-  return {exponential(x.x()), exponential(x.y()), exponential(x.z())};
-}
-
-/// Share of light that the surface reflects (Schlick 1994).
-float reflected(float cosine) {
-  const float rest = 1 - std::clamp(cosine, 0.0F, 1.0F);
-  const float square = rest * rest;
-  return reflected_at_right_angle + (1 - reflected_at_right_angle) * square * square * rest;
-}
 
 /// Share of a wave that a grid shows: all of it from 8 points in a wave length on, nothing below 4.
 double shown_share(double k_radpm, double spacing_m) {
@@ -67,10 +45,14 @@ WaterOptics water_optics(double visibility_m) {
 WaterView::WaterView(const Medium& medium, const LightConfig& light, double visibility_m)
     : medium_(medium),
       optics_(water_optics(visibility_m)),
-      to_sun_W_(light.to_sun_W().cast<float>()),
-      sun_(LinearColor(1.0F, 0.97F, 0.91F) * static_cast<float>(light.to_sun_W().z() > 0 ? light.sun : 0.0)),
-      day_(static_cast<float>(light.sky + std::max(0.0, light.to_sun_W().z()) * light.sun)),
-      wind_slope_(static_cast<float>(0.003 + 0.00512 * medium.mean_wind_mps())) {}
+      sky_(light),
+      day_(static_cast<float>(light.sky + std::max(0.0, light.to_sun_W().z()) * light.sun)) {
+  light_.attenuation = optics_.attenuation;
+  light_.downward = optics_.downward;
+  light_.at_surface = 0.25F * day_ * optics_.scattering;
+  if (sky_.sun_is_up()) light_.sun = sky_.sun();
+  light_.wind_slope = static_cast<float>(0.003 + 0.00512 * medium.mean_wind_mps());
+}
 
 void WaterView::update(const Vector3d& eye_W) {
   // Place of the camera.
@@ -78,12 +60,11 @@ void WaterView::update(const Vector3d& eye_W) {
   now_s_ = to_seconds(medium_.now());
   level_m_ = medium_.still_surface_m();
   highest_m_ = medium_.highest_surface_m() - level_m_;
-  is_under_ = medium_.in_water(eye_W);
-  const float min_downward = optics_.downward.minCoeff();
-  const auto depth_m = static_cast<float>(std::max(0.0, level_m_ - eye_W.z()));
-  gain_ = is_under_ ? std::min(1.6F / std::exp(-min_downward * depth_m), 1e4F) : 1;
-  at_surface_ = 0.25F * day_ * optics_.scattering;
-  at_eye_ = at_surface_.cwiseProduct(daylight(eye_W.z()));
+  light_.is_under = medium_.in_water(eye_W);
+  light_.eye_depth_m = static_cast<float>(level_m_ - eye_W.z());
+  const float min_downward = optics_.downward.minCoeff(), depth_m = std::max(0.0F, light_.eye_depth_m);
+  gain_ = is_under() ? std::min(1.6F / std::exp(-min_downward * depth_m), 1e4F) : 1;
+  light_.at_eye = light_.at_surface.cwiseProduct(daylight(eye_W.z()));
   // Grids, each twice as wide as the one before.
   levels_.clear();
   if (!medium_.has_waves()) return;
@@ -226,7 +207,7 @@ double WaterView::wave_crossing_m(const Vector3d& direction_W, double range_max_
   if (from_m >= to_m) return none;
   // Approach the surface by steps that cannot cross waves of a usual slope, until it is nearer than a pixel is wide, or
   // crossed after all.
-  const double side = is_under_ ? -1 : 1;
+  const double side = is_under() ? -1 : 1;
   const auto height_over_m = [&](double range_m) {
     const Vector3d p_W = eye_W_ + range_m * direction_W;
     return side * (p_W.z() - level_m_ - static_cast<double>(elevation_m(p_W)));
@@ -246,80 +227,22 @@ double WaterView::wave_crossing_m(const Vector3d& direction_W, double range_max_
 }
 
 LinearColor WaterView::daylight(double z_m) const {
-  const auto depth_m = static_cast<float>(level_m_ - z_m);
-  if (depth_m <= 0) return LinearColor::Ones();
-  return exponential(-optics_.downward * depth_m);
+  return daylight_at(light_, static_cast<float>(level_m_ - z_m));
 }
 
-LinearColor WaterView::share_after(float path_m) const {
-  return exponential(-optics_.attenuation * std::min(path_m, 1e4F));
-}
-
-LinearColor WaterView::veil(const LinearColor& source, float down, float path_m) const {
-  // Daylight scattered into the ray: integral of scattering times what is left of the light, over the path.
-  const LinearColor rate = (optics_.attenuation + down * optics_.downward).cwiseMax(1e-4F);
-  const LinearColor left = exponential(-rate * std::min(path_m, 1e4F));
-  return source.cwiseProduct(LinearColor::Ones() - left).cwiseQuotient(rate);
-}
-
-WaterView::Crossing WaterView::from_above(const Vector3d& direction_W, double crossing_m, double range_m) const {
-  Crossing light;
-  if (!(crossing_m < range_m)) return light;
-  // Reflection of the sky and of the sun, whose image is spread by waves that are too small to be seen.
-  const Vector3d p_W = eye_W_ + crossing_m * direction_W;
-  const Surface surface = surface_at(p_W);
-  const Eigen::Vector3f direction = direction_W.cast<float>();
-  Eigen::Vector3f normal = surface.normal_W();
-  const float toward = std::max(-normal.dot(direction), 0.02F);
-  const float mirrored = reflected(toward);
-  Eigen::Vector3f mirror = direction + 2 * toward * normal;
-  mirror.z() = std::max(mirror.z(), 0.02F);
-  light.sky_share = mirrored;
-  light.sky_direction_W = mirror.normalized();
-  const Eigen::Vector3f half = (to_sun_W_ - direction).normalized();
-  const float cosine = std::max(half.dot(normal), 0.05F), square = cosine * cosine;
-  const float rough = wind_slope_ + surface.rough;
-  const float facets = std::exp((1 - 1 / square) / rough) / (rough * square * square);
-  light.own = sun_ * std::min(4.0F, 0.25F * facets * reflected(half.dot(to_sun_W_)) / std::max(toward, 0.2F));
-  // What comes out of the water.
-  const auto path_m = static_cast<float>(range_m - crossing_m);
-  const auto down = static_cast<float>(std::max(0.0, -direction_W.z()));
-  light.own += (1 - mirrored) * veil(at_surface_, down, path_m);
-  light.passed = (1 - mirrored) * share_after(path_m);
-  return light;
-}
-
-WaterView::Crossing WaterView::from_below(const Vector3d& direction_W, double crossing_m, double range_m) const {
-  Crossing light;
-  const bool leaves = crossing_m < range_m;
-  const auto path_m = static_cast<float>(leaves ? crossing_m : range_m);
-  const auto down = static_cast<float>(-direction_W.z());
-  light.own = veil(at_eye_, down, path_m);
-  light.passed = share_after(path_m);
-  if (!leaves) return light;
-  // Snell's window: the sky within 48 degrees of the zenith; outside of it the surface mirrors the water.
-  const Eigen::Vector3f normal = -surface_at(eye_W_ + crossing_m * direction_W).normal_W();
-  const Eigen::Vector3f direction = direction_W.cast<float>();
-  const float toward = std::max(-normal.dot(direction), 0.0F);
-  const float square = 1 - refractive_index * refractive_index * (1 - toward * toward);
-  const LinearColor arriving = light.passed;
-  if (square <= 0) {
-    const Eigen::Vector3f mirror = direction + 2 * toward * normal;
-    light.own += arriving.cwiseProduct(veil(at_surface_, -std::min(mirror.z(), 0.0F), 1e4F));
-    light.passed = LinearColor::Zero();
-    return light;
+void WaterView::find_surface(std::span<const Ray> rays, WaterRays& lit) const {
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const Ray& ray = rays[i];
+    for (int axis = 0; axis < 3; ++axis) lit.direction_W[axis][i] = static_cast<float>(ray.direction_W[axis]);
+    const double range_max_m = std::min(ray.range_max_m, static_cast<double>(lit.range_m[i]));
+    const double range_m = crossing_m(ray.direction_W, range_max_m);
+    lit.crossing_m[i] = static_cast<float>(range_m);
+    if (levels_.empty() || !(range_m < range_max_m)) continue;
+    const Surface surface = surface_at(eye_W_ + range_m * ray.direction_W);
+    lit.slope_x[i] = surface.slope_x;
+    lit.slope_y[i] = surface.slope_y;
+    lit.rough[i] = surface.rough;
   }
-  const Eigen::Vector3f refracted =
-      refractive_index * direction + (refractive_index * toward - std::sqrt(square)) * normal;
-  const float mirrored = reflected(std::sqrt(square));
-  light.own += mirrored * arriving.cwiseProduct(veil(at_surface_, 1, 1e4F));
-  light.passed *= 1 - mirrored;
-  if (std::isfinite(range_m)) return light;  // something above the water
-  light.through = light.passed;
-  light.passed = LinearColor::Zero();
-  light.sky_share = 1;
-  light.sky_direction_W = refracted.normalized();
-  return light;
 }
 
 }  // namespace sim

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <array>
-#include <limits>
+#include <span>
 #include <vector>
 
 #include "sim/base/math.hpp"
 #include "sim/camera/texture.hpp"
+#include "sim/camera/water_light.hpp"
 #include "sim/medium/medium.hpp"
 #include "sim/scene/light.hpp"
+#include "sim/scene/scene.hpp"
 
 namespace sim {
 
@@ -38,7 +39,7 @@ class WaterView {
   void update(const Vector3d& eye_W);
 
   /// Whether the camera is under water.
-  bool is_under() const { return is_under_; }
+  bool is_under() const { return light_.is_under; }
   /// Returns the exposure of the image: under water it follows the daylight at the depth of the camera.
   float gain() const { return gain_; }
   /// Returns the range at which a ray from the camera crosses the surface; infinity: not before `range_max_m`.
@@ -46,17 +47,10 @@ class WaterView {
   /// Returns the share of daylight at a height.
   LinearColor daylight(double z_m) const;
 
-  /// Returns the light on a ray from the camera: `seen` at `range_m` behind a surface at `crossing_m`; both may be
-  /// infinite.  `sky` returns the light of the sky in a direction.
-  template <typename Sky>
-  LinearColor light(const Vector3d& direction_W, double crossing_m, double range_m, const LinearColor& seen,
-                    Sky&& sky) const {
-    const Crossing at =
-        is_under_ ? from_below(direction_W, crossing_m, range_m) : from_above(direction_W, crossing_m, range_m);
-    LinearColor sum = at.own + at.passed.cwiseProduct(seen);
-    if (at.sky_share > 0) sum += at.through.cwiseProduct(at.sky_share * sky(at.sky_direction_W));
-    return sum;
-  }
+  /// Sets directions, crossings and the surface there of `lit`, for rays from the camera; lit.range_m is already set.
+  void find_surface(std::span<const Ray> rays, WaterRays& lit) const;
+  /// Replaces the light of what the rays see by that of the rays.
+  void light(WaterRays& rays) const { light_water(light_, sky_, rays); }
 
  private:
   /// Surface at a point of a grid.
@@ -71,17 +65,7 @@ class WaterView {
   };
   struct Surface {
     float elevation_m = 0, slope_x = 0, slope_y = 0, rough = 0;
-    Eigen::Vector3f normal_W() const { return Eigen::Vector3f(-slope_x, -slope_y, 1).normalized(); }
   };
-  /// Parts of the light on a ray.
-  struct Crossing {
-    LinearColor own = LinearColor::Zero();     // light of the water and of the sun on it
-    LinearColor passed = LinearColor::Ones();  // share of the light at the end of the ray
-    LinearColor through = LinearColor::Ones();
-    float sky_share = 0;
-    Eigen::Vector3f sky_direction_W = Eigen::Vector3f::UnitZ();
-  };
-
   /// South-west corner of the cell that contains a place, and the place in it, 0 to 1.
   struct Cell {
     const Point* corner = nullptr;
@@ -100,26 +84,18 @@ class WaterView {
   Surface sample(const Level& level, double x_m, double y_m) const;
   Surface surface_at(const Vector3d& p_W) const;
   double wave_crossing_m(const Vector3d& direction_W, double range_max_m) const;
-  LinearColor share_after(float path_m) const;
-  /// Returns the daylight that the water scatters into a ray; `source`: per metre at its start.
-  LinearColor veil(const LinearColor& source, float down, float path_m) const;
-  Crossing from_above(const Vector3d& direction_W, double crossing_m, double range_m) const;
-  Crossing from_below(const Vector3d& direction_W, double crossing_m, double range_m) const;
 
   const Medium& medium_;
   WaterOptics optics_;
-  Eigen::Vector3f to_sun_W_;
-  LinearColor sun_;
-  float day_;             // strength of daylight on the surface
-  float wind_slope_ = 0;  // mean square slope of ripples (Cox and Munk 1954)
+  SkyLight sky_;
+  WaterLight light_;
+  float day_;  // strength of daylight on the surface
   Vector3d eye_W_ = Vector3d::Zero();
   double level_m_ = 0;    // of the still surface
   double highest_m_ = 0;  // bound of waves over it
-  bool is_under_ = false;
   float gain_ = 1;
   double now_s_ = 0;
   double steep_ = 0;  // slope that waves seldom exceed: twice the root mean square
-  LinearColor at_surface_ = LinearColor::Zero(), at_eye_ = LinearColor::Zero();  // daylight scattered per metre
   std::vector<Level> levels_;
 };
 

@@ -32,7 +32,7 @@ bool is_free_of_quotes(const std::string& text) {
 std::string SourcePlace::text() const {
   if (file == nullptr) return "";
   if (line <= 0) return *file;
-  return *file + ":" + std::to_string(line) + ":" + std::to_string(column);
+  return *file + ":" + std::to_string(line) + (column > 0 ? ":" + std::to_string(column) : "");
 }
 
 const std::string* intern_file_name(const std::string& file) {

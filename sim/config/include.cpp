@@ -10,6 +10,7 @@
 #include "sim/config/config_node.hpp"
 #include "sim/config/file_access.hpp"
 #include "sim/config/message_text.hpp"
+#include "sim/config/shipped_files.hpp"
 
 namespace sim {
 
@@ -69,6 +70,15 @@ void merge(ConfigNode& base, ConfigNode&& over) {
     merge_lists_by_name(base, std::move(over));
   else
     base = std::move(over);
+}
+
+/// Returns the path of an included file: beside the file that includes it, else the shipped world of this name.
+fs::path included_path(const fs::path& by, const fs::path& name) {
+  const fs::path beside = by.parent_path() / name;
+  std::error_code error;
+  if (fs::exists(beside, error) || name.has_parent_path() || shipped_folder().empty()) return beside;
+  const fs::path shipped = fs::path(shipped_folder()) / "worlds" / name;
+  return fs::is_regular_file(shipped, error) ? shipped : beside;
 }
 
 void forward(const Diagnostics& from, Diagnostics& to) {
@@ -178,7 +188,7 @@ class Loader {
     node.entries.erase(found);
     ConfigNode base;
     for (const ConfigNode* name : included_names(include)) {
-      ConfigNode layer = load(path.parent_path() / name->scalar, name->place);
+      ConfigNode layer = load(included_path(path, name->scalar), name->place);
       if (layer.kind == Kind::map) merge(base, std::move(layer));
     }
     merge(base, std::move(node));

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/config/shipped_files.hpp"
 
+#include <dlfcn.h>
+
 #include <filesystem>
 #include <fstream>
 
@@ -33,11 +35,24 @@ std::string shipped_folder_of(const std::string& program_folder) {
   return {};
 }
 
+/// Returns the library that contains this function; the program when it is not in a library.
+static fs::path library_of_this() {
+  Dl_info info{};
+  std::error_code error;
+  if (dladdr(reinterpret_cast<const void*>(&shipped_folder), &info) == 0 || info.dli_fname == nullptr) return {};
+  return fs::canonical(info.dli_fname, error);
+}
+
 std::string shipped_folder() {
   static const std::string folder = [] {
     std::error_code error;
     const fs::path program = fs::read_symlink("/proc/self/exe", error);
-    return error ? std::string() : shipped_folder_of(program.parent_path().string());
+    if (std::string found = error ? "" : shipped_folder_of(program.parent_path().string()); !found.empty())
+      return found;
+    // In a library that another program has loaded, such as the module of Python, at any depth below its prefix.
+    for (fs::path at = library_of_this().parent_path(); at.has_relative_path(); at = at.parent_path())
+      if (std::string found = shipped_folder_of(at.string()); !found.empty()) return found;
+    return std::string();
   }();
   return folder;
 }

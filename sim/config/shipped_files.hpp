@@ -6,7 +6,8 @@
 namespace sim {
 
 /// Returns the folder with the `worlds/` and `vehicles/` shipped with this program: `share/shoal` of its installation,
-/// or the checkout of its build folder.  Empty: there is none.
+/// or the checkout of its build folder; in a library that another program has loaded, those of the library.  Empty:
+/// there is none.
 std::string shipped_folder();
 
 /// Returns that folder for a program in `program_folder`, such as `/usr/local/bin` or `checkout/build/release/bin`.

@@ -12,7 +12,7 @@ struct Occurrence {
   /// Kind of an occurrence.
   enum class Kind {
     event,    ///< an event of the world file fired
-    fault,    ///< a fault of a device was set or cleared
+    fault,    ///< a fault of a device was set or cleared, or a device switched itself off
     added,    ///< a vehicle or object was added
     removed,  ///< a vehicle or object was removed
     moved,    ///< a vehicle or object was moved by an action or a request

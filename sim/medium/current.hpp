@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "sim/base/math.hpp"
@@ -26,6 +27,12 @@ class Current {
   }
   /// Whether all grids contain the point.
   bool known(double x_m, double y_m) const;
+  /// Gridded currents, in the order of their entries.
+  std::span<const CurrentGrid> grids() const { return grids_; }
+  /// Whether a part of the current is random.
+  bool is_random() const { return !wandering_.empty(); }
+  /// Part that is the same at all places: constant, tidal and random currents.
+  const Vector3d& uniform_W() const { return uniform_W_; }
   /// Tidal elevation over the still surface.
   static double tide_m(const std::vector<TideConfig>& tides, Time at);
   /// Visits the state; velocities are updated by the next advance_to().

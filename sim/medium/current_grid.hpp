@@ -22,6 +22,13 @@ class CurrentGrid {
   }
   /// Velocity in the world, m/s.
   Vector3d velocity_W(double x_m, double y_m) const;
+  /// Whether the velocity outside is that at the border; else it is zero.
+  bool keeps_edge() const { return edge_; }
+  int columns() const { return columns_; }
+  int rows() const { return rows_; }
+  /// Positions of the first and the last point.
+  Eigen::Vector2d low_m() const { return {west_m_, south_m_}; }
+  Eigen::Vector2d high_m() const { return {west_m_ + (columns_ - 1) * cell_x_m_, south_m_ + (rows_ - 1) * cell_y_m_}; }
 
  private:
   void read_csv(std::string_view text);

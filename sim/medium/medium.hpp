@@ -65,6 +65,8 @@ class Medium {
   Vector3d water_velocity_W(const Vector3d& p_W) const;
   /// Whether all gridded currents contain the point.
   bool current_known(const Vector3d& p_W) const { return !current_ || current_->known(p_W.x(), p_W.y()); }
+  /// Current; null in a world without water.
+  const Current* current() const { return current_ ? &*current_ : nullptr; }
   /// Velocity of the wind, m/s.  Below the surface: as at the surface.
   Vector3d air_velocity_W(const Vector3d& p_W) const;
   /// Horizontal mean wind speed at the reference height, without gusts; 0 without wind.

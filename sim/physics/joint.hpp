@@ -55,6 +55,9 @@ class Joint {
   double motor_max_force(int axis = 0) const { return motor_max_force_[axis]; }
   /// Adds a torque (N m) about an axis or a force (N) along it, for the next step.
   void add_effort(double effort, int axis = 0);
+  /// Returns the velocity that an impulse of 1 N m s about an axis (1 N s along it) gives its two bodies, which only
+  /// the anchor holds together, in 1/(kg m^2) or 1/kg.  Other joints and contacts of the bodies only reduce it.
+  double mobility(int axis = 0) const;
   /// Sets the stops of an axis, in the joint's sign (rad, or m for a slider); nullopt: no stop.  With low above high
   /// neither stop has an effect.  The second axis of hinge2 has no stops.
   void set_stops(std::optional<double> low, std::optional<double> high, int axis = 0);

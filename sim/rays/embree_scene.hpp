@@ -37,11 +37,15 @@ class EmbreeScene final : public WorldScene {
 
  private:
   struct Query;
+  struct Targets;
+
+  /// For so few shapes a tree is slower than a test of each.
+  static constexpr int max_few = 4;
 
   /// Shapes in one bounding volume hierarchy (tree).
   struct Layer {
     /// Whether no tree is used: for planes, which are infinite, and for few shapes, for which a tree is slower.
-    bool few() const { return shapes.size() <= 4 || shapes.front().kind == RayShape::Kind::plane; }
+    bool few() const { return shapes.size() <= max_few || shapes.front().kind == RayShape::Kind::plane; }
 
     bool moves = false;
     std::vector<RayShape> shapes;
@@ -78,11 +82,8 @@ class EmbreeScene final : public WorldScene {
   static void find_occluded(const RTCOccludedFunctionNArguments* arguments);
   static unsigned cast_at(const RayShape& shape, RayPacket& rays, unsigned lanes);
   static unsigned blocked_by(const RayShape& shape, RayPacket& rays, unsigned lanes);
-  void cast_packet(RayPacket& rays, unsigned lanes, const RayFilter& filter) const;
-  unsigned blocked_packet(RayPacket& rays, unsigned lanes, const RayFilter& filter) const;
-  /// Layers in order of the cost of intersections: terrain is last, and is cheaper for rays that other hits have
-  /// shortened.
-  std::array<const Layer*, 4> in_order() const { return {&planes_, &moving_, &fixed_, &terrain_}; }
+  static void cast_packet(RayPacket& rays, unsigned lanes, const Targets& targets);
+  static unsigned blocked_packet(RayPacket& rays, unsigned lanes, const Targets& targets);
   RayHit hit_of(const RayPacket& rays, int lane) const;
 
   const SceneMoves& moves_;

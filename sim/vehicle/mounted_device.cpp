@@ -184,6 +184,13 @@ void MountedDevice::receive(Time now, std::span<const std::byte> payload) {
   }
 }
 
+bool Acting::take_command(Time now) {
+  if (stuck || silent || systems->estopped || !(always_on || systems->powered)) return false;
+  last_command = now;
+  safe = false;
+  return true;
+}
+
 void Acting::act(Time now, double step_s) {
   const bool works = always_on || systems->powered;
   if (is_actuator) {
@@ -280,21 +287,23 @@ void MountedDevice::set_fault(const FaultConfig& fault) {
   faults_.set(fault);
   acting_->effectiveness = faults_.effectiveness();
   acting_->stuck = faults_.stuck();
+  acting_->silent = faults_.silent();
 }
 
 void MountedDevice::clear_faults() {
   faults_.clear();
   acting_->effectiveness = faults_.effectiveness();
   acting_->stuck = faults_.stuck();
+  acting_->silent = faults_.silent();
   frozen_.reset();
 }
 
 void MountedDevice::change(const DeviceConfig& changed, Time now) {
+  if (built_.change) built_.change(*changed.params);  // first: it may throw
   const bool other_rate = changed.rate_hz != config_.rate_hz || changed.phase_s != config_.phase_s;
   config_ = changed;  // changed_device() refuses changes of fixed values
   acting_->watchdog = from_seconds(config_.watchdog_s);
   acting_->safe_state = config_.safe;
-  if (built_.change) built_.change(*changed.params);
   if (other_rate) plan_again(now);
 }
 
@@ -319,6 +328,7 @@ void MountedDevice::visit_state(StateArchive& archive) {
     archive.require(acting_->last_command, Time{-1}, host_.clock.now(), "the time of a last command");
     acting_->effectiveness = faults_.effectiveness();
     acting_->stuck = faults_.stuck();
+    acting_->silent = faults_.silent();
   }
   if (built_.sensor) built_.sensor->visit_state(archive);
   if (built_.actuator) built_.actuator->visit_state(archive);

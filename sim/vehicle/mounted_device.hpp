@@ -28,9 +28,13 @@ struct Acting : VisitedInSteps {
   bool is_actuator = false;  ///< has safe states
   bool always_on = false;
   bool stuck = false;
+  bool silent = false;
   bool safe = false;  ///< the actuator is in its safe state, without a command since
 
   void act(Time now, double step_s);
+  /// Prepares a command of another device of the vehicle.  Returns whether the actuator takes commands now: it is
+  /// powered and without a fault, and the emergency stop is released.
+  bool take_command(Time now);
 };
 
 /// Device in its vehicle, with the framework functions of every device: schedule of samples, latency, jitter, dropout,
@@ -64,7 +68,8 @@ class MountedDevice {
   void clear_faults();
   const DeviceFaults& faults() const { return faults_; }
   /// Applies the values of `changed` that may change at run time: rate, latency, jitter, dropout, power, watchdog, and
-  /// the keys of the type when it allows that (see can_change).  Name, mounting and channels are kept.
+  /// the keys of the type when it allows that (see can_change).  Name, mounting and channels are kept.  Throws
+  /// std::runtime_error when the values do not fit the vehicle; nothing has changed then.
   void change(const DeviceConfig& changed, Time now);
   /// Returns whether the keys of its type can change at run time.
   bool can_change() const { return static_cast<bool>(built_.change); }

@@ -23,4 +23,9 @@ void WorldWarnings::warn(const std::string& who, const std::string& text) const 
   spdlog::warn("{}: {} (at {:.3f} s)", who, text, to_seconds(clock_.now()));
 }
 
+void WorldWarnings::device_fault(const std::string& device, const std::string& text) const {
+  warn(device, text);
+  if (fault_listener_) fault_listener_(device, text);
+}
+
 }  // namespace sim

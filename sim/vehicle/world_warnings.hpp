@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "sim/config/warnings.hpp"
@@ -25,6 +27,12 @@ class WorldWarnings {
   void bad_message(const std::string& who, const std::string& text);
   /// Logs a warning with the time of the world.  It is not counted.
   void warn(const std::string& who, const std::string& text) const;
+  /// Logs a fault that a device has found in itself, as warn(), and passes it to the listener.
+  void device_fault(const std::string& device, const std::string& text) const;
+  /// Sets the listener of device_fault(); null: none.
+  void listen_to_device_faults(std::function<void(const std::string& device, const std::string& text)> listener) {
+    fault_listener_ = std::move(listener);
+  }
 
   std::int64_t bad_messages() const { return bad_messages_; }
   void visit_state(StateArchive& archive) { archive(bad_messages_, lines_); }
@@ -34,6 +42,7 @@ class WorldWarnings {
   Warnings building_;
   std::int64_t bad_messages_ = 0;
   std::vector<std::string> lines_;  // of bad messages
+  std::function<void(const std::string&, const std::string&)> fault_listener_;
 };
 
 }  // namespace sim

@@ -42,6 +42,9 @@ void World::use_threads(int threads) {
 
 void World::set_observer(WorldObserver* observer) {
   parts_->observer = observer;
+  parts_->warnings.listen_to_device_faults([&parts = *parts_](const std::string& device, const std::string& text) {
+    if (parts.observer != nullptr) parts.observer->happened({Occurrence::Kind::fault, device, text});
+  });
   parts_->acoustics->set_observer(observer);
 }
 

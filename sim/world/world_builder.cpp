@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <memory>
 #include <set>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -192,9 +193,15 @@ bool WorldBuilder::change_device(const std::string& full_name, const ConfigNode&
   }
   const auto changed =
       changed_device(device->config(), device->vehicle().config(), parts_.config, values, who, diagnostics);
-  if (changed) device->change(*changed, parts_.clock.now());
+  if (!changed) return false;
+  try {
+    device->change(*changed, parts_.clock.now());
+  } catch (const std::runtime_error& error) {
+    diagnostics.error(values.place, who, error.what());
+    return false;
+  }
   parts_.schedule.plan_again(*device);
-  return changed.has_value();
+  return true;
 }
 
 /// Dismantles devices before the objects to which they refer, as in the destructor of the world.

@@ -18,6 +18,8 @@ const char* name_of(FileKind kind) {
       return "a vehicle";
     case FileKind::study:
       return "a study";
+    case FileKind::motion:
+      return "a motion";
     case FileKind::declaration:
       break;
   }
@@ -32,6 +34,8 @@ const char* advice_for(FileKind kind) {
       return "name it as `file:` of a vehicle in a world; `shoal check FILE` checks it";
     case FileKind::study:
       return "`shoal study FILE` runs it";
+    case FileKind::motion:
+      return "name it as `file:` in `motions` of a motion_player; `shoal check FILE` checks it";
     case FileKind::declaration:
       break;
   }
@@ -53,6 +57,7 @@ FileKind kind_of_file(const ConfigNode& root) {
   const auto has = [&](const char* key) { return root.find(key) != nullptr; };
   if (has("shoal_args")) return FileKind::declaration;
   if (has("study") || (has("cases") && has("world"))) return FileKind::study;
+  if (has("motion") || (has("keys") && has("poses"))) return FileKind::motion;
   if (has("vehicle") || (has("bodies") && !has("vehicles"))) return FileKind::vehicle;
   return FileKind::world;
 }

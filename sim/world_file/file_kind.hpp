@@ -8,7 +8,7 @@
 namespace sim {
 
 /// What a YAML file describes, by the keys of its top level.
-enum class FileKind { world, vehicle, study, declaration };
+enum class FileKind { world, vehicle, study, motion, declaration };
 
 /// Kind of the file with this top level; a world when no key decides.
 FileKind kind_of_file(const ConfigNode& root);

@@ -66,6 +66,7 @@ vehicles:
       bodies:
         - {name: base, position_m: [0, 0, 0.1], parts: [{shape: box, size_m: [0.8, 0.3, 0.1], mass_kg: 60}]}
         - {name: ghost, kinematic: true, position_m: [0, 0, 2], parts: [{shape: sphere, radius_m: 0.1}]}
+        - {name: arm, position_m: [0, 0, 0.4], parts: [{shape: box, size_m: [0.1, 0.1, 0.3], mass_kg: 1}]}
 )";
   const std::pair<const char*, const char*> wheels[] = {{"left", "[0, 0.3, 0]"},
                                                         {"right", "[0, -0.3, 0]"},
@@ -73,7 +74,9 @@ vehicles:
                                                         {"front_right", "[0.4, -0.3, 0]"}};
   for (const auto& [name, place] : wheels)
     text += std::string("        - {name: ") + name + "_wheel, position_m: " + place + ", " + wheel;
-  text += "      joints:\n";
+  text +=
+      "      joints:\n        - {name: arm, type: hinge, bodies: [base, arm], anchor_m: [0, 0, 0.2], axis: [0, 1, "
+      "0]}\n";
   for (const auto& [name, place] : wheels) {
     const bool steered = std::string(name).starts_with("front");
     text += std::string("        - {name: ") + name + ", bodies: [base, " + name + "_wheel], anchor_m: " + place +
@@ -82,6 +85,7 @@ vehicles:
   }
   return text +
          "      devices:\n        - {name: radio, type: modem}\n        - {name: sound, type: acoustic_modem}\n" +
+         "        - {name: arm, type: joint_servo, joint: arm}\n        - {name: group, type: joint_group}\n" +
          "        - {name: push, type: thruster}\n        - {name: witness, type: imu}\n" +
          "        - {name: it, type: " + type.name + keys_of(type) + "}\n";
 }

@@ -64,14 +64,14 @@ void check_series(std::string_view text) {
 
 /// Shows bytes as a message: as they are, and with the fingerprint of a type in place of the first eight.
 void check_frame(fuzz::Input input) {
-  std::vector<std::byte> payload(input.size());
-  std::memcpy(payload.data(), input.data(), input.size());
+  const auto whole = std::as_bytes(input);
+  std::vector<std::byte> payload(whole.begin(), whole.end());
   const auto& types = shoal::embedded_types().all();
   auto type = types.begin();
   if (!payload.empty()) std::advance(type, std::to_integer<std::size_t>(payload[0]) % types.size());
   for (std::size_t i = 0; i < std::min<std::size_t>(8, payload.size()); ++i)
     payload[i] = static_cast<std::byte>(type->second.fingerprint >> (56 - 8 * i));
-  for (const auto bytes : {std::as_bytes(input), std::as_bytes(std::span(payload))}) {
+  for (const auto bytes : {whole, std::as_bytes(std::span(payload))}) {
     const std::string frame = tools::message_frame(shoal::embedded_types(), fuzz::text_of(input), bytes, 1);
     std::uint32_t header_bytes = 0;
     std::memcpy(&header_bytes, frame.data() + 4, sizeof header_bytes);

@@ -52,12 +52,12 @@ function comparePoses(viewer) {
   return compared;
 }
 
-/** The topics that a layout shows exist; those of estimates only while the programs of the world run. */
+/** The topics that a layout shows exist; those that programs of the world publish are checked by FoxgloveLayout. */
 async function checkLayout(viewer, name) {
   const layout = readFileSync(join(layouts, `${name}.json`), "utf8");
   const shown = [...layout.matchAll(/"(\/[a-z_0-9/]+)[".]/g)].map((found) => found[1]);
   const ofLichtblick = ["/move_base_simple/goal", "/clicked_point", "/initialpose"];
-  const topics = shown.filter((topic) => !ofLichtblick.includes(topic) && !topic.includes("/estimate/"));
+  const topics = shown.filter((topic) => !ofLichtblick.includes(topic) && !/\/(estimate|dead_reckoning)\//.test(topic));
   check(topics.length > 5, `${name}.json shows topics`);
   for (const topic of topics) await until(() => viewer.topics.has(topic), `topic ${topic} of ${name}.json`);
 }

@@ -2,9 +2,11 @@
 #include <gmock/gmock.h>
 #include <signal.h>
 
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "bridges/lcm/lcm_listener.hpp"
@@ -30,8 +32,8 @@ class DriveTest : public testing::Test {
     lcm_.listen("rover1.drive.cmd");
   }
 
-  void start(const std::vector<std::string>& options = {}) {
-    write_file(folder_.file("world.yaml"), endless_world());
+  void start(const std::vector<std::string>& options = {}, const std::string& more = "") {
+    write_file(folder_.file("world.yaml"), endless_world(more));
     std::vector<std::string> arguments{built("shoal"), "run", folder_.file("world.yaml"), "--lcm-url", own_url(),
                                        "--record",     log_};
     arguments.insert(arguments.end(), options.begin(), options.end());
@@ -53,11 +55,38 @@ class DriveTest : public testing::Test {
              holds(shoal::decode<shoal::sim_state_t>(message.payload, shoal::Finite::required));
     });
   }
+  /// Waits until a vehicle has gone 0.3 m along x; of the commands to rover1 none may come on the bus of the world.
+  bool await_move(std::size_t vehicle) {
+    return await_message([&](const bridges::Received& message) {
+      EXPECT_NE(message.channel, "rover1.drive.cmd");
+      if (message.channel != "sim.state") return false;
+      const auto state = shoal::decode<shoal::sim_state_t>(message.payload, shoal::Finite::required);
+      return state.position_m.size() > vehicle && state.position_m[vehicle][0] > 0.3;
+    });
+  }
   bool await_message(const std::function<bool(const bridges::Received&)>& holds) {
     const auto deadline = std::chrono::steady_clock::now() + timeout;
     while (std::chrono::steady_clock::now() < deadline)
       if (const auto message = lcm_.next(100ms); message && holds(*message)) return true;
     return false;
+  }
+
+  /// Waits for the address of the live page, and returns its token.
+  std::string await_token() {
+    EXPECT_TRUE(await([&] { return run_->errors().find("#t=") != std::string::npos; }, timeout));
+    const std::string errors = run_->errors();
+    const std::size_t token = errors.find("#t=") + 3, port = errors.find("127.0.0.1:") + 10;
+    port_ = static_cast<std::uint16_t>(std::stoi(errors.substr(port)));
+    return errors.substr(token, errors.find_first_of(" \n", token) - token);
+  }
+  web_test::Client page(const std::string& token) const {
+    web_test::Client client(port_);
+    client.upgrade();
+    client.send_json({{"op", "hello"}, {"token", token}});
+    return client;
+  }
+  static web_test::Json ahead(const std::string& vehicle) {
+    return {{"op", "drive"}, {"id", 7}, {"vehicle", vehicle}, {"kind", "twist"}, {"values", {{"forward", 0.5}}}};
   }
 
   /// Ends the run, and proves that its log can be repeated.
@@ -74,7 +103,13 @@ class DriveTest : public testing::Test {
   bridges::LcmListener lcm_;
   std::unique_ptr<Program> run_;
   double last_mps_ = 0;
+  std::uint16_t port_ = 0;
 };
+
+/// Keys of a world: the rover has its own bus.
+std::string own_bus() {
+  return "    bus: own\nbuses: [{name: own, lcm_url: '" + own_url(1) + "'}]\n";
+}
 
 /// Events of a gamepad: the left shoulder button is held from 0.1 s to `until_s`, with the stick up.
 std::string pad_events(double until_s) {
@@ -123,17 +158,8 @@ TEST_F(DriveTest, KeysOfATerminalMoveUntilTheyAreReleased) {
 
 TEST_F(DriveTest, APageDrivesAndStopsWhenItLeaves) {
   start({"--view", "--view-port", "0"});
-  ASSERT_TRUE(await([&] { return run_->errors().find("#t=") != std::string::npos; }, timeout));
-  const std::string errors = run_->errors();
-  const std::size_t token = errors.find("#t=") + 3, port = errors.find("127.0.0.1:") + 10;
-  const web_test::Json command{
-      {"op", "drive"}, {"id", 7}, {"vehicle", "rover1"}, {"kind", "twist"}, {"values", {{"forward", 0.5}}}};
-  const auto page = [&](const std::string& shown_token) {
-    web_test::Client client(static_cast<std::uint16_t>(std::stoi(errors.substr(port))));
-    client.upgrade();
-    client.send_json({{"op", "hello"}, {"token", shown_token}});
-    return client;
-  };
+  const std::string token = await_token();
+  const web_test::Json command = ahead("rover1");
   const auto reply = [](web_test::Client& client) -> web_test::Json {
     while (const auto frame = client.read_frame())
       if (frame->is_text() && frame->json()["op"] == "reply") return frame->json();
@@ -146,7 +172,7 @@ TEST_F(DriveTest, APageDrivesAndStopsWhenItLeaves) {
   EXPECT_EQ(refused["id"], 7);
   EXPECT_EQ(refused["ok"], false);
   // It drives, and stops without further messages, and when the page goes.
-  web_test::Client driver = page(errors.substr(token, errors.find_first_of(" \n", token) - token));
+  web_test::Client driver = page(token);
   driver.send_json(command);
   EXPECT_TRUE(await_speed([](double mps) { return mps == 0.5; })) << last_mps_;
   EXPECT_TRUE(await_speed([](double mps) { return mps == 0; })) << last_mps_;
@@ -154,6 +180,34 @@ TEST_F(DriveTest, APageDrivesAndStopsWhenItLeaves) {
   EXPECT_TRUE(await_speed([](double mps) { return mps == 0.5; })) << last_mps_;
   driver.reset();
   EXPECT_TRUE(await_speed([](double mps) { return mps == 0; })) << last_mps_;
+  replay();
+}
+
+TEST_F(DriveTest, AVehicleWithItsOwnBusIsDrivenOnIt) {
+  start({}, own_bus());
+  write_file(folder_.file("pad.events"), pad_events(1.5));
+  const Ended drive = run_shoal({"drive", "rover1", "--events", folder_.file("pad.events"), "--lcm-url", own_url()});
+  EXPECT_EQ(drive.exit_code, 0) << drive.errors;
+  EXPECT_TRUE(await_move(0));
+  replay();
+}
+
+TEST_F(DriveTest, APageDrivesVehiclesWithTheirOwnBusAlsoSpawnedOnes) {
+  start({"--view", "--view-port", "0"}, own_bus());
+  EXPECT_THAT(control({"bus", "rover1"}).output, testing::StartsWith(own_url(1)));
+  const Ended spawned = control({"spawn", "{name: guest, bus: own, position_m: [0, 5, 0], file: rover.yaml}"});
+  ASSERT_EQ(spawned.exit_code, 0) << spawned.errors;
+  web_test::Client driver = page(await_token());
+  for (const std::size_t vehicle : {0, 1}) {
+    // The dead-man key is held until the vehicle has moved.
+    std::atomic<bool> holds = true;
+    std::thread driving([&] {
+      for (; holds; std::this_thread::sleep_for(50ms)) driver.send_json(ahead(vehicle == 0 ? "rover1" : "guest"));
+    });
+    EXPECT_TRUE(await_move(vehicle)) << vehicle;
+    holds = false;
+    driving.join();
+  }
   replay();
 }
 

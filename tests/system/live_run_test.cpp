@@ -129,10 +129,10 @@ TEST_F(LiveRun, RefusesWhatItDoesNotUnderstand) {
   start();
   const auto unknown = request("fly");
   EXPECT_FALSE(unknown.ok);
-  EXPECT_EQ(
-      unknown.text,
-      "unknown command 'fly'; known commands: alive, describe, do, follow, join, leave, pause, quit, remove, restore, "
-      "resume, rewind, scene, snapshot, spawn, speed, step, until, where");
+  EXPECT_EQ(unknown.text,
+            "unknown command 'fly'; known commands: alive, bus, describe, do, follow, join, leave, pause, quit, "
+            "remove, restore, "
+            "resume, rewind, scene, snapshot, spawn, speed, step, until, where");
   EXPECT_FALSE(request("speed", -1).ok);
   EXPECT_FALSE(request("step", 0).ok);
   EXPECT_FALSE(request("step", 1e300).ok);

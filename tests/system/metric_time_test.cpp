@@ -33,6 +33,10 @@ const std::map<std::string, std::vector<TimeCase>>& cases() {
         {"vehicle: r1, position_m: [1.2, 0, 0], radius_m: 0.3", "time_s"}}},
       {"collisions", {{"", "count"}, {"vehicle: r2, with: ball, from_s: 0.5", "first_s"}}},
       {"messages", {{"channel: r1.lidar", "count"}, {"channel: r1.hello", "first_s"}}},
+      {"stability",
+       {{"vehicle: r2", "carried_share"},
+        {"vehicle: r2", "static_min_m"},
+        {"vehicle: r1, from_s: 1", "static_mean_m"}}},
       {"tilt", {{"vehicle: r2", "fell_s"}, {"vehicle: r2", "max_deg"}, {"vehicle: r1, from_s: 1", "pitch_std_deg"}}},
   };
   return all;

@@ -80,6 +80,50 @@ TEST_F(WatchTest, ErrorsStandOnThePageUntilTheyAreMended) {
   EXPECT_EQ(run_.wait(), 128 + SIGTERM) << run_.errors();
 }
 
+/// A program in place of the browser, which writes its arguments into a file.
+class OpenTest : public testing::Test {
+ protected:
+  OpenTest() {
+    write_file(browser_, "#!/bin/sh\necho \"$@\" >> " + folder_.file("shown") + "\n");
+    std::filesystem::permissions(browser_, std::filesystem::perms::owner_all);
+    setenv("BROWSER", browser_.c_str(), 1);
+  }
+  ~OpenTest() override { unsetenv("BROWSER"); }
+  /// Waits until the browser shows an address that a program has printed.
+  void await_shown(const Program& program) {
+    std::string shown;
+    await([&] { return !(shown = text_of_file(folder_.file("shown"))).empty(); }, timeout);
+    EXPECT_THAT(shown, HasSubstr("http://127.0.0.1:"));
+    EXPECT_THAT(program.output() + program.errors(), HasSubstr("live page: " + shown));
+  }
+
+  ScratchFolder folder_;
+  const std::string browser_ = folder_.file("browser");
+};
+
+TEST_F(OpenTest, TheBrowserShowsTheAddressOfARunThatWasPrinted) {
+  Program run({built("shoal"), "run", "minimal", "--bus", "none", "--duration", "forever", "--view", "--view-port", "0",
+               "--open"});
+  await_shown(run);
+  kill(run.pid(), SIGTERM);
+  EXPECT_EQ(run.wait(), 128 + SIGTERM) << run.errors();
+}
+
+TEST_F(OpenTest, TheBrowserShowsTheAddressOfALogThatWasPrinted) {
+  const std::string log = folder_.file("run.lcm");
+  ASSERT_EQ(run_shoal({"run", "minimal", "--bus", "none", "--duration", "1", "--record", log}).exit_code, 0);
+  Program view({built("shoal"), "view", log, "--view-port", "0", "--open"});
+  await_shown(view);
+  kill(view.pid(), SIGTERM);
+  EXPECT_EQ(view.wait(), 0) << view.errors();
+}
+
+TEST(Open, NeedsThePage) {
+  const Ended ended = run_shoal({"run", "minimal", "--open"});
+  EXPECT_EQ(ended.exit_code, 2);
+  EXPECT_THAT(ended.errors, HasSubstr("--open needs --view"));
+}
+
 TEST(Watch, DoesNotWriteResults) {
   const Ended ended = run_shoal({"run", "minimal", "--view", "--watch", "--record", "x.lcm"});
   EXPECT_EQ(ended.exit_code, 2);

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Images of the panels of data for people: node data_screenshots.js [FOLDER] [NAME ...]
-import {mkdirSync} from 'node:fs';
-
-import {faultsOf, launch, open, until} from './browser.js';
-import {MockServer} from './mock_server.js';
 import * as scenes from './scenes.js';
+import {takeShots} from './take_shots.js';
 
 const CHANNELS = [
   ['rover1.front', 'shoal.image_t', 'rover1', 100, 9e6],
@@ -178,28 +175,12 @@ const SHOTS = {
   phone_traffic: {script: scenes.underwater(), width: 390, height: 844, fragment: '&data=traffic', run: receptions},
 };
 
-const [folder = 'screenshots', ...names] = process.argv.slice(2);
-mkdirSync(folder, {recursive: true});
-const browser = await launch();
-for (const [name, shot] of Object.entries(SHOTS)) {
-  if (names.length && !names.includes(name)) continue;
-  const server = await new MockServer(shot.script).listen();
-  const {width = 1200, height = 750, dark = false} = shot;
-  const page = await open(browser, `${server.url}#t=secret${shot.fragment}`, {width, height, dark});
-  await until(page, (p) => p.scene !== null && p.frames > 1);
+await takeShots(SHOTS, async (page, server, shot) => {
   server.sendChannels(2e6, CHANNELS);
   await shot.run(server);
   if (shot.click) await page.click(shot.click);
-  // Long enough for all panels to draw, then a sharp frame.
+  // Long enough for all panels to draw.
   await new Promise((resolve) => {
     setTimeout(resolve, 2500);
   });
-  const {frames} = await page.evaluate(() => window.shoal.probe());
-  await page.evaluate(() => window.dispatchEvent(new Event('resize')));
-  await until(page, `(p) => p.frames >= ${frames + 1}`, 'one more frame').catch(() => null);
-  await page.screenshot({path: `${folder}/${name}.png`});
-  console.log(name, await faultsOf(page));
-  await page.close();
-  await server.close();
-}
-await browser.close();
+});

@@ -2,7 +2,7 @@
 // Laws that the page must keep, against the simulator: waves against `shoal medium`, sound against its recorded
 // arrivals.
 import assert from 'node:assert/strict';
-import {mkdtemp, rm} from 'node:fs/promises';
+import {mkdtemp, rm, writeFile} from 'node:fs/promises';
 import {tmpdir} from 'node:os';
 import {join} from 'node:path';
 import {after, before, it} from 'node:test';
@@ -47,6 +47,55 @@ it('has the water surface of shoal medium within 1 cm at 100 points', async () =
       assert.ok(
           Math.abs(level_m + heights[i] - expected_m) < 0.01,
           `at ${points[i]}, ${at_s(i)} s: ${level_m + heights[i]}, expected ${expected_m}`);
+    }
+    assert.deepEqual(await faultsOf(page), []);
+  } finally {
+    await page.close();
+    await server.end();
+  }
+});
+
+/** A world with every kind of current that is not random, and tides. */
+const CURRENTS = `shoal: 1
+name: currents
+medium:
+  water: {surface_m: 2}
+  current:
+    - {velocity_mps: [0.2, -0.1, 0.01]}
+    - {type: profile, profile: [{depth_m: 0, velocity_mps: [0.3, 0, 0]}, {depth_m: 10, velocity_mps: [0, 0.2, 0.02]},
+       {depth_m: 30, velocity_mps: [-0.1, 0, 0]}]}
+    - {type: power_law, speed_mps: 0.5, direction_deg: 120, water_depth_m: 40}
+    - {type: wind_driven, speed_mps: 0.4, direction_deg: -30, reference_depth_m: 20}
+    - {type: vortex, center_m: [40, 30], peak_speed_mps: 0.3, core_radius_m: 10}
+    - {type: vortex, center_m: [-60, 0], peak_speed_mps: -0.6, core_radius_m: 25, core: rankine}
+    - {type: grid, file: grid.csv}
+  tides:
+    - {amplitude_m: 1.5, period_s: 600, phase_deg: 40, current_mps: 0.4, current_direction_deg: 70, current_lead_deg: 80}
+    - {amplitude_m: 0.3, period_s: 170}
+objects: [{name: bottom, fixed: true, position_m: [0, 0, -60], parts: [{shape: plane}]}]
+`;
+
+it('has the currents and the tide of shoal medium at 60 points', async () => {
+  const world = join(folder, 'currents.yaml');
+  await writeFile(world, CURRENTS);
+  await writeFile(
+      join(folder, 'grid.csv'),
+      'x_m,y_m,east_mps,north_mps\n-20,-20,0.1,0.2\n20,-20,0.3,-0.4\n-20,40,0.5,0.6\n20,40,-0.7,0.8\n');
+  const server = await serve('run', world, '--view', '--view-port', '0', '--bus', 'none', '--paused', '--quiet');
+  const page = await open(browser, server.url, {width: 320, height: 240});
+  try {
+    await until(page, (p) => p.scene !== null && p.frames > 0);
+    for (let i = 0; i < 60; ++i) {
+      const point = [+(100 * Math.sin(2.3 * i)).toFixed(3), +(80 * Math.cos(1.1 * i)).toFixed(3), -0.9 * i - 1];
+      const time_s = [0, 57.5, 400, 1234.5][i % 4];
+      const [velocity, tide_m] = await page.evaluate(
+          (p, t_us) => [window.shoal.currentAt(p, t_us), window.shoal.tideAt(t_us)], point, time_s * 1e6);
+      const output = await shoal('medium', world, `--at=${point.join()}`, '--time', String(time_s));
+      const expected = /^water velocity\s+(\S+) (\S+) (\S+) m/m.exec(output).slice(1).map(Number);
+      const surface_m = Number(/^surface\s+(\S+) m$/m.exec(output)[1]);
+      for (let k = 0; k < 3; ++k)
+        assert.ok(Math.abs(velocity[k] - expected[k]) < 6e-4, `at ${point}, ${time_s} s: ${velocity}, not ${expected}`);
+      assert.ok(Math.abs(2 + tide_m - surface_m) < 6e-4, `at ${time_s} s: ${2 + tide_m}, not ${surface_m}`);
     }
     assert.deepEqual(await faultsOf(page), []);
   } finally {

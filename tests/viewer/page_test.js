@@ -250,6 +250,10 @@ describe('steering', () => {
       await page.click('#play');
       await until(page, (p) => p.time_us > 5.3e6, 'playing');
       assert.equal(server.speed, 4);
+      // A server that introduces itself again, as after --watch, does not change the choice.
+      server.send({op: 'hello', version: 1, source: 'run', world: 'test_land', control: true});
+      await page.waitForFunction(() => document.getElementById('speed').options.length > 3);
+      assert.equal(await page.$eval('#speed', (select) => select.value), '4');
       await page.focus('#view');
       await page.keyboard.press(' ');
       await page.waitForFunction(() => document.getElementById('play').getAttribute('aria-label') === 'Continue');
@@ -328,12 +332,18 @@ describe('views', () => {
     await withPage(scenes.underwater(), async (page, server) => {
       await page.evaluate(() => window.shoal.select('auv2'));
       for (let t_s = 0; t_s <= 2; t_s += 0.25) await show(page, server, t_s, false);
-      const rows = await page.$$eval(
+      const values = () => page.$$eval(
           '#values tr',
           (lines) => Object.fromEntries(lines.map((line) => [line.cells[0].textContent, line.cells[1].textContent])));
+      const rows = await values();
       assert.equal(rows['x east, m'], '23.00');
       assert.equal(rows['depth, m'], '14.00');
       assert.equal(rows['speed, m/s'], '1.50');
+      // Two poses on both sides of a jump give no speed.
+      await show(page, server, 60);
+      const after = await values();
+      assert.equal(after['speed, m/s'], '–');
+      assert.deepEqual(Object.values(after).filter((value) => /^-0[.0]*°?$/.test(value)), [], 'zeros have no sign');
     });
   });
 

@@ -60,7 +60,7 @@ describe('data', () => {
       await page.click('#tab-water');
       await page.waitForFunction(() => document.querySelectorAll('#dock-water tbody tr').length === 3);
       const [first] = await rowsOf(page, '#dock-water');
-      assert.deepEqual(first, ['auv1', '10.00', '1498.8']);
+      assert.deepEqual(first, ['auv1', '10.00', '1498.8', '0.000', '–']);
       assert.match(await text(page, '#dock-water ul'), /No GPS in: cave/);
     }, {...SIZE, fragment: '#t=secret&data=clocks'});
   });
@@ -99,6 +99,36 @@ describe('moments', () => {
       await page.keyboard.press('ArrowDown');
       await page.keyboard.press('Enter');
       await until(page, (p) => p.time_us === 33e6, 'the time of the event');
+    }, SIZE);
+  });
+});
+
+describe('stability', () => {
+  it('has a bar for each margin, in red outside of the support', async () => {
+    await withPage(scenes.land(), async (page, server) => {
+      const figures = (static_m, zmp_m, capture_m) => server.send({
+        op: 'scores',
+        time_us: 1e6,
+        metrics: [
+          {name: 'error', figures: {rms_m: 1}},
+          {name: 'support', figures: {static_min_m: 0, static_m, zmp_m, capture_m}},
+        ]
+      });
+      const bars = () => page.$$eval(
+          '#stability .margin',
+          (lines) => lines.map(
+              (line) =>
+                  [line.lastChild.textContent, line.querySelector('i').style.width,
+                   line.classList.contains('outside')]));
+      figures(0.04, 0.02, -0.01);
+      await page.click('#tab-scores');
+      await page.waitForSelector('#stability .margin');
+      // A whole bar is 50 mm.
+      assert.deepEqual(await bars(), [['40 mm', '80%', false], ['20 mm', '40%', false], ['-10 mm', '20%', true]]);
+      assert.equal(await text(page, '#stability h3'), 'support');
+      figures(0.1, null, 0.025);
+      await page.waitForFunction(() => /100 mm/.test(document.querySelector('#stability').textContent));
+      assert.deepEqual(await bars(), [['100 mm', '100%', false], ['no support', '0%', true], ['25 mm', '25%', false]]);
     }, SIZE);
   });
 });

@@ -18,7 +18,9 @@ const pick = (page, time_s) => page.$eval('#seek', (seek, value) => {
   seek.dispatchEvent(new Event('input'));
 }, 1000 * time_s);
 
-const hidden = (page, selector) => page.$eval(selector, (element) => element.hidden);
+/** Waits for an element to be hidden: while time passes the panels are written some times per second. */
+const hidden = (page, selector) =>
+    page.waitForFunction((name) => document.querySelector(name).hidden, {timeout: 5000}, selector);
 
 /** Where rover1 of the scene `land` is: on a circle of 2 m, once around in 20 s. */
 const roverAt = (t_s) => [2 * Math.cos(2 * Math.PI * t_s / 20), 2 * Math.sin(2 * Math.PI * t_s / 20)];
@@ -40,7 +42,7 @@ describe('past', () => {
       await page.click('#live');
       await until(page, `(p) => !p.past && p.time_us > ${later.newest_us}`, 'the present');
       assert.ok(server.received.some((message) => message.op === 'look' && message.time_us === null));
-      assert.ok(await hidden(page, '#rewind'));
+      await hidden(page, '#rewind');
     });
   });
 
@@ -81,7 +83,7 @@ describe('past', () => {
       await until(page, (p) => p.time_us === 8e6);
       await pick(page, 1);
       await until(page, (p) => p.past && p.time_us === 1e6);
-      assert.ok(await hidden(page, '#rewind'));
+      await hidden(page, '#rewind');
       await page.focus('#view');
       await page.keyboard.press('Escape');
       await until(page, (p) => !p.past && p.time_us === 8e6, 'the present');
@@ -137,7 +139,7 @@ describe('branches', () => {
     await withPage(twoBranches(), async (page, server) => {
       server.show(8e6);
       await until(page, (p) => p.time_us === 8e6);
-      assert.ok(await hidden(page, '#branches'));
+      await hidden(page, '#branches');
       server.send(list);
       await page.waitForFunction(() => !document.getElementById('branches').hidden);
       assert.match(await text(page, '#branch-list'), /Branch 1.*3\.00 s – 9\.00 s.*differs from 4\.00 s/);

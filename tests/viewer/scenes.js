@@ -288,6 +288,14 @@ export function thousand() {
   };
 }
 
+/** The bodies of thousand(), all of one vehicle. */
+export function thousandBodies() {
+  const script = thousand();
+  for (const body of script.scene.bodies.slice(0, -1)) body.owner = 'v0';
+  script.scene.vehicles = script.scene.vehicles.slice(0, 1);
+  return script;
+}
+
 /** Names that are markup must stay text. */
 export function hostile() {
   const name = '<img src=x onerror="document.title=\'owned\'">';

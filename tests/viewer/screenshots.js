@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Images of the page for people: node screenshots.js [FOLDER] [NAME ...]
-import {mkdirSync} from 'node:fs';
-
-import {faultsOf, launch, open, until} from './browser.js';
-import {MockServer} from './mock_server.js';
+import {until} from './browser.js';
 import * as scenes from './scenes.js';
+import {takeShots} from './take_shots.js';
 
 const ESTIMATES = [
   {
@@ -86,15 +84,7 @@ const SHOTS = {
   help: {script: scenes.land(), play_s: 0.5, keys: ['?']},
 };
 
-const [folder = 'screenshots', ...names] = process.argv.slice(2);
-mkdirSync(folder, {recursive: true});
-const browser = await launch();
-for (const [name, shot] of Object.entries(SHOTS)) {
-  if (names.length && !names.includes(name)) continue;
-  const server = await new MockServer(shot.script).listen();
-  const {width = 1200, height = 750, dark = false} = shot;
-  const page = await open(browser, `${server.url}#t=secret`, {width, height, dark});
-  await until(page, (p) => p.scene !== null && p.frames > 1);
+await takeShots(SHOTS, async (page, server, shot) => {
   if (shot.select) await page.evaluate((one) => window.shoal.select(one), shot.select);
   if (shot.shadows !== false) await page.evaluate(() => document.getElementById('o-shadows').click());
   for (const key of shot.keys ?? []) await page.keyboard.press(key);
@@ -120,15 +110,4 @@ for (const [name, shot] of Object.entries(SHOTS)) {
     server.send(
         {op: 'events', items: [{time_us: 1.5e6, kind: 'fault', who: 'auv3/dvl', text: 'dvl of auv3 is silent'}]});
   }
-  const {frames} = await page.evaluate(() => window.shoal.probe());
-  await page.evaluate(() => window.dispatchEvent(new Event('resize')));
-  const probe = await until(page, `(p) => p.frames >= ${frames + 2}`, 'two more frames')
-                    .catch(() => page.evaluate(() => window.shoal.probe()));
-  await page.screenshot({path: `${folder}/${name}.png`});
-  console.log(
-      name, `${probe.cpu_ms?.toFixed(1)} ms`, probe.draw_calls, 'calls', probe.triangles, 'triangles',
-      await faultsOf(page));
-  await page.close();
-  await server.close();
-}
-await browser.close();
+});

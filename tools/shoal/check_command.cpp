@@ -6,6 +6,7 @@
 #include "sim/bus/in_process_bus.hpp"
 #include "sim/camera/texture.hpp"
 #include "sim/config/message_text.hpp"
+#include "sim/motion/motion.hpp"
 #include "sim/program/find_program.hpp"
 #include "sim/world/world.hpp"
 #include "sim/world_file/file_kind.hpp"
@@ -75,6 +76,12 @@ void check_study(const std::string& path, const sim::LoadOptions& options) {
             << '\n';
 }
 
+void check_motion(const std::string& path) {
+  const sim::JointMotion motion = sim::load_motion(path);
+  std::cout << path << ": motion '" << motion.name << "': " << counted(motion.tracks().size(), "joint") << ", "
+            << counted(motion.keys.size(), "key") << ", " << sim::number_text(motion.end_s()) << " s\n";
+}
+
 void check_declaration(const std::string& path) {
   sim::Diagnostics diagnostics;
   const sim::ProgramDeclaration declaration = sim::read_declaration_file(path, diagnostics);
@@ -87,6 +94,7 @@ void check(const std::string& path, const sim::LoadOptions& options) {
   if (path.ends_with(sim::declaration_ending)) return check_declaration(path);
   const sim::FileKind kind = sim::kind_of_file(keys_of(path, options));
   if (kind == sim::FileKind::declaration) return check_declaration(path);
+  if (kind == sim::FileKind::motion) return check_motion(path);
   if (kind == sim::FileKind::study) return check_study(path, options);
   if (kind == sim::FileKind::vehicle) {
     const sim::VehicleConfig vehicle = sim::load_vehicle(path, options);
@@ -109,14 +117,14 @@ void check(const std::string& path, const sim::LoadOptions& options) {
 }  // namespace
 
 void add_check_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("check", "Check a world, vehicle or study file without running it");
+  CLI::App* command = app.add_subcommand("check", "Check a world, vehicle, study or motion file without running it");
   const auto path = std::make_shared<std::string>();
   const auto options = std::make_shared<sim::LoadOptions>();
   add_log_level_option(*command);
   // Options.
   command
       ->add_option("FILE", *path,
-                   "world, vehicle or study file, the name of a shipped one, or a declaration NAME.args.yaml")
+                   "world, vehicle, study or motion file, the name of a shipped one, or a declaration NAME.args.yaml")
       ->required();
   add_set_option(*command, options->sets);
   add_allow_path_option(*command, *options);

@@ -33,7 +33,7 @@ struct ControlArguments {
 
 const std::vector<std::string> known_requests = {"pause",  "resume",   "step",    "speed", "quit",  "until",
                                                  "rewind", "snapshot", "restore", "where", "scene", "spawn",
-                                                 "remove", "describe", "do",      "leave"};
+                                                 "remove", "describe", "bus",     "do",    "leave"};
 
 /// Reads the text: `@FILE` is replaced by the content of the file, `-` by standard input.
 std::string text_of(const std::string& argument) {

@@ -7,6 +7,7 @@
 #include "shoal/message_schema.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/device/device_registry.hpp"
+#include "sim/motion/motion.hpp"
 #include "sim/program/find_program.hpp"
 #include "tools/command_line/text_layout.hpp"
 #include "tools/experiment/drive/drive_profile.hpp"
@@ -21,7 +22,7 @@ namespace tools {
 namespace {
 
 std::string unknown_name(const std::string& name) {
-  std::vector<std::string> known = {"device", "noise", "world", "vehicle", "study", "metrics"};
+  std::vector<std::string> known = {"device", "noise", "world", "vehicle", "study", "motion", "metrics"};
   for (const sim::DeviceType* type : sim::DeviceRegistry::instance().all()) known.push_back(type->name);
   for (const auto& [message, schema] : shoal::embedded_types().all())
     known.push_back(message.substr(message.find('.') + 1));
@@ -34,6 +35,7 @@ std::string unknown_name(const std::string& name) {
 
 std::string schema_of(const std::string& file) {
   if (file == "study") return study_schema(params_of<StudyConfig>());
+  if (file == "motion") return motion_schema(params_of<sim::JointMotion>());
   if (file == "drive") return drive_schema(params_of<DriveProfile>());
   return json_schema(file);
 }
@@ -50,13 +52,13 @@ void add_describe_command(CLI::App& app, int& exit_code) {
   CLI::Option* name_option = command->add_option(
       "NAME", *name,
       "a device type, a message type, a program, a key of world or vehicle files, or one of: device, noise, world, "
-      "vehicle, study, metrics");
+      "vehicle, study, motion, metrics");
   CLI::Option* page_option = command->add_option("--page", *page, "print a whole page of docs/ in Markdown")
                                  ->type_name("PAGE")
                                  ->check(one_of({"devices", "messages", "metrics", "programs", "world_format"}));
   CLI::Option* schema_option = command->add_option("--schema", *schema, "print the JSON Schema of a file's keys")
                                    ->type_name("FILE")
-                                   ->check(one_of({"world", "vehicle", "study", "drive"}));
+                                   ->check(one_of({"world", "vehicle", "study", "motion", "drive"}));
   name_option->excludes(page_option)->excludes(schema_option);
   page_option->excludes(schema_option);
   add_plugin_option(*command);
@@ -79,9 +81,10 @@ void add_describe_command(CLI::App& app, int& exit_code) {
     // Text about a name.
     if (name->empty()) throw command_line::UsageError("needs a NAME, --page or --schema; see `shoal list devices`");
     const auto columns = static_cast<std::size_t>(command_line::text_columns(STDOUT_FILENO));
-    const std::string text = *name == "study"
-                                 ? describe_keys("Keys of a study file.", params_of<StudyConfig>(), columns)
-                                 : describe_text(*name, columns);
+    const std::string text =
+        *name == "study"    ? describe_keys("Keys of a study file.", params_of<StudyConfig>(), columns)
+        : *name == "motion" ? describe_keys("Keys of a motion file.", params_of<sim::JointMotion>(), columns)
+                            : describe_text(*name, columns);
     if (text.empty()) {
       throw command_line::UsageError(unknown_name(*name));
     }

@@ -125,7 +125,8 @@ DrivenVehicle driven_vehicle_of(const shoal::sim_vehicle_t& message) {
   return vehicle;
 }
 
-/// A vehicle of a run elsewhere: its devices, its pose, and its commands.
+/// A vehicle of a run elsewhere: its devices, its pose, and its commands.  Commands go to the bus of the vehicle, all
+/// else is on that of the world.
 class RemoteVehicle {
  public:
   explicit RemoteVehicle(const DriveArguments& arguments) : name_(arguments.vehicle), lcm_(arguments.lcm_url) {
@@ -145,12 +146,18 @@ class RemoteVehicle {
       }
     }
   }
+  /// Sets the LCM URL of the vehicle's bus; empty: the world's.  Throws BusError.
+  void set_bus(const std::string& url) {
+    own_bus_.reset();
+    if (!url.empty() && url != lcm_.url()) own_bus_.emplace(url);
+  }
   const std::optional<DrivenVehicle>& description() const { return description_; }
   bool removed() const { return removed_; }
   const std::optional<DrivePose>& pose() const { return pose_; }
   std::int64_t utime() const { return utime_; }
   void publish(const std::vector<DriveCommand>& commands) {
-    for (const DriveCommand& command : commands) lcm_.publish(command.channel, command.payload);
+    bridges::LcmListener& bus = own_bus_ ? *own_bus_ : lcm_;
+    for (const DriveCommand& command : commands) bus.publish(command.channel, command.payload);
   }
 
  private:
@@ -171,24 +178,28 @@ class RemoteVehicle {
 
   const std::string name_;
   bridges::LcmListener lcm_;
+  std::optional<bridges::LcmListener> own_bus_;
   std::optional<DrivenVehicle> description_;
   bool removed_ = false;
   std::optional<DrivePose> pose_;
   std::int64_t utime_ = 0;
 };
 
-/// Asks the run for the devices of the vehicle.  Returns the exit code of a failure.
+/// Asks the run for the bus and the devices of the vehicle.  Returns the exit code of a failure.
 std::optional<int> find_vehicle(const DriveArguments& arguments, RemoteVehicle& vehicle) {
   ControlSession session(
       {"shoal-drive-" + std::to_string(getpid()), arguments.lcm_url, arguments.run, arguments.timeout_s});
-  const auto reply = session.send_request("describe", arguments.vehicle, 0);
-  if (!reply) {
-    std::cerr << "shoal drive: " << session.no_answer() << '\n';
-    return exit_timeout;
-  }
-  if (!reply->ok) {
-    std::cerr << "shoal drive: " << reply->text << '\n';
-    return exit_failed;
+  for (const char* request : {"bus", "describe"}) {
+    const auto reply = session.send_request(request, arguments.vehicle, 0);
+    if (!reply) {
+      std::cerr << "shoal drive: " << session.no_answer() << '\n';
+      return exit_timeout;
+    }
+    if (!reply->ok) {
+      std::cerr << "shoal drive: " << reply->text << '\n';
+      return exit_failed;
+    }
+    if (std::string_view(request) == "bus") vehicle.set_bus(reply->text);
   }
   // Its description comes on another channel.
   for (const auto deadline = Clock::now() + 5s;

@@ -20,6 +20,7 @@
 #include "tools/experiment/run/runner.hpp"
 #include "tools/shoal/bug_command.hpp"
 #include "tools/shoal/commands.hpp"
+#include "tools/shoal/motion/motion_commands.hpp"
 #include "tools/shoal/new_command.hpp"
 
 namespace {
@@ -53,6 +54,7 @@ int run(int argc, char** argv) {
   tools::add_replay_command(app, exit_code);
   tools::add_check_command(app, exit_code);
   tools::add_view_command(app, exit_code);
+  tools::add_motion_command(app, exit_code);
   tools::add_snap_command(app, exit_code);
   tools::add_film_command(app, exit_code);
   tools::add_snapshot_command(app, exit_code);
@@ -66,6 +68,7 @@ int run(int argc, char** argv) {
   tools::add_log_command(app, exit_code);
   tools::add_bench_command(app, exit_code);
   tools::add_mesh_command(app, exit_code);
+  tools::add_import_command(app, exit_code);
   tools::add_medium_command(app, exit_code);
   tools::add_fidelity_command(app, exit_code);
   tools::add_acoustics_command(app, exit_code);

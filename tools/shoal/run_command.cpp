@@ -9,6 +9,7 @@
 
 #include "messages/yaml/message_writer.hpp"
 #include "tools/experiment/bug_report/bug_report.hpp"
+#include "tools/experiment/process/browser.hpp"
 #include "tools/experiment/process/world_programs.hpp"
 #include "tools/experiment/run/runner.hpp"
 #include "tools/experiment/snapshot/run_identity.hpp"
@@ -32,6 +33,7 @@ struct RunArguments {
   std::optional<double> duration_s;
   bool with_page = false;
   bool watch = false;
+  bool open = false;
   ViewOptions view;
 };
 
@@ -107,6 +109,8 @@ int run(RunArguments& arguments) {
   const bool nowhere = arguments.run.snapshots.empty() && arguments.run.results.empty();
   if (nowhere && (!arguments.snapshot_at.empty() || arguments.run.snapshot_every_s))
     throw CLI::ValidationError("--snapshot-at", "needs --snapshots DIR or --results DIR");
+  Browser browser;
+  if (arguments.open) arguments.view.opened = [&browser](const std::string& url) { browser.open(url); };
   if (arguments.with_page) arguments.run.view = arguments.view;
   const bool writes = !arguments.run.results.empty() || !arguments.run.record.empty();
   if (arguments.watch && (writes || !arguments.from.empty()))
@@ -220,6 +224,7 @@ void add_run_command(CLI::App& app, int& exit_code) {
       ->add_flag("--watch", arguments->watch,
                  "with --view: run the world again each time that one of its files is saved")
       ->needs("--view");
+  add_open_option(*command, arguments->open)->needs("--view");
   add_page_options(*command, arguments->view);
   command
       ->add_option("--drive-profile", arguments->view.drive_profile,

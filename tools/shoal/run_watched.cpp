@@ -6,6 +6,7 @@
 #include <iostream>
 #include <set>
 #include <thread>
+#include <utility>
 
 #include "tools/experiment/view/waiting_page.hpp"
 #include "tools/experiment/world_files/watched_files.hpp"
@@ -34,7 +35,7 @@ std::string text_of(const sim::ConfigError& error) {
 /// Shows a text on the page until a file was saved or a signal has come.
 void wait_for_files(WatchedFiles& files, ViewOptions& view, const std::string& world_file, const std::string& problem) {
   WaitingPage page(view, short_version(), world_file, problem);
-  keep_address(page.url(), view);
+  view.opened(page.url());
   std::cerr << "live page: " << page.url() << "\n";
   constexpr std::chrono::milliseconds tick{50};
   while (caught_signal() == 0 && !files.changed()) {
@@ -48,7 +49,11 @@ void wait_for_files(WatchedFiles& files, ViewOptions& view, const std::string& w
 int run_watched(const std::string& world_file, RunOptions& options, const std::function<sim::LoadedWorld()>& load,
                 const std::function<int(const sim::LoadedWorld&)>& go) {
   ViewOptions& view = *options.view;
-  view.opened = [&view](const std::string& url) { keep_address(url, view); };
+  bool shown = false;  // the page stays open over all runs
+  view.opened = [&view, &shown, show = view.opened](const std::string& url) {
+    keep_address(url, view);
+    if (!std::exchange(shown, true) && show) show(url);
+  };
   int exit_code = exit_ok;
   std::set<std::string> names{world_file};
   while (caught_signal() == 0) {

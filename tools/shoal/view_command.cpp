@@ -13,6 +13,8 @@
 #include "bridges/lcm/lcm_listener.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/sim_control_request_t.hpp"
+#include "sim/config/message_text.hpp"
+#include "tools/experiment/process/browser.hpp"
 #include "tools/experiment/process/signals.hpp"
 #include "tools/experiment/resimulate/resimulated_run.hpp"
 #include "tools/experiment/run/runner.hpp"
@@ -27,10 +29,12 @@ namespace {
 struct ViewArguments {
   std::vector<std::string> logs;
   bool resimulate = false;
+  bool launch = false;
   sim::LoadOptions load;
   int threads = 0;
   std::string lcm_url;
   std::optional<double> duration_s;
+  bool open = false;
   ViewOptions view;
 };
 
@@ -50,8 +54,9 @@ class Deadline {
   std::optional<Clock::time_point> end_;
 };
 
-void announce(const std::string& url) {
+void announce(const ViewOptions& view, const std::string& url) {
   std::cout << "live page: " << url << "\nCtrl-C ends it\n" << std::flush;
+  if (view.opened) view.opened(url);
 }
 
 /// Reads a log and prints what it is.
@@ -89,7 +94,7 @@ int view_log(const ViewArguments& arguments) {
   if (arguments.logs.size() > 1) other = read_index(arguments.logs[1]);
   LogView view(log, index, arguments.view, short_version());
   if (other) view.compare_with(arguments.logs[1], *other, compare(arguments, index, *other));
-  announce(view.url());
+  announce(arguments.view, view.url());
   // Play in steps of wall time.
   const Deadline deadline(arguments.duration_s);
   for (auto before = Clock::now(); deadline.goes_on();) {
@@ -107,10 +112,14 @@ int view_again(const ViewArguments& arguments) {
   options.load = arguments.load;
   options.threads = arguments.threads;
   options.view = arguments.view;
+  options.launch = arguments.launch;
+  options.lcm_url = arguments.lcm_url;
   const auto run = std::make_unique<ResimulatedRun>(options, short_version());
-  std::cout << fmt::format("{}: world {}, run again up to {:.3f} s; programs: recorded commands\n", options.log,
-                           run->world().config().name, run->end_s());
-  announce(run->url());
+  std::cout << fmt::format("{}: world {}, run again up to {:.3f} s; programs: {}\n", options.log,
+                           run->world().config().name, run->end_s(), run->programs());
+  for (const std::string& command : run->commands())
+    std::cout << "a branch starts: " << sim::printable(sim::shortened(command, 300)) << '\n';
+  announce(arguments.view, run->url());
   const Deadline deadline(arguments.duration_s);
   run->run([&] { return deadline.goes_on(); });
   return exit_ok;
@@ -131,7 +140,7 @@ int view_bus(const ViewArguments& arguments) {
   bridges::LcmListener lcm(arguments.lcm_url);
   lcm.listen_to_all();
   BusView view(arguments.view, short_version(), lcm.url());
-  announce(view.url());
+  announce(arguments.view, view.url());
   constexpr std::chrono::seconds ask_interval{2};
   Clock::time_point next_flush = Clock::now(), next_request = next_flush;
   const Deadline deadline(arguments.duration_s);
@@ -152,12 +161,15 @@ int view_bus(const ViewArguments& arguments) {
   return exit_ok;
 }
 
-int view(const ViewArguments& arguments) {
-  if (!arguments.logs.empty() && !arguments.lcm_url.empty())
-    throw CLI::ValidationError("--lcm-url", "cannot be given with a LOG");
+int view(ViewArguments& arguments) {
+  if (arguments.launch && !arguments.resimulate) throw CLI::ValidationError("--launch", "needs --resimulate");
+  if (!arguments.logs.empty() && !arguments.lcm_url.empty() && !arguments.launch)
+    throw CLI::ValidationError("--lcm-url", "cannot be given with a LOG, except with --launch");
   if (arguments.resimulate && arguments.logs.size() != 1)
     throw CLI::ValidationError("--resimulate", "needs one LOG, got " + std::to_string(arguments.logs.size()));
   catch_signals(true);
+  Browser browser;
+  if (arguments.open) arguments.view.opened = [&browser](const std::string& url) { browser.open(url); };
   if (arguments.resimulate) return view_again(arguments);
   return arguments.logs.empty() ? view_bus(arguments) : view_log(arguments);
 }
@@ -172,16 +184,20 @@ void add_view_command(CLI::App& app, int& exit_code) {
       ->expected(0, 2);
   command->add_flag("--resimulate", arguments->resimulate,
                     "run the world of the log again, to see what was not recorded, and to branch from it");
+  command->add_flag("--launch", arguments->launch,
+                    "with --resimulate: a branch starts the programs that the world of the log names");
   add_allow_path_option(*command, arguments->load);
   add_threads_option(*command, arguments->threads);
   add_lcm_url_option(*command, arguments->lcm_url);
   command->add_option("--duration", arguments->duration_s, "seconds of wall time; without it until Ctrl-C")
       ->type_name("S")
       ->check(number_from(0.001, 1e9));
+  add_open_option(*command, arguments->open);
   add_page_options(*command, arguments->view);
   command_line::set_help_end(
       *command, {{"shoal view coop.lcm", "shoal view before.lcm after.lcm", "shoal view coop.lcm --resimulate",
-                  "shoal view", "shoal view --lcm-url udpm://239.255.76.67:7668?ttl=0"},
+                  "shoal view coop.lcm --resimulate --launch", "shoal view",
+                  "shoal view --lcm-url udpm://239.255.76.67:7668?ttl=0"},
                  {{0, "ended by Ctrl-C or --duration"},
                   {2, "wrong usage"},
                   {4, "the log cannot be read or has nothing to show, or the bus or the port fails"}},

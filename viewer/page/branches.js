@@ -51,6 +51,9 @@ export class Branches {
 
   nameOf(item) { return item.name ? String(item.name) : `Branch ${item.branch}`; }
 
+  /** Name of a branch and what its programs do. */
+  titleOf(item) { return this.nameOf(item) + (item.programs ? ` (${item.programs})` : ''); }
+
   /** First differences, for the time line: a list of {time_us, text}. */
   differences() {
     return this.items.filter((item) => Number.isFinite(item.differs_us))
@@ -72,6 +75,7 @@ export class Branches {
     const end = Number.isFinite(item.end_us) ? formatTime(item.end_us) : 'now';
     line.append(element('span', this.nameOf(item), 'branch-name'));
     line.append(element('span', `${formatTime(item.start_us)} – ${end}`, 'quiet'));
+    if (item.programs) line.append(element('span', String(item.programs), 'badge'));
     if (present) {
       line.append(element('span', item.name ? 'shown' : 'present', 'badge'));
       return line;

@@ -103,6 +103,8 @@ export class Cameras {
     }
     this.controls.target.copy(at);
     this.camera.position.copy(at).add(offset);
+    // The vehicle may move before the next update: the offset belongs to this heading.
+    this.last = {yaw: headingOf(vehicle.X_WV)};
   }
 
   /** Shows a sphere as a whole; aspect_free: that of the part of the page that no panel covers. */

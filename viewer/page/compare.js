@@ -18,10 +18,12 @@ export class Ghosts {
   constructor(scene, assets, connection) {
     this.assets = assets;
     this.looker = new Looker(connection);
-    this.material = new MeshBasicMaterial({color: COLOR, transparent: true, opacity: 0.4, depthWrite: false});
+    // A little behind: a body that is where its ghost is covers it.
+    const behind = {polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 4};
+    this.material =
+        new MeshBasicMaterial({color: COLOR, transparent: true, opacity: 0.4, depthWrite: false, ...behind});
     this.root = new Group();
     scene.add(this.root);
-    this.mixer = new Playback();
     this.branch = null;
     this.clear();
   }
@@ -31,6 +33,7 @@ export class Ghosts {
     this.ghosts = [];
     this.bodies = null;
     this.states = [];
+    this.mixer = new Playback();
     this.looker.reset();
   }
 
@@ -59,6 +62,7 @@ export class Ghosts {
   show(branch) {
     this.branch = branch;
     this.states = [];
+    this.mixer = new Playback();
     this.looker.reset();
     if (branch === null) {
       this.root.clear();
@@ -79,6 +83,9 @@ export class Ghosts {
     this.stale = true;
     return true;
   }
+
+  /** Poses of the branch at the time shown, after its end the last ones, as those of a playback; null: not known. */
+  get poses() { return this.mixer.poses.length > 0 ? this.mixer.poses : null; }
 
   /** Moves the ghosts to a time, and asks for the states around it; returns true if they moved. */
   update(time_us) {

@@ -63,6 +63,7 @@ export class Connection {
       } else if (data instanceof ArrayBuffer) {
         const state = decodeState(data);
         if (!state.past) this.unacknowledged.push(state.sequence);
+        if (!document.hidden) this.acknowledge();
         this.handlers.state(state);
       } else {
         this.handlers.message(parseMessage(data));
@@ -73,7 +74,10 @@ export class Connection {
     }
   }
 
-  /** Acknowledges the states received since the last call; a hidden page draws no frame and so asks for no more. */
+  /**
+   * Acknowledges the states received since the last call: at once, also where frames take longer than states.  A hidden
+   * page draws no frame and asks for no more.
+   */
   acknowledge() {
     for (const sequence of this.unacknowledged) this.send({op: 'ack', sequence});
     this.unacknowledged.length = 0;

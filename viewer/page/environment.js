@@ -76,18 +76,17 @@ void main() {
 /** Sky behind everything, and the sun with its shadows. */
 export class Environment {
   constructor(scene) {
-    // The sky: a rectangle on the far plane, drawn first.
+    // The sky: a rectangle on the far plane, drawn after the bodies, so that only the pixels it is seen in cost time.
     this.unproject = {value: new Matrix4()};
     const material = new ShaderMaterial({
       uniforms: {...env, unproject: this.unproject},
       vertexShader: SKY_VERTEX,
       fragmentShader: SKY_FRAGMENT,
       depthWrite: false,
-      depthTest: false,
     });
     this.sky = new Mesh(new PlaneGeometry(2, 2), material);
     this.sky.frustumCulled = false;
-    this.sky.renderOrder = -1000;
+    this.sky.renderOrder = 1000;
     scene.add(this.sky);
     // The sun, for shadows only: materials compute their light themselves.
     this.sun = new DirectionalLight(0xffffff, 1);
@@ -113,6 +112,9 @@ export class Environment {
     env.water.value.y = water ? 1 : 0;
     env.haze_m.value = Math.max(3000, 12 * extent_m);
   }
+
+  /** Sets the height of the water, relative to the origin of the scene. */
+  setLevel(z_m) { env.water.value.x = z_m; }
 
   /** Sets how far one sees in the water, relative to the size of the scene; 0: perfectly clear. */
   setClarity(clarity) {

@@ -188,9 +188,11 @@ export class Estimates {
     });
     for (const {mesh} of this.clouds) {
       mesh.count = ellipsoids;
-      mesh.instanceMatrix.needsUpdate = true;
+      mesh.visible = ellipsoids > 0;
+      if (mesh.visible) mesh.instanceMatrix.needsUpdate = true;
     }
+    this.line.visible = count > 0;
     this.line.geometry.setDrawRange(0, count);
-    lines.needsUpdate = true;
+    if (this.line.visible) lines.needsUpdate = true;
   }
 }

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Data of sensors on the page: the panel of plots, images, clocks, traffic and water; returns and ranges in the scene.
+// Data of sensors on the page: the panel of plots, images, clocks, traffic, water and distances of two logs; returns,
+// images of sonars and ranges in the scene.
 import {Clocks} from './clocks.js';
+import {Distances} from './distances.js';
 import {Dock} from './dock.js';
-import {Images} from './image_panel.js';
+import {LazyView} from './lazy_view.js';
 import {Channels} from './messages.js';
 import {Plots} from './plots.js';
 import {Ranges} from './ranges.js';
@@ -11,7 +13,6 @@ import {Returns} from './returns.js';
 import {SensorPoses} from './sensor_poses.js';
 import {panelsText, setPanels} from './settings.js';
 import {Traffic} from './traffic.js';
-import {WaterPanel} from './water_panel.js';
 
 const LIST_MS = 500;
 
@@ -22,14 +23,16 @@ export class Instruments {
     app.channels = new Channels(app.connection, () => this.listChanged());
     this.poses = new SensorPoses(app);
     this.returns = new Returns(app, this.poses);
+    this.sonars = null;
     this.ranges = new Ranges(app, this.poses);
     this.plots = new Plots(app);
-    this.images = new Images(app);
+    this.images = new LazyView('images', 'Images', async () => new (await import('./image_panel.js')).Images(app));
     this.clocks = new Clocks(app);
     this.traffic = new Traffic(app);
-    this.water = new WaterPanel(app);
+    this.water = new LazyView('water', 'Water', async () => new (await import('./water_panel.js')).WaterPanel(app));
+    this.distances = new Distances(app);
     this.recorder = new Recorder(app);
-    this.dock = new Dock([this.plots, this.images, this.clocks, this.traffic, this.water], () => {
+    this.dock = new Dock([this.plots, this.images, this.clocks, this.traffic, this.water, this.distances], () => {
       app.dirty = true;
     });
     this.listed_ms = 0;
@@ -40,14 +43,20 @@ export class Instruments {
   fromAddress() {
     const {address} = this.app;
     if (address.get('plots')) this.plots.setText(address.get('plots'));
-    if (address.get('images')) this.images.setText(address.get('images'));
+    this.imagesAsked = address.get('images');
+    if (this.imagesAsked) this.images.apply('images', (view) => view.setText(this.imagesAsked));
     if (address.get('panels') !== null) setPanels(address.get('panels'));
     this.dock.show(address.get('data'));
   }
 
   /** What the address is to have. */
   toAddress() {
-    return {data: this.dock.open, plots: this.plots.text(), images: this.images.text(), panels: panelsText()};
+    return {
+      data: this.dock.open,
+      plots: this.plots.text(),
+      images: this.images.view?.text() ?? this.imagesAsked,
+      panels: panelsText()
+    };
   }
 
   /** Handlers of texts by their op. */
@@ -55,6 +64,8 @@ export class Instruments {
     return {
       channels: () => this.app.channels.setItems(message),
       links: () => this.traffic.setReceptions(message),
+      modems: () => this.traffic.modems.set(message),
+      distances: () => this.distances.set(message),
       series: () => this.plots.setSeries(message),
     };
   }
@@ -71,9 +82,21 @@ export class Instruments {
   setScene(data) {
     this.poses.setScene(data);
     this.returns.clear();
+    this.sonars?.clear();
     this.ranges.clear();
-    this.water.setScene(data);
+    this.water.apply('scene', (view) => view.setScene(data));
+    this.loadSonars(data);
     this.key = null;
+  }
+
+  /** Loads what draws images of sonars, if the scene has such sonars. */
+  async loadSonars({vehicles}) {
+    const isSonar = (device) => device.type === 'imaging_sonar';
+    if (this.sonars || !vehicles.some(({devices}) => devices.some(isSonar))) return;
+    const {SonarPlanes} = await import('./sonar_planes.js');
+    this.sonars ??= new SonarPlanes(this.app, this.poses);
+    this.key = null;  // to subscribe
+    this.app.dirty = true;
   }
 
   /** Another run: nothing of the one before stays. */
@@ -81,12 +104,14 @@ export class Instruments {
     this.app.channels.clear();
     this.traffic.clear();
     this.plots.restart();
+    this.distances.clear();
     this.listChanged();
   }
 
   rewind(time_us) {
     this.app.channels.rewind(time_us);
     this.returns.rewind(time_us);
+    this.sonars?.rewind(time_us);
     this.ranges.rewind(time_us);
   }
 
@@ -104,11 +129,12 @@ export class Instruments {
     if (key !== this.key) {
       this.key = key;
       this.returns.subscribe(options.get('returns'));
+      this.sonars?.subscribe(options.get('returns'));
       this.ranges.subscribe(options.get('ranges'));
     }
     this.dock.update(now_ms);
-    const returned = this.returns.update(now_ms), ranged = this.ranges.update(now_ms);
-    return returned || ranged;
+    const changed = [this.returns, this.sonars, this.ranges].map((part) => part?.update(now_ms));
+    return changed.includes(true);
   }
 
   annotate(labels, time_us) { this.ranges.draw(labels, time_us); }
@@ -126,12 +152,12 @@ export class Instruments {
                                                               first_s: trace.t_s[0] ?? null,
                                                               last_s: trace.t_s[trace.t_s.length - 1] ?? null,
                                                             }))),
-      images: this.images.views.map(({channel, image, time_us}) => ({
-                                      channel,
-                                      time_us,
-                                      width: image?.width,
-                                      height: image?.height,
-                                    })),
+      images: (this.images.view?.views ?? []).map(({channel, image, time_us}) => ({
+                                                    channel,
+                                                    time_us,
+                                                    width: image?.width,
+                                                    height: image?.height,
+                                                  })),
       returns: [...this.returns.drawn].map(([channel, one]) => ({
                                              channel,
                                              time_us: one.time_us,
@@ -144,6 +170,8 @@ export class Instruments {
                                                                  centre: range.centre.toArray().map(
                                                                      (x, i) => x + origin[i]),
                                                                })),
+      sonars: this.sonars?.probe() ?? [],
+      distances: this.distances.probe(),
       saved: this.recorder.last,
     };
   }

@@ -6,6 +6,7 @@ const LABELS_MAX = 80;
 /** More vehicles than this have names only where they are near. */
 const MANY = 60;
 const FONT = '12px system-ui, sans-serif';
+const WIDTHS_MAX = 4000;
 
 /** Canvas over the scene. */
 export class Labels {
@@ -13,6 +14,9 @@ export class Labels {
     this.canvas = canvas;
     this.context = canvas.getContext('2d');
     this.at = new Vector3();
+    this.widths = new Map();
+    this.inked = true;
+    this.region = null;  // part of the page that is written on; null: all of it
   }
 
   /** Takes the size of the page, in CSS pixels. */
@@ -28,18 +32,56 @@ export class Labels {
     if (this.at.z > -camera.near) return null;
     this.at.applyMatrix4(camera.projectionMatrix);
     if (Math.abs(this.at.x) > 1.5 || Math.abs(this.at.y) > 1.5) return null;
-    return [(0.5 + 0.5 * this.at.x) * this.width, (0.5 - 0.5 * this.at.y) * this.height];
+    const {x, y, width, height} = this.region ?? {x: 0, y: 0, width: this.width, height: this.height};
+    return [x + (0.5 + 0.5 * this.at.x) * width, y + (0.5 - 0.5 * this.at.y) * height];
   }
 
   /** Starts a frame. */
   begin(camera, colors) {
     this.camera = camera;
     this.colors = colors;
-    this.context.setTransform(this.ratio, 0, 0, this.ratio, 0, 0);
-    this.context.clearRect(0, 0, this.width, this.height);
+    this.enter();
+    if (this.inked) this.context.clearRect(0, 0, this.width, this.height);
+    this.inked = false;
+    this.limit();
     this.context.font = FONT;
     this.context.textBaseline = 'middle';
     this.used = [];
+  }
+
+  /** Ends a frame: an empty canvas is not laid over the scene. */
+  end() {
+    if (this.canvas.hidden === this.inked) this.canvas.hidden = !this.inked;
+  }
+
+  /** Width of a text in the present font, in CSS pixels. */
+  widthOf(text, bold) {
+    const key = bold ? `b${text}` : `n${text}`;
+    let width = this.widths.get(key);
+    if (width === undefined) {
+      if (this.widths.size >= WIDTHS_MAX) this.widths.clear();
+      width = this.context.measureText(text).width;
+      this.widths.set(key, width);
+    }
+    return width;
+  }
+
+  /** Writes on the whole canvas again. */
+  enter() {
+    if (this.limited) this.context.restore();
+    this.limited = false;
+    this.context.setTransform(this.ratio, 0, 0, this.ratio, 0, 0);
+  }
+
+  /** Keeps what is written within the region. */
+  limit() {
+    if (!this.region) return;
+    const {x, y, width, height} = this.region;
+    this.context.save();
+    this.limited = true;
+    this.context.beginPath();
+    this.context.rect(x, y, width, height);
+    this.context.clip();
   }
 
   /** Draws a text beside a point, on a small plate; returns false where another label has the place. */
@@ -48,9 +90,10 @@ export class Labels {
     if (!at || this.used.length >= LABELS_MAX) return false;
     const c = this.context;
     c.font = bold ? `600 ${FONT}` : FONT;
-    const x = at[0] + dx, y = at[1] + dy, width = c.measureText(text).width + 10;
+    const x = at[0] + dx, y = at[1] + dy, width = this.widthOf(text, bold) + 10;
     if (!bold && this.used.some((box) => Math.abs(box[1] - y) < 17 && x < box[2] && x + width > box[0])) return false;
     this.used.push([x, y, x + width]);
+    this.inked = true;
     c.fillStyle = this.colors.plate;
     c.beginPath();
     c.roundRect(x, y - 9, width, 18, 4);
@@ -68,6 +111,7 @@ export class Labels {
   mark(point, look, text) {
     const at = this.project(point, this.camera);
     if (!at) return;
+    this.inked = true;
     const c = this.context;
     c.beginPath();
     c.arc(at[0], at[1] - 18, 9, 0, 2 * Math.PI);
@@ -87,6 +131,7 @@ export class Labels {
   /** Draws a horizontal circle about a point, such as the front of a sound. */
   circle(centre, radius_m, color, width_px, alpha) {
     const c = this.context, point = new Vector3();
+    this.inked = true;
     c.beginPath();
     let drawing = false;
     for (let i = 0; i <= 96; ++i) {
@@ -110,6 +155,7 @@ export class Labels {
   line(a, b, color) {
     const from = this.project(a, this.camera), to = this.project(b, this.camera);
     if (!from || !to) return;
+    this.inked = true;
     const c = this.context;
     c.strokeStyle = color;
     c.lineWidth = 2;
@@ -138,6 +184,7 @@ export function drawAnnotations(app) {
     labels.mark(mark.at, mark.look, `${mark.look.text}${snr}`);
   }
   app.instruments.annotate(labels, app.playback.time_us);
+  app.currents.annotate(labels, app.playback.time_us);
   if (app.picking.points.length === 2) {
     labels.line(...app.picking.points, '#ffd166');
     const middle = app.picking.points[0].clone().add(app.picking.points[1]).multiplyScalar(0.5);
@@ -145,7 +192,7 @@ export function drawAnnotations(app) {
   } else if (app.picking.points.length === 1) {
     labels.text(app.picking.points[0], '× first point', {bold: true});
   }
-  drawNames(app);
+  drawNames(app, app.vehicles);
 }
 
 /** The front of a sound at the depth of its source, as wide as the sound lasts. */
@@ -158,21 +205,24 @@ function drawRing(app, {sound, outer_m, inner_m}) {
   app.labels.circle(sound.at, middle_m, color, width_px, 0.38);
 }
 
-function drawNames(app) {
+/** Names of vehicles, which may be those of another branch. */
+export function drawNames(app, vehicles) {
   const {labels} = app;
-  const selected = app.vehicle;
+  const selected = vehicles.find((vehicle) => vehicle.name === app.selected) ?? null;
   const onBoard = ['first', 'device'].includes(app.cameras.mode);
   if (selected && !onBoard) {
     const estimate = app.estimates.vehicles[app.estimates.byName.get(selected.name)];
-    const error = estimate?.estimate && app.estimates.showGhosts ? `  error ${estimate.error_m.toFixed(2)} m` : '';
+    const error = selected === app.vehicle && estimate?.estimate && app.estimates.showGhosts ?
+        `  error ${estimate.error_m.toFixed(2)} m` :
+        '';
     labels.text(selected.at, selected.name + error, {color: selected.color, dy: -22, bold: true});
   }
   if (!app.options.get('labels')) return;
   // Of many vehicles only those that are near have their names.
   const metre_px = app.camera.projectionMatrix.elements[5] * innerHeight / 2;
-  for (const vehicle of app.vehicles) {
+  for (const vehicle of vehicles) {
     const seen_px = vehicle.radius_m * metre_px / vehicle.at.distanceTo(app.camera.position);
-    if (vehicle === selected || (app.vehicles.length > MANY && seen_px < 6)) continue;
+    if (vehicle === selected || (vehicles.length > MANY && seen_px < 6)) continue;
     labels.text(vehicle.at, vehicle.name, {color: vehicle.color, dy: -16});
   }
   if (app.zones.root.visible)

@@ -1,45 +1,33 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The live page: brings the parts together and draws the frames.
-import {Bodies, matrixOf, radiusOf} from './bodies.js';
 import {Branches} from './branches.js';
-import {Cameras, MODES} from './cameras.js';
+import {MODES} from './cameras.js';
 import {Ghosts} from './compare.js';
 import {Connection} from './connection.js';
 import {Drive} from './drive.js';
-import {Environment} from './environment.js';
-import {Estimates} from './estimates.js';
 import {Forms} from './forms.js';
 import {Instruments} from './instruments.js';
-import {drawAnnotations, Labels} from './labels.js';
+import {applyOptions, makeLayers} from './layers.js';
 import {Marks} from './marks.js';
-import {Dots, FieldsOfView, SelectionRing, Zones} from './overlays.js';
 import {Details, Events, formatTime, Legend, Scores, VehicleList} from './panels.js';
 import {Past} from './past.js';
 import {Picking} from './picking.js';
 import {Playback} from './playback.js';
 import {probe} from './probe.js';
 import {readScene} from './protocol.js';
+import {Resolution} from './resolution.js';
 import {Address, coveredWidth, Options, pressKey, setUpFolds, setUpKeyList, Tabs, Theme} from './settings.js';
-import {Assets} from './shapes.js';
-import {Sounds} from './sounds.js';
+import {SideBySide} from './side_by_side.js';
+import {Stability} from './stability.js';
 import {TimeBar} from './time_bar.js';
-import {trailColor, Trails} from './trails.js';
-import {NoToneMapping, PCFShadowMap, Quaternion, Scene, Vector3, WebGLRenderer} from './vendor/three.js';
-import {Water} from './water.js';
+import {trailColor} from './trails.js';
+import {describeVehicles, moveVehicles, truthAt} from './vehicles.js';
+import {Vector3} from './vendor/three.js';
 
 const $ = (id) => document.getElementById(id);
 
-/** Colors of vehicles that have none of their own (after Okabe and Ito 2008). */
-const PALETTE = ['#56b4e9', '#009e73', '#d55e00', '#cc79a7', '#0072b2', '#8c6bb1', '#66a61e', '#a6761d'];
-
-/** Frames that take longer are drawn with half the resolution. */
-const SLOW_MS = 160;
-
-/** Is WebGL drawn by the processor?  Then shadows and fine water are off. */
-function isSoftware(gl) {
-  const info = gl.getExtension('WEBGL_debug_renderer_info');
-  return /swiftshader|llvmpipe|software/i.test(info ? gl.getParameter(info.UNMASKED_RENDERER_WEBGL) : '');
-}
+/** While time passes the panels are written this far apart: each time costs a layout. */
+const PANELS_MS = 125;
 
 /** The page. */
 class App {
@@ -56,8 +44,13 @@ class App {
     this.frames = 0;
     this.drawn = 0;
     this.cpu_ms = [];
-    this.last_ms = this.changed_ms = performance.now();
-    this.setUpScene();
+    this.last_ms = performance.now();
+    Object.assign(this, makeLayers($('view'), (text) => this.problem(text), () => {
+                    this.dirty = true;
+                  }));
+    this.camera = this.cameras.camera;
+    this.resolution = new Resolution(this.renderer, this.software);
+    this.picking = new Picking($('view'), this);
     this.setUpPanels();
     addEventListener('keydown', (event) => pressKey(this, event));
     addEventListener('resize', () => this.resize());
@@ -68,39 +61,12 @@ class App {
     requestAnimationFrame((now_ms) => this.frame(now_ms));
   }
 
-  /** The parts that draw. */
-  setUpScene() {
-    this.renderer = new WebGLRenderer({canvas: $('view'), antialias: true, powerPreference: 'high-performance'});
-    this.software = isSoftware(this.renderer.getContext());
-    this.renderer.toneMapping = NoToneMapping;
-    this.renderer.shadowMap.enabled = true;
-    this.renderer.shadowMap.type = PCFShadowMap;
-    this.scene = new Scene();
-    this.assets = new Assets('asset', (text) => this.problem(text), () => {
-      this.dirty = true;
-    });
-    this.environment = new Environment(this.scene);
-    this.bodies = new Bodies(this.scene, this.assets);
-    this.water = new Water(this.scene, this.software);
-    this.sounds = new Sounds(this.scene);
-    this.estimates = new Estimates(this.scene, this.assets);
-    this.trails = new Trails(this.scene);
-    this.estimateTrails = new Trails(this.scene);
-    this.views = new FieldsOfView(this.scene);
-    this.zones = new Zones(this.scene);
-    this.dots = new Dots(this.scene);
-    this.ring = new SelectionRing(this.scene);
-    this.labels = new Labels($('labels'));
-    this.cameras = new Cameras($('view'));
-    this.camera = this.cameras.camera;
-    this.picking = new Picking($('view'), this);
-  }
-
   /** The panels and buttons. */
   setUpPanels() {
     this.list = new VehicleList((name) => this.select(name), (name) => this.follow(name));
     this.details = new Details((device) => this.lookThrough(device));
     this.scores = new Scores((time_us) => this.timeBar.goTo(time_us));
+    this.stability = new Stability();
     this.events = new Events((time_us) => this.timeBar.goTo(time_us));
     this.legend = new Legend();
     this.theme = new Theme(() => {
@@ -146,8 +112,10 @@ class App {
     const goTo = (time_us) => this.timeBar.goTo(time_us);
     this.branches = new Branches((branch) => {
       this.ghosts.show(branch);
+      this.sides?.show();
       this.dirty = true;
     }, goTo);
+    this.sides = new SideBySide(this);
     this.marks = new Marks(goTo);
     Object.assign(this.timeBar, {past: this.past, marks: this.marks});
     return handlers;
@@ -192,8 +160,9 @@ class App {
   }
 
   /** Takes events: for the list and the time line. */
-  addEvents(items) {
-    this.events.add(items);
+  addEvents(items, message) {
+    if (!this.events.take(items, message)) return;
+    if (message.all) this.marks.clearEvents();
     this.marks.add(items);
   }
 
@@ -203,11 +172,13 @@ class App {
     this.branches.clear();
     [this.timeBar, this.drive, this.forms].forEach((part) => part.setHello(message));
     this.noRun = String(message.problem ?? '');
+    this.currents.motion.random = [];
     this.instruments.greet();
   }
 
   setBranches(message) {
     this.branches.set(message);
+    this.sides.show();
     this.marks.setDifferences(this.branches.differences());
   }
 
@@ -228,9 +199,10 @@ class App {
         if (this.sounds.origin_m) this.sounds.addReceptions(items);
         this.legend.add(items.map((item) => item.outcome));
       },
-      events: () => this.addEvents(items),
+      events: () => this.addEvents(items, message),
       branches: () => this.setBranches(message),
-      scores: () => this.scores.set(message),
+      scores: () => this.setScores(message),
+      current: () => this.currents.motion.take(message),
       reply: () => this.drive.reply(message) || this.forms.reply(message) || this.timeBar.reply(message),
       error: () => this.problem(String(message.text)),
       dropped: () => this.problem(`the server dropped ${message.count} messages: this page is too slow`),
@@ -240,10 +212,15 @@ class App {
     this.dirty = true;
   }
 
+  setScores(message) {
+    this.scores.set(message);
+    this.stability.set(message.metrics ?? []);
+  }
+
   /** Builds a scene; the camera stays if the world is the same. */
   setScene(data) {
     const same = this.data?.world === data.world && this.vehicles.length > 0;
-    const kept = this.selected ?? this.address.get('select');
+    const kept = this.selected ?? this.address.get('select'), isFirst = this.data === null;
     this.data = data;
     this.live.clear();
     if (same)
@@ -254,14 +231,14 @@ class App {
     this.bodies.setScene(data);
     const sphere = this.bodies.boundingSphere();
     this.extent_m = this.cameras.extent_m = Math.max(2, sphere.radius);
-    this.colors = new Set();
-    this.vehicles = data.vehicles.map((vehicle) => this.describe(vehicle));
+    this.vehicles = describeVehicles(data, this.bodies);
     this.byName = new Map(this.vehicles.map((vehicle) => [vehicle.name, vehicle]));
     this.owners =
         new Map(this.vehicles.map((vehicle) => [data.bodies[vehicle.body].owner || vehicle.name, vehicle.name]));
     // Everything else that is drawn.
     this.environment.setScene(data, this.extent_m);
     this.water.setScene(data);
+    this.currents.setScene(data);
     this.sounds.setScene(data, this.extent_m);
     this.estimates.setScene(data);
     this.views.setScene(data);
@@ -280,9 +257,13 @@ class App {
     this.forms.setVehicles(data.vehicles);
     this.legend.clear();
     if (!same) {
-      this.events.clear();
       this.scores.clear();
+      this.stability.clear();
       this.instruments.restart();
+    }
+    // Events of the first world may come before its scene.
+    if (!same && !isFirst) {
+      this.events.clear();
       this.marks.clear();
     }
     this.select(this.byName.has(kept) ? kept : null);
@@ -295,35 +276,6 @@ class App {
       this.fitPending = true;  // again with the first state
     // One vehicle alone: follow it.
     if (!view && this.vehicles.length === 1) this.follow(this.vehicles[0].name);
-  }
-
-  /** What the page knows of a vehicle. */
-  describe(vehicle) {
-    const own = this.data.bodies[vehicle.body];
-    const color = this.pickColor(own);
-    return {
-      ...vehicle,
-      color,
-      radius_m: Math.max(0.1, radiusOf(own)),
-      X_BV: matrixOf(vehicle.pose),
-      X_WV: matrixOf(vehicle.pose),
-      at: new Vector3()
-    };
-  }
-
-  /** Color of a vehicle in lists and trails: that of its body, if it is bright and no other vehicle has it. */
-  pickColor(body) {
-    const hsl = {};
-    const own = body.parts.map((part) => this.bodies.colorOf(body, part)).find((color) => {
-      color.getHSL(hsl);
-      return hsl.s > 0.4 && hsl.l > 0.12 && hsl.l < 0.8 && (hsl.h < 0.08 || hsl.h > 0.18);  // yellow: estimates
-    });
-    const name = own ? `#${own.getHexString()}` : '';
-    const color = own && !this.colors.has(name) ?
-        name :
-        PALETTE.find((one) => !this.colors.has(one)) ?? PALETTE[this.colors.size % PALETTE.length];
-    this.colors.add(color);
-    return color;
   }
 
   /** Name of the vehicle that a body belongs to; null: none. */
@@ -351,6 +303,7 @@ class App {
 
   setMode(mode) {
     if (!this.cameras.setMode(mode, this.vehicle)) Events.toast('select a vehicle first');
+    this.fitDue = this.fitPending = false;  // the user has chosen where to look
     this.showMode();
     this.dirty = true;
   }
@@ -383,7 +336,7 @@ class App {
   fit() {
     const sphere = this.bodies.boundingSphere();
     sphere.radius = Math.max(sphere.radius, ...this.vehicles.slice(0, 1).map((vehicle) => 3 * vehicle.radius_m));
-    this.cameras.fit(sphere, (innerWidth - coveredWidth()) / innerHeight);
+    this.cameras.fit(sphere, this.sides?.on ? this.sides.aspect : (innerWidth - coveredWidth()) / innerHeight);
     this.showMode();
     this.dirty = true;
   }
@@ -395,52 +348,23 @@ class App {
     this.dirty = true;
   }
 
+  toggleSides() {
+    if (!this.sides.toggle()) Events.toast('show a branch or a second log as ghosts first');
+  }
+
   /** Takes the switches under "Show". */
   applyOptions() {
-    const get = (name) => this.options.get(name);
-    this.water.shown = get('water');
-    this.sounds.shown = get('sounds');
-    this.estimates.showGhosts = get('ghosts');
-    this.estimates.showEllipsoids = get('ellipsoids');
-    this.zones.root.visible = get('zones');
-    this.views.which = get('sensors');
-    const length_s = Math.min(3600, Math.max(0, Number(get('trails')) || 0));
-    this.trails.length_s = this.estimateTrails.length_s = length_s;
-    this.estimateTrails.lines.visible = get('ghosts');
-    this.environment.setClarity(Number(get('clarity')) >= 4 ? 0 : Number(get('clarity')) + 0.05);
+    applyOptions(this, this.options);
     this.dirty = true;
   }
 
   resize() {
-    this.sharp = true;
-    this.interval_ms = 0;
-    this.setResolution();
+    this.resolution.reset();
     this.renderer.setSize(innerWidth, innerHeight, false);
     this.labels.resize(innerWidth, innerHeight, devicePixelRatio);
-    this.camera.aspect = innerWidth / innerHeight;
+    this.camera.aspect = this.sides?.aspect ?? innerWidth / innerHeight;
     this.camera.updateProjectionMatrix();
     this.dirty = true;
-  }
-
-  setResolution() {
-    const full = Math.min(devicePixelRatio, this.software ? 1 : 2);
-    this.renderer.setPixelRatio(this.sharp ? full : 0.5 * full);
-  }
-
-  /** Draws coarsely while frames take long, and sharply again once nothing moves. */
-  adaptResolution(changes, now_ms) {
-    if (changes) {
-      // Only intervals between frames that follow each other count.
-      const interval_ms = now_ms - this.changed_ms;
-      if (interval_ms < 2000) this.interval_ms += 0.2 * (interval_ms - this.interval_ms);
-      this.changed_ms = now_ms;
-    }
-    const idle = now_ms - this.changed_ms > 400;
-    const sharp = idle || this.interval_ms < (this.sharp ? SLOW_MS : SLOW_MS / 4);
-    if (sharp === this.sharp) return;
-    this.sharp = sharp;
-    this.dirty = true;
-    this.setResolution();
   }
 
   /** One frame: take the newest states, move, draw if anything changed. */
@@ -464,15 +388,18 @@ class App {
     this.cameras.update(dt_s, this.vehicle, this.bodies.X_WB);
     this.showMode();
     const key = this.viewKey();
-    this.adaptResolution(moved || key !== this.drawnKey, now_ms);
+    if (this.resolution.adapt(moved || key !== this.drawnKey, now_ms)) this.dirty = true;
     this.dirty = this.instruments.update(start_ms) || this.dirty;
     if (moved || this.dirty || key !== this.drawnKey) {
       this.drawnKey = key;
       this.dirty = false;
       this.draw();
       ++this.drawn;
+      this.updatePanels(start_ms);
       this.cpu_ms.push(performance.now() - start_ms);
       if (this.cpu_ms.length > 60) this.cpu_ms.shift();
+    } else {
+      this.updatePanels(start_ms);
     }
     this.writeAddress(now_ms);
   }
@@ -488,7 +415,8 @@ class App {
         {
           view: this.cameras.mode === 'device' ? '' : this.cameras.view(),
           select: this.selected,
-          ...this.instruments.toAddress()
+          ...this.instruments.toAddress(),
+          ...this.sides.toAddress()
         },
         now_ms);
   }
@@ -504,24 +432,11 @@ class App {
   move() {
     const {time_us, poses} = this.playback;
     this.bodies.update(poses);
-    for (const vehicle of this.vehicles) {
-      vehicle.X_WV.multiplyMatrices(this.bodies.X_WB[vehicle.body], vehicle.X_BV);
-      vehicle.at.setFromMatrixPosition(vehicle.X_WV);
-    }
+    moveVehicles(this.vehicles, this.bodies);
     this.trails.sample(time_us, this.vehicles.map((vehicle) => vehicle.at));
     const estimates = this.estimates.vehicles;
     this.estimateTrails.sample(
         time_us, estimates.map((one) => (one.estimate ? new Vector3().setFromMatrixPosition(one.X_WV) : null)));
-  }
-
-  /** Position of the frame of a vehicle at a time not long ago; null: unknown. */
-  truthAt(vehicle, time_us) {
-    const slot = this.bodies.movable.indexOf(vehicle.body);
-    const pose = slot < 0 ? null : this.playback.poseAt(slot, time_us);
-    if (!pose) return null;
-    const offset = new Vector3().setFromMatrixPosition(vehicle.X_BV);
-    return offset.applyQuaternion(new Quaternion(pose[3], pose[4], pose[5], pose[6]))
-        .add(new Vector3(...pose.slice(0, 3)));
   }
 
   /** Draws a frame. */
@@ -531,11 +446,13 @@ class App {
     const focus = this.cameras.focus, distance_m = this.camera.position.distanceTo(focus);
     const height_px = innerHeight * this.renderer.getPixelRatio();
     // Everything that depends on the time or the camera.
+    if (this.currents.motion.setTime(time_us)) this.environment.setLevel(this.level());
     this.environment.update(this.camera, focus, distance_m, this.options.get('shadows'));
     this.bodies.follow(this.camera, distance_m);
     this.water.update(time_us, this.camera);
+    this.currents.update(time_us, focus, distance_m, this.vehicles);
     this.sounds.update(time_us, this.playback.newest?.speed ?? 1);
-    this.estimates.update(X_WVs, (i, at_us) => this.truthAt(this.vehicles[i], at_us));
+    this.estimates.update(X_WVs, (i, at_us) => truthAt(this.vehicles[i], at_us, this.bodies, this.playback));
     this.views.update(this.bodies.X_WB, this.selected);
     this.trails.update(time_us);
     this.estimateTrails.update(time_us);
@@ -544,17 +461,23 @@ class App {
     const vehicle = this.vehicle;
     const onBoard = ['first', 'device'].includes(this.cameras.mode);
     this.ring.update(vehicle?.X_WV ?? null, vehicle?.radius_m ?? 1, this.camera, height_px, onBoard);
-    this.renderer.render(this.scene, this.camera);
-    drawAnnotations(this);
+    this.sides.render();
     this.instruments.recorder.frame();
-    this.updatePanels(time_us);
+    this.panelsStale = true;
   }
 
-  updatePanels(time_us) {
+  /** Writes the numbers of the last frame into the panels: at once while the time stands, else at intervals. */
+  updatePanels(now_ms) {
+    const plays = this.playback.newest?.paused === false;
+    if (!this.panelsStale || (plays && now_ms - this.panels_ms < PANELS_MS)) return;
+    this.panelsStale = false;
+    this.panels_ms = now_ms;
+    const {time_us} = this.playback;
     this.timeBar.update(time_us);
     const vehicle = this.vehicle;
     this.branches.setDistances(this.ghosts.distances(this.bodies.X_WB), vehicle?.body);
-    if (!vehicle) return;
+    // Before the first state the bodies are not where their vehicle is.
+    if (!vehicle || this.playback.version === 0) return;
     const estimate = this.estimates.vehicles[this.estimates.byName.get(vehicle.name)];
     this.details.update(time_us, vehicle.X_WV, this.data.origin_m, estimate, this.data.water);
   }
@@ -575,12 +498,16 @@ async function start() {
       waterHeights: (points, time_us) => app.water.heights(app.renderer, points, time_us),
       bodyMask: async (view) => (await import('./mask.js')).bodyMask(app, view),
       bodies: () => app.data.bodies.map(({name, owner, parts}) => ({name, owner, parts})),
+      currentAt: (point, time_us) => app.currents.motion.velocityAt(point, time_us),
+      tideAt: (time_us) => app.currents.motion.tideAt(time_us),
       waterLevel: () => app.data.water?.level_m ?? null,
       seek: (time_us) => app.connection.send({op: 'seek', time_us}),
       setView: (text) => app.setView(text),
       select: (name) => app.select(name),
       returnsOf: (channel) => app.instruments.returns.pointsOf(channel),
-      imageOf: (channel) => app.instruments.images.views.find((one) => one.channel === channel),
+      sonarPixel: (channel, u, v) => app.instruments.sonars.pixelOf(channel, u, v),
+      modems: () => app.instruments.traffic.modems.rows(),
+      imageOf: (channel) => app.instruments.images.view?.views.find((one) => one.channel === channel),
     };
   } catch (error) {
     $('banner').textContent = `this page cannot draw: ${error.message}`;

@@ -30,10 +30,14 @@ export class Marks {
     this.drawn = null;
   }
 
-  clear() {
+  clearEvents() {
     this.items = [];
-    this.differences = [];
     this.drawn = null;
+  }
+
+  clear() {
+    this.clearEvents();
+    this.differences = [];
   }
 
   /** Places the marks on a line from start to end; cheap while nothing changes. */

@@ -7,6 +7,8 @@ import {OUTCOMES} from './sounds.js';
 
 const EVENTS_MAX = 500;
 const PLOT_SAMPLES = 300;
+/** States that are this far apart belong to no common motion. */
+const GAP_S = 5;
 const $ = (id) => document.getElementById(id);
 
 /** Makes an element with a text. */
@@ -23,6 +25,12 @@ export function formatTime(time_us) {
   if (s < 60) return `${s.toFixed(2)} s`;
   const whole = Math.floor(s / 60), rest = (s - 60 * whole).toFixed(1).padStart(4, '0');
   return whole < 60 ? `${whole}:${rest}` : `${Math.floor(whole / 60)}:${String(whole % 60).padStart(2, '0')}:${rest}`;
+}
+
+/** Writes a number with a fixed count of digits; zero has no sign. */
+export function fixed(value, digits) {
+  const text = value.toFixed(digits);
+  return Number(text) === 0 ? text.replace('-', '') : text;
 }
 
 /** Writes a number with a sensible count of digits. */
@@ -174,11 +182,11 @@ export class Details {
     const e = X_WV.elements;
     const p = [e[12] + origin_m[0], e[13] + origin_m[1], e[14] + origin_m[2]];
     this.measureSpeed(time_us, p);
-    const degrees = (angle) => `${(angle * 180 / Math.PI).toFixed(1)}°`;
-    this.row('x east, m', p[0].toFixed(2));
-    this.row('y north, m', p[1].toFixed(2));
-    this.row('z up, m', p[2].toFixed(2));
-    if (water) this.row('depth, m', (water.level_m - p[2]).toFixed(2));
+    const degrees = (angle) => `${fixed(angle * 180 / Math.PI, 1)}°`;
+    this.row('x east, m', fixed(p[0], 2));
+    this.row('y north, m', fixed(p[1], 2));
+    this.row('z up, m', fixed(p[2], 2));
+    if (water) this.row('depth, m', fixed(water.level_m - p[2], 2));
     this.row('speed, m/s', this.speed_mps === null ? '–' : this.speed_mps.toFixed(2));
     this.row('yaw', degrees(headingOf(X_WV)));
     this.row('pitch', degrees(Math.asin(Math.max(-1, Math.min(1, -e[2])))));
@@ -195,8 +203,9 @@ export class Details {
   measureSpeed(time_us, p) {
     const before = this.before;
     const dt_s = before ? (time_us - before.time_us) / 1e6 : 0;
-    if (before && dt_s > 0 && dt_s < 5)
-      this.speed_mps = Math.hypot(p[0] - before.p[0], p[1] - before.p[1], p[2] - before.p[2]) / dt_s;
+    if (before && dt_s > 0)
+      this.speed_mps =
+          dt_s < GAP_S ? Math.hypot(p[0] - before.p[0], p[1] - before.p[1], p[2] - before.p[2]) / dt_s : null;
     // Half a second apart at most, so that rounding does not matter.
     if (!before || dt_s < 0 || dt_s >= 0.2) this.before = {time_us, p};
   }
@@ -209,6 +218,11 @@ export class Details {
         column.length = 0;
       });
     if (times.length && t_s - times[times.length - 1] < 0.2) return;
+    // No line across a time that was not seen, as after a jump in a log.
+    if (times.length && t_s - times[times.length - 1] > GAP_S) {
+      times.push(t_s - GAP_S / 2);
+      [speeds, heights, errors].forEach((column) => column.push(null));
+    }
     times.push(t_s), speeds.push(this.speed_mps), heights.push(z), errors.push(error_m);
     if (times.length > PLOT_SAMPLES) this.history.forEach((column) => column.shift());
     this.drawPlot();
@@ -321,6 +335,23 @@ export class Events {
     });
   }
 
+  /** Takes a message `events`; returns false if it repeats what is known.  `all`: in place of the events before. */
+  take(items, {all = false, dropped = 0}) {
+    const before = this.taken ?? [];
+    if (all && JSON.stringify(items.slice(-EVENTS_MAX)) === JSON.stringify(before)) return false;
+    this.taken = (all ? items : [...before, ...items]).slice(-EVENTS_MAX);
+    if (all) {
+      // Problems of this page stay, below.
+      for (const line of [...$('events').querySelectorAll('[data-time], .dropped')]) line.remove();
+      if (dropped > 0) {
+        const line = element('li', `${dropped} earlier events were not kept`, 'dropped quiet');
+        $('events').prepend(line);
+      }
+    }
+    this.add(items);
+    return true;
+  }
+
   /** Adds events, the newest on top. */
   add(items) {
     $('no-events').hidden = true;
@@ -337,6 +368,7 @@ export class Events {
   }
 
   clear() {
+    this.taken = [];
     $('events').replaceChildren();
     $('no-events').hidden = false;
   }

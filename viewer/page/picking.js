@@ -43,10 +43,11 @@ export class Picking {
   }
 
   aim(x, y) {
-    const place = this.element.getBoundingClientRect();
-    const at = new Vector2(2 * (x - place.left) / place.width - 1, 1 - 2 * (y - place.top) / place.height);
+    const part = this.view.sides.regionAt(x, y);
+    const at = new Vector2(2 * (x - part.x) / part.width - 1, 1 - 2 * (y - part.y) / part.height);
     this.ray.setFromCamera(at, this.view.camera);
-    return this.ray.intersectObjects(this.view.bodies.pickable, false);
+    const hits = () => this.ray.intersectObjects(this.view.bodies.pickable, false);
+    return part.other ? this.view.sides.withOther(hits) : hits();
   }
 
   /** Name of the vehicle at a position of the page; null: none. */
@@ -56,8 +57,9 @@ export class Picking {
     if (name !== null) return name;
     // The nearest vehicle on the screen.
     let nearest = null, least_px = NEAR_PX;
-    for (const vehicle of this.view.vehicles) {
-      const at = this.view.pixelOf(vehicle);
+    const {sides} = this.view;
+    for (const vehicle of sides.regionAt(x, y).other ? sides.others : this.view.vehicles) {
+      const at = sides.pixelOf(vehicle, x, y);
       const off_px = at ? Math.hypot(at[0] - x, at[1] - y) : Infinity;
       if (off_px < least_px) [nearest, least_px] = [vehicle.name, off_px];
     }

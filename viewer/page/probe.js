@@ -42,6 +42,7 @@ export function probe(app) {
                                  pixel: app.pixelOf(vehicle),
                                  trail: app.trails.describe(i),
                                })),
+    sides: app.sides.probe(world),
     past: app.past.shown,
     newest_us: app.newest_us,
     ghosts: app.ghosts.ghosts.filter((ghost) => ghost.root.visible)
@@ -58,6 +59,8 @@ export function probe(app) {
                                    inner_m: ring.inner_m,
                                    center: world(ring.sound.at),
                                  })),
+    currents: app.currents.arrows.slice(0, 500),
+    level_m: app.data?.water?.level_m ?? null,
     ...app.instruments.probe(),
     marks: (app.sounds.visibleMarks ?? []).map((mark) => ({outcome: mark.outcome, position: world(mark.at)})),
   };

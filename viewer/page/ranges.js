@@ -43,11 +43,7 @@ export class Ranges {
 
   /** Wants the channels of the devices that measure ranges. */
   subscribe(which) {
-    const names = [];
-    for (const [channel, {vehicle, device}] of this.poses.byChannel)
-      if (DEVICES.includes(device.type) && (which === 'all' || (which === 'selected' && vehicle === this.app.selected)))
-        names.push(channel);
-    this.names = new Set(names.slice(0, CHANNELS_MAX));
+    this.names = this.poses.channelsOf(DEVICES, which, CHANNELS_MAX);
     this.app.channels.want('ranges', this.names, RATE_HZ, (message) => this.take(message));
     for (const [key, range] of this.ranges)
       if (!this.names.has(range.channel)) this.ranges.delete(key);
@@ -103,6 +99,7 @@ export class Ranges {
   draw(labels, time_us) {
     for (const range of this.shown(time_us)) {
       const {centre, range_m, target, true_m, fix} = range;
+      labels.inked = true;
       labels.context.globalAlpha = 0.3 + 0.7 * Math.min(1, range.fresh);
       // The sphere: its circle in the level of the receiver, and two that stand on it.
       circle(labels, centre, range_m, [1, 0, 0], [0, 1, 0], 2);

@@ -182,11 +182,7 @@ export class Returns {
 
   /** Wants the channels of the devices whose returns are shown. */
   subscribe(which) {
-    const names = [];
-    for (const [channel, {vehicle, device}] of this.poses.byChannel)
-      if (DEVICES.includes(device.type) && (which === 'all' || (which === 'selected' && vehicle === this.app.selected)))
-        names.push(channel);
-    this.names = new Set(names.slice(0, DEVICES_MAX));
+    this.names = this.poses.channelsOf(DEVICES, which, DEVICES_MAX);
     this.app.channels.want('returns', this.names, RATE_HZ, (message) => this.take(message));
     for (const name of [...this.drawn.keys()])
       if (!this.names.has(name)) this.remove(name);

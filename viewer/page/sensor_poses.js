@@ -20,6 +20,15 @@ export class SensorPoses {
     this.slots = new Map();
   }
 
+  /** Channels of devices of these types, at most `max`; `which`: of all vehicles, of the selected one, or of none. */
+  channelsOf(types, which, max) {
+    const names = [];
+    for (const [channel, {vehicle, device}] of this.byChannel)
+      if (types.includes(device.type) && (which === 'all' || (which === 'selected' && vehicle === this.app.selected)))
+        names.push(channel);
+    return new Set(names.slice(0, max));
+  }
+
   /** Takes the devices of a scene. */
   setScene(data) {
     this.clear();

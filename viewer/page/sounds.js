@@ -161,6 +161,8 @@ export class Sounds {
       return true;
     });
     this.mesh.count = count;
+    this.mesh.visible = count > 0;
+    if (count === 0) return;
     this.mesh.instanceMatrix.needsUpdate = true;
     this.tint.needsUpdate = true;
   }

@@ -34,7 +34,8 @@ export class TimeBar {
       if (this.isLog) this.dragging = false;
     });
     $('rewind').addEventListener('click', () => this.rewind());
-    $('branch').addEventListener('click', () => this.request('branch'));
+    $('branch').addEventListener(
+        'click', () => this.request('branch', 0, this.hello.may_launch ? $('branch-programs').value : ''));
     $('cancel').addEventListener('click', () => this.endRewind());
   }
 
@@ -72,8 +73,10 @@ export class TimeBar {
     $('loop-label').hidden = !this.isLog;
     const choices = this.isLog ? LOG_SPEEDS : RUN_SPEEDS;
     $('speed').replaceChildren(...choices.map((speed) => new Option(speed === 0 ? 'max' : `${speed}×`, speed)));
+    this.showSpeed();  // a server that introduces itself again does not repeat an equal status
     if (hello.past) $('seek').disabled = false;  // whoever may read may look
     $('branch').hidden = !may || hello.record !== 'recorded';
+    $('branch-programs').hidden = $('branch').hidden || hello.may_launch !== true;
     $('badge').hidden = may && !this.isLog;
     $('badge').textContent = may ? 'log' : 'read-only';
     $('badge').title =
@@ -89,12 +92,16 @@ export class TimeBar {
     this.status = status;
     $('play').firstElementChild.textContent = status.paused ? '▶' : '❚❚';
     $('play').setAttribute('aria-label', status.paused ? 'Continue' : 'Pause');
-    const speed = status.speed ?? 0;
+    this.showSpeed();
+    this.rewindIfPaused();
+    this.describe();
+  }
+
+  showSpeed() {
+    const speed = this.status.speed ?? 0;
     const known = [...$('speed').options].some((option) => Number(option.value) === speed);
     if (!known) $('speed').append(new Option(`${+ speed.toPrecision(3)}×`, speed));
     if (document.activeElement !== $('speed')) $('speed').value = String(speed);
-    this.rewindIfPaused();
-    this.describe();
   }
 
   describe() {
@@ -133,12 +140,12 @@ export class TimeBar {
     seek.setAttribute('aria-valuetext', text);
   }
 
-  request(command, value = 0) {
+  request(command, value = 0, text = '') {
     if (!this.hello.control) {
       this.toast('read-only: open the address with the token to steer the run');
       return;
     }
-    this.requests.set(this.connection.control(command, value), command);
+    this.requests.set(this.connection.control(command, value, text), command);
   }
 
   /** Takes the answer to a request. */

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Traffic: messages and bytes per second of each vehicle and channel, and who received whom.
 import {fillTable, table} from './dock.js';
+import {ModemBudget} from './modem_budget.js';
 import {element, formatNumber} from './panels.js';
 import {OUTCOMES} from './sounds.js';
 
@@ -62,9 +63,11 @@ export class Traffic {
     this.cells.className = 'matrix';
     this.note = element('p', 'No vehicle has sent anything to another yet.', 'quiet');
     this.lostList = element('ul', '', 'losses');
+    this.modems = new ModemBudget(app);
     const left = element('section'), right = element('section');
     left.append(this.search, this.table);
-    right.append(element('h3', 'Who received whom: received / sent'), this.note, this.cells, this.lostList);
+    right.append(
+        element('h3', 'Who received whom: received / sent'), this.note, this.cells, this.lostList, this.modems.root);
     this.root.append(left, right);
     this.pairs = [];
     this.stale = true;
@@ -82,10 +85,12 @@ export class Traffic {
 
   clear() {
     this.pairs = [];
+    this.modems.clear();
     this.stale = true;
   }
 
   update() {
+    this.modems.update();
     if (!this.stale) return;
     this.stale = false;
     this.fillChannels();

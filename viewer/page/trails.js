@@ -76,6 +76,8 @@ export class Trails {
     this.stamp.addUpdateRange(0, this.stamp.array.length);
     this.stamp.needsUpdate = true;
     this.filled = 0;
+    this.empty = true;
+    this.lines.geometry.setDrawRange(0, 0);
   }
 
   /** Adds a sample if it is due; positions: Vector3 or null for each trail. */
@@ -102,13 +104,16 @@ export class Trails {
     this.next = (this.next + 1) % this.samples;
     this.filled = Math.min(this.samples, this.filled + 1);
     this.last_us = time_us;
+    // Points that have never been anywhere, such as estimates of a run without them, are not drawn.
+    if (this.empty) this.empty = !positions.some((to) => to);
+    this.lines.geometry.setDrawRange(0, this.empty ? 0 : 2 * this.count * this.filled);
   }
 
   /** Draws the trails of the last length_s before a time. */
   update(time_us) {
     this.material.uniforms.now.value = time_us * 1e-6;
     this.material.uniforms.length_s.value = this.length_s;
-    this.lines.visible = this.length_s > 0 && this.count > 0;
+    this.lines.visible = this.length_s > 0 && !this.empty;
   }
 
   /** Number of samples and last position of a trail, for tests. */

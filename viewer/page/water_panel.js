@@ -38,10 +38,12 @@ export class WaterPanel {
     this.chart = element('section');
     this.chart.append(element('h3', 'Sound speed, m/s, over depth, m'), this.canvas);
     this.side = element('section');
-    this.depths = table('Sound speed at the vehicles', ['Vehicle', 'depth, m', 'sound, m/s']);
+    this.depths =
+        table('Sound speed at the vehicles', ['Vehicle', 'depth, m', 'sound, m/s', 'current, m/s', 'towards, °']);
     this.depths.className = 'grid';
     this.facts = element('ul');
-    this.side.append(this.facts, this.depths);
+    this.tide = element('p', '', 'quiet');
+    this.side.append(this.facts, this.tide, this.depths);
     this.root.append(this.none, this.chart, this.side);
   }
 
@@ -56,7 +58,7 @@ export class WaterPanel {
     const facts = [];
     if (water) {
       const height_m = 4 * Math.sqrt(water.waves.reduce((sum, wave) => sum + wave.amplitude_m ** 2 / 2, 0));
-      facts.push(`Still surface at z = ${formatNumber(water.level_m)} m`);
+      facts.push(`Still surface at z = ${formatNumber(water.mean_level_m ?? water.level_m)} m`);
       facts.push(
           water.waves.length ? `${water.waves.length} waves, significant height ${height_m.toFixed(2)} m` : 'No waves');
     }
@@ -75,8 +77,26 @@ export class WaterPanel {
                        .slice(0, NAMES_MAX);
     for (const place of places) place.speed_mps = soundSpeedAt(profile, level_m - place.depth_m);
     fillTable(
-        this.depths, places.map((place) => [place.vehicle.name, place.depth_m.toFixed(2), place.speed_mps.toFixed(1)]));
+        this.depths,
+        places.map(
+            (place) =>
+                [place.vehicle.name, place.depth_m.toFixed(2), place.speed_mps.toFixed(1), ...this.currentAt(place)]));
+    const {motion} = this.app.currents, {time_us} = this.app.playback;
+    this.tide.textContent = motion.tides.length ? `Tide at present ${motion.tideAt(time_us).toFixed(3)} m` : '';
     this.draw(profile, level_m, places);
+  }
+
+  /**
+   * Speed of the current at a vehicle, and where it flows to, counter-clockwise from east; of one that is random and
+   * not known its mean.
+   */
+  currentAt({vehicle, depth_m}) {
+    const {app} = this, {motion} = app.currents, {time_us} = app.playback;
+    if (depth_m < 0) return ['–', '–'];
+    const [x, y, z] = vehicle.at.toArray().map((part, k) => part + app.data.origin_m[k]);
+    const v = motion.velocityAt([x, y, z], time_us), speed_mps = Math.hypot(...v);
+    const direction = speed_mps > 1e-4 ? (Math.atan2(v[1], v[0]) * 180 / Math.PI).toFixed(0) : '–';
+    return [`${motion.knows(time_us) ? '' : '≈ '}${speed_mps.toFixed(3)}`, direction];
   }
 
   draw(profile, level_m, places) {

@@ -13,25 +13,22 @@ void put_scalar(CdrWriter& out, std::int64_t utime, std::string_view channel, do
   put_numbers(out, {value, 0});
 }
 
-bool write_pressure(const shoal::pressure_t& message, std::string_view channel, CdrWriter& out) {
+template <class Message>
+bool put_pressure(const Message& message, std::string_view channel, CdrWriter& out) {
   put_scalar(out, message.utime, channel, message.pressure_Pa);
   return true;
 }
 
-bool write_temperature(const shoal::pressure_t& message, std::string_view channel, CdrWriter& out) {
+template <class Message>
+bool put_temperature(const Message& message, std::string_view channel, CdrWriter& out) {
   put_scalar(out, message.utime, channel, message.temperature_C);
   return true;
 }
 
-bool write_ctd_pressure(const shoal::ctd_t& message, std::string_view channel, CdrWriter& out) {
-  put_scalar(out, message.utime, channel, message.pressure_Pa);
-  return true;
-}
-
-bool write_ctd_temperature(const shoal::ctd_t& message, std::string_view channel, CdrWriter& out) {
-  put_scalar(out, message.utime, channel, message.temperature_C);
-  return true;
-}
+constexpr auto write_pressure = put_pressure<shoal::pressure_t>;
+constexpr auto write_ctd_pressure = put_pressure<shoal::ctd_t>;
+constexpr auto write_temperature = put_temperature<shoal::pressure_t>;
+constexpr auto write_ctd_temperature = put_temperature<shoal::ctd_t>;
 
 SHOAL_ROS2_CONVERTER(write_pressure, "sensor_msgs/msg/FluidPressure", "pressure");
 SHOAL_ROS2_CONVERTER(write_temperature, "sensor_msgs/msg/Temperature", "temperature");

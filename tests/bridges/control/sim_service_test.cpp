@@ -49,7 +49,7 @@ TEST(SimService, LeavesWhatIsAboutTimeToTheTimeMachine) {
 TEST(SimService, SaysWhyItRefuses) {
   Service s;
   EXPECT_THAT(s.request_reply("fly", 0).text,
-              testing::HasSubstr("unknown command 'fly'; known commands: alive, describe, do"));
+              testing::HasSubstr("unknown command 'fly'; known commands: alive, bus, describe, do"));
   EXPECT_THAT(s.request_reply("join", 0.015).text, testing::HasSubstr("a multiple of the step"));
   EXPECT_THAT(s.request_reply("leave", 0).text, testing::HasSubstr("no client named 'pilot'"));
   EXPECT_EQ(s.service.bad_messages(), 3);

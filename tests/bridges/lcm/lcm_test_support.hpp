@@ -41,6 +41,7 @@ inline std::string text_of(const sim::Bytes& bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
+/// Waits for what another thread or process brings about, looking once a millisecond; returns false at the limit.
 template <class Condition>
 bool await(const Condition& condition, std::chrono::milliseconds limit = 10s) {
   const auto deadline = std::chrono::steady_clock::now() + limit;

@@ -217,15 +217,33 @@ TEST(UdpReceiver, ThreeSendersLargeMessagesComeWholeAndApart) {
   EXPECT_EQ(received, (std::array<int, 3>{5, 5, 5}));
 }
 
+/// Bytes that the kernel keeps for the UDP sockets of a port.
+std::uint64_t kernel_bytes(int port) {
+  std::ifstream sockets("/proc/net/udp");
+  std::string line;
+  std::getline(sockets, line);  // names of the columns
+  std::uint64_t bytes = 0;
+  while (std::getline(sockets, line)) {
+    unsigned local_port = 0;
+    unsigned long waiting = 0;
+    if (std::sscanf(line.c_str(), " %*d: %*8x:%4x %*8x:%*4x %*2x %*8x:%8lx", &local_port, &waiting) == 2 &&
+        static_cast<int>(local_port) == port)
+      bytes += waiting;
+  }
+  return bytes;
+}
+
 TEST(UdpReceiver, WhatComesWhileTheProgramComputesIsNotLost) {
   if (!lcm_test::has_large_receive_buffers()) GTEST_SKIP() << "needs sysctl -w net.core.rmem_max=4194304";
   LcmListener listener(own_url());
   listener.listen("image");
   LcmListener sender(own_url());
-  // Ten times what the kernel keeps; no one calls next() meanwhile.
+  // Ten times what the kernel keeps; no one calls next() meanwhile.  The sender waits only while the kernel has so much
+  // that more would be lost before any thread could take it.
+  const int port = lcm_endpoint(resolve_lcm_url(own_url())).port;
   for (int i = 0; i < 400; ++i) {
     sender.publish("image", sim::Bytes(100'000, static_cast<std::byte>(i)));
-    std::this_thread::sleep_for(1ms);
+    ASSERT_TRUE(lcm_test::await([&] { return kernel_bytes(port) < 1'000'000; })) << i;
   }
   for (int i = 0; i < 400; ++i) {
     const auto message = listener.next(10s);

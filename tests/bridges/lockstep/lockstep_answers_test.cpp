@@ -82,8 +82,9 @@ TEST(LockstepAnswers, WhatCameWithAnAnswerAfterTheInputsWasLookedAtIsNotAskedFor
       [&](std::chrono::milliseconds) {
         if (!std::exchange(sent, true)) s.acknowledge(0, "pilot", 5, 1, {{"cmd", "1"}});
       },
-      [&] {  // and then this process has no processor for longer than it waits before it asks
-        if (sent) std::this_thread::sleep_for(std::chrono::milliseconds(3));
+      [&] {  // and then this process has no processor for longer than it waits before it asks: the sleep is the cause
+        if (sent)
+          std::this_thread::sleep_for(std::chrono::milliseconds(3));  // that is tested, and no wait for a result
         return true;
       });
   EXPECT_EQ(s.admitted(), "1");

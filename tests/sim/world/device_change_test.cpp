@@ -31,6 +31,7 @@ TEST(DeviceChange, RefusesKeysThatOnlyConstructionUses) {
                                          {"differential_drive" + wheels, "right_joint", "left"},
                                          {"joint_servo, joint: left", "joint", "right"},
                                          {"joint_servo, joint: left", "axis", "1"},
+                                         {"joint_servo, joint: left", "alias", "l"},
                                          {"joint_motor, joint: left", "joint", "right"},
                                          {"buoyancy_engine", "initial_m3", "1e-5"},
                                          {"moving_mass", "motion", "turn"},

@@ -48,6 +48,15 @@ sim::Bytes stamped(Message message, std::int64_t utime) {
   return shoal::encode(message);
 }
 
+/// Returns a command with the thrust and the rudder of the axes.
+template <typename Message>
+Message thrust_rudder(const DriveProfile::Thrust& limits, const DriveValues& values) {
+  Message command{};
+  command.thrust = value_of(values, "forward") * limits.thrust;
+  command.rudder = value_of(values, "turn") * limits.rudder;
+  return command;
+}
+
 std::string words_of(const std::vector<DriveKind>& kinds) {
   std::string words;
   for (const DriveKind kind : kinds)
@@ -223,18 +232,12 @@ sim::Bytes DriveMapping::payload(const Target& target, const DriveValues& values
     case Form::helm:
       return helm_payload(values, utime, pose);
     case Form::thrust_rudder_elevator: {
-      shoal::thrust_rudder_elevator_command_t command{};
-      command.thrust = forward * profile_.thrust.thrust;
-      command.rudder = turn * profile_.thrust.rudder;
+      auto command = thrust_rudder<shoal::thrust_rudder_elevator_command_t>(profile_.thrust, values);
       command.elevator = value_of(values, "dive") * profile_.thrust.elevator;
       return stamped(command, utime);
     }
-    case Form::thrust_rudder: {
-      shoal::thrust_rudder_command_t command{};
-      command.thrust = forward * profile_.thrust.thrust;
-      command.rudder = turn * profile_.thrust.rudder;
-      return stamped(command, utime);
-    }
+    case Form::thrust_rudder:
+      return stamped(thrust_rudder<shoal::thrust_rudder_command_t>(profile_.thrust, values), utime);
     case Form::joint_servo: {
       shoal::joint_servo_command_t command{};
       command.mode = 1;

@@ -141,9 +141,10 @@ void DriveProfile::read(sim::ParamReader& in) {
   check_size(in, "programs", programs.size());
 }
 
-DriveProfile parse_drive_profile(const std::string& text, const std::string& name) {
-  sim::Diagnostics diagnostics;
-  const sim::ConfigNode tree = sim::parse_config_text(text, name, diagnostics);
+namespace {
+
+/// Reads a profile from a tree in which there are no mistakes so far.
+DriveProfile profile_in(const sim::ConfigNode& tree, sim::Diagnostics& diagnostics) {
   diagnostics.throw_if_any();
   DriveProfile profile;
   sim::ParamReader in(tree, "drive profile", diagnostics);
@@ -153,17 +154,17 @@ DriveProfile parse_drive_profile(const std::string& text, const std::string& nam
   return profile;
 }
 
+}  // namespace
+
+DriveProfile parse_drive_profile(const std::string& text, const std::string& name) {
+  sim::Diagnostics diagnostics;
+  return profile_in(sim::parse_config_text(text, name, diagnostics), diagnostics);
+}
+
 DriveProfile read_drive_profile(const std::string& file) {
   if (file.empty()) return parse_drive_profile(std::string(default_drive_profile()), "the drive profile of shoal");
   sim::Diagnostics diagnostics;
-  const sim::ConfigNode tree = sim::load_config_file(file, diagnostics);
-  diagnostics.throw_if_any();
-  DriveProfile profile;
-  sim::ParamReader in(tree, "drive profile", diagnostics);
-  profile.read(in);
-  in.finish();
-  diagnostics.throw_if_any();
-  return profile;
+  return profile_in(sim::load_config_file(file, diagnostics), diagnostics);
 }
 
 }  // namespace tools

@@ -11,6 +11,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "tools/experiment/film/background_writer.hpp"
 #include "tools/experiment/film/camera_rig.hpp"
 #include "tools/experiment/film/film_source.hpp"
 #include "tools/experiment/film/ping_observer.hpp"
@@ -57,12 +58,17 @@ class FilmProgress {
 /// Copies an image into a frame, in the middle of the columns [first, first + width).
 void place(const sim::Image8& image, int first, int width, sim::Image8& frame) {
   const int left = first + (width - image.width) / 2, top = (frame.height - image.height) / 2;
-  for (int row = 0; row < image.height; ++row)
+  for (int row = 0; row < image.height; ++row) {
+    if (image.channels == 3) {
+      std::copy_n(image.at(0, row), std::size_t{3} * static_cast<std::size_t>(image.width), frame.at(left, top + row));
+      continue;
+    }
     for (int column = 0; column < image.width; ++column) {
       const std::uint8_t* from = image.at(column, row);
       std::uint8_t* to = frame.at(left + column, top + row);
-      for (int channel = 0; channel < 3; ++channel) to[channel] = from[image.channels == 3 ? channel : 0];
+      for (int channel = 0; channel < 3; ++channel) to[channel] = *from;
     }
+  }
 }
 
 class Film {
@@ -80,21 +86,21 @@ class Film {
   FilmOutcome run() {
     const Clock::time_point start = Clock::now();
     const std::int64_t frames = frame_count();
-    auto writer = make_film_writer(options_.out, options_.format);
+    BackgroundWriter writer(make_film_writer(options_.out, options_.format));
     FilmProgress progress(options_.quiet);
     for (std::int64_t i = 0; i < frames && caught_signal() == 0; ++i) {
       if (!advance(options_.from_s + static_cast<double>(i) * step_s())) {
         outcome_.note = fmt::format("the run ends at {:.3f} s", sim::to_seconds(world_.now()));
         break;
       }
-      writer->add(paint(i == 0 ? 0 : 1.0 / options_.format.fps));
+      writer.add(paint(i == 0 ? 0 : 1.0 / options_.format.fps));
       ++outcome_.frames;
       progress.update(i + 1, frames, sim::to_seconds(world_.now()));
     }
     progress.clear();
     outcome_.interrupted = caught_signal() != 0;
     if (outcome_.interrupted) return outcome_;
-    writer->finish();
+    writer.finish();
     outcome_.wall_s = seconds_since(start);
     outcome_.film_s = static_cast<double>(outcome_.frames) / options_.format.fps;
     outcome_.sim_s = sim::to_seconds(world_.now()) - options_.from_s;
@@ -163,7 +169,8 @@ class Film {
   const sim::Image8& paint(double film_step_s) {
     overlay_.observe();
     const int columns = options_.format.width / static_cast<int>(rigs_.size());
-    frame_ = sim::Image8(options_.format.width, options_.format.height, 3);
+    frame_.width = options_.format.width, frame_.height = options_.format.height, frame_.channels = 3;
+    frame_.data.assign(frame_.size(), 0);
     for (std::size_t i = 0; i < rigs_.size(); ++i) {
       const SceneView view = rigs_[i]->view(film_step_s);
       RenderedScene& rendered = painter_.paint(view);

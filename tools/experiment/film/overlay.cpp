@@ -171,8 +171,10 @@ void Overlay::draw_labels(OverlayCanvas& canvas, const SceneView& view) const {
 void Overlay::draw_clock(OverlayCanvas& canvas, const SceneView& view) const {
   const double now_s = sim::to_seconds(world_.now());
   const int minutes = static_cast<int>(now_s / 60);
-  const std::string time =
-      minutes > 0 ? fmt::format("{}:{:04.1f}", minutes, now_s - 60.0 * minutes) : fmt::format("{:.1f} s", now_s);
+  const double seconds = now_s - 60.0 * minutes;
+  const std::string time = minutes >= 60 ? fmt::format("{}:{:02}:{:04.1f}", minutes / 60, minutes % 60, seconds)
+                           : minutes > 0 ? fmt::format("{}:{:04.1f}", minutes, seconds)
+                                         : fmt::format("{:.1f} s", now_s);
   const float margin = 1.6F * canvas.text_height();
   const auto height = static_cast<float>(view.optics.height);
   canvas.text(margin, height - margin, time + (settings_.title.empty() ? "" : "  " + settings_.title), {});

@@ -91,7 +91,18 @@ void OverlayCanvas::label(const sim::Vector3d& p_W, const std::string& text, con
   Pen own = pen;
   const int column = static_cast<int>(place->u), row = static_cast<int>(place->v);
   if (is_hidden(column, row, place->inverse_depth)) own.opacity *= 0.6F;
-  this->text(place->u - 0.5F * text_width(text), place->v - 4 * unit_px_, text, own);
+  LabelPlace own_place{place->u - 0.5F * text_width(text), place->v - 4 * unit_px_, text_width(text)};
+  // Each round moves it upwards, so it ends above the highest label at the latest.
+  const float line_px = text_height() + 3 * unit_px_;
+  const auto covers = [&](const LabelPlace& other) {
+    return std::abs(own_place.v - other.v) < line_px && own_place.u < other.u + other.width &&
+           other.u < own_place.u + own_place.width;
+  };
+  for (auto other = std::ranges::find_if(labels_, covers); other != labels_.end();
+       other = std::ranges::find_if(labels_, covers))
+    own_place.v = other->v - line_px;
+  labels_.push_back(own_place);
+  this->text(own_place.u, own_place.v, text, own);
 }
 
 void OverlayCanvas::text(float u, float v, const std::string& text, const Pen& pen) {

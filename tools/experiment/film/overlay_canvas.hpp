@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "sim/camera/optics.hpp"
 #include "sim/image/image.hpp"
@@ -35,7 +36,7 @@ class OverlayCanvas {
                const Pen& pen);
   /// Draws a disc of a diameter of `pen.width_px` at a point of the world.
   void dot(const sim::Vector3d& p_W, const Pen& pen);
-  /// Writes text, centred above a point of the world.
+  /// Writes text, centred above a point of the world, and above the labels that were written there before.
   void label(const sim::Vector3d& p_W, const std::string& text, const Pen& pen);
   /// Writes text with its base line from (u, v) on, in pixels.
   void text(float u, float v, const std::string& text, const Pen& pen);
@@ -53,6 +54,11 @@ class OverlayCanvas {
     float inverse_depth = 0;  // linear along a line in the image
   };
 
+  /// Base line of a label: its left end, its height in the image, its width.
+  struct LabelPlace {
+    float u = 0, v = 0, width = 0;
+  };
+
   Place place_of(const sim::Vector2d& pixel, double depth_m) const;
   std::optional<Place> project(const sim::Vector3d& p_S) const;
   void segment(const Place& from, const Place& to, const Pen& pen, bool tested);
@@ -66,6 +72,7 @@ class OverlayCanvas {
   sim::Pose X_SW_;
   bool straight_;  // lines of the world are straight in the image
   float unit_px_;  // of the font
+  std::vector<LabelPlace> labels_;
 };
 
 }  // namespace tools

@@ -4,6 +4,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
+#include <atomic>
 
 namespace tools {
 
@@ -56,31 +57,36 @@ void ScenePainter::render(Lens& lens, const SceneView& view) {
   if (lens.water) lens.water->update(view.X_WS.translation());
   world_.scene().prepare();
   lens.renderers.front()->clear(frame_);
+  // Color images are developed at once, while the rows are in the cache.
+  const float gain = view.gain * (lens.water ? lens.water->gain() : 1.0F);
   const int height = view.optics.height;
+  const bool is_color = view.options.kind == sim::ImageKind::color;
+  if (is_color) rendered_.image = sim::Image8(view.optics.width, height, view.grey ? 1 : 3);
+  const auto render_strip = [&](sim::Renderer& renderer, int first) {
+    const int end = std::min(first + strip_rows, height);
+    renderer.render_rows(view.X_WS, first, end, 1, frame_);
+    if (is_color) sim::develop_rows(frame_.light, gain, first, end, rendered_.image);
+  };
   if (!world_.scene().concurrent()) {
-    lens.renderers.front()->render_rows(view.X_WS, 0, height, 1, frame_);
+    for (int row = 0; row < height; row += strip_rows) render_strip(*lens.renderers.front(), row);
     return;
   }
-  // Each renderer takes every n-th strip, so that costly parts of the image are shared.
-  const int count = static_cast<int>(lens.renderers.size());
-  threads_.for_each(static_cast<std::size_t>(count), [&](std::size_t i) {
-    for (int row = static_cast<int>(i) * strip_rows; row < height; row += count * strip_rows)
-      lens.renderers[i]->render_rows(view.X_WS, row, std::min(row + strip_rows, height), 1, frame_);
+  // Each renderer takes the next strip when it has rendered one, for strips differ in their cost.
+  std::atomic<int> next_row = 0;
+  threads_.for_each(lens.renderers.size(), [&](std::size_t i) {
+    for (int row = next_row.fetch_add(strip_rows); row < height; row = next_row.fetch_add(strip_rows))
+      render_strip(*lens.renderers[i], row);
   });
 }
 
 RenderedScene& ScenePainter::paint(const SceneView& view) {
-  Lens& lens = lens_of(view);
-  render(lens, view);
-  if (view.options.kind == sim::ImageKind::depth) {
+  render(lens_of(view), view);
+  if (view.options.kind == sim::ImageKind::depth)
     rendered_.image = sim::depth_image(frame_.depth_m);
-  } else if (view.options.kind != sim::ImageKind::color) {
+  else if (view.options.kind != sim::ImageKind::color)
     rendered_.image = sim::label_image(frame_.labels);
-  } else {
-    const float gain = view.gain * (lens.water ? lens.water->gain() : 1.0F);
-    rendered_.image = sim::develop(view.grey ? sim::grey_of(frame_.light) : frame_.light, gain);
+  else
     std::swap(rendered_.depth_m, frame_.depth_m);
-  }
   return rendered_;
 }
 

@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "shoal/wire_value.hpp"
+
 namespace tools {
 
 namespace {
@@ -23,31 +25,10 @@ constexpr std::uint8_t message_kind = 2;
 /// Longer arrays of numbers are in the blob.
 constexpr std::uint64_t longest_in_header = 16;
 
-template <class T>
-T big_endian(const std::byte* at) {
-  T value = 0;
-  for (std::size_t i = 0; i < sizeof(T); ++i) value = static_cast<T>(value << 8 | std::to_integer<T>(at[i]));
-  return value;
-}
-
-std::int64_t integer_at(WireType type, const std::byte* at) {
-  switch (shoal::wire_size(type)) {
-    case 1:
-      return type == WireType::int8 ? static_cast<std::int8_t>(*at) : std::to_integer<std::int64_t>(*at);
-    case 2:
-      return static_cast<std::int16_t>(big_endian<std::uint16_t>(at));
-    case 4:
-      return static_cast<std::int32_t>(big_endian<std::uint32_t>(at));
-    default:
-      return static_cast<std::int64_t>(big_endian<std::uint64_t>(at));
-  }
-}
-
 Json number_at(WireType type, const std::byte* at) {
   if (type == WireType::boolean) return *at == std::byte{0} ? 0 : 1;
-  if (type != WireType::float32 && type != WireType::float64) return integer_at(type, at);
-  const double value = type == WireType::float32 ? std::bit_cast<float>(big_endian<std::uint32_t>(at))
-                                                 : std::bit_cast<double>(big_endian<std::uint64_t>(at));
+  if (type != WireType::float32 && type != WireType::float64) return shoal::read_integer(type, at);
+  const double value = shoal::read_real(type, at);
   return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
 
@@ -80,7 +61,8 @@ class FieldDecoder {
           dimension.is_variable() ? lengths[static_cast<std::size_t>(dimension.length_slot)] : dimension.constant));
       count *= sizes.back();
     }
-    if (member.length_slot >= 0) lengths[static_cast<std::size_t>(member.length_slot)] = integer_at(member.type, at_);
+    if (member.length_slot >= 0)
+      lengths[static_cast<std::size_t>(member.length_slot)] = shoal::read_integer(member.type, at_);
     const bool is_number = member.type != WireType::compound && member.type != WireType::string;
     if (is_number && !sizes.empty() && count > longest_in_header) return put_array(member.type, sizes, count);
     return decode_elements(member, sizes, 0);
@@ -96,7 +78,7 @@ class FieldDecoder {
   Json decode_element(const shoal::Member& member) {
     if (member.type == WireType::compound) return decode(*member.compound);
     if (member.type == WireType::string) {
-      const std::size_t size = big_endian<std::uint32_t>(at_);  // with the final NUL
+      const std::size_t size = shoal::big_endian<std::uint32_t>(at_);  // with the final NUL
       std::string text(reinterpret_cast<const char*>(at_ + 4), size - 1);
       at_ += 4 + size;
       return text;
@@ -114,17 +96,17 @@ class FieldDecoder {
     const std::size_t size = shoal::wire_size(type);
     if (type == WireType::float32) {
       place["array"] = "f32";
-      put_numbers(count, size, [](const std::byte* at) { return big_endian<std::uint32_t>(at); });
+      put_numbers(count, size, [](const std::byte* at) { return shoal::big_endian<std::uint32_t>(at); });
     } else if (type == WireType::float64) {
       place["array"] = "f64";
-      put_numbers(count, size, [](const std::byte* at) { return big_endian<std::uint64_t>(at); });
+      put_numbers(count, size, [](const std::byte* at) { return shoal::big_endian<std::uint64_t>(at); });
     } else if (type == WireType::byte || type == WireType::boolean) {
       place["array"] = "u8";
       blob_.append(reinterpret_cast<const char*>(at_), count);
       at_ += count;
     } else {
       place["array"] = "i64";
-      put_numbers(count, size, [type](const std::byte* at) { return integer_at(type, at); });
+      put_numbers(count, size, [type](const std::byte* at) { return shoal::read_integer(type, at); });
     }
     return place;
   }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/experiment/page_data/traffic_counts.hpp"
 
+#include <algorithm>
+
 #include "shoal/message_codec.hpp"
 #include "shoal/modem_received_t.hpp"
 #include "shoal/modem_send_t.hpp"
@@ -49,8 +51,16 @@ void TrafficCounts::take(std::string_view channel, std::span<const std::byte> pa
 
 void TrafficCounts::take_sound(std::span<const std::byte> payload) {
   const auto sound = shoal::decode<shoal::sim_sound_t>(payload, shoal::Finite::any);
+  if (sound.kind == "noise") return;
   // Every receiver in range gets a result, whoever is meant.
-  if (sound.kind != "noise") add_sent(sound.source, "");
+  add_sent(sound.source, "");
+  if (senders_.size() >= max_pairs && !senders_.contains(sound.source)) return;
+  Sender& sender = senders_[sound.source];
+  ++sender.count;
+  sender.bytes += sound.bytes;
+  // A damaged log must not overflow the sum.
+  constexpr std::int64_t max_duration_us = 3'600'000'000;
+  sender.sending_us += std::clamp<std::int64_t>(sound.duration_us, 0, max_duration_us);
 }
 
 void TrafficCounts::take_arrival(std::span<const std::byte> payload) {

@@ -29,6 +29,11 @@ class TrafficCounts {
     std::int64_t received = 0;
     std::map<std::string, std::int64_t, std::less<>> lost;  ///< by outcome
   };
+  /// What a device has transmitted by sound.
+  struct Sender {
+    std::int64_t count = 0, bytes = 0;
+    std::int64_t sending_us = 0;  ///< sum of the durations
+  };
   /// Sender and receiver: devices by sound, vehicles by radio.
   using Names = std::pair<std::string, std::string>;
 
@@ -37,6 +42,8 @@ class TrafficCounts {
 
   const auto& channels() const { return channels_; }
   const std::map<Names, Pair>& pairs() const { return pairs_; }
+  /// Returns the senders of sounds, except noise, by the names of the devices.
+  const std::map<std::string, Sender>& senders() const { return senders_; }
   /// Returns how many messages a sender has transmitted to a receiver or to all.
   std::int64_t sent(const Names& names) const;
   /// Returns a number that rises with each sound and each radio message.
@@ -59,6 +66,7 @@ class TrafficCounts {
   std::unordered_map<std::string, Channel, TextHash, std::equal_to<>> channels_;
   std::map<Names, Pair> pairs_;
   std::map<Names, std::int64_t> sent_;  // to: empty for all
+  std::map<std::string, Sender> senders_;
   std::int64_t link_changes_ = 0;
 };
 

@@ -3,11 +3,14 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace tools {
 
 void TrafficHistory::set(Values& values, std::uint32_t marks, std::int64_t value) {
-  if ((values.empty() ? 0 : values.back().value) != value) values.push_back({marks, value});
+  if ((values.empty() ? 0 : values.back().value) == value) return;
+  values.push_back({marks, value});
+  ++size_;
 }
 
 std::int64_t TrafficHistory::get(const Values& values, std::size_t marks) {
@@ -23,6 +26,11 @@ void TrafficHistory::for_each(Use&& use) {
     use(channel.bytes);
   }
   for (auto& [names, values] : sent_) use(values);
+  for (auto& [name, sender] : senders_) {
+    use(sender.count);
+    use(sender.bytes);
+    use(sender.sending_us);
+  }
   for (auto& [names, values] : links_) use(values);
 }
 
@@ -36,17 +44,53 @@ void TrafficHistory::mark(std::int64_t time_us, std::uint64_t offset, const Traf
     set(values.bytes, marks, channel.bytes);
   }
   for (const auto& [names, number] : counts.sent_) set(sent_[names], marks, number);
+  for (const auto& [name, sender] : counts.senders()) {
+    SenderValues& values = senders_[name];
+    set(values.count, marks, sender.count);
+    set(values.bytes, marks, sender.bytes);
+    set(values.sending_us, marks, sender.sending_us);
+  }
   for (const auto& [names, pair] : counts.pairs()) {
     set(links_[{names.first, names.second, ""}], marks, pair.received);
     for (const auto& [outcome, number] : pair.lost) set(links_[{names.first, names.second, outcome}], marks, number);
   }
+  if (size_ > limit_) thin();
+}
+
+void TrafficHistory::thin() {
+  // Of the older half those stay that are twice as far apart as its marks are on the average: at most half of them.
+  const std::size_t older = marks_.size() / 2;
+  const std::int64_t span_us = marks_[older].time_us - marks_[0].time_us;
+  const std::int64_t apart_us = 2 * span_us / static_cast<std::int64_t>(std::max<std::size_t>(1, older));
+  std::vector<std::uint32_t> renumbered(marks_.size() + 1);  // by the old number, from 1: that of the next to stay
+  std::vector<Mark> kept;
+  for (std::size_t i = 0; i < marks_.size(); ++i) {
+    renumbered[i + 1] = static_cast<std::uint32_t>(kept.size()) + 1;
+    if (i >= older || kept.empty() || marks_[i].time_us - kept.back().time_us >= apart_us) kept.push_back(marks_[i]);
+  }
+  marks_ = std::move(kept);
+  // Of several values that now begin at the same mark the last one holds.
+  size_ = 0;
+  for_each([&](Values& values) {
+    Values left;
+    for (const Value& value : values) {
+      const std::uint32_t marks = renumbered[value.marks];
+      if (!left.empty() && left.back().marks == marks) left.pop_back();
+      left.push_back({marks, value.value});
+    }
+    values = std::move(left);
+    size_ += values.size();
+  });
 }
 
 bool TrafficHistory::rewind(std::int64_t time_us) {
   if (marks_.empty() || marks_.back().time_us <= time_us) return false;
   while (!marks_.empty() && marks_.back().time_us > time_us) marks_.pop_back();
   for_each([this](Values& values) {
-    while (!values.empty() && values.back().marks > marks_.size()) values.pop_back();
+    while (!values.empty() && values.back().marks > marks_.size()) {
+      values.pop_back();
+      --size_;
+    }
   });
   return true;
 }
@@ -62,6 +106,9 @@ TrafficCounts TrafficHistory::restore(std::size_t marks) const {
       counts.channels_[name] = {values.fingerprint, count, get(values.bytes, marks)};
   for (const auto& [names, values] : sent_)
     if (const std::int64_t number = get(values, marks); number > 0) counts.sent_[names] = number;
+  for (const auto& [name, values] : senders_)
+    if (const std::int64_t count = get(values.count, marks); count > 0)
+      counts.senders_[name] = {count, get(values.bytes, marks), get(values.sending_us, marks)};
   for (const auto& [key, values] : links_) {
     const std::int64_t number = get(values, marks);
     if (number == 0) continue;

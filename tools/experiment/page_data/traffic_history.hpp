@@ -11,9 +11,16 @@
 
 namespace tools {
 
-/// Counts of a log at marks along it, some one per second.  Only what has changed since the mark before takes memory.
+/// Counts of a log at marks along it, some one per second, or of a run.  Only what has changed since the mark before
+/// takes memory; when there is too much of it, the marks of the older half are kept twice as far
+/// apart.
 class TrafficHistory {
  public:
+  /// Maximum number of values, of 16 bytes each.
+  static constexpr std::size_t max_values = std::size_t{1} << 20;
+
+  explicit TrafficHistory(std::size_t limit = max_values) : limit_(limit) {}
+
   /// Counts before a place in the log.
   struct Point {
     TrafficCounts counts;
@@ -47,15 +54,23 @@ class TrafficHistory {
     Values count, bytes;
   };
 
-  static void set(Values& values, std::uint32_t marks, std::int64_t value);
+  struct SenderValues {
+    Values count, bytes, sending_us;
+  };
+
+  void set(Values& values, std::uint32_t marks, std::int64_t value);
+  void thin();
   static std::int64_t get(const Values& values, std::size_t marks);
   TrafficCounts restore(std::size_t marks) const;
   template <typename Use>
   void for_each(Use&& use);
 
+  std::size_t limit_;
+  std::size_t size_ = 0;  // number of values
   std::vector<Mark> marks_;
   std::map<std::string, ChannelValues, std::less<>> channels_;
   std::map<TrafficCounts::Names, Values> sent_;
+  std::map<std::string, SenderValues> senders_;
   std::map<std::tuple<std::string, std::string, std::string>, Values> links_;  // last: outcome; empty: received
 };
 

@@ -39,6 +39,7 @@ void take_usual_signals() {
 
 /// Runs in the child, where nothing may be allocated, because other threads may have held locks.  Returns on failure.
 void become(const ChildProgram& program, char* const* arguments, char* const* environment, pid_t parent) {
+  take_usual_signals();  // first: the parent's handler would only note a SIGTERM that comes before the program runs
   if (setpgid(0, 0) != 0 || prctl(PR_SET_PDEATHSIG, SIGTERM) != 0) return;
   if (getppid() != parent) _exit(128 + SIGTERM);  // it ended before it could be monitored
   if (program.input >= 0 ? dup2(program.input, STDIN_FILENO) < 0 : !open_as(STDIN_FILENO, "/dev/null", O_RDONLY))
@@ -47,7 +48,6 @@ void become(const ChildProgram& program, char* const* arguments, char* const* en
     if (!open_as(STDOUT_FILENO, program.log.c_str(), O_WRONLY | O_CREAT | O_TRUNC)) return;
     if (dup2(STDOUT_FILENO, STDERR_FILENO) < 0) return;
   }
-  take_usual_signals();
   execvpe(program.path.c_str(), arguments, environment);
 }
 

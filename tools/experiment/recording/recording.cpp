@@ -8,8 +8,9 @@
 #include <utility>
 
 #include "bridges/log/event_log.hpp"
+#include "tools/experiment/log_data/log_index.hpp"
+#include "tools/experiment/log_data/message_times.hpp"
 #include "tools/experiment/page_data/view_json.hpp"
-#include "tools/experiment/view/log_index.hpp"
 #include "tools/experiment/view/view_messages.hpp"
 
 namespace tools {
@@ -83,7 +84,7 @@ void Recording::read(const std::string& log, const std::function<void(double sha
       progress(0.5 + static_cast<double>(event.offset) / static_cast<double>(2 * reader.file_bytes()));
     if (event.channel == "sim.event") continue;  // all are at the start
     if (event.channel != "sim.bodies") {
-      const auto stamp = stamp_of(event.payload.data(), event.payload.size());
+      const auto stamp = stamp_of(event.payload);
       const std::int64_t before_us = messages.newest_us();
       now_us_ = event.channel.starts_with("sim.sound") && stamp ? std::max(start_us_, *stamp - epoch_us_)
                                                                 : std::max(start_us_, before_us);

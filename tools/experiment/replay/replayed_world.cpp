@@ -12,6 +12,7 @@
 #include "shoal/message_codec.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/world/world_state.hpp"
+#include "tools/experiment/process/world_programs.hpp"
 #include "tools/experiment/run/runner.hpp"
 #include "tools/experiment/snapshot/run_identity.hpp"
 
@@ -44,6 +45,20 @@ sim::LoadedWorld load_world_of(const ReplayLog& log, const ReplayedWorld::Option
   return loaded;
 }
 
+/// Returns the index of the first input at this step or later.
+std::size_t index_from(const std::vector<ReplayLog::Input>& inputs, std::int64_t step) {
+  const auto next =
+      std::find_if(inputs.begin(), inputs.end(), [step](const ReplayLog::Input& input) { return input.step >= step; });
+  return static_cast<std::size_t>(next - inputs.begin());
+}
+
+RunOptions bus_options(const ReplayedWorld::Options& options) {
+  RunOptions run;
+  run.bus = options.for_programs ? "lcm" : "none";
+  run.lcm_url = options.for_programs.value_or("");
+  return run;
+}
+
 }  // namespace
 
 ReplayedWorld::ReplayedWorld(const ReplayLog& log, const Options& options, Watch watch)
@@ -51,12 +66,25 @@ ReplayedWorld::ReplayedWorld(const ReplayLog& log, const Options& options, Watch
       loaded_(load_world_of(log_, options)),
       watch_(std::move(watch)),
       inputs_(options.inputs),
-      main_(make_line()),
+      for_programs_(options.for_programs.has_value()),
+      buses_(loaded_.config, bus_options(options)),
+      main_(buses_.outer(), tap()),
       others_(make_others()),
-      world_(loaded_.config, *main_.gate, serial_.opener(),
-             [this](const std::string& name) -> sim::Bus& { return *others_.at(name).gate; }),
-      service_(*main_.gate, *main_.network, world_, control_, lockstep_,
-               {sim::to_yaml(loaded_.resolved), version_text(), build_text(), log_.info.files}) {
+      other_simulators_(buses_.networks(), false),
+      world_(loaded_.config, main_, serial_.opener(),
+             [this](const std::string& name) -> sim::Bus& { return *others_.at(name); }),
+      journal_(unread_, world_, no_ports_, [] { return false; }),
+      lockstep_(world_, control_, lockstep_buses()),
+      service_(main_, buses_.network(), world_, control_, lockstep_,
+               {sim::to_yaml(loaded_.resolved), version_text(), build_text(), log_.info.files}, service_links()) {
+  if (for_programs_) {
+    buses_.set_muted(true);
+    read_programs(loaded_, {true, options.load.allow_paths});
+    journal_.set_listener([this](std::int64_t step, const RunJournal::Input& input) {
+      if (live_) own_inputs_.push_back({step, input.bus, input.channel, input.payload});
+    });
+    journal_.start();
+  }
   check_times();
   restore(options.load.sets.empty() && options.world.empty());
   world_.use_threads(options.threads);
@@ -67,21 +95,41 @@ ReplayedWorld::ReplayedWorld(const ReplayLog& log, const Options& options, Watch
 void ReplayedWorld::add_serial_inputs(std::int64_t from_step) {
   serial_.clear();
   for (const ReplayLog::Input& input : log_.inputs)
-    if (input.bus == RunJournal::serial_bus && input.step >= from_step) serial_.add(input);
+    if (input.bus == RunJournal::serial_bus && input.step >= from_step && input.step < end_of_inputs_)
+      serial_.add(input);
 }
 
-ReplayedWorld::Line ReplayedWorld::make_line() {
-  Line line;
-  if (watch_)
-    line.gate->set_watch(
-        [this](std::string_view channel, std::span<const std::byte> payload) { watch_(channel, payload); });
-  return line;
+TapBus::Listener ReplayedWorld::tap() {
+  return [this](std::string_view channel, std::span<const std::byte> payload, sim::Time) {
+    if (watch_) watch_(channel, payload);
+  };
 }
 
-std::map<std::string, ReplayedWorld::Line> ReplayedWorld::make_others() {
-  std::map<std::string, Line> others;
-  for (const sim::BusConfig& bus : loaded_.config.buses) others.emplace(bus.name, make_line());
+std::map<std::string, std::unique_ptr<TapBus>> ReplayedWorld::make_others() {
+  std::map<std::string, std::unique_ptr<TapBus>> others;
+  for (const sim::BusConfig& bus : loaded_.config.buses)
+    others.emplace(bus.name, std::make_unique<TapBus>(buses_.of(bus.name), tap()));
   return others;
+}
+
+/// Without programs no client joins.
+std::vector<bridges::LockstepBus> ReplayedWorld::lockstep_buses() {
+  if (!for_programs_) return {};
+  std::vector<bridges::LockstepBus> all{{buses_.network(), buses_.gate()}};
+  for (const sim::BusConfig& bus : loaded_.config.buses)
+    all.push_back({buses_.network(bus.name), buses_.gate(bus.name), bus.name});
+  return all;
+}
+
+bridges::ServiceLinks ReplayedWorld::service_links() {
+  if (!for_programs_) return {};
+  bridges::ServiceLinks links{&journal_, &other_simulators_};
+  for (const sim::BusConfig& bus : loaded_.config.buses) links.vehicle_buses.push_back(&buses_.network(bus.name));
+  return links;
+}
+
+std::optional<std::string> ReplayedWorld::another_simulator() {
+  return other_simulators_.look([this](std::chrono::milliseconds time) { buses_.wait(time); });
 }
 
 void ReplayedWorld::check_times() const {
@@ -125,16 +173,57 @@ void ReplayedWorld::start() {
 }
 
 void ReplayedWorld::step() {
+  if (for_programs_) journal_.begin_step();
   deliver(world_.step_number());
+  int link = 0;
+  admit("", link);
+  for (const auto& [name, other] : others_) admit(name, ++link);
+  serial_.begin_step(world_.step_number());
+  world_.step();
+  service_.publish_step();
+  if (for_programs_) journal_.after_step();
+}
+
+/// Delivers the inputs on a bus: those that are due, or those from outside.
+void ReplayedWorld::admit(const std::string& bus, int link) {
+  sim::MessageGate& gate = buses_.gate(bus);
+  std::vector<sim::MessageGate::Delivery>& due = due_[bus];
   const auto pass = [this](std::span<const sim::MessageGate::Delivery> inputs) {
     if (!inputs_) return;
     for (const sim::MessageGate::Delivery& input : inputs) inputs_(input.channel, input.payload);
   };
-  pass(main_.gate->admit());
-  for (auto& [name, line] : others_) pass(line.gate->admit());
-  serial_.begin_step(world_.step_number());
-  world_.step();
-  service_.publish_step();
+  if (live_) {
+    const std::vector<sim::MessageGate::Delivery>& inputs = gate.admit();
+    for (const sim::MessageGate::Delivery& input : inputs)
+      own_inputs_.push_back({world_.step_number(), bus, input.channel, input.payload});
+    return pass(inputs);
+  }
+  // Afterwards `due` has what programs have published in the meantime.
+  const std::vector<sim::MessageGate::Delivery>& recorded = gate.admit_instead(due);
+  for (const sim::MessageGate::Delivery& message : due) spoken_.emplace(link, message.channel);
+  due.clear();
+  pass(recorded);
+  if (lockstep_.empty()) return;
+  // What others than its programs sent in the recorded run.
+  for (const sim::MessageGate::Delivery& input : recorded)
+    if (lockstep_.has_receiver(input.channel, link) && !spoken_.contains({link, input.channel}))
+      lockstep_.post(link, input.channel, input.payload);
+}
+
+bool ReplayedWorld::has_commands() const {
+  return std::any_of(log_.inputs.begin(), log_.inputs.end(), [](const ReplayLog::Input& input) {
+    return !input.bus.empty() || input.channel != RunJournal::request_channel;
+  });
+}
+
+void ReplayedWorld::drop_inputs_from(std::int64_t step) {
+  end_of_inputs_ = std::min(end_of_inputs_, step);
+  std::erase_if(own_inputs_, [step](const ReplayLog::Input& input) { return input.step >= step; });
+}
+
+void ReplayedWorld::restore_inputs() {
+  end_of_inputs_ = std::numeric_limits<std::int64_t>::max();
+  own_inputs_.clear();
 }
 
 sim::Bytes ReplayedWorld::save() {
@@ -165,31 +254,29 @@ void ReplayedWorld::load(const sim::Bytes& saved) {
   owners.end();
   // The inputs before this step have been delivered.
   const std::int64_t step = world_.step_number();
-  main_.gate->waiting().clear();
-  for (auto& [name, line] : others_) line.gate->waiting().clear();
-  const auto next = std::find_if(log_.inputs.begin(), log_.inputs.end(),
-                                 [step](const ReplayLog::Input& input) { return input.step >= step; });
-  next_input_ = static_cast<std::size_t>(next - log_.inputs.begin());
+  due_.clear();
+  spoken_.clear();
+  next_input_ = index_from(log_.inputs, step);
+  next_own_ = index_from(own_inputs_, step);
   add_serial_inputs(step);
 }
 
 void ReplayedWorld::deliver(std::int64_t step) {
-  for (; next_input_ < log_.inputs.size() && log_.inputs[next_input_].step <= step; ++next_input_) {
-    const ReplayLog::Input& input = log_.inputs[next_input_];
-    if (input.bus == RunJournal::serial_bus) continue;
-    if (input.bus.empty() && input.channel == RunJournal::request_channel) {
-      execute(input);
-      continue;
-    }
-    const auto other = input.bus.empty() ? others_.end() : others_.find(input.bus);
-    if (!input.bus.empty() && other == others_.end()) {
-      note("the world here has no bus '" + sim::printable(sim::shortened(input.bus)) +
-           "': its inputs are not delivered");
-      continue;
-    }
-    sim::MessageGate& gate = input.bus.empty() ? *main_.gate : *other->second.gate;
-    gate.waiting().push_back({input.channel, input.payload});
-  }
+  const std::int64_t last = std::min(step, end_of_inputs_ - 1);
+  for (; next_input_ < log_.inputs.size() && log_.inputs[next_input_].step <= last; ++next_input_)
+    deliver(log_.inputs[next_input_]);
+  if (live_) return;
+  for (; next_own_ < own_inputs_.size() && own_inputs_[next_own_].step <= step; ++next_own_)
+    deliver(own_inputs_[next_own_]);
+}
+
+void ReplayedWorld::deliver(const ReplayLog::Input& input) {
+  if (input.bus == RunJournal::serial_bus) return;
+  if (input.bus.empty() && input.channel == RunJournal::request_channel) return execute(input);
+  if (!input.bus.empty() && !others_.contains(input.bus))
+    return note("the world here has no bus '" + sim::printable(sim::shortened(input.bus)) +
+                "': its inputs are not delivered");
+  due_[input.bus].push_back({input.channel, input.payload});
 }
 
 void ReplayedWorld::execute(const ReplayLog::Input& input) {

@@ -87,6 +87,7 @@ std::vector<bridges::LockstepBus> Run::lockstep_buses() {
 bridges::ServiceLinks Run::service_links() {
   bridges::ServiceLinks links{&journal_, &others_};
   links.publish_scene = [this] { view_.request_scene(); };
+  links.bus_url = [this](sim::Bus& bus) { return buses_.url(buses_.name_of(bus)); };
   for (const sim::BusConfig& bus : loaded_.config.buses) links.vehicle_buses.push_back(&buses_.network(bus.name));
   return links;
 }
@@ -131,11 +132,10 @@ TapBus::Listener Run::page_tap() {
 
 PageDrive::Publish Run::drive_publisher() {
   return [this](const std::string& vehicle, const std::string& channel, std::span<const std::byte> payload) {
-    const auto& vehicles = loaded_.config.vehicles;
-    const auto placed = std::find_if(vehicles.begin(), vehicles.end(),
-                                     [&](const sim::VehicleInstance& one) { return one.name == vehicle; });
+    const sim::Vehicle* driven = world_.find_vehicle(vehicle);
+    if (driven == nullptr) return;
     // Published on the network: for the world a message from outside, which waits at the gate and is in the journal.
-    buses_.network(placed == vehicles.end() ? "" : placed->bus).publish(channel, payload, world_.now());
+    buses_.network(buses_.name_of(driven->bus())).publish(channel, payload, world_.now());
   };
 }
 

@@ -7,6 +7,7 @@
 #include "bridges/base/bus_error.hpp"
 #include "bridges/bus/bus_reach.hpp"
 #include "sim/bus/in_process_bus.hpp"
+#include "sim/vehicle/run_hash.hpp"
 
 namespace tools {
 
@@ -65,6 +66,13 @@ RunBuses::Link RunBuses::open(const std::string& url, const RunOptions& options)
 std::string RunBuses::url(const std::string& name) const {
   const Link& link = name.empty() ? main_ : others_.at(name);
   return link.lcm ? link.lcm->url() : "";
+}
+
+std::string RunBuses::name_of(sim::Bus& bus) const {
+  const sim::Bus* const outer = &sim::RunHash::uncounted(bus);
+  for (const auto& [name, link] : others_)
+    if (link.gate.get() == outer) return name;
+  return "";
 }
 
 bool RunBuses::leave_machine() const {

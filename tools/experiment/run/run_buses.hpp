@@ -46,6 +46,8 @@ class RunBuses {
   bool leave_machine() const;
   /// Returns the LCM URL of a bus; empty when it is not an LCM bus.
   std::string url(const std::string& name) const;
+  /// Returns the name in `buses:` of a bus that of() returns, or of a vehicle on it; empty: the world's.
+  std::string name_of(sim::Bus& bus) const;
   /// Returns the LCM buses, without record and gate.
   std::vector<bridges::OtherSimulators::BusToAsk> networks() const;
   /// Waits for a message on any bus, up to `time`.

@@ -12,7 +12,7 @@
 
 #include "sim/config/file_access.hpp"
 #include "sim/config/message_text.hpp"
-#include "tools/experiment/upgrade/file_replacement.hpp"
+#include "tools/experiment/files/file_replacement.hpp"
 
 namespace tools {
 

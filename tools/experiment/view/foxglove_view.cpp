@@ -4,8 +4,6 @@
 #include <spdlog/fmt/fmt.h>
 #include <unistd.h>
 
-#include "tools/experiment/view/log_index.hpp"
-
 namespace tools {
 
 namespace {
@@ -29,12 +27,6 @@ std::shared_ptr<bridges::foxglove::Protocol> make_protocol(bridges::WebServer& s
 }
 
 }  // namespace
-
-std::int64_t MessageTimes::of(std::string_view channel, std::span<const std::byte> payload, std::int64_t stamp_us) {
-  if (channel == "sim.clock" || channel == "sim.state" || channel == "sim.bodies" || channel == "sim.info")
-    if (const auto utime = stamp_of(payload.data(), payload.size())) offset_us_ = *utime - stamp_us;
-  return stamp_us + offset_us_;
-}
 
 FoxgloveView::FoxgloveView(bridges::WebServer& server) : protocol_(make_protocol(server)) {}
 

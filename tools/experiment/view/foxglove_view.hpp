@@ -16,17 +16,6 @@
 
 namespace tools {
 
-/// UTC of messages, us since 1970 and simulated, from the stamps of the log or bus that has them and from the messages
-/// of the simulator, which know the simulated time.
-class MessageTimes {
- public:
-  /// Returns the time of a message; `stamp_us`: when it was received, by any clock.
-  std::int64_t of(std::string_view channel, std::span<const std::byte> payload, std::int64_t stamp_us);
-
- private:
-  std::int64_t offset_us_ = 0;  // of the simulated time from the stamps
-};
-
 /// Foxglove, Lichtblick and PlotJuggler at the port of the live page.
 class FoxgloveView {
  public:

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "shoal/message_schema.hpp"
+#include "tools/experiment/log_data/message_times.hpp"
 #include "tools/experiment/page_data/view_json.hpp"
 #include "tools/experiment/view/page_traffic.hpp"
 
@@ -124,7 +125,7 @@ Series read_series(bridges::EventLogReader& log, const LogIndex& index, const Se
                    Clock::time_point deadline) {
   // Begin before the first message of the range: those of a step come before its poses
   log.seek(request.from_us <= index.start_us() ? 0 : index.bodies_at(request.from_us - 1).offset);
-  LogTime time(index.epoch_us());
+  MessageTimes times(index.epoch_us());
   FieldReader field(request);
   Decimator decimator(request);
   bridges::LogEventView event;
@@ -133,7 +134,8 @@ Series read_series(bridges::EventLogReader& log, const LogIndex& index, const Se
       throw PageRequestError("series: the log from " + std::to_string(request.from_us) + " to " +
                              std::to_string(request.to_us) +
                              " us cannot be read within a second; ask for a shorter range");
-    const std::int64_t t_us = time.of(event);
+    times.take(event.channel, event.payload, event.utime);
+    const std::int64_t t_us = times.steady_us() - index.epoch_us();
     if (t_us > request.to_us && (event.channel == "sim.bodies" || event.channel == "sim.clock")) break;
     if (event.channel != request.channel || t_us < request.from_us || t_us > request.to_us) continue;
     if (const auto value = field.read(event.payload)) decimator.add({t_us, *value});

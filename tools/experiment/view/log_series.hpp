@@ -12,8 +12,8 @@
 
 #include "bridges/log/event_log.hpp"
 #include "bridges/web/web_server.hpp"
+#include "tools/experiment/log_data/log_index.hpp"
 #include "tools/experiment/page_data/page_request.hpp"
-#include "tools/experiment/view/log_index.hpp"
 
 namespace tools {
 

@@ -7,9 +7,9 @@
 
 #include "shoal/message_codec.hpp"
 #include "shoal/sim_info_t.hpp"
+#include "tools/experiment/log_data/scene_names.hpp"
 #include "tools/experiment/page_data/look_request.hpp"
 #include "tools/experiment/page_data/view_json.hpp"
-#include "tools/experiment/view/scene_names.hpp"
 
 namespace tools {
 
@@ -28,13 +28,14 @@ Json hello_json(const std::string& version, const char* source, const std::strin
 }  // namespace
 
 LogView::LogView(const std::string& path, const LogIndex& index, const ViewOptions& options, const std::string& version)
-    : name_(std::filesystem::path(path).filename().string()),
+    : path_(path),
+      name_(std::filesystem::path(path).filename().string()),
       index_(index),
       reader_(path),
       looking_(path),
       server_(web_options(options)),
-      time_(index.epoch_us()),
       series_(path, index, server_),
+      times_(index.epoch_us()),
       poses_(path, index),
       now_us_(static_cast<double>(index.start_us())) {
   messages_.set_epoch(index.epoch_us());
@@ -46,18 +47,21 @@ LogView::LogView(const std::string& path, const LogIndex& index, const ViewOptio
   using bridges::foxglove::Control;
   foxglove_.introduce(hello["name"], version, options.foxglove_control ? Control::playback : Control::none,
                       index.epoch_us() + index.start_us(), index.epoch_us() + index.end_us());
-  // Assets, and the events of the whole log for the time line.
   for (const std::uint64_t offset : index.assets()) send_event_at(offset);
+  seek(index.start_us());
+  // The events of the whole log for the time line, after the scene to which they belong.
   Json items = Json::array();
   for (const LogIndex::Occasion& each : index.occasions())
     items.push_back({{"time_us", each.time_us}, {"kind", each.kind}, {"who", each.who}, {"text", each.text}});
-  if (!items.empty()) server_.retain("events", json_text({{"op", "events"}, {"items", std::move(items)}}));
-  seek(index.start_us());
+  if (!items.empty())
+    server_.retain("events", json_text({{"op", "events"}, {"all", true}, {"items", std::move(items)}}));
 }
 
 void LogView::compare_with(const std::string& path, const LogIndex& index,
                            const std::optional<LogDifference>& difference) {
   other_.emplace(path, index);
+  difference_ = difference;
+  distances_.emplace(path_, index_, path, index, messages_.scene());
   const auto item = [](int branch, const std::string& name, const LogIndex& of) {
     return Json{{"branch", branch},          {"parent", nullptr},     {"name", name},
                 {"start_us", of.start_us()}, {"end_us", of.end_us()}, {"differs_us", nullptr}};
@@ -101,7 +105,8 @@ void LogView::send_event_at(std::uint64_t offset) {
   bridges::LogEventView event;
   if (!looking_.next(event)) return;
   messages_.take(event.channel, event.payload);
-  foxglove_.message(times_.of(event.channel, event.payload, event.utime), event.channel, event.payload);
+  times_.take(event.channel, event.payload, event.utime);
+  foxglove_.message(times_.interpolated_us(), event.channel, event.payload);
 }
 
 void LogView::seek(std::int64_t time_us) {
@@ -130,9 +135,9 @@ void LogView::play_to(std::int64_t time_us) {
   while (reader_.next(event)) {
     // Events were retained for the whole log.
     if (event.channel != "sim.event" && event.channel != "sim.asset") messages_.take(event.channel, event.payload);
-    traffic_.take(event.channel, event.payload, time_.of(event));
-    const std::int64_t utime = times_.of(event.channel, event.payload, event.utime);
-    if (event.channel != "sim.asset") foxglove_.message(utime, event.channel, event.payload);
+    times_.take(event.channel, event.payload, event.utime);
+    traffic_.take(event.channel, event.payload, times_.steady_us() - index_.epoch_us());
+    if (event.channel != "sim.asset") foxglove_.message(times_.interpolated_us(), event.channel, event.payload);
     if (event.offset >= last) break;
   }
   messages_.set_pace(static_cast<float>(speed_), paused_);
@@ -143,13 +148,23 @@ void LogView::fill_feed() {
   const auto now_us = static_cast<std::int64_t>(now_us_);
   const std::uint64_t last = index_.bodies_at(now_us).offset;
   looking_.seek(index_.bodies_at(now_us - before_us).offset);
-  LogTime time(index_.epoch_us());
+  MessageTimes times(index_.epoch_us());
   bridges::LogEventView event;
-  while (looking_.next(event) && event.offset <= last)
-    traffic_.feed().take(event.channel, event.payload, time.of(event));
+  while (looking_.next(event) && event.offset <= last) {
+    times.take(event.channel, event.payload, event.utime);
+    traffic_.feed().take(event.channel, event.payload, times.steady_us() - index_.epoch_us());
+  }
+}
+
+void LogView::send_distances() {
+  constexpr std::chrono::milliseconds slice{8};
+  if (!distances_ || !distances_->compute(std::chrono::steady_clock::now() + slice)) return;
+  server_.retain("distances", distances_->text(difference_));
+  distances_.reset();
 }
 
 void LogView::advance(double wall_s) {
+  send_distances();
   while (const auto request = server_.take_request()) handle(*request);
   serve_foxglove();
   // A page that has just opened gets the present state.
@@ -267,11 +282,11 @@ void BusView::send_hello() {
 void BusView::message(std::string_view channel, std::span<const std::byte> payload) {
   messages_.take(channel, payload);
   if (channel == "sim.clock" || channel == "sim.bodies")
-    if (const auto stamp = stamp_of(payload.data(), payload.size())) now_us_ = *stamp - messages_.epoch_us();
+    if (const auto stamp = stamp_of(payload)) now_us_ = *stamp - messages_.epoch_us();
   traffic_.take(channel, payload, now_us_);
   const auto now = std::chrono::system_clock::now().time_since_epoch();
-  const std::int64_t utime =
-      times_.of(channel, payload, std::chrono::duration_cast<std::chrono::microseconds>(now).count());
+  times_.take(channel, payload, std::chrono::duration_cast<std::chrono::microseconds>(now).count());
+  const std::int64_t utime = times_.interpolated_us();
   constexpr std::int64_t disorder_us = 500'000;  // of datagrams, and of the two clocks
   if (utime < newest_utime_ - disorder_us) {
     foxglove_.jump(utime);
@@ -289,6 +304,7 @@ void BusView::message(std::string_view channel, std::span<const std::byte> paylo
 
 void BusView::flush() {
   while (const auto request = server_.take_request()) {
+    if (request->op == "left") messages_.page_left();
     if (traffic_.handle(*request) || request->op != "control") continue;
     const Json message = Json::parse(request->text, nullptr, false);
     server_.reply(request->client,

@@ -7,10 +7,12 @@
 
 #include "bridges/log/event_log.hpp"
 #include "bridges/web/web_server.hpp"
+#include "tools/experiment/log_data/log_difference.hpp"
+#include "tools/experiment/log_data/log_distances.hpp"
+#include "tools/experiment/log_data/log_index.hpp"
+#include "tools/experiment/log_data/log_poses.hpp"
+#include "tools/experiment/log_data/message_times.hpp"
 #include "tools/experiment/view/foxglove_view.hpp"
-#include "tools/experiment/view/log_difference.hpp"
-#include "tools/experiment/view/log_index.hpp"
-#include "tools/experiment/view/log_poses.hpp"
 #include "tools/experiment/view/log_series.hpp"
 #include "tools/experiment/view/page_traffic.hpp"
 #include "tools/experiment/view/run_view.hpp"
@@ -45,19 +47,21 @@ class LogView {
   /// Passes messages on, up to the last pose at or before a time.
   void play_to(std::int64_t time_us);
   void send_status();
+  void send_distances();
 
-  const std::string name_;
+  const std::string path_, name_;
   const LogIndex& index_;
   bridges::EventLogReader reader_, looking_;
   bridges::WebServer server_;
   ViewMessages messages_{server_, ViewMessages::Frames::from_bodies};
   PageTraffic traffic_{server_, MessageFeed::Past::forgotten};
-  LogTime time_;
   LogSeries series_;
   FoxgloveView foxglove_{server_};
   MessageTimes times_;
   LogPoses poses_;                 // for the requests `look`
   std::optional<LogPoses> other_;  // of the log that this one is compared with
+  std::optional<LogDifference> difference_;
+  std::optional<LogDistances> distances_;  // until they have been computed
   StateFrame past_;
   double now_us_;
   double speed_ = 1;

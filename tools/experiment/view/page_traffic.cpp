@@ -48,8 +48,27 @@ void PageTraffic::count(std::string_view channel, std::span<const std::byte> pay
 }
 
 void PageTraffic::take(std::string_view channel, std::span<const std::byte> payload, std::int64_t time_us) {
+  if (keeps_past_) mark_before(time_us);
   count(channel, payload);
   feed_.take(channel, payload, time_us);
+}
+
+/// Marks the counts when the first message after a tenth of a second is about to be counted.
+void PageTraffic::mark_before(std::int64_t time_us) {
+  constexpr std::int64_t shortest_us = 100'000, us_per_channel = 1000;
+  const auto channels = static_cast<std::int64_t>(counts_.channels().size());
+  const std::int64_t interval_us = std::max(shortest_us, channels * us_per_channel / shortest_us * shortest_us);
+  const auto period_of = [&](std::int64_t time) { return (time + interval_us - 1) / interval_us; };
+  if (period_of(time_us) > period_of(newest_us_)) history_.mark(newest_us_, 0, counts_);
+  newest_us_ = std::max(newest_us_, time_us);
+}
+
+void PageTraffic::rewind(std::int64_t time_us) {
+  feed_.rewind(time_us);
+  if (newest_us_ <= time_us) return;
+  history_.rewind(time_us);
+  set_counts(history_.last());
+  newest_us_ = time_us;
 }
 
 bool PageTraffic::handle(const bridges::ViewRequest& request) {
@@ -90,7 +109,10 @@ void PageTraffic::flush(std::int64_t time_us, const std::string& scene, int numb
   }
   if (counts_.link_changes() != links_sent_) links_changed_ = true;
   if (std::exchange(channels_changed_, false)) send_counts(time_us);
-  if (std::exchange(links_changed_, false)) send_links(time_us);
+  if (std::exchange(links_changed_, false)) {
+    send_links(time_us);
+    send_modems(time_us);
+  }
 }
 
 std::string PageTraffic::vehicle_of(const std::string& channel) const {
@@ -129,6 +151,14 @@ void PageTraffic::send_links(std::int64_t time_us) {
                      {"lost", std::move(lost)}});
   }
   server_.retain("links", json_text({{"op", "links"}, {"time_us", time_us}, {"items", std::move(items)}}));
+}
+
+void PageTraffic::send_modems(std::int64_t time_us) {
+  Json items = Json::array();
+  for (const auto& [name, sender] : counts_.senders())
+    items.push_back(
+        {{"name", name}, {"count", sender.count}, {"bytes", sender.bytes}, {"sending_us", sender.sending_us}});
+  server_.retain("modems", json_text({{"op", "modems"}, {"time_us", time_us}, {"items", std::move(items)}}));
 }
 
 }  // namespace tools

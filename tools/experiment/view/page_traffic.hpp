@@ -10,6 +10,7 @@
 
 #include "bridges/web/web_server.hpp"
 #include "tools/experiment/page_data/traffic_counts.hpp"
+#include "tools/experiment/page_data/traffic_history.hpp"
 #include "tools/experiment/view/message_feed.hpp"
 
 namespace tools {
@@ -19,7 +20,8 @@ namespace tools {
 class PageTraffic {
  public:
   /// `server` must outlive this.
-  PageTraffic(bridges::WebServer& server, MessageFeed::Past past) : server_(server), feed_(server, past) {}
+  PageTraffic(bridges::WebServer& server, MessageFeed::Past past)
+      : server_(server), feed_(server, past), keeps_past_(past == MessageFeed::Past::kept) {}
 
   /// Takes a message that was published at a simulated time.
   void take(std::string_view channel, std::span<const std::byte> payload, std::int64_t time_us);
@@ -30,6 +32,9 @@ class PageTraffic {
   /// Sends what is due: messages, and once per second of wall time the counts if they have changed.  `scene`: JSON,
   /// whose `number` changes with it.
   void flush(std::int64_t time_us, const std::string& scene, int number);
+  /// Takes counts and messages back to a time, because the run was rewound: the counts to within 0.1 s, or more for
+  /// times that are long ago or if there are more than 100 channels.
+  void rewind(std::int64_t time_us);
   /// Sets the counts, at another time of a log.
   void set_counts(TrafficCounts counts);
   MessageFeed& feed() { return feed_; }
@@ -39,11 +44,16 @@ class PageTraffic {
 
   void send_counts(std::int64_t time_us);
   void send_links(std::int64_t time_us);
+  void send_modems(std::int64_t time_us);
+  void mark_before(std::int64_t time_us);
   std::string vehicle_of(const std::string& channel) const;
 
   bridges::WebServer& server_;
   MessageFeed feed_;
   TrafficCounts counts_;
+  const bool keeps_past_;
+  TrafficHistory history_;  // if the past is kept
+  std::int64_t newest_us_ = 0;
   bool channels_changed_ = false, links_changed_ = false;
   std::int64_t links_sent_ = 0;
   int clients_ = 0;

@@ -35,7 +35,14 @@ void PastView::start_branch(std::int32_t number, std::int64_t start_us, std::int
   next_update_ = {};
 }
 
+void PastView::set_programs(const std::string& text) {
+  if (text.empty()) return;
+  programs_[history_.present()] = text;
+  while (programs_.size() > PoseHistory::max_branches) programs_.erase(programs_.begin());
+}
+
 void PastView::clear() {
+  programs_.clear();
   history_ = PoseHistory();
   names_ = {};
   comparisons_.clear();
@@ -87,6 +94,8 @@ std::string PastView::branches_text() const {
                      {"start_us", branch.start_us},
                      {"end_us", present ? Json(nullptr) : Json(branch.end_us)},
                      {"differs_us", differs ? Json(*known->second.differs_us) : Json(nullptr)}});
+    if (const auto programs = programs_.find(branch.number); programs != programs_.end())
+      items.back()["programs"] = programs->second;
   }
   return json_text({{"op", "branches"}, {"present", history_.present()}, {"by", "poses"}, {"items", std::move(items)}});
 }

@@ -11,10 +11,10 @@
 #include "bridges/view/view_publisher.hpp"
 #include "bridges/web/web_server.hpp"
 #include "sim/world/world.hpp"
+#include "tools/experiment/log_data/scene_names.hpp"
+#include "tools/experiment/log_data/state_frame.hpp"
 #include "tools/experiment/page_data/look_request.hpp"
 #include "tools/experiment/view/pose_history.hpp"
-#include "tools/experiment/view/scene_names.hpp"
-#include "tools/experiment/view/state_frame.hpp"
 
 namespace tools {
 
@@ -33,6 +33,8 @@ class PastView {
   void remember(const sim::World& world, const bridges::ViewPublisher& publisher);
   /// As PoseHistory::start_branch().
   void start_branch(std::int32_t number, std::int64_t start_us, std::int64_t left_us, bool continues);
+  /// Says what the programs of the present branch do, for the list of branches; empty: nothing.
+  void set_programs(const std::string& text);
   /// Answers a `look` of a page.
   void answer(const bridges::ViewRequest& request);
   /// Sends the list of branches when it has changed, at most once per second.
@@ -57,6 +59,7 @@ class PastView {
   SceneNames names_;
   StateFrame kept_, sent_;
   std::map<std::int32_t, Comparison> comparisons_;
+  std::map<std::int32_t, std::string> programs_;  // what the programs of a branch do
   Clock::time_point next_update_{};
   std::string branches_;
 };

@@ -50,6 +50,8 @@ void RunView::start(const sim::World& world, std::optional<double> duration_s, c
   if (duration_s && *duration_s > 0) hello["end_us"] = sim::from_seconds(*duration_s).count();
   if (!source.record.empty()) hello["record"] = source.record;
   if (!source.programs.empty()) hello["programs"] = source.programs;
+  if (source.may_launch) hello["may_launch"] = true;
+  if (source.record == "recorded") past_.set_programs(source.programs);
   server_.retain("hello", json_text(hello));
   using bridges::foxglove::Control;
   foxglove_.introduce(world.config().name, version_, foxglove_control_ ? Control::run : Control::none);
@@ -69,10 +71,12 @@ void RunView::problem(const std::string& text) {
   server_.send_text(json_text({{"op", "error"}, {"text", text}}));
 }
 
-void RunView::moved(const sim::World& world, const sim::RunControl& control, bool continues) {
+void RunView::moved(const sim::World& world, const sim::RunControl& control, bool continues,
+                    const std::string& programs) {
   jump_ = true;
-  traffic_.feed().rewind(world.now().count());
+  traffic_.rewind(world.now().count());
   past_.start_branch(control.branch, world.now().count(), last_us_, continues);
+  past_.set_programs(programs);
   last_us_ = world.now().count();
 }
 
@@ -168,6 +172,7 @@ void RunView::serve(const sim::World& world, const bridges::ViewPublisher& publi
   for (int i = 0; i < max_at_once; ++i) {
     const auto request = server_.take_request();
     if (!request) break;
+    if (request->op == "left") messages_.page_left();
     if (traffic_.handle(*request)) continue;
     if (request->op == "left") {
       drive_.left(request->client);

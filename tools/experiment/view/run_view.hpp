@@ -12,11 +12,11 @@
 #include "bridges/web/web_server.hpp"
 #include "sim/run/run_control.hpp"
 #include "sim/world/world.hpp"
+#include "tools/experiment/log_data/state_frame.hpp"
 #include "tools/experiment/view/foxglove_view.hpp"
 #include "tools/experiment/view/page_drive.hpp"
 #include "tools/experiment/view/page_traffic.hpp"
 #include "tools/experiment/view/past_view.hpp"
-#include "tools/experiment/view/state_frame.hpp"
 #include "tools/experiment/view/view_messages.hpp"
 
 namespace tools {
@@ -55,13 +55,15 @@ class RunView {
   std::string url() const { return server_.url(); }
   /// What the run is, if it is not a usual one.
   struct Source {
-    std::string record;    ///< `recorded`: a record that is run again; `branched`: it has left its record
-    std::string programs;  ///< where the messages of programs come from; empty: from programs
+    std::string record;       ///< `recorded`: a record that is run again; `branched`: it has left its record
+    std::string programs;     ///< where the messages of programs come from; empty: from programs
+    bool may_launch = false;  ///< a branch of the record can start the programs of its world again
   };
   /// Lets pages drive vehicles: `publish` gives their commands to the run.
   void allow_drive(PageDrive::Publish publish) { publish_drive_ = std::move(publish); }
   /// Introduces the world to the pages; before the first step, and when the source changes.
-  void start(const sim::World& world, std::optional<double> duration_s, const Source& source = {});
+  void start(const sim::World& world, std::optional<double> duration_s, const Source& source);
+  void start(const sim::World& world, std::optional<double> duration_s) { start(world, duration_s, {}); }
   /// Shows an error on the pages.
   void problem(const std::string& text);
   /// Marks the next state as a jump in time, on the same branch.
@@ -76,7 +78,8 @@ class RunView {
   void serve(const sim::World& world, const bridges::ViewPublisher& publisher, const sim::RunControl& control,
              const std::string& waits_for, const Execute& execute);
   /// Announces that the time of the world was set, and a branch started.  `continues`: at a step of this run.
-  void moved(const sim::World& world, const sim::RunControl& control, bool continues);
+  /// `programs`: what the programs of the branch do; empty: nothing is to be said of it.
+  void moved(const sim::World& world, const sim::RunControl& control, bool continues, const std::string& programs = {});
   /// Announces the end of the run, and why.
   void ended(const sim::World& world, const sim::RunControl& control, const std::string& why);
 

@@ -8,6 +8,7 @@
 #include "shoal/message_codec.hpp"
 #include "shoal/sim_asset_t.hpp"
 #include "shoal/sim_bodies_t.hpp"
+#include "shoal/sim_current_t.hpp"
 #include "shoal/sim_event_t.hpp"
 #include "shoal/sim_info_t.hpp"
 #include "shoal/sim_scene_t.hpp"
@@ -66,16 +67,18 @@ bool ViewMessages::take_named(std::string_view channel, std::span<const std::byt
     take_asset(payload);
   } else if (channel == "sim.scores") {
     take_scores(payload);
-  } else if (server_.clients() == 0) {
-    return false;
+  } else if (channel == "sim.current") {
+    take_current(payload);
+  } else if (channel == "sim.event") {
+    take_event(payload);
   } else if (channel == "sim.bodies") {
     if (frames_ == Frames::from_bodies) take_bodies(payload);
+  } else if (server_.clients() == 0) {
+    return false;
   } else if (channel == "sim.sound") {
     take_sound(payload);
   } else if (channel == "sim.sound.arrival") {
     take_arrival(payload);
-  } else if (channel == "sim.event") {
-    take_event(payload);
   } else {
     return false;
   }
@@ -106,6 +109,7 @@ void ViewMessages::take_bodies(std::span<const std::byte> payload) {
   auto message = shoal::decode<shoal::sim_bodies_t>(payload, shoal::Finite::required);
   newest_us_ = time_us(message.utime);
   branch_ = message.branch;
+  poses_are_new_ = true;
   poses_ = Poses{time_us(message.utime), message.branch, message.revision, std::move(message.position_m),
                  std::move(message.orientation)};
 }
@@ -144,8 +148,17 @@ void ViewMessages::take_arrival(std::span<const std::byte> payload) {
 
 void ViewMessages::take_event(std::span<const std::byte> payload) {
   const auto event = shoal::decode<shoal::sim_event_t>(payload, shoal::Finite::required);
-  const Json item{{"time_us", time_us(event.utime)}, {"kind", event.kind}, {"who", event.who}, {"text", event.text}};
-  server_.send_text(json_text({{"op", "events"}, {"items", Json::array({item})}}));
+  std::string item =
+      json_text({{"time_us", time_us(event.utime)}, {"kind", event.kind}, {"who", event.who}, {"text", event.text}});
+  if (server_.clients() > 0) server_.send_text("{\"op\":\"events\",\"items\":[" + item + "]}");
+  earlier_.add(std::move(item));
+}
+
+void ViewMessages::take_current(std::span<const std::byte> payload) {
+  const auto current = shoal::decode<shoal::sim_current_t>(payload, shoal::Finite::required);
+  server_.retain("current", json_text({{"op", "current"},
+                                       {"time_us", time_us(current.utime)},
+                                       {"velocity_mps", point(current.velocity_mps)}}));
 }
 
 void ViewMessages::take_scores(std::span<const std::byte> payload) {
@@ -205,9 +218,13 @@ void ViewMessages::flush() {
     if (!std::exchange(estimate.is_new, false)) continue;
     items += (items.empty() ? "" : ",") + estimate.json;
   }
+  if (auto events = earlier_.text_for(server_.clients())) server_.retain("events", std::move(*events));
   if (!items.empty()) server_.send_text("{\"op\":\"estimates\",\"items\":[" + items + "]}");
-  // The newest poses.
-  if (!poses_) return;
+  // The newest poses, to a new page again: a run that is paused makes no others.
+  const int clients = server_.clients();
+  if (clients > std::exchange(clients_, clients)) poses_are_new_ = true;
+  if (!poses_ || !poses_are_new_ || clients == 0) return;
+  poses_are_new_ = false;
   frame_.begin({poses_->time_us, poses_->branch, static_cast<std::uint32_t>(poses_->revision), speed_, paused_,
                 std::exchange(jump_, false)});
   for (std::size_t i = 0; i < poses_->position_m.size(); ++i) {
@@ -216,7 +233,6 @@ void ViewMessages::flush() {
     frame_.add({p[0], p[1], p[2]}, {q[0], q[1], q[2], q[3]});
   }
   server_.send_state(frame_.end());
-  poses_.reset();
 }
 
 }  // namespace tools

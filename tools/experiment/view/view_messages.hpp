@@ -12,7 +12,8 @@
 
 #include "bridges/web/page_output.hpp"
 #include "sim/bus/bus.hpp"
-#include "tools/experiment/view/state_frame.hpp"
+#include "tools/experiment/log_data/state_frame.hpp"
+#include "tools/experiment/page_data/earlier_events.hpp"
 
 namespace tools {
 
@@ -28,13 +29,18 @@ class ViewMessages {
 
   /// Passes a message on.
   void take(std::string_view channel, std::span<const std::byte> payload);
-  /// Sends what was held back by its rate: estimates, and the newest poses.  Call some ten times per second of wall
-  /// time.
+  /// Sends what was held back by its rate: estimates, the newest poses, and earlier events for pages that have just
+  /// connected.  Call some ten times per second of wall time.
   void flush();
   /// Sets what is known of the time: of the frames from `sim.bodies`.
   void set_pace(float speed, bool paused) {
     speed_ = speed;
     paused_ = paused;
+  }
+  /// Notes that a page has left: one that comes at the same time gets the newest poses and the earlier events, too.
+  void page_left() {
+    earlier_.page_left();
+    poses_are_new_ = true;
   }
   /// Marks the next state as a jump in time.
   void mark_jump() { jump_ = true; }
@@ -71,6 +77,7 @@ class ViewMessages {
   void take_sound(std::span<const std::byte> payload);
   void take_arrival(std::span<const std::byte> payload);
   void take_event(std::span<const std::byte> payload);
+  void take_current(std::span<const std::byte> payload);
   void take_scores(std::span<const std::byte> payload);
   void take_estimate(std::string_view channel, std::span<const std::byte> payload);
   std::int64_t time_us(std::int64_t utime) const { return utime - epoch_us_; }
@@ -82,10 +89,13 @@ class ViewMessages {
   int scene_number_ = 0;
   float speed_ = 1;
   bool paused_ = false, jump_ = false;
-  std::optional<Poses> poses_;  // newest that were not sent
+  std::optional<Poses> poses_;  // newest
+  bool poses_are_new_ = false;  // not sent to all pages
+  int clients_ = 0;             // at the last flush
   std::int64_t newest_us_ = 0;
   std::int32_t branch_ = 0;
   StateFrame frame_;
+  EarlierEvents earlier_;
   std::map<std::string, Estimate, std::less<>> estimates_;  // newest by vehicle
   std::int64_t bad_messages_ = 0;
 };

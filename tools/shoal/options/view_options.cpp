@@ -27,4 +27,8 @@ void add_page_options(CLI::App& command, ViewOptions& view) {
   command.add_option("--view-page", view.page_directory, "folder with the page, for its development")->type_name("DIR");
 }
 
+CLI::Option* add_open_option(CLI::App& command, bool& open) {
+  return command.add_flag("--open", open, "show the live page in the browser: $BROWSER, else xdg-open");
+}
+
 }  // namespace tools

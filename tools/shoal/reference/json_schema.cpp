@@ -350,6 +350,13 @@ std::string study_schema(const std::vector<sim::ParamInfo>& table) {
   return file_schema("study", writer, table, definitions).dump(1) + "\n";
 }
 
+std::string motion_schema(const std::vector<sim::ParamInfo>& table) {
+  const Json values{{"type", "object"}, {"additionalProperties", {{"type", "number"}}}};
+  Json definitions = Json::object();
+  const SchemaWriter writer(false, {{"joints", {values, Json::object()}}}, definitions);
+  return file_schema("motion", writer, table, definitions).dump(1) + "\n";
+}
+
 std::string drive_schema(const std::vector<sim::ParamInfo>& table) {
   Json definitions = Json::object();
   const SchemaWriter writer(false, {}, definitions);

@@ -16,6 +16,9 @@ std::string json_schema(const std::string& file);
 /// Returns the schema of a study, whose keys are `table`.
 std::string study_schema(const std::vector<sim::ParamInfo>& table);
 
+/// Returns the schema of a motion file, whose keys are `table`.
+std::string motion_schema(const std::vector<sim::ParamInfo>& table);
+
 /// Returns the schema of a drive profile, whose keys are `table`.
 std::string drive_schema(const std::vector<sim::ParamInfo>& table);
 

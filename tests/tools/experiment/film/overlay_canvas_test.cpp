@@ -108,6 +108,30 @@ TEST(OverlayCanvas, WritesTextBesideItsStart) {
   EXPECT_GT(white, 20);
 }
 
+TEST(OverlayCanvas, WritesLabelsOfOnePlaceAboveEachOther) {
+  // Rows with something white: as many lines of text as there are gaps between them.
+  const auto lines_of = [](const Drawing& drawing) {
+    int lines = 0;
+    bool white_before = false;
+    for (int row = 0; row < 100; ++row) {
+      bool white = false;
+      for (int column = 0; column < 200; ++column) white |= drawing.level(column, row) > 200;
+      lines += white && !white_before ? 1 : 0;
+      white_before = white;
+    }
+    return lines;
+  };
+  Drawing near;
+  tools::OverlayCanvas canvas(near.rendered, near.view);
+  for (int i = 0; i < 3; ++i) canvas.label({5, 1, 0}, "HHH", {{255, 255, 255}});
+  EXPECT_EQ(lines_of(near), 3);
+  // Beside each other they stay in one line.
+  Drawing apart;
+  tools::OverlayCanvas other(apart.rendered, apart.view);
+  for (const double y_m : {3, 1}) other.label({5, y_m, 0}, "HHH", {{255, 255, 255}});
+  EXPECT_EQ(lines_of(apart), 1);
+}
+
 TEST(StrokeFont, HasAllCharactersOfAsciiWithinItsCell) {
   for (int code = 33; code < 127; ++code) {
     const std::string_view strokes = tools::strokes_of(static_cast<char>(code));

@@ -38,11 +38,12 @@ class PageRun {
     options_.record = record;
     options_.view.emplace();
     options_.view->port = 0;
-    std::promise<std::string> url;
-    auto opened = url.get_future();
-    options_.view->opened = [&url](const std::string& text) { url.set_value(text); };
+    std::promise<std::string> address;
+    auto opened = address.get_future();
+    options_.view->opened = [&address](const std::string& text) { address.set_value(text); };
     thread_ = std::thread([this] { summary = tools::run_world(loaded_, options_); });
-    page = std::make_unique<test::ViewPage>(opened.get());
+    url = opened.get();
+    page = std::make_unique<test::ViewPage>(url);
   }
   ~PageRun() { end(); }
   /// Steps, and waits until it is done.
@@ -58,6 +59,7 @@ class PageRun {
   }
 
   tools::Summary summary;
+  std::string url;
   std::unique_ptr<test::ViewPage> page;
 
  private:
@@ -121,6 +123,38 @@ TEST(PageRun, ARewindFromThePageGivesTheRunThatNeverWentBackAndReplaysEqual) {
   }
 }
 
+/// Heights of the ball in the messages on sim.bodies.
+double ball_m(const test::ViewMessage& message) {
+  return message.header["fields"]["position_m"][0][2].get<double>();
+}
+
+TEST(PageRun, AfterARewindThePageGetsTheMessagesOfTheBranchThatItIsOn) {
+  PageRun run;
+  run.page->subscribe("sim.bodies");
+  run.step(300, 300);
+  // To 1.5 s: the last message at or before it, of the run that fell so far.
+  const auto message_at = [&](double t_s) {
+    return run.page->message([&](const test::ViewMessage& message) {
+      return static_cast<double>(message.time_us) <= 1e6 * t_s &&
+             static_cast<double>(message.time_us) > 1e6 * t_s - 1e5;
+    });
+  };
+  run.page->control("rewind", 1.5);
+  const test::ViewMessage first = message_at(1.5);
+  EXPECT_NEAR(ball_m(first), height_m(1e-6 * static_cast<double>(first.time_us)), 1e-4);
+  EXPECT_EQ(first.header["fields"]["branch"], 0);
+  // On the new branch the ball is 300 m high.
+  run.page->control("do", 0, "{move: {name: ball, position_m: [1, 2, 300]}}");
+  EXPECT_EQ(run.page->reply()["ok"], true);
+  run.page->control("step", 100);
+  EXPECT_GT(ball_m(message_at(2.5)), 250);
+  // Back to a time that both branches have: it gets that of its own.
+  run.page->control("rewind", 0.5);
+  const test::ViewMessage second = message_at(2);
+  EXPECT_GT(ball_m(second), 250);
+  EXPECT_EQ(second.header["fields"]["branch"], 1);
+}
+
 TEST(PageRun, ListsItsBranchesAndWhereTheyDiffer) {
   const test_support::ScratchFolder folder;
   PageRun run(folder.file("run.lcm"));
@@ -149,6 +183,43 @@ TEST(PageRun, ListsItsBranchesAndWhereTheyDiffer) {
   options.log = folder.file("run.branch1.lcm");
   options.quiet = true;
   EXPECT_EQ(tools::replay(options).exit_code(), 0) << "a run steered by a page";
+}
+
+/// Returns the count of a channel, of the next counts at a time.
+std::int64_t count_at(test::ViewPage& page, const std::string& channel, std::int64_t time_us) {
+  const auto channels =
+      page.text("channels", [&](const web_test::Json& message) { return message["time_us"] == time_us; });
+  for (const web_test::Json& item : channels["items"])
+    if (item["name"] == channel) return item["count"];
+  return 0;
+}
+
+TEST(PageRun, ARewindTakesTheCountsOfMessagesBack) {
+  PageRun run;
+  test::ViewPage& page = *run.page;
+  page.control("step", 200);
+  const std::int64_t first = count_at(page, "sim.bodies", 2'000'000);
+  page.control("step", 100);
+  const std::int64_t second = count_at(page, "sim.bodies", 3'000'000);
+  EXPECT_GT(second, first);
+  page.control("rewind", 1);
+  EXPECT_EQ(count_at(page, "sim.bodies", 2'000'000), first);
+  page.control("step", 100);
+  EXPECT_EQ(count_at(page, "sim.bodies", 3'000'000), second);
+}
+
+TEST(PageRun, APageThatConnectsLateGetsTheEarlierEvents) {
+  PageRun run;
+  run.page->control("do", 0, "{add: {object: {name: box, position_m: [5, 0, 1], parts: [{shape: box, mass_kg: 1}]}}}");
+  run.page->control("step", 10);
+  const auto first = run.page->text("events", [](const web_test::Json& events) { return !events.contains("all"); });
+  EXPECT_EQ(first["items"][0]["who"], "box");
+  test::ViewPage late(run.url);
+  const auto events = late.text("events");
+  EXPECT_EQ(events["all"], true);
+  EXPECT_EQ(events["dropped"], 0);
+  ASSERT_EQ(events["items"].size(), 1u);
+  EXPECT_EQ(events["items"][0], first["items"][0]);
 }
 
 }  // namespace

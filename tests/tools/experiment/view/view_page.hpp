@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <cstring>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -28,6 +30,18 @@ struct ViewState {
   bool past() const { return (flags & 4) != 0; }
 };
 
+/// Message frame of the page protocol.
+struct ViewMessage {
+  std::int64_t time_us = 0;
+  web_test::Json header;
+  explicit ViewMessage(const std::string& frame) {
+    std::uint32_t size = 0;
+    std::memcpy(&size, frame.data() + 4, 4);
+    std::memcpy(&time_us, frame.data() + 8, 8);
+    header = web_test::Json::parse(frame.substr(32, size));
+  }
+};
+
 /// A page that has the token of a server.
 class ViewPage {
  public:
@@ -47,7 +61,7 @@ class ViewPage {
   }
   /// Reads up to the next text of a kind; acknowledges the states before it.
   web_test::Json text(const std::string& op) {
-    while (const auto frame = client_.read_frame()) {
+    while (const auto frame = this->frame()) {
       if (frame->is_text() && frame->json()["op"] == op) return frame->json();
       if (!frame->is_text()) acknowledge(frame->payload);
     }
@@ -61,12 +75,26 @@ class ViewPage {
   }
   /// Reads up to the next state.
   ViewState state() {
-    while (const auto frame = client_.read_frame()) {
-      if (frame->is_text()) continue;
+    while (const auto frame = this->frame()) {
+      if (frame->is_text() || frame->payload[0] != 1) continue;
       acknowledge(frame->payload);
       return ViewState(frame->payload);
     }
     throw std::runtime_error("no state");
+  }
+  void subscribe(const std::string& channel) {
+    send({{"op", "subscribe"}, {"channels", {{{"name", channel}, {"rate_hz", 30}}}}});
+  }
+  /// Reads up to the next message of a channel that fulfils a condition.
+  template <typename Condition>
+  ViewMessage message(const Condition& condition) {
+    while (const auto frame = this->frame()) {
+      if (frame->is_text()) continue;
+      acknowledge(frame->payload);
+      if (frame->payload[0] != 2) continue;
+      if (const ViewMessage message(frame->payload); condition(message)) return message;
+    }
+    throw std::runtime_error("no message");
   }
   /// Asks for a time, and reads up to the answer.
   ViewState look(double time_us, int branch = -1) {
@@ -78,14 +106,21 @@ class ViewPage {
   }
 
  private:
+  /// Reads the next frame; nothing at the end of the connection.  The status comes again and again, so a wait ends
+  /// after a minute.
+  std::optional<web_test::Frame> frame() {
+    if (std::chrono::steady_clock::now() > deadline_) throw std::runtime_error("what the test waits for has not come");
+    return client_.read_frame();
+  }
   void acknowledge(const std::string& frame) {
-    if (ViewState(frame).past()) return;
+    if (frame[0] != 1 || ViewState(frame).past()) return;
     std::uint32_t sequence = 0;
     std::memcpy(&sequence, frame.data() + 4, 4);
     send({{"op", "ack"}, {"sequence", sequence}});
   }
 
   web_test::Client client_;
+  const std::chrono::steady_clock::time_point deadline_ = std::chrono::steady_clock::now() + std::chrono::minutes(1);
   int id_ = 0;
 };
 

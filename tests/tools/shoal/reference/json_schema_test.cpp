@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "sim/device/device_registry.hpp"
+#include "sim/motion/motion.hpp"
 #include "sim/world_file/load_world.hpp"
 #include "tests/project_paths.hpp"
 #include "tools/experiment/drive/drive_profile.hpp"
@@ -77,13 +78,14 @@ std::string shipped_files() {
 }
 
 TEST(JsonSchema, InDocsIsUpToDate) {
-  for (const std::string file : {"world", "vehicle", "study", "drive"}) {
+  for (const std::string file : {"world", "vehicle", "study", "motion", "drive"}) {
     const std::string path = own_schemas + "/" + file + ".schema.json";
     std::ifstream in(path, std::ios::binary);
     const std::string text{std::istreambuf_iterator<char>(in), {}};
-    const std::string made = file == "study"   ? tools::study_schema(tools::params_of<tools::StudyConfig>())
-                             : file == "drive" ? tools::drive_schema(tools::params_of<tools::DriveProfile>())
-                                               : tools::json_schema(file);
+    const std::string made = file == "study"    ? tools::study_schema(tools::params_of<tools::StudyConfig>())
+                             : file == "motion" ? tools::motion_schema(tools::params_of<sim::JointMotion>())
+                             : file == "drive"  ? tools::drive_schema(tools::params_of<tools::DriveProfile>())
+                                                : tools::json_schema(file);
     EXPECT_TRUE(text == made) << path << " is stale; type\n  build/release/bin/shoal describe --schema " << file
                               << " > docs/reference/schema/" << file << ".schema.json";
   }

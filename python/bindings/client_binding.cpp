@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pybind11/functional.h>
+#include <pybind11/stl.h>
+#include <signal.h>
+
+#include <atomic>
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "python/bindings/bindings.hpp"
+#include "python/bindings/in_use.hpp"
+#include "python/bindings/message_objects.hpp"
+#include "python/world/error.hpp"
+#include "shoal/client.hpp"
+
+namespace py = pybind11;
+
+namespace python {
+namespace {
+
+/// While it lives, Ctrl-C also ends the waiting of a client, so that Python can raise KeyboardInterrupt.  Only one may
+/// live at a time; further ones do nothing.
+class StopBySignal {
+ public:
+  explicit StopBySignal(shoal::Client& client) {
+    shoal::Client* none = nullptr;
+    if (!client_.compare_exchange_strong(none, &client)) return;
+    struct sigaction own {};
+    if (sigaction(SIGINT, nullptr, &before_) != 0 || before_.sa_handler == SIG_IGN || before_.sa_handler == SIG_DFL) {
+      client_ = nullptr;
+      return;
+    }
+    own.sa_handler = &on_signal;
+    sigemptyset(&own.sa_mask);
+    active_ = sigaction(SIGINT, &own, nullptr) == 0;
+    if (!active_) client_ = nullptr;
+  }
+  ~StopBySignal() {
+    if (!active_) return;
+    sigaction(SIGINT, &before_, nullptr);
+    client_ = nullptr;
+  }
+  StopBySignal(const StopBySignal&) = delete;
+  StopBySignal& operator=(const StopBySignal&) = delete;
+
+ private:
+  static void on_signal(int number) {
+    before_.sa_handler(number);  // that of Python only sets a flag
+    if (shoal::Client* const client = client_) client->stop();
+  }
+
+  static std::atomic<shoal::Client*> client_;
+  static struct sigaction before_;
+  bool active_ = false;
+};
+
+std::atomic<shoal::Client*> StopBySignal::client_{nullptr};
+struct sigaction StopBySignal::before_;
+
+const char* word_of(shoal::Client::End end) {
+  switch (end) {
+    case shoal::Client::End::none:
+      return "";
+    case shoal::Client::End::last_tick:
+      return "last_tick";
+    case shoal::Client::End::stopped:
+      return "stopped";
+    case shoal::Client::End::silence:
+      return "silence";
+    case shoal::Client::End::rewound:
+      return "rewound";
+    case shoal::Client::End::dropped:
+      return "dropped";
+  }
+  return "";
+}
+
+std::chrono::milliseconds milliseconds(const char* what, double seconds) {
+  if (!(seconds >= 0) || seconds > 1e9)
+    throw Error(std::string(what) + " must be 0 to 1e9 s, got " + std::to_string(seconds));
+  return std::chrono::milliseconds(static_cast<std::int64_t>(seconds * 1000));
+}
+
+/// Client that Python holds.
+class Client : public Guarded {
+ public:
+  Client(const std::string& name, const std::string& lcm_url)
+      : Guarded("the client"), own_(std::make_unique<shoal::Client>(name, lcm_url)) {}
+  ~Client() {
+    if (!is_ours()) own_.release();  // a fork has the memory but neither the socket nor the threads
+  }
+
+  void subscribe(const std::string& channel, py::function handler, const std::optional<std::string>& type) {
+    const Use use(*this);
+    const shoal::MessageSchema* const schema = type ? &schema_of_name(*type) : nullptr;
+    // Handlers are called without the GIL, and destroyed with it.
+    const std::shared_ptr<py::function> held(new py::function(std::move(handler)), [](py::function* one) {
+      const py::gil_scoped_acquire python;
+      delete one;
+    });
+    own_->subscribe_bytes(channel, [held, schema](std::span<const std::byte> payload) {
+      const py::gil_scoped_acquire python;
+      const py::bytes copy(reinterpret_cast<const char*>(payload.data()), payload.size());
+      (*held)(decode_message(schema != nullptr ? *schema : schema_of_payload(payload), copy));
+    });
+  }
+
+  void publish(const std::string& channel, const py::bytes& payload) {
+    const Use use(*this);
+    own_->publish_bytes(channel, span_of(payload));
+  }
+
+  void join(double period_s, const std::string& on_timeout, double timeout_s, double wait_s) {
+    const Use use(*this);
+    shoal::Client::JoinOptions options;
+    options.on_timeout = on_timeout;
+    options.timeout_s = timeout_s;
+    options.timeout = milliseconds("wait_s", wait_s);
+    interruptibly([&] { own_->join(period_s, options); });
+  }
+
+  void follow(double period_s) {
+    const Use use(*this);
+    own_->follow(period_s);
+  }
+
+  std::optional<std::int64_t> next_tick() {
+    const Use use(*this);
+    return interruptibly([&] { return own_->next_tick(); });
+  }
+
+  std::optional<std::int64_t> wait_until(std::int64_t utime) {
+    const Use use(*this);
+    return interruptibly([&] { return own_->wait_until(utime); });
+  }
+
+  void on_rewind(py::function handler) {
+    const Use use(*this);
+    const std::shared_ptr<py::function> held(new py::function(std::move(handler)), [](py::function* one) {
+      const py::gil_scoped_acquire python;
+      delete one;
+    });
+    own_->on_rewind([held](std::int64_t utime) {
+      const py::gil_scoped_acquire python;
+      (*held)(utime);
+    });
+  }
+
+  void stop() { own_->stop(); }
+  std::string end() const { return word_of(own_->end()); }
+  const std::string& reason() const { return own_->reason(); }
+  std::int32_t branch() const { return own_->branch(); }
+  void set_silence_limit(double seconds) { own_->set_silence_limit(milliseconds("the silence limit", seconds)); }
+  py::dict counts() const {
+    const shoal::Client::Counts counts = own_->counts();
+    py::dict all;
+    all["received"] = counts.received;
+    all["bad"] = counts.bad;
+    all["published"] = counts.published;
+    all["requested"] = counts.requested;
+    all["repeated"] = counts.repeated;
+    return all;
+  }
+
+ private:
+  template <class Work>
+  auto interruptibly(const Work& work) -> decltype(work()) {
+    const auto raise = [] {
+      if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+    };
+    try {
+      const py::gil_scoped_release others;
+      const StopBySignal stop(*own_);
+      if constexpr (std::is_void_v<decltype(work())>) {
+        work();
+        return;
+      } else {
+        const auto result = work();
+        if (result) return result;
+      }
+    } catch (const shoal::ClientError&) {
+      raise();
+      throw;
+    }
+    raise();
+    return decltype(work())();
+  }
+
+  std::unique_ptr<shoal::Client> own_;
+};
+
+}  // namespace
+
+void add_client(py::module_& module) {
+  using namespace py::literals;
+  py::class_<Client>(module, "Client")
+      .def(py::init<const std::string&, const std::string&>(), "name"_a, "lcm_url"_a = "")
+      .def("subscribe", &Client::subscribe, "channel"_a, "handler"_a, "type"_a = py::none())
+      .def("publish", &Client::publish, "channel"_a, "payload"_a)
+      .def("join", &Client::join, "period_s"_a, "on_timeout"_a = "", "timeout_s"_a = 0.0, "wait_s"_a = 30.0)
+      .def("follow", &Client::follow, "period_s"_a)
+      .def("next_tick", &Client::next_tick)
+      .def("wait_until", &Client::wait_until, "utime"_a)
+      .def("on_rewind", &Client::on_rewind, "handler"_a)
+      .def("stop", &Client::stop)
+      .def("set_silence_limit", &Client::set_silence_limit, "seconds"_a)
+      .def_property_readonly("end", &Client::end)
+      .def_property_readonly("reason", &Client::reason)
+      .def_property_readonly("branch", &Client::branch)
+      .def_property_readonly("counts", &Client::counts);
+}
+
+}  // namespace python

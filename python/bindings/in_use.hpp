@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <atomic>
+#include <string>
+#include <thread>
+
+namespace python {
+
+/// Object that one thread may use at a time, in the process that made it.  Python code may hold it in several threads
+/// and in forked processes.
+class Guarded {
+ public:
+  explicit Guarded(std::string name);
+
+  /// Use of the object by this thread, which may be nested.  Its constructor throws Error when another thread uses the
+  /// object, and in a forked process, where its threads and sockets are not.
+  class Use {
+   public:
+    explicit Use(Guarded& object);
+    ~Use();
+    Use(const Use&) = delete;
+    Use& operator=(const Use&) = delete;
+
+   private:
+    Guarded& object_;
+  };
+
+  /// Returns whether this process made the object.
+  bool is_ours() const;
+
+ private:
+  const std::string name_;  // in errors: `the world`
+  const int process_;
+  std::atomic<std::thread::id> user_{};
+  int depth_ = 0;  // of nested uses by that thread
+};
+
+/// Returns whether Python has handled a signal such as Ctrl-C by an exception, which raise_interrupt() raises.  Must be
+/// called without the GIL.
+bool interrupted();
+/// Raises the exception that interrupted() found, if any.  Must be called with the GIL.
+void raise_interrupt();
+
+}  // namespace python

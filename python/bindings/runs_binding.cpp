@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pybind11/stl.h>
+
+#include <chrono>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "messages/yaml/message_writer.hpp"
+#include "python/bindings/bindings.hpp"
+#include "python/bindings/in_use.hpp"
+#include "python/world/error.hpp"
+#include "sim/config/shipped_files.hpp"
+#include "tools/experiment/process/world_programs.hpp"
+#include "tools/experiment/run/runner.hpp"
+
+namespace py = pybind11;
+
+namespace python {
+namespace {
+
+/// Arguments of run(), as options of `shoal run`.
+struct RunArguments {
+  std::string world;
+  std::optional<std::int64_t> seed;
+  std::vector<std::string> sets;
+  std::optional<double> duration_s;
+  std::string results, record, bus;
+  bool launch = false, overwrite = false;
+};
+
+/// Runs a world to its end, and returns its summary as JSON.
+std::string run(const RunArguments& arguments) {
+  sim::LoadOptions load;
+  load.sets = arguments.sets;
+  load.seed = arguments.seed;
+  load.encode_message = shoal::encode_own_message;
+  load.duration_s = arguments.duration_s;
+  load.allow_plugins = arguments.launch;
+  tools::RunOptions options;
+  options.duration_s = arguments.duration_s;
+  options.speed = 0;
+  options.bus = arguments.bus;
+  options.results = arguments.results;
+  options.record = arguments.record;
+  options.overwrite = arguments.overwrite;
+  options.launch = arguments.launch;
+  options.quiet = true;
+  options.keys = false;
+  tools::Summary summary;
+  {
+    const py::gil_scoped_release others;
+    sim::LoadedWorld loaded = sim::load_world(arguments.world, load);
+    tools::read_programs(loaded, {options.launch, load.allow_paths});
+    auto next_check = std::chrono::steady_clock::now();
+    options.leave = [&next_check] {
+      const auto now = std::chrono::steady_clock::now();
+      if (now < next_check) return false;
+      next_check = now + std::chrono::milliseconds(20);
+      return interrupted();
+    };
+    summary = tools::run_world(loaded, options);
+  }
+  raise_interrupt();
+  if (!summary.error.empty()) throw Error(summary.error);
+  return summary.to_json();
+}
+
+}  // namespace
+
+void add_runs(py::module_& module) {
+  using namespace py::literals;
+  module.def(
+      "run",
+      [](std::string world, std::optional<std::int64_t> seed, std::vector<std::string> sets,
+         std::optional<double> duration_s, std::string results, std::string record, std::string bus, bool launch,
+         bool overwrite) {
+        return run({std::move(world), seed, std::move(sets), duration_s, std::move(results), std::move(record),
+                    std::move(bus), launch, overwrite});
+      },
+      "world"_a, "seed"_a, "sets"_a, "duration_s"_a, "results"_a, "record"_a, "bus"_a, "launch"_a, "overwrite"_a);
+  module.def("version", &tools::version_text, "Returns the versions of Shoal and of its libraries.");
+  module.def("short_version", &tools::short_version, "Returns the version of Shoal only.");
+  module.def("shipped_folder", &sim::shipped_folder, "Returns the folder with the shipped worlds; '': there is none.");
+}
+
+}  // namespace python

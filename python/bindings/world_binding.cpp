@@ -1,0 +1,274 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "python/bindings/bindings.hpp"
+#include "python/bindings/in_use.hpp"
+#include "python/bindings/message_objects.hpp"
+#include "python/world/error.hpp"
+#include "python/world/in_process_world.hpp"
+#include "python/world/vehicle_motion.hpp"
+#include "sim/world/world_state.hpp"
+
+namespace py = pybind11;
+
+namespace python {
+namespace {
+
+py::bytes bytes_of(std::span<const std::byte> bytes) {
+  return py::bytes(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+}
+
+/// World that Python holds.  Every function takes the guard first.
+class World : public Guarded, public std::enable_shared_from_this<World> {
+ public:
+  explicit World(std::unique_ptr<InProcessWorld> world) : Guarded("the world"), own(std::move(world)) {}
+  ~World() {
+    if (!is_ours()) own.release();  // a fork has the memory but not the threads
+  }
+
+  std::unique_ptr<InProcessWorld> own;
+};
+
+/// Unread messages of one channel.
+class Subscription {
+ public:
+  Subscription(std::shared_ptr<World> world, const std::string& channel, std::size_t capacity)
+      : world_(std::move(world)),
+        channel_(channel),
+        mailbox_(world_->own->bus().open_mailbox(channel, capacity)),
+        restores_(world_->own->restores()) {}
+
+  py::list take() {
+    const Guarded::Use use(*world_);
+    if (std::exchange(restores_, world_->own->restores()) != world_->own->restores()) mailbox_->set_unread({});
+    py::list all;
+    while (const auto message = mailbox_->take()) {
+      const py::bytes payload = bytes_of(message->payload);
+      all.append(decode_message(schema_of_payload(message->payload), payload));
+    }
+    return all;
+  }
+  std::uint64_t dropped() const { return mailbox_->dropped(); }
+  const std::string& channel() const { return channel_; }
+
+ private:
+  const std::shared_ptr<World> world_;  // the mailbox may not outlive its bus
+  const std::string channel_;
+  const std::unique_ptr<sim::Mailbox> mailbox_;
+  std::uint64_t restores_;
+};
+
+std::shared_ptr<World> make_world(const std::string& file, const std::optional<std::string>& text,
+                                  std::optional<std::int64_t> seed, const std::vector<std::string>& sets) {
+  const py::gil_scoped_release others;
+  return std::make_shared<World>(std::make_unique<InProcessWorld>(load({file, text, sets, seed})));
+}
+
+std::int64_t step(World& world, std::int64_t count) {
+  if (count < 0) throw Error("a number of steps must be >= 0, got " + std::to_string(count));
+  const Guarded::Use use(world);
+  std::int64_t taken = 0;
+  if (count == 1) {
+    // A single step is often shorter than giving up the GIL would be worth checking signals for.
+    const py::gil_scoped_release others;
+    return world.own->step(1);
+  }
+  {
+    const py::gil_scoped_release others;
+    taken = world.own->step(count, &interrupted);
+  }
+  raise_interrupt();
+  return taken;
+}
+
+double run_until(World& world, double time_s) {
+  if (!std::isfinite(time_s) || time_s < 0 || time_s > 1e9)
+    throw Error("a time must be >= 0 and at most 1e9 s, got " + std::to_string(time_s));
+  const double step_s = sim::to_seconds(world.own->world().step_time());
+  const auto last = static_cast<std::int64_t>(std::ceil(time_s / step_s - 1e-9));
+  step(world, std::max<std::int64_t>(0, last - world.own->world().step_number()));
+  return sim::to_seconds(world.own->world().now());
+}
+
+const sim::Vehicle& vehicle_of(const World& world, const std::string& name) {
+  const sim::Vehicle* found = world.own->world().find_vehicle(name);
+  if (found == nullptr) throw Error("there is no vehicle '" + name + "'");
+  return *found;
+}
+
+py::array_t<Motion> states(World& world, const std::optional<std::vector<std::string>>& names) {
+  const Guarded::Use use(world);
+  std::vector<Motion> all;
+  if (names)
+    for (const std::string& name : *names) all.push_back(motion_of(vehicle_of(world, name)));
+  else
+    for (const auto& vehicle : world.own->world().vehicles()) all.push_back(motion_of(*vehicle));
+  return py::array_t<Motion>(static_cast<py::ssize_t>(all.size()), all.data());
+}
+
+py::dict joints(World& world, const std::string& vehicle) {
+  const Guarded::Use use(world);
+  py::dict all;
+  for (const auto& [name, joint] : vehicle_of(world, vehicle).joints()) all[py::str(name)] = joint->position();
+  return all;
+}
+
+py::object last(World& world, const std::string& channel) {
+  const Guarded::Use use(world);
+  const sim::Bytes* const payload = world.own->bus().find(channel);
+  if (payload == nullptr) return py::none();
+  return decode_message(schema_of_payload(*payload), bytes_of(*payload));
+}
+
+py::dict channels(World& world) {
+  const Guarded::Use use(world);
+  py::dict all;
+  for (const auto& [channel, payload] : world.own->bus().all()) all[py::str(channel)] = schema_of_payload(payload).name;
+  return all;
+}
+
+void publish(World& world, const std::string& channel, const py::bytes& payload) {
+  const Guarded::Use use(world);
+  schema_of_payload(span_of(payload));
+  world.own->publish(channel, span_of(payload));
+}
+
+std::vector<std::string> vehicle_names(World& world) {
+  const Guarded::Use use(world);
+  std::vector<std::string> names;
+  for (const auto& vehicle : world.own->world().vehicles()) names.push_back(vehicle->name());
+  return names;
+}
+
+std::vector<std::string> device_names(World& world, const std::string& vehicle) {
+  const Guarded::Use use(world);
+  std::vector<std::string> names;
+  for (const sim::MountedDevice* device : vehicle_of(world, vehicle).devices()) names.push_back(device->full_name());
+  return names;
+}
+
+std::vector<std::string> object_names(World& world) {
+  const Guarded::Use use(world);
+  std::vector<std::string> names;
+  for (const auto& [name, object] : world.own->world().objects()) names.push_back(name);
+  return names;
+}
+
+void add_world_class(py::module_& module) {
+  using namespace py::literals;
+  py::class_<World, std::shared_ptr<World>>(module, "World")
+      .def(py::init(&make_world), "file"_a, "text"_a = py::none(), "seed"_a = py::none(),
+           "sets"_a = std::vector<std::string>())
+      .def("step", &step, "count"_a = 1)
+      .def("run_until", &run_until, "time_s"_a)
+      .def("states", &states, "names"_a = py::none())
+      .def("joints", &joints, "vehicle"_a)
+      .def("last", &last, "channel"_a)
+      .def("channels", &channels)
+      .def("publish", &publish, "channel"_a, "payload"_a)
+      .def("vehicles", &vehicle_names)
+      .def("devices", &device_names, "vehicle"_a)
+      .def("objects", &object_names)
+      .def(
+          "subscribe",
+          [](const std::shared_ptr<World>& world, const std::string& channel, std::size_t capacity) {
+            const Guarded::Use use(*world);
+            return std::make_unique<Subscription>(world, channel, capacity);
+          },
+          "channel"_a, "capacity"_a = sim::Bus::default_mailbox_capacity)
+      .def(
+          "act",
+          [](World& world, const std::string& action) {
+            const Guarded::Use use(world);
+            world.own->act(action);
+          },
+          "action"_a)
+      .def(
+          "spawn",
+          [](World& world, const std::string& entry) {
+            const Guarded::Use use(world);
+            return world.own->spawn(entry);
+          },
+          "entry"_a)
+      .def(
+          "remove",
+          [](World& world, const std::string& name) {
+            const Guarded::Use use(world);
+            world.own->remove(name);
+          },
+          "name"_a)
+      .def("snapshot",
+           [](World& world) {
+             const Guarded::Use use(world);
+             return bytes_of(world.own->snapshot());
+           })
+      .def(
+          "restore",
+          [](World& world, const py::bytes& snapshot) {
+            const Guarded::Use use(world);
+            const std::span<const std::byte> bytes = span_of(snapshot);
+            const py::gil_scoped_release others;
+            world.own->restore(bytes);
+          },
+          "snapshot"_a)
+      .def("branch",
+           [](World& world) {
+             const Guarded::Use use(world);
+             const py::gil_scoped_release others;
+             return std::make_shared<World>(world.own->branch());
+           })
+      .def(
+          "use_threads",
+          [](World& world, int threads) {
+            const Guarded::Use use(world);
+            world.own->world().use_threads(threads);
+          },
+          "threads"_a)
+      .def("state_hash",
+           [](World& world) {
+             const Guarded::Use use(world);
+             return world.own->world().state().hash();
+           })
+      .def("run_hash",
+           [](World& world) {
+             const Guarded::Use use(world);
+             return world.own->world().state().run_hash();
+           })
+      .def_property_readonly("name", [](const World& world) { return world.own->world().config().name; })
+      .def_property_readonly("description", [](const World& world) { return world.own->world().config().description; })
+      .def_property_readonly("seed", [](const World& world) { return world.own->world().config().run.seed; })
+      .def_property_readonly("duration_s",
+                             [](const World& world) { return world.own->world().config().run.duration_s; })
+      .def_property_readonly("step_s",
+                             [](const World& world) { return sim::to_seconds(world.own->world().step_time()); })
+      .def_property_readonly("step_number", [](const World& world) { return world.own->world().step_number(); })
+      .def_property_readonly("time_s", [](const World& world) { return sim::to_seconds(world.own->world().now()); })
+      .def_property_readonly("utime", [](const World& world) { return world.own->world().now().count(); })
+      .def_property_readonly("ended", [](World& world) -> std::optional<std::string> {
+        const Guarded::Use use(world);
+        const auto& end = world.own->world().ended();
+        return end ? std::optional(end->text) : std::nullopt;
+      });
+}
+
+}  // namespace
+
+void add_world(py::module_& module) {
+  PYBIND11_NUMPY_DTYPE(Motion, position_m, orientation, velocity_mps, rates_radps);
+  add_world_class(module);
+  py::class_<Subscription>(module, "Subscription")
+      .def("take", &Subscription::take, "Removes and returns the unread messages, oldest first.")
+      .def_property_readonly("dropped", &Subscription::dropped, "Messages that were lost because nobody took them.")
+      .def_property_readonly("channel", &Subscription::channel);
+}
+
+}  // namespace python

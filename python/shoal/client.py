@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The connection of a program to its vehicle."""
+from . import _shoal, messages
+
+
+class Client:
+    """Connection of an autonomy program to a run, over LCM, for one thread.
+
+        client = shoal.Client('pilot')
+        client.subscribe('auv1.dvl', on_dvl)
+        client.join(0.1)
+        for utime in client.ticks():
+            client.publish('auv1.autopilot.cmd', command)
+
+    Handlers are called during next_tick(), wait_until() and ticks() only.  What a handler raises comes out of the
+    waiting call.  A payload that is not valid is counted and reported on standard error, once for each channel.
+    """
+
+    def __init__(self, name, lcm_url=''):
+        """name: under which the simulator waits for the program; lcm_url: '' for LCM_DEFAULT_URL or LCM's default."""
+        self._own = _shoal.Client(name, lcm_url)
+
+    def subscribe(self, channel, handler, type=None):
+        """Calls handler(message) for each message of a channel.
+
+        type: class or name of the type that is accepted; None: the one that each message names
+        """
+        name = type._type if isinstance(type, __builtins_type) and issubclass(type, messages.Message) else type
+        self._own.subscribe(channel, handler, name)
+
+    def publish(self, channel, message):
+        """Publishes a message; in lockstep it takes effect in the step after the tick."""
+        self._own.publish(channel, message.encode() if isinstance(message, messages.Message) else bytes(message))
+
+    def join(self, period_s, on_timeout='', timeout_s=0.0, wait_s=30.0):
+        """Joins the lockstep: the world waits for this program every `period_s` of simulated time.
+
+        on_timeout: what the world does when the program does not answer in `timeout_s` of wall time: wait, pause,
+            continue, end; '' and 0: as the world file says
+        wait_s: how long to wait for a simulator
+
+        Raises Error when the simulator refuses, or none answers.
+        """
+        self._own.join(period_s, on_timeout, timeout_s, wait_s)
+
+    def follow(self, period_s):
+        """Follows a run without lockstep: next_tick() returns when sim.clock passes a multiple of `period_s`."""
+        self._own.follow(period_s)
+
+    def next_tick(self):
+        """Answers the last tick, waits for the next one and returns its simulated time in microseconds.
+
+        Returns None when the run is over; see `end`.
+        """
+        return self._own.next_tick()
+
+    def wait_until(self, utime):
+        """Handles ticks up to the first one at or after a time; returns its time as next_tick() does."""
+        return self._own.wait_until(utime)
+
+    def ticks(self):
+        """Yields the simulated time of each tick, in microseconds, until the run is over."""
+        while (utime := self.next_tick()) is not None:
+            yield utime
+
+    def on_rewind(self, handler):
+        """Calls handler(utime) when the world was rewound to a time; without a handler the run is then over."""
+        self._own.on_rewind(handler)
+
+    def stop(self):
+        """Makes next_tick() return None, for good; any thread may call it."""
+        self._own.stop()
+
+    def set_silence_limit(self, seconds):
+        """Sets after how much wall time without any message the run counts as over; 0: never.  600 s at first."""
+        self._own.set_silence_limit(seconds)
+
+    @property
+    def end(self):
+        """Why the run is over: last_tick, stopped, silence, rewound, dropped; '' while it continues."""
+        return self._own.end
+
+    @property
+    def reason(self):
+        """Reason that the simulator gave when it dropped this program."""
+        return self._own.reason
+
+    @property
+    def branch(self):
+        """Number of rewinds before the present tick."""
+        return self._own.branch
+
+    @property
+    def counts(self):
+        """Dict with the numbers of messages: received, bad, published, requested, repeated."""
+        return self._own.counts
+
+
+__builtins_type = type

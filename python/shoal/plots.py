@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Plots of a results folder as axes of matplotlib, which must be installed (python3-matplotlib)."""
+import os
+
+import numpy as np
+
+from .results import _columns
+
+
+def _axes(axes):
+    if axes is not None:
+        return axes
+    import matplotlib.pyplot as plt
+    return plt.figure(layout='constrained').add_subplot()
+
+
+def tracks(folder, axes=None):
+    """Draws the true track of every vehicle, seen from above, in m; returns the axes."""
+    axes = _axes(axes)
+    columns = _columns(os.path.join(os.fspath(folder), 'tracks.csv'))
+    for vehicle in dict.fromkeys(columns['vehicle']):
+        own = columns['vehicle'] == vehicle
+        line, = axes.plot(columns['x_m'][own], columns['y_m'][own], label=vehicle)
+        axes.plot(columns['x_m'][own][:1], columns['y_m'][own][:1], 'o', color=line.get_color())
+    axes.set_aspect('equal', adjustable='datalim')
+    axes.set_xlabel('x east in m')
+    axes.set_ylabel('y north in m')
+    axes.legend()
+    return axes
+
+
+def _by_metric(folder, metrics):
+    columns = _columns(os.path.join(os.fspath(folder), 'errors.csv'))
+    for metric in metrics or dict.fromkeys(columns['metric']):
+        own = columns['metric'] == metric
+        yield metric, {name: values[own] for name, values in columns.items()}
+
+
+def errors(folder, metrics=None, axes=None):
+    """Draws position error against time in m, with the 95 % bound that the estimate claims; returns the axes.
+
+    metrics: names; None: all
+    """
+    axes = _axes(axes)
+    for metric, own in _by_metric(folder, metrics):
+        line, = axes.plot(own['time_s'], own['error_m'], label=metric)
+        if np.isfinite(own['sigma_m']).any():
+            axes.plot(own['time_s'], 2 * own['sigma_m'], '--', color=line.get_color(), linewidth=0.8)
+    axes.set_xlabel('time in s')
+    axes.set_ylabel('error in m (dashed: twice its own sigma)')
+    axes.legend()
+    return axes
+
+
+def nees(folder, metrics=None, axes=None, dimensions=2):
+    """Draws the normalised estimation error squared against time, with the 95 % interval of a consistent filter.
+
+    dimensions: number of coordinates of the estimate; the interval is that of chi-square with as many degrees of
+    freedom (Bar-Shalom, Li, Kirubarajan, Estimation with Applications to Tracking and Navigation, 2001, section 5.4)
+    """
+    axes = _axes(axes)
+    for metric, own in _by_metric(folder, metrics):
+        if np.isfinite(own['nees']).any():
+            axes.plot(own['time_s'], own['nees'], label=metric)
+    low, high = _chi_square(0.025, dimensions), _chi_square(0.975, dimensions)
+    axes.axhspan(low, high, color='0.9', zorder=0)
+    axes.set_yscale('log')
+    axes.set_xlabel('time in s')
+    axes.set_ylabel(f'NEES (grey: 95 % interval of {dimensions} dimensions)')
+    axes.legend()
+    return axes
+
+
+def _chi_square(probability, degrees):
+    """Returns the quantile of chi-square, by bisection of its distribution (a series of the incomplete gamma)."""
+    from math import exp, gamma
+
+    def distribution(x):
+        a, x = degrees / 2, x / 2
+        term = total = 1 / a
+        n = 0
+        while term > 1e-14 * total:
+            n += 1
+            term *= x / (a + n)
+            total += term
+        return total * x ** a * exp(-x) / gamma(a)
+    low, high = 0.0, 200.0
+    for _ in range(80):
+        middle = (low + high) / 2
+        low, high = (middle, high) if distribution(middle) < probability else (low, middle)
+    return (low + high) / 2

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "python/world/last_messages.hpp"
+#include "sim/world/world.hpp"
+#include "sim/world/world_state.hpp"
+#include "sim/world_file/load_world.hpp"
+
+namespace python {
+
+/// Options of a world that is loaded by a program.
+struct WorldSource {
+  std::string file;                  ///< path of the world; of a text: its name in errors
+  std::optional<std::string> text;   ///< YAML instead of the file
+  std::vector<std::string> sets;     ///< as with --set
+  std::optional<std::int64_t> seed;  ///< instead of that of the file
+};
+
+/// Reads a world.  Throws sim::ConfigError.
+std::shared_ptr<const sim::LoadedWorld> load(const WorldSource& source);
+
+/// World that the calling program steps, with a bus inside the process.  Its hashes are those of `shoal run`.
+class InProcessWorld {
+ public:
+  /// Called every few milliseconds during long work; true: the work ends.
+  using Stop = std::function<bool()>;
+
+  explicit InProcessWorld(std::shared_ptr<const sim::LoadedWorld> loaded);
+
+  sim::World& world() { return world_; }
+  const sim::World& world() const { return world_; }
+  LastMessages& bus() { return bus_; }
+  const std::shared_ptr<const sim::LoadedWorld>& loaded() const { return loaded_; }
+
+  /// Takes up to `count` steps; fewer when the world ends the run or `stop` returns true.  Returns the steps taken.
+  /// Throws sim::PhysicsFault; the world then cannot be stepped further, but restored.
+  std::int64_t step(std::int64_t count, const Stop& stop = {});
+  /// Publishes a payload as a program would; devices get it in the next step.  Throws sim::WorldError.
+  void publish(const std::string& channel, std::span<const std::byte> payload);
+  /// Executes an action, or a list of them, written in YAML, as in `events:`.  Throws sim::ConfigError,
+  /// sim::WorldError.
+  void act(const std::string& action);
+  /// Adds the vehicles of an entry of `vehicles:`, written in YAML; returns their names.  Throws sim::ConfigError.
+  std::vector<std::string> spawn(const std::string& entry);
+
+  /// Removes a vehicle or an object.  Throws sim::WorldError.
+  void remove(const std::string& name);
+
+  sim::Bytes snapshot() const { return world_.state().snapshot(); }
+  /// Restores a snapshot of the same world.  Throws sim::SnapshotError.
+  void restore(std::span<const std::byte> snapshot);
+  /// Returns another world in the same state.
+  std::unique_ptr<InProcessWorld> branch() const;
+  /// Returns a counter of restores; unread messages of subscribers before the last one are of another future.
+  std::uint64_t restores() const { return restores_; }
+
+ private:
+  const std::shared_ptr<const sim::LoadedWorld> loaded_;
+  LastMessages bus_;
+  sim::World world_;
+  std::string fault_;  // of a step that failed; empty: none
+  std::uint64_t restores_ = 0;
+};
+
+}  // namespace python

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "python/world/world_pool.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+#include <utility>
+
+#include "python/world/error.hpp"
+#include "python/world/vehicle_motion.hpp"
+#include "sim/ode/physics_fault.hpp"
+
+namespace python {
+namespace {
+
+constexpr std::uint8_t goes_on = 0, has_ended = 1, has_failed = 2;
+
+const shoal::MessageSchema& schema_of(const std::string& name) {
+  const shoal::MessageSchema* found = shoal::embedded_types().find(name);
+  if (found == nullptr) found = shoal::embedded_types().find("shoal." + name);
+  if (found == nullptr) throw Error("there is no message type '" + name + "'");
+  return *found;
+}
+
+}  // namespace
+
+/// A world and what is prepared for it.
+struct WorldPool::Member {
+  std::unique_ptr<InProcessWorld> world;
+  std::vector<MessageForm> forms;
+  std::uint8_t status = goes_on;
+};
+
+WorldPool::WorldPool(WorldSource source, std::size_t count, std::int64_t first_seed, Layout layout, int threads)
+    : source_(std::move(source)), layout_(std::move(layout)), threads_(threads) {
+  if (count < 1 || count > 100'000) throw Error("a pool has 1 to 100000 worlds, got " + std::to_string(count));
+  if (layout_.steps < 1) throw Error("a step of a pool must be >= 1 steps of a world");
+  for (std::size_t i = 0; i < count; ++i) worlds_.push_back(std::make_unique<Member>());
+  // The first one shows errors and the sizes of observations before the others are built.
+  build(*worlds_.front(), first_seed);
+  step_s_ = sim::to_seconds(worlds_.front()->world->world().step_time());
+  for (const MessageForm& form : worlds_.front()->forms) action_values_ += form.count();
+  measure_observations();
+  threads_.for_each(count, [&](std::size_t i) { build(*worlds_[i], first_seed + static_cast<std::int64_t>(i)); });
+}
+
+WorldPool::~WorldPool() = default;
+
+InProcessWorld& WorldPool::world(std::size_t index) {
+  return *worlds_.at(index)->world;
+}
+
+void WorldPool::build(Member& member, std::int64_t seed) const {
+  WorldSource source = source_;
+  source.seed = seed;
+  member.world.reset();
+  member.world = std::make_unique<InProcessWorld>(load(source));
+  member.forms.clear();
+  for (const Action& action : layout_.actions) member.forms.emplace_back(schema_of(action.type), action.members);
+  member.status = goes_on;
+}
+
+/// Steps the first world until each observed channel has a message.
+void WorldPool::measure_observations() {
+  InProcessWorld& world = *worlds_.front()->world;
+  constexpr double max_s = 10;
+  offsets_.assign(1, 0);
+  for (const Observation& observation : layout_.observations) {
+    std::size_t size = motion_values;
+    if (observation.channel.empty()) {
+      if (world.world().find_vehicle(observation.vehicle) == nullptr)
+        throw Error("there is no vehicle '" + observation.vehicle + "'");
+    } else {
+      while (world.bus().find(observation.channel) == nullptr) {
+        if (world.step(1) == 0 || sim::to_seconds(world.world().now()) > max_s)
+          throw Error("nothing is published on '" + observation.channel + "' within 10 s");
+      }
+      const sim::Bytes& payload = *world.bus().find(observation.channel);
+      const auto* schema = shoal::embedded_types().find(static_cast<std::uint64_t>(shoal::fingerprint(payload)));
+      if (schema == nullptr) throw Error("the messages on '" + observation.channel + "' have no known type");
+      size = MemberReader(*schema, observation.member).count(payload);
+    }
+    observation_values_ += size;
+    offsets_.push_back(observation_values_);
+  }
+}
+
+void WorldPool::step(std::span<const double> actions, std::span<const std::int64_t> seeds,
+                     std::span<double> observations, std::span<std::uint8_t> ended) {
+  threads_.for_each(worlds_.size(), [&](std::size_t i) {
+    Member& member = *worlds_[i];
+    if (seeds[i] >= 0)
+      build(member, seeds[i]);
+    else if (member.status == goes_on)
+      step(member, actions.subspan(i * action_values_, action_values_));
+    observe(member, observations.subspan(i * observation_values_, observation_values_));
+    ended[i] = member.status;
+  });
+}
+
+void WorldPool::step(Member& member, std::span<const double> actions) const {
+  // Send the actions
+  const sim::World& world = member.world->world();
+  const std::int64_t utime = world.epoch_us() + world.now().count();
+  for (std::size_t k = 0; k < member.forms.size(); ++k) {
+    MessageForm& form = member.forms[k];
+    member.world->publish(layout_.actions[k].channel, form.fill(actions.first(form.count()), utime));
+    actions = actions.subspan(form.count());
+  }
+  // Step
+  try {
+    member.world->step(layout_.steps);
+    if (world.ended()) member.status = has_ended;
+  } catch (const sim::PhysicsFault&) {
+    member.status = has_failed;
+  }
+}
+
+void WorldPool::observe(Member& member, std::span<double> out) const {
+  for (std::size_t k = 0; k < layout_.observations.size(); ++k) {
+    const Observation& observation = layout_.observations[k];
+    const std::span<double> values = out.subspan(offsets_[k], offsets_[k + 1] - offsets_[k]);
+    std::fill(values.begin(), values.end(), std::numeric_limits<double>::quiet_NaN());
+    if (observation.channel.empty()) {
+      const sim::Vehicle* const vehicle = member.world->world().find_vehicle(observation.vehicle);
+      if (vehicle == nullptr) continue;
+      const Motion motion = motion_of(*vehicle);
+      static_assert(sizeof motion == motion_values * sizeof(double));
+      std::memcpy(values.data(), &motion, sizeof motion);
+      continue;
+    }
+    const sim::Bytes* const payload = member.world->bus().find(observation.channel);
+    if (payload == nullptr) continue;
+    const auto* schema = shoal::embedded_types().find(static_cast<std::uint64_t>(shoal::fingerprint(*payload)));
+    if (schema != nullptr) MemberReader(*schema, observation.member).read(*payload, values);
+  }
+}
+
+}  // namespace python

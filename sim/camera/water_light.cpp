@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sim/camera/water_light.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+namespace sim {
+
+namespace {
+
+// The functions below have no branches, so that the compiler makes vector loops over rays.
+#define SHOAL_INLINE [[gnu::always_inline]] inline
+
+constexpr float infinity = std::numeric_limits<float>::infinity();
+constexpr float refractive_index = 1.34F;
+constexpr float reflected_at_right_angle = 0.021F;  ///< ((n - 1) / (n + 1))^2
+constexpr float farthest_m = 1e4F;                  ///< path in water after which nothing is left
+
+SHOAL_INLINE float larger(float a, float b) {
+  return a > b ? a : b;
+}
+SHOAL_INLINE float smaller(float a, float b) {
+  return a < b ? a : b;
+}
+
+/// e^x for x <= 0 to 0.1 %: 2^n by the exponent of a float, times a polynomial for the rest.
+SHOAL_INLINE float exponential(float x) {
+  const float turns = larger(x * 1.442695F, -125.0F);
+  const int whole = static_cast<int>(turns) - 1;
+  const float rest = turns - static_cast<float>(whole);  // 0 to 1
+  const float power = 1 + rest * (0.695976F + rest * (0.226173F + rest * 0.0780245F));
+  return std::bit_cast<float>((whole + 127) << 23) * power;
+}
+
+/// Share of light that the surface reflects (Schlick 1994).
+SHOAL_INLINE float reflected(float cosine) {
+  const float rest = 1 - smaller(larger(cosine, 0), 1);
+  const float square = rest * rest;
+  return reflected_at_right_angle + (1 - reflected_at_right_angle) * square * square * rest;
+}
+
+/// Constants of an image, one element for each color.
+struct Constants {
+  float attenuation[3], downward[3], at_surface[3], at_eye[3], sun[3], to_sun[3];
+  float wind_slope, eye_depth_m;
+  float mirrored_deep[3];  // light that the surface reflects from deep water
+
+  Constants(const WaterLight& water, const SkyLight& sky);
+};
+
+/// Daylight that the water scatters into a ray: integral of scattering times what is left of the light, over the path.
+/// `source`: per metre at its start.
+SHOAL_INLINE float veil(const Constants& water, int color, float source, float down, float path_m) {
+  const float rate = larger(water.attenuation[color] + down * water.downward[color], 1e-4F);
+  return source * (1 - exponential(-rate * path_m)) / rate;
+}
+
+SHOAL_INLINE float share_after(const Constants& water, int color, float path_m) {
+  return exponential(-water.attenuation[color] * path_m);
+}
+
+Constants::Constants(const WaterLight& water, const SkyLight& sky)
+    : wind_slope(water.wind_slope), eye_depth_m(water.eye_depth_m) {
+  for (int i = 0; i < 3; ++i) {
+    attenuation[i] = water.attenuation[i];
+    downward[i] = water.downward[i];
+    at_surface[i] = water.at_surface[i];
+    at_eye[i] = water.at_eye[i];
+    sun[i] = water.sun[i];
+    to_sun[i] = sky.to_sun_W()[i];
+  }
+  for (int i = 0; i < 3; ++i) mirrored_deep[i] = veil(*this, i, at_surface[i], 1, farthest_m);
+}
+
+/// Vector of unit length.
+struct Unit {
+  float x, y, z;
+};
+
+SHOAL_INLINE Unit unit(float x, float y, float z) {
+  const float inverse = 1 / std::sqrt(x * x + y * y + z * z);
+  return {x * inverse, y * inverse, z * inverse};
+}
+SHOAL_INLINE float dot(const Unit& a, const Unit& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+SHOAL_INLINE float cosine_to_sun(const Constants& water, const Unit& direction) {
+  return dot(direction, {water.to_sun[0], water.to_sun[1], water.to_sun[2]});
+}
+
+/// Dims the light of what is seen by the depth at which it is: less daylight reaches it there.
+SHOAL_INLINE void dim_by_depth(const Constants& water, WaterRays& rays) {
+  for (int i = 0; i < WaterRays::size; ++i) {
+    const float range_m = rays.range_m[i] < infinity ? rays.range_m[i] : 0;
+    const float deep_m = larger(water.eye_depth_m - range_m * rays.direction_W[2][i], 0);
+    const float depth_m = rays.range_m[i] < infinity ? deep_m : 0;
+    for (int color = 0; color < 3; ++color) {
+      const float share = exponential(-water.downward[color] * depth_m);
+      rays.light[color][i] *= depth_m > 0 ? share : 1;
+    }
+  }
+}
+
+/// Lights the rays of a camera above the water.
+SHOAL_INLINE void light_above(const Constants& water, const SkyLight& sky, WaterRays& rays) {
+  dim_by_depth(water, rays);
+  for (int i = 0; i < WaterRays::size; ++i) {
+    // Reflection of the sky.
+    const Unit direction{rays.direction_W[0][i], rays.direction_W[1][i], rays.direction_W[2][i]};
+    const Unit normal = unit(-rays.slope_x[i], -rays.slope_y[i], 1);
+    const float toward = larger(-dot(normal, direction), 0.02F);
+    const float mirrored = reflected(toward);
+    const Unit mirror = unit(direction.x + 2 * toward * normal.x, direction.y + 2 * toward * normal.y,
+                             larger(direction.z + 2 * toward * normal.z, 0.02F));
+    float sky_light[3];
+    sky.from(mirror.z, cosine_to_sun(water, mirror), sky_light);
+    // Image of the sun, spread by waves that are too small to be seen.
+    const Unit half = unit(water.to_sun[0] - direction.x, water.to_sun[1] - direction.y, water.to_sun[2] - direction.z);
+    const float cosine = larger(dot(half, normal), 0.05F), square = cosine * cosine;
+    const float rough = water.wind_slope + rays.rough[i];
+    const float facets = exponential(smaller((1 - 1 / square) / rough, 0)) / (rough * square * square);
+    const float glint = smaller(4.0F, 0.25F * facets * reflected(cosine_to_sun(water, half)) / larger(toward, 0.2F));
+    // What comes out of the water.
+    const bool wet = rays.crossing_m[i] < rays.range_m[i];
+    const float path_m = wet ? smaller(rays.range_m[i] - rays.crossing_m[i], farthest_m) : 0;
+    const float down = larger(-direction.z, 0);
+    for (int color = 0; color < 3; ++color) {
+      const float out = veil(water, color, water.at_surface[color], down, path_m) +
+                        share_after(water, color, path_m) * rays.light[color][i];
+      const float sum = water.sun[color] * glint + (1 - mirrored) * out + mirrored * sky_light[color];
+      rays.light[color][i] = wet ? sum : rays.light[color][i];
+    }
+  }
+}
+
+/// Lights the rays of a camera under water.
+SHOAL_INLINE void light_below(const Constants& water, const SkyLight& sky, WaterRays& rays) {
+  dim_by_depth(water, rays);
+  for (int i = 0; i < WaterRays::size; ++i) {
+    // The surface from below.  Snell's window: the sky within 48 degrees of the zenith; outside of it the surface
+    // mirrors the water.
+    const Unit direction{rays.direction_W[0][i], rays.direction_W[1][i], rays.direction_W[2][i]};
+    const Unit up = unit(-rays.slope_x[i], -rays.slope_y[i], 1);
+    const float toward = larger(dot(up, direction), 0);
+    const float square = 1 - refractive_index * refractive_index * (1 - toward * toward);
+    const float root = std::sqrt(larger(square, 0)), bend = refractive_index * toward - root;
+    const float mirrored = square > 0 ? reflected(root) : 1;
+    const float mirror_down = larger(2 * toward * up.z - direction.z, 0);
+    const Unit refracted =
+        unit(refractive_index * direction.x - bend * up.x, refractive_index * direction.y - bend * up.y,
+             refractive_index * direction.z - bend * up.z);
+    float sky_light[3];
+    sky.from(refracted.z, cosine_to_sun(water, refracted), sky_light);
+    // The water up to the surface, or up to what is seen in it.
+    const bool leaves = rays.crossing_m[i] < rays.range_m[i];
+    const float path_m = smaller(leaves ? rays.crossing_m[i] : rays.range_m[i], farthest_m);
+    const bool is_sky = leaves && !(rays.range_m[i] < infinity);
+    for (int color = 0; color < 3; ++color) {
+      const float own = veil(water, color, water.at_eye[color], -direction.z, path_m);
+      const float deep = veil(water, color, water.at_surface[color], mirror_down, farthest_m);
+      const float mirror = square > 0 ? water.mirrored_deep[color] : deep;
+      const float beyond = is_sky ? sky_light[color] : rays.light[color][i];
+      const float seen = leaves ? mirrored * mirror + (1 - mirrored) * beyond : beyond;
+      rays.light[color][i] = own + share_after(water, color, path_m) * seen;
+    }
+  }
+}
+
+SHOAL_INLINE void light_all(const WaterLight& water, const SkyLight& sky, WaterRays& rays) {
+  // Copies, which the compiler knows not to change while it writes the light.
+  const Constants constants(water, sky);
+  const std::array copy{sky};
+  if (water.is_under)
+    light_below(constants, copy[0], rays);
+  else
+    light_above(constants, copy[0], rays);
+}
+
+#undef SHOAL_INLINE
+
+void light_sse2(const WaterLight& water, const SkyLight& sky, WaterRays& rays) {
+  light_all(water, sky, rays);
+}
+
+// The results have equal bits: AVX2 alone has no fused multiply-add.
+[[gnu::target("avx2")]] void light_avx2(const WaterLight& water, const SkyLight& sky, WaterRays& rays) {
+  light_all(water, sky, rays);
+}
+
+}  // namespace
+
+LinearColor daylight_at(const WaterLight& water, float depth_m) {
+  LinearColor share = LinearColor::Ones();
+  for (int i = 0; i < 3 && depth_m > 0; ++i) share[i] = exponential(-water.downward[i] * depth_m);
+  return share;
+}
+
+void light_water(const WaterLight& water, const SkyLight& sky, WaterRays& rays) {
+  static const auto best = __builtin_cpu_supports("avx2") ? light_avx2 : light_sse2;
+  best(water, sky, rays);
+}
+
+}  // namespace sim

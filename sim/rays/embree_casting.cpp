@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Ray casting of EmbreeScene.
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "sim/rays/embree_scene.hpp"
+#include "sim/rays/float_rays.hpp"
+#include "sim/rays/ray_bundle.hpp"
+
+namespace sim {
+
+/// Query of a packet in a layer.  Callbacks get it by its first member.
+struct EmbreeScene::Query {
+  Query(const Layer& layer, RayPacket& rays_, unsigned lanes, const RayFilter& filter_)
+      : rays(rays_), filter(filter_), floats(layer.radius_m) {
+    rtcInitIntersectContext(&context);
+    if (rays.coherent) context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    double from[3][RayPacket::size];
+    for (int axis = 0; axis < 3; ++axis)
+      for (int i = 0; i < RayPacket::size; ++i) from[axis][i] = rays.origin[axis][i] - layer.origin_W[axis];
+    floats.aim(from, rays.direction, rays.range_m, lanes);
+  }
+
+  RTCIntersectContext context;
+  RayPacket& rays;
+  const RayFilter& filter;
+  unsigned blocked = 0;  // lanes
+  FloatRays floats;
+};
+
+/// Records nearer hits on the shape; returns the lanes that have one.
+unsigned EmbreeScene::cast_at(const RayShape& shape, RayPacket& rays, unsigned lanes) {
+  if (shape.kind == RayShape::Kind::mesh) return shape.mesh->cast(shape, rays, lanes);
+  alignas(64) double range_m[RayPacket::size];
+  find_ranges(shape, rays, lanes, range_m);
+  unsigned hit = 0;
+  for (; lanes != 0; lanes &= lanes - 1) {
+    const int lane = std::countr_zero(lanes);
+    if (!rays.nearer(lane, range_m[lane], shape.part)) continue;
+    rays.hit(lane, range_m[lane], shape);
+    hit |= 1u << lane;
+  }
+  return hit;
+}
+
+unsigned EmbreeScene::blocked_by(const RayShape& shape, RayPacket& rays, unsigned lanes) {
+  if (shape.kind == RayShape::Kind::mesh) return shape.mesh->find_blocked(shape, rays, lanes);
+  alignas(64) double range_m[RayPacket::size];
+  find_ranges(shape, rays, lanes, range_m);
+  unsigned blocked = 0;
+  for (; lanes != 0; lanes &= lanes - 1) {
+    const int lane = std::countr_zero(lanes);
+    if (range_m[lane] <= rays.range_m[lane]) blocked |= 1u << lane;
+  }
+  return blocked;
+}
+
+namespace {
+
+/// Returns the active lanes of a callback.
+unsigned lanes_of(const int* valid, RTCRayN* rays, unsigned count) {
+  unsigned lanes = 0;
+  for (unsigned i = 0; i < count; ++i)
+    if (valid[i] != 0) lanes |= 1u << RTCRayN_id(rays, count, i);
+  return lanes;
+}
+
+}  // namespace
+
+void EmbreeScene::intersect(const RTCIntersectFunctionNArguments* arguments) {
+  Query& query = *reinterpret_cast<Query*>(arguments->context);
+  const RayShape& shape = static_cast<const Layer*>(arguments->geometryUserPtr)->shapes[arguments->primID];
+  if (!shape.stops(query.filter)) return;
+  const unsigned n = arguments->N;
+  RTCRayN* rays = RTCRayHitN_RayN(arguments->rayhit, n);
+  const unsigned hit = cast_at(shape, query.rays, lanes_of(arguments->valid, rays, n));
+  if (hit == 0) return;
+  for (unsigned i = 0; i < n; ++i) {
+    const int lane = static_cast<int>(RTCRayN_id(rays, n, i));
+    if (arguments->valid[i] != 0 && (hit >> lane & 1) != 0)
+      RTCRayN_tfar(rays, n, i) = query.floats.limit_m(lane, query.rays.range_m[lane]);
+  }
+}
+
+void EmbreeScene::find_occluded(const RTCOccludedFunctionNArguments* arguments) {
+  Query& query = *reinterpret_cast<Query*>(arguments->context);
+  const RayShape& shape = static_cast<const Layer*>(arguments->geometryUserPtr)->shapes[arguments->primID];
+  if (!shape.stops(query.filter)) return;
+  const unsigned n = arguments->N;
+  const unsigned blocked = blocked_by(shape, query.rays, lanes_of(arguments->valid, arguments->ray, n));
+  query.blocked |= blocked;
+  for (unsigned i = 0; i < n; ++i)
+    if (arguments->valid[i] != 0 && (blocked >> RTCRayN_id(arguments->ray, n, i) & 1) != 0)
+      RTCRayN_tfar(arguments->ray, n, i) = -std::numeric_limits<float>::infinity();
+}
+
+/// What the rays of a bundle may hit: single shapes, and layers to search by their trees.
+struct EmbreeScene::Targets {
+  Targets(const EmbreeScene& scene, const RayFilter& filter_, const RayBundle& bundle)
+      : filter(filter_), planes(scene.planes_.shapes) {
+    for (const Layer* layer : {&scene.moving_, &scene.fixed_, &scene.terrain_})
+      if (!add_shapes(*layer, bundle) && bundle.may_reach(layer->origin_W, layer->radius_m))
+        trees[tree_count++] = layer;
+  }
+
+  RayFilter filter;
+  std::span<const RayShape> planes;
+  std::array<const RayShape*, 3 * max_few> shapes;
+  int shape_count = 0;
+  /// In order of the cost of intersections: terrain is last, and is cheaper for rays that other hits have shortened.
+  std::array<const Layer*, 3> trees;
+  int tree_count = 0;
+
+  template <typename Use>
+  void for_each_shape(Use&& use) const {
+    for (const RayShape& shape : planes)
+      if (shape.stops(filter)) use(shape);
+    for (int i = 0; i < shape_count; ++i) use(*shapes[i]);
+  }
+
+ private:
+  /// Adds the shapes of the layer within reach; returns false when they are so many that its tree is faster.
+  bool add_shapes(const Layer& layer, const RayBundle& bundle) {
+    constexpr std::size_t max_tested = 64;
+    if (layer.shapes.size() > (bundle.is_narrow() ? max_tested : std::size_t{max_few})) return false;
+    const int before = shape_count;
+    for (const RayShape& shape : layer.shapes) {
+      if (!shape.stops(filter) || !bundle.may_reach(shape)) continue;
+      if (shape_count - before == max_few) {
+        shape_count = before;
+        return false;
+      }
+      shapes[shape_count++] = &shape;
+    }
+    return true;
+  }
+};
+
+void EmbreeScene::cast_packet(RayPacket& rays, unsigned lanes, const Targets& targets) {
+  targets.for_each_shape([&](const RayShape& shape) { cast_at(shape, rays, lanes); });
+  for (int i = 0; i < targets.tree_count; ++i) {
+    Query query(*targets.trees[i], rays, lanes, targets.filter);
+    query.floats.intersect(targets.trees[i]->scene.get(), query.context);
+  }
+}
+
+unsigned EmbreeScene::blocked_packet(RayPacket& rays, unsigned lanes, const Targets& targets) {
+  unsigned blocked = 0;
+  targets.for_each_shape([&](const RayShape& shape) {
+    if ((lanes & ~blocked) != 0) blocked |= blocked_by(shape, rays, lanes & ~blocked);
+  });
+  for (int i = 0; i < targets.tree_count && (lanes & ~blocked) != 0; ++i) {
+    Query query(*targets.trees[i], rays, lanes & ~blocked, targets.filter);
+    query.floats.find_occluded(targets.trees[i]->scene.get(), query.context);
+    blocked |= query.blocked;
+  }
+  return blocked;
+}
+
+RayHit EmbreeScene::hit_of(const RayPacket& rays, int lane) const {
+  if (rays.part[lane] == RayPacket::no_part) return {};
+  const RayShape& shape = *rays.shape[lane];
+  RayHit hit{rays.range_m[lane], Vector3d::Zero(), shape.part, shape.material};
+  const Vector3d direction_W = rays.direction_W(lane);
+  if (shape.mesh != nullptr) {
+    const Vector3d normal = shape.mesh->normal(rays.triangle[lane]);
+    hit.normal_W = normal.x() * shape.axis_W(0) + normal.y() * shape.axis_W(1) + normal.z() * shape.axis_W(2);
+    const std::span<const int> materials = parts_[static_cast<std::size_t>(shape.part)].part.triangle_materials;
+    if (!materials.empty()) hit.material = materials[rays.triangle[lane]];
+  } else if (shape.kind == RayShape::Kind::plane) {
+    hit.normal_W = shape.axis_W(2);
+  } else {
+    hit.normal_W = normal_at(shape, rays.origin_W(lane) + hit.range_m * direction_W);
+  }
+  if (hit.normal_W.dot(direction_W) > 0) hit.normal_W = -hit.normal_W;
+  return hit;
+}
+
+std::optional<RayHit> EmbreeScene::cast(const Vector3d& origin_W, const Vector3d& direction_W, double range_max_m,
+                                        const RayFilter& filter) const {
+  if (!(range_max_m > 0)) return std::nullopt;
+  prepare();
+  RayPacket rays;
+  rays.set(0, origin_W, direction_W, range_max_m);
+  for (int lane = 1; lane < RayPacket::size; ++lane) rays.repeat(0, lane);
+  cast_packet(rays, 1, Targets(*this, filter, RayBundle()));
+  if (rays.part[0] == RayPacket::no_part) return std::nullopt;
+  return hit_of(rays, 0);
+}
+
+namespace {
+
+/// Calls use(first, rays, lanes) for packets of the rays that set(lane, number) gives.  Rays of zero length are
+/// skipped.
+template <typename Set, typename Use>
+void for_packets(std::size_t count, bool coherent, Set&& set, Use&& use) {
+  RayPacket rays;
+  rays.coherent = coherent;
+  for (std::size_t first = 0; first < count; first += RayPacket::size) {
+    const int used = static_cast<int>(std::min<std::size_t>(RayPacket::size, count - first));
+    unsigned lanes = 0;
+    for (int lane = 0; lane < used; ++lane) {
+      set(rays, lane, first + static_cast<std::size_t>(lane));
+      if (rays.range_m[lane] > 0) lanes |= 1u << lane;
+    }
+    for (int lane = used; lane < RayPacket::size; ++lane) rays.repeat(0, lane);
+    use(first, rays, lanes);
+  }
+}
+
+/// Calls use(start, rays) for groups of neighbouring rays.
+template <typename Use>
+void for_bundles(std::span<const Ray> rays, Use&& use) {
+  constexpr std::size_t together = 64;
+  for (std::size_t start = 0; start < rays.size(); start += together)
+    use(start, rays.subspan(start, std::min(together, rays.size() - start)));
+}
+
+/// Cache of sines and cosines of the last fan of this thread, as a fleet has many equal sensors.
+struct FanDirections {
+  double first_angle_rad = 0, step_rad = 0;
+  std::vector<std::array<double, 2>> cos_sin;
+
+  void update(const Fan& fan) {
+    const auto count = static_cast<std::size_t>(fan.count);
+    if (fan.first_angle_rad == first_angle_rad && fan.step_rad == step_rad && cos_sin.size() >= count) return;
+    first_angle_rad = fan.first_angle_rad;
+    step_rad = fan.step_rad;
+    cos_sin.clear();
+    for (int i = 0; i < fan.count; ++i) {
+      const double angle_rad = first_angle_rad + i * step_rad;
+      cos_sin.push_back({std::cos(angle_rad), std::sin(angle_rad)});
+    }
+  }
+};
+
+}  // namespace
+
+void EmbreeScene::cast_fan(const Fan& fan, const RayFilter& filter, std::span<RayHit> hits) const {
+  if (fan.count <= 0) return;
+  prepare();
+  thread_local FanDirections directions;
+  directions.update(fan);
+  const Matrix3d R_WS = fan.X_WS.linear();
+  const Vector3d p_WS = fan.X_WS.translation();
+  // With larger angles between rays (2.5 degrees) single rays are faster than packets.
+  constexpr double together_rad = 0.044;
+  const Targets targets(*this, filter, RayBundle());
+  for_packets(
+      static_cast<std::size_t>(fan.count), std::abs(fan.step_rad) < together_rad,
+      [&](RayPacket& rays, int lane, std::size_t i) {
+        const auto [c, s] = directions.cos_sin[i];
+        rays.set(lane, p_WS, R_WS.col(0) * c + R_WS.col(1) * s, fan.range_max_m);
+      },
+      [&](std::size_t first, RayPacket& rays, unsigned lanes) {
+        cast_packet(rays, lanes, targets);
+        for (std::size_t i = first; i < std::min(first + RayPacket::size, hits.size()); ++i)
+          hits[i] = hit_of(rays, static_cast<int>(i - first));
+      });
+}
+
+void EmbreeScene::cast(std::span<const Ray> rays_, const RayFilter& filter, std::span<RayHit> hits) const {
+  prepare();
+  for_bundles(rays_, [&](std::size_t start, std::span<const Ray> bundle) {
+    const Targets targets(*this, filter, RayBundle(bundle));
+    const std::span<RayHit> found = hits.subspan(start, bundle.size());
+    for_packets(
+        bundle.size(), true,
+        [&](RayPacket& rays, int lane, std::size_t i) {
+          rays.set(lane, bundle[i].origin_W, bundle[i].direction_W, bundle[i].range_max_m);
+        },
+        [&](std::size_t first, RayPacket& rays, unsigned lanes) {
+          cast_packet(rays, lanes, targets);
+          for (std::size_t i = first; i < std::min(first + RayPacket::size, found.size()); ++i)
+            found[i] = hit_of(rays, static_cast<int>(i - first));
+        });
+  });
+}
+
+void EmbreeScene::find_blocked(std::span<const Ray> rays_, const RayFilter& filter,
+                               std::span<std::uint8_t> blocked) const {
+  prepare();
+  for_bundles(rays_, [&](std::size_t start, std::span<const Ray> bundle) {
+    const Targets targets(*this, filter, RayBundle(bundle));
+    const std::span<std::uint8_t> found = blocked.subspan(start, bundle.size());
+    for_packets(
+        bundle.size(), true,
+        [&](RayPacket& rays, int lane, std::size_t i) {
+          rays.set(lane, bundle[i].origin_W, bundle[i].direction_W, bundle[i].range_max_m);
+        },
+        [&](std::size_t first, RayPacket& rays, unsigned lanes) {
+          const unsigned lanes_blocked = blocked_packet(rays, lanes, targets);
+          for (std::size_t i = first; i < std::min(first + RayPacket::size, found.size()); ++i)
+            found[i] = lanes_blocked >> (i - first) & 1;
+        });
+  });
+}
+
+}  // namespace sim

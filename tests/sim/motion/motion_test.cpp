@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sim/motion/motion.hpp"
+
+#include <gmock/gmock.h>
+
+#include <fstream>
+#include <numbers>
+
+#include "tests/scratch_folder.hpp"
+
+namespace {
+
+using testing::HasSubstr;
+constexpr double deg = std::numbers::pi / 180;
+
+const char* const wave = R"(shoal: 1
+motion: wave
+vehicle: ers7
+ease: cosine
+poses:
+  - {name: stand, joints: {lf_knee: 30, rf_knee: 30, "PRM:/r2/c1-Joint2:21": -5}}
+keys:
+  - {at_s: 0, pose: stand}
+  - {at_s: 0.5, joints: {lf_knee: 80}, ease: linear, note: up}
+  - {at_s: 1, pose: stand, joints: {rf_knee: 40}}
+)";
+
+struct MotionFile {
+  test_support::ScratchFolder folder;
+  std::string path = folder.file("a.motion.yaml");
+
+  explicit MotionFile(const std::string& text) { std::ofstream(path) << text; }
+  sim::JointMotion load() const { return sim::load_motion(path); }
+  std::string error() const {
+    try {
+      load();
+      return {};
+    } catch (const sim::ConfigError& error) {
+      std::string text = error.what();
+      for (std::size_t at; (at = text.find(path)) != std::string::npos;) text.replace(at, path.size(), "FILE");
+      return text;
+    }
+  }
+};
+
+TEST(JointMotion, ItsKeysSetAPoseAndSingleJoints) {
+  const sim::JointMotion motion = MotionFile(wave).load();
+  EXPECT_EQ(motion.name, "wave");
+  EXPECT_EQ(motion.end_s(), 1);
+  const auto tracks = motion.tracks();
+  ASSERT_EQ(tracks.size(), 3u);
+  EXPECT_EQ(tracks[0].joint, "lf_knee");
+  ASSERT_EQ(tracks[0].keys.size(), 3u);
+  EXPECT_NEAR(tracks[0].keys[1].value, 80 * deg, 1e-15);
+  EXPECT_EQ(tracks[0].keys[1].ease, sim::Easing::linear);
+  EXPECT_EQ(tracks[0].keys[2].ease, sim::Easing::cosine);
+  // A joint that a key does not name continues from the key before to the one after.
+  ASSERT_EQ(tracks[1].keys.size(), 2u);
+  EXPECT_NEAR(tracks[1].value_at(0.5), 35 * deg, 1e-15);
+  EXPECT_NEAR(tracks[2].value_at(0.3), -5 * deg, 1e-15);
+}
+
+TEST(JointMotion, ValuesOfSlidersAreNotAngles) {
+  const sim::JointMotion motion =
+      MotionFile("shoal: 1\nmotion: m\nsliders: [lift]\nkeys: [{at_s: 0, joints: {lift: 0.2, hip: 90}}]\n").load();
+  EXPECT_EQ(motion.keys[0].joints[0].second, 0.2);
+  EXPECT_NEAR(motion.keys[0].joints[1].second, 90 * deg, 1e-15);
+}
+
+TEST(JointMotion, ItsTextReadsToTheSameMotion) {
+  const sim::JointMotion motion = MotionFile(wave).load();
+  const std::string text = sim::motion_text(motion);
+  const sim::JointMotion again = MotionFile(text).load();
+  EXPECT_EQ(sim::motion_text(again), text);
+  const auto tracks = motion.tracks(), others = again.tracks();
+  for (std::size_t i = 0; i < tracks.size(); ++i)
+    for (std::size_t k = 0; k < tracks[i].keys.size(); ++k)
+      EXPECT_EQ(tracks[i].keys[k].value, others[i].keys[k].value) << tracks[i].joint << " " << k;
+  EXPECT_EQ(again.keys[1].note, "up");
+}
+
+TEST(JointMotion, ReadsItsFramesFromACsvFileBesideItAndKeysReplaceThem) {
+  MotionFile file("shoal: 1\nmotion: m\nframes: m.csv\nkeys: [{at_s: 0.01, joints: {b: 90}}]\n");
+  std::ofstream(file.folder.file("m.csv")) << "t_s,a,b\n0,0.1,0.2\n0.008,0.3,0.4\n";
+  const auto tracks = file.load().tracks();
+  ASSERT_EQ(tracks.size(), 2u);
+  EXPECT_EQ(tracks[0].keys.size(), 2u);
+  ASSERT_EQ(tracks[1].keys.size(), 1u);
+  EXPECT_NEAR(tracks[1].keys[0].value, 90 * deg, 1e-15);
+}
+
+TEST(JointMotion, SaysWhereAndWhatIsWrong) {
+  const auto error = [](const std::string& more) { return MotionFile("shoal: 1\nmotion: m\n" + more).error(); };
+  EXPECT_EQ(error(""), "FILE:1:1: needs 'keys' or 'frames'");
+  EXPECT_EQ(error("keys: [{at_s: 0, pose: sit}]\n"), "FILE:3:24: key 1: 'pose' names no pose 'sit'; known poses: none");
+  EXPECT_THAT(error("keys: [{at_s: 0}]\n"), HasSubstr("FILE:3:8: key 1: needs a 'pose' or 'joints'"));
+  EXPECT_THAT(error("keys: [{at_s: 0, joints: {a: x}}]\n"), HasSubstr("FILE:3:30: key 1: 'a' must be a number"));
+  EXPECT_THAT(error("keys: [{at_s: 1, joints: {a: 1}}, {at_s: 1, joints: {a: 1}}]\n"),
+              HasSubstr("key 2: 'at_s' must be above that of the key before, 1, got 1"));
+  EXPECT_THAT(error("keys: [{at_s: -1, joints: {a: 1}}]\n"), HasSubstr("'at_s' must be >= 0 and <= 86400, got -1"));
+  EXPECT_THAT(error("angles: grad\nkeys: [{at_s: 0, joints: {a: 1}}]\n"),
+              HasSubstr("'angles' must be one of: deg, rad"));
+  EXPECT_THAT(error("frames: none.csv\n"), HasSubstr("none.csv' does not exist"));
+  EXPECT_THAT(error("kys: []\n"), HasSubstr("unknown key 'kys'"));
+}
+
+}  // namespace

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/shoal/urdf/vehicle_text.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <numbers>
+#include <sstream>
+
+#include "shoal/joint_servo_command_t.hpp"
+#include "sim/vehicle/vehicle.hpp"
+#include "tests/devices/world_fixture.hpp"
+#include "tests/project_paths.hpp"
+#include "tests/scratch_folder.hpp"
+#include "tests/tools/shoal/urdf/urdf_texts.hpp"
+
+namespace {
+
+using sim::Vector3d;
+using test::imported;
+using test::link_text;
+using test::robot_text;
+using testing::HasSubstr;
+
+/// A world without gravity with an imported robot `v1` at the origin.
+class ImportedWorld {
+ public:
+  explicit ImportedWorld(const std::string& urdf)
+      : file_(write(imported(urdf))),
+        world("shoal: 1\nphysics: {step_s: 0.001, gravity_mps2: 0}\nvehicles: [{name: v1, file: " + file_ + "}]") {}
+  const sim::Vehicle& vehicle() const { return *world.world.find_vehicle("v1"); }
+
+ private:
+  std::string write(const tools::ImportedVehicle& vehicle) const {
+    std::ofstream(folder_.file("v.yaml")) << tools::vehicle_text(vehicle, "");
+    return folder_.file("v.yaml");
+  }
+  test_support::ScratchFolder folder_;
+  std::string file_;
+
+ public:
+  test::TestWorld world;
+};
+
+std::string content_of(const std::string& path) {
+  std::ostringstream text;
+  text << std::ifstream(path).rdbuf();
+  return text.str();
+}
+
+TEST(VehicleText, HoldsMassAndInertiaExactly) {
+  // 10 digits in the file.
+  const std::string urdf = robot_text(
+      "<link name=\"a\"><inertial><origin xyz=\"0.1 -0.2 0.3\" rpy=\"0.4 0.5 0.6\"/><mass value=\"2.5\"/>"
+      "<inertia ixx=\"0.02\" ixy=\"0.001\" ixz=\"-0.002\" iyy=\"0.03\" iyz=\"0.003\" izz=\"0.04\"/></inertial></link>");
+  const ImportedWorld built(urdf);
+  const sim::Body& body = built.vehicle().body("a");
+  EXPECT_DOUBLE_EQ(body.mass_kg(), 2.5);
+  EXPECT_TRUE(body.p_BC().isApprox(Vector3d(0.1, -0.2, 0.3), 1e-9));
+  sim::Matrix3d inertia;
+  inertia << 0.02, 0.001, -0.002, 0.001, 0.03, 0.003, -0.002, 0.003, 0.04;
+  const sim::Matrix3d R = sim::rotation_from_rpy({0.4, 0.5, 0.6});
+  EXPECT_TRUE(body.inertia_C_B().isApprox(R * inertia * R.transpose(), 1e-8)) << body.inertia_C_B();
+}
+
+TEST(VehicleText, MovesAJointAsTheUrdfSays) {
+  // X_PC = X_PJ Rot(axis, q); the servo settles to the position within the softness of joints, cfm 1e-9.
+  ImportedWorld built(
+      robot_text(link_text("a") + link_text("b") +
+                 test::joint_text("revolute",
+                                  "<origin xyz=\"0.1 0.2 0.3\" rpy=\"0.3 -0.4 1.1\"/><axis xyz=\"1 2 -2\"/>"
+                                  "<limit lower=\"-1\" upper=\"1\" effort=\"100\" velocity=\"2\"/>")));
+  shoal::joint_servo_command_t message{};
+  message.position = 0.7;
+  built.world.send("v1.j.cmd", message);
+  built.world.run_for(2);
+  const sim::Pose X_PC = built.vehicle().body("a").X_WB().inverse() * built.vehicle().body("b").X_WB();
+  const sim::Pose expected =
+      sim::make_pose({0.1, 0.2, 0.3}, {0.3, -0.4, 1.1}) * Eigen::AngleAxisd(0.7, Vector3d(1, 2, -2).normalized());
+  EXPECT_TRUE(X_PC.isApprox(expected, 1e-5)) << X_PC.matrix() << "\n\n" << expected.matrix();
+}
+
+TEST(VehicleText, PartsThatAreOnlyVisualCollideWithNothing) {
+  // Two balls at the same place: if they collided, they would be pushed apart.
+  const std::string ball = "<geometry><sphere radius=\"0.1\"/></geometry>";
+  const test_support::ScratchFolder folder;
+  std::string text = tools::vehicle_text(imported(robot_text(link_text("a", "<visual>" + ball + "</visual>"))), "");
+  EXPECT_THAT(text, HasSubstr("categories: [visual, nothing]"));
+  EXPECT_THAT(text, HasSubstr("category: visual, collides_with: [nothing]"));
+  std::ofstream(folder.file("v.yaml")) << text;
+  test::TestWorld world(
+      "shoal: 1\nphysics: {step_s: 0.001, gravity_mps2: 0}\nvehicles: [{name: v1, file: " + folder.file("v.yaml") +
+      "}, {name: v2, file: " + folder.file("v.yaml") + ", position_m: [0.05, 0, 0]}]");
+  world.run_for(0.1);
+  EXPECT_EQ(world.world.find_vehicle("v2")->body("a").X_WB().translation(), Vector3d(0.05, 0, 0));
+}
+
+TEST(VehicleText, WritesARotationOfNinetyDegreesOfPitchWithoutRollAndYaw) {
+  const std::string text = tools::vehicle_text(
+      imported(robot_text(link_text("a",
+                                    "<collision><origin rpy=\"0 1.5707963267948966 0\"/><geometry><cylinder "
+                                    "radius=\"0.1\" length=\"0.2\"/></geometry></collision>"))),
+      "");
+  EXPECT_THAT(text, HasSubstr("rpy_deg: [0, 90, 0]"));
+}
+
+TEST(VehicleText, DescribesTheRobotByTheFirstSentenceOfItsComment) {
+  const std::string robot = robot_text(link_text("a"));
+  EXPECT_THAT(tools::vehicle_text(imported("<!-- A robot: small. More. -->\n" + robot), "s.json"),
+              testing::StartsWith("# yaml-language-server: $schema=s.json\n# A robot: small. More.\n"));
+  EXPECT_THAT(tools::vehicle_text(imported("<!-- A robot: small. More. -->\n" + robot), ""),
+              HasSubstr("\ndescription: \"A robot: small.\"\n"));
+  EXPECT_THAT(tools::vehicle_text(imported(robot), ""), HasSubstr("\ndescription: Imported from r.urdf.\n"));
+}
+
+TEST(VehicleText, IsUtf8WhateverTheEncodingOfTheComment) {
+  const std::string robot = robot_text(link_text("a"));
+  EXPECT_THAT(
+      tools::vehicle_text(imported("<!-- Caf\xc3\xa9 ${x}. More. -->\n" + robot), ""),
+      testing::AllOf(HasSubstr("# Caf\xc3\xa9 ${x}. More.\n"), HasSubstr("description: \"Caf\xc3\xa9 _{x}.\"\n")));
+  EXPECT_THAT(tools::vehicle_text(imported("<!-- Caf\xe9 -->\n" + robot), ""), HasSubstr("# Caf?\n"));
+}
+
+TEST(VehicleText, ShippedBittleIsTheImportOfItsUrdf) {
+  const std::string path = test_support::source_path("tests/tools/shoal/urdf/bittle.urdf");
+  const tools::ImportedVehicle vehicle = tools::vehicle_of(tools::read_urdf_file(path), path);
+  EXPECT_EQ(tools::vehicle_text(vehicle, "../docs/reference/schema/vehicle.schema.json"),
+            content_of(test_support::source_path("vehicles/bittle.yaml")));
+  double mass_kg = 0;
+  for (const tools::ImportedBody& body : vehicle.bodies) mass_kg += body.mass_kg;
+  EXPECT_NEAR(mass_kg, 0.292, 1e-12);  // of the maker's model: torso 0.2, upper legs 0.006, lower legs 0.017
+}
+
+TEST(VehicleText, BittleStandsAsHighAsItsLegsAreLong) {
+  test::LoadedTestWorld test(test_support::source_path("worlds/bittle_bench.yaml"));
+  test.run_for(2);
+  // 46 mm and 51.75 mm, both at 30 degrees from the vertical, and the radius of the foot.  0.1 mm: sinking into the
+  // bench by up to contact_surface_layer_m = 0.5 mm is the larger part.
+  const double height_m = (0.046 + 0.05175) * std::cos(std::numbers::pi / 6) + 0.005;
+  EXPECT_NEAR(test.world.find_vehicle("bittle1")->X_WV().translation().z(), height_m, 6e-4);
+}
+
+}  // namespace

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include "sim/motion/motion.hpp"
+#include "tools/experiment/motion_record/take.hpp"
+
+namespace tools {
+
+/// Tolerance of the keys of a recording, rad or m: 0.25 degrees.
+constexpr double key_tolerance = 0.00436332312998582;
+
+/// Returns a recording over a motion as frames: played in the same world, it gives the same state, bit for bit.
+/// `base`: the motion over which it was recorded; of a new one, empty except for its name.  Joints that were not
+/// recorded keep their keys.
+sim::JointMotion exact_motion(const Take& take, const sim::JointMotion& base);
+
+/// Returns the same as keys, within a tolerance.  Outside of the part that was recorded the keys stay.  Where a key of
+/// a recorded joint would come at the time of a key with an easing, the recorded joints stay frames.
+sim::JointMotion keyed_motion(const Take& take, const sim::JointMotion& base, double tolerance = key_tolerance);
+
+/// Returns the path of the exact motion beside that of the keys: `wave.yaml` gives `wave_take.yaml`.
+std::string take_path(const std::string& path);
+/// Returns the path of the journal of a recording that lasts: `wave.yaml.journal`.
+std::string journal_path(const std::string& path);
+
+/// Writes both motions of a journal, and removes it: the present version of the file goes to its history first.
+/// `state_hash`: of the world at the end; empty: unknown.  Returns the motion with keys.  Throws sim::ConfigError for
+/// an invalid journal, std::runtime_error when something cannot be written.
+sim::JointMotion save_take(const std::string& path, const std::string& state_hash);
+
+}  // namespace tools

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sim/config/param_reader.hpp"
+
+namespace tools {
+
+/// What is recorded, and where.
+struct TakeSettings {
+  std::string world, vehicle;  ///< name of the world, and of the vehicle in it
+  std::string model;           ///< vehicle model
+  std::int64_t seed = 0;
+  std::vector<std::string> set;  ///< changes of the world, as with --set
+  double frame_s = 0.008;
+  std::vector<std::string> joints;     ///< that are recorded
+  std::vector<std::string> sliders;    ///< those of them whose values are in m
+  bool over = false;                   ///< over the motion that the file has
+  std::optional<double> from_s, to_s;  ///< part that is recorded
+  void read(sim::ParamReader& in);
+  std::string text() const;  ///< as one line of YAML
+};
+
+/// Action of the world during a recording.
+struct TakeChange {
+  double at_s = 0;  ///< time of the motion
+  sim::ConfigNode action;
+};
+
+/// A recording: set points of joints by frame, rad or m, and changes of the world.
+struct Take {
+  TakeSettings settings;
+  std::vector<std::vector<double>> frames;  ///< by joint, then by frame
+  std::vector<TakeChange> changes;
+  std::size_t frame_count() const { return frames.empty() ? 0 : frames.front().size(); }
+};
+
+/// Reads a journal of a recording: `shoal recording 1`, its settings, then lines
+/// - `f I=VALUE ...`: a frame, in which the joints I have other values than in the one before,
+/// - `c AT_S ACTION`: a change of the world,
+/// - `b N`: back to frame N: what came after it does not count.
+/// A last line without its end was cut when the program ended, and is ignored.  Throws sim::ConfigError with the line.
+Take parse_take(std::string_view text, const std::string& file_name);
+/// As parse_take, from a file.  Throws sim::ConfigError.
+Take read_take(const std::string& path);
+
+}  // namespace tools

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/shoal/motion/format_options.hpp"
+
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <stdexcept>
+
+#include "sim/config/message_text.hpp"
+#include "tools/command_line/checks.hpp"
+#include "tools/experiment/world_files/world_by_name.hpp"
+#include "tools/shoal/motion/vehicle_joints.hpp"
+#include "tools/shoal/options/output_file.hpp"
+
+namespace tools {
+
+void add_format_options(CLI::App& command, FormatArguments& arguments) {
+  command.add_option("--output", arguments.output, "file to write")->type_name("FILE")->required();
+  command.add_option("--format", arguments.format, "format of the other program; unset: by the file")
+      ->type_name("FORMAT")
+      ->check(command_line::one_of(motion_format_names()).description(""));
+  command.add_option("--vehicle", arguments.vehicle, "vehicle with the joints; unset: that of the motion")
+      ->type_name("VEHICLE");
+  command
+      .add_option(
+          "--names", arguments.names,
+          "file of the names of joints in other programs; unset: joint_names/VEHICLE.yaml beside the vehicle file")
+      ->type_name("FILE")
+      ->needs(command.get_option("--vehicle"));
+  command.add_flag("--keep-names", arguments.keep_names, "do not convert names of joints")
+      ->excludes(command.get_option("--vehicle"));
+  command.add_option("--name", arguments.options.name, "name of the motion in the file of the other program")
+      ->type_name("NAME");
+  command
+      .add_option(
+          "--loop-step-ms", arguments.loop_step_ms,
+          "webots: control step of the player that repeats the file; the file then ends one step before the loop does")
+      ->type_name("MS")
+      ->check(command_line::number_from(1, 10000).description(""));
+  command.add_option("--row-ms", arguments.row_ms, "opencat: time of a row of a gait, and of a step of a behaviour")
+      ->type_name("MS")
+      ->check(command_line::number_from(0.1, 10000).description(""))
+      ->capture_default_str();
+  command.add_flag("--strict", arguments.strict, "write nothing when something cannot be kept");
+  command.add_flag("--overwrite", arguments.overwrite, "replace an existing file");
+}
+
+JointNames names_for(const FormatArguments& arguments, const std::string& vehicle_of_motion) {
+  if (!arguments.vehicle.empty())
+    return joint_names_of(file_by_name({ShippedKind::vehicle}, arguments.vehicle), arguments.names);
+  if (arguments.keep_names || vehicle_of_motion.empty()) return {};
+  const std::string file = vehicle_file_of(vehicle_of_motion, arguments.input);
+  if (!file.empty()) return joint_names_of(file, "");
+  std::cerr << arguments.input << ": no file of vehicle '" << vehicle_of_motion
+            << "': names of joints stay as they are\n";
+  return {};
+}
+
+void check_output(const FormatArguments& arguments, const std::string& path) {
+  std::error_code error;
+  if (std::filesystem::equivalent(arguments.input, path, error))
+    throw CLI::ValidationError("--output", "must not be the file that is read");
+  if (!arguments.overwrite && std::filesystem::exists(path, error))
+    throw CLI::ValidationError("--output", "'" + path + "' exists; --overwrite replaces it");
+  check_writable(path);
+}
+
+bool may_lose(const FormatArguments& arguments, const Losses& losses) {
+  for (const std::string& loss : losses) std::cerr << arguments.input << ": " << sim::printable(loss) << '\n';
+  if (losses.empty() || !arguments.strict) return true;
+  std::cerr << arguments.input << ": nothing is written, because of --strict\n";
+  return false;
+}
+
+std::string formats_text(bool is_import) {
+  std::string text;
+  for (const MotionFormat& format : motion_formats())
+    if (is_import ? format.read != nullptr : format.write != nullptr)
+      text += (text.empty() ? "Formats: " : "; ") + std::string(format.name) + ", " + format.meaning;
+  return text + ".";
+}
+
+void write_bytes(const std::string& path, const std::string& bytes) {
+  std::ofstream file(path, std::ios::binary);
+  if (!(file << bytes << std::flush)) throw std::runtime_error(path + ": cannot be written");
+}
+
+}  // namespace tools

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <spdlog/fmt/fmt.h>
+
+#include <iostream>
+#include <memory>
+
+#include "sim/config/message_text.hpp"
+#include "tools/shoal/motion/format_options.hpp"
+#include "tools/shoal/motion/motion_commands.hpp"
+
+namespace tools {
+
+namespace {
+
+struct ExportArguments : FormatArguments {
+  double at_s = 0;
+  bool has_instant = false;
+  std::string skill;
+};
+
+const MotionFormat& format_of(const ExportArguments& arguments) {
+  const MotionFormat* const format =
+      arguments.format.empty() ? motion_format_of_file(arguments.output, "") : find_motion_format(arguments.format);
+  if (format == nullptr)
+    throw CLI::ValidationError("--format", "is needed, because '" + arguments.output + "' has the ending of no format");
+  return *format;
+}
+
+int export_motion(ExportArguments& arguments) {
+  const MotionFormat& format = format_of(arguments);
+  check_output(arguments, arguments.output);
+  const sim::JointMotion motion = sim::load_motion(arguments.input);
+  const JointNames names = names_for(arguments, motion.vehicle);
+  FormatOptions& options = arguments.options;
+  options.loop_step_s = arguments.loop_step_ms / 1000;
+  options.row_s = arguments.row_ms / 1000;
+  if (arguments.has_instant) options.at_s = arguments.at_s;
+  if (!arguments.skill.empty())
+    options.skill = arguments.skill == "posture" ? SkillKind::posture
+                    : arguments.skill == "gait"  ? SkillKind::gait
+                                                 : SkillKind::behaviour;
+  Losses losses;
+  const std::string bytes = bytes_of_motion(format, motion, names, options, losses);
+  if (!may_lose(arguments, losses)) return exit_failed;
+  write_bytes(arguments.output, bytes);
+  fmt::print("{}: {}, {} bytes, {} joints, {} s\n", arguments.output, format.meaning, bytes.size(),
+             motion.tracks().size(), sim::number_text(motion.end_s()));
+  return exit_ok;
+}
+
+}  // namespace
+
+void add_motion_export_command(CLI::App& motion, int& exit_code) {
+  CLI::App* command = motion.add_subcommand("export", "Write a motion in the format of another program");
+  const auto arguments = std::make_shared<ExportArguments>();
+  add_log_level_option(*command);
+  command->add_option("MOTION", arguments->input, "motion file")->required();
+  add_format_options(*command, *arguments);
+  command->get_option("--name")->description("play_motion2, mtn, openr-c, opencat: name of the motion in the file");
+  // Options of single formats.
+  CLI::Option* at = command->add_option("--at", arguments->at_s, "pos, opencat: instant of the posture");
+  at->type_name("S")->check(number_from(0, sim::max_motion_s).description(""));
+  command->add_option("--creator", arguments->options.creator, "mtn: name of the creator")
+      ->type_name("NAME")
+      ->capture_default_str();
+  command
+      ->add_option("--design", arguments->options.design,
+                   "mtn: design label of the robot; unset: by the names of joints")
+      ->type_name("LABEL");
+  command->add_option("--skill", arguments->skill, "opencat: posture, gait or behaviour; unset: by the motion")
+      ->type_name("KIND")
+      ->check(one_of({"posture", "gait", "behaviour"}).description(""));
+  command_line::set_help_end(*command, {{"shoal motion export wave.yaml --format mtn --output wave.mtn",
+                                         "shoal motion export trot.yaml --output trot.motion --loop-step-ms 16",
+                                         "shoal motion export wave.yaml --vehicle ers7 --output wave.mot --strict"},
+                                        {{0, "success"},
+                                         {1, "a part of the motion cannot be kept, with --strict"},
+                                         {2, "wrong usage, or the format cannot hold the motion"},
+                                         {4, "file error"}},
+                                        {formats_text(false),
+                                         "What the file does not keep is printed, each on its own line.  "
+                                         "docs/guides/motion_formats.md describes the formats."}});
+  command->callback([arguments, at, &exit_code] {
+    arguments->has_instant = at->count() > 0;
+    exit_code = export_motion(*arguments);
+  });
+}
+
+}  // namespace tools

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <numbers>
+
+#include "sim/config/message_text.hpp"
+#include "tools/experiment/motion/motion_stage.hpp"
+#include "tools/experiment/motion/motion_tracking.hpp"
+#include "tools/experiment/world_files/world_by_name.hpp"
+#include "tools/shoal/motion/motion_commands.hpp"
+
+namespace tools {
+
+namespace {
+
+struct PlayArguments {
+  std::string file;
+  StageOptions stage;
+  double from_s = 0, settle_s = 1, loop_s = 10;
+  bool again = false;
+};
+
+/// Prints whether the state at the end is that of the recording; returns false when it should be and is not.
+bool report_recording(const sim::MotionOrigin& origin, std::uint64_t hash, const StageOptions& stage,
+                      const std::string& world) {
+  if (origin.world != world) {
+    std::cout << fmt::format("recorded in world '{}', so that the states at the end are not compared\n",
+                             sim::printable(origin.world));
+    return true;
+  }
+  const bool is_same = fmt::format("{:016x}", hash) == origin.state_hash;
+  if (!is_same && origin.set != stage.load.sets) {
+    std::string sets;
+    for (const std::string& set : origin.set) sets += " --set '" + sim::printable(set) + "'";
+    std::cout << "it was recorded " << (sets.empty() ? "without --set" : "with" + sets) << '\n';
+  }
+  std::cout << (is_same ? "the state at the end is that of the recording\n"
+                        : "the state at the end is another one than that of the recording\n");
+  return is_same;
+}
+
+int play(PlayArguments arguments) {
+  const sim::JointMotion motion = motion_of(arguments.file);
+  arguments.stage.world = file_by_name({ShippedKind::world}, arguments.stage.world);
+  MotionStage stage(arguments.stage, motion);
+  MotionTracking tracking;
+  stage.after_step = [&](MotionStage& now) { tracking.add(now); };
+  const double max_s = motion.loop ? arguments.loop_s : max_play_s;
+  stage.play_out(0, max_s);
+  const std::uint64_t end_hash = stage.state_hash();
+  const double played_s = stage.now_s();
+  stage.play_out(arguments.settle_s, max_s);
+  std::cout << tracking.text(motion);
+  std::cout << fmt::format("{:.3f} s simulated, state hash at the end of the motion {:016x}\n", played_s, end_hash);
+  if (stage.now_s() > played_s)
+    std::cout << fmt::format("{:.3f} s simulated, state hash after {} s of settling {:016x}\n", stage.now_s(),
+                             sim::number_text(arguments.settle_s), stage.state_hash());
+  bool is_equal = true;
+  if (arguments.again) {
+    // From an instant of the motion, by the last snapshot before it.
+    const std::uint64_t hash = stage.state_hash();
+    const double end_s = stage.now_s();
+    stage.after_step = {};
+    stage.go_to(stage.time_of(arguments.from_s));
+    const double from_s = stage.now_s();
+    stage.go_to(end_s);
+    is_equal = stage.state_hash() == hash;
+    std::cout << fmt::format("again from {:.3f} s: {}\n", from_s,
+                             is_equal ? "the same state at the end" : "another state at the end");
+  }
+  if (motion.recorded && !motion.recorded->state_hash.empty()) {
+    const std::string& name = stage.world().config().name;
+    const std::string world = name.empty() ? std::filesystem::path(arguments.stage.world).stem().string() : name;
+    if (!report_recording(*motion.recorded, end_hash, arguments.stage, world)) return exit_failed;
+  }
+  return !is_equal || tracking.has_fallen() ? exit_failed : exit_ok;
+}
+
+}  // namespace
+
+void add_motion_play_command(CLI::App& motion, int& exit_code) {
+  CLI::App* command = motion.add_subcommand("play", "Play a motion in a world, and say how the joints follow");
+  const auto arguments = std::make_shared<PlayArguments>();
+  add_log_level_option(*command, "warn");
+  command->add_option("FILE", arguments->file, "motion file")->required();
+  add_stage_options(*command, arguments->stage.world, arguments->stage.vehicle);
+  CLI::Option* from = command
+                          ->add_option("--again-from", arguments->from_s,
+                                       "then play again from this time of the motion, and compare the states")
+                          ->type_name("S");
+  command->add_option("--settle", arguments->settle_s, "simulated time after the motion, s; usual 1")
+      ->type_name("S")
+      ->check(number_from(0, 600));
+  command->add_option("--loop-time", arguments->loop_s, "simulated time in all of a motion that loops, s; usual 10")
+      ->type_name("S")
+      ->check(number_from(0.01, max_play_s));
+  add_set_option(*command, arguments->stage.load.sets);
+  add_allow_path_option(*command, arguments->stage.load);
+  command_line::set_help_end(
+      *command, {{"shoal motion play vehicles/motions/ers7/wave.yaml --world ers7_studio",
+                  "shoal motion play wave.yaml --world ers7_studio --again-from 1.5"},
+                 {{0, "played to its end"},
+                  {1, "the vehicle has fallen, or the state is not that of the recording or of --again-from"},
+                  {2, "wrong usage or configuration"}},
+                 {"To see it: shoal run WORLD --view, with the motion among the `motions` of its player."}});
+  command->callback([arguments, from, &exit_code] {
+    arguments->again = from->count() > 0;
+    exit_code = play(*arguments);
+  });
+}
+
+}  // namespace tools

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tools/shoal/urdf/imported_vehicle.hpp"
+
+namespace tools {
+
+/// Puts a body together from links that fixed joints connect.
+class BodyAssembly {
+ public:
+  BodyAssembly(std::string name, const sim::Pose& X_VB, const sim::SourcePlace& place);
+
+  const std::string& name() const { return body_.name; }
+  /// Adds mass and shapes of a link at X_VL.  A link with collision shapes gives these; another one gives its visual
+  /// shapes, which collide with nothing.
+  void add(const UrdfLink& link, const sim::Pose& X_VL, std::vector<UrdfNote>& notes);
+  /// Gives a body without mass one that matters to nothing, because the body will be fixed to the world.
+  void allow_no_mass();
+  /// Returns the body.  Throws sim::ConfigError when it has no mass, or an inertia that is not positive definite.
+  ImportedBody finish(std::vector<UrdfNote>& notes);
+
+ private:
+  ImportedBody body_;
+  sim::Vector3d moment_kgm_ = sim::Vector3d::Zero();    ///< sum of mass times position in B
+  sim::Matrix3d about_origin_ = sim::Matrix3d::Zero();  ///< inertia about the origin of B
+};
+
+}  // namespace tools

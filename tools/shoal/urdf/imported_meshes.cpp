@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/shoal/urdf/imported_meshes.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <set>
+#include <tuple>
+
+#include "sim/config/message_text.hpp"
+#include "tools/shoal/mesh/mesh_import.hpp"
+#include "tools/shoal/urdf/convex_hull.hpp"
+#include "tools/shoal/urdf/shoal_names.hpp"
+
+namespace tools {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string shown_path(const std::string& path) {
+  return "mesh '" + sim::shortened(sim::printable(path), 200) + "'";
+}
+
+bool is_below(const fs::path& path, const fs::path& folder) {
+  return std::mismatch(folder.begin(), folder.end(), path.begin(), path.end()).first == folder.end();
+}
+
+/// Finds mesh files in the folders that the user named.
+class MeshFolders {
+ public:
+  MeshFolders(const std::string& urdf, const UrdfMeshOptions& options) : packages_(options.packages) {
+    const fs::path parent = fs::path(urdf).parent_path();
+    own_ = parent.empty() ? "." : parent;
+    add(own_);
+    for (const auto& [name, folder] : packages_) add(folder);
+  }
+
+  /// Path of the mesh that a shape names, with symbolic links resolved.
+  std::string find(const UrdfShape& shape) const {
+    const fs::path path = named(shape);
+    std::error_code error;
+    const fs::path resolved = fs::weakly_canonical(path, error);
+    const bool allowed = !error && std::any_of(allowed_.begin(), allowed_.end(),
+                                               [&](const fs::path& f) { return is_below(resolved, f); });
+    if (!allowed)
+      sim::throw_config_error(
+          shape.place, "",
+          shown_path(shape.mesh) + " must be below the folder of the URDF or a folder of --package NAME=DIR");
+    return resolved.string();
+  }
+
+ private:
+  void add(const fs::path& folder) {
+    std::error_code error;
+    const fs::path resolved = fs::canonical(folder, error);
+    if (!error) allowed_.push_back(resolved);
+  }
+  fs::path named(const UrdfShape& shape) const {
+    const std::string& mesh = shape.mesh;
+    for (const std::string scheme : {"package://", "model://"}) {
+      if (!mesh.starts_with(scheme)) continue;
+      const std::size_t slash = mesh.find('/', scheme.size());
+      const std::string package = mesh.substr(scheme.size(), slash - scheme.size());
+      const auto folder = packages_.find(package);
+      if (folder == packages_.end())
+        sim::throw_config_error(
+            shape.place, "",
+            fmt::format("the folder of package '{0}' is unknown: give --package {0}=DIR", sim::printable(package)));
+      return fs::path(folder->second) / (slash == std::string::npos ? "" : mesh.substr(slash + 1));
+    }
+    const std::string file_scheme = "file://";
+    const fs::path path = mesh.starts_with(file_scheme) ? mesh.substr(file_scheme.size()) : mesh;
+    return own_ / path;  // an absolute path replaces the folder
+  }
+
+  std::map<std::string, std::string> packages_;
+  fs::path own_;
+  std::vector<fs::path> allowed_;
+};
+
+struct Bounds {
+  sim::Vector3d low, high;
+};
+
+Bounds bounds_of(const sim::Mesh& mesh) {
+  Bounds bounds{mesh.vertices_m.front(), mesh.vertices_m.front()};
+  for (const sim::Vector3d& p : mesh.vertices_m) {
+    bounds.low = bounds.low.cwiseMin(p);
+    bounds.high = bounds.high.cwiseMax(p);
+  }
+  return bounds;
+}
+
+void scale_mesh(const sim::Vector3d& scale, sim::Mesh& mesh) {
+  for (sim::Vector3d& p : mesh.vertices_m) p = p.cwiseProduct(scale).eval();
+  if (scale.prod() < 0) sim::turn_inside_out(mesh);
+}
+
+void become_box(const sim::Mesh& mesh, ImportedPart& part) {
+  constexpr double min_length_m = 1e-6;
+  const auto [low, high] = bounds_of(mesh);
+  part.shape.shape = sim::PartShape::box;
+  part.shape.size_m = (high - low).cwiseMax(min_length_m);
+  part.X_BP = part.X_BP * sim::Pose(Eigen::Translation3d((low + high) / 2));
+}
+
+/// Converts meshes, each file once.
+class MeshConversion {
+ public:
+  MeshConversion(ImportedVehicle& vehicle, const UrdfMeshOptions& options)
+      : vehicle_(vehicle), options_(options), folders_(vehicle.source, options), names_("mesh", {}) {}
+
+  void convert(ImportedPart& part) {
+    const sim::Mesh& mesh = read(part.shape);
+    if (options_.use == MeshUse::box) return become_box(mesh, part);
+    std::optional<std::string>& file = written_[{key_of(part.shape), part.only_visual}];
+    if (!file) {
+      std::optional<sim::Mesh> solid = part.only_visual ? mesh : convex_hull(outermost_points(mesh.vertices_m));
+      if (!solid) {
+        vehicle_.notes.push_back(
+            {part.shape.place, shown_path(part.shape.mesh) + " is flat: its bounding box replaces its convex hull"});
+        return become_box(mesh, part);
+      }
+      std::vector<UrdfNote> ignored;
+      const std::string stem =
+          std::filesystem::path(part.shape.mesh).stem().string() + (part.only_visual ? "" : "_hull");
+      // A name is looked up by its original, which here is not unique.
+      const std::string name = names_.add(plain_name(stem), part.shape.place, ignored);
+      file = options_.folder + "/" + name + ".stl";
+      files_.emplace_back(*file, std::move(*solid));
+    }
+    part.shape.mesh = *file;
+  }
+  std::vector<MeshFile> take_files() { return std::move(files_); }
+
+ private:
+  using Key = std::tuple<std::string, double, double, double>;
+
+  Key key_of(const UrdfShape& shape) const {
+    return {folders_.find(shape), shape.scale.x(), shape.scale.y(), shape.scale.z()};
+  }
+  const sim::Mesh& read(const UrdfShape& shape) {
+    const Key key = key_of(shape);
+    const auto known = meshes_.find(key);
+    if (known != meshes_.end()) return known->second;
+    try {
+      // Like other readers of URDF, coordinates are taken as in the file, whatever axis points up in it.
+      sim::Mesh mesh = import_mesh(std::get<0>(key), {.scale = 1, .up = 'z'});
+      triangles_ += mesh.triangles.size();
+      if (triangles_ > max_triangles) throw sim::MeshError("is one too many: all have more than 8 million triangles");
+      scale_mesh(shape.scale, mesh);
+      return meshes_.emplace(key, std::move(mesh)).first->second;
+    } catch (const sim::MeshError& error) {
+      sim::throw_config_error(shape.place, "", shown_path(shape.mesh) + ' ' + error.what());
+    }
+  }
+
+  ImportedVehicle& vehicle_;
+  const UrdfMeshOptions& options_;
+  MeshFolders folders_;
+  ShoalNames names_;
+  static constexpr std::size_t max_triangles = 2 * sim::max_mesh_triangles;
+  std::size_t triangles_ = 0;
+  std::map<Key, sim::Mesh> meshes_;
+  std::map<std::pair<Key, bool>, std::optional<std::string>> written_;
+  std::vector<MeshFile> files_;
+};
+
+}  // namespace
+
+std::vector<MeshFile> convert_meshes(ImportedVehicle& vehicle, const UrdfMeshOptions& options) {
+  MeshConversion conversion(vehicle, options);
+  for (ImportedBody& body : vehicle.bodies) {
+    if (options.use == MeshUse::none) {
+      std::erase_if(body.parts, [&](const ImportedPart& part) {
+        if (part.shape.shape != sim::PartShape::mesh) return false;
+        vehicle.notes.push_back({part.shape.place, shown_path(part.shape.mesh) + " is not imported: --meshes none"});
+        return true;
+      });
+      continue;
+    }
+    for (ImportedPart& part : body.parts)
+      if (part.shape.shape == sim::PartShape::mesh) conversion.convert(part);
+  }
+  return conversion.take_files();
+}
+
+}  // namespace tools

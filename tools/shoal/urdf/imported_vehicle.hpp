@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sim/model/joint_type.hpp"
+#include "tools/shoal/urdf/urdf_model.hpp"
+
+namespace tools {
+
+/// Part of a body: a shape of the URDF in the body's frame B.
+struct ImportedPart {
+  UrdfShape shape;  ///< its X_LS is not used
+  sim::Pose X_BP = sim::Pose::Identity();
+  bool only_visual = false;  ///< collides with nothing
+};
+
+/// Links joined by fixed joints; the frame B is that of the first of these links.
+struct ImportedBody {
+  std::string name;
+  sim::Pose X_VB = sim::Pose::Identity();
+  double mass_kg = 0;
+  sim::Vector3d center_of_mass_m = sim::Vector3d::Zero();  ///< in B
+  sim::Matrix3d inertia_kgm2 = sim::Matrix3d::Zero();      ///< about the centre of mass, in axes of B
+  std::vector<ImportedPart> parts;
+  sim::SourcePlace place;
+};
+
+/// Joint between two bodies; `second` is `world` for a body that the URDF attaches to its link `world`.
+struct ImportedJoint {
+  std::string name;
+  sim::JointType type = sim::JointType::hinge;
+  std::string first, second;
+  sim::Vector3d axis_V = sim::Vector3d::UnitX();
+  std::optional<double> low_stop, high_stop;       ///< rad or m
+  std::optional<double> servo_low, servo_high;     ///< rad or m
+  std::optional<double> max_velocity, max_effort;  ///< both set: it gets a servo
+  std::optional<double> max_acceleration;
+};
+
+/// A robot in the terms of a vehicle file.
+struct ImportedVehicle {
+  std::string name;
+  std::string source;                ///< file that it was imported from
+  std::vector<std::string> comment;  ///< lines before the root element of the source
+  std::vector<ImportedBody> bodies;  ///< the first is the root
+  std::vector<ImportedJoint> joints;
+  std::vector<UrdfNote> notes;
+};
+
+/// Free: the root link moves.  Fixed: a joint fixes it to the world; it then needs no mass.
+enum class Base { free, fixed };
+
+/// Makes bodies and joints of a checked robot: the frame of the root link becomes the vehicle's frame, fixed joints are
+/// merged into the body of their parent, and names become those that Shoal accepts.  A root link `world` without mass
+/// and shapes is the world.  Throws sim::ConfigError for a body without mass or with an impossible inertia.
+ImportedVehicle vehicle_of(const UrdfRobot& robot, const std::string& file_name, Base base = Base::free);
+
+}  // namespace tools

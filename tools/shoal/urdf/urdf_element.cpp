@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/shoal/urdf/urdf_element.hpp"
+
+#include <spdlog/fmt/fmt.h>
+#include <tinyxml2.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "sim/config/message_text.hpp"
+
+namespace tools {
+
+namespace {
+
+constexpr double max_number = 1e9;  // of any length, mass, angle or limit
+
+bool is_blank(char c) {
+  return c == ' ' || c == '\t' || c == '\n' || c == '\r';
+}
+
+/// Splits a text at blanks.
+std::vector<std::string_view> words_of(std::string_view text) {
+  std::vector<std::string_view> words;
+  for (std::size_t at = 0; at < text.size();) {
+    if (is_blank(text[at])) {
+      ++at;
+      continue;
+    }
+    std::size_t end = at;
+    while (end < text.size() && !is_blank(text[end])) ++end;
+    words.push_back(text.substr(at, end - at));
+    at = end;
+  }
+  return words;
+}
+
+/// Parses a finite number; nothing for any other text.
+std::optional<double> parse_number(std::string_view word) {
+  if (word.starts_with('+')) word.remove_prefix(1);
+  double value = 0;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+std::string shown_text(std::string_view text) {
+  return "'" + sim::shortened(sim::printable(text)) + "'";
+}
+
+}  // namespace
+
+UrdfElement::UrdfElement(const tinyxml2::XMLElement& element, const std::string* file, std::string who)
+    : element_(&element), file_(file), who_(std::move(who)) {}
+
+std::string_view UrdfElement::name() const {
+  return element_->Name();
+}
+
+sim::SourcePlace UrdfElement::place() const {
+  return {file_, element_->GetLineNum(), 0};
+}
+
+void UrdfElement::refuse(const std::string& text) const {
+  sim::throw_config_error(place(), who_, text);
+}
+
+std::vector<UrdfElement> UrdfElement::children() const {
+  std::vector<UrdfElement> found;
+  for (const auto* child = element_->FirstChildElement(); child != nullptr; child = child->NextSiblingElement())
+    found.emplace_back(*child, file_, who_);
+  return found;
+}
+
+std::vector<UrdfElement> UrdfElement::children(std::string_view name) const {
+  std::vector<UrdfElement> found;
+  for (const UrdfElement& child : children())
+    if (child.name() == name) found.push_back(child);
+  return found;
+}
+
+std::optional<UrdfElement> UrdfElement::child(std::string_view name) const {
+  const std::vector<UrdfElement> found = children(name);
+  if (found.size() > 1) found[1].refuse(fmt::format("has more than one <{}>", name));
+  if (found.empty()) return std::nullopt;
+  return found.front();
+}
+
+UrdfElement UrdfElement::required_child(std::string_view name) const {
+  const std::optional<UrdfElement> found = child(name);
+  if (!found) refuse(fmt::format("<{}> needs a <{}>", this->name(), name));
+  return *found;
+}
+
+void UrdfElement::note_others(std::initializer_list<std::string_view> known, std::vector<UrdfNote>& notes) const {
+  for (const UrdfElement& child : children()) {
+    if (std::find(known.begin(), known.end(), child.name()) != known.end()) continue;
+    const std::string of = who_.empty() ? "" : who_ + ": ";
+    notes.push_back({child.place(), fmt::format("{}<{}> is not imported", of, child.name())});
+  }
+}
+
+bool UrdfElement::has(const char* attribute) const {
+  return element_->Attribute(attribute) != nullptr;
+}
+
+std::string UrdfElement::text(const char* attribute) const {
+  if (!has(attribute)) refuse(fmt::format("<{}> needs the attribute '{}'", name(), attribute));
+  const std::string value = element_->Attribute(attribute);
+  if (value.find("${") != std::string::npos || value.find("$(") != std::string::npos)
+    refuse(fmt::format("'{}' is an expression of xacro, {}: run `xacro FILE > robot.urdf` first", attribute,
+                       shown_text(value)));
+  return value;
+}
+
+std::string UrdfElement::text(const char* attribute, const std::string& initial) const {
+  return has(attribute) ? text(attribute) : initial;
+}
+
+std::vector<double> UrdfElement::numbers(const char* attribute, std::size_t count) const {
+  const std::string value = text(attribute);
+  const std::vector<std::string_view> words = words_of(value);
+  std::vector<double> parsed;
+  for (const std::string_view word : words) {
+    const std::optional<double> number = parse_number(word);
+    if (!number || std::abs(*number) > max_number) break;
+    parsed.push_back(*number);
+  }
+  if (words.size() != count || parsed.size() != count)
+    refuse(fmt::format("'{}' must be {} between -1e9 and 1e9, got {}", attribute,
+                       count == 1 ? "a number" : fmt::format("{} numbers", count), shown_text(value)));
+  return parsed;
+}
+
+double UrdfElement::number(const char* attribute) const {
+  return numbers(attribute, 1).front();
+}
+
+std::optional<double> UrdfElement::optional_number(const char* attribute) const {
+  if (!has(attribute)) return std::nullopt;
+  return number(attribute);
+}
+
+double UrdfElement::positive(const char* attribute) const {
+  const double value = number(attribute);
+  if (!(value > 0)) refuse(fmt::format("'{}' must be > 0, got {}", attribute, sim::number_text(value)));
+  return value;
+}
+
+sim::Vector3d UrdfElement::vector(const char* attribute, const sim::Vector3d& initial) const {
+  if (!has(attribute)) return initial;
+  const std::vector<double> xyz = numbers(attribute, 3);
+  return {xyz[0], xyz[1], xyz[2]};
+}
+
+sim::Pose UrdfElement::origin() const {
+  const std::optional<UrdfElement> origin = child("origin");
+  if (!origin) return sim::Pose::Identity();
+  return sim::make_pose(origin->vector("xyz", sim::Vector3d::Zero()), origin->vector("rpy", sim::Vector3d::Zero()));
+}
+
+}  // namespace tools

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <initializer_list>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sim/base/math.hpp"
+#include "sim/config/diagnostics.hpp"
+#include "tools/shoal/urdf/urdf_model.hpp"
+
+namespace tinyxml2 {
+class XMLElement;
+}
+
+namespace tools {
+
+/// Element of a URDF file.  Errors are sim::ConfigError of one line: `FILE:LINE: who: rule, value`.
+class UrdfElement {
+ public:
+  /// `who`: the link or joint that contains it, for errors.
+  UrdfElement(const tinyxml2::XMLElement& element, const std::string* file, std::string who);
+
+  const std::string& who() const { return who_; }
+  void set_who(std::string who) { who_ = std::move(who); }
+  std::string_view name() const;
+  sim::SourcePlace place() const;
+  [[noreturn]] void refuse(const std::string& text) const;
+
+  /// Child elements, in the order of the file.
+  std::vector<UrdfElement> children() const;
+  std::vector<UrdfElement> children(std::string_view name) const;
+  /// The only child of this name; refuses a second one.
+  std::optional<UrdfElement> child(std::string_view name) const;
+  /// The only child of this name; refuses none.
+  UrdfElement required_child(std::string_view name) const;
+  /// Adds a note for each child whose name is none of these.
+  void note_others(std::initializer_list<std::string_view> known, std::vector<UrdfNote>& notes) const;
+
+  bool has(const char* attribute) const;
+  /// Attributes; the first form refuses a missing one.
+  std::string text(const char* attribute) const;
+  std::string text(const char* attribute, const std::string& initial) const;
+  double number(const char* attribute) const;
+  std::optional<double> optional_number(const char* attribute) const;
+  double positive(const char* attribute) const;
+  /// `count` finite numbers, separated by blanks.
+  std::vector<double> numbers(const char* attribute, std::size_t count) const;
+  sim::Vector3d vector(const char* attribute, const sim::Vector3d& initial) const;
+  /// `xyz` and `rpy` of its child `<origin>`; the identity without it.
+  sim::Pose origin() const;
+
+ private:
+  const tinyxml2::XMLElement* element_;
+  const std::string* file_;
+  std::string who_;
+};
+
+}  // namespace tools

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sim/base/math.hpp"
+#include "sim/config/diagnostics.hpp"
+#include "sim/model/part_shape.hpp"
+
+namespace tools {
+
+/// Limits of a URDF file, so that a damaged or hostile one cannot use much time or memory.
+inline constexpr std::size_t max_urdf_bytes = 16u << 20;
+inline constexpr std::size_t max_urdf_links = 2000;
+inline constexpr std::size_t max_urdf_shapes = 20000;
+
+/// `<inertial>`: mass, centre of mass and inertia about it.
+struct UrdfInertial {
+  sim::Pose X_LC = sim::Pose::Identity();  ///< frame of the inertia, at the centre of mass, in the link's frame L
+  double mass_kg = 0;
+  sim::Matrix3d inertia_kgm2 = sim::Matrix3d::Zero();
+};
+
+/// Shape of a `<collision>` or `<visual>`.
+struct UrdfShape {
+  std::string name;
+  sim::PartShape shape = sim::PartShape::box;
+  sim::Vector3d size_m = sim::Vector3d::Zero();  ///< box
+  double radius_m = 0;                           ///< sphere, cylinder, capsule
+  double length_m = 0;                           ///< cylinder, capsule (without its caps)
+  std::string mesh;                              ///< mesh: file as named in the URDF
+  sim::Vector3d scale = sim::Vector3d::Ones();   ///< mesh
+  sim::Pose X_LS = sim::Pose::Identity();        ///< in the link's frame
+  std::string color;                             ///< `#rrggbb`; empty: none
+  sim::SourcePlace place;
+};
+
+struct UrdfLink {
+  std::string name;
+  std::optional<UrdfInertial> inertial;
+  std::vector<UrdfShape> collisions, visuals;
+  sim::SourcePlace place;
+};
+
+/// Types of joints that Shoal can hold; floating and planar joints are refused.
+enum class UrdfJointType { fixed, revolute, continuous, prismatic };
+
+struct UrdfJoint {
+  std::string name;
+  UrdfJointType type = UrdfJointType::fixed;
+  std::string parent, child;
+  sim::Pose X_PJ = sim::Pose::Identity();          ///< frame of the joint and of the child, in the parent's frame
+  sim::Vector3d axis_J = sim::Vector3d::UnitX();   ///< unit vector
+  std::optional<double> lower, upper;              ///< rad or m
+  std::optional<double> max_effort, max_velocity;  ///< N m or N; rad/s or m/s
+  std::optional<double> max_acceleration;          ///< rad/s^2 or m/s^2
+  std::optional<double> soft_lower, soft_upper;    ///< `<safety_controller>`
+  sim::SourcePlace place;
+};
+
+/// What an import leaves out.
+struct UrdfNote {
+  sim::SourcePlace place;
+  std::string text;
+};
+
+/// A robot as its URDF describes it.
+struct UrdfRobot {
+  std::string name;
+  std::vector<std::string> comment;  ///< lines of the comments before the root element
+  std::vector<UrdfLink> links;
+  std::vector<UrdfJoint> joints;
+  std::vector<UrdfNote> notes;
+};
+
+}  // namespace tools

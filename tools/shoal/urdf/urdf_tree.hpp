@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "tools/shoal/urdf/urdf_model.hpp"
+
+namespace tools {
+
+/// A link and the joint that leads to it.
+struct UrdfBranch {
+  const UrdfLink* link = nullptr;
+  const UrdfJoint* joint = nullptr;  ///< null: the root
+  std::size_t parent = 0;            ///< index of the parent's branch
+};
+
+/// Checks that names are unique and that the joints connect all links to one tree.  Throws sim::ConfigError.
+void check_urdf_tree(const UrdfRobot& robot);
+
+/// Links of a checked robot, each after its parent; links of one parent in the order of their joints.
+std::vector<UrdfBranch> branches_of(const UrdfRobot& robot);
+
+}  // namespace tools
