@@ -39,10 +39,9 @@ fs::path shipped() {
 std::vector<fs::path> python_folders() {
   std::error_code error;
   const fs::path build = fs::read_symlink("/proc/self/exe", error).parent_path().parent_path();
-  std::vector<fs::path> found;
-  for (const fs::path& folder : {shipped() / "python", shipped() / "examples/python", build / "python"})
-    if (fs::is_directory(folder, error)) found.push_back(folder);
-  return found;
+  // python/ of a checkout is source, which cannot be imported.
+  if (!fs::is_directory(shipped() / "examples/python", error)) return {shipped() / "python"};
+  return {shipped() / "examples/python", build / "python"};
 }
 
 /// Returns the file in the first folder that contains it.
