@@ -3,7 +3,8 @@
 # them); tests/sim/include_direction_test.cpp reads the list that shoal_write_rooms() writes, and checks includes by it.
 
 # shoal_room(<folder> [MAIN] [USES <room>...] [PUBLIC <library>...] [PRIVATE <library>...] [EXCEPT <file>...])
-# MAIN: one of its sources has main(); linking the program made of its objects tests its dependencies.
+# MAIN: one of its sources has main(), or the entry of a module; linking what is made of its objects tests its
+# dependencies.
 # <folder>: relative to the folder of the calling CMakeLists.txt; `.` is that folder itself.  The name of the target,
 # and of the room in USES, is the path from the root with `_` for `/`: sim/physics is sim_physics.
 function(shoal_room folder)
