@@ -10,6 +10,7 @@ set(SHOAL_MAINTAINER "The Shoal authors <noreply@users.noreply.github.com>" CACH
 set(package_files ${PROJECT_BINARY_DIR}/package_files)
 add_custom_target(package_files
                   COMMAND ${PROJECT_SOURCE_DIR}/tools/package_files ${PROJECT_BINARY_DIR}/bin ${package_files}
+                          ${SHOAL_MAINTAINER}
                   DEPENDS programs COMMENT "Man pages, completions, copyright and changelogs" VERBATIM)
 install(DIRECTORY ${package_files}/man/ DESTINATION share/man/man1 COMPONENT programs OPTIONAL)
 install(FILES ${package_files}/completion/shoal DESTINATION share/bash-completion/completions COMPONENT programs OPTIONAL)
@@ -59,21 +60,22 @@ endfunction()
 
 shoal_package(shoal SECTION science COMPONENTS programs
   SUMMARY "simulator of many vehicles on land, at the surface and under water"
-  TEXT "Vehicles with their devices publish and subscribe on LCM channels, so that the
-same autonomy programs, loggers and viewers work with the simulator and with the
-vehicles. The same world, seed and programs give the same run, bit for bit.
-This package has the programs, worlds and vehicles."
+  TEXT "Vehicles with their devices publish and subscribe on LCM channels, so that
+the same autonomy programs, loggers and viewers work with the simulator and
+with the vehicles. The same world, seed and programs give the same run, bit
+for bit. This package has the programs, worlds and vehicles."
   RECOMMENDS "gnuplot-nox, iproute2, ffmpeg")
 shoal_package(libshoal-dev SECTION libdevel COMPONENTS client device
   SUMMARY "client library and headers of the Shoal simulator"
-  TEXT "A program in C++ becomes a client of the simulator with the library, which runs
-in lockstep with it; the headers are for plugins with own devices."
+  TEXT "A program in C++ becomes a client of the simulator with the library, which
+runs in lockstep with it; the headers are for plugins with own devices."
   DEPENDS "shoal (= ${PROJECT_VERSION}), liblcm-dev, liblcm-bin, libglib2.0-dev, zlib1g-dev, libssl-dev, libeigen3-dev, libspdlog-dev, pkg-config"
   RECOMMENDS "cmake, g++")
 shoal_package(shoal-doc SECTION doc ALL COMPONENTS doc
   SUMMARY "documentation of the Shoal simulator"
-  TEXT "Lessons, guides, models with their equations, the reference of all keys, devices,
-messages and metrics, and the interfaces for plugins and clients, as HTML.")
+  TEXT "Lessons, guides, models with their equations, the reference of all keys,
+devices, messages and metrics, and the interfaces for plugins and clients, as
+HTML.")
 if(SHOAL_PYTHON)
   shoal_package(python3-shoal SECTION python COMPONENTS python
     SUMMARY "Python package of the Shoal simulator"
