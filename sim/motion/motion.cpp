@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "sim/config/message_text.hpp"
+#include "sim/motion/joint_name.hpp"
 #include "sim/motion/motion_frames.hpp"
 
 namespace sim {
@@ -31,6 +32,10 @@ struct JointReader {
   JointValues values(const JointMotion& motion, Diagnostics& diagnostics) const {
     JointValues values;
     for (const ConfigNode::Entry& entry : map.entries) {
+      if (const std::string error = joint_name_error(entry.key); !error.empty()) {
+        diagnostics.error(entry.place, who, error);
+        continue;
+      }
       double value = 0;
       const ConfigNode one = map_node(entry.key, entry.value);
       ParamReader reader(one, who, diagnostics);
