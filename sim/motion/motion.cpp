@@ -112,7 +112,7 @@ double JointMotion::unit_of(const std::string& joint) const {
 }
 
 void MotionStart::read(ParamReader& in) {
-  in.read("max_velocity", max_velocity, above_to(0, 1000), "velocity of the fastest joint on the way, rad/s or m/s");
+  in.read("max_velocity", max_velocity, between(0.001, 1000), "velocity of the fastest joint on the way, rad/s or m/s");
   in.read("min_s", min_s, between(0, 600), "least time for the way");
 }
 
