@@ -31,7 +31,9 @@ struct StageOptions {
 /// Another world of the same configuration, on its own bus.
 class StageCopy {
  public:
+  /// `config` must outlive this.
   explicit StageCopy(const sim::WorldConfig& config) : world_(config, bus_) {}
+  explicit StageCopy(const sim::WorldConfig&&) = delete;
   sim::World& world() { return world_; }
 
  private:
