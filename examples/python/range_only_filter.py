@@ -46,12 +46,11 @@ class Filter:
         self.P = np.diag([1.0, 1.0, 0.2]) ** 2
 
     def predict(self, forward_m, turn_rad):
-        """Moves by an arc; its errors are 5 % of the distance and 10 % of the turn, and some of both."""
+        """Moves by an arc.  The variances of its errors grow with the distance and with the turn."""
         yaw = self.x[2] + turn_rad / 2
         self.x += [forward_m * np.cos(yaw), forward_m * np.sin(yaw), turn_rad]
         F = np.array([[1, 0, -forward_m * np.sin(yaw)], [0, 1, forward_m * np.cos(yaw)], [0, 0, 1]])
-        along = (0.05 * forward_m) ** 2
-        turning = (0.1 * turn_rad) ** 2 + (0.02 * forward_m) ** 2
+        along, turning = 0.0002 * forward_m, 0.0001 * forward_m + 0.0004 * abs(turn_rad)
         G = np.array([[np.cos(yaw), 0], [np.sin(yaw), 0], [0, 1]])
         self.P = F @ self.P @ F.T + G @ np.diag([along, turning]) @ G.T
 

@@ -69,7 +69,8 @@ def nees(folder: Folder, metrics: Sequence[str] | None = None, axes: Axes | None
     """Draws the normalised estimation error squared against time, with the 95 % interval of a consistent filter.
 
     dimensions: number of coordinates of the estimate; the interval is that of chi-square with as many degrees of
-    freedom (Bar-Shalom, Li, Kirubarajan, Estimation with Applications to Tracking and Navigation, 2001, section 5.4)
+        freedom (Bar-Shalom, Li, Kirubarajan, Estimation with Applications to Tracking and Navigation, 2001, section
+        5.4)
     """
     known = [(metric, own) for metric, own in _by_metric(folder, metrics) if np.isfinite(own['nees']).any()]
     if not known:

@@ -31,7 +31,7 @@ class Box:
     """Space of arrays between two bounds, where gymnasium is not installed; else its own Box is used."""
 
     def __init__(self, low: ArrayLike, high: ArrayLike, shape: Sequence[int],
-                 dtype: DTypeLike = np.float64) -> None:
+                 dtype: DTypeLike = float) -> None:
         """low, high: numbers or arrays of the shape; dtype: of its elements."""
         self.low = np.array(np.broadcast_to(low, shape), dtype)
         self.high = np.array(np.broadcast_to(high, shape), dtype)
