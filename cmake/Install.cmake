@@ -4,6 +4,7 @@
 #   programs  the programs, worlds, vehicles, schemas, examples and the Python modules; of the target programs
 #   client    what a client in C++ is built against; of the target shoal_client
 #   device    what a plugin is built against, besides `client`
+#   python    the Python package, with SHOAL_PYTHON; see python/CMakeLists.txt
 include(CMakePackageConfigHelpers)
 set(package_dir lib/cmake/Shoal)
 set(types_dir ${PROJECT_SOURCE_DIR}/messages)

@@ -8,11 +8,13 @@
 
 #include "messages/yaml/message_writer.hpp"
 #include "python/bindings/bindings.hpp"
+#include "python/bindings/gil.hpp"
 #include "python/bindings/in_use.hpp"
 #include "python/world/error.hpp"
 #include "sim/config/shipped_files.hpp"
 #include "tools/experiment/process/world_programs.hpp"
 #include "tools/experiment/run/runner.hpp"
+#include "tools/experiment/world_files/world_by_name.hpp"
 
 namespace py = pybind11;
 
@@ -22,10 +24,12 @@ namespace {
 /// Arguments of run(), as options of `shoal run`.
 struct RunArguments {
   std::string world;
+  std::optional<std::string> text;  ///< YAML instead of the file
   std::optional<std::int64_t> seed;
   std::vector<std::string> sets;
   std::optional<double> duration_s;
-  std::string results, record, bus;
+  std::string results, record, bus, lcm_url;
+  std::vector<std::string> wait_for;
   bool launch = false, overwrite = false;
 };
 
@@ -41,16 +45,19 @@ std::string run(const RunArguments& arguments) {
   options.duration_s = arguments.duration_s;
   options.speed = 0;
   options.bus = arguments.bus;
+  options.lcm_url = arguments.lcm_url;
   options.results = arguments.results;
   options.record = arguments.record;
   options.overwrite = arguments.overwrite;
   options.launch = arguments.launch;
+  options.await = arguments.wait_for;
   options.quiet = true;
   options.keys = false;
   tools::Summary summary;
   {
-    const py::gil_scoped_release others;
-    sim::LoadedWorld loaded = sim::load_world(arguments.world, load);
+    const WithoutGil others;
+    sim::LoadedWorld loaded = arguments.text ? sim::load_world_text(*arguments.text, arguments.world, load)
+                                             : sim::load_world(arguments.world, load);
     tools::read_programs(loaded, {options.launch, load.allow_paths});
     auto next_check = std::chrono::steady_clock::now();
     options.leave = [&next_check] {
@@ -72,16 +79,19 @@ void add_runs(py::module_& module) {
   using namespace py::literals;
   module.def(
       "run",
-      [](std::string world, std::optional<std::int64_t> seed, std::vector<std::string> sets,
-         std::optional<double> duration_s, std::string results, std::string record, std::string bus, bool launch,
-         bool overwrite) {
-        return run({std::move(world), seed, std::move(sets), duration_s, std::move(results), std::move(record),
-                    std::move(bus), launch, overwrite});
+      [](std::string world, std::optional<std::string> text, std::optional<std::int64_t> seed,
+         std::vector<std::string> sets, std::optional<double> duration_s, std::string results, std::string record,
+         std::string bus, std::string lcm_url, std::vector<std::string> wait_for, bool launch, bool overwrite) {
+        return run({std::move(world), std::move(text), seed, std::move(sets), duration_s, std::move(results),
+                    std::move(record), std::move(bus), std::move(lcm_url), std::move(wait_for), launch, overwrite});
       },
-      "world"_a, "seed"_a, "sets"_a, "duration_s"_a, "results"_a, "record"_a, "bus"_a, "launch"_a, "overwrite"_a);
+      "world"_a, "text"_a, "seed"_a, "sets"_a, "duration_s"_a, "results"_a, "record"_a, "bus"_a, "lcm_url"_a,
+      "wait_for"_a, "launch"_a, "overwrite"_a);
   module.def("version", &tools::version_text, "Returns the versions of Shoal and of its libraries.");
   module.def("short_version", &tools::short_version, "Returns the version of Shoal only.");
+  module.def("world_file", &tools::world_file, "name"_a, "Returns the path of a world file; see World.");
   module.def("shipped_folder", &sim::shipped_folder, "Returns the folder with the shipped worlds; '': there is none.");
+  module.def("program_folder", &sim::program_folder, "Returns the folder of the program shoal; '': there is none.");
 }
 
 }  // namespace python
