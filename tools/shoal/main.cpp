@@ -86,6 +86,7 @@ int run(int argc, char** argv) {
   tools::add_report_command(app, exit_code);
   tools::add_bug_command(app, exit_code);
   tools::add_study_command(app, exit_code);
+  tools::add_tune_command(app, exit_code);
   tools::add_upgrade_command(app, exit_code);
   // Parse and run.
   try {

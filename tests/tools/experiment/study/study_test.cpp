@@ -311,9 +311,10 @@ TEST(StudyResults, JudgeStatisticsOfCases) {
   EXPECT_NEAR(json["cases"][1]["figures"]["passed"]["mean_high_95"], 0.657620, 1e-5);      // 0 of 2: z^2 / (2 + z^2)
   EXPECT_EQ(json["cases"][1]["figures"]["e.rms_m"]["std"], 0);
   EXPECT_EQ(json["passed"], false);
-  EXPECT_THAT(results.to_csv(), HasSubstr("case,seed,exit_code,passed,ended,sim_time_s,wall_s,run_hash,e.rms_m\n"
-                                          "plain,1,0,1,duration,0,0.000,00000000000000a1,1\n"));
-  EXPECT_THAT(results.to_csv(), HasSubstr("quick,2,0,0,duration,0,0.000,00000000000000a1,6\n"));
+  EXPECT_THAT(results.to_csv(), HasSubstr("case,seed,exit_code,passed,ended,sim_time_s,wall_s,run_hash,e.rms_m,run,"
+                                          "point,shoal,processor,c_library\n"
+                                          "plain,1,0,1,duration,0,0.000,00000000000000a1,1,1,0,,,\n"));
+  EXPECT_THAT(results.to_csv(), HasSubstr("quick,2,0,0,duration,0,0.000,00000000000000a1,6,4,0,,,\n"));
 }
 
 TEST(StudyResults, ARuleFailsWhenARunLacksItsFigure) {
@@ -337,7 +338,7 @@ TEST(StudyResults, ARuleFailsWhenARunLacksItsFigure) {
   const auto json = nlohmann::json::parse(results.to_json(1));
   EXPECT_EQ(json["cases"][1]["figures"]["e.rms_m"]["count"], 1);
   EXPECT_TRUE(json["cases"][1]["figures"]["e.rms_m"]["std"].is_null());
-  EXPECT_THAT(results.to_csv(), HasSubstr("quick,2,0,0,duration,0,0.000,00000000000000a1,\n"));
+  EXPECT_THAT(results.to_csv(), HasSubstr("quick,2,0,0,duration,0,0.000,00000000000000a1,,4,0,,,\n"));
 }
 
 TEST(StudyResults, WithoutRulesNothingHasPassed) {
@@ -386,7 +387,7 @@ TEST(StudyResults, CountRunsWithoutAResult) {
   const tools::StudyResults results(study, runs);
   EXPECT_EQ(results.failed_runs(), 1u);
   EXPECT_EQ(results.judgement(), tools::Judgement::failed);
-  EXPECT_THAT(results.to_csv(), HasSubstr("quick,2,,,failed,,,,\n"));
+  EXPECT_THAT(results.to_csv(), HasSubstr("quick,2,,,failed,,,,,4,0,,,\n"));
   const ScratchFolder out;
   tools::write_study(out.file("study"), study, runs, results, 4);
   const std::string page = tools::study_report(out.file("study"));
