@@ -41,7 +41,7 @@ from .messages import (
 )
 from .record import Event as Event, Record as Record, RecordWriter as RecordWriter, read as read, table as table
 from .run import Run as Run, Study as Study, run as run, study as study
-from .world import Subscription as Subscription, World as World
+from .world import Subscription as Subscription, World as World, set_log_level as set_log_level
 
 __version__: str
 '''

@@ -230,6 +230,14 @@ class World:
         return world_table(self)
 
 
+def set_log_level(level: str) -> None:
+    """Sets which messages of worlds and runs appear on standard error: debug, info, warn (at first), error or off.
+
+    Raises Error for another level.
+    """
+    _shoal.set_log_level(level)
+
+
 def _source(world, set):
     """Returns file, text or None, and settings of a world for the module."""
     if not isinstance(world, (dict, str, os.PathLike)):

@@ -9,7 +9,7 @@ import threading
 import unittest
 
 import numpy as np
-from support import BALL, SHOAL, scratch
+from support import BALL, SHOAL, run_python, scratch
 
 import shoal
 
@@ -130,6 +130,17 @@ class WorldTest(unittest.TestCase):
             shoal.World('no_such.yaml')
         with self.assertRaises(TypeError):
             shoal.World(3)
+
+    def test_warns_on_standard_error_unless_it_is_silenced(self):
+        code = ("import shoal\n"
+                "world = shoal.World({'shoal': 1, 'name': 'deep', 'objects': ["
+                "{'name': 'ground', 'fixed': True, 'parts': [{'shape': 'plane'}]},"
+                "{'name': 'box', 'position_m': [0, 0, 0], 'parts': [{'shape': 'box', 'size_m': [1, 1, 1], 'mass_kg': 1}]}]})")
+        self.assertEqual(run_python(code)[:2], (0, ''))
+        self.assertRegex(run_python(code)[2], "warning: .*object 'box'.* deep")
+        self.assertEqual(run_python("import shoal\nshoal.set_log_level('off')\n" + code), (0, '', ''))
+        with self.assertRaisesRegex(shoal.Error, "got 'loud'"):
+            shoal.set_log_level('loud')
 
     def test_survives_wrong_use(self):
         world = shoal.World(BALL)
