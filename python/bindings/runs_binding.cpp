@@ -95,7 +95,7 @@ void set_log_level(const std::string& name) {
 }  // namespace
 
 void add_runs(py::module_& module) {
-  using namespace py::literals;
+  using py::literals::operator""_a;
   log_to_stderr();
   module.def("set_log_level", &set_log_level, "level"_a);
   module.def(

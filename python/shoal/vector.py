@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, Callable, Mapping, Sequence
 import numpy as np
 
 from . import _shoal
-from .world import _source
+from .world import _source, _threads
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, DTypeLike
@@ -114,14 +114,14 @@ class VectorEnv:
         action_low, action_high: bounds of the actions, numbers or arrays (m,), which are not enforced
         missing: value of an observation before the first message, and in place of NaN
         set: as of shoal.World
-        threads: 0: one for each core
+        threads: up to 256; 0: one for each core
 
         Raises Error for a world, an action or an observation that is refused.
         """
         self.metadata = {'render_modes': [], 'autoreset_mode': _autoreset()}
         file, text, sets = _source(world, set)
         self._pool = _shoal.Pool(file, text, sets, num_envs, seed, [_action(each) for each in actions],
-                                 [_observation(each) for each in observations], steps, threads)
+                                 [_observation(each) for each in observations], steps, _threads(threads))
         self.num_envs = num_envs
         self._reward, self._terminated, self._missing = reward, terminated, float(missing)
         self.step_s = steps * self._pool.step_s

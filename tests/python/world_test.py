@@ -160,6 +160,9 @@ class WorldTest(unittest.TestCase):
             world.subscribe('x' * 64)
         with self.assertRaises(TypeError):
             world.step('many')
+        for threads in [-1, 257]:
+            with self.assertRaisesRegex(shoal.Error, 'threads must be 0 to 256'):
+                world.use_threads(threads)
         imu = world.subscribe('ball.imu')
         del world
         self.assertEqual(imu.take(), [])  # the subscription keeps the world alive
