@@ -18,8 +18,12 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+_NUMBERS: dict[str, str]
+
 class Message:
     """Base class of all message classes."""
+    _type: str
+    _members: tuple[tuple[str, str, list[int | str], str, bool], ...]
     def __init__(self, **values: Any) -> None: ...
     def encode(self) -> bytes: ...
     @classmethod
