@@ -18,8 +18,12 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+_NUMBERS: dict[str, str]
+
 class Message:
     """Base class of all message classes."""
+    _type: str
+    _members: tuple[tuple[str, str, list[int | str], str, bool], ...]
     def __init__(self, **values: Any) -> None: ...
     def encode(self) -> bytes: ...
     @classmethod
@@ -41,7 +45,7 @@ from .messages import (
 )
 from .record import Event as Event, Record as Record, RecordWriter as RecordWriter, read as read, table as table
 from .run import Run as Run, Study as Study, run as run, study as study
-from .world import Subscription as Subscription, World as World
+from .world import Subscription as Subscription, World as World, set_log_level as set_log_level
 
 __version__: str
 '''

@@ -103,7 +103,7 @@ def page():
     """Returns the whole page."""
     parts = [HEAD.strip()]
     for name in ('World', 'Subscription', 'Client', 'run', 'Run', 'study', 'Study', 'read', 'table', 'Record', 'Event',
-                 'RecordWriter'):
+                 'RecordWriter', 'set_log_level'):
         value = getattr(shoal, name)
         if inspect.isclass(value):
             parts += class_text(name, value)

@@ -255,7 +255,7 @@ class Client : public Guarded {
 }  // namespace
 
 void add_client(py::module_& module) {
-  using namespace py::literals;
+  using py::literals::operator""_a;
   py::module_::import("atexit").attr("register")(py::cpp_function([] { end_interpreter(&Waiting::stop_all); }));
   py::class_<Client>(module, "Client")
       .def(py::init<const std::string&, const std::string&>(), "name"_a, "lcm_url"_a = "")

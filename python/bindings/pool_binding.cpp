@@ -100,7 +100,7 @@ auto of_pool(Get get) {
 }  // namespace
 
 void add_pool(py::module_& module) {
-  using namespace py::literals;
+  using py::literals::operator""_a;
   py::class_<Pool>(module, "Pool")
       .def(py::init(&make_pool), "file"_a, "text"_a, "sets"_a, "count"_a, "seed"_a, "actions"_a, "observations"_a,
            "steps"_a, "threads"_a)

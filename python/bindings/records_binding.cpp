@@ -165,7 +165,7 @@ class RecordWriter : public Guarded {
 }  // namespace
 
 void add_records(py::module_& module) {
-  using namespace py::literals;
+  using py::literals::operator""_a;
   py::class_<RecordReader>(module, "RecordReader")
       .def(py::init<const std::string&>(), "path"_a)
       .def("next", &RecordReader::next, "channels"_a)

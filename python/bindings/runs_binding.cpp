@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pybind11/stl.h>
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <chrono>
 #include <optional>
 #include <string>
@@ -73,10 +76,28 @@ std::string run(const RunArguments& arguments) {
   return summary.to_json();
 }
 
+/// Writes warnings to standard error, as the programs do; standard output belongs to the program in Python.
+void log_to_stderr() {
+  constexpr const char* name = "shoal";
+  if (spdlog::get(name)) return;
+  spdlog::set_default_logger(spdlog::stderr_color_mt(name));
+  spdlog::set_level(spdlog::level::warn);
+  spdlog::set_pattern("%^%l%$: %v");
+}
+
+void set_log_level(const std::string& name) {
+  const std::vector<std::string> names{"debug", "info", "warn", "error", "off"};
+  if (std::find(names.begin(), names.end(), name) == names.end())
+    throw Error("a log level is debug, info, warn, error or off, got '" + name + "'");
+  spdlog::set_level(spdlog::level::from_str(name));
+}
+
 }  // namespace
 
 void add_runs(py::module_& module) {
-  using namespace py::literals;
+  using py::literals::operator""_a;
+  log_to_stderr();
+  module.def("set_log_level", &set_log_level, "level"_a);
   module.def(
       "run",
       [](std::string world, std::optional<std::string> text, std::optional<std::int64_t> seed,

@@ -184,7 +184,7 @@ auto of_world(Get get) {
 }
 
 void add_world_class(py::module_& module) {
-  using namespace py::literals;
+  using py::literals::operator""_a;
   py::class_<World, std::shared_ptr<World>>(module, "World")
       .def(py::init(&make_world), "file"_a, "text"_a = py::none(), "seed"_a = py::none(),
            "sets"_a = std::vector<std::string>())

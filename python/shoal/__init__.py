@@ -29,10 +29,10 @@ from ._shoal import Error
 from .client import Client
 from .record import Event, Record, RecordWriter, read, table
 from .run import Run, Study, run, study
-from .world import Subscription, World
+from .world import Subscription, World, set_log_level
 
 __all__ = ['Client', 'Error', 'Event', 'Record', 'RecordWriter', 'Run', 'Study', 'Subscription', 'World', 'messages',
-           'plots', 'read', 'results', 'run', 'study', 'table', 'vector']
+           'plots', 'read', 'results', 'run', 'set_log_level', 'study', 'table', 'vector']
 __version__: str = _shoal.short_version()
 
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import csv
 import os
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 
     from .run import Run
 
-    Table = pandas.DataFrame | dict[str, np.ndarray]
-    Folder = str | os.PathLike | Run
+    Table: TypeAlias = pandas.DataFrame | dict[str, np.ndarray]
+    Folder: TypeAlias = str | os.PathLike | Run
 
 
 def _file_of(folder, name):

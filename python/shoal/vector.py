@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, Callable, Mapping, Sequence
 import numpy as np
 
 from . import _shoal
-from .world import _source
+from .world import _source, _threads
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, DTypeLike
@@ -61,7 +61,7 @@ class Box:
         return (isinstance(other, Box) and self.shape == other.shape and np.array_equal(self.low, other.low) and
                 np.array_equal(self.high, other.high))
 
-    __hash__ = None
+    __hash__ = None  # type: ignore[assignment]
 
     def __repr__(self) -> str:
         return f'Box({self.low.min(initial=0)}, {self.high.max(initial=0)}, {self.shape}, {self.dtype})'
@@ -72,7 +72,7 @@ def _box(low, high, shape):
     if not np.all(low <= high):
         raise _shoal.Error(f'action_low must be at most action_high, got {low} and {high}')
     try:
-        from gymnasium.spaces import Box as GymBox
+        from gymnasium.spaces import Box as GymBox  # type: ignore[import]
     except ImportError:
         return Box(low, high, shape)
     return GymBox(low, high, shape, np.float64)
@@ -80,7 +80,7 @@ def _box(low, high, shape):
 
 def _autoreset():
     try:
-        from gymnasium.vector import AutoresetMode
+        from gymnasium.vector import AutoresetMode  # type: ignore[import]
     except ImportError:
         return 'NextStep'
     return AutoresetMode.NEXT_STEP
@@ -114,14 +114,14 @@ class VectorEnv:
         action_low, action_high: bounds of the actions, numbers or arrays (m,), which are not enforced
         missing: value of an observation before the first message, and in place of NaN
         set: as of shoal.World
-        threads: 0: one for each core
+        threads: up to 256; 0: one for each core
 
         Raises Error for a world, an action or an observation that is refused.
         """
         self.metadata = {'render_modes': [], 'autoreset_mode': _autoreset()}
         file, text, sets = _source(world, set)
         self._pool = _shoal.Pool(file, text, sets, num_envs, seed, [_action(each) for each in actions],
-                                 [_observation(each) for each in observations], steps, threads)
+                                 [_observation(each) for each in observations], steps, _threads(threads))
         self.num_envs = num_envs
         self._reward, self._terminated, self._missing = reward, terminated, float(missing)
         self.step_s = steps * self._pool.step_s
@@ -134,7 +134,7 @@ class VectorEnv:
         #: Slices of a row of observations, in the order of `observations`.
         self.slices = [slice(*pair) for pair in zip(self._pool.offsets, self._pool.offsets[1:])]
         self._seeds = np.random.SeedSequence(seed)
-        self._before = None  # until the first reset
+        self._before: np.ndarray | None = None  # until the first reset
         self._ages = np.zeros(num_envs, np.int64)
         self._done = np.zeros(num_envs, bool)
 
@@ -158,18 +158,19 @@ class VectorEnv:
         pool = self._open()
         if seed is None:
             seeds = self._new_seeds(self.num_envs)
-        elif np.ndim(seed) == 0:
-            seeds = [_seed(seed) + i for i in range(self.num_envs)]
-            self._seeds = np.random.SeedSequence(seeds[0])
-        else:
+        elif isinstance(seed, Sequence) or (isinstance(seed, np.ndarray) and seed.ndim > 0):
             if len(seed) != self.num_envs:
                 raise _shoal.Error(f'seed must be a number or {self.num_envs} numbers, got {len(seed)}')
             seeds = [self._new_seeds(1)[0] if each is None else _seed(each) for each in seed]
+        else:
+            seeds = [_seed(seed) + i for i in range(self.num_envs)]
+            self._seeds = np.random.SeedSequence(seeds[0])
         self._before = None
-        self._before = self._complete(pool.step(np.zeros(self.action_space.shape), seeds)[0])
+        observations = self._complete(pool.step(np.zeros(self.action_space.shape), seeds)[0])
         self._ages[:] = 0
         self._done[:] = False
-        return self._before.copy(), {}
+        self._before = observations
+        return observations.copy(), {}
 
     def step(self, actions: ArrayLike) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, dict]:
         """Takes a step of all worlds.
@@ -231,7 +232,7 @@ class VectorEnv:
 class Env:
     """One world with the interface of gymnasium.Env."""
 
-    metadata = {'render_modes': []}
+    metadata: dict[str, Any] = {'render_modes': []}
     render_mode = None
     spec = None
 
@@ -283,7 +284,7 @@ class Env:
 class ParallelEnv:
     """One world whose vehicles are agents, with the interface of pettingzoo.ParallelEnv."""
 
-    metadata = {'name': 'shoal', 'render_modes': [], 'is_parallelizable': True}
+    metadata: dict[str, Any] = {'name': 'shoal', 'render_modes': [], 'is_parallelizable': True}
     render_mode = None
 
     def __init__(self, world: str | os.PathLike | dict, agents: Mapping[str, Mapping[str, Sequence[str]]], *,
@@ -303,7 +304,8 @@ class ParallelEnv:
             world, 1, steps=steps, max_episode_s=max_episode_s, seed=seed, set=set, missing=missing,
             actions=[each for agent in agents.values() for each in agent['actions']],
             observations=[each for agent in agents.values() for each in agent['observations']])
-        self._actions, self._observations = {}, {}
+        self._actions: dict[str, slice] = {}
+        self._observations: dict[str, slice] = {}
         width, values = 0, iter(self._envs.slices)
         for name, agent in agents.items():
             size = sum(len(_action(each)[2]) for each in agent['actions'])

@@ -219,8 +219,8 @@ class World:
         return self._own.run_hash()
 
     def use_threads(self, threads: int) -> None:
-        """Sets the number of threads for sensors that cast rays; 1 at first, 0: one for each processor."""
-        self._own.use_threads(threads)
+        """Sets the number of threads for sensors that cast rays, up to 256; 1 at first, 0: one for each processor."""
+        self._own.use_threads(_threads(threads))
 
     def __repr__(self) -> str:
         return f'<shoal.World {self.name} at {self.time_s:g} s, {len(self.vehicles)} vehicles>'
@@ -228,6 +228,20 @@ class World:
     def _repr_html_(self) -> str:
         from .html import world_table
         return world_table(self)
+
+
+def _threads(count):
+    if not 0 <= count <= 256:
+        raise _shoal.Error(f'threads must be 0 to 256, got {count!r}')
+    return count
+
+
+def set_log_level(level: str) -> None:
+    """Sets which messages of worlds and runs appear on standard error: debug, info, warn (at first), error or off.
+
+    Raises Error for another level.
+    """
+    _shoal.set_log_level(level)
 
 
 def _source(world, set):

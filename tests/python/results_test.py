@@ -92,6 +92,21 @@ class RunTest(unittest.TestCase):
         world.run_until(1)
         self.assertEqual(run.run_hash, f'{world.run_hash():016x}')
 
+    def test_may_be_done_in_several_threads(self):
+        hashes = {}
+
+        def work(seed):
+            hashes[seed] = shoal.run('coop_land', duration_s=20, seed=seed % 2, results=scratch(f'thread{seed}'),
+                                     record=scratch(f'thread{seed}.lcm')).run_hash
+
+        threads = [threading.Thread(target=work, args=(seed,)) for seed in range(4)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        self.assertEqual((hashes[0], hashes[1]), (hashes[2], hashes[3]))
+        self.assertNotEqual(hashes[0], hashes[1])
+
     def test_says_what_is_wrong(self):
         with self.assertRaisesRegex(shoal.Error, 'no_such_world'):
             shoal.run('no_such_world')

@@ -4,9 +4,12 @@
 import ast
 import inspect
 import os
+import shutil
+import subprocess
+import sys
 import unittest
 
-from support import PACKAGE
+from support import PACKAGE, scratch
 
 import shoal
 from shoal import client, messages, plots, record, results, run, vector, world
@@ -94,6 +97,25 @@ class StubsTest(unittest.TestCase):
             self.assertEqual([each.arg for each in init.args.kwonlyargs], members)
         functions_of = {node.name for node in stub('messages.pyi').body if isinstance(node, ast.FunctionDef)}
         self.assertEqual(functions_of, {'decode', 'payload_of', 'types'})
+
+    @unittest.skipUnless(shutil.which('mypy'), 'mypy is not installed')
+    def test_mypy_finds_the_mistakes_of_a_program_and_none_of_the_package(self):
+        with open(scratch('typed.py'), 'w', encoding='utf-8') as file:
+            file.write("import numpy as np\n"
+                       "import shoal\n"
+                       "from shoal import plots, record, results, run, vector\n"
+                       "world = shoal.World('minimal', seed=1)\n"
+                       "steps: int = world.step(3)\n"
+                       "ranges: np.ndarray = shoal.messages.planar_lidar_t(ranges=[1.0]).ranges\n"
+                       "shoal.Client('a').subscribe('x', print, shoal.imu_t)\n"
+                       "number: str = world.step(1)\n"
+                       "shoal.messages.imu_t(no_such=1)\n")
+        done = subprocess.run(['mypy', '--python-executable', sys.executable, '--ignore-missing-imports',
+                               '--cache-dir', scratch('mypy'), scratch('typed.py')], capture_output=True, text=True,
+                              env={**os.environ, 'MYPYPATH': PACKAGE}, check=False)
+        errors = [line for line in done.stdout.splitlines() if ': error: ' in line]
+        self.assertEqual([line.partition(': error: ')[0].rpartition('/')[2] for line in errors],
+                         ['typed.py:8', 'typed.py:9'], done.stdout)
 
     def test_package_is_marked_as_typed(self):
         self.assertTrue(os.path.exists(os.path.join(PACKAGE, 'shoal', 'py.typed')))

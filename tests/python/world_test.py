@@ -9,7 +9,7 @@ import threading
 import unittest
 
 import numpy as np
-from support import BALL, SHOAL, scratch
+from support import BALL, SHOAL, run_python, scratch
 
 import shoal
 
@@ -131,6 +131,17 @@ class WorldTest(unittest.TestCase):
         with self.assertRaises(TypeError):
             shoal.World(3)
 
+    def test_warns_on_standard_error_unless_it_is_silenced(self):
+        code = ("import shoal\n"
+                "world = shoal.World({'shoal': 1, 'name': 'deep', 'objects': ["
+                "{'name': 'ground', 'fixed': True, 'parts': [{'shape': 'plane'}]},"
+                "{'name': 'box', 'position_m': [0, 0, 0], 'parts': [{'shape': 'box', 'size_m': [1, 1, 1], 'mass_kg': 1}]}]})")
+        self.assertEqual(run_python(code)[:2], (0, ''))
+        self.assertRegex(run_python(code)[2], "warning: .*object 'box'.* deep")
+        self.assertEqual(run_python("import shoal\nshoal.set_log_level('off')\n" + code), (0, '', ''))
+        with self.assertRaisesRegex(shoal.Error, "got 'loud'"):
+            shoal.set_log_level('loud')
+
     def test_survives_wrong_use(self):
         world = shoal.World(BALL)
         with self.assertRaisesRegex(shoal.Error, '>= 0'):
@@ -149,6 +160,9 @@ class WorldTest(unittest.TestCase):
             world.subscribe('x' * 64)
         with self.assertRaises(TypeError):
             world.step('many')
+        for threads in [-1, 257]:
+            with self.assertRaisesRegex(shoal.Error, 'threads must be 0 to 256'):
+                world.use_threads(threads)
         imu = world.subscribe('ball.imu')
         del world
         self.assertEqual(imu.take(), [])  # the subscription keeps the world alive
