@@ -220,19 +220,30 @@ TEST(Campaign, ItsPageHasCurvesAndTheRunsToLookAt) {
   EXPECT_THAT(page, HasSubstr("<td>point 2 - point 1</td>"));
 }
 
+TEST(Campaign, ShowsTheExtremeRunsInThreeDimensions) {
+  const CampaignFolder study("seeds: [1]\nfactors: [{name: g, paths: [physics.gravity_mps2], values: [1, 5, 9]}]\n");
+  ASSERT_EQ(study.call("study").exit_code, 0);
+  EXPECT_EQ(study.call("collect", {"--show"}).exit_code, 0);
+  EXPECT_THAT(study.text("report.html"), HasSubstr("<a href=\"shown/run_1/run.html\">view</a>"));
+  EXPECT_THAT(study.text("report.html"), HasSubstr("<a href=\"shown/run_3/run.html\">view</a>"));
+  EXPECT_FALSE(fs::exists(study.out() + "/shown/run_2"));
+  const std::string world = study.out() + "/runs/world/point_3/seed_1", shown = study.out() + "/shown/run_3";
+  EXPECT_EQ(summary_value(shown, "run_hash"), summary_value(world, "run_hash"));
+}
+
 TEST(Campaign, TuningFindsTheBestEndOfARangeAndContinues) {
-  // A ball falls for a second: the way is g / 2, and the smallest at the lower end of the range.
+  // A ball falls for a second: the distance is g / 2, and the smallest at the lower end of the range.
   const ScratchFolder folder;
   write_file(folder.file("world.yaml"),
              "shoal: 1\nrun: {duration_s: 1}\nvehicles:\n  - name: m\n    position_m: [0, 0, 20]\n    model:\n"
              "      shoal: 1\n      vehicle: ball\n      bodies: [{name: hull, parts: [{shape: sphere, "
-             "radius_m: 0.1, mass_kg: 1}]}]\nmetrics: [{name: way, type: distance, vehicle: m}]\n");
+             "radius_m: 0.1, mass_kg: 1}]}]\nmetrics: [{name: distance, type: distance, vehicle: m}]\n");
   write_file(folder.file("study.yaml"),
              "shoal: 1\nstudy: fall\nworld: world.yaml\nseeds: [1]\n"
              "factors: [{name: g, paths: [physics.gravity_mps2], from: 1, to: 9}]\n");
   const auto tune = [&](const std::string& goal) {
-    return run_shoal({"tune", folder.file("study.yaml"), "--figure", "way.travelled_m", "--goal", goal, "--generations",
-                      "8", "--output", folder.file("out"), "--jobs", "2"});
+    return run_shoal({"tune", folder.file("study.yaml"), "--figure", "distance.travelled_m", "--goal", goal,
+                      "--generations", "8", "--output", folder.file("out"), "--jobs", "2"});
   };
   const Ended first = tune("min");
   EXPECT_EQ(first.exit_code, 0) << first.errors;
@@ -244,8 +255,8 @@ TEST(Campaign, TuningFindsTheBestEndOfARangeAndContinues) {
   EXPECT_EQ(second.output, first.output);
   EXPECT_THAT(second.errors, Not(HasSubstr("done, not judged")));
   // A figure that the world does not have.
-  EXPECT_THAT(run_shoal({"tune", folder.file("study.yaml"), "--figure", "way.travelled"}).errors,
-              HasSubstr("--figure: metric 'way' has no figure 'travelled'"));
+  EXPECT_THAT(run_shoal({"tune", folder.file("study.yaml"), "--figure", "distance.travelled"}).errors,
+              HasSubstr("--figure: metric 'distance' has no figure 'travelled'"));
 }
 
 TEST(Campaign, ReportsThatAnEngineIsNotInstalled) {

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <boost/random/sobol.hpp>
 #include <cmath>
+#include <iterator>
 #include <numeric>
+#include <string_view>
 
 #include "sim/config/message_text.hpp"
 #include "sim/random/random.hpp"
@@ -12,6 +14,12 @@
 namespace tools {
 
 namespace {
+
+/// Columns of study.csv and points.csv, among which those of the factors stand.
+constexpr std::string_view other_columns[] = {
+    "case",  "seed",  "exit_code", "passed",      "ended",        "sim_time_s",    "wall_s",        "run_hash", "run",
+    "point", "shoal", "processor", "c_library",   "figure",       "runs",          "count",         "mean",     "std",
+    "min",   "max",   "median",    "mean_low_95", "mean_high_95", "median_low_95", "median_high_95"};
 
 /// Returns the index of a share in a list of `count` items.
 std::size_t item_at(double share, std::size_t count) {
@@ -65,6 +73,8 @@ void StudyFactor::read(sim::ParamReader& in) {
   std::int64_t number = 2;
   in.read("levels", number, sim::between(2, 1000), "values of the range in a grid, with both ends");
   if (in.describing()) return;
+  if (std::find(std::begin(other_columns), std::end(other_columns), name) != std::end(other_columns))
+    in.error("name", "'name' must not be that of another column of the tables, got '" + name + "'");
   if (in.has("levels")) levels = number;
   if (in.has("paths") && paths.empty()) in.error("paths", "'paths' must not be empty");
   if (in.has("values") && values.empty()) in.error("values", "'values' must not be empty");

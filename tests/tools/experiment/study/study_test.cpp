@@ -219,6 +219,32 @@ TEST(StudyConfig, ReportsWhatIsWrong) {
   EXPECT_THAT(error("plots: [{name: p, figure: passed, cases: [b]}]\n"), HasSubstr("names no case 'b'"));
 }
 
+TEST(StudyConfig, ReportsWhatIsWrongWithFactorsAndTheirDesign) {
+  const auto error = [](const std::string& factor, const std::string& more = "") {
+    return StudyFolder("factors:\n  - {name: g, paths: [physics.gravity_mps2], " + factor + "}\n" + more).error();
+  };
+  EXPECT_EQ(error("values: [1, 2]"), "");
+  EXPECT_EQ(error("from: 1, to: 2, levels: 3"), "");
+  EXPECT_EQ(error("from: 1, to: 2", "design: {type: sobol, points: 7}\n"), "");
+  EXPECT_THAT(error("from: 1, to: 2"), HasSubstr("study.yaml:6:5: factor 'g': a range in a grid needs 'levels'"));
+  EXPECT_THAT(error("values: []"), HasSubstr("'values' must not be empty"));
+  EXPECT_THAT(error("from: 1"), HasSubstr("factor 'g': has 'from' but no 'to'"));
+  EXPECT_THAT(error("from: 2, to: 1, levels: 2"), HasSubstr("'to' must be greater than 'from', got 1"));
+  EXPECT_THAT(error("values: [1], from: 1, to: 2"), HasSubstr("needs either 'values' or 'from' and 'to', not both"));
+  EXPECT_THAT(error("from: 0, to: 1, levels: 2, scale: log"), HasSubstr("'from' must be > 0 with 'scale: log', got 0"));
+  EXPECT_THAT(error("values: [1, x]"), HasSubstr("factor 'g': value x: "));
+  EXPECT_THAT(error("values: [1]", "design: {type: random}\n"), HasSubstr("needs 'points'"));
+  EXPECT_THAT(error("values: [1]", "design: {points: 3}\n"), HasSubstr("a grid has no 'points'"));
+  EXPECT_THAT(error("values: [1]", "design: {type: sobol, points: 3, seed: 2}\n"),
+              HasSubstr("only the designs random and latin_hypercube have a 'seed'"));
+  EXPECT_THAT(StudyFolder("design: {type: grid}\n").error(), HasSubstr("'design' needs 'factors'"));
+  EXPECT_THAT(StudyFolder("factors: [{name: seed, paths: [a], values: [1]}]\n").error(),
+              HasSubstr("'name' must not be that of another column of the tables, got 'seed'"));
+  EXPECT_THAT(StudyFolder("batch: 5\n").error(), HasSubstr("'batch' needs 'until'"));
+  EXPECT_THAT(StudyFolder("until: ci(e.rms) < 5 %\n").error(),
+              HasSubstr("'until' names nothing of this world: 'e.rms'"));
+}
+
 TEST(StudyConfig, PointsAtTheMistakeInARule) {
   const auto error = [](const std::string& rule) {
     const std::string text = StudyFolder("pass: ['" + rule + "']\n", "[1]").error();
