@@ -14,6 +14,7 @@
 #include "sim/acoustics/propagation.hpp"
 #include "sim/acoustics/signal.hpp"
 #include "sim/acoustics/sound_observer.hpp"
+#include "sim/acoustics/sound_path.hpp"
 #include "sim/acoustics/transducer.hpp"
 #include "sim/event/event_queue.hpp"
 #include "sim/medium/medium.hpp"
@@ -108,6 +109,10 @@ class AcousticChannel {
     std::uint32_t to_join = 0;  // differs from the transducer's when its number was reused
     bool listened = false, present = false, detected = false, delayed = false;
     bool meant = false;                       // addressed to the receiver
+    bool shadow = false;                      // no ray without a bounce reaches the receiver
+    bool bent = false;                        // arrives_W is that of a ray
+    Vector3d arrives_W = Vector3d::Zero();    // unit vector along the sound at the receiver
+    double lock_later_s = 0;                  // delay of the echo that the receiver takes for the first arrival
     void visit_state(StateArchive& archive);  // except `to`
   };
 
@@ -138,6 +143,7 @@ class AcousticChannel {
   void cut(int sending, SignalLoss why, Time at);
   /// Schedules the early end at a receiver, unless the signal ends before.
   void schedule_silence(int flight, const Sending& sending, Time now);
+  void follow_ray(Arrival& arrival, const Vector3d& source_W, const Vector3d& velocity_W) const;
   void approach(int flight, Time due);
   void begin(int flight);
   void fall_silent(int flight, Time due);
@@ -156,9 +162,12 @@ class AcousticChannel {
   void report_arrival(const Flight& flight, const Sending& sending, const Transducer& to) const;
   /// Computes level, end and Doppler of a flight.  Returns the power of interfering echoes, re 1 uPa^2. `later_s`:
   /// delay of the first arrival when it is an echo.
-  PowerRatio compute_level(Flight& flight, const Sending& sending, double& later_s);
+  PowerRatio compute_level(Flight& flight, const Sending& sending, double& later_s,
+                           std::vector<Propagation::Gain::Echo>& echoes);
   /// Reason why a signal cannot be decoded, independent of other signals.
   SignalLoss obstacle(const Flight& flight) const;
+  /// Draws whether the receiver takes an echo for the first arrival.
+  void lock(Flight& flight, const Sending& sending, const std::vector<Propagation::Gain::Echo>& echoes) const;
   Decibels link_loss(const Transducer& to, const Sending& sending, double& loss_probability) const;
   /// Noise of the sea and of continuous sounds in the band of a signal, as received.
   PowerRatio noise_at(const Transducer& to, const Vector3d& p_W, const Signal& signal) const;

@@ -30,6 +30,8 @@ void AcousticChannel::Sending::visit_state(StateArchive& archive) {
 void AcousticChannel::Flight::visit_state(StateArchive& archive) {
   archive(sending, started, ended, travel_time_s, p_started_W, closing_mps, level, snr, loss, listened, present,
           detected, delayed, meant);
+  // Functions of the positions and the seed, without an effect before the end of the signal.
+  archive.unhashed(shadow, bent, arrives_W, lock_later_s);
   if (archive.restoring()) check_loss(loss, archive);
 }
 
