@@ -399,9 +399,10 @@ void AcousticChannel::schedule_silence(int number, const Sending& sending, Time 
 
 /// Corrects the arrival along the straight line to that of the first ray: Newton's method on the travel time, whose
 /// derivative by the position of the receiver is the direction of the sound over its speed.
-void AcousticChannel::follow_ray(Arrival& arrival, const Vector3d& source_W, const Vector3d& velocity_W) const {
+void AcousticChannel::follow_ray(Arrival& arrival, const Sending& sending, const Vector3d& velocity_W) const {
   for (int round = 0; round < 4; ++round) {
-    const Propagation::First first = propagation_.first_arrival(source_W, arrival.p_W);
+    const Propagation::First first =
+        propagation_.first_arrival(sending.p_W, arrival.p_W, sending.signal.centre_Hz);
     const double c_mps = around_.medium.sound_speed_mps(arrival.p_W);
     const double change_s =
         (first.travel_time_s - arrival.travel_time_s) / (1 - first.arrives_W.dot(velocity_W) / c_mps);
@@ -418,7 +419,7 @@ void AcousticChannel::approach(int number, Time due) {
     const Sending& sending = *sendings_[static_cast<std::size_t>(flight.sending)];
     // Extrapolate the receiver at constant velocity.
     auto arrival = meeting(around_.medium, sending.p_W, sending.sent, to->p_W(step_end_), step_end_, to->v_W());
-    if (arrival && propagation_.bends()) follow_ray(*arrival, sending.p_W, to->v_W());
+    if (arrival && propagation_.bends()) follow_ray(*arrival, sending, to->v_W());
     if (arrival) {
       flight.travel_time_s = arrival->travel_time_s;
       flight.started = std::max(due, sending.sent + from_seconds(arrival->travel_time_s));

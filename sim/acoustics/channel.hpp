@@ -143,7 +143,7 @@ class AcousticChannel {
   void cut(int sending, SignalLoss why, Time at);
   /// Schedules the early end at a receiver, unless the signal ends before.
   void schedule_silence(int flight, const Sending& sending, Time now);
-  void follow_ray(Arrival& arrival, const Vector3d& source_W, const Vector3d& velocity_W) const;
+  void follow_ray(Arrival& arrival, const Sending& sending, const Vector3d& velocity_W) const;
   void approach(int flight, Time due);
   void begin(int flight);
   void fall_silent(int flight, Time due);

@@ -27,14 +27,13 @@ class Propagation {
 
   /// Whether sound travels along rays instead of straight lines.
   bool bends() const { return rays_ != nullptr; }
-  /// Arrival of the first sound: the ray without a bounce that arrives first; without one, with `multipath:`, the first
-  /// ray with bounces; else the straight line, as for sound that leaks into a shadow.
+  /// The arrival to which a receiver synchronises: see first_path().  Without any, the straight line.
   struct First {
     double travel_time_s = 0;
     Vector3d leaves_W = Vector3d::UnitX(), arrives_W = Vector3d::UnitX();  ///< unit vectors along the sound
     bool shadow = false;  ///< no ray without a bounce reaches the receiver
   };
-  First first_arrival(const Vector3d& from_W, const Vector3d& to_W) const;
+  First first_arrival(const Vector3d& from_W, const Vector3d& to_W, double frequency_Hz) const;
   /// Upper limit of the gain by focusing of rays, which is infinite at a caustic.
   static constexpr double most_focus_dB = 10;
 
@@ -74,9 +73,10 @@ class Propagation {
                    double frequency_Hz) const;
 
  private:
-  /// Rays between two points, first arrivals first, with at most `max_bounces`.
-  std::vector<SoundRay> rays_between(const Vector3d& from_W, const Vector3d& to_W, int max_bounces) const;
-  First first_of(const std::vector<SoundRay>& rays, const Vector3d& from_W, const Vector3d& to_W) const;
+  /// Sound between two points: gain and elevation at both ends of each ray, and of what leaks into a shadow.
+  struct Arrivals;
+  Arrivals arrivals(const Vector3d& from_W, const Vector3d& to_W, double frequency_Hz) const;
+  std::vector<SoundRay> rays_between(const Vector3d& from_W, const Vector3d& to_W) const;
   /// As gain() without fading.  `direct`: gain of rays without a bounce due to an obstacle.
   Gain gain_of_rays(const Vector3d& from_W, const Vector3d& to_W, double frequency_Hz, Decibels direct,
                     Random& random) const;

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "sim/acoustics/propagation.hpp"
+#include "sim/acoustics/ray_paths.hpp"
 #include "sim/acoustics/rays/ray_tables.hpp"
 #include "sim/acoustics/sound_path.hpp"
 
@@ -13,9 +14,6 @@
 namespace sim {
 
 namespace {
-
-/// Upper limit of the gain by focusing, which is infinite at a caustic.
-constexpr double most_focus_dB = Propagation::most_focus_dB;
 
 /// Unit vector with this elevation, in the vertical plane through two points.
 Vector3d ray_direction_W(const Vector3d& from_W, const Vector3d& to_W, double elevation_rad) {
@@ -27,7 +25,66 @@ Vector3d ray_direction_W(const Vector3d& from_W, const Vector3d& to_W, double el
 
 }  // namespace
 
-std::vector<SoundRay> Propagation::rays_between(const Vector3d& from_W, const Vector3d& to_W, int max_bounces) const {
+std::vector<PathGain> ray_gains(std::span<const SoundRay> rays, const MultipathConfig* multipath,
+                                const MultipathMedium& water) {
+  constexpr double pi = std::numbers::pi;
+  const double k = 2 * pi * water.frequency_Hz / water.sound_speed_mps;
+  const double roughness_m =
+      multipath == nullptr ? 0 : multipath->surface_roughness_m.value_or(wind_sea_roughness_m(water.wind_mps));
+  std::vector<PathGain> paths;
+  for (const SoundRay& ray : rays) {
+    PathGain path;
+    const double length_m = std::max(ray.travel_time_s * water.sound_speed_mps, 1.0);
+    const double focus_dB = 10 * std::log10(std::max(ray.power_per_m2 * length_m * length_m, 1e-30));
+    path.delay_s = ray.travel_time_s;
+    path.gain = Decibels(std::min(focus_dB, Propagation::most_focus_dB)) - spreading_loss(length_m, water.spreading) -
+                absorption_loss(length_m, water.absorption_dBpkm);
+    path.phase_rad =
+        std::fmod(2 * pi * water.frequency_Hz * ray.travel_time_s, 2 * pi) - ray.caustics * pi / 2;
+    if (ray.surface_bounces > 0) {
+      path.gain += ray.surface_bounces *
+                   (multipath->surface_loss_dB
+                        ? Decibels(-*multipath->surface_loss_dB)
+                        : pressure_level(surface_reflection(k, roughness_m, ray.surface_grazing_rad)));
+      path.phase_rad += ray.surface_bounces * pi;
+    }
+    if (ray.bottom_bounces > 0) {
+      const std::complex<double> bottom = bottom_reflection(multipath->bottom, ray.bottom_grazing_rad);
+      path.gain += ray.bottom_bounces * pressure_level(std::abs(bottom));
+      path.phase_rad += ray.bottom_bounces * std::arg(bottom);
+    }
+    paths.push_back(path);
+  }
+  return paths;
+}
+
+struct Propagation::Arrivals {
+  struct Way {
+    double launch_rad, arrival_rad;
+    bool bounces;
+  };
+  std::vector<PathGain> paths;
+  std::vector<Way> ways;  // of the same paths
+  bool shadow = true;
+
+  First arrival(std::size_t path, const Vector3d& from_W, const Vector3d& to_W) const {
+    return {paths[path].delay_s, ray_direction_W(from_W, to_W, ways[path].launch_rad),
+            ray_direction_W(from_W, to_W, ways[path].arrival_rad), shadow};
+  }
+};
+
+std::size_t first_path(std::span<const PathGain> paths) {
+  Decibels strongest = paths.front().gain;
+  for (const PathGain& path : paths) strongest = std::max(strongest, path.gain);
+  std::size_t first = paths.size();
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    const bool strong = paths[i].gain >= strongest - Decibels(first_path_dB);
+    if (strong && (first == paths.size() || paths[i].delay_s < paths[first].delay_s)) first = i;
+  }
+  return first;
+}
+
+std::vector<SoundRay> Propagation::rays_between(const Vector3d& from_W, const Vector3d& to_W) const {
   const double still_m = medium_.still_surface_m();
   const Vector3d middle_W = (from_W + to_W) / 2;
   RayQuery query;
@@ -40,113 +97,94 @@ std::vector<SoundRay> Propagation::rays_between(const Vector3d& from_W, const Ve
   if (!given) query.water_m += still_m - medium_.surface_m(middle_W.x(), middle_W.y());
   // A transducer that lies on the bottom is in the water.
   query.water_m = std::max({query.water_m, query.source_m, query.receiver_m, 0.0});
-  query.max_bounces = max_bounces;
+  query.max_bounces = config_.multipath ? config_.multipath->max_bounces : 0;
   std::vector<SoundRay> rays;
   rays_->of(query.water_m).find(query, rays);
   return rays;
 }
 
-Propagation::First Propagation::first_of(const std::vector<SoundRay>& rays, const Vector3d& from_W,
-                                         const Vector3d& to_W) const {
-  const auto direct = std::find_if(rays.begin(), rays.end(), [](const SoundRay& ray) { return ray.bounces() == 0; });
-  First first;
-  first.shadow = direct == rays.end();
-  if (first.shadow && (rays.empty() || config_.shadow_loss_dB)) {
-    // The straight line: of sound that leaks into the shadow, and of silence.
-    const Vector3d displacement_W = to_W - from_W;
-    const double range_m = displacement_W.norm();
-    first.travel_time_s = sim::travel_time_s(medium_, from_W, to_W);
-    if (range_m > 0) first.leaves_W = first.arrives_W = displacement_W / range_m;
-    return first;
+Propagation::Arrivals Propagation::arrivals(const Vector3d& from_W, const Vector3d& to_W, double frequency_Hz) const {
+  Arrivals arrivals;
+  const std::vector<SoundRay> rays = rays_between(from_W, to_W);
+  arrivals.paths = ray_gains(rays, config_.multipath ? &*config_.multipath : nullptr,
+                             water_between(from_W, to_W, frequency_Hz));
+  for (const SoundRay& ray : rays) {
+    arrivals.ways.push_back({ray.launch_rad, ray.arrival_rad, ray.bounces() > 0});
+    arrivals.shadow = arrivals.shadow && ray.bounces() > 0;
   }
-  const SoundRay& ray = first.shadow ? rays.front() : *direct;
-  first.travel_time_s = ray.travel_time_s;
-  first.leaves_W = ray_direction_W(from_W, to_W, ray.launch_rad);
-  first.arrives_W = ray_direction_W(from_W, to_W, ray.arrival_rad);
-  return first;
+  // Sound that leaks into the shadow, along the straight line.
+  if (arrivals.shadow && config_.shadow_loss_dB) {
+    PathGain leak;
+    leak.delay_s = sim::travel_time_s(medium_, from_W, to_W);
+    leak.gain = -transmission_loss(from_W, to_W, frequency_Hz) - Decibels(*config_.shadow_loss_dB);
+    const Vector3d displacement_W = to_W - from_W;
+    const double elevation_rad = std::atan2(displacement_W.z(), displacement_W.head<2>().norm());
+    arrivals.paths.push_back(leak);
+    arrivals.ways.push_back({elevation_rad, elevation_rad, false});
+  }
+  return arrivals;
 }
 
-Propagation::First Propagation::first_arrival(const Vector3d& from_W, const Vector3d& to_W) const {
-  // Bounces matter only where no other ray arrives.
-  const First first = first_of(rays_between(from_W, to_W, 0), from_W, to_W);
-  if (!first.shadow || !config_.multipath) return first;
-  return first_of(rays_between(from_W, to_W, config_.multipath->max_bounces), from_W, to_W);
+Propagation::First Propagation::first_arrival(const Vector3d& from_W, const Vector3d& to_W, double frequency_Hz) const {
+  const Arrivals found = arrivals(from_W, to_W, frequency_Hz);
+  if (!found.paths.empty()) return found.arrival(first_path(found.paths), from_W, to_W);
+  // Silence, at the time of the straight line.
+  First first;
+  const Vector3d displacement_W = to_W - from_W;
+  const double range_m = displacement_W.norm();
+  first.travel_time_s = sim::travel_time_s(medium_, from_W, to_W);
+  if (range_m > 0) first.leaves_W = first.arrives_W = displacement_W / range_m;
+  first.shadow = true;
+  return first;
 }
 
 Propagation::Gain Propagation::gain_of_rays(const Vector3d& from_W, const Vector3d& to_W, double frequency_Hz,
                                             Decibels direct, Random& random) const {
-  const MultipathConfig* const multipath = config_.multipath ? &*config_.multipath : nullptr;
-  std::vector<SoundRay> rays = rays_between(from_W, to_W, multipath != nullptr ? multipath->max_bounces : 0);
   Gain gain;
-  gain.first = first_of(rays, from_W, to_W);
-  const double first_s = gain.first->travel_time_s;
-  const bool blocked = std::isinf(direct.dB());
-  if (blocked) std::erase_if(rays, [](const SoundRay& ray) { return ray.bounces() == 0; });
-  // Loss and phase of each ray.
-  const MultipathMedium water = water_between(from_W, to_W, frequency_Hz);
-  const double k = 2 * std::numbers::pi * frequency_Hz / water.sound_speed_mps;
-  const double roughness_m = multipath == nullptr ? 0
-                                                  : multipath->surface_roughness_m.value_or(
-                                                        wind_sea_roughness_m(water.wind_mps));
-  std::vector<PathGain> paths;
-  std::vector<Vector3d> arrive_W;
-  for (const SoundRay& ray : rays) {
-    PathGain path;
-    const double length_m = std::max(ray.travel_time_s * water.sound_speed_mps, 1.0);
-    const double focus_dB = 10 * std::log10(std::max(ray.power_per_m2 * length_m * length_m, 1e-30));
-    path.delay_s = ray.travel_time_s;
-    path.gain = Decibels(std::min(focus_dB, most_focus_dB)) - spreading_loss(length_m, config_.spreading) -
-                absorption_loss(length_m, water.absorption_dBpkm);
-    path.phase_rad = std::fmod(2 * std::numbers::pi * frequency_Hz * ray.travel_time_s, 2 * std::numbers::pi) -
-                     ray.caustics * std::numbers::pi / 2;
-    if (ray.bounces() == 0) path.gain += direct;
-    if (ray.surface_bounces > 0) {
-      path.gain += ray.surface_bounces *
-                   (multipath->surface_loss_dB
-                        ? Decibels(-*multipath->surface_loss_dB)
-                        : pressure_level(surface_reflection(k, roughness_m, ray.surface_grazing_rad)));
-      path.phase_rad += ray.surface_bounces * std::numbers::pi;
-    }
-    if (ray.bottom_bounces > 0) {
-      const std::complex<double> bottom = bottom_reflection(multipath->bottom, ray.bottom_grazing_rad);
-      path.gain += ray.bottom_bounces * pressure_level(std::abs(bottom));
-      path.phase_rad += ray.bottom_bounces * std::arg(bottom);
-    }
-    paths.push_back(path);
-    arrive_W.push_back(ray_direction_W(from_W, to_W, ray.arrival_rad));
-  }
-  // Sound that leaks into the shadow.
-  if (gain.first->shadow && config_.shadow_loss_dB && !blocked) {
-    PathGain leak;
-    leak.delay_s = sim::travel_time_s(medium_, from_W, to_W);
-    leak.gain = direct - transmission_loss(from_W, to_W, frequency_Hz) - Decibels(*config_.shadow_loss_dB);
-    paths.insert(paths.begin(), leak);
-    arrive_W.insert(arrive_W.begin(), gain.first->arrives_W);
-  }
-  if (paths.empty()) {
-    gain.signal = to_decibels(PowerRatio{});
+  gain.signal = to_decibels(PowerRatio{});
+  Arrivals found = arrivals(from_W, to_W, frequency_Hz);
+  if (found.paths.empty()) {
+    gain.first = first_arrival(from_W, to_W, frequency_Hz);
     return gain;
   }
-  if (multipath != nullptr && multipath->phases == MultipathConfig::Phases::random) randomize_phases(paths, random);
-  // The direct path is blocked: the first echo is the first arrival.
-  if (blocked) {
-    gain.later_s = std::max(0.0, paths.front().delay_s - first_s);
-    gain.first->arrives_W = arrive_W.front();
+  gain.first = found.arrival(first_path(found.paths), from_W, to_W);
+  // An obstacle affects the paths without a bounce; where it leaves nothing, an echo is the first arrival.
+  Arrivals left;
+  left.shadow = found.shadow;
+  for (std::size_t i = 0; i < found.paths.size(); ++i) {
+    PathGain path = found.paths[i];
+    if (!found.ways[i].bounces) path.gain += direct;
+    if (std::isinf(path.gain.dB())) continue;
+    left.paths.push_back(path);
+    left.ways.push_back(found.ways[i]);
   }
-  // Echoes that a receiver may take for the first arrival.
-  const double begins_s = blocked ? paths.front().delay_s : first_s;
+  if (left.paths.empty()) return gain;
+  const std::size_t first = first_path(left.paths);
+  const double begins_s = left.paths[first].delay_s;
+  if (begins_s > gain.first->travel_time_s) {
+    gain.later_s = begins_s - gain.first->travel_time_s;
+    gain.first = left.arrival(first, from_W, to_W);
+  }
+  const MultipathConfig* const multipath = config_.multipath ? &*config_.multipath : nullptr;
   const double window_s = multipath != nullptr ? multipath->window_s : std::numeric_limits<double>::infinity();
-  if (config_.echo_lock && !blocked) {
-    double first_dB = -std::numeric_limits<double>::infinity();
-    for (const PathGain& path : paths)
-      if (path.delay_s == begins_s) first_dB = std::max(first_dB, path.gain.dB());
-    for (std::size_t i = 0; i < paths.size(); ++i)
-      if (paths[i].delay_s > begins_s && paths[i].delay_s - begins_s <= window_s)
-        gain.echoes.push_back({paths[i].delay_s - begins_s, to_power(paths[i].gain - Decibels(first_dB)), arrive_W[i]});
-  }
-  // Sound before the first arrival, by bounces through faster water, belongs to the signal too.
-  for (PathGain& path : paths) path.delay_s = std::max(path.delay_s, begins_s);
-  const MultipathSum sum = combine(paths, window_s);
+  // Echoes that a receiver may take for the first arrival.
+  if (config_.echo_lock)
+    for (std::size_t i = 0; i < left.paths.size(); ++i) {
+      const double later_s = left.paths[i].delay_s - begins_s;
+      if (later_s > 0 && later_s <= window_s)
+        gain.echoes.push_back({later_s, to_power(left.paths[i].gain - left.paths[first].gain),
+                               left.arrival(i, from_W, to_W).arrives_W});
+    }
+  // The sum.  Sound that comes a little before the first arrival belongs to the signal too, and is not drawn apart.
+  std::swap(left.paths[0], left.paths[first]);
+  if (multipath != nullptr && multipath->phases == MultipathConfig::Phases::random)
+    randomize_phases(left.paths, random);
+  for (PathGain& path : left.paths)
+    if (begins_s - path.delay_s <= window_s) path.delay_s = std::max(path.delay_s, begins_s);
+  // Earlier sound is interference, as later sound is.
+  for (PathGain& path : left.paths)
+    if (path.delay_s < begins_s) path.delay_s = begins_s + window_s + 1e-3;
+  const MultipathSum sum = combine(left.paths, window_s);
   gain.signal = to_decibels(sum.signal);
   gain.disturbing = sum.interference;
   return gain;
