@@ -73,11 +73,13 @@ void Interrogator::receive(const sim::Reception& received) {
   const auto answer = decode_answer(received.signal.payload);
   if (!answer || answer->ping != number_) return;
   const double turnaround_s = std::max(answer->turnaround_s, params_.ping_s);
-  const double distance_m = (answer->out_m + (received.p_sent_W - received.p_started_W).norm()) / 2;
+  const sim::Vector3d p_ST_W = received.p_sent_W - received.p_started_W;
+  const double distance_m = (answer->out_m + p_ST_W.norm()) / 2;
   std::erase(waiting_for_, received.source);
   if (distance_m > params_.range_max_m) return;
+  const sim::Matrix3d R_SW = R_WS(received.started).transpose();
   answers_.push_back({received.source, received.started, sim::to_seconds(received.started - pinged_) - turnaround_s,
-                      distance_m, R_WS(received.started).transpose() * received.apparent_W});
+                      distance_m, R_SW * p_ST_W, R_SW * received.apparent_W});
 }
 
 sim::Matrix3d Interrogator::R_WS(sim::Time at) const {

@@ -40,6 +40,14 @@ AcousticChannel::AcousticChannel(const AcousticsConfig& config, const AcousticSu
 
 AcousticChannel::~AcousticChannel() = default;
 
+std::vector<std::string> AcousticChannel::effects() const {
+  std::vector<std::string> effects;
+  if (propagation_.bends()) effects.emplace_back("propagation");
+  if (propagation_.bends() && config_.shadow_loss_dB) effects.emplace_back("shadow_loss_dB");
+  if (config_.echo_lock && config_.multipath) effects.emplace_back("echo_lock");
+  return effects;
+}
+
 void AcousticChannel::join(Transducer& transducer) {
   const auto free = std::find(transducers_.begin(), transducers_.end(), nullptr);
   auto number = static_cast<std::size_t>(free - transducers_.begin());

@@ -32,9 +32,17 @@ struct AcousticSurroundings {
   std::uint64_t seed;
 };
 
-/// Underwater acoustic channel between transducers, driven by events in simulated time.  A signal travels along the
-/// straight line from the position of the sender at transmission to that of the receiver at arrival, at the mean
-/// slowness of the water along it.  docs/models/acoustics.md has the equations and their sources.
+/// Message that a shadow took from its addressee.
+struct ShadowLoss {
+  Time sent{0};
+  std::string source, receiver;  ///< vehicle and device
+  double range_m = 0;
+  void visit_state(StateArchive& archive) { archive(sent, source, receiver, range_m); }
+};
+
+/// Underwater acoustic channel between transducers, driven by events in simulated time.  A signal travels from the
+/// position of the sender at transmission to that of the receiver at arrival: along the straight line at the mean
+/// slowness of the water along it, or along a ray.  docs/models/acoustics.md has the equations and their sources.
 class AcousticChannel {
  public:
   AcousticChannel(const AcousticsConfig& config, const AcousticSurroundings& surroundings);
@@ -55,6 +63,12 @@ class AcousticChannel {
   std::int64_t messages_for(const Audience& own) const;
   /// Counts of all removed transducers.
   const Transducer::Counts& counts_of_removed() const { return removed_; }
+
+  /// Messages lost in shadows: the first `most_shadow_losses`.
+  const std::vector<ShadowLoss>& shadow_losses() const { return shadow_losses_; }
+  static constexpr std::size_t most_shadow_losses = 100;
+  /// Keys of `acoustics:` whose effects are on: bent sound, leaks into shadows, echo locks.
+  std::vector<std::string> effects() const;
 
   /// Transducers in device order; null where one was removed.
   const std::vector<Transducer*>& transducers() const { return transducers_; }
@@ -210,6 +224,7 @@ class AcousticChannel {
   SoundObserver* observer_ = nullptr;
   bool watching_ = false;  // a watch_event is scheduled
   Transducer::Counts removed_;
+  std::vector<ShadowLoss> shadow_losses_;
   std::vector<int> near_;
 };
 

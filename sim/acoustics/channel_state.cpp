@@ -72,7 +72,7 @@ void AcousticChannel::visit_state(StateArchive& archive) {
   // Free lists, neighbours and counts.
   archive.unhashed(free_sendings_, free_flights_, flights_made_, step_end_, neighbours_, neighbours_age_);
   if (!archive.hashing()) archive.not_only_finite(lowest_m_);  // infinity: without a receiver
-  archive.unhashed(messages_, watching_, removed_);
+  archive.unhashed(messages_, watching_, removed_, shadow_losses_);
   if (archive.restoring()) check_numbers(archive);
 }
 

@@ -443,4 +443,58 @@ RayTrace trace_ray(const SoundProfile& profile, double source_m, double launch_r
   return trace;
 }
 
+RayPlace ray_place(const SoundProfile& profile, double source_m, double launch_rad, double time_s) {
+  const auto& knots = profile.knots();
+  RayPlace at{0, std::clamp(source_m, 0.0, profile.deepest_m())};
+  const double xi = std::cos(launch_rad) / profile.speed_mps(at.depth_m);
+  // A vertical ray has no xi.
+  const bool steep = xi * profile.speed_mps(at.depth_m) < 1e-9;
+  bool down = launch_rad < 0;
+  std::size_t layer = profile.layer_of(at.depth_m);
+  if (!down && layer > 0 && at.depth_m == knots[layer].depth_m) --layer;
+  double left_s = time_s;
+  while (left_s > 0) {
+    const double c = profile.speed_mps(at.depth_m), g = profile.gradient(layer), along = down ? g : -g;
+    const double s = steep ? 1 : ray_sine(xi, c);
+    const double edge_m = down ? knots[layer + 1].depth_m : knots[layer].depth_m;
+    const double edge_mps = down ? knots[layer + 1].speed_mps : knots[layer].speed_mps;
+    const bool turns = !steep && along > 0 && (xi * edge_mps > 1 || s == 0);
+    const double thick_m = std::abs(edge_m - at.depth_m);
+    const double in_layer_s = turns          ? 2 * turn_time_s(g, s)
+                              : thick_m == 0 ? 0
+                                             : arc_time_s(xi, thick_m, c, s, edge_mps, steep ? 1 : ray_sine(xi, edge_mps));
+    if (left_s < in_layer_s) {
+      // artanh of the sine changes by the gradient along the ray times the time.
+      if (steep || std::abs(g) < 1e-9) {
+        at.range_m += c * std::sqrt(1 - s * s) * left_s;
+        at.depth_m += (down ? 1 : -1) * c * s * left_s;
+      } else {
+        const double later = std::tanh(std::atanh(s) - along * left_s);
+        at.range_m += (s - later) / (xi * along);
+        at.depth_m += (std::sqrt(1 - later * later) / xi - c) / g;
+      }
+      return at;
+    }
+    left_s -= in_layer_s;
+    if (turns) {
+      at.range_m += 2 * turn_reach(xi, g, s).r_m;
+      down = !down;
+      // Above a turning point in the uppermost part of a layer lies the layer from which the ray came.
+      if (!down && at.depth_m == knots[layer].depth_m && layer > 0) --layer;
+      else if (down && at.depth_m == knots[layer + 1].depth_m && layer + 1 < profile.layers()) ++layer;
+      if (s == 0 && in_layer_s == 0) break;
+      continue;
+    }
+    if (!steep && thick_m > 0) at.range_m += arc_reach(xi, thick_m, c, s, edge_mps, ray_sine(xi, edge_mps)).r_m;
+    at.depth_m = edge_m;
+    if (!down && layer == 0)
+      down = true;
+    else if (down && layer + 1 == profile.layers())
+      break;
+    else
+      layer += down ? 1 : -1;
+  }
+  return at;
+}
+
 }  // namespace sim

@@ -75,4 +75,11 @@ struct RayTrace {
 RayTrace trace_ray(const SoundProfile& profile, double source_m, double launch_rad, double water_m, double step_m,
                    int steps);
 
+/// Where a ray is after a time: horizontal distance and depth.  It bounces off the surface, and ends at the lower end of
+/// the profile.
+struct RayPlace {
+  double range_m = 0, depth_m = 0;
+};
+RayPlace ray_place(const SoundProfile& profile, double source_m, double launch_rad, double time_s);
+
 }  // namespace sim

@@ -262,6 +262,24 @@ TEST(Eigenrays, TracesOfTheirLaunchAnglesEndAtTheReceiver) {
   EXPECT_GE(traced, 4);
 }
 
+TEST(Eigenrays, AreAtTheReceiverAfterTheirTravelTime) {
+  for (const char* name : {"isothermal", "thermocline", "duct"}) {
+    const Eigenrays& rays = profiles().at(name);
+    int placed = 0;
+    for (const double range_m : {40.0, 350.0, 900.0})
+      for (const SoundRay& ray : find(rays, {35, 22, range_m, no_bottom, 2})) {
+        const sim::RayPlace place = sim::ray_place(rays.profile(), 35, ray.launch_rad, ray.travel_time_s);
+        EXPECT_NEAR(place.range_m, range_m, 1e-4) << name;
+        EXPECT_NEAR(place.depth_m, 22, 1e-4) << name;
+        ++placed;
+      }
+    EXPECT_GE(placed, 4) << name;
+  }
+  const sim::RayPlace below = sim::ray_place(SoundProfile({{0, 1500}, {100, 1500}}), 10, -std::numbers::pi / 2, 0.02);
+  EXPECT_NEAR(below.range_m, 0, 1e-6);
+  EXPECT_NEAR(below.depth_m, 40, 1e-9);
+}
+
 TEST(Eigenrays, EndsBeyondTheWaterAreMovedToItsBorder) {
   const Eigenrays rays(SoundProfile({{0, 1500}, {100, 1490}}));
   const auto moved = find(rays, {-0.5, 90, 100, 50, 0}), inside = find(rays, {0, 50, 100, 50, 0});
