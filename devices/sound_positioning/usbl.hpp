@@ -64,10 +64,10 @@ class Usbl final : public sim::Sensor {
   sim::NoiseOf<&Params::elevation_noise> elevation_noise_;
   sim::Time next_ping_{0};
   std::vector<Fix> fixes_;
-  double assumed_mps_ = 0;  ///< sound speed used for the ranges of this sample
+  double assumed_mps_ = 0;                          ///< sound speed used for the ranges of this sample
   sim::Matrix3d R_WS_ = sim::Matrix3d::Identity();  ///< attitude at this sample
   double depth_m_ = 0;                              ///< of the sensor at this sample
-  double since_fix_s_ = 0;  ///< interval for the slowly varying errors
+  double since_fix_s_ = 0;                          ///< interval for the slowly varying errors
 };
 
 /// Publishes one shoal.usbl_t for each answer since the last sample.

@@ -29,9 +29,8 @@ constexpr Time watch_period{100'000};
 
 const char* signal_loss_word(SignalLoss loss) {
   static constexpr const char* words[signal_losses] = {
-      "none",    "noise",        "interference", "half_duplex", "busy",  "captured",  "doppler",
-      "blocked", "out_of_water", "receiver_off", "link",        "range", "sender_off",
-      "shadow"};
+      "none",    "noise",        "interference", "half_duplex", "busy",  "captured",   "doppler",
+      "blocked", "out_of_water", "receiver_off", "link",        "range", "sender_off", "shadow"};
   return words[static_cast<std::size_t>(loss)];
 }
 
@@ -409,8 +408,7 @@ void AcousticChannel::schedule_silence(int number, const Sending& sending, Time 
 /// derivative by the position of the receiver is the direction of the sound over its speed.
 void AcousticChannel::follow_ray(Arrival& arrival, const Sending& sending, const Vector3d& velocity_W) const {
   for (int round = 0; round < 4; ++round) {
-    const Propagation::First first =
-        propagation_.first_arrival(sending.p_W, arrival.p_W, sending.signal.centre_Hz);
+    const Propagation::First first = propagation_.first_arrival(sending.p_W, arrival.p_W, sending.signal.centre_Hz);
     const double c_mps = around_.medium.sound_speed_mps(arrival.p_W);
     const double change_s =
         (first.travel_time_s - arrival.travel_time_s) / (1 - first.arrives_W.dot(velocity_W) / c_mps);

@@ -134,7 +134,7 @@ void AcousticChannel::lock(Flight& flight, const Sending& sending,
   random.begin_step(sending.sequence);
   for (const Propagation::Gain::Echo& echo : echoes) {
     const double luck = random.uniform();
-    // Nearer than the resolution of the signal an echo cannot be told from the first arrival.
+    // Nearer than the resolution of the signal an echo is part of the first arrival.
     if (echo.later_s * sending.signal.bandwidth_Hz < 1 || luck >= at_most * std::min(1.0, echo.relative.linear()))
       continue;
     flight.lock_later_s = echo.later_s;
@@ -254,8 +254,8 @@ void AcousticChannel::end(int number) {
       // Count messages addressed to the receiver.
       if (flight.meant) ++to->counts_.lost[static_cast<std::size_t>(flight.loss)];
       if (flight.meant && flight.loss == SignalLoss::shadow && shadow_losses_.size() < most_shadow_losses)
-        shadow_losses_.push_back({sending.sent, sending.source, to->full_name(),
-                                  (flight.p_started_W - sending.p_W).norm()});
+        shadow_losses_.push_back(
+            {sending.sent, sending.source, to->full_name(), (flight.p_started_W - sending.p_W).norm()});
       if (flight.meant && flight.loss == SignalLoss::none) {
         ++to->counts_.understood;
         to->counts_.understood_bytes += static_cast<std::int64_t>(sending.signal.payload.size());

@@ -27,7 +27,7 @@ class Propagation {
 
   /// Whether sound travels along rays instead of straight lines.
   bool bends() const { return rays_ != nullptr; }
-  /// The arrival to which a receiver synchronises: see first_path().  Without any, the straight line.
+  /// The arrival to which a receiver locks: see first_path().  Without any, the straight line.
   struct First {
     double travel_time_s = 0;
     Vector3d leaves_W = Vector3d::UnitX(), arrives_W = Vector3d::UnitX();  ///< unit vectors along the sound
@@ -39,10 +39,10 @@ class Propagation {
 
   /// Path gain: received level relative to the source level at 1 m on the axis.
   struct Gain {
-    Decibels signal;        ///< minus infinity: no reception
-    PowerRatio disturbing;  ///< power of echoes that arrive after the window
-    bool blocked = false;   ///< the direct path is blocked
-    double later_s = 0;     ///< delay of an echo relative to the blocked direct path
+    Decibels signal;             ///< minus infinity: no reception
+    PowerRatio disturbing;       ///< power of echoes that arrive after the window
+    bool blocked = false;        ///< the direct path is blocked
+    double later_s = 0;          ///< delay of an echo relative to the blocked direct path
     std::optional<First> first;  ///< rays: the first arrival
     /// Echo with the loss of its path relative to that of the first arrival.
     struct Echo {

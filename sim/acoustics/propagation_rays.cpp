@@ -39,13 +39,12 @@ std::vector<PathGain> ray_gains(std::span<const SoundRay> rays, const MultipathC
     path.delay_s = ray.travel_time_s;
     path.gain = Decibels(std::min(focus_dB, Propagation::most_focus_dB)) - spreading_loss(length_m, water.spreading) -
                 absorption_loss(length_m, water.absorption_dBpkm);
-    path.phase_rad =
-        std::fmod(2 * pi * water.frequency_Hz * ray.travel_time_s, 2 * pi) - ray.caustics * pi / 2;
+    path.phase_rad = std::fmod(2 * pi * water.frequency_Hz * ray.travel_time_s, 2 * pi) - ray.caustics * pi / 2;
     if (ray.surface_bounces > 0) {
-      path.gain += ray.surface_bounces *
-                   (multipath->surface_loss_dB
-                        ? Decibels(-*multipath->surface_loss_dB)
-                        : pressure_level(surface_reflection(k, roughness_m, ray.surface_grazing_rad)));
+      path.gain +=
+          ray.surface_bounces * (multipath->surface_loss_dB
+                                     ? Decibels(-*multipath->surface_loss_dB)
+                                     : pressure_level(surface_reflection(k, roughness_m, ray.surface_grazing_rad)));
       path.phase_rad += ray.surface_bounces * pi;
     }
     if (ray.bottom_bounces > 0) {
@@ -106,8 +105,8 @@ std::vector<SoundRay> Propagation::rays_between(const Vector3d& from_W, const Ve
 Propagation::Arrivals Propagation::arrivals(const Vector3d& from_W, const Vector3d& to_W, double frequency_Hz) const {
   Arrivals arrivals;
   const std::vector<SoundRay> rays = rays_between(from_W, to_W);
-  arrivals.paths = ray_gains(rays, config_.multipath ? &*config_.multipath : nullptr,
-                             water_between(from_W, to_W, frequency_Hz));
+  arrivals.paths =
+      ray_gains(rays, config_.multipath ? &*config_.multipath : nullptr, water_between(from_W, to_W, frequency_Hz));
   for (const SoundRay& ray : rays) {
     arrivals.ways.push_back({ray.launch_rad, ray.arrival_rad, ray.bounces() > 0});
     arrivals.shadow = arrivals.shadow && ray.bounces() > 0;
@@ -172,8 +171,8 @@ Propagation::Gain Propagation::gain_of_rays(const Vector3d& from_W, const Vector
     for (std::size_t i = 0; i < left.paths.size(); ++i) {
       const double later_s = left.paths[i].delay_s - begins_s;
       if (later_s > 0 && later_s <= window_s)
-        gain.echoes.push_back({later_s, to_power(left.paths[i].gain - left.paths[first].gain),
-                               left.arrival(i, from_W, to_W).arrives_W});
+        gain.echoes.push_back(
+            {later_s, to_power(left.paths[i].gain - left.paths[first].gain), left.arrival(i, from_W, to_W).arrives_W});
     }
   // The sum.  Sound that comes a little before the first arrival belongs to the signal too, and is not drawn apart.
   std::swap(left.paths[0], left.paths[first]);
@@ -206,8 +205,7 @@ std::vector<Propagation::Gain::Echo> Propagation::straight_echoes(const Vector3d
     // A path arrives upwards when it leaves so and is reversed an even number of times, and vice versa.
     const bool even = (images[i].surface_bounces + images[i].bottom_bounces) % 2 == 0;
     const double elevation_rad = images[i].leaves_upwards == even ? images[i].grazing_rad : -images[i].grazing_rad;
-    echoes.push_back(
-        {later_s, to_power(gains[i].gain - gains[0].gain), ray_direction_W(from_W, to_W, elevation_rad)});
+    echoes.push_back({later_s, to_power(gains[i].gain - gains[0].gain), ray_direction_W(from_W, to_W, elevation_rad)});
   }
   return echoes;
 }

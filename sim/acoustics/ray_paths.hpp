@@ -16,8 +16,8 @@ namespace sim {
 std::vector<PathGain> ray_gains(std::span<const SoundRay> rays, const MultipathConfig* multipath,
                                 const MultipathMedium& water);
 
-/// Path to which a receiver synchronises: the earliest one at most `first_path_dB` weaker than the strongest.  There must
-/// be a path.
+/// Path to which a receiver locks: the earliest one at most `first_path_dB` weaker than the strongest.  There
+/// must be a path.
 std::size_t first_path(std::span<const PathGain> paths);
 inline constexpr double first_path_dB = 10;
 

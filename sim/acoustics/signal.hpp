@@ -99,10 +99,10 @@ struct Reception {
   Vector3d p_started_W = Vector3d::Zero();  ///< position of the receiver at `started`
   /// Displacement to where the sender appears to be: its distance, in the direction from which the sound comes.
   Vector3d apparent_W = Vector3d::Zero();
-  Decibels level{0};                        ///< re 1 uPa at the receiver, including its directivity
-  Decibels snr{0};                          ///< signal-to-noise ratio in the band of the signal
-  Decibels sinr{0};                         ///< minimum signal to interference-plus-noise ratio
-  double closing_mps = 0;                   ///< closing speed of sender and receiver (Doppler)
+  Decibels level{0};       ///< re 1 uPa at the receiver, including its directivity
+  Decibels snr{0};         ///< signal-to-noise ratio in the band of the signal
+  Decibels sinr{0};        ///< minimum signal to interference-plus-noise ratio
+  double closing_mps = 0;  ///< closing speed of sender and receiver (Doppler)
   SignalLoss loss = SignalLoss::none;
   bool detected = false;  ///< the receiver locked on to it, decoded or not
 

@@ -15,8 +15,8 @@ struct CtdError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Depth in m at a pressure relative to the atmosphere, at 45 degrees of latitude: Fofonoff and Millard, Unesco technical
-/// papers in marine science 44 (1983).
+/// Depth in m at a pressure relative to the atmosphere, at 45 degrees of latitude: Fofonoff and Millard, Unesco
+/// technical papers in marine science 44 (1983).
 double depth_of_pressure_m(double pressure_dbar);
 
 /// Reads a profile of water from the CSV text of a CTD.  The header names `depth_m` or `pressure_dbar`, `temperature_C`

@@ -259,7 +259,8 @@ int show(AcousticsArguments& arguments) {
   const std::optional<double> depth_m = arguments.water_depth_m ? arguments.water_depth_m : water_depth_m(link, world);
   if (!arguments.rays.empty()) {
     if (!sound_bends(config.acoustics, world.medium()))
-      throw CLI::ValidationError("--rays", "sound is straight in this world: give its water a profile, or 'propagation: rays'");
+      throw CLI::ValidationError("--rays",
+                                 "sound is straight in this world: give its water a profile, or 'propagation: rays'");
     const double source_m = world.medium().still_surface_m() - link.from.p_W.z();
     const double level_m = (link.to.p_W - link.from.p_W).head<2>().norm();
     draw_rays(ray_field(source_m, std::max(level_m, 1.0), link.centre_Hz, config.acoustics, world.medium(), depth_m),
@@ -349,8 +350,9 @@ void add_options(CLI::App& command, AcousticsArguments& arguments) {
   command.add_option("--ranges", arguments.ranges, "a table over range, m, as CSV: from:to:step")->type_name("RANGES");
   command.add_option("--image", arguments.image, "PNG file: signal-to-noise ratio and delivery over range")
       ->type_name("FILE");
-  command.add_option("--rays", arguments.rays,
-                     "PNG file: rays, loss and shadows from the sender to the range of the receiver")
+  command
+      .add_option("--rays", arguments.rays,
+                  "PNG file: rays, loss and shadows from the sender to the range of the receiver")
       ->type_name("FILE");
   add_set_option(command, arguments.load.sets);
   add_allow_path_option(command, arguments.load);

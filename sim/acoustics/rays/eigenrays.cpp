@@ -107,8 +107,8 @@ Eigenrays::Interval Eigenrays::tabulate(double low_mps, double high_mps) const {
       if (made.first[k] < 0) continue;
       const double c = knots[k].speed_mps, s = ray_sine(xi, c);
       if (k > 0 && made.first[k - 1] >= 0)
-        from_end[k] = from_end[k - 1] + arc_reach(xi, knots[k].depth_m - knots[k - 1].depth_m,
-                                                  knots[k - 1].speed_mps, above_s, c, s);
+        from_end[k] = from_end[k - 1] +
+                      arc_reach(xi, knots[k].depth_m - knots[k - 1].depth_m, knots[k - 1].speed_mps, above_s, c, s);
       else if (k > 0)
         from_end[k] = turn_reach(xi, profile_.gradient(k - 1), s);
       whole[k] = from_end[k];
@@ -166,7 +166,8 @@ RayLegs Eigenrays::legs_of(const Interval& interval, int node, const RayDepths& 
   } else if (in_its_layer) {
     legs.below = turn_reach(xi, profile_.gradient(deep), ray_sine(xi, depths.lower_mps));
   } else {
-    legs.below = from_end[deep] + turn_reach(xi, profile_.gradient(deep), ray_sine(xi, knots[deep].speed_mps)) - to_lower;
+    legs.below =
+        from_end[deep] + turn_reach(xi, profile_.gradient(deep), ray_sine(xi, knots[deep].speed_mps)) - to_lower;
   }
   return legs;
 }
@@ -236,7 +237,8 @@ void Eigenrays::Search::add(double xi, Family family, int cycles) {
   // Each leg between two turning points has a caustic, and the last one when the range grows again with xi.
   ray.caustics = std::max(0, ray.turns - (reach.by_xi < 0));
   const double tube = std::abs(reach.by_xi) * ray_sine(xi, depths.upper_mps) * ray_sine(xi, depths.lower_mps);
-  ray.power_per_m2 = xi * depths.upper_mps * depths.lower_mps / (std::max(query.range_m, 1e-6) * std::max(tube, 1e-300));
+  ray.power_per_m2 =
+      xi * depths.upper_mps * depths.lower_mps / (std::max(query.range_m, 1e-6) * std::max(tube, 1e-300));
   out.push_back(ray);
 }
 
@@ -460,11 +462,12 @@ RayPlace ray_place(const SoundProfile& profile, double source_m, double launch_r
     const double edge_mps = down ? knots[layer + 1].speed_mps : knots[layer].speed_mps;
     const bool turns = !steep && along > 0 && (xi * edge_mps > 1 || s == 0);
     const double thick_m = std::abs(edge_m - at.depth_m);
-    const double in_layer_s = turns          ? 2 * turn_time_s(g, s)
-                              : thick_m == 0 ? 0
-                                             : arc_time_s(xi, thick_m, c, s, edge_mps, steep ? 1 : ray_sine(xi, edge_mps));
+    const double in_layer_s = turns ? 2 * turn_time_s(g, s)
+                              : thick_m == 0
+                                  ? 0
+                                  : arc_time_s(xi, thick_m, c, s, edge_mps, steep ? 1 : ray_sine(xi, edge_mps));
     if (left_s < in_layer_s) {
-      // artanh of the sine changes by the gradient along the ray times the time.
+      // atanh of the sine changes by the gradient along the ray times the time.
       if (steep || std::abs(g) < 1e-9) {
         at.range_m += c * std::sqrt(1 - s * s) * left_s;
         at.depth_m += (down ? 1 : -1) * c * s * left_s;
@@ -480,8 +483,10 @@ RayPlace ray_place(const SoundProfile& profile, double source_m, double launch_r
       at.range_m += 2 * turn_reach(xi, g, s).r_m;
       down = !down;
       // Above a turning point in the uppermost part of a layer lies the layer from which the ray came.
-      if (!down && at.depth_m == knots[layer].depth_m && layer > 0) --layer;
-      else if (down && at.depth_m == knots[layer + 1].depth_m && layer + 1 < profile.layers()) ++layer;
+      if (!down && at.depth_m == knots[layer].depth_m && layer > 0)
+        --layer;
+      else if (down && at.depth_m == knots[layer + 1].depth_m && layer + 1 < profile.layers())
+        ++layer;
       if (s == 0 && in_layer_s == 0) break;
       continue;
     }

@@ -16,9 +16,9 @@ struct SoundRay {
   double travel_time_s = 0;
   double launch_rad = 0, arrival_rad = 0;
   int surface_bounces = 0, bottom_bounces = 0;
-  int turns = 0;                                          ///< turning points inside the water
-  int caustics = 0;                                       ///< passed; each delays the phase by a quarter period
-  double surface_grazing_rad = 0, bottom_grazing_rad = 0; ///< at each bounce
+  int turns = 0;                                           ///< turning points inside the water
+  int caustics = 0;                                        ///< passed; each delays the phase by a quarter period
+  double surface_grazing_rad = 0, bottom_grazing_rad = 0;  ///< at each bounce
   double power_per_m2 = 0;  ///< squared pressure relative to that at 1 m, by the ray tube; large near a caustic
   int bounces() const { return surface_bounces + bottom_bounces; }
 };
@@ -34,8 +34,8 @@ struct RayQuery {
 /// Searches the rays between two points in water whose speed of sound depends on the depth alone.
 ///
 /// Each ray belongs to a family: how it leaves, how often it is reversed above and below.  Within a family the range is
-/// a smooth function of xi between the slownesses at the knots of the profile; it is tabulated there once, and each
-/// crossing of the wanted range is solved by Newton's method inside a bracket.  All results are functions of the
+/// a smooth function of xi between the values of 1 / c at the knots of the profile; it is tabulated there once, and
+/// each crossing of the wanted range is solved by Newton's method inside a bracket.  All results are functions of the
 /// profile and the query alone.  docs/models/acoustics.md has the equations.
 class Eigenrays {
  public:
@@ -48,9 +48,9 @@ class Eigenrays {
   static constexpr int nodes = 3;  ///< of the table in each interval of xi
 
  private:
-  /// Interval of xi between the slownesses of two knots.
+  /// Interval of xi between the values of 1 / c at two knots.
   struct Interval {
-    double low_mps, high_mps;  ///< speeds at which its rays turn
+    double low_mps, high_mps;        ///< speeds at which its rays turn
     std::vector<std::int32_t> last;  ///< for each knot the last one of the rays through it; -1: beyond a turning point
     std::vector<std::int32_t> first;
     std::array<double, nodes> xi;
@@ -75,8 +75,8 @@ struct RayTrace {
 RayTrace trace_ray(const SoundProfile& profile, double source_m, double launch_rad, double water_m, double step_m,
                    int steps);
 
-/// Where a ray is after a time: horizontal distance and depth.  It bounces off the surface, and ends at the lower end of
-/// the profile.
+/// Where a ray is after a time: horizontal distance and depth.  It bounces off the surface, and ends at the lower end
+/// of the profile.
 struct RayPlace {
   double range_m = 0, depth_m = 0;
 };

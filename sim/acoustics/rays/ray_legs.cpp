@@ -5,8 +5,8 @@ namespace sim {
 
 namespace {
 
-/// artanh(x) / x.
-double artanh_over(double x) {
+/// atanh(x) / x.
+double atanh_over(double x) {
   if (std::abs(x) > 0.03) return std::atanh(x) / x;
   const double y = x * x;
   return 1 + y * (1.0 / 3 + y * (1.0 / 5 + y * (1.0 / 7 + y / 9)));
@@ -74,13 +74,13 @@ RayPoint water_of(const RayDepths& depths) {
 }  // namespace
 
 double arc_time_s(double xi, double thick_m, double c1_mps, double s1, double c2_mps, double s2) {
-  // The time is artanh((s1 - s2) / (1 - s1 s2)) / g, here without differences of nearly equal numbers.
+  // The time is atanh((s1 - s2) / (1 - s1 s2)) / g, here without differences of nearly equal numbers.
   const double a = xi * c1_mps;
   const double sum = c1_mps + c2_mps, steep = 1 + s1 * s2;
   const double q_s = thick_m * sum * steep /
                      (std::max(s1 + s2, 1e-300) * (c1_mps * c1_mps + c2_mps * c2_mps - a * a * c2_mps * c2_mps));
   const double x = (c2_mps - c1_mps) / thick_m * q_s;
-  return q_s * artanh_over(x);
+  return q_s * atanh_over(x);
 }
 
 double turn_time_s(double gradient, double s) {
@@ -105,7 +105,9 @@ RayReach reach_between(const SoundProfile& profile, const RayDepths& depths, dou
   RayReach reach;
   sink(
       profile, xi, upper_of(depths, xi), lower_of(depths, xi),
-      [&](double thick_m, double c1, double s1, double c2, double s2) { reach += arc_reach(xi, thick_m, c1, s1, c2, s2); },
+      [&](double thick_m, double c1, double s1, double c2, double s2) {
+        reach += arc_reach(xi, thick_m, c1, s1, c2, s2);
+      },
       [](double, double) {});
   return reach;
 }

@@ -8,8 +8,8 @@
 
 namespace sim {
 
-// A ray has one constant, cos(angle) / c = xi (Snell), and at each depth the sine s = sqrt(1 - xi^2 c^2) of its angle to
-// the horizontal.  In a layer with c linear in the depth it is an arc of a circle.
+// A ray has one constant, cos(angle) / c = xi (Snell), and at each depth the sine s = sqrt(1 - xi^2 c^2) of its angle
+// to the horizontal.  In a layer with c linear in the depth it is an arc of a circle.
 
 /// Sine of the angle of a ray; 0 beyond its turning point.
 inline double ray_sine(double xi, double c_mps) {

@@ -62,11 +62,12 @@ TEST(Usbl, AnswersTakeTheTimeOfSoundThereAndBack) {
 }
 
 TEST(Usbl, ThroughAThermoclineTheSenderAppearsElsewhereUnlessTheWaterIsKnown) {
-  const std::string water = "{profile: [{depth_m: 0, sound_speed_mps: 1515.80}, {depth_m: 20, sound_speed_mps: 1516.12}, "
-                            "{depth_m: 40, sound_speed_mps: 1483.07}, {depth_m: 200, sound_speed_mps: 1485.68}]}";
+  const std::string water =
+      "{profile: [{depth_m: 0, sound_speed_mps: 1515.80}, {depth_m: 20, sound_speed_mps: 1516.12}, "
+      "{depth_m: 40, sound_speed_mps: 1483.07}, {depth_m: 200, sound_speed_mps: 1485.68}]}";
   const auto fix_with = [&](const std::string& keys, usbl_t& truth) {
-    test::TestWorld test(usbl_world(", range_max_m: 2000, ping_period_s: 4" + keys, transponder("t", "[1000, 0, -50]"), "[]",
-                                    "{water: " + water + "}"));
+    test::TestWorld test(usbl_world(", range_max_m: 2000, ping_period_s: 4" + keys, transponder("t", "[1000, 0, -50]"),
+                                    "[]", "{water: " + water + "}"));
     test::Listener<usbl_t> fixes(test, "r1.s"), truths(test, "r1.s.truth");
     test.run_for(2.5);
     truth = truths.last();
@@ -83,9 +84,10 @@ TEST(Usbl, ThroughAThermoclineTheSenderAppearsElsewhereUnlessTheWaterIsKnown) {
   EXPECT_NEAR(known.elevation_rad, truth.elevation_rad, 1e-4);
   EXPECT_NEAR(known.azimuth_rad, truth.azimuth_rad, 1e-9);
   // Water that is known with an error.
-  const usbl_t warmer = fix_with(", assumed_water: {profile: [{depth_m: 0, sound_speed_mps: 1515.80}, {depth_m: 25, "
-                                 "sound_speed_mps: 1516.2}, {depth_m: 40, sound_speed_mps: 1483.07}]}",
-                                 truth);
+  const usbl_t warmer = fix_with(
+      ", assumed_water: {profile: [{depth_m: 0, sound_speed_mps: 1515.80}, {depth_m: 25, "
+      "sound_speed_mps: 1516.2}, {depth_m: 40, sound_speed_mps: 1483.07}]}",
+      truth);
   EXPECT_GT(std::abs(warmer.elevation_rad - truth.elevation_rad), 1e-3);
 }
 

@@ -35,7 +35,8 @@ TEST(CtdFile, ReadsColumnsInAnyOrderAndIgnoresOthers) {
 }
 
 TEST(CtdFile, SkipsHeaveAndTheWayUp) {
-  const auto rows = parse_ctd("depth_m,temperature_C,salinity_psu\n-0.2,9,35\n1,9,35\n3,8,35\n2,8.5,35\n4,7,35\n3,8,35\n");
+  const auto rows =
+      parse_ctd("depth_m,temperature_C,salinity_psu\n-0.2,9,35\n1,9,35\n3,8,35\n2,8.5,35\n4,7,35\n3,8,35\n");
   ASSERT_EQ(rows.size(), 3u);
   EXPECT_EQ(rows[2].depth_m, 4);
 }

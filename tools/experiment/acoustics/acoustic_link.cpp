@@ -87,9 +87,8 @@ std::pair<sim::Vector3d, sim::Vector3d> bend(LinkBudget& budget, const AcousticL
   query.source_m = still_m - link.from.p_W.z();
   query.receiver_m = still_m - link.to.p_W.z();
   query.range_m = displacement_W.head<2>().norm();
-  const double depth_m = acoustics.multipath && acoustics.multipath->water_depth_m
-                             ? *acoustics.multipath->water_depth_m
-                             : water_depth_m.value_or(HUGE_VAL);
+  const double depth_m = acoustics.multipath && acoustics.multipath->water_depth_m ? *acoustics.multipath->water_depth_m
+                                                                                   : water_depth_m.value_or(HUGE_VAL);
   query.water_m = std::max({depth_m, query.source_m, query.receiver_m, 0.0});
   query.max_bounces = acoustics.multipath ? acoustics.multipath->max_bounces : 0;
   sim::RayTables tables([&](double z_m) { return medium.sound_speed_at_depth_mps(z_m); }, medium.profile_depths_m());
@@ -97,8 +96,8 @@ std::pair<sim::Vector3d, sim::Vector3d> bend(LinkBudget& budget, const AcousticL
   tables.of(query.water_m).find(query, rays);
   budget.bent = true;
   budget.shadow = std::none_of(rays.begin(), rays.end(), [](const auto& ray) { return ray.bounces() == 0; });
-  budget.ray_gains = sim::ray_gains(rays, acoustics.multipath ? &*acoustics.multipath : nullptr,
-                                    water_of(link, budget, acoustics));
+  budget.ray_gains =
+      sim::ray_gains(rays, acoustics.multipath ? &*acoustics.multipath : nullptr, water_of(link, budget, acoustics));
   // The sound that leaks into the shadow, along the straight line.
   if (budget.shadow && acoustics.shadow_loss_dB) {
     sim::SoundRay leak;

@@ -58,9 +58,9 @@ struct LinkBudget {
   double delay_spread_s = 0;            ///< multipath: rms
   /// Rays: level, travel time and directions are those of the first arrival, which is a bounce in a shadow.
   bool bent = false, shadow = false;
-  double launch_rad = 0, arrival_rad = 0;     ///< rays: elevations of the first arrival, upwards positive
-  std::vector<sim::PathGain> ray_gains;       ///< rays: relative to the first arrival
-  sim::Decibels level;                  ///< of the direct path at the receiver
+  double launch_rad = 0, arrival_rad = 0;       ///< rays: elevations of the first arrival, upwards positive
+  std::vector<sim::PathGain> ray_gains;         ///< rays: relative to the first arrival
+  sim::Decibels level;                          ///< of the direct path at the receiver
   sim::Decibels noise_per_Hz, noise_reduction;  ///< noise_reduction: by the receiver's directivity
   sim::Decibels noise;                          ///< in the band, after noise_reduction
   sim::Decibels snr;                            ///< of the direct path

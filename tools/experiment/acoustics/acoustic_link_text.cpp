@@ -3,8 +3,8 @@
 
 #include <cmath>
 #include <filesystem>
-#include <numbers>
 #include <fstream>
+#include <numbers>
 #include <stdexcept>
 
 #include "tools/experiment/acoustics/acoustic_link.hpp"

@@ -43,7 +43,8 @@ RayField ray_field(double source_m, double range_m, double frequency_Hz, const s
       multipath != nullptr && multipath->water_depth_m ? *multipath->water_depth_m : water_depth_m.value_or(HUGE_VAL);
   // Without a bottom: the depths about which something is known.
   const std::vector<double> rows_m = medium.profile_depths_m();
-  field.deepest_m = std::isfinite(water_m) ? water_m : std::max({100.0, 2 * source_m, rows_m.empty() ? 0 : 1.5 * rows_m.back()});
+  field.deepest_m =
+      std::isfinite(water_m) ? water_m : std::max({100.0, 2 * source_m, rows_m.empty() ? 0 : 1.5 * rows_m.back()});
   sim::RayTables tables([&](double z_m) { return medium.sound_speed_at_depth_mps(z_m); }, rows_m);
   const sim::Eigenrays& rays = tables.of(water_m);
   for (const sim::SoundProfile::Knot& knot : rays.profile().knots())
@@ -62,7 +63,8 @@ RayField ray_field(double source_m, double range_m, double frequency_Hz, const s
   std::vector<sim::SoundRay> found;
   for (int column = 0; column < field.columns; ++column)
     for (int row = 0; row < field.rows; ++row) {
-      RayField::Point point{(column + 0.5) * range_m / field.columns, (row + 0.5) * field.deepest_m / field.rows, 0, true};
+      RayField::Point point{(column + 0.5) * range_m / field.columns, (row + 0.5) * field.deepest_m / field.rows, 0,
+                            true};
       rays.find({source_m, point.depth_m, point.range_m, water_m, multipath != nullptr ? multipath->max_bounces : 0},
                 found);
       const sim::Vector3d point_W(point.range_m, 0, still_m - point.depth_m);
@@ -92,11 +94,11 @@ void draw_rays(const RayField& field, const std::string& title, const std::strin
       fan << fmt::format("{:.3f} {:.3f}\n", static_cast<double>(i) * field.fan_step_m, ray.depth_m[i]);
     fan << "\n\n";
   }
-  double least_dB = HUGE_VAL, most_dB = 0;
+  double min_dB = HUGE_VAL, max_dB = 0;
   for (const RayField::Point& point : field.points)
     if (std::isfinite(point.loss_dB)) {
-      least_dB = std::min(least_dB, point.loss_dB);
-      most_dB = std::max(most_dB, point.loss_dB);
+      min_dB = std::min(min_dB, point.loss_dB);
+      max_dB = std::max(max_dB, point.loss_dB);
     }
   for (const RayField::Point& point : field.points) {
     loss << fmt::format("{:.3f} {:.3f} {:.2f}\n", point.range_m, point.depth_m,
@@ -113,13 +115,14 @@ void draw_rays(const RayField& field, const std::string& title, const std::strin
       "set grid\nset xtics rotate by -45\nset xlabel 'speed of sound (m/s)' offset 0,-0.5\nset ylabel 'depth (m)'\n"
       "plot 'profile.dat' using 1:2 with lines lw 2 notitle\n"
       "set lmargin at screen 0.25\nset rmargin at screen 0.89\nunset grid\nset ylabel ''\nset xtics norotate\n"
-      "set xlabel 'range (m)' offset 0,0\nset xrange [0:{}]\nset cblabel 'loss (dB); striped: no ray without a bounce'\n"
+      "set xlabel 'range (m)' offset 0,0\nset xrange [0:{}]\nset cblabel 'loss (dB); striped: no ray without a "
+      "bounce'\n"
       "set palette rgb 33,13,10 negative\nset cbrange [{:.0f}:{:.0f}] reverse\n"
       "plot 'loss.dat' using 1:2:3 with image notitle, 'shadow.dat' using 1:2:3:4:5:6 with rgbalpha notitle, "
       "'fan.dat' using 1:2 with lines lc rgb '#60000000' lw 0.7 notitle, "
       "'-' using 1:2 with points pt 7 ps 1.4 lc rgb 'black' notitle\n0 {}\ne\nunset multiplot\n",
       gnuplot_text(std::filesystem::absolute(png).string()), gnuplot_text(title), field.deepest_m, field.range_m,
-      std::isfinite(least_dB) ? std::max(least_dB, most_dB - 60) : 0, std::max(most_dB, 1.0), field.source_m);
+      std::isfinite(min_dB) ? std::max(min_dB, max_dB - 60) : 0, std::max(max_dB, 1.0), field.source_m);
   std::ofstream(scratch.path / "plot.gp") << script;
   if (!run_gnuplot(scratch.path.string(), "plot.gp", std::chrono::seconds(60), [] { return false; }))
     throw std::runtime_error("gnuplot could not draw " + png);

@@ -113,8 +113,8 @@ std::string shadows_html(const RunRecord& run) {
     rows.emplace_back(fmt::format("{:.3f} s", loss.sent_s),
                       fmt::format("{} to {}, {:.0f} m", loss.from, loss.to, loss.range_m));
   const auto count = static_cast<std::size_t>(std::max<std::int64_t>(run.shadowed_count, std::ssize(rows)));
-  const std::string title = count > rows.size() ? fmt::format("The first {} of {}", rows.size(), count)
-                                                : fmt::format("All {}", count);
+  const std::string title =
+      count > rows.size() ? fmt::format("The first {} of {}", rows.size(), count) : fmt::format("All {}", count);
   return heading("Packets in shadows") +
          paragraph("No ray without a bounce reached these addressees, and echoes were too weak.") +
          html_details(title, facts_table(rows));
@@ -207,8 +207,8 @@ std::string run_report(const RunRecord& run, const std::string& page_in_3d) {
   return html_page(title_of(run), "<h1>" + html_text(title_of(run)) + "</h1>\n" +
                                       (run.description.empty() ? "" : paragraph(html_text(run.description))) +
                                       outcome_html(run, metrics) + link + run_plots_html(run) + warnings_html(run) +
-                                      figures_html(metrics, run.rules) + shadows_html(run) + processes_html(run) + facts_html(run) +
-                                      made_by_html());
+                                      figures_html(metrics, run.rules) + shadows_html(run) + processes_html(run) +
+                                      facts_html(run) + made_by_html());
 }
 
 std::string report_page(const std::vector<std::string>& directories, const std::string& page_in_3d) {

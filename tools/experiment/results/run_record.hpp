@@ -51,10 +51,10 @@ struct RunRecord {
   std::map<std::string, std::optional<double>> metrics;  ///< unset: there was no data for the figure
   std::vector<Rule> rules;
   std::vector<Process> processes;
-  std::vector<Contact> contacts;  ///< one per pair, in order of time; empty in older runs
+  std::vector<Contact> contacts;   ///< one per pair, in order of time; empty in older runs
   std::vector<Shadowed> shadowed;  ///< the first messages that shadows took
   std::int64_t shadowed_count = 0;
-  std::optional<Rule> event;      ///< condition of the event that ended the run
+  std::optional<Rule> event;  ///< condition of the event that ended the run
   Judgement judgement = Judgement::not_judged;
   std::string not_judged;  ///< reason; empty when it was judged
   std::string ended, error;

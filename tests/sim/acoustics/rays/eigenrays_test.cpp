@@ -108,9 +108,21 @@ const std::map<std::string, Eigenrays>& profiles() {
         {"isothermal", {{0, 10, 35}, {250, 10, 35}}},
         {"thermocline", {{0, 18, 35}, {20, 18, 35}, {40, 8, 35}, {200, 8, 35}}},
         {"duct", {{0, 14, 35}, {60, 14, 35}, {90, 9, 35}, {200, 7, 35}}},
-        {"measured", {{0, 19.3, 34.1},  {2, 19.25, 34.1}, {4, 19.1, 34.15}, {7, 18.2, 34.3}, {9, 17.9, 34.3},
-                      {12, 16.0, 34.5}, {14, 13.1, 34.7}, {17, 12.4, 34.75}, {21, 11.2, 34.8}, {28, 10.4, 34.85},
-                      {40, 9.6, 34.9},  {55, 9.1, 34.95}, {80, 8.9, 35.0},  {120, 8.6, 35.0}}}};
+        {"measured",
+         {{0, 19.3, 34.1},
+          {2, 19.25, 34.1},
+          {4, 19.1, 34.15},
+          {7, 18.2, 34.3},
+          {9, 17.9, 34.3},
+          {12, 16.0, 34.5},
+          {14, 13.1, 34.7},
+          {17, 12.4, 34.75},
+          {21, 11.2, 34.8},
+          {28, 10.4, 34.85},
+          {40, 9.6, 34.9},
+          {55, 9.1, 34.95},
+          {80, 8.9, 35.0},
+          {120, 8.6, 35.0}}}};
     std::map<std::string, Eigenrays> profiles;
     for (const auto& [name, layers] : rows) {
       sim::WaterConfig config;
@@ -169,8 +181,8 @@ TEST(Eigenrays, AgreeWithTwoThousandRaysByNumericalIntegration) {
     EXPECT_NEAR(same->travel_time_s, time_s, 1e-6) << line;
     EXPECT_NEAR(same->launch_rad / degree, launch_deg, 1e-3) << line;
     EXPECT_NEAR(same->arrival_rad / degree, arrival_deg, 1e-3) << line;
-    const double expected_dB = -10 * std::log10(std::cos(launch_deg * degree) /
-                                                (range_m * range_m * spread * std::cos(arrival_deg * degree)));
+    const double expected_dB =
+        -10 * std::log10(std::cos(launch_deg * degree) / (range_m * range_m * spread * std::cos(arrival_deg * degree)));
     losses_dB.push_back(std::abs(loss_dB(*same) - expected_dB));
   }
   EXPECT_EQ(count, 2000);
@@ -196,9 +208,15 @@ TEST(Eigenrays, FindTheKnownArrivalsOfTheMunkProfile) {
     int surface, bottom;
   };
   const auto found = find(rays, {1000, 800, 100000, 5000, 7});
-  for (const Known& known : {Known{66.60372, 9.577, 0, 0}, {66.64444, 5.617, 0, 0}, {66.74455, 15.026, 1, 2},
-                             {66.96183, 15.405, 2, 2}, {67.03181, -15.488, 2, 2}, {67.26161, -15.980, 3, 2},
-                             {68.30753, 18.481, 2, 3}, {68.60474, 19.156, 3, 3}, {68.69170, -19.305, 3, 3},
+  for (const Known& known : {Known{66.60372, 9.577, 0, 0},
+                             {66.64444, 5.617, 0, 0},
+                             {66.74455, 15.026, 1, 2},
+                             {66.96183, 15.405, 2, 2},
+                             {67.03181, -15.488, 2, 2},
+                             {67.26161, -15.980, 3, 2},
+                             {68.30753, 18.481, 2, 3},
+                             {68.60474, 19.156, 3, 3},
+                             {68.69170, -19.305, 3, 3},
                              {69.00593, -19.999, 4, 3}}) {
     const bool there = std::any_of(found.begin(), found.end(), [&](const SoundRay& ray) {
       return std::abs(ray.travel_time_s - known.time_s) < 20e-6 &&
