@@ -77,8 +77,9 @@ void Interrogator::receive(const sim::Reception& received) {
   const double distance_m = (answer->out_m + p_ST_W.norm()) / 2;
   std::erase(waiting_for_, received.source);
   if (distance_m > params_.range_max_m) return;
+  const sim::Matrix3d R_SW = R_WS(received.started).transpose();
   answers_.push_back({received.source, received.started, sim::to_seconds(received.started - pinged_) - turnaround_s,
-                      distance_m, R_WS(received.started).transpose() * p_ST_W});
+                      distance_m, R_SW * p_ST_W, R_SW * received.apparent_W});
 }
 
 sim::Matrix3d Interrogator::R_WS(sim::Time at) const {

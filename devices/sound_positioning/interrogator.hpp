@@ -34,7 +34,11 @@ class Interrogator final : public sim::AcousticListener {
     double distance_m = 0;    ///< truth: mean of the path lengths of ping and answer
     sim::Vector3d p_ST_S =
         sim::Vector3d::Zero();  ///< position of the transponder at its answer, in the sensor frame S at `started`
-    void visit_state(sim::StateArchive& archive) { archive(transponder, started, two_way_s, distance_m, p_ST_S); }
+    sim::Vector3d apparent_S = sim::Vector3d::Zero();  ///< the same, where it appears by the direction of the sound
+    void visit_state(sim::StateArchive& archive) {
+      archive(transponder, started, two_way_s, distance_m, p_ST_S);
+      archive.unhashed(apparent_S);  // of the same places
+    }
   };
 
   Interrogator(const InterrogatorParams& params, const sim::DeviceContext& context);

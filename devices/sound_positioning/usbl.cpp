@@ -6,6 +6,8 @@
 
 #include "shoal/message_codec.hpp"
 #include "shoal/usbl_t.hpp"
+#include "sim/acoustics/rays/eigenrays.hpp"
+#include "sim/medium/water_column.hpp"
 #include "sim/world/world.hpp"
 
 namespace devices {
@@ -15,6 +17,8 @@ void Usbl::Params::read(sim::ParamReader& in) {
   in.read("ping_period_s", ping_period_s, sim::between(0.01, 1e4), "between two pings, at least");
   in.read("assumed_sound_speed_mps", assumed_sound_speed_mps, sim::between(100, 10000),
           "speed of sound that converts times to ranges; unset: the true one at the sensor");
+  in.read("assumed_water", assumed_water,
+          "water of which the user knows: rays through it give positions; unset: straight lines");
   in.read("answer_dropout", answer_dropout, sim::between(0, 1),
           "probability that an answer is missed, drawn for each answer");
   in.read("range_noise", range_noise, "error of each range, m");
@@ -27,11 +31,39 @@ Usbl::Usbl(const Params& params, const sim::DeviceContext& context)
       interrogator_(params.interrogator, context),
       range_noise_(context, params),
       azimuth_noise_(context, params),
-      elevation_noise_(context, params) {}
+      elevation_noise_(context, params) {
+  assume();
+}
 
 void Usbl::change(const Params& params) {
   params_ = params;
   interrogator_.change(params.interrogator);
+  assume();
+}
+
+void Usbl::assume() {
+  assumed_.reset();
+  if (!params_.assumed_water) return;
+  constexpr double deepest_m = 12000, gravity_mps2 = 9.80665;
+  const sim::WaterColumn column(*params_.assumed_water, gravity_mps2);
+  std::vector<double> rows_m;
+  for (const sim::WaterLayerConfig& row : params_.assumed_water->profile) rows_m.push_back(row.depth_m);
+  assumed_ =
+      sim::SoundProfile::fitted([&](double depth_m) { return column.sound_speed_mps(depth_m); }, rows_m, deepest_m);
+}
+
+/// Replaces range and direction by those of the place which a ray back through the assumed water reaches in the time.
+void Usbl::follow_ray(Fix& fix) const {
+  const sim::Vector3d towards_W = R_WS_ * fix.position_S().normalized();
+  const double level = towards_W.head<2>().norm();
+  const sim::RayPlace place =
+      sim::ray_place(*assumed_, depth_m_, std::atan2(towards_W.z(), level), fix.range_m / assumed_mps_);
+  sim::Vector3d p_W(0, 0, depth_m_ - place.depth_m);
+  if (level > 0) p_W.head<2>() = towards_W.head<2>() / level * place.range_m;
+  const sim::Vector3d p_S = R_WS_.transpose() * p_W;
+  fix.range_m = p_S.norm();
+  fix.azimuth_rad = std::atan2(p_S.y(), p_S.x());
+  fix.elevation_rad = std::atan2(p_S.z(), std::hypot(p_S.x(), p_S.y()));
 }
 
 sim::Vector3d Usbl::Fix::position_S() const {
@@ -44,11 +76,16 @@ void Usbl::measure(const sim::SenseContext& context) {
   const sim::Medium& medium = context.world.medium();
   const sim::Vector3d& p_WS = context.X_WS.translation();
   for (const Interrogator::Answer& answer : interrogator_.take_answers()) {
-    const sim::Vector3d& p_ST_S = answer.p_ST_S;
-    fixes_.push_back({answer.transponder, answer.two_way_s, answer.distance_m, std::atan2(p_ST_S.y(), p_ST_S.x()),
-                      std::atan2(p_ST_S.z(), std::hypot(p_ST_S.x(), p_ST_S.y()))});
+    const auto azimuth_rad = [](const sim::Vector3d& p_S) { return std::atan2(p_S.y(), p_S.x()); };
+    const auto elevation_rad = [](const sim::Vector3d& p_S) {
+      return std::atan2(p_S.z(), std::hypot(p_S.x(), p_S.y()));
+    };
+    fixes_.push_back({answer.transponder, answer.two_way_s, answer.distance_m, azimuth_rad(answer.p_ST_S),
+                      elevation_rad(answer.p_ST_S), azimuth_rad(answer.apparent_S), elevation_rad(answer.apparent_S)});
   }
   assumed_mps_ = params_.assumed_sound_speed_mps.value_or(medium.sound_speed_mps(p_WS));
+  R_WS_ = context.X_WS.linear();
+  depth_m_ = medium.depth_m(p_WS);
   if (context.now < next_ping_ || !interrogator_.done(context.now) || !medium.in_water(p_WS)) return;
   next_ping_ = context.now + sim::from_seconds(params_.ping_period_s);
   interrogator_.ping(context.now);
@@ -58,10 +95,13 @@ void Usbl::disturb(double dt_s, sim::Random& random) {
   since_fix_s_ += dt_s;
   for (Fix& fix : fixes_) {
     fix.range_m = fix.travel_time_s / 2 * assumed_mps_;
+    fix.azimuth_rad = fix.sound_azimuth_rad;
+    fix.elevation_rad = fix.sound_elevation_rad;
     range_noise_.apply(fix.range_m, since_fix_s_, random);
     azimuth_noise_.apply(fix.azimuth_rad, since_fix_s_, random);
     elevation_noise_.apply(fix.elevation_rad, since_fix_s_, random);
     fix.range_m = std::max(fix.range_m, 0.0);
+    if (assumed_ && fix.range_m > 0) follow_ray(fix);
     fix.azimuth_rad = sim::wrap_angle(fix.azimuth_rad);
     since_fix_s_ = 0;
   }

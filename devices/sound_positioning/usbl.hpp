@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "devices/sound_positioning/interrogator.hpp"
+#include "sim/acoustics/rays/sound_profile.hpp"
+#include "sim/medium/medium_config.hpp"
 #include "sim/random/noise.hpp"
 
 namespace devices {
@@ -23,6 +25,7 @@ class Usbl final : public sim::Sensor {
     InterrogatorParams interrogator{.network = "usbl"};
     double ping_period_s = 1;
     std::optional<double> assumed_sound_speed_mps;
+    std::optional<sim::WaterConfig> assumed_water;  ///< rays through it give position from time and direction
     double answer_dropout = 0;
     sim::NoiseParams range_noise;      ///< m
     sim::NoiseParams azimuth_noise;    ///< rad
@@ -33,9 +36,11 @@ class Usbl final : public sim::Sensor {
   struct Fix {
     std::string target;
     double travel_time_s = 0, range_m = 0, azimuth_rad = 0, elevation_rad = 0;
+    double sound_azimuth_rad = 0, sound_elevation_rad = 0;  ///< from where the sound came
     sim::Vector3d position_S() const;
     void visit_state(sim::StateArchive& archive) {
       archive(target, travel_time_s, range_m, azimuth_rad, elevation_rad);
+      archive.unhashed(sound_azimuth_rad, sound_elevation_rad);  // of the same places
     }
   };
 
@@ -48,15 +53,21 @@ class Usbl final : public sim::Sensor {
   const std::vector<Fix>& fixes() const { return fixes_; }
 
  private:
+  void assume();
+  void follow_ray(Fix& fix) const;
+
   Params params_;
   Interrogator interrogator_;
+  std::optional<sim::SoundProfile> assumed_;  ///< of `assumed_water`
   sim::NoiseOf<&Params::range_noise> range_noise_;
   sim::NoiseOf<&Params::azimuth_noise> azimuth_noise_;
   sim::NoiseOf<&Params::elevation_noise> elevation_noise_;
   sim::Time next_ping_{0};
   std::vector<Fix> fixes_;
-  double assumed_mps_ = 0;  ///< sound speed used for the ranges of this sample
-  double since_fix_s_ = 0;  ///< interval for the slowly varying errors
+  double assumed_mps_ = 0;                          ///< sound speed used for the ranges of this sample
+  sim::Matrix3d R_WS_ = sim::Matrix3d::Identity();  ///< attitude at this sample
+  double depth_m_ = 0;                              ///< of the sensor at this sample
+  double since_fix_s_ = 0;                          ///< interval for the slowly varying errors
 };
 
 /// Publishes one shoal.usbl_t for each answer since the last sample.

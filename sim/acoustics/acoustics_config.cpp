@@ -12,7 +12,19 @@ void LinkConfig::read(ParamReader& in) {
   in.read("extra_loss_dB", extra_loss_dB, between(-200, 200), "taken from the level");
 }
 
+void EchoLockConfig::read(ParamReader& in) {
+  in.read("probability", probability, between(0, 1),
+          "that a receiver takes an echo as loud as the first arrival for it, at its detection threshold");
+  in.read("margin_dB", margin_dB, above_to(0, 100),
+          "signal over the threshold at which the probability has fallen to 1/e");
+}
+
 void AcousticsConfig::read(ParamReader& in) {
+  in.read_choice("propagation", propagation, "auto", {{"straight", SoundPaths::straight}, {"rays", SoundPaths::rays}},
+                 "straight lines, or rays that bend with the speed of sound; auto: rays where the water has a profile");
+  in.read("shadow_loss_dB", shadow_loss_dB, between(0, 200),
+          "rays: loss of the sound that leaks into shadows, beyond that of the straight line; unset: none leaks");
+  in.read("echo_lock", echo_lock, "receivers sometimes take an echo for the first arrival; unset: never");
   in.read("spreading", spreading, "spreading loss of sound with range");
   in.read("absorption", absorption, "absorption of sound with range");
   in.read("noise", noise, "ambient noise of the sea");

@@ -22,8 +22,24 @@ struct LinkConfig {
   void read(ParamReader& in);
 };
 
+/// How sound travels from a source to a receiver.
+enum class SoundPaths {
+  straight,  ///< along the straight line, at the mean slowness of the water along it
+  rays,      ///< along rays that bend with the speed of sound over the depth
+};
+
+/// `echo_lock:` of a world's acoustics: receivers that take an echo for the first arrival.
+struct EchoLockConfig {
+  double probability = 0.1;  ///< for an echo as loud as the first arrival, at the detection threshold
+  double margin_dB = 10;     ///< signal-to-noise ratio over the threshold at which it has fallen to 1/e
+  void read(ParamReader& in);
+};
+
 /// `acoustics:` of a world: propagation of sound between transducers.
 struct AcousticsConfig {
+  std::optional<SoundPaths> propagation;  ///< unset: rays where the water has a profile
+  std::optional<double> shadow_loss_dB;   ///< rays: loss of the sound that leaks into shadows; unset: nothing does
+  std::optional<EchoLockConfig> echo_lock;
   SpreadingConfig spreading;
   AbsorptionConfig absorption;
   NoiseConfig noise;

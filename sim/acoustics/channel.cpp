@@ -16,6 +16,8 @@ namespace {
 /// Fraction of the travel time before the estimated arrival at which the arrival is computed exactly; it bounds the
 /// closing speed as a fraction of the speed of sound.
 constexpr double early = 0.02;
+/// The same for rays, which may be faster than the straight line through slow water.
+constexpr double early_ray = 0.06;
 /// Validity of the list of neighbours, and the distance that no transducer moves farther in this time or while a sound
 /// travels.
 constexpr double neighbours_hold_s = 1;
@@ -27,8 +29,8 @@ constexpr Time watch_period{100'000};
 
 const char* signal_loss_word(SignalLoss loss) {
   static constexpr const char* words[signal_losses] = {
-      "none",    "noise",        "interference", "half_duplex", "busy",  "captured",  "doppler",
-      "blocked", "out_of_water", "receiver_off", "link",        "range", "sender_off"};
+      "none",    "noise",        "interference", "half_duplex", "busy",  "captured",   "doppler",
+      "blocked", "out_of_water", "receiver_off", "link",        "range", "sender_off", "shadow"};
   return words[static_cast<std::size_t>(loss)];
 }
 
@@ -36,6 +38,14 @@ AcousticChannel::AcousticChannel(const AcousticsConfig& config, const AcousticSu
     : config_(config), around_(surroundings), propagation_(config_, surroundings.medium, surroundings.physics) {}
 
 AcousticChannel::~AcousticChannel() = default;
+
+std::vector<std::string> AcousticChannel::effects() const {
+  std::vector<std::string> effects;
+  if (propagation_.bends()) effects.emplace_back("propagation");
+  if (propagation_.bends() && config_.shadow_loss_dB) effects.emplace_back("shadow_loss_dB");
+  if (config_.echo_lock && config_.multipath) effects.emplace_back("echo_lock");
+  return effects;
+}
 
 void AcousticChannel::join(Transducer& transducer) {
   const auto free = std::find(transducers_.begin(), transducers_.end(), nullptr);
@@ -147,6 +157,7 @@ Decibels AcousticChannel::compute_min_level(double frequency_Hz) const {
   // Margin for fading: exceeded by at most one signal in fifty.
   if (config_.fading.type == FadingConfig::Type::rayleigh) gain_dB += 6;
   if (config_.fading.type == FadingConfig::Type::log_normal) gain_dB += 2 * config_.fading.std_dB;
+  if (propagation_.bends()) gain_dB += Propagation::most_focus_dB;
   return Decibels{below_dB + gain_dB};
 }
 
@@ -355,7 +366,8 @@ void AcousticChannel::send_to(int number, Transducer& to) {
   if (flight.meant) ++to.meant_near_;
   ++sending.users;
   const double travel_s = travel_time_s(around_.medium, sending.p_W, to.p_W(sending.sent));
-  schedule(sending.sent + from_seconds(travel_s * (1 - early)), near_event, flight_number);
+  const double share = propagation_.bends() ? early_ray : early;
+  schedule(sending.sent + from_seconds(travel_s * (1 - share)), near_event, flight_number);
 }
 
 void AcousticChannel::end_emission(int number, Time at) {
@@ -392,12 +404,28 @@ void AcousticChannel::schedule_silence(int number, const Sending& sending, Time 
   if (at < flight.ended) schedule(at, silence_event, number);
 }
 
+/// Corrects the arrival along the straight line to that of the first ray: Newton's method on the travel time, whose
+/// derivative by the position of the receiver is the direction of the sound over its speed.
+void AcousticChannel::follow_ray(Arrival& arrival, const Sending& sending, const Vector3d& velocity_W) const {
+  for (int round = 0; round < 4; ++round) {
+    const Propagation::First first = propagation_.first_arrival(sending.p_W, arrival.p_W, sending.signal.centre_Hz);
+    const double c_mps = around_.medium.sound_speed_mps(arrival.p_W);
+    const double change_s =
+        (first.travel_time_s - arrival.travel_time_s) / (1 - first.arrives_W.dot(velocity_W) / c_mps);
+    arrival.travel_time_s += change_s;
+    arrival.p_W += velocity_W * change_s;
+    // The remaining error is of second order: nanoseconds at most.
+    if (std::abs(change_s) < 2e-3) return;
+  }
+}
+
 void AcousticChannel::approach(int number, Time due) {
   Flight& flight = flights_[static_cast<std::size_t>(number)];
   if (const Transducer* const to = receiver_of(flight)) {
     const Sending& sending = *sendings_[static_cast<std::size_t>(flight.sending)];
     // Extrapolate the receiver at constant velocity.
-    const auto arrival = meeting(around_.medium, sending.p_W, sending.sent, to->p_W(step_end_), step_end_, to->v_W());
+    auto arrival = meeting(around_.medium, sending.p_W, sending.sent, to->p_W(step_end_), step_end_, to->v_W());
+    if (arrival && propagation_.bends()) follow_ray(*arrival, sending, to->v_W());
     if (arrival) {
       flight.travel_time_s = arrival->travel_time_s;
       flight.started = std::max(due, sending.sent + from_seconds(arrival->travel_time_s));

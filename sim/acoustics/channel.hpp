@@ -14,6 +14,7 @@
 #include "sim/acoustics/propagation.hpp"
 #include "sim/acoustics/signal.hpp"
 #include "sim/acoustics/sound_observer.hpp"
+#include "sim/acoustics/sound_path.hpp"
 #include "sim/acoustics/transducer.hpp"
 #include "sim/event/event_queue.hpp"
 #include "sim/medium/medium.hpp"
@@ -31,9 +32,17 @@ struct AcousticSurroundings {
   std::uint64_t seed;
 };
 
-/// Underwater acoustic channel between transducers, driven by events in simulated time.  A signal travels along the
-/// straight line from the position of the sender at transmission to that of the receiver at arrival, at the mean
-/// slowness of the water along it.  docs/models/acoustics.md has the equations and their sources.
+/// Message that a shadow took from its addressee.
+struct ShadowLoss {
+  Time sent{0};
+  std::string source, receiver;  ///< vehicle and device
+  double range_m = 0;
+  void visit_state(StateArchive& archive) { archive(sent, source, receiver, range_m); }
+};
+
+/// Underwater acoustic channel between transducers, driven by events in simulated time.  A signal travels from the
+/// position of the sender at transmission to that of the receiver at arrival: along the straight line at the mean
+/// slowness of the water along it, or along a ray.  docs/models/acoustics.md has the equations and their sources.
 class AcousticChannel {
  public:
   AcousticChannel(const AcousticsConfig& config, const AcousticSurroundings& surroundings);
@@ -54,6 +63,12 @@ class AcousticChannel {
   std::int64_t messages_for(const Audience& own) const;
   /// Counts of all removed transducers.
   const Transducer::Counts& counts_of_removed() const { return removed_; }
+
+  /// Messages lost in shadows: the first `most_shadow_losses`.
+  const std::vector<ShadowLoss>& shadow_losses() const { return shadow_losses_; }
+  static constexpr std::size_t most_shadow_losses = 100;
+  /// Keys of `acoustics:` whose effects are on: bent sound, leaks into shadows, echo locks.
+  std::vector<std::string> effects() const;
 
   /// Transducers in device order; null where one was removed.
   const std::vector<Transducer*>& transducers() const { return transducers_; }
@@ -108,6 +123,10 @@ class AcousticChannel {
     std::uint32_t to_join = 0;  // differs from the transducer's when its number was reused
     bool listened = false, present = false, detected = false, delayed = false;
     bool meant = false;                       // addressed to the receiver
+    bool shadow = false;                      // no ray without a bounce reaches the receiver
+    bool bent = false;                        // arrives_W is that of a ray
+    Vector3d arrives_W = Vector3d::Zero();    // unit vector along the sound at the receiver
+    double lock_later_s = 0;                  // delay of the echo that the receiver takes for the first arrival
     void visit_state(StateArchive& archive);  // except `to`
   };
 
@@ -138,6 +157,7 @@ class AcousticChannel {
   void cut(int sending, SignalLoss why, Time at);
   /// Schedules the early end at a receiver, unless the signal ends before.
   void schedule_silence(int flight, const Sending& sending, Time now);
+  void follow_ray(Arrival& arrival, const Sending& sending, const Vector3d& velocity_W) const;
   void approach(int flight, Time due);
   void begin(int flight);
   void fall_silent(int flight, Time due);
@@ -156,9 +176,12 @@ class AcousticChannel {
   void report_arrival(const Flight& flight, const Sending& sending, const Transducer& to) const;
   /// Computes level, end and Doppler of a flight.  Returns the power of interfering echoes, re 1 uPa^2. `later_s`:
   /// delay of the first arrival when it is an echo.
-  PowerRatio compute_level(Flight& flight, const Sending& sending, double& later_s);
+  PowerRatio compute_level(Flight& flight, const Sending& sending, double& later_s,
+                           std::vector<Propagation::Gain::Echo>& echoes);
   /// Reason why a signal cannot be decoded, independent of other signals.
   SignalLoss obstacle(const Flight& flight) const;
+  /// Draws whether the receiver takes an echo for the first arrival.
+  void lock(Flight& flight, const Sending& sending, const std::vector<Propagation::Gain::Echo>& echoes) const;
   Decibels link_loss(const Transducer& to, const Sending& sending, double& loss_probability) const;
   /// Noise of the sea and of continuous sounds in the band of a signal, as received.
   PowerRatio noise_at(const Transducer& to, const Vector3d& p_W, const Signal& signal) const;
@@ -201,6 +224,7 @@ class AcousticChannel {
   SoundObserver* observer_ = nullptr;
   bool watching_ = false;  // a watch_event is scheduled
   Transducer::Counts removed_;
+  std::vector<ShadowLoss> shadow_losses_;
   std::vector<int> near_;
 };
 

@@ -63,23 +63,38 @@ Random AcousticChannel::stream(const Transducer& to, const Sending& sending, boo
   return random;
 }
 
-PowerRatio AcousticChannel::compute_level(Flight& flight, const Sending& sending, double& later_s) {
+PowerRatio AcousticChannel::compute_level(Flight& flight, const Sending& sending, double& later_s,
+                                          std::vector<Propagation::Gain::Echo>& echoes) {
   const Transducer& to = *receiver_of(flight);
   const Signal& signal = sending.signal;
-  // Range, direction, Doppler and end of the signal.
+  // Path gain.
+  Random random = propagation_.draws() ? stream(to, sending, false) : Random(0, {});
+  Propagation::Gain gain =
+      propagation_.gain(sending.p_W, sending.group, flight.p_started_W, to.group(), signal.centre_Hz, random);
+  // Directions of the sound at both ends: those of its ray, or of the straight line.
   const Vector3d displacement_W = flight.p_started_W - sending.p_W;
   const double range_m = displacement_W.norm();
   const Vector3d direction_W = range_m > 0 ? Vector3d(displacement_W / range_m) : Vector3d(Vector3d::UnitX());
+  const Vector3d leaves_W = gain.first ? gain.first->leaves_W : direction_W;
+  const Vector3d arrives_W = gain.first ? gain.first->arrives_W : direction_W;
+  flight.bent = gain.first.has_value();
+  flight.shadow = gain.first && gain.first->shadow;
+  flight.arrives_W = arrives_W;
+  // Doppler and end of the signal.
   const Vector3d v_to_W = to.v_W();
-  flight.closing_mps = closing_speed_mps(direction_W, sending.v_W, v_to_W);
   const double c = around_.medium.sound_speed_mps(flight.p_started_W);
-  const double squeezed = doppler_factor(direction_W, sending.v_W, v_to_W, c);
+  double squeezed;
+  if (flight.bent) {
+    flight.closing_mps = leaves_W.dot(sending.v_W) - arrives_W.dot(v_to_W);
+    const double c_from = around_.medium.sound_speed_mps(sending.p_W);
+    squeezed = (1 - arrives_W.dot(v_to_W) / c) / (1 - leaves_W.dot(sending.v_W) / c_from);
+  } else {
+    flight.closing_mps = closing_speed_mps(direction_W, sending.v_W, v_to_W);
+    squeezed = doppler_factor(direction_W, sending.v_W, v_to_W, c);
+  }
   flight.ended = flight.started + from_seconds(to_seconds(signal.duration) / squeezed);
 
-  // Path gain and losses of the link.
-  Random random = propagation_.draws() ? stream(to, sending, false) : Random(0, {});
-  const Propagation::Gain gain =
-      propagation_.gain(sending.p_W, sending.group, flight.p_started_W, to.group(), signal.centre_Hz, random);
+  // Losses of the link.
   double loss_probability = 0;
   Decibels level = signal.source_level - link_loss(to, sending, loss_probability);
   // Directivity at both ends.
@@ -87,10 +102,11 @@ PowerRatio AcousticChannel::compute_level(Flight& flight, const Sending& sending
     if (beam.pattern != DirectivityConfig::Pattern::omni)
       level += directivity_gain(beam, direction_S(), signal.centre_Hz, c);
   };
-  add_beam(sending.directivity, [&] { return Vector3d(sending.R_WS.transpose() * direction_W); });
-  add_beam(to.config().directivity, [&] { return Vector3d(-(to.R_WS().transpose() * direction_W)); });
+  add_beam(sending.directivity, [&] { return Vector3d(sending.R_WS.transpose() * leaves_W); });
+  add_beam(to.config().directivity, [&] { return Vector3d(-(to.R_WS().transpose() * arrives_W)); });
   flight.level = level + gain.signal;
   later_s = gain.later_s;
+  echoes = std::move(gain.echoes);
   if (gain.blocked && gain.signal.dB() < lowest_dB) flight.loss = SignalLoss::blocked;
   return gain.disturbing.linear() > 0 ? to_power(level) * gain.disturbing : PowerRatio{};
 }
@@ -102,10 +118,30 @@ SignalLoss AcousticChannel::obstacle(const Flight& flight) const {
   if (flight.loss != SignalLoss::none) return flight.loss;  // blocked
   // SignalReceiver::take() tests this too; but an undetectable signal counts as lost in noise whatever the causes
   // below.
-  if (flight.snr < Decibels{to.config().detection_dB}) return SignalLoss::noise;
+  if (flight.snr < Decibels{to.config().detection_dB}) return flight.shadow ? SignalLoss::shadow : SignalLoss::noise;
   if (flight.started < to.sending_until_) return SignalLoss::half_duplex;
   if (std::abs(flight.closing_mps) > to.config().doppler_limit_mps) return SignalLoss::doppler;
   return SignalLoss::none;
+}
+
+void AcousticChannel::lock(Flight& flight, const Sending& sending,
+                           const std::vector<Propagation::Gain::Echo>& echoes) const {
+  const Transducer& to = *receiver_of(flight);
+  const EchoLockConfig& config = *config_.echo_lock;
+  const double over_dB = std::max(0.0, flight.snr.dB() - to.config().detection_dB);
+  const double at_most = config.probability * std::exp(-over_dB / config.margin_dB);
+  Random random(around_.seed, sending.source + ">" + to.full_name() + "#echo");
+  random.begin_step(sending.sequence);
+  for (const Propagation::Gain::Echo& echo : echoes) {
+    const double luck = random.uniform();
+    // Nearer than the resolution of the signal an echo is part of the first arrival.
+    if (echo.later_s * sending.signal.bandwidth_Hz < 1 || luck >= at_most * std::min(1.0, echo.relative.linear()))
+      continue;
+    flight.lock_later_s = echo.later_s;
+    flight.arrives_W = echo.arrives_W;
+    flight.bent = true;
+    return;
+  }
 }
 
 void AcousticChannel::begin(int number) {
@@ -134,7 +170,8 @@ void AcousticChannel::begin(int number) {
     return;
   }
   double later_s = 0;
-  const PowerRatio disturbing = compute_level(flight, sending, later_s);
+  std::vector<Propagation::Gain::Echo> echoes;
+  const PowerRatio disturbing = compute_level(flight, sending, later_s, echoes);
   if (later_s > 0 && !flight.delayed) {
     // The direct path is blocked: the first arrival is an echo.
     flight.delayed = true;
@@ -152,6 +189,7 @@ void AcousticChannel::begin(int number) {
                         sending.signal.kind == Signal::Kind::message},
                        flight.started);
   if (flight.listened) take(number, flight, sending, power, disturbing);
+  if (flight.detected && !echoes.empty()) lock(flight, sending, echoes);
   schedule(flight.ended, end_event, number);
   if (flight.present && sending.cut != SignalLoss::none) schedule_silence(number, sending, flight.started);
 }
@@ -215,6 +253,9 @@ void AcousticChannel::end(int number) {
       }
       // Count messages addressed to the receiver.
       if (flight.meant) ++to->counts_.lost[static_cast<std::size_t>(flight.loss)];
+      if (flight.meant && flight.loss == SignalLoss::shadow && shadow_losses_.size() < most_shadow_losses)
+        shadow_losses_.push_back(
+            {sending.sent, sending.source, to->full_name(), (flight.p_started_W - sending.p_W).norm()});
       if (flight.meant && flight.loss == SignalLoss::none) {
         ++to->counts_.understood;
         to->counts_.understood_bytes += static_cast<std::int64_t>(sending.signal.payload.size());
@@ -225,10 +266,13 @@ void AcousticChannel::end(int number) {
       const bool out_itself = flight.loss == SignalLoss::out_of_water && sending.cut != SignalLoss::out_of_water;
       const bool deaf = out_itself || flight.loss == SignalLoss::receiver_off || flight.loss == SignalLoss::blocked ||
                         !to->works() || !around_.medium.in_water(to->p_W(flight.ended));
+      const Vector3d back_W = sending.p_W - flight.p_started_W;
+      const Vector3d apparent_W = flight.bent ? Vector3d(-back_W.norm() * flight.arrives_W) : back_W;
+      const Time started = flight.started + from_seconds(flight.lock_later_s);
       if (!deaf)
-        to->listener_.receive({sending.signal, sending.source, sending.number, sending.sent, flight.started,
-                               flight.ended, flight.travel_time_s, sending.p_W, flight.p_started_W, flight.level,
-                               flight.snr, sinr, flight.closing_mps, flight.loss, flight.detected});
+        to->listener_.receive({sending.signal, sending.source, sending.number, sending.sent, started, flight.ended,
+                               flight.travel_time_s + flight.lock_later_s, sending.p_W, flight.p_started_W, apparent_W,
+                               flight.level, flight.snr, sinr, flight.closing_mps, flight.loss, flight.detected});
     }
   }
   // receive() may have transmitted, which invalidates references.

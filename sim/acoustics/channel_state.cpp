@@ -30,6 +30,8 @@ void AcousticChannel::Sending::visit_state(StateArchive& archive) {
 void AcousticChannel::Flight::visit_state(StateArchive& archive) {
   archive(sending, started, ended, travel_time_s, p_started_W, closing_mps, level, snr, loss, listened, present,
           detected, delayed, meant);
+  // Functions of the positions and the seed, without an effect before the end of the signal.
+  archive.unhashed(shadow, bent, arrives_W, lock_later_s);
   if (archive.restoring()) check_loss(loss, archive);
 }
 
@@ -70,7 +72,7 @@ void AcousticChannel::visit_state(StateArchive& archive) {
   // Free lists, neighbours and counts.
   archive.unhashed(free_sendings_, free_flights_, flights_made_, step_end_, neighbours_, neighbours_age_);
   if (!archive.hashing()) archive.not_only_finite(lowest_m_);  // infinity: without a receiver
-  archive.unhashed(messages_, watching_, removed_);
+  archive.unhashed(messages_, watching_, removed_, shadow_losses_);
   if (archive.restoring()) check_numbers(archive);
 }
 

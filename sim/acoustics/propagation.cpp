@@ -7,9 +7,20 @@
 #include <numbers>
 
 #include "sim/acoustics/echoes.hpp"
+#include "sim/acoustics/rays/ray_tables.hpp"
 #include "sim/medium/absorption.hpp"
 
 namespace sim {
+
+Propagation::Propagation(const AcousticsConfig& config, const Medium& medium, const PhysicsWorld& physics)
+    : config_(config), medium_(medium), physics_(physics) {
+  const SoundPaths by_default = medium.has_sound_profile() ? SoundPaths::rays : SoundPaths::straight;
+  if (medium.has_water() && config.propagation.value_or(by_default) == SoundPaths::rays)
+    rays_ = std::make_unique<RayTables>([&medium](double depth_m) { return medium.sound_speed_at_depth_mps(depth_m); },
+                                        medium.profile_depths_m());
+}
+
+Propagation::~Propagation() = default;
 
 Decibels Propagation::transmission_loss(const Vector3d& from_W, const Vector3d& to_W, double frequency_Hz) const {
   const double range_m = (to_W - from_W).norm();
@@ -106,7 +117,7 @@ double Propagation::free_part(const Vector3d& from_W, int from_group, const Vect
 }
 
 double Propagation::water_depth_m(const Vector3d& p_W) const {
-  if (config_.multipath->water_depth_m) return *config_.multipath->water_depth_m;
+  if (config_.multipath && config_.multipath->water_depth_m) return *config_.multipath->water_depth_m;
   // Only fixed bodies are bottom: skip moving ones.
   RayFilter filter;
   filter.kind = RayKind::sound;
@@ -124,22 +135,29 @@ double Propagation::water_depth_m(const Vector3d& p_W) const {
   return std::numeric_limits<double>::infinity();
 }
 
-Echoes Propagation::echoes_of(const Vector3d& from_W, const Vector3d& to_W, double frequency_Hz, Decibels direct,
-                              Random& random) const {
-  // Geometry of the link.
+LinkDepths Propagation::link_depths(const Vector3d& from_W, const Vector3d& to_W) const {
   LinkDepths depths;
   depths.source_m = medium_.depth_m(from_W);
   depths.receiver_m = medium_.depth_m(to_W);
   depths.horizontal_m = (to_W - from_W).head<2>().norm();
   depths.water_m = water_depth_m((from_W + to_W) / 2);
-  // Water along the path.
+  return depths;
+}
+
+MultipathMedium Propagation::water_between(const Vector3d& from_W, const Vector3d& to_W, double frequency_Hz) const {
   MultipathMedium water;
   water.frequency_Hz = frequency_Hz;
   water.sound_speed_mps = 1 / medium_.mean_slowness_spm(from_W.z(), to_W.z());
   water.absorption_dBpkm = absorption_dBpkm(config_.absorption, frequency_Hz, medium_, from_W, to_W);
   water.wind_mps = config_.noise.wind_mps.value_or(medium_.mean_wind_mps());
   water.spreading = config_.spreading;
-  return echoes(*config_.multipath, water, depths, &random, direct);
+  return water;
+}
+
+Echoes Propagation::echoes_of(const Vector3d& from_W, const Vector3d& to_W, double frequency_Hz, Decibels direct,
+                              Random& random) const {
+  return echoes(*config_.multipath, water_between(from_W, to_W, frequency_Hz), link_depths(from_W, to_W), &random,
+                direct);
 }
 
 Propagation::Gain Propagation::gain(const Vector3d& from_W, int from_group, const Vector3d& to_W, int to_group,
@@ -153,14 +171,19 @@ Propagation::Gain Propagation::gain(const Vector3d& from_W, int from_group, cons
     const double through = config_.occlusion_loss_dB ? std::pow(10.0, -*config_.occlusion_loss_dB / 20) : 0;
     direct = pressure_level(std::max(free, through));
   }
-  gain.signal = -transmission_loss(from_W, to_W, frequency_Hz);
-  if (config_.multipath) {
+  if (rays_) {
+    const bool blocked = gain.blocked;
+    gain = gain_of_rays(from_W, to_W, frequency_Hz, direct, random);
+    gain.blocked = blocked;
+  } else if (config_.multipath) {
+    gain.signal = -transmission_loss(from_W, to_W, frequency_Hz);
     const Echoes echoes = echoes_of(from_W, to_W, frequency_Hz, direct, random);
     gain.disturbing = to_power(gain.signal) * echoes.late;
     gain.signal += to_decibels(echoes.signal);
     gain.later_s = echoes.later_s;
+    if (config_.echo_lock && free == 1) gain.echoes = straight_echoes(from_W, to_W, frequency_Hz);
   } else {
-    gain.signal += direct;
+    gain.signal = direct - transmission_loss(from_W, to_W, frequency_Hz);
   }
   // Fading acts on signal and echoes alike.
   const Decibels faded = fade(config_.fading, random);

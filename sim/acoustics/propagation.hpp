@@ -2,6 +2,8 @@
 #pragma once
 
 #include <array>
+#include <memory>
+#include <optional>
 #include <vector>
 
 #include "sim/acoustics/acoustics_config.hpp"
@@ -13,19 +15,42 @@
 
 namespace sim {
 
+class RayTables;
+struct SoundRay;
+
 /// Propagation of sound through the water of a world, configured by `acoustics:`.
 class Propagation {
  public:
   /// The arguments must outlive the object.
-  Propagation(const AcousticsConfig& config, const Medium& medium, const PhysicsWorld& physics)
-      : config_(config), medium_(medium), physics_(physics) {}
+  Propagation(const AcousticsConfig& config, const Medium& medium, const PhysicsWorld& physics);
+  ~Propagation();
+
+  /// Whether sound travels along rays instead of straight lines.
+  bool bends() const { return rays_ != nullptr; }
+  /// The arrival to which a receiver locks: see first_path().  Without any, the straight line.
+  struct First {
+    double travel_time_s = 0;
+    Vector3d leaves_W = Vector3d::UnitX(), arrives_W = Vector3d::UnitX();  ///< unit vectors along the sound
+    bool shadow = false;  ///< no ray without a bounce reaches the receiver
+  };
+  First first_arrival(const Vector3d& from_W, const Vector3d& to_W, double frequency_Hz) const;
+  /// Upper limit of the gain by focusing of rays, which is infinite at a caustic.
+  static constexpr double most_focus_dB = 10;
 
   /// Path gain: received level relative to the source level at 1 m on the axis.
   struct Gain {
-    Decibels signal;        ///< minus infinity: no reception
-    PowerRatio disturbing;  ///< power of echoes that arrive after the window
-    bool blocked = false;   ///< the direct path is blocked
-    double later_s = 0;     ///< delay of an echo relative to the blocked direct path
+    Decibels signal;             ///< minus infinity: no reception
+    PowerRatio disturbing;       ///< power of echoes that arrive after the window
+    bool blocked = false;        ///< the direct path is blocked
+    double later_s = 0;          ///< delay of an echo relative to the blocked direct path
+    std::optional<First> first;  ///< rays: the first arrival
+    /// Echo with the loss of its path relative to that of the first arrival.
+    struct Echo {
+      double later_s = 0;
+      PowerRatio relative;
+      Vector3d arrives_W = Vector3d::UnitX();
+    };
+    std::vector<Echo> echoes;  ///< within the window; only for `echo_lock:`
   };
   /// Computes the gain of a path.  Random draws: phases of the echoes, then fading.  The groups are those of the
   /// vehicles at both ends, whose hulls do not block the path.
@@ -48,6 +73,17 @@ class Propagation {
                    double frequency_Hz) const;
 
  private:
+  /// Sound between two points: gain and elevation at both ends of each ray, and of what leaks into a shadow.
+  struct Arrivals;
+  Arrivals arrivals(const Vector3d& from_W, const Vector3d& to_W, double frequency_Hz) const;
+  std::vector<SoundRay> rays_between(const Vector3d& from_W, const Vector3d& to_W) const;
+  /// As gain() without fading.  `direct`: gain of rays without a bounce due to an obstacle.
+  Gain gain_of_rays(const Vector3d& from_W, const Vector3d& to_W, double frequency_Hz, Decibels direct,
+                    Random& random) const;
+  /// Echoes of straight paths, for `echo_lock:`.
+  std::vector<Gain::Echo> straight_echoes(const Vector3d& from_W, const Vector3d& to_W, double frequency_Hz) const;
+  LinkDepths link_depths(const Vector3d& from_W, const Vector3d& to_W) const;
+  MultipathMedium water_between(const Vector3d& from_W, const Vector3d& to_W, double frequency_Hz) const;
   Echoes echoes_of(const Vector3d& from_W, const Vector3d& to_W, double frequency_Hz, Decibels direct,
                    Random& random) const;
   /// Depths at which the minimum absorption is tabulated.
@@ -56,6 +92,8 @@ class Propagation {
   std::array<double, depths_m.size()> min_absorption_dBpkm(double frequency_Hz) const;
   /// Depth of the bottom below the surface; infinite when there is no bottom.
   double water_depth_m(const Vector3d& p_W) const;
+
+  std::unique_ptr<RayTables> rays_;  // null: straight lines
 
   /// Values of a band that are constant in a run, as mean wind and water are.
   struct Band {

@@ -81,8 +81,9 @@ enum class SignalLoss {
   link,          ///< random loss by `links:` of the world
   range,         ///< beyond the range of reception
   sender_off,    ///< the sender lost power or was removed during transmission
+  shadow,        ///< no ray without a bounce reaches the receiver, and what does is too weak
 };
-inline constexpr int signal_losses = 13;
+inline constexpr int signal_losses = 14;
 /// Name of a cause, such as `half_duplex`.
 const char* signal_loss_word(SignalLoss loss);
 
@@ -96,10 +97,12 @@ struct Reception {
   double travel_time_s = 0;                 ///< from `sent` to `started`, not rounded
   Vector3d p_sent_W = Vector3d::Zero();     ///< position of the sender at `sent`
   Vector3d p_started_W = Vector3d::Zero();  ///< position of the receiver at `started`
-  Decibels level{0};                        ///< re 1 uPa at the receiver, including its directivity
-  Decibels snr{0};                          ///< signal-to-noise ratio in the band of the signal
-  Decibels sinr{0};                         ///< minimum signal to interference-plus-noise ratio
-  double closing_mps = 0;                   ///< closing speed of sender and receiver (Doppler)
+  /// Displacement to where the sender appears to be: its distance, in the direction from which the sound comes.
+  Vector3d apparent_W = Vector3d::Zero();
+  Decibels level{0};       ///< re 1 uPa at the receiver, including its directivity
+  Decibels snr{0};         ///< signal-to-noise ratio in the band of the signal
+  Decibels sinr{0};        ///< minimum signal to interference-plus-noise ratio
+  double closing_mps = 0;  ///< closing speed of sender and receiver (Doppler)
   SignalLoss loss = SignalLoss::none;
   bool detected = false;  ///< the receiver locked on to it, decoded or not
 

@@ -115,6 +115,17 @@ double Medium::mean_slowness_spm(double z_m, double other_z_m) const {
   return has_water() ? column_->mean_slowness_spm(still_m_ - z_m, still_m_ - other_z_m) : 1 / sound_in_air_mps;
 }
 
+std::vector<double> Medium::profile_depths_m() const {
+  std::vector<double> depths_m;
+  if (has_water())
+    for (const WaterLayerConfig& row : config_.water->profile) depths_m.push_back(row.depth_m);
+  return depths_m;
+}
+
+bool Medium::has_sound_profile() const {
+  return has_water() && config_.water->profile.size() > 1 && !config_.water->sound_speed_mps;
+}
+
 void Medium::visit_state(StateArchive& archive) {
   const bool changes = has_water() || wind_;
   changes ? archive(now_) : archive.unhashed(now_);

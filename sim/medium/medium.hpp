@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "sim/base/math.hpp"
 #include "sim/base/time.hpp"
@@ -83,6 +84,12 @@ class Medium {
   /// Mean slowness, 1 / sound speed, between two heights, s/m: of the water, with the value at the still surface above
   /// it; of the air in a world without water.
   double mean_slowness_spm(double z_m, double other_z_m) const;
+  /// Speed of sound at a depth below the still surface, m/s; above it, that at the surface.  Only in water.
+  double sound_speed_at_depth_mps(double depth_m) const { return column_->sound_speed_mps(depth_m); }
+  /// Depths between which the properties of the water vary smoothly: those of the rows of a profile.
+  std::vector<double> profile_depths_m() const;
+  /// Whether a profile sets the speed of sound.
+  bool has_sound_profile() const;
 
   void visit_state(StateArchive& archive);
 

@@ -44,6 +44,27 @@ void keep_place(ParamReader& in, SourcePlace& place) {
 
 }  // namespace
 
+namespace {
+
+/// Reads `profile_file:` in place of the rows of `profile:`.
+void read_profile_file(ParamReader& in, std::vector<WaterLayerConfig>& profile) {
+  std::string file;
+  const bool may_read = in.read_path("profile_file", file, PathUse::read,
+                                     "instead of 'profile': CSV of a CTD with depth_m or pressure_dbar, temperature_C, "
+                                     "salinity_psu; relative to this file");
+  if (in.describing() || file.empty() || !may_read) return;
+  if (in.has("profile")) in.error("profile_file", "'profile_file' and 'profile' exclude each other");
+  const SourcePlace& place = in.node()->place;
+  const std::filesystem::path folder = std::filesystem::path(place.file != nullptr ? *place.file : "").parent_path();
+  try {
+    profile = read_ctd_file((folder / file).string());
+  } catch (const CtdError& error) {
+    in.error("profile_file", "'profile_file' '" + file + "' " + error.what());
+  }
+}
+
+}  // namespace
+
 void WaterLayerConfig::read(ParamReader& in) {
   in.require("depth_m");
   in.read("depth_m", depth_m, between(0, 12000), "depth below the surface; must increase from row to row");
@@ -62,6 +83,7 @@ void WaterConfig::read(ParamReader& in) {
   in.read("temperature_C", temperature_C, between(-5, 100), "temperature of the water");
   in.read("salinity_psu", salinity_psu, between(0, 400), "salinity of the water");
   in.read_list("profile", profile, "row", "temperature and salinity by depth, linear in between");
+  read_profile_file(in, profile);
   // Speed of sound.
   in.read_choice("sound_speed", sound,
                  {{"mackenzie", SoundSpeed::mackenzie}, {"medwin", SoundSpeed::medwin}, {"unesco", SoundSpeed::unesco}},

@@ -19,9 +19,15 @@ namespace {
 constexpr double step_s = 0.02;
 constexpr double period_s = 10;
 
-std::string world_text(std::int64_t vehicles, double spacing_m, const std::string& acoustics) {
-  return "shoal: 1\nphysics: {step_s: " + std::to_string(step_s) +
-         "}\nmedium: {water: {}, current: [{velocity_mps: [0.2, 0.1, 0]}], wind: {velocity_mps: [5, 0, 0]}}\n"
+/// A thermocline below the vehicles, in which sound bends.
+constexpr const char* warm_above =
+    "{profile: [{depth_m: 0, temperature_C: 16}, {depth_m: 25, temperature_C: 15.9}, {depth_m: 40, temperature_C: "
+    "10}]}";
+
+std::string world_text(std::int64_t vehicles, double spacing_m, const std::string& acoustics,
+                       const std::string& water) {
+  return "shoal: 1\nphysics: {step_s: " + std::to_string(step_s) + "}\nmedium: {water: " + water +
+         ", current: [{velocity_mps: [0.2, 0.1, 0]}], wind: {velocity_mps: [5, 0, 0]}}\n"
          "acoustics: " +
          acoustics + "\nobjects: [{name: bottom, fixed: true, position_m: [0, 0, -60], parts: [{shape: plane}]}]\n" +
          "vehicles:\n  - name: auv\n    count: " + std::to_string(vehicles) +
@@ -34,10 +40,10 @@ std::string world_text(std::int64_t vehicles, double spacing_m, const std::strin
          "        - {name: modem, type: acoustic_modem, preset: micromodem_rate0, rate_hz: 5}\n";
 }
 
-void talk(benchmark::State& state, double spacing_m, const std::string& acoustics) {
+void talk(benchmark::State& state, double spacing_m, const std::string& acoustics, const std::string& water = "{}") {
   const std::int64_t vehicles = state.range(0);
-  const sim::LoadedWorld loaded =
-      sim::load_world_text(world_text(vehicles, spacing_m, acoustics), test_support::source_path("worlds/bench.yaml"));
+  const sim::LoadedWorld loaded = sim::load_world_text(world_text(vehicles, spacing_m, acoustics, water),
+                                                       test_support::source_path("worlds/bench.yaml"));
   sim::InProcessBus bus;
   sim::World world(loaded.config, bus);
   shoal::modem_send_t message{};
@@ -74,6 +80,12 @@ void EverybodyHearsEchoes(benchmark::State& state) {
   talk(state, 3000.0 / std::sqrt(static_cast<double>(state.range(0))), "{multipath: {}}");
 }
 BENCHMARK(EverybodyHearsEchoes)->Arg(100)->Arg(1000)->MinTime(2);
+
+/// The same with rays through a thermocline.
+void EverybodyHearsRays(benchmark::State& state) {
+  talk(state, 3000.0 / std::sqrt(static_cast<double>(state.range(0))), "{}", warm_above);
+}
+BENCHMARK(EverybodyHearsRays)->Arg(100)->Arg(1000)->MinTime(2);
 
 /// One every 2 km: how many receive does not grow with the fleet.
 void NeighboursHear(benchmark::State& state) {

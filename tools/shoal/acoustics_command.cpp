@@ -15,6 +15,7 @@
 #include "sim/world_file/load_world.hpp"
 #include "tools/experiment/acoustics/acoustic_closed_forms.hpp"
 #include "tools/experiment/acoustics/acoustic_link.hpp"
+#include "tools/experiment/acoustics/ray_picture.hpp"
 #include "tools/experiment/world_files/world_by_name.hpp"
 #include "tools/shoal/commands.hpp"
 #include "tools/shoal/options/output_file.hpp"
@@ -29,7 +30,7 @@ constexpr const char* plain_world = "shoal: 1\nmedium: {water: {}, wind: {veloci
 struct AcousticsArguments {
   std::string world;
   sim::LoadOptions load;
-  std::string from, to, ranges, image, closed_forms;
+  std::string from, to, ranges, image, rays, closed_forms;
   std::vector<std::string> packets;
   bool micromodem = false;
   double range_m = 1000, depth_m = 10;
@@ -235,6 +236,7 @@ int show_closed_forms(const std::string& file) {
 int show(AcousticsArguments& arguments) {
   if (!arguments.closed_forms.empty()) return show_closed_forms(arguments.closed_forms);
   if (!arguments.image.empty()) check_writable(arguments.image);
+  if (!arguments.rays.empty()) check_writable(arguments.rays);
   // Ranges of the table or plot.
   const std::vector<double> ranges_m =
       arguments.ranges.empty() && arguments.image.empty()
@@ -255,6 +257,16 @@ int show(AcousticsArguments& arguments) {
   check_end(arguments.to.empty() ? "--depth" : "--to", link.to, world);
   warn(link, world);
   const std::optional<double> depth_m = arguments.water_depth_m ? arguments.water_depth_m : water_depth_m(link, world);
+  if (!arguments.rays.empty()) {
+    if (!sound_bends(config.acoustics, world.medium()))
+      throw CLI::ValidationError("--rays",
+                                 "sound is straight in this world: give its water a profile, or 'propagation: rays'");
+    const double source_m = world.medium().still_surface_m() - link.from.p_W.z();
+    const double level_m = (link.to.p_W - link.from.p_W).head<2>().norm();
+    draw_rays(ray_field(source_m, std::max(level_m, 1.0), link.centre_Hz, config.acoustics, world.medium(), depth_m),
+              fmt::format("Rays from a depth of {:g} m, {:g} Hz", source_m, link.centre_Hz), arguments.rays);
+    return exit_ok;
+  }
   // Budget of a single link.
   if (ranges_m.empty()) {
     const LinkBudget budget = link_budget(link, config.acoustics, world.medium(), depth_m);
@@ -338,6 +350,10 @@ void add_options(CLI::App& command, AcousticsArguments& arguments) {
   command.add_option("--ranges", arguments.ranges, "a table over range, m, as CSV: from:to:step")->type_name("RANGES");
   command.add_option("--image", arguments.image, "PNG file: signal-to-noise ratio and delivery over range")
       ->type_name("FILE");
+  command
+      .add_option("--rays", arguments.rays,
+                  "PNG file: rays, loss and shadows from the sender to the range of the receiver")
+      ->type_name("FILE");
   add_set_option(command, arguments.load.sets);
   add_allow_path_option(command, arguments.load);
   command
@@ -359,6 +375,7 @@ void add_acoustics_command(CLI::App& app, int& exit_code) {
       *command, {{"shoal acoustics --range 1500 --set acoustics.absorption.model=thorp",
                   "shoal acoustics --micromodem --set acoustics.fading.type=rayleigh --ranges 500:10000:500",
                   "shoal acoustics worlds/proving_sea.yaml --from 0,0,-5 --to 900,0,-25 --packet psk:500:64",
+                  "shoal acoustics worlds/coop_underwater.yaml --depth 2 --range 1000 --rays rays.png",
                   "shoal acoustics --closed-forms tests/fidelity/reference/closed_forms.csv"},
                  {{0, "success"},
                   {1, "a closed form was not met"},

@@ -33,6 +33,7 @@ export const OUTCOMES = {
   sender_off: {color: '#999999', sign: '○', text: 'sender off'},
   link: {color: '#999999', sign: '–', text: 'link down'},
   range: {color: '#999999', sign: '…', text: 'out of range'},
+  shadow: {color: '#0072b2', sign: '◗', text: 'in a shadow'},
 };
 /** Colors of the shells by kind. */
 const KINDS = {

@@ -32,12 +32,12 @@ std::string text(const Vector3d& v) {
 }
 
 /// Water whose speed of sound changes with depth, with the absorption of the sea.
-std::string sea(const std::string& vehicles) {
+std::string sea(const std::string& vehicles, const std::string& paths = "straight") {
   return "shoal: 1\nphysics: {step_s: 0.01, gravity_mps2: 0}\n"
          "medium: {water: {surface_m: 0, profile: [{depth_m: 0, sound_speed_mps: 1520}, {depth_m: 100, "
          "sound_speed_mps: 1490}, {depth_m: 400, sound_speed_mps: 1500}]}}\n"
-         "vehicles:\n" +
-         vehicles;
+         "acoustics: {propagation: " +
+         paths + "}\nvehicles:\n" + vehicles;
 }
 
 void set_velocity(test::TestWorld& test, const std::string& vehicle, const Vector3d& v_W) {
@@ -96,6 +96,22 @@ RC_GTEST_PROP(AcousticChannel, CarriesSoundBothWaysWithTheSameLoss, ()) {
   test.run_for(5);
   RC_ASSERT(a.all.size() == 1u && b.all.size() == 1u);
   RC_ASSERT(std::abs(a.all[0].level_dB - b.all[0].level_dB) < 1e-9);
+  RC_ASSERT(std::abs(a.all[0].travel_time_s - b.all[0].travel_time_s) < 1e-9);
+}
+
+RC_GTEST_PROP(AcousticChannel, CarriesBentSoundBothWaysWithTheSameLoss, ()) {
+  const Vector3d p_a = place_within(2000, 300), p_b = place_within(2000, 300);
+  RC_PRE(all_apart({p_a, p_b}));
+  test::TestWorld test(sea(test::float_at("a", text(p_a)) + test::float_at("b", text(p_b)), "rays"));
+  AcousticProbe a(test, "a"), b(test, "b");
+  a.send(AcousticProbe::tone(190));
+  test.run_for(5);
+  b.send(AcousticProbe::tone(190));
+  test.run_for(5);
+  RC_ASSERT(a.all.size() == 1u && b.all.size() == 1u);
+  RC_ASSERT(a.all[0].loss == b.all[0].loss);
+  if (a.all[0].loss == SignalLoss::shadow) return;
+  RC_ASSERT(std::abs(a.all[0].level_dB - b.all[0].level_dB) < 1e-6);
   RC_ASSERT(std::abs(a.all[0].travel_time_s - b.all[0].travel_time_s) < 1e-9);
 }
 
@@ -199,7 +215,8 @@ Chatter chatter(int seed, int threads, bool with_deaf) {
     vehicles += test::float_at("v" + std::to_string(i),
                                text({300.0 * (i % 4) + 7 * i, 250.0 * (i / 4), -20.0 - 9 * ((i * seed) % 11)}));
   if (with_deaf) vehicles += test::float_at("deaf", "[9000, 9000, -50]");
-  test::TestWorld test(sea(vehicles) + "run: {seed: " + std::to_string(seed) + "}\n");
+  test::TestWorld test(sea(vehicles, seed % 2 == 0 ? "straight" : "rays") + "run: {seed: " + std::to_string(seed) +
+                       "}\n");
   test.world.use_threads(threads);
   std::vector<std::unique_ptr<AcousticProbe>> probes;
   for (int i = 0; i < 10; ++i) {

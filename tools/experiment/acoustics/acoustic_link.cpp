@@ -6,10 +6,14 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <tuple>
+#include <utility>
 
 #include "devices/comms/micromodem_rates.hpp"
 #include "sim/acoustics/echoes.hpp"
 #include "sim/acoustics/fading.hpp"
+#include "sim/acoustics/ray_paths.hpp"
+#include "sim/acoustics/rays/ray_tables.hpp"
 #include "sim/acoustics/sound_path.hpp"
 #include "sim/random/random.hpp"
 
@@ -27,19 +31,103 @@ std::string packet_name(Modulation modulation, double bit_rate_bps, std::int64_t
   return fmt::format("{}_{:g}_{}", sim::to_string(modulation), bit_rate_bps, bytes);
 }
 
-/// Effect of the echoes on the direct path; `random` as for sim::echoes().
-sim::Echoes echoes_of(const AcousticLink& link, const LinkBudget& budget, const sim::AcousticsConfig& acoustics,
-                      const sim::Medium& medium, std::optional<double> water_depth_m, sim::Random* random) {
+/// Water along the path, for the echoes.
+sim::MultipathMedium water_of(const AcousticLink& link, const LinkBudget& budget,
+                              const sim::AcousticsConfig& acoustics) {
   sim::MultipathMedium water;
   water.frequency_Hz = link.centre_Hz;
   if (budget.travel_time_s > 0) water.sound_speed_mps = budget.range_m / budget.travel_time_s;
   water.absorption_dBpkm = budget.absorption_dBpkm;
   water.wind_mps = budget.wind_mps;
   water.spreading = acoustics.spreading;
+  return water;
+}
+
+/// Sum of rays relative to the first one; `random` as for sim::echoes().
+sim::Echoes echoes_of_rays(std::vector<sim::PathGain> gains, const sim::MultipathConfig& multipath,
+                           sim::Random* random) {
+  const bool drawn = multipath.phases == sim::MultipathConfig::Phases::random;
+  if (drawn && random != nullptr) sim::randomize_phases(gains, *random);
+  const sim::MultipathSum sum = sim::combine(gains, multipath.window_s);
+  sim::Echoes echoes{sum.signal, sum.interference, sum.spread_s, 0};
+  if (drawn && random == nullptr) {
+    echoes.signal = PowerRatio{};
+    for (const sim::PathGain& gain : gains)
+      if (gain.delay_s - sum.first_s <= multipath.window_s) echoes.signal += sim::to_power(gain.gain);
+  }
+  return echoes;
+}
+
+/// Effect of the echoes on the direct path; `random` as for sim::echoes().
+sim::Echoes echoes_of(const AcousticLink& link, const LinkBudget& budget, const sim::AcousticsConfig& acoustics,
+                      const sim::Medium& medium, std::optional<double> water_depth_m, sim::Random* random) {
+  if (budget.bent) return echoes_of_rays(budget.ray_gains, *acoustics.multipath, random);
+  const sim::MultipathMedium water = water_of(link, budget, acoustics);
   const sim::LinkDepths depths{medium.depth_m(link.from.p_W), medium.depth_m(link.to.p_W),
                                (link.to.p_W - link.from.p_W).head<2>().norm(),
                                acoustics.multipath->water_depth_m.value_or(water_depth_m.value_or(HUGE_VAL))};
   return sim::echoes(*acoustics.multipath, water, depths, random);
+}
+
+/// Vector with this elevation in the vertical plane of a link.
+sim::Vector3d ray_direction_W(const sim::Vector3d& displacement_W, double elevation_rad) {
+  const sim::Vector3d level_W(displacement_W.x(), displacement_W.y(), 0);
+  const double level_m = level_W.norm();
+  const sim::Vector3d along_W = level_m > 0 ? sim::Vector3d(level_W / level_m) : sim::Vector3d(sim::Vector3d::UnitX());
+  return along_W * std::cos(elevation_rad) + sim::Vector3d::UnitZ() * std::sin(elevation_rad);
+}
+
+/// Replaces travel time and level of the straight line by those of the rays.  Returns the directions at both ends.
+std::pair<sim::Vector3d, sim::Vector3d> bend(LinkBudget& budget, const AcousticLink& link,
+                                             const sim::AcousticsConfig& acoustics, const sim::Medium& medium,
+                                             std::optional<double> water_depth_m) {
+  const sim::Vector3d displacement_W = link.to.p_W - link.from.p_W;
+  const double still_m = medium.still_surface_m();
+  sim::RayQuery query;
+  query.source_m = still_m - link.from.p_W.z();
+  query.receiver_m = still_m - link.to.p_W.z();
+  query.range_m = displacement_W.head<2>().norm();
+  const double depth_m = acoustics.multipath && acoustics.multipath->water_depth_m ? *acoustics.multipath->water_depth_m
+                                                                                   : water_depth_m.value_or(HUGE_VAL);
+  query.water_m = std::max({depth_m, query.source_m, query.receiver_m, 0.0});
+  query.max_bounces = acoustics.multipath ? acoustics.multipath->max_bounces : 0;
+  sim::RayTables tables([&](double z_m) { return medium.sound_speed_at_depth_mps(z_m); }, medium.profile_depths_m());
+  std::vector<sim::SoundRay> rays;
+  tables.of(query.water_m).find(query, rays);
+  budget.bent = true;
+  budget.shadow = std::none_of(rays.begin(), rays.end(), [](const auto& ray) { return ray.bounces() == 0; });
+  budget.ray_gains =
+      sim::ray_gains(rays, acoustics.multipath ? &*acoustics.multipath : nullptr, water_of(link, budget, acoustics));
+  // The sound that leaks into the shadow, along the straight line.
+  if (budget.shadow && acoustics.shadow_loss_dB) {
+    sim::SoundRay leak;
+    leak.travel_time_s = budget.travel_time_s;
+    leak.launch_rad = leak.arrival_rad = std::atan2(displacement_W.z(), query.range_m);
+    rays.push_back(leak);
+    sim::PathGain gain;
+    gain.delay_s = budget.travel_time_s;
+    gain.gain = budget.spreading + budget.absorption - Decibels(*acoustics.shadow_loss_dB);
+    budget.ray_gains.push_back(gain);
+  }
+  if (rays.empty()) {
+    budget.spreading = sim::to_decibels(PowerRatio{});
+    budget.ray_gains.emplace_back();
+    return {displacement_W, displacement_W};
+  }
+  const std::size_t first = sim::first_path(budget.ray_gains);
+  const Decibels of_first = budget.ray_gains[first].gain;
+  budget.travel_time_s = rays[first].travel_time_s;
+  budget.launch_rad = rays[first].launch_rad;
+  budget.arrival_rad = rays[first].arrival_rad;
+  const double window_s = acoustics.multipath ? acoustics.multipath->window_s : HUGE_VAL;
+  for (sim::PathGain& gain : budget.ray_gains) {
+    gain.gain -= of_first;
+    // Sound of before the first arrival: of the signal, or interference, as in the channel.
+    const double early_s = budget.travel_time_s - gain.delay_s;
+    if (early_s > 0) gain.delay_s = budget.travel_time_s + (early_s <= window_s ? 0 : window_s + 1e-3);
+  }
+  budget.spreading = of_first - budget.absorption;
+  return {ray_direction_W(displacement_W, budget.launch_rad), ray_direction_W(displacement_W, budget.arrival_rad)};
 }
 
 double success_at(const AcousticLink& link, const AcousticPacket& packet, PowerRatio ratio) {
@@ -81,6 +169,11 @@ std::vector<AcousticPacket> micromodem_packets() {
   return packets;
 }
 
+bool sound_bends(const sim::AcousticsConfig& acoustics, const sim::Medium& medium) {
+  const auto by_default = medium.has_sound_profile() ? sim::SoundPaths::rays : sim::SoundPaths::straight;
+  return medium.has_water() && acoustics.propagation.value_or(by_default) == sim::SoundPaths::rays;
+}
+
 LinkBudget link_budget(const AcousticLink& link, const sim::AcousticsConfig& acoustics, const sim::Medium& medium,
                        std::optional<double> water_depth_m) {
   LinkBudget budget;
@@ -89,16 +182,19 @@ LinkBudget link_budget(const AcousticLink& link, const sim::AcousticsConfig& aco
   budget.travel_time_s = sim::travel_time_s(medium, link.from.p_W, link.to.p_W);
   budget.absorption_dBpkm =
       sim::absorption_dBpkm(acoustics.absorption, link.centre_Hz, medium, link.from.p_W, link.to.p_W);
-  const double c_mps = medium.sound_speed_mps(link.to.p_W);
-  budget.from_gain =
-      sim::directivity_gain(link.from.directivity, link.from.R_WS.transpose() * displacement_W, link.centre_Hz, c_mps);
-  budget.to_gain =
-      sim::directivity_gain(link.to.directivity, -(link.to.R_WS.transpose() * displacement_W), link.centre_Hz, c_mps);
   budget.spreading = -sim::spreading_loss(budget.range_m, acoustics.spreading);
   budget.absorption = -sim::absorption_loss(budget.range_m, budget.absorption_dBpkm);
-  budget.level = link.source_level + budget.from_gain + budget.spreading + budget.absorption + budget.to_gain;
   const sim::AmbientNoise noise = acoustics.noise.with_wind(medium.mean_wind_mps());
   budget.wind_mps = noise.wind_mps;
+  sim::Vector3d leaves_W = displacement_W, arrives_W = displacement_W;
+  if (sound_bends(acoustics, medium))
+    std::tie(leaves_W, arrives_W) = bend(budget, link, acoustics, medium, water_depth_m);
+  const double c_mps = medium.sound_speed_mps(link.to.p_W);
+  budget.from_gain =
+      sim::directivity_gain(link.from.directivity, link.from.R_WS.transpose() * leaves_W, link.centre_Hz, c_mps);
+  budget.to_gain =
+      sim::directivity_gain(link.to.directivity, -(link.to.R_WS.transpose() * arrives_W), link.centre_Hz, c_mps);
+  budget.level = link.source_level + budget.from_gain + budget.spreading + budget.absorption + budget.to_gain;
   budget.noise_per_Hz = noise.spectral_level(link.centre_Hz / 1000);
   budget.noise_reduction = sim::directivity_index(link.to.directivity, link.centre_Hz, c_mps);
   budget.noise = noise.band_level(link.centre_Hz, link.bandwidth_Hz) - budget.noise_reduction;

@@ -56,11 +56,18 @@ struct LinkBudget {
   std::optional<sim::Decibels> echoes;  ///< multipath: all inside the window over the first path, phases averaged
   std::optional<sim::Decibels> late;    ///< multipath: level of the echoes outside the window, which interfere
   double delay_spread_s = 0;            ///< multipath: rms
-  sim::Decibels level;                  ///< of the direct path at the receiver
+  /// Rays: level, travel time and directions are those of the first arrival, which is a bounce in a shadow.
+  bool bent = false, shadow = false;
+  double launch_rad = 0, arrival_rad = 0;       ///< rays: elevations of the first arrival, upwards positive
+  std::vector<sim::PathGain> ray_gains;         ///< rays: relative to the first arrival
+  sim::Decibels level;                          ///< of the direct path at the receiver
   sim::Decibels noise_per_Hz, noise_reduction;  ///< noise_reduction: by the receiver's directivity
   sim::Decibels noise;                          ///< in the band, after noise_reduction
   sim::Decibels snr;                            ///< of the direct path
 };
+
+/// Whether sound travels along rays in this water.
+bool sound_bends(const sim::AcousticsConfig& acoustics, const sim::Medium& medium);
 
 /// Computes the budget without fading.  `water_depth_m`: depth of a flat bottom, for echoes, where the world's
 /// `multipath:` does not set it; unset: no bottom.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <numbers>
 #include <stdexcept>
 
 #include "tools/experiment/acoustics/acoustic_link.hpp"
@@ -37,7 +38,8 @@ std::string budget_text(const AcousticLink& link, const LinkBudget& budget, cons
   std::string text = row_text("source level", link.source_level, "re 1 uPa at 1 m");
   text += row_text("directivity, sender", budget.from_gain, "");
   text += row_text("spreading", budget.spreading,
-                   spreading.transition_range_m
+                   budget.bent ? "of the ray, with its focusing"
+                   : spreading.transition_range_m
                        ? fmt::format("spherical to {:g} m, then cylindrical; {:.1f} m", *spreading.transition_range_m,
                                      budget.range_m)
                        : fmt::format("{:g} log10({:.1f} m)", 10 * spreading.factor, budget.range_m));
@@ -45,7 +47,12 @@ std::string budget_text(const AcousticLink& link, const LinkBudget& budget, cons
                    fmt::format("{:.3f} dB/km at {:g} Hz, {}", budget.absorption_dBpkm, link.centre_Hz,
                                model_name(acoustics.absorption)));
   text += row_text("directivity, receiver", budget.to_gain, "");
-  text += row_text("level at the receiver", budget.level, "re 1 uPa, direct path");
+  const bool silent = budget.level.dB() == -HUGE_VAL;
+  const char* const path = !budget.bent     ? "direct path"
+                           : !budget.shadow ? "first ray"
+                           : silent         ? "in a shadow: no ray arrives"
+                                            : "in a shadow";
+  text += row_text("level at the receiver", budget.level, fmt::format("re 1 uPa, {}", path));
   // Multipath.
   if (budget.echoes)
     text += row_text("echoes in the window", *budget.echoes,
@@ -59,13 +66,16 @@ std::string budget_text(const AcousticLink& link, const LinkBudget& budget, cons
     text += row_text("directivity index", -budget.noise_reduction, "of the receiver against noise from all sides");
   text += row_text("noise in the band", budget.noise, fmt::format("re 1 uPa; {:g} Hz", link.bandwidth_Hz));
   // Signal-to-noise ratio and travel time.
-  text += row_text("signal over noise", budget.snr, "direct path");
+  text += row_text("signal over noise", budget.snr, path);
   if (budget.echoes && budget.late) {
     const sim::PowerRatio both = sim::to_power(budget.noise) + sim::to_power(*budget.late);
     text += row_text("signal over noise, echoes", budget.level + *budget.echoes - sim::to_decibels(both), "");
   }
   text += fmt::format("{:<25}{:>8.4f} s   over {:.1f} m, {:.2f} m/s on average\n", "travel time", budget.travel_time_s,
                       budget.range_m, budget.range_m / std::max(budget.travel_time_s, 1e-12));
+  if (budget.bent && !silent)
+    text += fmt::format("{:<25}{:>8.2f} deg over the horizontal; at the receiver {:.2f} deg\n", "launch angle",
+                        budget.launch_rad * 180 / std::numbers::pi, budget.arrival_rad * 180 / std::numbers::pi);
   return text;
 }
 

@@ -36,6 +36,8 @@ std::string meaning_of(sim::SignalLoss loss) {
       return "too far away";
     case sim::SignalLoss::sender_off:
       return "the sender lost its power or was removed in the middle of it";
+    case sim::SignalLoss::shadow:
+      return "no ray without a bounce arrived, and echoes were too weak";
   }
   return "";
 }

@@ -105,6 +105,21 @@ std::string processes_html(const RunRecord& run) {
   return html.empty() ? "" : heading("Programs") + html;
 }
 
+/// Messages that shadows took.
+std::string shadows_html(const RunRecord& run) {
+  if (run.shadowed.empty()) return "";
+  std::vector<std::pair<std::string, std::string>> rows;
+  for (const RunRecord::Shadowed& loss : run.shadowed)
+    rows.emplace_back(fmt::format("{:.3f} s", loss.sent_s),
+                      fmt::format("{} to {}, {:.0f} m", loss.from, loss.to, loss.range_m));
+  const auto count = static_cast<std::size_t>(std::max<std::int64_t>(run.shadowed_count, std::ssize(rows)));
+  const std::string title =
+      count > rows.size() ? fmt::format("The first {} of {}", rows.size(), count) : fmt::format("All {}", count);
+  return heading("Packets in shadows") +
+         paragraph("No ray without a bounce reached these addressees, and echoes were too weak.") +
+         html_details(title, facts_table(rows));
+}
+
 std::string warnings_html(const RunRecord& run) {
   std::vector<std::string> warnings;
   const auto warn = [&](std::int64_t count, const char* what) {
@@ -192,8 +207,8 @@ std::string run_report(const RunRecord& run, const std::string& page_in_3d) {
   return html_page(title_of(run), "<h1>" + html_text(title_of(run)) + "</h1>\n" +
                                       (run.description.empty() ? "" : paragraph(html_text(run.description))) +
                                       outcome_html(run, metrics) + link + run_plots_html(run) + warnings_html(run) +
-                                      figures_html(metrics, run.rules) + processes_html(run) + facts_html(run) +
-                                      made_by_html());
+                                      figures_html(metrics, run.rules) + shadows_html(run) + processes_html(run) +
+                                      facts_html(run) + made_by_html());
 }
 
 std::string report_page(const std::vector<std::string>& directories, const std::string& page_in_3d) {

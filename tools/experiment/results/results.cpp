@@ -171,6 +171,10 @@ std::string Summary::to_json() const {
     json["acoustics"]["lost"] = nlohmann::ordered_json::object();
     for (const auto& [cause, count] : acoustics->lost)
       if (count > 0) json["acoustics"]["lost"][cause] = count;
+    json["acoustics"]["effects"] = acoustic_effects;
+    for (const Shadowed& loss : shadowed)
+      json["acoustics"]["shadowed"].push_back(
+          {{"sent_s", loss.sent_s}, {"from", loss.from}, {"to", loss.to}, {"range_m", loss.range_m}});
   }
   json["modem_dropped_messages"] = modem_dropped_messages;
   json["serial_dropped_bytes"] = serial_dropped_bytes;

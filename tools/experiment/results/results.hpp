@@ -31,6 +31,13 @@ struct Summary {
     bool failed = false;  ///< with an exit code, by a signal, or before its last tick; never with `on_exit: ignore`
   };
 
+  /// Message that a shadow took.
+  struct Shadowed {
+    double sent_s = 0;
+    std::string from, to;  ///< vehicle and device
+    double range_m = 0;
+  };
+
   std::string world;
   std::string description;  ///< of the world
   std::int64_t seed = 0;
@@ -56,6 +63,8 @@ struct Summary {
   std::int64_t audit_count = 0;                   ///< number of all interventions
   std::map<std::string, sim::ZoneRecord> zones;   ///< by vehicle, when the world has zones with rules
   std::optional<LinkCounts> acoustics;            ///< of all underwater modems, if any
+  std::vector<std::string> acoustic_effects;      ///< AcousticChannel::effects()
+  std::vector<Shadowed> shadowed;                 ///< messages that shadows took: the first ones
   std::int64_t modem_dropped_messages = 0;        ///< that waited in queues of modems that were full
   std::uint64_t serial_dropped_bytes = 0;         ///< not read by any program from pseudo-terminals and FIFOs
   std::optional<sim::EndOfRun> event;             ///< of the world that ended the run

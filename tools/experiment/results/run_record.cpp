@@ -91,6 +91,21 @@ RunRecord read_run(const std::string& directory) {
       run.contacts.push_back(
           {contact.text("vehicle"), contact.text("with"), contact.number("first_s"), contact.whole("count")});
     }
+  // Shadows.
+  if (in.has("acoustics")) {
+    const auto acoustics = in.object("acoustics");
+    const JsonReader sound(acoustics, path + ": acoustics");
+    if (sound.has("shadowed"))
+      for (const auto& item : sound.list("shadowed")) {
+        const JsonReader loss(item, path + ": acoustics: shadowed");
+        run.shadowed.push_back({loss.number("sent_s"), loss.text("from"), loss.text("to"), loss.number("range_m")});
+      }
+    if (sound.has("lost")) {
+      const auto lost = sound.object("lost");
+      const JsonReader causes(lost, path + ": acoustics: lost");
+      if (causes.has("shadow")) run.shadowed_count = causes.whole("shadow");
+    }
+  }
   // Verdict and end.
   if (in.has("event")) {
     const JsonReader event(in.object("event"), path + ": event");

@@ -31,6 +31,13 @@ struct RunRecord {
     std::int64_t count = 0;
   };
 
+  /// Message that a shadow took.
+  struct Shadowed {
+    double sent_s = 0;
+    std::string from, to;
+    double range_m = 0;
+  };
+
   std::string directory;
   std::string world, description;
   std::int64_t seed = 0;
@@ -44,8 +51,10 @@ struct RunRecord {
   std::map<std::string, std::optional<double>> metrics;  ///< unset: there was no data for the figure
   std::vector<Rule> rules;
   std::vector<Process> processes;
-  std::vector<Contact> contacts;  ///< one per pair, in order of time; empty in older runs
-  std::optional<Rule> event;      ///< condition of the event that ended the run
+  std::vector<Contact> contacts;   ///< one per pair, in order of time; empty in older runs
+  std::vector<Shadowed> shadowed;  ///< the first messages that shadows took
+  std::int64_t shadowed_count = 0;
+  std::optional<Rule> event;  ///< condition of the event that ended the run
   Judgement judgement = Judgement::not_judged;
   std::string not_judged;  ///< reason; empty when it was judged
   std::string ended, error;

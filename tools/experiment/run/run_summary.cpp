@@ -74,6 +74,9 @@ void Run::add_figures(Summary& summary) {
   // Modems and serial ports.
   const LinkCounts links = link_counts(world_, "", "");
   if (!world_.acoustics().transducers().empty()) summary.acoustics = links;
+  summary.acoustic_effects = world_.acoustics().effects();
+  for (const sim::ShadowLoss& loss : world_.acoustics().shadow_losses())
+    summary.shadowed.push_back({sim::to_seconds(loss.sent), loss.source, loss.receiver, loss.range_m});
   summary.modem_dropped_messages = world_.shared().of(devices::message_modems).dropped_from_queues();
   summary.serial_dropped_bytes = devices::serial_dropped_bytes(world_);
   // Metrics, programs and interventions.
