@@ -10,7 +10,7 @@ import subprocess
 import sys
 import unittest
 
-from support import ROOT, SCRATCH, scratch
+from support import ROOT, SCRATCH, SHOAL, scratch
 
 NAME = sys.argv.pop(1)
 SHORT = {'SECONDS': '40', 'RUNS': '6', 'WORLDS': '4', 'STEPS': '120'}
@@ -23,6 +23,7 @@ EXPECTED = {
     'random_policy': r'\d+ episodes, mean return -?\d',
     'dead_reckoning': r'after 40 s: rms error 0\.[0-9]+ m',
     'range_only_filter': r'rms error 0\.[01]\d+ m',
+    'slurm_sweep': r'cooperative\.rms_m: median [0-9.]+ m at 0, ',
 }
 
 
@@ -33,7 +34,7 @@ class ExampleTest(unittest.TestCase):
             text = file.read()
         self.assertTrue(re.search(r'^# %% \[markdown\]$', text, re.M))
         done = subprocess.run([sys.executable, os.path.join(ROOT, 'examples', 'python', NAME + '.py')], cwd=SCRATCH,
-                              env={**os.environ, **SHORT}, capture_output=True, text=True, check=False)
+                              env={**os.environ, **SHORT, 'PATH': os.path.dirname(SHOAL) + ':' + os.environ['PATH']}, capture_output=True, text=True, check=False)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertRegex(done.stdout, EXPECTED[NAME])
         with open(scratch(NAME + '.png'), 'rb') as file:

@@ -244,7 +244,7 @@ void StudyConfig::read(sim::ParamReader& in) {
   in.read("description", description, "description in one sentence");
   // World, seeds and cases.
   in.require("world");
-  in.read("world", world, "world file, from the folder of this file");
+  in.read("world", world, "world file, from the folder of this file, or the name of a shipped world");
   in.read("launch", launch, "start the programs that the world names");
   in.read("duration_s", duration_s, sim::above_to(0, 1e9), "simulated time of each run; unset: as the world says");
   seeds = read_seeds(in);
@@ -318,6 +318,18 @@ void check_world_file(const std::string& world, const std::string& study, const 
                                 sim::did_you_mean(fs::path(world).filename().string(), files_beside(world)));
   if (const std::string other = sim::other_kind(world, sim::FileKind::world); !other.empty())
     sim::throw_config_error(place, "", "'world': '" + sim::shortened(sim::printable(world)) + "' is " + other);
+}
+
+/// The file of `world:`, relative to the study; a bare name that is no file there may be that of a shipped world.
+std::string world_file_of(const std::string& study_file, const std::string& world) {
+  const fs::path beside = fs::path(study_file).parent_path() / world;
+  std::error_code error;
+  if (!fs::exists(beside, error) && world.find('/') == std::string::npos && !sim::shipped_folder().empty()) {
+    fs::path shipped = fs::path(sim::shipped_folder()) / "worlds" / world;
+    if (shipped.extension() != ".yaml") shipped += ".yaml";
+    if (fs::exists(shipped, error)) return shipped.lexically_normal().string();
+  }
+  return beside.lexically_normal().string();
 }
 
 /// Loads the world of a case.  Errors in a value of `set:` name its place in the study.
@@ -422,8 +434,7 @@ LoadedStudy load_study(const std::string& path, const StudyChanges& changes) {
   study.config.file = path;
   if (!changes.seeds.empty()) study.config.seeds = changes.seeds;
   if (changes.duration_s) study.config.duration_s = changes.duration_s;
-  const fs::path world_file = fs::path(path).parent_path() / study.config.world;
-  study.config.world = world_file.lexically_normal().string();
+  study.config.world = world_file_of(path, study.config.world);
   check_world_file(study.config.world, path, root, changes.load);
   if (!changes.tuned) {
     check_grid(study.config);

@@ -180,6 +180,20 @@ TEST(StudyConfig, CasesChangeTheWorld) {
   EXPECT_EQ(study.worlds[1].config.name, "fast");
 }
 
+TEST(StudyConfig, WorldIsAFileBesideItOrAShippedOneByName) {
+  const ScratchFolder folder;
+  const auto world_of = [&](const std::string& world) {
+    write(folder.file("study.yaml"), "shoal: 1\nstudy: own\nworld: " + world + "\nseeds: [1]\n");
+    return tools::load_study(folder.file("study.yaml")).config.world;
+  };
+  const std::string shipped = std::filesystem::path(test_support::source_path("worlds/minimal.yaml")).lexically_normal();
+  EXPECT_EQ(world_of("minimal"), shipped);
+  EXPECT_EQ(world_of("minimal.yaml"), shipped);
+  std::filesystem::copy_file(shipped, folder.file("minimal.yaml"));
+  EXPECT_EQ(world_of("minimal.yaml"), folder.file("minimal.yaml"));
+  EXPECT_THROW(world_of("studies/coop_land.yaml"), sim::ConfigError);
+}
+
 TEST(StudyConfig, ThoseThatAreShippedCanBeRead) {
   int read = 0;
   for (const auto& entry : std::filesystem::directory_iterator(test_support::source_path("worlds/studies"))) {
