@@ -237,8 +237,10 @@ void Eigenrays::Search::add(double xi, Family family, int cycles) {
   // Each leg between two turning points has a caustic, and the last one when the range grows again with xi.
   ray.caustics = std::max(0, ray.turns - (reach.by_xi < 0));
   const double tube = std::abs(reach.by_xi) * ray_sine(xi, depths.upper_mps) * ray_sine(xi, depths.lower_mps);
-  ray.power_per_m2 =
-      xi * depths.upper_mps * depths.lower_mps / (std::max(query.range_m, 1e-6) * std::max(tube, 1e-300));
+  // For a vertical ray the ratio of xi and the range is a derivative.
+  const bool vertical = xi * depths.highest_mps < 1e-6;
+  const double xi_by_range = vertical ? 1 / reach.by_xi : xi / query.range_m;
+  ray.power_per_m2 = xi_by_range * depths.upper_mps * depths.lower_mps / std::max(tube, 1e-300);
   out.push_back(ray);
 }
 
@@ -357,9 +359,9 @@ void Eigenrays::find(const RayQuery& query, std::vector<SoundRay>& rays) const {
   const double receiver_m = std::clamp(query.receiver_m, 0.0, water_m);
   const RayDepths depths(profile_, std::min(source_m, receiver_m), std::max(source_m, receiver_m), water_m, has_bottom);
   Search search{*this, query, depths, source_m <= receiver_m, rays};
-  // A horizontal ray in water of one speed.
+  // A horizontal ray in water of one speed, or to the same place.
   const bool level = depths.lower_m - depths.upper_m < 1e-9;
-  if (level && std::abs(profile_.gradient(depths.upper_layer)) < 1e-12) {
+  if (level && (std::abs(profile_.gradient(depths.upper_layer)) < 1e-12 || query.range_m < 1e-6)) {
     SoundRay ray;
     ray.travel_time_s = query.range_m / depths.upper_mps;
     ray.power_per_m2 = 1 / std::max(query.range_m * query.range_m, 1e-12);
@@ -367,7 +369,6 @@ void Eigenrays::find(const RayQuery& query, std::vector<SoundRay>& rays) const {
   }
   // The direct ray.
   if (!level) search.search_steep(depths.highest_between_mps, Family::down_down, 0);
-  if (level && query.range_m < 1e-9) rays.push_back({});
   if (query.max_bounces > 0 && water_m > 0) search.search_bounces();
   // Rays with turning points: intervals of xi between those that are horizontal at the points and at the fastest water.
   const double slow = depths.highest_between_mps, fast = depths.highest_mps;

@@ -58,7 +58,7 @@ TEST(Eigenrays, InWaterOfOneSpeedTheyAreTheImagesOfThePekerisGuide) {
   const double c = 1500, water_m = 80;
   const Eigenrays rays(SoundProfile({{0, c}, {water_m, c}, {100, c}}));
   for (const double receiver_m : {5.0, 20.0, 70.0})
-    for (const double range_m : {10.0, 300.0, 4000.0}) {
+    for (const double range_m : {0.0, 1e-5, 10.0, 300.0, 4000.0}) {
       std::vector<sim::ImagePath> images;
       sim::image_paths(20, receiver_m, range_m, water_m, 5, images);
       const auto found = find(rays, {20, receiver_m, range_m, water_m, 5});
@@ -66,7 +66,7 @@ TEST(Eigenrays, InWaterOfOneSpeedTheyAreTheImagesOfThePekerisGuide) {
       for (std::size_t i = 0; i < found.size(); ++i) {
         EXPECT_NEAR(found[i].travel_time_s, images[i].length_m / c, 1e-9);
         EXPECT_NEAR(std::abs(found[i].launch_rad), images[i].grazing_rad, 1e-7);
-        EXPECT_NEAR(loss_dB(found[i]), 20 * std::log10(images[i].length_m), 1e-5);
+        EXPECT_NEAR(loss_dB(found[i]), 20 * std::log10(std::max(images[i].length_m, 1e-6)), 1e-5);
       }
     }
 }
@@ -296,6 +296,20 @@ TEST(Eigenrays, AreAtTheReceiverAfterTheirTravelTime) {
   const sim::RayPlace below = sim::ray_place(SoundProfile({{0, 1500}, {100, 1500}}), 10, -std::numbers::pi / 2, 0.02);
   EXPECT_NEAR(below.range_m, 0, 1e-6);
   EXPECT_NEAR(below.depth_m, 40, 1e-9);
+}
+
+TEST(Eigenrays, LeadStraightDownAndToTheSamePlace) {
+  const double g = -0.2, c0 = 1500;
+  const Eigenrays rays(SoundProfile({{0, c0}, {500, c0 + 500 * g}}));
+  const auto down = find(rays, {10, 210, 0, no_bottom, 0});
+  ASSERT_EQ(down.size(), 1u);
+  EXPECT_NEAR(down[0].travel_time_s, std::log((c0 + 210 * g) / (c0 + 10 * g)) / g, 1e-12);
+  EXPECT_NEAR(down[0].launch_rad, -std::numbers::pi / 2, 1e-7);
+  EXPECT_NEAR(loss_dB(down[0]), 20 * std::log10(200), 0.01);
+  const auto here = find(rays, {10, 10, 0, no_bottom, 0});
+  ASSERT_EQ(here.size(), 1u);
+  EXPECT_EQ(here[0].travel_time_s, 0);
+  EXPECT_LT(loss_dB(here[0]), 0);
 }
 
 TEST(Eigenrays, EndsBeyondTheWaterAreMovedToItsBorder) {
