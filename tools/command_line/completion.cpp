@@ -36,7 +36,8 @@ std::string words_of_rule(const CLI::Option& option) {
   std::istringstream in(rule);
   for (std::string word; std::getline(in, word, ',');) {
     word.erase(0, word.find_first_not_of(' '));
-    if (word.empty() || word.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_-") != std::string::npos) return "";
+    if (word.empty() || word.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_-") != std::string::npos)
+      return "";
     words += (words.empty() ? "" : " ") + word;
   }
   return words;
@@ -79,11 +80,16 @@ std::string in_quotes(const std::string& text) {
 /// The statement of bash that completes a value.
 std::string bash_value(const Value& value) {
   switch (value.kind) {
-    case Value::Kind::files: return "_files=1";
-    case Value::Kind::folders: return "_folders=1";
-    case Value::Kind::words: return "_words=" + in_quotes(value.words);
-    case Value::Kind::words_or_files: return "_words=$(" + value.command + " 2>/dev/null) _files=1";
-    case Value::Kind::none: break;
+    case Value::Kind::files:
+      return "_files=1";
+    case Value::Kind::folders:
+      return "_folders=1";
+    case Value::Kind::words:
+      return "_words=" + in_quotes(value.words);
+    case Value::Kind::words_or_files:
+      return "_words=$(" + value.command + " 2>/dev/null) _files=1";
+    case Value::Kind::none:
+      break;
   }
   return ":";
 }
@@ -130,12 +136,16 @@ std::string zsh_text(const std::string& text) {
 std::string zsh_value(const std::string& name, const Value& value) {
   const std::string begin = ":" + zsh_text(name) + ":";
   switch (value.kind) {
-    case Value::Kind::files: return begin + "_files";
-    case Value::Kind::folders: return begin + "_files -/";
-    case Value::Kind::words: return begin + "(" + value.words + ")";
+    case Value::Kind::files:
+      return begin + "_files";
+    case Value::Kind::folders:
+      return begin + "_files -/";
+    case Value::Kind::words:
+      return begin + "(" + value.words + ")";
     case Value::Kind::words_or_files:
       return begin + "{ _files; compadd -- ${(f)\"$(" + value.command + " 2>/dev/null)\"} }";
-    case Value::Kind::none: break;
+    case Value::Kind::none:
+      break;
   }
   return begin + " ";
 }

@@ -84,8 +84,7 @@ void add_describe_command(CLI::App& app, int& exit_code) {
       *command,
       {{"shoal describe lidar", "shoal describe world", "shoal describe metrics", "shoal describe processes",
         "shoal describe pose_t", "shoal describe shoal-coop-rover", "shoal describe --schema world > world.schema.json",
-        "source <(shoal describe --completion bash)",
-        "shoal describe thermometer --plugin build/thermometer.so"},
+        "source <(shoal describe --completion bash)", "shoal describe thermometer --plugin build/thermometer.so"},
        {{0, "success"}, {2, "wrong usage, or an unknown name"}},
        {}});
   command->callback([&app, name, page, schema, shell, &exit_code] {
@@ -102,7 +101,8 @@ void add_describe_command(CLI::App& app, int& exit_code) {
       return;
     }
     // Text about a name.
-    if (name->empty()) throw command_line::UsageError("needs a NAME, --page, --schema or --completion; see `shoal list devices`");
+    if (name->empty())
+      throw command_line::UsageError("needs a NAME, --page, --schema or --completion; see `shoal list devices`");
     const auto columns = static_cast<std::size_t>(command_line::text_columns(STDOUT_FILENO));
     const std::string text =
         *name == "study"    ? describe_keys("Keys of a study file.", params_of<StudyConfig>(), columns)

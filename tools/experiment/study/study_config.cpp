@@ -320,7 +320,7 @@ void check_world_file(const std::string& world, const std::string& study, const 
     sim::throw_config_error(place, "", "'world': '" + sim::shortened(sim::printable(world)) + "' is " + other);
 }
 
-/// The file of `world:`, relative to the study; a bare name that is no file there may be that of a shipped world.
+/// The file of `world:`, relative to the study; another bare name may be that of a shipped world.
 std::string world_file_of(const std::string& study_file, const std::string& world) {
   const fs::path beside = fs::path(study_file).parent_path() / world;
   std::error_code error;

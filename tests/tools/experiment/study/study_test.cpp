@@ -186,7 +186,8 @@ TEST(StudyConfig, WorldIsAFileBesideItOrAShippedOneByName) {
     write(folder.file("study.yaml"), "shoal: 1\nstudy: own\nworld: " + world + "\nseeds: [1]\n");
     return tools::load_study(folder.file("study.yaml")).config.world;
   };
-  const std::string shipped = std::filesystem::path(test_support::source_path("worlds/minimal.yaml")).lexically_normal();
+  const std::string shipped =
+      std::filesystem::path(test_support::source_path("worlds/minimal.yaml")).lexically_normal();
   EXPECT_EQ(world_of("minimal"), shipped);
   EXPECT_EQ(world_of("minimal.yaml"), shipped);
   std::filesystem::copy_file(shipped, folder.file("minimal.yaml"));
