@@ -62,8 +62,11 @@ class Test:
 
     def run(self, slurm, out, chunk):
         began = time.monotonic()
-        runner = subprocess.Popen([self.shoal, 'study', 'run', str(out), '--engine', 'slurm', '--jobs', '1', '--chunk',
-                                   str(chunk)], env=slurm.environment, stderr=subprocess.PIPE, text=True)
+        options = ['--engine', 'slurm', '--jobs', '1', '--chunk', str(chunk)]
+        print(self.call('run', out, *options, '--no-wait', environment=slurm.environment).stderr.strip())
+        # As after a kill of the first command: this one waits for the jobs in the queue.
+        runner = subprocess.Popen([self.shoal, 'study', 'run', str(out), *options], env=slurm.environment,
+                                  stderr=subprocess.PIPE, text=True)
         try:
             runs = sum(1 for _ in open(out / 'manifest.jsonl', encoding='utf-8')) - 1
             while self.stamps(out) < max(1, runs // 3):
@@ -83,7 +86,8 @@ class Test:
                 runner.wait()
         if runner.returncode != 0:
             sys.exit(f'the engine ended with {runner.returncode}:\n{errors}')
-        print(errors.strip())
+        if 'jobs of an earlier call are still in the queue' not in errors or 'submitted' in errors:
+            sys.exit('the jobs in the queue were submitted again:\n' + errors)
         return time.monotonic() - began
 
 

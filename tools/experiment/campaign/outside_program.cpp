@@ -24,6 +24,7 @@ namespace tools {
 namespace {
 
 constexpr std::chrono::milliseconds poll_interval{5};
+constexpr std::chrono::milliseconds signal_interval{300};
 
 int exit_code_of(int status) {
   return WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
@@ -60,10 +61,13 @@ ProgramOutput output_of(const std::vector<std::string>& arguments) {
 int run_outside_program(const std::vector<std::string>& arguments) {
   const pid_t pid = start_outside(arguments, "");
   int status = 0, passed_on = 0;
+  auto next = std::chrono::steady_clock::now();
   while (waitpid(pid, &status, WNOHANG) != pid) {
-    if (caught_signals() > passed_on) {
-      passed_on = caught_signals();
+    // GNU parallel waits for its jobs after the first one, and ends them after the second.
+    if (caught_signals() > 0 && passed_on < 2 && std::chrono::steady_clock::now() >= next) {
+      ++passed_on;
       kill(-pid, SIGTERM);
+      next = std::chrono::steady_clock::now() + signal_interval;
     }
     std::this_thread::sleep_for(poll_interval);
   }

@@ -18,7 +18,7 @@ void require_program(const std::string& name, const std::string& package);
 /// Runs a program, `arguments[0]` from PATH, with its output kept.  Throws std::runtime_error when it cannot start.
 ProgramOutput output_of(const std::vector<std::string>& arguments);
 
-/// Runs a program with our output, and passes signals on to it.  Returns its exit code.
+/// Runs a program with our output, and ends it after a signal, by two of SIGTERM.  Returns its exit code.
 int run_outside_program(const std::vector<std::string>& arguments);
 
 /// Absolute path of this program.
