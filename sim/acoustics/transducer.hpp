@@ -45,7 +45,14 @@ class Transducer {
     std::int64_t understood = 0, understood_bytes = 0;
     std::int64_t unsent = 0;                         ///< not sent: no power, silenced by a fault, or out of the water
     std::array<std::int64_t, signal_losses> lost{};  ///< by SignalLoss
-    void visit_state(StateArchive& archive) { archive(sent, sent_bytes, understood, understood_bytes, unsent, lost); }
+    void visit_state(StateArchive& archive) {
+      archive(sent, sent_bytes, understood, understood_bytes, unsent);
+      // Without shadows the hash is that of straight lines.
+      for (std::int64_t& count : lost) {
+        const bool of_shadow = &count == &lost[static_cast<std::size_t>(SignalLoss::shadow)];
+        of_shadow&& count == 0 ? archive.unhashed(count) : archive(count);
+      }
+    }
   };
 
   Transducer(AcousticListener& listener, const ReceiverConfig& config, SoundSite site);

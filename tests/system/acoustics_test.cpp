@@ -83,6 +83,17 @@ TEST(AcousticsCommand, ShowsTheLinkThatItsPageShows) {
   EXPECT_THAT(ended.output, ContainsRegex("psk +500 +64"));
 }
 
+TEST(AcousticsCommand, DrawsRaysWhereSoundBends) {
+  const ScratchFolder folder;
+  const Ended ended = acoustics(
+      {source("worlds/coop_underwater.yaml"), "--depth", "2", "--range", "800", "--rays", folder.file("rays.png")});
+  ASSERT_EQ(ended.exit_code, 0) << ended.errors;
+  EXPECT_GT(std::filesystem::file_size(folder.file("rays.png")), 10000u);
+  const Ended straight = acoustics({"--rays", folder.file("none.png")});
+  EXPECT_EQ(straight.exit_code, 2);
+  EXPECT_THAT(straight.errors, HasSubstr("sound is straight in this world"));
+}
+
 TEST(AcousticsCommand, ChecksTheClosedForms) {
   const Ended ended =
       acoustics({"--closed-forms", test_support::source_path("tests/fidelity/reference/closed_forms.csv")});

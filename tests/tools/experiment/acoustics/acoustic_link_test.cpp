@@ -8,10 +8,12 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <numbers>
 
 #include "tests/project_paths.hpp"
 #include "tests/scratch_folder.hpp"
 #include "tools/experiment/acoustics/acoustic_closed_forms.hpp"
+#include "tools/experiment/acoustics/ray_picture.hpp"
 
 namespace {
 
@@ -193,6 +195,60 @@ TEST(AcousticClosedForms, OneThatIsOffIsMarked) {
   const auto rows = tools::acoustic_closed_forms(folder.file("forms.csv"));
   EXPECT_FALSE(rows.at(0).within());
   EXPECT_THAT(tools::closed_forms_text(rows), HasSubstr("FAILS"));
+}
+
+/// A mixed layer over a thermocline, with the speeds of the reference.
+sim::Medium thermocline() {
+  sim::MediumConfig config;
+  auto& profile = config.water.emplace().profile;
+  for (const auto& [depth_m, speed_mps] : {std::pair{0.0, 1515.80}, {20, 1516.12}, {40, 1483.07}, {200, 1485.68}})
+    profile.push_back({depth_m, 8, 35, {}, speed_mps});
+  return sim::Medium(config, 9.80665, 1);
+}
+
+tools::AcousticLink to_50_m(double range_m) {
+  tools::AcousticLink link;
+  link.from.p_W = Vector3d(0, 0, -1);
+  link.to.p_W = Vector3d(range_m, 0, -50);
+  return link;
+}
+
+TEST(AcousticLink, FollowsTheRayOfAThermocline) {
+  AcousticsConfig config = thorp();
+  config.spreading.factor = 2;
+  const tools::LinkBudget budget = tools::link_budget(to_50_m(1000), config, thermocline());
+  EXPECT_TRUE(budget.bent);
+  EXPECT_FALSE(budget.shadow);
+  EXPECT_NEAR(budget.travel_time_s, 0.66303492, 2e-7);  // by BELLHOP, as the loss
+  EXPECT_NEAR(-budget.spreading.dB(), 69.26, 0.03);
+  EXPECT_NEAR(budget.arrival_rad * 180 / std::numbers::pi, -12.011, 0.01);
+  config.propagation = sim::SoundPaths::straight;
+  EXPECT_FALSE(tools::link_budget(to_50_m(1000), config, thermocline()).bent);
+}
+
+TEST(AcousticLink, SaysThatNoRayReachesAShadow) {
+  AcousticsConfig config = thorp();
+  const tools::LinkBudget dark = tools::link_budget(to_50_m(2300), config, thermocline());
+  EXPECT_TRUE(dark.shadow);
+  EXPECT_EQ(dark.level.dB(), -HUGE_VAL);
+  EXPECT_THAT(tools::budget_text(to_50_m(2300), dark, config), HasSubstr("in a shadow: no ray arrives"));
+  config.shadow_loss_dB = 20;
+  EXPECT_GT(tools::link_budget(to_50_m(2300), config, thermocline()).level.dB(), 50);
+}
+
+TEST(RayField, ShadowsBeginWhereTheLastRayGrazes) {
+  // 1897 m to the bottom of the mixed layer, and 238 m from there to 50 m: 2135 m.
+  const tools::RayField field = tools::ray_field(1, 2400, 25000, thorp(), thermocline(), {});
+  const double row_m = field.deepest_m / field.rows;
+  double first_dark_m = 0;
+  for (const tools::RayField::Point& point : field.points)
+    if (std::abs(point.depth_m - 50) < row_m / 2 && point.shadow && first_dark_m == 0) first_dark_m = point.range_m;
+  EXPECT_NEAR(first_dark_m, 2135, 30);
+  ASSERT_FALSE(field.fan.empty());
+  for (const sim::RayTrace& ray : field.fan) EXPECT_NEAR(ray.depth_m.at(0), 1, 1e-9);
+  const ScratchFolder folder;
+  tools::draw_rays(field, "rays", folder.file("rays.png"));
+  EXPECT_GT(std::filesystem::file_size(folder.file("rays.png")), 10000u);
 }
 
 }  // namespace

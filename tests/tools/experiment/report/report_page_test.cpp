@@ -358,4 +358,17 @@ TEST(Report, ReportsWhatIsWrongWithASummary) {
   EXPECT_EQ(error_of_report({directory}), "");
 }
 
+TEST(ReportPage, ListsMessagesThatShadowsTook) {
+  const ScratchFolder folder;
+  tools::Summary summary = run_into(folder.file("run"), "");
+  summary.acoustics.emplace();
+  summary.acoustics->lost["shadow"] = 1;
+  summary.shadowed = {{12.5, "boat/modem", "auv/modem", 431}};
+  write(folder.file("run/summary.json"), summary.to_json());
+  const std::string page = tools::report_page({folder.file("run")});
+  EXPECT_THAT(page, HasSubstr("Packets in shadows"));
+  EXPECT_THAT(page, HasSubstr("12.500 s"));
+  EXPECT_THAT(page, HasSubstr("boat/modem to auv/modem, 431 m"));
+}
+
 }  // namespace

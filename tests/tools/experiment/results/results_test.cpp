@@ -107,6 +107,18 @@ TEST(Summary, HasTheSameKeysForEveryWorld) {
   EXPECT_THAT(summary.to_text(), testing::HasSubstr("process 'pilot' exited with code 1 at 2.50 s"));
 }
 
+TEST(Summary, ListsEffectsOfSoundAndMessagesThatShadowsTook) {
+  tools::Summary summary;
+  summary.acoustics.emplace();
+  summary.acoustics->lost["shadow"] = 1;
+  summary.acoustic_effects = {"propagation"};
+  summary.shadowed = {{12.5, "boat/modem", "auv/modem", 431}};
+  const auto json = nlohmann::json::parse(summary.to_json());
+  EXPECT_EQ(json["acoustics"]["effects"], nlohmann::json({"propagation"}));
+  EXPECT_EQ(json["acoustics"]["lost"]["shadow"], 1);
+  EXPECT_EQ(json["acoustics"]["shadowed"][0]["to"], "auv/modem");
+}
+
 TEST(Summary, AProgramThatFailedIsARuleThatFailedAlsoWithoutOtherRules) {
   tools::Summary summary;
   summary.processes = {{"done", "exited with code 0", 1, false}};
