@@ -58,7 +58,7 @@ std::unique_ptr<Pool> make_pool(
 
 using Seeds = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>;
 
-py::tuple step(Pool& pool, const Values& actions, const Seeds& seeds) {
+py::tuple step_pool(Pool& pool, const Values& actions, const Seeds& seeds) {
   const Guarded::Use use(pool);
   WorldPool& own = *pool.own;
   const std::size_t count = own.count();
@@ -104,7 +104,7 @@ void add_pool(py::module_& module) {
   py::class_<Pool>(module, "Pool")
       .def(py::init(&make_pool), "file"_a, "text"_a, "sets"_a, "count"_a, "seed"_a, "actions"_a, "observations"_a,
            "steps"_a, "threads"_a)
-      .def("step", &step, "actions"_a, "seeds"_a)
+      .def("step", &step_pool, "actions"_a, "seeds"_a)
       .def(
           "run_hash",
           [](Pool& pool, std::size_t index) {
