@@ -31,7 +31,8 @@ std::string names_of(const CLI::Option& option) {
 /// Returns the description of an option, its range, its default, and the options that it requires.
 std::string meaning_of(const CLI::Option& option) {
   std::vector<std::string> facts;
-  const std::string rule = rule_of(option), meaning = option.get_description();
+  const std::string rule = rule_of(option);
+  const std::string& meaning = option.get_description();
   if (!rule.empty()) facts.push_back(rule);
   if (!option.get_default_str().empty()) facts.push_back("default " + option.get_default_str());
   if (option.get_items_expected_max() > 1 && !option.get_positional()) facts.push_back("repeatable");
