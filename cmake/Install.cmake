@@ -4,6 +4,7 @@
 #   programs  the programs, worlds, vehicles, schemas, examples and the Python modules; of the target programs
 #   client    what a client in C++ is built against; of the target shoal_client
 #   device    what a plugin is built against, besides `client`
+#   python    the Python package, with SHOAL_PYTHON; see python/CMakeLists.txt
 include(CMakePackageConfigHelpers)
 set(package_dir lib/cmake/Shoal)
 set(types_dir ${PROJECT_SOURCE_DIR}/messages)
@@ -30,8 +31,15 @@ install(FILES LICENSE DESTINATION share/doc/shoal COMPONENT programs)
 # Templates of `shoal new program`; in Python with the message types.
 install(DIRECTORY examples/client DESTINATION share/shoal/examples COMPONENT programs
         FILES_MATCHING PATTERN "*.cpp" PATTERN CMakeLists.txt PATTERN build EXCLUDE)
+# Those for the Python package are apart: the folder of the others has another package of its name, made by lcm-gen.
+set(package_examples allan_deviation dead_reckoning first_run own_client random_policy range_only_filter read_record)
+list(TRANSFORM package_examples PREPEND examples/python/)
+list(TRANSFORM package_examples APPEND .py)
+install(FILES ${package_examples} DESTINATION share/shoal/examples/python COMPONENT programs)
+list(JOIN package_examples "|" package_examples)
 install(DIRECTORY examples/python/ ${PROJECT_BINARY_DIR}/python/ DESTINATION share/shoal/python COMPONENT programs
-        FILES_MATCHING PATTERN "*.py" PATTERN __pycache__ EXCLUDE)
+        FILES_MATCHING PATTERN "*.py" PATTERN __pycache__ EXCLUDE PATTERN CMakeFiles EXCLUDE
+        REGEX "/(${package_examples})$" EXCLUDE)
 
 configure_package_config_file(cmake/ShoalConfig.cmake.in ${PROJECT_BINARY_DIR}/ShoalConfig.cmake
                               INSTALL_DESTINATION ${package_dir})

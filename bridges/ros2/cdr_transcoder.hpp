@@ -19,4 +19,9 @@ inline constexpr std::size_t max_cdr_bytes = std::size_t{1} << 28;
 std::optional<std::string> to_cdr(const shoal::MessageSchema& schema, std::span<const std::byte> payload,
                                   std::vector<std::byte>& out);
 
+/// Transcodes CDR of to_cdr(), which may be damaged, back into the LCM payload.  `out` is replaced.  Returns the error
+/// of invalid bytes, or none.
+std::optional<std::string> from_cdr(const shoal::MessageSchema& schema, std::span<const std::byte> cdr,
+                                    std::vector<std::byte>& out);
+
 }  // namespace bridges::ros2

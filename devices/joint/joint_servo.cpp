@@ -12,6 +12,7 @@ namespace devices {
 namespace {
 
 constexpr double unlimited = std::numeric_limits<double>::infinity();
+constexpr double min_servo_limit = 1e-9;  // quotients by a limit stay finite
 
 }  // namespace
 
@@ -28,10 +29,11 @@ void JointServo::Params::read(sim::ParamReader& in) {
   in.read("integral_limit", integral_limit, sim::at_least(0), "pid: maximum effort of the integral term");
   in.read("low", low, sim::any_number(), "lower limit of the position, rad or m; unset: the joint's stop");
   in.read("high", high, sim::any_number(), "upper limit of the position; unset: the joint's stop");
-  in.read("max_velocity", max_velocity, sim::above(0),
+  in.read("max_velocity", max_velocity, sim::at_least(min_servo_limit),
           "maximum velocity of the setpoint, and beyond which an effort no longer acts");
-  in.read("max_acceleration", max_acceleration, sim::above(0), "maximum acceleration of the setpoint; unset: no limit");
-  in.read("max_effort", max_effort, sim::above(0), "maximum effort, N m or N");
+  in.read("max_acceleration", max_acceleration, sim::at_least(min_servo_limit),
+          "maximum acceleration of the setpoint; unset: no limit");
+  in.read("max_effort", max_effort, sim::at_least(min_servo_limit), "maximum effort, N m or N");
   in.read("park_position", park_position, sim::any_number(), "position of the safe state 'park', rad or m");
   in.read("deadband", deadband, sim::at_least(0), "error of the position that it does not correct, rad or m");
   in.read("command_quantum", command_quantum, sim::at_least(0),

@@ -171,7 +171,7 @@ class LockstepClient:
                 and bundle.sequence == self.due.sequence):
             for place, message in enumerate(bundle.message, bundle.first):
                 if 0 <= place < len(self.messages) and binascii.crc32(message.data) == self.due.crc[place]:
-                    self.messages[place] = message.data
+                    self.messages[place] = bytes(message.data)
 
     def handle(self):
         tick, messages, channels = self.tick, self.messages, self.due.channel

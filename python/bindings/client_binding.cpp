@@ -6,11 +6,14 @@
 #include <atomic>
 #include <chrono>
 #include <memory>
+#include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 
 #include "python/bindings/bindings.hpp"
+#include "python/bindings/gil.hpp"
 #include "python/bindings/in_use.hpp"
 #include "python/bindings/message_objects.hpp"
 #include "python/world/error.hpp"
@@ -60,6 +63,38 @@ class StopBySignal {
 std::atomic<shoal::Client*> StopBySignal::client_{nullptr};
 struct sigaction StopBySignal::before_;
 
+/// Clients that wait, to be stopped when the interpreter ends.
+class Waiting {
+ public:
+  explicit Waiting(shoal::Client& client) : client_(client) {
+    const std::lock_guard<std::mutex> lock(mutex());
+    all().insert(&client_);
+  }
+  ~Waiting() {
+    const std::lock_guard<std::mutex> lock(mutex());
+    all().erase(&client_);
+  }
+  Waiting(const Waiting&) = delete;
+  Waiting& operator=(const Waiting&) = delete;
+
+  static void stop_all() {
+    const std::lock_guard<std::mutex> lock(mutex());
+    for (shoal::Client* const client : all()) client->stop();
+  }
+
+ private:
+  static std::mutex& mutex() {
+    static auto* const made = new std::mutex;
+    return *made;
+  }
+  static std::set<shoal::Client*>& all() {
+    static auto* const made = new std::set<shoal::Client*>;
+    return *made;
+  }
+
+  shoal::Client& client_;
+};
+
 const char* word_of(shoal::Client::End end) {
   switch (end) {
     case shoal::Client::End::none:
@@ -90,7 +125,12 @@ class Client : public Guarded {
   Client(const std::string& name, const std::string& lcm_url)
       : Guarded("the client"), own_(std::make_unique<shoal::Client>(name, lcm_url)) {}
   ~Client() {
-    if (!is_ours()) own_.release();  // a fork has the memory but neither the socket nor the threads
+    if (!is_ours()) {
+      own_.release();  // a fork has the memory but neither the socket nor the threads
+      return;
+    }
+    const WithoutGil others;  // it waits until the simulator has let it leave
+    own_.reset();
   }
 
   void subscribe(const std::string& channel, py::function handler, const std::optional<std::string>& type) {
@@ -98,11 +138,11 @@ class Client : public Guarded {
     const shoal::MessageSchema* const schema = type ? &schema_of_name(*type) : nullptr;
     // Handlers are called without the GIL, and destroyed with it.
     const std::shared_ptr<py::function> held(new py::function(std::move(handler)), [](py::function* one) {
-      const py::gil_scoped_acquire python;
+      const WithGil python;
       delete one;
     });
     own_->subscribe_bytes(channel, [held, schema](std::span<const std::byte> payload) {
-      const py::gil_scoped_acquire python;
+      const WithGil python;
       const py::bytes copy(reinterpret_cast<const char*>(payload.data()), payload.size());
       (*held)(decode_message(schema != nullptr ? *schema : schema_of_payload(payload), copy));
     });
@@ -140,21 +180,40 @@ class Client : public Guarded {
   void on_rewind(py::function handler) {
     const Use use(*this);
     const std::shared_ptr<py::function> held(new py::function(std::move(handler)), [](py::function* one) {
-      const py::gil_scoped_acquire python;
+      const WithGil python;
       delete one;
     });
     own_->on_rewind([held](std::int64_t utime) {
-      const py::gil_scoped_acquire python;
+      const WithGil python;
       (*held)(utime);
     });
   }
 
-  void stop() { own_->stop(); }
-  std::string end() const { return word_of(own_->end()); }
-  const std::string& reason() const { return own_->reason(); }
-  std::int32_t branch() const { return own_->branch(); }
-  void set_silence_limit(double seconds) { own_->set_silence_limit(milliseconds("the silence limit", seconds)); }
+  void stop() {
+    if (is_ours()) own_->stop();
+  }
+  std::string end() const {
+    require_made();
+    return word_of(own_->end());
+  }
+  std::string reason() {
+    const Use use(*this);
+    return own_->reason();
+  }
+  std::int32_t branch() const {
+    require_made();
+    return own_->branch();
+  }
+  void set_silence_limit(double seconds) {
+    const Use use(*this);
+    own_->set_silence_limit(milliseconds("the silence limit", seconds));
+  }
+  void set_wait_warning(double seconds) {
+    const Use use(*this);
+    own_->set_wait_warning(milliseconds("the delay of the warning", seconds));
+  }
   py::dict counts() const {
+    require_made();
     const shoal::Client::Counts counts = own_->counts();
     py::dict all;
     all["received"] = counts.received;
@@ -172,8 +231,9 @@ class Client : public Guarded {
       if (PyErr_CheckSignals() != 0) throw py::error_already_set();
     };
     try {
-      const py::gil_scoped_release others;
+      const WithoutGil others;
       const StopBySignal stop(*own_);
+      const Waiting waiting(*own_);
       if constexpr (std::is_void_v<decltype(work())>) {
         work();
         return;
@@ -195,7 +255,8 @@ class Client : public Guarded {
 }  // namespace
 
 void add_client(py::module_& module) {
-  using namespace py::literals;
+  using py::literals::operator""_a;
+  py::module_::import("atexit").attr("register")(py::cpp_function([] { end_interpreter(&Waiting::stop_all); }));
   py::class_<Client>(module, "Client")
       .def(py::init<const std::string&, const std::string&>(), "name"_a, "lcm_url"_a = "")
       .def("subscribe", &Client::subscribe, "channel"_a, "handler"_a, "type"_a = py::none())
@@ -207,6 +268,7 @@ void add_client(py::module_& module) {
       .def("on_rewind", &Client::on_rewind, "handler"_a)
       .def("stop", &Client::stop)
       .def("set_silence_limit", &Client::set_silence_limit, "seconds"_a)
+      .def("set_wait_warning", &Client::set_wait_warning, "seconds"_a)
       .def_property_readonly("end", &Client::end)
       .def_property_readonly("reason", &Client::reason)
       .def_property_readonly("branch", &Client::branch)

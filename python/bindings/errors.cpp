@@ -38,11 +38,13 @@ void translate(std::exception_ptr thrown) {
 }  // namespace
 
 void add_errors(py::module_& module) {
+  // The classes that lcm-gen makes raise ValueError for a payload that is not valid.
+  const py::tuple bases = py::make_tuple(py::handle(PyExc_RuntimeError), py::handle(PyExc_ValueError));
   error_class =
       PyErr_NewExceptionWithDoc("shoal.Error",
                                 "An input, a file, a message or a bus that Shoal refuses.\n\nThe text is the one that "
                                 "the program 'shoal' prints; one line for each error found.",
-                                PyExc_RuntimeError, nullptr);
+                                bases.ptr(), nullptr);
   if (error_class == nullptr) throw py::error_already_set();
   module.add_object("Error", py::reinterpret_borrow<py::object>(error_class));
   py::register_exception_translator(&translate);

@@ -6,6 +6,7 @@
 
 #include <utility>
 
+#include "python/bindings/gil.hpp"
 #include "python/world/error.hpp"
 
 namespace py = pybind11;
@@ -18,7 +19,12 @@ bool Guarded::is_ours() const {
   return process_ == ::getpid();
 }
 
+void Guarded::require_made() const {
+  if (process_ == 0) throw Error("the object was not initialised");
+}
+
 Guarded::Use::Use(Guarded& object) : object_(object) {
+  object.require_made();
   if (!object.is_ours())
     throw Error(object.name_ + " belongs to the process that made it, not to a fork of it: make another one here");
   std::thread::id unused;
@@ -32,7 +38,8 @@ Guarded::Use::~Use() {
 }
 
 bool interrupted() {
-  const py::gil_scoped_acquire python;
+  if (interpreter_ends()) return true;
+  const WithGil python;
   return PyErr_CheckSignals() != 0;
 }
 

@@ -2,14 +2,24 @@
 #pragma once
 
 #include <atomic>
+#include <cstddef>
+#include <cstring>
+#include <new>
 #include <string>
 #include <thread>
 
 namespace python {
 
+/// Base of classes that Python holds: an object that Python made without calling its constructor is all zeros.
+struct ZeroedMemory {
+  static void* operator new(std::size_t bytes) { return std::memset(::operator new(bytes), 0, bytes); }
+  static void* operator new(std::size_t, void* at) { return at; }
+  static void operator delete(void* memory) { ::operator delete(memory); }
+};
+
 /// Object that one thread may use at a time, in the process that made it.  Python code may hold it in several threads
 /// and in forked processes.
-class Guarded {
+class Guarded : public ZeroedMemory {
  public:
   explicit Guarded(std::string name);
 
@@ -28,6 +38,8 @@ class Guarded {
 
   /// Returns whether this process made the object.
   bool is_ours() const;
+  /// Throws Error when no constructor was called.
+  void require_made() const;
 
  private:
   const std::string name_;  // in errors: `the world`
@@ -36,8 +48,8 @@ class Guarded {
   int depth_ = 0;  // of nested uses by that thread
 };
 
-/// Returns whether Python has handled a signal such as Ctrl-C by an exception, which raise_interrupt() raises.  Must be
-/// called without the GIL.
+/// Returns whether Python has handled a signal such as Ctrl-C by an exception, which raise_interrupt() raises, or is
+/// about to end.  Must be called without the GIL.
 bool interrupted();
 /// Raises the exception that interrupted() found, if any.  Must be called with the GIL.
 void raise_interrupt();

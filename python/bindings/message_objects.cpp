@@ -429,6 +429,13 @@ py::object decode_message(const MessageSchema& schema, const py::bytes& payload)
   return Decoder(payload).compound(schema);
 }
 
+py::object decode_if_known(std::span<const std::byte> payload) {
+  const py::bytes copy(reinterpret_cast<const char*>(payload.data()), payload.size());
+  const auto* const schema = shoal::embedded_types().find(static_cast<std::uint64_t>(shoal::fingerprint(payload)));
+  if (schema == nullptr) return copy;
+  return decode_message(*schema, copy);
+}
+
 std::string encode_message(const MessageSchema& schema, py::handle message) {
   Encoder encoder(schema);
   encoder.compound(schema, message);

@@ -20,6 +20,10 @@ void set_class_maker(pybind11::object make);
 /// messages are lists.  Throws shoal::MessageError when the payload is not valid.
 pybind11::object decode_message(const shoal::MessageSchema& schema, const pybind11::bytes& payload);
 
+/// Returns decode_message() of a payload of a type that its fingerprint names; the payload itself when the type is
+/// unknown.  Throws shoal::MessageError when the payload is not valid.
+pybind11::object decode_if_known(std::span<const std::byte> payload);
+
 /// Encodes an object with the members of a type.  Members that are the length of an array follow from the arrays.
 /// Throws shoal::MessageError with the member, the rule and the value.
 std::string encode_message(const shoal::MessageSchema& schema, pybind11::handle message);

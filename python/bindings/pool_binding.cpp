@@ -2,13 +2,16 @@
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
+#include <atomic>
 #include <memory>
 #include <optional>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
 #include "python/bindings/bindings.hpp"
+#include "python/bindings/gil.hpp"
 #include "python/bindings/in_use.hpp"
 #include "python/world/error.hpp"
 #include "python/world/world_pool.hpp"
@@ -35,7 +38,7 @@ class Pool : public Guarded {
  private:
   static std::unique_ptr<WorldPool> release_and_make(WorldSource source, std::size_t count, std::int64_t first_seed,
                                                      WorldPool::Layout layout, int threads) {
-    const py::gil_scoped_release others;
+    const WithoutGil others;
     return std::make_unique<WorldPool>(std::move(source), count, first_seed, std::move(layout), threads);
   }
 };
@@ -55,7 +58,7 @@ std::unique_ptr<Pool> make_pool(
 
 using Seeds = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>;
 
-py::tuple step(Pool& pool, const Values& actions, const Seeds& seeds) {
+py::tuple step_pool(Pool& pool, const Values& actions, const Seeds& seeds) {
   const Guarded::Use use(pool);
   WorldPool& own = *pool.own;
   const std::size_t count = own.count();
@@ -72,33 +75,46 @@ py::tuple step(Pool& pool, const Values& actions, const Seeds& seeds) {
   const std::span<double> out(observations.mutable_data(), count * own.observation_values());
   const std::span<std::uint8_t> status(ended.mutable_data(), count);
   {
-    const py::gil_scoped_release others;
-    own.step(in, anew, out, status);
+    const WithoutGil others;
+    const std::thread::id caller = std::this_thread::get_id();
+    std::atomic<bool> stopped = false;
+    // Only the calling thread, which takes steps as the others do, can receive an exception of Python.
+    own.step(in, anew, out, status, [&] {
+      if (!stopped && std::this_thread::get_id() == caller && interrupted()) stopped = true;
+      return stopped.load();
+    });
   }
+  raise_interrupt();
   return py::make_tuple(observations, ended);
+}
+
+/// Returns the function of a property.
+template <class Get>
+auto of_pool(Get get) {
+  return [get](const Pool& pool) {
+    pool.require_made();
+    return get(*pool.own);
+  };
 }
 
 }  // namespace
 
 void add_pool(py::module_& module) {
-  using namespace py::literals;
+  using py::literals::operator""_a;
   py::class_<Pool>(module, "Pool")
       .def(py::init(&make_pool), "file"_a, "text"_a, "sets"_a, "count"_a, "seed"_a, "actions"_a, "observations"_a,
            "steps"_a, "threads"_a)
-      .def("step", &step, "actions"_a, "seeds"_a)
+      .def("step", &step_pool, "actions"_a, "seeds"_a)
       .def(
           "run_hash",
           [](Pool& pool, std::size_t index) {
             const Guarded::Use use(pool);
-            if (index >= pool.own->count()) throw Error("there is no world " + std::to_string(index));
             return pool.own->world(index).world().state().run_hash();
           },
           "index"_a)
-      .def_property_readonly("count", [](const Pool& pool) { return pool.own->count(); })
-      .def_property_readonly("threads", [](const Pool& pool) { return pool.own->threads(); })
-      .def_property_readonly("step_s", [](const Pool& pool) { return pool.own->step_s(); })
-      .def_property_readonly("action_values", [](const Pool& pool) { return pool.own->action_values(); })
-      .def_property_readonly("offsets", [](const Pool& pool) { return pool.own->offsets(); });
+      .def_property_readonly("step_s", of_pool([](const WorldPool& pool) { return pool.step_s(); }))
+      .def_property_readonly("action_values", of_pool([](const WorldPool& pool) { return pool.action_values(); }))
+      .def_property_readonly("offsets", of_pool([](const WorldPool& pool) { return pool.offsets(); }));
 }
 
 }  // namespace python

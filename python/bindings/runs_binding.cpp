@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pybind11/stl.h>
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <chrono>
 #include <optional>
 #include <string>
@@ -8,11 +11,13 @@
 
 #include "messages/yaml/message_writer.hpp"
 #include "python/bindings/bindings.hpp"
+#include "python/bindings/gil.hpp"
 #include "python/bindings/in_use.hpp"
 #include "python/world/error.hpp"
 #include "sim/config/shipped_files.hpp"
 #include "tools/experiment/process/world_programs.hpp"
 #include "tools/experiment/run/runner.hpp"
+#include "tools/experiment/world_files/world_by_name.hpp"
 
 namespace py = pybind11;
 
@@ -22,10 +27,12 @@ namespace {
 /// Arguments of run(), as options of `shoal run`.
 struct RunArguments {
   std::string world;
+  std::optional<std::string> text;  ///< YAML instead of the file
   std::optional<std::int64_t> seed;
   std::vector<std::string> sets;
   std::optional<double> duration_s;
-  std::string results, record, bus;
+  std::string results, record, bus, lcm_url;
+  std::vector<std::string> wait_for;
   bool launch = false, overwrite = false;
 };
 
@@ -41,16 +48,19 @@ std::string run(const RunArguments& arguments) {
   options.duration_s = arguments.duration_s;
   options.speed = 0;
   options.bus = arguments.bus;
+  options.lcm_url = arguments.lcm_url;
   options.results = arguments.results;
   options.record = arguments.record;
   options.overwrite = arguments.overwrite;
   options.launch = arguments.launch;
+  options.await = arguments.wait_for;
   options.quiet = true;
   options.keys = false;
   tools::Summary summary;
   {
-    const py::gil_scoped_release others;
-    sim::LoadedWorld loaded = sim::load_world(arguments.world, load);
+    const WithoutGil others;
+    sim::LoadedWorld loaded = arguments.text ? sim::load_world_text(*arguments.text, arguments.world, load)
+                                             : sim::load_world(arguments.world, load);
     tools::read_programs(loaded, {options.launch, load.allow_paths});
     auto next_check = std::chrono::steady_clock::now();
     options.leave = [&next_check] {
@@ -66,22 +76,43 @@ std::string run(const RunArguments& arguments) {
   return summary.to_json();
 }
 
+/// Writes warnings to standard error, as the programs do; standard output belongs to the program in Python.
+void log_to_stderr() {
+  constexpr const char* name = "shoal";
+  if (spdlog::get(name)) return;
+  spdlog::set_default_logger(spdlog::stderr_color_mt(name));
+  spdlog::set_level(spdlog::level::warn);
+  spdlog::set_pattern("%^%l%$: %v");
+}
+
+void set_log_level(const std::string& name) {
+  const std::vector<std::string> names{"debug", "info", "warn", "error", "off"};
+  if (std::find(names.begin(), names.end(), name) == names.end())
+    throw Error("a log level is debug, info, warn, error or off, got '" + name + "'");
+  spdlog::set_level(spdlog::level::from_str(name));
+}
+
 }  // namespace
 
 void add_runs(py::module_& module) {
-  using namespace py::literals;
+  using py::literals::operator""_a;
+  log_to_stderr();
+  module.def("set_log_level", &set_log_level, "level"_a);
   module.def(
       "run",
-      [](std::string world, std::optional<std::int64_t> seed, std::vector<std::string> sets,
-         std::optional<double> duration_s, std::string results, std::string record, std::string bus, bool launch,
-         bool overwrite) {
-        return run({std::move(world), seed, std::move(sets), duration_s, std::move(results), std::move(record),
-                    std::move(bus), launch, overwrite});
+      [](std::string world, std::optional<std::string> text, std::optional<std::int64_t> seed,
+         std::vector<std::string> sets, std::optional<double> duration_s, std::string results, std::string record,
+         std::string bus, std::string lcm_url, std::vector<std::string> wait_for, bool launch, bool overwrite) {
+        return run({std::move(world), std::move(text), seed, std::move(sets), duration_s, std::move(results),
+                    std::move(record), std::move(bus), std::move(lcm_url), std::move(wait_for), launch, overwrite});
       },
-      "world"_a, "seed"_a, "sets"_a, "duration_s"_a, "results"_a, "record"_a, "bus"_a, "launch"_a, "overwrite"_a);
+      "world"_a, "text"_a, "seed"_a, "sets"_a, "duration_s"_a, "results"_a, "record"_a, "bus"_a, "lcm_url"_a,
+      "wait_for"_a, "launch"_a, "overwrite"_a);
   module.def("version", &tools::version_text, "Returns the versions of Shoal and of its libraries.");
   module.def("short_version", &tools::short_version, "Returns the version of Shoal only.");
+  module.def("world_file", &tools::world_file, "name"_a, "Returns the path of a world file; see World.");
   module.def("shipped_folder", &sim::shipped_folder, "Returns the folder with the shipped worlds; '': there is none.");
+  module.def("program_folder", &sim::program_folder, "Returns the folder of the program shoal; '': there is none.");
 }
 
 }  // namespace python

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "python/bindings/bindings.hpp"
+#include "python/bindings/gil.hpp"
 #include "python/bindings/in_use.hpp"
 #include "python/bindings/message_objects.hpp"
 #include "python/world/error.hpp"
@@ -39,7 +40,7 @@ class World : public Guarded, public std::enable_shared_from_this<World> {
 };
 
 /// Unread messages of one channel.
-class Subscription {
+class Subscription : public ZeroedMemory {
  public:
   Subscription(std::shared_ptr<World> world, const std::string& channel, std::size_t capacity)
       : world_(std::move(world)),
@@ -48,19 +49,27 @@ class Subscription {
         restores_(world_->own->restores()) {}
 
   py::list take() {
+    require_made();
     const Guarded::Use use(*world_);
     if (std::exchange(restores_, world_->own->restores()) != world_->own->restores()) mailbox_->set_unread({});
     py::list all;
-    while (const auto message = mailbox_->take()) {
-      const py::bytes payload = bytes_of(message->payload);
-      all.append(decode_message(schema_of_payload(message->payload), payload));
-    }
+    while (const auto message = mailbox_->take()) all.append(decode_if_known(message->payload));
     return all;
   }
-  std::uint64_t dropped() const { return mailbox_->dropped(); }
-  const std::string& channel() const { return channel_; }
+  std::uint64_t dropped() const {
+    require_made();
+    return mailbox_->dropped();
+  }
+  const std::string& channel() const {
+    require_made();
+    return channel_;
+  }
 
  private:
+  void require_made() const {
+    if (!world_) throw Error("the object was not initialised");
+  }
+
   const std::shared_ptr<World> world_;  // the mailbox may not outlive its bus
   const std::string channel_;
   const std::unique_ptr<sim::Mailbox> mailbox_;
@@ -69,7 +78,7 @@ class Subscription {
 
 std::shared_ptr<World> make_world(const std::string& file, const std::optional<std::string>& text,
                                   std::optional<std::int64_t> seed, const std::vector<std::string>& sets) {
-  const py::gil_scoped_release others;
+  const WithoutGil others;
   return std::make_shared<World>(std::make_unique<InProcessWorld>(load({file, text, sets, seed})));
 }
 
@@ -79,11 +88,11 @@ std::int64_t step(World& world, std::int64_t count) {
   std::int64_t taken = 0;
   if (count == 1) {
     // A single step is often shorter than giving up the GIL would be worth checking signals for.
-    const py::gil_scoped_release others;
+    const WithoutGil others;
     return world.own->step(1);
   }
   {
-    const py::gil_scoped_release others;
+    const WithoutGil others;
     taken = world.own->step(count, &interrupted);
   }
   raise_interrupt();
@@ -126,19 +135,21 @@ py::object last(World& world, const std::string& channel) {
   const Guarded::Use use(world);
   const sim::Bytes* const payload = world.own->bus().find(channel);
   if (payload == nullptr) return py::none();
-  return decode_message(schema_of_payload(*payload), bytes_of(*payload));
+  return decode_if_known(*payload);
 }
 
 py::dict channels(World& world) {
   const Guarded::Use use(world);
   py::dict all;
-  for (const auto& [channel, payload] : world.own->bus().all()) all[py::str(channel)] = schema_of_payload(payload).name;
+  for (const auto& [channel, payload] : world.own->bus().all()) {
+    const auto* const schema = shoal::embedded_types().find(static_cast<std::uint64_t>(shoal::fingerprint(payload)));
+    all[py::str(channel)] = schema != nullptr ? schema->name : "";
+  }
   return all;
 }
 
 void publish(World& world, const std::string& channel, const py::bytes& payload) {
   const Guarded::Use use(world);
-  schema_of_payload(span_of(payload));
   world.own->publish(channel, span_of(payload));
 }
 
@@ -163,8 +174,17 @@ std::vector<std::string> object_names(World& world) {
   return names;
 }
 
+/// Returns the function of a property, which may be read while another thread steps the world.
+template <class Get>
+auto of_world(Get get) {
+  return [get](const World& world) {
+    world.require_made();
+    return get(world.own->world());
+  };
+}
+
 void add_world_class(py::module_& module) {
-  using namespace py::literals;
+  using py::literals::operator""_a;
   py::class_<World, std::shared_ptr<World>>(module, "World")
       .def(py::init(&make_world), "file"_a, "text"_a = py::none(), "seed"_a = py::none(),
            "sets"_a = std::vector<std::string>())
@@ -216,14 +236,14 @@ void add_world_class(py::module_& module) {
           [](World& world, const py::bytes& snapshot) {
             const Guarded::Use use(world);
             const std::span<const std::byte> bytes = span_of(snapshot);
-            const py::gil_scoped_release others;
+            const WithoutGil others;
             world.own->restore(bytes);
           },
           "snapshot"_a)
       .def("branch",
            [](World& world) {
              const Guarded::Use use(world);
-             const py::gil_scoped_release others;
+             const WithoutGil others;
              return std::make_shared<World>(world.own->branch());
            })
       .def(
@@ -243,16 +263,18 @@ void add_world_class(py::module_& module) {
              const Guarded::Use use(world);
              return world.own->world().state().run_hash();
            })
-      .def_property_readonly("name", [](const World& world) { return world.own->world().config().name; })
-      .def_property_readonly("description", [](const World& world) { return world.own->world().config().description; })
-      .def_property_readonly("seed", [](const World& world) { return world.own->world().config().run.seed; })
+      .def_property_readonly("name", of_world([](const sim::World& world) { return world.config().name; }))
+      .def_property_readonly("description",
+                             of_world([](const sim::World& world) { return world.config().description; }))
+      .def_property_readonly("seed", of_world([](const sim::World& world) { return world.config().run.seed; }))
       .def_property_readonly("duration_s",
-                             [](const World& world) { return world.own->world().config().run.duration_s; })
+                             of_world([](const sim::World& world) { return world.config().run.duration_s; }))
       .def_property_readonly("step_s",
-                             [](const World& world) { return sim::to_seconds(world.own->world().step_time()); })
-      .def_property_readonly("step_number", [](const World& world) { return world.own->world().step_number(); })
-      .def_property_readonly("time_s", [](const World& world) { return sim::to_seconds(world.own->world().now()); })
-      .def_property_readonly("utime", [](const World& world) { return world.own->world().now().count(); })
+                             of_world([](const sim::World& world) { return sim::to_seconds(world.step_time()); }))
+      .def_property_readonly("step_number", of_world([](const sim::World& world) { return world.step_number(); }))
+      .def_property_readonly("time_s", of_world([](const sim::World& world) { return sim::to_seconds(world.now()); }))
+      .def_property_readonly("utime",
+                             of_world([](const sim::World& world) { return world.epoch_us() + world.now().count(); }))
       .def_property_readonly("ended", [](World& world) -> std::optional<std::string> {
         const Guarded::Use use(world);
         const auto& end = world.own->world().ended();

@@ -3,9 +3,9 @@
 
 World      a world in this process: step it, read its sensors, save and restore it
 Client     the connection of a program to a vehicle of a run, over LCM
-run        runs a world to its end, as `shoal run` does
-read       the messages of a record; write_record writes one
-messages   a class for each type of message
+run        runs a world to its end, as `shoal run` does; study runs a study
+read       the messages of a record, table those of a channel as columns; RecordWriter writes a record
+messages   a class for each type of message; shoal.imu_t is the same as shoal.messages.imu_t
 results    tracks and errors of a results folder; plots draws them
 vector     many worlds at once, with the interfaces of Gymnasium and PettingZoo
 Error      what all of these raise for input that they refuse
@@ -27,9 +27,17 @@ finally:
 from . import messages, plots, results, vector
 from ._shoal import Error
 from .client import Client
-from .record import RecordWriter, read
-from .run import Run, run
-from .world import World
+from .record import Event, Record, RecordWriter, read, table
+from .run import Run, Study, run, study
+from .world import Subscription, World, set_log_level
 
-__all__ = ['Client', 'Error', 'RecordWriter', 'Run', 'World', 'messages', 'plots', 'read', 'results', 'run', 'vector']
-__version__ = _shoal.short_version()
+__all__ = ['Client', 'Error', 'Event', 'Record', 'RecordWriter', 'Run', 'Study', 'Subscription', 'World', 'messages',
+           'plots', 'read', 'results', 'run', 'set_log_level', 'study', 'table', 'vector']
+__version__: str = _shoal.short_version()
+
+
+def __getattr__(name):
+    """Finds the classes of messages here too, where the package that lcm-gen makes has them."""
+    if name.endswith('_t'):
+        return getattr(messages, name)
+    raise AttributeError(f"module 'shoal' has no attribute {name!r}")

@@ -1,5 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The connection of a program to its vehicle."""
+from __future__ import annotations
+
+import builtins
+from typing import Callable, Iterator
+
 from . import _shoal, messages
 
 
@@ -14,25 +19,40 @@ class Client:
 
     Handlers are called during next_tick(), wait_until() and ticks() only.  What a handler raises comes out of the
     waiting call.  A payload that is not valid is counted and reported on standard error, once for each channel.
+    A context manager closes the client.
     """
 
-    def __init__(self, name, lcm_url=''):
-        """name: under which the simulator waits for the program; lcm_url: '' for LCM_DEFAULT_URL or LCM's default."""
-        self._own = _shoal.Client(name, lcm_url)
+    def __init__(self, name: str, lcm_url: str = '') -> None:
+        """Opens the bus.
 
-    def subscribe(self, channel, handler, type=None):
+        name: under which the simulator waits for the program
+        lcm_url: '' for LCM_DEFAULT_URL or LCM's default
+
+        Raises Error when LCM cannot be used with this URL.
+        """
+        self._client = _shoal.Client(name, lcm_url)
+
+    @property
+    def _own(self):
+        if self._client is None:
+            raise _shoal.Error('the client is closed')
+        return self._client
+
+    def subscribe(self, channel: str, handler: Callable[[messages.Message], object],
+                  type: builtins.type[messages.Message] | str | None = None) -> None:
         """Calls handler(message) for each message of a channel.
 
         type: class or name of the type that is accepted; None: the one that each message names
         """
-        name = type._type if isinstance(type, __builtins_type) and issubclass(type, messages.Message) else type
-        self._own.subscribe(channel, handler, name)
+        if isinstance(type, builtins.type) and issubclass(type, messages.Message):
+            type = type._type
+        self._own.subscribe(channel, handler, type)
 
-    def publish(self, channel, message):
+    def publish(self, channel: str, message: messages.Message | bytes) -> None:
         """Publishes a message; in lockstep it takes effect in the step after the tick."""
-        self._own.publish(channel, message.encode() if isinstance(message, messages.Message) else bytes(message))
+        self._own.publish(channel, messages.payload_of(message))
 
-    def join(self, period_s, on_timeout='', timeout_s=0.0, wait_s=30.0):
+    def join(self, period_s: float, on_timeout: str = '', timeout_s: float = 0.0, wait_s: float = 30.0) -> None:
         """Joins the lockstep: the world waits for this program every `period_s` of simulated time.
 
         on_timeout: what the world does when the program does not answer in `timeout_s` of wall time: wait, pause,
@@ -43,57 +63,69 @@ class Client:
         """
         self._own.join(period_s, on_timeout, timeout_s, wait_s)
 
-    def follow(self, period_s):
+    def follow(self, period_s: float) -> None:
         """Follows a run without lockstep: next_tick() returns when sim.clock passes a multiple of `period_s`."""
         self._own.follow(period_s)
 
-    def next_tick(self):
+    def next_tick(self) -> int | None:
         """Answers the last tick, waits for the next one and returns its simulated time in microseconds.
 
         Returns None when the run is over; see `end`.
         """
         return self._own.next_tick()
 
-    def wait_until(self, utime):
-        """Handles ticks up to the first one at or after a time; returns its time as next_tick() does."""
+    def wait_until(self, utime: int) -> int | None:
+        """Handles ticks up to the first one at or after a time in microseconds; returns as next_tick() does."""
         return self._own.wait_until(utime)
 
-    def ticks(self):
+    def ticks(self) -> Iterator[int]:
         """Yields the simulated time of each tick, in microseconds, until the run is over."""
-        while (utime := self.next_tick()) is not None:
+        next_tick = self._own.next_tick
+        while (utime := next_tick()) is not None:
             yield utime
 
-    def on_rewind(self, handler):
+    def on_rewind(self, handler: Callable[[int], object]) -> None:
         """Calls handler(utime) when the world was rewound to a time; without a handler the run is then over."""
         self._own.on_rewind(handler)
 
-    def stop(self):
+    def stop(self) -> None:
         """Makes next_tick() return None, for good; any thread may call it."""
         self._own.stop()
 
-    def set_silence_limit(self, seconds):
+    def close(self) -> None:
+        """Leaves the lockstep and the bus.  The client cannot be used afterwards."""
+        self._client = None
+
+    def set_silence_limit(self, seconds: float) -> None:
         """Sets after how much wall time without any message the run counts as over; 0: never.  600 s at first."""
         self._own.set_silence_limit(seconds)
 
+    def set_wait_warning(self, seconds: float) -> None:
+        """Sets after how much wall time of waiting a line on standard error says so; 0: never.  3 s at first."""
+        self._own.set_wait_warning(seconds)
+
     @property
-    def end(self):
+    def end(self) -> str:
         """Why the run is over: last_tick, stopped, silence, rewound, dropped; '' while it continues."""
         return self._own.end
 
     @property
-    def reason(self):
+    def reason(self) -> str:
         """Reason that the simulator gave when it dropped this program."""
         return self._own.reason
 
     @property
-    def branch(self):
+    def branch(self) -> int:
         """Number of rewinds before the present tick."""
         return self._own.branch
 
     @property
-    def counts(self):
-        """Dict with the numbers of messages: received, bad, published, requested, repeated."""
+    def counts(self) -> dict[str, int]:
+        """Numbers of messages: received, bad, published, requested, repeated."""
         return self._own.counts
 
+    def __enter__(self) -> Client:
+        return self
 
-__builtins_type = type
+    def __exit__(self, *_) -> None:
+        self.close()

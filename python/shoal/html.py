@@ -1,9 +1,16 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Tables of worlds and runs for notebooks."""
+from __future__ import annotations
+
 from html import escape
+from typing import TYPE_CHECKING, Iterable, Sequence
+
+if TYPE_CHECKING:
+    from .run import Run, Study
+    from .world import World
 
 
-def table(rows, head=()):
+def table(rows: Iterable[Sequence], head: Sequence[str] = ()) -> str:
     """Returns an HTML table of rows of values."""
     def row(values, cell):
         return '<tr>' + ''.join(f'<{cell}>{escape(_shown(value))}</{cell}>' for value in values) + '</tr>'
@@ -11,7 +18,7 @@ def table(rows, head=()):
             '</table>')
 
 
-def world_table(world):
+def world_table(world: World) -> str:
     """Returns the vehicles of a world, with position, speed and devices."""
     states = world.states()
     rows = [(name, ', '.join(f'{x:.2f}' for x in state['position_m']),
@@ -21,12 +28,32 @@ def world_table(world):
             table(rows, ('vehicle', 'x, y, z in m', 'speed in m/s', 'devices')))
 
 
-def run_table(run):
+def run_table(run: Run) -> str:
     """Returns the scores of a run and how it ended."""
     summary = run.summary
-    title = f"<b>{escape(summary['world'])}</b>, {summary['sim_time_s']:g} s, seed {summary['seed']}"
-    rows = sorted((name, value) for name, value in summary.get('metrics', {}).items() if value is not None)
+    title = (f"<b>{escape(str(summary.get('world')))}</b>, {summary.get('sim_time_s', 0):g} s, "
+             f"seed {escape(str(summary.get('seed')))}, run hash {escape(str(summary.get('run_hash')))}")
+    rows = sorted((name, value) for name, value in run.metrics.items() if value is not None)
     return title + table(rows, ('metric', 'value'))
+
+
+def study_table(study: Study) -> str:
+    """Returns mean and 95 % confidence interval of each figure of a study, by case."""
+    summary = study.summary
+    title = (f"<b>{escape(str(summary.get('study')))}</b>: {escape(str(summary.get('description')))}; "
+             f"{escape(str(summary.get('runs')))} runs")
+    figures = summary.get('figures', [])
+    rows = [[case['name'], *(_statistic(case['figures'].get(figure)) for figure in figures)]
+            for case in summary.get('cases', [])]
+    return title + table(rows, ('case', *figures))
+
+
+def _statistic(entry):
+    if not entry or entry.get('mean') is None:
+        return '-'
+    interval = entry.get('mean_95')
+    bounds = '' if not interval or None in interval else f' ({interval[0]:.4g} to {interval[1]:.4g})'
+    return f"{entry['mean']:.4g}{bounds}"
 
 
 def _shown(value):

@@ -4,7 +4,14 @@
 A class is made when it is first used.  Its objects have the members of the type as attributes; `help(imu_t)` lists them
 with units.  Arrays of numbers are NumPy arrays in the byte order of the machine; those of bytes, such as the pixels of
 an image, are read-only views of the received payload.  Members that are the length of an array need not be set.
+
+The classes have encode() and decode() as those that lcm-gen makes of the .lcm files, which have lists, tuples and bytes
+instead of arrays.
 """
+from __future__ import annotations
+
+from typing import IO as _IO, Any as _Any
+
 import numpy as _np
 
 from . import _shoal
@@ -21,7 +28,7 @@ class Message:
     _type = ''      # full name, such as shoal.imu_t
     _members = ()   # tuples of name, type, dimensions, comment, whether it is the length of an array
 
-    def __init__(self, **values):
+    def __init__(self, **values: _Any) -> None:
         """Sets members by name; the others become zero, empty or false.  Raises TypeError for an unknown name."""
         for name, type_name, dimensions, _, _ in self._members:
             if name in values:
@@ -31,14 +38,23 @@ class Message:
         if values:
             raise TypeError(f'{type(self).__name__} has no member {", ".join(sorted(values))!r}')
 
-    def encode(self):
+    def encode(self) -> bytes:
         """Returns the payload as bytes.  Raises shoal.Error for values that the type cannot hold."""
         return _shoal.encode(self._type, self)
 
     @classmethod
-    def decode(cls, payload):
-        """Returns the message of a payload.  Raises shoal.Error when the payload is not valid."""
-        return _shoal.decode(cls._type, bytes(payload))
+    def decode(cls, payload: bytes | _IO[bytes]) -> Message:
+        """Returns the message of a payload, bytes or a file that has it.  Raises shoal.Error when it is not valid."""
+        return _shoal.decode(cls._type, _bytes_of(payload.read() if hasattr(payload, 'read') else payload))
+
+    @classmethod
+    def get_hash(cls) -> int:
+        """Returns the fingerprint of the type, with which its payloads begin."""
+        return _shoal.message_type(cls._type)[3]
+
+    @classmethod
+    def _get_packed_fingerprint(cls):
+        return cls.get_hash().to_bytes(8, 'big')
 
     def __eq__(self, other):
         if type(other) is not type(self):
@@ -55,14 +71,31 @@ class Message:
         return _restore, (self._type, self.encode())
 
 
-def decode(payload):
+def decode(payload: bytes) -> Message:
     """Returns the message of a payload, of the type that its first eight bytes name.  Raises shoal.Error."""
-    return _shoal.decode_any(bytes(payload))
+    return _shoal.decode_any(_bytes_of(payload))
 
 
-def types():
+def payload_of(message: Message | bytes) -> bytes:
+    """Returns the payload of a message: of an object with encode(), also one of lcm-gen's, or bytes as they are."""
+    if isinstance(message, (bytes, bytearray, memoryview)):
+        return bytes(message)
+    if isinstance(message, str) or not callable(getattr(message, 'encode', None)):
+        raise TypeError(f'a message is an object with encode(), or bytes, got {message!r}')
+    return message.encode()
+
+
+def types() -> list[str]:
     """Returns the names of all types, such as `imu_t`."""
     return sorted(name.rpartition('.')[2] for name in _shoal.message_types())
+
+
+def _bytes_of(payload):
+    if isinstance(payload, bytes):
+        return payload
+    if isinstance(payload, (bytearray, memoryview, _np.ndarray)):
+        return bytes(payload)
+    raise TypeError(f'a payload is bytes, got {payload!r}')
 
 
 def _restore(name, payload):
@@ -124,4 +157,4 @@ def __getattr__(name):
 
 
 def __dir__():
-    return ['Message', 'decode', 'types', *types()]
+    return ['Message', 'decode', 'payload_of', 'types', *types()]

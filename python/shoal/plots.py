@@ -1,10 +1,22 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Plots of a results folder as axes of matplotlib, which must be installed (python3-matplotlib)."""
-import os
+"""Plots of a results folder as axes of matplotlib, which must be installed (python3-matplotlib).
+
+`folder` is the path of a results folder, or a shoal.Run that has one; `axes` are those to draw into, None: new ones; `metrics`
+are names of metrics, None: all.
+"""
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Sequence
 
 import numpy as np
 
-from .results import _columns
+from ._shoal import Error
+from .results import _columns, _file_of
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from .results import Folder
 
 
 def _axes(axes):
@@ -14,10 +26,10 @@ def _axes(axes):
     return plt.figure(layout='constrained').add_subplot()
 
 
-def tracks(folder, axes=None):
+def tracks(folder: Folder, axes: Axes | None = None) -> Axes:
     """Draws the true track of every vehicle, seen from above, in m; returns the axes."""
     axes = _axes(axes)
-    columns = _columns(os.path.join(os.fspath(folder), 'tracks.csv'))
+    columns = _columns(_file_of(folder, 'tracks.csv'))
     for vehicle in dict.fromkeys(columns['vehicle']):
         own = columns['vehicle'] == vehicle
         line, = axes.plot(columns['x_m'][own], columns['y_m'][own], label=vehicle)
@@ -30,38 +42,42 @@ def tracks(folder, axes=None):
 
 
 def _by_metric(folder, metrics):
-    columns = _columns(os.path.join(os.fspath(folder), 'errors.csv'))
+    columns = _columns(_file_of(folder, 'errors.csv'))
     for metric in metrics or dict.fromkeys(columns['metric']):
+        if metric not in columns['metric']:
+            raise Error(f"the run has no errors of a metric '{metric}'")
         own = columns['metric'] == metric
         yield metric, {name: values[own] for name, values in columns.items()}
 
 
-def errors(folder, metrics=None, axes=None):
-    """Draws position error against time in m, with the 95 % bound that the estimate claims; returns the axes.
-
-    metrics: names; None: all
-    """
-    axes = _axes(axes)
+def errors(folder: Folder, metrics: Sequence[str] | None = None, axes: Axes | None = None) -> Axes:
+    """Draws position error against time in m, with the 95 % bound that the estimate claims; returns the axes."""
+    axes, bounded = _axes(axes), False
     for metric, own in _by_metric(folder, metrics):
         line, = axes.plot(own['time_s'], own['error_m'], label=metric)
         if np.isfinite(own['sigma_m']).any():
+            bounded = True
             axes.plot(own['time_s'], 2 * own['sigma_m'], '--', color=line.get_color(), linewidth=0.8)
     axes.set_xlabel('time in s')
-    axes.set_ylabel('error in m (dashed: twice its own sigma)')
+    axes.set_ylabel('error in m (dashed: twice its own sigma)' if bounded else 'error in m')
     axes.legend()
     return axes
 
 
-def nees(folder, metrics=None, axes=None, dimensions=2):
+def nees(folder: Folder, metrics: Sequence[str] | None = None, axes: Axes | None = None,
+         dimensions: int = 2) -> Axes:
     """Draws the normalised estimation error squared against time, with the 95 % interval of a consistent filter.
 
     dimensions: number of coordinates of the estimate; the interval is that of chi-square with as many degrees of
-    freedom (Bar-Shalom, Li, Kirubarajan, Estimation with Applications to Tracking and Navigation, 2001, section 5.4)
+        freedom (Bar-Shalom, Li, Kirubarajan, Estimation with Applications to Tracking and Navigation, 2001, section
+        5.4)
     """
+    known = [(metric, own) for metric, own in _by_metric(folder, metrics) if np.isfinite(own['nees']).any()]
+    if not known:
+        raise Error('no metric of the run has a NEES: those of the type consistency have one')
     axes = _axes(axes)
-    for metric, own in _by_metric(folder, metrics):
-        if np.isfinite(own['nees']).any():
-            axes.plot(own['time_s'], own['nees'], label=metric)
+    for metric, own in known:
+        axes.plot(own['time_s'], own['nees'], label=metric)
     low, high = _chi_square(0.025, dimensions), _chi_square(0.975, dimensions)
     axes.axhspan(low, high, color='0.9', zorder=0)
     axes.set_yscale('log')

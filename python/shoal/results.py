@@ -1,11 +1,35 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The results folder of a run: tracks and errors as arrays, or as DataFrame where pandas is installed."""
+"""The results folder of a run: tracks and errors as arrays, or as DataFrame where pandas is installed.
+
+`folder` is the path of a results folder, or a shoal.Run that has one.
+"""
+from __future__ import annotations
+
 import csv
 import os
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
 from ._shoal import Error
+
+if TYPE_CHECKING:
+    import pandas
+
+    from .run import Run
+
+    Table: TypeAlias = pandas.DataFrame | dict[str, np.ndarray]
+    Folder: TypeAlias = str | os.PathLike | Run
+
+
+def _file_of(folder, name):
+    results = getattr(folder, 'results', folder)
+    if results is None:
+        raise Error('the run has no results: run() needs a folder for them')
+    return os.path.join(os.fspath(results), name)
+
+
+_TEXT = {'vehicle', 'metric', 'case', 'ended', 'run_hash'}  # these may look like numbers
 
 
 def _columns(path):
@@ -13,8 +37,8 @@ def _columns(path):
     try:
         with open(path, newline='', encoding='utf-8') as file:
             rows = list(csv.reader(file))
-    except OSError as error:
-        raise Error(f'{path}: {error.strerror}') from None
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        raise Error(f'{path}: {getattr(error, "strerror", None) or error}') from None
     if not rows:
         raise Error(f'{path}: the file is empty')
     made = {}
@@ -24,9 +48,10 @@ def _columns(path):
         except IndexError:
             raise Error(f'{path}: a row has no column {name!r}') from None
         try:
-            made[name] = np.array([float(value) for value in values])
+            made[name] = np.array(values, object) if name in _TEXT else np.array([float(value or 'nan')
+                                                                                  for value in values])
         except ValueError:
-            made[name] = np.array(values, dtype=object)
+            made[name] = np.array(values, object)
     return made
 
 
@@ -39,15 +64,15 @@ def _table(columns):
     return pandas.DataFrame(columns)
 
 
-def tracks(folder):
-    """Returns the true poses of all vehicles: columns time_s, vehicle, x_m, y_m, z_m, yaw_rad."""
-    return _table(_columns(os.path.join(os.fspath(folder), 'tracks.csv')))
+def tracks(folder: Folder) -> Table:
+    """Returns the true poses of all vehicles: columns time_s, vehicle, x_m, y_m, z_m, yaw_rad, in world axes."""
+    return _table(_columns(_file_of(folder, 'tracks.csv')))
 
 
-def errors(folder):
+def errors(folder: Folder) -> Table:
     """Returns the errors of all estimates that metrics score.
 
     Columns: time_s, metric, error_m, estimate_x_m, ..., truth_x_m, ..., travelled_m, sigma_m (NaN: the estimate gave
     none), nees.
     """
-    return _table(_columns(os.path.join(os.fspath(folder), 'errors.csv')))
+    return _table(_columns(_file_of(folder, 'errors.csv')))

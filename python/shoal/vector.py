@@ -2,134 +2,177 @@
 """Many worlds at once, with the interfaces of Gymnasium and PettingZoo, neither of which is needed.
 
     envs = shoal.vector.VectorEnv(
-        'worlds/rover.yaml', 64, steps=10,
-        actions=['rover1.drive.cmd:twist_command_t:linear_x_mps,angular_z_radps'],
+        'minimal', 64, steps=10,
+        actions=['rover1.drive.cmd:twist_command_t:forward_mps,turn_radps'],
         observations=['rover1.lidar:ranges', '@rover1'],
         reward=lambda before, actions, after: ...)
     observations, infos = envs.reset(seed=1)
     observations, rewards, terminated, truncated, infos = envs.step(actions)
 """
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING, Any, Callable, Mapping, Sequence
+
 import numpy as np
 
 from . import _shoal
-from .world import _path_of
-from .yaml_text import yaml_of
+from .world import _source, _threads
 
-#: Names of the 13 values of the observation `@vehicle`.
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, DTypeLike
+
+#: Names of the 13 values of the observation `@vehicle`: true position, orientation and velocity in world axes, angular
+#: velocity in vehicle axes.
 MOTION = ('x_m', 'y_m', 'z_m', 'qw', 'qx', 'qy', 'qz', 'vx_mps', 'vy_mps', 'vz_mps', 'wx_radps', 'wy_radps', 'wz_radps')
 
 
 class Box:
-    """Space of arrays between two bounds; a Box of gymnasium.spaces where that package is installed."""
+    """Space of arrays between two bounds, where gymnasium is not installed; else its own Box is used."""
 
-    def __init__(self, low, high, shape, dtype=np.float64):
-        self.low, self.high = np.full(shape, low, dtype), np.full(shape, high, dtype)
+    def __init__(self, low: ArrayLike, high: ArrayLike, shape: Sequence[int],
+                 dtype: DTypeLike = float) -> None:
+        """low, high: numbers or arrays of the shape; dtype: of its elements."""
+        self.low = np.array(np.broadcast_to(low, shape), dtype)
+        self.high = np.array(np.broadcast_to(high, shape), dtype)
         self.shape, self.dtype = tuple(shape), np.dtype(dtype)
         self._random = np.random.default_rng()
 
-    def seed(self, seed=None):
-        """Sets the seed of sample()."""
+    def seed(self, seed: int | None = None) -> int | None:
+        """Sets the seed of sample(), and returns it."""
         self._random = np.random.default_rng(seed)
-        return [seed]
+        return seed
 
-    def sample(self):
-        """Returns a random element; unbounded ones are normally distributed."""
-        if np.isfinite(self.low).all() and np.isfinite(self.high).all():
-            return self._random.uniform(self.low, self.high).astype(self.dtype)
-        return self._random.standard_normal(self.shape).astype(self.dtype)
+    def sample(self) -> np.ndarray:
+        """Returns a random element; unbounded values are normally distributed."""
+        bounded = np.isfinite(self.low) & np.isfinite(self.high)
+        low, high = np.where(bounded, self.low, 0), np.where(bounded, self.high, 1)
+        return np.where(bounded, self._random.uniform(low, high),
+                        np.clip(self._random.standard_normal(self.shape), self.low, self.high)).astype(self.dtype)
 
-    def contains(self, value):
+    def contains(self, value: ArrayLike) -> bool:
         """Returns whether an array is an element."""
         value = np.asarray(value)
         return value.shape == self.shape and bool(np.all(value >= self.low) and np.all(value <= self.high))
 
     __contains__ = contains
 
-    def __eq__(self, other):
+    def __eq__(self, other) -> bool:
         return (isinstance(other, Box) and self.shape == other.shape and np.array_equal(self.low, other.low) and
                 np.array_equal(self.high, other.high))
 
-    def __repr__(self):
-        return f'Box({self.low.min()}, {self.high.max()}, {self.shape}, {self.dtype})'
+    __hash__ = None  # type: ignore[assignment]
+
+    def __repr__(self) -> str:
+        return f'Box({self.low.min(initial=0)}, {self.high.max(initial=0)}, {self.shape}, {self.dtype})'
 
 
 def _box(low, high, shape):
+    low, high = (np.broadcast_to(np.asarray(bound, float), shape) for bound in (low, high))
+    if not np.all(low <= high):
+        raise _shoal.Error(f'action_low must be at most action_high, got {low} and {high}')
     try:
-        from gymnasium.spaces import Box as GymBox
+        from gymnasium.spaces import Box as GymBox  # type: ignore[import]
     except ImportError:
         return Box(low, high, shape)
     return GymBox(low, high, shape, np.float64)
 
 
+def _autoreset():
+    try:
+        from gymnasium.vector import AutoresetMode  # type: ignore[import]
+    except ImportError:
+        return 'NextStep'
+    return AutoresetMode.NEXT_STEP
+
+
 class VectorEnv:
     """`num_envs` worlds of one file whose seeds differ, stepped together on all cores.
 
-    world: path of a world file or a dict
-    actions: texts 'channel:type:member,member'; the values of all are one row of the array of actions
-    observations: texts 'channel:member' (a number or an array of numbers of the last message) or '@vehicle' (the true
-        motion, MOTION); the values of all are one row of the array of observations, NaN before the first message
-    steps: steps of the world for each step of the environment
-    reward: reward(before, actions, after) -> (num_envs,), of arrays of all worlds; None: zeros
-    terminated: terminated(after) -> (num_envs,) of bool; worlds whose events end the run are terminated anyway
-    max_episode_s: after this simulated time an episode is truncated
-    action_low, action_high: bounds of the actions, numbers or arrays
-
-    A world that is terminated or truncated is built again in the next step, with a new seed (autoreset mode "next
-    step" of Gymnasium).  Equal seeds and actions give equal observations for any number of threads.
+    A world that is terminated or truncated is built again in the next step, with a new seed (the mode "next step" of
+    Gymnasium).  Equal seeds and actions give equal observations for any number of threads.
     """
 
-    metadata = {'render_modes': [], 'autoreset_mode': 'next_step'}
     render_mode = None
     spec = None
 
-    def __init__(self, world, num_envs, *, actions, observations, steps=1, reward=None, terminated=None,
-                 max_episode_s=None, action_low=-1.0, action_high=1.0, seed=1, set=None, threads=0):
-        self.num_envs = int(num_envs)
-        sets = [f'{path}={yaml_of(value)}' for path, value in (set or {}).items()]
-        text = yaml_of(world) if isinstance(world, dict) else None
-        self._pool = _shoal.Pool('world' if text else _path_of(world), text, sets, self.num_envs, seed,
-                                 [_action(each) for each in actions], [_observation(each) for each in observations],
-                                 steps, threads)
-        self._reward, self._terminated = reward, terminated
+    def __init__(self, world: str | os.PathLike | dict, num_envs: int, *, actions: Sequence[str],
+                 observations: Sequence[str], steps: int = 1, reward: Callable | None = None,
+                 terminated: Callable | None = None, max_episode_s: float | None = None,
+                 action_low: ArrayLike = -1.0, action_high: ArrayLike = 1.0, missing: float = 0.0, seed: int = 1, set: dict | None = None,
+                 threads: int = 0) -> None:
+        """Loads a world; reset() builds all.
+
+        world: as of shoal.World
+        actions: texts 'channel:type:member,member'; the values of all are one row of the array of actions
+        observations: texts 'channel:member' (a number or an array of numbers of the last message) or '@vehicle' (the
+            true motion, MOTION); the values of all are one row of the array of observations
+        steps: steps of the world for each step of the environment
+        reward: reward(before, actions, after) -> (num_envs,), of arrays of all worlds; None: zeros
+        terminated: terminated(after) -> (num_envs,) of bool; worlds whose events end the run are terminated anyway
+        max_episode_s: after this simulated time an episode is truncated
+        action_low, action_high: bounds of the actions, numbers or arrays (m,), which are not enforced
+        missing: value of an observation before the first message, and in place of NaN
+        set: as of shoal.World
+        threads: up to 256; 0: one for each core
+
+        Raises Error for a world, an action or an observation that is refused.
+        """
+        self.metadata = {'render_modes': [], 'autoreset_mode': _autoreset()}
+        file, text, sets = _source(world, set)
+        self._pool = _shoal.Pool(file, text, sets, num_envs, seed, [_action(each) for each in actions],
+                                 [_observation(each) for each in observations], steps, _threads(threads))
+        self.num_envs = num_envs
+        self._reward, self._terminated, self._missing = reward, terminated, float(missing)
         self.step_s = steps * self._pool.step_s
         self._longest = None if max_episode_s is None else max(1, round(max_episode_s / self.step_s))
         width, height = self._pool.action_values, self._pool.offsets[-1]
         self.single_action_space = _box(action_low, action_high, (width,))
         self.single_observation_space = _box(-np.inf, np.inf, (height,))
-        self.action_space = _box(action_low, action_high, (self.num_envs, width))
-        self.observation_space = _box(-np.inf, np.inf, (self.num_envs, height))
+        self.action_space = _box(action_low, action_high, (num_envs, width))
+        self.observation_space = _box(-np.inf, np.inf, (num_envs, height))
         #: Slices of a row of observations, in the order of `observations`.
         self.slices = [slice(*pair) for pair in zip(self._pool.offsets, self._pool.offsets[1:])]
         self._seeds = np.random.SeedSequence(seed)
-        self._before = np.full((self.num_envs, height), np.nan)
-        self._ages = np.zeros(self.num_envs, np.int64)
-        self._done = np.zeros(self.num_envs, bool)
+        self._before: np.ndarray | None = None  # until the first reset
+        self._ages = np.zeros(num_envs, np.int64)
+        self._done = np.zeros(num_envs, bool)
 
     @property
-    def unwrapped(self):
+    def unwrapped(self) -> VectorEnv:
         """The environment itself."""
         return self
 
-    def reset(self, *, seed=None, options=None):
+    @property
+    def closed(self) -> bool:
+        """Whether close() was called."""
+        return self._pool is None
+
+    def reset(self, *, seed: int | Sequence[int | None] | None = None,
+              options: dict | None = None) -> tuple[np.ndarray, dict]:
         """Builds all worlds again; returns observations (num_envs, n) and an empty dict.
 
         seed: of world 0, those of the others follow; or a list of seeds; None: seeds that continue the sequence
+        options: not used
         """
+        pool = self._open()
         if seed is None:
             seeds = self._new_seeds(self.num_envs)
-        elif np.ndim(seed) == 0:
-            self._seeds = np.random.SeedSequence(int(seed))
-            seeds = [int(seed) + i for i in range(self.num_envs)]
+        elif isinstance(seed, Sequence) or (isinstance(seed, np.ndarray) and seed.ndim > 0):
+            if len(seed) != self.num_envs:
+                raise _shoal.Error(f'seed must be a number or {self.num_envs} numbers, got {len(seed)}')
+            seeds = [self._new_seeds(1)[0] if each is None else _seed(each) for each in seed]
         else:
-            seeds = [int(each) for each in seed]
-            if len(seeds) != self.num_envs:
-                raise ValueError(f'seed must be a number or {self.num_envs} numbers, got {len(seeds)}')
-        self._before, _ = self._pool.step(np.zeros(self.action_space.shape), seeds)
+            seeds = [_seed(seed) + i for i in range(self.num_envs)]
+            self._seeds = np.random.SeedSequence(seeds[0])
+        self._before = None
+        observations = self._complete(pool.step(np.zeros(self.action_space.shape), seeds)[0])
         self._ages[:] = 0
         self._done[:] = False
-        return self._before.copy(), {}
+        self._before = observations
+        return observations.copy(), {}
 
-    def step(self, actions):
+    def step(self, actions: ArrayLike) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, dict]:
         """Takes a step of all worlds.
 
         actions: (num_envs, m)
@@ -137,13 +180,20 @@ class VectorEnv:
         Returns observations (num_envs, n), rewards (num_envs,), terminated and truncated (num_envs,) of bool, and a
         dict with `failed` (num_envs,) of bool: the physics of the world failed, which also terminates it.
         """
-        actions = np.asarray(actions, float).reshape(self.num_envs, -1)
+        pool = self._open()
+        if self._before is None:
+            raise _shoal.Error('reset() comes before step()')
+        actions = np.asarray(actions, float)
+        if actions.shape != self.action_space.shape:
+            raise _shoal.Error(f'actions must have the shape {self.action_space.shape}, got {actions.shape}')
         begins = self._done.copy()
         seeds = np.full(self.num_envs, -1, np.int64)
         seeds[begins] = self._new_seeds(int(begins.sum()))
-        after, status = self._pool.step(actions, seeds)
-        rewards = np.zeros(self.num_envs) if self._reward is None else np.asarray(
-            self._reward(self._before, actions, after), float).copy()
+        before, self._before = self._before, None  # an exception leaves the worlds at different times
+        after, status = pool.step(actions, seeds)
+        self._complete(after)
+        rewards = np.zeros(self.num_envs) if self._reward is None else np.array(
+            np.broadcast_to(self._reward(before, actions, after), self.num_envs), float)
         terminated = status != 0
         if self._terminated is not None:
             terminated = terminated | np.asarray(self._terminated(after), bool)
@@ -152,77 +202,110 @@ class VectorEnv:
         rewards[begins], terminated[begins], truncated[begins] = 0, False, False
         self._done = terminated | truncated
         self._before = after
-        return after.copy(), rewards, terminated, truncated, {'failed': status == 2}
+        return after.copy(), rewards, terminated, truncated, {'failed': status == 2,
+                                                              '_failed': np.ones(self.num_envs, bool)}
 
-    def run_hash(self, index):
-        """Returns the hash of the run of a world."""
-        return self._pool.run_hash(index)
+    def run_hash(self, index: int) -> int:
+        """Returns the hash of the run of a world, as World.run_hash()."""
+        return self._open().run_hash(index)
 
-    def close(self):
+    def render(self) -> None:
+        """Returns None; `shoal run --view` shows a run."""
+
+    def close(self, **_) -> None:
         """Frees the worlds."""
         self._pool = None
+
+    def _open(self):
+        if self._pool is None:
+            raise _shoal.Error('the environment is closed')
+        return self._pool
+
+    def _complete(self, observations):
+        np.copyto(observations, self._missing, where=np.isnan(observations))
+        return observations
 
     def _new_seeds(self, count):
         return [int(each.generate_state(1)[0] & 0x7fffffff) for each in self._seeds.spawn(count)]
 
 
 class Env:
-    """One world with the interface of gymnasium.Env; the arguments are those of VectorEnv without `num_envs`."""
+    """One world with the interface of gymnasium.Env."""
 
-    metadata = {'render_modes': []}
+    metadata: dict[str, Any] = {'render_modes': []}
     render_mode = None
     spec = None
 
-    def __init__(self, world, **arguments):
+    def __init__(self, world: str | os.PathLike | dict, **arguments: Any) -> None:
+        """arguments: those of VectorEnv, without `num_envs`."""
         self._envs = VectorEnv(world, 1, **arguments)
         self.action_space = self._envs.single_action_space
         self.observation_space = self._envs.single_observation_space
+        #: Slices of an observation, in the order of `observations`.
         self.slices = self._envs.slices
+        self._over = False
 
     @property
-    def unwrapped(self):
+    def unwrapped(self) -> Env:
         """The environment itself."""
         return self
 
-    def reset(self, *, seed=None, options=None):
-        """Builds the world again; returns the observation (n,) and an empty dict."""
+    def reset(self, *, seed: int | None = None, options: dict | None = None) -> tuple[np.ndarray, dict]:
+        """Builds the world again; returns the observation (n,) and an empty dict.
+
+        seed: None: one that continues the sequence
+        options: not used
+        """
         observations, _ = self._envs.reset(seed=seed)
+        self._over = False
         return observations[0], {}
 
-    def step(self, action):
-        """Takes a step; returns observation (n,), reward, terminated, truncated and a dict."""
-        observations, rewards, terminated, truncated, info = self._envs.step([action])
+    def step(self, action: ArrayLike) -> tuple[np.ndarray, float, bool, bool, dict]:
+        """Takes a step with an action (m,).
+
+        Returns the observation (n,), the reward, whether the episode is terminated, whether it is truncated, and a dict
+        with `failed`.  After the end of an episode reset() must follow.
+        """
+        if self._over:
+            raise _shoal.Error('the episode is over: reset() comes before step()')
+        observations, rewards, terminated, truncated, info = self._envs.step(np.asarray(action, float)[None])
+        self._over = bool(terminated[0] or truncated[0])
         return observations[0], float(rewards[0]), bool(terminated[0]), bool(truncated[0]), {
             'failed': bool(info['failed'][0])}
 
-    def render(self):
+    def render(self) -> None:
         """Returns None; `shoal run --view` shows a run."""
 
-    def close(self):
+    def close(self) -> None:
         """Frees the world."""
         self._envs.close()
 
 
 class ParallelEnv:
-    """One world whose vehicles are agents, with the interface of pettingzoo.ParallelEnv.
+    """One world whose vehicles are agents, with the interface of pettingzoo.ParallelEnv."""
 
-    agents: dict of names and {'actions': [...], 'observations': [...]}, as in VectorEnv
-    reward: reward(before, actions, after) -> dict by agent, of dicts of arrays by agent; None: zeros
-    """
-
-    metadata = {'name': 'shoal', 'render_modes': []}
+    metadata: dict[str, Any] = {'name': 'shoal', 'render_modes': [], 'is_parallelizable': True}
     render_mode = None
 
-    def __init__(self, world, agents, *, steps=1, reward=None, max_episode_s=None, action_low=-1.0, action_high=1.0,
-                 seed=1, set=None):
+    def __init__(self, world: str | os.PathLike | dict, agents: Mapping[str, Mapping[str, Sequence[str]]], *,
+                 steps: int = 1, reward: Callable | None = None, max_episode_s: float | None = None,
+                 action_low: float = -1.0, action_high: float = 1.0, missing: float = 0.0, seed: int = 1,
+                 set: dict | None = None) -> None:
+        """Loads a world; reset() builds it.
+
+        agents: dict of names and {'actions': [...], 'observations': [...]}, as in VectorEnv
+        reward: reward(before, actions, after) -> dict by agent, of dicts of arrays by agent; None: zeros
+        steps, max_episode_s, action_low, action_high, missing, seed, set: as in VectorEnv
+        """
         self.possible_agents = list(agents)
-        self.agents = []
+        self.agents: list[str] = []
         self._reward = reward
         self._envs = VectorEnv(
-            world, 1, steps=steps, max_episode_s=max_episode_s, seed=seed, set=set,
+            world, 1, steps=steps, max_episode_s=max_episode_s, seed=seed, set=set, missing=missing,
             actions=[each for agent in agents.values() for each in agent['actions']],
             observations=[each for agent in agents.values() for each in agent['observations']])
-        self._actions, self._observations = {}, {}
+        self._actions: dict[str, slice] = {}
+        self._observations: dict[str, slice] = {}
         width, values = 0, iter(self._envs.slices)
         for name, agent in agents.items():
             size = sum(len(_action(each)[2]) for each in agent['actions'])
@@ -234,62 +317,92 @@ class ParallelEnv:
                               for name, each in self._actions.items()}
         self.observation_spaces = {name: _box(-np.inf, np.inf, (each.stop - each.start,))
                                    for name, each in self._observations.items()}
-        self._before = {}
+        self._before: dict[str, np.ndarray] = {}
 
     @property
-    def unwrapped(self):
+    def unwrapped(self) -> ParallelEnv:
         """The environment itself."""
         return self
 
     @property
-    def num_agents(self):
+    def num_agents(self) -> int:
         """Number of agents that are still there."""
         return len(self.agents)
 
     @property
-    def max_num_agents(self):
+    def max_num_agents(self) -> int:
         """Number of all agents."""
         return len(self.possible_agents)
 
-    def action_space(self, agent):
+    def action_space(self, agent: str) -> Any:
         """Returns the space of the actions of an agent."""
         return self.action_spaces[agent]
 
-    def observation_space(self, agent):
+    def observation_space(self, agent: str) -> Any:
         """Returns the space of the observations of an agent."""
         return self.observation_spaces[agent]
 
-    def reset(self, seed=None, options=None):
-        """Builds the world again; returns dicts of observations and infos by agent."""
+    def reset(self, seed: int | None = None,
+              options: dict | None = None) -> tuple[dict[str, np.ndarray], dict[str, dict]]:
+        """Builds the world again; returns dicts of observations and infos by agent.
+
+        seed: None: one that continues the sequence
+        options: not used
+        """
         observations, _ = self._envs.reset(seed=seed)
         self.agents = list(self.possible_agents)
         self._before = self._split(observations[0])
-        return self._before, {name: {} for name in self.agents}
+        return dict(self._before), {name: {} for name in self.agents}
 
-    def step(self, actions):
-        """Takes a step; returns dicts by agent of observations, rewards, terminated, truncated and infos."""
+    def step(self, actions: Mapping[str, np.ndarray]) -> tuple[dict, dict, dict, dict, dict]:
+        """Takes a step with the actions of agents; those of others are zero.
+
+        Returns dicts by agent of observations, rewards, terminated, truncated and infos.  All agents leave at the end
+        of an episode, after which reset() must follow.
+        """
+        if not self.agents:
+            raise _shoal.Error('no agents are left: reset() comes before step()')
         row = np.zeros(self._envs.single_action_space.shape)
         for name, values in actions.items():
+            if name not in self._actions:
+                raise _shoal.Error(f"there is no agent '{name}'; agents: {', '.join(self.possible_agents)}")
+            values = np.asarray(values, float)
+            if values.shape != self.action_spaces[name].shape:
+                raise _shoal.Error(f"the action of '{name}' must have the shape {self.action_spaces[name].shape}, got "
+                                   f'{values.shape}')
             row[self._actions[name]] = values
-        observations, _, terminated, truncated, _ = self._envs.step([row])
+        observations, _, terminated, truncated, _ = self._envs.step(row[None])
         after = self._split(observations[0])
         rewards = dict.fromkeys(self.agents, 0.0) if self._reward is None else self._reward(self._before, actions, after)
         self._before = after
         ended, cut = dict.fromkeys(self.agents, bool(terminated[0])), dict.fromkeys(self.agents, bool(truncated[0]))
-        infos = {name: {} for name in self.agents}
+        infos: dict[str, dict] = {name: {} for name in self.agents}
         if terminated[0] or truncated[0]:
             self.agents = []
-        return after, rewards, ended, cut, infos
+        return dict(after), rewards, ended, cut, infos
 
-    def render(self):
+    def state(self) -> np.ndarray:
+        """Returns the observations of all agents as one array."""
+        if not self._before:
+            raise _shoal.Error('reset() comes before state()')
+        return np.concatenate(list(self._before.values()))
+
+    def render(self) -> None:
         """Returns None; `shoal run --view` shows a run."""
 
-    def close(self):
+    def close(self) -> None:
         """Frees the world."""
         self._envs.close()
 
     def _split(self, row):
         return {name: row[each].copy() for name, each in self._observations.items()}
+
+
+def _seed(value):
+    seed = int(value)
+    if seed < 0 or seed != value:
+        raise _shoal.Error(f'a seed must be an integer >= 0, got {value!r}')
+    return seed
 
 
 def _action(text):

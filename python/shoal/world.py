@@ -1,7 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A world in this process."""
-import json
+from __future__ import annotations
+
 import os
+from typing import Any, Iterator, Sequence
+
+import numpy as np
 
 from . import _shoal, messages
 from .yaml_text import yaml_of
@@ -10,24 +14,24 @@ from .yaml_text import yaml_of
 class Subscription:
     """Unread messages of one channel; World.subscribe makes it."""
 
-    def __init__(self, own):
+    def __init__(self, own) -> None:
         self._own = own
 
     @property
-    def channel(self):
+    def channel(self) -> str:
         """Name of the channel."""
         return self._own.channel
 
     @property
-    def dropped(self):
+    def dropped(self) -> int:
         """Number of messages that were lost because the queue was full."""
         return self._own.dropped
 
-    def take(self):
-        """Removes and returns the unread messages, oldest first."""
+    def take(self) -> list[messages.Message | bytes]:
+        """Removes and returns the unread messages, oldest first; of an unknown type their payloads."""
         return self._own.take()
 
-    def __iter__(self):
+    def __iter__(self) -> Iterator[messages.Message | bytes]:
         return iter(self.take())
 
 
@@ -35,111 +39,108 @@ class World:
     """A world that this program steps; it has no network.
 
     Its hashes are those of `shoal run --bus none` with the same file, seed and inputs.  A world may be used by one
-    thread at a time; several worlds may be stepped in several threads, because steps release the GIL.
+    thread at a time; several worlds may be stepped in several threads, because steps release the GIL (contacts of meshes
+    are found by one thread at a time).
     """
 
-    def __init__(self, world, *, seed=None, set=None):
+    def __init__(self, world: str | os.PathLike | dict, *, seed: int | None = None, set: dict | None = None) -> None:
         """Loads a world.
 
-        world: path of a world file, or a dict with its keys; files that the dict names are relative to the working
-            directory
+        world: path of a world file, name of one in the working directory or of a shipped one, or a dict with its keys;
+            files that the dict names are relative to the working directory
         seed: instead of that of the file
         set: dict of dotted paths and values, as with --set, such as {'physics.step_s': 0.005}
 
         Raises Error with all errors found, one line each.
         """
-        sets = [f'{path}={yaml_of(value)}' for path, value in (set or {}).items()]
-        if isinstance(world, dict):
-            self._own = _shoal.World('world', text=yaml_of(world), seed=seed, sets=sets)
-        elif isinstance(world, (str, os.PathLike)):
-            self._own = _shoal.World(_path_of(world), seed=seed, sets=sets)
-        elif isinstance(world, _shoal.World):
+        if isinstance(world, _shoal.World):
             self._own = world
-        else:
-            raise TypeError(f'world must be a path or a dict, got {world!r}')
+            return
+        file, text, sets = _source(world, set)
+        self._own = _shoal.World(file, text=text, seed=seed, sets=sets)
 
     # --- About the world
 
     @property
-    def name(self):
+    def name(self) -> str:
         """Name of the world."""
         return self._own.name
 
     @property
-    def description(self):
+    def description(self) -> str:
         """Description of the world."""
         return self._own.description
 
     @property
-    def seed(self):
+    def seed(self) -> int:
         """Seed of all random numbers."""
         return self._own.seed
 
     @property
-    def step_s(self):
+    def step_s(self) -> float:
         """Length of a step in s."""
         return self._own.step_s
 
     @property
-    def duration_s(self):
+    def duration_s(self) -> float:
         """Length of a run in s, as the file says; 0: unlimited."""
         return self._own.duration_s
 
     @property
-    def step_number(self):
+    def step_number(self) -> int:
         """Number of steps since the start."""
         return self._own.step_number
 
     @property
-    def time_s(self):
+    def time_s(self) -> float:
         """Simulated time in s."""
         return self._own.time_s
 
     @property
-    def utime(self):
-        """Simulated time in microseconds."""
+    def utime(self) -> int:
+        """Time stamp of messages in microseconds: epoch of the world + simulated time."""
         return self._own.utime
 
     @property
-    def ended(self):
+    def ended(self) -> str | None:
         """Why an event of the world ended the run; None while it may continue."""
         return self._own.ended
 
     @property
-    def vehicles(self):
+    def vehicles(self) -> list[str]:
         """Names of the vehicles."""
         return self._own.vehicles()
 
     @property
-    def objects(self):
+    def objects(self) -> list[str]:
         """Names of the objects."""
         return self._own.objects()
 
-    def devices(self, vehicle):
+    def devices(self, vehicle: str) -> list[str]:
         """Returns the names of the devices of a vehicle, such as `auv1/imu`."""
         return self._own.devices(vehicle)
 
-    def channels(self):
-        """Returns a dict of the channels on which something was published, and the types of their messages."""
+    def channels(self) -> dict[str, str]:
+        """Returns the channels on which something was published, and the types of their messages; '': unknown."""
         return self._own.channels()
 
     # --- Time
 
-    def step(self, count=1):
+    def step(self, count: int = 1) -> int:
         """Takes steps; returns their number, which is less than `count` when an event of the world ends the run."""
         return self._own.step(count)
 
-    def run_until(self, time_s):
+    def run_until(self, time_s: float) -> float:
         """Takes steps up to the first one that ends at this time or later; returns the time in s."""
         return self._own.run_until(time_s)
 
     # --- Truth
 
-    def state(self, vehicle):
+    def state(self, vehicle: str) -> np.void:
         """Returns the true motion of a vehicle: one element of states()."""
         return self._own.states([vehicle])[0]
 
-    def states(self, vehicles=None):
+    def states(self, vehicles: Sequence[str] | None = None) -> np.ndarray:
         """Returns the true motions as a structured array, shape (n,), in the order of the names.
 
         position_m: (3,), origin of the vehicle in world axes
@@ -149,88 +150,107 @@ class World:
         """
         return self._own.states(None if vehicles is None else list(vehicles))
 
-    def joints(self, vehicle):
+    def joints(self, vehicle: str) -> dict[str, float]:
         """Returns a dict of the joints of a vehicle and their positions: rad, or m for a slider."""
         return self._own.joints(vehicle)
 
     # --- Messages
 
-    def last(self, channel):
-        """Returns the last message on a channel; None before the first."""
+    def last(self, channel: str) -> messages.Message | bytes | None:
+        """Returns the last message on a channel, of an unknown type its payload; None before the first."""
         return self._own.last(channel)
 
-    def subscribe(self, channel, capacity=1000):
-        """Returns a Subscription; when more messages than `capacity` wait in it, the oldest are lost."""
+    def subscribe(self, channel: str, capacity: int = 1000) -> Subscription:
+        """Returns a Subscription of a channel; when more messages than `capacity` wait in it, the oldest are lost."""
         return Subscription(self._own.subscribe(channel, capacity))
 
-    def publish(self, channel, message):
-        """Publishes a message, which devices get in the next step."""
-        self._own.publish(channel, message.encode() if isinstance(message, messages.Message) else bytes(message))
+    def publish(self, channel: str, message: messages.Message | bytes) -> None:
+        """Publishes a message on a channel; devices get it in the next step.  Raises Error when it is not valid."""
+        self._own.publish(channel, messages.payload_of(message))
 
     # --- Changes
 
-    def do(self, action):
+    def do(self, action: dict | Sequence[dict]) -> None:
         """Executes an action, or a list of actions, as `do:` of an event has them: {'gravity_mps2': 1.62}."""
         self._own.act(yaml_of(action))
 
-    def fault(self, device, kind, **values):
+    def fault(self, device: str, kind: str, **values: Any) -> None:
         """Gives a device such as `auv1/imu` a fault; `kind` and `values` as in the action `fault`."""
         self.do({'fault': {'device': device, 'kind': kind, **values}})
 
-    def clear_fault(self, device):
+    def clear_fault(self, device: str) -> None:
         """Ends the faults of a device."""
         self.do({'clear_fault': {'device': device}})
 
-    def spawn(self, **entry):
+    def spawn(self, **entry: Any) -> list[str]:
         """Adds the vehicles of an entry of `vehicles:`; returns their names.
 
         spawn(name='r9', file='rover.yaml', position_m=[2, 0, 0])
         """
         return self._own.spawn(yaml_of(entry))
 
-    def remove(self, name):
+    def remove(self, name: str) -> None:
         """Removes a vehicle or an object."""
         self._own.remove(name)
 
     # --- State
 
-    def snapshot(self):
+    def snapshot(self) -> bytes:
         """Returns the whole state as bytes."""
         return self._own.snapshot()
 
-    def restore(self, snapshot):
+    def restore(self, snapshot: bytes) -> None:
         """Goes back (or on) to a snapshot of a world of the same file, seed and settings.
 
         The run then continues bit by bit as from the snapshot.  Unread messages of subscriptions are dropped.
         """
         self._own.restore(snapshot)
 
-    def branch(self):
+    def branch(self) -> World:
         """Returns another world in the same state; both then continue independently."""
         return World(self._own.branch())
 
-    def state_hash(self):
+    def state_hash(self) -> int:
         """Returns the hash of the whole state, as `shoal run` prints it."""
         return self._own.state_hash()
 
-    def run_hash(self):
+    def run_hash(self) -> int:
         """Returns the hash of the whole run up to now, as `shoal run` prints it."""
         return self._own.run_hash()
 
-    def use_threads(self, threads):
-        """Sets the number of threads for sensors that cast rays; 1 at first, 0: one for each processor."""
-        self._own.use_threads(threads)
+    def use_threads(self, threads: int) -> None:
+        """Sets the number of threads for sensors that cast rays, up to 256; 1 at first, 0: one for each processor."""
+        self._own.use_threads(_threads(threads))
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         return f'<shoal.World {self.name} at {self.time_s:g} s, {len(self.vehicles)} vehicles>'
 
-    def _repr_html_(self):
+    def _repr_html_(self) -> str:
         from .html import world_table
         return world_table(self)
 
 
-def _path_of(world):
-    """Returns the path of a world; a shipped one is found from any folder."""
-    path = os.fspath(world)
-    shipped = os.path.join(_shoal.shipped_folder(), path)
-    return shipped if not os.path.exists(path) and os.path.isfile(shipped) else path
+def _threads(count):
+    if not 0 <= count <= 256:
+        raise _shoal.Error(f'threads must be 0 to 256, got {count!r}')
+    return count
+
+
+def set_log_level(level: str) -> None:
+    """Sets which messages of worlds and runs appear on standard error: debug, info, warn (at first), error or off.
+
+    Raises Error for another level.
+    """
+    _shoal.set_log_level(level)
+
+
+def _source(world, set):
+    """Returns file, text or None, and settings of a world for the module."""
+    if not isinstance(world, (dict, str, os.PathLike)):
+        raise TypeError(f'world must be a path or a dict, got {world!r}')
+    if not isinstance(set, (dict, type(None))):
+        raise TypeError(f'set must be a dict, got {set!r}')
+    sets = [f'{path}={yaml_of(value)}' for path, value in (set or {}).items()]
+    if isinstance(world, dict):
+        return 'world', yaml_of(world), sets
+    return _shoal.world_file(os.fspath(world)), None, sets

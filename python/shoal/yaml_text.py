@@ -4,7 +4,7 @@ import json
 import math
 
 
-def yaml_of(value):
+def yaml_of(value) -> str:
     """Returns a value as YAML on few lines: JSON, but with the numbers that JSON does not have."""
     return json.dumps(_plain(value), indent=1 if isinstance(value, dict) and len(str(value)) > 80 else None,
                       ensure_ascii=False)

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "messages/yaml/message_writer.hpp"
+#include "shoal/message_schema.hpp"
 #include "sim/ode/physics_fault.hpp"
 #include "sim/world/world_editor.hpp"
 #include "sim/world/world_state.hpp"
@@ -22,8 +23,10 @@ sim::ConfigNode parse(const std::string& text, const std::string& name) {
 
 }  // namespace
 
-std::shared_ptr<const sim::LoadedWorld> load(const WorldSource& source) {
+std::shared_ptr<const sim::LoadedWorld> load(const WorldSource& source, sim::Warnings* warnings) {
   sim::LoadOptions options;
+  options.warnings = warnings;
+  options.resolve = false;
   options.sets = source.sets;
   options.seed = source.seed;
   options.encode_message = shoal::encode_own_message;
@@ -61,6 +64,10 @@ void InProcessWorld::publish(const std::string& channel, std::span<const std::by
   if (channel.empty() || channel.size() > sim::Bus::max_channel_length)
     throw sim::WorldError("a channel has 1 to " + std::to_string(sim::Bus::max_channel_length) + " characters, got '" +
                           channel + "'");
+  const shoal::MessageSchema* const schema =
+      shoal::embedded_types().find(static_cast<std::uint64_t>(shoal::fingerprint(payload)));
+  if (schema == nullptr) throw shoal::MessageError("no message type has the fingerprint of this payload");
+  if (const auto error = shoal::validate(*schema, payload, shoal::Finite::any)) throw shoal::MessageError(*error);
   world_.bus_of_channel(channel).publish(channel, payload, world_.now());
 }
 

@@ -24,7 +24,7 @@ struct WorldSource {
 };
 
 /// Reads a world.  Throws sim::ConfigError.
-std::shared_ptr<const sim::LoadedWorld> load(const WorldSource& source);
+std::shared_ptr<const sim::LoadedWorld> load(const WorldSource& source, sim::Warnings* warnings = nullptr);
 
 /// World that the calling program steps, with a bus inside the process.  Its hashes are those of `shoal run`.
 class InProcessWorld {
@@ -42,7 +42,8 @@ class InProcessWorld {
   /// Takes up to `count` steps; fewer when the world ends the run or `stop` returns true.  Returns the steps taken.
   /// Throws sim::PhysicsFault; the world then cannot be stepped further, but restored.
   std::int64_t step(std::int64_t count, const Stop& stop = {});
-  /// Publishes a payload as a program would; devices get it in the next step.  Throws sim::WorldError.
+  /// Publishes a payload as a program would; devices get it in the next step.  Throws sim::WorldError for a channel,
+  /// and shoal::MessageError for a payload that is not valid.
   void publish(const std::string& channel, std::span<const std::byte> payload);
   /// Executes an action, or a list of them, written in YAML, as in `events:`.  Throws sim::ConfigError,
   /// sim::WorldError.

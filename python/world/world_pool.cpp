@@ -36,26 +36,31 @@ WorldPool::WorldPool(WorldSource source, std::size_t count, std::int64_t first_s
   if (count < 1 || count > 100'000) throw Error("a pool has 1 to 100000 worlds, got " + std::to_string(count));
   if (layout_.steps < 1) throw Error("a step of a pool must be >= 1 steps of a world");
   for (std::size_t i = 0; i < count; ++i) worlds_.push_back(std::make_unique<Member>());
-  // The first one shows errors and the sizes of observations before the others are built.
   build(*worlds_.front(), first_seed);
   step_s_ = sim::to_seconds(worlds_.front()->world->world().step_time());
   for (const MessageForm& form : worlds_.front()->forms) action_values_ += form.count();
   measure_observations();
-  threads_.for_each(count, [&](std::size_t i) { build(*worlds_[i], first_seed + static_cast<std::int64_t>(i)); });
 }
 
 WorldPool::~WorldPool() = default;
 
 InProcessWorld& WorldPool::world(std::size_t index) {
-  return *worlds_.at(index)->world;
+  if (index >= worlds_.size()) throw Error("there is no world " + std::to_string(index));
+  if (!worlds_[index]->world) throw Error("the worlds are not built: reset() comes first");
+  return *worlds_[index]->world;
 }
 
-void WorldPool::build(Member& member, std::int64_t seed) const {
+void WorldPool::build(Member& member, std::int64_t seed) {
   WorldSource source = source_;
   source.seed = seed;
-  member.world.reset();
-  member.world = std::make_unique<InProcessWorld>(load(source));
+  member.world.reset();  // never two worlds at once in memory
   member.forms.clear();
+  std::shared_ptr<const sim::LoadedWorld> loaded;
+  {
+    const std::lock_guard<std::mutex> lock(loading_);
+    loaded = load(source, &warnings_);
+  }
+  member.world = std::make_unique<InProcessWorld>(std::move(loaded));
   for (const Action& action : layout_.actions) member.forms.emplace_back(schema_of(action.type), action.members);
   member.status = goes_on;
 }
@@ -86,19 +91,21 @@ void WorldPool::measure_observations() {
 }
 
 void WorldPool::step(std::span<const double> actions, std::span<const std::int64_t> seeds,
-                     std::span<double> observations, std::span<std::uint8_t> ended) {
+                     std::span<double> observations, std::span<std::uint8_t> ended, const InProcessWorld::Stop& stop) {
+  for (std::size_t i = 0; i < worlds_.size(); ++i)
+    if (seeds[i] < 0) world(i);
   threads_.for_each(worlds_.size(), [&](std::size_t i) {
     Member& member = *worlds_[i];
     if (seeds[i] >= 0)
       build(member, seeds[i]);
     else if (member.status == goes_on)
-      step(member, actions.subspan(i * action_values_, action_values_));
+      step(member, actions.subspan(i * action_values_, action_values_), stop);
     observe(member, observations.subspan(i * observation_values_, observation_values_));
     ended[i] = member.status;
   });
 }
 
-void WorldPool::step(Member& member, std::span<const double> actions) const {
+void WorldPool::step(Member& member, std::span<const double> actions, const InProcessWorld::Stop& stop) const {
   // Send the actions
   const sim::World& world = member.world->world();
   const std::int64_t utime = world.epoch_us() + world.now().count();
@@ -109,7 +116,7 @@ void WorldPool::step(Member& member, std::span<const double> actions) const {
   }
   // Step
   try {
-    member.world->step(layout_.steps);
+    member.world->step(layout_.steps, stop);
     if (world.ended()) member.status = has_ended;
   } catch (const sim::PhysicsFault&) {
     member.status = has_failed;

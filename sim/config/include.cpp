@@ -72,13 +72,16 @@ void merge(ConfigNode& base, ConfigNode&& over) {
     base = std::move(over);
 }
 
-/// Returns the path of an included file: beside the file that includes it, else the shipped world of this name.
+/// Returns the path of an included file: beside the file that includes it, else the shipped world or vehicle of this
+/// name.
 fs::path included_path(const fs::path& by, const fs::path& name) {
   const fs::path beside = by.parent_path() / name;
   std::error_code error;
   if (fs::exists(beside, error) || name.has_parent_path() || shipped_folder().empty()) return beside;
-  const fs::path shipped = fs::path(shipped_folder()) / "worlds" / name;
-  return fs::is_regular_file(shipped, error) ? shipped : beside;
+  for (const char* kind : {"worlds", "vehicles"})
+    if (const fs::path shipped = fs::path(shipped_folder()) / kind / name; fs::is_regular_file(shipped, error))
+      return shipped;
+  return beside;
 }
 
 void forward(const Diagnostics& from, Diagnostics& to) {

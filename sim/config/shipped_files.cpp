@@ -28,30 +28,44 @@ fs::path source_of_build(const fs::path& build) {
 
 }  // namespace
 
-std::string shipped_folder_of(const std::string& program_folder) {
-  const fs::path above = fs::path(program_folder).parent_path();
-  for (const fs::path& folder : {above / "share/shoal", source_of_build(above)})
-    if (!folder.empty() && has_worlds(folder)) return folder.lexically_normal().string();
+std::string shipped_folder_of(const std::string& folder) {
+  const fs::path above = fs::path(folder).parent_path();
+  for (const fs::path& shipped : {above / "share/shoal", source_of_build(above)})
+    if (!shipped.empty() && has_worlds(shipped)) return shipped.lexically_normal().string();
   return {};
 }
 
-/// Returns the library that contains this function; the program when it is not in a library.
-static fs::path library_of_this() {
+/// Returns the file of this program; in a library that another program has loaded, that of the library.
+static fs::path own_file() {
   Dl_info info{};
   std::error_code error;
-  if (dladdr(reinterpret_cast<const void*>(&shipped_folder), &info) == 0 || info.dli_fname == nullptr) return {};
-  return fs::canonical(info.dli_fname, error);
+  if (dladdr(reinterpret_cast<const void*>(&shipped_folder), &info) != 0 && info.dli_fname != nullptr) {
+    fs::path file = fs::canonical(info.dli_fname, error);
+    if (!error && file.extension() == ".so") return file;
+  }
+  fs::path program = fs::read_symlink("/proc/self/exe", error);
+  return error ? fs::path() : program;
 }
 
 std::string shipped_folder() {
   static const std::string folder = [] {
-    std::error_code error;
-    const fs::path program = fs::read_symlink("/proc/self/exe", error);
-    if (std::string found = error ? "" : shipped_folder_of(program.parent_path().string()); !found.empty())
-      return found;
-    // In a library that another program has loaded, such as the module of Python, at any depth below its prefix.
-    for (fs::path at = library_of_this().parent_path(); at.has_relative_path(); at = at.parent_path())
+    const fs::path own = own_file();
+    if (own.extension() != ".so") return shipped_folder_of(own.parent_path().string());
+    // At any depth below the prefix
+    for (fs::path at = own.parent_path(); at.has_relative_path(); at = at.parent_path())
       if (std::string found = shipped_folder_of(at.string()); !found.empty()) return found;
+    return std::string();
+  }();
+  return folder;
+}
+
+std::string program_folder() {
+  static const std::string folder = [] {
+    const fs::path own = own_file();
+    if (own.extension() != ".so") return own.parent_path().string();
+    std::error_code error;
+    for (fs::path at = own.parent_path(); at.has_relative_path(); at = at.parent_path())
+      if (fs::exists(at / "bin/shoal", error)) return (at / "bin").string();
     return std::string();
   }();
   return folder;

@@ -10,7 +10,12 @@ namespace sim {
 /// there is none.
 std::string shipped_folder();
 
-/// Returns that folder for a program in `program_folder`, such as `/usr/local/bin` or `checkout/build/release/bin`.
-std::string shipped_folder_of(const std::string& program_folder);
+/// Returns the folder of this program, where others of its installation or build are; in a library that another program
+/// has loaded, such as the module of Python: `bin` above the library, if `shoal` is there.  Empty: there is none.
+std::string program_folder();
+
+/// Returns the folder with `worlds/` and `vehicles/` for a program in `folder`, such as `/usr/local/bin` or
+/// `checkout/build/release/bin`.
+std::string shipped_folder_of(const std::string& folder);
 
 }  // namespace sim

@@ -13,6 +13,7 @@
 
 #include "sim/config/config_node.hpp"
 #include "sim/config/message_text.hpp"
+#include "sim/config/utf8.hpp"
 
 namespace sim {
 
@@ -261,27 +262,6 @@ struct BadByte {
   std::string text;
 };
 
-/// Returns the length of the UTF-8 character at `at`; 0 when it is invalid (RFC 3629: no overlong forms, no
-/// surrogates).
-std::size_t character_length(std::string_view text, std::size_t at) {
-  const auto byte = [&](std::size_t i) -> unsigned {
-    return i < text.size() ? static_cast<unsigned char>(text[i]) : 0;
-  };
-  const unsigned lead = byte(at);
-  const std::size_t length = lead < 0x80                   ? 1
-                             : lead >= 0xc2 && lead < 0xe0 ? 2
-                             : lead >= 0xe0 && lead < 0xf0 ? 3
-                             : lead >= 0xf0 && lead < 0xf5 ? 4
-                                                           : 0;
-  for (std::size_t i = 1; i < length; ++i)
-    if ((byte(at + i) & 0xc0) != 0x80) return 0;
-  const unsigned second = byte(at + 1);
-  if ((lead == 0xe0 && second < 0xa0) || (lead == 0xed && second >= 0xa0) || (lead == 0xf0 && second < 0x90) ||
-      (lead == 0xf4 && second >= 0x90))
-    return 0;
-  return length;
-}
-
 /// Checks the encoding, because yaml-cpp accepts invalid UTF-8, and takes the byte 4 as the end of the file.
 std::optional<BadByte> first_bad_byte(std::string_view text) {
   for (std::size_t i = 0; i < text.size();) {
@@ -291,7 +271,7 @@ std::optional<BadByte> first_bad_byte(std::string_view text) {
       std::snprintf(name, sizeof name, "control character 0x%02x", c);
       return BadByte{i, std::string(name) + "; is this a text file?"};
     }
-    const std::size_t length = character_length(text, i);
+    const std::size_t length = utf8_length(text, i);
     if (length == 0) return BadByte{i, "not valid UTF-8; is this a text file?"};
     i += length;
   }

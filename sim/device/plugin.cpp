@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "sim/config/message_text.hpp"
+#include "sim/config/shipped_files.hpp"
 #include "sim/device/device_registry.hpp"
 
 namespace sim {
@@ -39,9 +40,7 @@ std::vector<fs::path> plugin_directories() {
     for (std::string each; std::getline(stream, each, ':');)
       if (!each.empty()) directories.emplace_back(each);
   }
-  std::error_code error;
-  const fs::path program = fs::read_symlink("/proc/self/exe", error);
-  if (!error) directories.push_back(program.parent_path().parent_path() / "lib/shoal/plugins");
+  if (!program_folder().empty()) directories.push_back(fs::path(program_folder()).parent_path() / "lib/shoal/plugins");
   return directories;
 }
 

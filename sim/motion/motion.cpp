@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "sim/config/message_text.hpp"
+#include "sim/motion/joint_name.hpp"
 #include "sim/motion/motion_frames.hpp"
 
 namespace sim {
@@ -31,6 +32,10 @@ struct JointReader {
   JointValues values(const JointMotion& motion, Diagnostics& diagnostics) const {
     JointValues values;
     for (const ConfigNode::Entry& entry : map.entries) {
+      if (const std::string error = joint_name_error(entry.key); !error.empty()) {
+        diagnostics.error(entry.place, who, error);
+        continue;
+      }
       double value = 0;
       const ConfigNode one = map_node(entry.key, entry.value);
       ParamReader reader(one, who, diagnostics);
@@ -107,7 +112,7 @@ double JointMotion::unit_of(const std::string& joint) const {
 }
 
 void MotionStart::read(ParamReader& in) {
-  in.read("max_velocity", max_velocity, above_to(0, 1000), "velocity of the fastest joint on the way, rad/s or m/s");
+  in.read("max_velocity", max_velocity, between(0.001, 1000), "velocity of the fastest joint on the way, rad/s or m/s");
   in.read("min_s", min_s, between(0, 600), "least time for the way");
 }
 

@@ -9,6 +9,7 @@
 
 #include "sim/base/whole_file.hpp"
 #include "sim/config/message_text.hpp"
+#include "sim/motion/joint_name.hpp"
 #include "sim/motion/motion.hpp"
 
 namespace sim {
@@ -79,6 +80,8 @@ class FramesParser {
     std::set<std::string_view> names;
     for (std::size_t i = 1; i < cells.size(); ++i) {
       if (cells[i].text.empty()) return fail(cells[i].column, "needs the name of a joint");
+      if (std::string error = joint_name_error(cells[i].text); !error.empty())
+        return fail(cells[i].column, std::move(error));
       if (!names.insert(cells[i].text).second)
         return fail(cells[i].column, "names joint '" + shortened(printable(cells[i].text)) + "' twice");
       tracks_.push_back({std::string(cells[i].text), {}});

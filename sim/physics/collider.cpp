@@ -7,6 +7,7 @@
 
 #include "sim/base/free_numbers.hpp"
 #include "sim/geometry/box_grid.hpp"
+#include "sim/ode/find_contacts.hpp"
 #include "sim/ode/ode_math.hpp"
 #include "sim/physics/terrain_geom.hpp"
 
@@ -181,7 +182,7 @@ Collider::Overlap Collider::deepest_overlap(int group) const {
       if ((own->category & other->collides_with) == 0 || (other->category & own->collides_with) == 0) continue;
       if (!own_box.meets(box)) continue;
       const int count =
-          dCollide(own->geom, other->geom, static_cast<int>(touching.size()), &touching[0], sizeof(dContactGeom));
+          find_contacts(own->geom, other->geom, static_cast<int>(touching.size()), &touching[0], sizeof(dContactGeom));
       for (int i = 0; i < count; ++i)
         if (touching[static_cast<std::size_t>(i)].depth > deepest.depth_m)
           deepest = {other->group, touching[static_cast<std::size_t>(i)].depth};
@@ -242,7 +243,7 @@ int Collider::touch(int first, int second, dWorldID world, dJointGroupID contact
   const CollisionPart& part_a = parts_[first];
   const CollisionPart& part_b = parts_[second];
   const int count =
-      dCollide(part_a.geom, part_b.geom, static_cast<int>(touching_.size()), &touching_[0].geom, sizeof(dContact));
+      find_contacts(part_a.geom, part_b.geom, static_cast<int>(touching_.size()), &touching_[0].geom, sizeof(dContact));
   if (count == 0) return 0;
   // Select the contact parameters, which depend on position on terrain.
   const Surface* surface = &table_.of(part_a.material, part_b.material);

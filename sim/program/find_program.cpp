@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "sim/config/message_text.hpp"
+#include "sim/config/shipped_files.hpp"
 
 namespace sim {
 
@@ -41,9 +42,7 @@ FoundProgram read_found(const std::string& path, const std::string& file, bool q
 
 std::vector<std::string> program_folders() {
   std::vector<std::string> folders;
-  std::error_code error;
-  const fs::path own = fs::read_symlink("/proc/self/exe", error);
-  if (!error) folders.push_back(own.parent_path().string());
+  if (!program_folder().empty()) folders.push_back(program_folder());
   const char* path = std::getenv("PATH");
   std::istringstream all(path != nullptr ? path : "");
   for (std::string folder; std::getline(all, folder, ':');)

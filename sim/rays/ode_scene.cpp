@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "sim/base/free_numbers.hpp"
+#include "sim/ode/find_contacts.hpp"
 #include "sim/ode/ode_math.hpp"
 #include "sim/ode/part_shape.hpp"
 
@@ -152,7 +153,7 @@ bool OdeScene::hit(int part, const Vector3d& origin_W, const Vector3d& direction
   dContactGeom contact;
   const Part& target = parts_[part];
   const dGeomID geom = target.triangles ? target.triangles->geom.get() : target.geom;
-  if (dCollide(ray_.get(), geom, 1, &contact, sizeof contact) == 0) return false;
+  if (find_contacts(ray_.get(), geom, 1, &contact, sizeof contact) == 0) return false;
   // Where two parts share a surface the one with the lower number is hit, whatever the order of tests.
   if (contact.depth > nearest.range_m ||
       (contact.depth == nearest.range_m && part >= nearest.part && nearest.part >= 0))

@@ -49,6 +49,7 @@ class World {
   /// ConfigError for errors that only construction can detect (mesh files, masses).  `find_bus` returns the bus of a
   /// name in `config.buses`; without it all vehicles are on `bus`.
   World(const WorldConfig& config, Bus& bus, PortOpener open_port = {}, BusFinder find_bus = {});
+  World(const WorldConfig&&, Bus&, PortOpener = {}, BusFinder = {}) = delete;  // a temporary does not outlive it
   ~World();
   World(const World&) = delete;
   World& operator=(const World&) = delete;

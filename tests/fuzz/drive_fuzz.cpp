@@ -5,6 +5,7 @@
 #include "tools/experiment/drive/drive_error.hpp"
 #include "tools/experiment/drive/drive_keys.hpp"
 #include "tools/experiment/drive/gamepad.hpp"
+#include "tools/experiment/terminal/key_events.hpp"
 #include "tools/experiment/view/page_drive.hpp"
 
 // Events of a gamepad, and the same bytes as keys of a terminal, a profile and a message of a page.
@@ -31,10 +32,10 @@ SHOAL_FUZZ_TARGET(drive) {
                   "every whole event is read");
   });
   // Keys.
-  tools::DriveKeyNames names;
+  tools::KeyEvents events;
   tools::DriveKeys keys(profile.keys);
   for (const char byte : fuzz::text_of(input)) {
-    keys.press(names.next(byte));
+    if (const auto event = events.next(byte)) keys.press(event->key);
     check(keys.values());
   }
   // Texts.

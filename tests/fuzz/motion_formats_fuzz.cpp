@@ -25,6 +25,21 @@ void check(const sim::JointMotion& motion) {
     }
 }
 
+/// The motion file of a small motion can be read.
+void check_text(const sim::JointMotion& motion) {
+  constexpr std::size_t max_text_read = 100'000;
+  const std::string text = sim::motion_text(motion);
+  if (!motion.frames.empty() || text.size() > max_text_read) return;
+  sim::Diagnostics diagnostics;
+  const sim::ConfigNode root = sim::parse_config_text(text, "motion.yaml", diagnostics);
+  fuzz::require(diagnostics.ok(), "a motion is written as YAML");
+  sim::JointMotion again;
+  sim::ParamReader in(root, "", diagnostics);
+  again.read(in);
+  in.finish();
+  fuzz::require(diagnostics.ok(), "a motion that is written can be read");
+}
+
 void write_and_read(const tools::MotionFormat& format, const sim::JointMotion& motion) {
   if (format.write == nullptr) return;
   std::string bytes;
@@ -50,6 +65,7 @@ void read(const char* name, fuzz::Input input) {
       const tools::MotionSource source{bytes, "file", joints, options, {}};
       const sim::JointMotion motion = tools::motion_of_bytes(format, source, losses);
       check(motion);
+      check_text(motion);
       write_and_read(format, motion);
     });
 }

@@ -11,7 +11,9 @@ SHOAL_FUZZ_TARGET(motion_take) {
   for (const char byte : fuzz::text_of(input))
     if (const auto event = keys.next(byte)) fuzz::require(!event->key.empty(), "an event has a key");
   fuzz::allow<sim::ConfigError>([&] {
-    const tools::Take take = tools::parse_take(fuzz::text_of(input), "journal");
+    std::optional<tools::TakeDamage> damage;
+    const tools::Take take = tools::parse_take(fuzz::text_of(input), "journal", &damage);
+    fuzz::require(!damage || damage->lines > 0, "a bad line is dropped");
     fuzz::require(take.frame_count() > 0, "a recording has a frame");
     for (const std::vector<double>& values : take.frames)
       fuzz::require(values.size() == take.frame_count(), "each joint has a value in each frame");

@@ -1,17 +1,16 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Tests of message classes and records; run with build/<preset>/lib/python in PYTHONPATH."""
+"""Tests of message classes and records."""
 import os
 import pickle
 import random
 import unittest
 
 import numpy as np
+from support import scratch
 
 import shoal
 from shoal import messages
-
-SCRATCH = os.environ['SCRATCH']
 
 
 class MessagesTest(unittest.TestCase):
@@ -84,7 +83,7 @@ class MessagesTest(unittest.TestCase):
 class RecordTest(unittest.TestCase):
 
     def test_is_read_as_it_was_written(self):
-        path = os.path.join(SCRATCH, 'own.lcm')
+        path = scratch('own.lcm')
         sent = [messages.utime_t(utime=number) for number in range(100)]
         with shoal.RecordWriter(path, overwrite=True) as record:
             for message in sent:
@@ -98,7 +97,7 @@ class RecordTest(unittest.TestCase):
             record.write('a', 1, sent[0])
 
     def test_of_a_run_has_its_messages(self):
-        path = os.path.join(SCRATCH, 'run.lcm')
+        path = scratch('run.lcm')
         run = shoal.run('worlds/coop_land.yaml', duration_s=2, record=path, overwrite=True)
         self.assertEqual(run.summary['sim_time_s'], 2)
         world = shoal.World('worlds/coop_land.yaml')
@@ -107,8 +106,32 @@ class RecordTest(unittest.TestCase):
         channels = {event.channel for event in shoal.read(path)}
         self.assertIn('sim.info', channels)
 
+    def test_as_mcap_has_the_same_messages(self):
+        paths = [scratch('same.lcm'), scratch('same.mcap')]
+        for path in paths:
+            shoal.run('worlds/coop_underwater.yaml', duration_s=2, record=path, overwrite=True)
+        log, mcap = ([event for event in shoal.read(path) if event.channel != 'sim.info'] for path in paths)
+        self.assertGreater(len(log), 300)
+        self.assertEqual([event.channel for event in mcap], [event.channel for event in log])
+        self.assertEqual([event.message for event in mcap], [event.message for event in log])
+        self.assertEqual([event.utime for event in mcap], [event.utime for event in log])
+        self.assertEqual(shoal.read(paths[1]).problems, [])
+
+    def test_has_a_table_for_each_channel(self):
+        path = scratch('table.lcm')
+        with shoal.RecordWriter(path, overwrite=True) as record:
+            for number in range(5):
+                record.write('imu', 10 * number, messages.imu_t(utime=number, linear_acceleration_mps2=[number, 0, 9.8]))
+                record.write('scan', number, messages.planar_lidar_t(ranges=np.ones(number)))
+        imu = shoal.table(path, 'imu')
+        np.testing.assert_array_equal(imu['time_utime'], [0, 10, 20, 30, 40])
+        np.testing.assert_array_equal(imu['linear_acceleration_mps2_0'], np.arange(5))
+        self.assertEqual(len(shoal.table(path, 'scan')['ranges'][3]), 3)
+        with self.assertRaisesRegex(shoal.Error, "no messages on 'nothing'"):
+            shoal.table(path, 'nothing')
+
     def test_that_is_damaged_is_read_as_far_as_it_goes(self):
-        path = os.path.join(SCRATCH, 'cut.lcm')
+        path = scratch('cut.lcm')
         with shoal.RecordWriter(path, overwrite=True) as record:
             for number in range(10):
                 record.write('a', number, messages.utime_t(utime=number))
@@ -116,7 +139,7 @@ class RecordTest(unittest.TestCase):
             file.truncate(os.path.getsize(path) - 5)
         self.assertEqual(len(list(shoal.read(path))), 9)
         with self.assertRaises(shoal.Error):
-            next(shoal.read(os.path.join(SCRATCH, 'none.lcm')))
+            next(shoal.read(scratch('none.lcm')))
 
 
 if __name__ == '__main__':

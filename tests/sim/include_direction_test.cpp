@@ -35,6 +35,7 @@ const std::map<std::string, std::set<std::string>> layers = {
     {"devices", {"devices", "messages", "sim"}},
     {"bridges", {"bridges", "messages", "sim"}},
     {"tools", {"tools", "bridges", "devices", "messages", "sim"}},
+    {"python", {"python", "tools", "bridges", "devices", "messages", "sim"}},
 };
 
 std::string top_of(const std::string& path) {

@@ -42,7 +42,8 @@ class Lesson(unittest.TestCase):
         subprocess.run(["cmake", "--install", BINARY_DIR, "--prefix", home + "/shoal"], check=True, capture_output=True)
         work = os.path.join(home, "work")
         os.mkdir(work)
-        path = home + "/shoal/bin" + os.pathsep + os.environ["PATH"]
+        # Debian's interpreter, which has NumPy, comes before others.
+        path = os.pathsep.join([home + "/shoal/bin", "/usr/bin", os.environ["PATH"]])
         self.terminal = Terminal(work, dict(own_bus(), HOME=home, PATH=path))
         self.addCleanup(self.terminal.close)
 

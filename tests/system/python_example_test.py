@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The programs of examples/python, in runs: coop_auv.py as docs/guides/python_auv.md shows it, lockstep_client.py.
 
-    python3 python_example_test.py BINARIES LCM_GEN
+    python3 python_example_test.py BINARIES LCM_GEN [PACKAGES]
+
+PACKAGES: folder with the Python package; its message classes are then used instead of those of lcm-gen
 """
 import glob
 import json
@@ -16,7 +18,7 @@ from unittest import mock
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 ROOT = os.path.join(HERE, "..", "..")
-BINARIES, LCM_GEN = sys.argv[1:3]
+BINARIES, LCM_GEN, *PACKAGES = sys.argv[1:]
 
 
 def options_of_the_page():
@@ -29,10 +31,13 @@ def options_of_the_page():
 def prepare():
     """The message types of this tree and a bus of the test's own; once, before the examples are imported."""
     types = tempfile.TemporaryDirectory()
+    os.environ["LCM_DEFAULT_URL"] = f"udpm://239.255.76.67:{10000 + os.getpid() * 4 % 20000}?ttl=0"
+    if PACKAGES:
+        sys.path[:0] = [*PACKAGES, os.path.join(ROOT, "examples", "python")]
+        return types
     subprocess.run([LCM_GEN, "--python", "--ppath", types.name,
                     *glob.glob(os.path.join(ROOT, "messages", "*", "*.lcm"))], check=True)
     sys.path[:0] = [types.name, os.path.join(ROOT, "examples", "python")]
-    os.environ["LCM_DEFAULT_URL"] = f"udpm://239.255.76.67:{10000 + os.getpid() * 4 % 20000}?ttl=0"
     return types
 
 

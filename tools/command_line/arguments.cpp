@@ -65,9 +65,10 @@ class Reader {
   /// Reads a command, or an argument by its position.
   void read_place(const std::string& word) {
     const std::vector<std::string> commands = command_names(command());
-    if (commands.empty()) {
+    const bool is_command = std::find(commands.begin(), commands.end(), word) != commands.end();
+    if (commands.empty() || (takes_places() && (!is_command || !places_.empty()))) {
       take_place(word);
-    } else if (std::find(commands.begin(), commands.end(), word) != commands.end()) {
+    } else if (is_command) {
       result_.command = command().get_subcommand(word);
       path_.push_back(word);
     } else if (word == "help" && !only_places_) {
@@ -76,6 +77,12 @@ class Reader {
       throw UsageError(unknown_command(word, commands));
     }
   }
+
+  std::vector<CLI::Option*> places_of_command() {
+    return command().get_options([](const CLI::Option* option) { return option->get_positional(); });
+  }
+  /// A command may have both: `shoal study FILE`, `shoal study run DIR`.
+  bool takes_places() { return !places_of_command().empty(); }
 
   std::string unknown_command(const std::string& word, const std::vector<std::string>& names) {
     const std::string text = "unknown command " + quoted(word);
@@ -91,8 +98,7 @@ class Reader {
   }
 
   void take_place(const std::string& word) {
-    std::vector<CLI::Option*> places =
-        command().get_options([](const CLI::Option* option) { return option->get_positional(); });
+    const std::vector<CLI::Option*> places = places_of_command();
     for (CLI::Option* place : places) {
       if (counts_[place] > 0 && !is_repeatable(*place)) continue;
       if (word.empty()) throw UsageError(place->get_name(true) + " must not be empty");
@@ -167,7 +173,8 @@ class Reader {
   void check_complete() {
     const std::vector<std::string> commands = command_names(command());
     const bool version = std::find(options_.begin(), options_.end(), "--version") != options_.end();
-    if (!commands.empty() && !version) throw UsageError("needs a command: " + alternatives(commands));
+    if (!commands.empty() && !version && !takes_places())
+      throw UsageError("needs a command: " + alternatives(commands));
     for (const CLI::Option* option : command().get_options(nullptr))
       if (option->get_required() && counts_[option] == 0) throw UsageError(option_name(*option) + " is required");
   }

@@ -61,7 +61,9 @@ std::string usage_of(const CLI::App& command, std::size_t columns) {
     const std::string name = option->get_name(true) + (option->get_items_expected_max() > 1 ? "..." : "");
     text += option->get_required() ? " " + name : " [" + name + "]";
   }
-  if (!commands_of(command).empty()) text += " COMMAND";
+  const bool places =
+      std::any_of(all.begin(), all.end(), [](const CLI::Option* each) { return each->get_positional(); });
+  if (!commands_of(command).empty()) text += places ? ", or " + command_path(command) + " COMMAND" : " COMMAND";
   return wrapped(text, columns, std::min<std::size_t>(begin.size() + 1, 20)) + "\n";
 }
 

@@ -71,9 +71,11 @@ void check_study(const std::string& path, const sim::LoadOptions& options) {
   for (sim::LoadedWorld& world : study.worlds) body_count(world, warnings);
   const StudyConfig& config = study.config;
   std::cout << path << ": study '" << config.name << "' of " << config.world << ": "
-            << counted(config.cases.size(), "case") << ", " << counted(config.seeds.size(), "seed") << ", "
-            << counted(config.cases.size() * config.seeds.size(), "run") << ", " << counted(config.pass.size(), "rule")
-            << '\n';
+            << counted(config.cases.size(), "case") << ", "
+            << (config.factors.empty() ? "" : counted(study.points.size(), "point") + ", ")
+            << counted(config.seeds.size(), "seed") << ", "
+            << counted(config.cases.size() * study.points.size() * config.seeds.size(), "run") << ", "
+            << counted(config.pass.size(), "rule") << '\n';
 }
 
 void check_motion(const std::string& path) {

@@ -20,6 +20,7 @@
 #include "tools/experiment/drive/driver.hpp"
 #include "tools/experiment/drive/gamepad_device.hpp"
 #include "tools/experiment/process/signals.hpp"
+#include "tools/experiment/terminal/key_events.hpp"
 #include "tools/experiment/terminal/terminal_keys.hpp"
 #include "tools/shoal/commands.hpp"
 #include "tools/shoal/control_session.hpp"
@@ -63,7 +64,9 @@ class KeyControls final : public Controls {
   bool read(Clock::time_point) override {
     while (const auto byte = terminal_.next()) {
       if (*byte == 4) return false;  // Ctrl-D
-      const DriveKeys::Effect effect = keys_.press(names_.next(*byte));
+      const auto event = events_.next(*byte);
+      if (!event || (event->ctrl && event->key.size() == 1)) continue;  // Ctrl and a letter
+      const DriveKeys::Effect effect = keys_.press(event->key);
       holds_ = holds_ || effect == DriveKeys::Effect::sign_of_life;
       next_joint_ = next_joint_ || effect == DriveKeys::Effect::next_joint;
     }
@@ -78,7 +81,7 @@ class KeyControls final : public Controls {
 
  private:
   TerminalKeys terminal_;
-  DriveKeyNames names_;
+  KeyEvents events_;
   DriveKeys keys_;
   bool holds_ = false, next_joint_ = false;
 };

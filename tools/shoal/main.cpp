@@ -14,10 +14,13 @@
 
 #include "bridges/base/bus_error.hpp"
 #include "sim/config/diagnostics.hpp"
+#include "sim/config/shipped_files.hpp"
 #include "sim/device/device_registry.hpp"
+#include "sim/world_file/vehicle_config.hpp"
 #include "tools/command_line/parse.hpp"
 #include "tools/command_line/text_layout.hpp"
 #include "tools/experiment/run/runner.hpp"
+#include "tools/experiment/snapshot/run_identity.hpp"
 #include "tools/shoal/bug_command.hpp"
 #include "tools/shoal/commands.hpp"
 #include "tools/shoal/motion/motion_commands.hpp"
@@ -27,11 +30,19 @@ namespace {
 
 volatile std::sig_atomic_t output_was_closed = 0;
 
+/// Versions of the program, its libraries and the files that it reads, and where the shipped ones are.
+std::string versions() {
+  const std::string shipped = sim::shipped_folder();
+  return tools::version_text() + "machine: " + tools::build_text() +
+         "\nworlds and vehicles: " + (shipped.empty() ? "none were found" : shipped) + ", format " +
+         std::to_string(sim::VehicleConfig{}.shoal) + "\n";
+}
+
 int run(int argc, char** argv) {
   CLI::App app{"Shoal simulates many vehicles and their devices on LCM channels.", "shoal"};
   // General options and help.
   app.set_help_flag("-h,--help", "print this help");
-  app.set_version_flag("--version", tools::version_text, "print the versions of Shoal and its libraries");
+  app.set_version_flag("--version", versions, "print the versions of Shoal, its libraries and its files");
   app.require_subcommand(1);
   command_line::set_help_end(
       app,
@@ -75,6 +86,7 @@ int run(int argc, char** argv) {
   tools::add_report_command(app, exit_code);
   tools::add_bug_command(app, exit_code);
   tools::add_study_command(app, exit_code);
+  tools::add_tune_command(app, exit_code);
   tools::add_upgrade_command(app, exit_code);
   // Parse and run.
   try {

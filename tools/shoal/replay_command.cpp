@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "bridges/lockstep/lockstep_service.hpp"
+#include "tools/command_line/name_list.hpp"
 #include "tools/experiment/replay/play.hpp"
 #include "tools/experiment/replay/replay.hpp"
 #include "tools/experiment/results/run_error.hpp"
@@ -75,11 +76,8 @@ void add_player_options(CLI::App& command, ReplayArguments& arguments) {
   CLI::Option* play = command.add_flag("--play", arguments.play, "play the record to programs, without a world");
   PlayOptions& player = arguments.player;
   const auto of_play = [&](CLI::Option* option) { return option->needs(play); };
-  of_play(command.add_option("--await", player.await, "lockstep clients to wait for: NAME,NAME,...")
-              ->type_name("NAMES")
-              ->delimiter(',')
-              ->type_size(1)
-              ->allow_extra_args(false));
+  of_play(command_line::add_name_list(command, "--await", player.await, "lockstep clients to wait for: NAME,NAME,...")
+              ->type_name("NAMES"));
   of_play(
       command.add_option("--join-timeout", player.join_timeout_s, "wall seconds to wait for clients; 0: start at once")
           ->type_name("S")

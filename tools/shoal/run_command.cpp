@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "messages/yaml/message_writer.hpp"
+#include "tools/command_line/name_list.hpp"
 #include "tools/experiment/bug_report/bug_report.hpp"
 #include "tools/experiment/process/browser.hpp"
 #include "tools/experiment/process/world_programs.hpp"
@@ -181,11 +182,9 @@ void add_bus_options(CLI::App& command, RunArguments& arguments) {
       ->excludes(key);
   // Programs and serial ports.
   command.add_flag("--launch", arguments.run.launch, "start the programs that the world names");
-  command.add_option("--await", arguments.run.await, "lockstep clients to wait for, started by hand: NAME,NAME,...")
-      ->type_name("NAMES")
-      ->delimiter(',')
-      ->type_size(1)
-      ->allow_extra_args(false);
+  command_line::add_name_list(command, "--await", arguments.run.await,
+                              "lockstep clients to wait for, started by hand: NAME,NAME,...")
+      ->type_name("NAMES");
   command.add_flag_callback(
       "--no-serial-ports", [&] { arguments.run.serial_ports = false; },
       "do not open the pseudo-terminals and FIFOs of devices");

@@ -3,12 +3,15 @@
 
 #include <gmock/gmock.h>
 
+#include <random>
+
 #include "bridges/ros2/cdr_writer.hpp"
 #include "tests/bridges/lcm/lcm_test_support.hpp"
 
 namespace {
 
 using bridges::ros2::CdrWriter;
+using bridges::ros2::from_cdr;
 using bridges::ros2::to_cdr;
 using testing::ElementsAreArray;
 using Cdr = std::vector<std::byte>;
@@ -114,6 +117,50 @@ TEST(CdrTranscoder, TranscodesEveryTypeIntoABoundedSize) {
       EXPECT_LE(cdr.size(), 8 * payload.size());
     }
   }
+}
+
+TEST(CdrTranscoder, TranscodesEveryTypeThereAndBack) {
+  lcm_test::PayloadBuilder builder(3);
+  for (const auto& [name, schema] : shoal::embedded_types().all()) {
+    SCOPED_TRACE(name);
+    for (int i = 0; i < 20; ++i) {
+      const sim::Bytes payload = builder.build(schema);
+      Cdr cdr, again, back;
+      ASSERT_EQ(to_cdr(schema, payload, cdr), std::nullopt);
+      ASSERT_EQ(from_cdr(schema, cdr, back), std::nullopt);
+      // A boolean may be any byte in a payload, but 0 or 1 in CDR.
+      ASSERT_EQ(to_cdr(schema, back, again), std::nullopt);
+      EXPECT_EQ(again, cdr);
+      EXPECT_EQ(back.size(), payload.size());
+    }
+  }
+}
+
+TEST(CdrTranscoder, RefusesDamagedCdr) {
+  lcm_test::PayloadBuilder builder(4);
+  std::mt19937 random(4);
+  std::size_t refused = 0;
+  for (const auto& [name, schema] : shoal::embedded_types().all()) {
+    SCOPED_TRACE(name);
+    Cdr cdr, back;
+    ASSERT_EQ(to_cdr(schema, builder.build(schema), cdr), std::nullopt);
+    Cdr cut = cdr;
+    cut.pop_back();
+    EXPECT_NE(from_cdr(schema, cut, back), std::nullopt);
+    EXPECT_TRUE(back.empty());
+    cdr.push_back(std::byte{0});
+    EXPECT_NE(from_cdr(schema, cdr, back), std::nullopt);
+    cdr.pop_back();
+    for (int i = 0; i < 50; ++i) {
+      Cdr changed = cdr;
+      changed[random() % changed.size()] = static_cast<std::byte>(random());
+      if (from_cdr(schema, changed, back))
+        ++refused;
+      else
+        EXPECT_EQ(shoal::validate(schema, back, shoal::Finite::any), std::nullopt);
+    }
+  }
+  EXPECT_GT(refused, 100u);
 }
 
 }  // namespace

@@ -261,7 +261,9 @@ TEST(JointServo, SaysWhatIsWrongWithItsParameters) {
   EXPECT_THAT(error_of(", low: 1, high: -1"), testing::HasSubstr("device 'servo': 'low' must not be above 'high'"));
   EXPECT_THAT(error_of(", axis: 1"),
               testing::HasSubstr("device 'servo': joint 'shoulder' is a hinge and has no axis 1"));
-  EXPECT_THAT(error_of(", max_effort: 0"), testing::HasSubstr("'max_effort' must be > 0, got 0"));
+  EXPECT_THAT(error_of(", max_effort: 0"), testing::HasSubstr("'max_effort' must be >= 1e-09, got 0"));
+  for (const std::string key : {"max_effort", "max_velocity", "max_acceleration"})
+    EXPECT_THAT(error_of(", " + key + ": 1e-300"), testing::HasSubstr("'" + key + "' must be >= 1e-09, got 1e-300"));
   EXPECT_THAT(error_of(", efficiency: 1.5"), testing::HasSubstr("'efficiency' must be > 0 and <= 1, got 1.5"));
 }
 

@@ -32,7 +32,7 @@ std::string text(const Vector3d& v) {
 }
 
 /// Water whose speed of sound changes with depth, with the absorption of the sea.
-std::string sea(const std::string& vehicles, const std::string& paths = "straight") {
+std::string small_sea(const std::string& vehicles, const std::string& paths = "straight") {
   return "shoal: 1\nphysics: {step_s: 0.01, gravity_mps2: 0}\n"
          "medium: {water: {surface_m: 0, profile: [{depth_m: 0, sound_speed_mps: 1520}, {depth_m: 100, "
          "sound_speed_mps: 1490}, {depth_m: 400, sound_speed_mps: 1500}]}}\n"
@@ -87,7 +87,7 @@ std::uint64_t fingerprint(const std::vector<Probed>& all) {
 RC_GTEST_PROP(AcousticChannel, CarriesSoundBothWaysWithTheSameLoss, ()) {
   const Vector3d p_a = place_within(2000, 300), p_b = place_within(2000, 300);
   RC_PRE(all_apart({p_a, p_b}));
-  test::TestWorld test(sea(test::float_at("a", text(p_a)) + test::float_at("b", text(p_b))));
+  test::TestWorld test(small_sea(test::float_at("a", text(p_a)) + test::float_at("b", text(p_b))));
   AcousticProbe a(test, "a"), b(test, "b");
   const double level_dB = number_between(170, 200);
   a.send(AcousticProbe::tone(level_dB));
@@ -102,7 +102,7 @@ RC_GTEST_PROP(AcousticChannel, CarriesSoundBothWaysWithTheSameLoss, ()) {
 RC_GTEST_PROP(AcousticChannel, CarriesBentSoundBothWaysWithTheSameLoss, ()) {
   const Vector3d p_a = place_within(2000, 300), p_b = place_within(2000, 300);
   RC_PRE(all_apart({p_a, p_b}));
-  test::TestWorld test(sea(test::float_at("a", text(p_a)) + test::float_at("b", text(p_b)), "rays"));
+  test::TestWorld test(small_sea(test::float_at("a", text(p_a)) + test::float_at("b", text(p_b)), "rays"));
   AcousticProbe a(test, "a"), b(test, "b");
   a.send(AcousticProbe::tone(190));
   test.run_for(5);
@@ -118,7 +118,7 @@ RC_GTEST_PROP(AcousticChannel, CarriesBentSoundBothWaysWithTheSameLoss, ()) {
 RC_GTEST_PROP(AcousticChannel, NeitherOutrunsTheSpeedsOfSoundOnTheWayNorLagsThem, ()) {
   const Vector3d p_a = place_within(1500, 300), p_b = place_within(1500, 300);
   RC_PRE(all_apart({p_a, p_b}));
-  test::TestWorld test(sea(test::float_at("a", text(p_a)) + test::float_at("b", text(p_b))));
+  test::TestWorld test(small_sea(test::float_at("a", text(p_a)) + test::float_at("b", text(p_b))));
   AcousticProbe a(test, "a", any_speed()), b(test, "b", any_speed());
   set_velocity(test, "a", any_velocity(20));
   set_velocity(test, "b", any_velocity(20));
@@ -174,7 +174,7 @@ RC_GTEST_PROP(AcousticChannel, APacketAloneOnACleanLinkAlwaysGetsThrough, ()) {
   // 190 dB less some 60 dB over 2.9 km, against some 70 dB of noise: 60 dB.
   const Vector3d p_a = place_within(1000, 300), p_b = place_within(1000, 300);
   RC_PRE(all_apart({p_a, p_b}));
-  test::TestWorld test(sea(test::float_at("a", text(p_a)) + test::float_at("b", text(p_b))));
+  test::TestWorld test(small_sea(test::float_at("a", text(p_a)) + test::float_at("b", text(p_b))));
   AcousticProbe a(test, "a"), b(test, "b");
   set_velocity(test, "b", any_velocity(1.5));
   const int bytes = *rc::gen::inRange(1, 200);
@@ -215,7 +215,7 @@ Chatter chatter(int seed, int threads, bool with_deaf) {
     vehicles += test::float_at("v" + std::to_string(i),
                                text({300.0 * (i % 4) + 7 * i, 250.0 * (i / 4), -20.0 - 9 * ((i * seed) % 11)}));
   if (with_deaf) vehicles += test::float_at("deaf", "[9000, 9000, -50]");
-  test::TestWorld test(sea(vehicles, seed % 2 == 0 ? "straight" : "rays") + "run: {seed: " + std::to_string(seed) +
+  test::TestWorld test(small_sea(vehicles, seed % 2 == 0 ? "straight" : "rays") + "run: {seed: " + std::to_string(seed) +
                        "}\n");
   test.world.use_threads(threads);
   std::vector<std::unique_ptr<AcousticProbe>> probes;

@@ -3,41 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 namespace tools {
-
-std::string DriveKeyNames::next(char byte) {
-  const State before = std::exchange(state_, State::none);
-  if (byte == 27) {
-    state_ = State::escape;
-    return {};
-  }
-  if (before == State::escape && (byte == '[' || byte == 'O')) {
-    state_ = State::sequence;
-    return {};
-  }
-  if (before == State::sequence) {
-    // Parameters continue; a letter or `~` ends the sequence.
-    if (byte >= ' ' && byte <= '?') state_ = State::sequence;
-    switch (byte) {
-      case 'A':
-        return "up";
-      case 'B':
-        return "down";
-      case 'C':
-        return "right";
-      case 'D':
-        return "left";
-      default:
-        return {};
-    }
-  }
-  if (byte == ' ') return "space";
-  if (byte == '\t') return "tab";
-  if (byte == '\r' || byte == '\n') return "enter";
-  return byte > ' ' && byte < 127 ? std::string{byte} : std::string{};
-}
 
 DriveKeys::Effect DriveKeys::press(const std::string& key) {
   if (key.empty()) return Effect::none;

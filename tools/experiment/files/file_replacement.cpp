@@ -80,25 +80,46 @@ mode_t usual_rights() {
 
 }  // namespace
 
-void write_whole_file(const std::string& path, const std::string& text) {
+namespace {
+
+/// Owner and permissions of a file as it is or as a new one would be.  Throws when it is not a regular file.
+struct stat rights_of(const std::string& path, bool& is_there) {
+  std::error_code error;
+  struct stat status {};
+  is_there = stat(path.c_str(), &status) == 0;
+  if (!is_there && fs::is_symlink(path, error)) fail(path, "it is a symbolic link to nothing");
+  if (is_there && !S_ISREG(status.st_mode)) fail(path, "it is not a regular file");
+  if (!is_there) {
+    status.st_uid = geteuid();
+    status.st_gid = getegid();
+    status.st_mode = usual_rights();
+  }
+  return status;
+}
+
+/// Writes a new file beside another one, and puts it there if there is a text.
+void write_beside(const std::string& path, const std::string* text) {
   try {
+    bool is_there = false;
+    const struct stat status = rights_of(path, is_there);
     std::error_code error;
-    struct stat status {};
-    const bool is_there = stat(path.c_str(), &status) == 0;
-    if (!is_there && fs::is_symlink(path, error)) fail(path, "it is a symbolic link to nothing");
-    if (is_there && !S_ISREG(status.st_mode)) fail(path, "it is not a regular file");
-    if (!is_there) {
-      status.st_uid = geteuid();
-      status.st_gid = getegid();
-      status.st_mode = usual_rights();
-    }
     NewFile file(path, is_there ? fs::canonical(path, error).string() : path);
-    file.write(text);
+    if (text != nullptr) file.write(*text);
     file.take_rights(status);
-    file.take_place();
+    if (text != nullptr) file.take_place();
   } catch (const sim::ConfigError& error) {
     throw std::runtime_error(error.what());
   }
+}
+
+}  // namespace
+
+void write_whole_file(const std::string& path, const std::string& text) {
+  write_beside(path, &text);
+}
+
+void check_whole_file(const std::string& path) {
+  write_beside(path, nullptr);
 }
 
 void replace_file(const std::string& path, const std::string& before, const std::string& after) {

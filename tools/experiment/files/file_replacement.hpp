@@ -16,4 +16,7 @@ void replace_file(const std::string& path, const std::string& before, const std:
 /// reason, such as for a name of a device, a pipe or a folder.
 void write_whole_file(const std::string& path, const std::string& text);
 
+/// Throws std::runtime_error when write_whole_file() would fail now; for errors before a long work.  Changes nothing.
+void check_whole_file(const std::string& path);
+
 }  // namespace tools

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "sim/config/utf8.hpp"
+
 namespace tools {
 
 namespace {
@@ -60,21 +62,6 @@ pre { background: var(--band); padding: .75rem; overflow-x: auto; font-size: .85
 }
 )";
 
-/// Returns the bytes of the UTF-8 character at the front; 0: invalid.
-std::size_t utf8_length(std::string_view text) {
-  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  const unsigned char first = byte(0);
-  if (first < 0x80) return 1;
-  const std::size_t length = first >= 0xf0 ? 4 : first >= 0xe0 ? 3 : 2;
-  if (first < 0xc2 || first > 0xf4 || text.size() < length) return 0;
-  for (std::size_t i = 1; i < length; ++i)
-    if ((byte(i) & 0xc0) != 0x80) return 0;
-  // Reject overlong forms, surrogates and values beyond Unicode.
-  if ((first == 0xe0 && byte(1) < 0xa0) || (first == 0xed && byte(1) > 0x9f)) return 0;
-  if ((first == 0xf0 && byte(1) < 0x90) || (first == 0xf4 && byte(1) > 0x8f)) return 0;
-  return length;
-}
-
 std::string row_of(const std::vector<std::string>& cells, const char* tag) {
   std::string text = "<tr>";
   for (const std::string& cell : cells)
@@ -87,7 +74,7 @@ std::string row_of(const std::vector<std::string>& cells, const char* tag) {
 std::string html_text(std::string_view text) {
   std::string out;
   while (!text.empty()) {
-    const std::size_t length = utf8_length(text);
+    const std::size_t length = sim::utf8_length(text);
     const char c = text.front();
     // Replace control characters and invalid bytes, escape markup.
     const bool control = length == 1 && ((c >= 0 && c < 0x20 && c != '\n' && c != '\t') || c == 0x7f);

@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/config/message_text.hpp"
+
 namespace tools {
 
 namespace {
-
-constexpr double max_course_s = 3600;
 
 std::vector<sim::MotionTrack> named_tracks(const sim::JointMotion& motion,
                                            const std::function<std::string(const std::string&)>& name_of) {
@@ -75,7 +75,9 @@ std::vector<CoursePoint> course_of(const StageOptions& options, const sim::Joint
     if (now.player().phase() == devices::MotionPlayer::Phase::approach) return;
     course.push_back({now.player().at_s(), now.vehicle().X_WV()});
   };
-  stage.play_out(0, max_course_s);
+  if (!stage.play_out(0, end_limit_s(once)))
+    throw sim::ConfigError(
+        {"motion '" + once.name + "' has not ended after " + sim::number_text(end_limit_s(once)) + " s of the run"});
   return course;
 }
 

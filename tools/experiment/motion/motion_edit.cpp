@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "sim/config/message_text.hpp"
+#include "sim/config/yaml_writer.hpp"
 #include "sim/motion/motion_frames.hpp"
 
 namespace tools {
@@ -115,6 +116,13 @@ void add_after(std::vector<MotionTrack>& tracks, const std::vector<MotionTrack>&
       if (place->keys.empty() || key.at_s + at_s > place->keys.back().at_s + same_time_s)
         place->keys.push_back({key.at_s + at_s, key.value, key.ease});
   }
+}
+
+/// Adds the sliders of another motion.
+void add_sliders(JointMotion& motion, const JointMotion& other) {
+  for (const std::string& slider : other.sliders)
+    if (std::find(motion.sliders.begin(), motion.sliders.end(), slider) == motion.sliders.end())
+      motion.sliders.push_back(slider);
 }
 
 std::string mirrored_name(const std::string& joint, const MirrorRule& rule) {
@@ -240,6 +248,7 @@ JointMotion appended(const JointMotion& motion, const JointMotion& other, double
   JointMotion both = motion;
   for (const sim::MotionPose& pose : other.poses)
     if (motion.find_pose(pose.name) == nullptr) both.poses.push_back(pose);
+  add_sliders(both, other);
   // Joints of the first motion hold during the pause's start, and move to the other's first values within it.
   const double start_s = motion.end_s() + gap_s;
   std::vector<MotionTrack> tracks = part(motion, 0, motion.end_s());
@@ -263,7 +272,18 @@ JointMotion merged(const JointMotion& motion, const JointMotion& other, bool rep
     else
       throw EditError("both motions have joint '" + track.joint + "'; --replace takes that of the second");
   }
-  return with_tracks(motion, std::move(tracks), unchanged);
+  JointMotion both = with_tracks(motion, std::move(tracks), unchanged);
+  add_sliders(both, other);
+  // Both start at the same time.  A change that both have, such as of two parts of one recording, happens once.
+  for (const sim::MotionChange& change : other.changes)
+    if (std::none_of(motion.changes.begin(), motion.changes.end(), [&](const sim::MotionChange& one) {
+          return std::abs(one.at_s - change.at_s) < same_time_s &&
+                 sim::to_flow_yaml(one.action) == sim::to_flow_yaml(change.action);
+        }))
+      both.changes.push_back(change);
+  std::stable_sort(both.changes.begin(), both.changes.end(),
+                   [](const auto& a, const auto& b) { return a.at_s < b.at_s; });
+  return both;
 }
 
 JointMotion mirrored(const JointMotion& motion, const MirrorRule& rule) {

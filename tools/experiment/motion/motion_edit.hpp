@@ -35,7 +35,8 @@ sim::JointMotion trimmed(const sim::JointMotion& motion, double from_s, double t
 sim::JointMotion without(const sim::JointMotion& motion, double from_s, double to_s);
 /// Adds another motion after a pause of `gap_s` > 0.
 sim::JointMotion appended(const sim::JointMotion& motion, const sim::JointMotion& other, double gap_s);
-/// Adds the joints of another motion.  Throws EditError when both have a joint, unless it is replaced.
+/// Adds the joints of another motion, and its changes at their times; one that both have at the same time is kept once.
+/// Throws EditError when both have a joint, unless it is replaced.
 sim::JointMotion merged(const sim::JointMotion& motion, const sim::JointMotion& other, bool replace);
 sim::JointMotion mirrored(const sim::JointMotion& motion, const MirrorRule& rule);
 /// Adds the mirrored motion behind it: half a cycle becomes a whole one.

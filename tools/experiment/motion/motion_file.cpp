@@ -64,9 +64,15 @@ fs::path frames_of(const Version& version) {
   return fs::path(version.file).replace_extension(".csv");
 }
 
+/// File of the operation between a version and the next one.
+fs::path operation_of(const Version& version) {
+  return fs::path(version.file).replace_extension(".txt");
+}
+
 void remove(const Version& version) {
   std::error_code error;
   fs::remove(frames_of(version), error);
+  fs::remove(operation_of(version), error);
   fs::remove(version.file, error);
 }
 
@@ -93,6 +99,20 @@ struct Content {
   }
 };
 
+/// Reads the content once.  Throws EditError when that fails.
+void check_readable(const std::string& path, const Content& content) {
+  const ScratchDirectory scratch;
+  const std::string trial = (scratch.path / fs::path(path).filename()).string();
+  content.write_to(trial);
+  try {
+    sim::load_motion(trial);
+  } catch (const sim::ConfigError& error) {
+    std::string line = error.lines().front();
+    if (line.starts_with(scratch.path.string())) line.erase(0, scratch.path.string().size() + 1);
+    throw EditError("'" + path + "' is not written, because it would be invalid: " + line);
+  }
+}
+
 /// Returns what a file is to contain.  Throws EditError when it could not be read again.
 Content content_of(const std::string& path, sim::JointMotion motion) {
   Content content;
@@ -113,22 +133,17 @@ Content content_of(const std::string& path, sim::JointMotion motion) {
     motion.frames_file = fs::path(frames_path(path)).filename().string();
   }
   content.text = sim::motion_text(motion);
-
-  // Read it once
-  const ScratchDirectory scratch;
-  const std::string trial = (scratch.path / fs::path(path).filename()).string();
-  content.write_to(trial);
-  try {
-    sim::load_motion(trial);
-  } catch (const sim::ConfigError& error) {
-    std::string line = error.lines().front();
-    if (line.starts_with(scratch.path.string())) line.erase(0, scratch.path.string().size() + 1);
-    throw EditError("'" + path + "' is not written, because it would be invalid: " + line);
-  }
+  check_readable(path, content);
   return content;
 }
 
 }  // namespace
+
+void check_readable(const std::string& path, const sim::JointMotion& motion) {
+  Content content{sim::motion_text(motion), std::nullopt};
+  if (!motion.frames.empty()) content.frames = sim::motion_frames_text(motion.frames);
+  check_readable(path, content);
+}
 
 void write_motion(const std::string& path, const sim::JointMotion& motion) {
   content_of(path, motion).write_to(path);
@@ -153,8 +168,10 @@ std::string motion_name_of(const std::string& path) {
 
 namespace {
 
-/// Copies a motion file as the next version of a kind.  Removes it again when that fails.
-Version store(const std::string& path, const std::string& folder, const std::string& kind) {
+/// Copies a motion file as the next version of a kind, with the operation that leads to or from it.  Removes it again
+/// when that fails.
+Version store(const std::string& path, const std::string& folder, const std::string& kind,
+              const std::string& operation) {
   std::error_code error;
   fs::create_directories(folder, error);
   const std::vector<Version> before = versions(folder, kind);
@@ -164,6 +181,7 @@ Version store(const std::string& path, const std::string& folder, const std::str
   const Version version{number, fs::path(folder) / name};
   try {
     if (has_frames(path)) copy_over(frames_path(path), frames_of(version));
+    if (!operation.empty()) write_whole_file(operation_of(version).string(), operation + "\n");
     copy_over(path, version.file);
   } catch (...) {
     remove(version);
@@ -174,9 +192,9 @@ Version store(const std::string& path, const std::string& folder, const std::str
 
 }  // namespace
 
-void MotionHistory::replace(const sim::JointMotion& motion) const {
+void MotionHistory::replace(const sim::JointMotion& motion, const std::string& operation) const {
   const Content content = content_of(path_, motion);
-  const Version kept = store(path_, folder(), "undo");
+  const Version kept = store(path_, folder(), "undo", operation);
   try {
     content.write_to(path_);
   } catch (...) {
@@ -186,14 +204,17 @@ void MotionHistory::replace(const sim::JointMotion& motion) const {
   for (const Version& version : versions(folder(), "redo")) remove(version);
 }
 
-void MotionHistory::move(const std::string& from, const std::string& to) const {
+std::string MotionHistory::move(const std::string& from, const std::string& to) const {
   const std::vector<Version> found = versions(folder(), from);
   if (found.empty()) throw std::runtime_error("there is nothing to " + from + " for '" + path_ + "'");
   const fs::path frames = frames_of(found.back());
   const std::string foreign = foreign_frames(path_);
   if (!foreign.empty() && fs::exists(frames))
     throw std::runtime_error("'" + foreign + "' does not belong to '" + path_ + "', and is in the way of its frames");
-  const Version kept = store(path_, folder(), to);
+  std::string operation;
+  std::ifstream file(operation_of(found.back()));
+  std::getline(file, operation);
+  const Version kept = store(path_, folder(), to, operation);
   try {
     if (foreign.empty()) copy_over(frames, frames_path(path_));
     copy_over(found.back().file, path_);
@@ -202,6 +223,7 @@ void MotionHistory::move(const std::string& from, const std::string& to) const {
     throw;
   }
   remove(found.back());
+  return operation;
 }
 
 sim::JointMotion MotionHistory::previous() const {

@@ -17,6 +17,10 @@ constexpr std::size_t max_written_keys = 1000;
 /// that could not be read again; std::runtime_error when a file cannot be written.
 void write_motion(const std::string& path, const sim::JointMotion& motion);
 
+/// Throws EditError when a motion could not be read again from a file with its keys and frames as they are, and from
+/// the CSV file of the same name with its frames.
+void check_readable(const std::string& path, const sim::JointMotion& motion);
+
 /// Returns the CSV file that write_motion() would replace although it does not belong to the motion file; empty: none.
 std::string foreign_frames(const std::string& path, const sim::JointMotion& motion);
 /// Returns the CSV file beside a motion file if it exists and does not belong to the motion; empty: it does, or there
@@ -32,16 +36,17 @@ class MotionHistory {
  public:
   explicit MotionHistory(std::string path) : path_(std::move(path)) {}
   /// Replaces the file as write_motion() does, and keeps the present version, to which undo() returns; what could be
-  /// redone is dropped.
-  void replace(const sim::JointMotion& motion) const;
-  /// Go back and forth.  Throw std::runtime_error when there is no such version, or a CSV file is in the way.
-  void undo() const { move("undo", "redo"); }
-  void redo() const { move("redo", "undo"); }
+  /// redone is dropped.  `operation`: what replaces it, in the words of the command; empty: unknown.
+  void replace(const sim::JointMotion& motion, const std::string& operation = "") const;
+  /// Go back and forth.  Return the operation that was taken back or done again; empty: unknown.  Throw
+  /// std::runtime_error when there is no such version, or a CSV file is in the way.
+  std::string undo() const { return move("undo", "redo"); }
+  std::string redo() const { return move("redo", "undo"); }
   /// Returns the version to which undo() would return.  Throws std::runtime_error when there is none, ConfigError.
   sim::JointMotion previous() const;
 
  private:
-  void move(const std::string& from, const std::string& to) const;
+  std::string move(const std::string& from, const std::string& to) const;
   std::string folder() const { return path_ + ".history"; }
 
   std::string path_;

@@ -35,6 +35,12 @@ sim::JointMotion in_one_piece(const sim::JointMotion& motion) {
 
 }  // namespace
 
+double end_limit_s(const sim::JointMotion& motion) {
+  // A joint that turns by a whole turn at the least velocity of an approach, 0.001 rad/s, takes 9425 s.
+  constexpr double max_approach_s = 10'000;
+  return max_approach_s + motion.end_s();
+}
+
 sim::ConfigNode node_of(const sim::JointMotion& motion) {
   sim::JointMotion exact = in_one_piece(motion);
   exact.angles = sim::AngleUnit::rad;
@@ -196,7 +202,7 @@ void MotionStage::go_to(double at_s) {
   while (world_->step_number() < desired) step();
 }
 
-void MotionStage::play_out(double settle_s, double max_s) {
+bool MotionStage::play_out(double settle_s, double max_s) {
   while (player().phase() != devices::MotionPlayer::Phase::idle && now_s() < max_s) {
     step();
     // The approach is planned in the first step.
@@ -208,6 +214,7 @@ void MotionStage::play_out(double settle_s, double max_s) {
   }
   const double end_s = std::min(now_s() + settle_s, max_s);
   while (now_s() < end_s - 1e-9) step();
+  return player().phase() == devices::MotionPlayer::Phase::idle;
 }
 
 }  // namespace tools

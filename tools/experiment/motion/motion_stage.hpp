@@ -31,7 +31,9 @@ struct StageOptions {
 /// Another world of the same configuration, on its own bus.
 class StageCopy {
  public:
+  /// `config` must outlive this.
   explicit StageCopy(const sim::WorldConfig& config) : world_(config, bus_) {}
+  explicit StageCopy(const sim::WorldConfig&&) = delete;
   sim::World& world() { return world_; }
 
  private:
@@ -62,8 +64,9 @@ class MotionStage {
   /// Simulates to a time of the run, s; to an earlier one from the last snapshot before it.
   void go_to(double at_s);
   /// Simulates until the motion has been played to its end, and `settle_s` more; at most `max_s` in all.  Carries out
-  /// the changes of the motion on the way.  Throws ConfigError when one is not an action of the world.
-  void play_out(double settle_s, double max_s);
+  /// the changes of the motion on the way.  Returns whether the motion has ended.  Throws ConfigError when a change is
+  /// not an action of the world.
+  bool play_out(double settle_s, double max_s);
 
   /// Drops what was simulated beyond the present instant, and the changes there: the next step starts a branch.
   void cut();
@@ -117,6 +120,9 @@ class MotionStage {
   std::int64_t furthest_step_ = 0;  ///< of the present branch
   std::uint64_t furthest_hash_ = 0;
 };
+
+/// Returns a time of the run at which a motion that does not loop has ended, unless an action of the world holds it, s.
+double end_limit_s(const sim::JointMotion& motion);
 
 /// Returns the keys of a motion, as they are written in a file.
 sim::ConfigNode node_of(const sim::JointMotion& motion);

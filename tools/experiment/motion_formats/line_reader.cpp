@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "sim/config/message_text.hpp"
+#include "sim/config/utf8.hpp"
 
 namespace tools {
 
@@ -94,7 +95,7 @@ std::int64_t LineReader::whole_of(const Word& word, std::int64_t low, std::int64
 }
 
 std::string text_in_quotes(std::string_view text) {
-  return "'" + sim::shortened(sim::printable(text)) + "'";
+  return "'" + sim::shortened(sim::printable(sim::in_utf8(text))) + "'";
 }
 
 }  // namespace tools

@@ -4,11 +4,17 @@
 #include <cctype>
 
 #include "sim/config/message_text.hpp"
+#include "sim/motion/joint_name.hpp"
 
 namespace tools {
 
+void check_joint_name(std::string_view name, const sim::SourcePlace& place, const std::string& who) {
+  if (const std::string error = sim::joint_name_error(name); !error.empty()) sim::throw_config_error(place, who, error);
+}
+
 std::string joint_called(const MotionSource& source, const char* list, const std::string& foreign,
                          const sim::SourcePlace& place) {
+  check_joint_name(foreign, place);
   if (const auto joint = source.names.joint_of(list, foreign)) return *joint;
   const std::vector<std::string> known = source.names.foreign_names(list);
   sim::throw_config_error(place, "",

@@ -8,8 +8,12 @@
 
 namespace tools {
 
+/// Throws sim::ConfigError at the place when a motion file cannot hold the name of a joint.  `who`: the part of the
+/// file.
+void check_joint_name(std::string_view name, const sim::SourcePlace& place, const std::string& who = "");
+
 /// Returns the joint of the vehicle that a file calls `foreign`; without a vehicle the same name.  Throws
-/// sim::ConfigError at the place when the vehicle has none.
+/// sim::ConfigError at the place when the vehicle has none, or a motion file cannot hold the name.
 std::string joint_called(const MotionSource& source, const char* list, const std::string& foreign,
                          const sim::SourcePlace& place);
 

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "sim/config/message_text.hpp"
+#include "sim/config/utf8.hpp"
 #include "tools/experiment/motion_formats/mtn_file.hpp"
 #include "tools/experiment/motion_formats/pose_table.hpp"
 
@@ -88,12 +89,14 @@ sim::JointMotion read_mtn(const MotionSource& source, Losses& losses) {
   motion.angles = sim::AngleUnit::rad;
   motion.name = motion_name(file.name);
   if (motion.name != file.name)
-    losses.push_back("the name '" + sim::shortened(sim::printable(file.name)) + "' becomes '" + motion.name + "'");
-  motion.description = "MTN file of " + sim::printable(file.creator) + " for " + sim::printable(file.design);
+    losses.push_back("the name '" + sim::shortened(sim::printable(sim::in_utf8(file.name))) + "' becomes '" +
+                     motion.name + "'");
+  motion.description = sim::printable(sim::in_utf8("MTN file of " + file.creator + " for " + file.design));
   std::vector<std::string> joints;
   for (const std::string& locator : file.locators) {
+    check_joint_name(locator, place, "section 2: joint " + std::to_string(joints.size() + 1));
     joints.push_back(joint_called(source, "open-r", locator, place));
-    if (locator.empty() || std::count(joints.begin(), joints.end(), joints.back()) > 1)
+    if (std::count(joints.begin(), joints.end(), joints.back()) > 1)
       sim::throw_config_error(
           place, "", "section 2 must name each joint once, got '" + sim::shortened(sim::printable(locator)) + "'");
   }

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "sim/config/message_text.hpp"
+#include "tools/experiment/motion_formats/motion_parts.hpp"
 
 namespace tools {
 
@@ -168,6 +169,7 @@ std::vector<std::string> TekkotsuOutputs::joints_of(const LineReader& lines, con
   std::string name(word.text);
   while (name.ends_with('~')) name.pop_back();
   if (name.empty()) lines.fail(word, "must be the name of an output");
+  check_joint_name(name, lines.place(word.column));
   if (source_.names.empty()) return {name};
   std::vector<std::string> found = matches(name);
   if (found.empty()) {

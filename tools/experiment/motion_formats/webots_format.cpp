@@ -5,6 +5,7 @@
 #include <set>
 
 #include "sim/config/message_text.hpp"
+#include "sim/config/utf8.hpp"
 #include "tools/experiment/motion_formats/line_reader.hpp"
 #include "tools/experiment/motion_formats/motion_format.hpp"
 #include "tools/experiment/motion_formats/pose_table.hpp"
@@ -168,7 +169,8 @@ class WebotsReader {
                          std::to_string(words.size()) + " words");
     if (times_s_.size() == sim::max_motion_keys) lines_.fail(1, "must have at most 1000000 poses");
     times_s_.push_back(time_s);
-    names_.emplace_back(words[1].text);
+    names_.push_back(sim::in_utf8(words[1].text));
+    if (names_.back() != words[1].text) ++escaped_names_;
     std::vector<Cell>& row = cells_.emplace_back();
     for (std::size_t i = 2; i < words.size(); ++i) {
       Cell& cell = row.emplace_back();
@@ -203,6 +205,9 @@ class WebotsReader {
         losses_.push_back("joint '" + joints_[j] + "' holds its position where the file has '*'");
     }
     if (motion.keys.empty()) throw sim::ConfigError({source_.file + ": no device has a position"});
+    if (escaped_names_ > 0)
+      losses_.push_back("names of poses with bytes that are not UTF-8, which become '\\xe9': " +
+                        std::to_string(escaped_names_));
     return motion;
   }
 
@@ -219,6 +224,7 @@ class WebotsReader {
   std::vector<std::string> joints_;
   std::vector<double> times_s_;
   std::vector<std::string> names_;
+  std::size_t escaped_names_ = 0;
   std::vector<std::vector<Cell>> cells_;
 };
 

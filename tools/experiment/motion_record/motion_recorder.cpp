@@ -196,7 +196,7 @@ std::int64_t MotionRecorder::frames_over() const {
 bool MotionRecorder::is_full() const {
   const bool ends_with_over = options_.over && (options_.over->loop || options_.to_s || options_.from_s);
   const bool is_at_end = ends_with_over && frames_ + 1 >= frames_over();
-  return is_at_end || frames_ + 2 >= static_cast<std::int64_t>(sim::max_motion_keys);
+  return is_at_end || frames_ + 2 >= static_cast<std::int64_t>(max_take_frames(armed_.size()));
 }
 
 bool MotionRecorder::is_recording() const {

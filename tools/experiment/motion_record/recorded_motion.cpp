@@ -6,9 +6,11 @@
 #include <filesystem>
 #include <stdexcept>
 
+#include "sim/base/whole_file.hpp"
 #include "sim/motion/motion_frames.hpp"
 #include "tools/experiment/motion/motion_edit.hpp"
 #include "tools/experiment/motion/motion_file.hpp"
+#include "tools/experiment/motion_record/take_journal.hpp"
 
 namespace tools {
 
@@ -201,21 +203,60 @@ std::string journal_path(const std::string& path) {
   return path + ".journal";
 }
 
-sim::JointMotion save_take(const std::string& path, const std::string& state_hash) {
-  const Take take = read_take(journal_path(path));
+std::optional<RecoveredTake> read_journal(const std::string& path) {
+  const std::string journal = journal_path(path);
+  std::error_code error;
+  const fs::file_type type = fs::status(journal, error).type();
+  if (type == fs::file_type::not_found) return std::nullopt;
+  if (type != fs::file_type::regular)
+    throw sim::ConfigError({journal + ": must be a regular file, the journal of a recording"});
+  if (is_recording(journal)) throw std::runtime_error("'" + path + "' is being recorded by another process");
+  std::string text;
+  try {
+    text = sim::whole_file<std::runtime_error>(journal);
+  } catch (const std::runtime_error& problem) {
+    throw sim::ConfigError({journal + ": " + problem.what()});
+  }
+  // One that ended before its first frame holds nothing.
+  const bool is_journal = std::string_view(take_head).starts_with(std::string_view(text).substr(0, take_head.size()));
+  if (is_journal && std::count(text.begin(), text.end(), '\n') < 3) {
+    fs::remove(journal);
+    return std::nullopt;
+  }
+  RecoveredTake recovered;
+  try {
+    recovered.take = parse_take(text, journal, &recovered.damage);
+  } catch (const sim::ConfigError& problem) {
+    throw sim::ConfigError({problem.lines().front() + "; nothing of it can be recovered: rename or remove it"});
+  }
+  return recovered;
+}
+
+SavedTake save_take(const std::string& path, const RecoveredTake& recovered, const std::string& state_hash,
+                    const std::string& operation) {
+  const Take& take = recovered.take;
   sim::JointMotion base;
   base.name = motion_name_of(path);
   if (take.settings.over) base = sim::load_motion(path);
   sim::JointMotion exact = exact_motion(take, base);
   exact.recorded->state_hash = state_hash;
-  sim::JointMotion keyed = keyed_motion(take, base);
+  SavedTake saved{keyed_motion(take, base), ""};
   write_motion(take_path(path), exact);
   if (fs::exists(path))
-    MotionHistory(path).replace(keyed);
+    MotionHistory(path).replace(saved.motion, operation);
   else
-    write_motion(path, keyed);
-  fs::remove(journal_path(path));
-  return keyed;
+    write_motion(path, saved.motion);
+  if (!recovered.damage) {
+    fs::remove(journal_path(path));
+    return saved;
+  }
+  // Under the first name that is free.
+  const std::string bad = journal_path(path) + ".bad";
+  saved.damaged_journal = bad;
+  for (int number = 2; fs::exists(fs::symlink_status(saved.damaged_journal)); ++number)
+    saved.damaged_journal = bad + std::to_string(number);
+  fs::rename(journal_path(path), saved.damaged_journal);
+  return saved;
 }
 
 }  // namespace tools

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "sim/motion/motion.hpp"
@@ -25,9 +26,25 @@ std::string take_path(const std::string& path);
 /// Returns the path of the journal of a recording that lasts: `wave.yaml.journal`.
 std::string journal_path(const std::string& path);
 
-/// Writes both motions of a journal, and removes it: the present version of the file goes to its history first.
-/// `state_hash`: of the world at the end; empty: unknown.  Returns the motion with keys.  Throws sim::ConfigError for
-/// an invalid journal, std::runtime_error when something cannot be written.
-sim::JointMotion save_take(const std::string& path, const std::string& state_hash);
+/// A journal, as far as it can be read.
+struct RecoveredTake {
+  Take take;
+  std::optional<TakeDamage> damage;  ///< unset: all of it was read
+};
+/// Reads the journal of a motion file; nothing: there is none, or its program ended before the first frame, and it is
+/// removed.  Throws sim::ConfigError for one without a good frame, and for what is not a journal.
+std::optional<RecoveredTake> read_journal(const std::string& path);
+
+/// What save_take() wrote.
+struct SavedTake {
+  sim::JointMotion motion;      ///< with keys
+  std::string damaged_journal;  ///< where a damaged journal is kept: `wave.yaml.journal.bad`; empty: it was not
+};
+/// Writes both motions of a journal, and removes it, or keeps a damaged one under another name.  The present version
+/// of the file goes to its history first, with `operation`.  `state_hash`: of the world at the end; empty: unknown.
+/// Throws sim::ConfigError for an invalid motion over which it was recorded, std::runtime_error when something cannot
+/// be written.
+SavedTake save_take(const std::string& path, const RecoveredTake& recovered, const std::string& state_hash,
+                    const std::string& operation);
 
 }  // namespace tools

@@ -4,18 +4,23 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <set>
 #include <stdexcept>
 
 #include "sim/base/whole_file.hpp"
 #include "sim/config/message_text.hpp"
+#include "sim/config/utf8.hpp"
 #include "sim/config/yaml_writer.hpp"
+#include "sim/motion/joint_name.hpp"
 #include "sim/motion/motion.hpp"
+#include "tools/experiment/motion/motion_edit.hpp"
 
 namespace tools {
 
 namespace {
 
 constexpr double max_value = 1e6;
+constexpr std::size_t max_take_changes = 100'000;
 
 std::string quoted(const std::string& text) {
   sim::ConfigNode node;
@@ -35,12 +40,24 @@ class TakeParser {
  public:
   TakeParser(std::string_view text, std::string file_name) : text_(text), file_name_(std::move(file_name)) {}
 
-  Take parse() {
+  Take parse(std::optional<TakeDamage>* damage) {
     std::string_view line;
-    if (!next(line) || line != "shoal recording 1") fail("must start with the line 'shoal recording 1'");
+    if (!next(line) || line != take_head.substr(0, take_head.size() - 1))
+      fail("must start with the line 'shoal recording 1'");
     if (!next(line)) fail("needs a line of settings");
     read_settings(line);
-    while (next(line)) read_line(line);
+    while (next(line)) {
+      const std::size_t frames = take_.frame_count();
+      try {
+        read_line(line);
+      } catch (const sim::ConfigError& error) {
+        if (damage == nullptr || frames == 0) throw;
+        for (std::vector<double>& values : take_.frames) values.resize(frames);
+        const auto left = std::count(text_.begin() + static_cast<std::ptrdiff_t>(at_), text_.end(), '\n');
+        *damage = {error.lines().front(), static_cast<std::size_t>(left) + 1};
+        break;
+      }
+    }
     if (take_.frame_count() == 0) fail("has no frame");
     return std::move(take_);
   }
@@ -65,7 +82,7 @@ class TakeParser {
     const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (error != std::errc{} || rest != text.data() + text.size() || !(value >= low && value <= high))
       fail(std::string(what) + " must be a number from " + sim::number_text(low) + " to " + sim::number_text(high) +
-           ", got '" + sim::shortened(sim::printable(text)) + "'");
+           ", got '" + sim::shortened(sim::printable(sim::in_utf8(text))) + "'");
     return value;
   }
 
@@ -74,7 +91,7 @@ class TakeParser {
     const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (error != std::errc{} || rest != text.data() + text.size() || value >= end)
       fail(std::string(what) + " must be a whole number from 0 to " + std::to_string(end - 1) + ", got '" +
-           sim::shortened(sim::printable(text)) + "'");
+           sim::shortened(sim::printable(sim::in_utf8(text))) + "'");
     return value;
   }
 
@@ -100,6 +117,7 @@ class TakeParser {
     if (line == "f" || line.starts_with("f ")) return read_frame(line.substr(1));
     if (line.starts_with("c ")) return read_change(line.substr(2));
     if (!line.starts_with("b ")) fail("must be a frame, a change or a return: 'f', 'c' or 'b'");
+    if (take_.frame_count() == 0) fail("a return must come after a frame");
     const std::size_t frame = whole(line.substr(2), take_.frame_count(), "the frame");
     for (std::vector<double>& values : take_.frames) values.resize(frame + 1);
     const double at_s = static_cast<double>(frame) * take_.settings.frame_s;
@@ -107,8 +125,8 @@ class TakeParser {
   }
 
   void read_frame(std::string_view rest) {
-    if (take_.frame_count() >= sim::max_motion_keys)
-      fail("must have at most " + std::to_string(sim::max_motion_keys) + " frames");
+    if (take_.frame_count() >= max_take_frames(take_.frames.size()))
+      fail("must have at most " + std::to_string(max_take_frames(take_.frames.size())) + " frames");
     const bool is_first = take_.frame_count() == 0;
     for (std::vector<double>& values : take_.frames) values.push_back(is_first ? std::nan("") : values.back());
     while (!rest.empty()) {
@@ -128,6 +146,8 @@ class TakeParser {
     const std::size_t space = rest.find(' ');
     if (space == std::string_view::npos) fail("a change needs a time and an action");
     const double at_s = number(rest.substr(0, space), 0, sim::max_motion_s, "the time of a change");
+    if (take_.changes.size() == max_take_changes)
+      fail("must have at most " + std::to_string(max_take_changes) + " changes");
     take_.changes.push_back({at_s, yaml(rest.substr(space + 1))});
   }
 
@@ -157,6 +177,12 @@ void TakeSettings::read(sim::ParamReader& in) {
   if (joints.size() > sim::max_motion_joints)
     in.error("joints", "'joints' must name at most " + std::to_string(sim::max_motion_joints) + " joints");
   if (in.has("joints") && joints.empty()) in.error("joints", "'joints' must name a joint");
+  std::set<std::string> known;
+  for (const std::string& joint : joints) {
+    if (const std::string error = sim::joint_name_error(joint); !error.empty()) in.error("joints", error);
+    if (!known.insert(joint).second)
+      in.error("joints", "'joints' names joint '" + sim::shortened(sim::printable(joint)) + "' twice");
+  }
 }
 
 std::string TakeSettings::text() const {
@@ -169,18 +195,22 @@ std::string TakeSettings::text() const {
   return text + "}";
 }
 
-Take parse_take(std::string_view text, const std::string& file_name) {
-  return TakeParser(text, file_name).parse();
+std::size_t max_take_frames(std::size_t joints) {
+  return std::min(sim::max_motion_keys, static_cast<std::size_t>(max_frame_values) / std::max<std::size_t>(joints, 1));
 }
 
-Take read_take(const std::string& path) {
+Take parse_take(std::string_view text, const std::string& file_name, std::optional<TakeDamage>* damage) {
+  return TakeParser(text, file_name).parse(damage);
+}
+
+Take read_take(const std::string& path, std::optional<TakeDamage>* damage) {
   std::string text;
   try {
     text = sim::whole_file<std::runtime_error>(path);
   } catch (const std::runtime_error& error) {
     throw sim::ConfigError({path + ": " + error.what()});
   }
-  return parse_take(text, path);
+  return parse_take(text, path, damage);
 }
 
 }  // namespace tools

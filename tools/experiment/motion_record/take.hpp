@@ -40,13 +40,26 @@ struct Take {
   std::size_t frame_count() const { return frames.empty() ? 0 : frames.front().size(); }
 };
 
+/// Returns how many frames of this many joints a recording may have: as many as can be written.
+std::size_t max_take_frames(std::size_t joints);
+
+/// First line of a journal.
+constexpr std::string_view take_head = "shoal recording 1\n";
+
+/// Where a journal cannot be read further.
+struct TakeDamage {
+  std::string error;      ///< with the file and the line
+  std::size_t lines = 0;  ///< that are dropped: the bad one and those after it
+};
+
 /// Reads a journal of a recording: `shoal recording 1`, its settings, then lines
 /// - `f I=VALUE ...`: a frame, in which the joints I have other values than in the one before,
 /// - `c AT_S ACTION`: a change of the world,
 /// - `b N`: back to frame N: what came after it does not count.
 /// A last line without its end was cut when the program ended, and is ignored.  Throws sim::ConfigError with the line.
-Take parse_take(std::string_view text, const std::string& file_name);
+/// `damage`: set where a line after the first frame is bad, and what stands before it is returned.
+Take parse_take(std::string_view text, const std::string& file_name, std::optional<TakeDamage>* damage = nullptr);
 /// As parse_take, from a file.  Throws sim::ConfigError.
-Take read_take(const std::string& path);
+Take read_take(const std::string& path, std::optional<TakeDamage>* damage = nullptr);
 
 }  // namespace tools

@@ -18,7 +18,7 @@ TakeJournal::TakeJournal(std::string path, const TakeSettings& settings)
     : path_(std::move(path)), file_(open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC, 0666)) {
   if (file_.number() < 0) throw std::runtime_error("'" + path_ + "' cannot be created: " + std::strerror(errno));
   flock(file_.number(), LOCK_EX | LOCK_NB);
-  write("shoal recording 1\n" + settings.text() + "\n");
+  write(std::string(take_head) + settings.text() + "\n");
 }
 
 void TakeJournal::write(const std::string& text) {
@@ -49,7 +49,7 @@ void TakeJournal::back(std::int64_t frame) {
 }
 
 bool is_recording(const std::string& journal) {
-  const bridges::FileDescriptor file(open(journal.c_str(), O_RDONLY | O_CLOEXEC));
+  const bridges::FileDescriptor file(open(journal.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));  // not for a pipe
   return file.number() >= 0 && flock(file.number(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
 }
 

@@ -16,6 +16,7 @@
 #include <thread>
 
 #include "bridges/signing/run_key.hpp"
+#include "sim/config/shipped_files.hpp"
 #include "tools/experiment/process/child_program.hpp"
 
 namespace tools {
@@ -27,13 +28,12 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::seconds time_to_end{2};
 
-/// Prefers a program in the folder of the running one, so that a build tree works without installation.
+/// Prefers a program of the same installation or build, so that a build tree works without installation.
 std::string find_program(const std::string& name) {
   if (name.find('/') != std::string::npos) return name;
   std::error_code error;
-  const fs::path own = fs::read_symlink("/proc/self/exe", error);
-  const fs::path beside = own.parent_path() / name;
-  return !error && fs::exists(beside, error) ? beside.string() : name;
+  const fs::path beside = fs::path(sim::program_folder()) / name;
+  return beside.has_parent_path() && fs::exists(beside, error) ? beside.string() : name;
 }
 
 std::vector<std::string> environment_with(const std::string& lcm_url, const std::string& run_key) {

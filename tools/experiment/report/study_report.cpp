@@ -14,6 +14,7 @@
 #include "tools/experiment/report/report_page.hpp"
 #include "tools/experiment/report/report_plots.hpp"
 #include "tools/experiment/report/run_words.hpp"
+#include "tools/experiment/report/study_charts.hpp"
 
 namespace tools {
 
@@ -179,6 +180,7 @@ std::string failed_runs_html(const JsonReader& in) {
   for (const auto& item : in.list("failed_runs")) {
     const JsonReader run(item, in.where() + ": failed_runs");
     runs.push_back(fmt::format("{}, seed {}: {}", run.text("case"), run.whole("seed"), run.text("why")));
+    if (run.has("repeat")) runs.back() += "; to repeat it: " + run.text("repeat");
   }
   return "<h2>Runs without a result</h2>\n" + list_html(runs);
 }
@@ -227,7 +229,8 @@ std::string study_report(const std::string& directory) {
   std::string body = "<h1>" + html_text(title) + "</h1>\n";
   if (!description.empty()) body += "<p>" + html_text(description) + "</p>\n";
   body += outcome_html(in, cases) + plots_html(directory, texts_of(in, "plots"), {}) + failed_runs_html(in) +
-          figures_html(in, cases) + cases_html(cases) + "<h2>This study</h2>\n" +
+          study_charts_html(in) + figures_html(in, cases) + study_comparisons_html(in) +
+          study_extremes_html(in, directory) + cases_html(cases) + "<h2>This study</h2>\n" +
           facts_table({{"World", in.text("world")},
                        {"Runs", fmt::format("{}", in.whole("runs"))},
                        {"Seeds", seeds_text(in)},

@@ -188,6 +188,7 @@ std::string Summary::to_json() const {
   json["error"] = error;
   json["exit_code"] = exit_code;
   json["shoal"] = version;
+  json["build"] = build;
   if (branch > 0) json["branch"] = branch;
   if (!snapshot.empty()) json["snapshot"] = snapshot;
   if (!snapshot.empty()) json["metrics_from_s"] = from_s;

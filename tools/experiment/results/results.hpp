@@ -73,6 +73,7 @@ struct Summary {
   std::string error;               ///< why it ended early, empty when it did not
   int exit_code = 0;
   std::string version;      ///< of shoal
+  std::string build;        ///< processor class and C library, see build_text()
   std::int32_t branch = 0;  ///< number of earlier rewinds
   std::string snapshot;     ///< file that the run started from; empty: it started at 0
   double from_s = 0;        ///< start of the metrics

@@ -118,6 +118,7 @@ RunRecord read_run(const std::string& directory) {
   run.error = in.text("error");
   run.exit_code = static_cast<int>(in.whole("exit_code"));
   if (in.has("shoal")) run.version = in.text("shoal");
+  if (in.has("build")) run.build = in.text("build");
   return run;
 }
 

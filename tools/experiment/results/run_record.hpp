@@ -60,6 +60,7 @@ struct RunRecord {
   std::string ended, error;
   int exit_code = 0;
   std::string version;  ///< of shoal; empty: an older one without this field
+  std::string build;    ///< processor class and C library; empty: an older run
 };
 
 /// Reads DIRECTORY/summary.json.  Throws std::runtime_error with file and reason when it does not exist, is not JSON,

@@ -6,6 +6,7 @@
 #include "sim/acoustics/channel.hpp"
 #include "sim/world/world_state.hpp"
 #include "tools/experiment/run/run.hpp"
+#include "tools/experiment/snapshot/run_identity.hpp"
 
 namespace tools {
 
@@ -58,6 +59,7 @@ void Run::add_figures(Summary& summary) {
   summary.from_s = time_.scores_from_s();
   summary.stepped_s = sim::to_seconds(world_.step_time() * steps_taken_);
   summary.version = short_version();
+  summary.build = build_text();
   summary.steps = world_.step_number();
   summary.sim_time_s = sim::to_seconds(world_.now());
   summary.duration_s = duration_s_;

@@ -9,6 +9,7 @@
 #include "tools/experiment/results/results_lock.hpp"
 #include "tools/experiment/results/run_error.hpp"
 #include "tools/experiment/run/run.hpp"
+#include "tools/experiment/snapshot/run_identity.hpp"
 
 namespace tools {
 
@@ -17,6 +18,7 @@ Summary run_world(const sim::LoadedWorld& loaded, const RunOptions& options) {
   summary.world = loaded.config.name;
   summary.seed = loaded.config.run.seed;
   summary.version = short_version();
+  summary.build = build_text();
   const auto fail = [&](int exit_code, const std::string& ended, const char* error) {
     summary.fail(exit_code, ended, error);
     if (!options.results.empty()) try_to_write_summary(options.results, summary);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace tools {
@@ -10,6 +11,13 @@ namespace tools {
 namespace {
 
 constexpr double normal_975 = 1.959963984540054;
+
+/// Probability of exactly `heads` heads of n tosses of a fair coin.
+double fair_coin_term(std::size_t n, std::size_t heads) {
+  const auto tosses = static_cast<double>(n), count = static_cast<double>(heads);
+  return std::exp(std::lgamma(tosses + 1) - std::lgamma(count + 1) - std::lgamma(tosses - count + 1) -
+                  tosses * std::numbers::ln2);
+}
 
 }  // namespace
 
@@ -50,6 +58,27 @@ Interval share_interval_95(std::size_t hits, std::size_t count) {
   const double middle = (share + z2 / (2 * n)) / (1 + z2 / n);
   const double half = normal_975 / (1 + z2 / n) * std::sqrt(share * (1 - share) / n + z2 / (4 * n * n));
   return {std::max(0.0, middle - half), std::min(1.0, middle + half)};
+}
+
+double fair_coin_share(std::size_t n, std::size_t heads) {
+  double share = 0;
+  for (std::size_t k = 0; k <= std::min(heads, n); ++k) share += fair_coin_term(n, k);
+  return std::min(share, 1.0);
+}
+
+Interval median_interval_95(const std::vector<double>& sorted) {
+  constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
+  // The median is below the value of rank r when fewer than r of the values are below it.
+  const std::size_t n = sorted.size();
+  std::size_t rank = 0;
+  double share = 0;
+  for (std::size_t k = 0; k < n / 2; ++k) {
+    share += fair_coin_term(n, k);
+    if (share > 0.025) break;
+    rank = k + 1;
+  }
+  if (rank == 0) return {nothing, nothing};
+  return {sorted[rank - 1], sorted[n - rank]};
 }
 
 }  // namespace tools

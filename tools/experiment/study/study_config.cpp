@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/experiment/study/study_config.hpp"
 
+#include <spdlog/fmt/fmt.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -13,6 +15,7 @@
 #include "sim/config/message_text.hpp"
 #include "sim/config/shipped_files.hpp"
 #include "sim/config/yaml_writer.hpp"
+#include "sim/random/random.hpp"
 #include "sim/world_file/file_kind.hpp"
 #include "sim/world_file/rule_list.hpp"
 #include "tools/experiment/process/world_programs.hpp"
@@ -173,6 +176,7 @@ class NameCheck {
 
   void check() {
     const StudyConfig& config = study_.config;
+    if (config.until) require("until", config.until->figure, figures_, config.until->place, "");
     for (const std::string& figure : config.figures) require("figures", figure, figures_, config.figures_place, "");
     for (const StudyPlot& plot : config.plots) {
       const std::string who = "plot '" + plot.name + "'";
@@ -240,16 +244,22 @@ void StudyConfig::read(sim::ParamReader& in) {
   in.read("description", description, "description in one sentence");
   // World, seeds and cases.
   in.require("world");
-  in.read("world", world, "world file, from the folder of this file");
+  in.read("world", world, "world file, from the folder of this file, or the name of a shipped world");
   in.read("launch", launch, "start the programs that the world names");
   in.read("duration_s", duration_s, sim::above_to(0, 1e9), "simulated time of each run; unset: as the world says");
   seeds = read_seeds(in);
   in.read_list("cases", cases, "case", "ways of running the world; unset: as it is");
   if (cases.empty()) cases.emplace_back().name = "world";
   for (const StudyCase& each : cases) in.declare("case", each.name);
+  // Factors and their design.
+  in.read_list("factors", factors, "factor", "settings that vary together, by `design`");
+  for (const StudyFactor& factor : factors) in.declare("factor", factor.name);
+  in.read("design", design, "how the values of the factors are chosen; unset: every combination of their levels");
+  check_design(in);
   // Figures, plots and rules.
   in.read("figures", figures, "figures of the table; unset: all");
   if (in.has("figures")) figures_place = in.child("figures")->place;
+  until = read_until(in, figures);
   in.read_list("plots", plots, "plot", "plots");
   for (const StudyPlot& plot : plots) in.declare("plot", plot.name);
   if (in.describing())
@@ -257,6 +267,11 @@ void StudyConfig::read(sim::ParamReader& in) {
                                {"mean(cooperative.passed) == 1", "max(cooperative.auv1.rms_m) < 0.8"});
   if (const sim::ConfigNode* node = in.child("pass")) rules = *node;
   pass = sim::read_rule_list(rules, StudyRuleNames(cases), study_rule_of_map, in.diagnostics());
+}
+
+void StudyConfig::check_design(sim::ParamReader& in) const {
+  if (in.describing()) return;
+  if (factors.empty() && in.has("design")) in.error("design", "'design' needs 'factors'");
 }
 
 std::vector<std::int64_t> parse_seeds(const std::string& text) {
@@ -274,7 +289,6 @@ std::vector<std::int64_t> parse_seeds(const std::string& text) {
 
 namespace {
 
-/// Checks that the world is in the study's folder or the one above, because errors quote its text.
 /// Names of the YAML files in the folder of a file.
 std::vector<std::string> files_beside(const std::string& file) {
   std::vector<std::string> names;
@@ -285,6 +299,7 @@ std::vector<std::string> files_beside(const std::string& file) {
   return names;
 }
 
+/// Checks that the world is in the study's folder or the one above, because errors quote its text.
 void check_world_file(const std::string& world, const std::string& study, const sim::ConfigNode& root,
                       const sim::LoadOptions& load) {
   const fs::path folder = fs::path(study).parent_path();
@@ -303,6 +318,18 @@ void check_world_file(const std::string& world, const std::string& study, const 
                                 sim::did_you_mean(fs::path(world).filename().string(), files_beside(world)));
   if (const std::string other = sim::other_kind(world, sim::FileKind::world); !other.empty())
     sim::throw_config_error(place, "", "'world': '" + sim::shortened(sim::printable(world)) + "' is " + other);
+}
+
+/// The file of `world:`, relative to the study; another bare name may be that of a shipped world.
+std::string world_file_of(const std::string& study_file, const std::string& world) {
+  const fs::path beside = fs::path(study_file).parent_path() / world;
+  std::error_code error;
+  if (!fs::exists(beside, error) && world.find('/') == std::string::npos && !sim::shipped_folder().empty()) {
+    fs::path shipped = fs::path(sim::shipped_folder()) / "worlds" / world;
+    if (shipped.extension() != ".yaml") shipped += ".yaml";
+    if (fs::exists(shipped, error)) return shipped.lexically_normal().string();
+  }
+  return beside.lexically_normal().string();
 }
 
 /// Loads the world of a case.  Errors in a value of `set:` name its place in the study.
@@ -330,6 +357,68 @@ sim::LoadedWorld world_of_case(const std::string& world, const StudyCase& in_cas
 
 }  // namespace
 
+namespace {
+
+/// Most values of a factor that are checked before the first run.
+constexpr std::size_t max_checked_values = 8;
+
+/// Loads the world with some values of each factor: its first and last ones, and those between up to a number. Errors
+/// name the factor.
+void check_factors(const LoadedStudy& study, const sim::LoadOptions& load) {
+  const StudyConfig& config = study.config;
+  for (const StudyFactor& factor : config.factors) {
+    std::vector<std::string> values{factor.value_at(0), factor.value_at(1)};
+    if (!factor.values.empty()) {
+      values.assign(factor.values.begin(), factor.values.begin() + static_cast<std::ptrdiff_t>(std::min(
+                                                                       factor.values.size(), max_checked_values)));
+      if (factor.values.size() > max_checked_values) values.push_back(factor.values.back());
+    }
+    for (const std::string& value : values) {
+      sim::LoadOptions options = load;
+      for (const std::string& set : config.cases.front().sets()) options.sets.push_back(set);
+      for (const std::string& path : factor.paths) options.sets.push_back(path + "=" + value);
+      try {
+        sim::load_world(config.world, options);
+      } catch (const sim::ConfigError& error) {
+        std::vector<std::string> lines = error.lines();
+        for (std::string& line : lines) {
+          const std::size_t at = line.find(": ");
+          if (line.starts_with("--set ") && at != std::string::npos)
+            line = factor.place.text() + ": factor '" + factor.name + "': value " +
+                   sim::shortened(sim::printable(value)) + line.substr(at);
+        }
+        throw sim::ConfigError(std::move(lines));
+      }
+    }
+  }
+}
+
+/// Checks that a grid has levels, and not too many points.
+void check_grid(const StudyConfig& config) {
+  if (config.factors.empty() || config.design.type != StudyDesign::Type::grid) return;
+  std::size_t points = 1;
+  for (const StudyFactor& factor : config.factors) {
+    if (factor.grid_levels() == 0)
+      sim::throw_config_error(factor.place, "factor '" + factor.name + "'", "a range in a grid needs 'levels'");
+    points = std::min(points * factor.grid_levels(), max_points + 1);
+  }
+  if (points > max_points)
+    sim::throw_config_error(config.factors.front().place, "",
+                            "the grid of the factors must have at most " + std::to_string(max_points) + " points");
+}
+
+void check_size(const LoadedStudy& study, const sim::ConfigNode& root) {
+  const std::size_t runs = study.config.cases.size() * study.points.size() * study.config.seeds.size();
+  if (runs > max_study_runs)
+    sim::throw_config_error(root.place, "",
+                            "a study must have at most " + std::to_string(max_study_runs) + " runs, got " +
+                                std::to_string(study.config.cases.size()) + " cases, " +
+                                std::to_string(study.points.size()) + " points and " +
+                                std::to_string(study.config.seeds.size()) + " seeds");
+}
+
+}  // namespace
+
 LoadedStudy load_study(const std::string& path, const StudyChanges& changes) {
   LoadedStudy study;
   // Read the file.
@@ -345,9 +434,13 @@ LoadedStudy load_study(const std::string& path, const StudyChanges& changes) {
   study.config.file = path;
   if (!changes.seeds.empty()) study.config.seeds = changes.seeds;
   if (changes.duration_s) study.config.duration_s = changes.duration_s;
-  const fs::path world_file = fs::path(path).parent_path() / study.config.world;
-  study.config.world = world_file.lexically_normal().string();
+  study.config.world = world_file_of(path, study.config.world);
   check_world_file(study.config.world, path, root, changes.load);
+  if (!changes.tuned) {
+    check_grid(study.config);
+    study.points = design_points(study.config.design, study.config.factors);
+    check_size(study, root);
+  }
   // Load the world of each case.
   sim::Warnings warnings;
   for (const StudyCase& each : study.config.cases) {
@@ -361,6 +454,17 @@ LoadedStudy load_study(const std::string& path, const StudyChanges& changes) {
     if (!study.config.duration_s && world.config.run.duration_s == 0)
       sim::throw_config_error(root.place, "case '" + each.name + "'",
                               "its world runs without end: the study needs a 'duration_s'");
+  }
+  for (const sim::LoadedWorld& world : study.worlds)
+    study.world_hashes.push_back(fmt::format("{:016x}", sim::hash_text(sim::to_yaml(world.resolved))));
+  // Check some values of the factors, without repeating the warnings.
+  if (!study.config.factors.empty()) {
+    sim::Warnings repeated;
+    sim::LoadOptions options = changes.load;
+    options.warnings = &repeated;
+    options.serial_ports = study.config.launch;
+    options.encode_message = shoal::encode_own_message;
+    check_factors(study, options);
   }
   NameCheck(study).check();
   return study;

@@ -9,6 +9,8 @@
 
 #include "sim/config/param_reader.hpp"
 #include "sim/world_file/load_world.hpp"
+#include "tools/experiment/study/study_design.hpp"
+#include "tools/experiment/study/study_until.hpp"
 
 namespace tools {
 
@@ -41,6 +43,9 @@ struct StudyConfig {
   std::optional<double> duration_s;
   std::vector<std::int64_t> seeds;
   std::vector<StudyCase> cases;
+  std::vector<StudyFactor> factors;
+  StudyDesign design;                ///< of the factors
+  std::optional<StudyUntil> until;   ///< the study ends when its result is certain; unset: after all seeds
   std::vector<std::string> figures;  ///< of the table; empty: all
   std::vector<StudyPlot> plots;
   std::vector<sim::RuleExpression> pass;  ///< the study passes when every rule holds
@@ -48,18 +53,27 @@ struct StudyConfig {
   sim::SourcePlace figures_place;
 
   void read(sim::ParamReader& in);
+
+ private:
+  void check_design(sim::ParamReader& in) const;
 };
 
 struct LoadedStudy {
   StudyConfig config;
-  std::vector<sim::LoadedWorld> worlds;  ///< by case
+  std::vector<sim::LoadedWorld> worlds;   ///< by case
+  std::vector<std::string> world_hashes;  ///< by case, of the resolved worlds; 16 hexadecimal digits
+  std::vector<StudyPoint> points;         ///< of the design; one without values when there are no factors
 };
+
+/// Most runs of a study.
+inline constexpr std::size_t max_study_runs = 200000;
 
 /// Settings of the command line that replace those of the file.
 struct StudyChanges {
   std::vector<std::int64_t> seeds;  ///< empty: those of the file
   std::optional<double> duration_s;
   sim::LoadOptions load;      ///< files that its worlds may name
+  bool tuned = false;         ///< the points are not those of its design: none are made
   bool only_checked = false;  ///< no run follows: plugins that the world names are not loaded
 };
 

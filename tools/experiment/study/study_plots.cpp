@@ -159,6 +159,7 @@ void write_study(const std::string& directory, const LoadedStudy& study, const s
   // Remove the plots of an earlier study, which would be mistaken for those of this one.
   for (const std::string& image : study_plots(study.config)) std::filesystem::remove(directory + "/" + image, error);
   write_file(directory + "/study.csv", results.to_csv());
+  write_file(directory + "/points.csv", results.points_csv());
   StudyPainter(directory, study, runs, results).draw();
   write_file(directory + "/study.json.part", results.to_json(exit_code));
   std::filesystem::rename(directory + "/study.json.part", directory + "/study.json", error);

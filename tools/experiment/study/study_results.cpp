@@ -13,6 +13,7 @@
 #include "tools/experiment/run/runner.hpp"
 #include "tools/experiment/study/study_equal_cases.hpp"
 #include "tools/experiment/study/study_rules.hpp"
+#include "tools/experiment/study/study_tables.hpp"
 
 namespace tools {
 
@@ -20,22 +21,6 @@ namespace {
 
 std::string number(double value) {
   return std::isfinite(value) ? fmt::format("{:.4g}", value) : "-";
-}
-
-/// Returns a text as a CSV field.
-std::string field(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
-  return quoted + "\"";
-}
-
-nlohmann::ordered_json statistics_json(const Statistics& statistics) {
-  nlohmann::ordered_json json{{"count", statistics.count}};
-  for (const std::string& word : statistic_words()) json[word] = statistics.by_word(word);  // NaN becomes null
-  json["mean_low_95"] = statistics.mean_95.low;
-  json["mean_high_95"] = statistics.mean_95.high;
-  return json;
 }
 
 }  // namespace
@@ -71,7 +56,28 @@ Statistics statistics_of(std::vector<double> values) {
   statistics.min = values.front();
   statistics.max = values.back();
   statistics.median = quantile(values, 0.5);
+  statistics.median_95 = median_interval_95(values);
   return statistics;
+}
+
+Statistics statistics_of_figure(const std::string& figure, const std::vector<double>& values) {
+  Statistics statistics = statistics_of(values);
+  if (figure == passed_figure && statistics.count > 0) {
+    const auto count = static_cast<std::size_t>(statistics.count);
+    const auto hits = static_cast<std::size_t>(std::llround(statistics.mean * static_cast<double>(count)));
+    statistics.mean_95 = share_interval_95(hits, count);
+  }
+  return statistics;
+}
+
+double figure_of(const StudyRun& run, const std::string& figure) {
+  if (!run.record) return no_figure;
+  if (figure == passed_figure) {
+    const auto flag = as_flag(run.record->judgement);
+    return !flag ? no_figure : *flag ? 1 : 0;
+  }
+  const auto found = run.record->metrics.find(figure);
+  return found == run.record->metrics.end() ? no_figure : found->second.value_or(no_figure);
 }
 
 StudyResults::StudyResults(const LoadedStudy& study, const std::vector<StudyRun>& runs) : study_(study), runs_(runs) {
@@ -80,31 +86,26 @@ StudyResults::StudyResults(const LoadedStudy& study, const std::vector<StudyRun>
     if (run.record)
       for (const auto& [name, value] : run.record->metrics) names.insert(name);
   figures_.assign(names.begin(), names.end());
+  for (const StudyRun& run : runs) groups_[{run.in_case, run.point}].push_back(&run);
 }
 
 std::vector<double> StudyResults::values(const std::string& in_case, const std::string& figure) const {
   std::vector<double> values;
-  for (const StudyRun& run : runs_) {
-    if (!run.record || study_.config.cases[run.in_case].name != in_case) continue;
-    const auto found = run.record->metrics.find(figure);
-    if (figure == passed_figure)
-      values.push_back(run.record->judgement == Judgement::not_judged ? no_figure
-                       : run.record->judgement == Judgement::passed   ? 1
-                                                                      : 0);
-    else if (found != run.record->metrics.end())
-      values.push_back(found->second.value_or(no_figure));
-  }
+  for (const StudyRun& run : runs_)
+    if (run.record && study_.config.cases[run.in_case].name == in_case) values.push_back(figure_of(run, figure));
   return values;
 }
 
 Statistics StudyResults::of(const std::string& in_case, const std::string& figure) const {
-  Statistics statistics = statistics_of(values(in_case, figure));
-  if (figure == passed_figure && statistics.count > 0) {
-    const auto count = static_cast<std::size_t>(statistics.count);
-    const auto hits = static_cast<std::size_t>(std::llround(statistics.mean * static_cast<double>(count)));
-    statistics.mean_95 = share_interval_95(hits, count);
-  }
-  return statistics;
+  return statistics_of_figure(figure, values(in_case, figure));
+}
+
+Statistics StudyResults::at_point(std::size_t in_case, std::size_t point, const std::string& figure) const {
+  std::vector<double> values;
+  const auto found = groups_.find({in_case, point});
+  if (found != groups_.end())
+    for (const StudyRun* run : found->second) values.push_back(figure_of(*run, figure));
+  return statistics_of_figure(figure, values);
 }
 
 std::vector<std::string> StudyResults::table_figures() const {
@@ -161,7 +162,7 @@ Judgement StudyResults::judgement() const {
   return all.empty() ? Judgement::not_judged : Judgement::passed;
 }
 
-std::string StudyResults::to_text() const {
+std::string StudyResults::to_text(const std::string& directory) const {
   const StudyConfig& config = study_.config;
   std::size_t widest_figure = 6, widest_case = 4;
   for (const std::string& figure : table_figures()) widest_figure = std::max(widest_figure, figure.size());
@@ -188,7 +189,9 @@ std::string StudyResults::to_text() const {
   if (config.pass.empty() && runs_with_failed_programs() > 0)
     text += fmt::format("{} of {} runs had programs that failed\n", runs_with_failed_programs(), runs_.size());
   for (const EqualCases& group : equal_cases(study_, runs_)) text += "note: " + equal_cases_text(group) + "\n";
-  if (failed_runs() > 0) text += fmt::format("{} runs have no result\n", failed_runs());
+  if (const std::string text_of_kinds = mixture(); !text_of_kinds.empty()) text += "note: " + text_of_kinds + "\n";
+  text += comparisons_text(comparisons());
+  if (failed_runs() > 0) text += fmt::format("{} runs have no result\n", failed_runs()) + failed_text(*this, directory);
   if (judgement() == Judgement::not_judged) text += "not judged: the study has no rules\n";
   return text;
 }
@@ -196,12 +199,22 @@ std::string StudyResults::to_text() const {
 std::string StudyResults::to_csv() const {
   std::string text = "case,seed,exit_code,passed,ended,sim_time_s,wall_s,run_hash";
   for (const std::string& figure : figures_) text += "," + figure;
-  text += "\n";
+  text += ",run,point";
+  for (const StudyFactor& factor : study_.config.factors) text += "," + factor.name;
+  text += ",shoal,processor,c_library\n";
+  // Columns of the plan, and of the program and machine.
+  const auto last_columns = [&](const StudyRun& run) {
+    std::string columns = fmt::format(",{},{}", run.index, study_.config.factors.empty() ? 0 : run.point + 1);
+    for (const std::string& value : study_.points[run.point].values) columns += "," + csv_field(value);
+    const RunKind kind = run.record ? kind_of(*run.record) : RunKind{};
+    return columns + "," + csv_field(kind.version) + "," + csv_field(kind.processor) + "," + csv_field(kind.c_library) +
+           "\n";
+  };
   for (const StudyRun& run : runs_) {
     text += fmt::format("{},{}", study_.config.cases[run.in_case].name, run.seed);
     // Run without a result.
     if (!run.record) {
-      text += ",,,failed,,," + std::string(figures_.size(), ',') + "\n";
+      text += ",,,failed,,," + std::string(figures_.size(), ',') + last_columns(run);
       continue;
     }
     // Outcome of the run.
@@ -211,14 +224,14 @@ std::string StudyResults::to_csv() const {
                         !passed   ? ""
                         : *passed ? "1"
                                   : "0",
-                        field(record.ended), record.sim_time_s, record.wall_s, record.run_hash);
+                        csv_field(record.ended), record.sim_time_s, record.wall_s, record.run_hash);
     // Its figures.
     for (const std::string& figure : figures_) {
       const auto found = record.metrics.find(figure);
       const bool known = found != record.metrics.end() && found->second;
-      text += "," + (known ? fmt::format("{:.9g}", *found->second) : "");
+      text += "," + (known ? fmt::format("{}", *found->second) : "");
     }
-    text += "\n";
+    text += last_columns(run);
   }
   return text;
 }
@@ -244,11 +257,21 @@ std::string StudyResults::to_json(int exit_code) const {
   // Notes and failed runs.
   json["notes"] = nlohmann::ordered_json::array();
   for (const EqualCases& group : equal_cases(study_, runs_)) json["notes"].push_back(equal_cases_text(group));
+  if (const std::string text = mixture(); !text.empty()) json["notes"].push_back(text);
   json["failed_runs"] = nlohmann::ordered_json::array();
   for (const StudyRun& run : runs_)
     if (!run.record)
-      json["failed_runs"].push_back(
-          {{"case", config.cases[run.in_case].name}, {"seed", run.seed}, {"why", run.failure}});
+      json["failed_runs"].push_back({{"case", config.cases[run.in_case].name},
+                                     {"seed", run.seed},
+                                     {"why", run.failure},
+                                     {"run", run.index},
+                                     {"repeat", command_of(study_, run)}});
+  // Points and comparisons.
+  add_points(json, *this);
+  add_convergence(json, *this);
+  add_extremes(json, *this);
+  json["comparisons"] = nlohmann::ordered_json::array();
+  for (const VariantComparison& each : comparisons()) json["comparisons"].push_back(comparison_json(each));
   // Rules and verdict.
   json["runs"] = runs_.size();
   json["rules"] = nlohmann::ordered_json::array();

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tools/experiment/score/interval.hpp"
+#include "tools/experiment/score/paired.hpp"
 #include "tools/experiment/score/scoring.hpp"
 #include "tools/experiment/study/study_runs.hpp"
 
@@ -20,14 +23,29 @@ struct Statistics {
   /// 95 % confidence intervals: of the mean by Student's t, of the proportion that passed by Wilson's score.  NaN for
   /// one run.
   Interval mean_95{no_figure, no_figure};
+  Interval median_95{no_figure, no_figure};  ///< by order statistics, see median_interval_95()
 
   double by_word(const std::string& word) const;  ///< one of statistic_words()
 };
 
 Statistics statistics_of(std::vector<double> values);
+/// Does the same, with the interval of a proportion for `passed`.
+Statistics statistics_of_figure(const std::string& figure, const std::vector<double>& values);
+
+/// Returns a figure of a run; `passed`: 1 when the run passed, 0 when it failed.  NaN: the run has no result, was not
+/// judged or has no such figure.
+double figure_of(const StudyRun& run, const std::string& figure);
 
 /// Returns the quantile of `share`, with linear interpolation.  `sorted` is not empty.
 double quantile(const std::vector<double>& sorted, double share);
+
+/// Differences of a figure between two variants, in pairs of runs with equal seeds: two cases at equal points, or two
+/// points of the only case.
+struct VariantComparison {
+  std::string variant, base;  ///< names of cases, or `point 3`
+  std::string figure;
+  PairedComparison difference;  ///< variant minus base
+};
 
 /// Results of a study.
 class StudyResults {
@@ -46,12 +64,24 @@ class StudyResults {
   /// Judges the study: runs without a result fail it; without rules it is not judged.
   Judgement judgement() const;
   std::size_t failed_runs() const;
+  /// Returns the statistics of one figure over the seeds of a case at a point.
+  Statistics at_point(std::size_t in_case, std::size_t point, const std::string& figure) const;
+  /// Compares each case with the first one, or each of a few points with the first one, by the figures of the table.
+  std::vector<VariantComparison> comparisons() const;
+  /// Sentence about runs of different programs, processor classes or C libraries; empty when there is only one kind.
+  std::string mixture() const;
+  const std::vector<StudyRun>& runs() const { return runs_; }
+  const LoadedStudy& study() const { return study_; }
   /// Number of runs with failed programs that nevertheless reached their end.
   std::size_t runs_with_failed_programs() const;
 
   /// Returns the table for a terminal, and the rules.
-  std::string to_text() const;
+  /// `directory`: of the study, for the commands that repeat failed runs.
+  std::string to_text(const std::string& directory = "") const;
+  /// Returns a row for each run.  Equal runs give equal rows, but for `wall_s`.
   std::string to_csv() const;
+  /// Returns a row of statistics for each case, point and figure.
+  std::string points_csv() const;
   std::string to_json(int exit_code) const;
 
  private:
@@ -62,12 +92,13 @@ class StudyResults {
   const LoadedStudy& study_;
   const std::vector<StudyRun>& runs_;
   std::vector<std::string> figures_;
+  std::map<std::pair<std::size_t, std::size_t>, std::vector<const StudyRun*>> groups_;  ///< by case and point
 };
 
 /// Returns the plot files of a study, in order.
 std::vector<std::string> study_plots(const StudyConfig& config);
 
-/// Writes study.csv, study.json, plot.gp, the data of the plots and their plots into a folder.  Throws
+/// Writes study.csv, points.csv, study.json, plot.gp, the data of the plots and their plots into a folder.  Throws
 /// std::runtime_error.
 void write_study(const std::string& directory, const LoadedStudy& study, const std::vector<StudyRun>& runs,
                  const StudyResults& results, int exit_code);

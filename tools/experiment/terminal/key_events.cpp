@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/experiment/terminal/key_events.hpp"
 
-#include <algorithm>
 #include <charconv>
-#include <utility>
+#include <string_view>
 
 namespace tools {
 
 namespace {
 
 constexpr char escape_byte = 27;
-constexpr std::size_t max_parameters = 64;  // bytes
 
 /// Name of a key by its code, a Unicode code point; empty: none.
 std::string key_name(int code) {
@@ -56,10 +54,11 @@ int number_at(std::string_view text) {
 
 }  // namespace
 
-std::optional<KeyEvent> KeyEvents::sequence(char last) {
-  const std::string parameters = std::exchange(parameters_, {});
+std::optional<KeyEvent> KeyEvents::sequence(const TerminalPiece& piece) {
+  const std::string& parameters = piece.parameters;
+  const char last = piece.byte;
   if (last == 'u' && parameters.starts_with('?')) has_reports_ = true;
-  if (parameters.starts_with('?')) return std::nullopt;
+  if (parameters.starts_with('?') || parameters == "[") return std::nullopt;  // "[": of the Linux console
   KeyEvent event;
   event.key = last == 'u' ? key_name(number_at(parameters)) : arrow_name(last);
   if (event.key.empty()) return std::nullopt;
@@ -78,26 +77,9 @@ std::optional<KeyEvent> KeyEvents::sequence(char last) {
 }
 
 std::optional<KeyEvent> KeyEvents::next(char byte) {
-  const State before = std::exchange(state_, State::none);
-  if (byte == escape_byte) {
-    state_ = State::escape;
-    parameters_.clear();
-    return std::nullopt;
-  }
-  if (before == State::escape && (byte == '[' || byte == 'O')) {
-    state_ = byte == '[' ? State::sequence : State::single;
-    return std::nullopt;
-  }
-  if (before == State::single) return sequence(byte);
-  if (before == State::sequence) {
-    // Parameters continue; a letter or `~` ends the sequence.
-    if (byte >= ' ' && byte <= '?' && parameters_.size() < max_parameters) {
-      parameters_ += byte;
-      state_ = State::sequence;
-      return std::nullopt;
-    }
-    return sequence(byte);
-  }
+  const auto piece = parser_.next(byte);
+  if (!piece || piece->kind == TerminalPiece::Kind::escape) return std::nullopt;
+  if (piece->kind == TerminalPiece::Kind::sequence) return sequence(*piece);
   // Control characters are letters with Ctrl, except those that are keys.
   if (byte > 0 && byte <= 26 && key_name(byte).empty())
     return KeyEvent{std::string{static_cast<char>('a' + byte - 1)}, KeyEvent::Action::press, true};

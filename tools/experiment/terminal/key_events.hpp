@@ -4,6 +4,8 @@
 #include <optional>
 #include <string>
 
+#include "tools/experiment/terminal/terminal_parser.hpp"
+
 namespace tools {
 
 /// What happened to a key.
@@ -31,11 +33,9 @@ class KeyEvents {
   bool has_reports() const { return has_reports_; }
 
  private:
-  enum class State { none, escape, sequence, single };
-  std::optional<KeyEvent> sequence(char last);
+  std::optional<KeyEvent> sequence(const TerminalPiece& piece);
 
-  State state_ = State::none;
-  std::string parameters_;
+  TerminalParser parser_;
   bool has_reports_ = false;
 };
 

@@ -4,11 +4,12 @@
 #include <chrono>
 #include <string>
 
+#include "tools/experiment/terminal/terminal_parser.hpp"
+
 namespace tools {
 
-/// Separates keys of one byte from keys that a terminal sends as several: arrows, Home, F1 and similar keys start with
-/// ESC [ or ESC O, and end with a letter or `~` (ECMA-48, sections 5.4 and 8.3.16; `ESC [ [` and a letter on the Linux
-/// console).  These are discarded.
+/// Separates keys of one byte from keys that a terminal sends as several, such as arrows, Home and F1.  These are
+/// discarded.
 class KeySequences {
  public:
   using Clock = std::chrono::steady_clock;
@@ -22,9 +23,7 @@ class KeySequences {
   std::string alone(Clock::time_point now);
 
  private:
-  enum class State { none, started, one_more, parameters, first_parameter };
-
-  State state_ = State::none;
+  TerminalParser parser_;
   Clock::time_point begun_{};
 };
 

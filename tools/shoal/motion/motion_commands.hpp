@@ -9,8 +9,7 @@
 
 namespace tools {
 
-constexpr double mm = 1000;          ///< in a metre
-constexpr double max_play_s = 3600;  ///< of a motion that is played
+constexpr double mm = 1000;  ///< in a metre
 
 /// Adds `shoal motion`.
 void add_motion_command(CLI::App& app, int& exit_code);

@@ -10,6 +10,7 @@
 #include "devices/motion/servo_bank.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/world_file/vehicle_loader.hpp"
+#include "tools/command_line/name_list.hpp"
 #include "tools/experiment/motion/motion_file.hpp"
 #include "tools/experiment/world_files/world_by_name.hpp"
 #include "tools/shoal/motion/motion_commands.hpp"
@@ -24,6 +25,7 @@ constexpr double rad_per_deg = std::numbers::pi / 180;
 
 struct EditArguments {
   std::string file, output, other, vehicle, name;
+  std::string operation;  ///< in the words of the command line
   std::vector<std::string> joints, values;
   double from_s = 0, to_s = 0, at_s = 0, by = 0;
   bool replace = false, overwrite = false;
@@ -85,11 +87,10 @@ int edit(const EditArguments& arguments, const Edit& change) {
     if (!in_place) changed.name = motion_name_of(output);
     check_frames(output, changed, arguments.overwrite);
     if (in_place)
-      MotionHistory(arguments.file).replace(changed);
+      MotionHistory(arguments.file).replace(changed, arguments.operation);
     else
       write_motion(output, changed);
-    std::cout << fmt::format("{}: {:.3f} s, {} keys; before {:.3f} s, {} keys\n", output, changed.end_s(),
-                             changed.keys.size(), motion.end_s(), motion.keys.size());
+    std::cout << fmt::format("{}: {}; before {}\n", output, content_text(changed), content_text(motion));
     return exit_ok;
   } catch (const EditError& error) {
     throw command_line::UsageError(error.what());
@@ -123,8 +124,10 @@ class EditCommands {
                                {{"shoal motion edit " + name + " " + example},
                                 {{0, "success"}, {2, "wrong usage, or mistakes in a file"}, {4, "file error"}},
                                 {}});
-    command->callback(
-        [arguments, change = std::move(change), this_exit = &exit_code_] { *this_exit = edit(*arguments, change); });
+    command->callback([arguments, command, change = std::move(change), this_exit = &exit_code_] {
+      arguments->operation = operation_of(*command);
+      *this_exit = edit(*arguments, change);
+    });
     return {*command, *arguments};
   }
 
@@ -195,11 +198,8 @@ void add_times(EditCommands& commands) {
       ->type_name("S")
       ->check(number_from(-sim::max_motion_s, sim::max_motion_s))
       ->required();
-  shift.command.add_option("--joints", shift.arguments.joints, "joints; unset: all")
-      ->type_name("JOINT,...")
-      ->delimiter(',')
-      ->type_size(1)
-      ->allow_extra_args(false);
+  command_line::add_name_list(shift.command, "--joints", shift.arguments.joints, "joints; unset: all")
+      ->type_name("JOINT,...");
   const auto scale = commands.add("scale", "Make it slower or faster", "wave.yaml --by 2",
                                   [](const auto& a, const auto& motion) { return stretched(motion, a.by); });
   scale.command.add_option("--by", scale.arguments.by, "factor of all times; 2: half as fast")
@@ -245,18 +245,30 @@ void add_values(EditCommands& commands) {
   pose.command.add_option("--name", pose.arguments.name, "name of the pose")->type_name("NAME")->required();
 }
 
+/// Returns what a file has, also when it is not a good motion file.
+std::string present_content(const std::string& file) {
+  try {
+    return content_text(sim::load_motion(file));
+  } catch (const sim::ConfigError&) {
+    return "a file with mistakes";
+  }
+}
+
 void add_history(CLI::App& parent, int& exit_code, const std::string& name, const std::string& meaning,
-                 void (MotionHistory::*go)() const) {
+                 const std::string& done, std::string (MotionHistory::*go)() const) {
   CLI::App* command = parent.add_subcommand(name, meaning);
   const auto file = std::make_shared<std::string>();
   command->add_option("FILE", *file, "motion file")->required();
   command_line::set_help_end(*command, {{"shoal motion edit " + name + " wave.yaml"},
                                         {{0, "success"}, {4, "there is no such version, or a file error"}},
                                         {"Versions are kept in the folder FILE.history."}});
-  command->callback([file, go, &exit_code] {
+  command->callback([file, done, go, &exit_code] {
     try {
-      (MotionHistory(*file).*go)();
-      std::cout << *file << ": " << motion_of(*file).end_s() << " s\n";
+      const std::string before = present_content(*file);
+      const std::string operation = (MotionHistory(*file).*go)();
+      std::cout << fmt::format("{}: {} {}; now {}; before {}\n", *file, done,
+                               operation.empty() ? "the last change" : "'" + sim::printable(operation) + "'",
+                               present_content(*file), before);
       exit_code = exit_ok;
     } catch (const sim::ConfigError&) {
       throw;
@@ -279,8 +291,8 @@ void add_motion_edit_command(CLI::App& motion, int& exit_code) {
   add_mirrors(commands);
   add_times(commands);
   add_values(commands);
-  add_history(*command, exit_code, "undo", "Take back the last edit", &MotionHistory::undo);
-  add_history(*command, exit_code, "redo", "Do an edit again that was taken back", &MotionHistory::redo);
+  add_history(*command, exit_code, "undo", "Take back the last edit", "took back", &MotionHistory::undo);
+  add_history(*command, exit_code, "redo", "Do an edit again that was taken back", "did again", &MotionHistory::redo);
   command_line::set_help_end(*command, {{"shoal motion edit trim wave.yaml --from 0.5 --to 2",
                                          "shoal motion edit mirror kick_left.yaml --output kick_right.yaml",
                                          "shoal motion edit undo wave.yaml"},

@@ -2,11 +2,12 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <fstream>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 
 #include "messages/yaml/message_writer.hpp"
+#include "tools/experiment/files/file_replacement.hpp"
 #include "tools/experiment/motion/evolve.hpp"
 #include "tools/experiment/motion/evolve_page.hpp"
 #include "tools/experiment/motion/free_keys.hpp"
@@ -14,6 +15,7 @@
 #include "tools/experiment/world_files/world_by_name.hpp"
 #include "tools/shoal/motion/motion_commands.hpp"
 #include "tools/shoal/motion/motion_output.hpp"
+#include "tools/shoal/options/output_file.hpp"
 
 namespace tools {
 
@@ -129,10 +131,19 @@ std::unique_ptr<GaitFamily> gait_of(const EvolveArguments& arguments, const sim:
   return make_gait(arguments.gait, vehicle);
 }
 
-void write_page(const std::string& path, const EvolveReport& report) {
-  std::ofstream out(path, std::ios::binary);
-  out << evolve_page(report) << std::flush;
-  if (!out) throw std::runtime_error("'" + path + "' cannot be written");
+/// Throws UsageError or std::runtime_error when the page cannot be written.
+void check_page(const EvolveArguments& arguments) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  const fs::path page = fs::weakly_canonical(arguments.page, error);
+  for (const fs::path& file : {fs::path(arguments.output), fs::path(arguments.output).replace_extension(".csv")})
+    if (fs::weakly_canonical(file, error) == page)
+      throw command_line::UsageError("--page '" + arguments.page + "' must not be a file of the motion, --output '" +
+                                     arguments.output + "'");
+  if (!arguments.overwrite && fs::exists(page, error))
+    throw command_line::UsageError("'" + arguments.page + "' exists; --overwrite replaces it");
+  check_writable(arguments.page);
+  check_whole_file(arguments.page);
 }
 
 int evolve(EvolveArguments arguments) {
@@ -140,13 +151,16 @@ int evolve(EvolveArguments arguments) {
     throw command_line::UsageError("--candidates must be at least --population, a generation: " +
                                    std::to_string(arguments.options.population));
   check_new_file(arguments.output, arguments.overwrite);
-  if (!arguments.page.empty()) check_new_file(arguments.page, arguments.overwrite);
+  if (!arguments.page.empty()) check_page(arguments);
   arguments.load.encode_message = shoal::encode_own_message;
   const sim::LoadedWorld loaded = sim::load_world(file_by_name({ShippedKind::world}, arguments.world), arguments.load);
   const std::string vehicle = walking_vehicle(loaded.config, arguments.vehicle);
   const auto instance = std::find_if(loaded.config.vehicles.begin(), loaded.config.vehicles.end(),
                                      [&](const sim::VehicleInstance& one) { return one.name == vehicle; });
   const std::unique_ptr<GaitFamily> gait = gait_of(arguments, *instance->config);
+  std::vector<double> start;
+  for (const GaitNumber& number : gait->numbers()) start.push_back(number.start);
+  check_frames(arguments.output, gait->motion(start), arguments.overwrite);
   arguments.options.method = arguments.method == "genetic" ? SearchMethod::genetic : SearchMethod::cma_es;
   Evolution evolution(loaded.config, vehicle, *gait, arguments.options);
   spdlog::info("start of the search: {:.1f} mm/s {}", evolution.start().value_mps * mm,
@@ -165,7 +179,7 @@ int evolve(EvolveArguments arguments) {
   EvolveReport report = print_result(arguments, *gait, evolution);
   report.title = "Search for a gait: " + motion_name_of(arguments.output);
   report.generations = std::move(generations);
-  if (!arguments.page.empty()) write_page(arguments.page, report);
+  if (!arguments.page.empty()) write_whole_file(arguments.page, evolve_page(report));
   return evolution.best().fell() ? exit_failed : exit_ok;
 }
 

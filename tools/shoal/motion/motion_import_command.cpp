@@ -9,6 +9,7 @@
 #include "sim/base/whole_file.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/motion/motion_frames.hpp"
+#include "tools/experiment/motion/motion_file.hpp"
 #include "tools/shoal/motion/format_options.hpp"
 #include "tools/shoal/motion/motion_commands.hpp"
 
@@ -59,14 +60,13 @@ void make_frames_of_many_keys(sim::JointMotion& motion, Losses& losses) {
   motion.keys.clear();
 }
 
-/// Writes the file of frames beside the motion file; returns its name.
-std::string write_frames(const FormatArguments& arguments, const std::vector<sim::MotionTrack>& frames) {
+/// Writes the file of frames beside the motion file, unless it is the file that was read.
+void write_frames(const FormatArguments& arguments, const std::vector<sim::MotionTrack>& frames) {
   const fs::path path = fs::path(arguments.output).replace_extension(".csv");
   std::error_code error;
-  if (fs::equivalent(path, arguments.input, error)) return path.filename().string();
+  if (fs::equivalent(path, arguments.input, error)) return;
   check_output(arguments, path.string());
   write_bytes(path.string(), sim::motion_frames_text(frames));
-  return path.filename().string();
 }
 
 int import_motion(FormatArguments& arguments) {
@@ -85,7 +85,14 @@ int import_motion(FormatArguments& arguments) {
       motion_of_bytes(format, {bytes, arguments.input, names, arguments.options, read_other}, losses);
   make_frames_of_many_keys(motion, losses);
   if (!may_lose(arguments, losses)) return exit_failed;
-  if (!motion.frames.empty()) motion.frames_file = write_frames(arguments, motion.frames);
+  if (!motion.frames.empty())
+    motion.frames_file = fs::path(arguments.output).replace_extension(".csv").filename().string();
+  try {
+    check_readable(arguments.output, motion);
+  } catch (const EditError& error) {
+    throw sim::ConfigError({error.what()});
+  }
+  if (!motion.frames.empty()) write_frames(arguments, motion.frames);
   write_bytes(arguments.output, sim::motion_text(motion));
   if (motion.vehicle.empty() && !arguments.keep_names)
     std::cerr << arguments.output << ": names no vehicle, and joints are called as in " << arguments.input

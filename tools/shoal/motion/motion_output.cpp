@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/shoal/motion/motion_output.hpp"
 
+#include <spdlog/fmt/fmt.h>
+
 #include <filesystem>
 
+#include "sim/config/message_text.hpp"
+#include "tools/experiment/files/file_replacement.hpp"
 #include "tools/experiment/motion/motion_file.hpp"
 #include "tools/shoal/options/output_file.hpp"
 #include "tools/shoal/options/shared_options.hpp"
@@ -28,14 +32,46 @@ void check_new_file(const std::string& path, bool overwrite) {
   if (!overwrite && std::filesystem::exists(path, error))
     throw command_line::UsageError("'" + path + "' exists; --overwrite replaces it");
   check_writable(path);
+  if (std::filesystem::path(path).extension() == ".csv")
+    throw command_line::UsageError("'" + path + "' must not end in .csv: that is the file of the frames of a motion");
+  check_whole_file(path);
 }
 
 void check_frames(const std::string& path, const sim::JointMotion& motion, bool overwrite) {
-  refuse(foreign_frames(path, motion), path, overwrite);
+  const std::string frames = foreign_frames(path, motion);
+  refuse(frames, path, overwrite);
+  if (!frames.empty()) check_whole_file(frames);
 }
 
 void check_frames(const std::string& path, bool overwrite) {
   refuse(foreign_frames(path), path, overwrite);
+}
+
+std::string operation_of(const CLI::App& command) {
+  std::string text = command.get_name();
+  for (const CLI::Option* option : command.get_options()) {
+    const std::string name = option->get_name();
+    if (option->count() == 0 || name == "FILE" || name == "--output" || name == "--overwrite" || name == "--log-level")
+      continue;
+    if (!option->get_positional()) text += " " + name;
+    if (option->get_items_expected_max() == 0) continue;  // a flag
+    const char between = option->get_delimiter() == '\0' ? ' ' : option->get_delimiter();
+    std::string values;
+    for (const std::string& value : option->results()) values += (values.empty() ? ' ' : between) + value;
+    text += values;
+  }
+  return sim::shortened(sim::printable(text), 200);
+}
+
+std::string content_text(const sim::JointMotion& motion) {
+  const auto counted = [](std::size_t count, const char* word) {
+    return fmt::format("{} {}{}", count, word, count == 1 ? "" : "s");
+  };
+  std::string text = fmt::format("{:.3f} s, {}", motion.end_s(), counted(motion.tracks().size(), "joint"));
+  if (!motion.keys.empty()) text += ", " + counted(motion.keys.size(), "key");
+  if (!motion.frames.empty()) text += ", " + counted(motion.frames.front().keys.size(), "frame");
+  if (!motion.changes.empty()) text += ", " + counted(motion.changes.size(), "change");
+  return text;
 }
 
 }  // namespace tools

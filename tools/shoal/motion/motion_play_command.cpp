@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -13,6 +14,8 @@
 namespace tools {
 
 namespace {
+
+constexpr double max_snapshots = 14'400;  // four in a second of an hour
 
 struct PlayArguments {
   std::string file;
@@ -40,17 +43,43 @@ bool report_recording(const sim::MotionOrigin& origin, std::uint64_t hash, const
   return is_same;
 }
 
+/// Where the player is.
+std::string phase_text(const MotionStage& stage) {
+  using Phase = devices::MotionPlayer::Phase;
+  switch (stage.player().phase()) {
+    case Phase::approach:
+      return "it is still on the way to its first values";
+    case Phase::paused:
+      return "its player is paused";
+    case Phase::playing:
+    case Phase::idle:
+      break;
+  }
+  return fmt::format("it is at {:.3f} s", stage.player().at_s());
+}
+
 int play(PlayArguments arguments) {
   const sim::JointMotion motion = motion_of(arguments.file);
+  if (arguments.again && !(arguments.from_s >= 0 && arguments.from_s <= motion.end_s()))
+    throw command_line::UsageError("--again-from must be from 0 to " + sim::number_text(motion.end_s()) +
+                                   " s, the end of the motion, got " + sim::number_text(arguments.from_s));
+  // Snapshots are needed to go back only, and a long motion has fewer of them.
+  if (!arguments.again) arguments.stage.kept_s = 0;
+  arguments.stage.snapshot_s = std::max(arguments.stage.snapshot_s, motion.end_s() / max_snapshots);
   arguments.stage.world = file_by_name({ShippedKind::world}, arguments.stage.world);
   MotionStage stage(arguments.stage, motion);
   MotionTracking tracking;
   stage.after_step = [&](MotionStage& now) { tracking.add(now); };
-  const double max_s = motion.loop ? arguments.loop_s : max_play_s;
-  stage.play_out(0, max_s);
+  const double max_s = motion.loop ? arguments.loop_s : end_limit_s(motion);
+  const bool has_ended = stage.play_out(0, max_s) || motion.loop;
   const std::uint64_t end_hash = stage.state_hash();
   const double played_s = stage.now_s();
-  stage.play_out(arguments.settle_s, max_s);
+  if (!has_ended) {
+    std::cout << tracking.text(motion);
+    std::cout << fmt::format("the motion has not ended after {:.3f} s: {}\n", played_s, phase_text(stage));
+    return exit_failed;
+  }
+  stage.play_out(arguments.settle_s, motion.loop ? max_s : played_s + arguments.settle_s);
   std::cout << tracking.text(motion);
   std::cout << fmt::format("{:.3f} s simulated, state hash at the end of the motion {:016x}\n", played_s, end_hash);
   if (stage.now_s() > played_s)
@@ -62,6 +91,10 @@ int play(PlayArguments arguments) {
     const std::uint64_t hash = stage.state_hash();
     const double end_s = stage.now_s();
     stage.after_step = {};
+    if (stage.time_of(arguments.from_s) > end_s + 1e-9)
+      throw command_line::UsageError("--again-from: " + sim::number_text(arguments.from_s) +
+                                     " s of the motion are not reached in --loop-time " +
+                                     sim::number_text(arguments.loop_s));
     stage.go_to(stage.time_of(arguments.from_s));
     const double from_s = stage.now_s();
     stage.go_to(end_s);
@@ -94,7 +127,7 @@ void add_motion_play_command(CLI::App& motion, int& exit_code) {
       ->check(number_from(0, 600));
   command->add_option("--loop-time", arguments->loop_s, "simulated time in all of a motion that loops, s; usual 10")
       ->type_name("S")
-      ->check(number_from(0.01, max_play_s));
+      ->check(number_from(0.01, sim::max_motion_s));
   add_set_option(*command, arguments->stage.load.sets);
   add_allow_path_option(*command, arguments->stage.load);
   command_line::set_help_end(

@@ -12,9 +12,11 @@
 #include <thread>
 
 #include "devices/motion/joint_group.hpp"
-#include "sim/base/whole_file.hpp"
+#include "devices/motion/servo_bank.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/script/action_registry.hpp"
+#include "sim/world_file/vehicle_loader.hpp"
+#include "tools/command_line/name_list.hpp"
 #include "tools/command_line/text_layout.hpp"
 #include "tools/experiment/drive/drive_error.hpp"
 #include "tools/experiment/motion/motion_file.hpp"
@@ -27,6 +29,7 @@
 #include "tools/shoal/motion/motion_commands.hpp"
 #include "tools/shoal/motion/motion_output.hpp"
 #include "tools/shoal/motion/record_view.hpp"
+#include "tools/shoal/motion/vehicle_joints.hpp"
 #include "tools/shoal/options/view_options.hpp"
 
 namespace tools {
@@ -41,6 +44,7 @@ constexpr std::chrono::milliseconds time_to_answer{500};  // of a terminal that 
 
 struct RecordArguments {
   std::string file, events;
+  std::string operation;  ///< in the words of the command line
   std::vector<std::string> devices, overdub, actions;
   std::optional<double> rate, from_s, to_s, duration_s;
   bool overwrite = false, recover = false, with_page = false;
@@ -112,18 +116,32 @@ void check_files(const RecordArguments& arguments, bool is_over) {
   for (const std::string& file : {arguments.file, take}) check_frames(file, false);
 }
 
+/// Throws ConfigError when a journal names joints that its vehicle, if that is known, does not have.
+void check_joints(const TakeSettings& settings, const std::string& file) {
+  const std::string vehicle_file = vehicle_file_of(settings.model, file);
+  if (vehicle_file.empty()) return;
+  const sim::VehicleConfig vehicle = sim::load_vehicle(vehicle_file);
+  const std::vector<devices::ServoOfVehicle> servos = devices::servos_of(vehicle);
+  std::vector<std::string> known;
+  for (const devices::ServoOfVehicle& servo : servos) known.push_back(servo.device);
+  for (const std::string& joint : settings.joints)
+    if (std::none_of(servos.begin(), servos.end(), [&](const auto& servo) { return servo.is_called(joint); }))
+      throw sim::ConfigError({journal_path(file) + ":2: joint '" + sim::shortened(sim::printable(joint)) +
+                              "' is not a servo of vehicle '" + settings.model + "'" + sim::did_you_mean(joint, known) +
+                              "; known: " + sim::list_text(known)});
+}
+
 /// Saves a recording that its program could not end.  Returns whether there was one.
 bool recover(const std::string& file) {
-  const std::string journal = journal_path(file);
-  if (!fs::exists(journal)) return false;
-  if (is_recording(journal)) throw std::runtime_error("'" + file + "' is being recorded by another process");
-  // One that ended before its first frame holds nothing.
-  if (sim::whole_file<std::runtime_error>(journal).find("\nf ") == std::string::npos) {
-    fs::remove(journal);
-    return false;
-  }
-  const sim::JointMotion motion = save_take(file, "");
-  std::cerr << fmt::format("{}: recovered a recording of {:.3f} s\n", file, motion.end_s());
+  const std::optional<RecoveredTake> recovered = read_journal(file);
+  if (!recovered) return false;
+  check_joints(recovered->take.settings, file);
+  const SavedTake saved = save_take(file, *recovered, "", "record --recover");
+  const double end_s = static_cast<double>(recovered->take.frame_count() - 1) * recovered->take.settings.frame_s;
+  std::cerr << fmt::format("{}: recovered a recording of {:.3f} s\n", file, end_s);
+  if (recovered->damage)
+    std::cerr << fmt::format("{}; this line and all after it, {} in all, are dropped; the journal is kept as {}\n",
+                             recovered->damage->error, recovered->damage->lines, saved.damaged_journal);
   return true;
 }
 
@@ -335,7 +353,9 @@ int record(const RecordArguments& arguments) {
       hash = fmt::format("{:016x}", recorder.finish());
     }
     const bool loops = options.over && options.over->loop;
-    const sim::JointMotion motion = save_take(arguments.file, loops ? "" : hash);
+    const std::optional<RecoveredTake> recorded = read_journal(arguments.file);
+    if (!recorded) throw std::runtime_error("'" + journal_path(arguments.file) + "' is gone");
+    const sim::JointMotion motion = save_take(arguments.file, *recorded, loops ? "" : hash, arguments.operation).motion;
     std::cout << fmt::format("{}: {:.3f} s, {} joints, {} keys; each frame is in {}\nstate hash at the end {}\n",
                              arguments.file, motion.end_s(), motion.tracks().size(), motion.keys.size(),
                              take_path(arguments.file), hash);
@@ -382,13 +402,9 @@ void add_motion_record_command(CLI::App& motion, int& exit_code) {
       ->type_name("R")
       ->check(number_from(0.01, 10));
   // What is recorded.
-  command
-      ->add_option("--overdub", arguments->overdub,
-                   "joints that are recorded while the others play the file; comma separated")
-      ->type_name("JOINTS")
-      ->delimiter(',')
-      ->type_size(1)
-      ->allow_extra_args(false);
+  command_line::add_name_list(*command, "--overdub", arguments->overdub,
+                              "joints that are recorded while the others play the file; comma separated")
+      ->type_name("JOINTS");
   command->add_option("--punch-in", arguments->from_s, "start of the part of the file that is recorded, s")
       ->type_name("S")
       ->check(number_from(0, sim::max_motion_s));
@@ -426,7 +442,10 @@ void add_motion_record_command(CLI::App& motion, int& exit_code) {
         "same state.  While it records, FILE.journal holds each frame: when the program is killed, the next "
         "recording of FILE, or --recover, saves it.  Keys and sticks: 'controls' of the joint_group of the "
         "vehicle.  KEY of --on is a character of the keyboard, or up, down, left, right, escape."}});
-  command->callback([arguments, &exit_code] { exit_code = record(*arguments); });
+  command->callback([arguments, command, &exit_code] {
+    arguments->operation = operation_of(*command);
+    exit_code = record(*arguments);
+  });
 }
 
 }  // namespace tools

@@ -54,11 +54,14 @@ int stability(StabilityArguments arguments) {
                 : Margins{now.now_s(), none, none, none});
   };
   double start_s = 0;
-  while (stage.player().phase() == devices::MotionPlayer::Phase::approach && stage.now_s() < max_play_s)
+  const double max_s = end_limit_s(motion);
+  while (stage.player().phase() == devices::MotionPlayer::Phase::approach && stage.now_s() < max_s)
     stage.go_to(stage.now_s() + sim::to_seconds(stage.world().step_time()));
   start_s = stage.time_of(0);
   // Of a motion that loops, the first round.
-  stage.play_out(0, motion.loop ? start_s + motion.end_s() / stage.player().rate() : max_play_s);
+  if (!stage.play_out(0, motion.loop ? start_s + motion.end_s() / stage.player().rate() : max_s) && !motion.loop)
+    throw sim::ConfigError(
+        {fmt::format("{}: the motion has not ended after {:.0f} s of the run", arguments.file, max_s)});
   stage.after_step = {};
   const std::vector<double> instants = instants_of(motion, stage, start_s, arguments.every_s);
   const std::vector<PushMargin> margins = push_margins(stage, instants, arguments.push);

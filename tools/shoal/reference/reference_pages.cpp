@@ -104,7 +104,7 @@ std::string world_format_page() {
          "[conventions.md](../develop/conventions.md).\n\n"
          "* `include: FILE` (or a list) at the top of a file: the included file is the base over which this one is "
          "merged, maps key by key, lists of named items item by item, anything else replaced. It is looked up "
-         "beside the file, then, by its name alone, among the shipped worlds.\n"
+         "beside the file, then, by its name alone, among the shipped worlds and vehicles.\n"
          "* `${name}` in a vehicle file stands for a parameter: the file's `parameters:` gives the default, the "
          "world's `parameters:` of that vehicle another value. `${index}` is the number of the instance (from 1), "
          "`${name}` its entry's name.\n"

@@ -28,10 +28,15 @@ void read_axis(const UrdfElement& element, UrdfJoint& joint) {
   joint.axis_J.normalize();
 }
 
-/// Reads a limit that must not be negative.
+constexpr double min_limit = 1e-9;  // of a joint_servo
+
+/// Reads a limit: 0, or one that a servo can have.
 double read_bound(const UrdfElement& limit, const char* attribute) {
   const double value = limit.number(attribute);
   if (value < 0) limit.refuse(fmt::format("'{}' must be >= 0, got {}", attribute, sim::number_text(value)));
+  if (value > 0 && value < min_limit)
+    limit.refuse(fmt::format("'{}' must be 0 or >= {}, got {}", attribute, sim::number_text(min_limit),
+                             sim::number_text(value)));
   return value;
 }
 
@@ -44,7 +49,8 @@ void read_limit(const UrdfElement& element, UrdfJoint& joint, std::vector<UrdfNo
   }
   joint.max_effort = read_bound(*limit, "effort");
   joint.max_velocity = read_bound(*limit, "velocity");
-  if (limit->has("acceleration")) joint.max_acceleration = limit->positive("acceleration");
+  if (limit->has("acceleration")) joint.max_acceleration = read_bound(*limit, "acceleration");
+  if (joint.max_acceleration == 0.0) limit->refuse("'acceleration' must be > 0, got 0");
   for (const char* other : {"deceleration", "jerk"})
     if (limit->has(other))
       notes.push_back({limit->place(), fmt::format("{}: '{}' of <limit> is not imported", element.who(), other)});

@@ -84,14 +84,6 @@ TEST_F(DriverTest, ATappedKeyMovesForAFifthOfASecondOnly) {
   EXPECT_EQ(speed_at(1200ms), 0);
 }
 
-TEST(DriveKeys, NamesArrowsOfBothModesOfATerminal) {
-  tools::DriveKeyNames names;
-  std::vector<std::string> keys;
-  for (const char byte : std::string("\x1b[A\x1bOD w\x1b[5~\x1b[1;5Cq\t\r"))
-    if (const std::string name = names.next(byte); !name.empty()) keys.push_back(name);
-  EXPECT_EQ(keys, (std::vector<std::string>{"up", "left", "space", "w", "right", "q", "tab", "enter"}));
-}
-
 TEST(DriveKeys, StepsStopAtFullDeflectionAndComeBackToZero) {
   tools::DriveKeys keys(tools::read_drive_profile("").keys);
   for (int i = 0; i < 9; ++i) keys.press("w");

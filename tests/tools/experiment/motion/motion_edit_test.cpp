@@ -182,4 +182,30 @@ TEST(MotionEdit, ChangesOfTheWorldMoveWithTheMotion) {
   EXPECT_THAT(times(tools::appended(motion, motion, 1)), ElementsAre(1, 5, 9, 12, 16, 20));
 }
 
+sim::ConfigNode action(const std::string& text) {
+  sim::Diagnostics diagnostics;
+  return sim::parse_config_text(text, "action", diagnostics);
+}
+
+TEST(MotionEdit, MergeKeepsTheChangesOfBothAndTheirSliders) {
+  sim::JointMotion legs, head;
+  legs.name = "legs";
+  legs.keys = {{0, "", {{"a", 0}}, {}, "", {}}, {2, "", {{"a", 1}}, {}, "", {}}};
+  legs.changes = {{1, action("{remove: crate}")}, {1.5, action("{remove: block}")}};
+  head.name = "head";
+  head.keys = {{0, "", {{"b", 0.5}}, {}, "", {}}, {3, "", {{"b", 1}}, {}, "", {}}};
+  head.sliders = {"b"};
+  head.changes = {{0.5, action("{remove: ball}")}, {1, action("{remove: crate}")}, {1.5, action("{remove: box}")}};
+  const sim::JointMotion both = tools::merged(legs, head, false);
+  std::vector<std::pair<double, std::string>> changes;
+  for (const sim::MotionChange& change : both.changes)
+    changes.emplace_back(change.at_s, change.action.entries.at(0).value.scalar);
+  using testing::ElementsAre;
+  using testing::Pair;
+  // The crate can be removed once only.
+  EXPECT_THAT(changes, ElementsAre(Pair(0.5, "ball"), Pair(1, "crate"), Pair(1.5, "block"), Pair(1.5, "box")));
+  EXPECT_THAT(both.sliders, ElementsAre("b"));
+  EXPECT_THAT(tools::appended(legs, head, 1).sliders, ElementsAre("b"));
+}
+
 }  // namespace

@@ -58,6 +58,35 @@ TEST(MotionFile, UndoAndRedoGoThroughItsVersions) {
   EXPECT_EQ(end_of(path), 2);
 }
 
+TEST(MotionFile, UndoAndRedoNameTheOperation) {
+  const test_support::ScratchFolder folder;
+  const std::string path = folder.file("m.yaml");
+  const tools::MotionHistory history(path);
+  tools::write_motion(path, with_end(1));
+  history.replace(with_end(2), "scale --by 2");
+  history.replace(with_end(3), "set a=3");
+  history.replace(with_end(4));
+  EXPECT_EQ(history.undo(), "");
+  EXPECT_EQ(history.undo(), "set a=3");
+  EXPECT_EQ(history.undo(), "scale --by 2");
+  EXPECT_EQ(history.redo(), "scale --by 2");
+  EXPECT_EQ(history.redo(), "set a=3");
+  EXPECT_EQ(history.undo(), "set a=3");
+  EXPECT_EQ(end_of(path), 2);
+}
+
+TEST(MotionFile, ThatWouldNotBeReadAgainIsFound) {
+  const test_support::ScratchFolder folder;
+  const std::string path = folder.file("m.yaml");
+  EXPECT_NO_THROW(tools::check_readable(path, with_end(1)));
+  for (const std::string& name : {std::string("caf\xe9"), std::string("a\0b", 3), std::string(256, 'x')}) {
+    sim::JointMotion motion = with_end(1);
+    for (sim::MotionKey& key : motion.keys) key.joints[0].first = name;
+    EXPECT_THROW(tools::check_readable(path, motion), tools::EditError) << name;
+  }
+  EXPECT_FALSE(std::filesystem::exists(path));
+}
+
 TEST(MotionFile, ManyKeysBecomeFramesBesideItWhichGoBackToo) {
   const test_support::ScratchFolder folder;
   const std::string path = folder.file("m.yaml");

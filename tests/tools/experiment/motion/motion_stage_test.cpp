@@ -54,6 +54,16 @@ TEST(MotionStage, FromAnyInstantTheEndIsThatOfTheFullPlay) {
   EXPECT_TRUE(stage.branches().empty());
 }
 
+TEST(MotionStage, SaysWhetherTheMotionHasEnded) {
+  const Theatre theatre;
+  const sim::JointMotion motion = swing(1);
+  tools::MotionStage stage(theatre.options, motion);
+  EXPECT_FALSE(stage.play_out(0, 2));
+  EXPECT_NEAR(stage.now_s(), 2, 1e-9);
+  EXPECT_TRUE(stage.play_out(0, tools::end_limit_s(motion)));
+  EXPECT_GT(tools::end_limit_s(motion), stage.now_s());
+}
+
 TEST(MotionStage, KnowsWhenATimeOfTheMotionIsReached) {
   const Theatre theatre;
   tools::MotionStage stage(theatre.options, swing(1));

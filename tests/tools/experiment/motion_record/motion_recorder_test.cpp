@@ -41,7 +41,7 @@ struct Studio {
   sim::JointMotion save(std::unique_ptr<tools::MotionRecorder> recorder) {
     const std::uint64_t hash = recorder->finish();
     recorder.reset();
-    sim::JointMotion keyed = tools::save_take(file, "");
+    sim::JointMotion keyed = tools::save_take(file, tools::read_journal(file).value(), "", "record").motion;
     EXPECT_FALSE(std::filesystem::exists(tools::journal_path(file)));
     tools::MotionStage stage(options.stage, sim::load_motion(tools::take_path(file)));
     stage.play_out(0, 600);

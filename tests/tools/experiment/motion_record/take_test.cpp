@@ -58,6 +58,48 @@ TEST(Take, SaysTheLineOfAMistake) {
   EXPECT_THAT(error_of(head), HasSubstr("has no frame"));
 }
 
+TEST(Take, WhatStandsBeforeABadLineIsKept) {
+  const auto kept = [](const std::string& lines) {
+    std::optional<tools::TakeDamage> damage;
+    const tools::Take take = tools::parse_take(head + "f 0=0 1=0\nf 0=1\n" + lines, "wave.journal", &damage);
+    for (const std::vector<double>& values : take.frames) EXPECT_EQ(values.size(), 2u) << lines;
+    EXPECT_THAT(take.frames[0], ElementsAre(0, 1)) << lines;
+    EXPECT_TRUE(take.changes.empty()) << lines;
+    return damage.value_or(tools::TakeDamage{"none", 0});
+  };
+  EXPECT_EQ(kept("").error, "none");
+  EXPECT_EQ(kept("f 0=12.").error, "none");  // cut
+  const tools::TakeDamage bad = kept("f 0=5 1=x\nf 0=2\nf 0=3\n");
+  EXPECT_EQ(bad.error, "wave.journal:5: a value must be a number from -1000000 to 1000000, got 'x'");
+  EXPECT_EQ(bad.lines, 3u);
+  for (const std::string line :
+       {"f 0=nan", "f 0=inf", "f 0=1e7", "f 7=1", "f 0", "b 2", "b -1", "b 99999999999999999999", "c nan {remove: a}",
+        "c 1e9 {remove: a}", "c 0.01 [", "hello", "", "\xff\xfe"})
+    EXPECT_EQ(kept(line + "\nf 0=1\n").lines, 2u) << line;
+}
+
+TEST(Take, ItsFirstLinesMustBeGood) {
+  std::optional<tools::TakeDamage> damage;
+  for (const std::string& text : {std::string("mine\n"), head, head + "f 0=0\nf 0=0 1=0\n", head + "b 0\n"})
+    EXPECT_THROW(tools::parse_take(text, "wave.journal", &damage), sim::ConfigError) << text;
+  EXPECT_FALSE(damage);
+  EXPECT_THAT(error_of(head + "b 0\n"), HasSubstr(":3: a return must come after a frame"));
+  EXPECT_THAT(error_of("shoal recording 1\n{joints: [a, a]}\n"), HasSubstr("'joints' names joint 'a' twice"));
+  EXPECT_THAT(error_of("shoal recording 1\n{joints: [\"a\\0\"]}\n"), HasSubstr("without control characters"));
+}
+
+TEST(Take, HasNoMoreValuesThanCanBeWritten) {
+  std::string text = "shoal recording 1\n{joints: [";
+  for (int i = 0; i < 200; ++i) text += "j" + std::to_string(i) + ", ";
+  text += "]}\nf";
+  for (int i = 0; i < 200; ++i) text += " " + std::to_string(i) + "=0";
+  text += "\n";
+  for (int i = 0; i < 100'001; ++i) text += "f\n";
+  EXPECT_EQ(tools::max_take_frames(200), 100'000u);
+  EXPECT_EQ(tools::max_take_frames(1), 1'000'000u);
+  EXPECT_THAT(error_of(text), HasSubstr(":100003: must have at most 100000 frames"));
+}
+
 TEST(TakeJournal, HoldsEachFrameAtOnceAndExactly) {
   const test_support::ScratchFolder folder;
   const std::string path = folder.file("wave.yaml.journal");

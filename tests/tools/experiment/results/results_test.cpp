@@ -83,7 +83,7 @@ TEST(Summary, HasTheSameKeysForEveryWorld) {
                                          "real_time_factor", "run_hash", "state_hash", "messages", "dropped_messages",
                                          "bad_messages", "quick_steps", "metrics", "rules", "contacts", "contact_pairs",
                                          "processes", "control", "modem_dropped_messages", "serial_dropped_bytes",
-                                         "judged", "passed", "ended", "error", "exit_code", "shoal"));
+                                         "judged", "passed", "ended", "error", "exit_code", "shoal", "build"));
   EXPECT_EQ(json["world"], "harbor");
   EXPECT_EQ(json["seed"], 3);
   EXPECT_EQ(json["steps"], 1000);

@@ -180,6 +180,21 @@ TEST(StudyConfig, CasesChangeTheWorld) {
   EXPECT_EQ(study.worlds[1].config.name, "fast");
 }
 
+TEST(StudyConfig, WorldIsAFileBesideItOrAShippedOneByName) {
+  const ScratchFolder folder;
+  const auto world_of = [&](const std::string& world) {
+    write(folder.file("study.yaml"), "shoal: 1\nstudy: own\nworld: " + world + "\nseeds: [1]\n");
+    return tools::load_study(folder.file("study.yaml")).config.world;
+  };
+  const std::string shipped =
+      std::filesystem::path(test_support::source_path("worlds/minimal.yaml")).lexically_normal();
+  EXPECT_EQ(world_of("minimal"), shipped);
+  EXPECT_EQ(world_of("minimal.yaml"), shipped);
+  std::filesystem::copy_file(shipped, folder.file("minimal.yaml"));
+  EXPECT_EQ(world_of("minimal.yaml"), folder.file("minimal.yaml"));
+  EXPECT_THROW(world_of("studies/coop_land.yaml"), sim::ConfigError);
+}
+
 TEST(StudyConfig, ThoseThatAreShippedCanBeRead) {
   int read = 0;
   for (const auto& entry : std::filesystem::directory_iterator(test_support::source_path("worlds/studies"))) {
@@ -217,6 +232,32 @@ TEST(StudyConfig, ReportsWhatIsWrong) {
   EXPECT_THAT(error("plots: [{name: p, metrics: [e]}]\n"), HasSubstr("'metrics' are drawn over 'distance' or 'time'"));
   EXPECT_THAT(error("plots: [{name: p, metrics: [f], over: time}]\n"), HasSubstr("names nothing of this world: 'f'"));
   EXPECT_THAT(error("plots: [{name: p, figure: passed, cases: [b]}]\n"), HasSubstr("names no case 'b'"));
+}
+
+TEST(StudyConfig, ReportsWhatIsWrongWithFactorsAndTheirDesign) {
+  const auto error = [](const std::string& factor, const std::string& more = "") {
+    return StudyFolder("factors:\n  - {name: g, paths: [physics.gravity_mps2], " + factor + "}\n" + more).error();
+  };
+  EXPECT_EQ(error("values: [1, 2]"), "");
+  EXPECT_EQ(error("from: 1, to: 2, levels: 3"), "");
+  EXPECT_EQ(error("from: 1, to: 2", "design: {type: sobol, points: 7}\n"), "");
+  EXPECT_THAT(error("from: 1, to: 2"), HasSubstr("study.yaml:6:5: factor 'g': a range in a grid needs 'levels'"));
+  EXPECT_THAT(error("values: []"), HasSubstr("'values' must not be empty"));
+  EXPECT_THAT(error("from: 1"), HasSubstr("factor 'g': has 'from' but no 'to'"));
+  EXPECT_THAT(error("from: 2, to: 1, levels: 2"), HasSubstr("'to' must be greater than 'from', got 1"));
+  EXPECT_THAT(error("values: [1], from: 1, to: 2"), HasSubstr("needs either 'values' or 'from' and 'to', not both"));
+  EXPECT_THAT(error("from: 0, to: 1, levels: 2, scale: log"), HasSubstr("'from' must be > 0 with 'scale: log', got 0"));
+  EXPECT_THAT(error("values: [1, x]"), HasSubstr("factor 'g': value x: "));
+  EXPECT_THAT(error("values: [1]", "design: {type: random}\n"), HasSubstr("needs 'points'"));
+  EXPECT_THAT(error("values: [1]", "design: {points: 3}\n"), HasSubstr("a grid has no 'points'"));
+  EXPECT_THAT(error("values: [1]", "design: {type: sobol, points: 3, seed: 2}\n"),
+              HasSubstr("only the designs random and latin_hypercube have a 'seed'"));
+  EXPECT_THAT(StudyFolder("design: {type: grid}\n").error(), HasSubstr("'design' needs 'factors'"));
+  EXPECT_THAT(StudyFolder("factors: [{name: seed, paths: [a], values: [1]}]\n").error(),
+              HasSubstr("'name' must not be that of another column of the tables, got 'seed'"));
+  EXPECT_THAT(StudyFolder("batch: 5\n").error(), HasSubstr("'batch' needs 'until'"));
+  EXPECT_THAT(StudyFolder("until: ci(e.rms) < 5 %\n").error(),
+              HasSubstr("'until' names nothing of this world: 'e.rms'"));
 }
 
 TEST(StudyConfig, PointsAtTheMistakeInARule) {
@@ -311,9 +352,10 @@ TEST(StudyResults, JudgeStatisticsOfCases) {
   EXPECT_NEAR(json["cases"][1]["figures"]["passed"]["mean_high_95"], 0.657620, 1e-5);      // 0 of 2: z^2 / (2 + z^2)
   EXPECT_EQ(json["cases"][1]["figures"]["e.rms_m"]["std"], 0);
   EXPECT_EQ(json["passed"], false);
-  EXPECT_THAT(results.to_csv(), HasSubstr("case,seed,exit_code,passed,ended,sim_time_s,wall_s,run_hash,e.rms_m\n"
-                                          "plain,1,0,1,duration,0,0.000,00000000000000a1,1\n"));
-  EXPECT_THAT(results.to_csv(), HasSubstr("quick,2,0,0,duration,0,0.000,00000000000000a1,6\n"));
+  EXPECT_THAT(results.to_csv(), HasSubstr("case,seed,exit_code,passed,ended,sim_time_s,wall_s,run_hash,e.rms_m,run,"
+                                          "point,shoal,processor,c_library\n"
+                                          "plain,1,0,1,duration,0,0.000,00000000000000a1,1,1,0,,,\n"));
+  EXPECT_THAT(results.to_csv(), HasSubstr("quick,2,0,0,duration,0,0.000,00000000000000a1,6,4,0,,,\n"));
 }
 
 TEST(StudyResults, ARuleFailsWhenARunLacksItsFigure) {
@@ -337,7 +379,7 @@ TEST(StudyResults, ARuleFailsWhenARunLacksItsFigure) {
   const auto json = nlohmann::json::parse(results.to_json(1));
   EXPECT_EQ(json["cases"][1]["figures"]["e.rms_m"]["count"], 1);
   EXPECT_TRUE(json["cases"][1]["figures"]["e.rms_m"]["std"].is_null());
-  EXPECT_THAT(results.to_csv(), HasSubstr("quick,2,0,0,duration,0,0.000,00000000000000a1,\n"));
+  EXPECT_THAT(results.to_csv(), HasSubstr("quick,2,0,0,duration,0,0.000,00000000000000a1,,4,0,,,\n"));
 }
 
 TEST(StudyResults, WithoutRulesNothingHasPassed) {
@@ -386,7 +428,7 @@ TEST(StudyResults, CountRunsWithoutAResult) {
   const tools::StudyResults results(study, runs);
   EXPECT_EQ(results.failed_runs(), 1u);
   EXPECT_EQ(results.judgement(), tools::Judgement::failed);
-  EXPECT_THAT(results.to_csv(), HasSubstr("quick,2,,,failed,,,,\n"));
+  EXPECT_THAT(results.to_csv(), HasSubstr("quick,2,,,failed,,,,,4,0,,,\n"));
   const ScratchFolder out;
   tools::write_study(out.file("study"), study, runs, results, 4);
   const std::string page = tools::study_report(out.file("study"));

@@ -140,6 +140,10 @@ TEST(UrdfReader, NamesLineRuleAndValueOfAWrongJoint) {
             "r.urdf:5: joint 'j': 'lower' must not be above 'upper', got 1 and 0");
   EXPECT_EQ(import_error(pair_text("revolute", "<limit lower=\"0\" upper=\"1\" effort=\"-1\" velocity=\"1\"/>")),
             "r.urdf:4: joint 'j': 'effort' must be >= 0, got -1");
+  EXPECT_EQ(import_error(pair_text("revolute", "<limit lower=\"0\" upper=\"1\" effort=\"1e-300\" velocity=\"1\"/>")),
+            "r.urdf:4: joint 'j': 'effort' must be 0 or >= 1e-09, got 1e-300");
+  EXPECT_EQ(import_error(pair_text("revolute", "<limit lower=\"0\" upper=\"1\" effort=\"1\" velocity=\"1e-300\"/>")),
+            "r.urdf:4: joint 'j': 'velocity' must be 0 or >= 1e-09, got 1e-300");
   EXPECT_EQ(import_error(pair_text("revolute", range + "\n<axis xyz=\"0 0 0\"/>")),
             "r.urdf:5: joint 'j': the axis must not be zero");
   EXPECT_EQ(import_error(pair_text("fixed", "<parent link=\"a\"/>")),

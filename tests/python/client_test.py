@@ -1,0 +1,227 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Tests of the client in runs of the simulator."""
+import os
+import re
+import signal
+import threading
+import time
+import unittest
+
+from support import ROOT, ShoalRun, run_python, scratch
+
+import shoal
+from shoal import messages
+
+MINIMAL = 'worlds/minimal.yaml'
+
+
+class Pilot:
+    """The program of docs/start/4_own_program.md, with the client of the package."""
+
+    def __init__(self, **join):
+        self.ahead_m = 0.0
+        self.client = shoal.Client('pilot')
+        self.client.subscribe('rover1.lidar', self.on_lidar, messages.planar_lidar_t)
+        self.join = join
+
+    def on_lidar(self, scan):
+        self.ahead_m = float(scan.ranges[scan.nranges // 2])
+
+    def run(self):
+        self.client.join(0.1, **self.join)
+        for utime in self.client.ticks():
+            self.client.publish('rover1.drive.cmd', messages.twist_command_t(
+                utime=utime, forward_mps=0.5 if self.ahead_m > 1 else 0.0))
+
+
+def interrupt_after(seconds):
+    timer = threading.Timer(seconds, os.kill, (os.getpid(), signal.SIGINT))
+    timer.start()
+    return timer
+
+
+class ClientTest(unittest.TestCase):
+
+    def test_drives_the_same_run_as_the_client_in_cpp(self):
+        with open(os.path.join(ROOT, 'docs', 'start', '4_own_program.md'), encoding='utf-8') as file:
+            expected = re.search(r'run hash (\w{16})', file.read())[1]
+        pilot = Pilot()
+        with ShoalRun(MINIMAL, '--duration', '15', '--await', 'pilot') as run:
+            pilot.run()
+            code, printed = run.wait()
+        self.assertEqual(code, 0, printed)
+        self.assertIn(f'run hash {expected}', printed)
+        self.assertAlmostEqual(pilot.ahead_m, 0.88, delta=0.05)
+        self.assertEqual(pilot.client.end, 'last_tick')
+        self.assertIsNone(pilot.client.next_tick())
+        counts = pilot.client.counts
+        self.assertEqual((counts['received'], counts['published'], counts['bad']), (150, 151, 0))
+
+    def test_takes_part_in_a_run_of_its_own_process(self):
+        pilot, ended = Pilot(), []
+        thread = threading.Thread(target=lambda: ended.append(
+            shoal.run('minimal', duration_s=5, bus='lcm', wait_for=['pilot'])))
+        thread.start()
+        pilot.run()
+        thread.join()
+        self.assertEqual(ended[0].summary['sim_time_s'], 5)
+        self.assertEqual(pilot.client.end, 'last_tick')
+
+    def test_gets_what_a_handler_raises(self):
+        client = shoal.Client('pilot')
+
+        def fail(scan):
+            raise KeyError(scan.utime)
+
+        client.subscribe('rover1.lidar', fail)
+        with ShoalRun(MINIMAL, '--duration', '2', '--await', 'pilot'):
+            client.join(0.1)
+            with self.assertRaises(KeyError):
+                for _ in client.ticks():
+                    pass
+
+    def test_counts_messages_of_another_type(self):
+        received = []
+        client = shoal.Client('pilot')
+        client.subscribe('rover1.lidar', received.append, 'imu_t')
+        with ShoalRun(MINIMAL, '--duration', '1', '--await', 'pilot'):
+            client.join(0.1)
+            for _ in client.ticks():
+                pass
+        self.assertEqual(received, [])
+        self.assertEqual(client.counts['bad'], client.counts['received'])
+        self.assertGreater(client.counts['bad'], 5)
+
+    def test_leaves_when_it_is_closed(self):
+        with ShoalRun(MINIMAL, '--duration', '20', '--await', 'pilot') as run:
+            with shoal.Client('pilot') as client:
+                client.join(0.1)
+                client.next_tick()
+            code, printed = run.wait()
+        self.assertEqual(code, 0, printed)
+        with self.assertRaisesRegex(shoal.Error, 'closed'):
+            client.next_tick()
+
+    def test_follows_without_lockstep(self):
+        client = shoal.Client('observer')
+        client.set_silence_limit(30)
+        client.follow(0.5)
+        with ShoalRun(MINIMAL, '--duration', '3', speed='10'):
+            times = list(client.ticks())
+        self.assertGreaterEqual(len(times), 3)
+        self.assertEqual(client.end, 'last_tick')
+
+    def test_goes_back_with_the_world(self):
+        rewinds = []
+        client = shoal.Client('pilot')
+        client.on_rewind(rewinds.append)
+        with ShoalRun(MINIMAL, '--duration', '3', '--await', 'pilot') as run:
+            client.join(0.1)
+            for utime in client.ticks():
+                if utime % 10_000_000 == 2_000_000 and not rewinds:
+                    client.publish('sim.control', messages.sim_control_request_t(
+                        id=1, client='pilot', command='rewind', text='run', value=1.0))
+            code, printed = run.wait()
+        self.assertEqual(code, 0, printed)
+        self.assertEqual(len(rewinds), 1)
+        self.assertEqual(client.branch, 1)
+
+    def test_says_why_it_cannot_join(self):
+        client = shoal.Client('pilot')
+        with self.assertRaisesRegex(shoal.Error, "join.*(\n.*)*comes before"):
+            client.next_tick()
+        with self.assertRaises(shoal.Error):
+            client.join(0.1, wait_s=0.3)
+        with ShoalRun(MINIMAL, '--duration', '1', '--await', 'pilot'):
+            with self.assertRaisesRegex(shoal.Error, 'multiple'):
+                client.join(0.0123)
+        for wrong in [-1, float('nan')]:
+            with self.assertRaises(shoal.Error):
+                client.join(0.1, wait_s=wrong)
+            with self.assertRaises(shoal.Error):
+                client.follow(wrong)
+        with self.assertRaises(shoal.Error):
+            client.join(0.1, on_timeout='sulk')
+        with self.assertRaises(shoal.Error):
+            shoal.Client('pilot', 'nonsense://')
+
+    def test_refuses_what_is_no_message(self):
+        client = shoal.Client('pilot')
+        for wrong in [None, 5, 'text', object()]:
+            with self.assertRaises(TypeError):
+                client.publish('a', wrong)
+        with self.assertRaises(shoal.Error):
+            client.publish('a', messages.twist_command_t(forward_mps='fast'))
+        with self.assertRaises(TypeError):
+            client.subscribe('a', 'no function')
+        with self.assertRaisesRegex(shoal.Error, 'no_such_t'):
+            client.subscribe('a', print, 'no_such_t')
+
+    def test_is_stopped_by_another_thread_and_used_by_one(self):
+        client = shoal.Client('pilot')
+        client.follow(1)
+        refused = []
+
+        def disturb():
+            while not refused:
+                try:
+                    client.publish('a', messages.utime_t())
+                except shoal.Error as error:
+                    refused.append(str(error))
+            client.stop()
+
+        thread = threading.Thread(target=disturb)
+        thread.start()
+        self.assertIsNone(client.next_tick())
+        thread.join()
+        self.assertEqual(refused, ['the client is in use by another thread'])
+        self.assertEqual(client.end, 'stopped')
+
+    def test_ends_at_ctrl_c(self):
+        for wait in [lambda client: client.join(0.1), lambda client: (client.follow(1), client.next_tick())]:
+            client = shoal.Client('pilot')
+            client.set_wait_warning(0)
+            timer, start = interrupt_after(0.3), time.monotonic()
+            with self.assertRaises(KeyboardInterrupt):
+                wait(client)
+            self.assertLess(time.monotonic() - start, 10)
+            timer.join()
+
+    def test_of_a_fork_is_another_one(self):
+        client = shoal.Client('pilot')
+        with ShoalRun(MINIMAL, '--duration', '2', '--await', 'pilot') as run:
+            client.join(0.1)
+            self.assertIsNotNone(client.next_tick())
+            child = os.fork()
+            if child == 0:
+                try:
+                    client.next_tick()
+                    code = 1
+                except shoal.Error as error:
+                    code = 0 if 'fork' in str(error) else 2
+                client.stop()
+                client.close()
+                os._exit(code)
+            self.assertEqual(os.waitpid(child, 0)[1], 0)
+            for _ in client.ticks():
+                pass
+            self.assertEqual(run.wait()[0], 0)
+        self.assertEqual(client.end, 'last_tick')
+
+    def test_may_live_until_the_interpreter_ends(self):
+        code, _, errors = run_python(
+            "import shoal, threading\n"
+            "client = shoal.Client('pilot')\n"
+            "client.subscribe('a', print)\n"
+            "client.follow(1)\n"
+            "client.set_wait_warning(0)\n"
+            "threading.Thread(target=client.next_tick, daemon=True).start()\n"
+            "world = shoal.World('minimal')\n"
+            "threading.Thread(target=world.step, args=(10**9,), daemon=True).start()\n"
+            "record = shoal.RecordWriter('%s', overwrite=True)\n" % scratch('exit.lcm'))
+        self.assertEqual(code, 0, errors)
+
+
+if __name__ == '__main__':
+    unittest.main()

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/shoal/study_parts.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <iostream>
+#include <thread>
+
+#include "tools/experiment/campaign/study_database.hpp"
+#include "tools/experiment/files/file_replacement.hpp"
+#include "tools/experiment/process/signals.hpp"
+#include "tools/experiment/report/report_page.hpp"
+#include "tools/experiment/study/study_results.hpp"
+#include "tools/shoal/options/shared_options.hpp"
+
+namespace tools {
+
+std::string usual_output(const LoadedStudy& study, const StudyChanges& changes) {
+  const std::string look = changes.duration_s ? fmt::format("_{:g}s", *changes.duration_s) : "";
+  return "results/" + study.config.name + look;
+}
+
+void choose_jobs(const LoadedStudy& study, StudyOptions& options) {
+  const auto shared = find_shared_port(study);
+  if (shared && options.jobs > 1)
+    sim::throw_config_error(shared->place, shared->who,
+                            "runs at the same time cannot have one serial port, '" + shared->path +
+                                "': put {run} into its path, or use --jobs 1");
+  if (options.jobs > 0) return;
+  options.jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency() / 2));
+  if (!shared || options.jobs == 1) return;
+  options.jobs = 1;
+  if (!options.quiet)
+    std::cerr << "one run at a time: all have the serial port '" << shared->path
+              << "'; with {run} in its path each has its own\n";
+}
+
+int collect_results(LoadedStudy& study, std::vector<StudyRun>& runs, const std::string& output, bool quiet) {
+  const std::size_t all_seeds = study.config.seeds.size();
+  const std::size_t dropped = drop_needless_seeds(study, runs);
+  const StudyResults results(study, runs);
+  int exit_code = results.judgement() == Judgement::failed ? exit_failed : exit_ok;
+  if (results.failed_runs() > 0) exit_code = exit_bus;
+  write_study(output, study, runs, results, exit_code);
+  write_database(output + "/study.sqlite", results);
+  write_whole_file(output + "/report.html", report_page({output}));
+  std::cout << results.to_text(output);
+  if (dropped > 0)
+    std::cout << fmt::format("certain after {} of {} seeds: ci({}) is below its bound\n", all_seeds - dropped,
+                             all_seeds, study.config.until->figure);
+  if (!quiet) std::cerr << "results in " << output << "/ (study.csv, study.json, study.sqlite, report.html)\n";
+  return caught_signal() != 0 ? 128 + caught_signal() : exit_code;
+}
+
+void add_jobs_options(CLI::App& command, StudyOptions& options) {
+  command.add_option("--jobs", options.jobs, "runs at the same time; 0: one for every two processors")
+      ->type_name("N")
+      ->check(whole_from(0, 64));
+  command.add_option("--run-timeout", options.run_timeout_s, "wall time after which a run is ended and has failed")
+      ->type_name("S")
+      ->check(number_from(0, 1e9));
+  command.add_flag("--fresh", options.fresh, "repeat runs that are complete");
+  command.add_flag("--quiet", options.quiet, "no progress");
+}
+
+}  // namespace tools

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+#include "tools/experiment/study/study_runs.hpp"
+
+namespace tools {
+
+/// Returns the folder of a study without `--output`.  A short trial does not overwrite the runs of the whole study.
+std::string usual_output(const LoadedStudy& study, const StudyChanges& changes);
+
+/// Sets the number of jobs when it is 0.  Throws sim::ConfigError when runs at the same time would share a serial port.
+void choose_jobs(const LoadedStudy& study, StudyOptions& options);
+
+/// Writes and prints the results of runs that have been executed.  Returns the exit code.  Throws std::runtime_error.
+int collect_results(LoadedStudy& study, std::vector<StudyRun>& runs, const std::string& output, bool quiet);
+
+/// Adds --jobs, --fresh, --run-timeout and --quiet.
+void add_jobs_options(CLI::App& command, StudyOptions& options);
+
+void add_study_run_command(CLI::App& study_command, int& exit_code);
+void add_study_collect_command(CLI::App& study_command, int& exit_code);
+
+}  // namespace tools

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <stdexcept>
+
+#include "sim/config/message_text.hpp"
+#include "tools/experiment/campaign/tune.hpp"
+#include "tools/experiment/files/file_replacement.hpp"
+#include "tools/experiment/process/signals.hpp"
+#include "tools/experiment/study/study_rules.hpp"
+#include "tools/experiment/world_files/world_by_name.hpp"
+#include "tools/shoal/commands.hpp"
+#include "tools/shoal/study_parts.hpp"
+
+namespace tools {
+
+namespace {
+
+struct TuneArguments {
+  std::string path, seeds, goal = "min";
+  StudyChanges changes;
+  TuneOptions options;
+};
+
+std::string values_text(const Tuning& tuning, const TunedPoint& point) {
+  const LoadedStudy& study = tuning.study();
+  std::string text;
+  for (std::size_t k = 0; k < study.config.factors.size(); ++k)
+    text +=
+        fmt::format("{}{} = {}", k == 0 ? "" : ", ", study.config.factors[k].name, study.points[point.point].values[k]);
+  return text;
+}
+
+/// Throws CLI::ValidationError for a figure that no metric of the world has.
+void check_figure(const LoadedStudy& study, const std::string& figure) {
+  if (figure == passed_figure) return;
+  for (const sim::LoadedWorld& world : study.worlds)
+    if (const auto problem = sim::figure_problem(world.config.metrics, figure))
+      throw CLI::ValidationError("--figure", problem->text);
+}
+
+int tune(TuneArguments& arguments) {
+  TuneOptions& options = arguments.options;
+  arguments.changes.tuned = true;
+  LoadedStudy study = load_study(file_by_name({ShippedKind::study}, arguments.path), arguments.changes);
+  check_figure(study, options.figure);
+  if (options.study.output.empty()) options.study.output = "results/" + study.config.name + "_tune";
+  options.study.allow_paths = arguments.changes.load.allow_paths;
+  options.maximise = arguments.goal == "max";
+  choose_jobs(study, options.study);
+  catch_signals(true);
+  try {
+    Tuning tuning(std::move(study), options);
+    std::filesystem::create_directories(options.study.output);
+    const std::string table = options.study.output + "/tune.csv";
+    tuning.run([&](int generation) {
+      write_whole_file(table, tuning.to_csv());
+      const TunedPoint& best = *tuning.best();
+      std::cout << fmt::format("generation {}: {} of {} {:.6g}: {}\n", generation, options.statistic, options.figure,
+                               best.value, values_text(tuning, best))
+                << std::flush;
+    });
+    if (caught_signal() != 0) {
+      std::cerr << "shoal: stopped; the same command continues with the missing runs\n";
+      return 128 + caught_signal();
+    }
+    const TunedPoint& best = *tuning.best();
+    std::cout << "best of " << tuning.tried().size() << " points: " << values_text(tuning, best) << '\n'
+              << tuning.command(best) << '\n';
+    if (!options.study.quiet) std::cerr << "all points in " << table << '\n';
+    return exit_ok;
+  } catch (const std::runtime_error& error) {
+    if (dynamic_cast<const sim::ConfigError*>(&error) != nullptr) throw;
+    std::cerr << "shoal: " << error.what() << '\n';
+    return exit_bus;
+  }
+}
+
+}  // namespace
+
+void add_tune_command(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand("tune", "Search for the settings of a study that make a figure best");
+  const auto arguments = std::make_shared<TuneArguments>();
+  TuneOptions& options = arguments->options;
+  options.study.jobs = 0;
+  // Options.
+  CLI::Option* log_level = add_log_level_option(*command, "warn");
+  command->add_option("STUDY", arguments->path, "study file with factors that are ranges")->required();
+  command->add_option("--figure", options.figure, "figure of the runs, such as cooperative.rms_m")
+      ->type_name("METRIC.FIGURE")
+      ->required();
+  command->add_option("--goal", arguments->goal, "which value of it is best")
+      ->type_name("GOAL")
+      ->check(one_of({"min", "max"}));
+  command->add_option("--over", options.statistic, "statistic over the cases and seeds of a point")
+      ->type_name("STATISTIC")
+      ->check(one_of(statistic_words()));
+  command->add_option("--generations", options.generations, "of the search")
+      ->type_name("N")
+      ->check(whole_from(1, 10000));
+  command
+      ->add_option("--population", options.population, "points of a generation; 0: 4 + 3 ln of the number of factors")
+      ->type_name("N")
+      ->check(whole_from(0, 1000));
+  command->add_option("--sigma", options.sigma, "first standard deviation, as a share of each range")
+      ->type_name("SHARE")
+      ->check(number_from(0.001, 1));
+  command->add_option("--search-seed", options.seed, "seed of the search")
+      ->type_name("N")
+      ->check(whole_from(0, 9007199254740992));
+  command->add_option("--seeds", arguments->seeds, "of the runs, instead of those of the study")->type_name("SEEDS");
+  command->add_option("--duration", arguments->changes.duration_s, "simulated seconds of each run")
+      ->type_name("S")
+      ->check(number_from(1e-6, 1e9));
+  command->add_option("--output", options.study.output, "directory; without it results/NAME-OF-STUDY_tune")
+      ->type_name("DIR");
+  add_jobs_options(*command, options.study);
+  add_allow_path_option(*command, arguments->changes.load);
+  add_plugin_option(*command);
+  command_line::set_help_end(
+      *command, {{"shoal tune balance_gains.yaml --figure balance.pitch_std_deg --generations 10 --jobs 2"},
+                 {{0, "a best point was found"},
+                  {2, "wrong usage, or a mistake in the study or its world"},
+                  {4, "no point has a value, or a file error"},
+                  {130, "ended by Ctrl-C"}},
+                 {"The search is CMA-ES and starts in the middle of each range. After Ctrl-C or a kill the "
+                  "same command continues: finished runs are not repeated."}});
+  command->callback([arguments, log_level, &exit_code] {
+    if (log_level->count() > 0 && !spdlog::should_log(spdlog::level::info)) arguments->options.study.quiet = true;
+    try {
+      if (!arguments->seeds.empty()) arguments->changes.seeds = parse_seeds(arguments->seeds);
+    } catch (const std::invalid_argument& error) {
+      throw CLI::ValidationError("--seeds", error.what());
+    }
+    exit_code = tune(*arguments);
+  });
+}
+
+}  // namespace tools
