@@ -94,6 +94,10 @@ void draw_rays(const RayField& field, const std::string& title, const std::strin
       fan << fmt::format("{:.3f} {:.3f}\n", static_cast<double>(i) * field.fan_step_m, ray.depth_m[i]);
     fan << "\n\n";
   }
+  const auto [slowest, fastest] =
+      std::minmax_element(field.profile.begin(), field.profile.end(),
+                          [](const auto& a, const auto& b) { return a.speed_mps < b.speed_mps; });
+  const double speed_step_mps = std::max(1.0, std::ceil((fastest->speed_mps - slowest->speed_mps) / 2));
   double min_dB = HUGE_VAL, max_dB = 0;
   for (const RayField::Point& point : field.points)
     if (std::isfinite(point.loss_dB)) {
@@ -112,17 +116,17 @@ void draw_rays(const RayField& field, const std::string& title, const std::strin
   const std::string script = fmt::format(
       "set terminal pngcairo size 1200,560\nset output {}\nset multiplot title {} noenhanced\nset yrange [{}:0]\n"
       "set lmargin at screen 0.07\nset rmargin at screen 0.2\nset tmargin at screen 0.88\nset bmargin at screen 0.13\n"
-      "set grid\nset xtics rotate by -45\nset xlabel 'speed of sound (m/s)' offset 0,-0.5\nset ylabel 'depth (m)'\n"
+      "set grid\nset xtics {:.0f}\nset xlabel 'speed of sound (m/s)'\nset ylabel 'depth (m)'\n"
       "plot 'profile.dat' using 1:2 with lines lw 2 notitle\n"
-      "set lmargin at screen 0.25\nset rmargin at screen 0.89\nunset grid\nset ylabel ''\nset xtics norotate\n"
-      "set xlabel 'range (m)' offset 0,0\nset xrange [0:{}]\nset cblabel 'loss (dB); striped: no ray without a "
+      "set lmargin at screen 0.25\nset rmargin at screen 0.89\nunset grid\nset ylabel ''\nset xtics autofreq\n"
+      "set xlabel 'range (m)'\nset xrange [0:{}]\nset cblabel 'loss (dB); striped: no ray without a "
       "bounce'\n"
       "set palette rgb 33,13,10 negative\nset cbrange [{:.0f}:{:.0f}] reverse\n"
       "plot 'loss.dat' using 1:2:3 with image notitle, 'shadow.dat' using 1:2:3:4:5:6 with rgbalpha notitle, "
       "'fan.dat' using 1:2 with lines lc rgb '#60000000' lw 0.7 notitle, "
       "'-' using 1:2 with points pt 7 ps 1.4 lc rgb 'black' notitle\n0 {}\ne\nunset multiplot\n",
-      gnuplot_text(std::filesystem::absolute(png).string()), gnuplot_text(title), field.deepest_m, field.range_m,
-      std::isfinite(min_dB) ? std::max(min_dB, max_dB - 60) : 0, std::max(max_dB, 1.0), field.source_m);
+      gnuplot_text(std::filesystem::absolute(png).string()), gnuplot_text(title), field.deepest_m, speed_step_mps,
+      field.range_m, std::isfinite(min_dB) ? std::max(min_dB, max_dB - 60) : 0, std::max(max_dB, 1.0), field.source_m);
   std::ofstream(scratch.path / "plot.gp") << script;
   if (!run_gnuplot(scratch.path.string(), "plot.gp", std::chrono::seconds(60), [] { return false; }))
     throw std::runtime_error("gnuplot could not draw " + png);
