@@ -25,6 +25,7 @@
 #include "tools/shoal/commands.hpp"
 #include "tools/shoal/motion/motion_commands.hpp"
 #include "tools/shoal/new_command.hpp"
+#include "tools/shoal/study/study_commands.hpp"
 
 namespace {
 

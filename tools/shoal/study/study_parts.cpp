@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tools/shoal/study_parts.hpp"
+#include "tools/shoal/study/study_parts.hpp"
 
 #include <spdlog/fmt/fmt.h>
 

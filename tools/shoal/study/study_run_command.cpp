@@ -11,7 +11,7 @@
 #include "tools/experiment/campaign/shown_runs.hpp"
 #include "tools/experiment/process/signals.hpp"
 #include "tools/shoal/options/shared_options.hpp"
-#include "tools/shoal/study_parts.hpp"
+#include "tools/shoal/study/study_parts.hpp"
 
 namespace tools {
 

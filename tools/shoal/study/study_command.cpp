@@ -8,8 +8,8 @@
 #include "tools/experiment/campaign/manifest.hpp"
 #include "tools/experiment/process/signals.hpp"
 #include "tools/experiment/world_files/world_by_name.hpp"
-#include "tools/shoal/commands.hpp"
-#include "tools/shoal/study_parts.hpp"
+#include "tools/shoal/study/study_commands.hpp"
+#include "tools/shoal/study/study_parts.hpp"
 
 namespace tools {
 
