@@ -215,8 +215,8 @@ Chatter chatter(int seed, int threads, bool with_deaf) {
     vehicles += test::float_at("v" + std::to_string(i),
                                text({300.0 * (i % 4) + 7 * i, 250.0 * (i / 4), -20.0 - 9 * ((i * seed) % 11)}));
   if (with_deaf) vehicles += test::float_at("deaf", "[9000, 9000, -50]");
-  test::TestWorld test(small_sea(vehicles, seed % 2 == 0 ? "straight" : "rays") + "run: {seed: " + std::to_string(seed) +
-                       "}\n");
+  test::TestWorld test(small_sea(vehicles, seed % 2 == 0 ? "straight" : "rays") +
+                       "run: {seed: " + std::to_string(seed) + "}\n");
   test.world.use_threads(threads);
   std::vector<std::unique_ptr<AcousticProbe>> probes;
   for (int i = 0; i < 10; ++i) {
