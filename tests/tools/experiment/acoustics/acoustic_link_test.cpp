@@ -242,7 +242,7 @@ TEST(RayField, ShadowsBeginWhereTheLastRayGrazes) {
   const double row_m = field.deepest_m / field.rows;
   double first_dark_m = 0;
   for (const tools::RayField::Point& point : field.points)
-    if (std::abs(point.depth_m - 50) < row_m / 2 && point.shadow && first_dark_m == 0) first_dark_m = point.range_m;
+    if (std::abs(point.depth_m - 50) < 0.51 * row_m && point.shadow && first_dark_m == 0) first_dark_m = point.range_m;
   EXPECT_NEAR(first_dark_m, 2135, 30);
   ASSERT_FALSE(field.fan.empty());
   for (const sim::RayTrace& ray : field.fan) EXPECT_NEAR(ray.depth_m.at(0), 1, 1e-9);
