@@ -84,7 +84,7 @@ void add_describe_command(CLI::App& app, int& exit_code) {
       *command,
       {{"shoal describe lidar", "shoal describe world", "shoal describe metrics", "shoal describe processes",
         "shoal describe pose_t", "shoal describe shoal-coop-rover", "shoal describe --schema world > world.schema.json",
-        "source <(shoal describe --completion bash)", "shoal describe thermometer --plugin build/thermometer.so"},
+        "shoal describe --completion bash > shoal.bash", "shoal describe thermometer --plugin build/thermometer.so"},
        {{0, "success"}, {2, "wrong usage, or an unknown name"}},
        {}});
   command->callback([&app, name, page, schema, shell, &exit_code] {
