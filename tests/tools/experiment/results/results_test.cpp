@@ -156,7 +156,7 @@ TEST(Summary, ReportsWhatBecameOfAcousticPackets) {
   summary.modem_dropped_messages = 4;
   const auto json = nlohmann::json::parse(summary.to_json());
   EXPECT_EQ(json["acoustics"],
-            nlohmann::json::parse(R"({"sent": 5, "received": 3, "unsent": 1, "lost": {"noise": 2}})"));
+            nlohmann::json::parse(R"({"sent": 5, "received": 3, "unsent": 1, "lost": {"noise": 2}, "effects": []})"));
   EXPECT_EQ(json["serial_dropped_bytes"], 7);
   EXPECT_EQ(json["modem_dropped_messages"], 4);
   EXPECT_THAT(summary.to_text(),
