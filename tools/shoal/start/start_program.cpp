@@ -39,9 +39,12 @@ fs::path shipped() {
 std::vector<fs::path> python_folders() {
   std::error_code error;
   const fs::path build = fs::read_symlink("/proc/self/exe", error).parent_path().parent_path();
-  // python/ of a checkout is source, which cannot be imported.
-  if (!fs::is_directory(shipped() / "examples/python", error)) return {shipped() / "python"};
-  return {shipped() / "examples/python", build / "python"};
+  // python/ of a checkout has neither: it is the source of the package.
+  std::vector<fs::path> found;
+  for (const fs::path& folder : {shipped() / "python", shipped() / "examples/python", build / "python"})
+    if (fs::is_regular_file(folder / "pilot.py", error) || fs::is_regular_file(folder / "shoal/twist_command_t.py", error))
+      found.push_back(folder);
+  return found;
 }
 
 /// Returns the file in the first folder that contains it.
@@ -69,7 +72,7 @@ StartFiles start_cpp_program(const std::string& name, const std::string& vehicle
 
 StartFiles start_python_program(const std::string& name, const std::string& vehicle) {
   const std::vector<fs::path> folders = python_folders();
-  find_in(folders, "shoal/__init__.py");
+  find_in(folders, "shoal/twist_command_t.py");
   std::string list;
   for (const fs::path& folder : folders) list += (list.empty() ? "\"" : ", \"") + folder.string() + "\"";
   const std::string text = adapted(find_in(folders, "pilot.py"), name, vehicle);
