@@ -177,7 +177,7 @@ TEST_F(LiveRun, ASecondSimulatorLeavesTheBusToTheFirst) {
     arguments.insert(arguments.end(), more.begin(), more.end());
     const Ended second = run_shoal(arguments);
     EXPECT_EQ(second.exit_code, 4);
-    // It answers, or its clock is heard before it answers.
+    // It answers, or its clock is received before it answers.
     EXPECT_THAT(second.errors, HasSubstr("another simulator"));
     EXPECT_THAT(second.errors, HasSubstr(" on " + own_url()));
     EXPECT_THAT(second.errors, HasSubstr("--lcm-shared"));
