@@ -208,6 +208,40 @@ TEST(Campaign, TheEngineParallelGivesTheSameTable) {
   EXPECT_THAT(study.text("parallel.log"), HasSubstr("Exitval"));
 }
 
+TEST(Campaign, GnuParallelGetsNoNameThatItWouldExecute) {
+  if (std::system("parallel --version > /dev/null 2>&1") != 0) GTEST_SKIP() << "GNU parallel is not installed";
+  const CampaignFolder study(six_runs);
+  ASSERT_EQ(study.call("plan").exit_code, 0);
+  const std::string hostile = study.folder.file("par{=exit 3=}");
+  std::filesystem::create_directory(hostile);
+  const Ended run = study.call("run", {"--engine", "parallel", "--quiet", "--allow-path", hostile});
+  EXPECT_NE(run.exit_code, 0);
+  EXPECT_THAT(run.errors, HasSubstr("must not have a '{' with the engine parallel"));
+}
+
+TEST(Campaign, AnEmptyListOfRunsIsNotAllRuns) {
+  const CampaignFolder study(six_runs);
+  ASSERT_EQ(study.call("plan").exit_code, 0);
+  const Ended run = study.call("run", {"--index", ""});
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_THAT(run.errors, HasSubstr("--index"));
+}
+
+TEST(Campaign, ALinkInPlaceOfALogIsNotFollowed) {
+  const CampaignFolder study("seeds: [1]\n");
+  ASSERT_EQ(study.call("plan").exit_code, 0);
+  ASSERT_EQ(study.call("run").exit_code, 0);
+  std::string log;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(study.out()))
+    if (entry.path().filename() == "run.log") log = entry.path();
+  ASSERT_NE(log, "");
+  write_file(study.folder.file("victim"), "mine");
+  std::filesystem::remove(log);
+  std::filesystem::create_symlink(study.folder.file("victim"), log);
+  EXPECT_NE(study.call("run", {"--fresh"}).exit_code, 0);
+  EXPECT_EQ(text_of_file(study.folder.file("victim")), "mine");
+}
+
 TEST(Campaign, ItsPageHasCurvesAndTheRunsToLookAt) {
   const CampaignFolder study(
       "seeds: 1-3\nfactors: [{name: g, paths: [physics.gravity_mps2], from: 1, to: 9, levels: 3}]\n");

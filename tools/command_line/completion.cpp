@@ -210,8 +210,8 @@ std::string bash_completion(const CLI::App& app, const WordCommands& word_comman
          "    esac ;;\n"
          "  esac\n"
          "  COMPREPLY=($(compgen -W \"$_words\" -- \"$word\"))\n"
-         "  [ -z \"$_files\" ] || COMPREPLY+=($(compgen -f -- \"$word\"))\n"
-         "  [ -z \"$_folders\" ] || COMPREPLY+=($(compgen -d -- \"$word\"))\n"
+         "  [ -z \"$_files\" ] || mapfile -t -O ${#COMPREPLY[@]} COMPREPLY < <(compgen -f -- \"$word\")\n"
+         "  [ -z \"$_folders\" ] || mapfile -t -O ${#COMPREPLY[@]} COMPREPLY < <(compgen -d -- \"$word\")\n"
          "}\n"
          "complete -o filenames -F " +
          function + " " + name + "\n";

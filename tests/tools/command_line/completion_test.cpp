@@ -34,7 +34,7 @@ class Completion : public testing::Test {
     const std::string script = folder.file("script");
     std::FILE* out = std::fopen(script.c_str(), "w");
     std::fputs((command_line::bash_completion(app_, {{"WORLD", "printf 'bay\\nyard\\n'"}}) + "cd " + folder.file("") +
-                "\nmkdir results\nCOMP_WORDS=(" + words +
+                "\nmkdir results\ntouch 'b c.yaml'\nCOMP_WORDS=(" + words +
                 ")\nCOMP_CWORD=$((${#COMP_WORDS[@]} - 1))\n_tool\nprintf '%s\\n' \"${COMPREPLY[@]}\"\n")
                    .c_str(),
                out);
@@ -67,7 +67,7 @@ TEST_F(Completion, OffersTheWordsOfAnOptionAlsoAfterAnEqualsSign) {
 
 TEST_F(Completion, OffersFoldersAndTheWordsOfACommand) {
   EXPECT_THAT(offers("tool edit trim --out r"), UnorderedElementsAre("results"));
-  EXPECT_THAT(offers("tool check b"), UnorderedElementsAre("bay"));
+  EXPECT_THAT(offers("tool check b"), UnorderedElementsAre("bay", "b c.yaml"));
   EXPECT_THAT(offers("tool check --q"), UnorderedElementsAre("--quiet"));
 }
 

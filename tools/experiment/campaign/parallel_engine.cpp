@@ -6,6 +6,7 @@
 #include <iostream>
 #include <stdexcept>
 
+#include "sim/config/message_text.hpp"
 #include "tools/experiment/campaign/engines.hpp"
 #include "tools/experiment/campaign/manifest.hpp"
 #include "tools/experiment/campaign/outside_program.hpp"
@@ -78,7 +79,13 @@ void run_by_parallel(const LoadedStudy& study, const EngineOptions& options, std
   }
   if (!options.study.quiet) arguments.emplace_back("--progress");
   std::string command;
-  for (const std::string& word : chunk_command(options)) command += shell_word(word) + " ";
+  for (const std::string& word : chunk_command(options)) {
+    // GNU parallel replaces {...} in the command, {= =} by the result of Perl code, whatever the quotes.
+    if (word.find('{') != std::string::npos)
+      throw std::runtime_error("the name '" + sim::shortened(sim::printable(word)) +
+                               "' must not have a '{' with the engine parallel, which GNU parallel would replace");
+    command += shell_word(word) + " ";
+  }
   arguments.push_back(command + "--jobs 1 --index {}");
   arguments.emplace_back("::::");
   arguments.push_back(file);

@@ -44,8 +44,9 @@ void become(const ChildProgram& program, char* const* arguments, char* const* en
   if (getppid() != parent) _exit(128 + SIGTERM);  // it ended before it could be monitored
   if (program.input >= 0 ? dup2(program.input, STDIN_FILENO) < 0 : !open_as(STDIN_FILENO, "/dev/null", O_RDONLY))
     return;
+  // A stranger's folder may have a link or a FIFO in place of the log.
   if (!program.log.empty()) {
-    if (!open_as(STDOUT_FILENO, program.log.c_str(), O_WRONLY | O_CREAT | O_TRUNC)) return;
+    if (!open_as(STDOUT_FILENO, program.log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_NONBLOCK)) return;
     if (dup2(STDOUT_FILENO, STDERR_FILENO) < 0) return;
   }
   execvpe(program.path.c_str(), arguments, environment);

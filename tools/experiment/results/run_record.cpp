@@ -39,6 +39,8 @@ Judgement judgement_in(const JsonReader& in, bool has_rules) {
 std::string read_whole_file(const std::string& path) {
   std::error_code error;
   if (std::filesystem::is_directory(path, error)) throw std::runtime_error(path + ": is a folder");
+  if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error))
+    throw std::runtime_error(path + ": is not a regular file");
   std::ifstream in(path, std::ios::binary);
   if (!in) throw std::runtime_error(path + ": cannot be read: " + std::strerror(errno));
   const auto size = std::filesystem::file_size(path, error);

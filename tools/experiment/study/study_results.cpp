@@ -97,7 +97,17 @@ std::vector<double> StudyResults::values(const std::string& in_case, const std::
 }
 
 Statistics StudyResults::of(const std::string& in_case, const std::string& figure) const {
-  return statistics_of_figure(figure, values(in_case, figure));
+  Statistics statistics = statistics_of_figure(figure, values(in_case, figure));
+  if (study_.points.size() == 1) return statistics;
+  // Runs of one seed at several points are not independent: the interval is that of the means of the seeds.
+  std::map<std::int64_t, std::vector<double>> by_seed;
+  for (const StudyRun& run : runs_)
+    if (study_.config.cases[run.in_case].name == in_case) by_seed[run.seed].push_back(figure_of(run, figure));
+  std::vector<double> means;
+  for (const auto& [seed, of_seed] : by_seed) means.push_back(statistics_of(of_seed).mean);
+  statistics.mean_95 = statistics_of(means).mean_95;
+  statistics.median_95 = {no_figure, no_figure};
+  return statistics;
 }
 
 Statistics StudyResults::at_point(std::size_t in_case, std::size_t point, const std::string& figure) const {
@@ -184,6 +194,7 @@ std::string StudyResults::to_text(const std::string& directory) const {
                    number(s.mean), number(s.std), number(s.min), number(s.max), number(s.median), number(s.mean_95.low),
                    number(s.mean_95.high));
     }
+  text += points_text();
   for (const Scoring::Verdict& verdict : verdicts())
     text += fmt::format("{}: {}\n", verdict.passed ? "passed" : "FAILED", verdict.text());
   if (config.pass.empty() && runs_with_failed_programs() > 0)
@@ -193,6 +204,27 @@ std::string StudyResults::to_text(const std::string& directory) const {
   text += comparisons_text(comparisons());
   if (failed_runs() > 0) text += fmt::format("{} runs have no result\n", failed_runs()) + failed_text(*this, directory);
   if (judgement() == Judgement::not_judged) text += "not judged: the study has no rules\n";
+  return text;
+}
+
+/// Means at each point of a small design.
+std::string StudyResults::points_text() const {
+  constexpr std::size_t max_shown = 20;
+  const std::vector<StudyPoint>& points = study_.points;
+  if (points.size() == 1) return "";
+  if (points.size() > max_shown) return "points.csv has the statistics of each point\n";
+  std::string text;
+  for (std::size_t point = 0; point < points.size(); ++point) {
+    text += fmt::format("point {}", point + 1);
+    for (std::size_t i = 0; i < study_.config.factors.size(); ++i)
+      text += (i == 0 ? " (" : ", ") + study_.config.factors[i].name + " = " + points[point].values[i];
+    text += "), mean:";
+    for (std::size_t in_case = 0; in_case < study_.config.cases.size(); ++in_case)
+      for (const std::string& figure : table_figures())
+        text += fmt::format(" {}{} {}", study_.config.cases.size() > 1 ? study_.config.cases[in_case].name + "." : "",
+                            figure, number(at_point(in_case, point, figure).mean));
+    text += "\n";
+  }
   return text;
 }
 
@@ -282,7 +314,7 @@ std::string StudyResults::to_json(int exit_code) const {
   if (const auto flag = as_flag(judgement())) json["passed"] = *flag && exit_code == 0;
   json["exit_code"] = exit_code;
   json["shoal"] = short_version();
-  return json.dump(2) + "\n";
+  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace tools

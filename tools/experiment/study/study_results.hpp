@@ -82,6 +82,7 @@ class StudyResults {
   std::string to_csv() const;
   /// Returns a row of statistics for each case, point and figure.
   std::string points_csv() const;
+  std::string points_text() const;
   std::string to_json(int exit_code) const;
 
  private:

@@ -115,8 +115,8 @@ void add_convergence(nlohmann::ordered_json& json, const StudyResults& results) 
       std::vector<double> values;
       const std::size_t every = (seeds + max_curve_points - 1) / max_curve_points;
       for (std::size_t i = 0; i < seeds; ++i) {
-        const std::vector<double>& of_seed = by_seed[config.seeds[i]];
-        values.insert(values.end(), of_seed.begin(), of_seed.end());
+        // Runs of one seed at several points are not independent.
+        values.push_back(statistics_of(by_seed[config.seeds[i]]).mean);
         if (i == 0 || (i % every != 0 && i + 1 < seeds)) continue;
         const Statistics s = statistics_of(values);
         curve["points"].push_back({i + 1, s.mean, s.mean_95.low, s.mean_95.high});

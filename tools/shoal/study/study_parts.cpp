@@ -49,6 +49,9 @@ int collect_results(LoadedStudy& study, std::vector<StudyRun>& runs, const std::
   if (dropped > 0)
     std::cout << fmt::format("certain after {} of {} seeds: ci({}) is below its bound\n", all_seeds - dropped,
                              all_seeds, study.config.until->figure);
+  else if (study.config.until)
+    std::cout << fmt::format("not certain before all {} seeds were used: ci({}) was not below its bound\n", all_seeds,
+                             study.config.until->figure);
   if (!quiet) std::cerr << "results in " << output << "/ (study.csv, study.json, study.sqlite, report.html)\n";
   return caught_signal() != 0 ? 128 + caught_signal() : exit_code;
 }

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "tools/command_line/checks.hpp"
 #include "tools/experiment/campaign/engines.hpp"
 #include "tools/experiment/campaign/manifest.hpp"
 #include "tools/experiment/campaign/shown_runs.hpp"
@@ -120,7 +121,9 @@ void add_study_run_command(CLI::App& study_command, int& exit_code) {
   // Options.
   CLI::Option* log_level = add_log_level_option(*command, "warn");
   command->add_option("DIR", arguments->directory, "folder with the manifest of `shoal study plan`")->required();
-  command->add_option("--index", arguments->indices, "only these runs: 7, 1-10 or 1-3,8")->type_name("RUNS");
+  command->add_option("--index", arguments->indices, "only these runs: 7, 1-10 or 1-3,8")
+      ->type_name("RUNS")
+      ->check(command_line::not_empty());
   command->add_option("--engine", arguments->engine, "local: processes of this command; parallel: GNU parallel; slurm")
       ->type_name("ENGINE")
       ->check(one_of({"local", "parallel", "slurm"}));
