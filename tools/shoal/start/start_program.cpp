@@ -42,7 +42,8 @@ std::vector<fs::path> python_folders() {
   // python/ of a checkout has neither: it is the source of the package.
   std::vector<fs::path> found;
   for (const fs::path& folder : {shipped() / "python", shipped() / "examples/python", build / "python"})
-    if (fs::is_regular_file(folder / "pilot.py", error) || fs::is_regular_file(folder / "shoal/twist_command_t.py", error))
+    if (fs::is_regular_file(folder / "pilot.py", error) ||
+        fs::is_regular_file(folder / "shoal/twist_command_t.py", error))
       found.push_back(folder);
   return found;
 }
