@@ -185,7 +185,8 @@ std::string zsh_functions(const CLI::App& command, const WordCommands& word_comm
 std::string bash_completion(const CLI::App& app, const WordCommands& word_commands) {
   BashCases cases;
   cases.add(app, word_commands);
-  const std::string name = app.get_name(), function = function_name(app);
+  const std::string& name = app.get_name();
+  const std::string function = function_name(app);
   return "# Completion of " + name + " for bash.\n" + function +
          "() {\n"
          "  local word=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD-1]} path=" +
