@@ -6,8 +6,7 @@
 #include <vector>
 
 #include "tools/command_line/arguments.hpp"
-#include "tools/command_line/checks.hpp"
-#include "tools/command_line/text_layout.hpp"
+#include "tools/command_line/help.hpp"
 
 namespace command_line {
 
