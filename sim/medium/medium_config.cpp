@@ -6,6 +6,7 @@
 
 #include "sim/config/choice_keys.hpp"
 #include "sim/config/message_text.hpp"
+#include "sim/medium/ctd_file.hpp"
 
 namespace sim {
 
