@@ -64,9 +64,9 @@ class AcousticChannel {
   /// Counts of all removed transducers.
   const Transducer::Counts& counts_of_removed() const { return removed_; }
 
-  /// Messages lost in shadows: the first `most_shadow_losses`.
+  /// Messages lost in shadows: the first `max_shadow_losses`.
   const std::vector<ShadowLoss>& shadow_losses() const { return shadow_losses_; }
-  static constexpr std::size_t most_shadow_losses = 100;
+  static constexpr std::size_t max_shadow_losses = 100;
   /// Keys of `acoustics:` whose effects are on: bent sound, leaks into shadows, echo locks.
   std::vector<std::string> effects() const;
 

@@ -253,7 +253,7 @@ void AcousticChannel::end(int number) {
       }
       // Count messages addressed to the receiver.
       if (flight.meant) ++to->counts_.lost[static_cast<std::size_t>(flight.loss)];
-      if (flight.meant && flight.loss == SignalLoss::shadow && shadow_losses_.size() < most_shadow_losses)
+      if (flight.meant && flight.loss == SignalLoss::shadow && shadow_losses_.size() < max_shadow_losses)
         shadow_losses_.push_back(
             {sending.sent, sending.source, to->full_name(), (flight.p_started_W - sending.p_W).norm()});
       if (flight.meant && flight.loss == SignalLoss::none) {

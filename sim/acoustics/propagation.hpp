@@ -35,7 +35,7 @@ class Propagation {
   };
   First first_arrival(const Vector3d& from_W, const Vector3d& to_W, double frequency_Hz) const;
   /// Upper limit of the gain by focusing of rays, which is infinite at a caustic.
-  static constexpr double most_focus_dB = 10;
+  static constexpr double max_focus_dB = 10;
 
   /// Path gain: received level relative to the source level at 1 m on the axis.
   struct Gain {

@@ -37,7 +37,7 @@ std::vector<PathGain> ray_gains(std::span<const SoundRay> rays, const MultipathC
     const double length_m = std::max(ray.travel_time_s * water.sound_speed_mps, 1.0);
     const double focus_dB = 10 * std::log10(std::max(ray.power_per_m2 * length_m * length_m, 1e-30));
     path.delay_s = ray.travel_time_s;
-    path.gain = Decibels(std::min(focus_dB, Propagation::most_focus_dB)) - spreading_loss(length_m, water.spreading) -
+    path.gain = Decibels(std::min(focus_dB, Propagation::max_focus_dB)) - spreading_loss(length_m, water.spreading) -
                 absorption_loss(length_m, water.absorption_dBpkm);
     path.phase_rad = std::fmod(2 * pi * water.frequency_Hz * ray.travel_time_s, 2 * pi) - ray.caustics * pi / 2;
     if (ray.surface_bounces > 0) {

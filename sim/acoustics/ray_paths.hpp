@@ -11,7 +11,7 @@
 namespace sim {
 
 /// Computes gain and phase of rays, in their order: spreading over their length by the configured law, focusing by the
-/// ray tube relative to a straight path of this length (at most Propagation::most_focus_dB), absorption, bounces and
+/// ray tube relative to a straight path of this length (at most Propagation::max_focus_dB), absorption, bounces and
 /// caustics.  `multipath`: needed for rays with bounces.
 std::vector<PathGain> ray_gains(std::span<const SoundRay> rays, const MultipathConfig* multipath,
                                 const MultipathMedium& water);
