@@ -41,8 +41,10 @@ class Run:
 
     def clients(self):
         """Returns process ids and command lines."""
-        children = f"/proc/{self.process.pid}/task/{self.process.pid}/children"
-        for pid in open(children, encoding="ascii").read().split() if os.path.exists(children) else []:
+        children = ""
+        with contextlib.suppress(OSError):
+            children = open(f"/proc/{self.process.pid}/task/{self.process.pid}/children", encoding="ascii").read()
+        for pid in children.split():
             with contextlib.suppress(OSError):
                 yield int(pid), open(f"/proc/{pid}/cmdline", encoding="utf-8").read()
 
@@ -63,7 +65,9 @@ class Run:
 
 def stop_at_random(run, chance):
     while run.process.poll() is None:
-        for pid, _ in chance.sample(list(run.clients()), 1) if list(run.clients()) else []:
+        clients = list(run.clients())
+        if clients:
+            pid, _ = chance.choice(clients)
             with contextlib.suppress(ProcessLookupError):
                 os.kill(pid, signal.SIGSTOP)
                 time.sleep(chance.uniform(0, 0.02))
