@@ -218,6 +218,15 @@ TEST(LockstepService, ALeaveWaitsForTheAcknowledgementBeforeIt) {
   EXPECT_EQ(s.lockstep.summaries().at(0).ended, "left");
 }
 
+TEST(LockstepService, ALeaveForAReasonIsListedWithIt) {
+  Service s;
+  ASSERT_TRUE(s.join("pilot", "{session: 5, timeout_s: 60}").ok);
+  s.synchronize([&] { s.acknowledge(0, "pilot", 5, 1); });
+  EXPECT_TRUE(s.request_reply("leave", 0, "{session: 5, acknowledged: 1, reason: \"KeyError: 'map'\"}").ok);
+  EXPECT_EQ(s.lockstep.summaries().at(0).ended, "left: KeyError: 'map'");
+  EXPECT_TRUE(s.lockstep.has_left("pilot"));
+}
+
 TEST(LockstepService, ALeaveIsGrantedThoughTheNextTickHasGoneOut) {
   Service s;
   ASSERT_TRUE(s.join("pilot", "{session: 5, timeout_s: 60}").ok);
