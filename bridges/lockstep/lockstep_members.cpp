@@ -126,6 +126,12 @@ bool LockstepService::has_left(const std::string& client) const {
   return !lockstep_.has(client) && summary != summaries_.end() && summary->second.ended.starts_with(left);
 }
 
+std::string LockstepService::reason_to_leave(const std::string& client) const {
+  const std::size_t start = std::char_traits<char>::length(left) + 2;  // behind the colon and the space
+  return has_left(client) && summaries_.at(client).ended.size() > start ? summaries_.at(client).ended.substr(start)
+                                                                        : "";
+}
+
 bool LockstepService::leave(int link, const shoal::sim_control_request_t& request) {
   const std::string called = "client '" + sim::printable(sim::shortened(request.client)) + "'";
   // Identify the client and its session.

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Plots of a results folder as axes of matplotlib, which must be installed (python3-matplotlib).
 
-`folder` is the path of a results folder, or a shoal.Run that has one; `axes` are those to draw into, None: new ones; `metrics`
-are names of metrics, or one name; None: all.
+`folder` is the path of a results folder, or a shoal.Run that has one; `axes` are those to draw into, None: new ones;
+`metrics` are names of metrics, or one name; None: all.
 """
 from __future__ import annotations
 

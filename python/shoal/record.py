@@ -83,7 +83,8 @@ def table(path: str | os.PathLike, channel: str) -> Table:
     """Returns the messages of a channel of the record at a path: a DataFrame, or without pandas a dict of arrays.
 
     Its columns are `time_utime` (time stamp of the record in microseconds) and the members of the type; an array of
-    fixed length has a column for each element, such as linear_acceleration_mps2_0, and one of variable length a column of arrays.
+    fixed length has a column for each element, such as linear_acceleration_mps2_0, and one of variable length a column
+    of arrays.
     Raises Error for a record without such messages, or with several types.
     """
     record = Record(path, channel)
@@ -111,7 +112,10 @@ class RecordWriter:
     """Writer of a record; a name that ends with .mcap makes an MCAP file.  A context manager closes it."""
 
     def __init__(self, path: str | os.PathLike, overwrite: bool = False) -> None:
-        """Creates the file of this path.  Raises Error when it exists, unless `overwrite`, and when it cannot be created."""
+        """Creates the file of this path.
+
+        Raises Error when it exists, unless `overwrite`, and when it cannot be created.
+        """
         self._own = _shoal.RecordWriter(checks.path('RecordWriter', 'path', path), bool(overwrite))
 
     def write(self, channel: str, utime: int, message: messages.Message | bytes) -> None:

@@ -89,9 +89,10 @@ def run(world: str | os.PathLike | dict, *, seed: int | None = None, set: dict |
     if duration_s is not None:
         duration_s = checks.number('run', 'duration_s', duration_s, 0)
     path, text, sets = _source('run', world, set)
-    folders = [checks.path('run', name, '' if value is None else value) for name, value in (('results', results), ('record', record))]
+    paths = [checks.path('run', name, '' if value is None else value)
+             for name, value in (('results', results), ('record', record))]
     try:
-        summary = _shoal.run(path, text, seed, sets, duration_s, *folders, bus, checks.text('run', 'lcm_url', lcm_url),
+        summary = _shoal.run(path, text, seed, sets, duration_s, *paths, bus, checks.text('run', 'lcm_url', lcm_url),
                              clients, bool(launch), bool(overwrite))
     except _shoal.Error as error:
         hint = unanswered(str(error)) if clients else ''

@@ -255,8 +255,8 @@ class VectorEnv(_Joined):
             raise _shoal.Error('reset() comes before step()')
         actions = checks.array('VectorEnv.step', 'actions', actions, self.action_space.shape)
         if not np.isfinite(actions).all():
-            raise _shoal.Error('VectorEnv.step: actions must be finite, got '
-                               f'{actions[~np.isfinite(actions)][0]} of world {np.argwhere(~np.isfinite(actions))[0][0]}')
+            world, column = np.argwhere(~np.isfinite(actions))[0]
+            raise _shoal.Error(f'VectorEnv.step: actions must be finite, got {actions[world, column]} of world {world}')
         begins = self._done.copy()
         seeds = np.full(self.num_envs, -1, np.int64)
         seeds[begins] = self._new_seeds(int(begins.sum()))
@@ -458,8 +458,8 @@ class ParallelEnv(_Joined):
     def step(self, actions: Mapping[str, np.ndarray]) -> tuple[dict, dict, dict, dict, dict]:
         """Takes a step with the actions of agents; those of others are zero.
 
-        Returns dicts by agent of observations, rewards, terminated, truncated and infos with `failed` and `missing`.  All agents leave at the end
-        of an episode, after which reset() must follow.
+        Returns dicts by agent of observations, rewards, terminated, truncated and infos with `failed` and `missing`.
+        All agents leave at the end of an episode, after which reset() must follow.
         """
         if not self.agents:
             raise _shoal.Error('no agents are left: reset() comes before step()')

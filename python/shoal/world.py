@@ -171,8 +171,8 @@ class World:
     def last(self, channel: str) -> messages.Message | bytes | None:
         """Returns the last message on a channel, of an unknown type its payload; None before the first.
 
-        Raises Error for a channel that nobody has and whose name is close to another; any other unknown name, which
-        may be one for messages of this program, gets one warning.
+        Raises Error for a channel that is not in the world and whose name is close to another; any other unknown name,
+        which may be one for messages of this program, gets one warning.
         """
         return self._own.last(checks.text('World.last', 'channel', channel))
 
@@ -188,7 +188,7 @@ class World:
         """Publishes a message on a channel; devices get it in the next step.
 
         Raises Error when it is not valid, when the device of the channel takes other types or no NaN, and as last()
-        when nobody reads the channel: no device, metric or event of the world, and no subscription.
+        when there is no reader of the channel: no device, metric or event of the world, and no subscription.
         """
         self._own.publish(checks.text('World.publish', 'channel', channel), messages.payload_of(message))
 

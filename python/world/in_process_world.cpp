@@ -169,7 +169,11 @@ std::vector<std::string> InProcessWorld::spawn(const std::string& entry) {
 void InProcessWorld::remove(const std::string& name) {
   if (world_.find_vehicle(name) != nullptr) return world_.editor().remove_vehicle(name);
   if (world_.find_object(name) != nullptr) return world_.editor().remove_object(name);
-  throw sim::WorldError("there is no vehicle or object '" + name + "'");
+  std::vector<std::string> names;
+  for (const auto& vehicle : world_.vehicles()) names.push_back(vehicle->name());
+  for (const auto& [object, entry] : world_.objects()) names.push_back(object);
+  throw sim::WorldError("there is no vehicle or object '" + sim::shortened(sim::printable(name)) + "'" +
+                        sim::did_you_mean(name, names));
 }
 
 void InProcessWorld::restore(std::span<const std::byte> snapshot) {

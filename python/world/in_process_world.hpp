@@ -44,7 +44,7 @@ class InProcessWorld {
   /// Takes up to `count` steps; fewer when the world ends the run or `stop` returns true.  Returns the steps taken.
   /// Throws sim::PhysicsFault; the world then cannot be stepped further, but restored.
   std::int64_t step(std::int64_t count, const Stop& stop = {});
-  /// Publishes a payload as a program would; devices get it in the next step.  On a channel that nobody reads it warns
+  /// Publishes a payload as a program would; devices get it in the next step.  On a channel without a reader it warns
   /// once.  Throws sim::WorldError for a channel whose name is close to that of one that somebody reads, and
   /// shoal::MessageError for a payload that is not valid, or that the device of the channel refuses.
   void publish(const std::string& channel, std::span<const std::byte> payload);
@@ -52,8 +52,8 @@ class InProcessWorld {
   void send(const std::string& channel, std::span<const std::byte> payload) {
     world_.bus_of_channel(channel).publish(channel, payload, world_.now());
   }
-  /// Returns the last payload of a channel; null before the first.  For a channel that nobody has it warns once, or
-  /// throws sim::WorldError when its name is close to that of another.
+  /// Returns the last payload of a channel; null before the first.  For a channel that is not in the world it warns
+  /// once, or throws sim::WorldError when its name is close to that of another.
   const sim::Bytes* last(const std::string& channel);
   /// Opens a mailbox; see last().
   std::unique_ptr<sim::Mailbox> subscribe(const std::string& channel, std::size_t capacity);

@@ -4,11 +4,12 @@
 import os
 import re
 import signal
+import sys
 import threading
 import time
 import unittest
 
-from support import ROOT, ShoalRun, run_python, scratch
+from support import BALL, ROOT, ShoalRun, run_python, scratch
 
 import shoal
 from shoal import messages
@@ -178,6 +179,20 @@ class ClientTest(unittest.TestCase):
                                          "raise KeyError('map')\n")
             self.assertEqual(code, 1, errors)
             self.assertRegex(run.wait()[1], r"client 'pilot' left at .*: KeyError: 'map'; the world continues")
+
+    def test_has_failed_when_an_exception_ends_its_program(self):
+        with open(scratch('broken.py'), 'w', encoding='utf-8') as file:
+            file.write("import shoal\n"
+                       "with shoal.Client('pilot') as client:\n"
+                       "    client.join(0.1)\n"
+                       "    client.next_tick()\n"
+                       "    raise KeyError('map')\n")
+        program = {'name': 'broken', 'client': 'pilot', 'command': [sys.executable, scratch('broken.py')]}
+        world = {**BALL, 'processes': [program]}
+        run = shoal.run(world, duration_s=2, bus='lcm', launch=True, results=scratch('broken'))
+        process, = run.summary['processes']
+        self.assertEqual((process['name'], process['failed'], run.summary['passed']), ('broken', True, False))
+        self.assertRegex(process['how'], "left the lockstep: KeyError: 'map'|exit code 1")
 
     def test_whose_exception_is_kept_is_named_by_the_error_of_the_run(self):
         code, _, errors = run_python("import concurrent.futures, shoal\n"

@@ -119,7 +119,8 @@ class VectorEnvTest(unittest.TestCase):
 
     def test_says_which_observations_are_missing(self):
         # The ball's imu is silent in half of the worlds: no report within 10 s.
-        silent = {'name': 'silence', 'at': 0, 'probability': 0.5, 'do': [{'fault': {'device': 'ball/imu', 'kind': 'silent'}}]}
+        silent = {'name': 'silence', 'at': 0, 'probability': 0.5,
+                  'do': [{'fault': {'device': 'ball/imu', 'kind': 'silent'}}]}
         world = {**BALL, 'physics': {**BALL['physics'], 'gravity_mps2': 0}, 'events': [silent]}
         envs = vector.VectorEnv(world, 8, actions=[], observations=['@ball', 'ball.imu:utime'], missing=-1)
         observations, infos = envs.reset(seed=1)
@@ -191,7 +192,7 @@ class VectorEnvTest(unittest.TestCase):
 
     def test_names_what_is_wrong_with_channels(self):
         for name, wrong, rule in [
-                ('actions', 'rover1.drive.cnd:twist_command_t:forward_mps', "reads this channel; did you mean 'rover1.drive.cmd'"),
+                ('actions', 'rover1.drive.cnd:twist_command_t:forward_mps', "channel; did you mean 'rover1.drive.cmd'"),
                 ('actions', 'own:twist_command_t:forward_mps', "action 'own': no device, metric or event reads"),
                 ('actions', 'rover1.drive.cmd:imu_t:utime', "takes shoal.twist_command_t.*, got shoal.imu_t"),
                 ('observations', 'rover1.lider:ranges', "publishes on this channel; did you mean 'rover1.lidar'"),
@@ -211,7 +212,7 @@ class VectorEnvTest(unittest.TestCase):
             envs.reset(seed=1)
             with self.assertRaisesRegex(shoal.Error, rf'what {name}\(\) returns must have the shape \(2,\), got'):
                 envs.step(np.zeros((2, 2)))
-        for name, wrong, kind in [('reward', lambda *_: None, 'numbers'), ('terminated', lambda after: [0.0, 1.0], 'bool')]:
+        for name, wrong, kind in [('reward', lambda *_: None, 'numbers'), ('terminated', lambda _: [0.0, 1.0], 'bool')]:
             envs = rover(2, **{name: wrong})
             envs.reset(seed=1)
             with self.assertRaisesRegex(TypeError, rf'what {name}\(\) returns must be an array of {kind}'):
@@ -363,7 +364,8 @@ class ParallelEnvTest(unittest.TestCase):
 
     def test_refuses_wrong_agents_and_rewards(self):
         for agents, rule in [({}, 'at least one agent'), ({'a': {}}, "agent 'a' must be a dict with 'actions'"),
-                             ('rover1', 'agents must be a dict'), ({'a': {'actions': [], 'observation': []}}, "agent 'a'")]:
+                             ('rover1', 'agents must be a dict'),
+                             ({'a': {'actions': [], 'observation': []}}, "agent 'a'")]:
             with self.subTest(rule), self.assertRaisesRegex(shoal.Error, rule):
                 vector.ParallelEnv(BALL, agents)
         with self.assertRaisesRegex(TypeError, "actions of 'a' must be a list of names, got 5"):

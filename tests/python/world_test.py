@@ -3,6 +3,7 @@
 """Tests of worlds in the process of Python."""
 import json
 import os
+import re
 import signal
 import subprocess
 import threading
@@ -105,8 +106,10 @@ class WorldTest(unittest.TestCase):
         world.step(10)
         world.remove('extra')
         self.assertEqual(world.vehicles, before)
-        with self.assertRaisesRegex(shoal.Error, "no vehicle or object 'extra'"):
+        with self.assertRaisesRegex(shoal.Error, "no vehicle or object 'extra'$"):
             world.remove('extra')
+        with self.assertRaisesRegex(shoal.Error, "no vehicle or object 'rovre1'; did you mean 'rover1'"):
+            world.remove('rovre1')
 
     def test_has_vehicles_that_include_a_shipped_one(self):
         with open(scratch('own_rover.yaml'), 'w', encoding='utf-8') as file:
@@ -135,12 +138,12 @@ class WorldTest(unittest.TestCase):
         world = shoal.World('minimal')
         command = shoal.messages.twist_command_t(forward_mps=0.5)
         for use in world.last, world.subscribe:
-            for wrong, meant in [('rover1.lider', 'rover1.lidar'), ('lidar', 'rover1.lidar'), ('rover1', 'rover1.drive.cmd'),
-                                 ('rover1.drive.cdm', 'rover1.drive.cmd')]:
+            for wrong, meant in [('rover1.lider', 'rover1.lidar'), ('lidar', 'rover1.lidar'),
+                                 ('rover1', 'rover1.drive.cmd'), ('rover1.drive.cdm', 'rover1.drive.cmd')]:
                 with self.subTest(wrong), self.assertRaisesRegex(
                         shoal.Error, f"nothing in the world publishes on '{wrong}'; did you mean '{meant}'"):
                     use(wrong)
-            with self.assertRaisesRegex(shoal.Error, "device 'rover1/lidar' .*'rover1.lidar.truth': it needs 'truth: true'"):
+            with self.assertRaisesRegex(shoal.Error, "'rover1/lidar' .* 'rover1.lidar.truth': it needs 'truth: true'"):
                 use('rover1.lidar.truth')
             with self.assertRaisesRegex(shoal.Error, r'sim\.\* are those of a run'):
                 use('sim.state')
@@ -185,6 +188,22 @@ class WorldTest(unittest.TestCase):
         world.step(100)
         self.assertNotEqual(world.state_hash(), state)
 
+    def test_takes_nan_in_commands_whose_devices_take_it(self):
+        taken = set()
+        for folder, _, names in os.walk('devices'):
+            for name in names:
+                with open(os.path.join(folder, name), encoding='utf-8') as file:
+                    taken |= set(re.findall(r'decode<shoal::(\w+_t)>\(payload, (?:shoal::)?Finite::any\)', file.read()))
+        taken.remove('modem_received_t')  # of the network of modems, no command
+        with open('python/world/world_channels.cpp', encoding='utf-8') as file:
+            known = set(re.findall(r'"shoal\.(\w+)"', file.read()))
+        self.assertEqual(known, taken)
+        world = shoal.World('coop_underwater')
+        world.spawn(name='boat', file='naive_boat.yaml', position_m=[100, 0, 0])
+        world.publish('boat.drive.cmd', shoal.messages.helm_command_t(speed_mps=1, heading_rad=float('nan')))
+        with self.assertRaisesRegex(shoal.Error, "'boat.drive.cmd': .*thrust"):
+            world.publish('boat.drive.cmd', shoal.messages.thrust_rudder_command_t(thrust=float('nan')))
+
     def test_gives_each_wrong_argument_one_sentence(self):
         world = shoal.World(BALL)
         deep: dict = {}
@@ -199,7 +218,7 @@ class WorldTest(unittest.TestCase):
                 (lambda: world.step(-1), shoal.Error, 'World.step: count must be >= 0, got -1'),
                 (lambda: world.step(2**70), shoal.Error, 'World.step: count must be <= 9223372036854775807, got'),
                 (lambda: world.run_until('5'), TypeError, "World.run_until: time_s must be a number, got '5'"),
-                (lambda: world.run_until(float('nan')), shoal.Error, 'World.run_until: time_s must be >= 0 and <= 1e.09, got nan'),
+                (lambda: world.run_until(float('nan')), shoal.Error, 'time_s must be >= 0 and <= 1e.09, got nan'),
                 (lambda: shoal.World(BALL, seed=1.5), TypeError, 'World: seed must be an integer, got 1.5'),
                 (lambda: shoal.World(BALL, seed=-1), shoal.Error, 'World: seed must be >= 0, got -1'),
                 (lambda: shoal.World(BALL, set=[1]), TypeError, r'World: set must be a dict, got \[1\]'),

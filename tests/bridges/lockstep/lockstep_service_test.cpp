@@ -225,6 +225,11 @@ TEST(LockstepService, ALeaveForAReasonIsListedWithIt) {
   EXPECT_TRUE(s.request_reply("leave", 0, "{session: 5, acknowledged: 1, reason: \"KeyError: 'map'\"}").ok);
   EXPECT_EQ(s.lockstep.summaries().at(0).ended, "left: KeyError: 'map'");
   EXPECT_TRUE(s.lockstep.has_left("pilot"));
+  EXPECT_EQ(s.lockstep.reason_to_leave("pilot"), "KeyError: 'map'");
+  ASSERT_TRUE(s.join("guest", "{session: 6}").ok);
+  EXPECT_EQ(s.lockstep.reason_to_leave("guest"), "");
+  ASSERT_TRUE(s.request_reply("leave", 0, "", "guest").ok);
+  EXPECT_EQ(s.lockstep.reason_to_leave("guest"), "");
 }
 
 TEST(LockstepService, ALeaveIsGrantedThoughTheNextTickHasGoneOut) {

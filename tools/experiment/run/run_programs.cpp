@@ -3,6 +3,8 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
+
 #include "tools/experiment/results/run_error.hpp"
 #include "tools/experiment/run/run_name.hpp"
 
@@ -62,9 +64,17 @@ void RunPrograms::note(const ProcessGroup::Exit& exit, sim::Time now) {
   ended_.push_back({exit.name, exit.how, sim::to_seconds(now), exit.failed && !exit.ignored});
 }
 
-void RunPrograms::note_last(sim::Time now, const Clients& clients) {
+void RunPrograms::note_last(sim::Time now, const Clients& clients,
+                            const std::function<std::string(const std::string& client)>& reason_to_leave) {
   if (processes_.empty()) return;
   for (const ProcessGroup::Exit& exit : reap(clients)) note(exit, now);
+  for (const sim::ProcessConfig& process : config_.processes) {
+    const auto is_noted = [&](const Summary::Process& one) { return one.name == process.name; };
+    if (process.client.empty() || std::any_of(ended_.begin(), ended_.end(), is_noted)) continue;
+    if (const std::string reason = reason_to_leave(process.client); !reason.empty())
+      ended_.push_back(
+          {process.name, "left the lockstep: " + reason, sim::to_seconds(now), process.on_exit != sim::OnExit::ignore});
+  }
 }
 
 }  // namespace tools

@@ -27,7 +27,8 @@ bool programs_take_part(const sim::WorldConfig& world, const RunOptions& options
 
 void Run::finish(Summary& summary) {
   const OrderlyEnd orderly;
-  programs_.note_last(world_.now(), clients(false));
+  programs_.note_last(world_.now(), clients(false),
+                      [this](const std::string& client) { return lockstep_.reason_to_leave(client); });
   if (alone_) {        // otherwise the bus belongs to another simulator
     admit_messages();  // record messages after the last step as inputs
     journal_.finish(summary.ended != "fault" && summary.ended != "error");
