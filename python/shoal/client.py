@@ -5,6 +5,7 @@ from __future__ import annotations
 import atexit
 import builtins
 import sys
+import threading
 import weakref
 from typing import Callable, Iterator
 
@@ -24,9 +25,9 @@ class Client:
 
     Handlers are called during next_tick(), wait_until() and ticks() only.  What a handler raises comes out of the
     waiting call.  A payload that is not valid is counted and reported on standard error, once for each channel.
-    A context manager closes the client.  When an exception ends it, or the program drops the client without close(),
-    before the end of the run, the simulator warns with the name, the simulated time and the reason.  Without a context
-    manager, one whose exception is kept, as futures and tasks do, does not leave: the run waits until its time-out.
+    A context manager closes the client.  When an exception ends it, the thread of the client or the program, before the
+    end of the run, the simulator warns with the name, the simulated time and the exception.  Without a context manager,
+    a client whose exception is kept, as futures and tasks do, does not leave: the run waits until its time-out.
     """
 
     def __init__(self, name: str, lcm_url: str = '') -> None:
@@ -39,7 +40,8 @@ class Client:
         """
         self._name = checks.text('Client', 'name', name)
         self._client: _shoal.Client | None = _shoal.Client(self._name, checks.text('Client', 'lcm_url', lcm_url))
-        self._reason = ''
+        self._thread = threading.get_ident()
+        _note_exceptions_of_threads()
         _open.add(self)
 
     @property
@@ -149,31 +151,41 @@ class Client:
 
     def __exit__(self, _kind, error, _traceback) -> None:
         if error is not None:
-            self._note(_reason_of(error))
+            self._note(error)
         self.close()
 
-    def __del__(self) -> None:
-        if getattr(self, '_client', None) is not None:
-            self._note(self._reason or 'its program dropped it without close()')
-            self._client = None
-
-    def _note(self, reason):
-        """Sets the reason with which it leaves a run that has not ended."""
-        self._reason = reason
-        self._client.set_reason_to_leave(reason)
-
-
-def _reason_of(error):
-    text = str(error)
-    return type(error).__name__ + (f': {text}' if text else '')
+    def _note(self, error):
+        """Sets the exception for which it leaves a run that has not ended; sys.exit() is none."""
+        if self._client is None or isinstance(error, GeneratorExit):
+            return
+        if isinstance(error, SystemExit) and not error.code:
+            return
+        text = str(error)
+        self._client.set_reason_to_leave(type(error).__name__ + (f': {text}' if text else ''))
 
 
 @atexit.register
-def _note_exception():
+def _note_exception_of_program():
     """Gives the clients that are still open the exception that ends the program, if one does."""
     error = getattr(sys, 'last_value', None)
     for client in list(_open) if error is not None else []:
-        client._note(_reason_of(error))
+        client._note(error)
+
+
+def _note_exceptions_of_threads():
+    """Makes each exception that ends a thread known to the clients that were made in it."""
+    before = threading.excepthook
+    if getattr(before, 'notes_clients', False):
+        return
+
+    def hook(args):
+        for client in list(_open):
+            if args.thread is not None and client._thread == args.thread.ident and args.exc_value is not None:
+                client._note(args.exc_value)
+        before(args)
+
+    hook.notes_clients = True  # type: ignore[attr-defined]
+    threading.excepthook = hook
 
 
 def unanswered(text: str) -> str:

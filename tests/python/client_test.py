@@ -163,12 +163,17 @@ class ClientTest(unittest.TestCase):
                    "thread.start()\n"
                    "shoal.run('minimal', duration_s=5, bus='lcm', wait_for='pilot')\n"
                    "thread.join()\n")
-        for how, reason in [('managed', 'ZeroDivisionError: broken "wheel" '),
-                            ('dropped', r'its program dropped it without close\(\)')]:
+        for how in ['managed', 'dropped']:
             with self.subTest(how):
                 code, _, errors = run_python(program, how)
                 self.assertEqual(code, 0, errors)
-                self.assertRegex(errors, f"warning: lockstep: client 'pilot' left at 2.[01]0 s on .*: {reason}; the world")
+                self.assertRegex(errors, "warning: lockstep: client 'pilot' left at 2.[01]0 s on the world's bus: "
+                                 'ZeroDivisionError: broken "wheel" ; the world continues')
+        for planned in ["client.close()", "sys.exit()", "raise SystemExit(0)"]:
+            with self.subTest(planned):
+                code, _, errors = run_python(program.replace("raise Zero", f"{planned}; return\n            raise Zero"),
+                                             'managed')
+                self.assertEqual((code, errors), (0, ''))
 
     def test_names_the_exception_that_ends_its_program(self):
         with ShoalRun(MINIMAL, '--duration', '5', '--await', 'pilot') as run:
@@ -181,18 +186,23 @@ class ClientTest(unittest.TestCase):
             self.assertRegex(run.wait()[1], r"client 'pilot' left at .*: KeyError: 'map'; the world continues")
 
     def test_has_failed_when_an_exception_ends_its_program(self):
-        with open(scratch('broken.py'), 'w', encoding='utf-8') as file:
-            file.write("import shoal\n"
-                       "with shoal.Client('pilot') as client:\n"
-                       "    client.join(0.1)\n"
-                       "    client.next_tick()\n"
-                       "    raise KeyError('map')\n")
+        drive = ("def drive():\n"
+                 "    with shoal.Client('pilot') as client:\n"
+                 "        client.join(0.1)\n"
+                 "        client.next_tick()\n"
+                 "        raise KeyError('map')\n")
         program = {'name': 'broken', 'client': 'pilot', 'command': [sys.executable, scratch('broken.py')]}
-        world = {**BALL, 'processes': [program]}
-        run = shoal.run(world, duration_s=2, bus='lcm', launch=True, results=scratch('broken'))
-        process, = run.summary['processes']
-        self.assertEqual((process['name'], process['failed'], run.summary['passed']), ('broken', True, False))
-        self.assertRegex(process['how'], "left the lockstep: KeyError: 'map'|exit code 1")
+        # The program ends with 1, or with 0 when only its thread ends, before the end of the run or after it.
+        for call, duration_s in [('drive()', 2), ('drive()', 300), ('threading.Thread(target=drive).start()', 2),
+                                ('threading.Thread(target=drive).start()', 300)]:
+            with self.subTest(call=call, duration_s=duration_s):
+                with open(scratch('broken.py'), 'w', encoding='utf-8') as file:
+                    file.write(f'import shoal, threading\n{drive}{call}\n')
+                world = {**BALL, 'physics': {'step_s': 0.01, 'gravity_mps2': 0}, 'processes': [program]}
+                run = shoal.run(world, duration_s=duration_s, bus='lcm', launch=True, results=scratch('broken'))
+                process, = run.summary['processes']
+                self.assertEqual((process['name'], process['failed'], run.summary['passed']), ('broken', True, False))
+                self.assertRegex(process['how'], "left: KeyError: 'map'|exited with code 1")
 
     def test_whose_exception_is_kept_is_named_by_the_error_of_the_run(self):
         code, _, errors = run_python("import concurrent.futures, shoal\n"

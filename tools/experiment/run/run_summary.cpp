@@ -27,8 +27,7 @@ bool programs_take_part(const sim::WorldConfig& world, const RunOptions& options
 
 void Run::finish(Summary& summary) {
   const OrderlyEnd orderly;
-  programs_.note_last(world_.now(), clients(false),
-                      [this](const std::string& client) { return lockstep_.reason_to_leave(client); });
+  programs_.note_last(world_.now(), clients(false));
   if (alone_) {        // otherwise the bus belongs to another simulator
     admit_messages();  // record messages after the last step as inputs
     journal_.finish(summary.ended != "fault" && summary.ended != "error");
