@@ -184,7 +184,7 @@ def _note_exceptions_of_threads():
                 client._note(args.exc_value)
         before(args)
 
-    hook.notes_clients = True  # type: ignore[attr-defined]
+    setattr(hook, 'notes_clients', True)
     threading.excepthook = hook
 
 
