@@ -9,7 +9,7 @@ namespace tools {
 /// or remove files elsewhere.  The folder itself may be a link, because the user has named it.
 
 /// Throws std::runtime_error when `path`, or a folder between `root` and it, is a symbolic link.  `path` starts with
-/// `root`; what does not exist is no link.
+/// `root`; what does not exist is not one.
 void refuse_links(const std::string& root, const std::string& path);
 
 /// Creates the folder `root` and those below it on the way to `folder`, without following links below `root`.  Throws

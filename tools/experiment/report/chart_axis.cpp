@@ -36,6 +36,7 @@ void ChartAxis::add(double value) {
   if (!std::isfinite(value) || (log_ && value <= 0)) return;
   low_ = std::min(low_, value);
   high_ = std::max(high_, value);
+  whole_ = whole_ && std::round(value) == value;
 }
 
 std::vector<double> ChartAxis::ticks() const {
@@ -48,7 +49,7 @@ std::vector<double> ChartAxis::ticks() const {
     low -= half;
     high += half;
   }
-  const double step = nice_above((high - low) / max_intervals);
+  const double step = std::max(nice_above((high - low) / max_intervals), whole_ ? 1.0 : 0.0);
   const double first = std::floor(low / step + 1e-6), last = std::ceil(high / step - 1e-6);
   std::vector<double> ticks;
   for (double number = first; number <= last; ++number) ticks.push_back(number * step);

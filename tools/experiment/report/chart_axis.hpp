@@ -8,7 +8,7 @@
 namespace tools {
 
 /// Axis of a chart, from one tick to another: multiples of 1, 2 or 5 times a power of ten, on a logarithmic axis such
-/// numbers themselves.
+/// numbers themselves.  Between whole numbers ticks are whole.
 class ChartAxis {
  public:
   explicit ChartAxis(bool log = false) : log_(log) {}
@@ -23,7 +23,7 @@ class ChartAxis {
  private:
   std::vector<double> log_ticks() const;
 
-  bool log_;
+  bool log_, whole_ = true;
   double low_ = std::numeric_limits<double>::infinity(), high_ = -std::numeric_limits<double>::infinity();
 };
 

@@ -82,11 +82,13 @@ class ChartWriter {
   }
 
  private:
-  static constexpr double left = 70, right = 620, top = 28, bottom = 270;
-  /// Width of a letter of the legend.
-  static constexpr double letter = 7;
+  static constexpr double left = 70, right = 620, top = 28, bottom = 270, margin = 12;
+  /// Width of a character of the legend.
+  static constexpr double character = 7;
 
-  double px(double x) const { return left + share_of_axis(x_ticks_, chart_.log_x, x) * (right - left); }
+  double px(double x) const {
+    return left + margin + share_of_axis(x_ticks_, chart_.log_x, x) * (right - left - 2 * margin);
+  }
   double py(double y) const { return bottom - share_of_axis(y_ticks_, false, y) * (bottom - top); }
 
   static const char* colour(std::size_t number) {
@@ -124,7 +126,7 @@ class ChartWriter {
     height += 14;
     std::size_t number = 0;
     for (const ChartCurve& curve : chart_.curves) {
-      const double width = letter * static_cast<double>(curve.name.size() + 3);
+      const double width = character * static_cast<double>(curve.name.size() + 3);
       if (x > left && x + width > right) {
         x = left;
         height += 14;
@@ -137,14 +139,17 @@ class ChartWriter {
   }
 
   std::string drawn(const ChartCurve& curve, std::size_t number) const {
+    // Curves stand beside each other, so that equal ones and their intervals are seen.
+    const double aside = 3 * (static_cast<double>(number) - static_cast<double>(chart_.curves.size() - 1) / 2);
+    const double shift = std::clamp(aside, -margin, margin);
     std::string line, marks;
     for (const ChartPoint& point : curve.points) {
       if (!std::isfinite(point.mean) || (chart_.log_x && point.x <= 0)) continue;
-      line += fmt::format("{}{:.1f} {:.1f}", line.empty() ? "M" : "L", px(point.x), py(point.mean));
-      marks += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"2.5\" fill=\"{}\" stroke=\"none\"/>", px(point.x),
-                           py(point.mean), colour(number));
+      line += fmt::format("{}{:.1f} {:.1f}", line.empty() ? "M" : "L", px(point.x) + shift, py(point.mean));
+      marks += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"2.5\" fill=\"{}\" stroke=\"none\"/>",
+                           px(point.x) + shift, py(point.mean), colour(number));
       if (std::isfinite(point.low) && std::isfinite(point.high))
-        marks += fmt::format("<path d=\"M{:.1f} {:.1f}V{:.1f}\"/>", px(point.x), py(point.low), py(point.high));
+        marks += fmt::format("<path d=\"M{:.1f} {:.1f}V{:.1f}\"/>", px(point.x) + shift, py(point.low), py(point.high));
     }
     if (line.empty()) return {};
     return fmt::format("<g stroke=\"{}\" fill=\"none\"><path d=\"{}\" stroke-width=\"1.5\"/>{}</g>", colour(number),

@@ -21,16 +21,18 @@ std::vector<std::string> texts_of(const std::vector<double>& values, bool log = 
 TEST(ChartAxis, TicksAreRoundNumbersAroundTheValues) {
   EXPECT_THAT(texts_of({1, 9}), ElementsAre("0", "2", "4", "6", "8", "10"));
   EXPECT_THAT(texts_of({0.5141, 4.6}), ElementsAre("0", "1", "2", "3", "4", "5"));
-  EXPECT_THAT(texts_of({0, 1}), ElementsAre("0", "0.2", "0.4", "0.6", "0.8", "1.0"));
+  EXPECT_THAT(texts_of({0, 0.5, 1}), ElementsAre("0", "0.2", "0.4", "0.6", "0.8", "1.0"));
+  EXPECT_THAT(texts_of({2, 3, 4}), ElementsAre("2", "3", "4"));
   EXPECT_THAT(texts_of({-3, 12}), ElementsAre("-5", "0", "5", "10", "15"));
   EXPECT_THAT(texts_of({1000.01, 1000.04}), ElementsAre("1000.01", "1000.02", "1000.03", "1000.04"));
   EXPECT_THAT(texts_of({2e-7, 9e-7}), ElementsAre("2e-07", "4e-07", "6e-07", "8e-07", "1e-06"));
 }
 
 TEST(ChartAxis, OneValueLiesBetweenTicks) {
-  EXPECT_THAT(texts_of({7}), ElementsAre("6.0", "6.5", "7.0", "7.5", "8.0"));
-  EXPECT_THAT(texts_of({0}), ElementsAre("-1.0", "-0.5", "0", "0.5", "1.0"));
-  // The same but for rounding.
+  EXPECT_THAT(texts_of({7}), ElementsAre("6", "7", "8"));
+  EXPECT_THAT(texts_of({0}), ElementsAre("-1", "0", "1"));
+  EXPECT_THAT(texts_of({0.7}), ElementsAre("0.60", "0.65", "0.70", "0.75", "0.80"));
+  // The same except for rounding.
   EXPECT_THAT(texts_of({7, 7 + 1e-14}), ElementsAre("6.0", "6.5", "7.0", "7.5", "8.0"));
 }
 
