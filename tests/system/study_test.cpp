@@ -132,7 +132,7 @@ TEST(Study, ARunThatWasEndedByHandIsNoResult) {
       "processes: [{name: hand, command: [" + built("shoal") + ", control, quit, --lcm-url, '{lcm_url}']}]\n");
   const Ended ended = study.run();
   EXPECT_EQ(ended.exit_code, 4) << ended.errors;
-  EXPECT_THAT(ended.errors, testing::ContainsRegex("failed: ended by quit at [0-9.]+ of 1000000000 s"));
+  EXPECT_THAT(ended.errors, testing::ContainsRegex("no result: ended by quit at [0-9.]+ of 1000000000 s"));
 }
 
 TEST(Study, ExitCodeIs4WhenARunHasNoResult) {
