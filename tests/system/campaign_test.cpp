@@ -356,6 +356,15 @@ TEST(Campaign, ShowsTheExtremeRunsInThreeDimensions) {
   EXPECT_FALSE(fs::exists(study.out() + "/shown/run_2"));
   const std::string world = study.out() + "/runs/world/point_3/seed_1", shown = study.out() + "/shown/run_3";
   EXPECT_EQ(summary_value(shown, "run_hash"), summary_value(world, "run_hash"));
+  // Nothing is written through a link in place of their folder.
+  const std::string elsewhere = study.folder.file("elsewhere");
+  fs::create_directories(elsewhere);
+  fs::remove_all(study.out() + "/shown");
+  fs::create_symlink(elsewhere, study.out() + "/shown");
+  const Ended again = study.call("collect", {"--show"});
+  EXPECT_EQ(again.exit_code, 4);
+  EXPECT_THAT(again.errors, HasSubstr("/shown: is a symbolic link"));
+  EXPECT_TRUE(fs::is_empty(elsewhere));
 }
 
 TEST(Campaign, TuningFindsTheBestEndOfARangeAndContinues) {
