@@ -461,6 +461,13 @@ TEST(Campaign, SlurmGetsPatternsAndJobsOfThisUserOnly) {
                  "slurm", "--allow-path", study.folder.file("")});
   EXPECT_EQ(again.wait(), 4);
   EXPECT_THAT(again.errors(), HasSubstr("/slurm: is a symbolic link"));
+  // A backslash would switch off the numbers of the logs.
+  const std::string other = study.folder.file("out\\b");
+  ASSERT_EQ(run_shoal({"study", "plan", study.folder.file("study.yaml"), "--output", other}).exit_code, 0);
+  Program refused({"/usr/bin/env", "PATH=" + bin + ":/usr/bin:/bin", built("shoal"), "study", "run", other, "--engine",
+                   "slurm", "--allow-path", study.folder.file("")});
+  EXPECT_EQ(refused.wait(), 4);
+  EXPECT_THAT(refused.errors(), HasSubstr("must not have a '\\' with the engine slurm"));
 }
 
 TEST(Campaign, ReportsThatAnEngineIsNotInstalled) {
