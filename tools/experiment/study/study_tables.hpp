@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "tools/experiment/study/study_results.hpp"
@@ -14,7 +15,9 @@ namespace tools {
 /// Program and machine of a run, on which its last bits depend.
 struct RunKind {
   std::string version, processor, c_library;  ///< empty: not recorded
-  auto operator<=>(const RunKind&) const = default;
+  bool operator<(const RunKind& other) const {
+    return std::tie(version, processor, c_library) < std::tie(other.version, other.processor, other.c_library);
+  }
 };
 RunKind kind_of(const RunRecord& record);
 
