@@ -172,8 +172,9 @@ constexpr const char* where_better = R"(
   Euler step. Shoal has no step of that order.
 - **A fast top on a joint.** Both engines' steps of first order lose it, Shoal's by sinking; only RK4 holds it.
 - **Stacks.** In Shoal the stack of five falls through the ground with the default solver: ODE's exact solver gives up on
-  the contacts of boxes that lie exactly on each other ("LCP internal error", in the log at `--log-level debug`). With
-  `physics: {solver: quick}` it stands, and moves by millimetres in 10 s. MuJoCo's stands still.
+  its contacts ("LCP internal error", in the log at `--log-level debug`). The same can happen to other stacks of three or
+  more boxes. With `physics: {solver: quick}` the stack stands, and moves by up to millimetres in 10 s. MuJoCo's stands
+  still.
 
 ### Where Shoal is better
 
