@@ -47,8 +47,9 @@ const std::map<std::string, Bars>& bars() {
       {"spring", {{0.001, 0.0003}, {0.005, 0.0015}}},
       // Half the first step, v h / 2; at rest friction holds.
       {"slope", {{0.001, 0.001}, {0.005, 0.001}}},
-      // A ball turns back up to v h deep.
-      {"bounce", {{0.0045, 0.0045, 0.002}, {0.022, 0.022, 0.01}}},
+      // A ball turns back up to v h deep, h late, and comes up with half the speed, 2 h later; twice until the second
+      // top.
+      {"bounce", {{0.0045, 0.0045, 0.006}, {0.022, 0.022, 0.03}}},
       // v h / 2 of semi-implicit Euler at 4.8 m/s.
       {"rolling", {{0.0026, 0.0026}, {0.0125, 0.0125}}},
       // Five times the layer of 0.5 mm in which contacts stay, and jitter of the iterative solver.  The exact solver
