@@ -21,6 +21,12 @@ class Lag {
   /// `rate_limit`: maximum change of value() per second; infinity: no limit.
   void set(const LagParams& params, double rate_limit);
   double follow(double target, double step_s);
+  /// The same; returns the value half-way, for a force that acts during the step.
+  double follow_through(double target, double step_s) {
+    const double half_way = follow(target, step_s / 2);
+    follow(target, step_s / 2);
+    return half_way;
+  }
   /// Sets the value immediately, with zero rate.
   void jump_to(double value);
   double value() const { return value_; }

@@ -54,10 +54,10 @@ sim::Vector3d MovingMass::offset_D(double place) const {
 
 void MovingMass::act(const sim::ActContext& context) {
   const double h = context.effectiveness * context.step_s;
-  const double place = h > 0 ? lag_.follow(desired_, h) : lag_.value();
+  const double place = h > 0 ? lag_.follow_through(desired_, h) : lag_.value();
   if (place == 0) return;
   const sim::Vector3d offset_B = R_BD_ * offset_D(place);
-  const sim::Vector3d offset_W = body_.motion().R_WB * offset_B;
+  const sim::Vector3d offset_W = world_.hydrodynamics().motion_of(body_).R_WB * offset_B;
   const double weight_N = params_.mass_kg * world_.physics().gravity_mps2();
   body_.add_torque_W(offset_W.cross(sim::Vector3d(0, 0, -weight_N)));
 }

@@ -5,6 +5,7 @@
 
 #include "shoal/message_codec.hpp"
 #include "shoal/wrench_t.hpp"
+#include "sim/world/world.hpp"
 
 namespace devices {
 
@@ -16,6 +17,7 @@ void BodyWrench::Params::read(sim::ParamReader& in) {
 
 BodyWrench::BodyWrench(const Params& params, const sim::DeviceContext& context)
     : params_(params),
+      world_(context.world),
       body_(context.body),
       p_BD_(context.config.X_BS().translation()),
       R_BD_(context.config.X_BS().linear()) {}
@@ -31,17 +33,19 @@ void BodyWrench::set_wrench(const sim::Vector3d& force_N, const sim::Vector3d& t
 }
 
 void BodyWrench::act(const sim::ActContext& context) {
-  const double left =
-      params_.lag_s > 0 ? std::exp(-context.step_s / params_.lag_s) : 0;  // share of the step response that remains
-  force_N_ = desired_force_N_ + left * (force_N_ - desired_force_N_);
-  torque_Nm_ = desired_torque_Nm_ + left * (torque_Nm_ - desired_torque_Nm_);
-  if (context.effectiveness == 0 || (force_N_.isZero(0) && torque_Nm_.isZero(0))) return;
+  // Share of the response that remains after half a step; the wrench half-way acts during the step.
+  const double left = params_.lag_s > 0 ? std::exp(-context.step_s / 2 / params_.lag_s) : 0;
+  const sim::Vector3d force_N = desired_force_N_ + left * (force_N_ - desired_force_N_);
+  const sim::Vector3d torque_Nm = desired_torque_Nm_ + left * (torque_Nm_ - desired_torque_Nm_);
+  force_N_ = desired_force_N_ + left * (force_N - desired_force_N_);
+  torque_Nm_ = desired_torque_Nm_ + left * (torque_Nm - desired_torque_Nm_);
+  if (context.effectiveness == 0 || (force_N.isZero(0) && torque_Nm.isZero(0))) return;
   // Apply force and torque in W.
-  const sim::BodyMotion body = body_.motion();
-  const sim::Vector3d force_B = R_BD_ * (context.effectiveness * force_N_).eval();
-  const sim::Vector3d torque_B = R_BD_ * (context.effectiveness * torque_Nm_).eval();
-  body_.add_force_W(body.R_WB * force_B, body.p_WB + body.R_WB * p_BD_);
-  if (!torque_B.isZero(0)) body_.add_torque_W(body.R_WB * torque_B);
+  const sim::Matrix3d R_WB = world_.hydrodynamics().motion_of(body_).R_WB;
+  const sim::Vector3d force_B = R_BD_ * (context.effectiveness * force_N).eval();
+  const sim::Vector3d torque_B = R_BD_ * (context.effectiveness * torque_Nm).eval();
+  body_.add_force_at_W(R_WB * force_B, R_WB * (p_BD_ - body_.p_BC()));
+  if (!torque_B.isZero(0)) body_.add_torque_W(R_WB * torque_B);
 }
 
 void BodyWrenchController::receive(sim::Time, std::span<const std::byte> payload) {

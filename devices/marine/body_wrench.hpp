@@ -33,6 +33,7 @@ class BodyWrench final : public sim::Actuator {
 
  private:
   Params params_;
+  const sim::World& world_;
   sim::Body& body_;
   sim::Vector3d p_BD_;
   sim::Matrix3d R_BD_;

@@ -55,15 +55,15 @@ void BuoyancyEngine::set_command(double command) {
 void BuoyancyEngine::act(const sim::ActContext& context) {
   const double before = lag_.value();
   const double h = context.effectiveness * context.step_s;
-  const double volume = h > 0 ? lag_.follow(desired_m3_, h) : before;
+  const double volume = h > 0 ? lag_.follow_through(desired_m3_, h) : before;
   power_W_ = 0;
-  if (volume == before && volume == 0) return;
+  if (volume == 0 && lag_.value() == before) return;
   const WaterFlow flow = mount_.flow();
   if (flow.density_kgpm3 == 0) return;
   const double weight_Npm3 = flow.density_kgpm3 * mount_.world().physics().gravity_mps2();
   // Power is needed only to displace water against the pressure, not to reduce the volume.
-  power_W_ =
-      std::max(volume - before, 0.0) / context.step_s * weight_Npm3 * std::max(flow.depth_m, 0.0) / params_.efficiency;
+  power_W_ = std::max(lag_.value() - before, 0.0) / context.step_s * weight_Npm3 * std::max(flow.depth_m, 0.0) /
+             params_.efficiency;
   mount_.add_force_W(flow, {0, 0, weight_Npm3 * volume * share_under_water(flow.depth_m, height_m_)});
 }
 

@@ -66,7 +66,7 @@ void Fin::act(const sim::ActContext& context) {
   // The effectiveness acts on the servo only; hydrodynamic forces act on a stuck fin too.
   const double h = context.effectiveness * context.step_s;
   const double angle =
-      std::clamp(h > 0 ? lag_.follow(command_, h) : lag_.value(), -params_.limit_rad, params_.limit_rad);
+      std::clamp(h > 0 ? lag_.follow_through(command_, h) : lag_.value(), -params_.limit_rad, params_.limit_rad);
   // Forces of the immersed share.
   const WaterFlow flow = mount_.flow();
   if (flow.density_kgpm3 == 0) return;
@@ -115,7 +115,7 @@ void Fin::act_as_published(const WaterFlow& flow, double angle_rad, double scale
   const double factor = published * std::min(1.0, upper / (std::abs(published) * max_coefficient_));
   const sim::Vector3d force_B = factor * params_.coefficients->force;
   const sim::Vector3d moment_B = factor * params_.coefficients->moment;
-  mount_.body().add_force_W(body.R_WB * force_B, body.p_WB);
+  mount_.body().add_force_at_W(body.R_WB * force_B, -(body.R_WB * mount_.body().p_BC()));
   mount_.body().add_torque_W(body.R_WB * moment_B);
 }
 

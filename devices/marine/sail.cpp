@@ -41,7 +41,7 @@ void Sail::make_safe(sim::SafeState safe) {
 
 void Sail::act(const sim::ActContext& context) {
   const double h = context.effectiveness * context.step_s;
-  const double sheet = std::clamp(h > 0 ? lag_.follow(desired_rad_, h) : lag_.value(), 0.0, params_.limit_rad);
+  const double sheet = std::clamp(h > 0 ? lag_.follow_through(desired_rad_, h) : lag_.value(), 0.0, params_.limit_rad);
   const sim::Medium& medium = mount_.world().medium();
   const WaterFlow flow = mount_.flow();
   if (flow.density_kgpm3 > 0 && flow.depth_m > 0) return;

@@ -147,7 +147,7 @@ double Thruster::inflow_mps(const WaterFlow& flow) const {
 }
 
 void Thruster::act(const sim::ActContext& context) {
-  const double level = lag_.follow(command_, context.step_s);
+  const double level = lag_.follow_through(command_, context.step_s);
   thrust_N_ = power_W_ = 0;
   if (context.effectiveness == 0 || level == 0) return;
   const WaterFlow flow = mount_.flow();

@@ -28,7 +28,7 @@ double WaterMount::mass_at(const sim::Body& body, const sim::Vector3d& p_BD) {
 /// Returns the flow for a body without hydrodynamics, which can carry a propeller too.
 WaterFlow WaterMount::flow_without_cache() const {
   WaterFlow flow;
-  flow.body = body_.motion();
+  flow.body = world_.hydrodynamics().motion_of(body_);
   const sim::Vector3d lever_W = flow.body.R_WB * p_BD_;
   flow.p_WD = flow.body.p_WB + lever_W;
   const sim::LocalWater water = world_.medium().water_at(flow.p_WD);

@@ -24,11 +24,12 @@ class WaterMount {
       : world_(context.world),
         body_(context.body),
         p_BD_(context.config.X_BS().translation()),
+        p_CD_(p_BD_ - body_.p_BC()),
         R_BD_(context.config.X_BS().linear()),
         turned_(!R_BD_.isIdentity(0)),
         mass_at_D_kg_(mass_at(body_, p_BD_)) {}
 
-  /// Returns the flow at the start of the step, before forces act.
+  /// Returns the flow where forces act in this step.
   WaterFlow flow() const;
   /// Rotates a vector from W to D.
   sim::Vector3d in_D(const WaterFlow& flow, const sim::Vector3d& v_W) const {
@@ -44,11 +45,11 @@ class WaterMount {
   /// because a larger force would reverse the flow within the step, which is unphysical.
   double max_force_N(double speed_mps, double step_s) const { return mass_at_D_kg_ * speed_mps / step_s; }
   /// Adds a force in D at the origin of D.
-  void add_force_D(const WaterFlow& flow, const sim::Vector3d& force_N) {
-    body_.add_force_W(in_W(flow, force_N), flow.p_WD);
-  }
+  void add_force_D(const WaterFlow& flow, const sim::Vector3d& force_N) { add_force_W(flow, in_W(flow, force_N)); }
   /// Adds a force in W at the origin of D.
-  void add_force_W(const WaterFlow& flow, const sim::Vector3d& force_N) { body_.add_force_W(force_N, flow.p_WD); }
+  void add_force_W(const WaterFlow& flow, const sim::Vector3d& force_N) {
+    body_.add_force_at_W(force_N, flow.body.R_WB * p_CD_);
+  }
   /// Adds a torque in D.
   void add_torque_D(const WaterFlow& flow, const sim::Vector3d& torque_Nm) {
     body_.add_torque_W(in_W(flow, torque_Nm));
@@ -59,7 +60,7 @@ class WaterMount {
  private:
   const sim::World& world_;
   sim::Body& body_;
-  sim::Vector3d p_BD_;
+  sim::Vector3d p_BD_, p_CD_;
   sim::Matrix3d R_BD_;
   bool turned_;
   double mass_at_D_kg_;

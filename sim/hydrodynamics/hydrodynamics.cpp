@@ -22,6 +22,16 @@ Vector3d flipped(const Vector3d& v) {
   return {v.x(), -v.y(), -v.z()};
 }
 
+/// Quirk `current: yaw_only`: the velocity of the water that, turned into body axes by the whole attitude, has there
+/// the components that the true velocity has when it is turned by the yaw alone.  Hull, fins and propellers then see
+/// the same water.
+Vector3d turned_by_yaw_only(const Matrix3d& R_WB, const Vector3d& v_W) {
+  const double yaw = std::atan2(R_WB(1, 0), R_WB(0, 0));
+  const double along = v_W.x() * std::cos(yaw) + v_W.y() * std::sin(yaw);
+  const double left = -v_W.x() * std::sin(yaw) + v_W.y() * std::cos(yaw);
+  return R_WB * Vector3d(along, left, v_W.z());
+}
+
 }  // namespace
 
 Hydrodynamics::Hydrodynamics(const Medium& medium, double gravity_mps2, double step_s, Warn warn)
@@ -41,7 +51,8 @@ void Hydrodynamics::add_body(Body& body, const BodyConfig& config) {
     radius_m = floaters_.add(body, config, gravity_mps2_, warnings_);
     if (radius_m == 0) return;
   }
-  wetted_.push_back({&body, radius_m});
+  const bool yaw_only = config.hydrodynamics && crafts_.back().model->current_by_yaw_only();
+  wetted_.push_back({&body, radius_m, yaw_only});
   const auto number = static_cast<std::size_t>(body.number());
   if (around_.size() <= number) around_.resize(number + 1);
   around_[number] = {};
@@ -86,7 +97,7 @@ void Hydrodynamics::begin_step() {
   const double highest_m = medium_.highest_surface_m();
   for (Wetted& wetted : wetted_) {
     BodyInWater& around = around_[static_cast<std::size_t>(wetted.body->number())];
-    around.motion = wetted.body->motion();
+    around.motion = wetted.body->motion_for_forces(step_s_);
     const BodyMotion& motion = around.motion;
     around.w_B = motion.R_WB.transpose() * motion.w_WB_W;
     if (motion.p_WB.z() - wetted.radius_m > highest_m) {
@@ -95,6 +106,7 @@ void Hydrodynamics::begin_step() {
       continue;
     }
     around.water = medium_.water_at(motion.p_WB);
+    if (wetted.current_by_yaw_only) around.water.velocity_W = turned_by_yaw_only(motion.R_WB, around.water.velocity_W);
     around.v_B = motion.R_WB.transpose() * (motion.v_WB_W - around.water.velocity_W);
     if (!wetted.left_the_current && !medium_.current_known(motion.p_WB)) warn_of_missing_current(wetted, motion.p_WB);
   }
@@ -116,14 +128,7 @@ CraftState Hydrodynamics::state_of(const CoefficientModel& model, const BodyInWa
   state.nu << flipped(R_WB.transpose() * motion.v_WB_W), flipped(around.w_B);
   state.down = {-R_WB(2, 0), R_WB(2, 1), R_WB(2, 2)};
   // Velocity of the water, in body axes.
-  if (model.current_by_yaw_only()) {
-    const double heading = std::atan2(R_WB(0, 0), R_WB(1, 0));
-    const double north = water.velocity_W.y(), east = water.velocity_W.x();
-    state.v_water = {north * std::cos(heading) + east * std::sin(heading),
-                     east * std::cos(heading) - north * std::sin(heading), -water.velocity_W.z()};
-  } else {
-    state.v_water = state.nu.head<3>() - flipped(around.v_B);
-  }
+  state.v_water = state.nu.head<3>() - flipped(around.v_B);
   // Acceleration of the water, and wind.
   if (medium_.has_waves())
     state.a_water = flipped(R_WB.transpose() * water.acceleration_W);
@@ -171,24 +176,65 @@ void Hydrodynamics::step_crafts() {
     Body& body = *craft.body;
     const CoefficientModel& model = *craft.model;
     const BodyInWater& around = around_[static_cast<std::size_t>(body.number())];
-    const Matrix3d& R_WB = around.motion.R_WB;
     // State relative to the water, and stiffness of the step.
-    const CraftState state = state_of(model, around);
+    CraftState state = state_of(model, around);
     Vector6d nu_r = state.nu;
     nu_r.head<3>() -= state.v_water;
     const double fastest = model.fastest_rate(nu_r);
     const bool stiff = !(fastest * step_s_ < 1) && model.immersed(state) > 0;
     if (stiff && !craft.stiffness_warned) warn_of_stiffness(craft, nu_r, fastest);
-    // Actuator forces, moved to the origin.
-    const Vector3d force = flipped(R_WB.transpose() * body.applied_force_W());
-    Vector6d tau;
-    tau << force, flipped(R_WB.transpose() * body.applied_torque_W()) + model.config().center_of_mass_m.cross(force);
+    if (!stiff && body.alone()) {
+      step_lone_craft(craft, state, around);
+      continue;
+    }
+    Matrix3d R_WB = around.motion.R_WB;
+    if (body.alone()) {  // backward Euler starts where the body is
+      BodyInWater at_start = around;
+      at_start.motion = body.motion();
+      R_WB = at_start.motion.R_WB;
+      at_start.w_B = R_WB.transpose() * at_start.motion.w_WB_W;
+      at_start.v_B = R_WB.transpose() * (at_start.motion.v_WB_W - at_start.water.velocity_W);
+      state = state_of(model, at_start);
+      body.take_first_order_step();
+    }
+    const Vector6d tau = applied_to(body, model, R_WB);
     const Vector6d nu_dot = stiff ? model.stiff_acceleration(state, tau, step_s_) : model.acceleration(state, tau);
     // Wrench on the rigid body that gives this acceleration.
     const Vector6d wrench = model.equivalent_wrench(nu_dot, state.nu.head<3>(), state.nu.tail<3>(), body.mass_kg(),
                                                     model.config().inertia_kgm2);
     body.set_applied_W(R_WB * flipped(wrench.head<3>()), R_WB * flipped(wrench.tail<3>()));
   }
+}
+
+/// Implicit midpoint rule for the velocities relative to the water, to second order by two evaluations: with the
+/// predicted velocity, and with that half-way by the first.  The attitude, the water and the forces of actuators are
+/// those half-way.
+void Hydrodynamics::step_lone_craft(const CoefficientBody& craft, CraftState state, const BodyInWater& around) {
+  Body& body = *craft.body;
+  const CoefficientModel& model = *craft.model;
+  const Vector6d tau = applied_to(body, model, around.motion.R_WB);
+  const BodyMotion start = body.motion();
+  const Vector3d& carried_W = around.water.velocity_W;
+  Vector6d nu_r;  // at the start, relative to the water
+  nu_r << flipped(start.R_WB.transpose() * (start.v_WB_W - carried_W)), flipped(start.R_WB.transpose() * start.w_WB_W);
+  const auto rate_of_nu_r = [&] {
+    Vector6d rate = model.acceleration(state, tau);
+    rate.head<3>() += state.nu.tail<3>().cross(state.v_water);  // without the turning of the water in body axes
+    return rate;
+  };
+  state.nu = nu_r + step_s_ / 2 * rate_of_nu_r();
+  state.nu.head<3>() += state.v_water;
+  nu_r += step_s_ * rate_of_nu_r();
+  const Vector3d w_B = flipped(nu_r.tail<3>());
+  body.set_velocity_at_end(flipped(nu_r.head<3>()) + w_B.cross(body.p_BC()), carried_W, w_B, step_s_);
+}
+
+/// Force and torque of the actuators about the origin, forward-right-down.
+Vector6d Hydrodynamics::applied_to(const Body& body, const CoefficientModel& model, const Matrix3d& R_WB) {
+  const Vector3d force = flipped(R_WB.transpose() * body.applied_force_W());
+  Vector6d tau;
+  tau << force, flipped(R_WB.transpose() * body.applied_torque_W()) + model.config().center_of_mass_m.cross(force);
+  return tau;
 }
 
 void Hydrodynamics::visit_state(StateArchive& archive) {

@@ -40,6 +40,11 @@ class Hydrodynamics {
     const auto number = static_cast<std::size_t>(body.number());
     return number < around_.size() ? around_[number] : nowhere_;
   }
+  /// Motion of a body at which forces act in this step.
+  BodyMotion motion_of(const Body& body) const {
+    const BodyInWater& found = around(body);
+    return found.known ? found.motion : body.motion_for_forces(step_s_);
+  }
   /// Adds the hydrodynamic forces to those that actuators applied to the bodies in this step.
   void step(double gravity_mps2);
   /// Returns the warnings about bodies since the last call, one line each.
@@ -57,10 +62,13 @@ class Hydrodynamics {
   struct Wetted {
     Body* body;
     double radius_m;                // bounding radius about its origin
+    bool current_by_yaw_only;       // a quirk of its coefficients
     bool left_the_current = false;  // a warning was given
   };
   void add_craft(Body& body, const HydrodynamicsConfig& config);
   void step_crafts();
+  void step_lone_craft(const CoefficientBody& craft, CraftState state, const BodyInWater& around);
+  static Vector6d applied_to(const Body& body, const CoefficientModel& model, const Matrix3d& R_WB);
   void warn_of_stiffness(CoefficientBody& craft, const Vector6d& nu_r, double fastest_rate);
   CraftState state_of(const CoefficientModel& model, const BodyInWater& around) const;
   void warn_of_missing_current(Wetted& wetted, const Vector3d& p_WB);

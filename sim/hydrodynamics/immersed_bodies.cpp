@@ -94,6 +94,7 @@ void ImmersedBodies::find_stiffness(ImmersedBody& body, double gravity_mps2, std
   }
   body.stiff = fastest > max;
   if (!body.stiff) return;
+  body.body->use_first_order();  // these springs are integrated for its step
   warnings.push_back("body '" + body.body->name() + "': it is so light that it oscillates in the water faster than " +
                      "'step_s' " + number_text(step_s_) + " resolves, and is damped; use a step below " +
                      number_text(std::floor(std::sqrt(2 / fastest) * 1e4) / 1e4) + " s");
@@ -104,21 +105,21 @@ void ImmersedBodies::remove_group(int group) {
 }
 
 void ImmersedBodies::step(double gravity_mps2, std::span<const BodyInWater> around) {
-  for (const ImmersedBody& body : bodies_) {
-    const LocalWater& at_origin = around[static_cast<std::size_t>(body.body->number())].water;
-    step_body(body, gravity_mps2, at_origin);
-  }
+  for (const ImmersedBody& body : bodies_)
+    step_body(body, gravity_mps2, around[static_cast<std::size_t>(body.body->number())]);
 }
 
-void ImmersedBodies::step_body(const ImmersedBody& body, double gravity_mps2, const LocalWater& at_origin) {
-  const Pose X_WB = body.body->X_WB();
-  if (X_WB.translation().z() - body.radius_m > medium_.highest_surface_m()) return;
+void ImmersedBodies::step_body(const ImmersedBody& body, double gravity_mps2, const BodyInWater& around) {
+  const LocalWater& at_origin = around.water;
+  const BodyMotion& motion = around.motion;
+  if (motion.p_WB.z() - body.radius_m > medium_.highest_surface_m()) return;
   Wrench sum;
-  sum.R_WB = X_WB.linear();
-  sum.p_WB = X_WB.translation();
-  sum.p_WC = X_WB * body.body->p_BC();
-  sum.v_WC_W = body.body->velocity_at_W(body.body->p_BC());
-  sum.w_W = body.body->w_WB_W();
+  sum.R_WB = motion.R_WB;
+  sum.p_WB = motion.p_WB;
+  const Vector3d p_BC_W = motion.R_WB * body.body->p_BC();
+  sum.p_WC = motion.p_WB + p_BC_W;
+  sum.w_W = motion.w_WB_W;
+  sum.v_WC_W = motion.v_WB_W + sum.w_W.cross(p_BC_W);
   drag_.begin(sum.R_WB, sum.v_WC_W, sum.w_W);
   for (const ImmersedPiece& piece : body.pieces) add_piece(piece, gravity_mps2, at_origin, sum);
   if (!sum.wet) return;
@@ -164,6 +165,7 @@ void ImmersedBodies::apply(Body& body, double gravity_mps2, const Wrench& sum) {
   Vector6d a;
   if (drag_.too_stiff(mass + sum.added_kg, inertia, dv, dw, step_s_)) {
     a = drag_.acceleration(sum.mass_matrix(mass, I_W), f, step_s_);
+    body.take_first_order_step();
   } else {
     f.head<3>() += drag_.force_N();
     f.tail<3>() += drag_.torque_Nm();

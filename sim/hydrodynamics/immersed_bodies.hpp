@@ -42,7 +42,7 @@ class ImmersedBodies {
   std::vector<ImmersedPiece> pieces_of(const Body& body, const BodyConfig& config, double max_m,
                                        std::vector<std::string>& warnings);
   void find_stiffness(ImmersedBody& body, double gravity_mps2, std::vector<std::string>& warnings) const;
-  void step_body(const ImmersedBody& body, double gravity_mps2, const LocalWater& at_origin);
+  void step_body(const ImmersedBody& body, double gravity_mps2, const BodyInWater& around);
   void add_piece(const ImmersedPiece& piece, double gravity_mps2, const LocalWater& at_origin, Wrench& sum);
   WaterPlane surface_at(const ImmersedPiece& piece, const Vector3d& p_WP, const LocalWater& water) const;
   void add_stiffness(const ImmersedBody& body, const LocalWater& water, Wrench& sum) const;

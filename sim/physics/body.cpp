@@ -8,6 +8,7 @@
 #include <type_traits>
 
 #include "sim/ode/ode_math.hpp"
+#include "sim/physics/free_step.hpp"
 #include "sim/physics/physics_world.hpp"
 #include "sim/rays/ode_scene.hpp"
 #include "sim/state/state_archive.hpp"
@@ -149,9 +150,12 @@ void Body::set_velocity_W(const Vector3d& v_WB_W, const Vector3d& w_WB_W) {
   const Vector3d v_WC_W = v_WB_W + w_WB_W.cross(rotation_to_eigen(R_WB_) * p_BC_);
   dBodySetLinearVel(ode_.get(), v_WC_W.x(), v_WC_W.y(), v_WC_W.z());
   dBodySetAngularVel(ode_.get(), w_WB_W.x(), w_WB_W.y(), w_WB_W.z());
+  a_WC_W_.setZero();
+  alpha_B_.setZero();
 }
 
 void Body::set_gravity(bool on) {
+  gravity_ = on;
   if (free()) dBodySetGravityMode(ode_.get(), on);
 }
 
@@ -191,7 +195,8 @@ void Body::visit_state(StateArchive& archive) {
   struct {
     double force_N[3], torque_Nm[3];
     Pose::MatrixType seat_X_WB;
-    bool enabled, move_is_due;
+    Vector3d a_WC_W, alpha_B;
+    bool enabled, move_is_due, alone;
   } rest = {};
   // Copy the motion out of ODE, and visit it as one block.
   const auto each = [&](const auto& copy) {
@@ -209,7 +214,10 @@ void Body::visit_state(StateArchive& archive) {
   rest.seat_X_WB = seat_X_WB_.matrix();
   rest.enabled = dBodyIsEnabled(ode_.get());
   rest.move_is_due = move_is_due_;
-  archive.unhashed(rest.force_N, rest.torque_Nm, rest.enabled, rest.move_is_due);
+  rest.a_WC_W = a_WC_W_;
+  rest.alpha_B = alpha_B_;
+  rest.alone = alone_;
+  archive.unhashed(rest.force_N, rest.torque_Nm, rest.enabled, rest.move_is_due, rest.a_WC_W, rest.alpha_B, rest.alone);
   if (kinematic()) archive.unhashed(rest.seat_X_WB);
   if (!archive.restoring()) return;
   // Check the restored numbers.
@@ -219,7 +227,8 @@ void Body::visit_state(StateArchive& archive) {
   if (!is_usable(motion.p_WC) || !is_usable(motion.R_WB) || !is_rotation(rotation_to_eigen(motion.R_WB)) ||
       !(std::abs(q_WB.norm() - 1) < rotation_tolerance) || (kinematic() && !is_pose(seat_X_WB)))
     archive.fail("'" + name_ + "' has an invalid pose");
-  if (!is_usable(motion.v_WC_W) || !is_usable(motion.w_WB_W) || !is_usable(rest.force_N) || !is_usable(rest.torque_Nm))
+  if (!is_usable(motion.v_WC_W) || !is_usable(motion.w_WB_W) || !is_usable(rest.force_N) ||
+      !is_usable(rest.torque_Nm) || !is_usable({rest.a_WC_W.data(), 3}) || !is_usable({rest.alpha_B.data(), 3}))
     archive.fail("'" + name_ + "' has an invalid velocity or force");
   // Write them back into ODE.
   each([](const double* from, const dReal* to, int count) { std::copy_n(from, count, const_cast<dReal*>(to)); });
@@ -229,6 +238,9 @@ void Body::visit_state(StateArchive& archive) {
   rest.enabled ? dBodyEnable(ode_.get()) : dBodyDisable(ode_.get());
   seat_X_WB_.matrix() = rest.seat_X_WB;
   move_is_due_ = rest.move_is_due;
+  a_WC_W_ = rest.a_WC_W;
+  alpha_B_ = rest.alpha_B;
+  alone_ = rest.alone && free() && !first_order_;
 }
 
 void Body::place_fixed_geoms() {
@@ -247,51 +259,94 @@ void Body::place_fixed_geoms() {
   }
 }
 
-namespace {
-
-/// Solves [a b c] x = r by Cramer's rule; far cheaper here than a general inverse.
-Vector3d solve(const Vector3d& a, const Vector3d& b, const Vector3d& c, const Vector3d& r) {
-  const Vector3d b_c = b.cross(c);
-  return Vector3d(r.dot(b_c), a.dot(r.cross(c)), a.dot(b.cross(r))) / a.dot(b_c);
+// The torque makes ODE's step reach the angular velocity of the implicit midpoint rule.  ODE's own gyroscopic term is
+// an implicit Euler step with numerical damping: a body tumbling at 10 rad/s lost 11 % of its energy in 10 s.  Without
+// any such term the body does not precess.
+void Body::add_gyroscopic_torque(double step_s) {
+  const Matrix3d R_WB = rotation_to_eigen(R_WB_);
+  const Vector3d w = R_WB.transpose() * to_eigen(w_WB_W_);
+  const auto next = angular_velocity_after(inertia_C_B_, w, Vector3d::Zero(), step_s);
+  // Such a rotation cannot be resolved by the step.
+  if (!next) return;
+  const Vector3d torque_W = R_WB * (inertia_C_B_ * (*next - w) / step_s);
+  if (!torque_W.isZero(0)) dBodyAddTorque(ode_.get(), torque_W.x(), torque_W.y(), torque_W.z());
 }
 
-}  // namespace
-
-// Implicit midpoint rule for I w' + w x I w = 0 in the axes of the body, which conserves energy and angular momentum;
-// the torque added makes ODE's step reach its result.  ODE's own gyroscopic term is an implicit Euler step with
-// numerical damping: a body tumbling at 10 rad/s lost 11 % of its energy in 10 s.  Without any such term the body does
-// not precess.
-void Body::add_gyroscopic_torque(double step_s) {
-  // Angular velocity and momentum in the axes of the body.
-  const Vector3d x = Vector3d(R_WB_[0], R_WB_[4], R_WB_[8]), y = Vector3d(R_WB_[1], R_WB_[5], R_WB_[9]),
-                 z = Vector3d(R_WB_[2], R_WB_[6], R_WB_[10]);
-  const Vector3d w_W = Vector3d(w_WB_W_[0], w_WB_W_[1], w_WB_W_[2]);
-  const Vector3d w(x.dot(w_W), y.dot(w_W), z.dot(w_W));
-  const Vector3d I_x = inertia_C_B_.col(0), I_y = inertia_C_B_.col(1), I_z = inertia_C_B_.col(2);
-  const auto times_inertia = [&](const Vector3d& v) -> Vector3d { return v.x() * I_x + v.y() * I_y + v.z() * I_z; };
-  const Vector3d momentum = times_inertia(w);
-  // No torque for a body at rest or in rotation about a principal axis.
-  constexpr double negligible = 1e-10;
+void Body::step_alone(double step_s, double gravity_mps2) {
   const double h = step_s;
-  if (h * h * w.cross(momentum).squaredNorm() <= negligible * negligible * momentum.squaredNorm()) return;
-  Vector3d next = w;
-  for (int i = 0; i < 4; ++i) {  // Newton's method for the angular velocity at the end of the step
-    const Vector3d mid = (w + next) / 2;
-    const Vector3d I_mid = times_inertia(mid);
-    const Vector3d residual = times_inertia(next - w) + h * mid.cross(I_mid);
-    // Columns of the Jacobian I + h/2 ([mid] I - [I mid]).
-    const Vector3d a = I_x + h / 2 * (mid.cross(I_x) - I_mid.cross(Vector3d::UnitX()));
-    const Vector3d b = I_y + h / 2 * (mid.cross(I_y) - I_mid.cross(Vector3d::UnitY()));
-    const Vector3d c = I_z + h / 2 * (mid.cross(I_z) - I_mid.cross(Vector3d::UnitZ()));
-    const Vector3d change = solve(a, b, c, residual);
-    next -= change;
-    if (change.squaredNorm() <= 1e-16 * next.squaredNorm()) break;  // the next change would be below rounding
+  const Matrix3d R_WB = rotation_to_eigen(R_WB_);
+  const Vector3d v_before_W = to_eigen(v_WC_W_), w_before_B = R_WB.transpose() * to_eigen(w_WB_W_);
+  Vector3d force_W = applied_force_W(), torque_W = applied_torque_W();
+  if (gravity_) force_W.z() -= mass_kg_ * gravity_mps2;
+  const dReal* q = dBodyGetQuaternion(ode_.get());
+  const Eigen::Quaterniond q_WB(q[0], q[1], q[2], q[3]);
+  // Velocities at the end.
+  Vector3d v_W = v_before_W, w_B;
+  if (planned_) {
+    // Forces that were added to the plan act on the rigid body.
+    force_W -= planned_force_W_;
+    torque_W -= planned_torque_W_;
+    w_B = w_B_at_end_;
+    if (!torque_W.isZero(0)) w_B += h * inertia_C_B_.llt().solve(R_WB.transpose() * torque_W);
+  } else {
+    const Vector3d torque_B = (q_WB * cayley(w_before_B, h / 2)).conjugate() * torque_W;
+    const auto next = gyroscopic_ ? angular_velocity_after(inertia_C_B_, w_before_B, torque_B, h) : std::nullopt;
+    w_B = next ? *next : w_before_B + h * inertia_C_B_.llt().solve(torque_B);  // or too fast for the step
   }
-  // Torque that gives this change of angular momentum in one step.
-  const Vector3d torque_B = times_inertia(next - w) / h;
-  const Vector3d torque_W = torque_B.x() * x + torque_B.y() * y + torque_B.z() * z;
-  // For h w far above 1 Newton's method may diverge; such a rotation cannot be resolved by the step.
-  if (torque_W.allFinite()) dBodyAddTorque(ode_.get(), torque_W.x(), torque_W.y(), torque_W.z());
+  const Eigen::Quaterniond q_after = q_WB * cayley((w_before_B + w_B) / 2, h);
+  if (planned_) v_W = q_after * v_C_B_at_end_ + carried_W_;
+  v_W += h / mass_kg_ * force_W;
+  const Vector3d p_WC = to_eigen(p_WC_) + h / 2 * (v_before_W + v_W);
+  // Write the motion into ODE.
+  const dQuaternion q_ode = {q_after.w(), q_after.x(), q_after.y(), q_after.z()};
+  dBodySetPosition(ode_.get(), p_WC.x(), p_WC.y(), p_WC.z());
+  dBodySetQuaternion(ode_.get(), q_ode);
+  const Vector3d w_W = rotation_to_eigen(R_WB_) * w_B;
+  dBodySetLinearVel(ode_.get(), v_W.x(), v_W.y(), v_W.z());
+  dBodySetAngularVel(ode_.get(), w_W.x(), w_W.y(), w_W.z());
+  dBodySetForce(ode_.get(), 0, 0, 0);
+  dBodySetTorque(ode_.get(), 0, 0, 0);
+  a_WC_W_ = (v_W - v_before_W) / h;
+  alpha_B_ = (w_B - w_before_B) / h;
+}
+
+BodyMotion Body::motion_for_forces(double step_s) const {
+  if (!alone_) return motion();
+  const double half_s = step_s / 2;
+  const dReal* q = dBodyGetQuaternion(ode_.get());
+  const Matrix3d R_WB_now = rotation_to_eigen(R_WB_);
+  const Vector3d w_B = R_WB_now.transpose() * to_eigen(w_WB_W_);
+  BodyMotion middle;
+  middle.R_WB = (Eigen::Quaterniond(q[0], q[1], q[2], q[3]) * cayley(w_B, half_s)).toRotationMatrix();
+  middle.w_WB_W = middle.R_WB * (w_B + half_s * alpha_B_);
+  const Vector3d p_BC_W = middle.R_WB * p_BC_;
+  middle.p_WB = to_eigen(p_WC_) + half_s * to_eigen(v_WC_W_) - p_BC_W;
+  middle.v_WB_W = to_eigen(v_WC_W_) + half_s * a_WC_W_ - middle.w_WB_W.cross(p_BC_W);
+  return middle;
+}
+
+void Body::add_force_at_W(const Vector3d& force_N, const Vector3d& p_CP_W) {
+  if (!force_N.allFinite() || !p_CP_W.allFinite())
+    throw PhysicsFault("body '" + name_ + "': a force on it is not finite");
+  if (!free()) return;
+  const Vector3d torque_Nm = p_CP_W.cross(force_N);
+  dBodyAddForce(ode_.get(), force_N.x(), force_N.y(), force_N.z());
+  dBodyAddTorque(ode_.get(), torque_Nm.x(), torque_Nm.y(), torque_Nm.z());
+}
+
+void Body::set_velocity_at_end(const Vector3d& v_C_B, const Vector3d& carried_W, const Vector3d& w_B, double step_s) {
+  if (!v_C_B.allFinite() || !carried_W.allFinite() || !w_B.allFinite())
+    throw PhysicsFault("body '" + name_ + "': the forces of the water on it are not finite");
+  const Matrix3d R_WB = rotation_to_eigen(R_WB_);
+  const Vector3d w_before_B = R_WB.transpose() * to_eigen(w_WB_W_);
+  const Matrix3d R_after = R_WB * cayley((w_before_B + w_B) / 2, step_s).toRotationMatrix();
+  planned_ = true;
+  v_C_B_at_end_ = v_C_B;
+  carried_W_ = carried_W;
+  w_B_at_end_ = w_B;
+  planned_force_W_ = mass_kg_ / step_s * (R_after * v_C_B + carried_W - to_eigen(v_WC_W_));
+  planned_torque_W_ = R_WB * (inertia_C_B_ * (R_WB.transpose() * (R_after * w_B) - w_before_B)) / step_s;
+  set_applied_W(planned_force_W_, planned_torque_W_);
 }
 
 }  // namespace sim

@@ -51,6 +51,13 @@ class Body : public VisitedInSteps {
   Vector3d w_WB_W() const;
   /// Pose and velocities together; cheaper than the separate calls.
   BodyMotion motion() const;
+  /// Motion at which forces on this body act in the next step.  A body that is alone is half a step further, by its
+  /// velocities and the accelerations of the last step: forces of there give a step of second order.  Another one is
+  /// where it is.
+  BodyMotion motion_for_forces(double step_s) const;
+  /// Whether a free body had neither joints nor contacts in the last step; then its next step is of second order, see
+  /// free_step.hpp.
+  bool alone() const { return alone_; }
   /// Velocity of a point fixed in the body, given in B.
   Vector3d velocity_at_W(const Vector3d& p_B) const;
 
@@ -58,11 +65,24 @@ class Body : public VisitedInSteps {
   /// when a number is not finite.
   void add_force_W(const Vector3d& force_N, const Vector3d& at_W);
   void add_torque_W(const Vector3d& torque_Nm);
+  /// Adds a force whose point is given from the centre of mass.
+  void add_force_at_W(const Vector3d& force_N, const Vector3d& p_CP_W);
   /// Sum of what was added for the next step: force, and torque about the centre of mass.
   Vector3d applied_force_W() const;
   Vector3d applied_torque_W() const;
   /// Replaces the force and torque added for the next step.  Throws PhysicsFault when a number is not finite.
   void set_applied_W(const Vector3d& force_N, const Vector3d& torque_Nm);
+  /// Replaces the force and torque added for the next step by those that give the body these velocities at its end: of
+  /// the centre of mass relative to what moves with `carried_W`, and angular, both in axes of the body at its end.  The
+  /// gyroscopic torque and gravity must be off.  Throws PhysicsFault when a number is not finite.
+  void set_velocity_at_end(const Vector3d& v_C_B, const Vector3d& carried_W, const Vector3d& w_B, double step_s);
+  /// Makes the next step one of first order, for forces that are integrated for it.
+  void take_first_order_step() { first_order_now_ = true; }
+  /// The same for all steps.
+  void use_first_order() {
+    first_order_ = true;
+    alone_ = false;
+  }
   /// Sets the pose of the body frame.  The parts of a fixed or kinematic body move with it; bodies in contact with it
   /// see no velocity.  For a free body, only this body moves: PhysicsWorld::move_group moves the whole vehicle.
   void set_pose(const Pose& X_WB);
@@ -97,6 +117,7 @@ class Body : public VisitedInSteps {
   void start_kinematic_step();
   void end_kinematic_step();
   void add_gyroscopic_torque(double step_s);
+  void step_alone(double step_s, double gravity_mps2);
 
   // Members used in each step, adjacent in memory.
   BodyHandle ode_;
@@ -108,9 +129,18 @@ class Body : public VisitedInSteps {
   bool gyroscopic_ = true;
   Motion motion_ = Motion::free;
   bool move_is_due_ = false;  // move_to was called for the next step
+  bool alone_ = false;        // see alone()
+  bool first_order_ = false;  // see use_first_order()
+  bool gravity_ = true;
+  bool first_order_now_ = false;  // see take_first_order_step()
+  bool planned_ = false;          // set_velocity_at_end() was called for the next step
   int number_ = -1;
   int group_ = -1;
   Matrix3d inertia_C_B_ = Matrix3d::Zero();
+  // Accelerations of the last step, if the body was alone: of the centre of mass, and angular in axes of B.
+  Vector3d a_WC_W_ = Vector3d::Zero(), alpha_B_ = Vector3d::Zero();
+  // Of set_velocity_at_end(), with the forces that it set.
+  Vector3d v_C_B_at_end_, carried_W_, w_B_at_end_, planned_force_W_, planned_torque_W_;
 
   std::string name_;
   double mass_kg_ = 0;

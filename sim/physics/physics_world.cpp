@@ -161,8 +161,9 @@ void PhysicsWorld::Impl::collide() {
 
 void PhysicsWorld::Impl::solve(std::int64_t step_number) {
   const double step_s = config.step_s;
+  const bool some_are_not_alone = step_lone_bodies();
   for (Body* body : moving)
-    if (body->gyroscopic_) body->add_gyroscopic_torque(step_s);
+    if (body->gyroscopic_ && !body->alone_) body->add_gyroscopic_torque(step_s);
   // Record the poses at the start of the step for the joint loads.
   for (Joint* joint : measured_joints) joint->note_before_step();
   // Select the solver.  WorldStep is exact and its cost grows with the cube of an island's rows; the selection depends
@@ -171,8 +172,7 @@ void PhysicsWorld::Impl::solve(std::int64_t step_number) {
       config.solver == PhysicsConfig::Solver::automatic && counts.max_island_rows > config.quick_above_rows;
   counts.quick = config.solver == PhysicsConfig::Solver::quick || some_too_large;
   if (counts.quick) dRandSetSeed(step_seed(seed, step_number));
-  const bool nothing_is_free = moving.size() == kinematic.size();  // then ODE would only visit each body
-  if (nothing_is_free)
+  if (!some_are_not_alone)  // then ODE would only visit each body
     counts.quick = false;
   else if (some_too_large)
     step_islands_by_size();
@@ -180,10 +180,34 @@ void PhysicsWorld::Impl::solve(std::int64_t step_number) {
     dWorldQuickStep(world.get(), step_s);
   else
     dWorldStep(world.get(), step_s);
+  for (const Body* body : lone_) dBodyEnable(body->ode_.get());
   // Read contact forces and joint loads.
   collider.read_forces(contact_reports);
   dJointGroupEmpty(contacts.get());
   for (Joint* joint : measured_joints) joint->note_load();
+}
+
+/// Finds the bodies that have neither contacts nor joints, and steps them; ODE leaves them out, because they are
+/// disabled until its step has ended.  Returns whether others are left.
+bool PhysicsWorld::Impl::step_lone_bodies() {
+  lone_.clear();
+  std::size_t others = 0;
+  for (Body* body : moving) {
+    if (!body->free()) continue;
+    body->alone_ = !body->first_order_ && !body->first_order_now_ && islands.rows_of(body->number_) == 0;
+    if (!body->alone_) {
+      ++others;
+      body->a_WC_W_.setZero();
+      body->alpha_B_.setZero();
+    } else {
+      body->step_alone(config.step_s, gravity_mps2);
+      dBodyDisable(body->ode_.get());
+      lone_.push_back(body);
+    }
+    body->planned_ = false;
+    body->first_order_now_ = false;
+  }
+  return others > 0;
 }
 
 /// Uses QuickStep for the islands with too many rows, WorldStep for the others.  ODE skips disabled bodies, and nothing
@@ -193,7 +217,8 @@ void PhysicsWorld::Impl::step_islands_by_size() {
   large_.clear();
   small_.clear();
   for (const Body* body : moving)
-    (islands.rows_of(body->number_) > config.quick_above_rows ? large_ : small_).push_back(body->ode_.get());
+    if (!body->alone_)
+      (islands.rows_of(body->number_) > config.quick_above_rows ? large_ : small_).push_back(body->ode_.get());
   const auto step_all_but = [](const std::vector<dBodyID>& others, const auto& step) {
     for (const dBodyID body : others) dBodyDisable(body);
     step();

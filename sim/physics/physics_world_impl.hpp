@@ -56,6 +56,7 @@ struct PhysicsWorld::Impl {
   bool gravity_was_set = false;  ///< set_gravity() was called
   SceneMoves moves;
   std::unique_ptr<WorldScene> scene;
+  std::vector<Body*> lone_;             // bodies without contacts and joints in this step
   std::vector<dBodyID> large_, small_;  // bodies by the rows of their islands; buffers reused in each step
   StepCounts counts;
   std::int64_t quick_steps = 0;
@@ -78,6 +79,7 @@ struct PhysicsWorld::Impl {
   void set_mass(Body& body, const BodyConfig& config, const dMass& total);
   void collide();
   void solve(std::int64_t step_number);
+  bool step_lone_bodies();
   void step_islands_by_size();
   std::string suspects();
   void finish(std::int64_t step_number);

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cmath>
 #include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "sim/physics/physics_world.hpp"
+#include "tests/sim/physics/gravity.hpp"
 
 /// Worlds in a few lines, for the tests and benchmarks of physics and scene.
 namespace small_worlds {
@@ -99,6 +101,18 @@ inline std::unique_ptr<PhysicsWorld> make_world(const PhysicsConfig& config = {}
                                                 const std::vector<ContactConfig>& contacts = {}) {
   return std::make_unique<PhysicsWorld>(config, std::vector<MaterialConfig>{{"slippery"}}, contacts,
                                         std::vector<std::string>{}, 1);
+}
+
+inline PhysicsConfig with_step(double step_s, double gravity_mps2 = test::g) {
+  PhysicsConfig config;
+  config.step_s = step_s;
+  config.gravity_mps2 = gravity_mps2;
+  return config;
+}
+
+inline void run_for(PhysicsWorld& world, double time_s) {
+  const auto steps = std::lround(time_s / world.step_s());
+  for (int i = 0; i < steps; ++i) world.step(i);
 }
 
 /// Contacts with `slippery` have no friction.
