@@ -127,15 +127,15 @@ constexpr const char* introduction = R"(# Cross-check by another engine
 
 Written by `cross_check --page docs/models/cross_check.md`.
 
-Ten experiments with rigid bodies, by Shoal, by MuJoCo {} and by closed form, with steps of 1 ms and 5 ms. Both engines
-get the same bodies, joints and initial states, from one description in `tests/cross_check`. [fidelity.md](fidelity.md)
-compares marine vehicles with published trajectories.
+Ten experiments with rigid bodies, by Shoal, by MuJoCo {} and by closed form, with steps of 1 ms and 5 ms. Both
+engines get the same bodies, joints and initial states, from one description in `tests/cross_check`.
+[fidelity.md](fidelity.md) compares marine vehicles with published trajectories.
 
-- **Shoal** is `PhysicsWorld` with the defaults of a world; [rigid_bodies.md](rigid_bodies.md) describes its step. "Quick
-  solver" is `physics: {{solver: quick}}`, the iterative solver of ODE, which is the default only for large groups of
-  bodies.
-- **MuJoCo** has its defaults except for the integrator: `Euler` (its default), `implicit` or `RK4`. Newer versions than
-  that of Debian 12, and other settings of solver and contacts, can be better.
+- **Shoal** is `PhysicsWorld` with the defaults of a world; [rigid_bodies.md](rigid_bodies.md) describes its step.
+  "Quick solver" is `physics: {{solver: quick}}`, the iterative solver of ODE, which is the default only for large
+  groups of bodies.
+- **MuJoCo** has its defaults except for the integrator: `Euler` (its default), `implicit` or `RK4`. Newer versions
+  than that of Debian 12, and other settings of solver and contacts, can be better.
 - Errors are differences from the closed form; those below 1e-9 are rounding. The least are bold. `none`: the engine
   diverged, or there was nothing to measure.
 - These are small experiments that have an exact answer. They do not show how an engine deals with many bodies.
@@ -148,8 +148,8 @@ build/release/bin/cross_check          # all experiments
 build/release/bin/cross_check slope    # one
 ```
 
-A build that has not found MuJoCo says so when CMake runs, and its tests skip the rows of MuJoCo. The tests `CrossCheck`
-hold Shoal to bars in these experiments.
+A build that has not found MuJoCo says so when CMake runs, and its tests skip the rows of MuJoCo. The tests
+`CrossCheck` hold Shoal to bars in these experiments.
 
 ## Errors
 
@@ -165,39 +165,41 @@ In how many of these quantities Shoal with its defaults has a smaller, an equal 
 constexpr const char* where_better = R"(
 ### Where MuJoCo is better
 
-- **Joints.** MuJoCo computes in joint coordinates: joints cannot come apart, and with any of its integrators a pendulum
-  has a period that is hundreds of times more accurate. In Shoal a joint is a constraint between two bodies (ODE), which
-  drifts and is corrected: at 5 ms the hinge of the double pendulum gaps by millimetres, and the wide pendulum loses 3 %
-  of its energy in 30 s, or 29 % with the quick solver. Robots with fast joints need a step of 1 ms.
-- **RK4.** Where nothing touches, MuJoCo's Runge-Kutta integrator is exact to many digits, at four times the cost of its
-  Euler step. Shoal has no step of that order.
+- **Joints.** MuJoCo computes in joint coordinates: joints cannot come apart, and with any of its integrators a
+  pendulum has a period that is hundreds of times more accurate. In Shoal a joint is a constraint between two bodies
+  (ODE), which drifts and is corrected: at 5 ms the hinge of the double pendulum gaps by millimetres, and the wide
+  pendulum loses 3 % of its energy in 30 s, or 29 % with the quick solver. Robots with fast joints
+  need a step of 1 ms.
+- **RK4.** Where nothing touches, MuJoCo's Runge-Kutta integrator is exact to many digits, at four times the cost of
+  its Euler step. Shoal has no step of that order.
 - **A fast top on a joint.** Both engines' steps of first order lose it, Shoal's by sinking; only RK4 holds it.
-- **Stacks.** In Shoal the stack of five falls through the ground with the default solver: ODE's exact solver gives up on
-  its contacts ("LCP internal error", in the log at `--log-level debug`). The same can happen to other stacks of three or
-  more boxes. With `physics: {solver: quick}` the stack stands, and moves by up to millimetres in 10 s. MuJoCo's stands
-  still.
+- **Stacks.** In Shoal the stack of five falls through the ground with the default solver: ODE's exact solver gives up
+  on its contacts ("LCP internal error", in the log at `--log-level debug`). The same can happen to other stacks of
+  three or more boxes. With `physics: {solver: quick}` the stack stands, and moves by up to millimetres in 10 s.
+  MuJoCo's stands still.
 
 ### Where Shoal is better
 
 - **Free bodies**, by [Shoal's own step](rigid_bodies.md). A stone follows its parabola, and a tumbling body keeps its
   energy, its angular momentum and the direction of it, all to rounding, at half the cost of MuJoCo's Euler step. With
-  MuJoCo's Euler and implicit integrators a tumbling body gains or loses a fifth of its energy or more within a minute at
-  1 ms.
-- **Rest.** In Shoal a block stays on a slope. In MuJoCo friction is soft by default, and it creeps by almost 2 mm/s
-  (`noslip_iterations` is its remedy, not used here).
-- **Restitution** is a coefficient in Shoal, and hardly depends on the step. In MuJoCo it is a spring and a damper that the
-  step must resolve.
+  MuJoCo's Euler and implicit integrators a tumbling body gains or loses a fifth of its energy or more within a minute
+  at 1 ms.
+- **Rest.** In Shoal a block stays on a slope. In MuJoCo friction is soft by default, and the block creeps by almost
+  2 mm/s. Other settings mend it: with `impratio='10'` it creeps by 1.8 mm in 10 s, with `cone='elliptic'` and
+  `noslip_iterations='10'` by 0.002 mm, at 1.1 and 1.4 times the cost.
+- **Restitution** is a coefficient in Shoal, and hardly depends on the step. In MuJoCo it is a spring and a damper
+  that the step must resolve.
 
 ### Where neither is
 
-Both have a first-order error in contacts: bodies that slide, roll or bounce are wrong by about the distance of half a step;
-MuJoCo's RK4 reduces it where the contact itself does not change.
+Both have a first-order error in contacts: bodies that slide, roll or bounce are wrong by about the distance of half a
+step; MuJoCo's RK4 reduces it where the contact itself does not change.
 
 ## Cost
 
 CPU time of a step at 1 ms in microseconds, the least of three runs, on machine A of the
-[benchmarks](../develop/benchmarks.md), which is shared. It is that of the physics alone, without devices and messages.
-Timings differ from run to run; no test depends on them.
+[benchmarks](../develop/benchmarks.md), which is shared. It is that of the physics alone, without devices and
+messages. Timings differ from run to run; no test depends on them.
 
 )";
 
