@@ -4,7 +4,6 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cstdarg>
 #include <cstdio>
 #include <cstdlib>
@@ -18,7 +17,7 @@
 namespace sim {
 namespace {
 
-std::atomic<std::int64_t> message_count = 0;
+thread_local std::int64_t message_count = 0;
 
 std::string formatted(const char* text, va_list arguments) {
   char buffer[512];
@@ -26,7 +25,7 @@ std::string formatted(const char* text, va_list arguments) {
   return buffer;
 }
 
-// "LCP internal error, s <= 0" occurs hundreds of times in stable stacks of boxes, so that only the first is logged.
+// "LCP internal error, s <= 0" occurs hundreds of times in stacks of boxes, so that only the first is logged.
 void on_message(int, const char* text, va_list arguments) {
   if (message_count++ == 0) spdlog::debug("ODE: {} (further messages are only counted)", formatted(text, arguments));
 }

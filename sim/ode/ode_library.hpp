@@ -11,7 +11,8 @@ namespace sim {
 /// Starts ODE once per process, and turns its errors into exceptions (PhysicsFault) instead of abort().  Call before
 /// any other use of ODE; further calls are cheap.
 void start_ode();
-/// Number of messages that ODE has printed in this process.
+/// Number of messages of ODE in this thread.  In a step there is one kind: the exact solver gave up on an island, whose
+/// forces are then incomplete.
 std::int64_t ode_messages();
 
 struct WorldDeleter {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "sim/base/free_numbers.hpp"
+#include "sim/ode/body_copy.hpp"
 #include "sim/ode/ode_library.hpp"
 #include "sim/ode/part_shape.hpp"
 #include "sim/physics/collider.hpp"
@@ -57,6 +58,7 @@ struct PhysicsWorld::Impl {
   SceneMoves moves;
   std::unique_ptr<WorldScene> scene;
   std::vector<Body*> lone_;             // bodies without contacts and joints in this step
+  std::vector<BodyCopy> before_step_;   // of the bodies that the exact solver steps
   std::vector<dBodyID> large_, small_;  // bodies by the rows of their islands; buffers reused in each step
   StepCounts counts;
   std::int64_t quick_steps = 0;
@@ -80,7 +82,8 @@ struct PhysicsWorld::Impl {
   void collide();
   void solve(std::int64_t step_number);
   bool step_lone_bodies();
-  void step_islands_by_size();
+  void step_islands_by_size(std::int64_t step_number);
+  void step_exactly(std::int64_t step_number);
   std::string suspects();
   void finish(std::int64_t step_number);
   bool out_of_bounds(const Body& body) const;

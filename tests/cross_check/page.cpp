@@ -173,10 +173,9 @@ constexpr const char* where_better = R"(
 - **RK4.** Where nothing touches, MuJoCo's Runge-Kutta integrator is exact to many digits, at four times the cost of
   its Euler step. Shoal has no step of that order.
 - **A fast top on a joint.** Both engines' steps of first order lose it, Shoal's by sinking; only RK4 holds it.
-- **Stacks.** In Shoal the stack of five falls through the ground with the default solver: ODE's exact solver gives up
-  on its contacts ("LCP internal error", in the log at `--log-level debug`). The same can happen to other stacks of
-  three or more boxes. With `physics: {solver: quick}` the stack stands, and moves by up to millimetres in 10 s.
-  MuJoCo's stands still.
+- **Stacks.** ODE's exact solver gives up on many steps of stacks of three or more boxes ("LCP internal error", in the
+  log at `--log-level debug`); Shoal then takes the step back and makes it with the quick solver, at up to ten times the
+  time of a step. Higher stacks are pressed by millimetres.
 
 ### Where Shoal is better
 

@@ -207,7 +207,9 @@ std::string Summary::to_text() const {
     text += fmt::format("  {:.2f} s of it here, from {}; metrics count from {:.2f} s\n", stepped_s, snapshot, from_s);
   if (branch > 0) text += fmt::format("  branch {}: the run was rewound\n", branch);
   if (quick_steps > 0)
-    text += fmt::format("  {} steps used QuickStep because an island of bodies was too large\n", quick_steps);
+    text += fmt::format(
+        "  {} steps used QuickStep, for islands of bodies that are too large or that ODE's exact solver gave up\n",
+        quick_steps);
   // Modems and serial ports.
   if (acoustics) {
     text += fmt::format("  acoustic packets: {} sent, {} received", acoustics->sent, acoustics->received);
