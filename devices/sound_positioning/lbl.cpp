@@ -22,17 +22,27 @@ void Lbl::Params::read(sim::ParamReader& in) {
   in.read("ping_period_s", ping_period_s, sim::between(0.01, 1e4), "between two pings, at least");
   in.read("assumed_sound_speed_mps", assumed_sound_speed_mps, sim::between(100, 10000),
           "speed of sound that converts times to ranges; unset: the true one at the sensor");
+  in.read("assumed_water", assumed_water,
+          "water of which the user knows: ranges are those of first arrivals through it; unset: straight lines");
   in.read("answer_dropout", answer_dropout, sim::between(0, 1),
           "probability that an answer is missed, drawn for each answer");
   in.read("time_noise", time_noise, "error of each two-way travel time, s");
 }
 
 Lbl::Lbl(const Params& params, const sim::DeviceContext& context)
-    : params_(params), interrogator_(params.interrogator, context), time_noise_(context, params) {}
+    : params_(params), interrogator_(params.interrogator, context), time_noise_(context, params) {
+  assume();
+}
 
 void Lbl::change(const Params& params) {
   params_ = params;
   interrogator_.change(params.interrogator);
+  assume();
+}
+
+void Lbl::assume() {
+  assumed_.reset();
+  if (params_.assumed_water) assumed_.emplace(*params_.assumed_water);
 }
 
 void Lbl::measure(const sim::SenseContext& context) {
@@ -40,6 +50,8 @@ void Lbl::measure(const sim::SenseContext& context) {
   const sim::Medium& medium = context.world.medium();
   const sim::Vector3d& p_WS = context.X_WS.translation();
   assumed_mps_ = params_.assumed_sound_speed_mps.value_or(medium.sound_speed_mps(p_WS));
+  R_WS_ = context.X_WS.linear();
+  depth_m_ = medium.depth_m(p_WS);
   if (asking_ && interrogator_.done(context.now)) collect();
   if (asking_ || context.now < next_ping_ || !medium.in_water(p_WS)) return;
   next_ping_ = context.now + sim::from_seconds(params_.ping_period_s);
@@ -49,11 +61,12 @@ void Lbl::measure(const sim::SenseContext& context) {
 
 void Lbl::collect() {
   asking_ = false;
-  for (const std::string& name : interrogator_.requested()) ranges_.push_back({name, no_answer, no_answer});
+  for (const std::string& name : interrogator_.requested()) ranges_.push_back({name, no_answer, no_answer, 0});
   for (const Interrogator::Answer& answer : interrogator_.take_answers()) {
     const auto range = std::find_if(ranges_.begin(), ranges_.end(),
                                     [&](const Range& each) { return each.transponder == answer.transponder; });
-    if (range != ranges_.end()) *range = {answer.transponder, answer.two_way_s, answer.distance_m};
+    if (range != ranges_.end())
+      *range = {answer.transponder, answer.two_way_s, answer.distance_m, depth_m_ - (R_WS_ * answer.p_ST_S).z()};
   }
 }
 
@@ -68,7 +81,8 @@ void Lbl::disturb(double dt_s, sim::Random& random) {
     time_noise_.apply(range.travel_time_s, since_ping_s_, random);
     since_ping_s_ = 0;
     range.travel_time_s = std::max(range.travel_time_s, 0.0);
-    range.range_m = range.travel_time_s / 2 * assumed_mps_;
+    const double one_way_s = range.travel_time_s / 2;
+    range.range_m = assumed_ ? assumed_->distance_m(depth_m_, range.depth_m, one_way_s) : one_way_s * assumed_mps_;
   }
 }
 

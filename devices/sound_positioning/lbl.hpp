@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "devices/sound_positioning/assumed_water.hpp"
 #include "devices/sound_positioning/interrogator.hpp"
 #include "sim/random/noise.hpp"
 
@@ -21,6 +22,7 @@ class Lbl final : public sim::Sensor {
     InterrogatorParams interrogator{.network = "lbl", .range_max_m = 3000};
     double ping_period_s = 5;
     std::optional<double> assumed_sound_speed_mps;
+    std::optional<sim::WaterConfig> assumed_water;  ///< first arrivals through it give ranges from times
     double answer_dropout = 0;
     sim::NoiseParams time_noise;  ///< s
     void read(sim::ParamReader& in);
@@ -29,9 +31,11 @@ class Lbl final : public sim::Sensor {
   struct Range {
     std::string transponder;
     double travel_time_s = 0, range_m = 0;  ///< NaN: no answer
+    double depth_m = 0;                     ///< of the transponder; the user knows where it is moored
     void visit_state(sim::StateArchive& archive) {
       archive(transponder);
       archive.not_only_finite(travel_time_s, range_m);
+      archive.unhashed(depth_m);
     }
   };
 
@@ -47,15 +51,19 @@ class Lbl final : public sim::Sensor {
 
  private:
   void collect();
+  void assume();
 
   Params params_;
   Interrogator interrogator_;
+  std::optional<AssumedWater> assumed_;  ///< of `assumed_water`
   sim::NoiseOf<&Params::time_noise> time_noise_;
   bool asking_ = false;
   sim::Time next_ping_{0};
   std::vector<Range> ranges_;
-  double assumed_mps_ = 0;   ///< sound speed used for the ranges of this sample
-  double since_ping_s_ = 0;  ///< interval for the slowly varying errors
+  double assumed_mps_ = 0;                          ///< sound speed used for the ranges of this sample
+  sim::Matrix3d R_WS_ = sim::Matrix3d::Identity();  ///< attitude at this sample
+  double depth_m_ = 0;                              ///< of the sensor at this sample
+  double since_ping_s_ = 0;                         ///< interval for the slowly varying errors
 };
 
 }  // namespace devices

@@ -6,8 +6,6 @@
 
 #include "shoal/message_codec.hpp"
 #include "shoal/usbl_t.hpp"
-#include "sim/acoustics/rays/eigenrays.hpp"
-#include "sim/medium/water_column.hpp"
 #include "sim/world/world.hpp"
 
 namespace devices {
@@ -43,13 +41,7 @@ void Usbl::change(const Params& params) {
 
 void Usbl::assume() {
   assumed_.reset();
-  if (!params_.assumed_water) return;
-  constexpr double deepest_m = 12000, gravity_mps2 = 9.80665;
-  const sim::WaterColumn column(*params_.assumed_water, gravity_mps2);
-  std::vector<double> rows_m;
-  for (const sim::WaterLayerConfig& row : params_.assumed_water->profile) rows_m.push_back(row.depth_m);
-  assumed_ =
-      sim::SoundProfile::fitted([&](double depth_m) { return column.sound_speed_mps(depth_m); }, rows_m, deepest_m);
+  if (params_.assumed_water) assumed_.emplace(*params_.assumed_water);
 }
 
 /// Replaces range and direction by those of the place which a ray back through the assumed water reaches in the time.
@@ -57,7 +49,7 @@ void Usbl::follow_ray(Fix& fix) const {
   const sim::Vector3d towards_W = R_WS_ * fix.position_S().normalized();
   const double level = towards_W.head<2>().norm();
   const sim::RayPlace place =
-      sim::ray_place(*assumed_, depth_m_, std::atan2(towards_W.z(), level), fix.range_m / assumed_mps_);
+      sim::ray_place(assumed_->profile(), depth_m_, std::atan2(towards_W.z(), level), fix.range_m / assumed_mps_);
   sim::Vector3d p_W(0, 0, depth_m_ - place.depth_m);
   if (level > 0) p_W.head<2>() = towards_W.head<2>() / level * place.range_m;
   const sim::Vector3d p_S = R_WS_.transpose() * p_W;

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "devices/sound_positioning/assumed_water.hpp"
 #include "devices/sound_positioning/interrogator.hpp"
-#include "sim/acoustics/rays/sound_profile.hpp"
 #include "sim/medium/medium_config.hpp"
 #include "sim/random/noise.hpp"
 
@@ -58,7 +58,7 @@ class Usbl final : public sim::Sensor {
 
   Params params_;
   Interrogator interrogator_;
-  std::optional<sim::SoundProfile> assumed_;  ///< of `assumed_water`
+  std::optional<AssumedWater> assumed_;  ///< of `assumed_water`
   sim::NoiseOf<&Params::range_noise> range_noise_;
   sim::NoiseOf<&Params::azimuth_noise> azimuth_noise_;
   sim::NoiseOf<&Params::elevation_noise> elevation_noise_;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gmock/gmock.h>
 
+#include <cmath>
+
 #include "shoal/lbl_t.hpp"
 #include "sim/world/world_editor.hpp"
 #include "tests/devices/ranging/ranging_fixture.hpp"
@@ -41,6 +43,34 @@ TEST(Lbl, RequestsANetOfTransponders) {
   }
   // Beyond 3000 m it does not receive.
   EXPECT_TRUE(std::isnan(all[0].travel_time_s[3]) && std::isnan(all[0].range_m[3]));
+}
+
+TEST(Lbl, RangesThroughAThermoclineAreLongUnlessTheWaterIsKnown) {
+  const std::string water =
+      "{profile: [{depth_m: 0, sound_speed_mps: 1515.80}, {depth_m: 20, sound_speed_mps: 1516.12}, "
+      "{depth_m: 40, sound_speed_mps: 1483.07}, {depth_m: 200, sound_speed_mps: 1485.68}]}";
+  const auto ranges_with = [&](const std::string& keys, lbl_t& truth) {
+    std::string world = lbl_world(keys, mooring("a", "[1000, 0, -50]") + mooring("b", "[0, -400, -120]"));
+    const std::string uniform = "{surface_m: 0, sound_speed_mps: 1500}";
+    world.replace(world.find(uniform), uniform.size(), water);
+    test::TestWorld test(world);
+    test::Listener<lbl_t> reports(test, "r1.s"), truths(test, "r1.s.truth");
+    test.run_for(4.5);
+    truth = truths.last();
+    return reports.last();
+  };
+  lbl_t truth{};
+  const lbl_t plain = ranges_with("", truth), known = ranges_with(", assumed_water: " + water, truth);
+  EXPECT_NEAR(truth.range_m[0], std::hypot(1000, 40), 1e-6);
+  EXPECT_GT(plain.range_m[0], truth.range_m[0] + 3);
+  for (std::size_t i = 0; i < 2; ++i) EXPECT_NEAR(known.range_m[i], truth.range_m[i], 0.002);  // two times in whole us
+  // Water that is known with an error: 1 m/s of 1500 is 0.7 m at 1 km.
+  const lbl_t faster = ranges_with(
+      ", assumed_water: {profile: [{depth_m: 0, sound_speed_mps: 1516.80}, {depth_m: 20, "
+      "sound_speed_mps: 1517.12}, {depth_m: 40, sound_speed_mps: 1484.07}, {depth_m: 200, "
+      "sound_speed_mps: 1486.68}]}",
+      truth);
+  EXPECT_NEAR(faster.range_m[0] - truth.range_m[0], 0.67, 0.05);
 }
 
 TEST(Lbl, ReportsAsSoonAsAllHaveAnsweredAndPingsAgainAfterItsPeriod) {
