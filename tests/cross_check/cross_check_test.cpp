@@ -54,7 +54,8 @@ const std::map<std::string, Bars>& bars() {
       {"bounce", {{0.0045, 0.0045, 0.006}, {0.022, 0.022, 0.03}}},
       // v h / 2 of semi-implicit Euler at 4.8 m/s.
       {"rolling", {{0.0026, 0.0026}, {0.0125, 0.0125}}},
-      // Five times the layer of 0.5 mm in which contacts stay, and jitter of the iterative solver, which steps where the
+      // Five times the layer of 0.5 mm in which contacts stay, and jitter of the iterative solver, which steps where
+      // the
       // exact one gives up.
       {"stack", {{0.003, 1, 10}, {0.003, 10, 50}}},
   };

@@ -128,7 +128,8 @@ std::string warnings_html(const RunRecord& run) {
   warn(run.dropped_messages, "messages were lost in full queues or refused by LCM.");
   warn(run.modem_dropped_messages, "messages were dropped from full queues of modems.");
   warn(run.bad_messages, "messages were received and not usable.");
-  warn(run.quick_steps, "steps used QuickStep, for islands of bodies that are too large or that ODE's exact solver gave up.");
+  warn(run.quick_steps,
+       "steps used QuickStep, for islands of bodies that are too large or that ODE's exact solver gave up.");
   const auto failed = [](const RunRecord::Process& process) { return process.failed; };
   if (run.judgement == Judgement::not_judged && std::any_of(run.processes.begin(), run.processes.end(), failed))
     warnings.emplace_back("Programs of the world failed.");
