@@ -77,6 +77,7 @@ class Propagation {
   struct Arrivals;
   Arrivals arrivals(const Vector3d& from_W, const Vector3d& to_W, double frequency_Hz) const;
   std::vector<SoundRay> rays_between(const Vector3d& from_W, const Vector3d& to_W) const;
+  bool is_at_edge_of_shadow(const Vector3d& from_W, const Vector3d& to_W, double frequency_Hz) const;
   /// As gain() without fading.  `direct`: gain of rays without a bounce due to an obstacle.
   Gain gain_of_rays(const Vector3d& from_W, const Vector3d& to_W, double frequency_Hz, Decibels direct,
                     Random& random) const;

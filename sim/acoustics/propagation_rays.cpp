@@ -3,6 +3,8 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
+#include <vector>
 
 #include "sim/acoustics/propagation.hpp"
 #include "sim/acoustics/ray_paths.hpp"
@@ -102,6 +104,23 @@ std::vector<SoundRay> Propagation::rays_between(const Vector3d& from_W, const Ve
   return rays;
 }
 
+/// Whether a ray misses an end by less than half of sqrt(wavelength x range), the width of the zone in which a wave is
+/// not yet dark (the first Fresnel zone half-way is as wide).
+bool Propagation::is_at_edge_of_shadow(const Vector3d& from_W, const Vector3d& to_W, double frequency_Hz) const {
+  const double wavelength_m = medium_.sound_speed_mps(to_W) / frequency_Hz;
+  const double near_m = 0.5 * std::sqrt(wavelength_m * (to_W - from_W).norm());
+  const double surface_m = medium_.still_surface_m();
+  const auto arrives_without_bounce = [&](Vector3d source_W, Vector3d receiver_W) {
+    source_W.z() = std::min(source_W.z(), surface_m);
+    receiver_W.z() = std::min(receiver_W.z(), surface_m);
+    const std::vector<SoundRay> rays = rays_between(source_W, receiver_W);
+    return std::any_of(rays.begin(), rays.end(), [](const SoundRay& ray) { return ray.bounces() == 0; });
+  };
+  const Vector3d up_W = near_m * Vector3d::UnitZ();
+  return arrives_without_bounce(from_W, to_W + up_W) || arrives_without_bounce(from_W, to_W - up_W) ||
+         arrives_without_bounce(from_W + up_W, to_W) || arrives_without_bounce(from_W - up_W, to_W);
+}
+
 Propagation::Arrivals Propagation::arrivals(const Vector3d& from_W, const Vector3d& to_W, double frequency_Hz) const {
   Arrivals arrivals;
   const std::vector<SoundRay> rays = rays_between(from_W, to_W);
@@ -112,10 +131,19 @@ Propagation::Arrivals Propagation::arrivals(const Vector3d& from_W, const Vector
     arrivals.shadow = arrivals.shadow && ray.bounces() > 0;
   }
   // Sound that leaks into the shadow, along the straight line.
-  if (arrivals.shadow && config_.shadow_loss_dB) {
+  std::optional<double> loss_dB;
+  if (arrivals.shadow) {
+    loss_dB = config_.shadow_loss_dB;
+    if (is_at_edge_of_shadow(from_W, to_W, frequency_Hz)) {
+      constexpr double knife_edge_dB = 6;
+      loss_dB = std::min(knife_edge_dB, loss_dB.value_or(knife_edge_dB));
+      arrivals.shadow = false;
+    }
+  }
+  if (loss_dB) {
     PathGain leak;
     leak.delay_s = sim::travel_time_s(medium_, from_W, to_W);
-    leak.gain = -transmission_loss(from_W, to_W, frequency_Hz) - Decibels(*config_.shadow_loss_dB);
+    leak.gain = -transmission_loss(from_W, to_W, frequency_Hz) - Decibels(*loss_dB);
     const Vector3d displacement_W = to_W - from_W;
     const double elevation_rad = std::atan2(displacement_W.z(), displacement_W.head<2>().norm());
     arrivals.paths.push_back(leak);

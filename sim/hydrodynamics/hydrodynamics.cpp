@@ -188,14 +188,15 @@ void Hydrodynamics::step_crafts() {
       continue;
     }
     Matrix3d R_WB = around.motion.R_WB;
-    if (body.alone()) {  // backward Euler starts where the body is
+    const bool was_alone = body.alone();
+    if (stiff) body.take_first_order_step(step_s_);
+    if (was_alone) {  // backward Euler starts where the body is
       BodyInWater at_start = around;
       at_start.motion = body.motion();
       R_WB = at_start.motion.R_WB;
       at_start.w_B = R_WB.transpose() * at_start.motion.w_WB_W;
       at_start.v_B = R_WB.transpose() * (at_start.motion.v_WB_W - at_start.water.velocity_W);
       state = state_of(model, at_start);
-      body.take_first_order_step();
     }
     const Vector6d tau = applied_to(body, model, R_WB);
     const Vector6d nu_dot = stiff ? model.stiff_acceleration(state, tau, step_s_) : model.acceleration(state, tau);

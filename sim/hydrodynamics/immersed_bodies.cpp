@@ -125,7 +125,12 @@ void ImmersedBodies::step_body(const ImmersedBody& body, double gravity_mps2, co
   if (!sum.wet) return;
   add_wind(body, sum);
   if (body.stiff && sum.afloat) add_stiffness(body, at_origin, sum);
-  apply(*body.body, gravity_mps2, sum);
+  if (!apply(*body.body, gravity_mps2, sum)) {
+    body.body->take_first_order_step(step_s_);
+    BodyInWater at_start = around;
+    at_start.motion = body.body->motion();
+    step_body(body, gravity_mps2, at_start);
+  }
 }
 
 /// Adds the spring forces at the end of the step, for heave and for rotation about horizontal axes.  Heave is damped
@@ -151,8 +156,8 @@ void ImmersedBodies::add_stiffness(const ImmersedBody& body, const LocalWater& w
 }
 
 /// Applies the sum to the body.  ODE has no added mass: the acceleration is solved with added mass, and the force that
-/// gives it to the rigid body is applied.
-void ImmersedBodies::apply(Body& body, double gravity_mps2, const Wrench& sum) {
+/// gives it to the rigid body is applied.  Returns false, and does nothing, when drag is too stiff for forces half-way.
+bool ImmersedBodies::apply(Body& body, double gravity_mps2, const Wrench& sum) {
   const double mass = body.mass_kg();
   const Matrix3d I_W = sum.R_WB * body.inertia_C_B() * sum.R_WB.transpose();
   const Vector3d weight(0, 0, -mass * gravity_mps2);  // ODE adds the weight, and the gyroscopic torque below
@@ -164,14 +169,16 @@ void ImmersedBodies::apply(Body& body, double gravity_mps2, const Wrench& sum) {
   const Vector3d dw = step_s_ * (sum.R_WB.transpose() * f.tail<3>()).cwiseAbs().cwiseQuotient(inertia);
   Vector6d a;
   if (drag_.too_stiff(mass + sum.added_kg, inertia, dv, dw, step_s_)) {
+    if (body.alone()) return false;
     a = drag_.acceleration(sum.mass_matrix(mass, I_W), f, step_s_);
-    body.take_first_order_step();
+    body.take_first_order_step(step_s_);
   } else {
     f.head<3>() += drag_.force_N();
     f.tail<3>() += drag_.torque_Nm();
     a = sum.acceleration(mass, I_W, f);
   }
   body.set_applied_W(mass * a.head<3>() - weight, I_W * a.tail<3>() + gyroscopic);
+  return true;
 }
 
 Matrix6d ImmersedBodies::Wrench::mass_matrix(double mass_kg, const Matrix3d& I_W) const {

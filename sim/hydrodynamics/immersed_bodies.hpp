@@ -46,7 +46,7 @@ class ImmersedBodies {
   void add_piece(const ImmersedPiece& piece, double gravity_mps2, const LocalWater& at_origin, Wrench& sum);
   WaterPlane surface_at(const ImmersedPiece& piece, const Vector3d& p_WP, const LocalWater& water) const;
   void add_stiffness(const ImmersedBody& body, const LocalWater& water, Wrench& sum) const;
-  void apply(Body& body, double gravity_mps2, const Wrench& sum);
+  bool apply(Body& body, double gravity_mps2, const Wrench& sum);
   void add_wind(const ImmersedBody& body, const Wrench& sum);
 
   const Medium& medium_;

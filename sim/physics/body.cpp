@@ -152,6 +152,7 @@ void Body::set_velocity_W(const Vector3d& v_WB_W, const Vector3d& w_WB_W) {
   dBodySetAngularVel(ode_.get(), w_WB_W.x(), w_WB_W.y(), w_WB_W.z());
   a_WC_W_.setZero();
   alpha_B_.setZero();
+  last_step_ = LastStep::none;
 }
 
 void Body::set_gravity(bool on) {
@@ -196,7 +197,8 @@ void Body::visit_state(StateArchive& archive) {
     double force_N[3], torque_Nm[3];
     Pose::MatrixType seat_X_WB;
     Vector3d a_WC_W, alpha_B;
-    bool enabled, move_is_due, alone;
+    bool enabled, move_is_due;
+    LastStep last_step;
   } rest = {};
   // Copy the motion out of ODE, and visit it as one block.
   const auto each = [&](const auto& copy) {
@@ -216,8 +218,9 @@ void Body::visit_state(StateArchive& archive) {
   rest.move_is_due = move_is_due_;
   rest.a_WC_W = a_WC_W_;
   rest.alpha_B = alpha_B_;
-  rest.alone = alone_;
-  archive.unhashed(rest.force_N, rest.torque_Nm, rest.enabled, rest.move_is_due, rest.a_WC_W, rest.alpha_B, rest.alone);
+  rest.last_step = last_step_;
+  archive.unhashed(rest.force_N, rest.torque_Nm, rest.enabled, rest.move_is_due, rest.a_WC_W, rest.alpha_B,
+                   rest.last_step);
   if (kinematic()) archive.unhashed(rest.seat_X_WB);
   if (!archive.restoring()) return;
   // Check the restored numbers.
@@ -240,7 +243,7 @@ void Body::visit_state(StateArchive& archive) {
   move_is_due_ = rest.move_is_due;
   a_WC_W_ = rest.a_WC_W;
   alpha_B_ = rest.alpha_B;
-  alone_ = rest.alone && free() && !first_order_;
+  last_step_ = free() && rest.last_step <= LastStep::ode ? rest.last_step : LastStep::none;
 }
 
 void Body::place_fixed_geoms() {
@@ -275,7 +278,7 @@ void Body::add_gyroscopic_torque(double step_s) {
 void Body::step_alone(double step_s, double gravity_mps2) {
   const double h = step_s;
   const Matrix3d R_WB = rotation_to_eigen(R_WB_);
-  const Vector3d v_before_W = to_eigen(v_WC_W_), w_before_B = R_WB.transpose() * to_eigen(w_WB_W_);
+  Vector3d v_before_W = to_eigen(v_WC_W_), w_before_B = R_WB.transpose() * to_eigen(w_WB_W_);
   Vector3d force_W = applied_force_W(), torque_W = applied_torque_W();
   if (gravity_) force_W.z() -= mass_kg_ * gravity_mps2;
   const dReal* q = dBodyGetQuaternion(ode_.get());
@@ -293,9 +296,21 @@ void Body::step_alone(double step_s, double gravity_mps2) {
     const auto next = gyroscopic_ ? angular_velocity_after(inertia_C_B_, w_before_B, torque_B, h) : std::nullopt;
     w_B = next ? *next : w_before_B + h * inertia_C_B_.llt().solve(torque_B);  // or too fast for the step
   }
+  // Of a body that ODE stepped, the velocities are those half a step before its pose, see leave_to_ode().
+  const bool after_ode = last_step_ == LastStep::ode;
+  if (after_ode) {
+    const Vector3d half_B = (w_B - w_before_B) / 2;
+    w_before_B += half_B;
+    w_B += half_B;
+  }
   const Eigen::Quaterniond q_after = q_WB * cayley((w_before_B + w_B) / 2, h);
   if (planned_) v_W = q_after * v_C_B_at_end_ + carried_W_;
   v_W += h / mass_kg_ * force_W;
+  if (after_ode) {
+    const Vector3d half_W = (v_W - v_before_W) / 2;
+    v_before_W += half_W;
+    v_W += half_W;
+  }
   const Vector3d p_WC = to_eigen(p_WC_) + h / 2 * (v_before_W + v_W);
   // Write the motion into ODE.
   const dQuaternion q_ode = {q_after.w(), q_after.x(), q_after.y(), q_after.z()};
@@ -308,10 +323,26 @@ void Body::step_alone(double step_s, double gravity_mps2) {
   dBodySetTorque(ode_.get(), 0, 0, 0);
   a_WC_W_ = (v_W - v_before_W) / h;
   alpha_B_ = (w_B - w_before_B) / h;
+  last_step_ = LastStep::alone;
+}
+
+/// The step of ODE moves a body by the velocity at its end.  With a constant acceleration that is exact when the
+/// velocity is the one half a step before the pose, as in the leapfrog method; what ODE begins with and what it leaves
+/// are taken for such velocities.  Otherwise a body that bounces would gain about g h v with each contact.
+void Body::leave_to_ode(double step_s) {
+  if (last_step_ == LastStep::alone) {
+    const Vector3d w_B = rotation_to_eigen(R_WB_).transpose() * to_eigen(w_WB_W_) - step_s / 2 * alpha_B_;
+    const Vector3d v_W = to_eigen(v_WC_W_) - step_s / 2 * a_WC_W_, w_W = rotation_to_eigen(R_WB_) * w_B;
+    dBodySetLinearVel(ode_.get(), v_W.x(), v_W.y(), v_W.z());
+    dBodySetAngularVel(ode_.get(), w_W.x(), w_W.y(), w_W.z());
+  }
+  a_WC_W_.setZero();
+  alpha_B_.setZero();
+  last_step_ = LastStep::ode;
 }
 
 BodyMotion Body::motion_for_forces(double step_s) const {
-  if (!alone_) return motion();
+  if (!alone()) return motion();
   const double half_s = step_s / 2;
   const dReal* q = dBodyGetQuaternion(ode_.get());
   const Matrix3d R_WB_now = rotation_to_eigen(R_WB_);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -57,7 +58,7 @@ class Body : public VisitedInSteps {
   BodyMotion motion_for_forces(double step_s) const;
   /// Whether a free body had neither joints nor contacts in the last step; then its next step is of second order, see
   /// free_step.hpp.
-  bool alone() const { return alone_; }
+  bool alone() const { return last_step_ == LastStep::alone; }
   /// Velocity of a point fixed in the body, given in B.
   Vector3d velocity_at_W(const Vector3d& p_B) const;
 
@@ -76,13 +77,13 @@ class Body : public VisitedInSteps {
   /// the centre of mass relative to what moves with `carried_W`, and angular, both in axes of the body at its end.  The
   /// gyroscopic torque and gravity must be off.  Throws PhysicsFault when a number is not finite.
   void set_velocity_at_end(const Vector3d& v_C_B, const Vector3d& carried_W, const Vector3d& w_B, double step_s);
-  /// Makes the next step one of first order, for forces that are integrated for it.
-  void take_first_order_step() { first_order_now_ = true; }
-  /// The same for all steps.
-  void use_first_order() {
-    first_order_ = true;
-    alone_ = false;
+  /// Makes the next step one of ODE, for forces that are integrated for it; motion_for_forces() is then motion().
+  void take_first_order_step(double step_s) {
+    first_order_now_ = true;
+    leave_to_ode(step_s);
   }
+  /// The same for all steps.
+  void use_first_order() { first_order_ = true; }
   /// Sets the pose of the body frame.  The parts of a fixed or kinematic body move with it; bodies in contact with it
   /// see no velocity.  For a free body, only this body moves: PhysicsWorld::move_group moves the whole vehicle.
   void set_pose(const Pose& X_WB);
@@ -118,6 +119,7 @@ class Body : public VisitedInSteps {
   void end_kinematic_step();
   void add_gyroscopic_torque(double step_s);
   void step_alone(double step_s, double gravity_mps2);
+  void leave_to_ode(double step_s);
 
   // Members used in each step, adjacent in memory.
   BodyHandle ode_;
@@ -129,11 +131,12 @@ class Body : public VisitedInSteps {
   bool gyroscopic_ = true;
   Motion motion_ = Motion::free;
   bool move_is_due_ = false;  // move_to was called for the next step
-  bool alone_ = false;        // see alone()
   bool first_order_ = false;  // see use_first_order()
   bool gravity_ = true;
   bool first_order_now_ = false;  // see take_first_order_step()
   bool planned_ = false;          // set_velocity_at_end() was called for the next step
+  enum class LastStep : std::uint8_t { none, alone, ode };
+  LastStep last_step_ = LastStep::none;  // none: the velocities were set since
   int number_ = -1;
   int group_ = -1;
   Matrix3d inertia_C_B_ = Matrix3d::Zero();

@@ -163,7 +163,7 @@ void PhysicsWorld::Impl::solve(std::int64_t step_number) {
   const double step_s = config.step_s;
   const bool some_are_not_alone = step_lone_bodies();
   for (Body* body : moving)
-    if (body->gyroscopic_ && !body->alone_) body->add_gyroscopic_torque(step_s);
+    if (body->gyroscopic_ && !body->alone()) body->add_gyroscopic_torque(step_s);
   // Record the poses at the start of the step for the joint loads.
   for (Joint* joint : measured_joints) joint->note_before_step();
   // Select the solver.  WorldStep is exact and its cost grows with the cube of an island's rows; the selection depends
@@ -194,11 +194,9 @@ bool PhysicsWorld::Impl::step_lone_bodies() {
   std::size_t others = 0;
   for (Body* body : moving) {
     if (!body->free()) continue;
-    body->alone_ = !body->first_order_ && !body->first_order_now_ && islands.rows_of(body->number_) == 0;
-    if (!body->alone_) {
+    if (body->first_order_ || body->first_order_now_ || islands.rows_of(body->number_) > 0) {
       ++others;
-      body->a_WC_W_.setZero();
-      body->alpha_B_.setZero();
+      body->leave_to_ode(config.step_s);
     } else {
       body->step_alone(config.step_s, gravity_mps2);
       dBodyDisable(body->ode_.get());
@@ -217,7 +215,7 @@ void PhysicsWorld::Impl::step_islands_by_size(std::int64_t step_number) {
   large_.clear();
   small_.clear();
   for (const Body* body : moving)
-    if (!body->alone_)
+    if (!body->alone())
       (islands.rows_of(body->number_) > config.quick_above_rows ? large_ : small_).push_back(body->ode_.get());
   const auto step_all_but = [](const std::vector<dBodyID>& others, const auto& step) {
     for (const dBodyID body : others) dBodyDisable(body);

@@ -53,6 +53,8 @@ void World::step() {
   if (!parts.script) throw SnapshotError("the world was lost when a snapshot was restored");
   parts.in_step = true;
   parts.schedule.take_messages(parts.clock);
+  // Forces are those half-way through the step, see docs/models/rigid_bodies.md.
+  parts.medium.advance_to(now() + from_seconds(config_.physics.step_s / 2));
   parts.hydrodynamics->begin_step();
   parts.schedule.act(parts.clock, config_.physics.step_s);
   parts.hydrodynamics->step(parts.physics.gravity_mps2());

@@ -109,6 +109,21 @@ TEST(AcousticRays, AShadowTakesWhatTheStraightLineWouldDeliver) {
   EXPECT_EQ(send_one(straight).loss, SignalLoss::none);
 }
 
+TEST(AcousticRays, AWaveReachesTheEdgeOfAShadow) {
+  // Both ends at the depth of the highest speed, from which all rays bend away.  The ray that leaves level is 5 cm
+  // above at 100 m and 21 m at 2 km; half of sqrt(wavelength x range) is 1.2 m and 5.5 m at 25 kHz.
+  const auto both_at_20_m = [](double range_m) {
+    return vehicle("a", "[0, 0, -20]") + vehicle("b", "[" + std::to_string(range_m) + ", 0, -20]");
+  };
+  TestWorld near(thermocline("{}", both_at_20_m(100))),
+      straight(thermocline("{propagation: straight}", both_at_20_m(100)));
+  const Arrived heard = send_one(near);
+  EXPECT_EQ(heard.loss, SignalLoss::none);
+  EXPECT_NEAR(heard.level_dB, send_one(straight).level_dB - 6, 1e-6);
+  TestWorld far(thermocline("{}", both_at_20_m(2000)));
+  EXPECT_EQ(send_one(far).loss, SignalLoss::shadow);
+}
+
 TEST(AcousticRays, SoundLeaksIntoAShadowWithTheLossOfItsKey) {
   TestWorld straight(thermocline("{propagation: straight}", two_at(2300)));
   TestWorld leaks(thermocline("{shadow_loss_dB: 25}", two_at(2300)));

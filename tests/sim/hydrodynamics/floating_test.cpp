@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
 #include <numbers>
+#include <string>
 
 #include "sim/hydrodynamics/immersed_volume.hpp"
 #include "tests/fidelity/closed_forms.hpp"
@@ -110,6 +112,32 @@ TEST(Floating, AddedMassOfManyTimesTheMassIsStable) {
   test.run_for(60);
   EXPECT_NEAR(height(body_of(test)), 0.1, 0.05);
   EXPECT_LT(body_of(test).v_WB_W().norm(), 0.05);
+}
+
+TEST(Floating, LightFoamComesToRestThoughItsStepsChange) {
+  // Some of its steps are integrated by ODE for their drag, others are those of a free body.
+  for (const double density_kgpm3 : {50, 60}) {
+    TestWorld test(
+        floating_world("[{shape: box, size_m: [1, 0.6, 0.05], density_kgpm3: " + std::to_string(density_kgpm3) + "}]",
+                       "[0, 0, 0.3]", 0.02, ", rpy_deg: [20, 35, 0]"));
+    test.run_for(60);
+    // Drag by the square of a velocity leaves about 0.03 m/s after a minute.
+    EXPECT_LT(body_of(test).v_WB_W().norm(), 0.05) << density_kgpm3;
+    EXPECT_LT(body_of(test).w_WB_W().norm(), 0.1) << density_kgpm3;
+  }
+}
+
+TEST(Floating, InWavesTheStepIsOfSecondOrder) {
+  const auto place_with = [](double step_s) -> Vector3d {
+    TestWorld test("shoal: 1\nphysics: {step_s: " + sim::number_text(step_s) +
+                   "}\nmedium: {water: {density_kgpm3: 1000}, waves: {type: regular, height_m: 1, period_s: 4}}\n"
+                   "objects:\n  - {name: it, position_m: [0, 0, -2], parts: [{shape: sphere, radius_m: 0.1, "
+                   "density_kgpm3: 1000}]}\n");
+    test.run_for(10);
+    return body_of(test).X_WB().translation();
+  };
+  const Vector3d coarse = place_with(0.05), half = place_with(0.025), quarter = place_with(0.0125);
+  EXPECT_NEAR(std::log2((coarse - half).norm() / (half - quarter).norm()), 2, 0.2);
 }
 
 TEST(Floating, WhatDisplacesNothingFalls) {

@@ -104,7 +104,7 @@ TEST(InWaves, ASubmergedBodyGoesWithTheWater) {
 }
 
 TEST(InWaves, TheStepsAreSmall) {
-  // Halving the step moves the boat by an error of first order.
+  // The step is of second order; that the boat wets by pieces of panels disturbs it.
   const auto place_after = [](double step_s) -> Vector3d {
     TestWorld test(in_waves("height_m: 0.5, period_s: 4",
                             "position_m: [0, 0, 0.3], parts: [{shape: capsule, radius_m: 0.3, length_m: 2, rpy_deg: "
@@ -115,7 +115,7 @@ TEST(InWaves, TheStepsAreSmall) {
   };
   const Vector3d coarse = place_after(0.02), middle = place_after(0.01), fine = place_after(0.005);
   EXPECT_LT((coarse - fine).norm(), 0.1);
-  EXPECT_NEAR((coarse - middle).norm() / (middle - fine).norm(), 2, 0.7);
+  EXPECT_NEAR((coarse - middle).norm() / (middle - fine).norm(), 4, 1);
 }
 
 }  // namespace
