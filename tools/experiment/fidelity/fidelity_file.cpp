@@ -52,7 +52,7 @@ struct GroupEntry {
     if (const sim::ConfigNode* node = in.has("vehicle") ? in.child("vehicle") : nullptr) vehicle_place = node->place;
     in.read_raw("world", world, "dotted path: value, such as `physics.gravity_mps2: 9.82`");
     in.read_raw("overrides", overrides, "dotted path: value, changes of the vehicle");
-    in.read("step_s", step_s, sim::above(0), "time step");
+    in.read("step_s", step_s, sim::above(0), "time step; the comparison extrapolates from it and half of it to step zero");
     in.read_list("inputs", inputs, "input", "how columns command devices");
     in.read("bars", bars, "largest differences");
     in.read_list("cases", cases, "case", "trajectories");
@@ -84,7 +84,7 @@ void append(sim::ConfigNode& to, const sim::ConfigNode& more) {
 FidelityBars over(const FidelityBars& bars, const FidelityBars& usual) {
   FidelityBars both = bars;
   for (const auto bar : {&FidelityBars::position_rms_m, &FidelityBars::position_max_m, &FidelityBars::velocity_rms_mps,
-                         &FidelityBars::heading_rms_deg})
+                         &FidelityBars::turn_rms_degps, &FidelityBars::heading_rms_deg})
     if (!(both.*bar)) both.*bar = usual.*bar;
   return both;
 }
@@ -106,6 +106,7 @@ void FidelityBars::read(sim::ParamReader& in) {
   in.read("position_rms_m", position_rms_m, sim::at_least(0), "root mean square of the distance");
   in.read("position_max_m", position_max_m, sim::at_least(0), "largest distance");
   in.read("velocity_rms_mps", velocity_rms_mps, sim::at_least(0), "root mean square of the velocity's difference");
+  in.read("turn_rms_degps", turn_rms_degps, sim::at_least(0), "root mean square of the angular rate's difference");
   in.read("heading_rms_deg", heading_rms_deg, sim::at_least(0), "root mean square of the yaw's difference");
 }
 
