@@ -52,7 +52,8 @@ struct GroupEntry {
     if (const sim::ConfigNode* node = in.has("vehicle") ? in.child("vehicle") : nullptr) vehicle_place = node->place;
     in.read_raw("world", world, "dotted path: value, such as `physics.gravity_mps2: 9.82`");
     in.read_raw("overrides", overrides, "dotted path: value, changes of the vehicle");
-    in.read("step_s", step_s, sim::above(0), "time step; the comparison extrapolates from it and half of it to step zero");
+    in.read("step_s", step_s, sim::above(0),
+            "time step; the comparison extrapolates from it and half of it to step zero");
     in.read_list("inputs", inputs, "input", "how columns command devices");
     in.read("bars", bars, "largest differences");
     in.read_list("cases", cases, "case", "trajectories");
