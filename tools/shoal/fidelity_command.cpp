@@ -22,15 +22,21 @@ struct FidelityArguments {
   std::optional<double> mutation;
 };
 
-/// Changes every coefficient, prints those that no case sees, and writes the page of all.
-void mutate(const FidelityArguments& arguments, const FidelityFile& file) {
+/// Changes every coefficient, prints those that a case should see and none does, and writes the page of all.  Returns
+/// true when there are none.
+bool mutate(const FidelityArguments& arguments, const FidelityFile& file) {
   const std::vector<FidelityMutation> mutations =
-      mutate_fidelity(file.cases, *arguments.mutation, [](const std::string& line) { std::cerr << line << '\n'; });
-  for (const FidelityMutation& mutation : mutations)
-    if (mutation.unseen()) std::cout << mutation.title << ": no case sees " << mutation.of.name << '\n';
+      mutate_fidelity(file, *arguments.mutation, [](const std::string& line) { std::cerr << line << '\n'; });
   if (!arguments.results.empty())
     write_fidelity_mutations(arguments.results,
                              fidelity_mutations_page(mutations, *arguments.mutation, arguments.cases));
+  bool all_seen = true;
+  for (const FidelityMutation& mutation : mutations) {
+    if (!mutation.unseen() || !mutation.without_effect.empty()) continue;
+    std::cout << mutation.vehicle << ": no case sees " << mutation.of.name << '\n';
+    all_seen = false;
+  }
+  return all_seen;
 }
 
 int fidelity(const FidelityArguments& arguments) {
@@ -65,7 +71,7 @@ int fidelity(const FidelityArguments& arguments) {
     for (const std::string& missed : result.missed) std::cout << result.of.name << ": missed " << missed << '\n';
   if (!arguments.results.empty()) write_fidelity_report(arguments.results, file.text, results, arguments.csv);
   // With a missed bar every change would seem to be seen.
-  if (passed && arguments.mutation) mutate(arguments, file);
+  if (passed && arguments.mutation) passed = mutate(arguments, file);
   return passed ? exit_ok : exit_failed;
 }
 
@@ -100,9 +106,10 @@ void add_fidelity_command(CLI::App& app, int& exit_code) {
   add_plugin_option(*command);
   // End of the help and action.
   command_line::set_help_end(*command,
-                             {{"shoal fidelity tests/fidelity/cases.yaml --case otter_turn --results results/otter"},
-                              {{0, "all cases are within their bounds"},
-                               {1, "a bound of a case was missed"},
+                             {{"shoal fidelity tests/fidelity/cases.yaml --case otter_turn --results results/otter",
+                               "shoal fidelity tests/fidelity/cases.yaml --mutate 0.05"},
+                              {{0, "all cases are within their bounds; with --mutate, each change is seen"},
+                               {1, "a bound of a case was missed, or no case sees a change of --mutate"},
                                {2, "wrong usage, or a mistake in a file"},
                                {4, "file error"}},
                               {"docs/models/fidelity.md says how to add cases."}});

@@ -49,8 +49,16 @@ struct FidelityCase {
   sim::SourcePlace place, vehicle_place;        ///< in the file of cases
 };
 
+/// Coefficient of a vehicle that changes no motion, and why.
+struct FidelityWithoutEffect {
+  std::string coefficient;  ///< `devices.port.position_m[0]`
+  std::string why;
+  void read(sim::ParamReader& in);
+};
+
 struct FidelityFile {
   std::string text;  ///< Markdown for the top of the report
+  std::vector<FidelityWithoutEffect> without_effect;
   std::vector<FidelityCase> cases;
 };
 

@@ -63,10 +63,12 @@ struct GroupEntry {
 struct CaseFile {
   int shoal = 1;
   std::string text;
+  std::vector<FidelityWithoutEffect> without_effect;
   std::vector<GroupEntry> groups;
   void read(sim::ParamReader& in) {
     in.read("shoal", shoal, sim::between(1, 1), "version of the format");
     in.read("text", text, "Markdown for the top of the report");
+    in.read_list("without_effect", without_effect, "coefficient", "coefficients that no case can see");
     in.require("groups");
     in.read_list("groups", groups, "group", "vehicles with their cases");
   }
@@ -103,6 +105,13 @@ void FidelityInput::read(sim::ParamReader& in) {
   if (!in.describing() && in.has("column") == in.has("fields")) in.error("one of 'column' and 'fields' must be given");
 }
 
+void FidelityWithoutEffect::read(sim::ParamReader& in) {
+  in.require("coefficient");
+  in.read("coefficient", coefficient, "its name in the table of `--mutate`");
+  in.require("why");
+  in.read("why", why, "why it changes no motion");
+}
+
 void FidelityBars::read(sim::ParamReader& in) {
   in.read("position_rms_m", position_rms_m, sim::at_least(0), "root mean square of the distance");
   in.read("position_max_m", position_max_m, sim::at_least(0), "largest distance");
@@ -123,7 +132,7 @@ FidelityFile read_fidelity_file(const std::string& path) {
   diagnostics.throw_if_any();
   // Merge each case with the defaults of its group.
   const std::filesystem::path folder = std::filesystem::path(path).parent_path();
-  FidelityFile result{file.text, {}};
+  FidelityFile result{file.text, file.without_effect, {}};
   for (const GroupEntry& group : file.groups)
     for (const CaseEntry& entry : group.cases) {
       FidelityCase of;

@@ -6,10 +6,12 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <optional>
 #include <set>
 
 #include "sim/config/message_text.hpp"
+#include "sim/model/hydrodynamics_config.hpp"
 #include "sim/ode/physics_fault.hpp"
 #include "sim/world_file/load_world.hpp"
 
@@ -69,6 +71,32 @@ void add_numbers(const std::string& path, const sim::ConfigNode& node, std::vect
   }
 }
 
+/// Returns the name of the derivative at the mirrored place of the added mass, N_vdot of Y_rdot; empty: it is on the
+/// diagonal, or no derivative by an acceleration.
+std::string mirrored_derivative(const std::string& name) {
+  if (name.size() != 6 || name[1] != '_' || !name.ends_with("dot")) return {};
+  const auto row = sim::derivative_rows.find(name[0]), column = sim::derivative_states.find(name[2]);
+  if (row == column || row == std::string_view::npos || column == std::string_view::npos) return {};
+  return {sim::derivative_rows[column], '_', sim::derivative_states[row], 'd', 'o', 't'};
+}
+
+/// Makes one coefficient of both derivatives of a mirrored pair.
+void join_mirrored(std::vector<FidelityCoefficient>& found) {
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const std::size_t dot = found[i].path.rfind('.');
+    const std::string mirrored = mirrored_derivative(found[i].path.substr(dot + 1));
+    if (mirrored.empty()) continue;
+    const auto other = std::find_if(found.begin(), found.end(), [&](const FidelityCoefficient& one) {
+      return one.path == found[i].path.substr(0, dot + 1) + mirrored;
+    });
+    if (other == found.end()) continue;
+    found[i].mirrored_path = other->path;
+    found[i].mirrored_value = other->value;
+    found[i].name += ", " + mirrored;
+    found.erase(other);
+  }
+}
+
 bool is_actuator_in_water(const std::string& type) {
   static const std::set<std::string> types{"thruster", "fin", "buoyancy_engine", "moving_mass", "body_wrench"};
   return types.contains(type);
@@ -82,20 +110,36 @@ std::string reason_in(const sim::ConfigError& error) {
   return start == std::string::npos ? line : line.substr(start + 3);
 }
 
+/// Returns the verdict of the first case that sees a change, and moves this case to the front.
+FidelityVerdict find_case(std::vector<const FidelityCase*>& order, const FidelityCoefficient& coefficient,
+                          double factor) {
+  for (auto of = order.begin(); of != order.end(); ++of) {
+    if (overrides_coefficient(**of, coefficient)) continue;
+    FidelityVerdict verdict = try_fidelity_mutation(**of, coefficient, factor);
+    if (!verdict.refused.empty()) return verdict;
+    if (verdict.seen_by.empty()) continue;
+    std::rotate(order.begin(), of, of + 1);
+    return verdict;
+  }
+  return {};
+}
+
 std::string cell_of(const FidelityVerdict& verdict) {
   if (!verdict.refused.empty()) return "refused";
-  return verdict.seen_by.empty() ? "**no case**" : verdict.seen_by;
+  return verdict.seen_by.empty() ? "no case" : verdict.seen_by;
 }
 
 }  // namespace
 
-std::string FidelityCoefficient::text_with(double factor) const {
+std::map<std::string, std::string> FidelityCoefficient::changes(double factor) const {
   std::string text;
   for (std::size_t i = 0; i < items.size(); ++i) {
     const bool changed = std::find(places.begin(), places.end(), i) != places.end();
     text += (i > 0 ? ", " : "") + (changed ? sim::number_text(factor * value) : items[i]);
   }
-  return list ? "[" + text + "]" : text;
+  std::map<std::string, std::string> all{{path, list ? "[" + text + "]" : text}};
+  if (!mirrored_path.empty()) all[mirrored_path] = sim::number_text(factor * mirrored_value);
+  return all;
 }
 
 bool FidelityMutation::unseen() const {
@@ -107,7 +151,8 @@ std::vector<FidelityCoefficient> fidelity_coefficients(const FidelityCase& of) {
   FidelityCase bare = of;
   bare.overrides = {};
   const std::string file = of.place.file != nullptr ? *of.place.file : of.name;
-  const sim::LoadedWorld loaded = sim::load_world_tree(fidelity_world(bare, read_fidelity_reference(of.reference)), file);
+  const sim::LoadedWorld loaded =
+      sim::load_world_tree(fidelity_world(bare, read_fidelity_reference(of.reference)), file);
   const sim::ConfigNode& vehicle = *loaded.config.vehicles.front().config->source;
   std::vector<FidelityCoefficient> found;
   if (const sim::ConfigNode* bodies = vehicle.find("bodies"); bodies != nullptr)
@@ -122,6 +167,7 @@ std::vector<FidelityCoefficient> fidelity_coefficients(const FidelityCase& of) {
     for (const sim::ConfigNode& device : devices->items)
       if (is_actuator_in_water(device.find("type")->scalar))
         add_numbers("devices." + *sim::name_of(device), device, found);
+  join_mirrored(found);
   return found;
 }
 
@@ -136,7 +182,7 @@ bool overrides_coefficient(const FidelityCase& of, const FidelityCoefficient& co
 
 FidelityVerdict try_fidelity_mutation(const FidelityCase& of, const FidelityCoefficient& coefficient, double factor) {
   FidelityOptions options;
-  options.overrides[coefficient.path] = coefficient.text_with(factor);
+  options.overrides = coefficient.changes(factor);
   options.until_missed = true;
   try {
     const FidelityResult result = run_fidelity_case(of, options);
@@ -149,74 +195,67 @@ FidelityVerdict try_fidelity_mutation(const FidelityCase& of, const FidelityCoef
   }
 }
 
-std::vector<FidelityMutation> mutate_fidelity(const std::vector<FidelityCase>& cases, double share,
+std::vector<FidelityMutation> mutate_fidelity(const FidelityFile& file, double share,
                                               const std::function<void(const std::string&)>& progress) {
   std::vector<FidelityMutation> mutations;
   std::set<std::string> done;
-  for (const FidelityCase& first : cases) {
+  for (const FidelityCase& first : file.cases) {
     if (!done.insert(first.vehicle).second) continue;
-    // The case that saw the last change is tried first.
     std::vector<const FidelityCase*> order;
-    for (const FidelityCase& of : cases)
+    for (const FidelityCase& of : file.cases)
       if (of.vehicle == first.vehicle) order.push_back(&of);
+    const std::string vehicle = std::filesystem::path(first.vehicle).stem().string();
     std::size_t unseen = 0, count = 0;
     for (const FidelityCoefficient& coefficient : fidelity_coefficients(first)) {
-      FidelityMutation mutation{coefficient, first.title, {}};
-      for (std::size_t side = 0; side < 2; ++side)
-        for (std::size_t i = 0; i < order.size(); ++i) {
-          if (overrides_coefficient(*order[i], coefficient)) continue;
-          FidelityVerdict& verdict = mutation.verdicts[side];
-          verdict = try_fidelity_mutation(*order[i], coefficient, side == 0 ? 1 - share : 1 + share);
-          if (verdict.seen_by.empty() && verdict.refused.empty()) continue;
-          if (verdict.refused.empty())
-            std::rotate(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(i),
-                        order.begin() + static_cast<std::ptrdiff_t>(i) + 1);
-          break;
-        }
+      FidelityMutation mutation{coefficient, vehicle, {}, {}};
+      mutation.verdicts = {find_case(order, coefficient, 1 - share), find_case(order, coefficient, 1 + share)};
+      for (const FidelityWithoutEffect& known : file.without_effect)
+        if (known.coefficient == coefficient.name) mutation.without_effect = known.why;
       if (mutation.unseen()) ++unseen;
       ++count;
       mutations.push_back(std::move(mutation));
     }
-    progress(fmt::format("{}: {} coefficients, unseen: {}", first.title, count, unseen));
+    progress(fmt::format("{}: coefficients: {}, seen by no case: {}", vehicle, count, unseen));
   }
   return mutations;
 }
 
 std::string fidelity_mutations_page(const std::vector<FidelityMutation>& mutations, double share,
                                     const std::string& cases) {
-  std::string page = fmt::format(
-      "# Which case sees which coefficient\n\nWritten by `shoal fidelity {} --mutate {:g} --results docs/models`.\n\n"
-      "Each number of each vehicle that has [coefficients](coefficients.md) is decreased and increased by {:g} %, one "
-      "at "
-      "a time.\nThe tables name a case that then misses a bar of [fidelity.md](fidelity.md).  Numbers that are 0, and "
-      "keys that the file\nleaves to their defaults, are not changed; a pair of a symmetric matrix changes "
-      "together.\n\n",
-      cases, share, 100 * share);
-  // What is not seen, and what is refused.
-  std::string unseen, refused;
+  const std::string percent = fmt::format("{:g} %", 100 * share);
+  std::string unseen, refused, tables, vehicle;
   for (const FidelityMutation& mutation : mutations) {
+    const std::string value = sim::number_text(mutation.of.value);
     if (mutation.unseen())
-      unseen +=
-          fmt::format("| {} | {} | {} |\n", mutation.title, mutation.of.name, sim::number_text(mutation.of.value));
+      unseen += fmt::format("| {} | {} | {} | {} |\n", mutation.vehicle, mutation.of.name, value,
+                            mutation.without_effect.empty() ? "a case is missing" : mutation.without_effect);
     for (std::size_t side = 0; side < 2; ++side)
       if (const std::string& why = mutation.verdicts[side].refused; !why.empty())
-        refused += fmt::format("| {} | {} | {}{:g} % | {} |\n", mutation.title, mutation.of.name, side == 0 ? "-" : "+",
-                               100 * share, why);
+        refused += fmt::format("| {} | {} | {} | {}{} | {} |\n", mutation.vehicle, mutation.of.name, value,
+                               side == 0 ? "-" : "+", percent, why);
+    if (mutation.vehicle != vehicle)
+      tables += fmt::format("\n## {}\n\n| coefficient | value | -{} | +{} |\n|---|---:|---|---|\n", mutation.vehicle,
+                            percent, percent);
+    vehicle = mutation.vehicle;
+    tables += fmt::format("| {} | {} | {} | {} |\n", mutation.of.name, value, cell_of(mutation.verdicts[0]),
+                          cell_of(mutation.verdicts[1]));
   }
-  page += "## What no case sees\n\n";
-  page += unseen.empty() ? "Nothing.\n\n" : "| vehicle | coefficient | value |\n|---|---|---:|\n" + unseen + "\n";
-  page += "## What a world refuses\n\n";
-  page += refused.empty() ? "Nothing.\n" : "| vehicle | coefficient | change | error |\n|---|---|---:|---|\n" + refused;
-  std::string title;
-  for (const FidelityMutation& mutation : mutations) {
-    if (mutation.title != title)
-      page += fmt::format("\n## {}\n\n| coefficient | value | -{:g} % | +{:g} % |\n|---|---:|---|---|\n",
-                          mutation.title, 100 * share, 100 * share);
-    title = mutation.title;
-    page += fmt::format("| {} | {} | {} | {} |\n", mutation.of.name, sim::number_text(mutation.of.value),
-                        cell_of(mutation.verdicts[0]), cell_of(mutation.verdicts[1]));
-  }
-  return page;
+  const auto table_or_none = [](const char* head, const std::string& rows) {
+    return rows.empty() ? std::string("None.\n") : head + rows;
+  };
+  return fmt::format(
+             "# Which case sees which coefficient\n\nWritten by `shoal fidelity {} --mutate {:g}`.\n\n"
+             "Each number of each vehicle file with [coefficients](coefficients.md) is decreased and increased by {}, "
+             "one at a\ntime; the tables name a case that then misses a bar of [fidelity.md](fidelity.md).  Numbers in "
+             "`hydrodynamics:` and in\nthrusters, fins, buoyancy engines, moving masses and wrenches are changed, "
+             "except "
+             "0 and keys that the file leaves to\ntheir defaults.  Both numbers of a pair of a symmetric matrix change "
+             "together.\n\n## Seen by no case\n\n",
+             cases, share, percent) +
+         table_or_none("| vehicle | coefficient | value | why |\n|---|---|---:|---|\n", unseen) +
+         "\n## Refused values\n\n" +
+         table_or_none("| vehicle | coefficient | value | change | error |\n|---|---|---:|---:|---|\n", refused) +
+         tables;
 }
 
 }  // namespace tools
