@@ -28,6 +28,20 @@ prints; a wrong type of an argument raises `TypeError`. A world, a client and a 
 at a time; others get a `shoal.Error`, and so does a forked process, which has to make its own. Ctrl-C ends a long step,
 a run and the waiting of a client.
 
+## Names of channels
+
+| who | a name that is close to one of the world | any other unknown name |
+|---|---|---|
+| `World.last`, `World.subscribe` | error that names it | one warning: it may be for messages of the program |
+| `World.publish` | error that names it | one warning, unless the program has subscribed to it |
+| actions and observations of `shoal.vector` | error that names it | error: only the world can send or receive here |
+| `read` | warning at the end of the record that names it | warning at the end of the record |
+| `table` | error that names it | error |
+| `Client` | none | none: on a network other programs may use it |
+
+The names of a world are the channels of its devices, of its events and metrics, and those on which the program has
+published.
+
 ## Programs for the classes of lcm-gen
 
 The package has the name of the one that `lcm-gen` makes of the `.lcm` files, and its classes: `shoal.imu_t` with
@@ -46,7 +60,8 @@ def heading(name, value, level):
     signature = inspect.signature(value)
     parameters = [each for each in signature.parameters.values() if each.name not in ('self', 'cls')]
     signature = signature.replace(parameters=parameters)
-    return f'{"#" * level} `{name}' + re.sub(r"(: |-> )'([^']*)'", r'\1\2', str(signature)) + '`'
+    text = re.sub(r"<class '(\w+)'>", r'\1', str(signature))
+    return f'{"#" * level} `{name}' + re.sub(r"(: |-> )'([^']*)'", r'\1\2', text) + '`'
 
 
 def escaped(kind):

@@ -29,6 +29,7 @@ struct Client::Connection {
   std::optional<std::int64_t> clock_utime;
   std::optional<std::int64_t> due_utime;
   End end = End::none;
+  std::string reason_to_leave;
 };
 
 namespace {
@@ -69,10 +70,14 @@ Client::Client(const std::string& name, const std::string& lcm_url)
 Client::~Client() {
   if (!connection_->joined || connection_->end == End::last_tick || connection_->end == End::dropped) return;
   try {
-    connection_->lcm.leave();
+    connection_->lcm.leave(connection_->reason_to_leave);
   } catch (const std::exception&) {
     // The world detects this after lockstep.timeout_s.
   }
+}
+
+void Client::set_reason_to_leave(const std::string& reason) {
+  connection_->reason_to_leave = reason;
 }
 
 void Client::subscribe_bytes(const std::string& channel, BytesHandler handler) {

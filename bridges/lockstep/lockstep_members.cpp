@@ -123,7 +123,13 @@ bool LockstepService::has(const std::string& client, int link) const {
 
 bool LockstepService::has_left(const std::string& client) const {
   const auto summary = summaries_.find(client);
-  return !lockstep_.has(client) && summary != summaries_.end() && summary->second.ended == left;
+  return !lockstep_.has(client) && summary != summaries_.end() && summary->second.ended.starts_with(left);
+}
+
+std::string LockstepService::reason_to_leave(const std::string& client) const {
+  const std::size_t start = std::char_traits<char>::length(left) + 2;  // behind the colon and the space
+  return has_left(client) && summaries_.at(client).ended.size() > start ? summaries_.at(client).ended.substr(start)
+                                                                        : "";
 }
 
 bool LockstepService::leave(int link, const shoal::sim_control_request_t& request) {
@@ -149,7 +155,8 @@ bool LockstepService::leave(int link, const shoal::sim_control_request_t& reques
   if (terms.session != 0 && !(answered && complete)) return false;
   // Remove the client.
   report_who_left(*member, link, terms);
-  discard(request.client, left);
+  const std::string reason = sim::printable(sim::shortened(terms.reason, 300));
+  discard(request.client, reason.empty() ? left : left + (": " + reason));
   return true;
 }
 
@@ -162,6 +169,9 @@ void LockstepService::report_who_left(const sim::LockstepMember& member, int lin
   if (terms.session == 0 && member.terms.session != 0)
     spdlog::warn("lockstep: a request without its session{} released {}; the world continues without it{}", at, called,
                  more);
+  else if (!terms.reason.empty())
+    spdlog::warn("lockstep: {} left{}: {}; the world continues without it{}", called, at,
+                 sim::printable(sim::shortened(terms.reason, 300)), more);
   else
     spdlog::info("lockstep: {} left{}{}", called, at, more);
 }

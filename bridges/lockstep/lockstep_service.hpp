@@ -95,6 +95,8 @@ class LockstepService {
   bool has(const std::string& client, int link) const;
   /// Returns whether a client has left the lockstep; false when it is in it, was dropped, or never joined.
   bool has_left(const std::string& client) const;
+  /// Returns the reason that a client gave when it left; empty: it gave none, or has not left.
+  std::string reason_to_leave(const std::string& client) const;
   bool empty() const { return lockstep_.empty(); }
   /// Returns the names of the clients in the lockstep, in order, separated by commas.
   std::string names() const;

@@ -384,7 +384,7 @@ void LockstepClient::send_ack() {
   send(ack_channel, shoal::encode(ack));
 }
 
-void LockstepClient::leave() {
+void LockstepClient::leave(const std::string& reason) {
   if (!joined_) return;
   const auto deadline = Clock::now() + time_to_leave;
   if (outbox_.is_open()) {
@@ -393,7 +393,7 @@ void LockstepClient::leave() {
   }
   joined_ = false;
   try {
-    request("leave", 0, text_of(sim::LeaveTerms{session_, sequence_}), deadline, false);
+    request("leave", 0, text_of(sim::LeaveTerms{session_, sequence_, reason}), deadline, false);
   } catch (const BusError&) {
     // The world detects it when it waits for this client.
   }

@@ -74,8 +74,9 @@ class LockstepClient {
   /// message, and in the other cases of End.
   bool next_tick(shoal::sim_tick_t& tick);
   void acknowledge(const shoal::sim_tick_t& tick);
-  /// Acknowledges the open tick, and requests to leave the lockstep.  Waits briefly for the confirmation.
-  void leave();
+  /// Acknowledges the open tick, and requests to leave the lockstep, for a reason that is reported unless it is empty.
+  /// Waits briefly for the confirmation.
+  void leave(const std::string& reason = {});
   /// Follows a run without lockstep: handle_message() requests to be listed in the last tick of the run, again for each
   /// run that is followed.
   void follow();

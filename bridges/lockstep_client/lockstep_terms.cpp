@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bridges/lockstep_client/lockstep_terms.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "bridges/base/bus_error.hpp"
+
 namespace bridges {
 namespace {
 
@@ -14,6 +16,18 @@ std::string quoted(const std::string& text) {
     out += c;
   }
   return out + '"';
+}
+
+/// Returns at most 300 bytes of a text, with spaces in place of control characters.
+std::string one_line(const std::string& text) {
+  constexpr std::size_t max_length = 300;
+  const auto within_character = [&](std::size_t at) { return at < text.size() && (text[at] & 0xc0) == 0x80; };
+  std::size_t length = std::min(text.size(), max_length);
+  while (length > 0 && within_character(length)) --length;
+  std::string line = text.substr(0, length);
+  for (char& c : line)
+    if (static_cast<unsigned char>(c) < ' ' || c == 0x7f) c = ' ';
+  return line;
 }
 
 }  // namespace
@@ -37,7 +51,10 @@ std::string text_of(const sim::LockstepTerms& terms) {
 }
 
 std::string text_of(const sim::LeaveTerms& terms) {
-  return "{session: " + std::to_string(terms.session) + ", acknowledged: " + std::to_string(terms.acknowledged) + "}";
+  std::string text =
+      "{session: " + std::to_string(terms.session) + ", acknowledged: " + std::to_string(terms.acknowledged);
+  if (!terms.reason.empty()) text += ", reason: " + quoted(one_line(terms.reason));
+  return text + "}";
 }
 
 std::string text_of(const sim::FollowTerms& terms) {

@@ -54,5 +54,5 @@ axes[1].fill_between(times, low, high, alpha=0.3, label='5 to 95 % of the runs')
 axes[1].plot(times, median, label='median')
 axes[1].set_xlabel('time in s')
 axes[1].set_ylabel('error in m')
-axes[1].legend()
+axes[1].legend(loc='upper left')  # errors grow to the right
 figure.savefig('dead_reckoning.png')

@@ -61,7 +61,9 @@ for name, label in [('cooperative.rms_m', 'with the messages that arrive'), ('od
     axes.errorbar(losses, medians, spread, marker='o', capsize=3, label=label)
     print(f'{name}: median ' + ', '.join(f'{median:.2f} m at {loss:g}' for loss, median in zip(losses, medians)))
 axes.set_yscale('log')
+axes.yaxis.set_major_formatter('{x:g}')
+axes.yaxis.set_minor_formatter('{x:g}')
 axes.set_xlabel('probability that a message is lost')
 axes.set_ylabel('rms error in m, median and 10 to 90 %')
-axes.legend()
+axes.legend(loc='lower center', bbox_to_anchor=(0.5, 1), ncols=2)  # above, where it hides nothing
 figure.savefig('slurm_sweep.png')

@@ -189,6 +189,9 @@ class Client : public Guarded {
     });
   }
 
+  void set_reason_to_leave(const std::string& reason) {
+    if (is_ours()) own_->set_reason_to_leave(reason);
+  }
   void stop() {
     if (is_ours()) own_->stop();
   }
@@ -266,6 +269,7 @@ void add_client(py::module_& module) {
       .def("next_tick", &Client::next_tick)
       .def("wait_until", &Client::wait_until, "utime"_a)
       .def("on_rewind", &Client::on_rewind, "handler"_a)
+      .def("set_reason_to_leave", &Client::set_reason_to_leave, "reason"_a)
       .def("stop", &Client::stop)
       .def("set_silence_limit", &Client::set_silence_limit, "seconds"_a)
       .def("set_wait_warning", &Client::set_wait_warning, "seconds"_a)

@@ -6,7 +6,9 @@
 #include <cstring>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bridges/log/event_log.hpp"
@@ -17,6 +19,7 @@
 #include "python/bindings/in_use.hpp"
 #include "python/bindings/message_objects.hpp"
 #include "python/world/error.hpp"
+#include "sim/config/message_text.hpp"
 
 namespace py = pybind11;
 
@@ -41,10 +44,15 @@ class EventSource {
 
 class LogSource final : public EventSource {
  public:
-  explicit LogSource(const std::string& path) : log_(path) {}
+  /// Reads the first event, so that a file that is not a log is refused at once.  An empty file is a log.
+  explicit LogSource(const std::string& path) : log_(path), has_first_(log_.next(first_)) {
+    if (!has_first_ && log_.file_bytes() > 0)
+      throw Error(path +
+                  ": is not an LCM log: it contains no readable event (the name of an MCAP file ends with .mcap)");
+  }
   bool next(Event& event) override {
-    bridges::LogEventView view;
-    if (!log_.next(view)) return false;
+    bridges::LogEventView view = first_;
+    if (!std::exchange(has_first_, false) && !log_.next(view)) return false;
     event = {view.channel, view.utime, view.payload};
     return true;
   }
@@ -52,6 +60,8 @@ class LogSource final : public EventSource {
 
  private:
   bridges::EventLogReader log_;
+  bridges::LogEventView first_;
+  bool has_first_;  // and it was not given away
 };
 
 /// The messages of LCM channels in an MCAP file of Shoal; topics that repeat them in standard types are left out.
@@ -108,6 +118,7 @@ class RecordReader : public Guarded {
     const Use use(*this);
     Event event;
     while (source_->next(event)) {
+      if (!channels.empty() && names_.find(event.channel) == names_.end()) names_.emplace(event.channel);
       if (channels.empty() || std::find(channels.begin(), channels.end(), event.channel) != channels.end())
         return py::make_tuple(py::str(event.channel.data(), event.channel.size()), event.utime,
                               py::bytes(reinterpret_cast<const char*>(event.payload.data()), event.payload.size()));
@@ -119,9 +130,20 @@ class RecordReader : public Guarded {
     const Use use(*this);
     return source_->problems();
   }
+  /// Returns a text for each of the channels of next() on which nothing was found so far.
+  std::vector<std::string> missing(const std::vector<std::string>& channels) {
+    const Use use(*this);
+    std::vector<std::string> texts;
+    for (const std::string& channel : channels)
+      if (!names_.contains(channel))
+        texts.push_back("no messages on '" + sim::shortened(sim::printable(channel)) + "'" +
+                        sim::did_you_mean(channel, {names_.begin(), names_.end()}));
+    return texts;
+  }
 
  private:
   const std::unique_ptr<EventSource> source_;
+  std::set<std::string, std::less<>> names_;  // of the channels that were found
   std::uint64_t skipped_ = 0;
 };
 
@@ -169,6 +191,7 @@ void add_records(py::module_& module) {
   py::class_<RecordReader>(module, "RecordReader")
       .def(py::init<const std::string&>(), "path"_a)
       .def("next", &RecordReader::next, "channels"_a)
+      .def("missing", &RecordReader::missing, "channels"_a)
       .def_property_readonly("problems", &RecordReader::problems);
   py::class_<RecordWriter>(module, "RecordWriter")
       .def(py::init<const std::string&, bool>(), "path"_a, "overwrite"_a = false)

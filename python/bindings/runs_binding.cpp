@@ -99,6 +99,8 @@ void add_runs(py::module_& module) {
   log_to_stderr();
   module.def("set_log_level", &set_log_level, "level"_a);
   module.def(
+      "warn", [](const std::string& text) { spdlog::warn("{}", text); }, "text"_a, "Logs a warning.");
+  module.def(
       "run",
       [](std::string world, std::optional<std::string> text, std::optional<std::int64_t> seed,
          std::vector<std::string> sets, std::optional<double> duration_s, std::string results, std::string record,

@@ -17,6 +17,7 @@
 #include "python/world/error.hpp"
 #include "python/world/in_process_world.hpp"
 #include "python/world/vehicle_motion.hpp"
+#include "sim/config/message_text.hpp"
 #include "sim/world/world_state.hpp"
 
 namespace py = pybind11;
@@ -45,7 +46,7 @@ class Subscription : public ZeroedMemory {
   Subscription(std::shared_ptr<World> world, const std::string& channel, std::size_t capacity)
       : world_(std::move(world)),
         channel_(channel),
-        mailbox_(world_->own->bus().open_mailbox(channel, capacity)),
+        mailbox_(world_->own->subscribe(channel, capacity)),
         restores_(world_->own->restores()) {}
 
   py::list take() {
@@ -110,8 +111,10 @@ double run_until(World& world, double time_s) {
 
 const sim::Vehicle& vehicle_of(const World& world, const std::string& name) {
   const sim::Vehicle* found = world.own->world().find_vehicle(name);
-  if (found == nullptr) throw Error("there is no vehicle '" + name + "'");
-  return *found;
+  if (found != nullptr) return *found;
+  std::vector<std::string> names;
+  for (const auto& vehicle : world.own->world().vehicles()) names.push_back(vehicle->name());
+  throw Error("there is no vehicle '" + sim::shortened(sim::printable(name)) + "'" + sim::did_you_mean(name, names));
 }
 
 py::array_t<Motion> states(World& world, const std::optional<std::vector<std::string>>& names) {
@@ -133,7 +136,7 @@ py::dict joints(World& world, const std::string& vehicle) {
 
 py::object last(World& world, const std::string& channel) {
   const Guarded::Use use(world);
-  const sim::Bytes* const payload = world.own->bus().find(channel);
+  const sim::Bytes* const payload = world.own->last(channel);
   if (payload == nullptr) return py::none();
   return decode_if_known(*payload);
 }

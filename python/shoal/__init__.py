@@ -16,6 +16,11 @@ World axes are east, north, up; vehicle axes are forward, left, up.
 import os as _os
 import sys as _sys
 
+try:
+    import numpy as _numpy
+except ImportError as _error:
+    raise ImportError(f'shoal needs NumPy: install the Debian package python3-numpy ({_error})') from None
+
 # Plugins of worlds use symbols of the module, as they use those of the program.
 _flags = _sys.getdlopenflags()
 _sys.setdlopenflags(_flags | _os.RTLD_GLOBAL)

@@ -21,8 +21,8 @@ def table(rows: Iterable[Sequence], head: Sequence[str] = ()) -> str:
 def world_table(world: World) -> str:
     """Returns the vehicles of a world, with position, speed and devices."""
     states = world.states()
-    rows = [(name, ', '.join(f'{x:.2f}' for x in state['position_m']),
-             (state['velocity_mps'] ** 2).sum() ** 0.5, len(world.devices(name)))
+    rows = [(name, ', '.join(map(_hundredths, state['position_m'])),
+             _hundredths((state['velocity_mps'] ** 2).sum() ** 0.5), len(world.devices(name)))
             for name, state in zip(world.vehicles, states)]
     return (f'<b>{escape(world.name)}</b> at {world.time_s:g} s: {escape(world.description)}' +
             table(rows, ('vehicle', 'x, y, z in m', 'speed in m/s', 'devices')))
@@ -54,6 +54,11 @@ def _statistic(entry):
     interval = entry.get('mean_95')
     bounds = '' if not interval or None in interval else f' ({interval[0]:.4g} to {interval[1]:.4g})'
     return f"{entry['mean']:.4g}{bounds}"
+
+
+def _hundredths(value):
+    """Returns a number with two decimals; never -0.00."""
+    return f'{round(float(value), 2) + 0.0:.2f}'
 
 
 def _shown(value):

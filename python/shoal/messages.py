@@ -15,6 +15,7 @@ from typing import IO as _IO, Any as _Any
 import numpy as _np
 
 from . import _shoal
+from .checks import shown as _shown
 
 _NUMBERS = {'boolean': '?', 'byte': 'u1', 'int8_t': 'i1', 'int16_t': 'i2', 'int32_t': 'i4', 'int64_t': 'i8',
             'float': 'f4', 'double': 'f8'}
@@ -81,7 +82,7 @@ def payload_of(message: Message | bytes) -> bytes:
     if isinstance(message, (bytes, bytearray, memoryview)):
         return bytes(message)
     if isinstance(message, str) or not callable(getattr(message, 'encode', None)):
-        raise TypeError(f'a message is an object with encode(), or bytes, got {message!r}')
+        raise TypeError(f'a message is an object with encode(), or bytes, got {_shown(message)}')
     return message.encode()
 
 
@@ -95,7 +96,7 @@ def _bytes_of(payload):
         return payload
     if isinstance(payload, (bytearray, memoryview, _np.ndarray)):
         return bytes(payload)
-    raise TypeError(f'a payload is bytes, got {payload!r}')
+    raise TypeError(f'a payload is bytes, got {_shown(payload)}')
 
 
 def _restore(name, payload):

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Plots of a results folder as axes of matplotlib, which must be installed (python3-matplotlib).
 
-`folder` is the path of a results folder, or a shoal.Run that has one; `axes` are those to draw into, None: new ones; `metrics`
-are names of metrics, None: all.
+`folder` is the path of a results folder, or a shoal.Run that has one; `axes` are those to draw into, None: new ones;
+`metrics` are names of metrics, or one name; None: all.
 """
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Sequence
 import numpy as np
 
 from ._shoal import Error
+from .checks import integer, names
 from .results import _columns, _file_of
 
 if TYPE_CHECKING:
@@ -22,8 +23,17 @@ if TYPE_CHECKING:
 def _axes(axes):
     if axes is not None:
         return axes
-    import matplotlib.pyplot as plt
+    try:
+        import matplotlib.pyplot as plt
+    except ImportError as error:
+        raise ImportError('shoal.plots needs matplotlib: install the Debian package python3-matplotlib '
+                          f'({error})') from None
     return plt.figure(layout='constrained').add_subplot()
+
+
+def _legend(axes):
+    if axes.get_legend_handles_labels()[0]:
+        axes.legend()
 
 
 def tracks(folder: Folder, axes: Axes | None = None) -> Axes:
@@ -37,20 +47,22 @@ def tracks(folder: Folder, axes: Axes | None = None) -> Axes:
     axes.set_aspect('equal', adjustable='datalim')
     axes.set_xlabel('x east in m')
     axes.set_ylabel('y north in m')
-    axes.legend()
+    _legend(axes)
     return axes
 
 
 def _by_metric(folder, metrics):
     columns = _columns(_file_of(folder, 'errors.csv'))
-    for metric in metrics or dict.fromkeys(columns['metric']):
+    chosen = None if metrics is None else names('plots', 'metrics', metrics)
+    for metric in dict.fromkeys(columns['metric']) if chosen is None else chosen:
         if metric not in columns['metric']:
-            raise Error(f"the run has no errors of a metric '{metric}'")
+            known = ', '.join(dict.fromkeys(columns['metric'])) or 'none'
+            raise Error(f"the run has no errors of a metric '{metric}'; metrics with errors: {known}")
         own = columns['metric'] == metric
         yield metric, {name: values[own] for name, values in columns.items()}
 
 
-def errors(folder: Folder, metrics: Sequence[str] | None = None, axes: Axes | None = None) -> Axes:
+def errors(folder: Folder, metrics: str | Sequence[str] | None = None, axes: Axes | None = None) -> Axes:
     """Draws position error against time in m, with the 95 % bound that the estimate claims; returns the axes."""
     axes, bounded = _axes(axes), False
     for metric, own in _by_metric(folder, metrics):
@@ -60,11 +72,11 @@ def errors(folder: Folder, metrics: Sequence[str] | None = None, axes: Axes | No
             axes.plot(own['time_s'], 2 * own['sigma_m'], '--', color=line.get_color(), linewidth=0.8)
     axes.set_xlabel('time in s')
     axes.set_ylabel('error in m (dashed: twice its own sigma)' if bounded else 'error in m')
-    axes.legend()
+    _legend(axes)
     return axes
 
 
-def nees(folder: Folder, metrics: Sequence[str] | None = None, axes: Axes | None = None,
+def nees(folder: Folder, metrics: str | Sequence[str] | None = None, axes: Axes | None = None,
          dimensions: int = 2) -> Axes:
     """Draws the normalised estimation error squared against time, with the 95 % interval of a consistent filter.
 
@@ -72,6 +84,7 @@ def nees(folder: Folder, metrics: Sequence[str] | None = None, axes: Axes | None
         freedom (Bar-Shalom, Li, Kirubarajan, Estimation with Applications to Tracking and Navigation, 2001, section
         5.4)
     """
+    integer('plots.nees', 'dimensions', dimensions, 1, 100)
     known = [(metric, own) for metric, own in _by_metric(folder, metrics) if np.isfinite(own['nees']).any()]
     if not known:
         raise Error('no metric of the run has a NEES: those of the type consistency have one')
@@ -83,7 +96,7 @@ def nees(folder: Folder, metrics: Sequence[str] | None = None, axes: Axes | None
     axes.set_yscale('log')
     axes.set_xlabel('time in s')
     axes.set_ylabel(f'NEES (grey: 95 % interval of {dimensions} dimensions)')
-    axes.legend()
+    _legend(axes)
     return axes
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Iterator, NamedTuple
 
 import numpy as np
 
-from . import _shoal, messages
+from . import _shoal, checks, messages
 from .results import _table
 
 if TYPE_CHECKING:
@@ -15,10 +15,15 @@ if TYPE_CHECKING:
 
 
 class Event(NamedTuple):
-    """An event of a record."""
+    """An event of a record.
+
+    channel: its name
+    utime: time stamp in microseconds: epoch of the world + simulated time
+    payload: the encoded message
+    """
 
     channel: str
-    utime: int        # microseconds: epoch of the world + simulated time
+    utime: int
     payload: bytes
 
     @property
@@ -37,15 +42,14 @@ class Record:
     def __init__(self, path: str | os.PathLike, *channels: str) -> None:
         """Opens the record at a path.
 
-        channels: only their events are read; none: all
+        channels: only their events are read; none: all.  At the end of the record a warning names those without any.
 
-        Raises Error when the file cannot be read.
+        Raises Error when the file cannot be read, or is not a record.
         """
-        for channel in channels:
-            if not isinstance(channel, str):
-                raise TypeError(f'a channel must be a str, got {channel!r}')
-        self._own = _shoal.RecordReader(os.fspath(path))
-        self._channels = list(channels)
+        self._channels = [checks.text('read', 'a channel', channel) for channel in channels]
+        self._path = checks.path('read', 'path', path)
+        self._own = _shoal.RecordReader(self._path)
+        self._warns = True
 
     def __iter__(self) -> Iterator[Event]:
         return self
@@ -53,8 +57,16 @@ class Record:
     def __next__(self) -> Event:
         event = self._own.next(self._channels)
         if event is None:
+            if self._warns:
+                self._warns = False
+                for text in self._missing():
+                    _shoal.warn(text)
             raise StopIteration
         return Event(*event)
+
+    def _missing(self):
+        path = os.fsdecode(self._path)
+        return [f'{path}: {text}' for text in self._own.missing(self._channels)]
 
     @property
     def problems(self) -> list[str]:
@@ -71,12 +83,15 @@ def table(path: str | os.PathLike, channel: str) -> Table:
     """Returns the messages of a channel of the record at a path: a DataFrame, or without pandas a dict of arrays.
 
     Its columns are `time_utime` (time stamp of the record in microseconds) and the members of the type; an array of
-    fixed length has a column for each element, such as linear_acceleration_mps2_0, and one of variable length a column of arrays.
+    fixed length has a column for each element, such as linear_acceleration_mps2_0, and one of variable length a column
+    of arrays.
     Raises Error for a record without such messages, or with several types.
     """
-    events = [(event.utime, event.message) for event in Record(path, channel)]
+    record = Record(path, channel)
+    record._warns = False
+    events = [(event.utime, event.message) for event in record]
     if not events:
-        raise _shoal.Error(f"{os.fspath(path)}: no messages on '{channel}'")
+        raise _shoal.Error(record._missing()[0])
     first = type(events[0][1])
     if any(type(message) is not first for _, message in events):
         raise _shoal.Error(f"{os.fspath(path)}: the messages on '{channel}' have several types")
@@ -97,8 +112,11 @@ class RecordWriter:
     """Writer of a record; a name that ends with .mcap makes an MCAP file.  A context manager closes it."""
 
     def __init__(self, path: str | os.PathLike, overwrite: bool = False) -> None:
-        """Creates the file of this path.  Raises Error when it exists, unless `overwrite`, and when it cannot be created."""
-        self._own = _shoal.RecordWriter(os.fspath(path), overwrite)
+        """Creates the file of this path.
+
+        Raises Error when it exists, unless `overwrite`, and when it cannot be created.
+        """
+        self._own = _shoal.RecordWriter(checks.path('RecordWriter', 'path', path), bool(overwrite))
 
     def write(self, channel: str, utime: int, message: messages.Message | bytes) -> None:
         """Writes a message.
@@ -106,7 +124,8 @@ class RecordWriter:
         channel: 1 to 63 characters
         utime: time stamp in microseconds
         """
-        self._own.write(channel, utime, messages.payload_of(message))
+        self._own.write(checks.text('RecordWriter.write', 'channel', channel),
+                        checks.integer('RecordWriter.write', 'utime', utime), messages.payload_of(message))
 
     def close(self) -> None:
         """Completes the file.  Raises Error when it cannot be written."""

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
+from . import checks
 from ._shoal import Error
 
 if TYPE_CHECKING:
@@ -26,7 +27,7 @@ def _file_of(folder, name):
     results = getattr(folder, 'results', folder)
     if results is None:
         raise Error('the run has no results: run() needs a folder for them')
-    return os.path.join(os.fspath(results), name)
+    return os.path.join(os.fsdecode(checks.path('a results folder', 'folder', results)), name)
 
 
 _TEXT = {'vehicle', 'metric', 'case', 'ended', 'run_hash'}  # these may look like numbers
@@ -72,7 +73,13 @@ def tracks(folder: Folder) -> Table:
 def errors(folder: Folder) -> Table:
     """Returns the errors of all estimates that metrics score.
 
-    Columns: time_s, metric, error_m, estimate_x_m, ..., truth_x_m, ..., travelled_m, sigma_m (NaN: the estimate gave
-    none), nees.
+    time_s: simulated time in s
+    metric: name of the metric
+    error_m: distance between estimate and truth
+    estimate_x_m, estimate_y_m, estimate_z_m: estimate in world axes
+    truth_x_m, truth_y_m, truth_z_m: truth in world axes
+    travelled_m: distance that the vehicle has travelled
+    sigma_m: standard deviation that the estimate claims; NaN: it gave none
+    nees: normalised estimation error squared; NaN: there is none
     """
     return _table(_columns(_file_of(folder, 'errors.csv')))

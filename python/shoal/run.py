@@ -8,7 +8,8 @@ import signal
 import subprocess
 from typing import TYPE_CHECKING, Sequence
 
-from . import _shoal
+from . import _shoal, checks
+from .client import unanswered
 from .results import _columns, _table
 from .world import _source
 
@@ -17,10 +18,14 @@ if TYPE_CHECKING:
 
 
 class Run:
-    """Result of a run: `summary` is the content of summary.json, `results` the folder or None."""
+    """Result of a run: run() makes it, Run.load() reads that of an earlier run.
+
+    summary: dict, the content of summary.json
+    results: the results folder; None: there is none
+    """
 
     def __init__(self, summary: dict, results: str | os.PathLike | None = None) -> None:
-        """run() makes it; Run.load() reads that of an earlier run."""
+        """Takes the content of a summary.json, and the results folder that it is of."""
         self.summary = summary
         self.results = results
 
@@ -55,7 +60,7 @@ class Run:
 def run(world: str | os.PathLike | dict, *, seed: int | None = None, set: dict | None = None,
         duration_s: float | None = None, results: str | os.PathLike | None = None,
         record: str | os.PathLike | None = None, bus: str = 'none', lcm_url: str = '', launch: bool = False,
-        wait_for: Sequence[str] = (), overwrite: bool = False) -> Run:
+        wait_for: str | Sequence[str] = (), overwrite: bool = False) -> Run:
     """Runs a world as fast as possible to its end, as `shoal run` does, and returns a Run.
 
     world: as of World
@@ -67,23 +72,42 @@ def run(world: str | os.PathLike | dict, *, seed: int | None = None, set: dict |
     bus: 'none', or 'lcm' so that programs can take part
     lcm_url: of the bus; '' for LCM_DEFAULT_URL or LCM's default
     launch: starts the programs of the world, which needs the bus 'lcm'
-    wait_for: names of lockstep clients that the run waits for, such as a Client in another thread
+    wait_for: names of lockstep clients that the run waits for (or one name), such as a Client in another thread, which
+        needs the bus 'lcm'
     overwrite: replaces an existing record
 
     Raises Error for a world that is refused, and for a run that ends by a fault.
     """
-    if bus not in ('none', 'lcm'):
-        raise _shoal.Error(f"bus must be 'none' or 'lcm', got {bus!r}")
-    if duration_s is not None and not 0 <= duration_s <= 1e9:
-        raise _shoal.Error(f'duration_s must be 0 to 1e9, got {duration_s!r}')
-    path, text, sets = _source(world, set)
-    summary = _shoal.run(path, text, seed, sets, duration_s, os.fspath(results or ''), os.fspath(record or ''), bus,
-                         lcm_url, list(wait_for), launch, overwrite)
+    if checks.text('run', 'bus', bus) not in ('none', 'lcm'):
+        raise _shoal.Error(f"run: bus must be 'none' or 'lcm', got {checks.shown(bus)}")
+    clients = checks.names('run', 'wait_for', wait_for)
+    if bus == 'none' and (clients or launch):
+        needs = "wait_for needs the bus 'lcm': clients" if clients else "launch needs the bus 'lcm': programs"
+        raise _shoal.Error(f"run: {needs} cannot take part with the bus 'none'")
+    if seed is not None:
+        seed = checks.integer('run', 'seed', seed, 0)
+    if duration_s is not None:
+        duration_s = checks.number('run', 'duration_s', duration_s, 0)
+    path, text, sets = _source('run', world, set)
+    paths = [checks.path('run', name, '' if value is None else value)
+             for name, value in (('results', results), ('record', record))]
+    try:
+        summary = _shoal.run(path, text, seed, sets, duration_s, *paths, bus, checks.text('run', 'lcm_url', lcm_url),
+                             clients, bool(launch), bool(overwrite))
+    except _shoal.Error as error:
+        hint = unanswered(str(error)) if clients else ''
+        if not hint:
+            raise
+        raise _shoal.Error(f'{error}{hint}') from None
     return Run(json.loads(summary), results)
 
 
 class Study:
-    """Results of a study: `summary` is the content of study.json, `folder` the folder of the study."""
+    """Results of a study.
+
+    summary: dict, the content of study.json
+    folder: the folder of the study
+    """
 
     def __init__(self, folder: str | os.PathLike) -> None:
         """Reads the results in a folder.  Raises Error when there are none."""
@@ -115,6 +139,12 @@ def study(file: str | os.PathLike, *, output: str | os.PathLike, seeds: str = ''
 
     Raises Error with the text of the program when the study is refused, or a run has no result.
     """
+    checks.text('study', 'seeds', seeds)
+    checks.integer('study', 'jobs', jobs, 0)
+    if duration_s is not None:
+        checks.number('study', 'duration_s', duration_s, 0)
+    for name, value in (('file', file), ('output', output)):
+        checks.path('study', name, value)
     program = os.path.join(_shoal.program_folder(), 'shoal')
     arguments = [program, 'study', os.fspath(file), '--output', os.fspath(output), '--jobs', str(jobs), '--quiet',
                  *(['--seeds', seeds] if seeds else []),

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Many worlds at once, with the interfaces of Gymnasium and PettingZoo, neither of which is needed.
 
+Where they are installed, environments are also objects of their classes, so that their wrappers take them.
+
     envs = shoal.vector.VectorEnv(
         'minimal', 64, steps=10,
         actions=['rover1.drive.cmd:twist_command_t:forward_mps,turn_radps'],
@@ -8,31 +10,42 @@
         reward=lambda before, actions, after: ...)
     observations, infos = envs.reset(seed=1)
     observations, rewards, terminated, truncated, infos = envs.step(actions)
+
+MOTION has the names of the 13 values of the observation `@vehicle`: true position, orientation and velocity in world
+axes, angular velocity in vehicle axes.
 """
 from __future__ import annotations
 
+import importlib
 import os
 from typing import TYPE_CHECKING, Any, Callable, Mapping, Sequence
 
 import numpy as np
 
-from . import _shoal
-from .world import _source, _threads
+from . import _shoal, checks
+from .world import MAX_THREADS, _source
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, DTypeLike
 
-#: Names of the 13 values of the observation `@vehicle`: true position, orientation and velocity in world axes, angular
-#: velocity in vehicle axes.
 MOTION = ('x_m', 'y_m', 'z_m', 'qw', 'qx', 'qy', 'qz', 'vx_mps', 'vy_mps', 'vz_mps', 'wx_radps', 'wy_radps', 'wz_radps')
 
 
 class Box:
-    """Space of arrays between two bounds, where gymnasium is not installed; else its own Box is used."""
+    """Space of arrays between two bounds, where gymnasium is not installed; else its own Box is used.
+
+    low, high: arrays of the bounds
+    shape, dtype: of its elements
+    """
 
     def __init__(self, low: ArrayLike, high: ArrayLike, shape: Sequence[int],
                  dtype: DTypeLike = float) -> None:
-        """low, high: numbers or arrays of the shape; dtype: of its elements."""
+        """Makes the space.
+
+        low, high: numbers or arrays of the shape
+        shape: of its elements
+        dtype: of the numbers in them
+        """
         self.low = np.array(np.broadcast_to(low, shape), dtype)
         self.high = np.array(np.broadcast_to(high, shape), dtype)
         self.shape, self.dtype = tuple(shape), np.dtype(dtype)
@@ -67,10 +80,15 @@ class Box:
         return f'Box({self.low.min(initial=0)}, {self.high.max(initial=0)}, {self.shape}, {self.dtype})'
 
 
+def _bound(name, value, shape):
+    """Returns a number, or an array of one for each of the last dimension, as an array of this shape."""
+    return np.broadcast_to(checks.array('VectorEnv', name, value, () if np.ndim(value) == 0 else shape[-1:]), shape)
+
+
 def _box(low, high, shape):
-    low, high = (np.broadcast_to(np.asarray(bound, float), shape) for bound in (low, high))
+    low, high = _bound('action_low', low, shape), _bound('action_high', high, shape)
     if not np.all(low <= high):
-        raise _shoal.Error(f'action_low must be at most action_high, got {low} and {high}')
+        raise _shoal.Error(f'VectorEnv: action_low must be at most action_high, got {low} and {high}')
     try:
         from gymnasium.spaces import Box as GymBox  # type: ignore[import]
     except ImportError:
@@ -86,44 +104,92 @@ def _autoreset():
     return AutoresetMode.NEXT_STEP
 
 
-class VectorEnv:
+class _Joined:
+    """Class whose objects are also of a class of another package, where that is installed: its wrappers ask for it."""
+
+    _other = ('', '')  # module and name of that class
+    _made: dict[type, type] = {}
+
+    def __new__(cls, *_args, **_arguments):
+        if cls not in cls._made:
+            module, name = cls._other
+            try:
+                other = getattr(importlib.import_module(module), name)
+            except ImportError:
+                other = object
+            cls._made[cls] = cls if issubclass(cls, other) else type(
+                cls.__name__, (cls, other), {'__module__': cls.__module__, '__doc__': cls.__doc__})
+        return object.__new__(cls._made[cls])
+
+    def _reset_other(self, seed):
+        """Seeds the random numbers of that class, which its tests look at."""
+        reset = getattr(super(), 'reset', None)
+        if reset is not None:
+            reset(seed=seed)
+
+
+class VectorEnv(_Joined):
     """`num_envs` worlds of one file whose seeds differ, stepped together on all cores.
 
     A world that is terminated or truncated is built again in the next step, with a new seed (the mode "next step" of
     Gymnasium).  Equal seeds and actions give equal observations for any number of threads.
+
+    An episode begins with real observations: a world that was built takes steps, without actions, until each observed
+    channel has its first message, up to 10 s of simulated time.
+
+    num_envs: number of worlds
+    step_s: simulated time of a step of the environment in s
+    single_action_space, action_space: Box of the actions of one world (m,) and of all (num_envs, m)
+    single_observation_space, observation_space: Box of the observations of one world (n,) and of all (num_envs, n)
+    slices: slices of a row of observations, in the order of `observations`
+    metadata: dict with `render_modes` and `autoreset_mode`
     """
 
+    _other = ('gymnasium.vector', 'VectorEnv')
     render_mode = None
     spec = None
 
-    def __init__(self, world: str | os.PathLike | dict, num_envs: int, *, actions: Sequence[str],
-                 observations: Sequence[str], steps: int = 1, reward: Callable | None = None,
+    def __init__(self, world: str | os.PathLike | dict, num_envs: int, *, actions: str | Sequence[str],
+                 observations: str | Sequence[str], steps: int = 1, reward: Callable | None = None,
                  terminated: Callable | None = None, max_episode_s: float | None = None,
-                 action_low: ArrayLike = -1.0, action_high: ArrayLike = 1.0, missing: float = 0.0, seed: int = 1, set: dict | None = None,
-                 threads: int = 0) -> None:
+                 action_low: ArrayLike = -1.0, action_high: ArrayLike = 1.0, missing: float = 0.0, seed: int = 1,
+                 set: dict | None = None, threads: int = 0) -> None:
         """Loads a world; reset() builds all.
 
         world: as of shoal.World
-        actions: texts 'channel:type:member,member'; the values of all are one row of the array of actions
+        actions: texts 'channel:type:member,member', or one; the values of all are one row of the array of actions
         observations: texts 'channel:member' (a number or an array of numbers of the last message) or '@vehicle' (the
-            true motion, MOTION); the values of all are one row of the array of observations
+            true motion, MOTION), or one; the values of all are one row of the array of observations
         steps: steps of the world for each step of the environment
         reward: reward(before, actions, after) -> (num_envs,), of arrays of all worlds; None: zeros
         terminated: terminated(after) -> (num_envs,) of bool; worlds whose events end the run are terminated anyway
-        max_episode_s: after this simulated time an episode is truncated
+        max_episode_s: after this simulated time since its first observations an episode is truncated
         action_low, action_high: bounds of the actions, numbers or arrays (m,), which are not enforced
-        missing: value of an observation before the first message, and in place of NaN
+        missing: value of an observation in place of NaN, and where there is no message yet
+        seed: of the first world, for reset() without a seed
         set: as of shoal.World
         threads: up to 256; 0: one for each core
 
         Raises Error for a world, an action or an observation that is refused.
         """
         self.metadata = {'render_modes': [], 'autoreset_mode': _autoreset()}
-        file, text, sets = _source(world, set)
-        self._pool = _shoal.Pool(file, text, sets, num_envs, seed, [_action(each) for each in actions],
-                                 [_observation(each) for each in observations], steps, _threads(threads))
+        who = 'VectorEnv'
+        num_envs = checks.integer(who, 'num_envs', num_envs, 1, 100_000)
+        steps, seed = checks.integer(who, 'steps', steps, 1), checks.integer(who, 'seed', seed, 0)
+        threads = checks.integer(who, 'threads', threads, 0, MAX_THREADS)
+        if max_episode_s is not None:
+            max_episode_s = checks.number(who, 'max_episode_s', max_episode_s, 0, above=True)
+        for name, function in (('reward', reward), ('terminated', terminated)):
+            if function is not None:
+                checks.function(who, name, function)
+        file, text, sets = _source(who, world, set)
+        self._pool = _shoal.Pool(file, text, sets, num_envs, seed,
+                                 [_action(each) for each in checks.names(who, 'actions', actions)],
+                                 [_observation(each) for each in checks.names(who, 'observations', observations)],
+                                 steps, threads)
         self.num_envs = num_envs
-        self._reward, self._terminated, self._missing = reward, terminated, float(missing)
+        self._reward, self._terminated = reward, terminated
+        self._missing = checks.number(who, 'missing', missing, -np.inf, np.inf)
         self.step_s = steps * self._pool.step_s
         self._longest = None if max_episode_s is None else max(1, round(max_episode_s / self.step_s))
         width, height = self._pool.action_values, self._pool.offsets[-1]
@@ -131,7 +197,6 @@ class VectorEnv:
         self.single_observation_space = _box(-np.inf, np.inf, (height,))
         self.action_space = _box(action_low, action_high, (num_envs, width))
         self.observation_space = _box(-np.inf, np.inf, (num_envs, height))
-        #: Slices of a row of observations, in the order of `observations`.
         self.slices = [slice(*pair) for pair in zip(self._pool.offsets, self._pool.offsets[1:])]
         self._seeds = np.random.SeedSequence(seed)
         self._before: np.ndarray | None = None  # until the first reset
@@ -150,7 +215,9 @@ class VectorEnv:
 
     def reset(self, *, seed: int | Sequence[int | None] | None = None,
               options: dict | None = None) -> tuple[np.ndarray, dict]:
-        """Builds all worlds again; returns observations (num_envs, n) and an empty dict.
+        """Builds all worlds again; returns their first observations (num_envs, n) and a dict.
+
+        The dict has `missing` (num_envs, n) of bool: the values that no message has, or that are NaN.
 
         seed: of world 0, those of the others follow; or a list of seeds; None: seeds that continue the sequence
         options: not used
@@ -166,11 +233,12 @@ class VectorEnv:
             seeds = [_seed(seed) + i for i in range(self.num_envs)]
             self._seeds = np.random.SeedSequence(seeds[0])
         self._before = None
-        observations = self._complete(pool.step(np.zeros(self.action_space.shape), seeds)[0])
+        observations = pool.step(np.zeros(self.action_space.shape), seeds)[0]
+        missing = self._complete(observations)
         self._ages[:] = 0
         self._done[:] = False
         self._before = observations
-        return observations.copy(), {}
+        return observations.copy(), self._infos(missing=missing)
 
     def step(self, actions: ArrayLike) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, dict]:
         """Takes a step of all worlds.
@@ -178,36 +246,39 @@ class VectorEnv:
         actions: (num_envs, m)
 
         Returns observations (num_envs, n), rewards (num_envs,), terminated and truncated (num_envs,) of bool, and a
-        dict with `failed` (num_envs,) of bool: the physics of the world failed, which also terminates it.
+        dict with `failed` (num_envs,) of bool: the physics of the world failed, which also terminates it, and with
+        `missing` as of reset().  Raises Error for actions of another shape, and for NaN and infinity; and when `reward`
+        or `terminated` gives another shape than (num_envs,).
         """
         pool = self._open()
         if self._before is None:
             raise _shoal.Error('reset() comes before step()')
-        actions = np.asarray(actions, float)
-        if actions.shape != self.action_space.shape:
-            raise _shoal.Error(f'actions must have the shape {self.action_space.shape}, got {actions.shape}')
+        actions = checks.array('VectorEnv.step', 'actions', actions, self.action_space.shape)
+        if not np.isfinite(actions).all():
+            world, column = np.argwhere(~np.isfinite(actions))[0]
+            raise _shoal.Error(f'VectorEnv.step: actions must be finite, got {actions[world, column]} of world {world}')
         begins = self._done.copy()
         seeds = np.full(self.num_envs, -1, np.int64)
         seeds[begins] = self._new_seeds(int(begins.sum()))
         before, self._before = self._before, None  # an exception leaves the worlds at different times
         after, status = pool.step(actions, seeds)
-        self._complete(after)
-        rewards = np.zeros(self.num_envs) if self._reward is None else np.array(
-            np.broadcast_to(self._reward(before, actions, after), self.num_envs), float)
+        missing = self._complete(after)
+        rewards = np.zeros(self.num_envs) if self._reward is None else checks.array(
+            'VectorEnv', 'what reward() returns', self._reward(before, actions, after), (self.num_envs,)).copy()
         terminated = status != 0
         if self._terminated is not None:
-            terminated = terminated | np.asarray(self._terminated(after), bool)
+            terminated = terminated | checks.array('VectorEnv', 'what terminated() returns', self._terminated(after),
+                                                   (self.num_envs,), bool)
         self._ages = np.where(begins, 0, self._ages + 1)
         truncated = np.zeros(self.num_envs, bool) if self._longest is None else self._ages >= self._longest
         rewards[begins], terminated[begins], truncated[begins] = 0, False, False
         self._done = terminated | truncated
         self._before = after
-        return after.copy(), rewards, terminated, truncated, {'failed': status == 2,
-                                                              '_failed': np.ones(self.num_envs, bool)}
+        return after.copy(), rewards, terminated, truncated, self._infos(failed=status == 2, missing=missing)
 
     def run_hash(self, index: int) -> int:
         """Returns the hash of the run of a world, as World.run_hash()."""
-        return self._open().run_hash(index)
+        return self._open().run_hash(checks.integer('VectorEnv.run_hash', 'index', index, 0))
 
     def render(self) -> None:
         """Returns None; `shoal run --view` shows a run."""
@@ -222,27 +293,44 @@ class VectorEnv:
         return self._pool
 
     def _complete(self, observations):
-        np.copyto(observations, self._missing, where=np.isnan(observations))
-        return observations
+        """Replaces the NaN of observations; returns where they were."""
+        missing = np.isnan(observations)
+        np.copyto(observations, self._missing, where=missing)
+        return missing
+
+    def _infos(self, **values):
+        """Returns values as Gymnasium has them: `_NAME` is true for each world that has NAME, here all."""
+        return {**values, **{f'_{name}': np.ones(self.num_envs, bool) for name in values}}
 
     def _new_seeds(self, count):
         return [int(each.generate_state(1)[0] & 0x7fffffff) for each in self._seeds.spawn(count)]
 
 
-class Env:
-    """One world with the interface of gymnasium.Env."""
+class Env(_Joined):
+    """One world with the interface of gymnasium.Env.
 
+    `reward` and `terminated` get the arrays of one world, (1, n) and (1, m), and return (1,).
+
+    step_s: simulated time of a step of the environment in s
+    action_space, observation_space: Box of the actions (m,) and of the observations (n,)
+    slices: slices of an observation, in the order of `observations`
+    """
+
+    _other = ('gymnasium', 'Env')
     metadata: dict[str, Any] = {'render_modes': []}
     render_mode = None
     spec = None
 
     def __init__(self, world: str | os.PathLike | dict, **arguments: Any) -> None:
-        """arguments: those of VectorEnv, without `num_envs`."""
+        """Loads a world; reset() builds it.
+
+        world: as of shoal.World
+        arguments: the others of VectorEnv, without `num_envs`
+        """
         self._envs = VectorEnv(world, 1, **arguments)
         self.action_space = self._envs.single_action_space
         self.observation_space = self._envs.single_observation_space
-        #: Slices of an observation, in the order of `observations`.
-        self.slices = self._envs.slices
+        self.slices, self.step_s = self._envs.slices, self._envs.step_s
         self._over = False
 
     @property
@@ -251,27 +339,29 @@ class Env:
         return self
 
     def reset(self, *, seed: int | None = None, options: dict | None = None) -> tuple[np.ndarray, dict]:
-        """Builds the world again; returns the observation (n,) and an empty dict.
+        """Builds the world again; returns the first observation (n,) and a dict with `missing` (n,) as of VectorEnv.
 
         seed: None: one that continues the sequence
         options: not used
         """
-        observations, _ = self._envs.reset(seed=seed)
+        observations, info = self._envs.reset(seed=seed)
+        self._reset_other(seed)
         self._over = False
-        return observations[0], {}
+        return observations[0], {'missing': info['missing'][0]}
 
     def step(self, action: ArrayLike) -> tuple[np.ndarray, float, bool, bool, dict]:
         """Takes a step with an action (m,).
 
         Returns the observation (n,), the reward, whether the episode is terminated, whether it is truncated, and a dict
-        with `failed`.  After the end of an episode reset() must follow.
+        with `failed` and `missing` (n,).  After the end of an episode reset() must follow.
         """
         if self._over:
             raise _shoal.Error('the episode is over: reset() comes before step()')
-        observations, rewards, terminated, truncated, info = self._envs.step(np.asarray(action, float)[None])
+        action = checks.array('Env.step', 'action', action, self.action_space.shape)
+        observations, rewards, terminated, truncated, info = self._envs.step(action[None])
         self._over = bool(terminated[0] or truncated[0])
         return observations[0], float(rewards[0]), bool(terminated[0]), bool(truncated[0]), {
-            'failed': bool(info['failed'][0])}
+            'failed': bool(info['failed'][0]), 'missing': info['missing'][0]}
 
     def render(self) -> None:
         """Returns None; `shoal run --view` shows a run."""
@@ -281,13 +371,19 @@ class Env:
         self._envs.close()
 
 
-class ParallelEnv:
-    """One world whose vehicles are agents, with the interface of pettingzoo.ParallelEnv."""
+class ParallelEnv(_Joined):
+    """One world whose vehicles are agents, with the interface of pettingzoo.ParallelEnv.
 
+    possible_agents: names of all agents
+    agents: names of those that are still there; before reset() none
+    action_spaces, observation_spaces: dict of the Box of each agent
+    """
+
+    _other = ('pettingzoo', 'ParallelEnv')
     metadata: dict[str, Any] = {'name': 'shoal', 'render_modes': [], 'is_parallelizable': True}
     render_mode = None
 
-    def __init__(self, world: str | os.PathLike | dict, agents: Mapping[str, Mapping[str, Sequence[str]]], *,
+    def __init__(self, world: str | os.PathLike | dict, agents: Mapping[str, Mapping[str, str | Sequence[str]]], *,
                  steps: int = 1, reward: Callable | None = None, max_episode_s: float | None = None,
                  action_low: float = -1.0, action_high: float = 1.0, missing: float = 0.0, seed: int = 1,
                  set: dict | None = None) -> None:
@@ -297,6 +393,9 @@ class ParallelEnv:
         reward: reward(before, actions, after) -> dict by agent, of dicts of arrays by agent; None: zeros
         steps, max_episode_s, action_low, action_high, missing, seed, set: as in VectorEnv
         """
+        agents = _agents(agents)
+        if reward is not None:
+            checks.function('ParallelEnv', 'reward', reward)
         self.possible_agents = list(agents)
         self.agents: list[str] = []
         self._reward = reward
@@ -344,21 +443,23 @@ class ParallelEnv:
 
     def reset(self, seed: int | None = None,
               options: dict | None = None) -> tuple[dict[str, np.ndarray], dict[str, dict]]:
-        """Builds the world again; returns dicts of observations and infos by agent.
+        """Builds the world again; returns dicts of first observations and infos by agent.
+
+        The info of an agent has `missing` as of VectorEnv.
 
         seed: None: one that continues the sequence
         options: not used
         """
-        observations, _ = self._envs.reset(seed=seed)
+        observations, info = self._envs.reset(seed=seed)
         self.agents = list(self.possible_agents)
         self._before = self._split(observations[0])
-        return dict(self._before), {name: {} for name in self.agents}
+        return dict(self._before), self._infos(missing=info['missing'])
 
     def step(self, actions: Mapping[str, np.ndarray]) -> tuple[dict, dict, dict, dict, dict]:
         """Takes a step with the actions of agents; those of others are zero.
 
-        Returns dicts by agent of observations, rewards, terminated, truncated and infos.  All agents leave at the end
-        of an episode, after which reset() must follow.
+        Returns dicts by agent of observations, rewards, terminated, truncated and infos with `failed` and `missing`.
+        All agents leave at the end of an episode, after which reset() must follow.
         """
         if not self.agents:
             raise _shoal.Error('no agents are left: reset() comes before step()')
@@ -366,17 +467,15 @@ class ParallelEnv:
         for name, values in actions.items():
             if name not in self._actions:
                 raise _shoal.Error(f"there is no agent '{name}'; agents: {', '.join(self.possible_agents)}")
-            values = np.asarray(values, float)
-            if values.shape != self.action_spaces[name].shape:
-                raise _shoal.Error(f"the action of '{name}' must have the shape {self.action_spaces[name].shape}, got "
-                                   f'{values.shape}')
-            row[self._actions[name]] = values
-        observations, _, terminated, truncated, _ = self._envs.step(row[None])
+            row[self._actions[name]] = checks.array('ParallelEnv.step', f"the action of '{name}'", values,
+                                                    self.action_spaces[name].shape)
+        observations, _, terminated, truncated, info = self._envs.step(row[None])
         after = self._split(observations[0])
-        rewards = dict.fromkeys(self.agents, 0.0) if self._reward is None else self._reward(self._before, actions, after)
+        rewards = dict.fromkeys(self.agents, 0.0) if self._reward is None else self._rewards(
+            self._reward(self._before, actions, after))
         self._before = after
         ended, cut = dict.fromkeys(self.agents, bool(terminated[0])), dict.fromkeys(self.agents, bool(truncated[0]))
-        infos: dict[str, dict] = {name: {} for name in self.agents}
+        infos = self._infos(missing=info['missing'], failed=info['failed'])
         if terminated[0] or truncated[0]:
             self.agents = []
         return dict(after), rewards, ended, cut, infos
@@ -394,15 +493,38 @@ class ParallelEnv:
         """Frees the world."""
         self._envs.close()
 
+    def _rewards(self, rewards):
+        """Returns what reward() gave, if it has a number for each agent."""
+        if not isinstance(rewards, Mapping) or rewards.keys() != {*self.agents}:
+            raise _shoal.Error(f"ParallelEnv: what reward() returns must be a dict of {', '.join(self.agents)}, got "
+                               f'{checks.shown(rewards)}')
+        return {name: float(checks.array('ParallelEnv', f"the reward of '{name}'", value, ()))
+                for name, value in rewards.items()}
+
+    def _infos(self, missing, failed=None):
+        return {name: {'missing': missing[0, each].copy(), **({} if failed is None else {'failed': bool(failed[0])})}
+                for name, each in self._observations.items()}
+
     def _split(self, row):
         return {name: row[each].copy() for name, each in self._observations.items()}
 
 
 def _seed(value):
-    seed = int(value)
-    if seed < 0 or seed != value:
-        raise _shoal.Error(f'a seed must be an integer >= 0, got {value!r}')
-    return seed
+    return checks.integer('reset', 'seed', value, 0)
+
+
+def _agents(agents):
+    """Returns the channels of each agent as lists."""
+    if not isinstance(agents, Mapping) or not agents:
+        raise _shoal.Error(f'ParallelEnv: agents must be a dict of at least one agent, got {checks.shown(agents)}')
+    made = {}
+    for name, agent in agents.items():
+        if not isinstance(agent, Mapping) or agent.keys() != {'actions', 'observations'}:
+            raise _shoal.Error(f"ParallelEnv: agent {checks.shown(name)} must be a dict with 'actions' and "
+                               f"'observations', got {checks.shown(agent)}")
+        made[checks.text('ParallelEnv', 'the name of an agent', name)] = {
+            key: checks.names('ParallelEnv', f"{key} of '{name}'", agent[key]) for key in agent}
+    return made
 
 
 def _action(text):

@@ -7,12 +7,16 @@ from typing import Any, Iterator, Sequence
 
 import numpy as np
 
-from . import _shoal, messages
+from . import _shoal, checks, messages
 from .yaml_text import yaml_of
 
 
+#: The most threads that a world or a set of worlds may use.
+MAX_THREADS = 256
+
+
 class Subscription:
-    """Unread messages of one channel; World.subscribe makes it."""
+    """Unread messages of one channel; World.subscribe makes it.  To iterate over it is to take them."""
 
     def __init__(self, own) -> None:
         self._own = own
@@ -56,7 +60,9 @@ class World:
         if isinstance(world, _shoal.World):
             self._own = world
             return
-        file, text, sets = _source(world, set)
+        file, text, sets = _source('World', world, set)
+        if seed is not None:
+            seed = checks.integer('World', 'seed', seed, 0)
         self._own = _shoal.World(file, text=text, seed=seed, sets=sets)
 
     # --- About the world
@@ -118,7 +124,7 @@ class World:
 
     def devices(self, vehicle: str) -> list[str]:
         """Returns the names of the devices of a vehicle, such as `auv1/imu`."""
-        return self._own.devices(vehicle)
+        return self._own.devices(checks.text('World.devices', 'vehicle', vehicle))
 
     def channels(self) -> dict[str, str]:
         """Returns the channels on which something was published, and the types of their messages; '': unknown."""
@@ -128,51 +134,69 @@ class World:
 
     def step(self, count: int = 1) -> int:
         """Takes steps; returns their number, which is less than `count` when an event of the world ends the run."""
+        if type(count) is not int or not 0 <= count < 2**63:
+            count = checks.integer('World.step', 'count', count, 0)
         return self._own.step(count)
 
     def run_until(self, time_s: float) -> float:
         """Takes steps up to the first one that ends at this time or later; returns the time in s."""
-        return self._own.run_until(time_s)
+        return self._own.run_until(checks.number('World.run_until', 'time_s', time_s, 0))
 
     # --- Truth
 
     def state(self, vehicle: str) -> np.void:
         """Returns the true motion of a vehicle: one element of states()."""
-        return self._own.states([vehicle])[0]
+        return self._own.states([checks.text('World.state', 'vehicle', vehicle)])[0]
 
-    def states(self, vehicles: Sequence[str] | None = None) -> np.ndarray:
+    def states(self, vehicles: str | Sequence[str] | None = None) -> np.ndarray:
         """Returns the true motions as a structured array, shape (n,), in the order of the names.
+
+        vehicles: names, or one name; None: all
+
+        Fields:
 
         position_m: (3,), origin of the vehicle in world axes
         orientation: (4,), quaternion w, x, y, z from vehicle to world axes, w >= 0
         velocity_mps: (3,), of that origin, in world axes
         rates_radps: (3,), angular velocity in vehicle axes
         """
-        return self._own.states(None if vehicles is None else list(vehicles))
+        return self._own.states(None if vehicles is None else checks.names('World.states', 'vehicles', vehicles))
 
     def joints(self, vehicle: str) -> dict[str, float]:
         """Returns a dict of the joints of a vehicle and their positions: rad, or m for a slider."""
-        return self._own.joints(vehicle)
+        return self._own.joints(checks.text('World.joints', 'vehicle', vehicle))
 
     # --- Messages
 
     def last(self, channel: str) -> messages.Message | bytes | None:
-        """Returns the last message on a channel, of an unknown type its payload; None before the first."""
-        return self._own.last(channel)
+        """Returns the last message on a channel, of an unknown type its payload; None before the first.
+
+        Raises Error for a channel that is not in the world and whose name is close to another; any other unknown name,
+        which may be one for messages of this program, gets one warning.
+        """
+        return self._own.last(checks.text('World.last', 'channel', channel))
 
     def subscribe(self, channel: str, capacity: int = 1000) -> Subscription:
-        """Returns a Subscription of a channel; when more messages than `capacity` wait in it, the oldest are lost."""
-        return Subscription(self._own.subscribe(channel, capacity))
+        """Returns a Subscription of a channel; when more messages than `capacity` wait in it, the oldest are lost.
+
+        Raises Error as last() does.
+        """
+        return Subscription(self._own.subscribe(checks.text('World.subscribe', 'channel', channel),
+                                                checks.integer('World.subscribe', 'capacity', capacity, 1)))
 
     def publish(self, channel: str, message: messages.Message | bytes) -> None:
-        """Publishes a message on a channel; devices get it in the next step.  Raises Error when it is not valid."""
-        self._own.publish(channel, messages.payload_of(message))
+        """Publishes a message on a channel; devices get it in the next step.
+
+        Raises Error when it is not valid, when the device of the channel takes other types or no NaN, and as last()
+        when there is no reader of the channel: no device, metric or event of the world, and no subscription.
+        """
+        self._own.publish(checks.text('World.publish', 'channel', channel), messages.payload_of(message))
 
     # --- Changes
 
     def do(self, action: dict | Sequence[dict]) -> None:
         """Executes an action, or a list of actions, as `do:` of an event has them: {'gravity_mps2': 1.62}."""
-        self._own.act(yaml_of(action))
+        self._own.act(yaml_of('World.do', action))
 
     def fault(self, device: str, kind: str, **values: Any) -> None:
         """Gives a device such as `auv1/imu` a fault; `kind` and `values` as in the action `fault`."""
@@ -187,11 +211,11 @@ class World:
 
         spawn(name='r9', file='rover.yaml', position_m=[2, 0, 0])
         """
-        return self._own.spawn(yaml_of(entry))
+        return self._own.spawn(yaml_of('World.spawn', entry))
 
     def remove(self, name: str) -> None:
         """Removes a vehicle or an object."""
-        self._own.remove(name)
+        self._own.remove(checks.text('World.remove', 'name', name))
 
     # --- State
 
@@ -204,6 +228,8 @@ class World:
 
         The run then continues bit by bit as from the snapshot.  Unread messages of subscriptions are dropped.
         """
+        if not isinstance(snapshot, bytes):
+            raise TypeError(f'World.restore: snapshot must be bytes, got {checks.shown(snapshot)}')
         self._own.restore(snapshot)
 
     def branch(self) -> World:
@@ -220,7 +246,7 @@ class World:
 
     def use_threads(self, threads: int) -> None:
         """Sets the number of threads for sensors that cast rays, up to 256; 1 at first, 0: one for each processor."""
-        self._own.use_threads(_threads(threads))
+        self._own.use_threads(checks.integer('World.use_threads', 'threads', threads, 0, MAX_THREADS))
 
     def __repr__(self) -> str:
         return f'<shoal.World {self.name} at {self.time_s:g} s, {len(self.vehicles)} vehicles>'
@@ -230,27 +256,21 @@ class World:
         return world_table(self)
 
 
-def _threads(count):
-    if not 0 <= count <= 256:
-        raise _shoal.Error(f'threads must be 0 to 256, got {count!r}')
-    return count
-
-
 def set_log_level(level: str) -> None:
     """Sets which messages of worlds and runs appear on standard error: debug, info, warn (at first), error or off.
 
     Raises Error for another level.
     """
-    _shoal.set_log_level(level)
+    _shoal.set_log_level(checks.text('set_log_level', 'level', level))
 
 
-def _source(world, set):
+def _source(who, world, set):
     """Returns file, text or None, and settings of a world for the module."""
     if not isinstance(world, (dict, str, os.PathLike)):
-        raise TypeError(f'world must be a path or a dict, got {world!r}')
+        raise TypeError(f'{who}: world must be a path or a dict, got {checks.shown(world)}')
     if not isinstance(set, (dict, type(None))):
-        raise TypeError(f'set must be a dict, got {set!r}')
-    sets = [f'{path}={yaml_of(value)}' for path, value in (set or {}).items()]
+        raise TypeError(f'{who}: set must be a dict, got {checks.shown(set)}')
+    sets = [f"{checks.text(who, 'a path of set', path)}={yaml_of(who, value)}" for path, value in (set or {}).items()]
     if isinstance(world, dict):
-        return 'world', yaml_of(world), sets
-    return _shoal.world_file(os.fspath(world)), None, sets
+        return 'world', yaml_of(who, world), sets
+    return _shoal.world_file(checks.path(who, 'world', world)), None, sets

@@ -6,6 +6,7 @@
 
 #include "messages/yaml/message_writer.hpp"
 #include "shoal/message_schema.hpp"
+#include "sim/config/message_text.hpp"
 #include "sim/ode/physics_fault.hpp"
 #include "sim/world/world_editor.hpp"
 #include "sim/world/world_state.hpp"
@@ -19,6 +20,12 @@ sim::ConfigNode parse(const std::string& text, const std::string& name) {
   sim::ConfigNode node = sim::parse_config_text(text, name, diagnostics);
   diagnostics.throw_if_any();
   return node;
+}
+
+void require_name(const std::string& channel) {
+  if (channel.empty() || channel.size() > sim::Bus::max_channel_length)
+    throw sim::WorldError("a channel has 1 to " + std::to_string(sim::Bus::max_channel_length) + " characters, got '" +
+                          sim::shortened(sim::printable(channel)) + "'");
 }
 
 }  // namespace
@@ -61,14 +68,68 @@ std::int64_t InProcessWorld::step(std::int64_t count, const Stop& stop) {
 }
 
 void InProcessWorld::publish(const std::string& channel, std::span<const std::byte> payload) {
-  if (channel.empty() || channel.size() > sim::Bus::max_channel_length)
-    throw sim::WorldError("a channel has 1 to " + std::to_string(sim::Bus::max_channel_length) + " characters, got '" +
-                          channel + "'");
+  // The payload
+  require_name(channel);
   const shoal::MessageSchema* const schema =
       shoal::embedded_types().find(static_cast<std::uint64_t>(shoal::fingerprint(payload)));
   if (schema == nullptr) throw shoal::MessageError("no message type has the fingerprint of this payload");
   if (const auto error = shoal::validate(*schema, payload, shoal::Finite::any)) throw shoal::MessageError(*error);
-  world_.bus_of_channel(channel).publish(channel, payload, world_.now());
+  // What the device accepts
+  const auto reader = channels().received.find(channel);
+  if (reader != channels().received.end() && !reader->second.empty()) {
+    if ((", " + reader->second + ",").find(", " + schema->name + ",") == std::string::npos)
+      throw shoal::MessageError("the device on '" + channel + "' takes " + reader->second + ", got " + schema->name);
+    const auto finite = may_have_nan(schema->name) ? shoal::Finite::any : shoal::Finite::required;
+    if (const auto error = shoal::validate(*schema, payload, finite))
+      throw shoal::MessageError("'" + channel + "': " + *error);
+  }
+  // Whether somebody reads it
+  if (reader == channels().received.end() && !subscribed_.contains(channel) && !known_.contains(channel)) {
+    const std::string text = "no device, metric or event reads '" + channel + "'";
+    if (const std::string hint = channels().meant(channel, true); !hint.empty()) throw sim::WorldError(text + hint);
+    world_.warnings().warn("publish", text + ", and the program has not subscribed to it");
+  }
+  known_.insert(channel);
+  send(channel, payload);
+}
+
+const sim::Bytes* InProcessWorld::last(const std::string& channel) {
+  const sim::Bytes* const payload = bus_.find(channel);
+  if (payload != nullptr) return payload;
+  require_name(channel);
+  require_readable(channel);
+  return nullptr;
+}
+
+std::unique_ptr<sim::Mailbox> InProcessWorld::subscribe(const std::string& channel, std::size_t capacity) {
+  require_name(channel);
+  if (capacity < 1) throw sim::WorldError("subscribe: capacity must be >= 1, got 0");
+  require_readable(channel);
+  subscribed_.insert(channel);
+  return bus_.open_mailbox(channel, capacity);
+}
+
+const WorldChannels& InProcessWorld::channels() {
+  if (!channels_ || generation_ != world_.generation()) {
+    channels_.emplace(world_);
+    generation_ = world_.generation();
+  }
+  return *channels_;
+}
+
+void InProcessWorld::require_readable(const std::string& channel) {
+  const WorldChannels& all = channels();
+  if (all.published.contains(channel) || all.received.contains(channel) || known_.contains(channel) ||
+      subscribed_.contains(channel) || bus_.find(channel) != nullptr)
+    return;
+  if (const auto device = all.silent.find(channel); device != all.silent.end())
+    throw sim::WorldError("device '" + device->second + "' does not publish on '" + channel +
+                          "': it needs 'truth: true'");
+  const std::string text = "nothing in the world publishes on '" + channel + "'";
+  if (channel.starts_with("sim.")) throw sim::WorldError(text + ": the channels sim.* are those of a run");
+  if (const std::string hint = all.meant(channel, false); !hint.empty()) throw sim::WorldError(text + hint);
+  world_.warnings().warn("last or subscribe", text + ", nor has the program yet");
+  known_.insert(channel);
 }
 
 void InProcessWorld::act(const std::string& action) {
@@ -108,12 +169,18 @@ std::vector<std::string> InProcessWorld::spawn(const std::string& entry) {
 void InProcessWorld::remove(const std::string& name) {
   if (world_.find_vehicle(name) != nullptr) return world_.editor().remove_vehicle(name);
   if (world_.find_object(name) != nullptr) return world_.editor().remove_object(name);
-  throw sim::WorldError("there is no vehicle or object '" + name + "'");
+  std::vector<std::string> names;
+  for (const auto& vehicle : world_.vehicles()) names.push_back(vehicle->name());
+  for (const auto& [object, entry] : world_.objects()) names.push_back(object);
+  throw sim::WorldError("there is no vehicle or object '" + sim::shortened(sim::printable(name)) + "'" +
+                        sim::did_you_mean(name, names));
 }
 
 void InProcessWorld::restore(std::span<const std::byte> snapshot) {
   world_.state().restore(snapshot);
+  for (const auto& [channel, payload] : bus_.all()) known_.insert(channel);
   bus_.clear();
+  channels_.reset();
   fault_.clear();
   ++restores_;
 }
@@ -121,6 +188,8 @@ void InProcessWorld::restore(std::span<const std::byte> snapshot) {
 std::unique_ptr<InProcessWorld> InProcessWorld::branch() const {
   auto made = std::make_unique<InProcessWorld>(loaded_);
   made->restore(snapshot());
+  made->known_ = known_;
+  for (const auto& [channel, payload] : bus_.all()) made->known_.insert(channel);
   return made;
 }
 

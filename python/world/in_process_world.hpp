@@ -5,10 +5,12 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "python/world/last_messages.hpp"
+#include "python/world/world_channels.hpp"
 #include "sim/world/world.hpp"
 #include "sim/world/world_state.hpp"
 #include "sim/world_file/load_world.hpp"
@@ -42,9 +44,21 @@ class InProcessWorld {
   /// Takes up to `count` steps; fewer when the world ends the run or `stop` returns true.  Returns the steps taken.
   /// Throws sim::PhysicsFault; the world then cannot be stepped further, but restored.
   std::int64_t step(std::int64_t count, const Stop& stop = {});
-  /// Publishes a payload as a program would; devices get it in the next step.  Throws sim::WorldError for a channel,
-  /// and shoal::MessageError for a payload that is not valid.
+  /// Publishes a payload as a program would; devices get it in the next step.  On a channel without a reader it warns
+  /// once.  Throws sim::WorldError for a channel whose name is close to that of one that somebody reads, and
+  /// shoal::MessageError for a payload that is not valid, or that the device of the channel refuses.
   void publish(const std::string& channel, std::span<const std::byte> payload);
+  /// Publishes a payload that needs no check.
+  void send(const std::string& channel, std::span<const std::byte> payload) {
+    world_.bus_of_channel(channel).publish(channel, payload, world_.now());
+  }
+  /// Returns the last payload of a channel; null before the first.  For a channel that is not in the world it warns
+  /// once, or throws sim::WorldError when its name is close to that of another.
+  const sim::Bytes* last(const std::string& channel);
+  /// Opens a mailbox; see last().
+  std::unique_ptr<sim::Mailbox> subscribe(const std::string& channel, std::size_t capacity);
+  /// Returns the channels of the entities that are in the world now.
+  const WorldChannels& channels();
   /// Executes an action, or a list of them, written in YAML, as in `events:`.  Throws sim::ConfigError,
   /// sim::WorldError.
   void act(const std::string& action);
@@ -63,10 +77,16 @@ class InProcessWorld {
   std::uint64_t restores() const { return restores_; }
 
  private:
+  void require_readable(const std::string& channel);
+
   const std::shared_ptr<const sim::LoadedWorld> loaded_;
   LastMessages bus_;
   sim::World world_;
-  std::string fault_;  // of a step that failed; empty: none
+  std::optional<WorldChannels> channels_;
+  std::uint64_t generation_ = 0;                   // of channels_
+  std::set<std::string, std::less<>> known_;       // channels on which something was published, or that were reported
+  std::set<std::string, std::less<>> subscribed_;  // channels that the program reads
+  std::string fault_;                              // of a step that failed; empty: none
   std::uint64_t restores_ = 0;
 };
 

@@ -8,6 +8,7 @@
 
 #include "python/world/error.hpp"
 #include "python/world/vehicle_motion.hpp"
+#include "sim/config/message_text.hpp"
 #include "sim/ode/physics_fault.hpp"
 
 namespace python {
@@ -65,25 +66,60 @@ void WorldPool::build(Member& member, std::int64_t seed) {
   member.status = goes_on;
 }
 
-/// Steps the first world until each observed channel has a message.
+void WorldPool::check_layout(InProcessWorld& world) const {
+  const WorldChannels& channels = world.channels();
+  for (const Action& action : layout_.actions) {
+    const std::string type = schema_of(action.type).name;
+    const auto reader = channels.received.find(action.channel);
+    if (reader == channels.received.end())
+      throw Error("action '" + action.channel + "': no device, metric or event reads this channel" +
+                  channels.meant(action.channel, true));
+    if (!reader->second.empty() && (", " + reader->second + ",").find(", " + type + ",") == std::string::npos)
+      throw Error("action '" + action.channel + "': the device takes " + reader->second + ", got " + type);
+  }
+  for (const Observation& observation : layout_.observations) {
+    const std::string &channel = observation.channel, &vehicle = observation.vehicle;
+    if (channel.empty() && world.world().find_vehicle(vehicle) == nullptr) {
+      std::vector<std::string> names;
+      for (const auto& each : world.world().vehicles()) names.push_back(each->name());
+      throw Error("observation '@" + vehicle + "': there is no vehicle '" + vehicle + "'" +
+                  sim::did_you_mean(vehicle, names));
+    }
+    if (!channel.empty() && !channels.published.contains(channel))
+      throw Error("observation '" + channel + "': nothing in the world publishes on this channel" +
+                  channels.meant(channel, false));
+  }
+}
+
+bool WorldPool::wait_for_observations(InProcessWorld& world, const InProcessWorld::Stop& stop) const {
+  constexpr double max_s = 10;
+  constexpr std::int64_t steps_between_stops = 16;
+  const auto is_missing = [&](const Observation& observation) {
+    return !observation.channel.empty() && world.bus().find(observation.channel) == nullptr;
+  };
+  const std::int64_t start = world.world().step_number();
+  while (std::any_of(layout_.observations.begin(), layout_.observations.end(), is_missing)) {
+    if (world.step(1) == 0 || sim::to_seconds(world.world().now()) > max_s) return false;
+    if (stop && (world.world().step_number() - start) % steps_between_stops == 0 && stop()) return false;
+  }
+  return true;
+}
+
+/// Finds the length of each observation in the first world.
 void WorldPool::measure_observations() {
   InProcessWorld& world = *worlds_.front()->world;
-  constexpr double max_s = 10;
+  check_layout(world);
+  wait_for_observations(world, {});
   offsets_.assign(1, 0);
   for (const Observation& observation : layout_.observations) {
     std::size_t size = motion_values;
-    if (observation.channel.empty()) {
-      if (world.world().find_vehicle(observation.vehicle) == nullptr)
-        throw Error("there is no vehicle '" + observation.vehicle + "'");
-    } else {
-      while (world.bus().find(observation.channel) == nullptr) {
-        if (world.step(1) == 0 || sim::to_seconds(world.world().now()) > max_s)
-          throw Error("nothing is published on '" + observation.channel + "' within 10 s");
-      }
-      const sim::Bytes& payload = *world.bus().find(observation.channel);
-      const auto* schema = shoal::embedded_types().find(static_cast<std::uint64_t>(shoal::fingerprint(payload)));
+    if (!observation.channel.empty()) {
+      const sim::Bytes* const payload = world.bus().find(observation.channel);
+      if (payload == nullptr)
+        throw Error("observation '" + observation.channel + "': nothing is published on this channel within 10 s");
+      const auto* schema = shoal::embedded_types().find(static_cast<std::uint64_t>(shoal::fingerprint(*payload)));
       if (schema == nullptr) throw Error("the messages on '" + observation.channel + "' have no known type");
-      size = MemberReader(*schema, observation.member).count(payload);
+      size = MemberReader(*schema, observation.member).count(*payload);
     }
     observation_values_ += size;
     offsets_.push_back(observation_values_);
@@ -96,10 +132,12 @@ void WorldPool::step(std::span<const double> actions, std::span<const std::int64
     if (seeds[i] < 0) world(i);
   threads_.for_each(worlds_.size(), [&](std::size_t i) {
     Member& member = *worlds_[i];
-    if (seeds[i] >= 0)
+    if (seeds[i] >= 0) {
       build(member, seeds[i]);
-    else if (member.status == goes_on)
+      take_steps(member, [&] { wait_for_observations(*member.world, stop); });
+    } else if (member.status == goes_on) {
       step(member, actions.subspan(i * action_values_, action_values_), stop);
+    }
     observe(member, observations.subspan(i * observation_values_, observation_values_));
     ended[i] = member.status;
   });
@@ -111,13 +149,16 @@ void WorldPool::step(Member& member, std::span<const double> actions, const InPr
   const std::int64_t utime = world.epoch_us() + world.now().count();
   for (std::size_t k = 0; k < member.forms.size(); ++k) {
     MessageForm& form = member.forms[k];
-    member.world->publish(layout_.actions[k].channel, form.fill(actions.first(form.count()), utime));
+    member.world->send(layout_.actions[k].channel, form.fill(actions.first(form.count()), utime));
     actions = actions.subspan(form.count());
   }
-  // Step
+  take_steps(member, [&] { member.world->step(layout_.steps, stop); });
+}
+
+void WorldPool::take_steps(Member& member, const std::function<void()>& steps) {
   try {
-    member.world->step(layout_.steps, stop);
-    if (world.ended()) member.status = has_ended;
+    steps();
+    if (member.world->world().ended()) member.status = has_ended;
   } catch (const sim::PhysicsFault&) {
     member.status = has_failed;
   }

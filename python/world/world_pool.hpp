@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -55,8 +56,9 @@ class WorldPool {
   InProcessWorld& world(std::size_t index);
 
   /// Takes a step of each world: sends its row of `actions` (count x action_values) and takes the steps of the layout.
-  /// A world with a seed >= 0 in `seeds` (count) is built again with it instead.  Writes `observations` (count x
-  /// observation_values), NaN where there is no message; `ended`: 1 for a world whose events ended the run, 2 for one
+  /// A world with a seed >= 0 in `seeds` (count) is built again with it instead, and stepped, without actions, until
+  /// each observed channel has its first message, up to 10 s.  Writes `observations` (count x observation_values), NaN
+  /// where there is no message; `ended`: 1 for a world whose events ended the run, 2 for one
   /// whose physics failed; they are not stepped further.  When `stop`, which may be called by any thread, returns true,
   /// the worlds are at different times, and have to be built again.  Throws Error, sim::ConfigError.
   void step(std::span<const double> actions, std::span<const std::int64_t> seeds, std::span<double> observations,
@@ -67,8 +69,13 @@ class WorldPool {
 
   void build(Member& member, std::int64_t seed);
   void step(Member& member, std::span<const double> actions, const InProcessWorld::Stop& stop) const;
+  /// Takes steps until each observed channel has a message.  Returns whether all have one.
+  bool wait_for_observations(InProcessWorld& world, const InProcessWorld::Stop& stop) const;
   void observe(Member& member, std::span<double> out) const;
+  void check_layout(InProcessWorld& world) const;
   void measure_observations();
+  /// Takes steps by a function, and notes whether they ended the world.
+  static void take_steps(Member& member, const std::function<void()>& steps);
 
   const WorldSource source_;
   const Layout layout_;

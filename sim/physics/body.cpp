@@ -150,6 +150,8 @@ void Body::set_velocity_W(const Vector3d& v_WB_W, const Vector3d& w_WB_W) {
   const Vector3d v_WC_W = v_WB_W + w_WB_W.cross(rotation_to_eigen(R_WB_) * p_BC_);
   dBodySetLinearVel(ode_.get(), v_WC_W.x(), v_WC_W.y(), v_WC_W.z());
   dBodySetAngularVel(ode_.get(), w_WB_W.x(), w_WB_W.y(), w_WB_W.z());
+  a_WC_W_.setZero();
+  alpha_B_.setZero();
 }
 
 void Body::set_gravity(bool on) {

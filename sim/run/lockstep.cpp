@@ -54,6 +54,7 @@ LockstepTerms read_lockstep_terms(const std::string& text, const LockstepTerms& 
 void LeaveTerms::read(ParamReader& in) {
   in.read("session", session, between(0, 9e18), "session of the join; 0: any");
   in.read("acknowledged", acknowledged, between(-1, 9e18), "sequence of the last tick it acknowledged; -1: unknown");
+  in.read("reason", reason, "why it leaves before the end of the run, such as an error; empty: as planned");
 }
 
 LeaveTerms read_leave_terms(const std::string& text) {

@@ -36,6 +36,7 @@ LockstepTerms read_lockstep_terms(const std::string& text, const LockstepTerms& 
 struct LeaveTerms {
   std::int64_t session = 0;        ///< 0: any session
   std::int64_t acknowledged = -1;  ///< sequence of the last acknowledged tick; -1: not given
+  std::string reason;              ///< why it leaves before the end of the run; empty: as planned
   void read(ParamReader& in);
 };
 

@@ -114,9 +114,11 @@ def main():
         try:
             machine = slurm_machine.SlurmMachine(cpus=os.cpu_count(), max_array_size=101 if options.study else 4)
             with machine as slurm:
-                out = test.plan('slurm')
+                out = test.plan('slurm%a')  # % starts a replacement in names of logs
                 wall_s = test.run(slurm, out, options.chunk)
                 runs = test.stamps(out)
+                if not list((out / 'slurm').glob('[0-9]*_[0-9]*.log')):
+                    sys.exit('no logs in the folder of the study')
                 print(f'{runs} runs by Slurm in {wall_s:.1f} s')
                 # All is done: nothing is submitted.
                 again = test.call('run', out, '--engine', 'slurm', environment=slurm.environment)

@@ -45,7 +45,13 @@ ALLOWED = (TypeError, ValueError, RuntimeError, OverflowError, AttributeError, K
 
 class WrongTypesTest(unittest.TestCase):
 
-    def attack(self, function, count, seed=1, limit=400):
+    def check_text(self, error):
+        """Checks that an error is a sentence of the package, not one of its machinery."""
+        text = str(error)
+        self.assertNotIsInstance(error, (RecursionError, UnicodeError), text)
+        self.assertNotIn('incompatible function arguments', text)
+
+    def attack(self, function, count, seed=1, limit=400, check=lambda error: None):
         """Calls a function with combinations of wrong values; returns how many calls it refused."""
         choices = list(itertools.islice(itertools.product(WRONG, repeat=count), 200_000))
         random.Random(seed).shuffle(choices)
@@ -53,7 +59,8 @@ class WrongTypesTest(unittest.TestCase):
         for values in choices[:limit]:
             try:
                 function(*values)
-            except ALLOWED:
+            except ALLOWED as error:
+                check(error)
                 refused += 1
         return refused
 
@@ -66,7 +73,7 @@ class WrongTypesTest(unittest.TestCase):
             count = len([each for each in inspect.signature(method).parameters.values()
                          if each.kind == each.POSITIONAL_OR_KEYWORD])
             if count:
-                self.assertGreater(self.attack(method, count), 10, name)
+                self.assertGreater(self.attack(method, count, check=self.check_text), 10, name)
         for wrong in WRONG:
             with self.subTest(wrong=type(wrong)):
                 if not isinstance(wrong, int) or abs(wrong) > 2**63 or wrong < 0:
@@ -96,21 +103,45 @@ class WrongTypesTest(unittest.TestCase):
                     continue
                 try:
                     make(wrong)
-                except (*ALLOWED, OSError):
+                except (*ALLOWED, OSError) as error:
+                    self.check_text(error)
                     refused += 1
             self.assertGreater(refused, 15, make)
 
     def test_of_vector_environments_raise(self):
-        for name in ['num_envs', 'actions', 'observations', 'steps', 'seed', 'set', 'threads', 'missing', 'action_low']:
+        for name in ['num_envs', 'actions', 'observations', 'steps', 'seed', 'set', 'threads', 'missing', 'action_low',
+                     'max_episode_s', 'reward', 'terminated']:
             refused = 0
             for wrong in WRONG:
                 if isinstance(wrong, int) and 0 < wrong < 2**60:
                     continue
                 try:
                     vector.VectorEnv(BALL, **{**{'num_envs': 1, 'actions': [], 'observations': []}, name: wrong})
-                except ALLOWED:
+                except ALLOWED as error:
+                    self.check_text(error)
                     refused += 1
             self.assertGreater(refused, 10, name)
+
+    def test_of_a_client_and_of_runs_raise(self):
+        client = shoal.Client('pilot')
+        client.set_wait_warning(0)
+        for use in [client.subscribe, client.publish, client.follow, client.on_rewind, client.wait_until,
+                    client.set_silence_limit, client.set_wait_warning,
+                    lambda wrong: client.join(wrong, wait_s=0), lambda wrong: client.join(0.1, wrong, wait_s=0),
+                    lambda wrong: client.join(0.1, timeout_s=wrong, wait_s=0), lambda wrong: client.join(0.1, wait_s=wrong),
+                    shoal.set_log_level, lambda wrong: shoal.read('x', wrong),
+                    *(lambda wrong, name=name: shoal.run(BALL, **{'duration_s': 0.01, name: wrong})
+                      for name in ['seed', 'set', 'duration_s', 'results', 'record', 'bus', 'lcm_url', 'wait_for'])]:
+            count, refused = 2 if use in (client.subscribe, client.publish) else 1, 0
+            for wrong in WRONG:
+                if type(wrong) in (int, float):
+                    continue  # some are right, and would wait
+                try:
+                    use(*[wrong] * count)
+                except ALLOWED as error:
+                    self.check_text(error)
+                    refused += 1
+            self.assertGreater(refused, 10, use)
 
     def test_of_the_module_raise(self):
         # Its functions are private, but a mistake in the package must not crash either.

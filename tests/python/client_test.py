@@ -4,11 +4,12 @@
 import os
 import re
 import signal
+import sys
 import threading
 import time
 import unittest
 
-from support import ROOT, ShoalRun, run_python, scratch
+from support import BALL, ROOT, ShoalRun, run_python, scratch
 
 import shoal
 from shoal import messages
@@ -145,6 +146,92 @@ class ClientTest(unittest.TestCase):
             client.join(0.1, on_timeout='sulk')
         with self.assertRaises(shoal.Error):
             shoal.Client('pilot', 'nonsense://')
+
+    def test_names_the_exception_of_its_program(self):
+        program = ("import concurrent.futures, sys, threading, shoal\n"
+                   "def drive(client):\n"
+                   "    client.join(0.1)\n"
+                   "    for number, utime in enumerate(client.ticks()):\n"
+                   "        if number == 20:\n"
+                   "            raise ZeroDivisionError('broken \"wheel\"\\n')\n"
+                   "def managed():\n"
+                   "    with shoal.Client('pilot') as client:\n"
+                   "        drive(client)\n"
+                   "def dropped():\n"
+                   "    drive(shoal.Client('pilot'))\n"
+                   "thread = threading.Thread(target=globals()[sys.argv[1]])\n"
+                   "thread.start()\n"
+                   "shoal.run('minimal', duration_s=5, bus='lcm', wait_for='pilot')\n"
+                   "thread.join()\n")
+        for how in ['managed', 'dropped']:
+            with self.subTest(how):
+                code, _, errors = run_python(program, how)
+                self.assertEqual(code, 0, errors)
+                self.assertRegex(errors, "warning: lockstep: client 'pilot' left at 2.[01]0 s on the world's bus: "
+                                 'ZeroDivisionError: broken "wheel" ; the world continues')
+        for planned in ["client.close()", "sys.exit()", "raise SystemExit(0)"]:
+            with self.subTest(planned):
+                code, _, errors = run_python(program.replace("raise Zero", f"{planned}; return\n            raise Zero"),
+                                             'managed')
+                self.assertEqual((code, errors), (0, ''))
+
+    def test_names_the_exception_that_ends_its_program(self):
+        with ShoalRun(MINIMAL, '--duration', '5', '--await', 'pilot') as run:
+            code, _, errors = run_python("import shoal\n"
+                                         "client = shoal.Client('pilot')\n"
+                                         "client.join(0.1)\n"
+                                         "client.next_tick()\n"
+                                         "raise KeyError('map')\n")
+            self.assertEqual(code, 1, errors)
+            self.assertRegex(run.wait()[1], r"client 'pilot' left at .*: KeyError: 'map'; the world continues")
+
+    def test_has_failed_when_an_exception_ends_its_program(self):
+        drive = ("def drive():\n"
+                 "    with shoal.Client('pilot') as client:\n"
+                 "        client.join(0.1)\n"
+                 "        client.next_tick()\n"
+                 "        raise KeyError('map')\n")
+        program = {'name': 'broken', 'client': 'pilot', 'command': [sys.executable, scratch('broken.py')]}
+        # The program ends with 1, or with 0 when only its thread ends, before the end of the run or after it.
+        for call, duration_s in [('drive()', 2), ('drive()', 300), ('threading.Thread(target=drive).start()', 2),
+                                ('threading.Thread(target=drive).start()', 300)]:
+            with self.subTest(call=call, duration_s=duration_s):
+                with open(scratch('broken.py'), 'w', encoding='utf-8') as file:
+                    file.write(f'import shoal, threading\n{drive}{call}\n')
+                world = {**BALL, 'physics': {'step_s': 0.01, 'gravity_mps2': 0}, 'processes': [program]}
+                run = shoal.run(world, duration_s=duration_s, bus='lcm', launch=True, results=scratch('broken'))
+                process, = run.summary['processes']
+                self.assertEqual((process['name'], process['failed'], run.summary['passed']), ('broken', True, False))
+                self.assertRegex(process['how'], "left: KeyError: 'map'|exited with code 1")
+
+    def test_whose_exception_is_kept_is_named_by_the_error_of_the_run(self):
+        code, _, errors = run_python("import concurrent.futures, shoal\n"
+                                     "def drive():\n"
+                                     "    client = shoal.Client('pilot')\n"
+                                     "    client.join(0.1, on_timeout='end', timeout_s=0.5)\n"
+                                     "    client.next_tick()\n"
+                                     "    raise ZeroDivisionError\n"
+                                     "with concurrent.futures.ThreadPoolExecutor() as pool:\n"
+                                     "    future = pool.submit(drive)\n"
+                                     "    shoal.run('minimal', duration_s=5, bus='lcm', wait_for=['pilot'])\n")
+        self.assertEqual(code, 1, errors)
+        self.assertRegex(errors, "no acknowledgement from 'pilot' .*; 'pilot' is a client of this process .* a future")
+
+    def test_checks_its_numbers_at_once(self):
+        client, start = shoal.Client('pilot'), time.monotonic()
+        for wrong in [-1, 0, float('nan'), float('inf'), 1e10]:
+            for wait in client.join, client.follow:
+                with self.assertRaisesRegex(shoal.Error, 'period_s must be > 0 and <= 1e'):
+                    wait(wrong)
+        with self.assertRaisesRegex(shoal.Error, 'Client.join: timeout_s must be >= 0 and <= 1e'):
+            client.join(0.1, timeout_s=-1)
+        with self.assertRaisesRegex(TypeError, "Client.join: period_s must be a number, got '0.1'"):
+            client.join('0.1')
+        with self.assertRaisesRegex(TypeError, 'Client.wait_until: utime must be an integer, got 1.5'):
+            client.wait_until(1.5)
+        with self.assertRaisesRegex(shoal.Error, 'Client.set_silence_limit: seconds must be >= 0 and <= 1e'):
+            client.set_silence_limit(-1)
+        self.assertLess(time.monotonic() - start, 5)
 
     def test_refuses_what_is_no_message(self):
         client = shoal.Client('pilot')

@@ -7,7 +7,7 @@ import random
 import unittest
 
 import numpy as np
-from support import scratch
+from support import ROOT, SCRATCH, run_python, scratch
 
 import shoal
 from shoal import messages
@@ -129,6 +129,33 @@ class RecordTest(unittest.TestCase):
         self.assertEqual(len(shoal.table(path, 'scan')['ranges'][3]), 3)
         with self.assertRaisesRegex(shoal.Error, "no messages on 'nothing'"):
             shoal.table(path, 'nothing')
+
+    def test_with_a_misspelt_channel_is_told_from_one_without_messages(self):
+        path = scratch('own2.lcm')
+        with shoal.RecordWriter(path, overwrite=True) as record:
+            record.write('rover1.lidar', 1, messages.utime_t())
+        read = ("import shoal, sys\n"
+                "events = shoal.read(sys.argv[1], *sys.argv[2:])\n"
+                "print(len(list(events)), len(list(events)))\n")
+        self.assertEqual(run_python(read, path, 'rover1.lidar')[1:], ('1 0\n', ''))
+        code, printed, errors = run_python(read, path, 'rover1.lider', 'rover1.lidar')
+        self.assertEqual((code, printed), (0, '1 0\n'))
+        self.assertEqual(errors, f"warning: {path}: no messages on 'rover1.lider'; did you mean 'rover1.lidar'?\n")
+        with self.assertRaisesRegex(shoal.Error, "no messages on 'rover1.lider'; did you mean 'rover1.lidar'"):
+            shoal.table(path, 'rover1.lider')
+
+    def test_is_not_any_file(self):
+        with open(scratch('pixels.png'), 'wb') as file:
+            file.write(b'\x89PNG\r\n\x1a\n' + bytes(500))
+        for name, rule in [(scratch('pixels.png'), 'pixels.png: is not an LCM log'),
+                           (os.path.join(ROOT, 'README.md'), 'README.md: is not an LCM log'), (SCRATCH, SCRATCH)]:
+            with self.subTest(name), self.assertRaisesRegex(shoal.Error, rule):
+                shoal.read(name)
+        os.replace(scratch('pixels.png'), scratch('pixels.mcap'))
+        with self.assertRaisesRegex(shoal.Error, 'pixels.mcap'):
+            list(shoal.read(scratch('pixels.mcap')))
+        shoal.RecordWriter(scratch('empty.lcm'), overwrite=True).close()
+        self.assertEqual(list(shoal.read(scratch('empty.lcm'))), [])
 
     def test_that_is_damaged_is_read_as_far_as_it_goes(self):
         path = scratch('cut.lcm')

@@ -64,7 +64,12 @@ class RunTest(unittest.TestCase):
         path = os.environ.get('PLOTS', scratch('plots.png'))
         figure.savefig(path)
         self.assertTrue(is_png(path))
-        self.assertEqual(len(plots.errors(self.run_, ['cooperative']).get_legend().get_texts()), 1)
+        for one in (['cooperative'], 'cooperative'):
+            self.assertEqual(len(plots.errors(self.run_, one).get_legend().get_texts()), 1)
+        with self.assertRaisesRegex(shoal.Error, "of a metric 'x'; metrics with errors: .*cooperative"):
+            plots.errors(self.run_, 'x')
+        with self.assertRaisesRegex(shoal.Error, 'plots.nees: dimensions must be >= 1, got 0'):
+            plots.nees(self.run_, dimensions=0)
         with self.assertRaisesRegex(shoal.Error, 'no metric of the run'):
             plots.nees(self.run_)
         with self.assertRaisesRegex(shoal.Error, "no errors of a metric 'none'"):
@@ -82,6 +87,9 @@ class RunTest(unittest.TestCase):
         self.assertIn(self.run_.run_hash, html)
         world = shoal.World('coop_land')
         self.assertIn('rover3', world._repr_html_())
+        world = shoal.World('minimal')
+        world.step(100)
+        self.assertIn('<td>0.00, 0.00, 0.00</td><td>0.00</td>', world._repr_html_())
         named = shoal.World({**BALL, 'name': '<b>&', 'description': '<script>'})
         self.assertNotIn('<script>', named._repr_html_())
         self.assertIn('&lt;script&gt;', named._repr_html_())
@@ -127,6 +135,23 @@ class RunTest(unittest.TestCase):
         with self.assertRaisesRegex(shoal.Error, "no column 'b'"):
             results._columns(scratch('broken.csv'))
 
+    def test_checks_its_arguments_before_it_runs(self):
+        for arguments, rule in [({'wait_for': ['pilot']}, "wait_for needs the bus 'lcm'"),
+                                ({'wait_for': 'pilot', 'bus': 'none'}, "wait_for needs the bus 'lcm'"),
+                                ({'launch': True}, "launch needs the bus 'lcm'"),
+                                ({'seed': -1}, 'run: seed must be >= 0, got -1'),
+                                ({'duration_s': -1}, 'run: duration_s must be >= 0 and <= 1e')]:
+            with self.subTest(rule), self.assertRaisesRegex(shoal.Error, rule):
+                shoal.run('no_such_world', **arguments)
+        for arguments, rule in [({'wait_for': 5, 'bus': 'lcm'}, 'run: wait_for must be a list of names, got 5'),
+                                ({'seed': 1.5}, 'run: seed must be an integer, got 1.5'),
+                                ({'results': 5}, 'run: results must be a path, got 5'),
+                                ({'bus': None}, 'run: bus must be a str, got None')]:
+            with self.subTest(rule), self.assertRaisesRegex(TypeError, rule):
+                shoal.run('minimal', duration_s=0.1, **arguments)
+        with self.assertRaisesRegex(shoal.Error, 'study: jobs must be >= 0, got -1'):
+            shoal.study('coop_land', output=scratch('none'), jobs=-1)
+
     def test_ends_at_ctrl_c(self):
         timer = threading.Timer(0.5, signal.raise_signal, (signal.SIGINT,))
         timer.start()
@@ -151,6 +176,15 @@ class StudyTest(unittest.TestCase):
             shoal.study('no_such_study', output=scratch('none'))
         with self.assertRaises(shoal.Error):
             shoal.Study(scratch('none'))
+
+
+class MissingPackagesTest(unittest.TestCase):
+
+    def test_are_named_with_their_debian_package(self):
+        for missing, code in [('numpy', 'import shoal'), ('matplotlib', "import shoal; shoal.plots._axes(None)")]:
+            with self.subTest(missing):
+                _, _, errors = run_python(f"import sys\nsys.modules[{missing!r}] = None\n{code}\n")
+                self.assertRegex(errors.splitlines()[-1], f'^ImportError: .*needs .*the Debian package python3-{missing} ')
 
 
 class VenvTest(unittest.TestCase):

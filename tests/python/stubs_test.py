@@ -78,6 +78,23 @@ class StubsTest(unittest.TestCase):
                 with self.subTest(path):
                     self.assertIn(name, text)
 
+    def test_every_attribute_is_explained_by_its_class(self):
+        found = 0
+        for module in MODULES:
+            for node in ast.parse(inspect.getsource(module)).body:
+                if not isinstance(node, ast.ClassDef) or node.name.startswith('_'):
+                    continue
+                own = {each.attr for each in ast.walk(node)
+                       if isinstance(each, ast.Attribute) and isinstance(each.ctx, ast.Store) and
+                       isinstance(each.value, ast.Name) and each.value.id == 'self'}
+                fields = {each.target.id for each in node.body if isinstance(each, ast.AnnAssign)}
+                text = ast.get_docstring(node)
+                for name in (own | fields) - {'metadata'}:
+                    if not name.startswith('_'):
+                        found += 1
+                        self.assertRegex(text, rf'(?m)^(\w+, )*{name}(, \w+)*: ', f'{module.__name__}.{node.name}')
+        self.assertGreater(found, 20)
+
     def test_all_names_of_the_package_are_in_its_stub(self):
         names = set()
         for node in stub('__init__.pyi').body:

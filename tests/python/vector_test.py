@@ -8,7 +8,7 @@ import threading
 import unittest
 
 import numpy as np
-from support import BALL, ROOT
+from support import BALL, ROOT, run_python
 
 import shoal
 from shoal import vector
@@ -85,6 +85,8 @@ class VectorEnvTest(unittest.TestCase):
         for _ in range(5):
             envs.step([[0.5, 0], [0.5, 0.1]])
         world = shoal.World('minimal', seed=4)
+        while world.last('rover1.lidar') is None:
+            world.step()
         for _ in range(5):
             world.publish('rover1.drive.cmd', shoal.messages.twist_command_t(
                 utime=world.utime, forward_mps=0.5, turn_radps=0.1))
@@ -93,15 +95,40 @@ class VectorEnvTest(unittest.TestCase):
 
     def test_observes_the_last_messages_and_the_truth(self):
         envs = rover(1)
-        observations, _ = envs.reset(seed=1)
+        observations, infos = envs.reset(seed=1)
         ranges, motion = (observations[0, each] for each in envs.slices)
         self.assertEqual(len(motion), len(vector.MOTION))
-        np.testing.assert_array_equal(ranges, 0)  # nothing is published yet
+        self.assertAlmostEqual(ranges[len(ranges) // 2], 4.9 - motion[0], delta=0.3)  # the wall is at 4.9 m
+        self.assertFalse(infos['missing'].any())
         for _ in range(10):
             observations, *_ = envs.step([[1.0, 0.0]])
         ranges, motion = (observations[0, each] for each in envs.slices)
         self.assertAlmostEqual(motion[vector.MOTION.index('vx_mps')], 1, delta=0.1)
         self.assertAlmostEqual(ranges[len(ranges) // 2], 4.9 - motion[0], delta=0.3)
+
+    def test_begins_every_episode_with_observations(self):
+        envs = rover(3, max_episode_s=0.3)
+        first, _ = envs.reset(seed=1)
+        self.assertTrue((first[:, envs.slices[0]] > 0.1).all())
+        for _ in range(3):
+            *_, truncated, _ = envs.step(np.zeros((3, 2)))
+        self.assertTrue(truncated.all())
+        again, *_, infos = envs.step(np.zeros((3, 2)))
+        self.assertTrue((again[:, envs.slices[0]] > 0.1).all())
+        self.assertFalse(infos['missing'].any())
+
+    def test_says_which_observations_are_missing(self):
+        # The ball's imu is silent in half of the worlds: no report within 10 s.
+        silent = {'name': 'silence', 'at': 0, 'probability': 0.5,
+                  'do': [{'fault': {'device': 'ball/imu', 'kind': 'silent'}}]}
+        world = {**BALL, 'physics': {**BALL['physics'], 'gravity_mps2': 0}, 'events': [silent]}
+        envs = vector.VectorEnv(world, 8, actions=[], observations=['@ball', 'ball.imu:utime'], missing=-1)
+        observations, infos = envs.reset(seed=1)
+        missing = infos['missing']
+        self.assertEqual(missing.shape, observations.shape)
+        self.assertTrue(0 < missing[:, -1].sum() < 8)
+        np.testing.assert_array_equal(observations[:, -1] == -1, missing[:, -1])
+        self.assertFalse(missing[:, :-1].any())
 
     def test_builds_an_episode_again_in_the_step_after_its_end(self):
         envs = rover(2, max_episode_s=0.3, reward=lambda before, actions, after: actions[:, 0])
@@ -150,11 +177,11 @@ class VectorEnvTest(unittest.TestCase):
         with self.assertRaisesRegex(shoal.Error, 'reset'):
             envs.run_hash(1)
         for seed in [-1, 1.5, [1], [1, -2]]:
-            with self.subTest(seed), self.assertRaises(shoal.Error):
+            with self.subTest(seed), self.assertRaises((shoal.Error, TypeError)):
                 envs.reset(seed=seed)
         envs.reset()
         for actions in [np.zeros(2), np.zeros((2, 3)), np.zeros((3, 2)), 'ab']:
-            with self.assertRaises((shoal.Error, ValueError)):
+            with self.assertRaises((shoal.Error, TypeError)):
                 envs.step(actions)
         with self.assertRaisesRegex(shoal.Error, 'no world 2'):
             envs.run_hash(2)
@@ -162,6 +189,57 @@ class VectorEnvTest(unittest.TestCase):
         for use in [envs.reset, lambda: envs.step(np.zeros((2, 2))), lambda: envs.run_hash(0)]:
             with self.assertRaisesRegex(shoal.Error, 'closed'):
                 use()
+
+    def test_names_what_is_wrong_with_channels(self):
+        for name, wrong, rule in [
+                ('actions', 'rover1.drive.cnd:twist_command_t:forward_mps', "channel; did you mean 'rover1.drive.cmd'"),
+                ('actions', 'own:twist_command_t:forward_mps', "action 'own': no device, metric or event reads"),
+                ('actions', 'rover1.drive.cmd:imu_t:utime', "takes shoal.twist_command_t.*, got shoal.imu_t"),
+                ('observations', 'rover1.lider:ranges', "publishes on this channel; did you mean 'rover1.lidar'"),
+                ('observations', '@rover2', "there is no vehicle 'rover2'; did you mean 'rover1'")]:
+            with self.subTest(rule), self.assertRaisesRegex(shoal.Error, rule):
+                rover(1, **{name: wrong})
+
+    def test_takes_one_text_for_a_list_of_one(self):
+        envs = rover(2, actions=ROVER['actions'][0], observations='@rover1')
+        self.assertEqual((envs.action_space.shape, envs.observation_space.shape), ((2, 2), (2, 13)))
+
+    def test_does_not_broadcast(self):
+        for name, wrong in [('reward', lambda before, actions, after: 1.0), ('reward', lambda *_: np.zeros((2, 1))),
+                            ('reward', lambda *_: [1.0]), ('terminated', lambda after: False),
+                            ('terminated', lambda after: np.zeros((2, 2), bool))]:
+            envs = rover(2, **{name: wrong})
+            envs.reset(seed=1)
+            with self.assertRaisesRegex(shoal.Error, rf'what {name}\(\) returns must have the shape \(2,\), got'):
+                envs.step(np.zeros((2, 2)))
+        for name, wrong, kind in [('reward', lambda *_: None, 'numbers'), ('terminated', lambda _: [0.0, 1.0], 'bool')]:
+            envs = rover(2, **{name: wrong})
+            envs.reset(seed=1)
+            with self.assertRaisesRegex(TypeError, rf'what {name}\(\) returns must be an array of {kind}'):
+                envs.step(np.zeros((2, 2)))
+        with self.assertRaisesRegex(shoal.Error, r'action_low must have the shape \(2,\), got \(1,\)'):
+            rover(1, action_low=[0.0])
+
+    def test_has_bounds_for_each_action(self):
+        envs = rover(3, action_low=[0, -1.5], action_high=2)
+        np.testing.assert_array_equal(envs.action_space.low, [[0, -1.5]] * 3)
+        np.testing.assert_array_equal(envs.single_action_space.high, [2, 2])
+
+    def test_checks_its_numbers(self):
+        for name, wrong, rule in [('max_episode_s', -1, '> 0'), ('max_episode_s', 0, '> 0'), ('steps', 0, '>= 1'),
+                                  ('max_episode_s', float('nan'), '> 0'), ('num_envs', 0, '>= 1'),
+                                  ('threads', -1, '>= 0'), ('seed', -1, '>= 0'), ('missing', float('nan'), '')]:
+            with self.subTest(name=name, wrong=wrong), self.assertRaisesRegex(shoal.Error, f'{name} must be {rule}'):
+                rover(**{'count': 1, **({'count': wrong} if name == 'num_envs' else {name: wrong})})
+        for name, wrong in [('steps', 1.5), ('missing', '0'), ('max_episode_s', '5'), ('reward', 1), ('terminated', 'x')]:
+            with self.subTest(name=name, wrong=wrong), self.assertRaisesRegex(TypeError, f'VectorEnv: {name} must be a'):
+                rover(1, **{name: wrong})
+        envs = rover(2)
+        envs.reset(seed=1)
+        for wrong in [np.nan, np.inf]:
+            with self.assertRaisesRegex(shoal.Error, 'actions must be finite, got .* of world 1'):
+                envs.step([[0, 0], [0, wrong]])
+        envs.step(np.zeros((2, 2), np.float32))
 
     def test_ends_a_long_step_at_ctrl_c_and_can_be_reset(self):
         envs = rover(3, steps=100_000_000, threads=2)
@@ -208,7 +286,8 @@ class EnvTest(unittest.TestCase):
         self.assertEqual(list(inspect.signature(env.step).parameters), ['action'])
         observation, info = env.reset(seed=1)
         self.assertIn(observation, env.observation_space)
-        self.assertEqual(info, {})
+        self.assertEqual(list(info), ['missing'])
+        self.assertFalse(info['missing'].any())
         again, _ = env.reset(seed=1)
         np.testing.assert_array_equal(again, observation)
         kinds = []
@@ -221,6 +300,8 @@ class EnvTest(unittest.TestCase):
             env.step(env.action_space.sample())
         env.reset()
         env.step(env.action_space.sample())
+        with self.assertRaisesRegex(shoal.Error, r'Env.step: action must have the shape \(2,\), got \(\)'):
+            env.step(1.0)
         env.close()
 
 
@@ -280,6 +361,62 @@ class ParallelEnvTest(unittest.TestCase):
             env.step({'nobody': [0, 0]})
         with self.assertRaisesRegex(shoal.Error, 'shape'):
             env.step({'rover1': [0]})
+
+    def test_refuses_wrong_agents_and_rewards(self):
+        for agents, rule in [({}, 'at least one agent'), ({'a': {}}, "agent 'a' must be a dict with 'actions'"),
+                             ('rover1', 'agents must be a dict'),
+                             ({'a': {'actions': [], 'observation': []}}, "agent 'a'")]:
+            with self.subTest(rule), self.assertRaisesRegex(shoal.Error, rule):
+                vector.ParallelEnv(BALL, agents)
+        with self.assertRaisesRegex(TypeError, "actions of 'a' must be a list of names, got 5"):
+            vector.ParallelEnv(BALL, {'a': {'actions': 5, 'observations': []}})
+        for reward, rule in [(1.0, 'must be a dict of rover1, rover2, got 1.0'), ({'rover1': 0}, 'must be a dict of'),
+                             ({'rover1': 0, 'rover2': [1]}, r"the reward of 'rover2' must have the shape \(\)")]:
+            env = self.env(reward=lambda *_, value=reward: value)
+            env.reset(seed=1)
+            with self.subTest(rule), self.assertRaisesRegex(shoal.Error, rule):
+                env.step({})
+
+    def test_takes_one_text_for_a_list_of_one(self):
+        env = vector.ParallelEnv(BALL, {'ball': {'actions': [], 'observations': '@ball'}})
+        self.assertEqual(env.observation_space('ball').shape, (13,))
+
+
+class JoinedTest(unittest.TestCase):
+
+    def test_environments_are_of_the_classes_of_gymnasium_where_it_is_installed(self):
+        # Stands in for the packages, which Debian does not have.
+        code, _, errors = run_python(
+            "import sys, types\n"
+            "class Env:\n"
+            "    def reset(self, *, seed=None, options=None):\n"
+            "        self.seeded = seed\n"
+            "class VectorEnv: pass\n"
+            "class ParallelEnv: pass\n"
+            "class Box:\n"
+            "    def __init__(self, low, high, shape, dtype):\n"
+            "        self.low, self.shape = low, shape\n"
+            "for name, parts in [('gymnasium', {'Env': Env}), ('gymnasium.spaces', {'Box': Box}),\n"
+            "                    ('gymnasium.vector', {'VectorEnv': VectorEnv, 'AutoresetMode': types.SimpleNamespace(\n"
+            "                        NEXT_STEP='mode')}), ('pettingzoo', {'ParallelEnv': ParallelEnv})]:\n"
+            "    sys.modules[name] = types.ModuleType(name)\n"
+            "    vars(sys.modules[name]).update(parts)\n"
+            "import shoal\n"
+            "from shoal import vector\n"
+            "class Own(vector.Env): pass\n"
+            f"ball = {BALL!r}\n"
+            "envs = vector.VectorEnv(ball, 2, actions=[], observations='@ball')\n"
+            "assert isinstance(envs, VectorEnv) and isinstance(envs, vector.VectorEnv)\n"
+            "assert isinstance(envs.action_space, Box) and envs.metadata['autoreset_mode'] == 'mode'\n"
+            "own = Own(ball, actions=[], observations='@ball')\n"
+            "assert isinstance(own, Env) and isinstance(own, Own) and type(own).__name__ == 'Own'\n"
+            "assert own.reset(seed=7)[0].shape == (13,) and own.seeded == 7\n"
+            "pair = vector.ParallelEnv(ball, {'ball': {'actions': [], 'observations': '@ball'}})\n"
+            "assert isinstance(pair, ParallelEnv)\n")
+        self.assertEqual(code, 0, errors)
+
+    def test_environments_are_plain_objects_elsewhere(self):
+        self.assertIs(type(rover(1)), vector.VectorEnv)
 
 
 class BoxTest(unittest.TestCase):

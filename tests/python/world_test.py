@@ -3,6 +3,7 @@
 """Tests of worlds in the process of Python."""
 import json
 import os
+import re
 import signal
 import subprocess
 import threading
@@ -48,9 +49,9 @@ class WorldTest(unittest.TestCase):
         self.assertEqual((world.step_number, world.time_s), (100, 1.0))
         self.assertEqual(world.utime, world.last('ball.imu').utime)
         state = world.state('ball')
-        # Semi-implicit Euler: after n steps of h the fall is g h^2 n (n + 1) / 2; air is off.
+        # The step is exact for constant gravity; air is off.
         g = 100 - state['position_m'][2]
-        self.assertAlmostEqual(g, 9.80665 * 0.01**2 * 100 * 101 / 2, delta=1e-3 * g)
+        self.assertAlmostEqual(g, 9.80665 / 2, delta=1e-9 * g)
         self.assertAlmostEqual(state['velocity_mps'][2], -9.80665, delta=1e-3 * 9.80665)
         np.testing.assert_array_equal(state['orientation'], [1, 0, 0, 0])
         self.assertEqual(world.states().shape, (1,))
@@ -105,8 +106,10 @@ class WorldTest(unittest.TestCase):
         world.step(10)
         world.remove('extra')
         self.assertEqual(world.vehicles, before)
-        with self.assertRaisesRegex(shoal.Error, "no vehicle or object 'extra'"):
+        with self.assertRaisesRegex(shoal.Error, "no vehicle or object 'extra'$"):
             world.remove('extra')
+        with self.assertRaisesRegex(shoal.Error, "no vehicle or object 'rovre1'; did you mean 'rover1'"):
+            world.remove('rovre1')
 
     def test_has_vehicles_that_include_a_shipped_one(self):
         with open(scratch('own_rover.yaml'), 'w', encoding='utf-8') as file:
@@ -130,6 +133,124 @@ class WorldTest(unittest.TestCase):
             shoal.World('no_such.yaml')
         with self.assertRaises(TypeError):
             shoal.World(3)
+
+    def test_refuses_misspelt_channels(self):
+        world = shoal.World('minimal')
+        command = shoal.messages.twist_command_t(forward_mps=0.5)
+        for use in world.last, world.subscribe:
+            for wrong, meant in [('rover1.lider', 'rover1.lidar'), ('lidar', 'rover1.lidar'),
+                                 ('rover1', 'rover1.drive.cmd'), ('rover1.drive.cdm', 'rover1.drive.cmd')]:
+                with self.subTest(wrong), self.assertRaisesRegex(
+                        shoal.Error, f"nothing in the world publishes on '{wrong}'; did you mean '{meant}'"):
+                    use(wrong)
+            with self.assertRaisesRegex(shoal.Error, "'rover1/lidar' .* 'rover1.lidar.truth': it needs 'truth: true'"):
+                use('rover1.lidar.truth')
+            with self.assertRaisesRegex(shoal.Error, r'sim\.\* are those of a run'):
+                use('sim.state')
+        for wrong in ['rover1.drive', 'rover1.drive.cnd', 'rover2.drive.cmd']:
+            with self.subTest(wrong), self.assertRaisesRegex(
+                    shoal.Error, f"no device, metric or event reads '{wrong}'; did you mean 'rover1.drive.cmd'"):
+                world.publish(wrong, command)
+        self.assertIsNone(world.last('rover1.lidar'))
+        self.assertIsNone(world.last('rover1.drive.cmd'))
+        world.spawn(name='rover2', file='rover.yaml', position_m=[0, 3, 0])
+        world.publish('rover2.drive.cmd', command)
+        self.assertIsNone(world.last('rover2.lidar'))
+
+    def test_warns_once_of_channels_that_only_the_program_has(self):
+        code, _, errors = run_python(
+            "import shoal\n"
+            "world = shoal.World('minimal')\n"
+            "quiet = world.subscribe('planner.goal')\n"
+            "for _ in range(3):\n"
+            "    world.publish('planner.goal', shoal.messages.utime_t())\n"
+            "    world.publish('planner.path', shoal.messages.utime_t())\n"
+            "assert len(quiet.take()) == 3\n"
+            "snapshot = world.snapshot()\n"
+            "world.restore(snapshot)\n"
+            "world.branch().last('planner.path')\n"
+            "world.last('planner.path'), world.last('rest'), world.last('rest')\n")
+        self.assertEqual(code, 0, errors)
+        self.assertEqual([line.partition(' (at')[0] for line in errors.splitlines()], [
+            "warning: last or subscribe: nothing in the world publishes on 'planner.goal', nor has the program yet",
+            "warning: publish: no device, metric or event reads 'planner.path', and the program has not subscribed to it",
+            "warning: last or subscribe: nothing in the world publishes on 'rest', nor has the program yet"])
+
+    def test_refuses_commands_that_a_device_would_ignore(self):
+        world = shoal.World('minimal')
+        with self.assertRaisesRegex(shoal.Error, "'rover1.drive.cmd' takes shoal.twist_command_t.*, got shoal.imu_t"):
+            world.publish('rover1.drive.cmd', shoal.messages.imu_t())
+        for wrong in [float('nan'), float('inf')]:
+            with self.assertRaisesRegex(shoal.Error, "'rover1.drive.cmd': .*forward_mps"):
+                world.publish('rover1.drive.cmd', shoal.messages.twist_command_t(forward_mps=wrong))
+        state = world.state_hash()
+        world.publish('rover1.drive.cmd', shoal.messages.twist_command_t(forward_mps=1))
+        world.step(100)
+        self.assertNotEqual(world.state_hash(), state)
+
+    def test_takes_nan_in_commands_whose_devices_take_it(self):
+        taken = set()
+        for folder, _, names in os.walk('devices'):
+            for name in names:
+                with open(os.path.join(folder, name), encoding='utf-8') as file:
+                    taken |= set(re.findall(r'decode<shoal::(\w+_t)>\(payload, (?:shoal::)?Finite::any\)', file.read()))
+        taken.remove('modem_received_t')  # of the network of modems, no command
+        with open('python/world/world_channels.cpp', encoding='utf-8') as file:
+            known = set(re.findall(r'"shoal\.(\w+)"', file.read()))
+        self.assertEqual(known, taken)
+        world = shoal.World('coop_underwater')
+        world.spawn(name='boat', file='naive_boat.yaml', position_m=[100, 0, 0])
+        world.publish('boat.drive.cmd', shoal.messages.helm_command_t(speed_mps=1, heading_rad=float('nan')))
+        with self.assertRaisesRegex(shoal.Error, "'boat.drive.cmd': .*thrust"):
+            world.publish('boat.drive.cmd', shoal.messages.thrust_rudder_command_t(thrust=float('nan')))
+
+    def test_gives_each_wrong_argument_one_sentence(self):
+        world = shoal.World(BALL)
+        deep: dict = {}
+        cycle: dict = {'a': deep}
+        deep['b'] = cycle
+        wide: object = 1
+        for _ in range(5000):
+            wide = [wide]
+        for use, kind, rule in [
+                (lambda: world.step(1.5), TypeError, 'World.step: count must be an integer, got 1.5'),
+                (lambda: world.step(True), TypeError, 'World.step: count must be an integer, got True'),
+                (lambda: world.step(-1), shoal.Error, 'World.step: count must be >= 0, got -1'),
+                (lambda: world.step(2**70), shoal.Error, 'World.step: count must be <= 9223372036854775807, got'),
+                (lambda: world.run_until('5'), TypeError, "World.run_until: time_s must be a number, got '5'"),
+                (lambda: world.run_until(float('nan')), shoal.Error, 'time_s must be >= 0 and <= 1e.09, got nan'),
+                (lambda: shoal.World(BALL, seed=1.5), TypeError, 'World: seed must be an integer, got 1.5'),
+                (lambda: shoal.World(BALL, seed=-1), shoal.Error, 'World: seed must be >= 0, got -1'),
+                (lambda: shoal.World(BALL, set=[1]), TypeError, r'World: set must be a dict, got \[1\]'),
+                (lambda: shoal.World({**BALL, 'name': '\ud800'}), shoal.Error, 'World: a text has characters that UTF-8'),
+                (lambda: shoal.World('\ud800'), shoal.Error, 'World: world has characters that a path cannot hold'),
+                (lambda: shoal.World('a\0b'), shoal.Error, 'World: world must not have the character 0'),
+                (lambda: shoal.World({**BALL, 'objects': wide}), shoal.Error, 'World: a value may be nested at most 100'),
+                (lambda: world.do(cycle), shoal.Error, 'World.do: .* or contains itself'),
+                (lambda: world.do({'gravity_mps2': float('nan')}), shoal.Error, 'World.do: a number must be finite, got nan'),
+                (lambda: world.do({'gravity_mps2': print}), TypeError, 'World.do: a value must be text, a number'),
+                (lambda: world.last(5), TypeError, 'World.last: channel must be a str, got 5'),
+                (lambda: world.last(''), shoal.Error, "a channel has 1 to 63 characters, got ''"),
+                (lambda: world.last('\ud800'), shoal.Error, 'World.last: channel has characters that UTF-8 cannot'),
+                (lambda: world.subscribe('ball.imu', 0), shoal.Error, 'World.subscribe: capacity must be >= 1, got 0'),
+                (lambda: world.publish(None, b''), TypeError, 'World.publish: channel must be a str, got None'),
+                (lambda: world.state(b'ball'), TypeError, "World.state: vehicle must be a str, got b'ball'"),
+                (lambda: world.states(5), TypeError, 'World.states: vehicles must be a list of names, got 5'),
+                (lambda: world.states(['ball', 5]), TypeError, 'World.states: each of vehicles must be a str, got 5'),
+                (lambda: world.state('bal'), shoal.Error, "there is no vehicle 'bal'; did you mean 'ball'"),
+                (lambda: world.restore('x'), TypeError, "World.restore: snapshot must be bytes, got 'x'"),
+                (lambda: world.use_threads(257), shoal.Error, 'World.use_threads: threads must be <= 256, got 257'),
+                (lambda: shoal.set_log_level(3), TypeError, 'set_log_level: level must be a str, got 3'),
+                (lambda: shoal.Client(5), TypeError, 'Client: name must be a str, got 5'),
+                (lambda: shoal.read(5), TypeError, 'read: path must be a path, got 5'),
+                (lambda: shoal.read('x', ['a']), TypeError, r"read: a channel must be a str, got \['a'\]")]:
+            with self.subTest(rule), self.assertRaisesRegex(kind, rule) as caught:
+                use()
+            self.assertNotIn('\n', str(caught.exception))
+
+    def test_takes_one_name_for_a_list_of_one(self):
+        world = shoal.World(BALL)
+        self.assertEqual(world.states('ball').shape, (1,))
 
     def test_warns_on_standard_error_unless_it_is_silenced(self):
         code = ("import shoal\n"
@@ -161,7 +282,7 @@ class WorldTest(unittest.TestCase):
         with self.assertRaises(TypeError):
             world.step('many')
         for threads in [-1, 257]:
-            with self.assertRaisesRegex(shoal.Error, 'threads must be 0 to 256'):
+            with self.assertRaisesRegex(shoal.Error, 'threads must be (>= 0, got -1|<= 256, got 257)'):
                 world.use_threads(threads)
         imu = world.subscribe('ball.imu')
         del world

@@ -133,7 +133,7 @@ TEST(Campaign, TwoRunnersShareTheRuns) {
   EXPECT_EQ(study.call("collect").exit_code, 0);
   // Each run was executed once: reports of finished runs add up.
   const std::string all = first.errors() + second.errors();
-  const std::regex done("\\[\\d+/12\\] world, seed (\\d+): done");
+  const std::regex done("\\[\\d+/12\\] world, seed (\\d+): not judged");
   std::multiset<std::string> seeds;
   for (std::sregex_iterator at(all.begin(), all.end(), done), end; at != end; ++at) seeds.insert((*at)[1]);
   EXPECT_EQ(seeds.size(), 12u) << all;
@@ -171,13 +171,30 @@ TEST(Campaign, StopsWhenTheResultIsCertain) {
   const Ended ended = study.call("study", {"--jobs", "2"});
   EXPECT_EQ(ended.exit_code, 0) << ended.errors;
   EXPECT_THAT(ended.output, HasSubstr("study tiny: 4 runs"));
-  EXPECT_THAT(ended.output, HasSubstr("certain after 4 of 30 seeds: ci(distance.travelled_m) is below its bound"));
+  const std::string outcome =
+      "until: ci(distance.travelled_m) < 0.1 holds after 4 of 30 seeds; runs of the others are "
+      "not used; with fewer than 10 seeds this may be chance";
+  EXPECT_THAT(ended.output, HasSubstr("\n" + outcome + "\n"));
+  EXPECT_THAT(study.text("report.html"),
+              HasSubstr("<p>" + std::regex_replace(outcome, std::regex("<"), "&lt;") + ".</p>"));
+  EXPECT_THAT(ended.errors, HasSubstr("'batch' is 4: 'until' may hold by chance after fewer than 10 seeds"));
   EXPECT_FALSE(fs::exists(study.out() + "/runs/world/seed_5"));
   // Further runs do not change the result.
   ASSERT_EQ(steps.call("plan").exit_code, 0);
   EXPECT_EQ(steps.call("run", {"--index", "1-9"}).exit_code, 0);
   EXPECT_EQ(steps.call("collect").exit_code, 0);
   EXPECT_EQ(steps.table(), study.table());
+}
+
+TEST(Campaign, CountsItsRunsOverAllBatches) {
+  // Runs of a world without rules are not judged, so that the share that passed stays unknown.
+  const CampaignFolder study("seeds: 1-6\nbatch: 2\nuntil: ci(passed) < 0.1\n");
+  const Ended ended = study.call("study");
+  EXPECT_EQ(ended.exit_code, 0) << ended.errors;
+  for (int run = 1; run <= 6; ++run)
+    EXPECT_THAT(ended.errors, HasSubstr("[" + std::to_string(run) + "/6] world, seed " + std::to_string(run) + ": "));
+  EXPECT_THAT(ended.output, HasSubstr("\nuntil: ci(passed) < 0.1 does not hold after all 6 seeds\n"));
+  EXPECT_THAT(study.call("study").errors, HasSubstr("6 of 6 runs were already done"));
 }
 
 TEST(Campaign, WarnsOfRunsOfDifferentProcessors) {
@@ -242,6 +259,78 @@ TEST(Campaign, ALinkInPlaceOfALogIsNotFollowed) {
   EXPECT_EQ(text_of_file(study.folder.file("victim")), "mine");
 }
 
+/// A link in the folder of a study to a file or folder that is not the study's, and the command that meets it.
+struct HostileLink {
+  std::string name;
+  std::vector<std::string> command;
+  bool to_folder = false;
+};
+
+void expect_not_followed(const HostileLink& link) {
+  SCOPED_TRACE(link.name);
+  const CampaignFolder study("seeds: [1]\nplots: [{name: far, figure: distance.travelled_m}]\n");
+  ASSERT_EQ(study.call("plan").exit_code, 0);
+  const std::string victim = study.folder.file("victim"), place = study.out() + "/" + link.name;
+  fs::create_directories(victim);
+  for (const char* name : {"study_stamp.txt", "summary.json", "1.sh"}) write_file(victim + "/" + name, "mine");
+  fs::create_directories(fs::path(place).parent_path());
+  fs::remove(place);
+  fs::create_symlink(link.to_folder ? victim : victim + "/summary.json", place);
+  const Ended ended = study.call(link.command.front(), {link.command.begin() + 1, link.command.end()});
+  EXPECT_EQ(ended.exit_code, 4);
+  EXPECT_THAT(ended.errors, HasSubstr("/" + link.name + ": is a symbolic link, through which nothing is written"));
+  EXPECT_TRUE(fs::is_symlink(place));
+  std::size_t files = 0;
+  for (const auto& entry : fs::directory_iterator(victim)) {
+    ++files;
+    EXPECT_EQ(text_of_file(entry.path()), "mine");
+  }
+  EXPECT_EQ(files, 3u);
+}
+
+TEST(Campaign, NothingIsWrittenThroughALinkInItsFolder) {
+  expect_not_followed({"manifest.jsonl", {"plan"}});
+  for (const char* name : {"runs", "runs/world", "runs/world/seed_1"}) expect_not_followed({name, {"run"}, true});
+  for (const char* name : {"study_claim", "study_stamp.txt", "study_failure.txt", "summary.json", "run.log"})
+    expect_not_followed({std::string("runs/world/seed_1/") + name, {"run"}});
+  for (const char* name : {"study.csv", "points.csv", "study.json", "study.sqlite", "study.sqlite.part", "report.html",
+                           "plot.gp", "plot.log", "far.dat", "far.png"})
+    expect_not_followed({name, {"collect"}});
+  if (std::system("parallel --version > /dev/null 2>&1") == 0)
+    for (const char* name : {"parallel.log", "parallel_chunks.txt"})
+      expect_not_followed({name, {"run", "--engine", "parallel"}});
+}
+
+TEST(Campaign, ItsFolderMayBeALink) {
+  const CampaignFolder study("seeds: [1]\n");
+  fs::create_directories(study.folder.file("elsewhere"));
+  fs::create_symlink(study.folder.file("elsewhere"), study.out());
+  EXPECT_EQ(study.call("study").exit_code, 0);
+  EXPECT_TRUE(fs::exists(study.folder.file("elsewhere/study.csv")));
+}
+
+TEST(Campaign, APageThatIsALinkIsNotFollowed) {
+  const CampaignFolder study("seeds: [1]\n");
+  ASSERT_EQ(study.call("study").exit_code, 0);
+  write_file(study.folder.file("victim"), "mine");
+  fs::remove(study.out() + "/report.html");
+  fs::create_symlink(study.folder.file("victim"), study.out() + "/report.html");
+  const Ended report = run_shoal({"report", study.out()});
+  EXPECT_EQ(report.exit_code, 4);
+  EXPECT_THAT(report.errors, HasSubstr("/report.html: is a symbolic link"));
+  EXPECT_EQ(text_of_file(study.folder.file("victim")), "mine");
+}
+
+TEST(Campaign, ReportsBeforeItsRunsThatAResultCannotBeWritten) {
+  const CampaignFolder study("seeds: [1]\n");
+  fs::create_directories(study.out() + "/study.sqlite");
+  const Ended ended = study.call("study");
+  EXPECT_EQ(ended.exit_code, 4);
+  EXPECT_THAT(ended.errors, HasSubstr("/study.sqlite: cannot be written: it is not a regular file"));
+  EXPECT_FALSE(fs::exists(study.out() + "/runs"));
+  EXPECT_FALSE(fs::exists(study.out() + "/study.sqlite.part"));
+}
+
 TEST(Campaign, ItsPageHasCurvesAndTheRunsToLookAt) {
   const CampaignFolder study(
       "seeds: 1-3\nfactors: [{name: g, paths: [physics.gravity_mps2], from: 1, to: 9, levels: 3}]\n");
@@ -251,7 +340,11 @@ TEST(Campaign, ItsPageHasCurvesAndTheRunsToLookAt) {
   EXPECT_THAT(page, HasSubstr("<title>distance.travelled_m over the number of seeds</title>"));
   EXPECT_THAT(page, HasSubstr("<h2>Runs to look at</h2>"));
   EXPECT_THAT(page, HasSubstr("<a href=\"runs/world/point_1/seed_1/summary.json\">summary</a>"));
-  EXPECT_THAT(page, HasSubstr("<td>point 2 - point 1</td>"));
+  EXPECT_THAT(page, HasSubstr("<td>g = 5 minus g = 1</td>"));
+  // Axes from round number to round number, with units.
+  EXPECT_THAT(page, HasSubstr(">distance.travelled_m (m)</text>"));
+  EXPECT_THAT(page, HasSubstr(">g: physics.gravity_mps2</text>"));
+  EXPECT_THAT(page, HasSubstr("text-anchor=\"middle\">4</text>"));
 }
 
 TEST(Campaign, ShowsTheExtremeRunsInThreeDimensions) {
@@ -263,6 +356,15 @@ TEST(Campaign, ShowsTheExtremeRunsInThreeDimensions) {
   EXPECT_FALSE(fs::exists(study.out() + "/shown/run_2"));
   const std::string world = study.out() + "/runs/world/point_3/seed_1", shown = study.out() + "/shown/run_3";
   EXPECT_EQ(summary_value(shown, "run_hash"), summary_value(world, "run_hash"));
+  // Nothing is written through a link in place of their folder.
+  const std::string elsewhere = study.folder.file("elsewhere");
+  fs::create_directories(elsewhere);
+  fs::remove_all(study.out() + "/shown");
+  fs::create_symlink(elsewhere, study.out() + "/shown");
+  const Ended again = study.call("collect", {"--show"});
+  EXPECT_EQ(again.exit_code, 4);
+  EXPECT_THAT(again.errors, HasSubstr("/shown: is a symbolic link"));
+  EXPECT_TRUE(fs::is_empty(elsewhere));
 }
 
 TEST(Campaign, TuningFindsTheBestEndOfARangeAndContinues) {
@@ -287,10 +389,85 @@ TEST(Campaign, TuningFindsTheBestEndOfARangeAndContinues) {
   EXPECT_LT(std::stod(best[1]), 1.2);
   const Ended second = tune("min");
   EXPECT_EQ(second.output, first.output);
-  EXPECT_THAT(second.errors, Not(HasSubstr("done, not judged")));
+  EXPECT_THAT(second.errors, Not(HasSubstr("not judged")));
   // A figure that the world does not have.
   EXPECT_THAT(run_shoal({"tune", folder.file("study.yaml"), "--figure", "distance.travelled"}).errors,
               HasSubstr("--figure: metric 'distance' has no figure 'travelled'"));
+}
+
+TEST(Campaign, TuningPrefersAPointThatHoldsTheRulesOfItsWorld) {
+  // A ball falls for a second by g / 2; the rule does not hold where the distance is smallest.
+  const ScratchFolder folder;
+  write_file(folder.file("world.yaml"),
+             "shoal: 1\nrun: {duration_s: 1}\nvehicles:\n  - name: m\n    position_m: [0, 0, 20]\n    model:\n"
+             "      shoal: 1\n      vehicle: ball\n      bodies: [{name: hull, parts: [{shape: sphere, "
+             "radius_m: 0.1, mass_kg: 1}]}]\nmetrics: [{name: distance, type: distance, vehicle: m}]\n"
+             "pass: [distance.travelled_m > 2]\n");
+  const auto tune = [&](const std::string& to, const std::string& output) {
+    write_file(folder.file("study.yaml"),
+               "shoal: 1\nstudy: fall\nworld: world.yaml\nseeds: [1]\n"
+               "factors: [{name: g, paths: [physics.gravity_mps2], from: 1, to: " +
+                   to + "}]\n");
+    return run_shoal({"tune", folder.file("study.yaml"), "--figure", "distance.travelled_m", "--generations", "6",
+                      "--output", folder.file(output), "--jobs", "2", "--quiet"});
+  };
+  const Ended some = tune("9", "some");
+  EXPECT_EQ(some.exit_code, 0) << some.errors;
+  std::smatch best;
+  ASSERT_TRUE(std::regex_search(some.output, best, std::regex("best of 24 points: g = ([0-9.]+)\nshoal run ")))
+      << some.output;
+  EXPECT_GT(std::stod(best[1]), 4.0);
+  EXPECT_LT(std::stod(best[1]), 5.0);
+  EXPECT_THAT(some.output, Not(HasSubstr("FAILED")));
+  const std::string table = text_of_file(folder.file("some/tune.csv"));
+  EXPECT_THAT(table, testing::StartsWith("generation,point,g,distance.travelled_m,passed\n"));
+  EXPECT_THAT(table, testing::ContainsRegex("\n1,[1-4],[^,]+,[^,]+,1\n"));
+  EXPECT_THAT(table, testing::ContainsRegex(",0\n"));
+  const Ended none = tune("3", "none");
+  EXPECT_EQ(none.exit_code, 1) << none.errors;
+  EXPECT_THAT(none.output, HasSubstr("FAILED: a rule of its world does not hold in 1 of 1 runs at the best point\n"));
+}
+
+TEST(Campaign, SlurmGetsPatternsAndJobsOfThisUserOnly) {
+  // Programs in place of Slurm's: sbatch executes the tasks of an array at once.
+  const CampaignFolder study(six_runs);
+  const std::string bin = study.folder.file("bin"), calls = study.folder.file("calls");
+  fs::create_directories(bin);
+  const auto program = [&](const std::string& name, const std::string& script) {
+    write_file(bin + "/" + name, "#!/bin/sh\nprintf '%s\\n' " + name + " \"$@\" >> " + calls + "\n" + script);
+    fs::permissions(bin + "/" + name, fs::perms::owner_all);
+  };
+  program("squeue", "");
+  program("scontrol", "echo MaxArraySize = 1001\n");
+  program("sbatch",
+          "for word in \"$@\"; do case $word in --array=1-*) last=${word#--array=1-} ;; esac; script=$word; done\n"
+          "for SLURM_ARRAY_TASK_ID in $(seq \"$last\"); do export SLURM_ARRAY_TASK_ID; sh \"$script\"; done >&2\n"
+          "echo 7\n");
+  const std::string out = study.folder.file("out%a");
+  ASSERT_EQ(run_shoal({"study", "plan", study.folder.file("study.yaml"), "--output", out}).exit_code, 0);
+  Program engine({"/usr/bin/env", "PATH=" + bin + ":/usr/bin:/bin", built("shoal"), "study", "run", out, "--engine",
+                  "slurm", "--chunk", "2", "--allow-path", study.folder.file("")});
+  EXPECT_EQ(engine.wait(), 0) << engine.errors();
+  EXPECT_THAT(engine.errors(), HasSubstr("submitted job 7: 6 runs in 3 tasks"));
+  const std::string called = text_of_file(calls);
+  EXPECT_THAT(called, HasSubstr("--output=" + study.folder.file("out%%a/slurm/%A_%a.log") + "\n"));
+  EXPECT_THAT(called, HasSubstr("squeue\n--me\n"));
+  EXPECT_TRUE(fs::exists(out + "/runs/world/point_3/seed_2/study_stamp.txt"));
+  // Nothing is written through a link to another folder.
+  fs::rename(out + "/slurm", out + "/old");
+  fs::create_symlink(out + "/old", out + "/slurm");
+  fs::remove_all(out + "/runs");
+  Program again({"/usr/bin/env", "PATH=" + bin + ":/usr/bin:/bin", built("shoal"), "study", "run", out, "--engine",
+                 "slurm", "--allow-path", study.folder.file("")});
+  EXPECT_EQ(again.wait(), 4);
+  EXPECT_THAT(again.errors(), HasSubstr("/slurm: is a symbolic link"));
+  // A backslash would switch off the numbers of the logs.
+  const std::string other = study.folder.file("out\\b");
+  ASSERT_EQ(run_shoal({"study", "plan", study.folder.file("study.yaml"), "--output", other}).exit_code, 0);
+  Program refused({"/usr/bin/env", "PATH=" + bin + ":/usr/bin:/bin", built("shoal"), "study", "run", other, "--engine",
+                   "slurm", "--allow-path", study.folder.file("")});
+  EXPECT_EQ(refused.wait(), 4);
+  EXPECT_THAT(refused.errors(), HasSubstr("must not have a '\\' with the engine slurm"));
 }
 
 TEST(Campaign, ReportsThatAnEngineIsNotInstalled) {

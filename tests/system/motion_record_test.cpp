@@ -292,7 +292,8 @@ TEST_F(MotionRecord, IsComparedWithItsFramesAndWithTheVersionBefore) {
   ASSERT_EQ(record({{0.2, key_1, 1}, {0.6, key_1, 0}}, 1, {"--overdub", "neck_tilt"}).exit_code, 0);
   const Ended before = run_shoal({"motion", "compare", file_, "--tolerance", "0.1", "--world",
                                   source("worlds/ers7_studio.yaml"), "--png", folder_.file("wave.png")});
-  EXPECT_EQ(before.exit_code, 1) << before.errors;
+  EXPECT_EQ(before.exit_code, 1);
+  ASSERT_EQ(before.errors, "");
   // 1.5 rad/s for 50 frames of 8 ms: 34.38 degrees, from the frame after 0.2 s on.
   EXPECT_THAT(before.output, testing::ContainsRegex("neck_tilt +34\\.37[0-9]+ +0\\.[0-9]+ +[0-9.]+ +0\\.2[0-9]+\n"));
   EXPECT_THAT(before.output, testing::ContainsRegex("\n[0-9]+ joints: 0\n"));

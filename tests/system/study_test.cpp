@@ -112,7 +112,7 @@ TEST(Study, ARunWhoseOwnRulesFailIsAResult) {
   const StudyFolder study("seeds: [1]\npass: [mean(world.passed) == 0]\n", "pass: [distance.travelled_m > 1000]\n");
   const Ended ended = study.run();
   EXPECT_EQ(ended.exit_code, 0) << ended.errors;
-  EXPECT_THAT(ended.errors, HasSubstr("done, its rules failed"));
+  EXPECT_THAT(ended.errors, HasSubstr("FAILED: a rule of its world does not hold"));
 }
 
 TEST(Study, AProgramThatFailedFailsItsRunAndTheStudy) {
@@ -122,7 +122,7 @@ TEST(Study, AProgramThatFailedFailsItsRunAndTheStudy) {
                           "lockstep: {join_timeout_s: 1000}\n");
   const Ended ended = study.run();
   EXPECT_EQ(ended.exit_code, 1) << ended.errors;
-  EXPECT_THAT(ended.errors, HasSubstr("done, its rules failed"));
+  EXPECT_THAT(ended.errors, HasSubstr("FAILED: a rule of its world does not hold"));
   EXPECT_THAT(ended.output, HasSubstr("FAILED: 2 of 2 runs had programs that failed"));
 }
 
@@ -132,7 +132,7 @@ TEST(Study, ARunThatWasEndedByHandIsNoResult) {
       "processes: [{name: hand, command: [" + built("shoal") + ", control, quit, --lcm-url, '{lcm_url}']}]\n");
   const Ended ended = study.run();
   EXPECT_EQ(ended.exit_code, 4) << ended.errors;
-  EXPECT_THAT(ended.errors, testing::ContainsRegex("failed: ended by quit at [0-9.]+ of 1000000000 s"));
+  EXPECT_THAT(ended.errors, testing::ContainsRegex("no result: ended by quit at [0-9.]+ of 1000000000 s"));
 }
 
 TEST(Study, ExitCodeIs4WhenARunHasNoResult) {

@@ -12,6 +12,7 @@
 #include <memory>
 #include <stdexcept>
 
+#include "tools/experiment/files/no_links.hpp"
 #include "tools/experiment/recording/recording_page.hpp"
 #include "tools/experiment/report/report_page.hpp"
 #include "tools/experiment/results/run_record.hpp"
@@ -76,6 +77,7 @@ std::string page_in_3d(const ReportArguments& arguments) {
   std::string why_not, record = arguments.record;
   if (record.empty()) record = record_in(directory, why_not);
   const std::string path = arguments.page.empty() ? directory + "/run.html" : arguments.page;
+  if (arguments.page.empty()) refuse_links(directory, path);
   try {
     if (record.empty()) throw std::runtime_error(why_not);
     make_page(record, directory, path);
@@ -110,6 +112,8 @@ int report(const ReportArguments& arguments) {
                                  ? arguments.output
                                  : directories.front() + (several ? "/comparison.html" : "/report.html");
   try {
+    // A stranger's folder may have a link in place of a page whose name the user did not choose.
+    if (arguments.output.empty()) refuse_links(directories.front(), output);
     const std::string page = several ? "" : page_in_3d(arguments);
     write_page(output, report_page(directories, page.empty() ? "" : address_from(page, output)));
   } catch (const std::runtime_error& error) {

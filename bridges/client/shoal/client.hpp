@@ -120,6 +120,9 @@ class Client {
   End end() const;
   /// Returns the reason given by the simulator when it dropped this client.
   const std::string& reason() const;
+  /// Sets why the client leaves when it is destroyed before the end of the run, such as the text of an exception; the
+  /// simulator warns with it.  Empty: as planned, without a warning.
+  void set_reason_to_leave(const std::string& reason);
   /// Sets the handler of rewinds.  `handler(utime)` is called in next_tick() when the world was rewound, before any
   /// message of the new branch is handled; held messages are dropped.  Without a handler next_tick() then returns none.
   void on_rewind(std::function<void(std::int64_t utime)> handler);

@@ -190,6 +190,24 @@ TEST(Client, LeavesWhenItEndsBeforeTheRun) {
   thread.join();
 }
 
+TEST(Client, SaysWhyItLeaves) {
+  FakeSimulator simulator;
+  std::thread thread([&] {
+    simulator.reply(simulator.await_request(), true, "");
+    simulator.tick(1, {"pilot"});
+    auto request = simulator.await_request();
+    while (request.command == "join") request = simulator.await_request();
+    EXPECT_THAT(request.text, testing::HasSubstr("reason: \"no map\""));
+  });
+  {
+    shoal::Client client("pilot", own_url(1));
+    client.join(0.1, 10s);
+    ASSERT_TRUE(client.next_tick());
+    client.set_reason_to_leave("no map");
+  }
+  thread.join();
+}
+
 TEST(Client, FollowsTheClockWithoutHoldingTheWorld) {
   FakeSimulator simulator;
   shoal::Client client("watcher", own_url(1));

@@ -218,6 +218,20 @@ TEST(LockstepService, ALeaveWaitsForTheAcknowledgementBeforeIt) {
   EXPECT_EQ(s.lockstep.summaries().at(0).ended, "left");
 }
 
+TEST(LockstepService, ALeaveForAReasonIsListedWithIt) {
+  Service s;
+  ASSERT_TRUE(s.join("pilot", "{session: 5, timeout_s: 60}").ok);
+  s.synchronize([&] { s.acknowledge(0, "pilot", 5, 1); });
+  EXPECT_TRUE(s.request_reply("leave", 0, "{session: 5, acknowledged: 1, reason: \"KeyError: 'map'\"}").ok);
+  EXPECT_EQ(s.lockstep.summaries().at(0).ended, "left: KeyError: 'map'");
+  EXPECT_TRUE(s.lockstep.has_left("pilot"));
+  EXPECT_EQ(s.lockstep.reason_to_leave("pilot"), "KeyError: 'map'");
+  ASSERT_TRUE(s.join("guest", "{session: 6}").ok);
+  EXPECT_EQ(s.lockstep.reason_to_leave("guest"), "");
+  ASSERT_TRUE(s.request_reply("leave", 0, "", "guest").ok);
+  EXPECT_EQ(s.lockstep.reason_to_leave("guest"), "");
+}
+
 TEST(LockstepService, ALeaveIsGrantedThoughTheNextTickHasGoneOut) {
   Service s;
   ASSERT_TRUE(s.join("pilot", "{session: 5, timeout_s: 60}").ok);

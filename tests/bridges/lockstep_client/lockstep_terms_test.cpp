@@ -38,6 +38,15 @@ TEST(LeaveTermsText, IsReadAsItWasMeant) {
       sim::read_leave_terms(bridges::text_of(sim::LeaveTerms{.session = 5, .acknowledged = 17}));
   EXPECT_EQ(read.session, 5);
   EXPECT_EQ(read.acknowledged, 17);
+  EXPECT_EQ(read.reason, "");
+}
+
+TEST(LeaveTermsText, HasAReasonOfOneLine) {
+  const auto read_again = [](const std::string& reason) {
+    return sim::read_leave_terms(bridges::text_of(sim::LeaveTerms{.session = 5, .reason = reason})).reason;
+  };
+  EXPECT_EQ(read_again("KeyError: \"a\\b\"\nat once"), "KeyError: \"a\\b\" at once");
+  EXPECT_EQ(read_again(std::string(299, 'x') + "\u00e9"), std::string(299, 'x')) << "characters are kept whole";
 }
 
 TEST(FollowTermsText, IsReadAsItWasMeant) {

@@ -56,12 +56,13 @@ TEST_P(Swings, WithoutDragTheyKeepTheirEnergy) {
     return sum / steps;
   };
   // A mean over some ten swings hides what goes up and down within each.  Nothing pumps: no mean of six minutes is 1 %
-  // over the first.  What the steps take away is allowed, up to a tenth.
+  // over the first, 2 % with steps of a twentieth of a swing.  What the steps take away is allowed, up to a tenth.
+  const double max = step_s < 0.05 ? 1.01 : 1.02;
   const double first_J = swing_J(10);
   EXPECT_GT(first_J, 30);
   for (int i = 1; i <= 35; ++i) {
     const double now_J = swing_J(10);
-    ASSERT_LT(now_J, 1.01 * first_J) << "after " << 10 * i << " s";
+    ASSERT_LT(now_J, max * first_J) << "after " << 10 * i << " s";
     ASSERT_GT(now_J, 0.9 * first_J) << "after " << 10 * i << " s";
   }
 }

@@ -32,14 +32,17 @@ std::vector<std::string> chunk_command(const EngineOptions& options);
 /// Executes the missing runs among `which` by GNU parallel, on this machine or those of a login file.  A signal ends
 /// them.  Throws std::runtime_error when GNU parallel is not installed.
 void run_by_parallel(const LoadedStudy& study, const EngineOptions& options, std::vector<StudyRun>& runs,
-                     const std::vector<std::size_t>& which);
+                     const std::vector<std::size_t>& which, StudyProgress& progress);
 
 /// Executes the missing runs among `which` as job arrays of Slurm: at most MaxArraySize - 1 chunks each.  Jobs of an
 /// earlier call that are still queued or running are awaited, not submitted again.  Runs that Slurm has lost (a node
 /// failed, a time limit) are submitted again as long as that brings results.  A signal leaves the jobs in the queue.
 /// Throws std::runtime_error when Slurm is not installed or refuses a job.
 void run_by_slurm(const LoadedStudy& study, const EngineOptions& options, std::vector<StudyRun>& runs,
-                  const std::vector<std::size_t>& which);
+                  const std::vector<std::size_t>& which, StudyProgress& progress);
+
+/// Returns a path as a file name pattern of sbatch, in which % starts a replacement.
+std::string slurm_pattern(const std::string& path);
 
 /// Name of the jobs of a study in Slurm.
 std::string slurm_job_name(const std::string& directory);

@@ -14,6 +14,7 @@
 #include "sim/config/message_text.hpp"
 #include "tools/experiment/files/file_replacement.hpp"
 #include "tools/experiment/files/json_reader.hpp"
+#include "tools/experiment/files/no_links.hpp"
 #include "tools/experiment/run/runner.hpp"
 
 namespace tools {
@@ -162,9 +163,8 @@ std::string manifest_text(const LoadedStudy& study, const std::vector<StudyRun>&
 }
 
 void write_manifest(const std::string& directory, const LoadedStudy& study, const std::vector<StudyRun>& runs) {
-  std::error_code error;
-  fs::create_directories(directory, error);
-  if (error) throw std::runtime_error(directory + ": cannot be made: " + error.message());
+  make_folders(directory, directory);
+  refuse_links(directory, manifest_path(directory));
   write_whole_file(manifest_path(directory), manifest_text(study, runs));
 }
 
@@ -173,6 +173,7 @@ PlannedStudy load_planned(const Manifest& manifest, const sim::LoadOptions& load
   changes.seeds = manifest.seeds();
   changes.duration_s = manifest.duration_s();
   changes.load = load;
+  changes.planned = true;
   PlannedStudy planned;
   planned.study = load_study(manifest.study(), changes);
   planned.runs = plan_study(planned.study, manifest.directory());

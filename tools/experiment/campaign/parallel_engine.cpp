@@ -11,6 +11,7 @@
 #include "tools/experiment/campaign/manifest.hpp"
 #include "tools/experiment/campaign/outside_program.hpp"
 #include "tools/experiment/files/file_replacement.hpp"
+#include "tools/experiment/files/no_links.hpp"
 #include "tools/experiment/process/shell_word.hpp"
 
 namespace tools {
@@ -52,14 +53,15 @@ std::vector<std::string> chunk_command(const EngineOptions& options) {
 }
 
 void run_by_parallel(const LoadedStudy& study, const EngineOptions& options, std::vector<StudyRun>& runs,
-                     const std::vector<std::size_t>& which) {
+                     const std::vector<std::size_t>& which, StudyProgress& progress) {
   require_program("parallel", "parallel");
   if (const ProgramOutput version = output_of({"parallel", "--version"}); !version.text.starts_with("GNU parallel"))
     throw std::runtime_error(
         "the program 'parallel' in PATH is not GNU parallel; Debian has that in the package parallel");
   const std::vector<std::size_t> missing = missing_runs(study, options, runs, which);
+  progress.kept += which.size() - missing.size();
   if (!options.study.quiet && missing.size() < which.size())
-    std::cerr << fmt::format("{} of {} runs were already done\n", which.size() - missing.size(), which.size());
+    std::cerr << fmt::format("{} of {} runs were already done\n", progress.kept, progress.total);
   if (missing.empty()) return;
   // Each process gets about eight chunks, so that all of them end at about the same time.
   const auto jobs = static_cast<std::size_t>(options.study.jobs);
@@ -67,11 +69,14 @@ void run_by_parallel(const LoadedStudy& study, const EngineOptions& options, std
       options.chunk > 0 ? options.chunk : std::clamp<std::size_t>(missing.size() / (8 * jobs), 1, 100);
   std::string lines;
   for (const auto& chunk : chunks_of(missing, size)) lines += indices_text(chunk) + "\n";
-  const std::string file = options.study.output + "/parallel_chunks.txt";
+  const std::string file = options.study.output + "/parallel_chunks.txt", log = options.study.output + "/parallel.log";
+  for (const std::string& path : {file, log}) {
+    refuse_links(options.study.output, path);
+    check_whole_file(path);
+  }
   write_whole_file(file, lines);
   // Command.
-  std::vector<std::string> arguments{
-      "parallel", "--will-cite", "--jobs", fmt::format("{}", jobs), "--joblog", options.study.output + "/parallel.log"};
+  std::vector<std::string> arguments{"parallel", "--will-cite", "--jobs", fmt::format("{}", jobs), "--joblog", log};
   if (!options.ssh_login_file.empty()) {
     for (const std::string& word :
          {std::string("--sshloginfile"), options.ssh_login_file, std::string("--workdir"), fs::current_path().string()})

@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "tools/experiment/campaign/outside_program.hpp"
+#include "tools/experiment/files/no_links.hpp"
 #include "tools/experiment/process/signals.hpp"
 #include "tools/experiment/study/study_results.hpp"
 #include "tools/experiment/study/study_tables.hpp"
@@ -41,9 +42,9 @@ void show_extreme_runs(const LoadedStudy& study, const std::vector<StudyRun>& ru
     std::error_code error;
     if (!indices.insert(run.index).second || caught_signal() != 0) continue;
     if (fs::exists(folder + "/run.html", error) && is_equal(folder, run)) continue;
+    make_folders(directory, folder);
+    for (const char* name : {"run.html", "run.lcm", "report.html"}) refuse_links(folder, folder + "/" + name);
     fs::remove(folder + "/run.html", error);
-    fs::create_directories(folder, error);
-    if (error) throw std::runtime_error(folder + ": cannot be made: " + error.message());
     std::vector<std::string> arguments = arguments_of(study, run, folder, allow_paths, 0, 0);
     arguments.front() = own_program();
     for (const std::string& word : {std::string("--record"), folder + "/run.lcm", std::string("--overwrite")})

@@ -16,6 +16,7 @@
 #include "tools/experiment/campaign/manifest.hpp"
 #include "tools/experiment/campaign/outside_program.hpp"
 #include "tools/experiment/files/file_replacement.hpp"
+#include "tools/experiment/files/no_links.hpp"
 #include "tools/experiment/process/shell_word.hpp"
 #include "tools/experiment/process/signals.hpp"
 
@@ -50,9 +51,9 @@ std::size_t max_tasks() {
   return size - 1;
 }
 
-/// Number of tasks of the study that are queued or run.
+/// Number of tasks of the study that are queued or run for this user: another one may have jobs of the same name.
 std::size_t queued_tasks(const std::string& name) {
-  const ProgramOutput queue = output_of({"squeue", "--noheader", "--array", "--format=%i", "--name=" + name});
+  const ProgramOutput queue = output_of({"squeue", "--me", "--noheader", "--array", "--format=%i", "--name=" + name});
   if (queue.exit_code != 0) refused("squeue", queue);
   return static_cast<std::size_t>(std::count(queue.text.begin(), queue.text.end(), '\n'));
 }
@@ -62,9 +63,13 @@ class SlurmSubmission {
  public:
   SlurmSubmission(const EngineOptions& options, std::string name)
       : options_(options), name_(std::move(name)), folder_(fs::absolute(options.study.output).string() + "/slurm") {
-    std::error_code error;
-    fs::create_directories(folder_, error);
-    if (error) throw std::runtime_error(folder_ + ": cannot be made: " + error.message());
+    const std::string root = fs::absolute(options.study.output).string();
+    if (folder_.find('\\') != std::string::npos)
+      throw std::runtime_error("the name '" + sim::shortened(sim::printable(folder_)) +
+                               "' must not have a '\\' with the engine slurm: Slurm would not number the logs");
+    make_folders(root, folder_);
+    // Slurm appends to logs whose names are numbers of jobs.
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder_)) refuse_links(root, entry.path().string());
   }
 
   void submit(const std::vector<std::size_t>& missing) {
@@ -103,7 +108,7 @@ class SlurmSubmission {
                                        fmt::format("--array=1-{}", chunks.size()),
                                        "--requeue",
                                        "--open-mode=append",
-                                       "--output=" + folder_ + "/%A_%a.log",
+                                       "--output=" + slurm_pattern(folder_) + "/%A_%a.log",
                                        "--chdir=" + fs::current_path().string(),
                                        "--nodes=1",
                                        "--ntasks=1",
@@ -137,7 +142,7 @@ bool await_queue(const std::string& name, bool quiet) {
     shown = left;
     for (auto waited = std::chrono::milliseconds{0}; waited < pause; waited += std::chrono::milliseconds{50}) {
       if (caught_signal() != 0) {
-        std::cerr << fmt::format("the jobs stay in the queue; `scancel --name={}` removes them\n", name);
+        std::cerr << fmt::format("the jobs stay in the queue; `scancel --me --name={}` removes them\n", name);
         return false;
       }
       std::this_thread::sleep_for(std::chrono::milliseconds{50});
@@ -148,13 +153,19 @@ bool await_queue(const std::string& name, bool quiet) {
 
 }  // namespace
 
+std::string slurm_pattern(const std::string& path) {
+  std::string pattern;
+  for (const char c : path) pattern += c == '%' ? std::string("%%") : std::string(1, c);
+  return pattern;
+}
+
 std::string slurm_job_name(const std::string& directory) {
   const std::string path = fs::absolute(directory).lexically_normal().string();
   return fmt::format("shoal-{:08x}", static_cast<std::uint32_t>(sim::hash_text(path)));
 }
 
 void run_by_slurm(const LoadedStudy& study, const EngineOptions& options, std::vector<StudyRun>& runs,
-                  const std::vector<std::size_t>& which) {
+                  const std::vector<std::size_t>& which, StudyProgress& progress) {
   for (const char* program : {"sbatch", "squeue", "scontrol"}) require_program(program, "slurm-client");
   const std::string name = slurm_job_name(options.study.output);
   if (queued_tasks(name) > 0) {
@@ -162,8 +173,9 @@ void run_by_slurm(const LoadedStudy& study, const EngineOptions& options, std::v
     if (!options.wait || !await_queue(name, options.study.quiet)) return;
   }
   std::vector<std::size_t> missing = missing_runs(study, options, runs, which);
+  progress.kept += which.size() - missing.size();
   if (!options.study.quiet && missing.size() < which.size())
-    std::cerr << fmt::format("{} of {} runs were already done\n", which.size() - missing.size(), which.size());
+    std::cerr << fmt::format("{} of {} runs were already done\n", progress.kept, progress.total);
   SlurmSubmission submission(options, name);
   while (!missing.empty() && caught_signal() == 0) {
     submission.submit(missing);

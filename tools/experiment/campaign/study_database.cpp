@@ -5,7 +5,9 @@
 #include <sqlite3.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -21,14 +23,14 @@ namespace {
 
 constexpr const char* schema = R"(
 CREATE TABLE study (name TEXT, description TEXT, world TEXT, shoal TEXT);
-CREATE TABLE runs (run INTEGER PRIMARY KEY, variant TEXT, point INTEGER, seed INTEGER, inputs TEXT, directory TEXT,
+CREATE TABLE runs (run INTEGER PRIMARY KEY, case_name TEXT, point INTEGER, seed INTEGER, inputs TEXT, directory TEXT,
   failure TEXT, exit_code INTEGER, passed INTEGER, ended TEXT, sim_time_s REAL, wall_s REAL, run_hash TEXT, shoal TEXT,
   processor TEXT, c_library TEXT);
 CREATE TABLE figures (run INTEGER REFERENCES runs(run), name TEXT, value REAL, PRIMARY KEY (run, name)) WITHOUT ROWID;
-CREATE TABLE factors (point INTEGER, name TEXT, value TEXT, PRIMARY KEY (point, name)) WITHOUT ROWID;
-CREATE TABLE statistics (variant TEXT, point INTEGER, figure TEXT, count INTEGER, mean REAL, mean_low_95 REAL,
+CREATE TABLE factors (point INTEGER, name TEXT, value NUMERIC, PRIMARY KEY (point, name)) WITHOUT ROWID;
+CREATE TABLE statistics (case_name TEXT, point INTEGER, figure TEXT, count INTEGER, mean REAL, mean_low_95 REAL,
   mean_high_95 REAL, std REAL, min REAL, median REAL, median_low_95 REAL, median_high_95 REAL, max REAL);
-CREATE TABLE comparisons (variant TEXT, base TEXT, figure TEXT, pairs INTEGER, mean REAL, mean_low_95 REAL,
+CREATE TABLE comparisons (compared TEXT, base TEXT, figure TEXT, pairs INTEGER, mean REAL, mean_low_95 REAL,
   mean_high_95 REAL, median REAL, higher INTEGER, lower INTEGER, equal INTEGER, sign_p REAL, wilcoxon_p REAL);
 )";
 
@@ -65,15 +67,18 @@ class NewDatabase {
   void finish() {
     execute("COMMIT; PRAGMA synchronous = FULL;");
     check(sqlite3_close(database_.release()));
-    if (std::rename(part_.c_str(), path_.c_str()) != 0) throw std::runtime_error(path_ + ": cannot be written");
+    if (std::rename(part_.c_str(), path_.c_str()) != 0)
+      throw std::runtime_error(path_ + ": cannot be written: " + std::strerror(errno));
     part_.clear();
   }
 
   sqlite3* handle() const { return database_.get(); }
   void check(int code) const {
-    if (code != SQLITE_OK && code != SQLITE_DONE)
-      throw std::runtime_error(
-          path_ + ": cannot be written: " + (database_ ? sqlite3_errmsg(database_.get()) : sqlite3_errstr(code)));
+    if (code == SQLITE_OK || code == SQLITE_DONE) return;
+    const int error = database_ ? sqlite3_system_errno(database_.get()) : 0;
+    throw std::runtime_error(
+        path_ + ": cannot be written: " + (database_ ? sqlite3_errmsg(database_.get()) : sqlite3_errstr(code)) +
+        (error != 0 ? std::string(": ") + std::strerror(error) : ""));
   }
 
  private:
@@ -165,9 +170,9 @@ void insert_statistics(NewDatabase& database, const StudyResults& results) {
 
 void insert_comparisons(NewDatabase& database, const StudyResults& results) {
   Insert comparisons(database, "comparisons", 13);
-  for (const VariantComparison& each : results.comparisons()) {
+  for (const StudyComparison& each : results.comparisons()) {
     const PairedComparison& d = each.difference;
-    comparisons.row(each.variant, each.base, each.figure, d.pairs, d.mean, d.mean_95.low, d.mean_95.high, d.median,
+    comparisons.row(each.compared, each.base, each.figure, d.pairs, d.mean, d.mean_95.low, d.mean_95.high, d.median,
                     d.higher, d.lower, d.equal, d.sign_p, d.wilcoxon_p);
   }
 }

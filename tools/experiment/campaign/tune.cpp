@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <map>
 #include <numeric>
 #include <stdexcept>
 
@@ -12,6 +14,7 @@
 #include "tools/experiment/process/signals.hpp"
 #include "tools/experiment/study/run_files.hpp"
 #include "tools/experiment/study/study_results.hpp"
+#include "tools/experiment/study/study_rules.hpp"
 #include "tools/experiment/study/study_tables.hpp"
 
 namespace tools {
@@ -25,12 +28,23 @@ Tuning::Tuning(LoadedStudy study, TuneOptions options) : study_(std::move(study)
   study_.points.clear();
 }
 
-double Tuning::value_of(std::size_t point, const std::vector<StudyRun>& runs) const {
+TunedPoint Tuning::point_of(int generation, std::size_t point, const std::vector<StudyRun>& runs) const {
+  TunedPoint tuned{generation, point};
   std::vector<double> values;
-  for (const StudyRun& run : runs)
-    if (run.point == point) values.push_back(figure_of(run, options_.figure));
-  if (std::any_of(values.begin(), values.end(), [](double value) { return !std::isfinite(value); })) return no_figure;
-  return statistics_of(values).by_word(options_.statistic);
+  std::size_t passed = 0;
+  for (const StudyRun& run : runs) {
+    if (run.point != point) continue;
+    ++tuned.runs;
+    values.push_back(figure_of(run, options_.figure));
+    if (!run.record) continue;
+    tuned.failed += run.record->judgement == Judgement::failed;
+    passed += run.record->judgement == Judgement::passed;
+  }
+  if (tuned.failed > 0) tuned.judgement = Judgement::failed;
+  if (passed == tuned.runs) tuned.judgement = Judgement::passed;
+  const bool all = std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); });
+  tuned.value = all ? statistics_of(values).by_word(options_.statistic) : no_figure;
+  return tuned;
 }
 
 void Tuning::run(const std::function<void(int generation)>& after) {
@@ -38,6 +52,9 @@ void Tuning::run(const std::function<void(int generation)>& after) {
   CmaEs search(Point(factors.size(), 0.5), CmaEs::Options{.population = options_.population,
                                                           .sigma = options_.sigma,
                                                           .seed = static_cast<std::uint64_t>(options_.seed)});
+  StudyProgress progress{static_cast<std::size_t>(options_.generations) *
+                         static_cast<std::size_t>(search.population()) * study_.config.cases.size() *
+                         study_.config.seeds.size()};
   for (int generation = 1; generation <= options_.generations && caught_signal() == 0; ++generation) {
     // Points of the generation, and their runs.
     const std::size_t first = study_.points.size();
@@ -51,37 +68,48 @@ void Tuning::run(const std::function<void(int generation)>& after) {
         for (const std::int64_t seed : study_.config.seeds)
           runs.push_back({runs.size() + 1, in_case, point, seed,
                           directory_of(study_, options_.study.output, in_case, point, seed)});
-    run_study(study_, options_.study, runs);
+    std::vector<std::size_t> all(runs.size());
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    run_study(study_, options_.study, runs, all, progress);
     if (caught_signal() != 0) return;
     // Their values.
-    std::vector<double> values;
-    for (std::size_t point = first; point < study_.points.size(); ++point) {
-      values.push_back(value_of(point, runs));
-      tried_.push_back({generation, point, values.back()});
-    }
+    std::vector<TunedPoint> points;
+    for (std::size_t point = first; point < study_.points.size(); ++point)
+      points.push_back(point_of(generation, point, runs));
+    tried_.insert(tried_.end(), points.begin(), points.end());
     if (best() == nullptr)
       throw std::runtime_error(fmt::format("no point of generation {} has a value{}", generation,
                                            runs.front().record ? "" : "; the first run: " + runs.front().failure));
-    search.learn(ranked_values(values, options_.maximise));
+    search.learn(ranked_values(points, options_.maximise));
     after(generation);
   }
+}
+
+bool Tuning::better(const TunedPoint& a, const TunedPoint& b) const {
+  if (a.failed != b.failed) return a.failed < b.failed;
+  return options_.maximise ? a.value > b.value : a.value < b.value;
 }
 
 const TunedPoint* Tuning::best() const {
   const TunedPoint* best = nullptr;
   for (const TunedPoint& each : tried_)
-    if (std::isfinite(each.value) && (best == nullptr || better(each.value, best->value))) best = &each;
+    if (std::isfinite(each.value) && (best == nullptr || better(each, *best))) best = &each;
   return best;
 }
 
 std::string Tuning::to_csv() const {
   std::string text = "generation,point";
   for (const StudyFactor& factor : study_.config.factors) text += "," + factor.name;
-  text += "," + options_.figure + "\n";
+  // The figure may be `passed` itself, in the mean over the runs.
+  const bool of_rules = options_.figure == passed_figure;
+  text += "," + options_.figure + (of_rules ? "\n" : ",passed\n");
   for (const TunedPoint& each : tried_) {
     text += fmt::format("{},{}", each.generation, each.point + 1);
     for (const std::string& value : study_.points[each.point].values) text += "," + csv_field(value);
-    text += "," + (std::isfinite(each.value) ? fmt::format("{}", each.value) : "") + "\n";
+    text += "," + (std::isfinite(each.value) ? fmt::format("{}", each.value) : "");
+    const auto passed = as_flag(each.judgement);
+    if (!of_rules) text += passed ? *passed ? ",1" : ",0" : ",";
+    text += "\n";
   }
   return text;
 }
@@ -93,18 +121,27 @@ std::string Tuning::command(const TunedPoint& point) const {
   return command_of(study_, run);
 }
 
-std::vector<double> ranked_values(const std::vector<double>& values, bool maximise) {
-  std::vector<double> ranked;
-  double min = 0;
+std::vector<double> ranked_values(const std::vector<TunedPoint>& points, bool maximise) {
+  const auto value_of = [&](const TunedPoint& point) { return maximise ? point.value : -point.value; };
+  std::map<std::size_t, std::vector<std::size_t>> by_failed;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (std::isfinite(points[i].value)) by_failed[points[i].failed].push_back(i);
+  std::vector<double> ranked(points.size(), no_figure);
+  double min = 0;  // of all values so far
   bool any = false;
-  for (const double value : values) {
-    ranked.push_back(maximise ? value : -value);
-    if (!std::isfinite(value)) continue;
-    min = any ? std::min(min, ranked.back()) : ranked.back();
-    any = true;
+  const auto next_below = [&] { return min - std::max(1.0, std::fabs(min)); };
+  for (const auto& [failed, indices] : by_failed) {
+    double max = -std::numeric_limits<double>::infinity();
+    for (const std::size_t i : indices) max = std::max(max, value_of(points[i]));
+    const double lowered = any ? next_below() - max : 0;
+    for (const std::size_t i : indices) {
+      ranked[i] = value_of(points[i]) + lowered;
+      min = any ? std::min(min, ranked[i]) : ranked[i];
+      any = true;
+    }
   }
   for (double& value : ranked)
-    if (!std::isfinite(value)) value = min - std::max(1.0, std::fabs(min));
+    if (!std::isfinite(value)) value = next_below();
   return ranked;
 }
 

@@ -26,9 +26,13 @@ struct TunedPoint {
   int generation = 0;     ///< from 1
   std::size_t point = 0;  ///< index into the points of the study
   double value = 0;       ///< statistic of the figure; NaN: a run failed or lacks the figure
+  std::size_t runs = 0;
+  std::size_t failed = 0;  ///< runs in which a rule of the world does not hold
+  Judgement judgement = Judgement::not_judged;
 };
 
-/// Search for the values of the factors of a study that make a figure best, by CMA-ES.
+/// Search for the values of the factors of a study that make a figure best, by CMA-ES.  A point where fewer runs break
+/// the rules of their world is better, whatever the figure; those with equally many are compared by the figure.
 class Tuning {
  public:
   /// Throws sim::ConfigError when the study has no factors, or one that is not a range.
@@ -48,16 +52,16 @@ class Tuning {
   std::string command(const TunedPoint& point) const;
 
  private:
-  bool better(double a, double b) const { return options_.maximise ? a > b : a < b; }
-  double value_of(std::size_t point, const std::vector<StudyRun>& runs) const;
+  bool better(const TunedPoint& a, const TunedPoint& b) const;
+  TunedPoint point_of(int generation, std::size_t point, const std::vector<StudyRun>& runs) const;
 
   LoadedStudy study_;
   TuneOptions options_;
   std::vector<TunedPoint> tried_;
 };
 
-/// Returns values for a search that looks for the greatest: all finite, with points without a value below all
-/// others.
-std::vector<double> ranked_values(const std::vector<double>& values, bool maximise);
+/// Returns values for a search that looks for the greatest: all finite, those of points where more runs break the rules
+/// of their world below those with fewer, and those of points without a value below all others.
+std::vector<double> ranked_values(const std::vector<TunedPoint>& points, bool maximise);
 
 }  // namespace tools

@@ -21,8 +21,8 @@ namespace {
 pid_t start(std::string directory, std::string script) {
   std::string shell = "sh";
   std::string option = "-c";
-  // -d: no init files.
-  std::string command = "cd -- \"$0\" && exec gnuplot -d \"$1\" > plot.log 2>&1 < /dev/null";
+  // A link in place of the log is removed, not followed.  -d: no init files.
+  std::string command = "cd -- \"$0\" && rm -f plot.log && exec gnuplot -d \"$1\" > plot.log 2>&1 < /dev/null";
   char* arguments[] = {shell.data(), option.data(), command.data(), directory.data(), script.data(), nullptr};
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);

@@ -148,9 +148,10 @@ sim::JointMotion MotionRecorder::live_motion(MotionStage& stage) {
     live.keys.clear();
     live.ease = sim::Easing::linear;
     for (const auto& track : over_)
-      if (track)
-        for (const sim::TrackKey& key : sim::sampled({*track}, options_.over->end_s(), frame_s_).front().keys)
-          add_value(live.keys, key.at_s, track->joint, key.value);
+      if (track) {
+        const std::vector<sim::MotionTrack> frames = sim::sampled({*track}, options_.over->end_s(), frame_s_);
+        for (const sim::TrackKey& key : frames.front().keys) add_value(live.keys, key.at_s, track->joint, key.value);
+      }
     live.frames.clear();
     live.frames_file.clear();
   }

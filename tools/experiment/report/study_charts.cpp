@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "tools/experiment/files/html.hpp"
+#include "tools/experiment/report/chart_axis.hpp"
 
 namespace tools {
 
@@ -49,38 +50,31 @@ std::optional<double> number_of_text(const std::string& text) {
                                                                                           : std::nullopt;
 }
 
-/// Range of values with a margin; of one value, that value in its middle.
-struct Axis {
-  double low = std::numeric_limits<double>::infinity(), high = -std::numeric_limits<double>::infinity();
-
-  void add(double value) {
-    if (!std::isfinite(value)) return;
-    low = std::min(low, value);
-    high = std::max(high, value);
-  }
-  bool empty() const { return low > high; }
-  double share(double value) const { return high > low ? (value - low) / (high - low) : 0.5; }
-};
-
 /// Writer of one chart as SVG: a dot for each mean, a bar for its interval, and lines between means.
 class ChartWriter {
  public:
   explicit ChartWriter(const Chart& chart) : chart_(chart) {
+    ChartAxis x_axis(chart.log_x), y_axis;
     for (const ChartCurve& curve : chart.curves)
       for (const ChartPoint& point : curve.points) {
         if (!std::isfinite(point.mean)) continue;
-        x_.add(at(point.x));
-        for (const double value : {point.mean, point.low, point.high}) y_.add(value);
+        x_axis.add(point.x);
+        for (const double value : {point.mean, point.low, point.high}) y_axis.add(value);
       }
+    if (x_axis.empty()) return;
+    x_ticks_ = x_axis.ticks();
+    y_ticks_ = y_axis.ticks();
   }
 
   std::string html() const {
-    if (x_.empty()) return {};
+    if (x_ticks_.empty()) return {};
+    double height = bottom + 44;
+    const std::string names = legend(height);
     std::string svg = fmt::format(
-        "<figure><svg viewBox=\"0 0 640 320\" role=\"img\" aria-label=\"{0}\" style=\"max-width:100%;height:auto\">"
+        "<figure><svg viewBox=\"0 0 640 {1}\" role=\"img\" aria-label=\"{0}\" style=\"max-width:100%;height:auto\">"
         "<title>{0}</title><g font-size=\"12\" fill=\"currentColor\">",
-        html_text(chart_.title));
-    svg += axes();
+        html_text(chart_.title), height);
+    svg += axes() + names;
     std::size_t number = 0;
     for (const ChartCurve& curve : chart_.curves) svg += drawn(curve, number++);
     return svg + "</g></svg><figcaption>" + html_text(chart_.title) +
@@ -88,11 +82,14 @@ class ChartWriter {
   }
 
  private:
-  static constexpr double left = 70, right = 620, top = 28, bottom = 270;
+  static constexpr double left = 70, right = 620, top = 28, bottom = 270, margin = 12;
+  /// Width of a character of the legend.
+  static constexpr double character = 7;
 
-  double at(double x) const { return chart_.log_x ? std::log(x) : x; }
-  double px(double x) const { return left + 10 + x_.share(at(x)) * (right - left - 20); }
-  double py(double y) const { return bottom - 8 - y_.share(y) * (bottom - top - 16); }
+  double px(double x) const {
+    return left + margin + share_of_axis(x_ticks_, chart_.log_x, x) * (right - left - 2 * margin);
+  }
+  double py(double y) const { return bottom - share_of_axis(y_ticks_, false, y) * (bottom - top); }
 
   static const char* colour(std::size_t number) {
     static constexpr const char* colours[] = {"#1f77b4", "#d95f02", "#1b9e77", "#7570b3", "#e7298a", "#666666"};
@@ -100,44 +97,67 @@ class ChartWriter {
   }
 
   std::string axes() const {
-    std::string svg =
-        fmt::format("<path d=\"M{} {}V{}H{}\" fill=\"none\" stroke=\"currentColor\" stroke-opacity=\"0.5\"/>", left,
-                    top, bottom, right);
+    std::string lines, labels;
     const auto label = [&](double x, double y, const char* anchor, const std::string& text) {
-      svg += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\">{}</text>", x, y, anchor, html_text(text));
+      labels +=
+          fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\">{}</text>", x, y, anchor, html_text(text));
     };
-    const double low_x = chart_.log_x ? std::exp(x_.low) : x_.low, high_x = chart_.log_x ? std::exp(x_.high) : x_.high;
-    label(px(low_x), bottom + 16, "middle", fmt::format("{:.4g}", low_x));
-    if (high_x > low_x) label(px(high_x), bottom + 16, "middle", fmt::format("{:.4g}", high_x));
-    label(left - 6, py(y_.low) + 4, "end", fmt::format("{:.4g}", y_.low));
-    if (y_.high > y_.low) label(left - 6, py(y_.high) + 4, "end", fmt::format("{:.4g}", y_.high));
+    for (const double tick : x_ticks_) {
+      lines += fmt::format("M{:.1f} {}V{}", px(tick), top, bottom);
+      label(px(tick), bottom + 16, "middle", tick_text(x_ticks_, tick));
+    }
+    for (const double tick : y_ticks_) {
+      lines += fmt::format("M{} {:.1f}H{}", left, py(tick), right);
+      label(left - 6, py(tick) + 4, "end", tick_text(y_ticks_, tick));
+    }
     label((left + right) / 2, bottom + 34, "middle", chart_.x_label + (chart_.log_x ? " (log)" : ""));
     label(left, top - 12, "start", chart_.y_label);
+    return fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"currentColor\" stroke-opacity=\"0.15\"/>", lines) +
+           fmt::format("<path d=\"M{} {}V{}H{}\" fill=\"none\" stroke=\"currentColor\" stroke-opacity=\"0.5\"/>", left,
+                       top, bottom, right) +
+           labels;
+  }
+
+  /// Names of the curves in rows below the chart.  `height`: that of the chart, to which the rows are added.
+  std::string legend(double& height) const {
+    if (chart_.curves.size() < 2) return {};
+    std::string svg;
+    double x = left;
+    height += 14;
+    std::size_t number = 0;
+    for (const ChartCurve& curve : chart_.curves) {
+      const double width = character * static_cast<double>(curve.name.size() + 3);
+      if (x > left && x + width > right) {
+        x = left;
+        height += 14;
+      }
+      svg += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" fill=\"{}\">{}</text>", x, height - 6, colour(number++),
+                         html_text(curve.name));
+      x += width;
+    }
     return svg;
   }
 
   std::string drawn(const ChartCurve& curve, std::size_t number) const {
+    // Curves stand beside each other, so that equal ones and their intervals are seen.
+    const double aside = 3 * (static_cast<double>(number) - static_cast<double>(chart_.curves.size() - 1) / 2);
+    const double shift = std::clamp(aside, -margin, margin);
     std::string line, marks;
     for (const ChartPoint& point : curve.points) {
-      if (!std::isfinite(point.mean)) continue;
-      line += fmt::format("{}{:.1f} {:.1f}", line.empty() ? "M" : "L", px(point.x), py(point.mean));
-      marks += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"2.5\" fill=\"{}\" stroke=\"none\"/>", px(point.x),
-                           py(point.mean), colour(number));
+      if (!std::isfinite(point.mean) || (chart_.log_x && point.x <= 0)) continue;
+      line += fmt::format("{}{:.1f} {:.1f}", line.empty() ? "M" : "L", px(point.x) + shift, py(point.mean));
+      marks += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"2.5\" fill=\"{}\" stroke=\"none\"/>",
+                           px(point.x) + shift, py(point.mean), colour(number));
       if (std::isfinite(point.low) && std::isfinite(point.high))
-        marks += fmt::format("<path d=\"M{:.1f} {:.1f}V{:.1f}\"/>", px(point.x), py(point.low), py(point.high));
+        marks += fmt::format("<path d=\"M{:.1f} {:.1f}V{:.1f}\"/>", px(point.x) + shift, py(point.low), py(point.high));
     }
     if (line.empty()) return {};
-    std::string svg = fmt::format("<g stroke=\"{}\" fill=\"none\"><path d=\"{}\" stroke-width=\"1.5\"/>{}</g>",
-                                  colour(number), line, marks);
-    if (chart_.curves.size() > 1)
-      svg +=
-          fmt::format("<text x=\"{}\" y=\"{}\" fill=\"{}\">{}</text>", left + 120.0 * static_cast<double>(number % 4),
-                      310 + 12 * (number / 4), colour(number), html_text(curve.name));
-    return svg;
+    return fmt::format("<g stroke=\"{}\" fill=\"none\"><path d=\"{}\" stroke-width=\"1.5\"/>{}</g>", colour(number),
+                       line, marks);
   }
 
   const Chart& chart_;
-  Axis x_, y_;
+  std::vector<double> x_ticks_, y_ticks_;
 };
 
 /// Statistics of a case at a point, as in study.json.
@@ -196,7 +216,20 @@ std::vector<ChartCurve> curves_over(const std::vector<PointOfFile>& points, std:
   return curves;
 }
 
-std::string factor_charts(const JsonReader& in) {
+/// Returns `cooperative.rms_m (m)`.
+std::string with_unit(const std::string& figure, const std::map<std::string, std::string>& units) {
+  const auto unit = units.find(figure);
+  return unit == units.end() ? figure : figure + " (" + unit->second + ")";
+}
+
+/// Returns the name of a factor with the first setting that it changes, whose name ends in the unit.
+std::string factor_label(const JsonReader& factor) {
+  const std::string name = factor.text("name");
+  if (!factor.has("paths") || factor.list("paths").empty() || !factor.list("paths").front().is_string()) return name;
+  return name + ": " + factor.list("paths").front().get<std::string>();
+}
+
+std::string factor_charts(const JsonReader& in, const std::map<std::string, std::string>& units) {
   if (!in.has("factors") || !in.has("points")) return {};
   const std::vector<PointOfFile> points = points_of(in);
   std::string html;
@@ -208,8 +241,8 @@ std::string factor_charts(const JsonReader& in) {
     for (const auto& figure : in.list("figures")) {
       if (!figure.is_string() || ++charts > max_charts) continue;
       const auto name = figure.get<std::string>();
-      Chart chart{name + " over " + reader.text("name"), reader.text("name"), name, reader.boolean("log"),
-                  curves_over(points, factor, name, factors == 1)};
+      Chart chart{name + " over " + reader.text("name"), factor_label(reader), with_unit(name, units),
+                  reader.boolean("log"), curves_over(points, factor, name, factors == 1)};
       html += ChartWriter(chart).html();
     }
     ++factor;
@@ -217,14 +250,15 @@ std::string factor_charts(const JsonReader& in) {
   return html;
 }
 
-std::string convergence_charts(const JsonReader& in) {
+std::string convergence_charts(const JsonReader& in, const std::map<std::string, std::string>& units) {
   if (!in.has("convergence")) return {};
   std::vector<Chart> charts;
   for (const auto& item : in.list("convergence")) {
     const JsonReader reader(item, in.where() + ": convergence");
     const std::string figure = reader.text("figure");
-    if (charts.empty() || charts.back().y_label != figure)
-      charts.push_back({figure + " over the number of seeds", "seeds", figure, false, {}});
+    const std::string title = figure + " over the number of seeds";
+    if (charts.empty() || charts.back().title != title)
+      charts.push_back({title, "seeds", with_unit(figure, units), false, {}});
     ChartCurve& curve = charts.back().curves.emplace_back();
     curve.name = reader.text("case");
     for (const auto& point : reader.list("points")) {
@@ -252,8 +286,8 @@ std::string link_to(const std::string& directory, const std::string& path, const
 
 }  // namespace
 
-std::string study_charts_html(const JsonReader& in) {
-  const std::string html = factor_charts(in) + convergence_charts(in);
+std::string study_charts_html(const JsonReader& in, const std::map<std::string, std::string>& units) {
+  const std::string html = factor_charts(in, units) + convergence_charts(in, units);
   return html.empty() ? "" : "<h2>Curves</h2>\n" + html;
 }
 
@@ -263,7 +297,7 @@ std::string study_comparisons_html(const JsonReader& in) {
   for (const auto& item : in.list("comparisons")) {
     const JsonReader row(item, in.where() + ": comparisons");
     const auto cell = [&](const char* key) { return short_figure(number_or_nan(row.at(key))); };
-    rows.push_back({row.text("figure"), row.text("variant") + " - " + row.text("base"),
+    rows.push_back({row.text("figure"), row.text("compared") + " minus " + row.text("base"),
                     fmt::format("{}", row.whole("pairs")), cell("mean"),
                     cell("mean_low_95") + " to " + cell("mean_high_95"), cell("median"), cell("sign_p"),
                     cell("wilcoxon_p")});

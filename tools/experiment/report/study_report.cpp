@@ -153,15 +153,11 @@ std::vector<std::string> main_figures(const JsonReader& in, const std::vector<Ru
 
 /// `cooperative.rms_m: 0.91 m (two_craft), 61.2 m (alone); means of 20 runs, standard deviation 0.11 and 8.2`.
 std::vector<std::string> findings(const std::vector<std::string>& names, const std::vector<StudyCaseRecord>& cases) {
-  const std::vector<RunMetric> metrics = metrics_named(all_figures(cases));
+  const std::map<std::string, std::string> units = units_of(all_figures(cases));
   std::vector<std::string> sentences;
   for (const std::string& name : names) {
-    // Unit of the figure.
-    std::string unit;
-    for (const RunMetric& metric : metrics)
-      for (const RunMetric::Figure& figure : metric.figures)
-        if (name == metric.name + "." + figure.name && figure.kind != nullptr && figure.kind->unit != "1")
-          unit = " " + figure.kind->unit;
+    const auto known = units.find(name);
+    const std::string unit = known == units.end() ? "" : " " + known->second;
     // Mean and deviation by case.
     std::string text;
     for (const StudyCaseRecord& each : cases) {
@@ -201,6 +197,8 @@ std::string outcome_html(const JsonReader& in, const std::vector<StudyCaseRecord
       words.push_back((cases.size() > 1 ? each.name + ": " : "") + passed + " runs hold the rules of their world.");
   const std::vector<std::string> found = findings(main_figures(in, rules), cases);
   std::string html = verdict_box(judgement, "<p>" + text + "</p>\n" + rules_html(rules)) + list_html(words);
+  if (in.has("until") && !in.at("until").is_null())
+    html += "<p>" + html_text(JsonReader(in.at("until"), in.where() + ": until").text("text")) + ".</p>\n";
   // Missing in files of older versions.
   if (in.has("notes"))
     for (const std::string& note : texts_of(in, "notes")) html += "<p>Note: " + html_text(note) + ".</p>\n";
@@ -232,7 +230,7 @@ std::string study_report(const std::string& directory) {
   std::string body = "<h1>" + html_text(title) + "</h1>\n";
   if (!description.empty()) body += "<p>" + html_text(description) + "</p>\n";
   body += outcome_html(in, cases) + plots_html(directory, texts_of(in, "plots"), {}) + failed_runs_html(in) +
-          study_charts_html(in) + figures_html(in, cases) + study_comparisons_html(in) +
+          study_charts_html(in, units_of(all_figures(cases))) + figures_html(in, cases) + study_comparisons_html(in) +
           study_extremes_html(in, directory) + cases_html(cases) + "<h2>This study</h2>\n" +
           facts_table({{"World", in.text("world")},
                        {"Runs", fmt::format("{}", in.whole("runs"))},

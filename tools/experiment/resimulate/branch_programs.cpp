@@ -82,7 +82,8 @@ RunPrograms::Clients BranchPrograms::clients() {
           [this](const std::string& client) {
             replayed_.service().client_exited(client);
             return !replayed_.lockstep().has(client);
-          }};
+          },
+          [this](const std::string& client) { return replayed_.lockstep().reason_to_leave(client); }};
 }
 
 bool BranchPrograms::joined() {

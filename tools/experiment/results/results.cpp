@@ -380,6 +380,7 @@ void Results::start_branch(sim::Time back_to, bool ours) {
 
 void Results::keep_branch(const Summary& left, const Scoring& scoring, const sim::ConfigNode& resolved) {
   const std::string directory = directory_ + "/branch" + std::to_string(left.branch);
+  remove_link(directory);
   std::error_code error;
   if (!std::filesystem::exists(directory, error)) kept_ = directory;
   write_summary(directory, left);
@@ -387,6 +388,7 @@ void Results::keep_branch(const Summary& left, const Scoring& scoring, const sim
   write_errors(directory, scoring);
   write_file(directory + "/world.yaml", sim::to_yaml(resolved));
   if (std::fflush(tracks_) != 0) throw cannot_write(directory_ + "/tracks.csv", std::strerror(errno));
+  remove_link(directory + "/tracks.csv");
   std::filesystem::copy_file(directory_ + "/tracks.csv", directory + "/tracks.csv",
                              std::filesystem::copy_options::overwrite_existing, error);
   if (error) throw cannot_write(directory + "/tracks.csv", error.message());

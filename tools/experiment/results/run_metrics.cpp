@@ -111,6 +111,15 @@ std::vector<RunMetric> metrics_named(const std::vector<std::string>& figures) {
   return metrics;
 }
 
+std::map<std::string, std::string> units_of(const std::vector<std::string>& figures) {
+  std::map<std::string, std::string> units;
+  for (const RunMetric& metric : metrics_named(figures))
+    for (const RunMetric::Figure& figure : metric.figures)
+      if (figure.kind != nullptr && figure.kind->unit != "1")
+        units[metric.name + "." + figure.name] = figure.kind->unit;
+  return units;
+}
+
 std::string figure_text(const std::optional<double>& value) {
   if (!value || !std::isfinite(*value)) return "none";
   const double size = std::abs(*value);

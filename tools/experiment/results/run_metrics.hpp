@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -34,6 +35,10 @@ std::vector<RunMetric> metrics_of(const RunRecord& run);
 
 /// Returns the names of figures (`NAME.figure`) by metric, without values, in order of name.
 std::vector<RunMetric> metrics_named(const std::vector<std::string>& figures);
+
+/// Returns the units of figures (`NAME.figure`) that have one and whose metric is known.  `figures`: all of the runs,
+/// which tell the type of a metric.
+std::map<std::string, std::string> units_of(const std::vector<std::string>& figures);
 
 /// Formats a value: as a whole number from 1000 on, else with four digits; `none` when there is none.
 std::string figure_text(const std::optional<double>& value);

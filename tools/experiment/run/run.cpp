@@ -366,7 +366,8 @@ RunPrograms::Clients Run::clients(bool goes_on) {
             progress_.clear();
             service_.client_exited(client);
             return !lockstep_.has(client);
-          }};
+          },
+          [this](const std::string& client) { return lockstep_.reason_to_leave(client); }};
 }
 
 void Run::check_programs() {

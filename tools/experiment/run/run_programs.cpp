@@ -3,6 +3,8 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
+
 #include "tools/experiment/results/run_error.hpp"
 #include "tools/experiment/run/run_name.hpp"
 
@@ -36,9 +38,13 @@ std::vector<std::string> RunPrograms::start() {
 std::vector<ProcessGroup::Exit> RunPrograms::reap(const Clients& clients) {
   std::vector<ProcessGroup::Exit> exits = processes_.reap();
   for (ProcessGroup::Exit& exit : exits) {
-    if (exit.failed || exit.client.empty() || clients.has_left(exit.client)) continue;
+    if (exit.failed || exit.client.empty()) continue;
+    const bool has_left = clients.has_left(exit.client);
+    const std::string reason = has_left ? clients.reason_to_leave(exit.client) : "";
+    if (has_left && reason.empty()) continue;
     exit.failed = true;
-    exit.how += " before the last tick of client '" + exit.client + "', which did not leave";
+    exit.how += has_left ? "; its client '" + exit.client + "' had left: " + reason
+                         : " before the last tick of client '" + exit.client + "', which did not leave";
   }
   return exits;
 }
@@ -65,6 +71,12 @@ void RunPrograms::note(const ProcessGroup::Exit& exit, sim::Time now) {
 void RunPrograms::note_last(sim::Time now, const Clients& clients) {
   if (processes_.empty()) return;
   for (const ProcessGroup::Exit& exit : reap(clients)) note(exit, now);
+  for (const sim::ProcessConfig& process : config_.processes) {
+    const auto is_noted = [&](const Summary::Process& one) { return one.name == process.name; };
+    if (process.client.empty() || std::any_of(ended_.begin(), ended_.end(), is_noted)) continue;
+    if (const std::string reason = clients.reason_to_leave(process.client); !reason.empty())
+      ended_.push_back({process.name, "left: " + reason, sim::to_seconds(now), process.on_exit != sim::OnExit::ignore});
+  }
 }
 
 }  // namespace tools

@@ -28,12 +28,16 @@ class RunPrograms {
     /// Handles the end of its process.  Returns whether the run continues without it at once; otherwise its
     /// `on_timeout` applies.
     std::function<bool(const std::string& client)> removed;
+    /// Returns the reason for which the client has left, such as an exception; empty: as planned, or it has not left.
+    std::function<std::string(const std::string& client)> reason_to_leave;
   };
 
-  /// Checks for programs that have ended.  A client that ended before its last tick without leaving has failed,
-  /// regardless of its exit code.  Throws RunError when the world requires the run to end with a program.
+  /// Checks for programs that have ended.  A client that ended before its last tick without leaving, or that left for a
+  /// reason, has failed, regardless of its exit code.  Throws RunError when the world requires the run to end with a
+  /// program.
   void check(sim::Time now, const Clients& clients);
-  /// Records the programs that have already ended, before the end of the run is announced.
+  /// Records the programs that have already ended, before the end of the run is announced, and those that have left for
+  /// a reason.
   void note_last(sim::Time now, const Clients& clients);
   bool is_gone(const std::string& client) const { return removed_.contains(client); }
   /// Waits for the lockstep clients to end by themselves.

@@ -5,18 +5,17 @@
 
 #include <cerrno>
 #include <cstring>
-#include <filesystem>
 #include <stdexcept>
 
 #include "bridges/base/file_lock.hpp"
+#include "tools/experiment/files/no_links.hpp"
 
 namespace tools {
 
-RunClaim::RunClaim(const std::string& directory) {
-  std::error_code error;
-  std::filesystem::create_directories(directory, error);
-  if (error) throw std::runtime_error(directory + ": cannot be made: " + error.message());
+RunClaim::RunClaim(const std::string& root, const std::string& directory) {
+  make_folders(root, directory);
   const std::string path = directory + "/study_claim";
+  refuse_links(root, path);
   file_ = bridges::FileDescriptor(open(path.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666));
   if (file_.number() < 0) throw std::runtime_error(path + ": cannot be opened: " + std::strerror(errno));
   owner_ = bridges::lock_against_others(file_.number());

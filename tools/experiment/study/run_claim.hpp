@@ -12,8 +12,9 @@ namespace tools {
 /// that ends, and on network file systems too as far as they have locks.
 class RunClaim {
  public:
-  /// Creates the folder.  Throws std::runtime_error when that is not possible.
-  explicit RunClaim(const std::string& directory);
+  /// Creates the folder, below `root`: that of the study.  Throws std::runtime_error when that is not possible, or a
+  /// part of it is a symbolic link.
+  RunClaim(const std::string& root, const std::string& directory);
   /// Returns the process that has the folder; none when it is claimed by this object now.
   const std::optional<std::string>& owner() const { return owner_; }
 

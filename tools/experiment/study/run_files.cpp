@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "tools/experiment/files/file_replacement.hpp"
+#include "tools/experiment/files/no_links.hpp"
 
 namespace tools {
 
@@ -16,6 +17,11 @@ std::string stamp_path(const std::string& directory) {
 
 std::string failure_path(const std::string& directory) {
   return directory + "/study_failure.txt";
+}
+
+void write_mark(const std::string& directory, const std::string& path, const std::string& text) {
+  refuse_links(directory, path);
+  write_whole_file(path, text);
 }
 
 /// Reads a file of two lines: `inputs HASH`, and a second one after `word`.  Nothing for any other content.
@@ -42,7 +48,7 @@ std::optional<RunStamp> read_stamp(const std::string& directory) {
 }
 
 void write_stamp(const std::string& directory, const RunStamp& stamp) {
-  write_whole_file(stamp_path(directory), "inputs " + stamp.inputs + "\nshoal " + stamp.version + "\n");
+  write_mark(directory, stamp_path(directory), "inputs " + stamp.inputs + "\nshoal " + stamp.version + "\n");
 }
 
 std::optional<RunFailure> read_failure(const std::string& directory) {
@@ -51,13 +57,15 @@ std::optional<RunFailure> read_failure(const std::string& directory) {
 }
 
 void write_failure(const std::string& directory, const RunFailure& failure) {
-  write_whole_file(failure_path(directory), "inputs " + failure.inputs + "\nfailed " + failure.reason + "\n");
+  write_mark(directory, failure_path(directory), "inputs " + failure.inputs + "\nfailed " + failure.reason + "\n");
 }
 
 void remove_marks(const std::string& directory) {
   std::error_code ignored;
-  for (const std::string& path : {stamp_path(directory), failure_path(directory), directory + "/summary.json"})
+  for (const std::string& path : {stamp_path(directory), failure_path(directory), directory + "/summary.json"}) {
+    refuse_links(directory, path);
     std::filesystem::remove(path, ignored);
+  }
 }
 
 }  // namespace tools

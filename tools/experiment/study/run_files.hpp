@@ -9,7 +9,8 @@
 namespace tools {
 
 /// Files by which a study finds the state of a run, in the folder of the run.  Each is written as a whole: after a
-/// kill or a loss of power it is complete or absent.
+/// kill or a loss of power it is complete or absent.  Writing and removing throw std::runtime_error for a symbolic
+/// link.
 
 /// Mark of a finished run.
 struct RunStamp {

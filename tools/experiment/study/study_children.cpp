@@ -14,6 +14,7 @@
 #include <thread>
 
 #include "bridges/control/other_simulators.hpp"
+#include "tools/experiment/files/no_links.hpp"
 #include "tools/experiment/process/child_program.hpp"
 #include "tools/experiment/run/runner.hpp"
 #include "tools/experiment/study/run_claim.hpp"
@@ -48,12 +49,14 @@ std::string url_of_bus(const LoadedStudy& study, int slot, int attempt, std::siz
 class StudyChildren {
  public:
   StudyChildren(const LoadedStudy& study, const StudyOptions& options, std::vector<StudyRun>& runs,
-                const std::vector<std::size_t>& which)
-      : study_(study), options_(options), runs_(runs), total_(which.size()) {
+                const std::vector<std::size_t>& which, StudyProgress& progress)
+      : study_(study), options_(options), runs_(runs), progress_(progress) {
     for (const std::size_t i : which)
       if (options.fresh || !is_done(runs[i])) waiting_.push_back({i, 0, Clock::now()});
-    done_ = total_ - waiting_.size();
-    if (done_ > 0) report(fmt::format("{} of {} runs were already done", done_, total_));
+    const std::size_t kept = which.size() - waiting_.size();
+    progress_.done += kept;
+    progress_.kept += kept;
+    if (kept > 0) report(fmt::format("{} of {} runs were already done", progress_.kept, progress_.total));
   }
 
   void run() {
@@ -114,7 +117,7 @@ class StudyChildren {
     Waiting what = *ready;
     waiting_.erase(ready);
     StudyRun& run = runs_[what.run];
-    RunClaim claim(run.directory);
+    RunClaim claim(options_.output, run.directory);
     // Another process executes this run: its result is awaited, or the end of that process.
     if (claim.owner()) {
       if (!what.elsewhere)
@@ -126,14 +129,15 @@ class StudyChildren {
     }
     // It has finished since this process looked.
     if (!options_.fresh && is_done(run)) {
-      ++done_;
+      ++progress_.done;
       return true;
     }
     run.record.reset();
     remove_marks(run.directory);
+    const std::string log = run.directory + "/run.log";
+    refuse_links(run.directory, log);
     const int slot = free_slot();
-    const pid_t pid = spawn(arguments_of(study_, run, run.directory, options_.allow_paths, slot, what.attempt),
-                            run.directory + "/run.log");
+    const pid_t pid = spawn(arguments_of(study_, run, run.directory, options_.allow_paths, slot, what.attempt), log);
     running_.push_back({pid, what, slot, Clock::now(), std::move(claim)});
     return true;
   }
@@ -191,21 +195,20 @@ class StudyChildren {
     const bool taken = run.failure.find(bridges::another_simulator) != std::string::npos;
     if (!run.record && taken && ended.what.attempt + 1 < max_attempts)
       return waiting_.push_front({ended.what.run, ended.what.attempt + 1, Clock::now()});
-    ++done_;
+    ++progress_.done;
     // Report the outcome.
-    std::string outcome = "failed: " + run.failure + "; see " + run.directory + "/run.log";
+    std::string outcome = "no result: " + run.failure + "; see " + run.directory + "/run.log";
     if (run.record) {
       write_stamp(run.directory, {inputs_of(study_, run), short_version()});
       const Judgement judgement = run.record->judgement;
-      outcome = judgement == Judgement::failed   ? "done, its rules failed"
-                : judgement == Judgement::passed ? "passed"
-                                                 : "done, not judged";
+      outcome = judgement_word(judgement);
+      if (judgement == Judgement::failed) outcome += ": a rule of its world does not hold";
     } else {
       run.tried = true;
       write_failure(run.directory, {inputs_of(study_, run), run.failure});
     }
     const double wall_s = std::chrono::duration<double>(Clock::now() - ended.started).count();
-    report(fmt::format("[{}/{}] {}: {} ({:.1f} s)", done_, total_, name_of(run), outcome, wall_s));
+    report(fmt::format("[{}/{}] {}: {} ({:.1f} s)", progress_.done, progress_.total, name_of(run), outcome, wall_s));
   }
 
   void stop() {
@@ -226,8 +229,7 @@ class StudyChildren {
   std::vector<StudyRun>& runs_;
   std::deque<Waiting> waiting_;
   std::vector<Running> running_;
-  std::size_t total_;
-  std::size_t done_ = 0;
+  StudyProgress& progress_;
 };
 
 }  // namespace
@@ -264,8 +266,8 @@ std::vector<std::string> arguments_of(const LoadedStudy& study, const StudyRun& 
 }
 
 void run_study(const LoadedStudy& study, const StudyOptions& options, std::vector<StudyRun>& runs,
-               const std::vector<std::size_t>& which) {
-  StudyChildren(study, options, runs, which).run();
+               const std::vector<std::size_t>& which, StudyProgress& progress) {
+  StudyChildren(study, options, runs, which, progress).run();
 }
 
 }  // namespace tools

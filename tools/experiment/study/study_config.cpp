@@ -434,6 +434,7 @@ LoadedStudy load_study(const std::string& path, const StudyChanges& changes) {
   study.config.file = path;
   if (!changes.seeds.empty()) study.config.seeds = changes.seeds;
   if (changes.duration_s) study.config.duration_s = changes.duration_s;
+  if (study.config.until) study.config.until->planned_seeds = study.config.seeds.size();
   study.config.world = world_file_of(path, study.config.world);
   check_world_file(study.config.world, path, root, changes.load);
   if (!changes.tuned) {
@@ -443,6 +444,12 @@ LoadedStudy load_study(const std::string& path, const StudyChanges& changes) {
   }
   // Load the world of each case.
   sim::Warnings warnings;
+  if (const auto& until = study.config.until;
+      until && until->batch < min_sure_batch && !changes.tuned && !changes.planned)
+    (changes.load.warnings != nullptr ? *changes.load.warnings : warnings)
+        .warn(until->place, "",
+              "'batch' is " + std::to_string(until->batch) + ": 'until' may hold by chance after fewer than " +
+                  std::to_string(min_sure_batch) + " seeds");
   for (const StudyCase& each : study.config.cases) {
     sim::LoadOptions options = changes.load;
     if (options.warnings == nullptr) options.warnings = &warnings;

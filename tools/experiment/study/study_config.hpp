@@ -74,6 +74,7 @@ struct StudyChanges {
   std::optional<double> duration_s;
   sim::LoadOptions load;      ///< files that its worlds may name
   bool tuned = false;         ///< the points are not those of its design: none are made
+  bool planned = false;       ///< a manifest exists: its plan is not warned about again
   bool only_checked = false;  ///< no run follows: plugins that the world names are not loaded
 };
 

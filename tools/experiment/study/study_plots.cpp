@@ -3,14 +3,13 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <stdexcept>
+#include <map>
 
+#include "tools/experiment/files/file_replacement.hpp"
 #include "tools/experiment/files/gnuplot.hpp"
+#include "tools/experiment/files/no_links.hpp"
 #include "tools/experiment/results/run_metrics.hpp"
 #include "tools/experiment/run/runner.hpp"
 #include "tools/experiment/study/study_curves.hpp"
@@ -19,12 +18,6 @@
 namespace tools {
 
 namespace {
-
-void write_file(const std::string& path, const std::string& text) {
-  std::ofstream out(path, std::ios::binary);
-  out << text << std::flush;
-  if (!out) throw std::runtime_error(path + ": cannot be written: " + std::strerror(errno));
-}
 
 std::vector<std::string> cases_of(const StudyPlot& plot, const StudyConfig& config) {
   if (!plot.cases.empty()) return plot.cases;
@@ -53,7 +46,7 @@ class StudyPainter {
                  gnuplot_text(study_.config.name + ": " + plot.name) + " noenhanced\n" + curves + "\n";
     }
     if (!any) return;
-    write_file(directory_ + "/plot.gp", script_);
+    write_whole_file(directory_ + "/plot.gp", script_);
     if (!run_gnuplot(directory_, "plot.gp", std::chrono::seconds(60), [] { return caught_signal() != 0; }))
       spdlog::warn("no plots: gnuplot failed, see {}/plot.log", directory_);
   }
@@ -72,7 +65,7 @@ class StudyPainter {
       if (s.count > 0) means += fmt::format("{} {:.9g} {:.9g}\n", number - 0.1, s.mean, s.count > 1 ? s.std : 0.0);
     }
     if (points.empty()) return {};
-    write_file(directory_ + "/" + plot.name + ".dat", points + "\n\n" + means);
+    write_whole_file(directory_ + "/" + plot.name + ".dat", points + "\n\n" + means);
     const std::string file = gnuplot_text(plot.name + ".dat");
     return fmt::format(
         "set xtics ({}) noenhanced\nset xrange [0.5:{}.5]\nset yrange [*:*]\nset xlabel ''\nset ylabel {} noenhanced\n"
@@ -84,11 +77,9 @@ class StudyPainter {
 
   /// Returns `cooperative.rms_m (m)`.
   std::string with_unit(const std::string& name) const {
-    for (const RunMetric& metric : metrics_named(results_.figures()))
-      for (const RunMetric::Figure& figure : metric.figures)
-        if (name == metric.name + "." + figure.name && figure.kind != nullptr && figure.kind->unit != "1")
-          return name + " (" + figure.kind->unit + ")";
-    return name;
+    const std::map<std::string, std::string> units = units_of(results_.figures());
+    const auto unit = units.find(name);
+    return unit == units.end() ? name : name + " (" + unit->second + ")";
   }
 
   /// Plots errors over distance or time: the median of the runs, in a band of 5 to 95 % of them.
@@ -119,7 +110,7 @@ class StudyPainter {
       }
     // Axes.
     if (plots.empty()) return {};
-    write_file(directory_ + "/" + plot.name + ".dat", data);
+    write_whole_file(directory_ + "/" + plot.name + ".dat", data);
     const bool distance = plot.over == StudyPlot::Over::distance;
     return fmt::format("{}set xlabel '{}'\nset ylabel 'error (m): median, 5 to 95 % of the runs'\n{}\nunset logscale y",
                        axis_of_errors(reached_m), distance ? "distance travelled (m)" : "time (s)", plots);
@@ -151,19 +142,28 @@ std::vector<std::string> study_plots(const StudyConfig& config) {
   return files;
 }
 
+void check_outputs(const std::string& directory, const StudyConfig& config) {
+  std::vector<std::string> names{"study.csv",    "points.csv",  "study.json",
+                                 "study.sqlite", "report.html", "study.sqlite.part"};
+  if (!config.plots.empty()) names.insert(names.end(), {"plot.gp", "plot.log"});
+  for (const StudyPlot& plot : config.plots) names.insert(names.end(), {plot.name + ".dat", plot.name + ".png"});
+  for (const std::string& name : names) {
+    const std::string path = directory + "/" + name;
+    refuse_links(directory, path);
+    check_whole_file(path);
+  }
+}
+
 void write_study(const std::string& directory, const LoadedStudy& study, const std::vector<StudyRun>& runs,
                  const StudyResults& results, int exit_code) {
+  make_folders(directory, directory);
   std::error_code error;
-  std::filesystem::create_directories(directory, error);
-  if (error) throw std::runtime_error(directory + ": cannot be made: " + error.message());
   // Remove the plots of an earlier study, which would be mistaken for those of this one.
   for (const std::string& image : study_plots(study.config)) std::filesystem::remove(directory + "/" + image, error);
-  write_file(directory + "/study.csv", results.to_csv());
-  write_file(directory + "/points.csv", results.points_csv());
+  write_whole_file(directory + "/study.csv", results.to_csv());
+  write_whole_file(directory + "/points.csv", results.points_csv());
   StudyPainter(directory, study, runs, results).draw();
-  write_file(directory + "/study.json.part", results.to_json(exit_code));
-  std::filesystem::rename(directory + "/study.json.part", directory + "/study.json", error);
-  if (error) throw std::runtime_error(directory + "/study.json: cannot be written: " + error.message());
+  write_whole_file(directory + "/study.json", results.to_json(exit_code));
 }
 
 }  // namespace tools

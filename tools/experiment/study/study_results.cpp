@@ -203,6 +203,7 @@ std::string StudyResults::to_text(const std::string& directory) const {
   if (const std::string text_of_kinds = mixture(); !text_of_kinds.empty()) text += "note: " + text_of_kinds + "\n";
   text += comparisons_text(comparisons());
   if (failed_runs() > 0) text += fmt::format("{} runs have no result\n", failed_runs()) + failed_text(*this, directory);
+  if (const std::string until = until_text(study_, runs_); !until.empty()) text += until + "\n";
   if (judgement() == Judgement::not_judged) text += "not judged: the study has no rules\n";
   return text;
 }
@@ -215,10 +216,7 @@ std::string StudyResults::points_text() const {
   if (points.size() > max_shown) return "points.csv has the statistics of each point\n";
   std::string text;
   for (std::size_t point = 0; point < points.size(); ++point) {
-    text += fmt::format("point {}", point + 1);
-    for (std::size_t i = 0; i < study_.config.factors.size(); ++i)
-      text += (i == 0 ? " (" : ", ") + study_.config.factors[i].name + " = " + points[point].values[i];
-    text += "), mean:";
+    text += fmt::format("point {} ({}), mean:", point + 1, values_text(study_.config, points[point]));
     for (std::size_t in_case = 0; in_case < study_.config.cases.size(); ++in_case)
       for (const std::string& figure : table_figures())
         text += fmt::format(" {}{} {}", study_.config.cases.size() > 1 ? study_.config.cases[in_case].name + "." : "",
@@ -290,6 +288,13 @@ std::string StudyResults::to_json(int exit_code) const {
   json["notes"] = nlohmann::ordered_json::array();
   for (const EqualCases& group : equal_cases(study_, runs_)) json["notes"].push_back(equal_cases_text(group));
   if (const std::string text = mixture(); !text.empty()) json["notes"].push_back(text);
+  json["until"] = nullptr;
+  if (config.until)
+    json["until"] = {{"condition", config.until->text},
+                     {"holds", until_holds(study_, runs_)},
+                     {"seeds", config.seeds.size()},
+                     {"planned_seeds", config.until->planned_seeds},
+                     {"text", until_text(study_, runs_)}};
   json["failed_runs"] = nlohmann::ordered_json::array();
   for (const StudyRun& run : runs_)
     if (!run.record)
@@ -303,7 +308,7 @@ std::string StudyResults::to_json(int exit_code) const {
   add_convergence(json, *this);
   add_extremes(json, *this);
   json["comparisons"] = nlohmann::ordered_json::array();
-  for (const VariantComparison& each : comparisons()) json["comparisons"].push_back(comparison_json(each));
+  for (const StudyComparison& each : comparisons()) json["comparisons"].push_back(comparison_json(each));
   // Rules and verdict.
   json["runs"] = runs_.size();
   json["rules"] = nlohmann::ordered_json::array();

@@ -39,12 +39,12 @@ double figure_of(const StudyRun& run, const std::string& figure);
 /// Returns the quantile of `share`, with linear interpolation.  `sorted` is not empty.
 double quantile(const std::vector<double>& sorted, double share);
 
-/// Differences of a figure between two variants, in pairs of runs with equal seeds: two cases at equal points, or two
-/// points of the only case.
-struct VariantComparison {
-  std::string variant, base;  ///< names of cases, or `point 3`
+/// Differences of a figure in pairs of runs with equal seeds: between two cases at equal points, or between two points
+/// of the only case.
+struct StudyComparison {
+  std::string compared, base;  ///< names of cases, or values of points such as `loss = 0.5, g = 1.62`
   std::string figure;
-  PairedComparison difference;  ///< variant minus base
+  PairedComparison difference;  ///< compared minus base
 };
 
 /// Results of a study.
@@ -67,7 +67,7 @@ class StudyResults {
   /// Returns the statistics of one figure over the seeds of a case at a point.
   Statistics at_point(std::size_t in_case, std::size_t point, const std::string& figure) const;
   /// Compares each case with the first one, or each of a few points with the first one, by the figures of the table.
-  std::vector<VariantComparison> comparisons() const;
+  std::vector<StudyComparison> comparisons() const;
   /// Sentence about runs of different programs, processor classes or C libraries; empty when there is only one kind.
   std::string mixture() const;
   const std::vector<StudyRun>& runs() const { return runs_; }
@@ -99,8 +99,12 @@ class StudyResults {
 /// Returns the plot files of a study, in order.
 std::vector<std::string> study_plots(const StudyConfig& config);
 
-/// Writes study.csv, points.csv, study.json, plot.gp, the data of the plots and their plots into a folder.  Throws
-/// std::runtime_error.
+/// Throws std::runtime_error when a file of the results of a study cannot be written in its folder, or is a symbolic
+/// link; for errors before a long work.  Writes nothing.
+void check_outputs(const std::string& directory, const StudyConfig& config);
+
+/// Writes study.csv, points.csv, study.json, plot.gp, the data of the plots and their plots into a folder, after
+/// check_outputs().  Throws std::runtime_error.
 void write_study(const std::string& directory, const LoadedStudy& study, const std::vector<StudyRun>& runs,
                  const StudyResults& results, int exit_code);
 

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <map>
-#include <numeric>
 #include <stdexcept>
 
 #include "sim/random/random.hpp"
@@ -118,12 +117,6 @@ void read_ended_run(StudyRun& run) {
   read_record(run);
 }
 
-void run_study(const LoadedStudy& study, const StudyOptions& options, std::vector<StudyRun>& runs) {
-  std::vector<std::size_t> all(runs.size());
-  std::iota(all.begin(), all.end(), std::size_t{0});
-  run_study(study, options, runs, all);
-}
-
 void run_in_batches(const LoadedStudy& study, std::vector<StudyRun>& runs,
                     const std::function<void(const std::vector<std::size_t>&)>& execute) {
   const std::size_t seeds = study.config.seeds.size();
@@ -150,14 +143,29 @@ std::size_t seeds_needed(const LoadedStudy& study, const std::vector<StudyRun>& 
   return seeds;
 }
 
-std::size_t drop_needless_seeds(LoadedStudy& study, std::vector<StudyRun>& runs) {
+bool until_holds(const LoadedStudy& study, const std::vector<StudyRun>& runs) {
+  return study.config.until && certain_after(study, runs, positions_of(study.config.seeds), study.config.seeds.size());
+}
+
+std::string until_text(const LoadedStudy& study, const std::vector<StudyRun>& runs) {
+  if (!study.config.until) return {};
+  const StudyUntil& until = *study.config.until;
+  const std::size_t used = study.config.seeds.size();
+  const std::string seeds = used < until.planned_seeds ? fmt::format("{} of {} seeds", used, until.planned_seeds)
+                                                       : fmt::format("all {} seeds", used);
+  const bool holds = until_holds(study, runs);
+  std::string text = fmt::format("until: {} {} after {}", until.text, holds ? "holds" : "does not hold", seeds);
+  if (used < until.planned_seeds) text += "; runs of the others are not used";
+  if (holds && used < min_sure_batch)
+    text += fmt::format("; with fewer than {} seeds this may be chance", min_sure_batch);
+  return text;
+}
+
+void drop_needless_seeds(LoadedStudy& study, std::vector<StudyRun>& runs) {
   const std::size_t needed = seeds_needed(study, runs);
-  const std::size_t dropped = study.config.seeds.size() - needed;
-  if (dropped == 0) return 0;
   const auto position = positions_of(study.config.seeds);
   std::erase_if(runs, [&](const StudyRun& run) { return position.at(run.seed) >= needed; });
   study.config.seeds.resize(needed);
-  return dropped;
 }
 
 }  // namespace tools

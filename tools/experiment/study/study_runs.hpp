@@ -56,14 +56,19 @@ std::vector<std::string> arguments_of(const LoadedStudy& study, const StudyRun& 
 /// `failure` is set.
 void read_result(const LoadedStudy& study, bool any_version, StudyRun& run);
 
+/// Count of the runs of a command, which may execute them in several parts.
+struct StudyProgress {
+  std::size_t total = 0;
+  std::size_t done = 0;  ///< with or without a result
+  std::size_t kept = 0;  ///< of these, finished before
+};
+
 /// Executes the unfinished runs among `which` (indices into `runs`), each in its own `shoal run` and on its own LCM
 /// ports.  A finished run is kept when world, settings, duration and (without `any_version`) version of shoal are
 /// unchanged.  A run that another process executes is awaited.  A signal ends the children and returns; see
 /// caught_signal().  Throws std::runtime_error when a folder cannot be created or a child cannot be started.
 void run_study(const LoadedStudy& study, const StudyOptions& options, std::vector<StudyRun>& runs,
-               const std::vector<std::size_t>& which);
-/// Executes all of them.
-void run_study(const LoadedStudy& study, const StudyOptions& options, std::vector<StudyRun>& runs);
+               const std::vector<std::size_t>& which, StudyProgress& progress);
 
 /// Executes runs by an engine, batch after batch of seeds while the study has an `until` that does not hold.
 /// `execute` gets indices into `runs` and leaves their results in them.
@@ -74,7 +79,14 @@ void run_in_batches(const LoadedStudy& study, std::vector<StudyRun>& runs,
 /// `until` holds.  Depends only on the results, not on the order in which the runs ended.
 std::size_t seeds_needed(const LoadedStudy& study, const std::vector<StudyRun>& runs);
 
-/// Removes the seeds that are not needed from a study and its runs.  Returns their number.
-std::size_t drop_needless_seeds(LoadedStudy& study, std::vector<StudyRun>& runs);
+/// Returns whether `until` holds for all seeds of the study and its runs; false without `until`.
+bool until_holds(const LoadedStudy& study, const std::vector<StudyRun>& runs);
+
+/// Returns the outcome of `until` in one line: `until: ci(e.rms_m) < 5 % holds after 10 of 40 seeds; ...`; empty: the
+/// study has none.  The seeds that are not needed have been removed.
+std::string until_text(const LoadedStudy& study, const std::vector<StudyRun>& runs);
+
+/// Removes the seeds that are not needed from a study and its runs.
+void drop_needless_seeds(LoadedStudy& study, std::vector<StudyRun>& runs);
 
 }  // namespace tools

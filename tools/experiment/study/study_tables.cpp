@@ -30,11 +30,6 @@ std::string csv_number(double value) {
   return std::isfinite(value) ? fmt::format("{}", value) : "";
 }
 
-/// Name of a point of the only case: `point 3`.
-std::string point_name(std::size_t point) {
-  return fmt::format("point {}", point + 1);
-}
-
 }  // namespace
 
 RunKind kind_of(const RunRecord& record) {
@@ -50,6 +45,13 @@ std::string csv_field(const std::string& text) {
   return quoted + "\"";
 }
 
+std::string values_text(const StudyConfig& config, const StudyPoint& point) {
+  std::string text;
+  for (std::size_t k = 0; k < config.factors.size(); ++k)
+    text += (k == 0 ? "" : ", ") + config.factors[k].name + " = " + point.values[k];
+  return text;
+}
+
 nlohmann::ordered_json statistics_json(const Statistics& statistics) {
   nlohmann::ordered_json json{{"count", statistics.count}};
   for (const std::string& word : statistic_words()) json[word] = statistics.by_word(word);  // NaN becomes null
@@ -60,9 +62,9 @@ nlohmann::ordered_json statistics_json(const Statistics& statistics) {
   return json;
 }
 
-nlohmann::ordered_json comparison_json(const VariantComparison& comparison) {
+nlohmann::ordered_json comparison_json(const StudyComparison& comparison) {
   const PairedComparison& d = comparison.difference;
-  return {{"variant", comparison.variant},
+  return {{"compared", comparison.compared},
           {"base", comparison.base},
           {"figure", comparison.figure},
           {"pairs", d.pairs},
@@ -82,7 +84,8 @@ void add_points(nlohmann::ordered_json& json, const StudyResults& results) {
   if (config.factors.empty()) return;
   json["factors"] = nlohmann::ordered_json::array();
   for (const StudyFactor& factor : config.factors)
-    json["factors"].push_back({{"name", factor.name}, {"log", factor.scale == StudyFactor::Scale::log}});
+    json["factors"].push_back(
+        {{"name", factor.name}, {"paths", factor.paths}, {"log", factor.scale == StudyFactor::Scale::log}});
   json["points"] = nlohmann::ordered_json::array();
   const std::vector<StudyPoint>& points = results.study().points;
   for (std::size_t point = 0; point < std::min(points.size(), max_points_in_json); ++point)
@@ -185,26 +188,28 @@ std::string StudyResults::points_csv() const {
   return text;
 }
 
-std::vector<VariantComparison> StudyResults::comparisons() const {
+std::vector<StudyComparison> StudyResults::comparisons() const {
   const StudyConfig& config = study_.config;
   const bool of_cases = config.cases.size() > 1;
-  const std::size_t variants = of_cases ? config.cases.size() : study_.points.size();
-  if (!of_cases && variants > max_compared_points) return {};
-  // Runs of each variant by what a pair has in common.
-  std::vector<std::map<std::pair<std::size_t, std::int64_t>, const StudyRun*>> by_variant(variants);
+  const std::size_t count = of_cases ? config.cases.size() : study_.points.size();
+  if (!of_cases && count > max_compared_points) return {};
+  // Runs of each case or point by what a pair has in common.
+  std::vector<std::map<std::pair<std::size_t, std::int64_t>, const StudyRun*>> groups(count);
   for (const StudyRun& run : runs_)
     if (of_cases)
-      by_variant[run.in_case][{run.point, run.seed}] = &run;
+      groups[run.in_case][{run.point, run.seed}] = &run;
     else
-      by_variant[run.point][{0, run.seed}] = &run;
-  const auto name = [&](std::size_t i) { return of_cases ? config.cases[i].name : point_name(i); };
-  std::vector<VariantComparison> comparisons;
+      groups[run.point][{0, run.seed}] = &run;
+  const auto name = [&](std::size_t i) {
+    return of_cases ? config.cases[i].name : values_text(config, study_.points[i]);
+  };
+  std::vector<StudyComparison> comparisons;
   for (const std::string& figure : table_figures())
-    for (std::size_t i = 1; i < variants; ++i) {
+    for (std::size_t i = 1; i < count; ++i) {
       std::vector<double> differences;
-      for (const auto& [key, run] : by_variant[i]) {
-        const auto base = by_variant[0].find(key);
-        if (base == by_variant[0].end()) continue;
+      for (const auto& [key, run] : groups[i]) {
+        const auto base = groups[0].find(key);
+        if (base == groups[0].end()) continue;
         const double difference = figure_of(*run, figure) - figure_of(*base->second, figure);
         if (std::isfinite(difference)) differences.push_back(difference);
       }
@@ -228,25 +233,26 @@ std::string StudyResults::mixture() const {
   return text;
 }
 
-std::string comparisons_text(const std::vector<VariantComparison>& comparisons) {
+std::string comparisons_text(const std::vector<StudyComparison>& comparisons) {
   if (comparisons.empty()) return {};
-  std::size_t widest_figure = 6, widest_variant = 10;
-  for (const VariantComparison& each : comparisons) {
+  const auto name = [](const StudyComparison& each) { return each.compared + " minus " + each.base; };
+  std::size_t widest_figure = 6, widest_name = 10;
+  for (const StudyComparison& each : comparisons) {
     widest_figure = std::max(widest_figure, each.figure.size());
-    widest_variant = std::max(widest_variant, each.variant.size() + each.base.size() + 3);
+    widest_name = std::max(widest_name, name(each).size());
   }
-  const auto line = [&](const std::string& figure, const std::string& variant, const auto&... cells) {
-    std::string text = fmt::format("{:<{}}  {:<{}}", figure, widest_figure, variant, widest_variant);
+  const auto line = [&](const std::string& figure, const std::string& difference, const auto&... cells) {
+    std::string text = fmt::format("{:<{}}  {:<{}}", figure, widest_figure, difference, widest_name);
     ((text += fmt::format(" {:>10}", cells)), ...);
     return text + "\n";
   };
   std::string text = "differences in pairs of equal seeds\n" +
                      line("figure", "difference", "pairs", "mean", "mean 95 %", "", "median", "sign p", "Wilcoxon p");
-  for (const VariantComparison& each : comparisons) {
+  for (const StudyComparison& each : comparisons) {
     const PairedComparison& d = each.difference;
-    text += line(each.figure, each.variant + " - " + each.base, fmt::format("{}", d.pairs), short_number(d.mean),
-                 short_number(d.mean_95.low), short_number(d.mean_95.high), short_number(d.median),
-                 short_number(d.sign_p), short_number(d.wilcoxon_p));
+    text +=
+        line(each.figure, name(each), fmt::format("{}", d.pairs), short_number(d.mean), short_number(d.mean_95.low),
+             short_number(d.mean_95.high), short_number(d.median), short_number(d.sign_p), short_number(d.wilcoxon_p));
   }
   return text;
 }

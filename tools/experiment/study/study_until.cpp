@@ -28,6 +28,7 @@ StudyUntil parse_until(const std::string& text, const std::vector<std::string>& 
   };
   const auto form = [&] { return wrong("must have the form 'ci(METRIC.FIGURE) < 5 %'"); };
   StudyUntil until;
+  until.text = sim::printable(text);
   // Left side: ci or ci(FIGURE).
   const std::size_t less = text.find('<');
   if (less == std::string::npos) throw form();

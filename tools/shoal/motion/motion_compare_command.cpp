@@ -101,9 +101,11 @@ void draw(const std::string& png, const sim::JointMotion& first, const sim::Join
       const std::string file = fmt::format("{}_{}.csv", is_first ? "first" : "second", i);
       std::ofstream out(scratch.path / file);
       for (const sim::MotionTrack& track : motion->tracks())
-        if (name_of(track.joint) == drawn[i])
-          for (const sim::TrackKey& key : sim::sampled({track}, end_s, first.frame_s).front().keys)
+        if (name_of(track.joint) == drawn[i]) {
+          const std::vector<sim::MotionTrack> frames = sim::sampled({track}, end_s, first.frame_s);
+          for (const sim::TrackKey& key : frames.front().keys)
             out << key.at_s << ',' << key.value * deg_per_rad << '\n';
+        }
       script += fmt::format("{}{} with lines title '{}'", is_first ? "" : ", ", gnuplot_text(file),
                             is_first ? "first" : "second");
     }

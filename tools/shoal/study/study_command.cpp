@@ -7,6 +7,7 @@
 
 #include "tools/experiment/campaign/manifest.hpp"
 #include "tools/experiment/process/signals.hpp"
+#include "tools/experiment/study/study_results.hpp"
 #include "tools/experiment/world_files/world_by_name.hpp"
 #include "tools/shoal/study/study_commands.hpp"
 #include "tools/shoal/study/study_parts.hpp"
@@ -24,8 +25,10 @@ int study(const std::string& path, const StudyChanges& changes, StudyOptions opt
   try {
     std::vector<StudyRun> runs = plan_study(loaded, options.output);
     write_manifest(options.output, loaded, runs);
+    check_outputs(options.output, loaded.config);
+    StudyProgress progress{runs.size()};
     run_in_batches(loaded, runs,
-                   [&](const std::vector<std::size_t>& which) { run_study(loaded, options, runs, which); });
+                   [&](const std::vector<std::size_t>& which) { run_study(loaded, options, runs, which, progress); });
     if (caught_signal() != 0) {
       std::cerr << "shoal: stopped; the same command continues with the missing runs\n";
       return 128 + caught_signal();

@@ -37,8 +37,7 @@ void choose_jobs(const LoadedStudy& study, StudyOptions& options) {
 }
 
 int collect_results(LoadedStudy& study, std::vector<StudyRun>& runs, const std::string& output, bool quiet) {
-  const std::size_t all_seeds = study.config.seeds.size();
-  const std::size_t dropped = drop_needless_seeds(study, runs);
+  drop_needless_seeds(study, runs);
   const StudyResults results(study, runs);
   int exit_code = results.judgement() == Judgement::failed ? exit_failed : exit_ok;
   if (results.failed_runs() > 0) exit_code = exit_bus;
@@ -46,12 +45,6 @@ int collect_results(LoadedStudy& study, std::vector<StudyRun>& runs, const std::
   write_database(output + "/study.sqlite", results);
   write_whole_file(output + "/report.html", report_page({output}));
   std::cout << results.to_text(output);
-  if (dropped > 0)
-    std::cout << fmt::format("certain after {} of {} seeds: ci({}) is below its bound\n", all_seeds - dropped,
-                             all_seeds, study.config.until->figure);
-  else if (study.config.until)
-    std::cout << fmt::format("not certain before all {} seeds were used: ci({}) was not below its bound\n", all_seeds,
-                             study.config.until->figure);
   if (!quiet) std::cerr << "results in " << output << "/ (study.csv, study.json, study.sqlite, report.html)\n";
   return caught_signal() != 0 ? 128 + caught_signal() : exit_code;
 }

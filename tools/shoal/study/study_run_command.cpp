@@ -11,6 +11,7 @@
 #include "tools/experiment/campaign/manifest.hpp"
 #include "tools/experiment/campaign/shown_runs.hpp"
 #include "tools/experiment/process/signals.hpp"
+#include "tools/experiment/study/study_results.hpp"
 #include "tools/shoal/options/shared_options.hpp"
 #include "tools/shoal/study/study_parts.hpp"
 
@@ -36,11 +37,12 @@ std::vector<std::size_t> chosen_runs(const StudyRunArguments& arguments, std::si
   }
 }
 
-void execute(const StudyRunArguments& arguments, PlannedStudy& planned, const std::vector<std::size_t>& which) {
+void execute(const StudyRunArguments& arguments, PlannedStudy& planned, const std::vector<std::size_t>& which,
+             StudyProgress& progress) {
   const EngineOptions& options = arguments.options;
-  if (arguments.engine == "local") return run_study(planned.study, options.study, planned.runs, which);
-  if (arguments.engine == "parallel") return run_by_parallel(planned.study, options, planned.runs, which);
-  run_by_slurm(planned.study, options, planned.runs, which);
+  if (arguments.engine == "local") return run_study(planned.study, options.study, planned.runs, which, progress);
+  if (arguments.engine == "parallel") return run_by_parallel(planned.study, options, planned.runs, which, progress);
+  run_by_slurm(planned.study, options, planned.runs, which, progress);
 }
 
 /// Reports what is left.  Returns the exit code.
@@ -76,13 +78,14 @@ int run_planned(StudyRunArguments& arguments) {
     if (arguments.engine == "slurm" && options.jobs == 0) options.jobs = 1;
     choose_jobs(planned.study, options);
     arguments.options.wait = !arguments.no_wait;
+    StudyProgress progress{which.size()};
     // Chosen runs are executed whether the result is certain or not.
     if (!arguments.indices.empty() || !planned.study.config.until) {
-      execute(arguments, planned, which);
+      execute(arguments, planned, which, progress);
     } else {
       if (arguments.no_wait) throw CLI::ValidationError("--no-wait", "does not go with a study that has 'until'");
       run_in_batches(planned.study, planned.runs,
-                     [&](const std::vector<std::size_t>& batch) { execute(arguments, planned, batch); });
+                     [&](const std::vector<std::size_t>& batch) { execute(arguments, planned, batch, progress); });
       drop_needless_seeds(planned.study, planned.runs);
       which.resize(planned.runs.size());
       std::iota(which.begin(), which.end(), std::size_t{0});
@@ -101,6 +104,7 @@ int collect(const std::string& directory, const sim::LoadOptions& load, bool sho
   try {
     const Manifest manifest(directory);
     PlannedStudy planned = load_planned(manifest, load);
+    check_outputs(directory, planned.study.config);
     for (StudyRun& run : planned.runs) read_result(planned.study, true, run);
     if (show) show_extreme_runs(planned.study, planned.runs, directory, load.allow_paths);
     return collect_results(planned.study, planned.runs, directory, quiet);

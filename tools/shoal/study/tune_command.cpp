@@ -2,7 +2,6 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <stdexcept>
@@ -10,8 +9,10 @@
 #include "sim/config/message_text.hpp"
 #include "tools/experiment/campaign/tune.hpp"
 #include "tools/experiment/files/file_replacement.hpp"
+#include "tools/experiment/files/no_links.hpp"
 #include "tools/experiment/process/signals.hpp"
 #include "tools/experiment/study/study_rules.hpp"
+#include "tools/experiment/study/study_tables.hpp"
 #include "tools/experiment/world_files/world_by_name.hpp"
 #include "tools/shoal/study/study_commands.hpp"
 #include "tools/shoal/study/study_parts.hpp"
@@ -26,13 +27,14 @@ struct TuneArguments {
   TuneOptions options;
 };
 
-std::string values_text(const Tuning& tuning, const TunedPoint& point) {
-  const LoadedStudy& study = tuning.study();
-  std::string text;
-  for (std::size_t k = 0; k < study.config.factors.size(); ++k)
-    text +=
-        fmt::format("{}{} = {}", k == 0 ? "" : ", ", study.config.factors[k].name, study.points[point.point].values[k]);
-  return text;
+std::string values_of(const Tuning& tuning, const TunedPoint& point) {
+  return values_text(tuning.study().config, tuning.study().points[point.point]);
+}
+
+/// Returns `a rule of its world does not hold in 2 of 4 runs`; empty: in none.
+std::string failed_text(const TunedPoint& point) {
+  if (point.failed == 0) return {};
+  return fmt::format("a rule of its world does not hold in {} of {} runs", point.failed, point.runs);
 }
 
 /// Throws CLI::ValidationError for a figure that no metric of the world has.
@@ -55,13 +57,16 @@ int tune(TuneArguments& arguments) {
   catch_signals(true);
   try {
     Tuning tuning(std::move(study), options);
-    std::filesystem::create_directories(options.study.output);
     const std::string table = options.study.output + "/tune.csv";
+    make_folders(options.study.output, options.study.output);
+    refuse_links(options.study.output, table);
+    check_whole_file(table);
     tuning.run([&](int generation) {
       write_whole_file(table, tuning.to_csv());
       const TunedPoint& best = *tuning.best();
-      std::cout << fmt::format("generation {}: {} of {} {:.6g}: {}\n", generation, options.statistic, options.figure,
-                               best.value, values_text(tuning, best))
+      const std::string failed = best.failed > 0 ? "; FAILED: " + failed_text(best) : "";
+      std::cout << fmt::format("generation {}: {} of {} {:.6g}: {}{}\n", generation, options.statistic, options.figure,
+                               best.value, values_of(tuning, best), failed)
                 << std::flush;
     });
     if (caught_signal() != 0) {
@@ -69,10 +74,11 @@ int tune(TuneArguments& arguments) {
       return 128 + caught_signal();
     }
     const TunedPoint& best = *tuning.best();
-    std::cout << "best of " << tuning.tried().size() << " points: " << values_text(tuning, best) << '\n'
+    std::cout << "best of " << tuning.tried().size() << " points: " << values_of(tuning, best) << '\n'
               << tuning.command(best) << '\n';
+    if (best.failed > 0) std::cout << "FAILED: " << failed_text(best) << " at the best point\n";
     if (!options.study.quiet) std::cerr << "all points in " << table << '\n';
-    return exit_ok;
+    return best.failed > 0 ? exit_failed : exit_ok;
   } catch (const std::runtime_error& error) {
     if (dynamic_cast<const sim::ConfigError*>(&error) != nullptr) throw;
     std::cerr << "shoal: " << error.what() << '\n';
@@ -122,13 +128,16 @@ void add_tune_command(CLI::App& app, int& exit_code) {
   add_allow_path_option(*command, arguments->changes.load);
   add_plugin_option(*command);
   command_line::set_help_end(
-      *command, {{"shoal tune balance_gains.yaml --figure balance.pitch_std_deg --generations 10 --jobs 2"},
-                 {{0, "a best point was found"},
-                  {2, "wrong usage, or a mistake in the study or its world"},
-                  {4, "no point has a value, or a file error"},
-                  {130, "ended by Ctrl-C"}},
-                 {"The search is CMA-ES and starts in the middle of each range. After Ctrl-C or a kill the "
-                  "same command continues: finished runs are not repeated."}});
+      *command,
+      {{"shoal tune balance_gains.yaml --figure balance.pitch_std_deg --generations 10 --jobs 2"},
+       {{0, "a best point was found"},
+        {1, "rules of the world do not hold at the best point"},
+        {2, "wrong usage, or a mistake in the study or its world"},
+        {4, "no point has a value, or a file error"},
+        {130, "ended by Ctrl-C"}},
+       {"The search is CMA-ES and starts in the middle of each range. A point where fewer runs break the rules "
+        "of their world is better, whatever the figure. After Ctrl-C or a kill the "
+        "same command continues: finished runs are not repeated."}});
   command->callback([arguments, log_level, &exit_code] {
     if (log_level->count() > 0 && !spdlog::should_log(spdlog::level::info)) arguments->options.study.quiet = true;
     try {

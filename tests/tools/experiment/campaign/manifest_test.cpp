@@ -147,12 +147,12 @@ TEST(RunFiles, AHalfWrittenMarkIsNone) {
 
 TEST(RunClaim, OnlyOneProcessHasAFolder) {
   const ScratchFolder folder;
-  std::optional<tools::RunClaim> first(folder.file("run"));
+  std::optional<tools::RunClaim> first(std::in_place, folder.file(""), folder.file("run"));
   EXPECT_FALSE(first->owner());
-  const tools::RunClaim second(folder.file("run"));
+  const tools::RunClaim second(folder.file(""), folder.file("run"));
   EXPECT_TRUE(second.owner());
   first.reset();
-  EXPECT_FALSE(tools::RunClaim(folder.file("run")).owner());
+  EXPECT_FALSE(tools::RunClaim(folder.file(""), folder.file("run")).owner());
 }
 
 }  // namespace

@@ -35,10 +35,33 @@ TEST(WilcoxonTest, CountsSubsetsOfRanks) {
   EXPECT_DOUBLE_EQ(tools::wilcoxon_test({0, 0}), 1);
 }
 
-TEST(WilcoxonTest, UsesTheNormalDistributionForTies) {
-  // Four of +1, one of -1: each rank is 3, the smaller sum 3, the mean 7.5, the variance 5 * 6 * 11 / 24 - 120 / 48.
-  const double z = (7.5 - 3 - 0.5) / std::sqrt(5.0 * 6 * 11 / 24 - 120.0 / 48);
-  EXPECT_NEAR(tools::wilcoxon_test({1, 1, 1, 1, -1}), std::erfc(z / std::sqrt(2.0)), 1e-12);
+TEST(WilcoxonTest, IsExactForTies) {
+  // Four of +1, one of -1: each rank is 3, and at most one of five tosses is heads in 6 of 32 cases.
+  EXPECT_NEAR(tools::wilcoxon_test({1, 1, 1, 1, -1}), 2.0 * 6 / 32, 1e-12);
+  // Ranks 1.5, 1.5, 3.5, 3.5, 5, of which one of 1.5 is negative: three subsets have a sum of at most 1.5.
+  EXPECT_NEAR(tools::wilcoxon_test({-1, 1, 2, 2, 3}), 2.0 * 3 / 32, 1e-12);
+  // Ranks 2, 2, 2, 4, of which 4 is negative: the sums 0, 2, 2, 2, 4, 4, 4, 4 are at most 4; doubled that is 1.
+  EXPECT_DOUBLE_EQ(tools::wilcoxon_test({1, 1, 1, -2}), 1);
+}
+
+TEST(WilcoxonTest, CountsTheSignsOfTwentyTiedDifferences) {
+  // Sizes 1, 1, 2, 2, ... 10, 10 have the ranks 1.5, 1.5, 3.5, 3.5, ...; two of the smaller ones are negative.
+  std::vector<double> differences, ranks;
+  for (int i = 0; i < 20; ++i) {
+    differences.push_back((i == 0 || i == 5 ? -1 : 1) * (1 + i / 2));
+    ranks.push_back(2 * (i / 2) + 1.5);
+  }
+  const double smaller = ranks[0] + ranks[5];
+  std::size_t as_small = 0;
+  for (unsigned signs = 0; signs < 1u << 20; ++signs) {
+    double sum = 0;
+    for (unsigned i = 0; i < 20; ++i) sum += (signs >> i & 1u) != 0 ? ranks[i] : 0;
+    as_small += sum <= smaller;
+  }
+  EXPECT_NEAR(tools::wilcoxon_test(differences), 2.0 * static_cast<double>(as_small) / (1 << 20), 1e-12);
+}
+
+TEST(WilcoxonTest, UsesTheNormalDistributionForManyDifferences) {
   // Both branches agree for many values: 50 differences exactly, 51 by the normal distribution.
   std::vector<double> differences;
   for (int i = 1; i <= 50; ++i) differences.push_back(i % 3 == 0 ? -i : i);

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+#include <map>
+#include <set>
+#include <string>
+
+#include "sim/world/world.hpp"
+
+namespace python {
+
+/// Names of the channels of a world, for checks of those that a program names.
+struct WorldChannels {
+  explicit WorldChannels(const sim::World& world);
+
+  /// Channels of devices and events that publish.
+  std::set<std::string, std::less<>> published;
+  /// Channels that devices, metrics and conditions read, with the types that a device accepts, comma separated; empty:
+  /// any type.
+  std::map<std::string, std::string, std::less<>> received;
+  /// Truth channels that are off, with the names of their devices.
+  std::map<std::string, std::string, std::less<>> silent;
+
+  /// Returns `; did you mean 'NAME'?` for a name that is close to a channel, or to a part of one that ends at a dot;
+  /// empty when none is close.  `received_only`: only to channels that somebody reads.
+  std::string meant(const std::string& channel, bool received_only) const;
+};
+
+/// Returns whether a command of this type may have NaN, which leaves a value as it is.
+bool may_have_nan(const std::string& type);
+
+}  // namespace python

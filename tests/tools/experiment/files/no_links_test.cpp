@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/experiment/files/no_links.hpp"
+
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <stdexcept>
+
+#include "tests/scratch_folder.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Folder `real` with a link `named` to it, as a user may have one.
+struct LinkedFolder {
+  LinkedFolder() {
+    fs::create_directories(scratch.file("real/below"));
+    fs::create_directory_symlink(scratch.file("real"), scratch.file("named"));
+  }
+  std::string root() const { return scratch.file("named"); }
+  std::string below(const std::string& path) const { return root() + "/" + path; }
+  test_support::ScratchFolder scratch;
+};
+
+TEST(NoLinks, TheFolderItselfMayBeALink) {
+  const LinkedFolder folder;
+  EXPECT_NO_THROW(tools::refuse_links(folder.root(), folder.below("below/file")));
+  tools::make_folders(folder.root(), folder.below("a/b"));
+  EXPECT_TRUE(fs::is_directory(folder.scratch.file("real/a/b")));
+}
+
+TEST(NoLinks, ALinkBelowIsAnErrorWithItsName) {
+  const LinkedFolder folder;
+  fs::create_directories(folder.scratch.file("victim"));
+  fs::create_directory_symlink(folder.scratch.file("victim"), folder.below("below/link"));
+  fs::create_symlink(folder.scratch.file("nothing"), folder.below("dangling"));
+  for (const char* path : {"below/link", "below/link/file"}) {
+    try {
+      tools::refuse_links(folder.root(), folder.below(path));
+      ADD_FAILURE() << path;
+    } catch (const std::runtime_error& error) {
+      EXPECT_THAT(error.what(), testing::HasSubstr("/below/link: is a symbolic link"));
+    }
+  }
+  EXPECT_THROW(tools::refuse_links(folder.root(), folder.below("dangling")), std::runtime_error);
+  EXPECT_THROW(tools::make_folders(folder.root(), folder.below("below/link/new")), std::runtime_error);
+  EXPECT_TRUE(fs::is_empty(folder.scratch.file("victim")));
+}
+
+}  // namespace

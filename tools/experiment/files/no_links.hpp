@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+namespace tools {
+
+/// Checks of paths below a folder that someone else may have made: a symbolic link there would let this program write
+/// or remove files elsewhere.  The folder itself may be a link, because the user has named it.
+
+/// Throws std::runtime_error when `path`, or a folder between `root` and it, is a symbolic link.  `path` starts with
+/// `root`; what does not exist is not one.
+void refuse_links(const std::string& root, const std::string& path);
+
+/// Creates the folder `root` and those below it on the way to `folder`, without following links below `root`.  Throws
+/// std::runtime_error when one is a link or cannot be made.
+void make_folders(const std::string& root, const std::string& folder);
+
+}  // namespace tools
