@@ -24,7 +24,7 @@ std::string vehicle_of(const tools::FidelityCase& of) {
   return std::filesystem::path(of.vehicle).stem().string();
 }
 
-/// A vehicle of the cases.  Each is a test of its own, so that they run beside each other.
+/// A vehicle of the cases.  Each is a separate test, so that they run in parallel.
 class MutationsOf : public testing::TestWithParam<const char*> {};
 
 TEST_P(MutationsOf, EachChangeByFivePercentIsSeenByACaseOrIsListedAsWithoutEffect) {

@@ -3,7 +3,8 @@
 """Makes the references `own_*.csv` of tests/fidelity/cases.yaml: vehicles by their published equations, integrated by
 the classical Runge-Kutta method.
 
-    make_references.py FOLDER [NAME ...]
+    make_references.py FOLDER [NAME ...]    writes FOLDER/NAME.csv, by default all
+    make_references.py --check FOLDER       compares the files there with what it makes
 
 It shares neither code nor files with Shoal: the equations are those of Fossen (Handbook of Marine Craft Hydrodynamics
 and Motion Control, 2011, ch. 6 to 9), written for velocities over ground with the rigid body apart from the water; what
@@ -307,7 +308,7 @@ def frd(v):
 
 
 class Actuator:
-    """`lag`: time constant of the level.  `speed`: its largest rate, without lag.  Commands are limited to low..high."""
+    """`lag`: time constant of the level.  `speed`: its largest rate, without lag.  Commands: from `low` to `high`."""
 
     def __init__(self, column, low, high, lag=0.0, speed=math.inf, dead=0.0):
         self.column, self.low, self.high, self.lag, self.speed, self.dead = column, low, high, lag, speed, dead
@@ -507,8 +508,8 @@ def prestero():
     return craft
 
 
-T200 = [(-1, -39.91), (-0.75, -26.58), (-0.5, -14.12), (-0.25, -4.71), (-0.07, 0), (0.07, 0), (0.25, 5.88), (0.5, 17.85),
-        (0.75, 33.54), (1, 51.48)]
+T200 = [(-1, -39.91), (-0.75, -26.58), (-0.5, -14.12), (-0.25, -4.71), (-0.07, 0), (0.07, 0), (0.25, 5.88),
+        (0.5, 17.85), (0.75, 33.54), (1, 51.48)]
 WRENCH = ('tau_X', 'tau_Y', 'tau_Z', 'tau_K', 'tau_M', 'tau_N')
 
 
@@ -577,7 +578,7 @@ def integrate(craft, sea, start, inputs, duration, row_s, step_s):
     def derivative(t, y, now):
         at, M, v, w = y
         nu_dot = craft.rate(t, at, M, v, w, now, sea)
-        M_dot = tuple(times(1, cross(row, w)) for row in M)  # rows of R S(w)
+        M_dot = tuple(cross(row, w) for row in M)  # rows of R S(w)
         return turn(M, v), M_dot, tuple(nu_dot[:3]), tuple(nu_dot[3:])
 
     def moved(y, h, d):
@@ -600,9 +601,8 @@ def integrate(craft, sea, start, inputs, duration, row_s, step_s):
                 targets.append(actuator.limited(given.get(actuator.column, 0.0)))
         for i in range(steps):
             t = k * row_s + i * step_s
-            after = lambda dt: [a.after(level, target, dt) for a, level, target in
-                                zip(craft.actuators, levels, targets)]
-            now, half, then = after(0.0), after(step_s / 2), after(step_s)
+            now, half, then = ([a.after(level, target, dt) for a, level, target in
+                                zip(craft.actuators, levels, targets)] for dt in (0.0, step_s / 2, step_s))
             y = (p, R, v, w)
             k1 = derivative(t, y, now)
             k2 = derivative(t + step_s / 2, moved(y, step_s / 2, k1), half)
@@ -727,18 +727,42 @@ RUNS = {
 }
 
 
+def text_of(name):
+    craft, sea, start, inputs, duration, row_s, step_s = RUNS[name]()
+    rows = integrate(craft, sea, start, inputs, duration, row_s, step_s)
+    heads = ['t', 'x', 'y', 'z', 'phi', 'theta', 'psi', 'u', 'v', 'w', 'p', 'q', 'r', *inputs(0.0)]
+    return '\n'.join([','.join(heads), *(','.join(f'{value + 0.0:.10g}' for value in row) for row in rows), ''])
+
+
+def difference(made, kept):
+    """Largest difference of two files; infinity when they have other columns or rows."""
+    made, kept = made.splitlines(), kept.splitlines()
+    if len(made) != len(kept) or made[0] != kept[0]:
+        return math.inf
+    return max(abs(float(a) - float(b)) for one, other in zip(made[1:], kept[1:])
+               for a, b in zip(one.split(','), other.split(',')))
+
+
+def check(folder):
+    """Compares the files with what the script makes; rounding differs between C libraries."""
+    wrong = 0
+    for name in RUNS:
+        with open(os.path.join(folder, name + '.csv'), encoding='ascii') as kept:
+            apart = difference(text_of(name), kept.read())
+        print(f'{name}: {apart:.2g}')
+        wrong += not apart < 1e-7
+    return f'{wrong} files differ' if wrong else 0
+
+
 def main(folder, names):
     for name in names or RUNS:
-        craft, sea, start, inputs, duration, row_s, step_s = RUNS[name]()
-        rows = integrate(craft, sea, start, inputs, duration, row_s, step_s)
-        heads = ['t', 'x', 'y', 'z', 'phi', 'theta', 'psi', 'u', 'v', 'w', 'p', 'q', 'r', *inputs(0.0)]
         with open(os.path.join(folder, name + '.csv'), 'w', encoding='ascii') as out:
-            out.write(','.join(heads) + '\n')
-            for row in rows:
-                out.write(','.join(f'{value + 0.0:.10g}' for value in row) + '\n')
+            out.write(text_of(name))
 
 
 if __name__ == '__main__':
+    if len(sys.argv) == 3 and sys.argv[1] == '--check':
+        sys.exit(check(sys.argv[2]))
     if len(sys.argv) < 2 or not set(sys.argv[2:]) <= set(RUNS):
         sys.exit(__doc__)
     main(sys.argv[1], sys.argv[2:])
