@@ -100,7 +100,9 @@ void add_fidelity_command(CLI::App& app, int& exit_code) {
                    "then change each coefficient by this share, and name what no case sees")
       ->type_name("SHARE")
       ->check(number_from(1e-4, 0.5));
-  command->add_option("--results", arguments->results, "directory for the report: fidelity.md and plots")
+  command
+      ->add_option("--results", arguments->results,
+                   "directory for the report: fidelity.md and plots; with --mutate also fidelity_coefficients.md")
       ->type_name("DIR");
   command->add_flag("--csv", arguments->csv, "with the report, the states of Shoal as CSV files");
   add_plugin_option(*command);
