@@ -19,7 +19,8 @@ TEST(FidelityCommand, SaysHowFarOffACaseIsAndWritesItsReport) {
   const ScratchFolder folder;
   const Ended ended = otter_decay({"--results", folder.file("report"), "--csv"});
   EXPECT_EQ(ended.exit_code, 0) << ended.errors;
-  EXPECT_THAT(ended.output, HasSubstr("| otter_decay |       5 |"));
+  EXPECT_THAT(ended.output, HasSubstr("| otter_decay |       0 |"));
+  EXPECT_THAT(otter_decay({"--step", "0.01"}).output, HasSubstr("| otter_decay |      10 |"));
   EXPECT_THAT(ended.output, HasSubstr("| yes |"));
   EXPECT_THAT(ended.output, testing::Not(HasSubstr("otter_turn")));
   EXPECT_THAT(text_of_file(folder.file("report/fidelity.md")), HasSubstr("otter_decay"));
@@ -30,6 +31,17 @@ TEST(FidelityCommand, Is1ForABarThatIsMissed) {
   const Ended ended = otter_decay({"--override", "bodies.hull.hydrodynamics.mass_kg=80"});
   EXPECT_EQ(ended.exit_code, 1) << ended.errors;
   EXPECT_THAT(ended.output, HasSubstr("otter_decay: missed position_rms_m"));
+}
+
+TEST(FidelityCommand, NamesTheCoefficientsThatNoCaseSees) {
+  const ScratchFolder folder;
+  // It stays below the surface.
+  const Ended ended = run_shoal({"fidelity", source("tests/fidelity/cases.yaml"), "--case", "bluerov2wu_ascent",
+                                 "--mutate", "0.05", "--results", folder.file("report")});
+  EXPECT_EQ(ended.exit_code, 1) << ended.errors;
+  EXPECT_THAT(ended.output, HasSubstr("bluerov2: no case sees bodies.frame.hydrodynamics.hull_height_m"));
+  EXPECT_THAT(ended.output, testing::Not(HasSubstr("added_mass")));
+  EXPECT_THAT(text_of_file(folder.file("report/fidelity_coefficients.md")), HasSubstr("| a case is missing |"));
 }
 
 TEST(FidelityCommand, Is2ForWrongUsage) {

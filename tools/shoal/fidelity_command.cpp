@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "tools/experiment/fidelity/fidelity.hpp"
+#include "tools/experiment/fidelity/fidelity_mutations.hpp"
 #include "tools/experiment/fidelity/fidelity_report.hpp"
 #include "tools/shoal/commands.hpp"
 
@@ -18,7 +19,25 @@ struct FidelityArguments {
   std::vector<std::string> names;
   std::optional<double> step_s;
   std::vector<std::string> overrides;
+  std::optional<double> mutation;
 };
+
+/// Changes every coefficient, prints those that a case should see and none does, and writes the page of all.  Returns
+/// true when there are none.
+bool mutate(const FidelityArguments& arguments, const FidelityFile& file) {
+  const std::vector<FidelityMutation> mutations =
+      mutate_fidelity(file, *arguments.mutation, [](const std::string& line) { std::cerr << line << '\n'; });
+  if (!arguments.results.empty())
+    write_fidelity_mutations(arguments.results,
+                             fidelity_mutations_page(mutations, *arguments.mutation, arguments.cases));
+  bool all_seen = true;
+  for (const FidelityMutation& mutation : mutations) {
+    if (!mutation.unseen() || !mutation.without_effect.empty()) continue;
+    std::cout << mutation.vehicle << ": no case sees " << mutation.of.name << '\n';
+    all_seen = false;
+  }
+  return all_seen;
+}
 
 int fidelity(const FidelityArguments& arguments) {
   // Options of all cases.
@@ -51,6 +70,8 @@ int fidelity(const FidelityArguments& arguments) {
   for (const FidelityResult& result : results)
     for (const std::string& missed : result.missed) std::cout << result.of.name << ": missed " << missed << '\n';
   if (!arguments.results.empty()) write_fidelity_report(arguments.results, file.text, results, arguments.csv);
+  // With a missed bar every change would seem to be seen.
+  if (passed && arguments.mutation) passed = mutate(arguments, file);
   return passed ? exit_ok : exit_failed;
 }
 
@@ -66,7 +87,7 @@ void add_fidelity_command(CLI::App& app, int& exit_code) {
       ->type_name("NAME")
       ->type_size(1)
       ->allow_extra_args(false);
-  command->add_option("--step", arguments->step_s, "time step instead of the file's, s")
+  command->add_option("--step", arguments->step_s, "compare at this time step, s, instead of at step zero")
       ->type_name("S")
       ->check(number_from(1e-5, 1));
   command->add_option("--override", arguments->overrides, "change a value of the vehicles")
@@ -74,15 +95,23 @@ void add_fidelity_command(CLI::App& app, int& exit_code) {
       ->type_size(1)
       ->allow_extra_args(false)
       ->check(command_line::setting());
-  command->add_option("--results", arguments->results, "directory for the report: fidelity.md and plots")
+  command
+      ->add_option("--mutate", arguments->mutation,
+                   "then change each coefficient by this share, and name what no case sees")
+      ->type_name("SHARE")
+      ->check(number_from(1e-4, 0.5));
+  command
+      ->add_option("--results", arguments->results,
+                   "directory for the report: fidelity.md and plots; with --mutate also fidelity_coefficients.md")
       ->type_name("DIR");
   command->add_flag("--csv", arguments->csv, "with the report, the states of Shoal as CSV files");
   add_plugin_option(*command);
   // End of the help and action.
   command_line::set_help_end(*command,
-                             {{"shoal fidelity tests/fidelity/cases.yaml --case otter_turn --results results/otter"},
-                              {{0, "all cases are within their bounds"},
-                               {1, "a bound of a case was missed"},
+                             {{"shoal fidelity tests/fidelity/cases.yaml --case otter_turn --results results/otter",
+                               "shoal fidelity tests/fidelity/cases.yaml --mutate 0.05"},
+                              {{0, "all cases are within their bounds; with --mutate, each change is seen"},
+                               {1, "a bound of a case was missed, or no case sees a change of --mutate"},
                                {2, "wrong usage, or a mistake in a file"},
                                {4, "file error"}},
                               {"docs/models/fidelity.md says how to add cases."}});

@@ -177,4 +177,39 @@ TEST(Fin, SaysWhatIsWrongWithItsParameters) {
   EXPECT_EQ(error("area_m2: 1"), "");
 }
 
+/// Sideways force of a fin by coefficients, 2 N per rad and (m/s)^2, at 0.1 rad, on a hull at rest that has 30 degrees
+/// of pitch and 40 degrees of yaw, in a current of 3 m/s from astern.
+double force_in_current_N(const std::string& quirks) {
+  std::string text = R"(
+shoal: 1
+physics: {step_s: 0.001, gravity_mps2: 0}
+medium: {water: {surface_m: 50}, current: {velocity_mps: [2.298133329, 1.928362829, 0]}}
+vehicles:
+  - name: v
+    rpy_deg: [0, 30, 40]
+    model:
+      shoal: 1
+      vehicle: hull
+      bodies:
+        - name: hull
+          hydrodynamics: {mass_kg: 10, inertia_kgm2: [1, 1, 1]QUIRKS}
+          parts: [{shape: sphere, radius_m: 0.1}]
+      devices: [{name: d, type: fin, model: coefficients, coefficients: {Y: 2}}]
+)";
+  text.replace(text.find("QUIRKS"), 6, quirks);
+  test::TestWorld made(text);
+  shoal::actuator_command_t message{};
+  message.value = 0.1;
+  made.send("v.d.cmd", message);
+  const sim::Body& body = made.world.vehicles()[0]->body("hull");
+  made.world.step();
+  return (body.X_WB().linear().transpose() * body.v_WB_W()).y() * 10 / 1e-3;
+}
+
+TEST(Fin, TakesTheWaterAsTheHullDoesWhenItsModelTurnsTheCurrentByTheYawAlone) {
+  const double along = 2 * 9 * 0.1;
+  EXPECT_NEAR(force_in_current_N(", quirks: {current: yaw_only}"), along, 1e-6);
+  EXPECT_NEAR(force_in_current_N(""), along * std::pow(std::cos(30 * degree), 2), 1e-6);
+}
+
 }  // namespace

@@ -5,6 +5,7 @@
 #include <cctype>
 #include <cmath>
 #include <filesystem>
+#include <memory>
 #include <numbers>
 
 #include "messages/yaml/message_writer.hpp"
@@ -114,35 +115,42 @@ double norm_of(const FidelityState& a, const FidelityState& b, std::size_t from)
   return std::hypot(a[from] - b[from], a[from + 1] - b[from + 1], a[from + 2] - b[from + 2]);
 }
 
-void compare(FidelityResult& result) {
-  // Sums of squared differences over the rows.
+/// Sums of squared differences over the rows so far.
+struct Differences {
   double position = 0, velocity = 0, turn = 0, heading = 0;
-  for (std::size_t i = 0; i < result.t.size(); ++i) {
-    const FidelityState &a = result.theirs[i], &b = result.ours[i];
-    const double apart = norm_of(a, b, 0);
-    position += apart * apart;
-    result.position_max_m = std::max(result.position_max_m, apart);
-    velocity += std::pow(norm_of(a, b, 6), 2);
-    turn += std::pow(norm_of(a, b, 9), 2);
-    heading += std::pow(std::remainder(a[5] - b[5], 2 * std::numbers::pi), 2);
-    if (i > 0) result.path_m += norm_of(a, result.theirs[i - 1], 0);
-  }
-  // Root mean squares.
-  const auto count = static_cast<double>(result.t.size());
-  result.position_rms_m = std::sqrt(position / count);
-  result.velocity_rms_mps = std::sqrt(velocity / count);
-  result.turn_rms_degps = std::sqrt(turn / count) / degree_rad;
-  result.heading_rms_deg = std::sqrt(heading / count) / degree_rad;
-  // Comparison with the limits.
+};
+
+void add_row(FidelityResult& result, Differences& sums, const FidelityState& theirs, const FidelityState& ours) {
+  const double apart = norm_of(theirs, ours, 0);
+  sums.position += apart * apart;
+  sums.velocity += std::pow(norm_of(theirs, ours, 6), 2);
+  sums.turn += std::pow(norm_of(theirs, ours, 9), 2);
+  sums.heading += std::pow(std::remainder(theirs[5] - ours[5], 2 * std::numbers::pi), 2);
+  result.position_max_m = std::max(result.position_max_m, apart);
+  if (!result.theirs.empty()) result.path_m += norm_of(theirs, result.theirs.back(), 0);
+  result.theirs.push_back(theirs);
+  result.ours.push_back(ours);
+}
+
+/// Sets the root mean squares over `rows` rows and the missed bars.  Rows that are not yet there count as equal.
+void compare(FidelityResult& result, const Differences& sums, std::size_t rows) {
+  const auto count = static_cast<double>(rows);
+  result.position_rms_m = std::sqrt(sums.position / count);
+  result.velocity_rms_mps = std::sqrt(sums.velocity / count);
+  result.turn_rms_degps = std::sqrt(sums.turn / count) / degree_rad;
+  result.heading_rms_deg = std::sqrt(sums.heading / count) / degree_rad;
+  result.missed.clear();
   const auto check = [&](const char* name, double value, const std::optional<double>& bar) {
     // Not `value > bar`, so that NaN exceeds the limit.
     if (bar && !(value <= *bar))
       result.missed.push_back(std::string(name) + " " + sim::number_text(value) + " > " + sim::number_text(*bar));
   };
-  check("position_rms_m", result.position_rms_m, result.of.bars.position_rms_m);
-  check("position_max_m", result.position_max_m, result.of.bars.position_max_m);
-  check("velocity_rms_mps", result.velocity_rms_mps, result.of.bars.velocity_rms_mps);
-  check("heading_rms_deg", result.heading_rms_deg, result.of.bars.heading_rms_deg);
+  const FidelityBars& bars = result.of.bars;
+  check("position_rms_m", result.position_rms_m, bars.position_rms_m);
+  check("position_max_m", result.position_max_m, bars.position_max_m);
+  check("velocity_rms_mps", result.velocity_rms_mps, bars.velocity_rms_mps);
+  check("turn_rms_degps", result.turn_rms_degps, bars.turn_rms_degps);
+  check("heading_rms_deg", result.heading_rms_deg, bars.heading_rms_deg);
 }
 
 std::int64_t steps_to(double t, double step_s, const FidelityReference& reference) {
@@ -204,32 +212,71 @@ sim::ConfigNode overrides_of(const FidelityCase& of, const FidelityOptions& opti
   throw sim::ConfigError(lines);
 }
 
+/// World of a case with one step length, which is advanced from row to row of the reference.
+class CaseWorld {
+ public:
+  CaseWorld(const FidelityCase& of, const FidelityReference& reference, FidelityOptions options, double step_s)
+      : of_(of), reference_(reference), step_s_(step_s) {
+    options.step_s = step_s;
+    const std::string file = of.place.file != nullptr ? *of.place.file : of.name;
+    sim::LoadOptions load;
+    load.resolve = false;
+    loaded_ = sim::load_world_tree(fidelity_world(of, reference, options), file, load);
+    world_ = std::make_unique<sim::World>(loaded_.config, bus_);
+    check_inputs(of, vehicle());
+    set_velocity(vehicle(), state_of(of, reference, reference.rows.front()));
+  }
+
+  /// Steps to the time of a row, returns the state there and sends the inputs of the row.
+  FidelityState advance_to(const std::vector<double>& row) {
+    for (const std::int64_t end = steps_to(row[0], step_s_, reference_); world_->step_number() < end;) world_->step();
+    const FidelityState state = state_of(vehicle().base());
+    send_inputs(of_, reference_, row, vehicle().name(), *world_);
+    return state;
+  }
+
+ private:
+  const sim::Vehicle& vehicle() const { return *world_->vehicles().front(); }
+  const FidelityCase& of_;
+  const FidelityReference& reference_;
+  double step_s_;
+  sim::LoadedWorld loaded_;
+  sim::InProcessBus bus_;
+  std::unique_ptr<sim::World> world_;
+};
+
+/// Richardson's extrapolation to step zero, for a step of second order: from the states at a step and at half of it.
+FidelityState at_step_zero(const FidelityState& coarse, const FidelityState& fine) {
+  FidelityState state;
+  for (std::size_t i = 0; i < state.size(); ++i) {
+    const bool angle = i >= 3 && i < 6;
+    const double change = angle ? std::remainder(fine[i] - coarse[i], 2 * std::numbers::pi) : fine[i] - coarse[i];
+    state[i] = fine[i] + change / 3;
+  }
+  return state;
+}
+
 FidelityResult run(const FidelityCase& of, const FidelityOptions& options) {
-  // Build the world of the case.
   if (std::error_code error; !std::filesystem::is_regular_file(of.vehicle, error))
     sim::throw_config_error(of.vehicle_place, "", "there is no vehicle file '" + of.vehicle + "'");
   const FidelityReference reference = read_fidelity_reference(of.reference);
-  const std::string file = of.place.file != nullptr ? *of.place.file : of.name;
-  const sim::LoadedWorld loaded = sim::load_world_tree(fidelity_world(of, reference, options), file);
-  sim::InProcessBus bus;
-  sim::World world(loaded.config, bus);
-  const sim::Vehicle& vehicle = *world.vehicles().front();
-  check_inputs(of, vehicle);
-  set_velocity(vehicle, state_of(of, reference, reference.rows.front()));
-
-  // Step through the rows of the reference.
+  CaseWorld world(of, reference, options, options.step_s.value_or(of.step_s));
+  std::optional<CaseWorld> finer;
+  if (!options.step_s) finer.emplace(of, reference, options, of.step_s / 2);
   FidelityResult result;
   result.of = of;
-  result.step_s = options.step_s.value_or(of.step_s);
-  for (std::size_t k = 0; k < reference.rows.size(); ++k) {
-    const std::vector<double>& row = reference.rows[k];
-    for (std::int64_t end = steps_to(row[0], result.step_s, reference); world.step_number() < end;) world.step();
+  result.step_s = options.step_s.value_or(0);
+  Differences sums;
+  for (const std::vector<double>& row : reference.rows) {
+    FidelityState ours = world.advance_to(row);
+    if (finer) ours = at_step_zero(ours, finer->advance_to(row));
     result.t.push_back(row[0]);
-    result.theirs.push_back(state_of(of, reference, row));
-    result.ours.push_back(state_of(vehicle.base()));
-    send_inputs(of, reference, row, vehicle.name(), world);
+    add_row(result, sums, state_of(of, reference, row), ours);
+    if (!options.until_missed) continue;
+    compare(result, sums, reference.rows.size());
+    if (!result.missed.empty()) return result;
   }
-  compare(result);
+  compare(result, sums, reference.rows.size());
   return result;
 }
 

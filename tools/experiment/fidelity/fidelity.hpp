@@ -29,7 +29,7 @@ struct FidelityInput {
 
 /// Largest permitted differences between a case and its reference.  Unset: no limit.
 struct FidelityBars {
-  std::optional<double> position_rms_m, position_max_m, velocity_rms_mps, heading_rms_deg;
+  std::optional<double> position_rms_m, position_max_m, velocity_rms_mps, turn_rms_degps, heading_rms_deg;
   void read(sim::ParamReader& in);
 };
 
@@ -49,8 +49,16 @@ struct FidelityCase {
   sim::SourcePlace place, vehicle_place;        ///< in the file of cases
 };
 
+/// Coefficient of a vehicle that changes no motion, and why.
+struct FidelityWithoutEffect {
+  std::string coefficient;  ///< `devices.port.position_m[0]`
+  std::string why;
+  void read(sim::ParamReader& in);
+};
+
 struct FidelityFile {
   std::string text;  ///< Markdown for the top of the report
+  std::vector<FidelityWithoutEffect> without_effect;
   std::vector<FidelityCase> cases;
 };
 
@@ -77,15 +85,17 @@ struct FidelityReference {
 FidelityReference read_fidelity_reference(const std::string& path);
 
 struct FidelityOptions {
-  std::optional<double> step_s;                  ///< instead of that of the case
+  std::optional<double> step_s;                  ///< compare at this step; unset: at step zero, extrapolated from the
+                                                 ///< step of the case and half of it
   std::map<std::string, std::string> overrides;  ///< changes of the vehicle, applied after those of the case: dotted
                                                  ///< path, YAML text
+  bool until_missed = false;                     ///< stop at the first row at which a bar is missed for sure
 };
 
 /// Result of a case: the reference, our states at the times of its rows, and the differences.
 struct FidelityResult {
   FidelityCase of;
-  double step_s = 0;
+  double step_s = 0;  ///< 0: extrapolated
   std::vector<double> t;
   std::vector<FidelityState> theirs, ours;
   double position_rms_m = 0, position_max_m = 0;

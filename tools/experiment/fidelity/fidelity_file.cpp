@@ -52,7 +52,8 @@ struct GroupEntry {
     if (const sim::ConfigNode* node = in.has("vehicle") ? in.child("vehicle") : nullptr) vehicle_place = node->place;
     in.read_raw("world", world, "dotted path: value, such as `physics.gravity_mps2: 9.82`");
     in.read_raw("overrides", overrides, "dotted path: value, changes of the vehicle");
-    in.read("step_s", step_s, sim::above(0), "time step");
+    in.read("step_s", step_s, sim::above(0),
+            "time step; the comparison extrapolates from it and half of it to step zero");
     in.read_list("inputs", inputs, "input", "how columns command devices");
     in.read("bars", bars, "largest differences");
     in.read_list("cases", cases, "case", "trajectories");
@@ -62,10 +63,12 @@ struct GroupEntry {
 struct CaseFile {
   int shoal = 1;
   std::string text;
+  std::vector<FidelityWithoutEffect> without_effect;
   std::vector<GroupEntry> groups;
   void read(sim::ParamReader& in) {
     in.read("shoal", shoal, sim::between(1, 1), "version of the format");
     in.read("text", text, "Markdown for the top of the report");
+    in.read_list("without_effect", without_effect, "coefficient", "coefficients that no case can see");
     in.require("groups");
     in.read_list("groups", groups, "group", "vehicles with their cases");
   }
@@ -84,7 +87,7 @@ void append(sim::ConfigNode& to, const sim::ConfigNode& more) {
 FidelityBars over(const FidelityBars& bars, const FidelityBars& usual) {
   FidelityBars both = bars;
   for (const auto bar : {&FidelityBars::position_rms_m, &FidelityBars::position_max_m, &FidelityBars::velocity_rms_mps,
-                         &FidelityBars::heading_rms_deg})
+                         &FidelityBars::turn_rms_degps, &FidelityBars::heading_rms_deg})
     if (!(both.*bar)) both.*bar = usual.*bar;
   return both;
 }
@@ -102,10 +105,18 @@ void FidelityInput::read(sim::ParamReader& in) {
   if (!in.describing() && in.has("column") == in.has("fields")) in.error("one of 'column' and 'fields' must be given");
 }
 
+void FidelityWithoutEffect::read(sim::ParamReader& in) {
+  in.require("coefficient");
+  in.read("coefficient", coefficient, "its name in the table of `--mutate`");
+  in.require("why");
+  in.read("why", why, "why it changes no motion");
+}
+
 void FidelityBars::read(sim::ParamReader& in) {
   in.read("position_rms_m", position_rms_m, sim::at_least(0), "root mean square of the distance");
   in.read("position_max_m", position_max_m, sim::at_least(0), "largest distance");
   in.read("velocity_rms_mps", velocity_rms_mps, sim::at_least(0), "root mean square of the velocity's difference");
+  in.read("turn_rms_degps", turn_rms_degps, sim::at_least(0), "root mean square of the angular rate's difference");
   in.read("heading_rms_deg", heading_rms_deg, sim::at_least(0), "root mean square of the yaw's difference");
 }
 
@@ -121,7 +132,7 @@ FidelityFile read_fidelity_file(const std::string& path) {
   diagnostics.throw_if_any();
   // Merge each case with the defaults of its group.
   const std::filesystem::path folder = std::filesystem::path(path).parent_path();
-  FidelityFile result{file.text, {}};
+  FidelityFile result{file.text, file.without_effect, {}};
   for (const GroupEntry& group : file.groups)
     for (const CaseEntry& entry : group.cases) {
       FidelityCase of;

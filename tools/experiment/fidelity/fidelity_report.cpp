@@ -132,24 +132,26 @@ std::string fidelity_table(const std::vector<FidelityResult>& results) {
   std::size_t width = 4;
   for (const FidelityResult& result : results) width = std::max(width, result.of.name.size());
   std::string text = fmt::format(
-      "| {:<{}} | step ms | path m | position rms m | bar | max m | bar | velocity rms m/s | bar | "
-      "turn rms deg/s | heading rms deg | ok |\n|:{:-<{}}-|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---|\n",
+      "| {:<{}} | step ms | path m | position rms m | bar | max m | bar | velocity rms m/s | bar | turn rms deg/s | "
+      "bar "
+      "| heading rms deg | bar | ok |\n|:{:-<{}}-|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---|\n",
       "case", width, "", width);
   for (const FidelityResult& result : results) {
     const FidelityBars& bars = result.of.bars;
     text += fmt::format(
-        "| {:<{}} | {:7g} | {:6.1f} | {:14.4f} | {} | {:5.3f} | {} | {:16.5f} | {} | {:14.4f} | {:15.4f} | {} |\n",
+        "| {:<{}} | {:7g} | {:6.1f} | {:14.2g} | {} | {:7.2g} | {} | {:16.2g} | {} | {:14.2g} | {} | "
+        "{:15.2g} | {} | {} |\n",
         result.of.name, width, result.step_s * 1000, result.path_m, result.position_rms_m,
         bar_text(bars.position_rms_m), result.position_max_m, bar_text(bars.position_max_m), result.velocity_rms_mps,
-        bar_text(bars.velocity_rms_mps), result.turn_rms_degps, result.heading_rms_deg,
-        result.missed.empty() ? "yes" : "NO");
+        bar_text(bars.velocity_rms_mps), result.turn_rms_degps, bar_text(bars.turn_rms_degps), result.heading_rms_deg,
+        bar_text(bars.heading_rms_deg), result.missed.empty() ? "yes" : "NO");
   }
   return text;
 }
 
 std::string fidelity_line(const FidelityResult& result, std::size_t number, std::size_t count) {
   std::string text =
-      fmt::format("{} of {}: {}: position rms {:.4f} m", number, count, result.of.name, result.position_rms_m);
+      fmt::format("{} of {}: {}: position rms {:.3g} m", number, count, result.of.name, result.position_rms_m);
   if (!result.missed.empty()) text += fmt::format(", bars missed: {}", result.missed.size());
   return text;
 }
@@ -169,6 +171,11 @@ void write_fidelity_report(const std::string& folder, const std::string& text,
     if (csv) write(plots / (result.of.name + ".csv"), states_header() + rows_of(result, result.ours, ',', false));
   }
   write(std::filesystem::path(folder) / "fidelity.md", page);
+}
+
+void write_fidelity_mutations(const std::string& folder, const std::string& page) {
+  std::filesystem::create_directories(folder);
+  write(std::filesystem::path(folder) / "fidelity_coefficients.md", page);
 }
 
 }  // namespace tools
