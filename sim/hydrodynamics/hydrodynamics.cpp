@@ -183,23 +183,19 @@ void Hydrodynamics::step_crafts() {
     const double fastest = model.fastest_rate(nu_r);
     const bool stiff = !(fastest * step_s_ < 1) && model.immersed(state) > 0;
     if (stiff && !craft.stiffness_warned) warn_of_stiffness(craft, nu_r, fastest);
-    if (!stiff && body.alone()) {
-      step_lone_craft(craft, state, around);
+    if (!stiff) {
+      step_by_midpoint(craft, state, around);
       continue;
     }
-    Matrix3d R_WB = around.motion.R_WB;
-    const bool was_alone = body.alone();
-    if (stiff) body.take_first_order_step(step_s_);
-    if (was_alone) {  // backward Euler starts where the body is
-      BodyInWater at_start = around;
-      at_start.motion = body.motion();
-      R_WB = at_start.motion.R_WB;
-      at_start.w_B = R_WB.transpose() * at_start.motion.w_WB_W;
-      at_start.v_B = R_WB.transpose() * (at_start.motion.v_WB_W - at_start.water.velocity_W);
-      state = state_of(model, at_start);
-    }
-    const Vector6d tau = applied_to(body, model, R_WB);
-    const Vector6d nu_dot = stiff ? model.stiff_acceleration(state, tau, step_s_) : model.acceleration(state, tau);
+    // Backward Euler starts where the body is.
+    body.take_first_order_step(step_s_);
+    BodyInWater at_start = around;
+    at_start.motion = body.motion();
+    const Matrix3d& R_WB = at_start.motion.R_WB;
+    at_start.w_B = R_WB.transpose() * at_start.motion.w_WB_W;
+    at_start.v_B = R_WB.transpose() * (at_start.motion.v_WB_W - at_start.water.velocity_W);
+    state = state_of(model, at_start);
+    const Vector6d nu_dot = model.stiff_acceleration(state, applied_to(body, model, R_WB), step_s_);
     // Wrench on the rigid body that gives this acceleration.
     const Vector6d wrench = model.equivalent_wrench(nu_dot, state.nu.head<3>(), state.nu.tail<3>(), body.mass_kg(),
                                                     model.config().inertia_kgm2);
@@ -209,8 +205,8 @@ void Hydrodynamics::step_crafts() {
 
 /// Implicit midpoint rule for the velocities relative to the water, to second order by two evaluations: with the
 /// predicted velocity, and with that half-way by the first.  The attitude, the water and the forces of actuators are
-/// those half-way.
-void Hydrodynamics::step_lone_craft(const CoefficientBody& craft, CraftState state, const BodyInWater& around) {
+/// those half-way of a body that is alone; of others they are those at the start.
+void Hydrodynamics::step_by_midpoint(const CoefficientBody& craft, CraftState state, const BodyInWater& around) {
   Body& body = *craft.body;
   const CoefficientModel& model = *craft.model;
   const Vector6d tau = applied_to(body, model, around.motion.R_WB);

@@ -67,7 +67,7 @@ class Hydrodynamics {
   };
   void add_craft(Body& body, const HydrodynamicsConfig& config);
   void step_crafts();
-  void step_lone_craft(const CoefficientBody& craft, CraftState state, const BodyInWater& around);
+  void step_by_midpoint(const CoefficientBody& craft, CraftState state, const BodyInWater& around);
   static Vector6d applied_to(const Body& body, const CoefficientModel& model, const Matrix3d& R_WB);
   void warn_of_stiffness(CoefficientBody& craft, const Vector6d& nu_r, double fastest_rate);
   CraftState state_of(const CoefficientModel& model, const BodyInWater& around) const;

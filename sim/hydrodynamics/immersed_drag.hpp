@@ -19,11 +19,11 @@ class ImmersedDrag {
   void add(const ImmersedPiece& piece, double share, double density_kgpm3, const Vector3d& v_fluid_W,
            const Vector3d& at_CP_W, const Matrix3d& R_WP);
 
-  /// Sum of the drag with the velocities at the start of the step.
+  /// Sum of the drag with the velocities of begin().
   const Vector3d& force_N() const { return force_N_; }
   const Vector3d& torque_Nm() const { return torque_Nm_; }
 
-  /// Whether the drag at the start of the step would be inaccurate: it changes much during the step, or the driving
+  /// Whether that drag would be inaccurate: it changes much during the step, or the driving
   /// forces alone would change the velocities by up to `dv_mps` and `dw_radps`.  Inertia and `dw_radps` are about the
   /// body axes.
   bool too_stiff(double mass_kg, const Vector3d& inertia_kgm2, double dv_mps, const Vector3d& dw_radps,

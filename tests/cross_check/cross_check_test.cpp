@@ -40,7 +40,7 @@ const std::map<std::string, Bars>& bars() {
       {"tumbling", {{5e-5, 1e-6, 1e-9}, {1.25e-3, 1e-6, 1e-9}}},
       // First order in the 0.06 rad or 0.3 rad of a step.  The top falls over with the longer step.
       {"top", {{0.02 * 1.744, 25}, {0.1 * 1.744, any}}},
-      // 0.01 % and 1 % of the period; the sway of the energy of semi-implicit Euler, h omega / 2, and losses in the
+      // 0.01 % and 1 % of the period; the sway of the energy of ODE's step, h omega / 2, and losses in the
       // joint.
       {"pendulum", {{0.0003, 0.002}, {0.05, 0.06}}},
       // Gaps: a joint that moves with v leaves its circle by v^2 / r h^2 / 2 in a step.
@@ -52,7 +52,7 @@ const std::map<std::string, Bars>& bars() {
       // A ball turns back up to v h deep, h late, and comes up with half the speed, 2 h later; twice until the second
       // top.
       {"bounce", {{0.0045, 0.0045, 0.006}, {0.022, 0.022, 0.03}}},
-      // v h / 2 of semi-implicit Euler at 4.8 m/s.
+      // v h / 2 of ODE's step at 4.8 m/s.
       {"rolling", {{0.0026, 0.0026}, {0.0125, 0.0125}}},
       // Five times the layer of 0.5 mm in which contacts stay, and jitter of the iterative solver, which steps where
       // the

@@ -8,8 +8,8 @@
 #include "sim/vehicle/vehicle.hpp"
 #include "tests/sim/hydrodynamics/floating_worlds.hpp"
 
-// Still water takes energy from what moves in it, and never brings any.  Semi-implicit Euler steps of h let the energy
-// of a swing of rate omega go up and down by h omega / 2 of it within each swing, and on the mean keep it.
+// Still water takes energy from what moves in it, and never brings any.  Steps of h let the energy of a swing of rate
+// omega go up and down within each swing, and on the mean keep it.
 
 namespace {
 
