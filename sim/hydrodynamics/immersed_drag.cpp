@@ -37,7 +37,7 @@ void ImmersedDrag::add(const ImmersedPiece& piece, double share, double density_
                        const Vector3d& at_CP_W, const Matrix3d& R_WP) {
   parts_.push_back({&piece, R_WP, at_CP_W, v_fluid_W, 0.5 * density_kgpm3 * share, 0, 0});
   Part& part = parts_.back();
-  // Drag with the velocities of begin().
+  // Drag with the velocities that begin() got.
   const Vector3d w_W = twist_.tail<3>();
   const Vector3d v_P = R_WP.transpose() * (twist_.head<3>() + w_W.cross(at_CP_W) - v_fluid_W);
   const Vector3d w_P = R_WP.transpose() * w_W;

@@ -19,7 +19,7 @@ class ImmersedDrag {
   void add(const ImmersedPiece& piece, double share, double density_kgpm3, const Vector3d& v_fluid_W,
            const Vector3d& at_CP_W, const Matrix3d& R_WP);
 
-  /// Sum of the drag with the velocities of begin().
+  /// Sum of the drag with the velocities that begin() got.
   const Vector3d& force_N() const { return force_N_; }
   const Vector3d& torque_Nm() const { return torque_Nm_; }
 

@@ -342,7 +342,8 @@ void Body::leave_to_ode(double step_s) {
 }
 
 BodyMotion Body::motion_for_forces(double step_s) const {
-  if (!alone()) return motion();
+  // A body whose velocities were set is expected to be alone.
+  if (!free() || last_step_ == LastStep::ode) return motion();
   const double half_s = step_s / 2;
   const dReal* q = dBodyGetQuaternion(ode_.get());
   const Matrix3d R_WB_now = rotation_to_eigen(R_WB_);

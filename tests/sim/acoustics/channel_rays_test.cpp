@@ -117,9 +117,9 @@ TEST(AcousticRays, AWaveReachesTheEdgeOfAShadow) {
   };
   TestWorld near(thermocline("{}", both_at_20_m(100))),
       straight(thermocline("{propagation: straight}", both_at_20_m(100)));
-  const Arrived heard = send_one(near);
-  EXPECT_EQ(heard.loss, SignalLoss::none);
-  EXPECT_NEAR(heard.level_dB, send_one(straight).level_dB - 6, 1e-6);
+  const Arrived near_one = send_one(near);
+  EXPECT_EQ(near_one.loss, SignalLoss::none);
+  EXPECT_NEAR(near_one.level_dB, send_one(straight).level_dB - 6, 1e-6);
   TestWorld far(thermocline("{}", both_at_20_m(2000)));
   EXPECT_EQ(send_one(far).loss, SignalLoss::shadow);
 }

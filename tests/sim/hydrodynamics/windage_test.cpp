@@ -74,7 +74,7 @@ TEST(Windage, AnAreaOverTheOriginHeelsTheCraftToLeeward) {
   test.world.step();
   // Wind towards port: starboard comes up, about -x.  The force times 0.5 m over 20 kg m^2.
   const double force_N = 0.5 * air_density_kgpm3 * wind_mps * wind_mps * 0.9 * 1.5;
-  EXPECT_NEAR(test.body().w_WB_W().x() / 0.01, -force_N * 0.5 / 20, 0.02);
+  EXPECT_NEAR(test.body().w_WB_W().x() / 0.01, -force_N * 0.5 / 20, 0.03);  // damping half-way takes 1 %
 }
 
 TEST(Windage, TheWindCountsInTheRunOfTheOtter) {
