@@ -52,7 +52,8 @@ TEST(Fin, ItsAngleToTheFlowAtItsOwnPlaceCounts) {
   WetBox box(wet_device("type: fin, " + keys));
   box.command(slip);
   box.set_velocity({2, 0, 0}, {0, 0, -0.2});
-  EXPECT_NEAR(box.force_W().norm(), 0, rounding_N);
+  // It turns by 0.0001 rad in half a step, of which 120 N/rad make 0.012 N.
+  EXPECT_NEAR(box.force_W().norm(), 0, 0.015);
   // At rest in water that flows it lifts as one that moves, across the flow.
   WetBox still(wet_device("type: fin, " + keys),
                "{water: {density_kgpm3: 1000, surface_m: 50}, current: {velocity_mps: [-2, 0, 0]}}");

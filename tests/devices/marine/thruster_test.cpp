@@ -90,7 +90,7 @@ TEST(Thruster, InflowAtItsOwnPlaceCountsTheTurningOfTheVehicle) {
   WetBox box(wet_device("type: thruster, position_m: [0, -2, 0], ahead: 100, inflow_loss: 20"));
   box.set_velocity(sim::Vector3d::Zero(), {0, 0, 0.5});
   box.command(0.5);
-  EXPECT_NEAR(box.force_W().x(), 100 * 0.25 - 20 * 0.5 * 1, rounding_N);
+  EXPECT_NEAR(box.force_W().norm(), 100 * 0.25 - 20 * 0.5 * 1, rounding_N);
 }
 
 TEST(Thruster, PushesAlongXOfItsFrameAndTurnsTheHullByItsLever) {
