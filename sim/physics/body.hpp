@@ -52,9 +52,9 @@ class Body : public VisitedInSteps {
   Vector3d w_WB_W() const;
   /// Pose and velocities together; cheaper than the separate calls.
   BodyMotion motion() const;
-  /// Motion at which forces on this body act in the next step.  A body that is alone is half a step further, by its
-  /// velocities and the accelerations of the last step: forces of there give a step of second order.  Another one is
-  /// where it is.
+  /// Motion at which forces on this body act in the next step.  A body that is alone, or whose velocities were set, is
+  /// half a step further, by its velocities and the accelerations of the last step: forces of there give a step of
+  /// second order.  Another one is where it is.
   BodyMotion motion_for_forces(double step_s) const;
   /// Whether a free body had neither joints nor contacts in the last step; then its next step is of second order, see
   /// free_step.hpp.

@@ -229,12 +229,16 @@ void PhysicsWorld::Impl::step_islands_by_size(std::int64_t step_number) {
 /// Steps the enabled bodies by dWorldStep.  Where its solver gives up on an island, as in stacks of boxes, the forces
 /// are incomplete and bodies would fall through the ground: the step is then taken back, and made by QuickStep.
 void PhysicsWorld::Impl::step_exactly(std::int64_t step_number) {
+  if (config.solver == PhysicsConfig::Solver::step) {  // the user wants no other
+    dWorldStep(world.get(), config.step_s);
+    return;
+  }
   before_step_.clear();
   for (const Body* body : moving)
     if (dBodyIsEnabled(body->ode_.get())) before_step_.emplace_back(body->ode_.get());
   const std::int64_t messages = ode_messages();
   dWorldStep(world.get(), config.step_s);
-  if (ode_messages() == messages || config.solver == PhysicsConfig::Solver::step) return;
+  if (ode_messages() == messages) return;
   for (BodyCopy& body : before_step_) body.write_back();
   dRandSetSeed(step_seed(seed, step_number));
   dWorldQuickStep(world.get(), config.step_s);

@@ -172,13 +172,19 @@ TEST(Client, WaitsForATime) {
   thread.join();
 }
 
+/// Lets 'pilot' join, gives it one tick, and returns its first other request.
+auto request_after_first_tick(FakeSimulator& simulator) {
+  simulator.reply(simulator.await_request(), true, "");
+  simulator.tick(1, {"pilot"});
+  auto request = simulator.await_request();
+  while (request.command == "join") request = simulator.await_request();
+  return request;
+}
+
 TEST(Client, LeavesWhenItEndsBeforeTheRun) {
   FakeSimulator simulator;
   std::thread thread([&] {
-    simulator.reply(simulator.await_request(), true, "");
-    simulator.tick(1, {"pilot"});
-    auto request = simulator.await_request();
-    while (request.command == "join") request = simulator.await_request();
+    const auto request = request_after_first_tick(simulator);
     EXPECT_EQ(request.command, "leave");
     EXPECT_EQ(request.client, "pilot");
   });
@@ -193,10 +199,7 @@ TEST(Client, LeavesWhenItEndsBeforeTheRun) {
 TEST(Client, SaysWhyItLeaves) {
   FakeSimulator simulator;
   std::thread thread([&] {
-    simulator.reply(simulator.await_request(), true, "");
-    simulator.tick(1, {"pilot"});
-    auto request = simulator.await_request();
-    while (request.command == "join") request = simulator.await_request();
+    const auto request = request_after_first_tick(simulator);
     EXPECT_THAT(request.text, testing::HasSubstr("reason: \"no map\""));
   });
   {
