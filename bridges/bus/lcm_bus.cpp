@@ -200,18 +200,33 @@ struct LcmBus::Threads final : Arrivals::Port {
       outgoing.help();
   }
 
-  Channel& open_channel(const std::string& name) {
+  /// Returns the channel of this name, which exists until the end.
+  Channel& channel_of(const std::string& name) {
     const std::lock_guard lock(channels_mutex);
     std::unique_ptr<Channel>& channel = channels[name];
     if (!channel)
       channel = std::make_unique<Channel>(
           name, [arrivals = options.arrivals.get()] { arrivals->arrived(); },
           [this](Channel& unused) { close_channel(unused); });
-    if (channel->subscription == nullptr) {
-      const std::lock_guard transmit(transmit_mutex);
-      channel->subscription = connection.subscribe(name, on_message, channel.get());
-    }
     return *channel;
+  }
+
+  Channel& subscribe(const std::string& name) {
+    Channel& channel = channel_of(name);
+    const std::lock_guard transmit(transmit_mutex);
+    if (channel.subscription == nullptr) channel.subscription = connection.subscribe(name, on_message, &channel);
+    return channel;
+  }
+
+  /// Counts a message; returns false when it is too long for LCM.
+  bool accept(std::string_view channel, std::span<const std::byte> payload) {
+    published.fetch_add(1, std::memory_order_relaxed);
+    if (payload.size() <= options.max_message_bytes) return true;
+    refused.fetch_add(1);
+    if (!warned_of_size.exchange(true))
+      spdlog::warn("channel {}: message of {} bytes is not sent; LCM carries at most {} bytes", channel, payload.size(),
+                   options.max_message_bytes);
+    return false;
   }
 
   void close_channel(Channel& channel) {
@@ -272,27 +287,46 @@ LcmBus::LcmBus(const std::string& url, const LcmBusOptions& options)
 
 LcmBus::~LcmBus() = default;
 
-void LcmBus::publish(std::string_view channel, std::span<const std::byte> payload, sim::Time) {
-  if (channel.empty() || channel.size() > max_channel_length)
+namespace lcm_bus {
+
+void check_channel(std::string_view channel) {
+  if (channel.empty() || channel.size() > sim::Bus::max_channel_length)
     throw std::invalid_argument("a channel must have 1 to 63 characters, got '" + std::string(channel) + "'");
-  threads_->published.fetch_add(1, std::memory_order_relaxed);
-  if (payload.size() > threads_->options.max_message_bytes) {
-    threads_->refused.fetch_add(1);
-    if (!threads_->warned_of_size.exchange(true))
-      spdlog::warn("channel {}: message of {} bytes is not sent; LCM carries at most {} bytes", channel, payload.size(),
-                   threads_->options.max_message_bytes);
-    return;
-  }
+}
+
+}  // namespace lcm_bus
+
+void LcmBus::publish(std::string_view channel, std::span<const std::byte> payload, sim::Time) {
+  check_channel(channel);
+  if (!threads_->accept(channel, payload)) return;
   // Deliver before sending: the echo must not arrive first.
   if (Channel* own = threads_->find_channel(channel)) own->deliver_own(payload);
   threads_->outgoing.push(channel, payload);
 }
 
+class LcmBus::LookedUpChannel final : public sim::OpenChannel {
+ public:
+  LookedUpChannel(Threads& threads, Channel& own) : threads_(threads), own_(own) {}
+
+  void publish(std::span<const std::byte> payload, sim::Time) override {
+    if (!threads_.accept(own_.name, payload)) return;
+    own_.deliver_own(payload);
+    threads_.outgoing.push(own_.name, payload);
+  }
+
+ private:
+  Threads& threads_;
+  Channel& own_;
+};
+
+std::unique_ptr<sim::OpenChannel> LcmBus::open_channel(const std::string& channel) {
+  check_channel(channel);
+  return std::make_unique<LookedUpChannel>(*threads_, threads_->channel_of(channel));
+}
+
 std::unique_ptr<sim::Mailbox> LcmBus::open_mailbox(const std::string& channel, std::size_t capacity) {
-  if (channel.empty() || channel.size() > max_channel_length)
-    throw std::invalid_argument("a channel must have 1 to 63 characters, got '" + channel + "'");
-  Channel& opened = threads_->open_channel(channel);
-  return std::make_unique<ChannelMailbox>(opened, capacity);
+  check_channel(channel);
+  return std::make_unique<ChannelMailbox>(threads_->subscribe(channel), capacity);
 }
 
 void LcmBus::end_of_step() {

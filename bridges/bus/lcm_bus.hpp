@@ -36,6 +36,7 @@ class LcmBus final : public sim::Bus {
   ~LcmBus() override;
 
   void publish(std::string_view channel, std::span<const std::byte> payload, sim::Time at) override;
+  std::unique_ptr<sim::OpenChannel> open_channel(const std::string& channel) override;
   std::unique_ptr<sim::Mailbox> open_mailbox(const std::string& channel,
                                              std::size_t capacity = default_mailbox_capacity) override;
   void end_of_step() override;
@@ -53,6 +54,7 @@ class LcmBus final : public sim::Bus {
 
  private:
   struct Threads;
+  class LookedUpChannel;
   std::unique_ptr<Threads> threads_;
 };
 

@@ -38,6 +38,27 @@ void RecordingBus::publish(std::string_view channel, std::span<const std::byte> 
   record(channel, payload);
 }
 
+class RecordingBus::RecordedChannel final : public sim::OpenChannel {
+ public:
+  RecordedChannel(RecordingBus& bus, const std::string& name)
+      : bus_(bus), name_(name), inner_(bus.inner_.open_channel(name)) {}
+
+  void publish(std::span<const std::byte> payload, sim::Time at) override {
+    inner_->publish(payload, at);
+    bus_.set_time(at);
+    bus_.record(name_, payload);
+  }
+
+ private:
+  RecordingBus& bus_;
+  const std::string name_;
+  const std::unique_ptr<sim::OpenChannel> inner_;
+};
+
+std::unique_ptr<sim::OpenChannel> RecordingBus::open_channel(const std::string& channel) {
+  return std::make_unique<RecordedChannel>(*this, channel);
+}
+
 void RecordingBus::admitted(std::span<const sim::MessageGate::Delivery> input_record) {
   for (const sim::MessageGate::Delivery& each : input_record) record(each.channel, each.payload);
 }

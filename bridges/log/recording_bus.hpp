@@ -33,6 +33,7 @@ class RecordingBus final : public sim::Bus {
   ~RecordingBus() override;
 
   void publish(std::string_view channel, std::span<const std::byte> payload, sim::Time at) override;
+  std::unique_ptr<sim::OpenChannel> open_channel(const std::string& channel) override;
   std::unique_ptr<sim::Mailbox> open_mailbox(const std::string& channel,
                                              std::size_t capacity = default_mailbox_capacity) override {
     return inner_.open_mailbox(channel, capacity);
@@ -66,6 +67,7 @@ class RecordingBus final : public sim::Bus {
   sim::Bus& inner() { return inner_; }
 
  private:
+  class RecordedChannel;
   struct Next {
     std::string path;
     std::uint64_t events = 0;

@@ -162,7 +162,7 @@ void RunJournal::publish_hash() {
   }
   message.hash = static_cast<std::int64_t>(whole.value());
   message.part.push_back(run_hash_part);
-  message.part_hash.push_back(static_cast<std::int64_t>(world_.state().run_hash()));
+  message.part_hash.push_back(static_cast<std::int64_t>(world_.state().run_hash(whole.value())));
   message.count = static_cast<std::int32_t>(message.part.size());
   shoal::encode_into(message, buffer_);
   bus_.publish("sim.hash", buffer_, world_.now());

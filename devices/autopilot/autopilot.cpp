@@ -57,6 +57,7 @@ Autopilot::Autopilot(const Params& params, const sim::DeviceContext& context)
       vehicle_(context.vehicle),
       body_(context.body),
       faults_(context.faults),
+      may_need_bottom_(needs_bottom()),
       surface_m_(world_.config().medium.water ? world_.config().medium.water->surface_m : 0),
       actuators_(params.helm.empty() ? std::make_optional<AutopilotActuators>(params, context) : std::nullopt),
       law_(params.gains, abilities_of(actuators_)),
@@ -257,8 +258,9 @@ void Autopilot::drive_helm(const Demand& demand, sim::Time now) {
   message.heading_rad = demand.heading_rad;
   message.depth_m = surface_m_ - desired_.height_m;
   message.altitude_m = nothing;
-  const std::string& channel = vehicle_.find_device(params_.helm)->command_channel();
-  vehicle_.bus().publish(channel, shoal::encode(message), now);
+  if (!helm_channel_)
+    helm_channel_ = vehicle_.bus().open_channel(vehicle_.find_device(params_.helm)->command_channel());
+  helm_channel_->publish(shoal::encode(message), now);
 }
 
 bool Autopilot::needs_bottom() const {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -24,6 +25,7 @@ class Autopilot final : public sim::Sensor {
  public:
   static constexpr const char* meaning =
       "Autopilot: heading, depth, altitude, speed, waypoints, station keeping, by thrusters and fins of its vehicle.";
+  static constexpr bool measures_alone = true;
   static constexpr double default_rate_hz = 10;
   static constexpr const char* example = "thrusters: [push]";
   using Params = AutopilotParams;
@@ -42,6 +44,7 @@ class Autopilot final : public sim::Sensor {
   Autopilot(const Params& params, const sim::DeviceContext& context);
   void measure(const sim::SenseContext& context) override;
   void disturb(double, sim::Random&) override {}
+  std::int64_t rays() const override { return altitude_desired_m_ || may_need_bottom_ ? 1 : 0; }
   /// Returns true when the configuration has an altitude to hold.
   bool needs_bottom() const override;
   void visit_state(sim::StateArchive& archive) override;
@@ -78,6 +81,7 @@ class Autopilot final : public sim::Sensor {
   sim::Vehicle& vehicle_;
   const sim::Body& body_;
   const sim::DeviceFaults& faults_;
+  const bool may_need_bottom_;
   double surface_m_;  // height of the still water surface
   std::optional<AutopilotActuators> actuators_;
   HelmLaw law_;
@@ -89,6 +93,7 @@ class Autopilot final : public sim::Sensor {
   std::optional<double> depth_desired_m_, altitude_desired_m_;
   Limited limited_;
   Reading reading_;
+  std::unique_ptr<sim::OpenChannel> helm_channel_;  // opened by the first command
 };
 
 /// Receives shoal.helm_command_t, shoal.waypoints_command_t, shoal.station_command_t and shoal.autopilot_command_t.

@@ -160,17 +160,19 @@ Limited AutopilotActuators::share(const Wrench& wrench, const sim::Vector3d& v_B
   return limited;
 }
 
-void AutopilotActuators::publish(const Driven& device, sim::Time now) {
+void AutopilotActuators::publish(Driven& device, sim::Time now) {
   shoal::actuator_command_t message;
   message.utime = epoch_us_ + vehicle_.clock().reading(now).count();
   message.value = device.command;
   shoal::encode_into(message, payload_);
-  vehicle_.bus().publish(vehicle_.find_device(device.name)->command_channel(), payload_, now);
+  if (!device.channel)
+    device.channel = vehicle_.bus().open_channel(vehicle_.find_device(device.name)->command_channel());
+  device.channel->publish(payload_, now);
 }
 
 void AutopilotActuators::publish(sim::Time now) {
-  for (const Propeller& propeller : propellers_) publish(propeller.device, now);
-  for (const Plane& plane : planes_) publish(plane.device, now);
+  for (Propeller& propeller : propellers_) publish(propeller.device, now);
+  for (Plane& plane : planes_) publish(plane.device, now);
 }
 
 }  // namespace devices

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "devices/autopilot/autopilot_config.hpp"
@@ -29,6 +31,7 @@ class AutopilotActuators {
   struct Driven {
     std::string name;
     double command = 0;
+    std::unique_ptr<sim::OpenChannel> channel{};  ///< opened by the first command
   };
   /// Thruster with its thrust curve and axis.
   struct Propeller {
@@ -43,7 +46,7 @@ class AutopilotActuators {
   };
   void add_thrusters(const AutopilotParams& params, const sim::DeviceContext& context);
   void add_fins(const AutopilotParams& params, const sim::DeviceContext& context);
-  void publish(const Driven& device, sim::Time now);
+  void publish(Driven& device, sim::Time now);
 
   sim::Vehicle& vehicle_;
   std::int64_t epoch_us_;

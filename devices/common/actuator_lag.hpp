@@ -23,6 +23,7 @@ class Lag {
   double follow(double target, double step_s);
   /// The same; returns the value half-way, for a force that acts during the step.
   double follow_through(double target, double step_s) {
+    if (target == value_ && rate_ == 0) return value_;  // at rest
     const double half_way = follow(target, step_s / 2);
     follow(target, step_s / 2);
     return half_way;

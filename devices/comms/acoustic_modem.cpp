@@ -128,7 +128,7 @@ AcousticModem::AcousticModem(const Params& params, const sim::DeviceContext& con
       host_(context.host),
       vehicle_(context.vehicle),
       transducer_(*this, params.receiver, context.sound_site()),
-      now_(context.world.now()) {
+      wake_flag_(context.wake_flag()) {
   if (params.serial) serial_ = std::make_unique<SerialMessages>(*params.serial, context);
   transducer_.belong_to({group_of(params), vehicle_.name()});
   host_.shared.of(message_modems).join(transducer_.full_name(), *this);
@@ -172,10 +172,10 @@ void AcousticModem::send(sim::Time, std::string destination, sim::Bytes data) {
     ++dropped_;
   }
   queue_.push_back({std::move(destination), std::move(data)});
+  wake_flag_->store(true, std::memory_order_relaxed);  // for other callers than its controller
 }
 
 void AcousticModem::act(const sim::ActContext& context) {
-  now_ = context.now;
   if (serial_) read_serial(context.now);
   // Several short messages may be sent in a step, each when the previous one has ended.
   const sim::Time end = context.now + sim::from_seconds(context.step_s);
@@ -191,7 +191,13 @@ void AcousticModem::act(const sim::ActContext& context) {
 }
 
 double AcousticModem::power_W() const {
-  return transducer_.busy_until() > now_ ? params_.transmit_power_W : 0;
+  return transducer_.busy_until() > world_.now() ? params_.transmit_power_W : 0;
+}
+
+/// It is not idle while it transmits, because of the power that this takes.
+bool AcousticModem::idle() const {
+  return queue_.empty() && arrived_.empty() && received_.empty() && !serial_ &&
+         transducer_.busy_until() <= world_.now();
 }
 
 void AcousticModem::transmit(sim::Time at, Outgoing message) {
@@ -232,6 +238,7 @@ void AcousticModem::receive(const sim::Reception& reception) {
   if (serial_) serial_->write(packet.data);
   report_to_tap(reception.ended, packet.source, packet.data);
   arrived_.push_back(std::move(packet));
+  wake_flag_->store(true, std::memory_order_relaxed);
 }
 
 void AcousticModem::measure(const sim::SenseContext&) {
@@ -240,7 +247,7 @@ void AcousticModem::measure(const sim::SenseContext&) {
 }
 
 void AcousticModem::visit_state(sim::StateArchive& archive) {
-  archive(queue_, arrived_, received_, now_);
+  archive(queue_, arrived_, received_);
   archive.unhashed(dropped_);
   if (serial_) archive(*serial_);
 }

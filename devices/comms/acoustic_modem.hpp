@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <atomic>
 #include <deque>
 #include <memory>
 #include <optional>
@@ -67,6 +68,8 @@ class AcousticModem final : public sim::Sensor, public MessageModem, private sim
   /// Starts the next transmission when it is permitted.
   void act(const sim::ActContext& context);
   double power_W() const;
+  /// Returns whether nothing is to be sent, and nothing has arrived since the last sample.
+  bool idle() const;
 
   void measure(const sim::SenseContext& context) override;
   void disturb(double, sim::Random&) override {}
@@ -103,7 +106,7 @@ class AcousticModem final : public sim::Sensor, public MessageModem, private sim
   std::int64_t dropped_ = 0;
   std::vector<Packet> arrived_, received_;
   std::unique_ptr<SerialMessages> serial_;
-  sim::Time now_{0};  // start of this step
+  const std::shared_ptr<std::atomic<bool>> wake_flag_;
 };
 
 /// Publishes one shoal.acoustic_received_t for each message that arrived.

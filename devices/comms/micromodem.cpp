@@ -74,6 +74,7 @@ void Micromodem::Params::read(sim::ParamReader& in) {
 
 Micromodem::Micromodem(const Params& params, const sim::DeviceContext& context)
     : params_(params),
+      world_(context.world),
       vehicle_(context.vehicle),
       epoch_us_(context.world.epoch_us()),
       addresses_(context.shared(addresses_of_world)),
@@ -221,7 +222,7 @@ sim::Time Micromodem::call_back() {
 }
 
 double Micromodem::elapsed_s(sim::Time from, sim::Time to) const {
-  return sim::to_seconds(to - from) * (1 + vehicle_.clock().rate_error());
+  return sim::to_seconds(to - from) * (1 + vehicle_.clock().rate_error(world_.now()));
 }
 
 std::int64_t Micromodem::utc_us(sim::Time at) const {

@@ -96,6 +96,7 @@ class Micromodem final : public sim::Sensor, private sim::AcousticListener, priv
   Sound send(sim::Signal signal, sim::Time at, bool on_the_second);
 
   Params params_;
+  const sim::World& world_;
   const sim::Vehicle& vehicle_;
   std::int64_t epoch_us_;
   Addresses& addresses_;

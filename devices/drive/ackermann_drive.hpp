@@ -20,6 +20,7 @@ class AckermannDrive final : public sim::Actuator {
       "left_steer_joint: front_left, right_steer_joint: front_right, drive_joints: [left, right]";
   static constexpr const char* meaning =
       "Steered front wheels and driven wheels, commanded by speed and steering, by twist, or by thrust and rudder.";
+  static constexpr bool acts_alone = true;
   static constexpr sim::SafeState safe_states[] = {sim::SafeState::stop, sim::SafeState::coast};
   static constexpr const char* fixed_keys[] = {"left_steer_joint", "right_steer_joint", "drive_joints"};
   struct Params {

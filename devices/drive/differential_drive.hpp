@@ -10,6 +10,7 @@ class DifferentialDrive final : public TwoSidedDrive {
  public:
   static constexpr const char* meaning =
       "Two driven wheels, commanded by wheel speeds, by forward speed and turn rate, or by thrust and rudder.";
+  static constexpr bool acts_alone = true;
   static constexpr const char* fixed_keys[] = {"left_joint", "right_joint"};
   struct Params {
     std::string left_joint;

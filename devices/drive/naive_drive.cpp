@@ -65,6 +65,7 @@ NaiveDrive::NaiveDrive(const Params& params, const sim::DeviceContext& context)
 
 void NaiveDrive::change(const Params& params) {
   params_ = params;
+  max_sine_ = std::sin(params_.max_pitch_rad);
   step_s_ = 0;  // recompute the shares
 }
 
@@ -101,7 +102,7 @@ double NaiveDrive::surface_over_m() const {
 
 /// Returns the desired upward speed.  `surface_m`: height of the instantaneous surface.
 double NaiveDrive::desired_climb(double surface_m) const {
-  const double z_m = p_WB_.z(), max = std::abs(speed_mps_) * std::sin(params_.max_pitch_rad);
+  const double z_m = p_WB_.z(), max = std::abs(speed_mps_) * max_sine_;
   // Reduce the rise speed near the surface.
   const double level = params_.depth_gain_per_s * std::max(0.0, surface_m - z_m);
   if (std::isnan(depth_target_m_)) {
@@ -119,14 +120,13 @@ NaiveDrive::Path NaiveDrive::path(double surface_m) {
   path.climb_mps = climb_mps_ = desired_climb(surface_m);
   if (std::abs(speed_mps_) > 1e-3) {
     const double sine = std::clamp(climb_mps_ / speed_mps_, -1.0, 1.0);
-    const double max = std::sin(params_.max_pitch_rad);
-    path.pitch_rad = std::asin(std::clamp(sine, -max, max));
+    path.pitch_rad = std::asin(std::clamp(sine, -max_sine_, max_sine_));
     path.forward_mps = speed_mps_ * std::sqrt(1 - sine * sine);
   }
   return path;
 }
 
-void NaiveDrive::act(const sim::ActContext& context) {
+[[gnu::flatten]] void NaiveDrive::act(const sim::ActContext& context) {
   const double h = context.step_s;
   // Compute the response of a step.
   if (h != step_s_) {
@@ -138,7 +138,7 @@ void NaiveDrive::act(const sim::ActContext& context) {
     turn_share_ = share(params_.turn_time_constant_s);
   }
   constexpr double moved = 1e-6;
-  if ((body_.X_WB().translation() - p_WB_).squaredNorm() > moved * moved) take_pose();
+  if ((body_.p_WB() - p_WB_).squaredNorm() > moved * moved) take_pose();
 
   check_current();
   const sim::Medium& medium = world_.medium();
@@ -153,7 +153,8 @@ void NaiveDrive::act(const sim::ActContext& context) {
   if (params_.surface) v_W.z() = 0;
   const double surface_m = params_.surface ? 0 : surface_over_m();
   const auto [forward_mps, climb_mps, pitch_rad] = path(surface_m);
-  const double cos_yaw = std::cos(yaw_rad_), sin_yaw = std::sin(yaw_rad_);
+  yaw_.turn_to(yaw_rad_);
+  const double cos_yaw = yaw_.cosine, sin_yaw = yaw_.sine;
   v_W += sim::Vector3d(forward_mps * cos_yaw, forward_mps * sin_yaw, climb_mps);
   // Integrate the position, limited by the surface.
   const double z_before_m = p_WB_.z();
@@ -163,7 +164,8 @@ void NaiveDrive::act(const sim::ActContext& context) {
     v_W.z() = (p_WB_.z() - z_before_m) / h;
   }
   // Rotation Rz(yaw) Ry(-pitch).
-  const double cos_pitch = std::cos(pitch_rad), sin_pitch = std::sin(pitch_rad);
+  pitch_.turn_to(pitch_rad);
+  const double cos_pitch = pitch_.cosine, sin_pitch = pitch_.sine;
   X_WB_.linear() << cos_yaw * cos_pitch, -sin_yaw, -cos_yaw * sin_pitch,  //
       sin_yaw * cos_pitch, cos_yaw, -sin_yaw * sin_pitch,                 //
       sin_pitch, 0, cos_pitch;

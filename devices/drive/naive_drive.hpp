@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <bit>
+#include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include "sim/vehicle/device_context.hpp"
@@ -16,6 +19,7 @@ class NaiveDrive final : public sim::Actuator {
  public:
   static constexpr const char* meaning =
       "Moves a kinematic body by speed, heading and depth, or by thrust, rudder and elevator; no forces.";
+  static constexpr bool acts_alone = true;
   static constexpr const char* example = "body: ghost";
   static constexpr sim::SafeState safe_states[] = {sim::SafeState::stop, sim::SafeState::hold};
   struct Params {
@@ -74,6 +78,18 @@ class NaiveDrive final : public sim::Actuator {
   double rudder_ = 0, elevator_ = 0;
   bool left_the_current_ = false;                         // has been reported
   double step_s_ = 0, speed_share_ = 0, turn_share_ = 0;  // share of the remaining difference covered in a step
+  double max_sine_ = 0;                                   // of the pitch
+  /// Angle with its cosine and sine, computed when the angle changes.
+  struct Turned {
+    double angle_rad = 0, cosine = 1, sine = 0;
+    void turn_to(double angle) {
+      if (std::bit_cast<std::uint64_t>(angle) == std::bit_cast<std::uint64_t>(angle_rad)) return;  // -0 is not 0 here
+      angle_rad = angle;
+      cosine = std::cos(angle);
+      sine = std::sin(angle);
+    }
+  };
+  Turned yaw_, pitch_;
   Params params_;
 };
 

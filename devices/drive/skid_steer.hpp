@@ -13,6 +13,7 @@ class SkidSteer final : public TwoSidedDrive {
  public:
   static constexpr const char* meaning =
       "Driven wheels on both sides that turn by slip, commanded as a differential drive.";
+  static constexpr bool acts_alone = true;
   static constexpr const char* fixed_keys[] = {"left_joints", "right_joints"};
   struct Params {
     std::vector<std::string> left_joints;

@@ -12,6 +12,7 @@ namespace devices {
 class Ahrs final : public sim::Sensor {
  public:
   static constexpr const char* meaning = "Orientation with small errors of tilt and heading, rates and accelerations.";
+  static constexpr bool measures_alone = true;
   static constexpr double default_rate_hz = 50;
   struct Params {
     sim::NoiseParams tilt_noise;     ///< rotation about east and about north, rad

@@ -14,6 +14,7 @@ namespace devices {
 class Compass final : public sim::Sensor {
  public:
   static constexpr const char* meaning = "Magnetic heading and field, with hard and soft iron.";
+  static constexpr bool measures_alone = true;
   static constexpr double default_rate_hz = 10;
   enum class TiltCompensation { none, ideal, accelerometer };
   struct Params {

@@ -10,6 +10,7 @@ namespace devices {
 class Imu final : public sim::Sensor {
  public:
   static constexpr const char* meaning = "Gyros and accelerometers with the errors of a data sheet.";
+  static constexpr bool measures_alone = true;
   static constexpr double default_rate_hz = 100;
   struct Params {
     std::string preset = "ideal";

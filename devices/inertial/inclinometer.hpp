@@ -19,6 +19,7 @@ Tilt tilt_of(const sim::Vector3d& up_S);
 class Inclinometer final : public sim::Sensor {
  public:
   static constexpr const char* meaning = "Roll and pitch from the specific force, so it errs while accelerated.";
+  static constexpr bool measures_alone = true;
   static constexpr double default_rate_hz = 10;
   struct Params {
     bool ideal = false;

@@ -12,6 +12,7 @@ namespace devices {
 class BodyWrench final : public sim::Actuator {
  public:
   static constexpr const char* meaning = "Force and torque on the body in the device's frame, at its origin.";
+  static constexpr bool acts_alone = true;
   struct Params {
     sim::Vector3d force_max_N = sim::Vector3d::Constant(1000);
     sim::Vector3d torque_max_Nm = sim::Vector3d::Constant(1000);

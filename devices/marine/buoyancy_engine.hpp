@@ -13,6 +13,7 @@ class BuoyancyEngine final : public sim::Actuator {
  public:
   static constexpr const char* meaning =
       "Changes the displaced volume; commanded by volume in m^3, or by a fraction (-1 to 1) of its limits.";
+  static constexpr bool acts_alone = true;
   static constexpr sim::SafeState safe_states[] = {sim::SafeState::hold, sim::SafeState::park, sim::SafeState::stop};
   static constexpr const char* fixed_keys[] = {"initial_m3"};
   /// Unit of a command: m^3, or a fraction of the limits.

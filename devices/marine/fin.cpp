@@ -62,7 +62,7 @@ void Fin::set_command(double angle_rad) {
   command_ = std::clamp(angle_rad, -params_.limit_rad, params_.limit_rad);
 }
 
-void Fin::act(const sim::ActContext& context) {
+[[gnu::flatten]] void Fin::act(const sim::ActContext& context) {
   // The effectiveness acts on the servo only; hydrodynamic forces act on a stuck fin too.
   const double h = context.effectiveness * context.step_s;
   const double angle =
@@ -87,11 +87,12 @@ void Fin::act(const sim::ActContext& context) {
 }
 
 void Fin::lift_locally(const WaterFlow& flow, double angle_rad, double scale, double step_s) {
-  const double square = flow.v_D.x() * flow.v_D.x() + flow.v_D.y() * flow.v_D.y();
+  const sim::Vector3d v_D = mount_.v_D(flow);
+  const double square = v_D.x() * v_D.x() + v_D.y() * v_D.y();
   if (square < 1e-12) return;
   const double speed = std::sqrt(square);
   const double pressure = 0.5 * params_.density_kgpm3.value_or(flow.density_kgpm3) * square * params_.area_m2 * scale;
-  const Eigen::Vector2d force = pressure * foil_.force(flow.v_D.x() / speed, flow.v_D.y() / speed, angle_rad);
+  const Eigen::Vector2d force = pressure * foil_.force(v_D.x() / speed, v_D.y() / speed, angle_rad);
   const double bound = std::min(1.0, mount_.max_force_N(speed, step_s) / force.norm());
   mount_.add_force_D(flow, {bound * force.x(), bound * force.y(), 0});
 }

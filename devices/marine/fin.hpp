@@ -35,6 +35,7 @@ class Fin final : public sim::Actuator {
  public:
   static constexpr const char* meaning =
       "Rudder or plane that turns about z of its frame; commanded by its angle in rad.";
+  static constexpr bool acts_alone = true;
   static constexpr sim::SafeState safe_states[] = {sim::SafeState::stop, sim::SafeState::hold};
   /// Force model: foil, or published coefficients.
   enum class Model { lift, coefficients };
@@ -44,10 +45,10 @@ class Fin final : public sim::Actuator {
     Model model = Model::lift;
     Flow flow = Flow::local;
     double area_m2 = 0.01;
-    FoilParams foil;
     std::optional<double> density_kgpm3;
-    std::optional<FinCoefficients> coefficients;
     double limit_rad = sim::degrees_to_radians(30);
+    FoilParams foil;
+    std::optional<FinCoefficients> coefficients;
     std::optional<double> rate_limit_degps;
     LagParams lag;
     void read(sim::ParamReader& in);
@@ -70,13 +71,14 @@ class Fin final : public sim::Actuator {
   void lift_by_speed_of_body(const WaterFlow& flow, double angle_rad, double scale, double step_s);
   void act_as_published(const WaterFlow& flow, double angle_rad, double scale, double step_s);
 
-  Params params_;
-  WaterMount mount_;
-  Lag lag_;
+  // Members of each step together.
   double command_ = 0;
   double span_m_ = 0;
   double max_coefficient_ = 1;  // norm of force or moment per rad and (m/s)^2
+  Lag lag_;
+  WaterMount mount_;
   Foil foil_;
+  Params params_;
 };
 
 }  // namespace devices

@@ -26,15 +26,15 @@ struct FoilParams {
 /// Forces on a foil.
 class Foil {
  public:
-  explicit Foil(const FoilParams& params) : params_(params), slope_(params.slope()) {}
+  explicit Foil(const FoilParams& params) : slope_(params.slope()), params_(params) {}
   double slope() const { return slope_; }
   /// Returns the force divided by dynamic pressure and area.  The foil moves through the fluid along the unit vector
   /// (mx, my); `angle_rad` is the angle of its chord from x towards y.
   Eigen::Vector2d force(double mx, double my, double angle_rad) const;
 
  private:
-  FoilParams params_;
   double slope_;
+  FoilParams params_;
 };
 
 }  // namespace devices

@@ -17,6 +17,7 @@ class Sail final : public sim::Actuator {
  public:
   static constexpr const char* meaning =
       "Sail in the apparent wind; commanded by the angle in rad that its sheet allows.";
+  static constexpr bool acts_alone = true;
   static constexpr sim::SafeState safe_states[] = {sim::SafeState::stop, sim::SafeState::hold};
   static constexpr const char* fixed_keys[] = {"initial_deg"};
   struct Params {

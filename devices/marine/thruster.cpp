@@ -141,12 +141,13 @@ Thruster::Effort Thruster::effort_of(double level, double inflow_mps, double den
 
 double Thruster::inflow_mps(const WaterFlow& flow) const {
   const double share = 1 - params_.wake_fraction;
-  if (params_.inflow == Inflow::water) return share * flow.v_D.x();
+  if (params_.inflow == Inflow::water) return share * mount_.v_D(flow).x();
   if (params_.inflow == Inflow::water_speed) return share * (flow.body.v_WB_W - flow.water_W).norm();
   return share * flow.body.v_WB_W.norm();
 }
 
-void Thruster::act(const sim::ActContext& context) {
+// Flattened, as other functions of each step: otherwise small functions of Eigen are calls.
+[[gnu::flatten]] void Thruster::act(const sim::ActContext& context) {
   const double level = lag_.follow_through(command_, context.step_s);
   thrust_N_ = power_W_ = 0;
   if (context.effectiveness == 0 || level == 0) return;

@@ -25,6 +25,7 @@ class Thruster final : public sim::Actuator {
  public:
   static constexpr const char* meaning =
       "Propeller that pushes along +x of its frame; commanded by rpm, rad/s, effort (-1 to 1) or thrust.";
+  static constexpr bool acts_alone = true;
   /// Unit of a command.
   enum class Command { effort, rpm, radps, thrust_N };
   /// Model of the thrust at a level.
@@ -82,13 +83,14 @@ class Thruster final : public sim::Actuator {
   double thrust_in_table(double level) const;
   double turns_per_second(double level) const;
 
-  Params params_;
-  WaterMount mount_;
-  Lag lag_;
+  // Members of each step together.
   double command_ = 0;  // after limits and dead band
   double thrust_N_ = 0;
   double power_W_ = 0;
   double full_thrust_N_ = 0;
+  Lag lag_;
+  WaterMount mount_;
+  Params params_;
 };
 
 }  // namespace devices

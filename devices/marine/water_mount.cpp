@@ -5,20 +5,6 @@
 
 namespace devices {
 
-WaterFlow WaterMount::flow() const {
-  WaterFlow flow;
-  const sim::BodyInWater& around = world_.hydrodynamics().around(body_);
-  if (!around.known) return flow_without_cache();
-  flow.body = around.motion;
-  flow.p_WD = around.motion.p_WB + around.motion.R_WB * p_BD_;
-  flow.density_kgpm3 = around.water.density_kgpm3;
-  flow.depth_m = around.water.surface_m - flow.p_WD.z();
-  flow.water_W = around.water.velocity_W;
-  const sim::Vector3d v_B = around.v_B + around.w_B.cross(p_BD_);
-  flow.v_D = turned_ ? sim::Vector3d(R_BD_.transpose() * v_B) : v_B;
-  return flow;
-}
-
 double WaterMount::mass_at(const sim::Body& body, const sim::Vector3d& p_BD) {
   if (!(body.mass_kg() > 0)) return 0;
   const double smallest_inertia = Eigen::SelfAdjointEigenSolver<sim::Matrix3d>(body.inertia_C_B()).eigenvalues()[0];
@@ -35,7 +21,7 @@ WaterFlow WaterMount::flow_without_cache() const {
   flow.density_kgpm3 = water.density_kgpm3;
   flow.depth_m = water.surface_m - flow.p_WD.z();
   flow.water_W = water.velocity_W;
-  flow.v_D = in_D(flow, flow.body.v_WB_W + flow.body.w_WB_W.cross(lever_W) - flow.water_W);
+  flow.v_B = flow.body.R_WB.transpose() * (flow.body.v_WB_W + flow.body.w_WB_W.cross(lever_W) - flow.water_W);
   return flow;
 }
 

@@ -11,7 +11,7 @@ namespace devices {
 struct WaterFlow {
   sim::BodyMotion body;
   sim::Vector3d p_WD;        ///< origin of the device frame
-  sim::Vector3d v_D;         ///< velocity through the water, in D, m/s
+  sim::Vector3d v_B;         ///< its velocity through the water, in axes of the body, m/s
   sim::Vector3d water_W;     ///< velocity of the water at the body, m/s
   double depth_m = 0;        ///< depth of the origin below the surface
   double density_kgpm3 = 0;  ///< density of the water; 0 in a world without water
@@ -30,7 +30,22 @@ class WaterMount {
         mass_at_D_kg_(mass_at(body_, p_BD_)) {}
 
   /// Returns the flow where forces act in this step.
-  WaterFlow flow() const;
+  WaterFlow flow() const {
+    WaterFlow flow;
+    const sim::BodyInWater& around = world_.hydrodynamics().around(body_);
+    if (!around.known) return flow_without_cache();
+    flow.body = around.motion;
+    flow.p_WD = around.motion.p_WB + around.motion.R_WB * p_BD_;
+    flow.density_kgpm3 = around.water.density_kgpm3;
+    flow.depth_m = around.water.surface_m - flow.p_WD.z();
+    flow.water_W = around.water.velocity_W;
+    flow.v_B = around.v_B + around.w_B.cross(p_BD_);
+    return flow;
+  }
+  /// Returns the velocity of D through the water, in D, m/s.
+  sim::Vector3d v_D(const WaterFlow& flow) const {
+    return turned_ ? sim::Vector3d(R_BD_.transpose() * flow.v_B) : flow.v_B;
+  }
   /// Rotates a vector from W to D.
   sim::Vector3d in_D(const WaterFlow& flow, const sim::Vector3d& v_W) const {
     const sim::Vector3d v_B = flow.body.R_WB.transpose() * v_W;

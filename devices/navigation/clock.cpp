@@ -17,7 +17,8 @@ void Clock::measure(const sim::SenseContext& context) {
   reading_.since_fix_s = clock_.since_fix_s(context.now);
   reading_.estimated_std_s = clock_.estimated_std_s(context.now);
   reading_.error_s = clock_.error_s(context.now);
-  reading_.rate_error = context.dt_s > 0 ? (reading_.error_s - last_error_s_) / context.dt_s : clock_.rate_error();
+  reading_.rate_error =
+      context.dt_s > 0 ? (reading_.error_s - last_error_s_) / context.dt_s : clock_.rate_error(context.now);
   last_error_s_ = reading_.error_s;
 }
 

@@ -11,6 +11,7 @@ namespace devices {
 class Pressure final : public sim::Sensor {
  public:
   static constexpr const char* meaning = "Pressure sensor: absolute pressure, depth, temperature.";
+  static constexpr bool measures_alone = true;
   static constexpr double default_rate_hz = 10;
   struct Params {
     DepthFormula depth;

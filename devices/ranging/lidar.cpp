@@ -50,21 +50,37 @@ void Lidar::change(const Params& params) {
   const int gaps = full_circle ? params.beams : params.beams - 1;
   fan_.step_rad = gaps > 0 ? params.fov_rad / gaps : 0.0;
 
-  // Directions of all rays.
-  directions_S_.clear();
+  rays_per_beam_ = receiver_.beam_pattern().size();
+  // Directions of all rays, where the axes of the beams and their ranges are not all that matters.
+  directions_S_ = {};
+  if (rays_per_beam_ == 1 && ranges_suffice()) {
+    returns_.intensities = std::vector<double>();  // without its memory, which `= {}` would keep
+    return;
+  }
+  directions_S_.reserve(beams * rays_per_beam_);
   for (std::size_t i = 0; i < beams; ++i) {
     const double angle_rad = fan_.first_angle_rad + static_cast<double>(i) * fan_.step_rad;
     const double c = std::cos(angle_rad), s = std::sin(angle_rad);
     for (const sim::Vector3d& d : receiver_.beam_pattern())
       directions_S_.emplace_back(c * d.x() - s * d.y(), s * d.x() + c * d.y(), d.z());
   }
-  hits_.assign(directions_S_.size(), {});
-  rays_.assign(receiver_.beam_pattern().size() > 1 ? directions_S_.size() : 0, {});
+}
+
+/// Returns whether the ranges follow directly from the hits, without material effects.
+bool Lidar::ranges_suffice() const {
+  return !params_.intensities && receiver_.sees_all();
+}
+
+/// Returns memory for the hits of a scan, which all lidars of a thread share.
+std::span<sim::RayHit> Lidar::hits() const {
+  static thread_local std::vector<sim::RayHit> all;
+  all.resize(static_cast<std::size_t>(rays()));
+  return all;
 }
 
 void Lidar::measure(const sim::SenseContext& context) {
   digest_.renew();
-  if (rays_.empty())
+  if (rays_per_beam_ == 1)
     measure_axes(context);
   else
     measure_beams(context);
@@ -72,27 +88,29 @@ void Lidar::measure(const sim::SenseContext& context) {
 
 void Lidar::measure_axes(const sim::SenseContext& context) {
   fan_.X_WS = context.X_WS;
-  context.world.scene().cast_fan(fan_, receiver_.filter(), hits_);
-  // Without material effects the ranges follow directly from the hits.
-  if (!params_.intensities && receiver_.sees_all()) {
-    for (std::size_t i = 0; i < hits_.size(); ++i) {
-      returns_.ranges_m[i] = std::clamp(hits_[i].range_m, params_.laser.range_min_m, params_.laser.range_max_m);
-      returns_.returned[i] = hits_[i].hit();
+  const std::span<sim::RayHit> hits = this->hits();
+  context.world.scene().cast_fan(fan_, receiver_.filter(), hits);
+  if (ranges_suffice()) {
+    for (std::size_t i = 0; i < hits.size(); ++i) {
+      returns_.ranges_m[i] = std::clamp(hits[i].range_m, params_.laser.range_min_m, params_.laser.range_max_m);
+      returns_.returned[i] = hits[i].hit();
     }
     return;
   }
-  for (std::size_t i = 0; i < hits_.size(); ++i)
-    receiver_.receive(hits_[i], context.X_WS.linear() * directions_S_[i], returns_, i);
+  for (std::size_t i = 0; i < hits.size(); ++i)
+    receiver_.receive(hits[i], context.X_WS.linear() * directions_S_[i], returns_, i);
 }
 
 void Lidar::measure_beams(const sim::SenseContext& context) {
-  for (std::size_t k = 0; k < rays_.size(); ++k)
-    rays_[k] = {context.X_WS.translation(), context.X_WS.linear() * directions_S_[k], params_.laser.range_max_m};
-  context.world.scene().cast(rays_, receiver_.filter(), hits_);
-  const std::size_t samples = receiver_.beam_pattern().size();
+  static thread_local std::vector<sim::Ray> rays;
+  rays.resize(directions_S_.size());
+  const std::span<sim::RayHit> hits = this->hits();
+  for (std::size_t k = 0; k < rays.size(); ++k)
+    rays[k] = {context.X_WS.translation(), context.X_WS.linear() * directions_S_[k], params_.laser.range_max_m};
+  context.world.scene().cast(rays, receiver_.filter(), hits);
+  const std::size_t samples = rays_per_beam_;
   for (std::size_t i = 0; i < returns_.size(); ++i)
-    receiver_.receive(std::span(hits_).subspan(i * samples, samples), std::span(rays_).subspan(i * samples, samples),
-                      returns_, i);
+    receiver_.receive(hits.subspan(i * samples, samples), std::span(rays).subspan(i * samples, samples), returns_, i);
 }
 
 void Lidar::disturb(double dt_s, sim::Random& random) {

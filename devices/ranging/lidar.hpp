@@ -36,7 +36,7 @@ class Lidar final : public sim::Sensor {
     view.to_rad = fan_.first_angle_rad + (fan_.count - 1) * fan_.step_rad;
     return view;
   }
-  std::int64_t rays() const override { return static_cast<std::int64_t>(hits_.size()); }
+  std::int64_t rays() const override { return static_cast<std::int64_t>(returns_.size() * rays_per_beam_); }
   void visit_state(sim::StateArchive& archive) override;
 
   /// Returns ranges from right to left; range_max_m without a return, range_min_m for closer hits.
@@ -47,6 +47,8 @@ class Lidar final : public sim::Sensor {
   double step_rad() const { return fan_.step_rad; }
 
  private:
+  bool ranges_suffice() const;
+  std::span<sim::RayHit> hits() const;
   void measure_axes(const sim::SenseContext& context);
   void measure_beams(const sim::SenseContext& context);
 
@@ -55,9 +57,8 @@ class Lidar final : public sim::Sensor {
   LaserReceiver receiver_;
   LaserReturns returns_;
   ReadingDigest digest_;
-  std::vector<sim::Vector3d> directions_S_;  ///< of the beams, or of all rays that sample them
-  std::vector<sim::Ray> rays_;
-  std::vector<sim::RayHit> hits_;
+  std::size_t rays_per_beam_ = 1;
+  std::vector<sim::Vector3d> directions_S_;  ///< of all rays; empty when they are those of the fan
 };
 
 }  // namespace devices

@@ -100,6 +100,11 @@ void AcousticChannel::discard_messages_for(const Audience& removed) {
   if (!is_used) group->second.erase(removed.address);
 }
 
+void AcousticChannel::discard_places() {
+  neighbours_age_ = -1;
+  ahead_.clear();
+}
+
 void AcousticChannel::clear_receivers() {
   min_levels_.clear();
   discard_places();
@@ -244,6 +249,12 @@ void AcousticChannel::set_receiver(Flight& flight, const Transducer* to) {
   flight.to_join = to != nullptr ? to->join_ : 0;
 }
 
+void AcousticChannel::begin_handling(Time now) {
+  if (now != step_end_) ++polls_;
+  step_end_ = now;
+  handling_ = true;
+}
+
 /// Loads the flight of a later event into the cache: with many signals in transit, consecutive ones are far apart in
 /// memory.
 void AcousticChannel::fetch_ahead() const {
@@ -256,9 +267,7 @@ void AcousticChannel::fetch_ahead() const {
 }
 
 void AcousticChannel::handle(const Event& event, Time now) {
-  if (now != step_end_) ++polls_;
-  step_end_ = now;
-  handling_ = true;
+  begin_handling(now);
   fetch_ahead();
   const int item = static_cast<int>(event.stamp.count());
   // Dispatch by the kind of event.
@@ -419,13 +428,18 @@ void AcousticChannel::follow_ray(Arrival& arrival, const Sending& sending, const
   }
 }
 
+std::optional<Arrival> AcousticChannel::arrival_at(const Transducer& to, const Sending& sending) const {
+  auto arrival = meeting(around_.medium, sending.p_W, sending.sent, to.p_W(step_end_), step_end_, to.v_W());
+  if (arrival && propagation_.bends()) follow_ray(*arrival, sending, to.v_W());
+  return arrival;
+}
+
 void AcousticChannel::approach(int number, Time due) {
   Flight& flight = flights_[static_cast<std::size_t>(number)];
   if (const Transducer* const to = receiver_of(flight)) {
     const Sending& sending = *sendings_[static_cast<std::size_t>(flight.sending)];
-    // Extrapolate the receiver at constant velocity.
-    auto arrival = meeting(around_.medium, sending.p_W, sending.sent, to->p_W(step_end_), step_end_, to->v_W());
-    if (arrival && propagation_.bends()) follow_ray(*arrival, sending, to->v_W());
+    const Ahead* const ahead = take_ahead(flight, near_event);
+    const std::optional<Arrival> arrival = ahead != nullptr ? ahead->arrival : arrival_at(*to, sending);
     if (arrival) {
       flight.travel_time_s = arrival->travel_time_s;
       flight.started = std::max(due, sending.sent + from_seconds(arrival->travel_time_s));

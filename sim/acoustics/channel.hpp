@@ -24,6 +24,8 @@
 
 namespace sim {
 
+class ThreadPool;
+
 /// Parts of the world that the channel uses.
 struct AcousticSurroundings {
   const Medium& medium;
@@ -50,12 +52,15 @@ class AcousticChannel {
 
   const AcousticsConfig& config() const { return config_; }
   bool has_water() const { return around_.medium.has_water(); }
-  /// Handles an event of the channel; `now` is the end of the step that just ended.
+  /// Computes paths and levels of the signals whose events are due at `now`, the end of the step that just ended, in
+  /// the threads of a pool; null, or few signals: none.  handle() uses them, and has the same results without.
+  void look_ahead(Time now, ThreadPool* threads);
+  /// Handles an event of the channel; `now` as above.
   void handle(const Event& event, Time now);
   /// Sets an observer of all signals; null: none.  It must outlive the channel or be removed.
   void set_observer(SoundObserver* observer) { observer_ = observer; }
   /// Discards the list of neighbours.  Call after a transducer was moved.
-  void discard_places() { neighbours_age_ = -1; }
+  void discard_places();
   /// Discards the minimum signal levels and the list of neighbours.  Call after a receiver changed.
   void clear_receivers();
   /// Number of messages sent to this address, since the last transducer with it was removed, or to its whole group
@@ -80,6 +85,8 @@ class AcousticChannel {
   const Propagation& propagation() const { return propagation_; }
   /// Number of receptions since the start, successful or not: a measure of the work.
   std::int64_t flights() const { return flights_made_; }
+  /// Number of events whose paths or levels look_ahead() computed, since the start.
+  std::int64_t looked_ahead() const { return looked_ahead_; }
   /// Number of transducers examined in the search for receivers, since the start.
   std::int64_t examined() const { return examined_; }
   /// Visits the state, including transducers and continuous sounds; their devices do not visit them.
@@ -127,7 +134,27 @@ class AcousticChannel {
     bool bent = false;                        // arrives_W is that of a ray
     Vector3d arrives_W = Vector3d::Zero();    // unit vector along the sound at the receiver
     double lock_later_s = 0;                  // delay of the echo that the receiver takes for the first arrival
+    int ahead = -1;                           // number in `ahead_`, while events are handled
     void visit_state(StateArchive& archive);  // except `to`
+  };
+
+  /// Strength of a signal at a receiver, by paths and directivity.
+  struct Level {
+    Decibels level{0};
+    PowerRatio disturbing;  // of interfering echoes, re 1 uPa^2
+    Time ended{0};
+    double closing_mps = 0;
+    double later_s = 0;  // delay of the first arrival when it is an echo
+    bool bent = false, shadow = false, blocked = false;
+    Vector3d arrives_W = Vector3d::Zero();
+    std::vector<Propagation::Gain::Echo> echoes;
+  };
+  /// What look_ahead() found for a flight: the arrival for near_event, the level for start_event.
+  struct Ahead {
+    int flight = -1;
+    int kind = 0;  // of its event
+    std::optional<Arrival> arrival;
+    Level level;
   };
 
   /// Add and remove transducers and continuous sounds.
@@ -147,6 +174,7 @@ class AcousticChannel {
     return to != nullptr && to->join_ == flight.to_join ? to : nullptr;
   }
   static void set_receiver(Flight& flight, const Transducer* to);
+  void begin_handling(Time now);
   void fetch_ahead() const;
   void emit(int sending, Time now);
   void send_to(int sending, Transducer& to);
@@ -158,6 +186,11 @@ class AcousticChannel {
   /// Schedules the early end at a receiver, unless the signal ends before.
   void schedule_silence(int flight, const Sending& sending, Time now);
   void follow_ray(Arrival& arrival, const Sending& sending, const Vector3d& velocity_W) const;
+  /// Arrival at a receiver that moves on at constant velocity; empty: it is faster than sound.
+  std::optional<Arrival> arrival_at(const Transducer& to, const Sending& sending) const;
+  /// Takes what look_ahead() found for an event of this kind; null: nothing.
+  Ahead* take_ahead(Flight& flight, EventKind kind);
+  void find_ahead(Ahead& ahead) const;
   void approach(int flight, Time due);
   void begin(int flight);
   void fall_silent(int flight, Time due);
@@ -174,10 +207,8 @@ class AcousticChannel {
   void report_sent(const Sending& sending) const;
   void report_beyond_range(const Sending& sending, double reach_m) const;
   void report_arrival(const Flight& flight, const Sending& sending, const Transducer& to) const;
-  /// Computes level, end and Doppler of a flight.  Returns the power of interfering echoes, re 1 uPa^2. `later_s`:
-  /// delay of the first arrival when it is an echo.
-  PowerRatio compute_level(Flight& flight, const Sending& sending, double& later_s,
-                           std::vector<Propagation::Gain::Echo>& echoes);
+  /// Computes the level of a flight at its receiver, which is at `p_W` when it starts.
+  Level level_at(const Transducer& to, const Vector3d& p_W, const Flight& flight, const Sending& sending) const;
   /// Reason why a signal cannot be decoded, independent of other signals.
   SignalLoss obstacle(const Flight& flight) const;
   /// Draws whether the receiver takes an echo for the first arrival.
@@ -226,6 +257,8 @@ class AcousticChannel {
   Transducer::Counts removed_;
   std::vector<ShadowLoss> shadow_losses_;
   std::vector<int> near_;
+  std::vector<Ahead> ahead_;
+  std::int64_t looked_ahead_ = 0;
 };
 
 }  // namespace sim

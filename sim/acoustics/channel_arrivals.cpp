@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cmath>
+#include <utility>
 
 #include "sim/acoustics/channel.hpp"
 #include "sim/acoustics/sound_path.hpp"
+#include "sim/base/thread_pool.hpp"
 #include "sim/device/fault.hpp"
 
-// Reception of signals at their receivers.
+// Reception of signals at their receivers, and what threads compute of it before the events of a step are handled.
 
 namespace sim {
 
@@ -63,36 +65,35 @@ Random AcousticChannel::stream(const Transducer& to, const Sending& sending, boo
   return random;
 }
 
-PowerRatio AcousticChannel::compute_level(Flight& flight, const Sending& sending, double& later_s,
-                                          std::vector<Propagation::Gain::Echo>& echoes) {
-  const Transducer& to = *receiver_of(flight);
+AcousticChannel::Level AcousticChannel::level_at(const Transducer& to, const Vector3d& p_W, const Flight& flight,
+                                                 const Sending& sending) const {
+  Level at;
   const Signal& signal = sending.signal;
   // Path gain.
   Random random = propagation_.draws() ? stream(to, sending, false) : Random(0, {});
-  Propagation::Gain gain =
-      propagation_.gain(sending.p_W, sending.group, flight.p_started_W, to.group(), signal.centre_Hz, random);
+  Propagation::Gain gain = propagation_.gain(sending.p_W, sending.group, p_W, to.group(), signal.centre_Hz, random);
   // Directions of the sound at both ends: those of its ray, or of the straight line.
-  const Vector3d displacement_W = flight.p_started_W - sending.p_W;
+  const Vector3d displacement_W = p_W - sending.p_W;
   const double range_m = displacement_W.norm();
   const Vector3d direction_W = range_m > 0 ? Vector3d(displacement_W / range_m) : Vector3d(Vector3d::UnitX());
   const Vector3d leaves_W = gain.first ? gain.first->leaves_W : direction_W;
   const Vector3d arrives_W = gain.first ? gain.first->arrives_W : direction_W;
-  flight.bent = gain.first.has_value();
-  flight.shadow = gain.first && gain.first->shadow;
-  flight.arrives_W = arrives_W;
+  at.bent = gain.first.has_value();
+  at.shadow = gain.first && gain.first->shadow;
+  at.arrives_W = arrives_W;
   // Doppler and end of the signal.
   const Vector3d v_to_W = to.v_W();
-  const double c = around_.medium.sound_speed_mps(flight.p_started_W);
+  const double c = around_.medium.sound_speed_mps(p_W);
   double squeezed;
-  if (flight.bent) {
-    flight.closing_mps = leaves_W.dot(sending.v_W) - arrives_W.dot(v_to_W);
+  if (at.bent) {
+    at.closing_mps = leaves_W.dot(sending.v_W) - arrives_W.dot(v_to_W);
     const double c_from = around_.medium.sound_speed_mps(sending.p_W);
     squeezed = (1 - arrives_W.dot(v_to_W) / c) / (1 - leaves_W.dot(sending.v_W) / c_from);
   } else {
-    flight.closing_mps = closing_speed_mps(direction_W, sending.v_W, v_to_W);
+    at.closing_mps = closing_speed_mps(direction_W, sending.v_W, v_to_W);
     squeezed = doppler_factor(direction_W, sending.v_W, v_to_W, c);
   }
-  flight.ended = flight.started + from_seconds(to_seconds(signal.duration) / squeezed);
+  at.ended = flight.started + from_seconds(to_seconds(signal.duration) / squeezed);
 
   // Losses of the link.
   double loss_probability = 0;
@@ -104,11 +105,12 @@ PowerRatio AcousticChannel::compute_level(Flight& flight, const Sending& sending
   };
   add_beam(sending.directivity, [&] { return Vector3d(sending.R_WS.transpose() * leaves_W); });
   add_beam(to.config().directivity, [&] { return Vector3d(-(to.R_WS().transpose() * arrives_W)); });
-  flight.level = level + gain.signal;
-  later_s = gain.later_s;
-  echoes = std::move(gain.echoes);
-  if (gain.blocked && gain.signal.dB() < lowest_dB) flight.loss = SignalLoss::blocked;
-  return gain.disturbing.linear() > 0 ? to_power(level) * gain.disturbing : PowerRatio{};
+  at.level = level + gain.signal;
+  at.later_s = gain.later_s;
+  at.echoes = std::move(gain.echoes);
+  at.blocked = gain.blocked && gain.signal.dB() < lowest_dB;
+  if (gain.disturbing.linear() > 0) at.disturbing = to_power(level) * gain.disturbing;
+  return at;
 }
 
 SignalLoss AcousticChannel::obstacle(const Flight& flight) const {
@@ -169,14 +171,20 @@ void AcousticChannel::begin(int number) {
     end(number);
     return;
   }
-  double later_s = 0;
-  std::vector<Propagation::Gain::Echo> echoes;
-  const PowerRatio disturbing = compute_level(flight, sending, later_s, echoes);
-  if (later_s > 0 && !flight.delayed) {
+  Ahead* const ahead = take_ahead(flight, start_event);
+  const Level found = ahead != nullptr ? std::move(ahead->level) : level_at(to, p_W, flight, sending);
+  flight.level = found.level;
+  flight.ended = found.ended;
+  flight.closing_mps = found.closing_mps;
+  flight.bent = found.bent;
+  flight.shadow = found.shadow;
+  flight.arrives_W = found.arrives_W;
+  if (found.blocked) flight.loss = SignalLoss::blocked;
+  if (found.later_s > 0 && !flight.delayed) {
     // The direct path is blocked: the first arrival is an echo.
     flight.delayed = true;
-    flight.travel_time_s += later_s;
-    flight.started += from_seconds(later_s);
+    flight.travel_time_s += found.later_s;
+    flight.started += from_seconds(found.later_s);
     schedule(flight.started, start_event, number);
     return;
   }
@@ -185,11 +193,11 @@ void AcousticChannel::begin(int number) {
   flight.present = flight.loss == SignalLoss::none && around_.medium.in_water(flight.p_started_W);
   const PowerRatio power = to_power(flight.level);
   if (flight.present)
-    to.receiver_.begin({number, sending.signal.centre_Hz, sending.signal.bandwidth_Hz, power + disturbing, flight.ended,
-                        sending.signal.kind == Signal::Kind::message},
+    to.receiver_.begin({number, sending.signal.centre_Hz, sending.signal.bandwidth_Hz, power + found.disturbing,
+                        flight.ended, sending.signal.kind == Signal::Kind::message},
                        flight.started);
-  if (flight.listened) take(number, flight, sending, power, disturbing);
-  if (flight.detected && !echoes.empty()) lock(flight, sending, echoes);
+  if (flight.listened) take(number, flight, sending, power, found.disturbing);
+  if (flight.detected && !found.echoes.empty()) lock(flight, sending, found.echoes);
   schedule(flight.ended, end_event, number);
   if (flight.present && sending.cut != SignalLoss::none) schedule_silence(number, sending, flight.started);
 }
@@ -280,6 +288,56 @@ void AcousticChannel::end(int number) {
   free_flights_.push_back(number);
   flights_[static_cast<std::size_t>(number)] = {};
   release(of);
+}
+
+void AcousticChannel::look_ahead(Time now, ThreadPool* threads) {
+  // A restored world may have fewer flights.
+  for (const Ahead& done : ahead_)
+    if (const auto number = static_cast<std::size_t>(done.flight); number < flights_.size())
+      flights_[number].ahead = -1;
+  ahead_.clear();
+  if (threads == nullptr || threads->threads() == 1 || !around_.physics.scene().concurrent()) return;
+  // Collect the signals, and what the functions below would otherwise cache while they run.
+  begin_handling(now);
+  around_.events.for_each_due(now, [&](const Time& item, int device, int kind) {
+    const auto number = static_cast<std::size_t>(item.count());
+    if (device != Event::of_acoustics || (kind != near_event && kind != start_event) || number >= flights_.size())
+      return;
+    const Transducer* const to = receiver_of(flights_[number]);
+    if (to == nullptr) return;
+    to->motion();
+    ahead_.push_back({static_cast<int>(number), kind, {}, {}});
+  });
+  if (ahead_.size() < min_shared) {
+    ahead_.clear();
+  } else {
+    looked_ahead_ += static_cast<std::int64_t>(ahead_.size());
+    const bool casts = config_.occlusion || config_.multipath || propagation_.bends();
+    if (casts) around_.physics.scene().prepare();
+    for_each_block(threads, ahead_.size(), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) find_ahead(ahead_[i]);
+    });
+    for (std::size_t i = 0; i < ahead_.size(); ++i)
+      flights_[static_cast<std::size_t>(ahead_[i].flight)].ahead = static_cast<int>(i);
+  }
+  handling_ = false;
+}
+
+void AcousticChannel::find_ahead(Ahead& ahead) const {
+  const Flight& flight = flights_[static_cast<std::size_t>(ahead.flight)];
+  const Sending& sending = *sendings_[static_cast<std::size_t>(flight.sending)];
+  const Transducer& to = *receiver_of(flight);
+  if (ahead.kind == near_event)
+    ahead.arrival = arrival_at(to, sending);
+  else
+    ahead.level = level_at(to, to.p_W(flight.started), flight, sending);
+}
+
+AcousticChannel::Ahead* AcousticChannel::take_ahead(Flight& flight, EventKind kind) {
+  const int number = std::exchange(flight.ahead, -1);
+  if (number < 0 || static_cast<std::size_t>(number) >= ahead_.size()) return nullptr;
+  Ahead& ahead = ahead_[static_cast<std::size_t>(number)];
+  return &flights_[static_cast<std::size_t>(ahead.flight)] == &flight && ahead.kind == kind ? &ahead : nullptr;
 }
 
 void AcousticChannel::report_sent(const Sending& sending) const {

@@ -26,6 +26,7 @@ double yaw_of(const Matrix3d& R) {
 }
 
 double wrap_angle(double angle_rad) {
+  if (std::abs(angle_rad) < std::numbers::pi) return angle_rad;  // as the remainder, but without its cost
   const double wrapped = std::remainder(angle_rad, 2 * std::numbers::pi);
   return wrapped <= -std::numbers::pi ? wrapped + 2 * std::numbers::pi : wrapped;
 }

@@ -3,10 +3,14 @@
 
 #include <sys/mman.h>
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdlib>
-#include <memory_resource>
 #include <mutex>
+#include <new>
+#include <span>
+#include <utility>
 
 namespace sim {
 
@@ -33,34 +37,72 @@ void free_for_steps(void* memory, std::size_t) noexcept {
 namespace {
 
 constexpr std::size_t large_page_bytes = std::size_t{1} << 21;
+constexpr std::size_t max_bytes = 4096;  ///< larger objects are allocated separately
 
-/// Allocator of whole huge pages, which are never released.
-class LargePages final : public std::pmr::memory_resource {
-  void* do_allocate(std::size_t bytes, std::size_t) override {
-    bytes = (bytes + large_page_bytes - 1) / large_page_bytes * large_page_bytes;
+constexpr std::size_t up_to_multiple(std::size_t bytes, std::size_t of) {
+  return (bytes + of - 1) / of * of;
+}
+
+/// Memory of huge pages, which are never released.
+class LargePages {
+ public:
+  /// Returns memory for objects of one size: for as many as asked for, or for fewer at the end of the pages.
+  std::span<std::byte> take(std::size_t bytes_each, std::size_t count) {
+    if (left_.size() < bytes_each) add(bytes_each);
+    const std::span<std::byte> taken = left_.first(std::min(count, left_.size() / bytes_each) * bytes_each);
+    left_ = left_.subspan(taken.size());
+    return taken;
+  }
+
+ private:
+  void add(std::size_t min_bytes) {
+    const std::size_t bytes = up_to_multiple(std::max(min_bytes, total_bytes_ / 4), large_page_bytes);
     void* pages = std::aligned_alloc(large_page_bytes, bytes);
     if (pages == nullptr) throw std::bad_alloc();
     madvise(pages, bytes, MADV_HUGEPAGE);  // without huge pages it is ordinary memory
-    return pages;
+    left_ = {static_cast<std::byte*>(pages), bytes};
+    total_bytes_ += bytes;
   }
-  void do_deallocate(void* pages, std::size_t, std::size_t) override { std::free(pages); }
-  bool do_is_equal(const memory_resource& other) const noexcept override { return this == &other; }
+
+  std::span<std::byte> left_;
+  std::size_t total_bytes_ = 0;
 };
+
+/// Objects of one size.
+class Pool {
+ public:
+  void* allocate(LargePages& pages, std::size_t bytes) {
+    if (released_ != nullptr) return std::exchange(released_, released_->next);
+    if (fresh_.empty()) {
+      constexpr std::size_t max_together = 512;
+      fresh_ = pages.take(bytes, together_);
+      together_ = std::min(2 * together_, max_together);
+    }
+    void* const memory = fresh_.data();
+    fresh_ = fresh_.subspan(bytes);
+    return memory;
+  }
+  void release(void* memory) { released_ = new (memory) Released{released_}; }
+
+ private:
+  struct Released {
+    Released* next;
+  };
+  Released* released_ = nullptr;  // the last one first
+  std::span<std::byte> fresh_;    // not yet used
+  std::size_t together_ = 8;      // objects in the next piece
+};
+
+/// Sizes are rounded up to this, the largest alignment.
+constexpr std::size_t grain = alignof(std::max_align_t);
 
 struct Pools {
+  Pool& of(std::size_t bytes) { return by_size[bytes / grain]; }
+
   std::mutex mutex;
   LargePages pages;
-  std::pmr::monotonic_buffer_resource carved{large_page_bytes, &pages};
-  std::pmr::unsynchronized_pool_resource pools{{.max_blocks_per_chunk = 512, .largest_required_pool_block = 4096},
-                                               &carved};
+  std::array<Pool, max_bytes / grain + 1> by_size;
 };
-
-/// Rounds a size up to a multiple of the largest alignment, because the libstdc++ pools store blocks of sizes such as
-/// 24 bytes contiguously, whatever the requested alignment.
-constexpr std::size_t rounded(std::size_t bytes) {
-  constexpr std::size_t alignment = alignof(std::max_align_t);
-  return (bytes + alignment - 1) / alignment * alignment;
-}
 
 /// Exists until the end of the process: objects with static storage may be destroyed later than anything here.
 Pools& pools() {
@@ -71,14 +113,17 @@ Pools& pools() {
 }  // namespace
 
 void* allocate_for_steps(std::size_t bytes) {
+  if (bytes > max_bytes) return ::operator new(bytes);
+  bytes = up_to_multiple(std::max(bytes, std::size_t{1}), grain);
   const std::lock_guard lock(pools().mutex);
-  return pools().pools.allocate(rounded(bytes));
+  return pools().of(bytes).allocate(pools().pages, bytes);
 }
 
 void free_for_steps(void* memory, std::size_t bytes) noexcept {
   if (memory == nullptr) return;
+  if (bytes > max_bytes) return ::operator delete(memory);
   const std::lock_guard lock(pools().mutex);
-  pools().pools.deallocate(memory, rounded(bytes));
+  pools().of(up_to_multiple(std::max(bytes, std::size_t{1}), grain)).release(memory);
 }
 
 #endif

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <functional>
 #include <memory>
@@ -22,5 +23,22 @@ class ThreadPool {
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
+
+/// Number of objects, such as vehicles, below which sharing short work on them costs more than it saves: waking threads
+/// takes 5 to 20 us.
+inline constexpr std::size_t min_shared = 64;
+
+/// Calls work(begin, end) for blocks of the numbers 0 to count - 1, in the threads of a pool; as one block when
+/// `threads` is null or `count` is below min_shared.
+template <typename Work>
+void for_each_block(ThreadPool* threads, std::size_t count, const Work& work) {
+  if (threads == nullptr || threads->threads() == 1 || count < min_shared) {
+    if (count > 0) work(std::size_t{0}, count);
+    return;
+  }
+  constexpr std::size_t block = 32;
+  threads->for_each((count + block - 1) / block,
+                    [&](std::size_t i) { work(i * block, std::min(count, (i + 1) * block)); });
+}
 
 }  // namespace sim

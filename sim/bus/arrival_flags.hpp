@@ -9,7 +9,7 @@
 
 namespace sim {
 
-/// Flags of the mailboxes that may have messages: one per device, contiguous in memory.
+/// Flags of devices, such as those whose mailboxes may have messages: one per device, contiguous in memory.
 class ArrivalFlags {
  public:
   /// Returns the flag of a device by its number; it exists as long as any owner holds it.

@@ -48,6 +48,14 @@ class Mailbox {
   }
 };
 
+/// Channel of a bus that was looked up once, for many publications.  It must not outlive its bus.
+class OpenChannel {
+ public:
+  virtual ~OpenChannel() = default;
+  /// Publishes a message, as Bus::publish() does on this channel.
+  virtual void publish(std::span<const std::byte> payload, Time at) = 0;
+};
+
 struct BusCounts {
   std::uint64_t published = 0;
   std::uint64_t received = 0;
@@ -64,6 +72,8 @@ class Bus {
   virtual ~Bus() = default;
   /// Publishes a message without waiting for the network.  `at`: simulated time, recorded as its time stamp.
   virtual void publish(std::string_view channel, std::span<const std::byte> payload, Time at) = 0;
+  /// Opens a channel for publications: its name is checked and looked up only here.  Throws as open_mailbox() does.
+  virtual std::unique_ptr<OpenChannel> open_channel(const std::string& channel);
   /// Opens a new mailbox for a channel at every call.  The mailbox must not outlive the bus.  Throws
   /// std::invalid_argument for a channel name that is empty or too long.
   virtual std::unique_ptr<Mailbox> open_mailbox(const std::string& channel,

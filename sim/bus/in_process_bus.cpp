@@ -2,10 +2,10 @@
 #include "sim/bus/in_process_bus.hpp"
 
 #include <algorithm>
-#include <deque>
-#include <iterator>
 #include <stdexcept>
 #include <utility>
+
+#include "sim/bus/message_queue.hpp"
 
 namespace sim {
 
@@ -21,7 +21,7 @@ void check_channel(std::string_view channel) {
 }  // namespace
 
 struct InProcessBus::Queue {
-  std::deque<Message> messages;
+  MessageQueue messages;
   std::size_t capacity = 0;
   std::uint64_t dropped = 0;
   bool closed = false;                      ///< its mailbox was destroyed
@@ -38,26 +38,35 @@ class InProcessBus::QueueMailbox final : public Mailbox {
   QueueMailbox(const QueueMailbox&) = delete;
   QueueMailbox& operator=(const QueueMailbox&) = delete;
 
-  std::optional<Message> take() override {
-    if (queue_->messages.empty()) return std::nullopt;
-    std::optional<Message> oldest = std::move(queue_->messages.front());
-    queue_->messages.pop_front();
-    return oldest;
-  }
+  std::optional<Message> take() override { return queue_->messages.take(); }
   std::uint64_t dropped() const override { return queue_->dropped; }
   void raise_on_arrival(std::shared_ptr<std::atomic<bool>> flag) override {
     if (!queue_->messages.empty()) flag->store(true, std::memory_order_relaxed);
     queue_->flag = std::move(flag);
   }
 
-  std::vector<Message> unread() const override { return {queue_->messages.begin(), queue_->messages.end()}; }
+  std::vector<Message> unread() const override { return queue_->messages.all(); }
   void set_unread(std::vector<Message> messages) override {
-    queue_->messages.assign(std::make_move_iterator(messages.begin()), std::make_move_iterator(messages.end()));
+    queue_->messages.set(std::move(messages));
     if (queue_->flag && !queue_->messages.empty()) queue_->flag->store(true, std::memory_order_relaxed);
   }
 
  private:
   std::shared_ptr<Queue> queue_;
+};
+
+class InProcessBus::QueuesChannel final : public OpenChannel {
+ public:
+  QueuesChannel(InProcessBus& bus, std::pair<const std::string, Queues>& entry) : bus_(bus), entry_(entry) {}
+
+  void publish(std::span<const std::byte> payload, Time) override {
+    ++bus_.counts_.published;
+    if (!entry_.second.empty()) bus_.give(entry_.first, entry_.second, payload);
+  }
+
+ private:
+  InProcessBus& bus_;
+  std::pair<const std::string, Queues>& entry_;
 };
 
 InProcessBus::InProcessBus() = default;
@@ -66,18 +75,25 @@ InProcessBus::~InProcessBus() = default;
 void InProcessBus::publish(std::string_view channel, std::span<const std::byte> payload, Time) {
   check_channel(channel);
   ++counts_.published;
-  const auto found = queues_.find(channel);
-  if (found == queues_.end()) return;
-  std::erase_if(found->second, [](const auto& queue) { return queue->closed; });
-  for (const std::shared_ptr<Queue>& queue : found->second) {
-    queue->messages.push_back({found->first, Bytes(payload.begin(), payload.end()), false});
+  if (const auto found = queues_.find(channel); found != queues_.end()) give(found->first, found->second, payload);
+}
+
+void InProcessBus::give(const std::string& channel, Queues& queues, std::span<const std::byte> payload) {
+  std::erase_if(queues, [](const auto& queue) { return queue->closed; });
+  for (const std::shared_ptr<Queue>& queue : queues) {
+    queue->messages.push({channel, Bytes(payload.begin(), payload.end()), false});
     ++counts_.received;
     if (queue->flag) queue->flag->store(true, std::memory_order_relaxed);
     if (queue->messages.size() <= queue->capacity) continue;
-    queue->messages.pop_front();
+    queue->messages.take();
     ++queue->dropped;
     ++counts_.dropped_incoming;
   }
+}
+
+std::unique_ptr<OpenChannel> InProcessBus::open_channel(const std::string& channel) {
+  check_channel(channel);
+  return std::make_unique<QueuesChannel>(*this, *queues_.try_emplace(channel).first);
 }
 
 std::unique_ptr<Mailbox> InProcessBus::open_mailbox(const std::string& channel, std::size_t capacity) {

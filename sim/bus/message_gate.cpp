@@ -2,9 +2,9 @@
 #include "sim/bus/message_gate.hpp"
 
 #include <algorithm>
-#include <deque>
-#include <iterator>
 #include <utility>
+
+#include "sim/bus/message_queue.hpp"
 
 namespace sim {
 
@@ -27,29 +27,24 @@ class MessageGate::GateMailbox final : public Mailbox {
   GateMailbox(const GateMailbox&) = delete;
   GateMailbox& operator=(const GateMailbox&) = delete;
 
-  std::optional<Message> take() override {
-    if (messages_.empty()) return std::nullopt;
-    std::optional<Message> oldest = std::move(messages_.front());
-    messages_.pop_front();
-    return oldest;
-  }
+  std::optional<Message> take() override { return messages_.take(); }
   std::uint64_t dropped() const override { return dropped_; }
   void raise_on_arrival(std::shared_ptr<std::atomic<bool>> flag) override {
     if (!messages_.empty()) flag->store(true, std::memory_order_relaxed);
     flag_ = std::move(flag);
   }
-  std::vector<Message> unread() const override { return {messages_.begin(), messages_.end()}; }
+  std::vector<Message> unread() const override { return messages_.all(); }
   void set_unread(std::vector<Message> messages) override {
-    messages_.assign(std::make_move_iterator(messages.begin()), std::make_move_iterator(messages.end()));
+    messages_.set(std::move(messages));
     if (flag_ && !messages_.empty()) flag_->store(true, std::memory_order_relaxed);
   }
 
   /// Adds a message; returns false when the oldest one was dropped.
   bool add(Message message) {
-    messages_.push_back(std::move(message));
+    messages_.push(std::move(message));
     if (flag_) flag_->store(true, std::memory_order_relaxed);
     if (messages_.size() <= capacity_) return true;
-    messages_.pop_front();
+    messages_.take();
     ++dropped_;
     return false;
   }
@@ -60,7 +55,7 @@ class MessageGate::GateMailbox final : public Mailbox {
   MessageGate& gate_;
   Channel& channel_;
   const std::size_t capacity_;
-  std::deque<Message> messages_;
+  MessageQueue messages_;
   std::shared_ptr<std::atomic<bool>> flag_;  // may be null
   std::uint64_t dropped_ = 0;
 };
@@ -69,17 +64,54 @@ MessageGate::MessageGate(Bus& network) : network_(network) {}
 
 MessageGate::~MessageGate() = default;
 
-void MessageGate::publish(std::string_view channel, std::span<const std::byte> payload, Time at) {
-  if (watch_) watch_(channel, payload);
-  if (!may_be_read(channel)) return network_.publish(channel, payload, at);
+MessageGate::Channel* MessageGate::find_read(std::string_view channel) const {
+  if (!may_be_read(channel)) return nullptr;
   const auto known = by_name_.find(channel);
-  if (known == by_name_.end()) return network_.publish(channel, payload, at);
-  Channel& read = *known->second;
+  return known == by_name_.end() ? nullptr : known->second;
+}
+
+template <typename Send>
+void MessageGate::publish_read(Channel& read, std::span<const std::byte> payload, const Send& send) {
   if (has_arrivals(read)) collect_from(read);  // keeps the order of earlier messages
-  network_.publish(channel, payload, at);
+  send();
   // The network has echoed this already, and this process cannot have published in between.
   if (has_arrivals(read)) take_from(read, [](const Message& message) { return message.from_outside; });
   give(read, payload, false);
+}
+
+void MessageGate::publish(std::string_view channel, std::span<const std::byte> payload, Time at) {
+  if (watch_) watch_(channel, payload);
+  Channel* const read = find_read(channel);
+  if (read == nullptr) return network_.publish(channel, payload, at);
+  publish_read(*read, payload, [&] { network_.publish(channel, payload, at); });
+}
+
+/// Looks its readers up when they may have changed since its last publication.
+class MessageGate::GateChannel final : public OpenChannel {
+ public:
+  GateChannel(MessageGate& gate, const std::string& name)
+      : gate_(gate), name_(name), network_(gate.network_.open_channel(name)) {}
+
+  void publish(std::span<const std::byte> payload, Time at) override {
+    if (gate_.watch_) gate_.watch_(name_, payload);
+    if (looked_up_at_ != gate_.readers_changed_) {
+      looked_up_at_ = gate_.readers_changed_;
+      read_ = gate_.find_read(name_);
+    }
+    if (read_ == nullptr) return network_->publish(payload, at);
+    gate_.publish_read(*read_, payload, [&] { network_->publish(payload, at); });
+  }
+
+ private:
+  MessageGate& gate_;
+  const std::string name_;
+  const std::unique_ptr<OpenChannel> network_;
+  Channel* read_ = nullptr;
+  std::uint64_t looked_up_at_ = 0;  // no channel is read at 0
+};
+
+std::unique_ptr<OpenChannel> MessageGate::open_channel(const std::string& channel) {
+  return std::make_unique<GateChannel>(*this, channel);
 }
 
 bool MessageGate::has_arrivals(Channel& channel) {
@@ -116,6 +148,7 @@ std::unique_ptr<Mailbox> MessageGate::open_mailbox(const std::string& channel, s
     read->inner = std::move(inner);
     read->inner->raise_on_arrival(read->flag);
     by_name_.emplace(channel, read);
+    ++readers_changed_;
     bits_.set(bit_of(channel));
   }
   // Add the mailbox of the reader.
@@ -133,6 +166,7 @@ void MessageGate::close(GateMailbox& mailbox) {
   if (!channel.mailboxes.empty()) return;
   const std::size_t slot = channel.slot;
   by_name_.erase(channel.name);
+  ++readers_changed_;
   channels_[slot].reset();
   free_slots_.push_back(slot);
 }

@@ -35,6 +35,7 @@ class MessageGate final : public Bus {
   };
 
   void publish(std::string_view channel, std::span<const std::byte> payload, Time at) override;
+  std::unique_ptr<OpenChannel> open_channel(const std::string& channel) override;
   std::unique_ptr<Mailbox> open_mailbox(const std::string& channel,
                                         std::size_t capacity = default_mailbox_capacity) override;
   void end_of_step() override { network_.end_of_step(); }
@@ -67,12 +68,18 @@ class MessageGate final : public Bus {
 
  private:
   class GateMailbox;
+  class GateChannel;
   struct Channel;
   struct NameHash {
     using is_transparent = void;
     std::size_t operator()(std::string_view name) const { return std::hash<std::string_view>()(name); }
   };
 
+  /// Returns the channel of this name with readers; null: it has none.
+  Channel* find_read(std::string_view channel) const;
+  /// Publishes on a channel with readers; `send` publishes on the network.
+  template <typename Send>
+  void publish_read(Channel& read, std::span<const std::byte> payload, const Send& send);
   void collect_from(Channel& channel);
   template <typename Accepts>
   void take_from(Channel& channel, const Accepts& accepts);
@@ -93,6 +100,7 @@ class MessageGate final : public Bus {
   std::vector<std::unique_ptr<Channel>> channels_;  // by slot; null: the slot is free
   std::vector<std::size_t> free_slots_;
   std::unordered_map<std::string, Channel*, NameHash, std::equal_to<>> by_name_;  // for look-ups, never iterated
+  std::uint64_t readers_changed_ = 0;                                             // counts changes of by_name_
   std::bitset<max_bits> bits_;  // of the names that have or had a reader
   std::vector<Delivery> waiting_, admitted_;
   std::uint64_t dropped_ = 0;

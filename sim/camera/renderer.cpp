@@ -5,6 +5,7 @@
 #include <array>
 #include <limits>
 
+#include "sim/base/work_within.hpp"
 #include "sim/camera/water_view.hpp"
 
 namespace sim {
@@ -53,6 +54,9 @@ struct Renderer::Tile {
   std::array<int, tile_rays> shadow_of;  ///< index in `rays`
   std::array<std::uint8_t, tile_rays> blocked, in_shadow;
   WaterRays water;
+  // Last ones used, kept from tile to tile.
+  Paint paint;
+  PosedPart posed;
 };
 
 Renderer::Renderer(const PhysicsWorld& physics, std::shared_ptr<const PixelRays> rays, const RenderOptions& options,
@@ -71,7 +75,6 @@ Renderer::Renderer(const PhysicsWorld& physics, std::shared_ptr<const PixelRays>
 Renderer::Surface Renderer::make_surface(int material, bool strict) const {
   const MaterialConfig& config = physics_.material(material);
   Surface surface;
-  surface.known = true;
   if (const auto color = parse_color(config.color)) {
     surface.has_color = true;
     surface.color = linear_color(*color);
@@ -85,11 +88,10 @@ Renderer::Surface Renderer::make_surface(int material, bool strict) const {
   return surface;
 }
 
-const Renderer::Surface& Renderer::surface(int material) {
-  const auto number = static_cast<std::size_t>(material);
-  if (number >= surfaces_.size()) surfaces_.resize(number + 1);
-  if (!surfaces_[number].known) surfaces_[number] = make_surface(material, false);
-  return surfaces_[number];
+void Renderer::add_surfaces() {
+  if (options_.kind != ImageKind::color) return;
+  for (int i = static_cast<int>(surfaces_.size()); i < physics_.materials(); ++i)
+    surfaces_.push_back(make_surface(i, false));
 }
 
 void Renderer::clear(Frame& frame) const {
@@ -113,26 +115,35 @@ void Renderer::render_rows(const Pose& X_WS, int first, int end, float weight, F
   const int n = rays_->per_side;
   int high = 1;
   while (2 * high * n <= 8 && 2 * high <= end - first) high *= 2;
-  const int wide = std::max(1, tile_rays / (high * n * n));
-  // Render tile by tile.
+  add_surfaces();
+  // Render rows of tiles, which threads share.
+  physics_.scene().prepare();
+  const auto render_row = [&](std::size_t i) {
+    const int row = first + static_cast<int>(i) * high;
+    render_tiles(X_WS, row, std::min(high, end - row), std::max(1, tile_rays / (high * n * n)), weight, frame);
+  };
+  const auto rows_of_tiles = static_cast<std::size_t>((std::max(end - first, 0) + high - 1) / high);
+  if (physics_.scene().concurrent()) return for_each_within(rows_of_tiles, render_row);
+  for (std::size_t i = 0; i < rows_of_tiles; ++i) render_row(i);
+}
+
+void Renderer::render_tiles(const Pose& X_WS, int row, int high, int wide, float weight, Frame& frame) const {
+  const int n = rays_->per_side;
   Tile tile;
-  posed_ = {};
-  paint_ = {};
-  for (int row = first; row < end; row += high)
-    for (int column = 0; column < rays_->width; column += wide) {
-      tile.column = column * n, tile.row = row * n;
-      tile.columns = std::min(wide, rays_->width - column) * n;
-      tile.rows = std::min(high, end - row) * n;
-      gather(tile, X_WS);
-      cast(tile);
-      if (options_.kind == ImageKind::color) {
-        find_shadows(tile);
-        fill_light(tile, weight, frame);
-        if (options_.with_depth) fill_values(tile, frame);
-      } else {
-        fill_values(tile, frame);
-      }
+  for (int column = 0; column < rays_->width; column += wide) {
+    tile.column = column * n, tile.row = row * n;
+    tile.columns = std::min(wide, rays_->width - column) * n;
+    tile.rows = high * n;
+    gather(tile, X_WS);
+    cast(tile);
+    if (options_.kind == ImageKind::color) {
+      find_shadows(tile);
+      fill_light(tile, weight, frame);
+      if (options_.with_depth) fill_values(tile, frame);
+    } else {
+      fill_values(tile, frame);
     }
+  }
 }
 
 void Renderer::gather(Tile& tile, const Pose& X_WS) const {
@@ -181,7 +192,7 @@ void Renderer::find_shadows(Tile& tile) const {
   for (std::size_t i = 0; i < count; ++i) tile.in_shadow[tile.shadow_of[i]] = tile.blocked[i];
 }
 
-void Renderer::fill_light(Tile& tile, float weight, Frame& frame) {
+void Renderer::fill_light(Tile& tile, float weight, Frame& frame) const {
   const int n = rays_->per_side;
   const float share = weight / static_cast<float>(n * n);
   if (options_.water) light_water(tile);
@@ -194,18 +205,19 @@ void Renderer::fill_light(Tile& tile, float weight, Frame& frame) {
       if (options_.water)
         light = {tile.water.light[0][i], tile.water.light[1][i], tile.water.light[2][i]};
       else
-        light = light_on(tile.rays[i], tile.hits[i], tile.in_shadow[i] != 0);
+        light = light_on(tile, i);
       float* rgb = frame.light.at((tile.column + column) / n, (tile.row + row) / n);
       for (int channel = 0; channel < 3; ++channel) rgb[channel] += share * light[channel];
     }
 }
 
-LinearColor Renderer::light_on(const Ray& ray, const RayHit& hit, bool in_shadow) {
-  if (!hit.hit()) return sky_.from(ray.direction_W.cast<float>());
-  return shade(hit, ray, in_shadow, rays_->pixel_angle * static_cast<float>(hit.range_m));
+LinearColor Renderer::light_on(Tile& tile, int ray) const {
+  const RayHit& hit = tile.hits[ray];
+  if (!hit.hit()) return sky_.from(tile.rays[ray].direction_W.cast<float>());
+  return shade(tile, ray, rays_->pixel_angle * static_cast<float>(hit.range_m));
 }
 
-void Renderer::light_water(Tile& tile) {
+void Renderer::light_water(Tile& tile) const {
   WaterRays& water = tile.water;
   const auto count = static_cast<std::size_t>(tile.seeing);
   for (std::size_t i = 0; i < count; ++i) water.range_m[i] = static_cast<float>(tile.hits[i].range_m);
@@ -213,8 +225,7 @@ void Renderer::light_water(Tile& tile) {
   for (std::size_t i = 0; i < count; ++i) {
     // The light of the sky through or from the surface is that of the water.
     LinearColor light = LinearColor::Zero();
-    if (tile.hits[i].hit() || !(water.crossing_m[i] < water.range_m[i]))
-      light = light_on(tile.rays[i], tile.hits[i], tile.in_shadow[i] != 0);
+    if (tile.hits[i].hit() || !(water.crossing_m[i] < water.range_m[i])) light = light_on(tile, static_cast<int>(i));
     for (int channel = 0; channel < 3; ++channel) water.light[channel][i] = light[channel];
   }
   options_.water->light(water);
@@ -240,33 +251,35 @@ void Renderer::fill_values(const Tile& tile, Frame& frame) const {
     }
 }
 
-const Pose& Renderer::X_PW(int part) {
-  if (posed_.part != part) posed_ = {part, physics_.X_WP(part).inverse()};
-  return posed_.X_PW;
+const Pose& Renderer::X_PW(Tile& tile, int part) const {
+  if (tile.posed.part != part) tile.posed = {part, physics_.X_WP(part).inverse()};
+  return tile.posed.X_PW;
 }
 
-const Renderer::Paint& Renderer::paint(int part_number, int material_number) {
-  if (paint_.part == part_number && paint_.material == material_number) return paint_;
+const Renderer::Paint& Renderer::paint(Tile& tile, int part_number, int material_number) const {
+  Paint& found = tile.paint;
+  if (found.part == part_number && found.material == material_number) return found;
   const PartInfo& part = physics_.parts()[static_cast<std::size_t>(part_number)];
-  const Surface& material = surface(material_number);
-  paint_ = {part_number, material_number, material.gloss, nullptr, false, material.color};
+  const Surface& material = surfaces_[static_cast<std::size_t>(material_number)];
+  found = {part_number, material_number, material.gloss, nullptr, false, material.color};
   const bool fixed = physics_.bodies()[static_cast<std::size_t>(part.body)]->fixed();
   if (part.color) {
-    paint_.color = linear_color(*part.color);
+    found.color = linear_color(*part.color);
   } else if (material.texture) {
-    paint_.texture = material.texture.get();
+    found.texture = material.texture.get();
   } else if (!material.has_color && !fixed) {
-    paint_.color = linear_color(group_colors[static_cast<std::size_t>(part.group) % std::size(group_colors)]);
+    found.color = linear_color(group_colors[static_cast<std::size_t>(part.group) % std::size(group_colors)]);
   } else if (!material.has_color) {
-    paint_.grid = part.plane;
-    paint_.color = linear_color(part.plane ? ground_color : fixed_color);
+    found.grid = part.plane;
+    found.color = linear_color(part.plane ? ground_color : fixed_color);
   }
-  return paint_;
+  return found;
 }
 
-LinearColor Renderer::albedo(const Paint& paint, const RayHit& hit, const Vector3d& p_W, float footprint_m) {
+LinearColor Renderer::albedo(Tile& tile, const Paint& paint, const RayHit& hit, const Vector3d& p_W,
+                             float footprint_m) const {
   if (!paint.grid && paint.texture == nullptr) return paint.color;
-  const Pose& X_PW = this->X_PW(hit.part);
+  const Pose& X_PW = this->X_PW(tile, hit.part);
   const Vector3d p_P = X_PW * p_W;
   if (paint.texture != nullptr) return paint.texture->color(p_P, X_PW.linear() * hit.normal_W, footprint_m);
   // Planes show a grid of 1 m as a scale for distances.
@@ -274,19 +287,21 @@ LinearColor Renderer::albedo(const Paint& paint, const RayHit& hit, const Vector
   return paint.color * (1 - 0.35F * line);
 }
 
-LinearColor Renderer::shade(const RayHit& hit, const Ray& ray, bool in_shadow, float footprint_m) {
+LinearColor Renderer::shade(Tile& tile, int number, float footprint_m) const {
+  const RayHit& hit = tile.hits[number];
+  const Ray& ray = tile.rays[number];
   const Vector3d p_W = ray.origin_W + hit.range_m * ray.direction_W;
   const Eigen::Vector3f normal = hit.normal_W.cast<float>(), direction = ray.direction_W.cast<float>();
   // Footprint at grazing incidence: geometric mean of its two extents, a compromise between sharpness and aliasing.
   const float slant = std::max(0.05F, -normal.dot(direction));
-  const Paint& paint = this->paint(hit.part, hit.material);
-  const LinearColor own = albedo(paint, hit, p_W, footprint_m / std::sqrt(slant));
+  const Paint& paint = this->paint(tile, hit.part, hit.material);
+  const LinearColor own = albedo(tile, paint, hit, p_W, footprint_m / std::sqrt(slant));
   // Ambient light by the share of the hemisphere that is sky; the ground reflects less.
   const float open = 0.5F * (1 + normal.z());
   LinearColor light = own * (sky_strength_ * (0.45F + 0.55F * open));
   const float toward = normal.dot(sky_.to_sun_W());
   // Add diffuse light of the sun and the highlight (Blinn 1977).
-  if (!sky_.sun_is_up() || in_shadow || toward <= 0) return light;
+  if (!sky_.sun_is_up() || tile.in_shadow[number] != 0 || toward <= 0) return light;
   light += own.cwiseProduct(sky_.sun()) * toward;
   if (paint.gloss > 0) {
     const Eigen::Vector3f half = (sky_.to_sun_W() - direction).normalized();

@@ -44,7 +44,8 @@ struct Frame {
 /// Renders images of a world by ray casting.  Surfaces are lit by the sun (Lambert's law, with shadows) and by the sky,
 /// with a highlight after Blinn (1977).  It uses neither GPU nor display and is reproducible bit by bit.  PixelRays
 /// models the lens, develop() the exposure.  A renderer is used by one thread at a time; several renderers may run
-/// concurrently when Scene::concurrent() is true.
+/// concurrently when Scene::concurrent() is true.  Where it is called within work that a ThreadPool shares, the threads
+/// of the pool share the rows of the image, with the same pixels for any number of threads.
 class Renderer {
  public:
   /// Throws ConfigError when a texture of an existing material cannot be read.  Unreadable textures of materials that
@@ -70,7 +71,6 @@ class Renderer {
  private:
   /// Optical properties of a material.
   struct Surface {
-    bool known = false;
     bool has_color = false;
     LinearColor color = LinearColor::Zero();
     float gloss = 0;
@@ -94,20 +94,22 @@ class Renderer {
 
   /// Returns the properties of a material.  `strict`: an unreadable texture is an error.
   Surface make_surface(int material, bool strict) const;
-  /// Returns the cached properties of a material.
-  const Surface& surface(int material);
+  /// Notes the properties of materials that were added.
+  void add_surfaces();
+  /// Renders a row of tiles of `wide` x `high` pixels, from `row` on.
+  void render_tiles(const Pose& X_WS, int row, int high, int wide, float weight, Frame& frame) const;
   /// Returns the inverse pose of a part, cached because neighbouring pixels mostly hit the same part.
-  const Pose& X_PW(int part);
+  const Pose& X_PW(Tile& tile, int part) const;
   /// Returns the look of a material on a part, cached as its pose is.
-  const Paint& paint(int part, int material);
+  const Paint& paint(Tile& tile, int part, int material) const;
   /// Returns the diffuse color at a hit; `footprint_m`: size of the projected pixel.
-  LinearColor albedo(const Paint& paint, const RayHit& hit, const Vector3d& p_W, float footprint_m);
-  /// Returns the light reflected at a hit.
-  LinearColor shade(const RayHit& hit, const Ray& ray, bool in_shadow, float footprint_m);
-  /// Returns the light on a ray, without water.
-  LinearColor light_on(const Ray& ray, const RayHit& hit, bool in_shadow);
+  LinearColor albedo(Tile& tile, const Paint& paint, const RayHit& hit, const Vector3d& p_W, float footprint_m) const;
+  /// Returns the light reflected at the hit of a ray of the tile.
+  LinearColor shade(Tile& tile, int ray, float footprint_m) const;
+  /// Returns the light on a ray of the tile, without water.
+  LinearColor light_on(Tile& tile, int ray) const;
   /// Computes the light on the rays of a tile, with that of the water.
-  void light_water(Tile& tile);
+  void light_water(Tile& tile) const;
   /// Collects the rays of a tile.
   void gather(Tile& tile, const Pose& X_WS) const;
   /// Casts the rays of a tile.
@@ -115,7 +117,7 @@ class Renderer {
   /// Casts shadow rays from the hits to the sun.
   void find_shadows(Tile& tile) const;
   /// Adds the light of a tile to the frame.
-  void fill_light(Tile& tile, float weight, Frame& frame);
+  void fill_light(Tile& tile, float weight, Frame& frame) const;
   /// Writes depth or labels of a tile to the frame.
   void fill_values(const Tile& tile, Frame& frame) const;
 
@@ -124,8 +126,6 @@ class Renderer {
   RenderOptions options_;
   std::shared_ptr<TextureLibrary> textures_;
   std::vector<Surface> surfaces_;  // by material number
-  Paint paint_;                    // last one used
-  PosedPart posed_;                // last part used while rows are rendered
   SkyLight sky_;
   Vector3d to_sun_W_;
   float sky_strength_;

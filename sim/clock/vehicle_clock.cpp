@@ -135,11 +135,11 @@ Time VehicleClock::true_time(Time reading) const {
   return at;
 }
 
-double VehicleClock::rate_error() const {
+double VehicleClock::rate_error(Time now) const {
   if (!state_) return 0;
   constexpr Time later{100'000};
-  const State::Steer* steer = state_->steer_at(state_->now + Time{1});
-  const double wander_s = state_->wander_s(state_->now + later) - state_->wander_s(state_->now);
+  const State::Steer* steer = state_->steer_at(now + Time{1});
+  const double wander_s = state_->wander_s(now + later) - state_->wander_s(now);
   return state_->oscillator.drift() + (steer ? steer->rate : 0) + wander_s / to_seconds(later);
 }
 
@@ -160,9 +160,25 @@ void VehicleClock::advance_to(Time now, std::optional<double> water_temperature_
   state.discard_old();
 }
 
+Time VehicleClock::next_advance() const {
+  if (!state_ || !state_->config.wanders()) return Time::max();
+  const State& state = *state_;
+  Time due = state.nodes.back().at - look_ahead;
+  const auto expires = [&](Time at) { due = std::min(due, at + memory + Time{1}); };
+  if (state.nodes.size() > 2) expires(state.nodes[1].at);
+  // A correction that is added later expires later than this.
+  expires(state.steers.size() > 1 ? state.steers[1].after : state.now);
+  return due;
+}
+
+void VehicleClock::advance_time_to(Time now) {
+  if (state_) state_->now = now;
+}
+
 void VehicleClock::discipline(Time now, double measured_error_s, const DisciplineParams& params) {
   if (!state_) return;
   State& state = *state_;
+  state.now = now;
   const double dt_s = params.interval_s;
   state.loop = params;
   // The correction that starts at `now` continues from the end of the previous one.

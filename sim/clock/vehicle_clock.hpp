@@ -41,10 +41,14 @@ class VehicleClock {
   /// Reading minus true time, without the rounding to ticks.
   double error_s(Time at) const;
   /// Present error of the rate (1e-6: it gains 1 us in a second), including a steering slew.
-  double rate_error() const;
+  double rate_error(Time now) const;
 
   /// Advances to the time of the world.
   void advance_to(Time now, std::optional<double> water_temperature_C);
+  /// Time before which advance_to() would change nothing but the time of the clock, which advance_time_to() sets.
+  Time next_advance() const;
+  /// Sets the time of the clock, before its state is visited.
+  void advance_time_to(Time now);
   /// Whether advance_to() will use the temperature of the water.
   bool wants_temperature(Time now) const;
 

@@ -10,6 +10,7 @@
 #include "sim/config/config_node.hpp"
 #include "sim/config/file_access.hpp"
 #include "sim/config/message_text.hpp"
+#include "sim/config/parsed_files.hpp"
 #include "sim/config/shipped_files.hpp"
 
 namespace sim {
@@ -111,7 +112,7 @@ class Loader {
     if (!text) return {};
     Diagnostics own;  // separate, because a repeated error adds no line to diagnostics_
     if (hides(path)) own.hide_files();
-    ConfigNode node = parse_config_text(*text, path.string(), own);
+    ConfigNode node = parse_file_text(*text, path.string(), own);
     if (own.ok() && node.kind != Kind::null) check_top_level(node, path, own);
     forward(own, diagnostics_);
     if (!own.ok()) return {};

@@ -9,6 +9,11 @@ std::int64_t Publisher::utime(Time at) const {
   return epoch_us_ + (clock_ ? clock_->reading(at) : at).count();
 }
 
+Bytes& Publisher::buffer() {
+  static thread_local Bytes buffer;
+  return buffer;
+}
+
 Pose SweepContext::X_WS_at(Time at) const {
   if (at >= now || now == from) return X_WS;
   const double share = to_seconds(at - from) / to_seconds(now - from);

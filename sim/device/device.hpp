@@ -50,6 +50,10 @@ struct SweepContext {
 /// A model whose measure(), disturb() and sweep() access only the model itself and the scene declares `static constexpr
 /// bool casts_rays = true`: these functions and its reporter are then called from several threads, for different
 /// devices concurrently.  A model that has sweep() declares `static constexpr bool sweeps = true`.
+///
+/// A model without rays whose measure() and disturb() change only the model itself, and read only its vehicle and the
+/// world, declares `static constexpr bool measures_alone = true`: the same holds for them.  They may publish on
+/// channels of their vehicle's bus, in the order of the devices.
 class Sensor {
  public:
   virtual ~Sensor() = default;
@@ -93,8 +97,8 @@ class Publisher {
   std::int64_t true_utime(Time at) const { return epoch_us_ + at.count(); }
   /// Returns whether this is a truth channel.
   bool is_truth() const { return clock_ == nullptr; }
-  /// Returns the encoding buffer, reused from message to message.
-  Bytes& buffer() { return buffer_; }
+  /// Returns the encoding buffer, reused by all messages of this thread.
+  static Bytes& buffer();
 
  protected:
   /// `clock` must outlive the publisher; null: truth channel.
@@ -103,7 +107,6 @@ class Publisher {
  private:
   std::int64_t epoch_us_;
   const VehicleClock* clock_;
-  Bytes buffer_;
 };
 
 /// Converts the reading of a sensor to messages.
@@ -131,6 +134,14 @@ enum class SafeState {
 };
 
 /// Model of an actuator: acts on the physics, and does not depend on message types.
+///
+/// A model whose act(), make_safe() and power_W() change only the model itself and the bodies, joints and systems of
+/// its vehicle, and read only these and the world, declares `static constexpr bool acts_alone = true`: they are then
+/// called from several threads, for different vehicles concurrently.  So is the receive() of its controller, which
+/// changes the model only.
+///
+/// A model that is also a sensor and has `bool idle() const` sleeps: while idle() is true nothing is to do, and neither
+/// act() nor, if it samples in every step, measure() is called until it is woken (DeviceContext::wake_flag).
 class Actuator : public VisitedInSteps {
  public:
   virtual ~Actuator() = default;
@@ -140,6 +151,8 @@ class Actuator : public VisitedInSteps {
   virtual void make_safe(SafeState safe) = 0;
   /// Returns the power currently drawn from the battery, in addition to `power_W` of the device.
   virtual double power_W() const { return 0; }
+  /// Returns whether a model that sleeps has nothing to do, see above.
+  virtual bool idle() const { return false; }
   /// Visits all state that is kept between steps, as Sensor::visit_state.
   virtual void visit_state(StateArchive& archive) = 0;
 };

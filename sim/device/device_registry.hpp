@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <concepts>
 #include <functional>
 #include <memory>
 #include <string>
@@ -48,6 +49,9 @@ struct DeviceType {
   bool always_on = false;               ///< works without power and at an emergency stop
   bool casts_rays = false;              ///< see Sensor
   bool sweeps = false;                  ///< see Sensor
+  bool measures_alone = false;          ///< see Sensor
+  bool acts_alone = false;              ///< see Actuator
+  bool sleeps = false;                  ///< see Actuator
   std::function<std::shared_ptr<DeviceParams>()> make_params;                   ///< parameters with their defaults
   std::function<BuiltDevice(const DeviceParams&, const DeviceContext&)> build;  ///< makes one device
 
@@ -105,6 +109,15 @@ std::unique_ptr<Model> make_model(const DeviceParams& params, const DeviceContex
     return std::make_unique<Model>(own);
 }
 
+template <typename Model>
+concept Acts = requires(Model& model, const ActContext& context) {
+  model.act(context);
+};
+template <typename Model>
+concept Idles = requires(const Model& model) {
+  { model.idle() } -> std::convertible_to<bool>;
+};
+
 /// Actuator interface of a model that is both sensor and actuator; the sensor interface owns the model.
 template <typename Model>
 class ActuatorSide final : public Actuator {
@@ -120,15 +133,16 @@ class ActuatorSide final : public Actuator {
     else
       return 0;
   }
+  bool idle() const override {
+    if constexpr (Idles<Model>)
+      return model_.idle();
+    else
+      return false;
+  }
   void visit_state(StateArchive&) override {}  // the sensor side visits the whole model
 
  private:
   Model& model_;
-};
-
-template <typename Model>
-concept Acts = requires(Model& model, const ActContext& context) {
-  model.act(context);
 };
 
 /// Reporter of a device registered with `Output`, which is a Reporter, a message type, or void for none.
@@ -201,6 +215,9 @@ bool add_device(const char* name) {
   if constexpr (requires { Model::always_on; }) type.always_on = Model::always_on;
   if constexpr (requires { Model::casts_rays; }) type.casts_rays = Model::casts_rays;
   if constexpr (requires { Model::sweeps; }) type.sweeps = Model::sweeps;
+  if constexpr (requires { Model::measures_alone; }) type.measures_alone = Model::measures_alone;
+  if constexpr (requires { Model::acts_alone; }) type.acts_alone = Model::acts_alone;
+  type.sleeps = !std::is_base_of_v<Actuator, Model> && Idles<Model> && Acts<Model>;
   // Construction.
   type.make_params = [] { return std::make_shared<ParamsOf<typename Model::Params>>(); };
   type.build = build_device<Model, ReporterType, ControllerType>;

@@ -43,6 +43,15 @@ class EventQueue {
     if (next_ + events >= sorted_.size() || sorted_[next_ + events].device != device) return std::nullopt;
     return sorted_[next_ + events].stamp;
   }
+  /// Calls use(stamp, device, kind) for each event that is due at or before `now`, in no particular order.
+  template <typename Use>
+  void for_each_due(Time now, const Use& use) {
+    reach(slice_of(now));
+    for (std::size_t i = next_; i < sorted_.size() && sorted_[i].due <= now; ++i)
+      use(sorted_[i].stamp, sorted_[i].device, sorted_[i].kind);
+    for (const Entry& entry : late_)
+      if (entry.due <= now) use(entry.stamp, entry.device, entry.kind);
+  }
   /// Drops the events of a device that is removed.
   void drop_device(int device);
   std::size_t size() const { return size_; }

@@ -25,28 +25,26 @@ double signed_square(double x) {
   return std::abs(x) * x;
 }
 
-/// Adds the integrals from a to b of |v + x r| (v + x r) and of x times that, where v + x r has one sign.
-void add_piece(double sign, double v, double r, double a, double b, double& force, double& moment) {
-  const double d1 = b - a, d2 = (b * b - a * a) / 2, d3 = (b * b * b - a * a * a) / 3,
-               d4 = (b * b * b * b - a * a * a * a) / 4;
-  force += sign * (v * v * d1 + 2 * v * r * d2 + r * r * d3);
-  moment += sign * (v * v * d2 + 2 * v * r * d3 + r * r * d4);
+/// Adds the integrals over a piece of |v + x r| (v + x r) and of x times that, where v + x r has one sign.
+void add_piece(double sign, double v, double r, const StripWeights& piece, double& force, double& moment) {
+  force += sign * (v * v * piece.d1 + 2 * v * r * piece.d2 + r * r * piece.d3);
+  moment += sign * (v * v * piece.d2 + 2 * v * r * piece.d3 + r * r * piece.d4);
 }
 
 struct StripSum {
   double force = 0, moment = 0;
 };
 
-StripSum integrate_strips(double v, double r, double half_length) {
+StripSum integrate_strips(double v, double r, double half_length, const StripWeights& whole) {
   StripSum sum;
   const double at_aft = v - half_length * r, at_bow = v + half_length * r;
   if (at_aft * at_bow >= 0) {
-    add_piece(at_aft + at_bow >= 0 ? 1 : -1, v, r, -half_length, half_length, sum.force, sum.moment);
+    add_piece(at_aft + at_bow >= 0 ? 1 : -1, v, r, whole, sum.force, sum.moment);
     return sum;
   }
   const double still = -v / r;
-  add_piece(at_aft >= 0 ? 1 : -1, v, r, -half_length, still, sum.force, sum.moment);
-  add_piece(at_bow >= 0 ? 1 : -1, v, r, still, half_length, sum.force, sum.moment);
+  add_piece(at_aft >= 0 ? 1 : -1, v, r, {-half_length, still}, sum.force, sum.moment);
+  add_piece(at_bow >= 0 ? 1 : -1, v, r, {still, half_length}, sum.force, sum.moment);
   return sum;
 }
 
@@ -113,6 +111,7 @@ void CoefficientModel::find_rates() {
   Vector6d quadratic = quadratic_diagonal_;
   if (config_.cross_flow) {
     const CrossFlowConfig& hull = *config_.cross_flow;
+    whole_hull_ = {-hull.length_m / 2, hull.length_m / 2};
     double max = 0;
     for (std::size_t i = hull.drag_coefficient.size() > 1 ? 1 : 0; i < hull.drag_coefficient.size(); i += 2)
       max = std::max(max, hull.drag_coefficient[i]);
@@ -182,11 +181,13 @@ Vector3d CoefficientModel::water_turning(const CraftState& state) const {
   return -w.cross(v_c);
 }
 
-Vector6d CoefficientModel::acceleration(const CraftState& state, const Vector6d& tau) const {
-  Vector6d nu_r = state.nu;
-  nu_r.head<3>() -= state.v_water;
+// Flattened: otherwise many small functions of Eigen are calls.
+[[gnu::flatten]] Vector6d CoefficientModel::acceleration(const CraftState& state, const Vector6d& tau) const {
+  Six nu_r(state.nu);
+  nu_r.linear -= state.v_water;
   const double share = immersed(state);
-  const Vector6d total = total_forces(state, tau, nu_r, share);
+  Vector6d total;
+  total_forces(state, Six(tau), nu_r, share).copy_to(total);
   Vector6d nu_dot;
   if (share == 1)
     nu_dot = mass_inverse_ * total;
@@ -205,7 +206,9 @@ Vector6d CoefficientModel::stiff_acceleration(const CraftState& state, const Vec
   Matrix6d left = mass;
   const Vector6d rates = share * (linear_rate_ + 2 * quadratic_rate_.cwiseProduct(nu_r.cwiseAbs()));
   left.diagonal() += step_s * rates.cwiseProduct(mass_.diagonal());
-  Vector6d nu_dot = left.llt().solve(total_forces(state, tau, nu_r, share));
+  Vector6d total;
+  total_forces(state, Six(tau), Six(nu_r), share).copy_to(total);
+  Vector6d nu_dot = left.llt().solve(total);
   nu_dot.head<3>() += water_turning(state);
   // Coriolis forces do no work: limit the kinetic energy at the end of the step to the work of the other forces.
   const Vector3d turned = Vector3d(state.nu.tail<3>()).cross(Vector3d(state.nu.head<3>()));
@@ -221,18 +224,19 @@ Vector6d CoefficientModel::stiff_acceleration(const CraftState& state, const Vec
   return change;
 }
 
-Vector6d CoefficientModel::total_forces(const CraftState& state, const Vector6d& tau, const Vector6d& nu_r,
-                                        double share) const {
+Six CoefficientModel::total_forces(const CraftState& state, const Six& tau, const Six& nu_r, double share) const {
   const Vector3d w = state.nu.tail<3>();
-  const Vector3d v_r = nu_r.head<3>();
-  Vector6d total = tau + forces(state, nu_r);
+  const Vector3d& v_r = nu_r.linear;
+  Six total = forces(state, nu_r, share);
+  total.linear = tau.linear + total.linear;
+  total.angular = tau.angular + total.angular;
   // Rigid-body Coriolis forces, in the parametrization whose matrix does not depend on the linear velocity, so that it
   // can be used with the relative velocity (Fossen 2011, property 8.1).
   const Vector3d& r_g = config_.center_of_mass_m;
   const double m = config_.mass_kg;
   const Vector3d f = m * w.cross(v_r + w.cross(r_g));
-  total.head<3>() -= f;
-  total.tail<3>() -= w.cross(config_.inertia_kgm2 * w) + r_g.cross(f);
+  total.linear -= f;
+  total.angular -= w.cross(config_.inertia_kgm2 * w) + r_g.cross(f);
   // Added-mass Coriolis forces: Kirchhoff's equations.  They fade as the craft leaves the water.
   const Matrix6d& A = config_.added_mass;
   Vector3d a, b;
@@ -240,20 +244,22 @@ Vector6d CoefficientModel::total_forces(const CraftState& state, const Vector6d&
     a = share * A.diagonal().head<3>().cwiseProduct(v_r);
     b = share * A.diagonal().tail<3>().cwiseProduct(w);
   } else {
-    const Vector6d momentum = share * (A * nu_r);
+    Vector6d all;
+    nu_r.copy_to(all);
+    const Vector6d momentum = share * (A * all);
     a = momentum.head<3>();
     b = momentum.tail<3>();
   }
   switch (coriolis_) {
     case Coriolis::full:
-      total.head<3>() -= w.cross(a);
-      total.tail<3>() -= v_r.cross(a) + w.cross(b);
+      total.linear -= w.cross(a);
+      total.angular -= v_r.cross(a) + w.cross(b);
       break;
     case Coriolis::without_munk:
-      total[1] += a.z() * w.x();
-      total[2] -= a.y() * w.x();
-      total.tail<3>() -= w.cross(b);
-      total[3] -= a.z() * v_r.y() - a.y() * v_r.z();
+      total.linear.y() += a.z() * w.x();
+      total.linear.z() -= a.y() * w.x();
+      total.angular -= w.cross(b);
+      total.angular.x() -= a.z() * v_r.y() - a.y() * v_r.z();
       break;
     case Coriolis::none:
       break;
@@ -262,35 +268,52 @@ Vector6d CoefficientModel::total_forces(const CraftState& state, const Vector6d&
     // Accelerated water acts on the displaced mass (Froude-Krylov) and on the added mass.
     Vector6d accelerated = Vector6d::Zero();
     accelerated.head<3>() = state.a_water;
-    total += share * (config_.added_mass * accelerated);
+    const Six by_added_mass(share * (config_.added_mass * accelerated));
+    total.linear += by_added_mass.linear;
+    total.angular += by_added_mass.angular;
     const Vector3d displaced = displaced_kg(state) * share * state.a_water;
-    total.head<3>() += displaced;
-    total.tail<3>() += config_.center_of_buoyancy_m.cross(displaced);
+    total.linear += displaced;
+    total.angular += config_.center_of_buoyancy_m.cross(displaced);
   }
   return total;
 }
 
 Vector6d CoefficientModel::forces(const CraftState& state, const Vector6d& nu_r) const {
-  Vector6d tau = Vector6d::Zero();
-  const double share = immersed(state);
-  if (share > 0) tau = share * damping(state, nu_r);
-  if (config_.windage) add_windage(state, tau);
-  add_restoring(state, tau);
+  Vector6d tau;
+  forces(state, Six(nu_r), immersed(state)).copy_to(tau);
   return tau;
 }
 
-Vector6d CoefficientModel::damping(const CraftState& state, const Vector6d& nu_r) const {
-  Vector6d tau;
+Six CoefficientModel::forces(const CraftState& state, const Six& nu_r, double share) const {
+  Six tau;
+  if (share > 0) {
+    tau = damping(state, nu_r);
+    tau.linear *= share;
+    tau.angular *= share;
+  }
+  if (config_.windage) add_windage(state, tau);
+  add_restoring(state, share, tau);
+  return tau;
+}
+
+Six CoefficientModel::damping(const CraftState& state, const Six& nu_r) const {
+  Six tau;
   // Linear and quadratic damping.
   if (diagonal_damping_) {
-    tau = -(linear_diagonal_ + quadratic_diagonal_.cwiseProduct(nu_r.cwiseAbs())).cwiseProduct(nu_r);
+    const auto diagonal = [](const auto& linear, const auto& quadratic, const Vector3d& v) -> Vector3d {
+      return -(linear + quadratic.cwiseProduct(v.cwiseAbs())).cwiseProduct(v);
+    };
+    tau.linear = diagonal(linear_diagonal_.head<3>(), quadratic_diagonal_.head<3>(), nu_r.linear);
+    tau.angular = diagonal(linear_diagonal_.tail<3>(), quadratic_diagonal_.tail<3>(), nu_r.angular);
   } else {
-    tau = -config_.linear_damping * nu_r - config_.quadratic_damping * nu_r.cwiseAbs().cwiseProduct(nu_r);
+    Vector6d all;
+    nu_r.copy_to(all);
+    tau = Six(-config_.linear_damping * all - config_.quadratic_damping * all.cwiseAbs().cwiseProduct(all));
   }
   // Variants of published models.
   const PublishedQuirks& quirks = config_.quirks;
   if (quirks.surge_damping_fade_spm > 0) {
-    const double speed = fade_by_speed_in_water_ ? nu_r.head<3>().norm()
+    const double speed = fade_by_speed_in_water_ ? nu_r.linear.norm()
                                                  : std::sqrt(std::max(0.0, state.nu[0] + state.nu[1] * state.nu[1]));
     tau[0] += config_.linear_damping(0, 0) * nu_r[0] * (1 - std::exp(-quirks.surge_damping_fade_spm * speed));
   }
@@ -317,13 +340,13 @@ double CoefficientModel::cross_flow_drag(double speed) const {
 }
 
 /// Adds the cross-flow drag by strip theory (Fossen 2011).
-void CoefficientModel::add_cross_flow(const Vector6d& nu_r, double density, Vector6d& tau) const {
+void CoefficientModel::add_cross_flow(const Six& nu_r, double density, Six& tau) const {
   const CrossFlowConfig& hull = *config_.cross_flow;
   const double scale =
       -0.5 * density * hull.height_m * cross_flow_drag(std::sqrt(nu_r[1] * nu_r[1] + nu_r[2] * nu_r[2]));
   const double half = hull.length_m / 2;
   const auto strips = [&](double v, double r) {
-    return hull.strips == 0 ? integrate_strips(v, r, half) : add_up_strips(v, r, half, hull.strips);
+    return hull.strips == 0 ? integrate_strips(v, r, half, whole_hull_) : add_up_strips(v, r, half, hull.strips);
   };
   const StripSum sideways = strips(nu_r[1], nu_r[5]), vertical = strips(nu_r[2], -nu_r[4]);
   tau[1] += scale * sideways.force;
@@ -333,10 +356,10 @@ void CoefficientModel::add_cross_flow(const Vector6d& nu_r, double density, Vect
 }
 
 /// Adds lift and drag of the hull in its vertical plane, by the angle of attack.
-void CoefficientModel::add_hull_lift(const Vector6d& nu_r, double density, Vector6d& tau) const {
+void CoefficientModel::add_hull_lift(const Six& nu_r, double density, Six& tau) const {
   const HullLiftConfig& hull = *config_.hull_lift;
   const double u = nu_r[0], w = nu_r[2];
-  const double square = nu_r.head<3>().squaredNorm(), in_plane = std::sqrt(u * u + w * w);
+  const double square = nu_r.linear.squaredNorm(), in_plane = std::sqrt(u * u + w * w);
   if (in_plane < 1e-12) return;
   const double pressure = 0.5 * density * square * hull.area_m2;
   // A hull that moves astern is treated as its mirror image: alpha is the angle between its axis and its motion.
@@ -352,7 +375,7 @@ void CoefficientModel::add_hull_lift(const Vector6d& nu_r, double density, Vecto
 }
 
 /// Adds the wind forces (Fossen 2011, eq. 8.23 to 8.30).
-void CoefficientModel::add_windage(const CraftState& state, Vector6d& tau) const {
+void CoefficientModel::add_windage(const CraftState& state, Six& tau) const {
   constexpr double air_density_kgpm3 = 1.225;
   const WindageConfig& area = *config_.windage;
   const double u = state.v_air.x() - state.nu[0], v = state.v_air.y() - state.nu[1];
@@ -366,7 +389,7 @@ void CoefficientModel::add_windage(const CraftState& state, Vector6d& tau) const
   tau[5] += air_density_kgpm3 * area.yaw_coefficient * area.lateral_area_m2 * area.length_m * -u * v;
 }
 
-void CoefficientModel::add_restoring(const CraftState& state, Vector6d& tau) const {
+void CoefficientModel::add_restoring(const CraftState& state, double share, Six& tau) const {
   if (config_.waterline) {
     const WaterlineConfig& plane = *config_.waterline;
     // Attitude relative to the surface.
@@ -374,7 +397,6 @@ void CoefficientModel::add_restoring(const CraftState& state, Vector6d& tau) con
     const double pitch = std::asin(std::clamp(-state.down.x(), -1.0, 1.0)) - state.surface_pitch_rad;
     const double weight = config_.mass_kg * gravity_mps2_;
     // The springs act while the craft floats; out of the water only its weight acts.
-    const double share = immersed(state);
     const double heave = std::max(state.depth_m, -weight / plane.heave_Npm);
     tau[2] -= share * (plane.heave_Npm * heave + plane.heave_pitch_N * pitch);
     tau[3] -= share * (plane.roll_Nmprad * roll);
@@ -390,17 +412,17 @@ void CoefficientModel::add_restoring(const CraftState& state, Vector6d& tau) con
     // Weight of a craft that has left the water.
     if (share < 1) {
       const Vector3d falling = (1 - share) * weight * state.down;
-      tau.head<3>() += falling;
-      tau.tail<3>() += config_.center_of_mass_m.cross(falling);
+      tau.linear += falling;
+      tau.angular += config_.center_of_mass_m.cross(falling);
     }
     return;
   }
   // Weight and buoyancy of a craft without waterline.
   const Vector3d weight = weight_N_ * state.down;
   const double full = buoyancy_N_ >= 0 ? buoyancy_N_ : *config_.volume_m3 * state.density_kgpm3 * gravity_mps2_;
-  const Vector3d buoyancy = -full * immersed(state) * state.down;
-  tau.head<3>() += weight + buoyancy;
-  tau.tail<3>() += config_.center_of_mass_m.cross(weight) + config_.center_of_buoyancy_m.cross(buoyancy);
+  const Vector3d buoyancy = -full * share * state.down;
+  tau.linear += weight + buoyancy;
+  tau.angular += config_.center_of_mass_m.cross(weight) + config_.center_of_buoyancy_m.cross(buoyancy);
 }
 
 /// Displaced mass of water of the fully submerged craft.  A craft with a waterline floats and displaces its own mass.

@@ -7,7 +7,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <mutex>
 
+#include "sim/base/first_failure.hpp"
 #include "sim/config/diagnostics.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/model/hydrodynamics_checks.hpp"
@@ -51,6 +53,7 @@ void Hydrodynamics::add_body(Body& body, const BodyConfig& config) {
     radius_m = floaters_.add(body, config, gravity_mps2_, warnings_);
     if (radius_m == 0) return;
   }
+  groups_listed_ = false;
   const bool yaw_only = config.hydrodynamics && crafts_.back().model->current_by_yaw_only();
   wetted_.push_back({&body, radius_m, yaw_only});
   const auto number = static_cast<std::size_t>(body.number());
@@ -85,6 +88,7 @@ void Hydrodynamics::check_step(const CoefficientModel& model, const Hydrodynamic
 }
 
 void Hydrodynamics::remove_group(int group) {
+  groups_listed_ = false;
   std::erase_if(crafts_, [&](const CoefficientBody& craft) { return craft.body->group() == group; });
   std::erase_if(models_, [](const auto& known) { return known.second.expired(); });
   floaters_.remove_group(group);
@@ -93,33 +97,101 @@ void Hydrodynamics::remove_group(int group) {
   std::erase_if(wetted_, [&](const Wetted& wetted) { return wetted.body->group() == group; });
 }
 
-void Hydrodynamics::begin_step() {
-  const double highest_m = medium_.highest_surface_m();
-  for (Wetted& wetted : wetted_) {
-    BodyInWater& around = around_[static_cast<std::size_t>(wetted.body->number())];
-    around.motion = wetted.body->motion_for_forces(step_s_);
-    const BodyMotion& motion = around.motion;
-    around.w_B = motion.R_WB.transpose() * motion.w_WB_W;
-    if (motion.p_WB.z() - wetted.radius_m > highest_m) {
-      around.water.surface_m = highest_m;
-      around.v_B = motion.R_WB.transpose() * (motion.v_WB_W - around.water.velocity_W);
-      continue;
-    }
-    around.water = medium_.water_at(motion.p_WB);
-    if (wetted.current_by_yaw_only) around.water.velocity_W = turned_by_yaw_only(motion.R_WB, around.water.velocity_W);
-    around.v_B = motion.R_WB.transpose() * (motion.v_WB_W - around.water.velocity_W);
-    if (!wetted.left_the_current && !medium_.current_known(motion.p_WB)) warn_of_missing_current(wetted, motion.p_WB);
+/// Warnings about bodies that threads share, given in the order of the bodies.
+class Hydrodynamics::LateWarnings {
+ public:
+  void add(const Body& body, std::string text) {
+    const std::lock_guard lock(mutex_);
+    warnings_.push_back({body.number(), "body '" + body.name() + "'", std::move(text)});
   }
+  void give(const Warn& warn) {
+    std::sort(warnings_.begin(), warnings_.end(), [](const One& a, const One& b) { return a.body < b.body; });
+    for (const One& one : warnings_)
+      if (warn) warn(one.who, one.text);
+  }
+
+ private:
+  struct One {
+    int body;
+    std::string who, text;
+  };
+  std::mutex mutex_;
+  std::vector<One> warnings_;
+};
+
+void Hydrodynamics::begin_step(ThreadPool* threads) {
+  LateWarnings late;
+  const double highest_m = medium_.highest_surface_m();
+  for_each_block(threads, wetted_.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) begin_step_of(wetted_[i], highest_m, late);
+  });
+  late.give(warn_);
 }
 
-void Hydrodynamics::warn_of_missing_current(Wetted& wetted, const Vector3d& p_WB) {
+void Hydrodynamics::list_groups() {
+  groups_.clear();
+  std::size_t craft = 0;
+  for (std::size_t i = 0; i < wetted_.size();) {
+    InWater next{wetted_[i].body->group(), i, i, craft, craft};
+    for (; i < wetted_.size() && wetted_[i].body->group() == next.group; ++i) {
+    }
+    for (; craft < crafts_.size() && crafts_[craft].body->group() == next.group; ++craft) {
+    }
+    next.wetted_end = i;
+    next.crafts_end = craft;
+    groups_.push_back(next);
+  }
+  groups_listed_ = true;
+}
+
+void Hydrodynamics::step_by_groups(double gravity_mps2, const Actors& actors, ThreadPool* threads) {
+  if (!groups_listed_) list_groups();
+  LateWarnings at_begin, late;
+  FirstFailure failure;
+  const double highest_m = medium_.highest_surface_m();
+  for_each_block(threads, groups_.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const InWater& group = groups_[i];
+      for (std::size_t k = group.wetted_begin; k < group.wetted_end; ++k)
+        begin_step_of(wetted_[k], highest_m, at_begin);
+      actors.act(group.group);
+      for (std::size_t k = group.crafts_begin; k < group.crafts_end; ++k) try {
+          step_craft(crafts_[k], late);
+        } catch (...) {
+          failure.take(k);
+        }
+    }
+  });
+  at_begin.give(warn_);
+  actors.finish();
+  late.give(warn_);
+  failure.rethrow();
+  floaters_.step(gravity_mps2, around_, threads);
+}
+
+[[gnu::flatten]] void Hydrodynamics::begin_step_of(Wetted& wetted, double highest_m, LateWarnings& late) {
+  BodyInWater& around = around_[static_cast<std::size_t>(wetted.body->number())];
+  const BodyMotion motion = wetted.body->motion_for_forces(step_s_);
+  around.w_B = motion.R_WB.transpose() * motion.w_WB_W;
+  around.motion = motion;
+  if (motion.p_WB.z() - wetted.radius_m > highest_m) {
+    around.water.surface_m = highest_m;
+    around.v_B = motion.R_WB.transpose() * (motion.v_WB_W - around.water.velocity_W);
+    return;
+  }
+  around.water = medium_.water_at(motion.p_WB);
+  if (wetted.current_by_yaw_only) around.water.velocity_W = turned_by_yaw_only(motion.R_WB, around.water.velocity_W);
+  around.v_B = motion.R_WB.transpose() * (motion.v_WB_W - around.water.velocity_W);
+  if (!wetted.left_the_current && !medium_.current_known(motion.p_WB))
+    warn_of_missing_current(wetted, motion.p_WB, late);
+}
+
+void Hydrodynamics::warn_of_missing_current(Wetted& wetted, const Vector3d& p_WB, LateWarnings& late) {
   wetted.left_the_current = true;
-  if (warn_)
-    warn_("body '" + wetted.body->name() + "'",
-          fmt::format("has left the file of the current at {:.1f}, {:.1f} m", p_WB.x(), p_WB.y()));
+  late.add(*wetted.body, fmt::format("has left the file of the current at {:.1f}, {:.1f} m", p_WB.x(), p_WB.y()));
 }
 
-CraftState Hydrodynamics::state_of(const CoefficientModel& model, const BodyInWater& around) const {
+[[gnu::flatten]] CraftState Hydrodynamics::state_of(const CoefficientModel& model, const BodyInWater& around) const {
   const BodyMotion& motion = around.motion;
   const LocalWater& water = around.water;
   const Matrix3d& R_WB = motion.R_WB;
@@ -156,74 +228,83 @@ CraftState Hydrodynamics::state_of(const CoefficientModel& model, const BodyInWa
   return state;
 }
 
-void Hydrodynamics::step(double gravity_mps2) {
-  step_crafts();
-  floaters_.step(gravity_mps2, around_);
+void Hydrodynamics::step(double gravity_mps2, ThreadPool* threads) {
+  LateWarnings late;
+  FirstFailure failure;
+  for_each_block(threads, crafts_.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) try {
+        step_craft(crafts_[i], late);
+      } catch (...) {
+        failure.take(i);
+      }
+  });
+  late.give(warn_);
+  failure.rethrow();
+  floaters_.step(gravity_mps2, around_, threads);
 }
 
-void Hydrodynamics::warn_of_stiffness(CoefficientBody& craft, const Vector6d& nu_r, double fastest_rate) {
+void Hydrodynamics::warn_of_stiffness(CoefficientBody& craft, const Six& nu_r, double fastest_rate,
+                                      LateWarnings& late) const {
   craft.stiffness_warned = true;
   const auto rounded = [](double value) { return fmt::format("{:.3g}", value); };
-  if (warn_)
-    warn_("body '" + craft.body->name() + "'",
-          "the hydrodynamics at " + rounded(nu_r.head<3>().norm()) + " m/s and " + rounded(nu_r.tail<3>().norm()) +
-              " rad/s are too stiff for 'step_s' " + number_text(step_s_) + ": use a step below " +
-              rounded(1 / fastest_rate) + " s; until then backward Euler adds damping");
+  late.add(*craft.body, "the hydrodynamics at " + rounded(nu_r.linear.norm()) + " m/s and " +
+                            rounded(nu_r.angular.norm()) + " rad/s are too stiff for 'step_s' " + number_text(step_s_) +
+                            ": use a step below " + rounded(1 / fastest_rate) +
+                            " s; until then backward Euler adds damping");
 }
 
-void Hydrodynamics::step_crafts() {
-  for (CoefficientBody& craft : crafts_) {
-    Body& body = *craft.body;
-    const CoefficientModel& model = *craft.model;
-    const BodyInWater& around = around_[static_cast<std::size_t>(body.number())];
-    // State relative to the water, and stiffness of the step.
-    CraftState state = state_of(model, around);
-    Vector6d nu_r = state.nu;
-    nu_r.head<3>() -= state.v_water;
-    const double fastest = model.fastest_rate(nu_r);
-    const bool stiff = !(fastest * step_s_ < 1) && model.immersed(state) > 0;
-    if (stiff && !craft.stiffness_warned) warn_of_stiffness(craft, nu_r, fastest);
-    if (!stiff) {
-      step_by_midpoint(craft, state, around);
-      continue;
-    }
-    // Backward Euler starts where the body is.
-    body.take_first_order_step(step_s_);
-    BodyInWater at_start = around;
-    at_start.motion = body.motion();
-    const Matrix3d& R_WB = at_start.motion.R_WB;
-    at_start.w_B = R_WB.transpose() * at_start.motion.w_WB_W;
-    at_start.v_B = R_WB.transpose() * (at_start.motion.v_WB_W - at_start.water.velocity_W);
-    state = state_of(model, at_start);
-    const Vector6d nu_dot = model.stiff_acceleration(state, applied_to(body, model, R_WB), step_s_);
-    // Wrench on the rigid body that gives this acceleration.
-    const Vector6d wrench = model.equivalent_wrench(nu_dot, state.nu.head<3>(), state.nu.tail<3>(), body.mass_kg(),
-                                                    model.config().inertia_kgm2);
-    body.set_applied_W(R_WB * flipped(wrench.head<3>()), R_WB * flipped(wrench.tail<3>()));
-  }
+void Hydrodynamics::step_craft(CoefficientBody& craft, LateWarnings& late) {
+  Body& body = *craft.body;
+  const CoefficientModel& model = *craft.model;
+  const BodyInWater& around = around_[static_cast<std::size_t>(body.number())];
+  // State relative to the water, and stiffness of the step.
+  CraftState state = state_of(model, around);
+  Six nu_r(state.nu);
+  nu_r.linear -= state.v_water;
+  const double fastest = model.fastest_rate(nu_r);
+  const bool stiff = !(fastest * step_s_ < 1) && model.immersed(state) > 0;
+  if (stiff && !craft.stiffness_warned) warn_of_stiffness(craft, nu_r, fastest, late);
+  if (!stiff) return step_by_midpoint(craft, state, around);
+  // Backward Euler starts where the body is.
+  body.take_first_order_step(step_s_);
+  BodyInWater at_start = around;
+  at_start.motion = body.motion();
+  const Matrix3d& R_WB = at_start.motion.R_WB;
+  at_start.w_B = R_WB.transpose() * at_start.motion.w_WB_W;
+  at_start.v_B = R_WB.transpose() * (at_start.motion.v_WB_W - at_start.water.velocity_W);
+  state = state_of(model, at_start);
+  const Vector6d nu_dot = model.stiff_acceleration(state, applied_to(body, model, R_WB), step_s_);
+  // Wrench on the rigid body that gives this acceleration.
+  const Vector6d wrench = model.equivalent_wrench(nu_dot, state.nu.head<3>(), state.nu.tail<3>(), body.mass_kg(),
+                                                  model.config().inertia_kgm2);
+  body.set_applied_W(R_WB * flipped(wrench.head<3>()), R_WB * flipped(wrench.tail<3>()));
 }
 
 /// Implicit midpoint rule for the velocities relative to the water, to second order by two evaluations: with the
 /// predicted velocity, and with that half-way by the first.  The attitude, the water and the forces of actuators are
 /// those half-way of a body that is alone; of others they are those at the start.
-void Hydrodynamics::step_by_midpoint(const CoefficientBody& craft, CraftState state, const BodyInWater& around) {
+[[gnu::flatten]] void Hydrodynamics::step_by_midpoint(const CoefficientBody& craft, CraftState state,
+                                                      const BodyInWater& around) {
   Body& body = *craft.body;
   const CoefficientModel& model = *craft.model;
   const Vector6d tau = applied_to(body, model, around.motion.R_WB);
   const BodyMotion start = body.motion();
   const Vector3d& carried_W = around.water.velocity_W;
-  Vector6d nu_r;  // at the start, relative to the water
-  nu_r << flipped(start.R_WB.transpose() * (start.v_WB_W - carried_W)), flipped(start.R_WB.transpose() * start.w_WB_W);
+  Six nu_r;  // at the start, relative to the water
+  nu_r.linear = flipped(start.R_WB.transpose() * (start.v_WB_W - carried_W));
+  nu_r.angular = flipped(start.R_WB.transpose() * start.w_WB_W);
   const auto rate_of_nu_r = [&] {
-    Vector6d rate = model.acceleration(state, tau);
-    rate.head<3>() += state.nu.tail<3>().cross(state.v_water);  // without the turning of the water in body axes
+    Six rate(model.acceleration(state, tau));
+    rate.linear += state.nu.tail<3>().cross(state.v_water);  // without the turning of the water in body axes
     return rate;
   };
-  state.nu = nu_r + step_s_ / 2 * rate_of_nu_r();
-  state.nu.head<3>() += state.v_water;
-  nu_r += step_s_ * rate_of_nu_r();
-  const Vector3d w_B = flipped(nu_r.tail<3>());
-  body.set_velocity_at_end(flipped(nu_r.head<3>()) + w_B.cross(body.p_BC()), carried_W, w_B, step_s_);
+  const Six first = rate_of_nu_r();
+  state.nu << nu_r.linear + step_s_ / 2 * first.linear + state.v_water, nu_r.angular + step_s_ / 2 * first.angular;
+  const Six second = rate_of_nu_r();
+  nu_r.linear += step_s_ * second.linear;
+  nu_r.angular += step_s_ * second.angular;
+  const Vector3d w_B = flipped(nu_r.angular);
+  body.set_velocity_at_end(flipped(nu_r.linear) + w_B.cross(body.p_BC()), carried_W, w_B, step_s_);
 }
 
 /// Force and torque of the actuators about the origin, forward-right-down.

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "sim/base/thread_pool.hpp"
 #include "sim/hydrodynamics/body_in_water.hpp"
 #include "sim/hydrodynamics/coefficient_model.hpp"
 #include "sim/hydrodynamics/immersed_bodies.hpp"
@@ -31,8 +32,20 @@ class Hydrodynamics {
   /// Removes the bodies of a group, before they are destroyed.
   void remove_group(int group);
 
-  /// Updates the water around each body, before actuators act on it.
-  void begin_step();
+  /// Actuators that act while the bodies of one group after the other are stepped.
+  struct Actors {
+    /// Lets the actuators of a group act, which must neither read nor change bodies of other groups.  Threads call it
+    /// for several groups at once.  Must not throw.
+    std::function<void(int group)> act;
+    /// Is called once after all groups, before any exception of the water is thrown.  May throw.
+    std::function<void()> finish;
+  };
+  /// Does the work of begin_step(), the actuators and step(), group by group, so that the data of a vehicle stay in the
+  /// cache.  The results are the same.
+  void step_by_groups(double gravity_mps2, const Actors& actors, ThreadPool* threads = nullptr);
+
+  /// Updates the water around each body, before actuators act on it.  `threads` share the bodies; may be null.
+  void begin_step(ThreadPool* threads = nullptr);
   /// Water at a body's origin in this step.
   const LocalWater& water_at(const Body& body) const { return around(body).water; }
   /// Motion of a body and of the water around it; `known` is false for a body without hydrodynamics.
@@ -45,8 +58,9 @@ class Hydrodynamics {
     const BodyInWater& found = around(body);
     return found.known ? found.motion : body.motion_for_forces(step_s_);
   }
-  /// Adds the hydrodynamic forces to those that actuators applied to the bodies in this step.
-  void step(double gravity_mps2);
+  /// Adds the hydrodynamic forces to those that actuators applied to the bodies in this step.  `threads` share the
+  /// bodies; may be null.  Of several exceptions, that of the first body is thrown.
+  void step(double gravity_mps2, ThreadPool* threads = nullptr);
   /// Returns the warnings about bodies since the last call, one line each.
   std::vector<std::string> take_warnings() { return std::exchange(warnings_, {}); }
 
@@ -65,23 +79,33 @@ class Hydrodynamics {
     bool current_by_yaw_only;       // a quirk of its coefficients
     bool left_the_current = false;  // a warning was given
   };
+  /// Bodies of a group, as ranges of wetted_ and crafts_.
+  struct InWater {
+    int group;
+    std::size_t wetted_begin, wetted_end, crafts_begin, crafts_end;
+  };
+  void list_groups();
   void add_craft(Body& body, const HydrodynamicsConfig& config);
-  void step_crafts();
+  class LateWarnings;
+  void begin_step_of(Wetted& wetted, double highest_m, LateWarnings& late);
+  void step_craft(CoefficientBody& craft, LateWarnings& late);
   void step_by_midpoint(const CoefficientBody& craft, CraftState state, const BodyInWater& around);
   static Vector6d applied_to(const Body& body, const CoefficientModel& model, const Matrix3d& R_WB);
-  void warn_of_stiffness(CoefficientBody& craft, const Vector6d& nu_r, double fastest_rate);
+  void warn_of_stiffness(CoefficientBody& craft, const Six& nu_r, double fastest_rate, LateWarnings& late) const;
   CraftState state_of(const CoefficientModel& model, const BodyInWater& around) const;
-  void warn_of_missing_current(Wetted& wetted, const Vector3d& p_WB);
+  static void warn_of_missing_current(Wetted& wetted, const Vector3d& p_WB, LateWarnings& late);
   void check_step(const CoefficientModel& model, const HydrodynamicsConfig& config, const std::string& who) const;
 
   const Medium& medium_;
   double gravity_mps2_;
   double step_s_;
-  std::vector<CoefficientBody> crafts_;  // in order of addition
+  std::vector<CoefficientBody> crafts_;  // in order of addition, the bodies of a group together
   ImmersedBodies floaters_;              // bodies without coefficients
   std::vector<BodyInWater> around_;      // by body number
   const BodyInWater nowhere_;
-  std::vector<Wetted> wetted_;  // bodies whose water begin_step() updates
+  std::vector<Wetted> wetted_;  // bodies whose water begin_step() updates, in order of addition too
+  std::vector<InWater> groups_;
+  bool groups_listed_ = false;
   std::vector<std::string> warnings_;
   Warn warn_;
   // Models, shared by identical vehicles.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "sim/base/first_failure.hpp"
 #include "sim/config/message_text.hpp"
 
 namespace sim {
@@ -104,12 +105,24 @@ void ImmersedBodies::remove_group(int group) {
   std::erase_if(bodies_, [&](const ImmersedBody& body) { return body.body->group() == group; });
 }
 
-void ImmersedBodies::step(double gravity_mps2, std::span<const BodyInWater> around) {
-  for (const ImmersedBody& body : bodies_)
-    step_body(body, gravity_mps2, around[static_cast<std::size_t>(body.body->number())]);
+void ImmersedBodies::step(double gravity_mps2, std::span<const BodyInWater> around, ThreadPool* threads) {
+  FirstFailure failure;
+  for_each_block(threads, bodies_.size(), [&](std::size_t begin, std::size_t end) {
+    ImmersedDrag drag;
+    for (std::size_t i = begin; i < end; ++i) {
+      const ImmersedBody& body = bodies_[i];
+      try {
+        step_body(body, gravity_mps2, around[static_cast<std::size_t>(body.body->number())], drag);
+      } catch (...) {
+        failure.take(i);
+      }
+    }
+  });
+  failure.rethrow();
 }
 
-void ImmersedBodies::step_body(const ImmersedBody& body, double gravity_mps2, const BodyInWater& around) {
+void ImmersedBodies::step_body(const ImmersedBody& body, double gravity_mps2, const BodyInWater& around,
+                               ImmersedDrag& drag) const {
   const LocalWater& at_origin = around.water;
   const BodyMotion& motion = around.motion;
   if (motion.p_WB.z() - body.radius_m > medium_.highest_surface_m()) return;
@@ -120,16 +133,16 @@ void ImmersedBodies::step_body(const ImmersedBody& body, double gravity_mps2, co
   sum.p_WC = motion.p_WB + p_BC_W;
   sum.w_W = motion.w_WB_W;
   sum.v_WC_W = motion.v_WB_W + sum.w_W.cross(p_BC_W);
-  drag_.begin(sum.R_WB, sum.v_WC_W, sum.w_W);
-  for (const ImmersedPiece& piece : body.pieces) add_piece(piece, gravity_mps2, at_origin, sum);
+  drag.begin(sum.R_WB, sum.v_WC_W, sum.w_W);
+  for (const ImmersedPiece& piece : body.pieces) add_piece(piece, gravity_mps2, at_origin, drag, sum);
   if (!sum.wet) return;
-  add_wind(body, sum);
+  add_wind(body, drag, sum);
   if (body.stiff && sum.afloat) add_stiffness(body, at_origin, sum);
-  if (!apply(*body.body, gravity_mps2, sum)) {
+  if (!apply(*body.body, gravity_mps2, drag, sum)) {
     body.body->take_first_order_step(step_s_);
     BodyInWater at_start = around;
     at_start.motion = body.body->motion();
-    step_body(body, gravity_mps2, at_start);
+    step_body(body, gravity_mps2, at_start, drag);
   }
 }
 
@@ -157,7 +170,7 @@ void ImmersedBodies::add_stiffness(const ImmersedBody& body, const LocalWater& w
 
 /// Applies the sum to the body.  ODE has no added mass: the acceleration is solved with added mass, and the force that
 /// gives it to the rigid body is applied.  Returns false, and does nothing, when drag is too stiff for forces half-way.
-bool ImmersedBodies::apply(Body& body, double gravity_mps2, const Wrench& sum) {
+bool ImmersedBodies::apply(Body& body, double gravity_mps2, ImmersedDrag& drag, const Wrench& sum) const {
   const double mass = body.mass_kg();
   const Matrix3d I_W = sum.R_WB * body.inertia_C_B() * sum.R_WB.transpose();
   const Vector3d weight(0, 0, -mass * gravity_mps2);  // ODE adds the weight, and the gyroscopic torque below
@@ -168,13 +181,13 @@ bool ImmersedBodies::apply(Body& body, double gravity_mps2, const Wrench& sum) {
   const double dv = step_s_ * f.head<3>().norm() / (mass + sum.added_kg);
   const Vector3d dw = step_s_ * (sum.R_WB.transpose() * f.tail<3>()).cwiseAbs().cwiseQuotient(inertia);
   Vector6d a;
-  if (drag_.too_stiff(mass + sum.added_kg, inertia, dv, dw, step_s_)) {
+  if (drag.too_stiff(mass + sum.added_kg, inertia, dv, dw, step_s_)) {
     if (body.alone()) return false;
-    a = drag_.acceleration(sum.mass_matrix(mass, I_W), f, step_s_);
+    a = drag.acceleration(sum.mass_matrix(mass, I_W), f, step_s_);
     body.take_first_order_step(step_s_);
   } else {
-    f.head<3>() += drag_.force_N();
-    f.tail<3>() += drag_.torque_Nm();
+    f.head<3>() += drag.force_N();
+    f.tail<3>() += drag.torque_Nm();
     a = sum.acceleration(mass, I_W, f);
   }
   body.set_applied_W(mass * a.head<3>() - weight, I_W * a.tail<3>() + gyroscopic);
@@ -213,7 +226,7 @@ WaterPlane ImmersedBodies::surface_at(const ImmersedPiece& piece, const Vector3d
 }
 
 void ImmersedBodies::add_piece(const ImmersedPiece& piece, double gravity_mps2, const LocalWater& at_origin,
-                               Wrench& sum) {
+                               ImmersedDrag& drag, Wrench& sum) const {
   const Vector3d p_BP_W = sum.R_WB * piece.p_BP, p_WP = sum.p_WB + p_BP_W;
   // Near the origin of the body the water values of the origin are used, unless there are waves.
   constexpr double near_m = 0.5;
@@ -241,7 +254,7 @@ void ImmersedBodies::add_piece(const ImmersedPiece& piece, double gravity_mps2, 
   Vector3d pressed_P = immersed.centroid_m;
   if (piece.shape == ImmersedPiece::Shape::round) pressed_P.x() = pressed_P.y() = 0;
   if (piece.shape == ImmersedPiece::Shape::sphere) pressed_P.setZero();
-  drag_.add(piece, share, water.density_kgpm3, water.velocity_W, p_WP + R_WP * pressed_P - sum.p_WC, R_WP);
+  drag.add(piece, share, water.density_kgpm3, water.velocity_W, p_WP + R_WP * pressed_P - sum.p_WC, R_WP);
   if (piece.added_mass_coefficient > 0)
     sum.add_added_mass(piece.added_mass_coefficient * displaced_kg, at_CP_W, water.acceleration_W);
 }
@@ -257,7 +270,7 @@ void ImmersedBodies::Wrench::add_added_mass(double mass_kg, const Vector3d& at_C
 }
 
 /// Adds the wind drag on the parts above water of a floating body.
-void ImmersedBodies::add_wind(const ImmersedBody& body, const Wrench& sum) {
+void ImmersedBodies::add_wind(const ImmersedBody& body, ImmersedDrag& drag, const Wrench& sum) const {
   const Vector3d wind_W = medium_.air_velocity_W(sum.p_WC);
   if (wind_W.isZero(0)) return;
   for (const ImmersedPiece& piece : body.pieces) {
@@ -265,7 +278,7 @@ void ImmersedBodies::add_wind(const ImmersedBody& body, const Wrench& sum) {
     const double over = p_WP.z() - medium_.surface_m(p_WP.x(), p_WP.y());
     const double share = std::clamp(0.5 + over / (2 * piece.radius_m), 0.0, 1.0);
     constexpr double air_density_kgpm3 = 1.225;
-    if (share > 0) drag_.add(piece, share, air_density_kgpm3, wind_W, p_WP - sum.p_WC, sum.R_WB * piece.R_BP);
+    if (share > 0) drag.add(piece, share, air_density_kgpm3, wind_W, p_WP - sum.p_WC, sum.R_WB * piece.R_BP);
   }
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/base/thread_pool.hpp"
 #include "sim/hydrodynamics/body_in_water.hpp"
 #include "sim/hydrodynamics/immersed_drag.hpp"
 #include "sim/hydrodynamics/immersed_piece.hpp"
@@ -23,8 +24,8 @@ class ImmersedBodies {
   /// not added.  Appends warnings about it.  Throws ConfigError (meshes).
   double add(Body& body, const BodyConfig& config, double gravity_mps2, std::vector<std::string>& warnings);
   void remove_group(int group);
-  /// Adds the water forces to the forces on each body.  `around`: by body number.
-  void step(double gravity_mps2, std::span<const BodyInWater> around);
+  /// Adds the water forces to the forces on each body.  `around`: by body number.  `threads` may be null.
+  void step(double gravity_mps2, std::span<const BodyInWater> around, ThreadPool* threads);
 
  private:
   /// Data of a body for each step.
@@ -42,18 +43,19 @@ class ImmersedBodies {
   std::vector<ImmersedPiece> pieces_of(const Body& body, const BodyConfig& config, double max_m,
                                        std::vector<std::string>& warnings);
   void find_stiffness(ImmersedBody& body, double gravity_mps2, std::vector<std::string>& warnings) const;
-  void step_body(const ImmersedBody& body, double gravity_mps2, const BodyInWater& around);
-  void add_piece(const ImmersedPiece& piece, double gravity_mps2, const LocalWater& at_origin, Wrench& sum);
+  // `drag`: of the present body.
+  void step_body(const ImmersedBody& body, double gravity_mps2, const BodyInWater& around, ImmersedDrag& drag) const;
+  void add_piece(const ImmersedPiece& piece, double gravity_mps2, const LocalWater& at_origin, ImmersedDrag& drag,
+                 Wrench& sum) const;
   WaterPlane surface_at(const ImmersedPiece& piece, const Vector3d& p_WP, const LocalWater& water) const;
   void add_stiffness(const ImmersedBody& body, const LocalWater& water, Wrench& sum) const;
-  bool apply(Body& body, double gravity_mps2, const Wrench& sum);
-  void add_wind(const ImmersedBody& body, const Wrench& sum);
+  bool apply(Body& body, double gravity_mps2, ImmersedDrag& drag, const Wrench& sum) const;
+  void add_wind(const ImmersedBody& body, ImmersedDrag& drag, const Wrench& sum) const;
 
   const Medium& medium_;
   double step_s_;
   std::vector<ImmersedBody> bodies_;  // in order of addition
   PieceMeshes meshes_;
-  ImmersedDrag drag_;  // of the present body
 };
 
 }  // namespace sim

@@ -74,7 +74,15 @@ LocalWater Medium::water_at(const Vector3d& p_W) const {
 }
 
 Vector3d Medium::water_velocity_W(const Vector3d& p_W) const {
-  return water_at(p_W).velocity_W;
+  Vector3d v_W = Vector3d::Zero();
+  if (!has_water()) return v_W;
+  double surface_m = still_m_;
+  if (waves_) {
+    const WaveMotion motion = waves_->at(p_W.x(), p_W.y(), p_W.z() - still_m_);
+    surface_m += motion.elevation_m;
+    v_W = motion.velocity_W;
+  }
+  return v_W + current_->velocity_W(p_W.x(), p_W.y(), surface_m - p_W.z());
 }
 
 Vector3d Medium::air_velocity_W(const Vector3d& p_W) const {

@@ -21,7 +21,7 @@ void PhysicsConfig::read(ParamReader& in) {
   in.read_choice("solver", solver, solver_words,
                  "step: exact; quick: iterative; auto: quick for large islands, step for the others");
   in.read("quick_above_rows", quick_above_rows, at_least(0),
-          "auto: islands with more constraint rows are stepped by quick");
+          "auto: islands with more constraint rows are stepped as crowds or by quick");
   in.read("quick_iterations", quick_iterations, between(1, 10000), "iterations of the quick solver");
   in.read("erp", erp, between(0, 1),
           "error reduction parameter: fraction of the joint or contact error corrected per step");

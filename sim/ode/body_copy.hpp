@@ -18,6 +18,11 @@ class BodyCopy {
     each([](const dReal* to, const dReal* from, int count) { std::copy_n(from, count, const_cast<dReal*>(to)); });
     dBodySetPosition(body_, p_[0], p_[1], p_[2]);  // marks the geoms as moved
   }
+  dBodyID body() const { return body_; }
+  void write_to(dBodyID other) {
+    body_ = other;
+    write_back();
+  }
 
  private:
   template <class Visit>

@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <cstdarg>
+#include <cstddef>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <new>
 #include <string>
 
 #include "sim/base/step_memory.hpp"
@@ -38,18 +40,35 @@ void on_message(int, const char* text, va_list arguments) {
 // times in a step.
 constexpr std::size_t max_object_bytes = 4096;
 
+/// Stands before each object.  ODE gives the size again when it frees one, but not always the right one: the destructor
+/// of its quadtree frees 32 bytes as 36.
+struct alignas(std::max_align_t) ObjectSize {
+  std::size_t bytes;  ///< with this
+};
+
 void* allocate(std::size_t bytes) {
-  return bytes <= max_object_bytes ? allocate_for_steps(bytes) : std::malloc(bytes);
+  bytes += sizeof(ObjectSize);
+  void* const memory = bytes <= max_object_bytes ? allocate_for_steps(bytes) : std::malloc(bytes);
+  if (memory == nullptr) return nullptr;
+  return new (memory) ObjectSize{bytes} + 1;
 }
 
-void free(void* memory, std::size_t bytes) {
+ObjectSize* size_of(void* object) {
+  return static_cast<ObjectSize*>(object) - 1;
+}
+
+void free(void* object, std::size_t) {
+  if (object == nullptr) return;
+  ObjectSize* const memory = size_of(object);
+  const std::size_t bytes = memory->bytes;
   bytes <= max_object_bytes ? free_for_steps(memory, bytes) : std::free(memory);
 }
 
-void* reallocate(void* memory, std::size_t old_bytes, std::size_t new_bytes) {
+void* reallocate(void* object, std::size_t, std::size_t new_bytes) {
   void* const grown = allocate(new_bytes);
-  if (memory != nullptr) std::memcpy(grown, memory, std::min(old_bytes, new_bytes));
-  if (memory != nullptr) free(memory, old_bytes);
+  if (object == nullptr || grown == nullptr) return grown;
+  std::memcpy(grown, object, std::min(size_of(object)->bytes - sizeof(ObjectSize), new_bytes));
+  free(object, 0);
   return grown;
 }
 

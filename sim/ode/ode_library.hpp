@@ -27,9 +27,6 @@ struct GeomDeleter {
 struct JointGroupDeleter {
   void operator()(dJointGroupID group) const { dJointGroupDestroy(group); }
 };
-struct ThreadingDeleter {
-  void operator()(dThreadingImplementationID threading) const { dThreadingFreeImplementation(threading); }
-};
 struct TriMeshDataDeleter {
   void operator()(dTriMeshDataID data) const { dGeomTriMeshDataDestroy(data); }
 };
@@ -40,7 +37,6 @@ using WorldHandle = std::unique_ptr<dxWorld, WorldDeleter>;
 using SpaceHandle = std::unique_ptr<dxSpace, SpaceDeleter>;
 using GeomHandle = std::unique_ptr<dxGeom, GeomDeleter>;
 using JointGroupHandle = std::unique_ptr<dxJointGroup, JointGroupDeleter>;
-using ThreadingHandle = std::unique_ptr<dxThreadingImplementation, ThreadingDeleter>;
 using TriMeshDataHandle = std::unique_ptr<dxTriMeshData, TriMeshDataDeleter>;
 using HeightfieldDataHandle = std::unique_ptr<dxHeightfieldData, HeightfieldDataDeleter>;
 

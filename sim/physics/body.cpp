@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <cstring>
 #include <span>
 #include <type_traits>
 
@@ -17,6 +18,16 @@ namespace sim {
 
 static_assert(std::is_same_v<dReal, double>, "Body keeps pointers into ODE's numbers");
 
+namespace {
+
+void store(double* to, const Vector3d& v) {
+  to[0] = v.x();
+  to[1] = v.y();
+  to[2] = v.z();
+}
+
+}  // namespace
+
 void BodyDeleter::operator()(dxBody* body) const {
   dBodyDestroy(body);
 }
@@ -29,6 +40,11 @@ Pose Body::X_WB() const {
   return X_WB;
 }
 
+Vector3d Body::p_WB() const {
+  if (fixed()) return seat_X_WB_.translation();
+  return to_eigen(p_WC_) - rotation_to_eigen(R_WB_) * p_BC_;
+}
+
 Vector3d Body::v_WB_W() const {
   return velocity_at_W(Vector3d::Zero());
 }
@@ -37,10 +53,10 @@ Vector3d Body::w_WB_W() const {
   return fixed() ? Vector3d(Vector3d::Zero()) : to_eigen(w_WB_W_);
 }
 
-BodyMotion Body::motion() const {
+// The functions of each step are flattened: otherwise small functions of Eigen are calls.
+[[gnu::flatten]] BodyMotion Body::motion() const {
   if (fixed()) return {seat_X_WB_.linear(), seat_X_WB_.translation(), Vector3d::Zero(), Vector3d::Zero()};
-  BodyMotion motion;
-  motion.R_WB = rotation_to_eigen(R_WB_);
+  BodyMotion motion{rotation_to_eigen(R_WB_)};
   const Vector3d p_BC_W = motion.R_WB * p_BC_;
   motion.p_WB = to_eigen(p_WC_) - p_BC_W;
   motion.w_WB_W = to_eigen(w_WB_W_);
@@ -65,23 +81,23 @@ void Body::add_force_W(const Vector3d& force_N, const Vector3d& at_W) {
 void Body::add_torque_W(const Vector3d& torque_Nm) {
   if (!torque_Nm.allFinite()) throw PhysicsFault("body '" + name_ + "': a torque on it is not finite");
   if (!free()) return;
-  dBodyAddTorque(ode_.get(), torque_Nm.x(), torque_Nm.y(), torque_Nm.z());
+  store(torque_Nm_, to_eigen(torque_Nm_) + torque_Nm);
 }
 
 Vector3d Body::applied_force_W() const {
-  return free() ? to_eigen(dBodyGetForce(ode_.get())) : Vector3d(Vector3d::Zero());
+  return free() ? to_eigen(force_N_) : Vector3d(Vector3d::Zero());
 }
 
 Vector3d Body::applied_torque_W() const {
-  return free() ? to_eigen(dBodyGetTorque(ode_.get())) : Vector3d(Vector3d::Zero());
+  return free() ? to_eigen(torque_Nm_) : Vector3d(Vector3d::Zero());
 }
 
 void Body::set_applied_W(const Vector3d& force_N, const Vector3d& torque_Nm) {
   if (!force_N.allFinite() || !torque_Nm.allFinite())
     throw PhysicsFault("body '" + name_ + "': the forces of the water on it are not finite");
   if (!free()) return;
-  dBodySetForce(ode_.get(), force_N.x(), force_N.y(), force_N.z());
-  dBodySetTorque(ode_.get(), torque_Nm.x(), torque_Nm.y(), torque_Nm.z());
+  store(force_N_, force_N);
+  store(torque_Nm_, torque_Nm);
 }
 
 void Body::set_pose(const Pose& X_WB) {
@@ -93,6 +109,7 @@ void Body::set_pose(const Pose& X_WB) {
     return;
   }
   ++moves_->moving;
+  ++moves_->jumps;
   if (kinematic()) {
     seat_X_WB_ = X_WB;
     end_kinematic_step();
@@ -120,27 +137,36 @@ void Body::move_to(const Pose& X_WB_at_end, double step_s) {
   move_to(X_WB_at_end, v_WB_W, w_WB_W);
 }
 
-void Body::move_to(const Pose& X_WB_at_end, const Vector3d& v_WB_W, const Vector3d& w_WB_W) {
+[[gnu::flatten]] void Body::move_to(const Pose& X_WB_at_end, const Vector3d& v_WB_W, const Vector3d& w_WB_W) {
   assert(kinematic());
-  dBodySetLinearVel(ode_.get(), v_WB_W.x(), v_WB_W.y(), v_WB_W.z());
-  dBodySetAngularVel(ode_.get(), w_WB_W.x(), w_WB_W.y(), w_WB_W.z());
+  store(v_WC_W_, v_WB_W);
+  store(w_WB_W_, w_WB_W);
+  // The first three columns, by their bits: -0 and 0 give attitudes of other bits.
+  turn_is_due_ |= std::memcmp(seat_X_WB_.data(), X_WB_at_end.data(), 3 * 4 * sizeof(double)) != 0;
   seat_X_WB_ = X_WB_at_end;
   move_is_due_ = true;
 }
 
 void Body::start_kinematic_step() {
   if (move_is_due_) return;
-  dBodySetLinearVel(ode_.get(), 0, 0, 0);
-  dBodySetAngularVel(ode_.get(), 0, 0, 0);
+  store(v_WC_W_, Vector3d::Zero());
+  store(w_WB_W_, Vector3d::Zero());
 }
 
 /// Sets the exact target pose.  ODE reaches it except for rounding, which would accumulate, also in a body at rest: ODE
 /// normalizes the quaternion in each step, and that is not idempotent.
 void Body::end_kinematic_step() {
   place_ode_body(seat_X_WB_);
-  move_is_due_ = false;
+  move_is_due_ = turn_is_due_ = false;
   // Disabled bodies cost less: ODE still steps one in contact with a free body.
   dBodyDisable(ode_.get());
+}
+
+/// The same after a step without ODE, in which the body kept its pose.  Its parts are not marked as moved.
+[[gnu::flatten]] void Body::end_kinematic_step_alone() {
+  if (move_is_due_) store(p_WC_, seat_X_WB_ * p_BC_);
+  if (turn_is_due_) write_rotation(to_quaternion(seat_X_WB_.linear()));
+  move_is_due_ = turn_is_due_ = false;
 }
 
 void Body::set_velocity_W(const Vector3d& v_WB_W, const Vector3d& w_WB_W) {
@@ -148,8 +174,8 @@ void Body::set_velocity_W(const Vector3d& v_WB_W, const Vector3d& w_WB_W) {
     throw PhysicsFault("body '" + name_ + "': its new velocity is not finite");
   if (!free()) return;
   const Vector3d v_WC_W = v_WB_W + w_WB_W.cross(rotation_to_eigen(R_WB_) * p_BC_);
-  dBodySetLinearVel(ode_.get(), v_WC_W.x(), v_WC_W.y(), v_WC_W.z());
-  dBodySetAngularVel(ode_.get(), w_WB_W.x(), w_WB_W.y(), w_WB_W.z());
+  store(v_WC_W_, v_WC_W);
+  store(w_WB_W_, w_WB_W);
   a_WC_W_.setZero();
   alpha_B_.setZero();
   last_step_ = LastStep::none;
@@ -203,16 +229,16 @@ void Body::visit_state(StateArchive& archive) {
   // Copy the motion out of ODE, and visit it as one block.
   const auto each = [&](const auto& copy) {
     copy(motion.p_WC, p_WC_, 3);
-    copy(motion.q_WB, dBodyGetQuaternion(ode_.get()), 4);
+    copy(motion.q_WB, q_WB_, 4);
     copy(motion.R_WB, R_WB_, 12);
     copy(motion.v_WC_W, v_WC_W_, 3);
     copy(motion.w_WB_W, w_WB_W_, 3);
   };
-  each([](double* to, const dReal* from, int count) { std::copy_n(from, count, to); });
+  each([](double* to, const double* from, int count) { std::copy_n(from, count, to); });
   archive.raw(&motion, sizeof motion);
   // Visit the applied forces, and the target pose of a kinematic body.
-  std::copy_n(dBodyGetForce(ode_.get()), 3, rest.force_N);
-  std::copy_n(dBodyGetTorque(ode_.get()), 3, rest.torque_Nm);
+  std::copy_n(force_N_, 3, rest.force_N);
+  std::copy_n(torque_Nm_, 3, rest.torque_Nm);
   rest.seat_X_WB = seat_X_WB_.matrix();
   rest.enabled = dBodyIsEnabled(ode_.get());
   rest.move_is_due = move_is_due_;
@@ -234,13 +260,15 @@ void Body::visit_state(StateArchive& archive) {
       !is_usable(rest.torque_Nm) || !is_usable({rest.a_WC_W.data(), 3}) || !is_usable({rest.alpha_B.data(), 3}))
     archive.fail("'" + name_ + "' has an invalid velocity or force");
   // Write them back into ODE.
-  each([](const double* from, const dReal* to, int count) { std::copy_n(from, count, const_cast<dReal*>(to)); });
+  each([](const double* from, double* to, int count) { std::copy_n(from, count, to); });
   dBodySetPosition(ode_.get(), motion.p_WC[0], motion.p_WC[1], motion.p_WC[2]);
-  dBodySetForce(ode_.get(), rest.force_N[0], rest.force_N[1], rest.force_N[2]);
-  dBodySetTorque(ode_.get(), rest.torque_Nm[0], rest.torque_Nm[1], rest.torque_Nm[2]);
+  ++moves_->jumps;
+  std::copy_n(rest.force_N, 3, force_N_);
+  std::copy_n(rest.torque_Nm, 3, torque_Nm_);
   rest.enabled ? dBodyEnable(ode_.get()) : dBodyDisable(ode_.get());
   seat_X_WB_.matrix() = rest.seat_X_WB;
   move_is_due_ = rest.move_is_due;
+  turn_is_due_ = kinematic();
   a_WC_W_ = rest.a_WC_W;
   alpha_B_ = rest.alpha_B;
   last_step_ = free() && rest.last_step <= LastStep::ode ? rest.last_step : LastStep::none;
@@ -272,23 +300,38 @@ void Body::add_gyroscopic_torque(double step_s) {
   // Such a rotation cannot be resolved by the step.
   if (!next) return;
   const Vector3d torque_W = R_WB * (inertia_C_B_ * (*next - w) / step_s);
-  if (!torque_W.isZero(0)) dBodyAddTorque(ode_.get(), torque_W.x(), torque_W.y(), torque_W.z());
+  if (!torque_W.isZero(0)) store(torque_Nm_, to_eigen(torque_Nm_) + torque_W);
 }
 
-void Body::step_alone(double step_s, double gravity_mps2) {
+/// Writes an attitude as dBodySetQuaternion() does, without marking the parts as moved.
+void Body::write_rotation(const Quaterniond& q_WB) {
+  const double scale =
+      1 / std::sqrt(q_WB.w() * q_WB.w() + q_WB.x() * q_WB.x() + q_WB.y() * q_WB.y() + q_WB.z() * q_WB.z());
+  const double w = q_WB.w() * scale, x = q_WB.x() * scale, y = q_WB.y() * scale, z = q_WB.z() * scale;
+  const double q[] = {w, x, y, z};
+  std::copy_n(q, 4, q_WB_);
+  const double xx = 2 * x * x, yy = 2 * y * y, zz = 2 * z * z;
+  const double R[] = {1 - yy - zz,         2 * (x * y - w * z), 2 * (x * z + w * y), 0,  //
+                      2 * (x * y + w * z), 1 - xx - zz,         2 * (y * z - w * x), 0,  //
+                      2 * (x * z - w * y), 2 * (y * z + w * x), 1 - xx - yy,         0};
+  std::copy_n(R, 12, R_WB_);
+}
+
+[[gnu::flatten]] void Body::step_alone(double step_s, double gravity_mps2) {
   const double h = step_s;
   const Matrix3d R_WB = rotation_to_eigen(R_WB_);
   Vector3d v_before_W = to_eigen(v_WC_W_), w_before_B = R_WB.transpose() * to_eigen(w_WB_W_);
   Vector3d force_W = applied_force_W(), torque_W = applied_torque_W();
   if (gravity_) force_W.z() -= mass_kg_ * gravity_mps2;
-  const dReal* q = dBodyGetQuaternion(ode_.get());
-  const Eigen::Quaterniond q_WB(q[0], q[1], q[2], q[3]);
+  const Quaterniond q_WB(q_WB_[0], q_WB_[1], q_WB_[2], q_WB_[3]);
   // Velocities at the end.
   Vector3d v_W = v_before_W, w_B;
   if (planned_) {
     // Forces that were added to the plan act on the rigid body.
-    force_W -= planned_force_W_;
-    torque_W -= planned_torque_W_;
+    if (plan_applied_) {
+      force_W -= planned_force_W_;
+      torque_W -= planned_torque_W_;
+    }
     w_B = w_B_at_end_;
     if (!torque_W.isZero(0)) w_B += h * inertia_C_B_.llt().solve(R_WB.transpose() * torque_W);
   } else {
@@ -313,14 +356,13 @@ void Body::step_alone(double step_s, double gravity_mps2) {
   }
   const Vector3d p_WC = to_eigen(p_WC_) + h / 2 * (v_before_W + v_W);
   // Write the motion into ODE.
-  const dQuaternion q_ode = {q_after.w(), q_after.x(), q_after.y(), q_after.z()};
-  dBodySetPosition(ode_.get(), p_WC.x(), p_WC.y(), p_WC.z());
-  dBodySetQuaternion(ode_.get(), q_ode);
-  const Vector3d w_W = rotation_to_eigen(R_WB_) * w_B;
-  dBodySetLinearVel(ode_.get(), v_W.x(), v_W.y(), v_W.z());
-  dBodySetAngularVel(ode_.get(), w_W.x(), w_W.y(), w_W.z());
-  dBodySetForce(ode_.get(), 0, 0, 0);
-  dBodySetTorque(ode_.get(), 0, 0, 0);
+  store(p_WC_, p_WC);
+  write_rotation(q_after);
+  store(v_WC_W_, v_W);
+  store(w_WB_W_, rotation_to_eigen(R_WB_) * w_B);
+  store(force_N_, Vector3d::Zero());
+  store(torque_Nm_, Vector3d::Zero());
+  planned_ = plan_applied_ = false;
   a_WC_W_ = (v_W - v_before_W) / h;
   alpha_B_ = (w_B - w_before_B) / h;
   last_step_ = LastStep::alone;
@@ -330,26 +372,27 @@ void Body::step_alone(double step_s, double gravity_mps2) {
 /// velocity is the one half a step before the pose, as in the leapfrog method; what ODE begins with and what it leaves
 /// are taken for such velocities.  Otherwise a body that bounces would gain about g h v with each contact.
 void Body::leave_to_ode(double step_s) {
+  if (planned_ && !plan_applied_) apply_plan();
+  planned_ = plan_applied_ = false;
   if (last_step_ == LastStep::alone) {
     const Vector3d w_B = rotation_to_eigen(R_WB_).transpose() * to_eigen(w_WB_W_) - step_s / 2 * alpha_B_;
     const Vector3d v_W = to_eigen(v_WC_W_) - step_s / 2 * a_WC_W_, w_W = rotation_to_eigen(R_WB_) * w_B;
-    dBodySetLinearVel(ode_.get(), v_W.x(), v_W.y(), v_W.z());
-    dBodySetAngularVel(ode_.get(), w_W.x(), w_W.y(), w_W.z());
+    store(v_WC_W_, v_W);
+    store(w_WB_W_, w_W);
   }
   a_WC_W_.setZero();
   alpha_B_.setZero();
   last_step_ = LastStep::ode;
 }
 
-BodyMotion Body::motion_for_forces(double step_s) const {
+[[gnu::flatten]] BodyMotion Body::motion_for_forces(double step_s) const {
   // A body whose velocities were set is expected to be alone.
   if (!free() || last_step_ == LastStep::ode) return motion();
   const double half_s = step_s / 2;
-  const dReal* q = dBodyGetQuaternion(ode_.get());
   const Matrix3d R_WB_now = rotation_to_eigen(R_WB_);
   const Vector3d w_B = R_WB_now.transpose() * to_eigen(w_WB_W_);
-  BodyMotion middle;
-  middle.R_WB = (Eigen::Quaterniond(q[0], q[1], q[2], q[3]) * cayley(w_B, half_s)).toRotationMatrix();
+  const Quaterniond q_WB(q_WB_[0], q_WB_[1], q_WB_[2], q_WB_[3]);
+  BodyMotion middle{(q_WB * cayley(w_B, half_s)).toRotationMatrix()};
   middle.w_WB_W = middle.R_WB * (w_B + half_s * alpha_B_);
   const Vector3d p_BC_W = middle.R_WB * p_BC_;
   middle.p_WB = to_eigen(p_WC_) + half_s * to_eigen(v_WC_W_) - p_BC_W;
@@ -362,23 +405,32 @@ void Body::add_force_at_W(const Vector3d& force_N, const Vector3d& p_CP_W) {
     throw PhysicsFault("body '" + name_ + "': a force on it is not finite");
   if (!free()) return;
   const Vector3d torque_Nm = p_CP_W.cross(force_N);
-  dBodyAddForce(ode_.get(), force_N.x(), force_N.y(), force_N.z());
-  dBodyAddTorque(ode_.get(), torque_Nm.x(), torque_Nm.y(), torque_Nm.z());
+  store(force_N_, to_eigen(force_N_) + force_N);
+  store(torque_Nm_, to_eigen(torque_Nm_) + torque_Nm);
 }
 
 void Body::set_velocity_at_end(const Vector3d& v_C_B, const Vector3d& carried_W, const Vector3d& w_B, double step_s) {
   if (!v_C_B.allFinite() || !carried_W.allFinite() || !w_B.allFinite())
     throw PhysicsFault("body '" + name_ + "': the forces of the water on it are not finite");
-  const Matrix3d R_WB = rotation_to_eigen(R_WB_);
-  const Vector3d w_before_B = R_WB.transpose() * to_eigen(w_WB_W_);
-  const Matrix3d R_after = R_WB * cayley((w_before_B + w_B) / 2, step_s).toRotationMatrix();
   planned_ = true;
+  plan_applied_ = false;
+  plan_step_s_ = step_s;
   v_C_B_at_end_ = v_C_B;
   carried_W_ = carried_W;
   w_B_at_end_ = w_B;
-  planned_force_W_ = mass_kg_ / step_s * (R_after * v_C_B + carried_W - to_eigen(v_WC_W_));
-  planned_torque_W_ = R_WB * (inertia_C_B_ * (R_WB.transpose() * (R_after * w_B) - w_before_B)) / step_s;
-  set_applied_W(planned_force_W_, planned_torque_W_);
+  set_applied_W(Vector3d::Zero(), Vector3d::Zero());
+}
+
+/// Adds the forces that give the body the planned velocities, which a step of ODE needs, and contacts.
+void Body::apply_plan() {
+  plan_applied_ = true;
+  const Matrix3d R_WB = rotation_to_eigen(R_WB_);
+  const Vector3d w_before_B = R_WB.transpose() * to_eigen(w_WB_W_);
+  const Matrix3d R_after = R_WB * cayley((w_before_B + w_B_at_end_) / 2, plan_step_s_).toRotationMatrix();
+  planned_force_W_ = mass_kg_ / plan_step_s_ * (R_after * v_C_B_at_end_ + carried_W_ - to_eigen(v_WC_W_));
+  planned_torque_W_ = R_WB * (inertia_C_B_ * (R_WB.transpose() * (R_after * w_B_at_end_) - w_before_B)) / plan_step_s_;
+  store(force_N_, planned_force_W_ + to_eigen(force_N_));
+  store(torque_Nm_, planned_torque_W_ + to_eigen(torque_Nm_));
 }
 
 }  // namespace sim

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cmath>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -46,6 +48,8 @@ class Body : public VisitedInSteps {
 
   /// Pose of the body frame.
   Pose X_WB() const;
+  /// Position of the origin of B.
+  Vector3d p_WB() const;
   /// Velocity of the origin of B.  A kinematic body keeps the velocity of the last step until the next step.
   Vector3d v_WB_W() const;
   /// Angular velocity.
@@ -68,14 +72,16 @@ class Body : public VisitedInSteps {
   void add_torque_W(const Vector3d& torque_Nm);
   /// Adds a force whose point is given from the centre of mass.
   void add_force_at_W(const Vector3d& force_N, const Vector3d& p_CP_W);
-  /// Sum of what was added for the next step: force, and torque about the centre of mass.
+  /// Sum of what was added for the next step: force, and torque about the centre of mass.  Without the forces of
+  /// set_velocity_at_end().
   Vector3d applied_force_W() const;
   Vector3d applied_torque_W() const;
   /// Replaces the force and torque added for the next step.  Throws PhysicsFault when a number is not finite.
   void set_applied_W(const Vector3d& force_N, const Vector3d& torque_Nm);
   /// Replaces the force and torque added for the next step by those that give the body these velocities at its end: of
-  /// the centre of mass relative to what moves with `carried_W`, and angular, both in axes of the body at its end.  The
-  /// gyroscopic torque and gravity must be off.  Throws PhysicsFault when a number is not finite.
+  /// the centre of mass relative to what moves with `carried_W`, and angular, both in axes of the body at its end. What
+  /// is added afterwards acts on top of them.  The gyroscopic torque and gravity must be off.  Throws PhysicsFault when
+  /// a number is not finite.
   void set_velocity_at_end(const Vector3d& v_C_B, const Vector3d& carried_W, const Vector3d& w_B, double step_s);
   /// Makes the next step one of ODE, for forces that are integrated for it; motion_for_forces() is then motion().
   void take_first_order_step(double step_s) {
@@ -113,42 +119,60 @@ class Body : public VisitedInSteps {
   };
   Body() = default;
   bool free() const { return motion_ == Motion::free; }
+  bool left_its_box() const {
+    // NaN has left.
+    return !(std::abs(p_WC_[0] - box_center_W_[0]) <= leeway_m_ && std::abs(p_WC_[1] - box_center_W_[1]) <= leeway_m_ &&
+             std::abs(p_WC_[2] - box_center_W_[2]) <= leeway_m_);
+  }
   void place_fixed_geoms();
   void place_ode_body(const Pose& X_WB);
+  void write_rotation(const Quaterniond& q_WB);
   void start_kinematic_step();
   void end_kinematic_step();
+  void end_kinematic_step_alone();
   void add_gyroscopic_torque(double step_s);
   void step_alone(double step_s, double gravity_mps2);
   void leave_to_ode(double step_s);
+  void apply_plan();
 
   // Members used in each step, adjacent in memory.
   BodyHandle ode_;
   // Pointers into the ODE body, whose address is stable.
-  const double* p_WC_ = nullptr;
-  const double* v_WC_W_ = nullptr;
-  const double* w_WB_W_ = nullptr;
-  const double* R_WB_ = nullptr;
+  double* p_WC_ = nullptr;
+  double* q_WB_ = nullptr;  // w, x, y, z
+  double* R_WB_ = nullptr;  // rows of 4
+  double* v_WC_W_ = nullptr;
+  double* w_WB_W_ = nullptr;
+  double* force_N_ = nullptr;  // added for the next step; on top of a plan, see set_velocity_at_end()
+  double* torque_Nm_ = nullptr;
   bool gyroscopic_ = true;
   Motion motion_ = Motion::free;
   bool move_is_due_ = false;  // move_to was called for the next step
+  bool turn_is_due_ = false;  // and has another attitude than before
   bool first_order_ = false;  // see use_first_order()
   bool gravity_ = true;
   bool first_order_now_ = false;  // see take_first_order_step()
   bool planned_ = false;          // set_velocity_at_end() was called for the next step
+  bool plan_applied_ = false;     // and apply_plan()
   enum class LastStep : std::uint8_t { none, alone, ode };
   LastStep last_step_ = LastStep::none;  // none: the velocities were set since
   int number_ = -1;
   int group_ = -1;
+  double plan_step_s_ = 0;
+  double mass_kg_ = 0;
+  Vector3d p_BC_ = Vector3d::Zero();
   Matrix3d inertia_C_B_ = Matrix3d::Zero();
   // Accelerations of the last step, if the body was alone: of the centre of mass, and angular in axes of B.
   Vector3d a_WC_W_ = Vector3d::Zero(), alpha_B_ = Vector3d::Zero();
-  // Of set_velocity_at_end(), with the forces that it set.
-  Vector3d v_C_B_at_end_, carried_W_, w_B_at_end_, planned_force_W_, planned_torque_W_;
+  Vector3d v_C_B_at_end_, carried_W_, w_B_at_end_;  // of set_velocity_at_end()
+  // While each coordinate of the centre of mass is within this distance of a place, the body is in the box that
+  // FarGroups has for it; infinite: it has none.
+  Vector3d box_center_W_ = Vector3d::Zero();
+  double leeway_m_ = std::numeric_limits<double>::infinity();
 
+  Pose seat_X_WB_ = Pose::Identity();            // of a fixed body now; of a kinematic body after the next step
+  Vector3d planned_force_W_, planned_torque_W_;  // of apply_plan()
   std::string name_;
-  double mass_kg_ = 0;
-  Vector3d p_BC_ = Vector3d::Zero();
-  Pose seat_X_WB_ = Pose::Identity();  // of a fixed body now; of a kinematic body after the next step
   std::vector<FixedGeom> fixed_geoms_;
   SceneMoves* moves_ = nullptr;  // of the world: counts moves, so that the scene is updated
 };

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "sim/base/free_numbers.hpp"
-#include "sim/geometry/box_grid.hpp"
 #include "sim/ode/find_contacts.hpp"
 #include "sim/ode/ode_math.hpp"
 #include "sim/physics/terrain_geom.hpp"
@@ -43,8 +42,7 @@ Collider::Collider(const PhysicsConfig& config, ContactTable table)
     : table_(std::move(table)),
       step_s_(config.step_s),
       surface_layer_m_(config.contact_surface_layer_m),
-      space_(make_space(config.space)),
-      touching_(static_cast<std::size_t>(config.max_contacts_per_pair)) {
+      space_(make_space(config.space)) {
   set_gravity(config.gravity_mps2);
 }
 
@@ -98,7 +96,16 @@ void Collider::close_group(int number) {
   if (dSpaceGetNumGeoms(group.space.get()) > 0 && !dGeomGetSpace(reinterpret_cast<dGeomID>(group.space.get())))
     dSpaceAdd(space_.get(), reinterpret_cast<dGeomID>(group.space.get()));
   for (const dGeomID geom : group.fixed) dSpaceAdd(space_.get(), geom);
+  note_places(group);
   group.fixed.clear();
+}
+
+void Collider::set_far(int number, bool far) {
+  const auto space = reinterpret_cast<dGeomID>(groups_[number].space.get());
+  if (dSpaceGetNumGeoms(groups_[number].space.get()) == 0) return;
+  const bool is_far = dGeomGetSpace(space) == nullptr;
+  if (far && !is_far) dSpaceRemove(space_.get(), space);
+  if (!far && is_far) dSpaceAdd(space_.get(), space);
 }
 
 void Collider::remove_group(int number, std::span<const int> bodies, std::span<const int> parts) {
@@ -109,9 +116,12 @@ void Collider::remove_group(int number, std::span<const int> bodies, std::span<c
   for (const int body : bodies) {
     bodies_[body] = {};
     joined_[body].clear();
+    places_.remove(body);
   }
   watchers_ -= groups_[number].watchers;
+  const bool had_fixed = groups_[number].has_fixed;
   groups_[number] = {};
+  discard_places(had_fixed);
 }
 
 void Collider::watch(int group) {
@@ -125,69 +135,31 @@ void Collider::unwatch(int group) {
   --watchers_;
 }
 
-int Collider::collide(dWorldID world, dJointGroupID contacts, Islands& islands) {
+const std::vector<Collider::Pair>& Collider::find_pairs() {
   pairs_.clear();
   dSpaceCollide(space_.get(), this, &Collider::on_near);
   for (const Group& group : groups_)
     if (group.self_collision) dSpaceCollide(group.space.get(), this, &Collider::on_near);
-  sort_pairs();
-  watched_.clear();
-  int count = 0;
-  for (const std::uint64_t pair : pairs_)
-    count += touch(static_cast<int>(pair >> 32), static_cast<int>(pair & 0xffffffff), world, contacts, islands);
-  feedback_.resize(watched_.size());
-  for (std::size_t i = 0; i < watched_.size(); ++i) dJointSetFeedback(watched_[i].joint, &feedback_[i]);
-  return count;
+  return pairs_;
 }
 
-void Collider::read_forces(std::vector<ContactReport>& reports) const {
-  reports.clear();
-  for (std::size_t i = 0; i < watched_.size(); ++i) {
-    reports.push_back(watched_[i].report);
-    const Vector3d force_W_N = to_eigen(feedback_[i].f1);
-    reports.back().force_W_N = watched_[i].turned ? Vector3d(-force_W_N) : force_W_N;
+void Collider::make_contacts(std::span<const Pair> pairs, dWorldID world, Islands& islands, Making& making) const {
+  making.between.clear();
+  making.watched.clear();
+  making.count = making.max_rows = 0;
+  for (const Pair pair : pairs) touch(pair, world, islands, making);
+  // ODE keeps pointers to the feedback.
+  making.feedback.resize(making.watched.size());
+  for (std::size_t i = 0; i < making.watched.size(); ++i)
+    dJointSetFeedback(making.watched[i].joint, &making.feedback[i]);
+}
+
+void Collider::read_forces(const Making& making, std::vector<ContactReport>& reports) {
+  for (std::size_t i = 0; i < making.watched.size(); ++i) {
+    reports.push_back(making.watched[i].report);
+    const Vector3d force_W_N = to_eigen(making.feedback[i].f1);
+    reports.back().force_W_N = making.watched[i].turned ? Vector3d(-force_W_N) : force_W_N;
   }
-}
-
-namespace {
-
-AlignedBox box_of(dGeomID geom) {
-  dReal b[6];
-  dGeomGetAABB(geom, b);
-  return {{b[0], b[2], b[4]}, {b[1], b[3], b[5]}};
-}
-
-}  // namespace
-
-Collider::Overlap Collider::deepest_overlap(int group) const {
-  // Collect the parts of the group, and those of other groups near them.
-  std::vector<std::pair<const CollisionPart*, AlignedBox>> own_parts, others;
-  for (const CollisionPart& part : parts_)
-    if (part.geom != nullptr && part.group == group) own_parts.emplace_back(&part, box_of(part.geom));
-  if (own_parts.empty()) return {};
-  AlignedBox around = own_parts.front().second;
-  for (const auto& [part, box] : own_parts) around = {around.low.cwiseMin(box.low), around.high.cwiseMax(box.high)};
-  for (const CollisionPart& part : parts_) {
-    if (part.geom == nullptr || part.group == group) continue;
-    const AlignedBox box = box_of(part.geom);
-    if (!around.meets(box)) continue;
-    if (std::any_of(own_parts.begin(), own_parts.end(), [&](const auto& own) { return own.second.meets(box); }))
-      others.emplace_back(&part, box);
-  }
-  // Find the maximum contact depth over all pairs.
-  Overlap deepest;
-  std::vector<dContactGeom> touching(8);
-  for (const auto& [own, own_box] : own_parts)
-    for (const auto& [other, box] : others) {
-      if ((own->category & other->collides_with) == 0 || (other->category & own->collides_with) == 0) continue;
-      if (!own_box.meets(box)) continue;
-      const int count =
-          find_contacts(own->geom, other->geom, static_cast<int>(touching.size()), &touching[0], sizeof(dContactGeom));
-      for (int i = 0; i < count; ++i)
-        if (touching[static_cast<std::size_t>(i)].depth > deepest.depth_m)
-          deepest = {other->group, touching[static_cast<std::size_t>(i)].depth};
-    }
-  return deepest;
 }
 
 void Collider::on_near(void* self, dGeomID first, dGeomID second) {
@@ -215,23 +187,6 @@ void Collider::add_pair(int first, int second) {
   pairs_.push_back(static_cast<std::uint64_t>(first) << 32 | static_cast<std::uint32_t>(second));
 }
 
-void Collider::sort_pairs() {
-  const std::size_t numbers = parts_.size();
-  if (pairs_.size() < numbers / 4 || pairs_.size() < 64) {
-    std::sort(pairs_.begin(), pairs_.end());
-    return;
-  }
-  // Many pairs: counting sort by the second part, then by the first; half the time of std::sort with 1000 robots.
-  sorted_.resize(pairs_.size());
-  for (const int shift : {0, 32}) {
-    starts_.assign(numbers + 1, 0);
-    for (const std::uint64_t pair : pairs_) ++starts_[((pair >> shift) & 0xffffffff) + 1];
-    for (std::size_t i = 1; i < numbers; ++i) starts_[i] += starts_[i - 1];
-    for (const std::uint64_t pair : pairs_) sorted_[starts_[(pair >> shift) & 0xffffffff]++] = pair;
-    pairs_.swap(sorted_);
-  }
-}
-
 const Surface& Collider::surface_at(const CollisionPart& a, const CollisionPart& b, const dContactGeom& contact) const {
   const auto material = [&](const CollisionPart& part) {
     return part.terrain ? part.terrain->material_at(part.geom, to_eigen(contact.pos)) : part.material;
@@ -239,38 +194,43 @@ const Surface& Collider::surface_at(const CollisionPart& a, const CollisionPart&
   return table_.of(material(a), material(b));
 }
 
-int Collider::touch(int first, int second, dWorldID world, dJointGroupID contacts, Islands& islands) {
+void Collider::touch(Pair pair, dWorldID world, Islands& islands, Making& making) const {
+  const int first = first_of(pair), second = second_of(pair);
+  std::vector<dContact>& touching = making.touching;
   const CollisionPart& part_a = parts_[first];
   const CollisionPart& part_b = parts_[second];
   const int count =
-      find_contacts(part_a.geom, part_b.geom, static_cast<int>(touching_.size()), &touching_[0].geom, sizeof(dContact));
-  if (count == 0) return 0;
+      find_contacts(part_a.geom, part_b.geom, static_cast<int>(touching.size()), &touching[0].geom, sizeof(dContact));
+  if (count == 0) return;
   // Select the contact parameters, which depend on position on terrain.
   const Surface* surface = &table_.of(part_a.material, part_b.material);
   const bool by_place = part_a.terrain || part_b.terrain;
   const CollisionBody& a = bodies_[part_a.body];
   const CollisionBody& b = bodies_[part_b.body];
+  const bool between = a.ode != nullptr && b.ode != nullptr && part_a.group != part_b.group;
   const bool note = watchers_ > 0 && watched(part_a, part_b);
   // Make a contact joint for each point.
   int rows = 0;
   for (int i = 0; i < count; ++i) {
-    dContact& contact = touching_[i];
+    dContact& contact = touching[i];
     if (by_place) surface = &surface_at(part_a, part_b, contact.geom);
     rows += surface->rows;
     contact.surface = surface->parameters;
     if (by_place) follow_ground(contact);
     if (surface->friction) align_friction(contact, a, b);
-    const dJointID joint = dJointCreateContact(world, contacts, &contact);
+    const dJointID joint = dJointCreateContact(world, making.contacts.get(), &contact);
     dJointAttach(joint, a.ode, b.ode);
+    if (between) making.between.push_back({joint, contact, {a.ode, b.ode}});
     if (!note) continue;
     const dContactGeom& at = contact.geom;
     // With one null body, ODE makes the other its first body.
-    watched_.push_back({joint,
-                        {{first, second}, to_eigen(at.pos), to_eigen(at.normal), at.depth, Vector3d::Zero()},
-                        a.ode == nullptr});
+    making.watched.push_back({joint,
+                              {{first, second}, to_eigen(at.pos), to_eigen(at.normal), at.depth, Vector3d::Zero()},
+                              a.ode == nullptr});
   }
-  islands.add_contact(a.ode ? part_a.body : -1, b.ode ? part_b.body : -1, rows);
-  return count;
+  making.count += count;
+  making.max_rows =
+      std::max(making.max_rows, islands.add_contact(a.ode ? part_a.body : -1, b.ode ? part_b.body : -1, rows));
 }
 
 // Lets a part within the surface layer sink to its full depth in one step, so that its weight keeps it on the ground.

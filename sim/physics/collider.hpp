@@ -8,11 +8,14 @@
 #include <utility>
 #include <vector>
 
+#include "sim/geometry/box_grid.hpp"
 #include "sim/ode/ode_library.hpp"
+#include "sim/physics/body_places.hpp"
 #include "sim/physics/contact_report.hpp"
 #include "sim/physics/contact_table.hpp"
 #include "sim/physics/islands.hpp"
 #include "sim/physics/motion.hpp"
+#include "sim/rays/world_scene.hpp"
 
 namespace sim {
 
@@ -42,7 +45,8 @@ struct CollisionBody {
 /// Finds the parts in contact and makes contact joints.
 ///
 /// The order of contacts affects the last bits of a step, and each kind of space has its own order.  Pairs are
-/// therefore collected first, with the lower part number first, then sorted, and only then tested in detail.
+/// therefore collected first, with the lower part number first, then sorted by the caller, and only then tested in
+/// detail.
 class Collider {
  public:
   Collider(const PhysicsConfig& config, ContactTable table);
@@ -54,10 +58,18 @@ class Collider {
   void add_part(int number, const CollisionPart& part, GeomHandle geom, Motion motion);
   /// Adds a body, whose pointers must stay valid until remove_group.
   void add_body(int number, const CollisionBody& body);
+  /// Replaces the ODE body of a body.
+  void replace_body(int number, const CollisionBody& body) { bodies_[static_cast<std::size_t>(number)] = body; }
   /// Excludes contacts between two bodies connected by a joint.
   void join(int first, int second);
   /// Adds the space and the fixed parts of the group to the world's space.
   void close_group(int group);
+  /// Takes a group that can touch nothing out of the world's space, or brings it back.
+  void set_far(int group, bool far);
+  /// Distance of the farthest point of a moving body from its position; 0 without parts.
+  double reach_m(int body) const { return places_.reach_m(body); }
+  /// Boxes of all fixed parts, some of them infinite.
+  std::vector<AlignedBox> fixed_boxes() const;
   /// Destroys the geoms of all parts of a group.  Call before its ODE bodies are destroyed.
   void remove_group(int group, std::span<const int> bodies, std::span<const int> parts);
 
@@ -70,18 +82,54 @@ class Collider {
     int group = -1;
     double depth_m = 0;
   };
-  Overlap deepest_overlap(int group) const;
+  /// `own_parts`: those of the group.
+  Overlap deepest_overlap(int group, std::span<const int> own_parts, const SceneMoves& moves) const;
+  /// Notes the position of a body after a step; threads may do so for different bodies.
+  void note_position(int body) { places_.set_position(body, bodies_[static_cast<std::size_t>(body)].position); }
+  /// Declares that the positions of all bodies were noted since their last moves.
+  void note_positions(const SceneMoves& moves) { noted_moves_ = moves.moving; }
+  bool has_noted_positions(const SceneMoves& moves) const { return noted_moves_ == moves.moving; }
 
   /// Start and stop recording the contacts of a group in each step.  Calls are counted: a group can have several
   /// watchers.
   void watch(int group);
   void unwatch(int group);
-  /// Returns the forces of the watched contacts of this step.  Call after the solver and before the contact joints are
-  /// destroyed.
-  void read_forces(std::vector<ContactReport>& reports) const;
 
-  /// Makes the contact joints of a step and adds their rows to the islands; returns the number of contacts.
-  int collide(dWorldID world, dJointGroupID contacts, Islands& islands);
+  /// A pair of parts whose boxes overlap, the lower number first: `first << 32 | second`.
+  using Pair = std::uint64_t;
+  static int first_of(Pair pair) { return static_cast<int>(pair >> 32); }
+  static int second_of(Pair pair) { return static_cast<int>(pair & 0xffffffff); }
+  /// Finds the pairs of parts that may touch, in an order that has no meaning.
+  const std::vector<Pair>& find_pairs();
+
+  /// A contact joint whose force is requested.
+  struct WatchedContact {
+    dJointID joint;
+    ContactReport report;
+    bool turned;  ///< ODE's first body belongs to the second part
+  };
+  /// A contact between bodies of two groups, both of which can move.
+  struct Between {
+    dJointID joint;
+    dContact contact;
+    dBodyID bodies[2];
+  };
+  /// Where the contacts of some pairs are made.
+  struct Making {
+    explicit Making(int max_contacts_per_pair) : touching(static_cast<std::size_t>(max_contacts_per_pair)) {}
+    JointGroupHandle contacts{dJointGroupCreate(0)};
+    std::vector<dContact> touching;  ///< buffer of a pair
+    std::vector<Between> between;    ///< contacts between groups
+    int count = 0;
+    std::vector<WatchedContact> watched;
+    std::vector<dJointFeedback> feedback;  ///< of the watched ones
+    int max_rows = 0;                      ///< of the islands that got contacts
+  };
+  /// Makes the contact joints of pairs, which must be sorted: the order of contacts affects the last bits of a step.
+  /// Several threads may do so at once, for pairs without a common moving body.
+  void make_contacts(std::span<const Pair> pairs, dWorldID world, Islands& islands, Making& making) const;
+  /// Adds the watched contacts with their forces.  Call after the solver and before the contact joints are destroyed.
+  static void read_forces(const Making& making, std::vector<ContactReport>& reports);
 
   const ContactTable& table() const { return table_; }
   const std::vector<CollisionPart>& parts() const { return parts_; }
@@ -91,26 +139,35 @@ class Collider {
     SpaceHandle space;
     std::vector<dGeomID> fixed;  // until close_group adds them to the world's space
     bool self_collision = false;
+    bool has_fixed = false;
     int watchers = 0;
   };
-  /// A contact joint of this step whose force is requested.
-  struct WatchedContact {
-    dJointID joint;
-    ContactReport report;
-    bool turned;  // ODE's first body belongs to the second part
-  };
-
   const Surface& surface_at(const CollisionPart& a, const CollisionPart& b, const dContactGeom& contact) const;
   static void on_near(void* self, dGeomID first, dGeomID second);
   void add_pair(int first, int second);
-  void sort_pairs();
-  int touch(int first, int second, dWorldID world, dJointGroupID contacts, Islands& islands);
+  void touch(Pair pair, dWorldID world, Islands& islands, Making& making) const;
   bool watched(const CollisionPart& a, const CollisionPart& b) const {
     return groups_[a.group].watchers > 0 || groups_[b.group].watchers > 0;
   }
   void follow_ground(dContact& contact) const;
   void align_friction(dContact& contact, const CollisionBody& a, const CollisionBody& b) const;
   bool free(const CollisionPart& part) const { return bodies_[part.body].free; }
+
+  /// Parts near a group whose overlap is requested.
+  struct OverlapIndex {
+    SceneMoves moves;
+    std::size_t changes = 0;
+    bool built = false;
+    BoxGrid grid;
+    std::vector<int> parts;    ///< by number in the grid, ascending
+    std::vector<int> endless;  ///< planes
+  };
+
+  // overlap.cpp
+  void note_places(Group& closed);
+  void discard_places(bool of_fixed_parts);
+  void build_index() const;
+  std::vector<int> parts_near(const AlignedBox& box) const;
 
   ContactTable table_;
   double step_s_;
@@ -120,15 +177,17 @@ class Collider {
   SpaceHandle space_;
   std::vector<Group> groups_;
   std::vector<GeomHandle> geoms_;
+  mutable BodyPlaces places_;              // of moving bodies of closed groups
+  mutable std::uint64_t noted_moves_ = 0;  // when all their positions were noted
+  std::vector<int> fixed_parts_;           // of closed groups
+  std::size_t changes_ = 0;                // additions and removals of groups
+  mutable OverlapIndex near_;
+  mutable std::vector<AlignedBox> fixed_boxes_;  // of fixed_parts_; too few: to be renewed
   std::vector<CollisionPart> parts_;
   std::vector<CollisionBody> bodies_;
   std::vector<std::vector<int>> joined_;  // by body: bodies joined to it
-  std::vector<std::uint64_t> pairs_, sorted_;
-  std::vector<std::uint32_t> starts_;
-  std::vector<dContact> touching_;
+  std::vector<Pair> pairs_;
   int watchers_ = 0;  // of all groups
-  std::vector<WatchedContact> watched_;
-  std::vector<dJointFeedback> feedback_;  // of watched_; sized once per step because ODE keeps pointers to it
 };
 
 }  // namespace sim

@@ -32,11 +32,10 @@ void Islands::begin_step() {
   paths_are_short_ = true;
   parent_ = joint_parent_;
   rows_ = joint_rows_;
-  largest_ = joint_max_;
 }
 
-void Islands::add_contact(int first, int second, int rows) {
-  largest_ = std::max(largest_, join(parent_, rows_, first, second, rows));
+int Islands::add_contact(int first, int second, int rows) {
+  return join(parent_, rows_, first, second, rows);
 }
 
 int Islands::root(std::vector<int>& parent, int body) {

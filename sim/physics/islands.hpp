@@ -23,12 +23,17 @@ class Islands {
 
   /// Clears the contacts of the last step.
   void begin_step();
-  /// Adds a contact between two bodies; -1 means a fixed body.
-  void add_contact(int first, int second, int rows);
-  /// Number of constraint rows of the largest island.
-  int max_rows() const { return largest_; }
+  /// Adds a contact between two bodies; -1 means a fixed body.  Returns the rows of their island so far.  Several
+  /// threads may add contacts of bodies that nothing connects.
+  int add_contact(int first, int second, int rows);
+  /// Number of constraint rows of the largest island by joints alone.
+  int max_rows_of_joints() const { return joint_max_; }
   /// Number of constraint rows of the island of a moving body, with the contacts of this step.
   int rows_of(int body) { return rows_[static_cast<std::size_t>(root(parent_, body))]; }
+  /// The same with the rows of joints alone.
+  int joint_rows_of(int body) { return joint_rows_[static_cast<std::size_t>(root(joint_parent_, body))]; }
+  /// Representative body of those that joints connect.
+  int first_by_joints_of(int body) { return root(joint_parent_, body); }
   /// Whether the body existed at the start of the last step.
   bool knows(int body) const { return static_cast<std::size_t>(body) < parent_.size(); }
   /// Representative body of the island of a body, with the contacts of this step; the same for all its bodies.
@@ -42,7 +47,6 @@ class Islands {
   std::vector<int> parent_, rows_;              // with the contacts of this step
   int joint_max_ = 0;
   bool paths_are_short_ = true;  // every body points to its root
-  int largest_ = 0;
 };
 
 }  // namespace sim

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/physics/joint.hpp"
 
+#include <algorithm>
 #include <numbers>
 #include <span>
 #include <utility>
@@ -41,9 +42,21 @@ void set_ball_angles(dJointID motor, double sign, std::span<const double> positi
     dJointSetAMotorAngle(motor, axis, sign * position[static_cast<std::size_t>(axis)]);
 }
 
-void set_ode_pose(dBodyID body, const Vector3d& p_WC, const dQuaternion q_WC) {
-  dBodySetPosition(body, p_WC.x(), p_WC.y(), p_WC.z());
-  dBodySetQuaternion(body, q_WC);
+template <class OdePose>
+OdePose copy_pose(dBodyID body) {
+  OdePose pose;
+  std::copy_n(dBodyGetPosition(body), 3, pose.p);
+  std::copy_n(dBodyGetQuaternion(body), 4, pose.q);
+  std::copy_n(dBodyGetRotation(body), 12, pose.R);
+  return pose;
+}
+
+/// Writes the numbers into ODE's memory, because its setters would round them.
+template <class OdePose>
+void write_pose(dBodyID body, const OdePose& pose) {
+  std::copy_n(pose.q, 4, const_cast<dReal*>(dBodyGetQuaternion(body)));
+  std::copy_n(pose.R, 12, const_cast<dReal*>(dBodyGetRotation(body)));
+  dBodySetPosition(body, pose.p[0], pose.p[1], pose.p[2]);  // marks the geoms as moved
 }
 
 }  // namespace
@@ -60,11 +73,14 @@ Joint::Joint(dWorldID world, std::string name, const JointConfig& config, dBodyI
   // ODE gets the moving body first: with the world first it would invert some of the signs.
   sign_ = first != nullptr && second != nullptr ? -1 : 1;
   if (first == nullptr) std::swap(first, second);
-  create(world, config, X_WV, first, second);
   loaded_ = second != nullptr ? second : first;
   const Pose X_WC = ode_pose(loaded_);
+  origin_ = std::make_unique<Origin>(
+      Origin{config, X_WV, second == nullptr, X_WC, copy_pose<OdePose>(first), copy_pose<OdePose>(loaded_)});
+  origin_->config.name.clear();  // not used
+  origin_->config.bodies.clear();
+  create(world, first, second);
   p_CA_C_ = X_WC.inverse() * (X_WV * config.anchor_m);
-  if (second == nullptr) world_side_ = std::make_unique<WorldSide>(WorldSide{config, X_WV, X_WC});
   // Apply the configuration, and note the initial angles and stops.
   for (int axis = 0; axis < axes_; ++axis) configure_axis(axis_config(config, axis), axis);
   for (int axis = 0; axis < axes_; ++axis) {
@@ -73,8 +89,10 @@ Joint::Joint(dWorldID world, std::string name, const JointConfig& config, dBodyI
   }
 }
 
-void Joint::create(dWorldID world, const JointConfig& config, const Pose& X_WV, dBodyID first, dBodyID second) {
+void Joint::create(dWorldID world, dBodyID first, dBodyID second) {
   // Anchor and axes in the world.
+  const JointConfig& config = origin_->config;
+  const Pose& X_WV = origin_->X_WV;
   const Vector3d anchor = X_WV * config.anchor_m;
   const Vector3d axis1 = (X_WV.linear() * config.axis1.axis).normalized();
   const Vector3d axis2 = (X_WV.linear() * config.axis2.axis).normalized();
@@ -89,7 +107,7 @@ void Joint::create(dWorldID world, const JointConfig& config, const Pose& X_WV, 
       return;
     case JointType::ball:
       dJointSetBallAnchor(attach(dJointCreateBall(world, nullptr)), anchor.x(), anchor.y(), anchor.z());
-      if (config.motor) create_ball_motor(world, X_WV, first, second);
+      if (config.motor) create_ball_motor(world, first, second);
       return;
     case JointType::hinge: {
       const dJointID joint = attach(dJointCreateHinge(world, nullptr));
@@ -118,7 +136,8 @@ void Joint::create(dWorldID world, const JointConfig& config, const Pose& X_WV, 
 
 /// Creates an angular motor with axes fixed to the first body.  ODE cannot measure its angles, so that they are set in
 /// each step.
-void Joint::create_ball_motor(dWorldID world, const Pose& X_WV, dBodyID first, dBodyID second) {
+void Joint::create_ball_motor(dWorldID world, dBodyID first, dBodyID second) {
+  const Pose& X_WV = origin_->X_WV;
   const dJointID motor = dJointCreateAMotor(world, nullptr);
   ball_motor_.reset(motor);
   dJointAttach(motor, first, second);
@@ -346,37 +365,45 @@ Vector3d Joint::axis_W(int axis) const {
 /// Moves the world side of a joint.  ODE stores it in the world frame and measures from the pose at which the joint was
 /// created, so that the joint is created again, with its body temporarily at that pose.
 void Joint::move_world_side(const Pose& X_move_W) {
-  if (world_side_) make_again(X_move_W * world_side_->X_WV, X_move_W * world_side_->X_WC);
+  if (origin_->to_world) make_again(X_move_W * origin_->X_WV, X_move_W * origin_->X_WC);
 }
 
 void Joint::make_again(const Pose& X_WV, const Pose& X_WC) {
-  WorldSide& side = *world_side_;
-  side.X_WV = X_WV;
-  side.X_WC = X_WC;
+  origin_->X_WV = X_WV;
+  origin_->X_WC = X_WC;
+  // The pose as ODE rounds it.
+  const OdePose now = copy_pose<OdePose>(loaded_);
+  dQuaternion q_made;
+  to_ode(to_quaternion(X_WC.linear()), q_made);
+  dBodySetPosition(loaded_, X_WC.translation().x(), X_WC.translation().y(), X_WC.translation().z());
+  dBodySetQuaternion(loaded_, q_made);
+  origin_->first = copy_pose<OdePose>(loaded_);
+  write_pose(loaded_, now);
+  create_again(dBodyGetWorld(loaded_), loaded_, nullptr);
+}
+
+void Joint::create_again(dWorldID world, dBodyID first, dBodyID second) {
   // Save stops and motor set-points.
   OdeStops stops[max_axes];
-  double velocity[max_axes], max_force[max_axes];
+  for (int axis = 0; axis < axes_; ++axis) stops[axis] = stops_of(axis);
+  // Create the joint with the bodies at its creation poses, and move them back.
+  const OdePose first_now = copy_pose<OdePose>(first);
+  const OdePose second_now = second != nullptr ? copy_pose<OdePose>(second) : first_now;
+  write_pose(first, origin_->first);
+  if (second != nullptr) write_pose(second, origin_->second);
+  create(world, first, second);
+  write_pose(first, first_now);
+  if (second != nullptr) write_pose(second, second_now);
+  loaded_ = second != nullptr ? second : first;
+  // Restore stops and motor set-points.
   for (int axis = 0; axis < axes_; ++axis) {
-    stops[axis] = stops_of(axis);
-    velocity[axis] = motor_velocity_[axis];
-    max_force[axis] = motor_max_force_[axis];
-  }
-  // Create the joint with the body at its creation pose.
-  const Vector3d p_now = to_eigen(dBodyGetPosition(loaded_));
-  dQuaternion q_now, q_made;
-  dBodyCopyQuaternion(loaded_, q_now);
-  to_ode(to_quaternion(side.X_WC.linear()), q_made);
-  set_ode_pose(loaded_, side.X_WC.translation(), q_made);
-  create(dBodyGetWorld(loaded_), side.config, side.X_WV, loaded_, nullptr);
-  // Move the body back, and restore stops and motor set-points.
-  set_ode_pose(loaded_, p_now, q_now);
-  for (int axis = 0; axis < axes_; ++axis) {
-    configure_axis(axis_config(side.config, axis), axis);
+    const double velocity = motor_velocity_[axis], max_force = motor_max_force_[axis];
+    configure_axis(axis_config(origin_->config, axis), axis);
     put_stops(stops[axis], axis);
-    set_motor(velocity[axis], max_force[axis], axis);
+    set_motor(velocity, max_force, axis);
     // The new ODE joint needs these values even when set_motor finds no change.
-    set_parameter(dParamVel, sign_ * velocity[axis], axis);
-    set_parameter(dParamFMax, max_force[axis], axis);
+    set_parameter(dParamVel, sign_ * velocity, axis);
+    set_parameter(dParamFMax, max_force, axis);
   }
   set_ball_angles(ball_motor_.get(), sign_, position_);
   if (load_) request_load();

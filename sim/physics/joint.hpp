@@ -80,11 +80,17 @@ class Joint {
   friend class PhysicsWorld;
   static constexpr int max_axes = 3;
   struct Load;  // sim/physics/joint_load.hpp
-  /// Creation data of a joint to the world, from which it can be created again at another place.
-  struct WorldSide {
+  /// Pose of an ODE body, to the last bit.
+  struct OdePose {
+    double p[3], q[4], R[12];
+  };
+  /// Creation data, from which the joint is created again: in another ODE world, or to the world at another place.
+  struct Origin {
     JointConfig config;
     Pose X_WV;
-    Pose X_WC;  // of the moving body when the joint was created
+    bool to_world;
+    Pose X_WC;              // to the world: of the moving body
+    OdePose first, second;  // of ODE's bodies; without a second one its pose is not used
   };
   /// Stops in ODE's sign and units.
   struct OdeStops {
@@ -92,8 +98,10 @@ class Joint {
   };
   /// Attaches the bodies at their present poses.  `second` null: the world.
   Joint(dxWorld* world, std::string name, const JointConfig& config, dxBody* first, dxBody* second, const Pose& X_WV);
-  void create(dxWorld* world, const JointConfig& config, const Pose& X_WV, dxBody* first, dxBody* second);
-  void create_ball_motor(dxWorld* world, const Pose& X_WV, dxBody* first, dxBody* second);
+  void create(dxWorld* world, dxBody* first, dxBody* second);
+  void create_ball_motor(dxWorld* world, dxBody* first, dxBody* second);
+  /// Creates the ODE joint again, as it was created and with its present settings.  The bodies keep their poses.
+  void create_again(dxWorld* world, dxBody* first, dxBody* second);
   Vector3d rotation_of_ball() const;
   void configure_axis(const JointAxisConfig& config, int axis);
   void place_stops(std::optional<double> low, std::optional<double> high, int axis);
@@ -114,6 +122,7 @@ class Joint {
   double motor_at_stop(int axis) const;
   void move_world_side(const Pose& X_move_W);
   void make_again(const Pose& X_WV, const Pose& X_WC);
+  bool is_measured() const { return load_ != nullptr; }
   void update_position(double step_s);  ///< after each step; sums differences because ODE wraps at pi
 
   std::string name_;
@@ -129,12 +138,11 @@ class Joint {
   double motor_velocity_[max_axes] = {};
   double motor_max_force_[max_axes] = {};
   std::array<OdeStops, max_axes> configured_stops_;
-  bool stops_were_set_ = false;                     ///< set_stops() was called
-  dxBody* loaded_ = nullptr;                        // whose load is measured
-  Vector3d p_CA_C_ = Vector3d::Zero();              // the anchor in ODE's frame of the loaded body
-  std::unique_ptr<Load> load_;                      // when it is measured
-  std::vector<Joint*>* measured_joints_ = nullptr;  // of the world
-  std::unique_ptr<WorldSide> world_side_;
+  bool stops_were_set_ = false;         ///< set_stops() was called
+  dxBody* loaded_ = nullptr;            // whose load is measured
+  Vector3d p_CA_C_ = Vector3d::Zero();  // the anchor in ODE's frame of the loaded body
+  std::unique_ptr<Load> load_;          // when it is measured
+  std::unique_ptr<Origin> origin_;
 };
 
 }  // namespace sim

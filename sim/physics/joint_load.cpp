@@ -38,12 +38,10 @@ void Joint::measure_load() {
   if (load_) return;
   load_ = std::make_unique<Load>();
   request_load();
-  measured_joints_->push_back(this);
 }
 
 void Joint::measure_no_load() {
   if (!load_) return;
-  std::erase(*measured_joints_, this);
   dJointSetFeedback(ode_.get(), nullptr);
   if (ball_motor_) dJointSetFeedback(ball_motor_.get(), nullptr);
   load_.reset();
@@ -58,7 +56,7 @@ void Joint::note_before_step() {
   const Pose X_WC = ode_pose(loaded_);
   load_->p_CA_W = X_WC.linear() * p_CA_C_;
   // ODE applies forces along a slider half way between the two bodies, so that neither of them is rotated.
-  const dBodyID other = world_side_ ? loaded_ : dJointGetBody(ode_.get(), 0);
+  const dBodyID other = origin_->to_world ? loaded_ : dJointGetBody(ode_.get(), 0);
   load_->p_AM_W = (to_eigen(dBodyGetPosition(other)) - X_WC.translation()) / 2 - load_->p_CA_W;
   for (int axis = 0; axis < axes_; ++axis) {
     load_->axis_W[axis] = axis_W(axis);
@@ -84,7 +82,7 @@ double Joint::motor_at_stop(int axis) const {
 
 void Joint::note_load() {
   Load& load = *load_;
-  const bool first = world_side_ != nullptr;
+  const bool first = origin_->to_world;
   // Constraint force and torque, moved to the anchor.
   load.force_W_N = to_eigen(first ? load.feedback.f1 : load.feedback.f2);
   load.torque_W_Nm = to_eigen(first ? load.feedback.t1 : load.feedback.t2) - load.p_CA_W.cross(load.force_W_N);

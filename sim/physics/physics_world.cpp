@@ -15,18 +15,6 @@
 
 namespace sim {
 
-namespace {
-
-/// Seed of QuickStep's shuffle; depends only on the world's seed and the step.
-unsigned long step_seed(std::uint64_t seed, std::int64_t step_number) {
-  StateHash hash;
-  hash.add(seed);
-  hash.add(step_number);
-  return static_cast<unsigned long>(hash.value() >> 32);
-}
-
-}  // namespace
-
 PhysicsWorld::PhysicsWorld(const PhysicsConfig& config, const std::vector<MaterialConfig>& materials,
                            const std::vector<ContactConfig>& contacts, const std::vector<std::string>& categories,
                            std::uint64_t seed) {
@@ -40,17 +28,7 @@ void PhysicsWorld::start_again(const PhysicsConfig& config, const std::vector<Ma
   start_ode();
   impl_ = std::make_unique<Impl>(config, ContactTable(materials, contacts), seed);
   add_categories(categories);
-  const dWorldID world = impl_->world.get();
-  dWorldSetStepThreadingImplementation(world, dThreadingImplementationGetFunctions(impl_->threading.get()),
-                                       impl_->threading.get());
-  dWorldSetGravity(world, 0, 0, -config.gravity_mps2);
-  dWorldSetERP(world, config.erp);
-  dWorldSetCFM(world, config.cfm);
-  dWorldSetContactMaxCorrectingVel(world, config.contact_max_correcting_velocity_mps);
-  dWorldSetContactSurfaceLayer(world, config.contact_surface_layer_m);
-  dWorldSetQuickStepNumIterations(world, config.quick_iterations);
-  // ODE's auto-disable has internal counters that a snapshot could not restore.
-  dWorldSetAutoDisableFlag(world, 0);
+  use_threads(threads_);
   impl_->scene = make_world_scene(config.rays, impl_->moves);
 }
 
@@ -70,10 +48,7 @@ void PhysicsWorld::discard() {
 }
 
 bool PhysicsWorld::anchored(int group) const {
-  const std::vector<int>& joints = impl_->group(group).joints;
-  return std::any_of(joints.begin(), joints.end(), [&](int number) {
-    return impl_->joints[static_cast<std::size_t>(number)]->world_side_ != nullptr;
-  });
+  return impl_->group(group).anchored;
 }
 
 void PhysicsWorld::visit_state(StateArchive& archive) {
@@ -111,7 +86,8 @@ void PhysicsWorld::set_gravity(double gravity_mps2) {
   impl_->gravity_mps2 = gravity_mps2;
   impl_->gravity_was_set = true;
   impl_->collider.set_gravity(gravity_mps2);
-  dWorldSetGravity(impl_->world.get(), 0, 0, -gravity_mps2);
+  for (const auto& shard : impl_->shards)
+    if (shard) dWorldSetGravity(shard->world.get(), 0, 0, -gravity_mps2);
 }
 
 double PhysicsWorld::gravity_mps2() const {
@@ -137,129 +113,17 @@ std::optional<int> PhysicsWorld::find_part(int group, std::string_view body_slas
   return std::nullopt;
 }
 
+void PhysicsWorld::use_threads(int threads) {
+  threads_ = threads;
+  impl_->threads = threads == 1 ? nullptr : std::make_unique<ThreadPool>(threads);
+}
+
 void PhysicsWorld::step(std::int64_t step_number) {
-  try {
-    impl_->collide();
-    impl_->solve(step_number);
-  } catch (const PhysicsFault& error) {
-    impl_->broken = true;
-    for (const Body* body : impl_->moving)
-      if (impl_->out_of_bounds(*body)) impl_->fault(*body, step_number);
-    throw PhysicsFault(impl_->suspects() + "the solver failed at step " + std::to_string(step_number) + " (" +
-                       error.what() + ")");
-  }
+  impl_->islands.begin_step();
+  impl_->deal_pairs(step_number);
+  impl_->step_shards(step_number);
   ++impl_->moves.moving;
-  impl_->finish(step_number);
-}
-
-void PhysicsWorld::Impl::collide() {
-  for (Body* body : kinematic) body->start_kinematic_step();
-  islands.begin_step();
-  counts.contacts = collider.collide(world.get(), contacts.get(), islands);
-  counts.max_island_rows = islands.max_rows();
-}
-
-void PhysicsWorld::Impl::solve(std::int64_t step_number) {
-  const double step_s = config.step_s;
-  const bool some_are_not_alone = step_lone_bodies();
-  for (Body* body : moving)
-    if (body->gyroscopic_ && !body->alone()) body->add_gyroscopic_torque(step_s);
-  // Record the poses at the start of the step for the joint loads.
-  for (Joint* joint : measured_joints) joint->note_before_step();
-  // Select the solver.  WorldStep is exact and its cost grows with the cube of an island's rows; the selection depends
-  // on the rows only, never on measured time.
-  const bool some_too_large =
-      config.solver == PhysicsConfig::Solver::automatic && counts.max_island_rows > config.quick_above_rows;
-  counts.quick = config.solver == PhysicsConfig::Solver::quick || some_too_large;
-  if (counts.quick) dRandSetSeed(step_seed(seed, step_number));
-  if (!some_are_not_alone)  // then ODE would only visit each body
-    counts.quick = false;
-  else if (some_too_large)
-    step_islands_by_size(step_number);
-  else if (counts.quick)
-    dWorldQuickStep(world.get(), step_s);
-  else
-    step_exactly(step_number);
-  for (const Body* body : lone_) dBodyEnable(body->ode_.get());
-  // Read contact forces and joint loads.
-  collider.read_forces(contact_reports);
-  dJointGroupEmpty(contacts.get());
-  for (Joint* joint : measured_joints) joint->note_load();
-}
-
-/// Finds the bodies that have neither contacts nor joints, and steps them; ODE leaves them out, because they are
-/// disabled until its step has ended.  Returns whether others are left.
-bool PhysicsWorld::Impl::step_lone_bodies() {
-  lone_.clear();
-  std::size_t others = 0;
-  for (Body* body : moving) {
-    if (!body->free()) continue;
-    if (body->first_order_ || body->first_order_now_ || islands.rows_of(body->number_) > 0) {
-      ++others;
-      body->leave_to_ode(config.step_s);
-    } else {
-      body->step_alone(config.step_s, gravity_mps2);
-      dBodyDisable(body->ode_.get());
-      lone_.push_back(body);
-    }
-    body->planned_ = false;
-    body->first_order_now_ = false;
-  }
-  return others > 0;
-}
-
-/// Uses QuickStep for the islands with too many rows, WorldStep for the others.  ODE skips disabled bodies, and nothing
-/// connects two islands.
-void PhysicsWorld::Impl::step_islands_by_size(std::int64_t step_number) {
-  ++quick_steps;
-  large_.clear();
-  small_.clear();
-  for (const Body* body : moving)
-    if (!body->alone())
-      (islands.rows_of(body->number_) > config.quick_above_rows ? large_ : small_).push_back(body->ode_.get());
-  const auto step_all_but = [](const std::vector<dBodyID>& others, const auto& step) {
-    for (const dBodyID body : others) dBodyDisable(body);
-    step();
-    for (const dBodyID body : others) dBodyEnable(body);
-  };
-  step_all_but(large_, [&] { step_exactly(step_number); });
-  step_all_but(small_, [this] { dWorldQuickStep(world.get(), config.step_s); });
-}
-
-/// Steps the enabled bodies by dWorldStep.  Where its solver gives up on an island, as in stacks of boxes, the forces
-/// are incomplete and bodies would fall through the ground: the step is then taken back, and made by QuickStep.
-void PhysicsWorld::Impl::step_exactly(std::int64_t step_number) {
-  if (config.solver == PhysicsConfig::Solver::step) {  // the user wants no other
-    dWorldStep(world.get(), config.step_s);
-    return;
-  }
-  before_step_.clear();
-  for (const Body* body : moving)
-    if (dBodyIsEnabled(body->ode_.get())) before_step_.emplace_back(body->ode_.get());
-  const std::int64_t messages = ode_messages();
-  dWorldStep(world.get(), config.step_s);
-  if (ode_messages() == messages) return;
-  for (BodyCopy& body : before_step_) body.write_back();
-  dRandSetSeed(step_seed(seed, step_number));
-  dWorldQuickStep(world.get(), config.step_s);
-  if (!counts.quick) ++quick_steps;
-  counts.quick = true;
-}
-
-/// Checks the bodies and updates the joint positions; a group's joints right after its bodies, which are then in the
-/// cache.
-void PhysicsWorld::Impl::finish(std::int64_t step_number) {
-  for (Body* body : kinematic) body->end_kinematic_step();
-  auto joint = joints_with_axes.begin();
-  const auto update_joints_before = [&](int group) {
-    for (; joint != joints_with_axes.end() && joint->first < group; ++joint)
-      joint->second->update_position(config.step_s);
-  };
-  for (const Body* body : moving) {
-    update_joints_before(body->group_);
-    if (out_of_bounds(*body)) fault(*body, step_number);
-  }
-  update_joints_before(static_cast<int>(groups.size()));
+  impl_->collider.note_positions(impl_->moves);
 }
 
 bool PhysicsWorld::Impl::out_of_bounds(const Body& body) const {
@@ -288,14 +152,15 @@ void PhysicsWorld::Impl::fault(const Body& body, std::int64_t step_number) const
 
 /// Names the lightest and the heaviest body of the island with the largest mass ratio: the usual cause when the solver
 /// fails with finite inputs.  Returns the beginning of an error message, or an empty text.
-std::string PhysicsWorld::Impl::suspects() {
+std::string PhysicsWorld::Impl::suspects(const Shard& shard) {
   std::map<int, std::pair<const Body*, const Body*>> islands_by_first;  // lightest, heaviest
-  for (const Body* body : moving) {
-    if (!body->free()) continue;
-    auto& [lightest, heaviest] = islands_by_first[islands.first_of(body->number_)];
-    if (lightest == nullptr || body->mass_kg_ < lightest->mass_kg_) lightest = body;
-    if (heaviest == nullptr || body->mass_kg_ > heaviest->mass_kg_) heaviest = body;
-  }
+  for (const int group : shard.groups)
+    for (const Body* body : groups[group].moving) {
+      if (!body->free()) continue;
+      auto& [lightest, heaviest] = islands_by_first[islands.first_of(body->number_)];
+      if (lightest == nullptr || body->mass_kg_ < lightest->mass_kg_) lightest = body;
+      if (heaviest == nullptr || body->mass_kg_ > heaviest->mass_kg_) heaviest = body;
+    }
   // Find the island with the largest mass ratio.
   const auto ratio = [](const auto& island) { return island.second.second->mass_kg_ / island.second.first->mass_kg_; };
   const auto worst = std::max_element(islands_by_first.begin(), islands_by_first.end(),
@@ -309,7 +174,8 @@ std::string PhysicsWorld::Impl::suspects() {
 }
 
 std::pair<std::string, double> PhysicsWorld::deepest_overlap(int group) const {
-  const Collider::Overlap overlap = impl_->collider.deepest_overlap(group);
+  impl_->bring_parts();
+  const Collider::Overlap overlap = impl_->collider.deepest_overlap(group, impl_->group(group).parts, impl_->moves);
   return {overlap.group < 0 ? "" : group_name(overlap.group), overlap.depth_m};
 }
 
@@ -344,6 +210,7 @@ std::optional<Eigen::AlignedBox3d> PhysicsWorld::bounds_W(int part) const {
     for (const Vector3d& vertex : ground->second->mesh.vertices_m) box.extend(X_WP_now * vertex);
     return box;
   }
+  impl_->bring_parts();
   dReal sides[6];
   dGeomGetAABB(impl_->collider.parts()[static_cast<std::size_t>(part)].geom, sides);
   return Eigen::AlignedBox3d(Vector3d(sides[0], sides[2], sides[4]), Vector3d(sides[1], sides[3], sides[5]));
@@ -358,10 +225,10 @@ IslandInfo PhysicsWorld::largest_island() const {
   constexpr std::size_t max_names = 1000;
   IslandInfo found;
   int first = -1;
-  for (const Body* body : impl_->moving) {
-    const int rows = impl_->islands.knows(body->number_) ? impl_->islands.rows_of(body->number_) : 0;
-    if (rows > found.rows) found.rows = rows, first = impl_->islands.first_of(body->number_);
-  }
+  impl_->for_each_moving([&](const Body& body) {
+    const int rows = impl_->islands.knows(body.number_) ? impl_->islands.rows_of(body.number_) : 0;
+    if (rows > found.rows) found.rows = rows, first = impl_->islands.first_of(body.number_);
+  });
   for (const auto& body : impl_->bodies) {
     if (first < 0 || !body || body->fixed() || !impl_->islands.knows(body->number_)) continue;
     if (impl_->islands.first_of(body->number_) != first) continue;

@@ -59,7 +59,7 @@ struct JointPlace {
 struct StepCounts {
   int contacts = 0;
   int max_island_rows = 0;
-  bool quick = false;  ///< QuickStep was used
+  bool quick = false;  ///< some island was stepped as a crowd or by QuickStep
   template <typename Archive>
   void visit_state(Archive& archive) {
     archive(contacts, max_island_rows, quick);
@@ -136,6 +136,9 @@ class PhysicsWorld {
   void set_gravity(double gravity_mps2);
   double gravity_mps2() const;  ///< positive downwards
 
+  /// Sets the number of threads of a step; 0: one for each processor.  Results do not depend on it.
+  void use_threads(int threads);
+
   /// Advances by one step of `config.step_s`: collide, solve, check.  Throws PhysicsFault with the name of the body.
   void step(std::int64_t step_number);
 
@@ -172,7 +175,7 @@ class PhysicsWorld {
   /// Returns the island (bodies connected by joints and contacts) with the most constraint rows in the last step, which
   /// takes the most time.  Visits each body.
   IslandInfo largest_island() const;
-  /// Number of steps in which QuickStep replaced WorldStep because an island was too large.
+  /// Number of steps with an island too large for WorldStep, or on which WorldStep gave up.
   std::int64_t quick_steps() const;
   /// Bit of a category name.  Throws std::out_of_range.
   std::uint32_t category_bit(const std::string& name) const;
@@ -187,6 +190,7 @@ class PhysicsWorld {
                    std::uint64_t seed);
 
  private:
+  int threads_ = 1;
   void discard();
   struct Impl;
   std::unique_ptr<Impl> impl_;

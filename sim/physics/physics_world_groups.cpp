@@ -22,7 +22,7 @@ std::string part_name(const Body& body, const PartConfig& part, std::size_t inde
 
 int PhysicsWorld::add_group(const std::string& name, bool self_collision) {
   const int number = impl_->group_numbers.take();
-  slot(impl_->groups, number) = {name, true, {}, {}, {}};
+  slot(impl_->groups, number) = {name, true, {}, {}, {}, {}, -1, false};
   impl_->scene->add_group(number);
   impl_->collider.add_group(number, self_collision);
   return number;
@@ -44,32 +44,47 @@ Body& PhysicsWorld::add_body(int group, const BodyConfig& config, const Pose& X_
   body.group_ = group;
   body.motion_ = motion;
   body.moves_ = &impl_->moves;
-  if (motion != Motion::fixed) impl_->attach_ode_body(body);
+  if (motion != Motion::fixed) {
+    if (owner.shard < 0) {
+      owner.shard = group;
+      impl_->shard(group).groups = {group};
+    }
+    impl_->attach_ode_body(body, impl_->shards[owner.shard]->world.get());
+  }
   // Add parts and mass, and register with collider and islands.
   impl_->add_parts(body, config);
-  impl_->collider.add_body(body.number_, {body.free(), body.ode_.get(), body.p_WC_, body.v_WC_W_, body.w_WB_W_,
-                                          body.mass_kg_ > 0 ? 1 / body.mass_kg_ : 0});
+  impl_->collider.add_body(body.number_, impl_->collision_body(body));
   impl_->islands.add_body(body.number_);
-  // Insert into the lists in the order of groups.
-  const auto by_group = [](int number, const Body* other) { return number < other->group_; };
-  const auto keep_order = [&](std::vector<Body*>& bodies) {
-    bodies.insert(std::upper_bound(bodies.begin(), bodies.end(), group, by_group), &body);
-  };
-  if (motion != Motion::fixed) keep_order(impl_->moving);
-  if (motion == Motion::kinematic) keep_order(impl_->kinematic);
+  if (motion != Motion::fixed) {
+    owner.moving.push_back(&body);
+    impl_->shards[owner.shard]->stale = true;
+    impl_->shards_listed = false;
+  }
+  const bool noted = impl_->collider.has_noted_positions(impl_->moves);
   body.set_pose(X_WV * make_pose(config.position_m, config.rpy_rad));
+  if (noted) impl_->collider.note_positions(impl_->moves);  // close_group() notes that of this body
   owner.bodies.push_back(impl_->body_numbers.take());
   slot(impl_->bodies, body.number_) = std::move(owned);
   return body;
 }
 
-void PhysicsWorld::Impl::attach_ode_body(Body& body) {
-  const dBodyID ode = dBodyCreate(world.get());
+CollisionBody PhysicsWorld::Impl::collision_body(const Body& body) const {
+  return {body.free(),  body.ode_.get(), body.p_WC_,
+          body.v_WC_W_, body.w_WB_W_,    body.mass_kg_ > 0 ? 1 / body.mass_kg_ : 0};
+}
+
+void PhysicsWorld::Impl::attach_ode_body(Body& body, dWorldID world) {
+  const dBodyID ode = dBodyCreate(world);
+  dBodySetData(ode, &body);
   body.ode_.reset(ode);
-  body.p_WC_ = dBodyGetPosition(ode);
-  body.R_WB_ = dBodyGetRotation(ode);
-  body.v_WC_W_ = dBodyGetLinearVel(ode);
-  body.w_WB_W_ = dBodyGetAngularVel(ode);
+  const auto writable = [](const dReal* of_ode) { return const_cast<dReal*>(of_ode); };
+  body.p_WC_ = writable(dBodyGetPosition(ode));
+  body.q_WB_ = writable(dBodyGetQuaternion(ode));
+  body.R_WB_ = writable(dBodyGetRotation(ode));
+  body.v_WC_W_ = writable(dBodyGetLinearVel(ode));
+  body.w_WB_W_ = writable(dBodyGetAngularVel(ode));
+  body.force_N_ = writable(dBodyGetForce(ode));
+  body.torque_Nm_ = writable(dBodyGetTorque(ode));
   // Replaced by Body::add_gyroscopic_torque.
   dBodySetGyroscopicMode(ode, 0);
   if (!body.kinematic()) return;
@@ -140,6 +155,7 @@ void PhysicsWorld::Impl::add_part(Body& body, const BodyConfig& config_, std::si
                                 made.terrain.get()};
   const int number = part_numbers.take();
   groups[body.group_].parts.push_back(number);
+  slot(shard_of_part, number) = body.fixed() ? -1 : groups[body.group_].shard;
   slot(parts, number) = {part_name(body, part, index),
                          body.group_,
                          body.number_,
@@ -221,18 +237,16 @@ Joint& PhysicsWorld::add_joint(int group, const JointConfig& config, Body& first
   if (config.type == JointType::hinge2 && (!a || !b))
     throw_config_error({}, "joint '" + name + "'", "hinge2 needs two bodies that move");
   if (second == &first) throw_config_error({}, "joint '" + name + "'", "joins a body to itself");
-  std::unique_ptr<Joint> owned(new Joint(impl_->world.get(), name, config, a, b, X_WV));
+  std::unique_ptr<Joint> owned(new Joint(dBodyGetWorld(a ? a : b), name, config, a, b, X_WV));
   Joint& joint = *owned;
   // Without finite rotation a wheel turns too little in each step: 7 % at 100 rad/s and 10 ms.
   if (joint_info(config.type).carries_a_wheel) dBodySetFiniteRotationMode(b ? b : a, 1);
-  // Register the joint with islands, collider and the lists of a step.
+  owner.anchored |= joint.origin_->to_world;
+  impl_->shards[owner.shard]->stale = true;
+  impl_->shards_listed = false;
+  // Register the joint with islands and collider.
   impl_->islands.add_joint(a ? first.number_ : -1, b ? second->number_ : -1, joint.max_rows());
   if (second) impl_->collider.join(first.number_, second->number_);
-  joint.measured_joints_ = &impl_->measured_joints;
-  auto& with_axes = impl_->joints_with_axes;
-  const auto by_group = [](int number, const auto& other) { return number < other.first; };
-  if (joint.axes() > 0)
-    with_axes.emplace(std::upper_bound(with_axes.begin(), with_axes.end(), group, by_group), group, &joint);
   owner.joints.push_back(impl_->joint_numbers.take());
   slot(impl_->joints, owner.joints.back()) = std::move(owned);
   return joint;
@@ -240,18 +254,26 @@ Joint& PhysicsWorld::add_joint(int group, const JointConfig& config, Body& first
 
 void PhysicsWorld::close_group(int group) {
   impl_->collider.close_group(group);
+  impl_->note_group(group);
   impl_->scene->close_group(group);
 }
 
 void PhysicsWorld::remove_group(int group) {
   Impl& all = *impl_;
   Impl::Group& removed = all.group(group);
-  all.remove_from_lists(group);
+  std::erase_if(all.contact_reports, [&](const ContactReport& contact) {
+    return all.parts[contact.parts[0]].group == group || all.parts[contact.parts[1]].group == group;
+  });
+  all.note_group(group);
+  all.far_groups.remove(group);
+  const int shard = removed.shard;
+  all.leave_shard(group);
   all.scene->remove_group(group, removed.parts);
   for (const int joint : removed.joints) all.joints[joint].reset();
   all.collider.remove_group(group, removed.bodies, removed.parts);
   all.islands.remove_bodies(removed.bodies);
   for (const int body : removed.bodies) all.bodies[body].reset();
+  if (shard >= 0 && all.shards[shard]->groups.empty()) all.shards[shard].reset();
   for (const int part : removed.parts) {
     all.terrains.erase(part);
     all.parts[part] = {};
@@ -260,19 +282,8 @@ void PhysicsWorld::remove_group(int group) {
   for (const int number : removed.bodies) all.body_numbers.give_back(number);
   for (const int number : removed.parts) all.part_numbers.give_back(number);
   removed = {};
+  all.shards_listed = false;
   all.group_numbers.give_back(group);
-}
-
-/// Removes a group's bodies and joints from the lists used in each step.
-void PhysicsWorld::Impl::remove_from_lists(int group_number) {
-  const auto in_group = [&](const Body* body) { return body->group_ == group_number; };
-  std::erase_if(moving, in_group);
-  std::erase_if(kinematic, in_group);
-  std::erase_if(joints_with_axes, [&](const auto& joint) { return joint.first == group_number; });
-  for (const int joint : groups[group_number].joints) std::erase(measured_joints, joints[joint].get());
-  std::erase_if(contact_reports, [&](const ContactReport& contact) {
-    return parts[contact.parts[0]].group == group_number || parts[contact.parts[1]].group == group_number;
-  });
 }
 
 void PhysicsWorld::move_group(int group, const Pose& X_move_W, bool keep_velocity) {
@@ -311,7 +322,7 @@ bool PhysicsWorld::as_prescribed() const {
 std::vector<JointPlace> PhysicsWorld::joint_places(int group) const {
   std::vector<JointPlace> places;
   for (const int number : impl_->group(group).joints)
-    if (const auto& side = impl_->joints[number]->world_side_) places.push_back({side->X_WV, side->X_WC});
+    if (const auto& made = *impl_->joints[number]->origin_; made.to_world) places.push_back({made.X_WV, made.X_WC});
   return places;
 }
 
@@ -320,7 +331,7 @@ void PhysicsWorld::make_joints_again(int group, std::span<const JointPlace> plac
   auto place = places.begin();
   for (const int number : impl_->group(group).joints) {
     Joint& joint = *impl_->joints[number];
-    if (!joint.world_side_) continue;
+    if (!joint.origin_->to_world) continue;
     joint.make_again(place->X_WV, place->X_WC);
     ++place;
   }

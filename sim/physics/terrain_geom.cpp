@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 
 #include "sim/ode/ode_math.hpp"
 
@@ -51,6 +52,9 @@ void place_heightfield(const CollisionTerrain& terrain, dGeomID at) {
 int collide_with_terrain(dGeomID o1, dGeomID o2, int flags, dContactGeom* contacts, int skip) {
   const CollisionTerrain& terrain = terrain_of(o1);
   if (terrain.collision == TerrainCollision::smooth) return collide_with_smooth(terrain, o1, o2, flags, contacts, skip);
+  // ODE keeps the cells that it tests in the heightfield.
+  static std::mutex one_at_a_time;
+  const std::lock_guard lock(one_at_a_time);
   place_heightfield(terrain, o1);
   const int count = dCollide(terrain.heightfield_geom.get(), o2, flags, contacts, skip);
   for (int i = 0; i < count; ++i)

@@ -99,10 +99,15 @@ void EmbreeScene::find_occluded(const RTCOccludedFunctionNArguments* arguments) 
 struct EmbreeScene::Targets {
   Targets(const EmbreeScene& scene, const RayFilter& filter_, const RayBundle& bundle)
       : filter(filter_), planes(scene.planes_.shapes) {
-    for (const Layer* layer : {&scene.moving_, &scene.fixed_, &scene.terrain_})
-      if (!add_shapes(*layer, bundle) && bundle.may_reach(layer->origin_W, layer->radius_m))
-        trees[tree_count++] = layer;
+    for (const Layer* layer : {&scene.moving_, &scene.fixed_, &scene.terrain_}) {
+      constexpr std::size_t max_tested = 64;
+      const bool test = layer->shapes.size() <= (bundle.is_narrow() ? max_tested : std::size_t{max_few});
+      const auto stops = [&](const RayShape& shape) { return shape.stops(filter) && bundle.may_reach(shape); };
+      if (!test || !add_shapes(layer->shapes, stops)) add_tree(*layer, bundle);
+    }
   }
+  /// Of a bundle of a fan, whose targets were found before.
+  Targets(const FanTargets& fan, const RayBundle& bundle);
 
   RayFilter filter;
   std::span<const RayShape> planes;
@@ -120,13 +125,15 @@ struct EmbreeScene::Targets {
   }
 
  private:
-  /// Adds the shapes of the layer within reach; returns false when they are so many that its tree is faster.
-  bool add_shapes(const Layer& layer, const RayBundle& bundle) {
-    constexpr std::size_t max_tested = 64;
-    if (layer.shapes.size() > (bundle.is_narrow() ? max_tested : std::size_t{max_few})) return false;
+  static const RayShape& shape_of(const RayShape& shape) { return shape; }
+  static const RayShape& shape_of(const RayShape* shape) { return *shape; }
+  /// Adds the shapes of the layer that count; returns false when they are so many that its tree is faster.
+  template <typename Shapes, typename Counts>
+  bool add_shapes(const Shapes& layer, const Counts& counts) {
     const int before = shape_count;
-    for (const RayShape& shape : layer.shapes) {
-      if (!shape.stops(filter) || !bundle.may_reach(shape)) continue;
+    for (const auto& each : layer) {
+      const RayShape& shape = shape_of(each);
+      if (!counts(shape)) continue;
       if (shape_count - before == max_few) {
         shape_count = before;
         return false;
@@ -135,7 +142,49 @@ struct EmbreeScene::Targets {
     }
     return true;
   }
+  void add_tree(const Layer& layer, const RayBundle& bundle) {
+    if (bundle.may_reach(layer.origin_W, layer.radius_m)) trees[tree_count++] = &layer;
+  }
 };
+
+/// What the rays of a fan may hit: shapes at its height and within its range.
+struct EmbreeScene::FanTargets {
+  FanTargets(const EmbreeScene& scene, const RayFilter& filter_, const Fan& fan)
+      : filter(filter_), planes(scene.planes_.shapes), layers{&scene.moving_, &scene.fixed_, &scene.terrain_} {
+    const Vector3d from_W = fan.X_WS.translation(), up_W = fan.X_WS.linear().col(2);
+    for (std::size_t i = 0; i < layers.size(); ++i) {
+      constexpr std::size_t max_tested = 256;
+      listed[i] = layers[i]->shapes.size() <= max_tested;
+      if (!listed[i]) continue;
+      for (const RayShape& shape : layers[i]->shapes) {
+        if (!shape.stops(filter)) continue;
+        const Vector3d to_W = shape.center_W() - from_W;
+        const double reach_m = std::sqrt(shape.misses_beyond_m2), far_m = fan.range_max_m + reach_m;
+        if (std::abs(to_W.dot(up_W)) > reach_m || to_W.squaredNorm() > far_m * far_m) continue;
+        listed[i] = counts[i] < max_listed;
+        if (!listed[i]) break;
+        shapes[i][counts[i]++] = &shape;
+      }
+    }
+  }
+  std::span<const RayShape* const> shapes_of(std::size_t layer) const {
+    return std::span(shapes[layer]).first(counts[layer]);
+  }
+
+  RayFilter filter;
+  std::span<const RayShape> planes;
+  std::array<const Layer*, 3> layers;
+  static constexpr std::size_t max_listed = 48;
+  std::array<bool, 3> listed;  // by layer: all that count are in `shapes`
+  std::array<std::size_t, 3> counts{};
+  std::array<std::array<const RayShape*, max_listed>, 3> shapes;
+};
+
+EmbreeScene::Targets::Targets(const FanTargets& fan, const RayBundle& bundle) : filter(fan.filter), planes(fan.planes) {
+  const auto counts = [&](const RayShape& shape) { return bundle.may_reach(shape); };
+  for (std::size_t i = 0; i < fan.layers.size(); ++i)
+    if (!fan.listed[i] || !add_shapes(fan.shapes_of(i), counts)) add_tree(*fan.layers[i], bundle);
+}
 
 void EmbreeScene::cast_packet(RayPacket& rays, unsigned lanes, const Targets& targets) {
   targets.for_each_shape([&](const RayShape& shape) { cast_at(shape, rays, lanes); });
@@ -246,18 +295,31 @@ void EmbreeScene::cast_fan(const Fan& fan, const RayFilter& filter, std::span<Ra
   const Vector3d p_WS = fan.X_WS.translation();
   // With larger angles between rays (2.5 degrees) single rays are faster than packets.
   constexpr double together_rad = 0.044;
-  const Targets targets(*this, filter, RayBundle());
-  for_packets(
-      static_cast<std::size_t>(fan.count), std::abs(fan.step_rad) < together_rad,
-      [&](RayPacket& rays, int lane, std::size_t i) {
-        const auto [c, s] = directions.cos_sin[i];
-        rays.set(lane, p_WS, R_WS.col(0) * c + R_WS.col(1) * s, fan.range_max_m);
-      },
-      [&](std::size_t first, RayPacket& rays, unsigned lanes) {
-        cast_packet(rays, lanes, targets);
-        for (std::size_t i = first; i < std::min(first + RayPacket::size, hits.size()); ++i)
-          hits[i] = hit_of(rays, static_cast<int>(i - first));
-      });
+  const FanTargets of_fan(*this, filter, fan);
+  // Bundles of packets, whose rays differ little in direction.
+  constexpr std::size_t packets_together = 2;
+  constexpr std::size_t together = packets_together * RayPacket::size;
+  const auto count = std::min(static_cast<std::size_t>(fan.count), hits.size());
+  const bool coherent = std::abs(fan.step_rad) < together_rad;
+  for (std::size_t start = 0; start < count; start += together) {
+    const std::size_t in_bundle = std::min(together, count - start);
+    const auto direction_W = [&](std::size_t i) -> Vector3d {
+      const auto [c, s] = directions.cos_sin[start + i];
+      return R_WS.col(0) * c + R_WS.col(1) * s;
+    };
+    const Ray ends[] = {{p_WS, direction_W(0), fan.range_max_m},
+                        {p_WS, direction_W(in_bundle / 2), fan.range_max_m},
+                        {p_WS, direction_W(in_bundle - 1), fan.range_max_m}};
+    const Targets targets(of_fan, coherent ? RayBundle(ends) : RayBundle());
+    for_packets(
+        in_bundle, coherent,
+        [&](RayPacket& rays, int lane, std::size_t i) { rays.set(lane, p_WS, direction_W(i), fan.range_max_m); },
+        [&](std::size_t first, RayPacket& rays, unsigned lanes) {
+          cast_packet(rays, lanes, targets);
+          for (std::size_t i = first; i < std::min(first + RayPacket::size, in_bundle); ++i)
+            hits[start + i] = hit_of(rays, static_cast<int>(i - first));
+        });
+  }
 }
 
 void EmbreeScene::cast(std::span<const Ray> rays_, const RayFilter& filter, std::span<RayHit> hits) const {

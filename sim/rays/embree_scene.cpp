@@ -79,6 +79,7 @@ void EmbreeScene::prepare() const {
 
 void EmbreeScene::refresh(Layer& layer, std::uint64_t moves) const {
   if (layer.seen == moves && !layer.changed) return;
+  if (layer.moves && moves_.bring_parts) moves_.bring_parts();
   follow_geoms(layer);
   if (!layer.few()) {
     choose_origin(layer);

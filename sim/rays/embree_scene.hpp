@@ -38,6 +38,7 @@ class EmbreeScene final : public WorldScene {
  private:
   struct Query;
   struct Targets;
+  struct FanTargets;
 
   /// For so few shapes a tree is slower than a test of each.
   static constexpr int max_few = 4;

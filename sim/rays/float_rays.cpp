@@ -63,6 +63,8 @@ namespace sim {
   fill(rays.dir_y, ray_direction[1], 0);
   fill(rays.dir_z, ray_direction[2], 0);
   fill(rays.tfar, limit_m, -1);
+  unsigned(&geometry)[n] = reinterpret_cast<RTCRayHit8*>(out.data_)->hit.geomID;
+  for (int i = 0; i < n; ++i) geometry[i] = RTC_INVALID_GEOMETRY_ID;
   for (int i = 0; i < n; ++i) {
     rays.tnear[i] = rays.time[i] = 0;
     rays.mask[i] = ~0u;

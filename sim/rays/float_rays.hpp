@@ -5,6 +5,7 @@
 
 #include <bit>
 #include <cmath>
+#include <cstdint>
 
 #include "sim/rays/ray_shape.hpp"
 
@@ -47,6 +48,23 @@ class FloatRays {
   float margin_m() const { return margin_m_; }
   double start_m(int lane) const { return start_m_[lane]; }
 
+  /// Nearest hit on a triangle, with its barycentric coordinates.
+  struct TriangleHit {
+    float tfar = 0, u = 0, v = 0;
+    std::uint32_t triangle = 0;
+    bool any = false;
+  };
+  /// Returns the hit that intersect() found without a filter.
+  TriangleHit triangle_hit(int lane) const {
+    if (count_ == 1) {
+      const auto& one = *reinterpret_cast<const RTCRayHit*>(data_);
+      return {one.ray.tfar, one.hit.u, one.hit.v, one.hit.primID, one.hit.geomID != RTC_INVALID_GEOMETRY_ID};
+    }
+    const auto& all = *reinterpret_cast<const RTCRayHit8*>(data_);
+    return {all.ray.tfar[lane], all.hit.u[lane], all.hit.v[lane], all.hit.primID[lane],
+            all.hit.geomID[lane] != RTC_INVALID_GEOMETRY_ID};
+  }
+
   /// Finds hits.  `context` is the first member of a struct of the caller, which the callbacks get.
   void intersect(RTCScene scene, RTCIntersectContext& context) {
     if (none()) return;
@@ -88,6 +106,7 @@ class FloatRays {
     ray.mask = ~0u;
     ray.id = static_cast<unsigned>(lane);
     ray.flags = 0;
+    reinterpret_cast<RTCRayHit*>(data_)->hit.geomID = RTC_INVALID_GEOMETRY_ID;
     // The condition is false for NaN.
     valid_[0] = ray.tfar >= 0 && std::abs(sum) < std::numeric_limits<float>::infinity() ? -1 : 0;
   }

@@ -130,6 +130,7 @@ void OdeScene::place_triangles(Part& part) {
 void OdeScene::refresh(Layer& layer, std::uint64_t moves) const {
   if (layer.seen == moves) return;
   layer.seen = moves;
+  if (&layer == &layers_[0] && moves_.bring_parts) moves_.bring_parts();
   part_boxes_.resize(parts_.size());
   cluster_boxes_.clear();
   for (const Cluster& cluster : layer.clusters) {

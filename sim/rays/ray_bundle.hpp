@@ -24,7 +24,7 @@ class RayBundle {
     const Vector3d displacement_W = center_W - origin_W_;
     const double ahead_m = displacement_W.dot(axis_W_);
     const double near_m = radius_m + radius_m_;
-    if (ahead_m + near_m < 0) return !narrow_;
+    if (ahead_m + near_m < 0 || ahead_m - near_m > range_m_) return !narrow_;
     const double aside_m = near_m + slope_ * (ahead_m + near_m);
     return displacement_W.squaredNorm() - ahead_m * ahead_m <= aside_m * aside_m || !narrow_;
   }
@@ -38,6 +38,7 @@ class RayBundle {
   Vector3d origin_W_ = Vector3d::Zero(), axis_W_ = Vector3d::UnitX();
   double radius_m_ = 0;  // of the sphere around the origins
   double slope_ = 0;     // tangent of the half angle of the cone
+  double range_m_ = 0;   // the longest
 };
 
 }  // namespace sim

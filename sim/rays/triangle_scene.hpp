@@ -32,11 +32,16 @@ class TriangleScene {
   struct Query;
   static void filter_cast(const RTCFilterFunctionNArguments* arguments);
   static void filter_blocked(const RTCFilterFunctionNArguments* arguments);
+  double find_clearance(const Vector3d& low, const Vector3d& high) const;
+  unsigned cast_near_edges(const RayShape& shape, RayPacket& rays, unsigned lanes) const;
+  void prefetch(std::uint32_t triangle) const;
   double find_range(const Vector3d& from_M, const Vector3d& direction_M, std::uint32_t triangle) const;
 
   const Mesh& mesh_;
   Vector3d center_m_ = Vector3d::Zero(), half_extents_m_ = Vector3d::Zero();
   double radius_m_ = 0;
+  /// Barycentric coordinates above which no other triangle is hit at about the same range; infinity: that is not known.
+  double clearance_ = 0;
   EmbreeSceneHandle scene_;
 };
 

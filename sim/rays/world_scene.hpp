@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 
@@ -16,8 +17,10 @@ struct Mesh;
 
 /// Counts of motions, by which the scene detects that parts must be updated.
 struct SceneMoves {
-  std::uint64_t moving = 0;  ///< of moving bodies: each step
-  std::uint64_t fixed = 0;   ///< of fixed bodies: when their pose is set
+  std::uint64_t moving = 0;           ///< of moving bodies: each step
+  std::uint64_t jumps = 0;            ///< of moving bodies: when their pose is set
+  std::uint64_t fixed = 0;            ///< of fixed bodies: when their pose is set
+  std::function<void()> bring_parts;  ///< must be called before geoms of moving bodies are looked at
 };
 
 /// Part for ray casting.  Its geom has its pose and its sizes.

@@ -27,6 +27,10 @@ NoiseOrigin DeviceContext::noise_origin(const NoiseParams& params) const {
   return {host.seed, full_name() + "#" + quantity, &faults.noise_of(quantity)};
 }
 
+std::shared_ptr<std::atomic<bool>> DeviceContext::wake_flag() const {
+  return host.awake.of(number);
+}
+
 SoundSite DeviceContext::sound_site() const {
   AcousticChannel& channel = *host.acoustics;
   if (!channel.has_water())

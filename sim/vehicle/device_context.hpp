@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <atomic>
+#include <memory>
 #include <string>
 
 #include "sim/acoustics/sound_site.hpp"
@@ -38,6 +40,9 @@ struct DeviceContext {
   Noise noise(const NoiseParams& params, int values) const;
   /// Returns the random stream and faults of a quantity, named after the key of `params`.
   NoiseOrigin noise_origin(const NoiseParams& params) const;
+  /// Returns the flag that wakes the device when it is set, see Actuator.  The framework sets it when a command or data
+  /// arrive, and when parameters or faults change.
+  std::shared_ptr<std::atomic<bool>> wake_flag() const;
   /// Returns the site of a Transducer or a ContinuousSound.  Throws ConfigError at the place of the device when the
   /// world has no water.
   SoundSite sound_site() const;

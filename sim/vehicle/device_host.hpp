@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 
+#include "sim/bus/arrival_flags.hpp"
 #include "sim/bus/byte_port.hpp"
 #include "sim/device/shared_by_devices.hpp"
 #include "sim/event/event_queue.hpp"
@@ -30,6 +31,7 @@ struct DeviceHost {
   const PortOpener& open_port;  ///< for devices with a pseudo-terminal or FIFO; empty: none can be opened
   WorldWarnings& warnings;
   SharedByDevices& shared;
+  ArrivalFlags& awake;  ///< by device number: false for one that sleeps, see Actuator
 
   /// Schedules the arrival of data at a device at a simulated time, when arrive() of its sensor is called.  `device`:
   /// its number.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <atomic>
 #include <memory>
 #include <optional>
 #include <string>
@@ -39,7 +40,7 @@ struct Acting : VisitedInSteps {
 
 /// Device in its vehicle, with the framework functions of every device: schedule of samples, latency, jitter, dropout,
 /// truth channel, mailbox, faults, watchdog, power and emergency stop.
-class MountedDevice {
+class MountedDevice : public VisitedInSteps {
  public:
   /// Kinds of its events: Event::kind.
   enum EventKind { report_event, command_event, arrival_event };
@@ -50,15 +51,20 @@ class MountedDevice {
   MountedDevice(const MountedDevice&) = delete;
   MountedDevice& operator=(const MountedDevice&) = delete;
 
-  /// Passes the messages that have arrived to the controller; with a latency they become events.
-  void take_messages(Time now, std::int64_t step_number);
+  /// Passes the messages that have arrived to the controller; with a latency they become events.  `bad`: gets the
+  /// errors of bad messages, for report_bad_messages(); null: they are reported at once.
+  void take_messages(Time now, std::int64_t step_number, std::vector<std::string>* bad = nullptr);
+  void report_bad_messages(const std::vector<std::string>& bad);
+  /// Returns whether take_messages() may be called for several devices concurrently, with `bad`.
+  bool takes_messages_alone() const;
   /// Returns the number of the step after which it samples next.
   std::int64_t next_sample_step() const { return next_sample_step_; }
   /// Calls Sensor::sweep; called after each step for a sensor that sweeps.
   void sweep(Time now);
-  /// Samples; reports are published by publish_reports().  May be called concurrently for sensors that cast rays.
-  void sample(Time now, std::int64_t step_number);
-  /// Publishes or schedules the reports of sample().
+  /// Samples, and publishes or schedules the reports, unless they are held until publish_reports(); then it may be
+  /// called concurrently for sensors that cast rays or measure alone.
+  void sample(Time now, std::int64_t step_number, bool hold);
+  /// Publishes or schedules the reports that sample() held.
   void publish_reports();
   /// Handles an event of this device that is due.
   void handle(const Event& event);
@@ -74,10 +80,17 @@ class MountedDevice {
   /// Returns whether the keys of its type can change at run time.
   bool can_change() const { return static_cast<bool>(built_.change); }
 
-  bool senses() const { return built_.sensor != nullptr; }
+  bool senses() const { return sensor_ != nullptr; }
+  bool every_step() const { return period_us_ == 0; }
+  /// Returns whether it samples in every step in which it is awake.
+  bool sleeps() const { return type_.sleeps && every_step(); }
   bool sweeps() const { return type_.sweeps; }
   bool casts_rays() const { return type_.casts_rays; }
-  std::int64_t rays() const { return built_.sensor->rays(); }
+  std::int64_t rays() const { return sensor_->rays(); }
+  bool measures_alone() const { return type_.measures_alone; }
+  bool acts_alone() const { return type_.acts_alone; }
+  /// Returns the flag that is false while it sleeps; null for a type that never does.
+  std::atomic<bool>* awake() const { return type_.sleeps ? awake_.get() : nullptr; }
   /// Returns the data of its actuator; their `actuator` is null when it has none.
   Acting* acting() const { return acting_.get(); }
   /// Returns its mailbox; null when it receives no messages.
@@ -86,17 +99,19 @@ class MountedDevice {
   const std::string& full_name() const { return full_name_; }
   const std::string& report_channel() const { return report_channel_; }
   const std::string& command_channel() const { return command_channel_; }
-  const DeviceConfig& config() const { return config_; }
+  const DeviceConfig& config() const { return *config_; }
   const Vehicle& vehicle() const { return vehicle_; }
   /// For tests and tools.
-  const Sensor* sensor() const { return built_.sensor.get(); }
+  const Sensor* sensor() const { return sensor_; }
   const Actuator* actuator() const { return built_.actuator.get(); }
   void visit_state(StateArchive& archive);
 
  private:
   class Outlet;
 
-  void receive(Time now, std::span<const std::byte> payload);
+  void take_config();
+  void wake() { awake_->store(true, std::memory_order_relaxed); }
+  void receive(Time now, std::span<const std::byte> payload, std::vector<std::string>* bad = nullptr);
   void report(Time now);
   bool works() const;
   Time next_latency();
@@ -106,27 +121,35 @@ class MountedDevice {
   std::int64_t step_of_sample(std::int64_t sample) const;
   void check_schedule(const StateArchive& archive) const;
 
-  DeviceConfig config_;
-  const DeviceType& type_;
-  DeviceHost& host_;
-  Bus& bus_;
-  Vehicle& vehicle_;
+  // Members used by each sample, adjacent in memory.
   const Body& body_;
-  int number_;
-  std::string full_name_;
-  std::string report_channel_, truth_channel_, command_channel_;
-  Pose X_BS_;
-  DeviceFaults faults_;
-  BuiltDevice built_;
-  std::unique_ptr<Acting> acting_ = std::make_unique<Acting>();
-  std::unique_ptr<Mailbox> mailbox_;
+  Vehicle& vehicle_;
+  Sensor* sensor_ = nullptr;      // of built_
+  Reporter* reporter_ = nullptr;  // of built_; may be null
   std::unique_ptr<Outlet> report_outlet_, truth_outlet_;
-  Random noise_random_, link_random_;
-  double period_us_ = 0;
+  double period_us_ = 0;  // 0: every step
   double phase_us_ = 0;
   std::int64_t samples_planned_ = 0;
   std::int64_t next_sample_step_ = 0;
   Time last_sample_{-1};
+  double latency_s_ = 0, jitter_s_ = 0, dropout_ = 0;  // of config_
+  bool truth_ = false;
+  Pose X_BS_;
+  DeviceHost& host_;
+  DeviceFaults faults_;
+  const std::string full_name_;
+  Random noise_random_, link_random_;
+
+  const int number_;
+  const DeviceType& type_;
+  Bus& bus_;
+  const DeviceConfig* config_;             // of the vehicle, or changed_
+  std::unique_ptr<DeviceConfig> changed_;  // at run time; null: not changed
+  const std::string report_channel_, command_channel_;
+  const std::shared_ptr<std::atomic<bool>> awake_;
+  std::unique_ptr<Acting> acting_ = std::make_unique<Acting>();
+  BuiltDevice built_;
+  std::unique_ptr<Mailbox> mailbox_;
   std::optional<Pose> X_WS_before_;  ///< pose at the end of the last step, for sweep()
   /// Messages that a stuck sensor repeats, and their time stamp.
   std::optional<std::vector<Bytes>> frozen_;

@@ -7,11 +7,37 @@
 #include <memory>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "sim/bus/bus.hpp"
 #include "sim/state/state_archive.hpp"
 
 namespace sim {
+
+/// Messages that devices publish while threads share them, to be published later in the order of the devices.
+class DeferredMessages {
+ public:
+  /// While it exists, what this thread publishes on channels of RunHash::counted() buses is deferred.
+  class InThread {
+   public:
+    explicit InThread(DeferredMessages& messages);
+    ~InThread();
+    InThread(const InThread&) = delete;
+    InThread& operator=(const InThread&) = delete;
+  };
+  void add(OpenChannel& channel, std::span<const std::byte> payload, Time at);
+  /// Publishes all messages, in order, and removes them.
+  void publish();
+
+ private:
+  struct Entry {
+    OpenChannel* channel;
+    Time at;
+    std::size_t end;  // in bytes_
+  };
+  std::vector<Entry> entries_;
+  Bytes bytes_;
+};
 
 /// Hash chained over the messages that a world publishes and over its states, in order: it stays different after the
 /// first difference. The hash includes the messages published through counted(): those of devices and of events, on
@@ -37,6 +63,7 @@ class RunHash {
 
  private:
   class CountedBus;
+  class CountedChannel;
   void add_message(std::string_view channel, std::span<const std::byte> payload);
 
   std::uint64_t chain_ = 0;

@@ -3,6 +3,8 @@
 
 #include <utility>
 
+#include "sim/base/shared_work.hpp"
+#include "sim/base/thread_pool.hpp"
 #include "sim/world/bottom_check.hpp"
 #include "sim/world/start_check.hpp"
 #include "sim/world/world_builder.hpp"
@@ -38,6 +40,7 @@ World::~World() = default;
 
 void World::use_threads(int threads) {
   parts_->schedule.use_threads(threads);
+  physics_.use_threads(threads);
 }
 
 void World::set_observer(WorldObserver* observer) {
@@ -48,28 +51,74 @@ void World::set_observer(WorldObserver* observer) {
   parts_->acoustics->set_observer(observer);
 }
 
+namespace {
+
+/// Returns where to measure the work of this step; null: not.
+SharedWork* work_to_measure(const WorldParts& parts) {
+  constexpr std::int64_t steps_between = 61;  // no multiple of the periods of sensors
+  const ThreadPool* const threads = parts.schedule.threads();
+  const bool due = threads != nullptr && threads->threads() > 1 && parts.clock.step_number % steps_between == 0;
+  return due ? parts.shared_work : nullptr;
+}
+
+}  // namespace
+
 void World::step() {
   WorldParts& parts = *parts_;
   if (!parts.script) throw SnapshotError("the world was lost when a snapshot was restored");
   parts.in_step = true;
+  const SharedWorkClock work_clock(work_to_measure(parts));
+  StageClock stages(parts.stage_times);
   parts.schedule.take_messages(parts.clock);
+  stages.end(StepStage::messages);
   // Forces are those half-way through the step, see docs/models/rigid_bodies.md.
   parts.medium.advance_to(now() + from_seconds(config_.physics.step_s / 2));
-  parts.hydrodynamics->begin_step();
-  parts.schedule.act(parts.clock, config_.physics.step_s);
-  parts.hydrodynamics->step(parts.physics.gravity_mps2());
+  stages.end(StepStage::medium);
+  act_in_water(stages);
   parts.script->step();
+  stages.end(StepStage::script);
   parts.physics.step(parts.clock.step_number);
+  stages.end(StepStage::physics);
   ++parts.clock.step_number;
   parts.medium.advance_to(now());
+  stages.end(StepStage::medium);
   parts.schedule.advance_clocks(parts.clock, parts.medium);
   run_due_events();
-  parts.schedule.sense(parts.clock, scene());
+  stages.end(StepStage::events);
+  parts.schedule.sense(parts.clock, scene(), stages);
   add_to_run_hash();
+  stages.end(StepStage::hash);
   parts.in_step = false;
 }
 
+/// Lets the actuators act, and adds the forces of the water.
+void World::act_in_water(StageClock& stages) {
+  Hydrodynamics& water = *parts_->hydrodynamics;
+  StepSchedule& schedule = parts_->schedule;
+  const double step_s = config_.physics.step_s, gravity_mps2 = parts_->physics.gravity_mps2();
+  ThreadPool* const threads = schedule.threads();
+  if (schedule.acting().begin_by_groups()) {
+    water.step_by_groups(gravity_mps2,
+                         {[&](int group) { schedule.acting().act_of(group, parts_->clock, step_s); },
+                          [&] {
+                            stages.end(StepStage::hydrodynamics);
+                            schedule.acting().act_rest(parts_->clock, step_s, threads);
+                            stages.end(StepStage::act);
+                          }},
+                         threads);
+    stages.end(StepStage::hydrodynamics);
+    return;
+  }
+  water.begin_step(threads);
+  stages.end(StepStage::hydrodynamics);
+  schedule.act(parts_->clock, step_s);
+  stages.end(StepStage::act);
+  water.step(gravity_mps2, threads);
+  stages.end(StepStage::hydrodynamics);
+}
+
 void World::run_due_events() {
+  parts_->acoustics->look_ahead(now(), parts_->schedule.threads());
   for (Event event; parts_->events.take_due(now(), event);) {
     if (event.device == Event::of_acoustics)
       parts_->acoustics->handle(event, now());
@@ -78,17 +127,14 @@ void World::run_due_events() {
   }
 }
 
-/// Adds the motion after each step, and the whole state after every tenth: hashing it takes up to a tenth of a step,
+/// Adds the motion after each step, and the whole state after every fiftieth: hashing it takes as long as some steps,
 /// and a difference in it affects motion or messages, or persists until then.
 void World::add_to_run_hash() {
-  constexpr std::int64_t steps_per_whole_state = 10;
-  StateArchive archive = StateArchive::quick_hasher();
-  if (step_number() % steps_per_whole_state == 0)
-    parts_->visit_state(archive);
-  else
-    for (const auto& body : physics_.bodies())
-      if (body && !body->fixed()) body->visit_state(archive);
-  parts_->buses.run_hash().add_state(archive.hash());
+  constexpr std::int64_t steps_per_whole_state = 50;
+  ThreadPool* const threads = parts_->schedule.threads();
+  const bool whole = step_number() % steps_per_whole_state == 0;
+  parts_->buses.run_hash().add_state(whole ? parts_->step_hash.of_state(*parts_, threads)
+                                           : parts_->step_hash.of_motion(*parts_, threads));
 }
 
 const Hydrodynamics& World::hydrodynamics() const {

@@ -27,6 +27,7 @@
 namespace sim {
 
 class AcousticChannel;
+class StageClock;
 class WorldBuilder;
 class WorldEditor;
 class WorldJournal;
@@ -54,7 +55,7 @@ class World {
   World(const World&) = delete;
   World& operator=(const World&) = delete;
 
-  /// Sets the number of threads for sensors that cast rays; 0: one for each processor.  Results do not depend on it.
+  /// Sets the number of threads of a step; 0: one for each processor.  Results do not depend on it.
   void use_threads(int threads);
   /// Sets the observer of sounds and occurrences, which must outlive the world or be removed by null.  Results do not
   /// depend on it.
@@ -120,6 +121,7 @@ class World {
   WorldCounts counts() const;
 
  private:
+  void act_in_water(StageClock& stages);
   void run_due_events();
   void add_to_run_hash();
 

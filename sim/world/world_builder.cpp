@@ -10,6 +10,7 @@
 
 #include "sim/config/diagnostics.hpp"
 #include "sim/vehicle/limit_check.hpp"
+#include "sim/world/memory_forecast.hpp"
 #include "sim/world/world_parts.hpp"
 #include "sim/world_file/device_change.hpp"
 
@@ -51,7 +52,14 @@ void WorldBuilder::add_objects() {
 void WorldBuilder::add_vehicles() {
   std::vector<std::string> errors;  // of all vehicles, not only the first; equal errors of vehicles of one model once
   std::set<std::string> known;
+  // A file of `count`s of a few lines may describe more vehicles than the memory holds.
+  MemoryForecast forecast(parts_.config.vehicles.size(), allocated_bytes(), available_bytes());
+  std::size_t built = 0;
   for (const VehicleInstance& instance : parts_.config.vehicles) {
+    if (!parts_.config.bodies_only_of_many && forecast.is_due(built))
+      if (const std::string problem = forecast.problem(built, allocated_bytes().value_or(0)); !problem.empty())
+        throw_config_error(instance.place, "vehicle '" + instance.name + "'", problem);
+    ++built;
     try {
       build_vehicle(instance);
     } catch (const ConfigError& error) {
@@ -158,11 +166,17 @@ void WorldBuilder::add_device(Vehicle& vehicle, const DeviceConfig& config) {
   parts_.devices.add(std::move(device));
 }
 
+void WorldBuilder::schedule(Vehicle& vehicle) {
+  parts_.schedule.add(vehicle, parts_.devices);
+}
+
 void WorldBuilder::sort_devices() {
-  parts_.schedule.sort(parts_.entities, parts_.devices);
+  parts_.schedule.sort(parts_.entities, parts_.devices, parts_.clock);
+  parts_.step_hash.forget_devices();
 }
 
 void WorldBuilder::dismantle(Vehicle& vehicle) {
+  parts_.schedule.remove(vehicle);
   for (const MountedDevice* device : vehicle.devices()) remove_device(*device);
   parts_.hydrodynamics->remove_group(vehicle.group());
   parts_.physics.remove_group(vehicle.group());
@@ -174,6 +188,7 @@ void WorldBuilder::remove_device(const MountedDevice& device) {
   parts_.events.drop_device(device.number());
   for (const ChannelKind kind : all_channel_kinds)
     parts_.buses.release(device_channel(parts_.config.channels, device.vehicle().name(), device.config(), kind));
+  parts_.step_hash.drop_device(device.number());
   parts_.devices.remove(device.number());
 }
 
@@ -201,6 +216,7 @@ bool WorldBuilder::change_device(const std::string& full_name, const ConfigNode&
     return false;
   }
   parts_.schedule.plan_again(*device);
+  parts_.step_hash.forget_devices();
   return true;
 }
 

@@ -31,7 +31,7 @@ class WorldBuilder {
   /// Removes all entities and the script, and builds the world again.
   void rebuild();
 
-  /// Builds a vehicle.  Throws ConfigError; the world is then unchanged.
+  /// Builds a vehicle; schedule() must follow.  Throws ConfigError; the world is then unchanged.
   Vehicle& build_vehicle(const VehicleInstance& instance);
   /// Builds an object; one that an actor moves becomes kinematic.  Throws ConfigError; the world is then unchanged.
   const WorldObject& place_object(const ObjectConfig& config, const std::string& name, const Pose& X_WE);
@@ -39,7 +39,9 @@ class WorldBuilder {
   void dismantle(const WorldObject& object);
   /// See WorldEditor::change_device.
   bool change_device(const std::string& full_name, const ConfigNode& values, Diagnostics& diagnostics);
-  /// Rebuilds the schedule.  Must be called after vehicles were added or removed.
+  /// Adds the devices of a vehicle to the schedule of a step.
+  void schedule(Vehicle& vehicle);
+  /// Rebuilds the schedule of a step, with all devices.
   void sort_devices();
 
  private:

@@ -71,12 +71,12 @@ const Vehicle& WorldEditor::add_vehicle(const VehicleInstance& instance) {
     journal_.vehicle_failed(instance, new_surfaces);
     throw;
   }
-  const Vehicle& vehicle = *parts_.entities.vehicles().back();
+  Vehicle& vehicle = *parts_.entities.vehicles().back();
   journal_.vehicle_added(instance, vehicle, new_surfaces);
   for (const std::vector<std::string>& found :
        {parts_.hydrodynamics->take_warnings(), bottom_warnings(world_, vehicle)})
     for (const std::string& warning : found) parts_.warnings.building().warn({}, "", warning);
-  builder_.sort_devices();
+  builder_.schedule(vehicle);
   report(Occurrence::Kind::added, instance.name, "vehicle");
   return vehicle;
 }
@@ -118,7 +118,6 @@ void WorldEditor::remove_vehicle(const std::string& name) {
   const std::string own_name = vehicle.name();  // the argument may refer to the name of the vehicle
   builder_.dismantle(vehicle);
   journal_.vehicle_removed(own_name);
-  builder_.sort_devices();
   report(Occurrence::Kind::removed, own_name, "vehicle");
 }
 
@@ -162,11 +161,13 @@ void WorldEditor::set_fault(const std::string& device, const FaultConfig& fault)
   const std::string error = fault_misfit(*mounted.config().device_type, fault);
   if (!error.empty()) throw WorldError("device " + shown_name(device) + ": " + error);
   mounted.set_fault(fault);
+  parts_.step_hash.forget_devices();
   report(Occurrence::Kind::fault, mounted.full_name(), std::string(word_of(fault_kind_words, fault.kind)));
 }
 
 void WorldEditor::clear_faults(const std::string& device) {
   parts_.entities.device_named(device).clear_faults();
+  parts_.step_hash.forget_devices();
   report(Occurrence::Kind::fault, device, "cleared");
 }
 

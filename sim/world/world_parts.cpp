@@ -38,9 +38,21 @@ WorldParts::WorldParts(const World& world, const WorldConfig& config_, Bus& bus,
       buses(bus, std::move(find_bus)),
       surfaces(physics),
       host{world,     config.channels, clock,     config.epoch_us, seed(), physics,
-           acoustics, events,          open_port, warnings,        shared} {}
+           acoustics, events,          open_port, warnings,        shared, awake} {}
 
 void WorldParts::visit_state(StateArchive& archive) {
+  visit_beginning(archive);
+  for (const auto& vehicle : entities.vehicles()) {
+    visit_vehicle(archive, *vehicle);
+    for (MountedDevice* device : vehicle->devices()) {
+      archive.section(device->full_name());
+      archive(*device);
+    }
+  }
+  visit_rest(archive);
+}
+
+void WorldParts::visit_beginning(StateArchive& archive) {
   archive.section("world");
   archive(clock.step_number, ended);
   archive.require(clock.step_number, 0, StateArchive::max_time.count() / clock.step.count(), "a step");
@@ -48,17 +60,18 @@ void WorldParts::visit_state(StateArchive& archive) {
   physics.visit_state(archive);
   archive.section("medium");
   archive(medium, *hydrodynamics);
-  for (const auto& vehicle : entities.vehicles()) {
-    archive.section(vehicle->name());
-    archive(*vehicle);
-    // With a forged value it would be advanced in any number of small steps.
-    if (archive.restoring() && !vehicle->clock().is_stopped_at(clock.now()))
-      archive.fail("a clock whose time does not match that of the world");
-    for (MountedDevice* device : vehicle->devices()) {
-      archive.section(device->full_name());
-      archive(*device);
-    }
-  }
+}
+
+void WorldParts::visit_vehicle(StateArchive& archive, Vehicle& vehicle) {
+  archive.section(vehicle.name());
+  vehicle.clock().advance_time_to(clock.now());  // the schedule advances it only when its history changes
+  archive(vehicle);
+  // With a forged value it would be advanced in any number of small steps.
+  if (archive.restoring() && !vehicle.clock().is_stopped_at(clock.now()))
+    archive.fail("a clock whose time does not match that of the world");
+}
+
+void WorldParts::visit_rest(StateArchive& archive) {
   archive.section("objects");
   for (const auto& [name, object] : entities.objects()) archive(*object.body);
   archive.section("events");

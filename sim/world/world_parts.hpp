@@ -16,16 +16,19 @@
 #include "sim/vehicle/device_table.hpp"
 #include "sim/vehicle/end_of_run.hpp"
 #include "sim/vehicle/entities.hpp"
+#include "sim/vehicle/stage_times.hpp"
 #include "sim/vehicle/step_clock.hpp"
 #include "sim/vehicle/step_schedule.hpp"
 #include "sim/vehicle/surfaces.hpp"
 #include "sim/vehicle/world_buses.hpp"
 #include "sim/vehicle/world_warnings.hpp"
+#include "sim/world/step_hash.hpp"
 #include "sim/world_file/world_config.hpp"
 
 namespace sim {
 
 class World;
+struct SharedWork;
 
 /// Parts of a world.  World owns and steps them; WorldBuilder builds and dismantles the entities, WorldEditor changes
 /// them, WorldState saves and restores them.  For sources of this folder only.
@@ -38,6 +41,10 @@ struct WorldParts {
   /// Visits `world`, `medium`, each vehicle with its devices, `objects` and the other parts; see
   /// WorldState::part_hashes().
   void visit_state(StateArchive& archive);
+  // Pieces of visit_state(): from `world` to `medium`; a vehicle without its devices; from `objects` on.
+  void visit_beginning(StateArchive& archive);
+  void visit_vehicle(StateArchive& archive, Vehicle& vehicle);
+  void visit_rest(StateArchive& archive);
 
   // In the order of dependence: devices are destroyed before the objects to which they refer.
   const WorldConfig& config;
@@ -54,13 +61,17 @@ struct WorldParts {
   std::unique_ptr<AcousticChannel> acoustics;
   WorldBuses buses;
   Surfaces surfaces;
+  ArrivalFlags awake;
   DeviceHost host;
   Entities entities;
   DeviceTable devices;
   StepSchedule schedule;
+  StepHash step_hash;
   std::unique_ptr<Script> script;  ///< null: the world was lost in a failed restore
   std::optional<EndOfRun> ended;
   WorldObserver* observer = nullptr;  ///< null: none
+  StageTimes* stage_times = nullptr;  ///< null: not measured
+  SharedWork* shared_work = nullptr;  ///< null: not measured
 };
 
 }  // namespace sim

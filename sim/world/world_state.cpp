@@ -47,10 +47,18 @@ std::uint64_t WorldState::hash() const {
   return archive.hash();
 }
 
-std::uint64_t WorldState::run_hash() const {
+void WorldState::measure_stages(StageTimes* times) {
+  parts_.stage_times = times;
+}
+
+void WorldState::measure_shared_work(SharedWork* work) {
+  parts_.shared_work = work;
+}
+
+std::uint64_t WorldState::run_hash(std::uint64_t state_hash) const {
   StateHash all;
   all.add(parts_.buses.run_hash().value());
-  all.add(hash());
+  all.add(state_hash);
   return all.value();
 }
 

@@ -14,9 +14,11 @@ namespace sim {
 class Stage;
 class WorldBuilder;
 class WorldJournal;
+struct SharedWork;
+struct StageTimes;
 struct WorldParts;
 
-/// Hashes, saves and restores the state of a world.  World::state() returns the one of a world.
+/// Hashes, saves and restores the state of a world, and measures its steps.  World::state() returns the one of a world.
 class WorldState {
  public:
   /// All must outlive this.
@@ -26,10 +28,12 @@ class WorldState {
   /// Returns a hash of the whole state: bodies, joints, devices, clocks, medium, events, sound in flight, script.
   std::uint64_t hash() const;
   /// Returns a hash of the whole run up to now: every message that devices and events have published, the motion of
-  /// every body after each step, the whole state after every tenth step and now.  Equal run hashes mean equal runs;
+  /// every body after each step, the whole state after every fiftieth step and now.  Equal run hashes mean equal runs;
   /// equal state hashes mean only equal final states.  Channels for observation only are excluded; see RunHash.  A
   /// snapshot contains the run hash.
-  std::uint64_t run_hash() const;
+  std::uint64_t run_hash() const { return run_hash(hash()); }
+  /// Does the same where hash() is known.
+  std::uint64_t run_hash(std::uint64_t state_hash) const;
   /// Returns the state hashes by part, in a fixed order: `world`, `medium`, vehicles such as `auv1`, devices such
   /// as `auv1/dvl`, `objects`, `events`, `acoustics`, `script`.
   std::vector<PartHash> part_hashes() const;
@@ -43,6 +47,11 @@ class WorldState {
   /// snapshot does not match; the world is then as before, or, when that fails too, the error says so.  The world may
   /// have been rebuilt meanwhile: see World::generation().
   void restore(std::span<const std::byte> snapshot);
+  /// From the next step on adds the time of each stage to `times`, which must outlive the world or be removed by null.
+  /// No result depends on it.
+  void measure_stages(StageTimes* times);
+  /// From now on adds the times of some steps to `work` if several threads share them; otherwise as measure_stages().
+  void measure_shared_work(SharedWork* work);
 
  private:
   void load(std::span<const std::byte> snapshot);

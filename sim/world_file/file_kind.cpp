@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/world_file/file_kind.hpp"
 
+#include <algorithm>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
+
+#include "sim/config/parsed_files.hpp"
 
 namespace sim {
 
@@ -71,11 +75,12 @@ std::string other_kind(const std::string& path, FileKind expected) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error)) return {};
   std::ifstream in(path, std::ios::binary);
-  std::string text(max_kind_bytes, '\0');
+  const auto bytes = std::min<std::uintmax_t>(std::filesystem::file_size(path, error), max_kind_bytes);
+  std::string text(error ? 0 : static_cast<std::size_t>(bytes), '\0');
   in.read(text.data(), static_cast<std::streamsize>(text.size()));
   text.resize(static_cast<std::size_t>(in.gcount()));
   Diagnostics ignored;
-  return other_kind_text(parse_config_text(text, path, ignored), expected);
+  return other_kind_text(parse_file_text(text, path, ignored), expected);
 }
 
 }  // namespace sim

@@ -27,6 +27,7 @@ using std::numbers::pi;
 constexpr int lidars = 200, beams = 180;
 constexpr double range_m = 20;
 constexpr int columns = 320, rows = 240, tile = 8;
+constexpr float camera_range_m = 200;
 
 double height_m(double x, double y) {
   return 2 * std::sin(0.1 * x) * std::cos(0.07 * y) + 0.1 * std::sin(1.7 * x + 0.9 * y);
@@ -275,7 +276,44 @@ void camera_ours(benchmark::State& state, bool shadows) {
     }
 }
 
-void camera_bare(benchmark::State& state, RTCIntersectContextFlags flags) {
+/// Shadow rays of up to `count` hits, in packets; returns how many are blocked.
+int bare_shadows(RTCScene scene, const float* origin, const std::array<float, 3>* directions, int count,
+                 const BareHit* hits, RTCIntersectContextFlags flags) {
+  const Eigen::Vector3f to_sun = sun_W.cast<float>();
+  int blocked = 0;
+  for (int first = 0; first < count; first += 8) {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = flags;
+    alignas(64) int valid[8];
+    RTCRay8 rays;
+    auto* const all = reinterpret_cast<RTCRayN*>(&rays);
+    for (int i = 0; i < 8; ++i) {
+      const int ray = std::min(first + i, count - 1);
+      const BareHit& hit = hits[ray];
+      const Eigen::Vector3f normal = Eigen::Vector3f(hit.normal[0], hit.normal[1], hit.normal[2]).normalized();
+      const bool seen = first + i < count && hit.range < camera_range_m;
+      valid[i] = seen ? -1 : 0;
+      for (int axis = 0; axis < 3; ++axis) {
+        const float facing = normal.dot(Eigen::Vector3f(directions[ray].data())) > 0 ? -1.0F : 1.0F;
+        const float at = origin[axis] + hit.range * directions[ray][axis] + 1e-3F * facing * normal[axis];
+        (axis == 0 ? rays.org_x : axis == 1 ? rays.org_y : rays.org_z)[i] = seen ? at : 0;
+      }
+      RTCRayN_dir_x(all, 8, i) = to_sun.x();
+      RTCRayN_dir_y(all, 8, i) = to_sun.y();
+      RTCRayN_dir_z(all, 8, i) = to_sun.z();
+      RTCRayN_tnear(all, 8, i) = RTCRayN_time(all, 8, i) = 0;
+      RTCRayN_tfar(all, 8, i) = seen ? 1000.0F : -1.0F;
+      RTCRayN_mask(all, 8, i) = ~0u;
+      RTCRayN_flags(all, 8, i) = 0;
+    }
+    rtcOccluded8(valid, scene, &context, &rays);
+    for (int i = 0; i < 8; ++i) blocked += valid[i] != 0 && RTCRayN_tfar(all, 8, i) < 0;
+  }
+  return blocked;
+}
+
+void camera_bare(benchmark::State& state, RTCIntersectContextFlags flags, bool shadows) {
   const Strewn& all = strewn(static_cast<int>(state.range(0)));
   const std::vector<Ray> rays = camera_rays();
   const Eigen::Vector3f p = rays[0].origin_W.cast<float>();
@@ -285,8 +323,12 @@ void camera_bare(benchmark::State& state, RTCIntersectContextFlags flags) {
     directions.push_back({d.x(), d.y(), d.z()});
   }
   std::vector<BareHit> hits(rays.size());
-  for (auto _ : state)
-    bare_packets(all.bare->get(), p.data(), directions.data(), static_cast<int>(rays.size()), 200, hits.data(), flags);
+  for (auto _ : state) {
+    const int count = static_cast<int>(rays.size());
+    bare_packets(all.bare->get(), p.data(), directions.data(), count, camera_range_m, hits.data(), flags);
+    if (shadows)
+      benchmark::DoNotOptimize(bare_shadows(all.bare->get(), p.data(), directions.data(), count, hits.data(), flags));
+  }
 }
 
 template <typename Update>
@@ -317,10 +359,18 @@ BENCHMARK_CAPTURE(lidars_bare_packets, coherent, RTC_INTERSECT_CONTEXT_FLAG_COHE
     ->RangeMultiplier(10)
     ->Range(10, 10000);
 BENCHMARK(lidars_ours)->RangeMultiplier(10)->Range(10, 10000);
-BENCHMARK_CAPTURE(camera_bare, incoherent, RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT)
+BENCHMARK_CAPTURE(camera_bare, incoherent, RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT, false)
     ->Arg(1000)
     ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(camera_bare, coherent, RTC_INTERSECT_CONTEXT_FLAG_COHERENT)->Arg(1000)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(camera_bare, coherent, RTC_INTERSECT_CONTEXT_FLAG_COHERENT, false)
+    ->Arg(1000)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(camera_bare, incoherent_with_shadows, RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT, true)
+    ->Arg(1000)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(camera_bare, coherent_with_shadows, RTC_INTERSECT_CONTEXT_FLAG_COHERENT, true)
+    ->Arg(1000)
+    ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(camera_ours, rays_alone, false)->Arg(1000)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(camera_ours, with_shadows, true)->Arg(1000)->Unit(benchmark::kMillisecond);
 BENCHMARK(update_bare)->Arg(1000)->Arg(10000)->UseManualTime()->Unit(benchmark::kMillisecond);

@@ -37,10 +37,11 @@ void set_off(sim::World& world, sim::Bus& bus) {
   }
 }
 
-void run(benchmark::State& state, const std::string& text, double step_s, bool commanded) {
+void run(benchmark::State& state, const std::string& text, double step_s, bool commanded, int threads = 1) {
   const sim::LoadedWorld loaded = sim::load_world_text(text, worlds);
   sim::InProcessBus bus;
   sim::World world(loaded.config, bus);
+  world.use_threads(threads);
   if (commanded) set_off(world, bus);
   for (int i = 0; i < 200; ++i) world.step();
   for (auto _ : state) world.step();
@@ -56,6 +57,18 @@ void Remus(benchmark::State& state) {
   run(state, world_text(state.range(0), 0.02, "file: remus100_fleet.yaml"), 0.02, true);
 }
 BENCHMARK(Remus)->Arg(1)->Arg(100)->Arg(1000)->Arg(10000)->Unit(benchmark::kMicrosecond);
+
+/// REMUS 100 with the sensors of navigation: autopilot, DVL, AHRS, pressure, GPS, acoustic modem, a drifting clock; at
+/// a step of 10 ms.  `state.range(1)`: threads.  A simulated second of a vehicle takes a hundred times us_per_step.
+void RemusNav(benchmark::State& state) {
+  run(state, world_text(state.range(0), 0.01, "file: remus100_nav.yaml"), 0.01, false,
+      static_cast<int>(state.range(1)));
+}
+BENCHMARK(RemusNav)
+    ->ArgNames({"vehicles", "threads"})
+    ->ArgsProduct({{1, 10, 100, 1000}, {1}})
+    ->ArgsProduct({{1000}, {2, 4, 8}})
+    ->Unit(benchmark::kMicrosecond);
 
 /// Boats by coefficients in a sea of 200 waves.
 void OttersInASea(benchmark::State& state) {

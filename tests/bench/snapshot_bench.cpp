@@ -10,17 +10,17 @@
 #include <string>
 
 #include "sim/world/world_state.hpp"
-#include "tools/experiment/bench/scale_scene.hpp"
+#include "tools/experiment/bench/bench_run.hpp"
 #include "tools/experiment/snapshot/snapshot_ring.hpp"
 
 namespace {
 
 /// A world of so many rovers (three bodies, two joints, six devices each) that has run for a while.
-tools::ScaleScene& scene_of(int robots) {
-  static std::map<int, std::unique_ptr<tools::ScaleScene>> scenes;
-  std::unique_ptr<tools::ScaleScene>& scene = scenes[robots];
+tools::BenchRun& scene_of(int robots) {
+  static std::map<int, std::unique_ptr<tools::BenchRun>> scenes;
+  std::unique_ptr<tools::BenchRun>& scene = scenes[robots];
   if (!scene) {
-    scene = std::make_unique<tools::ScaleScene>(robots);
+    scene = std::make_unique<tools::BenchRun>(tools::land_scene(), robots);
     scene->run_for(2);
   }
   return *scene;
@@ -93,7 +93,7 @@ BENCHMARK(SnapshotOfBoxes)->Arg(10)->Arg(1000)->Unit(benchmark::kMicrosecond);
 /// minute back and half a second on.
 void RingOfTenMinutes(benchmark::State& state) {
   constexpr int seconds = 600;
-  tools::ScaleScene scene(static_cast<int>(state.range(0)));
+  tools::BenchRun scene(tools::land_scene(), static_cast<int>(state.range(0)));
   sim::World& world = scene.world();
   const std::int64_t per_second = std::llround(1 / sim::to_seconds(world.step_time()));
   tools::SnapshotRing ring(seconds * per_second, std::size_t{64} << 20);

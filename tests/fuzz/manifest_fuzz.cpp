@@ -5,16 +5,17 @@
 #include "tests/fuzz/fuzz_input.hpp"
 #include "tests/fuzz/scratch_file.hpp"
 #include "tools/experiment/campaign/manifest.hpp"
+#include "tools/experiment/campaign/study_rows.hpp"
 #include "tools/experiment/study/run_files.hpp"
 #include "tools/experiment/study/study_until.hpp"
 
-// What someone may have left in the folder of a study: its manifest and the marks of its runs; numbers of runs and the
-// condition that ends a study.
+// What someone may have left in the folder of a study: its manifest and the marks of its runs; the table of its
+// results; numbers of runs and the condition that ends a study.
 
 SHOAL_FUZZ_TARGET(manifest) {
   fuzz::Reader reader(input);
   const std::string folder = fuzz::scratch_folder().string();
-  switch (reader.below(4)) {
+  switch (reader.below(5)) {
     case 0:
       fuzz::write_scratch("manifest.jsonl", reader.rest());
       fuzz::allow<std::runtime_error>([&] {
@@ -39,9 +40,17 @@ SHOAL_FUZZ_TARGET(manifest) {
       });
       break;
     }
-    default:
+    case 3:
       fuzz::write_scratch("study_stamp.txt", reader.rest());
       if (const auto stamp = tools::read_stamp(folder))
         fuzz::require(stamp->inputs.size() == 16, "a stamp has a whole hash");
+      break;
+    default: {
+      const std::string text(fuzz::text_of(reader.rest()));
+      fuzz::allow<std::runtime_error>([&] {
+        for (const tools::StudyRow& row : tools::parse_study_rows(text, "study.csv"))
+          fuzz::require(row.seed >= 0, "a seed is not negative");
+      });
+    }
   }
 }

@@ -20,7 +20,7 @@ using testing::Not;
 using Words = std::vector<std::string>;
 
 const Words programs = {"shoal-coop-rover", "shoal-coop-auv",   "shoal-coop-craft", "shoal-coop-station",
-                        "shoal-balance",    "shoal-ball-chase", "shoal-ball-dog"};
+                        "shoal-balance",    "shoal-ball-chase", "shoal-ball-dog",   "shoal-nav"};
 
 Ended run_program(const std::string& program, Words arguments, const Words& environment = {}) {
   arguments.insert(arguments.begin(), built(program));
@@ -326,6 +326,8 @@ TEST(CommandLine, FilesThatAreNotWhatTheyShouldBeAreNamed) {
       {{"log", "image", none, "c", "--png", folder.file("a.png")}, 4, none},
       {{"replay", none}, 4, none},
       {{"replay", dir}, 4, dir},
+      {{"score", none}, 4, none},
+      {{"score", dir}, 4, dir},
       {{"report", none}, 4, none},
       {{"study", none}, 2, none},
       {{"study", dir}, 2, dir},

@@ -26,6 +26,8 @@ const std::map<std::string, std::vector<TimeCase>>& cases() {
       {"consistency", {{"vehicle: r1, channel: r1.estimate", "nees_mean"}}},
       {"distance", {{"vehicle: r1", "travelled_m"}, {"vehicle: r1, from_s: 1", "travelled_m"}}},
       {"delivery", {{"", "received"}, {"vehicle: r2, device: modem", "received"}}},
+      {"bound", {{"vehicle: r1, start_std_m: 0.1", "rms_m"}, {"vehicle: r1, of: alone, from_s: 1", "final_m"}}},
+      {"bound_ratio", {{"metric: position_error0, bound: bound0", "ratio"}}},
       {"bytes_per_metre", {{"metric: position_error0, against: far", "bytes_sent"}}},
       {"mission_time",
        {{"when: r1 inside goal", "time_s"},

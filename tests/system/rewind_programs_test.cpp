@@ -13,19 +13,26 @@ using namespace system_test;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-std::vector<std::string> mission(const std::string& world, const std::string& duration_s,
-                                 const std::vector<std::string>& more = {}) {
-  std::vector<std::string> run{"run",        source(world), "--launch",  "--speed", "max",
-                               "--duration", duration_s,    "--lcm-url", own_url(), "--no-plots"};
+struct RewoundMission {
+  const char* world;
+  const char* duration_s;
+  std::vector<std::string> times_s;  ///< some are ticks of the programs, some lie between them
+  std::vector<std::string> options = {};
+};
+
+std::vector<std::string> mission(const RewoundMission& of, const std::vector<std::string>& more = {}) {
+  std::vector<std::string> run{"run",        source(of.world), "--launch",  "--speed", "max",
+                               "--duration", of.duration_s,    "--lcm-url", own_url(), "--no-plots"};
+  run.insert(run.end(), of.options.begin(), of.options.end());
   run.insert(run.end(), more.begin(), more.end());
   return run;
 }
 
 /// Runs a world to its end, and goes back on the way: from the first time by the second, and once more from the third
 /// by the fourth.
-Ended run_with_two_rewinds(const std::string& world, const std::string& duration_s,
-                           const std::vector<std::string>& times_s, const std::string& results) {
-  std::vector<std::string> arguments = mission(world, duration_s, {"--paused", "--results", results});
+Ended run_with_two_rewinds(const RewoundMission& of, const std::string& results) {
+  const std::vector<std::string>& times_s = of.times_s;
+  std::vector<std::string> arguments = mission(of, {"--paused", "--results", results});
   arguments.insert(arguments.begin(), built("shoal"));
   Program program(arguments);
   EXPECT_TRUE(await([] { return control({"where", "--timeout", "0.5"}).exit_code == 0; }, timeout));
@@ -42,19 +49,13 @@ Ended run_with_two_rewinds(const std::string& world, const std::string& duration
   return ended;
 }
 
-struct RewoundMission {
-  const char* world;
-  const char* duration_s;
-  std::vector<std::string> times_s;  ///< some are ticks of the programs, some lie between them
-};
-
 class ProgramsGoBack : public testing::TestWithParam<RewoundMission> {};
 
 TEST_P(ProgramsGoBack, AndTheRunEndsAsOneThatNeverWentBack) {
   const RewoundMission& of = GetParam();
-  const Ended straight = run_shoal(mission(of.world, of.duration_s), std::chrono::minutes(3));
+  const Ended straight = run_shoal(mission(of), std::chrono::minutes(3));
   const ScratchFolder folder;
-  const Ended ended = run_with_two_rewinds(of.world, of.duration_s, of.times_s, folder.file("results"));
+  const Ended ended = run_with_two_rewinds(of, folder.file("results"));
   EXPECT_EQ(ended.exit_code, straight.exit_code) << ended.output << ended.errors;
   EXPECT_EQ(run_hash_in(ended), run_hash_in(straight));
   EXPECT_THAT(ended.output, HasSubstr("branch 2: the run was rewound"));
@@ -67,10 +68,10 @@ TEST_P(ProgramsGoBack, AndTheRunEndsAsOneThatNeverWentBack) {
 /// To a file that was written on the way: at a tick of the programs and between two.
 TEST_P(ProgramsGoBack, ToAFileOfTheirRunAsWell) {
   const RewoundMission& of = GetParam();
-  const Ended straight = run_shoal(mission(of.world, of.duration_s), std::chrono::minutes(3));
+  const Ended straight = run_shoal(mission(of), std::chrono::minutes(3));
   const ScratchFolder folder;
-  std::vector<std::string> arguments = mission(
-      of.world, of.duration_s, {"--paused", "--results", folder.file("results"), "--snapshots", folder.file("snaps")});
+  std::vector<std::string> arguments =
+      mission(of, {"--paused", "--results", folder.file("results"), "--snapshots", folder.file("snaps")});
   arguments.insert(arguments.begin(), built("shoal"));
   Program program(arguments);
   EXPECT_TRUE(await([] { return control({"where", "--timeout", "0.5"}).exit_code == 0; }, timeout));
@@ -98,10 +99,16 @@ INSTANTIATE_TEST_SUITE_P(Worlds, ProgramsGoBack,
                                          RewoundMission{"worlds/coop_land.yaml", "30", {"12.34", "5", "20", "11.27"}},
                                          RewoundMission{
                                              "worlds/coop_underwater.yaml", "150", {"90", "33.3", "120", "40.14"}},
-                                         RewoundMission{"worlds/coop_relay.yaml", "200", {"150", "20", "160", "50.3"}}),
+                                         RewoundMission{"worlds/coop_relay.yaml", "200", {"150", "20", "160", "50.3"}},
+                                         // Small steps, so that it does not end before the second rewind.
+                                         RewoundMission{"worlds/benchmark/09_thermocline.yaml",
+                                                        "150",
+                                                        {"90", "33.3", "120", "40.14"},
+                                                        {"--set", "physics.step_s=0.005"}}),
                          [](const auto& test) {
                            const std::string path = test.param.world;
-                           return path.substr(7, path.find('.') - 7);
+                           const std::size_t name = path.rfind('/') + 1;
+                           return path.substr(name, path.find('.') - name);
                          });
 
 TEST(Rewind, AProgramThatIsNotToGoBackEndsAndSaysSo) {

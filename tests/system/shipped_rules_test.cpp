@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gmock/gmock.h>
 
+#include <cmath>
+#include <cstdlib>
+#include <string>
+
 #include "tests/system/shoal_program.hpp"
 
 // The rules of the shipped worlds hold as the worlds are, and fail when a partner or a sensor is dead.
@@ -29,9 +33,18 @@ Ended sea_with_mute(const std::string& boat) {
   return whole_run("coop_underwater", sets);
 }
 
+/// Value of a figure in the end summary.
+double figure_in(const std::string& output, const std::string& name) {
+  const std::size_t at = output.find("  " + name + " ");
+  return at == std::string::npos ? std::nan("") : std::strtod(output.c_str() + at + name.size() + 2, nullptr);
+}
+
 TEST(ShippedRules, OfCoopUnderwaterHold) {
   const Ended ended = sea_with_mute("");
   EXPECT_EQ(ended.exit_code, 0) << ended.output;
+  // A packet each 8 s whose fix has 0.3 m, with drifting clock and heading: docs/guides/cooperative_navigation.md.
+  EXPECT_NEAR(figure_in(ended.output, "bound.rms_m"), 0.9, 0.2);
+  EXPECT_EQ(figure_in(ended.output, "bound.ranges"), figure_in(ended.output, "link.received"));
 }
 
 /// The estimate stays good enough without the boat that no one receives.

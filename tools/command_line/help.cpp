@@ -23,7 +23,8 @@ std::string rule_of(const CLI::Option& option) {
 std::string names_of(const CLI::Option& option) {
   std::string text;
   for (const std::string& name : option.get_snames()) text += (text.empty() ? "-" : ", -") + name;
-  for (const std::string& name : option.get_lnames()) text += (text.empty() ? "--" : ", --") + name;
+  // Further long names are those of earlier versions.
+  if (const auto& names = option.get_lnames(); !names.empty()) text += (text.empty() ? "--" : ", --") + names.front();
   if (option.get_items_expected_max() > 0) text += " " + value_name(option);
   return text;
 }

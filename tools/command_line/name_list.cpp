@@ -30,6 +30,7 @@ CLI::Option* add_name_list(CLI::App& command, const std::string& option, std::ve
             for (const std::string& text : texts) split_names(option, text, names);
           },
           meaning)
+      ->type_name("NAMES")
       ->type_size(1)
       ->allow_extra_args(false);
 }

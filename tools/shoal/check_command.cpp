@@ -70,7 +70,7 @@ void check_study(const std::string& path, const sim::LoadOptions& options) {
   LoadedStudy study = load_study(path, changes);
   for (sim::LoadedWorld& world : study.worlds) body_count(world, warnings);
   const StudyConfig& config = study.config;
-  std::cout << path << ": study '" << config.name << "' of " << config.world << ": "
+  std::cout << path << ": study '" << config.name << "' of " << config.world_text() << ": "
             << counted(config.cases.size(), "case") << ", "
             << (config.factors.empty() ? "" : counted(study.points.size(), "point") + ", ")
             << counted(config.seeds.size(), "seed") << ", "

@@ -30,6 +30,7 @@ void add_import_command(CLI::App& app, int& exit_code);
 void add_medium_command(CLI::App& app, int& exit_code);
 void add_fidelity_command(CLI::App& app, int& exit_code);
 void add_report_command(CLI::App& app, int& exit_code);
+void add_score_command(CLI::App& app, int& exit_code);
 void add_upgrade_command(CLI::App& app, int& exit_code);
 
 }  // namespace tools

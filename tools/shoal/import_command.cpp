@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -8,6 +9,7 @@
 
 #include "sim/config/message_text.hpp"
 #include "sim/config/shipped_files.hpp"
+#include "tools/experiment/log_import/mrclam_record.hpp"
 #include "tools/shoal/commands.hpp"
 #include "tools/shoal/mesh/mesh_import.hpp"
 #include "tools/shoal/options/output_file.hpp"
@@ -143,15 +145,49 @@ void add_urdf_command(CLI::App& app, int& exit_code) {
   command->callback([arguments, &exit_code] { exit_code = import_robot(*arguments); });
 }
 
+struct MrclamArguments {
+  std::string directory, output;
+  bool overwrite = false;
+};
+
+int import_mrclam(const MrclamArguments& arguments) {
+  const MrclamData data = read_mrclam(arguments.directory);
+  const MrclamRecord record = write_mrclam_record(data, arguments.output, arguments.overwrite);
+  int unknown = 0;
+  for (const MrclamData::Robot& robot : data.robots) unknown += robot.unknown_barcodes;
+  if (unknown > 0) std::cerr << unknown << " measurements have barcodes that no subject has: left out\n";
+  std::cout << arguments.output << ": " << counted(data.robots.size(), "robot") << ", "
+            << counted(data.landmarks.size(), "landmark") << ", " << record.odometries << " odometry messages, "
+            << record.measurements << " sightings, " << std::llround(record.duration_s) << " s\n";
+  return exit_ok;
+}
+
+void add_mrclam_command(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand("mrclam", "Convert a UTIAS MR.CLAM data set into a record");
+  const auto arguments = std::make_shared<MrclamArguments>();
+  add_log_level_option(*command, "error");
+  command->add_option("DIR", arguments->directory, "folder of the data set")->required();
+  command->add_option("--output", arguments->output, "record to write")->type_name("LOG")->required();
+  command->add_flag("--overwrite", arguments->overwrite, "replace an existing file");
+  command_line::set_help_end(
+      *command, {{"shoal import mrclam MRCLAM_Dataset6 --output mrclam6.lcm",
+                  "shoal score mrclam6.lcm --estimate robot1.csv --metric robot1"},
+                 {{0, "the record was written"}, {2, "wrong usage, or an error in the files"}, {4, "file error"}},
+                 {"docs/guides/scoring.md has the channels."}});
+  command->callback([arguments, &exit_code] { exit_code = import_mrclam(*arguments); });
+}
+
 }  // namespace
 
 void add_import_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("import", "Convert a robot of another format into a vehicle file");
+  CLI::App* command = app.add_subcommand("import", "Convert robots and data sets of other programs");
   command->require_subcommand(1);
   add_urdf_command(*command, exit_code);
+  add_mrclam_command(*command, exit_code);
   command_line::set_help_end(
-      *command, {{"shoal import urdf bittle.urdf --output vehicles/bittle.yaml"},
-                 {{0, "the vehicle file was written"}, {2, "wrong usage, or an error in the file"}, {4, "file error"}},
+      *command, {{"shoal import urdf bittle.urdf --output vehicles/bittle.yaml",
+                  "shoal import mrclam MRCLAM_Dataset6 --output mrclam6.lcm"},
+                 {{0, "the file was written"}, {2, "wrong usage, or an error in the file"}, {4, "file error"}},
                  {}});
 }
 

@@ -64,6 +64,7 @@ int run(int argc, char** argv) {
   int exit_code = tools::exit_ok;
   tools::add_run_command(app, exit_code);
   tools::add_replay_command(app, exit_code);
+  tools::add_score_command(app, exit_code);
   tools::add_check_command(app, exit_code);
   tools::add_view_command(app, exit_code);
   tools::add_motion_command(app, exit_code);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/acoustics/rays/ray_tables.hpp"
 
+#include <algorithm>
+
 namespace sim {
 
 namespace {
@@ -14,11 +16,16 @@ RayTables::RayTables(std::function<double(double)> speed_mps, std::vector<double
 
 const Eigenrays& RayTables::of(double water_m) {
   double depth_m = 50;
-  while (depth_m <= water_m && depth_m < deepest_m) depth_m *= 2;
-  if (depth_m > deepest_m) depth_m = deepest_m;
-  const auto known = tables_.find(depth_m);
-  if (known != tables_.end()) return known->second;
-  return tables_.emplace(depth_m, Eigenrays(SoundProfile::fitted(speed_mps_, rows_m_, depth_m))).first->second;
+  std::size_t number = 0;
+  for (; depth_m <= water_m && depth_m < deepest_m; depth_m *= 2) ++number;
+  if (const Eigenrays* const known = tables_[number].load(std::memory_order_acquire)) return *known;
+  const std::lock_guard lock(making_);
+  if (made_[number] == nullptr) {
+    const double to_m = std::min(depth_m, deepest_m);
+    made_[number] = std::make_unique<const Eigenrays>(SoundProfile::fitted(speed_mps_, rows_m_, to_m));
+    tables_[number].store(made_[number].get(), std::memory_order_release);
+  }
+  return *made_[number];
 }
 
 }  // namespace sim

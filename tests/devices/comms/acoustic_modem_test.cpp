@@ -6,6 +6,7 @@
 #include "devices/comms/micromodem_rates.hpp"
 #include "sim/acoustics/channel.hpp"
 #include "sim/world/world_editor.hpp"
+#include "sim/world/world_state.hpp"
 #include "tests/devices/comms/modem_fixture.hpp"
 #include "tests/devices/comms/port_fixture.hpp"
 #include "tests/fidelity/closed_forms.hpp"
@@ -368,6 +369,27 @@ TEST(AcousticModem, OutOfTheWaterItIsSilentAndDeaf) {
   test.run_for(5);
   EXPECT_EQ(at_b.take_all().size(), 0u);
   EXPECT_EQ(lost(test, "b", sim::SignalLoss::out_of_water), 1);
+}
+
+TEST(AcousticModem, SleepsUntilAMessageComesAndIsTheSameAfterASnapshot) {
+  const std::string modem = "{name: modem, type: acoustic_modem, transmit_power_W: 50}";
+  const std::string yaml = test::modem_sea({{"a", "[0, 0, -20]", modem}, {"b", "[300, 0, -20]", modem}},
+                                           "acoustics: {fading: {type: none}}\n");
+  test::TestWorld straight(yaml), restored(yaml);
+  test::Listener<shoal::acoustic_received_t> at_b(straight, "b.modem");
+  straight.run_for(2);
+  EXPECT_EQ(straight.world.counts().samples, 0) << "a sample without messages";
+  // Restoring wakes the devices, which must change nothing.
+  restored.world.state().restore(straight.world.state().snapshot());
+  EXPECT_EQ(restored.world.state().hash(), straight.world.state().hash());
+  for (test::TestWorld* test : {&straight, &restored}) {
+    test->run_for(1);
+    test->send("a.modem.cmd", test::bytes_to("hello"));
+    test->run_for(6);
+    EXPECT_EQ(test->world.state().hash(), straight.world.state().hash());
+    EXPECT_EQ(test->world.state().run_hash(), straight.world.state().run_hash());
+  }
+  EXPECT_EQ(at_b.take_all().size(), 1u);
 }
 
 }  // namespace

@@ -53,12 +53,13 @@ class Bench {
   sim::EventQueue events_;
   sim::PortOpener open_port_;
   sim::SharedByDevices shared_;
+  sim::ArrivalFlags awake_;
   sim::DeviceHost host_{test_.world, channels_,
                         clock_,      0,
                         1,           test_.world.physics(),
                         acoustics_,  events_,
                         open_port_,  test_.world.warnings(),
-                        shared_};
+                        shared_,     awake_};
 };
 
 /// The root of the mean square over the axes, and its error: three independent estimates.

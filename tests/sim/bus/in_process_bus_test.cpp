@@ -109,4 +109,25 @@ TEST_F(InProcessBusTest, ChannelNamesHave1To63Characters) {
   EXPECT_EQ(bus.counts().published, 1u);
 }
 
+TEST_F(InProcessBusTest, AnOpenChannelPublishesToMailboxesOpenedBeforeAndAfterIt) {
+  const auto before = bus.open_mailbox("a", 10);
+  const auto channel = bus.open_channel("a");
+  auto after = bus.open_mailbox("a", 10);
+  channel->publish(bytes_of("one"), Time{0});
+  EXPECT_EQ(text_of(before->take()), "one");
+  EXPECT_EQ(text_of(after->take()), "one");
+  after.reset();
+  channel->publish(bytes_of("two"), Time{0});
+  const auto message = before->take();
+  EXPECT_EQ(text_of(message), "two");
+  EXPECT_EQ(message->channel, "a");
+  EXPECT_EQ(bus.counts().published, 2u);
+  EXPECT_EQ(bus.counts().received, 3u);
+}
+
+TEST_F(InProcessBusTest, RefusesToOpenAChannelWithoutAName) {
+  EXPECT_THROW(bus.open_channel(""), std::invalid_argument);
+  EXPECT_THROW(bus.open_channel(std::string(64, 'a')), std::invalid_argument);
+}
+
 }  // namespace

@@ -282,4 +282,36 @@ TEST(FloodedMessageGate, TakesNoMoreThanAMailboxHoldsAtOnceAndContinuesLater) {
   EXPECT_EQ(network.taken, 2 * max);
 }
 
+TEST_F(MessageGateTest, AnOpenChannelFollowsReadersThatComeAndGo) {
+  std::vector<std::string> watched;
+  gate.set_watch([&](std::string_view channel, std::span<const std::byte> payload) {
+    watched.push_back(std::string(channel) + ":" + text_of(payload));
+  });
+  const auto channel = gate.open_channel("a");
+  const auto publish = [&](const std::string& text) { channel->publish(bytes_of(text), Time{0}); };
+  const auto listener = network.open_mailbox("a", 10);
+  publish("one");
+  auto first = gate.open_mailbox("a");
+  publish("two");
+  const auto second = gate.open_mailbox("a");
+  publish("three");
+  EXPECT_THAT(all_of(*first), ElementsAre("two", "three"));
+  EXPECT_THAT(all_of(*second), ElementsAre("three"));
+  first.reset();
+  publish("four");
+  EXPECT_THAT(all_of(*second), ElementsAre("four"));
+  EXPECT_THAT(admit(), IsEmpty()) << "what it published itself";
+  EXPECT_THAT(all_of(*listener), ElementsAre("one", "two", "three", "four"));
+  EXPECT_THAT(watched, ElementsAre("a:one", "a:two", "a:three", "a:four"));
+}
+
+TEST_F(MessageGateTest, AnOpenChannelKeepsTheOrderOfEarlierMessagesFromOutside) {
+  const auto mailbox = gate.open_mailbox("a");
+  const auto channel = gate.open_channel("a");
+  from_afar("a", "earlier");
+  channel->publish(bytes_of("own"), Time{0});
+  EXPECT_THAT(all_of(*mailbox), ElementsAre("own"));
+  EXPECT_THAT(admit(), ElementsAre("a:earlier"));
+}
+
 }  // namespace

@@ -51,7 +51,7 @@ TEST(VehicleClock, WithoutConfigurationReadsTheTrueTime) {
   EXPECT_EQ(clock.reading(hour), hour);
   EXPECT_EQ(clock.true_time(hour), hour);
   EXPECT_EQ(clock.error_s(hour), 0);
-  EXPECT_EQ(clock.rate_error(), 0);
+  EXPECT_EQ(clock.rate_error(hour), 0);
   EXPECT_EQ(clock.estimated_std_s(hour), 0);
   EXPECT_TRUE(made({}).perfect());
   EXPECT_EQ(hash_of(clock), sim::StateArchive::hasher().hash());
@@ -62,7 +62,7 @@ TEST(VehicleClock, OnePartInAMillionGains3600MicrosecondsInAnHour) {
   EXPECT_EQ(clock.reading(Time{0}), Time{2'000'000});
   EXPECT_EQ(clock.reading(hour), hour + Time{2'003'600});
   EXPECT_NEAR(clock.error_s(hour), 2.0036, 1e-12);
-  EXPECT_NEAR(clock.rate_error(), 1e-6, 1e-15);
+  EXPECT_NEAR(clock.rate_error(Time{0}), 1e-6, 1e-15);
   clock.advance_to(hour, {});
   EXPECT_EQ(clock.reading(hour), hour + Time{2'003'600});
   EXPECT_EQ(clock.reading(Time{500'000}), Time{2'500'001});  // the nearest microsecond of 2500000.5
@@ -87,7 +87,7 @@ TEST(VehicleClock, DrawsOffsetAndDriftOncePerVehicle) {
   for (std::uint64_t seed = 0; seed < count; ++seed) {
     const VehicleClock clock = made({.offset_std_s = 0.5, .drift_std_ppm = 3}, seed);
     offsets += std::pow(clock.error_s(Time{0}), 2);
-    drifts += std::pow(clock.rate_error(), 2);
+    drifts += std::pow(clock.rate_error(Time{0}), 2);
   }
   const double allowed = 4 / std::sqrt(2.0 * count);
   EXPECT_NEAR(std::sqrt(offsets / count), 0.5, 0.5 * allowed);
@@ -139,7 +139,7 @@ TEST(VehicleClock, FollowsTheTemperatureOfTheWater) {
   for (int second = 1; second <= 3600; ++second) clock.advance_to(Time{1'000'000LL * second}, 4.0);
   // 16 C below its reference: -0.8 ppm, from 3 s on (until then it was planned ahead in air).
   EXPECT_NEAR(clock.error_s(hour), -0.8e-6 * 3597, 2e-12);
-  EXPECT_NEAR(clock.rate_error(), -0.8e-6, 1e-12);
+  EXPECT_NEAR(clock.rate_error(hour), -0.8e-6, 1e-12);
 }
 
 sim::ClockConfig wild() {
@@ -237,7 +237,7 @@ TEST(ClockDiscipline, LearnsTheDriftFromTwoFixesAndKeepsItWithoutFurtherOnes) {
   sim::Random random(1, "pps");
   fixes(clock, 1, 3, {.pps_std_s = 0}, random);
   // 12 us came in the second between the fixes: the slew takes out 1 - exp(-2 / 20) of them in the next.
-  EXPECT_NEAR(clock.rate_error(), -12e-6 * (1 - std::exp(-0.1)), 1e-7);
+  EXPECT_NEAR(clock.rate_error(Time{3'000'000}), -12e-6 * (1 - std::exp(-0.1)), 1e-7);
   fixes(clock, 4, 400, {.pps_std_s = 0}, random);
   clock.advance_to(hour, {});
   EXPECT_NEAR(clock.error_s(hour), 0, 1e-10);

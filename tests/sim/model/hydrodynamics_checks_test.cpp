@@ -135,9 +135,9 @@ TEST(HydrodynamicsChecks, TheRateOfDragGrowsWithTheSpeed) {
                       "derivatives: {X_uu: -100}}"),
       9.81);
   sim::Vector6d nu = sim::Vector6d::Zero();
-  EXPECT_DOUBLE_EQ(model.fastest_rate(nu), 2);
+  EXPECT_DOUBLE_EQ(model.fastest_rate(sim::Six(nu)), 2);
   nu[0] = -21;
-  EXPECT_DOUBLE_EQ(model.fastest_rate(nu), 2 + 100.0 * 21 / 10);
+  EXPECT_DOUBLE_EQ(model.fastest_rate(sim::Six(nu)), 2 + 100.0 * 21 / 10);
 }
 
 TEST(HydrodynamicsChecks, DragTooStiffForTheStepBrakesAndDoesNotThrowTheBodyAbout) {

@@ -54,6 +54,37 @@ TEST(Schedule, ASensorThatComesLateKeepsItsRateFromItsFirstSample) {
   EXPECT_EQ(times, (std::vector<std::int64_t>{1050000, 1150000, 1250000}));
 }
 
+/// A world that restores a snapshot makes its schedule again; the other one has added to it and removed from it.
+TEST(Schedule, VehiclesThatComeAndGoLeaveItAsIfMadeAnew) {
+  const std::string devices = lidar(", rate_hz: 10") +
+                              "        - {name: often, type: compass, rate_hz: every_step}\n"
+                              "        - {name: drive, type: differential_drive, left_joint: left, right_joint: right, "
+                              "track_m: 0.5}\n";
+  const std::string text = test::rover_world(devices, "", "    count: 4\n    placement: {spacing_m: 2}\n");
+  TestWorld test(text), other(text);
+  test.run_for(0.15);
+  sim::WorldEditor& editor = test.world.editor();
+  sim::VehicleInstance guest = test.loaded.config.vehicles[0];
+  for (const char* name : {"one", "two"}) {
+    guest.name = name;
+    guest.X_WV.translation() += sim::Vector3d(0, 20, 0);
+    editor.add_vehicle(guest);
+    test.run_for(0.013);
+  }
+  editor.remove_vehicle("r12");
+  editor.remove_vehicle("one");
+  test.run_for(0.05);
+  guest.name = "three";
+  guest.X_WV.translation() += sim::Vector3d(0, 20, 0);
+  editor.add_vehicle(guest);
+  test.run_for(0.02);
+  other.world.state().restore(test.world.state().snapshot());
+  EXPECT_EQ(other.world.vehicles().size(), 5u);
+  for (TestWorld* each : {&test, &other}) each->run_for(0.3);
+  EXPECT_EQ(test.world.state().run_hash(), other.world.state().run_hash());
+  EXPECT_EQ(test.world.counts().samples, other.world.counts().samples);
+}
+
 TEST(Schedule, ARateAboveTheStepsSamplesEveryStep) {
   EXPECT_EQ(report_times_us(", rate_hz: 1e6", 0.1).size(), 100u);
 }

@@ -10,13 +10,14 @@ namespace tools {
 
 /// Options of the engines that execute runs by `shoal study run DIR --index ...` in other processes.
 struct EngineOptions {
-  StudyOptions study;               ///< `output`: the folder with the manifest
-  std::size_t chunk = 0;            ///< runs of one command; 0: chosen by their number
-  std::string ssh_login_file;       ///< of GNU parallel; empty: this machine
-  std::string partition;            ///< of Slurm; empty: the default one
-  std::string time_limit;           ///< of Slurm, for a chunk; empty: that of the partition
-  std::vector<std::string> sbatch;  ///< further options of sbatch
-  bool wait = true;                 ///< for the jobs of Slurm; otherwise they are only submitted
+  StudyOptions study;                   ///< `output`: the folder with the manifest
+  std::size_t chunk = 0;                ///< runs of one command; 0: chosen by their number
+  std::string ssh_login_file;           ///< of GNU parallel; empty: this machine
+  std::string partition;                ///< of Slurm; empty: the default one
+  std::string time_limit;               ///< of Slurm, for a chunk; empty: that of the partition
+  std::vector<std::string> algorithms;  ///< in addition to those of the study
+  std::vector<std::string> sbatch;      ///< further options of sbatch
+  bool wait = true;                     ///< for the jobs of Slurm; otherwise they are only submitted
 };
 
 /// Returns the runs among `which` that have no result.

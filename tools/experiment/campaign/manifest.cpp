@@ -168,11 +168,13 @@ void write_manifest(const std::string& directory, const LoadedStudy& study, cons
   write_whole_file(manifest_path(directory), manifest_text(study, runs));
 }
 
-PlannedStudy load_planned(const Manifest& manifest, const sim::LoadOptions& load) {
+PlannedStudy load_planned(const Manifest& manifest, const sim::LoadOptions& load,
+                          const std::vector<std::string>& algorithms) {
   StudyChanges changes;
   changes.seeds = manifest.seeds();
   changes.duration_s = manifest.duration_s();
   changes.load = load;
+  changes.algorithms = algorithms;
   changes.planned = true;
   PlannedStudy planned;
   planned.study = load_study(manifest.study(), changes);

@@ -60,9 +60,10 @@ struct PlannedStudy {
   std::vector<StudyRun> runs;
 };
 
-/// Loads the study of a manifest.  Throws std::runtime_error when it has another number of runs now, and
-/// sim::ConfigError.
-PlannedStudy load_planned(const Manifest& manifest, const sim::LoadOptions& load);
+/// Loads the study of a manifest, with further algorithms.  Throws std::runtime_error when it has another number of
+/// runs now, and sim::ConfigError.
+PlannedStudy load_planned(const Manifest& manifest, const sim::LoadOptions& load,
+                          const std::vector<std::string>& algorithms = {});
 
 /// Throws std::runtime_error when one of these runs (indices into `runs`) has other inputs now than in the manifest.
 void check_planned(const Manifest& manifest, const PlannedStudy& planned, const std::vector<std::size_t>& which);

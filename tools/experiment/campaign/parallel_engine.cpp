@@ -45,6 +45,10 @@ std::vector<std::string> chunk_command(const EngineOptions& options) {
     command.emplace_back("--run-timeout");
     command.push_back(fmt::format("{}", options.study.run_timeout_s));
   }
+  for (const std::string& algorithm : options.algorithms) {
+    command.emplace_back("--algorithm");
+    command.push_back(algorithm);
+  }
   for (const std::string& path : options.study.allow_paths) {
     command.emplace_back("--allow-path");
     command.push_back(fs::absolute(path).string());
@@ -91,7 +95,9 @@ void run_by_parallel(const LoadedStudy& study, const EngineOptions& options, std
                                "' must not have a '{' with the engine parallel, which GNU parallel would replace");
     command += shell_word(word) + " ";
   }
-  arguments.push_back(command + "--jobs 1 --index {}");
+  // What the processors of another machine have to do is not known.
+  const int threads = options.ssh_login_file.empty() ? options.study.threads : 1;
+  arguments.push_back(command + fmt::format("--jobs 1 --threads {} --index {{}}", threads));
   arguments.emplace_back("::::");
   arguments.push_back(file);
   run_outside_program(arguments);

@@ -45,7 +45,7 @@ void show_extreme_runs(const LoadedStudy& study, const std::vector<StudyRun>& ru
     make_folders(directory, folder);
     for (const char* name : {"run.html", "run.lcm", "report.html"}) refuse_links(folder, folder + "/" + name);
     fs::remove(folder + "/run.html", error);
-    std::vector<std::string> arguments = arguments_of(study, run, folder, allow_paths, 0, 0);
+    std::vector<std::string> arguments = arguments_of(study, run, folder, allow_paths, 0, 0, 0);
     arguments.front() = own_program();
     for (const std::string& word : {std::string("--record"), folder + "/run.lcm", std::string("--overwrite")})
       arguments.push_back(word);

@@ -100,8 +100,8 @@ class SlurmSubmission {
     write_whole_file(
         begin + ".sh",
         "#!/bin/sh\n# A task of `shoal study run --engine slurm`: the runs in one line of the list.\nexec " + command +
-            fmt::format("--jobs {} --index \"$(sed -n \"${{SLURM_ARRAY_TASK_ID}}p\" {})\"\n", options_.study.jobs,
-                        shell_word(begin + ".txt")));
+            fmt::format("--jobs {} --threads 1 --index \"$(sed -n \"${{SLURM_ARRAY_TASK_ID}}p\" {})\"\n",
+                        options_.study.jobs, shell_word(begin + ".txt")));
     std::vector<std::string> arguments{"sbatch",
                                        "--parsable",
                                        "--job-name=" + name_,

@@ -182,7 +182,7 @@ void insert_comparisons(NewDatabase& database, const StudyResults& results) {
 void write_database(const std::string& path, const StudyResults& results) {
   NewDatabase database(path);
   const StudyConfig& config = results.study().config;
-  Insert(database, "study", 4).row(config.name, config.description, config.world, short_version());
+  Insert(database, "study", 4).row(config.name, config.description, config.world_text(), short_version());
   insert_runs(database, results);
   insert_statistics(database, results);
   insert_comparisons(database, results);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
@@ -49,6 +50,11 @@ class JsonReader {
   const nlohmann::ordered_json& json_;
   std::string where_;
 };
+
+/// Returns a number; NaN for any other value, such as null.
+inline double number_or_nan(const nlohmann::ordered_json& value) {
+  return value.is_number() ? value.get<double>() : std::numeric_limits<double>::quiet_NaN();
+}
 
 /// Parses a file.  Throws std::runtime_error with its name and the reason.
 nlohmann::ordered_json read_json_file(const std::string& path);

@@ -7,7 +7,7 @@
 #include <cstdlib>
 
 #include "sim/config/message_text.hpp"
-#include "tools/experiment/motion_formats/line_reader.hpp"
+#include "tools/experiment/files/line_reader.hpp"
 
 namespace tools {
 

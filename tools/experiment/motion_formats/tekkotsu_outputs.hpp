@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/experiment/motion_formats/line_reader.hpp"
+#include "tools/experiment/files/line_reader.hpp"
 #include "tools/experiment/motion_formats/motion_format.hpp"
 
 namespace tools {

@@ -6,7 +6,7 @@
 
 #include "sim/config/message_text.hpp"
 #include "sim/config/utf8.hpp"
-#include "tools/experiment/motion_formats/line_reader.hpp"
+#include "tools/experiment/files/line_reader.hpp"
 #include "tools/experiment/motion_formats/motion_format.hpp"
 #include "tools/experiment/motion_formats/pose_table.hpp"
 

@@ -16,7 +16,7 @@ struct ReplayOptions {
   std::string world;              ///< another world file; empty: the world in the log
   sim::LoadOptions load;          ///< its `sets` are applied to the world
   std::optional<double> until_s;  ///< simulated time; without it to the end of the log
-  int threads = 0;                ///< threads for ray casting; 0: one for each processor
+  int threads = 0;                ///< threads that share a step; 0: one for each processor
   bool quiet = false;             ///< prints no progress
 };
 

@@ -42,7 +42,7 @@ class ReplayedWorld {
   struct Options {
     std::string world;      ///< another world file; empty: the world in the log
     sim::LoadOptions load;  ///< its `sets` are applied to the world
-    int threads = 0;        ///< threads for ray casting; 0: one for each processor
+    int threads = 0;        ///< threads that share a step; 0: one for each processor
     Watch inputs = {};      ///< receives the recorded messages that are delivered
     /// LCM URL of the bus of the world for programs, empty: LCM_DEFAULT_URL, then the default; unset: the buses have no
     /// other participants.  The arguments of its programs are then read.

@@ -131,6 +131,21 @@ std::string consistency_sentence(const RunMetric& metric) {
   return text + ".";
 }
 
+std::string bound_sentence(const RunMetric& metric) {
+  const auto rms_m = metric.value("rms_m");
+  if (!rms_m) return metric.name + ": no time was counted.";
+  return fmt::format("{}: no estimator of {} can be better than {} rms, with {} and {}.", metric.name,
+                     metric.vehicle.empty() ? "the position" : metric.vehicle, length_text(*rms_m),
+                     counted(metric.value("ranges").value_or(0), "range", "ranges"),
+                     counted(metric.value("fixes").value_or(0), "fix", "fixes"));
+}
+
+std::string ratio_sentence(const RunMetric& metric) {
+  const auto ratio = metric.value("ratio");
+  return metric.name + ": " + (ratio ? rounded(*ratio) + " times the bound" : "no error to compare with the bound") +
+         ".";
+}
+
 std::string distance_sentence(const RunMetric& metric) {
   if (!metric.value("travelled_m")) return metric.name + ": nothing was measured.";
   return (metric.vehicle.empty() ? metric.name + ": " : metric.vehicle + " travelled ") +
@@ -199,13 +214,10 @@ bool has_nothing(const RunMetric& metric) {
 /// Empty: described elsewhere, or by its figures only.
 std::string sentence_of(const RunMetric& metric) {
   using Sentence = std::string (*)(const RunMetric&);
-  static const std::map<std::string, Sentence> sentences = {{"consistency", consistency_sentence},
-                                                            {"delivery", delivery_sentence},
-                                                            {"bytes_per_metre", cost_sentence},
-                                                            {"mission_time", time_sentence},
-                                                            {"collisions", contact_sentence},
-                                                            {"messages", message_sentence},
-                                                            {"tilt", tilt_sentence}};
+  static const std::map<std::string, Sentence> sentences = {
+      {"bound", bound_sentence},        {"bound_ratio", ratio_sentence},    {"consistency", consistency_sentence},
+      {"delivery", delivery_sentence},  {"bytes_per_metre", cost_sentence}, {"mission_time", time_sentence},
+      {"collisions", contact_sentence}, {"messages", message_sentence},     {"tilt", tilt_sentence}};
   const bool counts = metric.kind->figures.front().is_count || metric.kind->word == "bytes_per_metre";
   if (counts && has_nothing(metric)) return metric.name + ": nothing was measured.";
   const auto found = sentences.find(metric.kind->word);

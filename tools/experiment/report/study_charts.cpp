@@ -39,10 +39,6 @@ struct Chart {
   std::vector<ChartCurve> curves;
 };
 
-double number_or_nan(const nlohmann::ordered_json& value) {
-  return value.is_number() ? value.get<double>() : std::numeric_limits<double>::quiet_NaN();
-}
-
 std::optional<double> number_of_text(const std::string& text) {
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);

@@ -10,6 +10,7 @@
 
 #include "tools/experiment/files/html.hpp"
 #include "tools/experiment/files/json_reader.hpp"
+#include "tools/experiment/report/algorithm_report.hpp"
 #include "tools/experiment/report/report_figures.hpp"
 #include "tools/experiment/report/report_page.hpp"
 #include "tools/experiment/report/report_plots.hpp"
@@ -229,9 +230,10 @@ std::string study_report(const std::string& directory) {
   const std::string title = in.text("study"), description = in.text("description");
   std::string body = "<h1>" + html_text(title) + "</h1>\n";
   if (!description.empty()) body += "<p>" + html_text(description) + "</p>\n";
-  body += outcome_html(in, cases) + plots_html(directory, texts_of(in, "plots"), {}) + failed_runs_html(in) +
-          study_charts_html(in, units_of(all_figures(cases))) + figures_html(in, cases) + study_comparisons_html(in) +
-          study_extremes_html(in, directory) + cases_html(cases) + "<h2>This study</h2>\n" +
+  body += outcome_html(in, cases) + study_algorithms_html(in) + plots_html(directory, texts_of(in, "plots"), {}) +
+          failed_runs_html(in) + study_charts_html(in, units_of(all_figures(cases))) + figures_html(in, cases) +
+          study_comparisons_html(in) + study_extremes_html(in, directory) + cases_html(cases) +
+          "<h2>This study</h2>\n" +
           facts_table({{"World", in.text("world")},
                        {"Runs", fmt::format("{}", in.whole("runs"))},
                        {"Seeds", seeds_text(in)},

@@ -32,7 +32,7 @@ class ResimulatedRun {
   struct Options {
     std::string log;
     sim::LoadOptions load;
-    int threads = 0;  ///< threads for ray casting; 0: one for each processor
+    int threads = 0;  ///< threads that share a step; 0: one for each processor
     ViewOptions view;
     bool launch = false;  ///< branches start the programs of the world again
     std::string lcm_url;  ///< for them; empty: LCM_DEFAULT_URL, then the default

@@ -210,6 +210,7 @@ std::string Summary::to_text() const {
     text += fmt::format(
         "  {} steps used QuickStep, for islands of bodies that are too large or that ODE's exact solver gave up\n",
         quick_steps);
+  if (!threads_advice.empty()) text += "  " + threads_advice + "\n";
   // Modems and serial ports.
   if (acoustics) {
     text += fmt::format("  acoustic packets: {} sent, {} received", acoustics->sent, acoustics->received);

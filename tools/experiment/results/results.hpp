@@ -51,6 +51,7 @@ struct Summary {
   std::uint64_t dropped_messages = 0;
   std::int64_t bad_messages = 0;
   std::int64_t quick_steps = 0;
+  std::string threads_advice;  ///< SharedWork::advice(); empty: none
   std::map<std::string, double> metrics;
   std::vector<Scoring::Verdict> verdicts;
   std::string no_verdicts = "the world has no rules";  ///< why there are no verdicts, if so

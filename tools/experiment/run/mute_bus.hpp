@@ -15,6 +15,9 @@ class MuteBus final : public sim::Bus {
   void publish(std::string_view channel, std::span<const std::byte> payload, sim::Time at) override {
     if (!muted_) inner_.publish(channel, payload, at);
   }
+  std::unique_ptr<sim::OpenChannel> open_channel(const std::string& channel) override {
+    return std::make_unique<MuteChannel>(*this, inner_.open_channel(channel));
+  }
   std::unique_ptr<sim::Mailbox> open_mailbox(const std::string& channel,
                                              std::size_t capacity = default_mailbox_capacity) override {
     return std::make_unique<MuteMailbox>(*this, inner_.open_mailbox(channel, capacity));
@@ -25,6 +28,18 @@ class MuteBus final : public sim::Bus {
   sim::BusCounts counts() const override { return inner_.counts(); }
 
  private:
+  class MuteChannel final : public sim::OpenChannel {
+   public:
+    MuteChannel(const MuteBus& bus, std::unique_ptr<sim::OpenChannel> inner) : bus_(bus), inner_(std::move(inner)) {}
+    void publish(std::span<const std::byte> payload, sim::Time at) override {
+      if (!bus_.muted_) inner_->publish(payload, at);
+    }
+
+   private:
+    const MuteBus& bus_;
+    const std::unique_ptr<sim::OpenChannel> inner_;
+  };
+
   class MuteMailbox final : public sim::Mailbox {
    public:
     MuteMailbox(const MuteBus& bus, std::unique_ptr<sim::Mailbox> inner) : bus_(bus), inner_(std::move(inner)) {}

@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "bridges/base/bus_error.hpp"
+#include "sim/world/world_state.hpp"
 #include "tools/experiment/results/results_world.hpp"
 #include "tools/experiment/results/run_error.hpp"
 #include "tools/experiment/run/run_ports.hpp"
@@ -51,6 +52,7 @@ Run::Run(const sim::LoadedWorld& loaded, const RunOptions& options)
       key_file_(make_key()),
       programs_(loaded.config, options, buses_, key_file_ ? key_file_->key().text() : "") {
   world_.use_threads(options.threads);
+  world_.state().measure_shared_work(&shared_work_);
   if (page_) page_->allow_drive(drive_publisher());
   control_.speed = options.speed.value_or(loaded.config.run.speed);
   control_.paused = options.paused;
@@ -213,7 +215,9 @@ void Run::start_clients() {
   service_.publish_info();  // so that the first event of a log describes its run
   if (options_.from) publish_snapshot();
   buses_.end_of_step();
-  await(programs_.start());
+  const std::vector<std::string> clients = programs_.start();
+  await(clients);
+  if (!clients.empty()) service_.publish_info();  // they have missed the first one
 }
 
 void Run::await(const std::vector<std::string>& clients) {

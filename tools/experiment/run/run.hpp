@@ -10,6 +10,7 @@
 #include "bridges/lockstep/lockstep_service.hpp"
 #include "bridges/log/run_journal.hpp"
 #include "bridges/view/view_publisher.hpp"
+#include "sim/base/shared_work.hpp"
 #include "sim/run/run_control.hpp"
 #include "tools/experiment/results/results.hpp"
 #include "tools/experiment/run/branch_log.hpp"
@@ -107,6 +108,7 @@ class Run final : private Timeline {
   std::unique_ptr<RunKeyFile> key_file_;  ///< null: control needs no key
   RunPrograms programs_;
   StepWatch watch_{world_};
+  sim::SharedWork shared_work_;
   bool synchronized_ = true;  ///< the clients have answered the present step
   bool alone_ = true;         ///< no other simulator was found at the start
   std::unique_ptr<Results> results_;

@@ -4,6 +4,7 @@
 #include "devices/common/serial_port.hpp"
 #include "devices/comms/message_modem.hpp"
 #include "sim/acoustics/channel.hpp"
+#include "sim/base/thread_pool.hpp"
 #include "sim/world/world_state.hpp"
 #include "tools/experiment/run/run.hpp"
 #include "tools/experiment/snapshot/run_identity.hpp"
@@ -65,12 +66,16 @@ void Run::add_figures(Summary& summary) {
   summary.duration_s = duration_s_;
   // Hashes and counts of messages.
   summary.state_hash = world_.state().hash();
-  summary.run_hash = world_.state().run_hash();
+  summary.run_hash = world_.state().run_hash(summary.state_hash);
   summary.messages = counts.published + counts.received;
   summary.dropped_messages = counts.dropped_incoming + counts.dropped_outgoing + lockstep_.dropped_messages();
   summary.bad_messages =
       world_.counts().bad_messages + service_.bad_messages() + lockstep_.bad_messages() + scoring_.bad_messages();
   summary.quick_steps = world_.physics().quick_steps();
+  // More threads are of interest only where the run takes all the time it can get.
+  constexpr double keeps_up = 0.9;
+  if (control_.speed <= 0 || summary.real_time_factor() < keeps_up * control_.speed)
+    summary.threads_advice = shared_work_.advice(sim::ThreadPool(options_.threads).threads());
   // Modems and serial ports.
   const LinkCounts links = link_counts(world_, "", "");
   if (!world_.acoustics().transducers().empty()) summary.acoustics = links;

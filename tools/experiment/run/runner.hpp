@@ -33,7 +33,7 @@ struct RunOptions {
   bool launch = false;
   std::vector<std::string> await;  ///< lockstep clients, started by hand, to wait for
   bool serial_ports = true;        ///< pseudo-terminals and FIFOs of devices are opened
-  int threads = 0;                 ///< threads for ray casting; 0: one for each processor
+  int threads = 0;                 ///< threads that share a step; 0: one for each processor
   bool quiet = false;
   bool keys = true;                        ///< executes keys of the terminal, if there is one
   std::optional<Snapshot> from;            ///< snapshot that the run continues from

@@ -6,6 +6,7 @@
 
 #include "tools/experiment/files/file_replacement.hpp"
 #include "tools/experiment/files/no_links.hpp"
+#include "tools/experiment/study/study_algorithms.hpp"
 
 namespace tools {
 
@@ -60,9 +61,11 @@ void write_failure(const std::string& directory, const RunFailure& failure) {
   write_mark(directory, failure_path(directory), "inputs " + failure.inputs + "\nfailed " + failure.reason + "\n");
 }
 
-void remove_marks(const std::string& directory) {
+void remove_marks(const StudyRun& run) {
+  const std::string& directory = run.directory;
   std::error_code ignored;
-  for (const std::string& path : {stamp_path(directory), failure_path(directory), directory + "/summary.json"}) {
+  for (const std::string& path : {stamp_path(directory), failure_path(directory), directory + "/summary.json",
+                                  record_of(run), algorithm_scores_of(run)}) {
     refuse_links(directory, path);
     std::filesystem::remove(path, ignored);
   }

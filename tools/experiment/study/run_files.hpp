@@ -29,11 +29,13 @@ struct RunFailure {
 std::optional<RunFailure> read_failure(const std::string& directory);
 void write_failure(const std::string& directory, const RunFailure& failure);
 
-/// Removes both marks and the summary, before a run starts.
-void remove_marks(const std::string& directory);
+/// Removes both marks, the summary and the files of the algorithms, before a run starts.
+void remove_marks(const StudyRun& run);
 
-/// Reads the summary of a run that has just ended into its record, or its failure.
-void read_ended_run(StudyRun& run);
+/// Reads the summary of a run into its record, or its failure.
+void read_summary(StudyRun& run);
+/// Reads the summary of a run that has just ended, and the figures of its algorithms.
+void read_ended_run(const LoadedStudy& study, StudyRun& run);
 
 /// Returns the folder of a run.
 std::string directory_of(const LoadedStudy& study, const std::string& output, std::size_t in_case, std::size_t point,

@@ -9,6 +9,7 @@
 #include <chrono>
 #include <cstring>
 #include <deque>
+#include <filesystem>
 #include <iostream>
 #include <stdexcept>
 #include <thread>
@@ -19,6 +20,7 @@
 #include "tools/experiment/run/runner.hpp"
 #include "tools/experiment/study/run_claim.hpp"
 #include "tools/experiment/study/run_files.hpp"
+#include "tools/experiment/study/study_algorithms.hpp"
 #include "tools/experiment/study/study_runs.hpp"
 
 namespace tools {
@@ -38,7 +40,9 @@ constexpr std::chrono::milliseconds reap_interval{2};
 
 /// Returns the LCM URL of a run's bus; each slot has its own ports, and each process its own multicast group.
 std::string url_of_bus(const LoadedStudy& study, int slot, int attempt, std::size_t bus) {
-  const auto buses = static_cast<int>(study.worlds[0].config.buses.size()) + 1;
+  std::size_t max_buses = 0;
+  for (const sim::LoadedWorld& world : study.worlds) max_buses = std::max(max_buses, world.config.buses.size());
+  const auto buses = static_cast<int>(max_buses) + 1;
   const auto own = static_cast<int>(getpid());
   const int first = (own * 64 + attempt * 517) % 1500;
   const int port = 8000 + (first + slot * buses + static_cast<int>(bus)) % 2000;
@@ -84,7 +88,8 @@ class StudyChildren {
     int slot;
     Clock::time_point started;
     RunClaim claim;
-    bool late = false;  ///< ended after the time-out
+    bool late = false;        ///< ended after the time-out
+    bool algorithms = false;  ///< the run has ended: its record is being navigated
   };
 
   bool is_done(StudyRun& run) const {
@@ -133,21 +138,45 @@ class StudyChildren {
       return true;
     }
     run.record.reset();
-    remove_marks(run.directory);
+    remove_marks(run);
     const std::string log = run.directory + "/run.log";
     refuse_links(run.directory, log);
     const int slot = free_slot();
-    const pid_t pid = spawn(arguments_of(study_, run, run.directory, options_.allow_paths, slot, what.attempt), log);
+    std::vector<std::string> arguments =
+        arguments_of(study_, run, run.directory, options_.allow_paths, options_.threads, slot, what.attempt);
+    if (!study_.config.algorithms.empty()) {
+      arguments.emplace_back("--record");
+      arguments.push_back(record_of(run));
+    }
+    const pid_t pid = spawn("/proc/self/exe", arguments, log);
     running_.push_back({pid, what, slot, Clock::now(), std::move(claim)});
     return true;
   }
 
   // In its own process group: Ctrl-C is forwarded to it.
-  static pid_t spawn(const std::vector<std::string>& arguments, const std::string& log) {
+  static pid_t spawn(const std::string& program, const std::vector<std::string>& arguments, const std::string& log) {
     pid_t pid = 0;
-    const int error = start_child({"/proc/self/exe", arguments, own_environment(), log}, pid);
-    if (error != 0) throw std::runtime_error(std::string("cannot start a run: ") + std::strerror(error));
+    const int error = start_child({program, arguments, own_environment(), log}, pid);
+    if (error != 0)
+      throw std::runtime_error("cannot start " + arguments.front() + " for a run: " + std::strerror(error));
     return pid;
+  }
+
+  /// Starts the algorithms on the record of a run that has ended.
+  void start_algorithms(Running ended) {
+    const StudyRun& run = runs_[ended.what.run];
+    const std::string log = run.directory + "/algorithms.log";
+    refuse_links(run.directory, log);
+    ended.pid = spawn(algorithm_program(), arguments_of_algorithms(study_, run), log);
+    ended.algorithms = true;
+    running_.push_back(std::move(ended));
+  }
+  /// Returns what went wrong with the algorithms; empty: nothing.
+  static std::string algorithms_failure(int status) {
+    return WIFEXITED(status) && WEXITSTATUS(status) == 0
+               ? ""
+               : fmt::format("shoal-nav could not navigate its record (exit code {}); see algorithms.log",
+                             WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status));
   }
 
   void end_late_ones() {
@@ -171,17 +200,30 @@ class StudyChildren {
         ++i;
         continue;
       }
-      const Running ended = std::move(running_[i]);
+      Running ended = std::move(running_[i]);
       running_.erase(running_.begin() + static_cast<std::ptrdiff_t>(i));
       any = true;
-      if (caught_signal() == 0) finish(ended, status);
+      if (caught_signal() == 0) finish(std::move(ended), status);
     }
     return any;
   }
 
-  void finish(const Running& ended, int status) {
+  void finish(Running ended, int status) {
     StudyRun& run = runs_[ended.what.run];
-    read_ended_run(run);
+    std::string failure;
+    if (ended.algorithms) {
+      failure = algorithms_failure(status);
+      std::error_code ignored;
+      std::filesystem::remove(record_of(run), ignored);
+    } else if (!study_.config.algorithms.empty() && WIFEXITED(status) && !ended.late) {
+      read_summary(run);
+      if (run.record) return start_algorithms(std::move(ended));
+    }
+    read_ended_run(study_, run);
+    if (!failure.empty()) {
+      run.record.reset();
+      run.failure = failure;
+    }
     // Result, or the signal that killed the run.
     if (WIFSIGNALED(status)) {
       run.record.reset();
@@ -235,11 +277,23 @@ class StudyChildren {
 }  // namespace
 
 std::vector<std::string> arguments_of(const LoadedStudy& study, const StudyRun& run, const std::string& results,
-                                      const std::vector<std::string>& allow_paths, int slot, int attempt) {
+                                      const std::vector<std::string>& allow_paths, int threads, int slot, int attempt) {
   const StudyConfig& config = study.config;
-  std::vector<std::string> arguments{"shoal",     "run",         config.world, "--seed",     std::to_string(run.seed),
-                                     "--results", results,       "--quiet",    "--no-plots", "--threads",
-                                     "1",         "--log-level", "warn",       "--speed",    "max"};
+  std::vector<std::string> arguments{"shoal",
+                                     "run",
+                                     config.cases[run.in_case].world,
+                                     "--seed",
+                                     std::to_string(run.seed),
+                                     "--results",
+                                     results,
+                                     "--quiet",
+                                     "--no-plots",
+                                     "--threads",
+                                     std::to_string(threads),
+                                     "--log-level",
+                                     "warn",
+                                     "--speed",
+                                     "max"};
   const auto add = [&](const std::string& option, const std::string& value) {
     arguments.push_back(option);
     arguments.push_back(value);

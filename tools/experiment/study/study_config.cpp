@@ -4,6 +4,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
@@ -19,6 +20,7 @@
 #include "sim/world_file/file_kind.hpp"
 #include "sim/world_file/rule_list.hpp"
 #include "tools/experiment/process/world_programs.hpp"
+#include "tools/experiment/study/study_algorithms.hpp"
 #include "tools/experiment/study/study_rules.hpp"
 
 namespace tools {
@@ -151,12 +153,34 @@ void require_something(sim::ParamReader& in, const char* key, bool empty) {
   if (in.has(key) && empty) in.error(key, "'" + std::string(key) + "' must not be empty");
 }
 
+bool is_label(const std::string& name) {
+  return !name.empty() && std::all_of(name.begin(), name.end(), [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
+  });
+}
+
+/// Adds the algorithms of the command line.
+void add_algorithms(StudyConfig& config, const std::vector<std::string>& added) {
+  for (const std::string& algorithm : added) {
+    const std::string label = algorithm_label(algorithm);
+    const std::string shown = "'" + sim::shortened(sim::printable(algorithm)) + "'";
+    if (!is_label(label)) throw std::invalid_argument("must be a name or python:FILE.Class, got " + shown);
+    for (const std::string& other : config.algorithms)
+      if (algorithm_label(other) == label) throw std::invalid_argument("two algorithms have the name '" + label + "'");
+    config.algorithms.push_back(algorithm);
+  }
+  if (!added.empty() && !config.launch)
+    throw std::invalid_argument("needs a study with 'launch: true': the programs of the world send what they receive");
+  if (config.pairs.empty() && !config.algorithms.empty()) config.pairs = algorithm_label(config.algorithms.front());
+}
+
 /// Returns all figures of all cases, sorted.
 std::vector<std::string> figures_of(const LoadedStudy& study) {
   std::set<std::string> names{"passed"};
   for (const sim::LoadedWorld& world : study.worlds)
     for (const sim::MetricConfig& metric : world.config.metrics)
       for (const std::string& figure : metric.figures()) names.insert(figure);
+  for (std::string& figure : figures_of_algorithms(study.config.algorithms)) names.insert(std::move(figure));
   return {names.begin(), names.end()};
 }
 
@@ -183,7 +207,9 @@ class NameCheck {
       if (!plot.figure.empty()) require("figure", plot.figure, figures_, plot.place, who);
       for (const std::string& metric : plot.metrics) require("metrics", metric, metrics_, plot.place, who);
     }
-    sim::read_rule_list(config.rules, StudyRuleNames(config.cases, study_.worlds), study_rule_of_map, diagnostics_);
+    sim::read_rule_list(config.rules,
+                        StudyRuleNames(config.cases, study_.worlds, figures_of_algorithms(config.algorithms)),
+                        study_rule_of_map, diagnostics_);
     diagnostics_.throw_if_any();
   }
 
@@ -206,6 +232,8 @@ class NameCheck {
 void StudyCase::read(sim::ParamReader& in) {
   in.require("name");
   in.read_name("name", name, "name of the case");
+  in.read("world", world, "world file of this case; unset: that of the study");
+  if (const sim::ConfigNode* node = in.describing() ? nullptr : in.child("world")) world_place = node->place;
   in.read_raw("set", changes, "dotted path: value, as with --set");
 }
 
@@ -243,19 +271,18 @@ void StudyConfig::read(sim::ParamReader& in) {
   in.read_name("study", name, "name of the study");
   in.read("description", description, "description in one sentence");
   // World, seeds and cases.
-  in.require("world");
-  in.read("world", world, "world file, from the folder of this file, or the name of a shipped world");
   in.read("launch", launch, "start the programs that the world names");
   in.read("duration_s", duration_s, sim::above_to(0, 1e9), "simulated time of each run; unset: as the world says");
   seeds = read_seeds(in);
   in.read_list("cases", cases, "case", "ways of running the world; unset: as it is");
-  if (cases.empty()) cases.emplace_back().name = "world";
+  read_worlds(in);
   for (const StudyCase& each : cases) in.declare("case", each.name);
   // Factors and their design.
   in.read_list("factors", factors, "factor", "settings that vary together, by `design`");
   for (const StudyFactor& factor : factors) in.declare("factor", factor.name);
   in.read("design", design, "how the values of the factors are chosen; unset: every combination of their levels");
   check_design(in);
+  read_algorithms(in);
   // Figures, plots and rules.
   in.read("figures", figures, "figures of the table; unset: all");
   if (in.has("figures")) figures_place = in.child("figures")->place;
@@ -267,6 +294,72 @@ void StudyConfig::read(sim::ParamReader& in) {
                                {"mean(cooperative.passed) == 1", "max(cooperative.auv1.rms_m) < 0.8"});
   if (const sim::ConfigNode* node = in.child("pass")) rules = *node;
   pass = sim::read_rule_list(rules, StudyRuleNames(cases), study_rule_of_map, in.diagnostics());
+}
+
+std::string StudyConfig::world_text() const {
+  return of_worlds && cases.size() > 1 ? fmt::format("{} worlds", cases.size()) : cases.front().world;
+}
+
+void StudyConfig::read_worlds(sim::ParamReader& in) {
+  std::string world;
+  std::vector<std::string> worlds;
+  in.read("world", world, "world file, from the folder of this file, or the name of a shipped world");
+  in.read("worlds", worlds, "several world files instead, each of which is a case with the name of its file");
+  if (in.describing()) return;
+  if (in.has("world") && in.has("worlds")) in.error("worlds", "needs either 'world' or 'worlds', not both");
+  const sim::ConfigNode* list = in.child("worlds");
+  require_something(in, "worlds", worlds.empty());
+  std::set<std::string> names;
+  std::vector<StudyCase> of_list;
+  for (std::size_t i = 0; i < worlds.size(); ++i) {
+    StudyCase& each = of_list.emplace_back();
+    each.name = fs::path(worlds[i]).stem().string();
+    each.world = worlds[i];
+    each.world_place = list->items.empty() ? list->place : list->items.at(i).place;
+    const bool good = !each.name.empty() && std::all_of(each.name.begin(), each.name.end(), [](char c) {
+      return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-';
+    });
+    const std::string shown_path = "'" + sim::shortened(sim::printable(worlds[i])) + "'";
+    if (!good) in.error("worlds", "'worlds': a file name must have letters, digits, _ and - only, got " + shown_path);
+    if (!names.insert(each.name).second)
+      in.error("worlds", "'worlds' must have different file names, got " + shown_path);
+  }
+  // A case without its own world runs that of the study.
+  if (in.has("world") && cases.empty()) cases.emplace_back().name = "world";
+  for (StudyCase& each : cases) {
+    if (!names.insert(each.name).second && in.has("worlds"))
+      in.error("cases", "case '" + each.name + "' has the name of one of 'worlds'");
+    of_worlds = of_worlds || !each.world.empty();
+    if (!each.world.empty()) continue;
+    if (!in.has("world")) in.error("cases", "case '" + each.name + "' needs a 'world', because the study has none");
+    each.world = world;
+    if (const sim::ConfigNode* node = in.child("world")) each.world_place = node->place;
+  }
+  of_worlds = of_worlds || !of_list.empty();
+  cases.insert(cases.begin(), of_list.begin(), of_list.end());
+  if (!cases.empty()) return;
+  in.error("world", "needs 'world', 'worlds' or 'cases' with a 'world'");
+  cases.emplace_back().name = "world";
+}
+
+void StudyConfig::read_algorithms(sim::ParamReader& in) {
+  in.read("algorithms", algorithms,
+          "algorithms of `shoal-nav`, each of which navigates the record of every run: LABEL.rms_m and so on");
+  in.read("pairs", pairs, "algorithm that the others are compared with, in pairs of equal seeds; unset: the first");
+  if (in.describing()) return;
+  require_something(in, "algorithms", algorithms.empty());
+  if (const sim::ConfigNode* node = in.child("algorithms")) algorithms_place = node->place;
+  for (const std::string& algorithm : algorithms)
+    if (!is_label(algorithm))
+      in.error("algorithms", "'algorithms' must be names, got '" + sim::shortened(sim::printable(algorithm)) +
+                                 "'; an own class in Python is given with --algorithm");
+  if (std::set<std::string>(algorithms.begin(), algorithms.end()).size() != algorithms.size())
+    in.error("algorithms", "'algorithms' must differ from each other");
+  if (!algorithms.empty() && !launch)
+    in.error("algorithms", "'algorithms' need 'launch: true': the programs of the world send what they receive");
+  if (in.has("pairs") && std::find(algorithms.begin(), algorithms.end(), pairs) == algorithms.end())
+    in.error("pairs", "'pairs' must be one of 'algorithms', got '" + sim::shortened(sim::printable(pairs)) + "'");
+  if (pairs.empty() && !algorithms.empty()) pairs = algorithms.front();
 }
 
 void StudyConfig::check_design(sim::ParamReader& in) const {
@@ -300,13 +393,12 @@ std::vector<std::string> files_beside(const std::string& file) {
 }
 
 /// Checks that the world is in the study's folder or the one above, because errors quote its text.
-void check_world_file(const std::string& world, const std::string& study, const sim::ConfigNode& root,
+void check_world_file(const std::string& world, const std::string& study, const sim::SourcePlace& place,
                       const sim::LoadOptions& load) {
   const fs::path folder = fs::path(study).parent_path();
   std::vector<std::string> folders{folder.string(), (folder / "..").string()};
   if (!sim::shipped_folder().empty()) folders.push_back(sim::shipped_folder() + "/worlds");
   const sim::FileAccess access(std::move(folders), load.allow_paths, {});
-  const sim::SourcePlace& place = root.find("world")->place;
   if (load.only_own_files && !access.may_read(world))
     sim::throw_config_error(place, "",
                             "'world' must lie below the folder of the study or the one above it, be a shipped one, or "
@@ -333,11 +425,11 @@ std::string world_file_of(const std::string& study_file, const std::string& worl
 }
 
 /// Loads the world of a case.  Errors in a value of `set:` name its place in the study.
-sim::LoadedWorld world_of_case(const std::string& world, const StudyCase& in_case, sim::LoadOptions options) {
+sim::LoadedWorld world_of_case(const StudyCase& in_case, sim::LoadOptions options) {
   const std::vector<std::string> sets = in_case.sets();
   options.sets.insert(options.sets.end(), sets.begin(), sets.end());
   try {
-    return sim::load_world(world, options);
+    return sim::load_world(in_case.world, options);
   } catch (const sim::ConfigError& error) {
     std::vector<std::string> lines = error.lines();
     for (std::string& line : lines)
@@ -378,7 +470,7 @@ void check_factors(const LoadedStudy& study, const sim::LoadOptions& load) {
       for (const std::string& set : config.cases.front().sets()) options.sets.push_back(set);
       for (const std::string& path : factor.paths) options.sets.push_back(path + "=" + value);
       try {
-        sim::load_world(config.world, options);
+        sim::load_world(config.cases.front().world, options);
       } catch (const sim::ConfigError& error) {
         std::vector<std::string> lines = error.lines();
         for (std::string& line : lines) {
@@ -435,8 +527,13 @@ LoadedStudy load_study(const std::string& path, const StudyChanges& changes) {
   if (!changes.seeds.empty()) study.config.seeds = changes.seeds;
   if (changes.duration_s) study.config.duration_s = changes.duration_s;
   if (study.config.until) study.config.until->planned_seeds = study.config.seeds.size();
-  study.config.world = world_file_of(path, study.config.world);
-  check_world_file(study.config.world, path, root, changes.load);
+  add_algorithms(study.config, changes.algorithms);
+  for (std::size_t i = 0; i < study.config.cases.size(); ++i) {
+    std::string& world = study.config.cases[i].world;
+    world = world_file_of(path, world);
+    if (i == 0 || study.config.of_worlds)
+      check_world_file(world, path, study.config.cases[i].world_place, changes.load);
+  }
   if (!changes.tuned) {
     check_grid(study.config);
     study.points = design_points(study.config.design, study.config.factors);
@@ -456,7 +553,9 @@ LoadedStudy load_study(const std::string& path, const StudyChanges& changes) {
     options.allow_plugins = study.config.launch && !changes.only_checked;
     options.serial_ports = study.config.launch;
     options.encode_message = shoal::encode_own_message;
-    sim::LoadedWorld& world = study.worlds.emplace_back(world_of_case(study.config.world, each, options));
+    sim::LoadedWorld& world = study.worlds.emplace_back(world_of_case(each, options));
+    if (!study.config.algorithms.empty())
+      algorithm_scoring(world.config, study.config.algorithms, study.config.algorithms_place);
     read_programs(world, {study.config.launch, options.allow_paths});
     if (!study.config.duration_s && world.config.run.duration_s == 0)
       sim::throw_config_error(root.place, "case '" + each.name + "'",

@@ -14,9 +14,11 @@
 
 namespace tools {
 
-/// Variant of the world of a study.
+/// Variant of the world of a study, or one of its worlds.
 struct StudyCase {
   std::string name;
+  std::string world;  ///< path relative to the working directory; until the study is loaded, as it is written
+  sim::SourcePlace world_place;
   sim::ConfigNode changes;  ///< dotted path: value, as with --set
   void read(sim::ParamReader& in);
   /// Returns `path=value` of each change.
@@ -35,14 +37,16 @@ struct StudyPlot {
   void read(sim::ParamReader& in);
 };
 
-/// Study file: one world, run with many seeds in several cases.
+/// Study file: a world, run with many seeds in several cases, or several worlds, each of which is a case.
 struct StudyConfig {
   std::string file, name, description;
-  std::string world;  ///< path relative to the working directory
   bool launch = false;
   std::optional<double> duration_s;
   std::vector<std::int64_t> seeds;
   std::vector<StudyCase> cases;
+  bool of_worlds = false;               ///< the cases have different worlds
+  std::vector<std::string> algorithms;  ///< of `shoal-nav`, which navigate the record of each run
+  std::string pairs;                    ///< label of the algorithm that the others are compared with; empty: none
   std::vector<StudyFactor> factors;
   StudyDesign design;                ///< of the factors
   std::optional<StudyUntil> until;   ///< the study ends when its result is certain; unset: after all seeds
@@ -50,11 +54,15 @@ struct StudyConfig {
   std::vector<StudyPlot> plots;
   std::vector<sim::RuleExpression> pass;  ///< the study passes when every rule holds
   sim::ConfigNode rules;                  ///< `pass:` as written, for errors that are found only with the worlds
-  sim::SourcePlace figures_place;
+  sim::SourcePlace figures_place, algorithms_place;
 
   void read(sim::ParamReader& in);
+  /// Returns the path of its world, or `N worlds`.
+  std::string world_text() const;
 
  private:
+  void read_worlds(sim::ParamReader& in);
+  void read_algorithms(sim::ParamReader& in);
   void check_design(sim::ParamReader& in) const;
 };
 
@@ -72,10 +80,11 @@ inline constexpr std::size_t max_study_runs = 200000;
 struct StudyChanges {
   std::vector<std::int64_t> seeds;  ///< empty: those of the file
   std::optional<double> duration_s;
-  sim::LoadOptions load;      ///< files that its worlds may name
-  bool tuned = false;         ///< the points are not those of its design: none are made
-  bool planned = false;       ///< a manifest exists: its plan is not warned about again
-  bool only_checked = false;  ///< no run follows: plugins that the world names are not loaded
+  sim::LoadOptions load;                     ///< files that its worlds may name
+  bool tuned = false;                        ///< the points are not those of its design: none are made
+  bool planned = false;                      ///< a manifest exists: its plan is not warned about again
+  bool only_checked = false;                 ///< no run follows: plugins that the world names are not loaded
+  std::vector<std::string> algorithms = {};  ///< in addition to those of the file
 };
 
 /// Parses the seeds of a command line: `7`, `1-10` or `1-3,8`.  Throws std::invalid_argument with the rule.

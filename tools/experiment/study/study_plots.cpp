@@ -12,6 +12,7 @@
 #include "tools/experiment/files/no_links.hpp"
 #include "tools/experiment/results/run_metrics.hpp"
 #include "tools/experiment/run/runner.hpp"
+#include "tools/experiment/study/algorithm_table.hpp"
 #include "tools/experiment/study/study_curves.hpp"
 #include "tools/experiment/study/study_results.hpp"
 
@@ -147,6 +148,7 @@ void check_outputs(const std::string& directory, const StudyConfig& config) {
                                  "study.sqlite", "report.html", "study.sqlite.part"};
   if (!config.plots.empty()) names.insert(names.end(), {"plot.gp", "plot.log"});
   for (const StudyPlot& plot : config.plots) names.insert(names.end(), {plot.name + ".dat", plot.name + ".png"});
+  if (!config.algorithms.empty()) names.insert(names.end(), {"algorithms.csv", "algorithms.md"});
   for (const std::string& name : names) {
     const std::string path = directory + "/" + name;
     refuse_links(directory, path);
@@ -162,6 +164,11 @@ void write_study(const std::string& directory, const LoadedStudy& study, const s
   for (const std::string& image : study_plots(study.config)) std::filesystem::remove(directory + "/" + image, error);
   write_whole_file(directory + "/study.csv", results.to_csv());
   write_whole_file(directory + "/points.csv", results.points_csv());
+  if (!study.config.algorithms.empty()) {
+    const AlgorithmTable table(results);
+    write_whole_file(directory + "/algorithms.csv", table.csv());
+    write_whole_file(directory + "/algorithms.md", table.markdown());
+  }
   StudyPainter(directory, study, runs, results).draw();
   write_whole_file(directory + "/study.json", results.to_json(exit_code));
 }

@@ -11,6 +11,7 @@
 
 #include "tools/experiment/results/verdict_json.hpp"
 #include "tools/experiment/run/runner.hpp"
+#include "tools/experiment/study/algorithm_table.hpp"
 #include "tools/experiment/study/study_equal_cases.hpp"
 #include "tools/experiment/study/study_rules.hpp"
 #include "tools/experiment/study/study_tables.hpp"
@@ -182,7 +183,7 @@ std::string StudyResults::to_text(const std::string& directory) const {
     ((text += fmt::format(" {:>10}", cells)), ...);
     return text + "\n";
   };
-  std::string text = fmt::format("study {}: {} runs of {}\n", config.name, runs_.size(), config.world);
+  std::string text = fmt::format("study {}: {} runs of {}\n", config.name, runs_.size(), config.world_text());
   text += line("figure", "case", "runs", "mean", "std", "min", "max", "median", "mean 95 %", "");
   for (const std::string& figure : table_figures())
     for (const StudyCase& each : config.cases) {
@@ -195,6 +196,7 @@ std::string StudyResults::to_text(const std::string& directory) const {
                    number(s.mean_95.high));
     }
   text += points_text();
+  if (!config.algorithms.empty()) text += AlgorithmTable(*this).text();
   for (const Scoring::Verdict& verdict : verdicts())
     text += fmt::format("{}: {}\n", verdict.passed ? "passed" : "FAILED", verdict.text());
   if (config.pass.empty() && runs_with_failed_programs() > 0)
@@ -272,7 +274,7 @@ std::string StudyResults::to_json(int exit_code) const {
   // Study.
   json["study"] = config.name;
   json["description"] = config.description;
-  json["world"] = study_.worlds.front().config.name;
+  json["world"] = config.of_worlds ? config.world_text() : study_.worlds.front().config.name;
   json["seeds"] = config.seeds;
   json["launch"] = config.launch;
   json["figures"] = table_figures();
@@ -304,6 +306,7 @@ std::string StudyResults::to_json(int exit_code) const {
                                      {"run", run.index},
                                      {"repeat", command_of(study_, run)}});
   // Points and comparisons.
+  if (!config.algorithms.empty()) json["algorithms"] = AlgorithmTable(*this).json();
   add_points(json, *this);
   add_convergence(json, *this);
   add_extremes(json, *this);

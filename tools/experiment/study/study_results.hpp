@@ -78,7 +78,7 @@ class StudyResults {
   /// Returns the table for a terminal, and the rules.
   /// `directory`: of the study, for the commands that repeat failed runs.
   std::string to_text(const std::string& directory = "") const;
-  /// Returns a row for each run.  Equal runs give equal rows, but for `wall_s`.
+  /// Returns a row for each run.  Equal runs give equal rows, except for `wall_s` and CPU times.
   std::string to_csv() const;
   /// Returns a row of statistics for each case, point and figure.
   std::string points_csv() const;
@@ -103,8 +103,8 @@ std::vector<std::string> study_plots(const StudyConfig& config);
 /// link; for errors before a long work.  Writes nothing.
 void check_outputs(const std::string& directory, const StudyConfig& config);
 
-/// Writes study.csv, points.csv, study.json, plot.gp, the data of the plots and their plots into a folder, after
-/// check_outputs().  Throws std::runtime_error.
+/// Writes study.csv, points.csv, study.json, plot.gp, the data of the plots and their plots into a folder, and with
+/// algorithms algorithms.csv and algorithms.md, after check_outputs().  Throws std::runtime_error.
 void write_study(const std::string& directory, const LoadedStudy& study, const std::vector<StudyRun>& runs,
                  const StudyResults& results, int exit_code);
 

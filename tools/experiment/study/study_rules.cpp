@@ -20,7 +20,9 @@ std::pair<std::string, std::string> case_and_figure(const std::string& name) {
   return {name.substr(0, dot), dot < name.size() ? name.substr(dot + 1) : ""};
 }
 
-StudyRuleNames::StudyRuleNames(const std::vector<StudyCase>& cases, const std::vector<sim::LoadedWorld>& worlds) {
+StudyRuleNames::StudyRuleNames(const std::vector<StudyCase>& cases, const std::vector<sim::LoadedWorld>& worlds,
+                               std::vector<std::string> algorithm_figures)
+    : algorithm_figures_(std::move(algorithm_figures)) {
   for (const StudyCase& each : cases) cases_.push_back(each.name);
   for (const sim::LoadedWorld& world : worlds) metrics_.push_back(&world.config.metrics);
 }
@@ -49,7 +51,9 @@ std::optional<sim::RuleProblem> StudyRuleNames::name_problem(const std::string& 
                                    "'; known cases: " + sim::list_text(cases_) + sim::did_you_mean(in_case, cases_)};
   if (figure.empty())
     return sim::RuleProblem{0, "case '" + in_case + "' needs one of its figures, such as " + in_case + ".passed"};
-  if (figure == passed_figure) return std::nullopt;
+  const bool of_algorithm =
+      std::find(algorithm_figures_.begin(), algorithm_figures_.end(), figure) != algorithm_figures_.end();
+  if (figure == passed_figure || of_algorithm) return std::nullopt;
   const std::size_t begin = in_case.size() + 1;
   const auto index = static_cast<std::size_t>(found - cases_.begin());
   if (index >= metrics_.size()) return std::nullopt;

@@ -23,14 +23,17 @@ const std::vector<std::string>& statistic_words();
 /// Vocabulary of the rules of a study: `STATISTIC(CASE.METRIC.FIGURE)` and `STATISTIC(CASE.passed)`.
 class StudyRuleNames final : public sim::RuleNames {
  public:
-  /// `worlds` by case; without them any metric and figure is accepted.
-  explicit StudyRuleNames(const std::vector<StudyCase>& cases, const std::vector<sim::LoadedWorld>& worlds = {});
+  /// `worlds` by case; without them any metric and figure is accepted.  `algorithm_figures`: LABEL.FIGURE, in all
+  /// cases.
+  explicit StudyRuleNames(const std::vector<StudyCase>& cases, const std::vector<sim::LoadedWorld>& worlds = {},
+                          std::vector<std::string> algorithm_figures = {});
   std::string function_problem(const std::string& function) const override;
   std::optional<sim::RuleProblem> name_problem(const std::string& function, const std::string& name) const override;
 
  private:
   std::vector<std::string> cases_;
   std::vector<const std::vector<sim::MetricConfig>*> metrics_;  ///< by case
+  std::vector<std::string> algorithm_figures_;
 };
 
 /// Splits `CASE.FIGURE` into case and figure.

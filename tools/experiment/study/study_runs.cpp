@@ -12,26 +12,21 @@
 #include "tools/experiment/process/signals.hpp"
 #include "tools/experiment/run/runner.hpp"
 #include "tools/experiment/study/run_files.hpp"
+#include "tools/experiment/study/study_algorithms.hpp"
 #include "tools/experiment/study/study_results.hpp"
 
 namespace tools {
 
 namespace {
 
-/// Reads the summary of a run.  Unset, with the reason: it does not exist, or the run did not reach its end.
-void read_record(StudyRun& run) {
-  run.record.reset();
+/// Reads the results of a run.  Unset, with the reason: they do not exist, or the run did not reach its end.
+void read_record(const LoadedStudy& study, StudyRun& run) {
+  read_summary(run);
+  if (!run.record || study.config.algorithms.empty()) return;
   try {
-    RunRecord record = read_run(run.directory);
-    const bool done = record.exit_code == 0 || record.exit_code == 1;
-    const bool by_hand = record.ended == "quit" || record.ended == "signal";
-    if (done && !by_hand && record.ended != "process")
-      run.record = std::move(record);
-    else if (!record.error.empty())
-      run.failure = record.error;
-    else
-      run.failure = by_hand ? record.not_judged : fmt::format("exit code {}", record.exit_code);
+    add_algorithm_figures(study, run);
   } catch (const std::runtime_error& error) {
+    run.record.reset();
     run.failure = error.what();
   }
 }
@@ -53,6 +48,23 @@ std::map<std::int64_t, std::size_t> positions_of(const std::vector<std::int64_t>
 }
 
 }  // namespace
+
+void read_summary(StudyRun& run) {
+  run.record.reset();
+  try {
+    RunRecord record = read_run(run.directory);
+    const bool done = record.exit_code == 0 || record.exit_code == 1;
+    const bool by_hand = record.ended == "quit" || record.ended == "signal";
+    if (done && !by_hand && record.ended != "process")
+      run.record = std::move(record);
+    else if (!record.error.empty())
+      run.failure = record.error;
+    else
+      run.failure = by_hand ? record.not_judged : fmt::format("exit code {}", record.exit_code);
+  } catch (const std::runtime_error& error) {
+    run.failure = error.what();
+  }
+}
 
 std::vector<StudyRun> plan_study(const LoadedStudy& study, const std::string& output) {
   std::vector<StudyRun> runs;
@@ -83,12 +95,14 @@ std::string inputs_of(const LoadedStudy& study, const StudyRun& run) {
                                  config.launch ? "yes" : "no");
   // The settings of the case are part of the hash of its world.
   for (const std::string& set : point_sets(config.factors, study.points[run.point])) text += "\nset " + set;
+  for (const std::string& algorithm : config.algorithms)
+    text += "\nalgorithm " + algorithm + " " + source_of(algorithm);
   return fmt::format("{:016x}", sim::hash_text(text));
 }
 
 std::string command_of(const LoadedStudy& study, const StudyRun& run) {
   const StudyConfig& config = study.config;
-  std::string command = fmt::format("shoal run {} --seed {}", shell_word(config.world), run.seed);
+  std::string command = fmt::format("shoal run {} --seed {}", shell_word(config.cases[run.in_case].world), run.seed);
   for (const std::string& set : sets_of(study, run)) command += " --set " + shell_word(set);
   if (config.duration_s) command += fmt::format(" --duration {}", *config.duration_s);
   return command + (config.launch ? " --launch" : " --bus none --no-serial-ports");
@@ -105,7 +119,7 @@ void read_result(const LoadedStudy& study, bool any_version, StudyRun& run) {
     else if (!any_version && stamp->version != short_version())
       run.failure = "its result is of shoal " + stamp->version;
     else
-      return read_record(run);
+      return read_record(study, run);
   }
   const auto failure = read_failure(run.directory);
   if (!failure || failure->inputs != inputs) return;
@@ -113,8 +127,8 @@ void read_result(const LoadedStudy& study, bool any_version, StudyRun& run) {
   run.tried = true;
 }
 
-void read_ended_run(StudyRun& run) {
-  read_record(run);
+void read_ended_run(const LoadedStudy& study, StudyRun& run) {
+  read_record(study, run);
 }
 
 void run_in_batches(const LoadedStudy& study, std::vector<StudyRun>& runs,

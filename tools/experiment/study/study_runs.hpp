@@ -15,6 +15,7 @@ namespace tools {
 struct StudyOptions {
   std::string output;  ///< folder of the study
   int jobs = 1;        ///< number of concurrent runs
+  int threads = 1;     ///< that share the work of a step, in each run
   bool fresh = false;  ///< repeats finished runs
   bool quiet = false;
   std::vector<std::string> allow_paths = {};  ///< of the runs
@@ -48,9 +49,9 @@ std::string inputs_of(const LoadedStudy& study, const StudyRun& run);
 std::string command_of(const LoadedStudy& study, const StudyRun& run);
 
 /// Returns the arguments of `shoal run` that executes a run with its results in a folder, on LCM ports that depend on
-/// this process, on `slot` and on `attempt`.
+/// this process, on `slot` and on `attempt`.  `threads`: 0: one for each processor.
 std::vector<std::string> arguments_of(const LoadedStudy& study, const StudyRun& run, const std::string& results,
-                                      const std::vector<std::string>& allow_paths, int slot, int attempt);
+                                      const std::vector<std::string>& allow_paths, int threads, int slot, int attempt);
 
 /// Reads the result of a run that was finished with these inputs.  `any_version`: by any version of shoal.  Otherwise
 /// `failure` is set.

@@ -191,6 +191,7 @@ std::string StudyResults::points_csv() const {
 std::vector<StudyComparison> StudyResults::comparisons() const {
   const StudyConfig& config = study_.config;
   const bool of_cases = config.cases.size() > 1;
+  if (config.of_worlds) return {};  // figures of different worlds are not pairs
   const std::size_t count = of_cases ? config.cases.size() : study_.points.size();
   if (!of_cases && count > max_compared_points) return {};
   // Runs of each case or point by what a pair has in common.

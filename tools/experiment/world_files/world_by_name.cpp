@@ -35,15 +35,22 @@ Words words_of(ShippedKind kind) {
   return {"worlds/studies", "study", "studies"};
 }
 
+/// Adds the names and paths of the files in a folder.
+void add_files(const fs::path& folder, const std::string& prefix, std::vector<ShippedFile>& files) {
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error))
+    if (entry.path().extension() == ending && entry.is_regular_file(error))
+      files.push_back({prefix + entry.path().stem().string(), entry.path().string(), ""});
+}
+
 /// Returns names and paths only, without reading the files.
 std::vector<ShippedFile> named_files(ShippedKind kind) {
   std::vector<ShippedFile> files;
-  const std::string folder = sim::shipped_folder();
-  if (folder.empty()) return files;
-  std::error_code error;
-  for (const fs::directory_entry& entry : fs::directory_iterator(fs::path(folder) / words_of(kind).folder, error))
-    if (entry.path().extension() == ending && entry.is_regular_file(error))
-      files.push_back({entry.path().stem().string(), entry.path().string(), ""});
+  const std::string shipped = sim::shipped_folder();
+  if (shipped.empty()) return files;
+  const fs::path folder = fs::path(shipped) / words_of(kind).folder;
+  add_files(folder, "", files);
+  if (kind == ShippedKind::world) add_files(folder / "benchmark", "benchmark/", files);
   std::sort(files.begin(), files.end(), [](const auto& a, const auto& b) { return a.name < b.name; });
   return files;
 }
@@ -73,11 +80,12 @@ std::string advice(const std::string& name, const std::string& meant, const std:
                               advice(stem, sim::closest_name(stem, names), lists));
 }
 
-/// A shipped file by its path in the sources, such as `worlds/coop_land.yaml`.
+/// A shipped file by its path in the sources, such as `worlds/coop_land.yaml`, or by a name with a folder.
 std::optional<std::string> shipped_path(std::initializer_list<ShippedKind> kinds, const std::string& given) {
   for (const ShippedKind kind : kinds)
     for (const ShippedFile& file : named_files(kind))
-      if (given == std::string(words_of(kind).folder) + "/" + file.name + ending) return file.path;
+      if (given == std::string(words_of(kind).folder) + "/" + file.name + ending || given == file.name)
+        return file.path;
   return std::nullopt;
 }
 

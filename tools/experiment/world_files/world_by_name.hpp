@@ -9,7 +9,7 @@ namespace tools {
 
 /// YAML file that comes with the program.
 struct ShippedFile {
-  std::string name;         ///< without folder and extension
+  std::string name;         ///< without extension, and without folder except in `benchmark/NAME`
   std::string path;         ///< of the file
   std::string description;  ///< its `description:`; empty: it has none
 };

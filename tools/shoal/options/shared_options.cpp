@@ -41,7 +41,7 @@ CLI::Option* add_lcm_url_option(CLI::App& command, std::string& url) {
 }
 
 void add_threads_option(CLI::App& command, int& threads) {
-  command.add_option("--threads", threads, "worker threads for ray casting; 0: one for each processor")
+  command.add_option("--threads", threads, "threads that share the work of a step; 0: one for each processor")
       ->type_name("N")
       ->check(whole_from(0, 256));
 }

@@ -41,7 +41,7 @@ void add_allow_path_option(CLI::App& command, sim::LoadOptions& load);
 /// Adds `--lcm-url URL`.
 CLI::Option* add_lcm_url_option(CLI::App& command, std::string& url);
 
-/// Adds `--threads N`, the number of worker threads for ray casting.
+/// Adds `--threads N`, the number of threads that share the work of a step.
 void add_threads_option(CLI::App& command, int& threads);
 
 /// Adds `--types FILE`: message types that are not part of Shoal.

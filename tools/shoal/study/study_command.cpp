@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <iostream>
 #include <memory>
 #include <stdexcept>
 
+#include "tools/command_line/checks.hpp"
+#include "tools/command_line/name_list.hpp"
 #include "tools/experiment/campaign/manifest.hpp"
+#include "tools/experiment/campaign/verified_runs.hpp"
 #include "tools/experiment/process/signals.hpp"
 #include "tools/experiment/study/study_results.hpp"
 #include "tools/experiment/world_files/world_by_name.hpp"
@@ -16,11 +20,21 @@ namespace tools {
 
 namespace {
 
+/// Loads a study by its path or name.
+LoadedStudy study_named(const std::string& path, const StudyChanges& changes) {
+  try {
+    return load_study(file_by_name({ShippedKind::study}, path), changes);
+  } catch (const std::invalid_argument& error) {
+    throw CLI::ValidationError("--algorithm", error.what());
+  }
+}
+
 int study(const std::string& path, const StudyChanges& changes, StudyOptions options) {
-  LoadedStudy loaded = load_study(file_by_name({ShippedKind::study}, path), changes);
+  LoadedStudy loaded = study_named(path, changes);
   if (options.output.empty()) options.output = usual_output(loaded, changes);
   options.allow_paths = changes.load.allow_paths;
   choose_jobs(loaded, options);
+  require_algorithms(loaded);
   catch_signals(true);
   try {
     std::vector<StudyRun> runs = plan_study(loaded, options.output);
@@ -40,9 +54,42 @@ int study(const std::string& path, const StudyChanges& changes, StudyOptions opt
   }
 }
 
+/// Executes runs again and compares them with those of a table, perhaps of someone else.
+int verify(const std::string& path, const StudyChanges& changes, StudyOptions options, const std::string& directory,
+           const std::vector<std::string>& cases) {
+  const LoadedStudy loaded = study_named(path, changes);
+  for (const std::string& name : cases)
+    if (std::none_of(loaded.config.cases.begin(), loaded.config.cases.end(),
+                     [&](const StudyCase& each) { return each.name == name; }))
+      throw CLI::ValidationError("--case", "the study has no case '" + name + "'");
+  if (options.output.empty()) options.output = usual_output(loaded, changes) + "_verified";
+  options.allow_paths = changes.load.allow_paths;
+  options.fresh = true;
+  choose_jobs(loaded, options);
+  require_algorithms(loaded);
+  catch_signals(true);
+  try {
+    const std::string table = directory + "/study.csv";
+    const std::vector<StudyRow> rows = parse_study_rows(read_whole_file(table), table);
+    std::vector<StudyRun> runs = plan_study(loaded, options.output);
+    std::vector<std::size_t> which;
+    for (std::size_t i = 0; i < runs.size(); ++i)
+      if (cases.empty() ||
+          std::find(cases.begin(), cases.end(), loaded.config.cases[runs[i].in_case].name) != cases.end())
+        which.push_back(i);
+    const std::size_t different = verify_runs(loaded, options, runs, which, rows);
+    if (caught_signal() != 0) return 128 + caught_signal();
+    return different > 0 ? exit_failed : exit_ok;
+  } catch (const std::runtime_error& error) {
+    std::cerr << "shoal: " << error.what() << '\n';
+    return exit_bus;
+  }
+}
+
 int plan(const std::string& path, const StudyChanges& changes, std::string output) {
-  const LoadedStudy loaded = load_study(file_by_name({ShippedKind::study}, path), changes);
+  const LoadedStudy loaded = study_named(path, changes);
   if (output.empty()) output = usual_output(loaded, changes);
+  require_algorithms(loaded);
   try {
     const std::vector<StudyRun> runs = plan_study(loaded, output);
     write_manifest(output, loaded, runs);
@@ -85,6 +132,7 @@ void add_study_plan_command(CLI::App& study_command, int& exit_code) {
   add_log_level_option(*command, "warn");
   command->add_option("STUDY", arguments->path, "study file, see docs/guides/campaigns.md")->required();
   add_change_options(*command, arguments->seeds, arguments->changes, arguments->output);
+  add_algorithm_option(*command, arguments->changes);
   add_allow_path_option(*command, arguments->changes.load);
   add_plugin_option(*command);
   command_line::set_help_end(*command, {{"shoal study plan coop_land --output results/sweep"},
@@ -104,16 +152,27 @@ void add_study_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("study", "Run a world with many seeds and settings, and compare");
   struct Arguments {
     std::string path, seeds;
+    std::string verified;
+    std::vector<std::string> cases;
     StudyChanges changes;
     StudyOptions options;
   };
   const auto arguments = std::make_shared<Arguments>();
   arguments->options.jobs = 0;
+  arguments->options.threads = 0;
   // Options.
   CLI::Option* log_level = add_log_level_option(*command, "warn");
   CLI::Option* path = command->add_option("STUDY", arguments->path, "study file, see docs/guides/scoring.md");
   add_change_options(*command, arguments->seeds, arguments->changes, arguments->options.output);
   add_jobs_options(*command, arguments->options);
+  add_algorithm_option(*command, arguments->changes);
+  CLI::Option* verified =
+      command
+          ->add_option("--verify", arguments->verified,
+                       "execute the runs again and compare them with study.csv in this folder, bit for bit")
+          ->type_name("DIR")
+          ->check(command_line::not_empty());
+  command_line::add_name_list(*command, "--case", arguments->cases, "with --verify: only these cases")->needs(verified);
   add_allow_path_option(*command, arguments->changes.load);
   add_plugin_option(*command);
   // Steps of a study.
@@ -125,9 +184,10 @@ void add_study_command(CLI::App& app, int& exit_code) {
                              {{"shoal study worlds/studies/coop_land.yaml --jobs 2",
                                "shoal study worlds/studies/coop_underwater.yaml --seeds 1-2 --duration 60",
                                "shoal report results/coop_land", "shoal study plan coop_land --output results/sweep",
-                               "shoal study run results/sweep --engine slurm", "shoal study collect results/sweep"},
-                              {{0, "no rule of the study failed"},
-                               {1, "a rule of the study failed"},
+                               "shoal study run results/sweep --engine slurm", "shoal study collect results/sweep",
+                               "shoal study benchmark --verify results/benchmark --case 03_team_dive --seeds 1003"},
+                              {{0, "no rule of the study failed; with --verify all runs are equal"},
+                               {1, "a rule of the study failed; with --verify a run differs"},
                                {2, "wrong usage, or a mistake in the study or its world"},
                                {4, "a run has no result, or a file error"},
                                {130, "ended by Ctrl-C"}},
@@ -140,7 +200,11 @@ void add_study_command(CLI::App& app, int& exit_code) {
     if (path->count() == 0) throw command_line::UsageError("STUDY is required, or a command: plan, run or collect");
     if (log_level->count() > 0 && !spdlog::should_log(spdlog::level::info)) arguments->options.quiet = true;
     take_seeds(arguments->seeds, arguments->changes);
-    exit_code = study(arguments->path, arguments->changes, arguments->options);
+    if (!arguments->verified.empty())
+      exit_code =
+          verify(arguments->path, arguments->changes, arguments->options, arguments->verified, arguments->cases);
+    else
+      exit_code = study(arguments->path, arguments->changes, arguments->options);
   });
 }
 

@@ -7,10 +7,13 @@
 #include <iostream>
 #include <thread>
 
+#include "tools/command_line/name_list.hpp"
+#include "tools/experiment/campaign/outside_program.hpp"
 #include "tools/experiment/campaign/study_database.hpp"
 #include "tools/experiment/files/file_replacement.hpp"
 #include "tools/experiment/process/signals.hpp"
 #include "tools/experiment/report/report_page.hpp"
+#include "tools/experiment/study/study_algorithms.hpp"
 #include "tools/experiment/study/study_results.hpp"
 #include "tools/shoal/options/shared_options.hpp"
 
@@ -27,11 +30,11 @@ void choose_jobs(const LoadedStudy& study, StudyOptions& options) {
     sim::throw_config_error(shared->place, shared->who,
                             "runs at the same time cannot have one serial port, '" + shared->path +
                                 "': put {run} into its path, or use --jobs 1");
-  if (options.jobs > 0) return;
-  options.jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency() / 2));
-  if (!shared || options.jobs == 1) return;
-  options.jobs = 1;
-  if (!options.quiet)
+  const int processors = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  const bool chosen = options.jobs > 0;
+  if (!chosen) options.jobs = shared ? 1 : std::max(1, processors / 2);
+  if (options.threads == 0) options.threads = std::max(1, processors / options.jobs);
+  if (!chosen && shared && processors > 3 && !options.quiet)
     std::cerr << "one run at a time: all have the serial port '" << shared->path
               << "'; with {run} in its path each has its own\n";
 }
@@ -53,11 +56,34 @@ void add_jobs_options(CLI::App& command, StudyOptions& options) {
   command.add_option("--jobs", options.jobs, "runs at the same time; 0: one for every two processors")
       ->type_name("N")
       ->check(whole_from(0, 64));
+  command
+      .add_option("--threads", options.threads,
+                  "threads of each run, which share the work of a step; 0: the processors shared among the runs")
+      ->type_name("N")
+      ->check(whole_from(0, 256));
   command.add_option("--run-timeout", options.run_timeout_s, "wall time after which a run is ended and has failed")
       ->type_name("S")
       ->check(number_from(0, 1e9));
   command.add_flag("--fresh", options.fresh, "repeat runs that are complete");
   command.add_flag("--quiet", options.quiet, "no progress");
+}
+
+void require_algorithms(const LoadedStudy& study) {
+  std::string names;
+  for (const std::string& algorithm : study.config.algorithms) names += (names.empty() ? "" : ",") + algorithm;
+  if (names.empty()) return;
+  const ProgramOutput output = output_of({algorithm_program(), "--list", "--algorithm", names});
+  if (output.exit_code == 0) return;
+  const std::string start = "shoal-nav: ";
+  std::string text = output.text.starts_with(start) ? output.text.substr(start.size()) : output.text;
+  text.resize(std::min(text.find("\nSee "), text.size()));
+  while (text.ends_with('\n')) text.pop_back();
+  sim::throw_config_error(study.config.algorithms_place, "", "'algorithms': " + text);
+}
+
+void add_algorithm_option(CLI::App& command, StudyChanges& changes) {
+  command_line::add_name_list(command, "--algorithm", changes.algorithms,
+                              "algorithms of shoal-nav in addition to those of the study, such as python:FILE.Class");
 }
 
 }  // namespace tools

@@ -21,6 +21,12 @@ int collect_results(LoadedStudy& study, std::vector<StudyRun>& runs, const std::
 /// Adds --jobs, --fresh, --run-timeout and --quiet.
 void add_jobs_options(CLI::App& command, StudyOptions& options);
 
+/// Throws sim::ConfigError when `shoal-nav` does not know an algorithm of a study.
+void require_algorithms(const LoadedStudy& study);
+
+/// Adds --algorithm.
+void add_algorithm_option(CLI::App& command, StudyChanges& changes);
+
 void add_study_run_command(CLI::App& study_command, int& exit_code);
 void add_study_collect_command(CLI::App& study_command, int& exit_code);
 

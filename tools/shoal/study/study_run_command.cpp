@@ -22,6 +22,7 @@ namespace {
 struct StudyRunArguments {
   std::string directory, indices, engine = "local";
   sim::LoadOptions load;
+  StudyChanges changes;  ///< only its algorithms
   EngineOptions options;
   bool no_wait = false;
 };
@@ -66,7 +67,7 @@ int run_planned(StudyRunArguments& arguments) {
   try {
     const Manifest manifest(arguments.directory);
     std::vector<std::size_t> which = chosen_runs(arguments, manifest.size());
-    PlannedStudy planned = load_planned(manifest, arguments.load);
+    PlannedStudy planned = load_planned(manifest, arguments.load, arguments.changes.algorithms);
     check_planned(manifest, planned, which);
     StudyOptions& options = arguments.options.study;
     options.output = arguments.directory;
@@ -77,7 +78,9 @@ int run_planned(StudyRunArguments& arguments) {
     // The processors of this machine say nothing about those of a cluster.
     if (arguments.engine == "slurm" && options.jobs == 0) options.jobs = 1;
     choose_jobs(planned.study, options);
+    require_algorithms(planned.study);
     arguments.options.wait = !arguments.no_wait;
+    arguments.options.algorithms = arguments.changes.algorithms;
     StudyProgress progress{which.size()};
     // Chosen runs are executed whether the result is certain or not.
     if (!arguments.indices.empty() || !planned.study.config.until) {
@@ -99,11 +102,12 @@ int run_planned(StudyRunArguments& arguments) {
   }
 }
 
-int collect(const std::string& directory, const sim::LoadOptions& load, bool show, bool quiet) {
+int collect(const std::string& directory, const sim::LoadOptions& load, const StudyChanges& changes, bool show,
+            bool quiet) {
   catch_signals(true);
   try {
     const Manifest manifest(directory);
-    PlannedStudy planned = load_planned(manifest, load);
+    PlannedStudy planned = load_planned(manifest, load, changes.algorithms);
     check_outputs(directory, planned.study.config);
     for (StudyRun& run : planned.runs) read_result(planned.study, true, run);
     if (show) show_extreme_runs(planned.study, planned.runs, directory, load.allow_paths);
@@ -122,6 +126,7 @@ void add_study_run_command(CLI::App& study_command, int& exit_code) {
   const auto arguments = std::make_shared<StudyRunArguments>();
   EngineOptions& options = arguments->options;
   options.study.jobs = 0;
+  options.study.threads = 0;
   // Options.
   CLI::Option* log_level = add_log_level_option(*command, "warn");
   command->add_option("DIR", arguments->directory, "folder with the manifest of `shoal study plan`")->required();
@@ -132,6 +137,7 @@ void add_study_run_command(CLI::App& study_command, int& exit_code) {
       ->type_name("ENGINE")
       ->check(one_of({"local", "parallel", "slurm"}));
   add_jobs_options(*command, options.study);
+  add_algorithm_option(*command, arguments->changes);
   command->add_option("--chunk", options.chunk, "runs of one job of GNU parallel or Slurm; 0: chosen by their number")
       ->type_name("N")
       ->check(whole_from(0, 100000));
@@ -167,6 +173,7 @@ void add_study_collect_command(CLI::App& study_command, int& exit_code) {
   struct Arguments {
     std::string directory;
     sim::LoadOptions load;
+    StudyChanges changes;
     bool show = false, quiet = false;
   };
   const auto arguments = std::make_shared<Arguments>();
@@ -176,6 +183,7 @@ void add_study_collect_command(CLI::App& study_command, int& exit_code) {
       "--show", arguments->show,
       "execute the runs with the greatest and smallest figures again, each with its page in three dimensions");
   command->add_flag("--quiet", arguments->quiet, "no message about the files");
+  add_algorithm_option(*command, arguments->changes);
   add_allow_path_option(*command, arguments->load);
   add_plugin_option(*command);
   command_line::set_help_end(*command, {{"shoal study collect results/sweep"},
@@ -185,7 +193,7 @@ void add_study_collect_command(CLI::App& study_command, int& exit_code) {
                                          {4, "a run has no result, or a file error"}},
                                         {}});
   command->callback([arguments, &exit_code] {
-    exit_code = collect(arguments->directory, arguments->load, arguments->show, arguments->quiet);
+    exit_code = collect(arguments->directory, arguments->load, arguments->changes, arguments->show, arguments->quiet);
   });
 }
 

@@ -93,6 +93,7 @@ void add_tune_command(CLI::App& app, int& exit_code) {
   const auto arguments = std::make_shared<TuneArguments>();
   TuneOptions& options = arguments->options;
   options.study.jobs = 0;
+  options.study.threads = 0;
   // Options.
   CLI::Option* log_level = add_log_level_option(*command, "warn");
   command->add_option("STUDY", arguments->path, "study file with factors that are ranges")->required();

@@ -141,7 +141,9 @@ TEST(RunFiles, AHalfWrittenMarkIsNone) {
   EXPECT_FALSE(tools::read_stamp(directory));
   tools::write_failure(directory, {"0123456789abcdef", "two\nlines"});
   EXPECT_EQ(tools::read_failure(directory)->reason, "two\nlines");
-  tools::remove_marks(directory);
+  tools::StudyRun run;
+  run.directory = directory;
+  tools::remove_marks(run);
   EXPECT_FALSE(tools::read_failure(directory));
 }
 

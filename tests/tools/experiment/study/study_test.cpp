@@ -184,7 +184,7 @@ TEST(StudyConfig, WorldIsAFileBesideItOrAShippedOneByName) {
   const ScratchFolder folder;
   const auto world_of = [&](const std::string& world) {
     write(folder.file("study.yaml"), "shoal: 1\nstudy: own\nworld: " + world + "\nseeds: [1]\n");
-    return tools::load_study(folder.file("study.yaml")).config.world;
+    return tools::load_study(folder.file("study.yaml")).config.cases.front().world;
   };
   const std::string shipped =
       std::filesystem::path(test_support::source_path("worlds/minimal.yaml")).lexically_normal();

@@ -17,8 +17,9 @@ namespace fs = std::filesystem;
 
 std::vector<std::string> shipped_worlds() {
   std::vector<std::string> names;
-  for (const auto& file : fs::directory_iterator(test_support::source_path("worlds")))
-    if (file.path().extension() == ".yaml") names.push_back(file.path().stem().string());
+  for (const char* folder : {"", "benchmark/"})
+    for (const auto& file : fs::directory_iterator(test_support::source_path("worlds/") + folder))
+      if (file.path().extension() == ".yaml") names.push_back(folder + file.path().stem().string());
   std::sort(names.begin(), names.end());
   return names;
 }
@@ -38,7 +39,10 @@ TEST_P(ShippedWorld, IsNotWarnedOf) {
   EXPECT_EQ(log.text(), "");
 }
 
-INSTANTIATE_TEST_SUITE_P(Warnings, ShippedWorld, testing::ValuesIn(shipped_worlds()),
-                         [](const auto& world) { return world.param; });
+INSTANTIATE_TEST_SUITE_P(Warnings, ShippedWorld, testing::ValuesIn(shipped_worlds()), [](const auto& world) {
+  std::string name = world.param;
+  std::replace(name.begin(), name.end(), '/', '_');
+  return name;
+});
 
 }  // namespace

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sim/config/diagnostics.hpp"
+#include "tests/fuzz/fuzz_target.hpp"
+#include "tools/experiment/trajectory/mrclam_data.hpp"
+
+// Each file of a MR.CLAM data set.
+
+SHOAL_FUZZ_TARGET(mrclam) {
+  const std::string_view text = fuzz::text_of(input);
+  fuzz::allow<sim::ConfigError>([&] { tools::parse_mrclam_barcodes(text, "Barcodes.dat"); });
+  fuzz::allow<sim::ConfigError>([&] { tools::parse_mrclam_landmarks(text, "Landmark_Groundtruth.dat"); });
+  fuzz::allow<sim::ConfigError>([&] { tools::parse_mrclam_odometry(text, "Robot1_Odometry.dat"); });
+  fuzz::allow<sim::ConfigError>(
+      [&] { fuzz::require(!tools::parse_mrclam_truth(text, "Robot1_Groundtruth.dat").empty(), "a robot has a pose"); });
+  fuzz::allow<sim::ConfigError>([&] {
+    tools::MrclamData::Robot robot;
+    tools::parse_mrclam_measurements(text, "Robot1_Measurement.dat", {{5, 1}, {14, 2}, {72, 6}}, robot);
+    double before_s = 0;
+    for (const auto& measurement : robot.measurements) {
+      fuzz::require(measurement.time_s >= before_s && measurement.subject > 0, "measurements in order, of subjects");
+      before_s = measurement.time_s;
+    }
+  });
+}

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Groups that are far from everything are not looked at by the collision search, and single bodies that touch nothing
+// are not stepped by ODE.  Neither may matter to what they meet, or to what rays see.
+#include "sim/physics/far_groups.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <set>
+#include <vector>
+
+#include "tests/sim/physics/small_worlds.hpp"
+#include "tests/state_hash_of.hpp"
+
+namespace {
+
+using namespace small_worlds;
+
+sim::AlignedBox cube(double x, double half = 1) {
+  return {{x - half, -half, -half}, {x + half, half, half}};
+}
+
+TEST(FarGroups, AreThoseWhoseBoxesMeetNoOthers) {
+  sim::FarGroups groups;
+  groups.clear(5);
+  groups.set(0, cube(0));
+  groups.set(1, cube(1.5));
+  groups.set(2, cube(10));
+  groups.set(4, cube(20));
+  groups.find(std::vector{cube(20.5, 0.1)});
+  EXPECT_FALSE(groups.far(0));
+  EXPECT_FALSE(groups.far(1));
+  EXPECT_TRUE(groups.far(2));
+  EXPECT_FALSE(groups.far(3)) << "without a box";
+  EXPECT_FALSE(groups.far(4)) << "at a fixed part";
+  EXPECT_EQ(groups.count(), 1u);
+}
+
+TEST(FarGroups, AreNearToAnEndlessGround) {
+  sim::FarGroups groups;
+  groups.clear(2);
+  groups.set(0, cube(0));
+  groups.set(1, {{0, 0, 5}, {1, 1, 6}});
+  constexpr double endless = std::numeric_limits<double>::infinity();
+  groups.find(std::vector<sim::AlignedBox>{{{-endless, -endless, -endless}, {endless, endless, 0}}});
+  EXPECT_FALSE(groups.far(0));
+  EXPECT_TRUE(groups.far(1));
+}
+
+TEST(FarGroups, ComeNearWhenABoxMovesIntoTheirs) {
+  sim::FarGroups groups;
+  groups.clear(3);
+  for (const int group : {0, 1, 2}) groups.set(group, cube(10 * group));
+  groups.find({});
+  EXPECT_EQ(groups.count(), 3u);
+  std::set<int> near;
+  groups.move(0, cube(9), [&](int group) { near.insert(group); });
+  EXPECT_EQ(near, (std::set<int>{0, 1}));
+  EXPECT_TRUE(groups.far(2));
+  groups.remove(1);
+  groups.move(3, cube(11), [&](int group) { near.insert(group); });
+  EXPECT_EQ(near, (std::set<int>{0, 1, 3})) << "a new group meets the one at 9, not the removed one";
+}
+
+PhysicsConfig far_from_planets() {
+  return with_step(0.01, 0);
+}
+
+sim::Body& add_ball(PhysicsWorld& world, const std::string& name, double x_m, double v_x_mps) {
+  sim::Body& ball = add(world, body(name, {sphere(0.5, 1)}), translation(x_m, 0, 0));
+  ball.set_velocity_W({v_x_mps, 0, 0}, Vector3d::Zero());
+  return ball;
+}
+
+/// Returns the number of the first step with a contact; -1: none.
+int first_contact(PhysicsWorld& world, int steps) {
+  for (int i = 0; i < steps; ++i) {
+    world.step(i);
+    if (world.last_step().contacts > 0) return i;
+  }
+  return -1;
+}
+
+TEST(FarGroups, TouchInTheFirstStepThatBeginsWithOverlap) {
+  for (const double v : {0.5, 3.0, 40.0}) {
+    const std::unique_ptr<PhysicsWorld> world = make_world(far_from_planets());
+    add_ball(*world, "waiting", 0, 0);
+    add_ball(*world, "coming", -20.251, v);
+    // The gap of 19.251 m is closed after 19.251 / v; the step after that has the contact.
+    EXPECT_EQ(first_contact(*world, 4200), static_cast<int>(std::ceil(19.251 / v / 0.01))) << v << " m/s";
+  }
+}
+
+TEST(FarGroups, TouchWhenTheyArePlacedNextToEachOther) {
+  const std::unique_ptr<PhysicsWorld> world = make_world(far_from_planets());
+  add_ball(*world, "waiting", 0, 0);
+  sim::Body& other = add_ball(*world, "other", 100, 0);
+  EXPECT_EQ(first_contact(*world, 10), -1);
+  world->move_group(other.group(), translation(-99.1, 0, 0));
+  EXPECT_EQ(first_contact(*world, 1), 0);
+}
+
+TEST(FarGroups, TouchAWallThatIsPlacedNextToThem) {
+  const std::unique_ptr<PhysicsWorld> world = make_world(far_from_planets());
+  add_ball(*world, "waiting", 0, 0);
+  sim::Body& wall = add(*world, body("wall", {box({1, 1, 1}, 0)}), translation(100, 0, 0), Motion::fixed);
+  EXPECT_EQ(first_contact(*world, 10), -1);
+  wall.set_pose(translation(0.9, 0, 0));
+  EXPECT_EQ(first_contact(*world, 1), 0);
+}
+
+TEST(FarGroups, TouchWhatIsAddedNextToThem) {
+  const std::unique_ptr<PhysicsWorld> world = make_world(far_from_planets());
+  add_ball(*world, "waiting", 0, 0);
+  EXPECT_EQ(first_contact(*world, 10), -1);
+  add_ball(*world, "added", 0.9, 0);
+  EXPECT_EQ(first_contact(*world, 1), 0);
+}
+
+TEST(FarGroups, AreSeenByRaysWhereTheyAre) {
+  for (const auto& [word, library] : sim::ray_library_words) {
+    PhysicsConfig config = far_from_planets();
+    config.rays = library;
+    const std::unique_ptr<PhysicsWorld> world = make_world(config);
+    PartConfig nose = at(sphere(0.5, 1), {1, 0, 0});  // beside the centre of mass
+    sim::Body& flying = add(*world, body("flying", {sphere(0.5, 1), nose}), translation(0, 0, 0));
+    flying.set_velocity_W({2, 0, 0}, Vector3d::Zero());
+    for (int i = 0; i < 300; ++i) world->step(i);
+    // After 3 s at 2 m/s the nose is 7 m ahead; seen from 20 m its surface is at 20 - 7.5.
+    const auto hit = world->scene().cast({20, 0, 0}, -Vector3d::UnitX(), 100, {});
+    ASSERT_TRUE(hit) << word;
+    EXPECT_NEAR(hit->range_m, 12.5, 1e-9) << word;
+    // Its box is exact as well: of the first part, from 5.5 to 6.5 m.
+    const auto bounds = world->bounds_W(0);
+    ASSERT_TRUE(bounds);
+    EXPECT_NEAR(bounds->min().x(), 5.5, 1e-9);
+    EXPECT_NEAR(bounds->max().x(), 6.5, 1e-9);
+  }
+}
+
+TEST(FarGroups, DoNotMatterToTheMotionOfOthers) {
+  // Two balls that collide, alone and beside a crowd that is near a ground: then nothing is far.
+  const auto run = [](bool ground) {
+    const std::unique_ptr<PhysicsWorld> world = make_world(far_from_planets());
+    sim::Body& a = add_ball(*world, "a", -5, 1);
+    sim::Body& b = add_ball(*world, "b", 5, -1.5);
+    if (ground) {
+      add_ground(*world, translation(0, 0, -100));
+      for (int i = 0; i < 40; ++i)
+        add(*world, body("stone" + std::to_string(i), {sphere(0.1, 1)}), translation(3 * i, 50, -99.95));
+    }
+    for (int i = 0; i < 600; ++i) world->step(i);
+    EXPECT_NE(a.v_WB_W().x(), 1) << "they did not meet";
+    return test::state_hash_of(a) ^ test::state_hash_of(b);
+  };
+  EXPECT_EQ(run(false), run(true));
+}
+
+TEST(FarGroups, OfKinematicBodiesAreWhereTheyWerePlaced) {
+  // The pose of a body that moves without ODE has the bits of one that is placed there.
+  const std::unique_ptr<PhysicsWorld> world = make_world(far_from_planets());
+  sim::Body& moved = add(*world, body("moved", {box({1, 2, 3}, 0)}), translation(0, 0, 0), Motion::kinematic);
+  sim::Body& placed = add(*world, body("placed", {box({1, 2, 3}, 0)}), translation(0, 50, 0), Motion::kinematic);
+  for (int i = 0; i < 50; ++i) {
+    Pose X = sim::make_pose({0.01 * i, 0, 0}, {0.3 * (i / 10), 0.2 * (i / 10), -0.11 * (i / 10)});
+    moved.move_to(X, 0.01);
+    world->step(i);
+    placed.set_pose(X);
+    EXPECT_EQ(moved.X_WB().matrix(), placed.X_WB().matrix()) << i;
+  }
+}
+
+}  // namespace

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "tests/project_paths.hpp"
+#include "tests/scratch_folder.hpp"
+#include "tests/tools/navigation/algorithms/conversation.hpp"
+#include "tools/navigation/driver/navigator.hpp"
+
+namespace {
+
+using namespace navigation;
+using test::heard_from;
+using test::nav_second;
+using test::nav_setup;
+using test::started;
+
+std::string error_of(const std::string& algorithm) {
+  try {
+    started(algorithm, nav_setup(2, 0, {0, 0}, 1))->now(0);
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+/// A class `Mine` with these lines in its own file.
+std::string python_with(const test_support::ScratchFolder& folder, const std::string& name, const std::string& lines) {
+  std::ofstream(folder.file(name + ".py")) << "class Mine:\n" << lines;
+  return "python:" + folder.file(name) + ".Mine";
+}
+
+TEST(PythonEstimator, TheExampleIsTheNaiveFilter) {
+  const std::string example = "python:" + test_support::source_path("examples/navigation/naive.Naive");
+  const auto python = started(example, nav_setup(2, 0, {10, 20}, 2)),
+             cpp = started("naive", nav_setup(2, 0, {10, 20}, 2));
+  const Bytes payload = started("naive", nav_setup(2, 1, {-300, 50}, 3))->say(0, 100);
+  for (Estimator* each : {python.get(), cpp.get()}) {
+    Matrix2 q;
+    q << 0.2, 0.05, 0.05, 0.1;
+    each->moved(10 * nav_second, {1, -0.5}, q);
+    each->heard(heard_from(1, payload, 325, 1, 10 * nav_second));
+    each->moved(20 * nav_second, {1, -0.5}, q);
+    each->fix(20 * nav_second, {31, 9}, 2);
+  }
+  const Estimate a = python->now(21 * nav_second), b = cpp->now(21 * nav_second);
+  EXPECT_LT((a.p_W - b.p_W).norm(), 1e-3);  // the other one adds the variance of the bend, 3 (5 / 650)^2 m^2
+  EXPECT_LT((a.P - b.P).norm(), 1e-3);
+  EXPECT_EQ(python->say(20 * nav_second, 100).size(), position_bytes);
+}
+
+TEST(PythonEstimator, ACopyIsIndependent) {
+  const auto first =
+      started("python:" + test_support::source_path("examples/navigation/naive.Naive"), nav_setup(2, 0, {0, 0}, 1));
+  const auto copy = first->clone();
+  first->moved(nav_second, {1, 0}, Matrix2::Zero());
+  EXPECT_NEAR(first->now(nav_second).p_W.x(), 1, 1e-12);
+  EXPECT_NEAR(copy->now(0).p_W.x(), 0, 1e-12);
+}
+
+TEST(PythonEstimator, AMistakeIsSaidWithItsLine) {
+  const test_support::ScratchFolder folder;
+  const std::string start = "  def start(self, s): self.x = s.position\n";
+  EXPECT_NE(error_of(python_with(folder, "a", start + "  def now(self, t): return self.y, 1\n"))
+                .find(".Mine: AttributeError: 'Mine' object has no attribute 'y' (a.py:3)"),
+            std::string::npos);
+  EXPECT_NE(error_of(python_with(folder, "b", "  def start(self, s) return\n")).find("SyntaxError"), std::string::npos);
+  EXPECT_NE(
+      error_of(python_with(folder, "c", start + "  def now(self, t): return [float('nan'), 0], [[1, 0], [0, 1]]\n"))
+          .find("not finite"),
+      std::string::npos);
+  EXPECT_NE(error_of(python_with(folder, "n", start + "  def now(self, t): return [0, 0], [[-1, 0], [0, 1]]\n"))
+                .find("symmetric and positive definite"),
+            std::string::npos);
+  EXPECT_NE(error_of(python_with(folder, "o", start + "  def now(self, t): return [0, 0, 0], [[1, 0], [0, 1]]\n"))
+                .find("two coordinates"),
+            std::string::npos);
+}
+
+TEST(PythonEstimator, AFileThatEndsItsInterpreterIsSaid) {
+  const test_support::ScratchFolder folder;
+  python_with(folder, "q", "  pass\nimport os\nos._exit(0)\n");
+  EXPECT_NE(error_of("python:" + folder.file("q") + ".Mine").find("its interpreter has ended"), std::string::npos);
+}
+
+TEST(PythonEstimator, WhatIsNotThereIsSaid) {
+  EXPECT_NE(error_of("python:/nowhere/file.Mine").find("FileNotFoundError"), std::string::npos);
+  EXPECT_EQ(error_of("python:Mine"), "an algorithm in Python is python:FILE.Class, got 'python:Mine'");
+  const test_support::ScratchFolder folder;
+  python_with(folder, "d", "  pass\n");
+  EXPECT_NE(error_of("python:" + folder.file("d") + ".Other").find("has no class Other"), std::string::npos);
+}
+
+TEST(PythonEstimator, PlainListsAreEnough) {
+  const test_support::ScratchFolder folder;
+  const auto own =
+      started(python_with(folder, "e",
+                          "  def start(self, s): self.x = list(s.position); self.t = s.time\n"
+                          "  def moved(self, t, v, q): self.x[0] += v[0] * (t - self.t); self.t = t; print('moved')\n"
+                          "  def say(self, t, max_bytes): return bytes([1, 2, max_bytes])\n"
+                          "  def now(self, t): return self.x, [[1, 0], [0, 1]]\n"),
+              nav_setup(2, 0, {5, 0}, 1));
+  own->moved(2 * nav_second, {1, 0}, Matrix2::Zero());
+  own->saw({});
+  EXPECT_NEAR(own->now(2 * nav_second).p_W.x(), 7, 1e-9);
+  EXPECT_EQ(own->say(2 * nav_second, 22), (Bytes{1, 2, 22}));
+}
+
+}  // namespace

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sim/base/math.hpp"
+
+namespace tools {
+
+/// Estimates of a position that another program wrote, in the world frame.
+struct EstimateFile {
+  struct Row {
+    double time_s = 0;
+    sim::Vector3d position_m = sim::Vector3d::Zero();
+    std::optional<sim::Matrix3d> covariance_m2;
+  };
+  std::vector<Row> rows;    ///< by increasing time
+  bool has_height = false;  ///< z is in the file; else it is 0
+};
+
+/// Reads a text of one of these forms, with `#` comments:
+///
+/// - TUM: `t x y z qx qy qz qw`, separated by blanks; the orientation is checked and not used;
+/// - CSV with the names of its columns in the first line: t, x, y, and optionally z and the covariance, xx, xy, yy, and
+///   with z also xz, yz, zz; further columns are not read;
+/// - CSV without names: t, x, y or t, x, y, z.
+///
+/// Times in s, positions in m.  `file`: name for errors.  Throws sim::ConfigError.
+EstimateFile parse_estimates(std::string_view text, const std::string& file);
+
+}  // namespace tools

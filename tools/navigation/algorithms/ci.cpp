@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "tools/navigation/estimator/estimator_registry.hpp"
+#include "tools/navigation/filter/minimum.hpp"
+#include "tools/navigation/filter/own_filter.hpp"
+
+namespace navigation {
+
+namespace {
+
+/// Covariance intersection (Julier and Uhlmann, ACC 1997) with a partial measurement, as by Chang, Chen and Mehta
+/// (IEEE T-RO, 2021): the correlation of own and sender's estimate is unknown, that of the range with both is 0.
+///
+///     P1 = P / w,   B1 = B / (1 - w),   S = u' P1 u + u' B1 u + R,   K = P1 u / S,   P+ = (I - K u') P1
+///
+/// w in (0, 1] gives the least trace of the position; w = 1 means no update.  A sender whose fixes by
+/// satellite replaced all that it said before is independent, and says so: the range is used without inflation.
+class CovarianceIntersection final : public OwnFilterEstimator<CovarianceIntersection> {
+ public:
+  static constexpr const char* meaning = "covariance intersection: never too sure, whatever the correlation";
+
+  void start(const Setup& setup) override {
+    need_bytes(setup, "ci", position_bytes + 1);
+    OwnFilterEstimator::start(setup);
+  }
+  void heard(const Heard& heard) override {
+    PayloadReader reader(heard.payload);
+    const auto sender = read_position(reader);
+    const bool is_independent = reader.whole(1) != 0;
+    if (!sender || !reader.ok()) return;
+    const JointFilter::RangeRow row = filter_.range_row(own, *sender, heard.own_z_m - heard.sender_z_m);
+    const double R = heard.std_m * heard.std_m + row.bend_variance_m2 +
+                     sender_clock_variance_m2(setup_, heard.sender, heard.toa - setup_.time);
+    const double b = row.u.dot(sender->P * row.u);
+    const double innovation_m = heard.range_m - row.predicted_m;
+    const Eigen::VectorXd PH = filter_.P() * row.H;
+    const double a = row.H.dot(PH);
+    if (!std::isfinite(innovation_m) || !filter_.within_gate(innovation_m, a + b + R)) return;
+    independence_.shared();
+    if (is_independent) {
+      filter_.update(row.H, innovation_m, b + R);
+      return;
+    }
+    const double trace = filter_.covariance(own).trace();
+    const double gained = PH.head<2>().squaredNorm();
+    const Minimum best = minimum_between(
+        0.01, 0.999, [&](double w) { return trace / w - gained / (w * w * (a / w + b / (1 - w) + R)); });
+    if (!(best.value < trace)) return;
+    filter_.set_P(filter_.P() / best.at);
+    filter_.update(row.H, innovation_m, b / (1 - best.at) + R);
+  }
+  void saw(const Relative& seen) override {
+    const auto other = position_in(seen.payload);
+    if (!other) return;
+    const JointFilter::RelativeRow row = filter_.relative_row(own, *other, seen);
+    const Matrix2 B = row.J * other->P * row.J.transpose();
+    const Vector2 variances(seen.range_std_m * seen.range_std_m, seen.bearing_std_rad * seen.bearing_std_rad);
+    const Matrix2 R = Matrix2(variances.asDiagonal()) + row.bend;
+    const Eigen::MatrixXd PH = filter_.P() * row.H.transpose();
+    const Matrix2 A = row.H * PH;
+    if (!row.innovation.allFinite() || !filter_.within_gate(row.innovation, A + B + R)) return;
+    const Minimum best = minimum_between(0.01, 0.999, [&](double w) {
+      const Matrix2 S = A / w + B / (1 - w) + R;
+      const Matrix2 gained = PH.topRows<2>() * S.inverse() * PH.topRows<2>().transpose();
+      return filter_.covariance(own).trace() / w - gained.trace() / (w * w);
+    });
+    if (!(best.value < filter_.covariance(own).trace())) return;
+    independence_.shared();
+    filter_.set_P(filter_.P() / best.at);
+    filter_.update(row.H, row.innovation, B / (1 - best.at) + R);
+  }
+  Bytes say(Time time, std::size_t) override {
+    Bytes payload = payload_of(own_position(time));
+    payload.push_back(independence_.is_independent() ? 1 : 0);
+    independence_.shared();
+    return payload;
+  }
+};
+
+SHOAL_ESTIMATOR("ci", CovarianceIntersection);
+
+}  // namespace
+
+}  // namespace navigation

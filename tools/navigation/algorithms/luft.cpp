@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <Eigen/LU>
+#include <map>
+#include <utility>
+
+#include "tools/navigation/estimator/estimator_registry.hpp"
+#include "tools/navigation/filter/joint_filter.hpp"
+
+namespace navigation {
+
+namespace {
+
+/// Recursive decentralised localisation with pairwise communication (Luft, Schubert, Roumeliotis and Burgard, IJRR
+/// 37(10), 2018).  Each vehicle keeps its own state and a factor s_ij for each other, with P_ij = s_ij s_ji':
+///
+///     motion       s_ij <- F_i s_ij
+///     own update   s_ij <- (I - K H) s_ij
+///     i sees j     P_ij = s_ij s_ji', joint update, s_ij <- P_ij+, s_ji <- I, and for all others k
+///                  s_ik <- P_ii+ P_ii^-1 s_ik   (the one approximation; the same for j)
+///
+/// Only the two that meet exchange data, which needs both directions: it runs from a record, as if they had.
+class PairwiseCommunication final : public TeamEstimator {
+ public:
+  static constexpr const char* meaning = "pairwise communication of those that meet, with factored correlations";
+
+  void start(int vehicle, const Setup& setup) override {
+    Own& own = vehicles_[vehicle];
+    own.filter = JointFilter(setup.sound_speed_mps, setup.gate);
+    own.filter.add(setup.errors(), setup.time, setup.position_W, setup.position_std_m);
+  }
+  void moved(int vehicle, Time time, const Vector2& v_W, const Matrix2& q) override {
+    Own& own = vehicles_.at(vehicle);
+    const Eigen::MatrixXd F = own.filter.jacobian(number, time, v_W);
+    own.filter.move(number, time, v_W, q);
+    for (auto& [other, s] : own.factors) s = (F * s).eval();
+  }
+  void fix(int vehicle, Time, const Vector2& p_W, double std_m) override {
+    Own& own = vehicles_.at(vehicle);
+    const Eigen::MatrixXd P = own.filter.P();
+    own.filter.fix(number, p_W, std_m);
+    // P+ = (I - K H) P.
+    const Eigen::MatrixXd kept = own.filter.P() * P.inverse();
+    for (auto& [other, s] : own.factors) s = (kept * s).eval();
+  }
+  void sent(int, Time) override {}
+  void heard(int vehicle, const Heard& heard) override {
+    if (!vehicles_.contains(heard.sender)) return;
+    meet(vehicle, heard.sender,
+         [&](JointFilter& both) { both.range(0, 1, heard.own_z_m - heard.sender_z_m, heard.range_m, heard.std_m); });
+  }
+  void saw(int vehicle, const Relative& seen) override {
+    if (!vehicles_.contains(seen.other)) return;
+    meet(vehicle, seen.other, [&](JointFilter& both) {
+      const JointFilter::RelativeRow row = both.relative_row(0, 1, seen);
+      const Vector2 variances(seen.range_std_m * seen.range_std_m, seen.bearing_std_rad * seen.bearing_std_rad);
+      both.see(row, variances.asDiagonal());
+    });
+  }
+  Estimate now(int vehicle, Time time) const override { return vehicles_.at(vehicle).filter.now(number, time); }
+
+ private:
+  static constexpr int number = 0;  ///< of each vehicle in its own filter
+
+  struct Own {
+    JointFilter filter;
+    std::map<int, Eigen::MatrixXd> factors;  ///< s_ij, by j; none: 0
+  };
+
+  template <class Update>
+  void meet(int i, int j, const Update& update) {
+    Own& a = vehicles_.at(i);
+    Own& b = vehicles_.at(j);
+    const int n = a.filter.size(), m = b.filter.size();
+    JointFilter both = a.filter.joined_with(b.filter);
+    Eigen::MatrixXd P = both.P();
+    if (a.factors.contains(j) && b.factors.contains(i)) {
+      const Eigen::MatrixXd across = a.factors.at(j) * b.factors.at(i).transpose();
+      P.topRightCorner(n, m) = across;
+      P.bottomLeftCorner(m, n) = across.transpose();
+      both.set_P(P);
+    }
+    update(both);
+    const Eigen::MatrixXd P_after = both.P();
+    const Eigen::MatrixXd kept_a = P_after.topLeftCorner(n, n) * P.topLeftCorner(n, n).inverse();
+    const Eigen::MatrixXd kept_b = P_after.bottomRightCorner(m, m) * P.bottomRightCorner(m, m).inverse();
+    for (auto& [other, s] : a.factors) s = (kept_a * s).eval();
+    for (auto& [other, s] : b.factors) s = (kept_b * s).eval();
+    a.factors[j] = P_after.topRightCorner(n, m);
+    b.factors[i] = Eigen::MatrixXd::Identity(m, m);
+    a.filter.set_x(both.x().head(n));
+    a.filter.set_P(P_after.topLeftCorner(n, n));
+    b.filter.set_x(both.x().tail(m));
+    b.filter.set_P(P_after.bottomRightCorner(m, m));
+  }
+
+  std::map<int, Own> vehicles_;
+};
+
+SHOAL_TEAM_ESTIMATOR("luft", PairwiseCommunication);
+
+}  // namespace
+
+}  // namespace navigation

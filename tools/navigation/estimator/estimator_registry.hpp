@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "tools/navigation/estimator/estimator.hpp"
+
+namespace navigation {
+
+/// Registered algorithm; one of the two makers is set.
+struct Algorithm {
+  std::string name;
+  std::string meaning;
+  std::function<std::unique_ptr<Estimator>()> make;
+  std::function<std::unique_ptr<TeamEstimator>()> make_team;  ///< of a reference that runs from a record only
+  bool on_land = true;                                        ///< it says what it does with sights of other vehicles
+};
+
+/// Returns the algorithm with this name, or one of a family: `python:FILE.Class`.  Throws std::invalid_argument, with
+/// the known names.
+const Algorithm& algorithm_named(const std::string& name);
+/// Returns all, by name.
+std::vector<const Algorithm*> all_algorithms();
+
+namespace detail {
+bool add_algorithm(Algorithm algorithm);
+/// Registers algorithms that are made by the rest of their name.
+bool add_family(std::string prefix, std::function<Algorithm(const std::string& rest)> make);
+}  // namespace detail
+
+/// Whether an estimator has a saw() of its own.
+template <class Type>
+inline constexpr bool has_own_saw = !std::is_same_v<decltype(&Type::saw), void (Estimator::*)(const Relative&)>;
+
+/// Registers an algorithm, in its own file: an Estimator with `static constexpr const char* meaning`.  Without a saw()
+/// of its own it does not work on land.
+#define SHOAL_ESTIMATOR(name, Type)                                                                     \
+  [[maybe_unused]] static const bool registered_estimator_##Type = ::navigation::detail::add_algorithm( \
+      {name, Type::meaning, [] { return std::make_unique<Type>(); }, {}, ::navigation::has_own_saw<Type>})
+
+/// Registers a TeamEstimator.
+#define SHOAL_TEAM_ESTIMATOR(name, Type)                           \
+  [[maybe_unused]] static const bool registered_estimator_##Type = \
+      ::navigation::detail::add_algorithm({name, Type::meaning, {}, [] { return std::make_unique<Type>(); }, true})
+
+}  // namespace navigation
