@@ -3,7 +3,8 @@
 #include "tests/fuzz/fuzz_input.hpp"
 #include "tests/fuzz/scratch_file.hpp"
 #include "tools/experiment/fidelity/fidelity.hpp"
-#include "tools/experiment/study/study_config.hpp"
+#include "tools/experiment/study/load_study.hpp"
+#include "tools/experiment/study/study_seeds.hpp"
 
 // Files of experiments: studies, cases of the fidelity report and their references.
 

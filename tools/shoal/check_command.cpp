@@ -14,7 +14,7 @@
 #include "sim/world_file/vehicle_loader.hpp"
 #include "tools/experiment/process/process_check.hpp"
 #include "tools/experiment/process/world_programs.hpp"
-#include "tools/experiment/study/study_config.hpp"
+#include "tools/experiment/study/load_study.hpp"
 #include "tools/experiment/world_files/world_by_name.hpp"
 #include "tools/shoal/commands.hpp"
 

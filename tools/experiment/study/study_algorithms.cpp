@@ -4,6 +4,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -93,6 +94,12 @@ std::string algorithm_label(const std::string& algorithm) {
   if (!algorithm.starts_with(python_prefix)) return algorithm;
   const std::size_t dot = algorithm.find_last_of('.');
   return dot == std::string::npos ? algorithm : algorithm.substr(dot + 1);
+}
+
+bool is_algorithm_label(const std::string& name) {
+  return !name.empty() && std::all_of(name.begin(), name.end(), [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
+  });
 }
 
 std::string source_of(const std::string& algorithm) {

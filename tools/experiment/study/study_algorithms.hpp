@@ -25,6 +25,8 @@ inline constexpr const char* time_of_event = "us_per_event";
 
 /// Returns the name of an algorithm in figures: its own, or the class of `python:FILE.Class`.
 std::string algorithm_label(const std::string& algorithm);
+/// Whether a name may be one: letters, digits and _.
+bool is_algorithm_label(const std::string& name);
 /// Returns the text of the file of `python:FILE.Class`, on which the results depend; empty for other algorithms.
 std::string source_of(const std::string& algorithm);
 /// Returns `LABEL.FIGURE` of all algorithms.

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "tools/experiment/results/run_record.hpp"
-#include "tools/experiment/study/study_config.hpp"
+#include "tools/experiment/study/load_study.hpp"
 
 namespace tools {
 
