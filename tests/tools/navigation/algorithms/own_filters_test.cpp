@@ -156,6 +156,27 @@ TEST(SplitCovarianceIntersection, IsNeverTooSureOfCommonInformation) {
   EXPECT_GE(own->now(0).P(0, 0), 36.0 / 13 - 0.01);
 }
 
+// On straight lines of equal range, with a linear motion, least squares over the trajectory are the Kalman filter.
+TEST(FixedLagSmoother, IsTheKalmanFilterOfALinearProblem) {
+  navigation::Setup setup = nav_setup(2, 0, {0, 0}, 2);
+  setup.team[0].errors.clock_s = 0.001;
+  setup.team[0].errors.clock_drift = 1e-6;  // a state without noise
+  const auto smoother = started("fls", setup), filter = started("naive", setup);
+  const auto sender = started("naive", nav_setup(2, 1, {-far_m, 0}, 3));
+  for (int i = 1; i <= 30; ++i) {  // 300 s: the oldest are marginalised
+    const Time now = 10 * i * nav_second;
+    for (const auto& own : {smoother.get(), filter.get()}) {
+      own->moved(now, {0.1, 0}, 0.01 * Matrix2::Identity());
+      own->heard(heard_from(1, sender->say(0, 100), far_m + i + (i % 3), 1, now));
+      if (i % 10 == 0) own->fix(now, {i + 0.5, -0.2}, 1);
+    }
+    const Estimate a = smoother->now(now), b = filter->now(now);
+    EXPECT_NEAR((a.p_W - b.p_W).norm(), 0, 1e-3) << i;  // points of equal range bend by (2 m)^2 / far_m
+    EXPECT_TRUE(a.P.isApprox(b.P, 1e-3)) << i;
+    EXPECT_NEAR(a.clock_error_s, b.clock_error_s, 1e-6) << i;
+  }
+}
+
 TEST(FixedLagSmoother, FindsAStartThatIsWrongByHundredsOfMetres) {
   navigation::Setup setup = nav_setup(3, 0, {0, 0}, 200);
   const auto smoother = started("fls", setup);

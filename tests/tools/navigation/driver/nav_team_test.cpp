@@ -147,6 +147,32 @@ TEST(VehicleReports, PlansTheTransmissionOfASynchronousModem) {
   EXPECT_EQ(reports.transmission(), 6'000'000);
 }
 
+VehicleReports reports_after_fix(const std::shared_ptr<const NavTeam>& team) {
+  VehicleReports reports(team, 0, {});
+  shoal::gps_data_t fix{};
+  fix.utime = 9'000'000;
+  fix.gps_lock = 1;
+  reports.receive(fix);
+  return reports;
+}
+
+/// Packet that took 0.2 s.
+shoal::acoustic_received_t packet_of_b() {
+  shoal::acoustic_received_t packet{};
+  packet.source = "b";
+  packet.utime = 10'200'000;
+  packet.sent_utime = 10'000'000;
+  packet.travel_time_s = 0.2;
+  return packet;
+}
+
+NavFrame frame_of_b() {
+  NavFrame frame;
+  frame.sender = 1;
+  frame.payload_time = 10'000'000;
+  return frame;
+}
+
 TEST(VehicleReports, RangesHaveTheErrorsOfClocksAndDepths) {
   const auto team = std::make_shared<const NavTeam>(team_of_text(R"(
 shoal: 1
@@ -159,19 +185,9 @@ vehicles:
   - {name: b, model: {shoal: 1, bodies: [{name: hull, kinematic: true, parts: [{shape: sphere, radius_m: 0.1}]}],
      devices: [{name: modem, type: acoustic_modem}]}}
 )"));
-  VehicleReports reports(team, 0, {});
-  shoal::gps_data_t fix{};
-  fix.utime = 9'000'000;
-  fix.gps_lock = 1;
-  reports.receive(fix);
-  shoal::acoustic_received_t packet{};
-  packet.source = "b";
-  packet.utime = 10'200'000;
-  packet.sent_utime = 10'000'000;
-  packet.travel_time_s = 0.2;
-  NavFrame frame;
-  frame.sender = 1;
-  frame.payload_time = 10'000'000;
+  VehicleReports reports = reports_after_fix(team);
+  shoal::acoustic_received_t packet = packet_of_b();
+  NavFrame frame = frame_of_b();
   // Stamps rounded down to 1 ms: 1500 m/s * 1 ms / sqrt(12).
   const double stamps_m = 1.5 / std::sqrt(12.0);
   EXPECT_NEAR(reports.heard(packet, frame)->heard.std_m, stamps_m, 1e-3);
@@ -191,19 +207,9 @@ vehicles:
   - {name: b, model: {shoal: 1, bodies: [{name: hull, kinematic: true, parts: [{shape: sphere, radius_m: 0.1}]}],
      devices: [{name: modem, type: acoustic_modem}]}}
 )"));
-  VehicleReports reports(team, 0, {});
-  shoal::gps_data_t fix{};
-  fix.utime = 9'000'000;
-  fix.gps_lock = 1;
-  reports.receive(fix);
-  shoal::acoustic_received_t packet{};
-  packet.source = "b";
-  packet.utime = 10'200'000;
-  packet.sent_utime = 10'000'000;
-  packet.travel_time_s = 0.2;
-  NavFrame frame;
-  frame.sender = 1;
-  frame.payload_time = 10'000'000;
+  VehicleReports reports = reports_after_fix(team);
+  shoal::acoustic_received_t packet = packet_of_b();
+  NavFrame frame = frame_of_b();
   const auto event = reports.heard(packet, frame);
   ASSERT_TRUE(event);
   EXPECT_NEAR(event->heard.range_m, 0.2 * team->sound.mean_speed_mps(0, 0), 1e-9);
