@@ -96,12 +96,20 @@ void EventQueue::drop_device(int device) {
   for (auto& [slice, entries] : slices_) std::erase_if(entries, of_device);
 }
 
+/// Calls use(entry) in the order of delivery.  Slices are sorted one by one, which is faster than all events at once.
 template <typename Use>
-void EventQueue::for_each(const Use& use) const {
-  for (std::size_t i = next_; i < sorted_.size(); ++i) use(sorted_[i]);
-  for (const Entry& entry : late_) use(entry);
-  for (const auto& [slice, entries] : slices_)
-    for (const Entry& entry : entries) use(entry);
+void EventQueue::for_each_in_order(const Use& use) const {
+  std::vector<Entry> ordered(sorted_.begin() + static_cast<std::ptrdiff_t>(next_), sorted_.end());
+  ordered.insert(ordered.end(), late_.begin(), late_.end());
+  const auto use_sorted = [&] {
+    std::sort(ordered.begin(), ordered.end(), Earlier());
+    for (const Entry& entry : ordered) use(entry);
+  };
+  use_sorted();
+  for (const auto& [slice, entries] : slices_) {
+    ordered = entries;
+    use_sorted();
+  }
 }
 
 /// Visits the events in the order of delivery, because their storage depends on the history.
@@ -122,14 +130,10 @@ void EventQueue::visit_state(StateArchive& archive) {
     }
     return;
   }
-  // Hash or save the events, sorted by time of delivery.
-  std::vector<Entry> ordered;
-  ordered.reserve(size_);
-  for_each([&](const Entry& entry) { ordered.push_back(entry); });
-  std::sort(ordered.begin(), ordered.end(), Earlier());
-  auto size = static_cast<std::uint64_t>(ordered.size());  // format of archive(std::vector<Event>)
+  // Hash or save the events.
+  auto size = static_cast<std::uint64_t>(size_);  // format of archive(std::vector<Event>)
   archive(size);
-  for (const Entry& entry : ordered) {
+  for_each_in_order([&](const Entry& entry) {
     Event event{entry.due, entry.sequence, entry.device, entry.kind, entry.stamp, {}};
     // Move payloads out and back, so that hashing copies no camera images.
     Bytes* const payload =
@@ -137,7 +141,7 @@ void EventQueue::visit_state(StateArchive& archive) {
     if (payload != nullptr) std::swap(event.payload, *payload);
     archive(event);
     if (payload != nullptr) std::swap(event.payload, *payload);
-  }
+  });
 }
 
 }  // namespace sim

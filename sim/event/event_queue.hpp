@@ -84,7 +84,7 @@ class EventQueue {
   void reach(std::int64_t slice);
   Event take(const Entry& entry);
   template <typename Use>
-  void for_each(const Use& use) const;
+  void for_each_in_order(const Use& use) const;
 
   std::vector<Entry> sorted_;  // up to the slice `reached_`; those before `next_` have been taken
   std::size_t next_ = 0;
