@@ -195,7 +195,7 @@ class FixedLagSmoother final : public OwnFilterEstimator<FixedLagSmoother> {
   static constexpr double lag_s = 120;
   /// Fixes each second would make the problem large, while they need no smoothing.
   static constexpr std::size_t max_nodes = 40;
-  /// Noise and weights are computed anew at the trajectory of the first solution.
+  /// Noise and weights are computed again at the trajectory of the first solution.
   static constexpr int passes = 2;
 
   void start(const Setup& setup) override {
