@@ -42,8 +42,8 @@ std::uint64_t folded(std::uint64_t a, std::uint64_t b) {
 /// Hash of a motion: the sum of products of pairs of words with keys, in the manner of the hash NH (Black et al., UMAC,
 /// 1999).  The products do not wait for each other, which a chain would.
 std::uint64_t motion_hash(const BodyMotion& motion) {
-  const double* const parts[] = {motion.R_WB.data(),       motion.R_WB.data() + 3, motion.R_WB.data() + 6,
-                                 motion.p_WB.data(),       motion.v_WB_W.data(),   motion.w_WB_W.data()};
+  const double* const parts[] = {motion.R_WB.data(), motion.R_WB.data() + 3, motion.R_WB.data() + 6,
+                                 motion.p_WB.data(), motion.v_WB_W.data(),   motion.w_WB_W.data()};
   std::uint64_t words[motion_words];
   for (std::size_t i = 0; i < std::size(parts); ++i) std::memcpy(words + 3 * i, parts[i], 3 * sizeof words[0]);
   std::uint64_t sum = 0;
