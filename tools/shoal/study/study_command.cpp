@@ -12,6 +12,7 @@
 #include "tools/experiment/campaign/verified_runs.hpp"
 #include "tools/experiment/process/signals.hpp"
 #include "tools/experiment/study/study_results.hpp"
+#include "tools/experiment/study/study_seeds.hpp"
 #include "tools/experiment/world_files/world_by_name.hpp"
 #include "tools/shoal/study/study_commands.hpp"
 #include "tools/shoal/study/study_parts.hpp"

@@ -13,6 +13,7 @@
 #include "tools/experiment/results/results.hpp"
 #include "tools/experiment/study/study_curves.hpp"
 #include "tools/experiment/study/study_results.hpp"
+#include "tools/experiment/study/study_seeds.hpp"
 
 namespace {
 
