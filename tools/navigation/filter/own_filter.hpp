@@ -66,7 +66,7 @@ class OwnFilterEstimator : public EstimatorOf<Own> {
     Matrix2 R = row.J * other->P * row.J.transpose();
     R(0, 0) += seen.range_std_m * seen.range_std_m;
     R(1, 1) += seen.bearing_std_rad * seen.bearing_std_rad;
-    filter_.see(row, R);
+    filter_.see(own, row, R);
   }
 
   Setup setup_;
