@@ -86,7 +86,7 @@ struct VehicleErrors {
   struct Usbl {
     Point sensor;
     double range_std_m = 0;
-    double azimuth_std_rad = 0;  ///< with the error of a heading that is no state: of a vehicle without DVL
+    double azimuth_std_rad = 0;  ///< with the error of a heading that is not a state: of a vehicle without DVL
     double elevation_std_rad = 0;
   };
   std::optional<Usbl> usbl;

@@ -33,7 +33,7 @@ struct NavVehicle {
   double stamp_std_s = 0;        ///< error of a stamp, by the resolution of the clock
   double depth_std_m = 0;        ///< white error of the depth, by pressure
   // White errors of USBL; that of the azimuth has the parts of the heading that are not white, too, in a vehicle
-  // without DVL, where they are no states.
+  // without DVL, where they are not states.
   double usbl_range_std_m = 0, usbl_azimuth_std_rad = 0, usbl_elevation_std_rad = 0;
 };
 

@@ -68,6 +68,8 @@ struct PlannedFolder {
 
 TEST(Manifest, KeepsTheAlgorithmsThatWereAdded) {
   PlannedFolder folder;
+  folder.write("small.yaml", test::rover_world("        - {name: gps, type: gps}\n", "", "",
+                                               "metrics: [{name: b, type: bound, vehicle: r1}]\n"));
   folder.write_study("seeds: [3, 4]\nlaunch: true\nalgorithms: [dr]\n");
   tools::StudyChanges changes;
   changes.algorithms = {"ci"};

@@ -103,10 +103,10 @@ TEST(BoundMetric, CountsSightsByUSBLOfItsScope) {
                         "{name: dvl, type: dvl}, {name: ahrs, type: ahrs}, {name: modem, type: acoustic_modem}, "
                         "{name: transponder, type: transponder}",
                         ""},
-                       {"boat", "[40, 0, -2]",
-                        "{name: gps, type: gps, rate_hz: 1, phase_s: 0, horizontal_noise: {gaussian_std: 0.5}}, "
-                        "{name: modem, type: acoustic_modem}, {name: ahrs, type: ahrs}, "
-                        "{name: usbl, type: usbl, rate_hz: 10, ping_period_s: 1, range_noise: {gaussian_std: 0.4}}",
+                       {"boat", "[40, 0, 0]",
+                        "{name: gps, type: gps, position_m: [0, 0, 1], rate_hz: 1, phase_s: 0, horizontal_noise: {gaussian_std: 0.5}}, "
+                        "{name: modem, type: acoustic_modem, position_m: [0, 0, -1]}, {name: ahrs, type: ahrs}, "
+                        "{name: usbl, type: usbl, position_m: [0, 0, -1], rate_hz: 10, ping_period_s: 1, range_noise: {gaussian_std: 0.4}}",
                         ""}},
                       "metrics:\n"
                       "  - {name: all, type: bound, vehicle: auv, start_std_m: 10}\n"

@@ -139,7 +139,7 @@ TEST(JointFilter, FiveRefusedSightsInARowOpenThePosition) {
   const Matrix2 R = navigation::Vector2(0.01, 1e-4).asDiagonal();
   const auto see = [&] { return filter.see(rover, filter.relative_row(rover, other, seen), R); };
   for (int i = 0; i < 4; ++i) EXPECT_EQ(see(), JointFilter::Outcome::refused);
-  // One that fits begins the row anew.
+  // One that fits begins the row again.
   seen.range_m = 20;
   EXPECT_EQ(see(), JointFilter::Outcome::used);
   seen.range_m = 10;
