@@ -351,12 +351,14 @@ JointFilter::RelativeRow JointFilter::relative_row(int own, int other, const Rel
   return row;
 }
 
+bool JointFilter::within_gate(const Vector2& innovation, const Matrix2& S) const {
+  return gate_ <= 0 || innovation.dot(S.inverse() * innovation) <= position_gate;
+}
+
 bool JointFilter::admits(int own, const RelativeRow& row, const Matrix2& R) {
   if (!row.innovation.allFinite()) return false;
-  if (gate_ <= 0) return true;
   Part& part = at(own);
-  const Matrix2 S = row.H * P_ * row.H.transpose() + R + row.bend;
-  if (!(row.innovation.dot(S.inverse() * row.innovation) <= position_gate)) {
+  if (!within_gate(row.innovation, row.H * P_ * row.H.transpose() + R + row.bend)) {
     if (++part.refused_sights < max_refused) return false;
     open_position(part, row.J.inverse() * row.innovation);
   }

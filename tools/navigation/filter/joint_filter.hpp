@@ -99,7 +99,8 @@ class JointFilter {
   void update(const Eigen::MatrixXd& H, const Eigen::VectorXd& innovation, const Eigen::MatrixXd& R);
   /// Multiplies a part of the information into that of a position: information matrix L and vector about the position.
   void inform(int part, const Matrix2& L, const Vector2& eta);
-  /// Whether an innovation is within the gate.
+  /// Whether an innovation is within the gate; of two numbers within that of the same probability, 99.9 %.
+  bool within_gate(const Vector2& innovation, const Matrix2& S) const;
   bool within_gate(double innovation, double variance) const {
     return gate_ <= 0 || innovation * innovation <= gate_ * variance;
   }

@@ -98,20 +98,21 @@ TEST(BoundMetric, CountsThePacketsOfItsScope) {
 }
 
 TEST(BoundMetric, CountsSightsByUSBLOfItsScope) {
-  const std::string world =
-      test::modem_sea({{"auv", "[0, 0, -10]",
-                        "{name: dvl, type: dvl}, {name: ahrs, type: ahrs}, {name: modem, type: acoustic_modem}, "
-                        "{name: transponder, type: transponder}",
-                        ""},
-                       {"boat", "[40, 0, 0]",
-                        "{name: gps, type: gps, position_m: [0, 0, 1], rate_hz: 1, phase_s: 0, horizontal_noise: {gaussian_std: 0.5}}, "
-                        "{name: modem, type: acoustic_modem, position_m: [0, 0, -1]}, {name: ahrs, type: ahrs}, "
-                        "{name: usbl, type: usbl, position_m: [0, 0, -1], rate_hz: 10, ping_period_s: 1, range_noise: {gaussian_std: 0.4}}",
-                        ""}},
-                      "metrics:\n"
-                      "  - {name: all, type: bound, vehicle: auv, start_std_m: 10}\n"
-                      "  - {name: own, type: bound, vehicle: auv, of: received, start_std_m: 10}\n"
-                      "  - {name: none, type: bound, vehicle: auv, of: alone, start_std_m: 10}\n");
+  const std::string world = test::modem_sea(
+      {{"auv", "[0, 0, -10]",
+        "{name: dvl, type: dvl}, {name: ahrs, type: ahrs}, {name: modem, type: acoustic_modem}, "
+        "{name: transponder, type: transponder}",
+        ""},
+       {"boat", "[40, 0, 0]",
+        "{name: gps, type: gps, position_m: [0, 0, 1], rate_hz: 1, phase_s: 0, horizontal_noise: {gaussian_std: 0.5}}, "
+        "{name: modem, type: acoustic_modem, position_m: [0, 0, -1]}, {name: ahrs, type: ahrs}, "
+        "{name: usbl, type: usbl, position_m: [0, 0, -1], rate_hz: 10, ping_period_s: 1, range_noise: {gaussian_std: "
+        "0.4}}",
+        ""}},
+      "metrics:\n"
+      "  - {name: all, type: bound, vehicle: auv, start_std_m: 10}\n"
+      "  - {name: own, type: bound, vehicle: auv, of: received, start_std_m: 10}\n"
+      "  - {name: none, type: bound, vehicle: auv, of: alone, start_std_m: 10}\n");
   test::TestWorld test(world);
   tools::Scoring scoring(test.world);
   while (test.world.now() < sim::from_seconds(20)) {
