@@ -22,7 +22,8 @@ SHOAL_FUZZ_TARGET(nav_frame) {
   }
   if (const auto frame = decode_frame(bytes, tol)) {
     const auto again = decode_frame(encode_frame(*frame, bytes.size()), frame->payload_time);
-    fuzz::require(again && again->payload == frame->payload && again->payload_time == frame->payload_time,
+    fuzz::require(again && again->payload == frame->payload && again->payload_time == frame->payload_time &&
+                      again->sights.size() == frame->sights.size(),
                   "a frame that was received can be sent");
   }
   if (!algorithm.make) return;
@@ -39,6 +40,13 @@ SHOAL_FUZZ_TARGET(nav_frame) {
     heard.toa = i * Time{1'000'000};
     estimator->moved(heard.toa, {1, 0.5}, 0.01 * Matrix2::Identity());
     estimator->heard(heard);
+    Relative seen;
+    seen.time = heard.toa;
+    seen.other = 1;
+    seen.range_m = 100;
+    seen.by_other = i % 2 == 0;
+    seen.payload = bytes;
+    estimator->saw(seen);
     fuzz::require(estimator->say(heard.toa, setup.payload_bytes).size() <= setup.payload_bytes, "a payload fits");
   }
 }

@@ -147,6 +147,15 @@ void TeamBound::add_sighting(sim::Time at, int observer, int other) {
   add_event(at, event);
 }
 
+void TeamBound::add_usbl(sim::Time at, int observer, int other) {
+  if (is_late(at) || !errors(observer).usbl) return;
+  Event event;
+  event.what = What::usbl;
+  event.site = {observer, errors(observer).usbl->sensor.at_V};
+  event.other = other;
+  add_event(at, event);
+}
+
 TeamBound::Pose TeamBound::pose_at(int vehicle, sim::Time at) const {
   const auto v = static_cast<std::size_t>(vehicle);
   const auto after = std::lower_bound(motions_.begin(), motions_.end(), at,
@@ -287,6 +296,7 @@ void TeamBound::handle(const Event& event, sim::Time at) {
       use_fix(event, at);
       return;
     case What::sighting:
+    case What::usbl:
       use_sighting(event, at);
       return;
     case What::sending:
@@ -344,7 +354,8 @@ void TeamBound::use_sighting(const Event& event, sim::Time at) {
   const Layout& other = layouts_[static_cast<std::size_t>(event.other)];
   const Pose observer = pose_at(event.site.vehicle, at);
   // z = R^T (p_other - p_own) - lever: the heading turns the whole vector.
-  const Vector2d d = (pose_at(event.other, at).p_W - observer.p_W).head<2>();
+  const sim::Vector3d d_W = pose_at(event.other, at).p_W - observer.p_W;
+  const Vector2d d = d_W.head<2>();
   const Matrix2d Rt = rotation2(observer.yaw_rad).transpose();
   MatrixXd H = MatrixXd::Zero(2, covariance_.size());
   H.middleCols<2>(own.first) = -Rt;
@@ -352,9 +363,24 @@ void TeamBound::use_sighting(const Event& event, sim::Time at) {
   const Vector2d turn = -Rt * left_of(d);
   if (own.heading >= 0) H.col(own.first + own.heading) = turn;
   for (const SlowState& state : own.headings) H.col(own.first + state.index) = turn;
-  const double variance_m2 = std::max(square_of(errors(event.site.vehicle).sightings->white_std_m), min_variance_m2);
-  covariance_.update(H, variance_m2 * Matrix2d::Identity());
+  sim::Vector3d d_V = d_W;
+  d_V.head<2>() = Rt * d;
+  covariance_.update(H, sight_covariance(event, d_V));
   ++result_.sightings;
+}
+
+Matrix2d TeamBound::sight_covariance(const Event& event, const sim::Vector3d& d_V) const {
+  const VehicleErrors& own = errors(event.site.vehicle);
+  if (event.what == What::sighting)
+    return std::max(square_of(own.sightings->white_std_m), min_variance_m2) * Matrix2d::Identity();
+  // USBL: range r and elevation e along the level, (cos e dr)^2 + (r sin e de)^2, and the azimuth across it.
+  const double level_m = d_V.head<2>().norm(), range_m = d_V.norm();
+  const Vector2d u = level_m > 0 ? Vector2d(d_V.head<2>() / level_m) : Vector2d::UnitX();
+  const double cosine = range_m > 0 ? level_m / range_m : 1;
+  const double along_m2 = square_of(cosine * own.usbl->range_std_m) + square_of(d_V.z() * own.usbl->elevation_std_rad);
+  const double across_m2 = square_of(level_m * own.usbl->azimuth_std_rad);
+  return std::max(along_m2, min_variance_m2) * u * u.transpose() +
+         std::max(across_m2, min_variance_m2) * left_of(u) * left_of(u).transpose();
 }
 
 void TeamBound::visit_state(sim::StateArchive& archive) {
@@ -375,7 +401,8 @@ void TeamBound::check_restored(const sim::StateArchive& archive) const {
     archive.require(event.site.vehicle, 0, size() - 1, "a vehicle");
     archive.require(event.other, 0, size() - 1, "a vehicle");
     const VehicleErrors& own = errors(event.site.vehicle);
-    if ((event.what == What::fix && !own.gps) || (event.what == What::sighting && !own.sightings))
+    if ((event.what == What::fix && !own.gps) || (event.what == What::sighting && !own.sightings) ||
+        (event.what == What::usbl && !own.usbl))
       archive.fail("a measurement that its vehicle cannot take");
   }
 }

@@ -75,6 +75,8 @@ class TeamBound {
   void add_range(sim::Time sent, const Site& sender, sim::Time arrived, const Site& receiver, sim::Time known,
                  double more_variance_m2);
   void add_sighting(sim::Time at, int observer, int other);
+  /// A sight by USBL, at the arrival of the sound.
+  void add_usbl(sim::Time at, int observer, int other);
   /// Processes everything before a time, which must not be later than the last poses.
   void advance(sim::Time until);
   /// Processes a copy of everything that was added, and returns the result.
@@ -104,11 +106,11 @@ class TeamBound {
     bool scores = false;
     void visit_state(sim::StateArchive& archive) { archive(at, poses, scores); }
   };
-  enum class What { fix, sending, arrival, range, sighting };
+  enum class What { fix, sending, arrival, range, sighting, usbl };
   struct Event {
     What what = What::fix;
     Site site;      ///< receiver of the fix, sender or receiver of the sound, observer
-    int other = 0;  ///< sighting: vehicle that is seen
+    int other = 0;  ///< sighting, USBL: vehicle that is seen
     std::int64_t packet = 0;
     Eigen::Vector2d toward = Eigen::Vector2d::Zero();  ///< horizontal part of the unit vector from sender to receiver
     double range_m = 0, sound_speed_mps = 0, variance_m2 = 0;
@@ -127,6 +129,8 @@ class TeamBound {
   void handle(const Event& event, sim::Time at);
   void use_fix(const Event& event, sim::Time at);
   void use_sighting(const Event& event, sim::Time at);
+  /// Returns the covariance of the error of a sight, in the axes of the observer, of a displacement there.
+  Eigen::Matrix2d sight_covariance(const Event& event, const sim::Vector3d& d_V) const;
   /// Returns the row of the displacement of a point along `direction`.
   Eigen::RowVectorXd point_row(const Site& site, sim::Time at, const Eigen::Vector2d& direction) const;
   Eigen::RowVectorXd clock_row(int vehicle, double sound_speed_mps) const;

@@ -11,6 +11,7 @@
 #include "devices/navigation/gps.hpp"
 #include "devices/navigation/odometry.hpp"
 #include "devices/navigation/swarm_position.hpp"
+#include "devices/sound_positioning/usbl.hpp"
 #include "sim/device/device_registry.hpp"
 
 namespace tools {
@@ -75,6 +76,17 @@ void read_wheels(const FirstDevice<devices::Odometry>& odometry, const sim::Vehi
   errors.turn_noise_radprts = std::numbers::sqrt2 * per_wheel_mprts / track_m;
 }
 
+/// Direction in the world needs a heading.
+void read_usbl(const FirstDevice<devices::Usbl>& usbl, const QuantityErrors& heading, VehicleErrors& errors) {
+  errors.usbl = VehicleErrors::Usbl{{usbl.device->name, usbl.device->position_m},
+                                    errors_of(usbl.params->range_noise).white_std,
+                                    std::hypot(errors_of(usbl.params->azimuth_noise).white_std, heading.white_std),
+                                    errors_of(usbl.params->elevation_noise).white_std};
+  if (errors.motion == VehicleErrors::Motion::measured_velocity) return;
+  for (const SlowError& slow : heading.slow)
+    errors.usbl->azimuth_std_rad = std::hypot(errors.usbl->azimuth_std_rad, slow.initial_std);
+}
+
 void read_clock(const sim::ClockConfig& clock, VehicleErrors& errors) {
   constexpr double ppm = 1e-6;
   errors.clock_offset_std_s = std::hypot(clock.offset_std_s, clock.offset_s);
@@ -119,6 +131,8 @@ VehicleErrors errors_of(const sim::VehicleConfig& vehicle, double step_s) {
   if (const FirstDevice<devices::SwarmPosition> sensor(vehicle); sensor)
     errors.sightings = VehicleErrors::Sightings{{sensor.device->name, sensor.device->position_m},
                                                 errors_of(sensor.params->relative_noise).white_std};
+  if (const FirstDevice<devices::Usbl> usbl(vehicle); usbl && (ahrs || compass))
+    read_usbl(usbl, errors_of(ahrs ? ahrs.params->heading_noise : compass.params->heading_noise), errors);
   read_clock(vehicle.clock, errors);
   return errors;
 }

@@ -82,6 +82,15 @@ struct VehicleErrors {
   };
   std::optional<Sightings> sightings;
 
+  /// USBL of other vehicles.
+  struct Usbl {
+    Point sensor;
+    double range_std_m = 0;
+    double azimuth_std_rad = 0;  ///< with the error of a heading that is not a state: of a vehicle without DVL
+    double elevation_std_rad = 0;
+  };
+  std::optional<Usbl> usbl;
+
   // Clock, which is perfect when all are 0.
   double clock_offset_std_s = 0;
   double clock_drift_std = 0;        ///< a fraction

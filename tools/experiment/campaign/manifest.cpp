@@ -3,6 +3,7 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
 #include <charconv>
 #include <filesystem>
 #include <fstream>
@@ -119,6 +120,11 @@ void Manifest::read_head(std::string_view line) {
   }
   if (seeds_.empty() || seeds_.size() > runs_)
     throw std::runtime_error(where + ": 'seeds' must be at least one, and not more than the runs");
+  if (!in.has("algorithms")) return;
+  for (const Json& algorithm : in.list("algorithms")) {
+    if (!algorithm.is_string()) throw std::runtime_error(where + ": 'algorithms' must be names");
+    algorithms_.push_back(algorithm.get<std::string>());
+  }
 }
 
 ManifestRun Manifest::run(std::size_t index) const {
@@ -144,6 +150,7 @@ std::string manifest_text(const LoadedStudy& study, const std::vector<StudyRun>&
             {"duration_s", nullptr},    {"seeds", config.seeds},
             {"shoal", short_version()}};
   if (config.duration_s) head["duration_s"] = *config.duration_s;
+  if (!config.added_algorithms.empty()) head["algorithms"] = config.added_algorithms;
   std::string text = head.dump() + "\n";
   for (const StudyRun& run : runs) {
     Json line{{"index", run.index},
@@ -174,10 +181,18 @@ PlannedStudy load_planned(const Manifest& manifest, const sim::LoadOptions& load
   changes.seeds = manifest.seeds();
   changes.duration_s = manifest.duration_s();
   changes.load = load;
-  changes.algorithms = algorithms;
+  changes.algorithms = manifest.algorithms();
+  for (const std::string& algorithm : algorithms)
+    if (std::find(changes.algorithms.begin(), changes.algorithms.end(), algorithm) == changes.algorithms.end())
+      changes.algorithms.push_back(algorithm);
   changes.planned = true;
   PlannedStudy planned;
-  planned.study = load_study(manifest.study(), changes);
+  try {
+    planned.study = load_study(manifest.study(), changes);
+  } catch (const std::invalid_argument& error) {
+    if (!algorithms.empty()) throw;
+    throw std::runtime_error(manifest_path(manifest.directory()) + ":1: 'algorithms': " + error.what());
+  }
   planned.runs = plan_study(planned.study, manifest.directory());
   if (planned.runs.size() != manifest.size())
     throw std::runtime_error(fmt::format("{}: {} has {} runs now, but {} are planned; plan it again",

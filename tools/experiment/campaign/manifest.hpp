@@ -31,6 +31,8 @@ class Manifest {
   const std::string& study() const { return study_; }  ///< absolute path of its file
   const std::vector<std::int64_t>& seeds() const { return seeds_; }
   std::optional<double> duration_s() const { return duration_s_; }
+  /// Algorithms in addition to those of the study.
+  const std::vector<std::string>& algorithms() const { return algorithms_; }
   std::size_t size() const { return lines_.size(); }
   /// Reads the line of a run; `index` from 1 to size().
   ManifestRun run(std::size_t index) const;
@@ -40,6 +42,7 @@ class Manifest {
 
   std::string directory_, path_, text_, study_;
   std::vector<std::int64_t> seeds_;
+  std::vector<std::string> algorithms_;
   std::optional<double> duration_s_;
   std::size_t runs_ = 0;
   std::vector<std::string_view> lines_;  ///< of the runs
@@ -60,8 +63,8 @@ struct PlannedStudy {
   std::vector<StudyRun> runs;
 };
 
-/// Loads the study of a manifest, with further algorithms.  Throws std::runtime_error when it has another number of
-/// runs now, and sim::ConfigError.
+/// Loads the study of a manifest, with its algorithms and further ones.  Throws std::runtime_error when it has another
+/// number of runs now, and sim::ConfigError.
 PlannedStudy load_planned(const Manifest& manifest, const sim::LoadOptions& load,
                           const std::vector<std::string>& algorithms = {});
 

@@ -7,6 +7,7 @@
 #include "shoal/gps_data_t.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/swarm_position_t.hpp"
+#include "shoal/usbl_t.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/world_file/world_config.hpp"
 #include "tools/experiment/bound/team_bound.hpp"
@@ -44,12 +45,12 @@ class BoundMetric final : public Metric {
             {"max_m", "m", "largest standard deviation of the position"},
             {"ranges", "packets", "acoustic packets within the team, used as ranges", true},
             {"fixes", "fixes", "GPS positions of the team", true},
-            {"sightings", "sightings", "relative positions measured within the team", true}};
+            {"sightings", "sightings", "relative positions measured within the team, also by USBL", true}};
   }
   /// Measurements of the team that count, besides fixes and dead reckoning.
   enum class Scope {
     team,      ///< those of all vehicles
-    received,  ///< the packets that the vehicle received, and its sightings
+    received,  ///< the packets that the vehicle received, its sightings, and those by USBL of it
     alone,     ///< none
   };
   struct Params final : sim::MetricParams {
@@ -72,7 +73,7 @@ class BoundMetric final : public Metric {
  private:
   struct Member {
     std::string name;
-    std::unique_ptr<sim::Mailbox> fixes, sightings;
+    std::unique_ptr<sim::Mailbox> fixes, sightings, usbl;
     std::vector<std::pair<VehicleErrors::Point, std::unique_ptr<sim::Mailbox>>> packets;
     TeamBound::Pose pose;  ///< the last one, when it was removed
   };
@@ -185,6 +186,7 @@ BoundMetric::BoundMetric(const MetricContext& context, const Params& params)
     if (errors.gps) member.fixes = open(names_[i], errors.gps->device);
     if (errors.sightings && counts(static_cast<int>(i)))
       member.sightings = open(names_[i], errors.sightings->sensor.device);
+    if (errors.usbl && params_.of != Scope::alone) member.usbl = open(names_[i], errors.usbl->sensor.device);
     for (const VehicleErrors::Point& modem : counts(static_cast<int>(i)) ? errors.modems : no_modems)
       member.packets.emplace_back(modem, open(names_[i], modem.device));
     members_.push_back(std::move(member));
@@ -247,6 +249,11 @@ void BoundMetric::after_step() {
         if (const int other = index_of(name); other >= 0 && other != i)
           bound_.add_sighting(true_time(seen.utime), i, other);
     });
+    read<shoal::usbl_t>(member.usbl.get(), [&](const shoal::usbl_t& seen) {
+      // A transponder is VEHICLE/DEVICE.
+      const int other = index_of(seen.target.substr(0, seen.target.find('/')));
+      if (other >= 0 && other != i && (counts(i) || other == scored_)) bound_.add_usbl(true_time(seen.utime), i, other);
+    });
     for (const auto& packets : member.packets)
       read<shoal::acoustic_received_t>(packets.second.get(), [&](const shoal::acoustic_received_t& packet) {
         use_packet(i, packets.first, packet);
@@ -292,6 +299,7 @@ void BoundMetric::visit_state(sim::StateArchive& archive, History) {
     if (!archive.restoring()) continue;
     if (member.fixes) empty(*member.fixes);
     if (member.sightings) empty(*member.sightings);
+    if (member.usbl) empty(*member.usbl);
     for (const auto& [modem, mailbox] : member.packets) empty(*mailbox);
   }
 }

@@ -35,6 +35,7 @@ void add_algorithms(StudyConfig& config, const std::vector<std::string>& added) 
     for (const std::string& other : config.algorithms)
       if (algorithm_label(other) == label) throw std::invalid_argument("two algorithms have the name '" + label + "'");
     config.algorithms.push_back(algorithm);
+    config.added_algorithms.push_back(algorithm);
   }
   if (!added.empty() && !config.launch)
     throw std::invalid_argument("needs a study with 'launch: true': the programs of the world send what they receive");

@@ -43,9 +43,10 @@ struct StudyConfig {
   std::optional<double> duration_s;
   std::vector<std::int64_t> seeds;
   std::vector<StudyCase> cases;
-  bool of_worlds = false;               ///< the cases have different worlds
-  std::vector<std::string> algorithms;  ///< of `shoal-nav`, which navigate the record of each run
-  std::string pairs;                    ///< label of the algorithm that the others are compared with; empty: none
+  bool of_worlds = false;                     ///< the cases have different worlds
+  std::vector<std::string> algorithms;        ///< of `shoal-nav`, which navigate the record of each run
+  std::vector<std::string> added_algorithms;  ///< those of them that are not in the file
+  std::string pairs;                          ///< label of the algorithm that the others are compared with; empty: none
   std::vector<StudyFactor> factors;
   StudyDesign design;                ///< of the factors
   std::optional<StudyUntil> until;   ///< the study ends when its result is certain; unset: after all seeds

@@ -50,7 +50,7 @@ class CentralisedEkf final : public TeamEstimator {
     if (other == numbers_.end()) return;
     const JointFilter::RelativeRow row = filter_.relative_row(numbers_.at(vehicle), other->second, seen);
     const Vector2 variances(seen.range_std_m * seen.range_std_m, seen.bearing_std_rad * seen.bearing_std_rad);
-    filter_.see(row, variances.asDiagonal());
+    filter_.see(numbers_.at(vehicle), row, variances.asDiagonal());
   }
   Estimate now(int vehicle, Time time) const override { return filter_.now(numbers_.at(vehicle), time); }
 

@@ -59,9 +59,9 @@ class CovarianceIntersection final : public OwnFilterEstimator<CovarianceInterse
     const Matrix2 B = row.J * other->P * row.J.transpose();
     const Vector2 variances(seen.range_std_m * seen.range_std_m, seen.bearing_std_rad * seen.bearing_std_rad);
     const Matrix2 R = Matrix2(variances.asDiagonal()) + row.bend;
+    if (!filter_.admits(own, row, B + Matrix2(variances.asDiagonal()))) return;
     const Eigen::MatrixXd PH = filter_.P() * row.H.transpose();
     const Matrix2 A = row.H * PH;
-    if (!row.innovation.allFinite() || !filter_.within_gate(row.innovation, A + B + R)) return;
     const Minimum best = minimum_between(0.01, 0.999, [&](double w) {
       const Matrix2 S = A / w + B / (1 - w) + R;
       const Matrix2 gained = PH.topRows<2>() * S.inverse() * PH.topRows<2>().transpose();

@@ -45,16 +45,24 @@ class PairwiseCommunication final : public TeamEstimator {
   void sent(int, Time) override {}
   void heard(int vehicle, const Heard& heard) override {
     if (!vehicles_.contains(heard.sender)) return;
-    meet(vehicle, heard.sender,
-         [&](JointFilter& both) { both.range(0, 1, heard.own_z_m - heard.sender_z_m, heard.range_m, heard.std_m); });
+    meet(
+        vehicle, heard.sender, [](JointFilter&) { return true; },
+        [&](JointFilter& both) { both.range(0, 1, heard.own_z_m - heard.sender_z_m, heard.range_m, heard.std_m); });
   }
   void saw(int vehicle, const Relative& seen) override {
     if (!vehicles_.contains(seen.other)) return;
-    meet(vehicle, seen.other, [&](JointFilter& both) {
-      const JointFilter::RelativeRow row = both.relative_row(0, 1, seen);
-      const Vector2 variances(seen.range_std_m * seen.range_std_m, seen.bearing_std_rad * seen.bearing_std_rad);
-      both.see(row, variances.asDiagonal());
-    });
+    const Vector2 variances(seen.range_std_m * seen.range_std_m, seen.bearing_std_rad * seen.bearing_std_rad);
+    meet(
+        vehicle, seen.other,
+        [&](JointFilter& both) {
+          const bool admitted = both.admits(0, both.relative_row(0, 1, seen), variances.asDiagonal());
+          vehicles_.at(vehicle).filter.set_refused_sights(number, both.refused_sights(0));
+          return admitted;
+        },
+        [&](JointFilter& both) {
+          const JointFilter::RelativeRow row = both.relative_row(0, 1, seen);
+          both.update(row.H, row.innovation, Matrix2(variances.asDiagonal()) + row.bend);
+        });
   }
   Estimate now(int vehicle, Time time) const override { return vehicles_.at(vehicle).filter.now(number, time); }
 
@@ -66,19 +74,22 @@ class PairwiseCommunication final : public TeamEstimator {
     std::map<int, Eigen::MatrixXd> factors;  ///< s_ij, by j; none: 0
   };
 
-  template <class Update>
-  void meet(int i, int j, const Update& update) {
+  /// `admits`: whether to update, which may make the position of i more uncertain.
+  template <class Admits, class Update>
+  void meet(int i, int j, const Admits& admits, const Update& update) {
     Own& a = vehicles_.at(i);
     Own& b = vehicles_.at(j);
     const int n = a.filter.size(), m = b.filter.size();
     JointFilter both = a.filter.joined_with(b.filter);
-    Eigen::MatrixXd P = both.P();
     if (a.factors.contains(j) && b.factors.contains(i)) {
       const Eigen::MatrixXd across = a.factors.at(j) * b.factors.at(i).transpose();
+      Eigen::MatrixXd P = both.P();
       P.topRightCorner(n, m) = across;
       P.bottomLeftCorner(m, n) = across.transpose();
       both.set_P(P);
     }
+    if (!admits(both)) return;
+    const Eigen::MatrixXd P = both.P();
     update(both);
     const Eigen::MatrixXd P_after = both.P();
     const Eigen::MatrixXd kept_a = P_after.topLeftCorner(n, n) * P.topLeftCorner(n, n).inverse();

@@ -102,7 +102,9 @@ NavScore score_of(const std::vector<OfflineRun::Published>& estimates, const std
 
 void write_estimates(const std::string& folder, const NavRecord& record, const OfflineRun& run) {
   const std::filesystem::path below = std::filesystem::path(folder) / run.algorithm;
-  std::filesystem::create_directories(below);
+  std::error_code failed;
+  std::filesystem::create_directories(below, failed);
+  if (failed) throw std::runtime_error("cannot make the folder '" + below.string() + "': " + failed.message());
   write_log(below.string() + ".lcm", record, run);
   for (std::size_t i = 0; i < run.estimates.size(); ++i) {
     const std::string& name = record.team->vehicles[i].name;

@@ -16,6 +16,8 @@ namespace {
 constexpr std::uint64_t frame_mark = 78;
 constexpr Time cycle_ms = 65536;
 constexpr std::size_t payload_length_at = 7;
+constexpr std::size_t sight_bytes = 9;
+constexpr double displacement_step_m = 0.01;
 
 /// Rounds towards minus infinity.
 Time milliseconds_of(Time time_us) {
@@ -43,6 +45,16 @@ Bytes encode_frame(const NavFrame& frame, std::size_t frame_bytes) {
   writer.whole(static_cast<std::uint64_t>(std::llround(100 * std::clamp(frame.depth_m, 0.0, 1e5))), 3);
   writer.whole(frame.payload.size(), 1);
   bytes.insert(bytes.end(), frame.payload.begin(), frame.payload.end());
+  const std::size_t left = room - frame.payload.size();
+  const std::size_t sights = left == 0 ? 0 : std::min(frame.sights.size(), (left - 1) / sight_bytes);
+  if (sights > 0) {
+    writer.whole(sights, 1);
+    for (const NavFrame::Sight& sight : std::span(frame.sights).first(sights)) {
+      writer.whole(static_cast<std::uint64_t>(sight.other), 1);
+      writer.whole(static_cast<std::uint64_t>(std::max<Time>(milliseconds_of(sight.age), 0)), 2);
+      for (const double d_m : sight.d_W) writer.fixed(d_m, displacement_step_m, 3);
+    }
+  }
   bytes.resize(frame_bytes - 2);
   writer.whole(autonomy::acoustic_frame::checksum(bytes), 2);
   return bytes;
@@ -72,6 +84,16 @@ std::optional<NavFrame> decode_frame(std::span<const std::uint8_t> bytes, Time t
     return std::nullopt;
   const auto payload = bytes.subspan(frame_overhead_bytes - 2, size);
   frame.payload.assign(payload.begin(), payload.end());
+  PayloadReader rest(bytes.subspan(frame_overhead_bytes - 2 + size, payload_room(bytes.size()) - size));
+  const std::uint64_t sights = rest.whole(1);
+  for (std::uint64_t i = 0; i < sights; ++i) {
+    NavFrame::Sight sight;
+    sight.other = static_cast<int>(rest.whole(1));
+    sight.age = 1000 * static_cast<Time>(rest.whole(2));
+    for (double& d_m : sight.d_W) d_m = rest.fixed(displacement_step_m, 3);
+    if (!rest.ok()) return std::nullopt;
+    frame.sights.push_back(sight);
+  }
   return frame;
 }
 

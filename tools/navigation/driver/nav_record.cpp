@@ -42,6 +42,7 @@ std::map<std::string, NavChannel, std::less<>> channels_of(const NavTeam& team) 
     add(vehicle.compass, decoder_of<shoal::compass_t>());
     add(vehicle.pressure, decoder_of<shoal::pressure_t>());
     add(vehicle.gps, decoder_of<shoal::gps_data_t>());
+    add(vehicle.usbl, decoder_of<shoal::usbl_t>());
     add(vehicle.modem, decoder_of<shoal::acoustic_received_t>());
     channels[vehicle.modem_command] = {static_cast<int>(i), decoder_of<shoal::modem_send_t>()};
   }
@@ -94,6 +95,7 @@ NavRecord read_record(const std::string& path) {
     if (const auto* send = std::get_if<shoal::modem_send_t>(&record.items.back().message))
       record.frame_bytes = std::max(record.frame_bytes, send->data.size());
   }
+  record.problems = reader.problems();
   if (!record.team) throw std::invalid_argument("'" + path + "' has no sim.info: it is not the record of a run");
   return record;
 }

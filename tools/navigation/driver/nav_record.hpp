@@ -14,7 +14,7 @@ namespace navigation {
 /// What a record of a run has for navigation, in the order in which it was published.
 struct NavRecord {
   using Message = std::variant<shoal::dvl_t, shoal::ins_t, shoal::compass_t, shoal::pressure_t, shoal::gps_data_t,
-                               shoal::acoustic_received_t, shoal::modem_send_t>;
+                               shoal::usbl_t, shoal::acoustic_received_t, shoal::modem_send_t>;
   struct Item {
     std::int64_t time_us = 0;  ///< simulated
     int vehicle = 0;           ///< index in the team
@@ -33,7 +33,8 @@ struct NavRecord {
   std::vector<Item> items;
   std::vector<std::vector<Truth>> truth;  ///< by vehicle
   std::int64_t end_us = 0;
-  std::size_t frame_bytes = 0;  ///< the longest that was transmitted
+  std::size_t frame_bytes = 0;        ///< the longest that was transmitted
+  std::vector<std::string> problems;  ///< of the file, such as an end that is cut off
 };
 
 /// Reads an LCM event log.  Items begin at the first sim.info, from which on programs know the world.  Throws

@@ -13,6 +13,7 @@
 #include "devices/navigation/dvl.hpp"
 #include "devices/navigation/gps.hpp"
 #include "devices/navigation/pressure.hpp"
+#include "devices/sound_positioning/usbl.hpp"
 #include "sim/device/device_registry.hpp"
 #include "sim/medium/medium.hpp"
 #include "sim/world_file/load_world.hpp"
@@ -74,6 +75,20 @@ void add_gps(const devices::Gps::Params& gps, NavVehicle& vehicle) {
       gps.horizontal_noise.gauss_markov_std > 0 ? gps.horizontal_noise.gauss_markov_time_s : 1e6;
 }
 
+void add_usbl(const devices::Usbl::Params& usbl, NavVehicle& vehicle) {
+  vehicle.usbl_range_std_m = white_part(usbl.range_noise);
+  vehicle.usbl_azimuth_std_rad = std::hypot(white_part(usbl.azimuth_noise), vehicle.heading_white_rad);
+  vehicle.usbl_elevation_std_rad = white_part(usbl.elevation_noise);
+}
+
+/// A craft without DVL moves by the velocity of its fixes, which its heading does not turn: the lasting errors of the
+/// heading are in its sights only.
+void without_heading_states(NavVehicle& vehicle) {
+  vehicle.usbl_azimuth_std_rad =
+      std::hypot(vehicle.usbl_azimuth_std_rad, vehicle.errors.heading_bias_rad, vehicle.errors.slow_heading_rad);
+  vehicle.errors.heading_bias_rad = vehicle.errors.heading_walk_radprts = vehicle.errors.slow_heading_rad = 0;
+}
+
 void add_clock(const sim::ClockConfig& clock, NavVehicle& vehicle) {
   vehicle.errors.clock_s = std::hypot(clock.offset_s, clock.offset_std_s);
   // A flicker floor f is a deviation of the frequency of about f; water is up to 10 degrees from the reference.
@@ -87,6 +102,7 @@ NavVehicle vehicle_of(const sim::WorldConfig& world, const sim::VehicleInstance&
   vehicle.name = instance.name;
   const sim::VehicleConfig& config = *instance.config;
   bool disciplined = false;
+  const devices::Usbl::Params* usbl = nullptr;
   for (const sim::DeviceConfig& device : config.devices) {
     const NavDevice nav{sim::device_channel(world.channels, instance.name, device, sim::ChannelKind::report),
                         device.X_BS()};
@@ -110,13 +126,20 @@ NavVehicle vehicle_of(const sim::WorldConfig& world, const sim::VehicleInstance&
       vehicle.modem = nav;
       vehicle.modem_command = sim::device_channel(world.channels, instance.name, device, sim::ChannelKind::command);
       vehicle.synchronous_s = params_of<devices::AcousticModem>(device).synchronous_s;
+    } else if (device.type == "usbl" && !vehicle.usbl) {
+      vehicle.usbl = nav;
+      usbl = &params_of<devices::Usbl>(device);
     } else if ((device.type == "autopilot" || device.type == "naive_drive") && vehicle.helm_command.empty()) {
       vehicle.helm_command = sim::device_channel(world.channels, instance.name, device, sim::ChannelKind::command);
     }
   }
   if (!disciplined && !config.clock.perfect()) add_clock(config.clock, vehicle);
   vehicle.stamp_std_s = tools::errors_of(config, world.physics.step_s).stamp_std_s();
-  if (!vehicle.dvl) vehicle.velocity_density = craft_density;
+  if (usbl != nullptr) add_usbl(*usbl, vehicle);
+  if (!vehicle.dvl) {
+    vehicle.velocity_density = craft_density;
+    without_heading_states(vehicle);
+  }
   return vehicle;
 }
 

@@ -18,11 +18,11 @@ struct NavDevice {
   sim::Pose X_BS = sim::Pose::Identity();
 };
 
-/// What navigation knows of a vehicle, from its vehicle file.
+/// What navigation knows of a vehicle, from its vehicle file.  USBL needs a heading.
 struct NavVehicle {
   std::string name;
   DeviceErrors errors;
-  std::optional<NavDevice> dvl, ahrs, compass, pressure, gps, modem;
+  std::optional<NavDevice> dvl, ahrs, compass, pressure, gps, modem, usbl;
   std::string modem_command;     ///< channel
   std::string helm_command;      ///< channel of its autopilot; empty: it has none
   double synchronous_s = 0;      ///< the modem transmits at multiples of this only; 0: at once
@@ -32,6 +32,9 @@ struct NavVehicle {
   double fix_std_m = 0;          ///< white error of a fix; 0: as reported
   double stamp_std_s = 0;        ///< error of a stamp, by the resolution of the clock
   double depth_std_m = 0;        ///< white error of the depth, by pressure
+  // White errors of USBL; that of the azimuth has the parts of the heading that are not white, too, in a vehicle
+  // without DVL, where they are not states.
+  double usbl_range_std_m = 0, usbl_azimuth_std_rad = 0, usbl_elevation_std_rad = 0;
 };
 
 /// Vehicles that navigate together: those with an acoustic modem, in the order of the world file.

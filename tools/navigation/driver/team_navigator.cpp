@@ -39,11 +39,15 @@ void TeamNavigator::run(TeamEstimator& estimator) {
   };
   for (const Call& call : calls_)
     if (is_motion(call)) motion[static_cast<std::size_t>(call.vehicle)] = &call.event;
-  std::vector<const NavEvent*> next(calls_.size());
+  const auto is_sight = [](const Call& call) {
+    return call.kind == Call::Kind::event && call.event.kind == NavEvent::Kind::saw;
+  };
+  std::vector<const NavEvent*> next(calls_.size()), next_of_seen(calls_.size(), nullptr);
   for (std::size_t i = calls_.size(); i-- > 0;) {
     const NavEvent*& own = motion[static_cast<std::size_t>(calls_[i].vehicle)];
     if (is_motion(calls_[i])) own = &calls_[i].event;
     next[i] = own;
+    if (is_sight(calls_[i])) next_of_seen[i] = motion[static_cast<std::size_t>(calls_[i].event.seen.other)];
   }
   std::vector<Time> moved_to(vehicles_, 0);
   std::vector<bool> started(vehicles_, false);
@@ -57,10 +61,14 @@ void TeamNavigator::run(TeamEstimator& estimator) {
       continue;
     }
     if (!started[vehicle]) continue;
-    if (each.kind != Call::Kind::query && next[i] != nullptr && each.time > moved_to[vehicle]) {
-      estimator.moved(each.vehicle, each.time, next[i]->v_W, next[i]->q);
-      moved_to[vehicle] = each.time;
-    }
+    const auto move = [&](int moving, const NavEvent* by) {
+      Time& to = moved_to[static_cast<std::size_t>(moving)];
+      if (by == nullptr || !started[static_cast<std::size_t>(moving)] || each.time <= to) return;
+      estimator.moved(moving, each.time, by->v_W, by->q);
+      to = each.time;
+    };
+    if (each.kind != Call::Kind::query) move(each.vehicle, next[i]);
+    if (is_sight(each)) move(each.event.seen.other, next_of_seen[i]);
     call(each, estimator);
   }
   calls_.clear();

@@ -31,6 +31,7 @@ Setup VehicleNavigation::setup() const {
 void VehicleNavigation::heard(const shoal::acoustic_received_t& packet, const Bytes& frame) {
   const auto decoded = decode_frame(frame, packet.sent_utime);
   if (!navigator_ || !decoded) return;
+  if (const auto seen = reports_.seen_by(packet, *decoded)) navigator_->add(*seen);
   const auto event = reports_.heard(packet, *decoded);
   if (event && navigator_->add(*event)) ++ranges_;
 }

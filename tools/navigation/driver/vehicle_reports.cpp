@@ -21,6 +21,10 @@ constexpr double through_water_density = 0.09;
 constexpr double max_late_s = 0.3;
 constexpr double max_travel_s = 60;
 constexpr double pressure_std_m = 0.1;
+/// An older sight is not sent.
+constexpr double max_sight_age_s = 5;
+/// Times of sights in frames have milliseconds: one that was sent again differs by less than this.
+constexpr double same_sight_s = 0.01;
 
 Time microseconds(double time_s) {
   return static_cast<Time>(std::llround(1e6 * time_s));
@@ -154,12 +158,70 @@ std::vector<NavEvent> VehicleReports::receive(const shoal::gps_data_t& fix) {
   return events;
 }
 
-std::optional<NavEvent> VehicleReports::heard(const shoal::acoustic_received_t& packet, const NavFrame& frame) {
+Relative VehicleReports::sight_of(const NavVehicle& observer, const Eigen::Vector3d& d_W) {
+  const double level_m = d_W.head<2>().norm(), range_m = d_W.norm();
+  Relative seen;
+  seen.range_m = level_m;
+  seen.bearing_rad = std::atan2(d_W.y(), d_W.x());
+  // Along the level: cos(e) of the error of the range, sin(e) of that of the elevation.  A report is up to a period
+  // late, as ranges are.
+  const double along_m = range_m > 0 ? level_m / range_m * observer.usbl_range_std_m : observer.usbl_range_std_m;
+  seen.range_std_m = std::hypot(along_m, d_W.z() * observer.usbl_elevation_std_rad, VehicleReports::min_range_std_m);
+  seen.bearing_std_rad =
+      std::hypot(observer.usbl_azimuth_std_rad, VehicleReports::min_range_std_m / std::max(level_m, 1.0));
+  return seen;
+}
+
+std::vector<NavEvent> VehicleReports::receive(const shoal::usbl_t& sight) {
+  const Time time = note_time(sight.utime);
+  const Eigen::Vector3d p_S(sight.position_m[0], sight.position_m[1], sight.position_m[2]);
+  // A transponder is VEHICLE/DEVICE.
+  const auto other = team_->index_of(sight.target.substr(0, sight.target.find('/')));
+  if (!setup_ || !has_heading_ || !other || *other == own_ || !p_S.allFinite()) return {};
+  const NavVehicle& own = own_vehicle();
+  const Eigen::Vector3d d_W = lever_W(own.usbl->X_BS * p_S - own.modem->X_BS.translation());
+  sights_[*other] = {time, d_W.head<2>()};
+  NavEvent event;
+  event.kind = NavEvent::Kind::saw;
+  event.time = time;
+  event.seen = sight_of(own, d_W);
+  event.seen.time = time;
+  event.seen.other = *other;
+  return {event};
+}
+
+bool VehicleReports::is_from_sender(const shoal::acoustic_received_t& packet, const NavFrame& frame) const {
   const auto sender = team_->index_of(packet.source);
   // A frame that was forwarded has another source.
-  if (!setup_ || !sender || *sender != frame.sender || *sender == own_) return std::nullopt;
-  if (!(std::abs(packet.travel_time_s) < max_travel_s)) return std::nullopt;
-  if (std::abs(seconds(packet.sent_utime - frame.payload_time)) > max_late_s) return std::nullopt;
+  return setup_ && sender && *sender == frame.sender && *sender != own_ &&
+         std::abs(seconds(packet.sent_utime - frame.payload_time)) <= max_late_s;
+}
+
+std::optional<NavEvent> VehicleReports::seen_by(const shoal::acoustic_received_t& packet, const NavFrame& frame) {
+  const auto sight = std::find_if(frame.sights.begin(), frame.sights.end(),
+                                  [this](const NavFrame::Sight& each) { return each.other == own_; });
+  if (!is_from_sender(packet, frame) || sight == frame.sights.end()) return std::nullopt;
+  const NavVehicle& observer = team_->vehicles[static_cast<std::size_t>(frame.sender)];
+  NavEvent event;
+  event.kind = NavEvent::Kind::saw;
+  event.time = frame.payload_time - sight->age + offset_;
+  const auto before = seen_at_.find(frame.sender);
+  if (before != seen_at_.end() && seconds(event.time - before->second) < same_sight_s) return std::nullopt;
+  seen_at_[frame.sender] = event.time;
+  event.seen = sight_of(observer, {-sight->d_W.x(), -sight->d_W.y(), modem_depth_m() - frame.depth_m});
+  event.seen.time = event.time;
+  event.seen.other = frame.sender;
+  event.seen.by_other = true;
+  // Lasting errors of the heading of another vehicle are unknown.
+  event.seen.bearing_std_rad =
+      std::hypot(event.seen.bearing_std_rad, observer.errors.heading_bias_rad, observer.errors.slow_heading_rad);
+  event.seen.payload_time = frame.payload_time;
+  event.payload = frame.payload;
+  return event;
+}
+
+std::optional<NavEvent> VehicleReports::heard(const shoal::acoustic_received_t& packet, const NavFrame& frame) {
+  if (!is_from_sender(packet, frame) || !(std::abs(packet.travel_time_s) < max_travel_s)) return std::nullopt;
   const auto range_m = team_->sound.range_m(sound_, packet.travel_time_s, modem_depth_m(), frame.depth_m);
   if (!range_m) return std::nullopt;
   NavEvent event;
@@ -167,9 +229,9 @@ std::optional<NavEvent> VehicleReports::heard(const shoal::acoustic_received_t& 
   event.time = packet.utime + offset_;
   event.heard.toa = event.time;
   event.heard.tol = packet.sent_utime;
-  event.heard.sender = *sender;
+  event.heard.sender = frame.sender;
   event.heard.range_m = *range_m;
-  event.heard.std_m = range_std_m(*sender, *range_m, frame.depth_m);
+  event.heard.std_m = range_std_m(frame.sender, *range_m, frame.depth_m);
   event.heard.own_z_m = -modem_depth_m();
   event.heard.sender_z_m = -frame.depth_m;
   event.heard.payload_time = frame.payload_time;
@@ -197,7 +259,11 @@ double VehicleReports::modem_depth_m() const {
 }
 
 NavFrame VehicleReports::frame(Time time, Bytes payload) const {
-  return {own_, time - offset_, modem_depth_m(), std::move(payload)};
+  NavFrame frame{own_, time - offset_, modem_depth_m(), std::move(payload)};
+  for (const auto& [other, sight] : sights_)
+    if (const double age_s = seconds(time - sight.time); age_s >= 0 && age_s <= max_sight_age_s)
+      frame.sights.push_back({other, time - sight.time, sight.d_W - age_s * v_W_});
+  return frame;
 }
 
 shoal::estimate_t VehicleReports::message(const Estimate& estimate) const {

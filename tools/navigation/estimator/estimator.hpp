@@ -26,12 +26,13 @@ struct Heard {
   std::span<const std::uint8_t> payload;  ///< what say() of the sender returned
 };
 
-/// Measurement of another vehicle by a sensor on the own one.
+/// Measurement of another vehicle by a sensor on the own one, or of the own one by a sensor on the other.
 struct Relative {
   Time time = 0;           ///< by the own clock
   int other = 0;           ///< index in Setup::team
   double range_m = 0;      ///< horizontal
-  double bearing_rad = 0;  ///< counter-clockwise from east, by the own measured heading
+  double bearing_rad = 0;  ///< of the other vehicle, counter-clockwise from east, by the measured heading of the sensor
+  bool by_other = false;   ///< the sensor is on the other vehicle: errors of the own heading have no part in it
   double range_std_m = 1;
   double bearing_std_rad = 1;
   Time payload_time = 0;                  ///< time of the payload
@@ -64,7 +65,7 @@ class Estimator {
   virtual void fix(Time time, const Vector2& p_W, double std_m) = 0;
   /// A frame arrived.  moved() was called for its time of arrival.  The payload may be that of any program.
   virtual void heard(const Heard& heard) = 0;
-  /// A sensor measured another vehicle.  An algorithm without it does not work on land.
+  /// A sensor measured another vehicle, or that one the own vehicle.  An algorithm without it does not work on land.
   virtual void saw(const Relative&) {}
   /// Returns the payload of a frame that is transmitted at `time`, for which moved() was called: at most `max_bytes`.
   virtual Bytes say(Time time, std::size_t max_bytes) = 0;

@@ -11,7 +11,7 @@ namespace navigation {
 namespace {
 
 constexpr double position_gate = 13.82;  ///< 99.9 % of chi-square with 2 degrees of freedom
-constexpr int max_refused_fixes = 5;
+constexpr int max_refused = 5;           ///< in a row, of fixes or of sights
 
 double square(double x) {
   return x * x;
@@ -242,13 +242,17 @@ JointFilter::Outcome JointFilter::fix(int vehicle, const Vector2& p_W, double st
   if (gate_ > 0) {
     const Matrix2 S = H * P_ * H.transpose() + R;
     if (!(innovation.dot(S.inverse() * innovation) <= position_gate)) {
-      if (++part.refused_fixes < max_refused_fixes || !innovation.allFinite()) return Outcome::refused;
-      P_.block<2, 2>(o, o) += innovation.squaredNorm() * Matrix2::Identity();
+      if (++part.refused_fixes < max_refused || !innovation.allFinite()) return Outcome::refused;
+      open_position(part, innovation);
     }
     part.refused_fixes = 0;
   }
   update(H, innovation, R);
   return Outcome::used;
+}
+
+void JointFilter::open_position(const Part& part, const Vector2& error_W) {
+  P_.block<2, 2>(part.offset, part.offset) += error_W.squaredNorm() * Matrix2::Identity();
 }
 
 JointFilter::RangeRow JointFilter::range_row(int own, const Position& other, double dz_m) const {
@@ -315,6 +319,12 @@ Matrix2 JointFilter::bend_of(const Vector2& d_W, const Matrix2& P) {
   return variances.asDiagonal();
 }
 
+void JointFilter::turn_by_heading(const Part& observer, RelativeRow& row) const {
+  for (const int index : {observer.layout.heading_bias, observer.layout.slow_heading})
+    if (index >= 0) row.H(1, observer.offset + index) = -1;
+  row.innovation[1] = wrapped(row.innovation[1] + heading_error(observer));
+}
+
 JointFilter::RelativeRow JointFilter::relative_row(int own, const Position& other, const Relative& seen) const {
   const Part& part = at(own);
   const Vector2 d_W = other.p_W - position(own);
@@ -325,10 +335,8 @@ JointFilter::RelativeRow JointFilter::relative_row(int own, const Position& othe
   row.J.row(1) = left_of(u).transpose() / distance_m;
   row.H = Eigen::MatrixXd::Zero(2, size());
   row.H.middleCols<2>(part.offset) = -row.J;
-  for (const int index : {part.layout.heading_bias, part.layout.slow_heading})
-    if (index >= 0) row.H(1, part.offset + index) = -1;
-  row.innovation << seen.range_m - distance_m,
-      wrapped(seen.bearing_rad - std::atan2(d_W.y(), d_W.x()) + heading_error(part));
+  row.innovation << seen.range_m - distance_m, wrapped(seen.bearing_rad - std::atan2(d_W.y(), d_W.x()));
+  if (!seen.by_other) turn_by_heading(part, row);
   row.bend = bend_of(d_W, covariance(own) + other.P);
   return row;
 }
@@ -336,6 +344,7 @@ JointFilter::RelativeRow JointFilter::relative_row(int own, const Position& othe
 JointFilter::RelativeRow JointFilter::relative_row(int own, int other, const Relative& seen) const {
   RelativeRow row = relative_row(own, Position{position(other), Matrix2::Zero()}, seen);
   row.H.middleCols<2>(at(other).offset) += row.J;
+  if (seen.by_other) turn_by_heading(at(other), row);
   const Matrix2 across = P_.block<2, 2>(at(own).offset, at(other).offset);
   row.bend =
       bend_of(position(other) - position(own), covariance(own) + covariance(other) - across - across.transpose());
@@ -346,11 +355,20 @@ bool JointFilter::within_gate(const Vector2& innovation, const Matrix2& S) const
   return gate_ <= 0 || innovation.dot(S.inverse() * innovation) <= position_gate;
 }
 
-JointFilter::Outcome JointFilter::see(const RelativeRow& row, const Matrix2& R) {
-  if (!row.innovation.allFinite()) return Outcome::refused;
-  const Matrix2 all = R + row.bend;
-  if (!within_gate(row.innovation, row.H * P_ * row.H.transpose() + all)) return Outcome::refused;
-  update(row.H, row.innovation, all);
+bool JointFilter::admits(int own, const RelativeRow& row, const Matrix2& R) {
+  if (!row.innovation.allFinite()) return false;
+  Part& part = at(own);
+  if (!within_gate(row.innovation, row.H * P_ * row.H.transpose() + R + row.bend)) {
+    if (++part.refused_sights < max_refused) return false;
+    open_position(part, row.J.inverse() * row.innovation);
+  }
+  part.refused_sights = 0;
+  return true;
+}
+
+JointFilter::Outcome JointFilter::see(int own, const RelativeRow& row, const Matrix2& R) {
+  if (!admits(own, row, R)) return Outcome::refused;
+  update(row.H, row.innovation, R + row.bend);
   return Outcome::used;
 }
 

@@ -72,7 +72,8 @@ class JointFilter {
   /// Updates with a range to a position, whose error is regarded as independent; `more_variance_m2`: of its clock.
   Outcome range(int own, const Position& other, double dz_m, double range_m, double std_m, double more_variance_m2 = 0);
 
-  /// Linearised measurement by a sensor: (horizontal range, bearing by the own heading) of another part or a position.
+  /// Linearised measurement by a sensor: (horizontal range, bearing by the heading of the observer) of another part or
+  /// a position.  A position has no heading error.
   struct RelativeRow {
     Eigen::MatrixXd H;  ///< 2 rows
     Vector2 innovation = Vector2::Zero();
@@ -83,8 +84,14 @@ class JointFilter {
   };
   RelativeRow relative_row(int own, int other, const Relative& seen) const;
   RelativeRow relative_row(int own, const Position& other, const Relative& seen) const;
-  /// Updates with such a measurement, whose error has the covariance R + bend, unless it is beyond the gate.
-  Outcome see(const RelativeRow& row, const Matrix2& R);
+  /// Whether such a measurement by or of a vehicle, whose error has the covariance R + bend, is within the gate.  After
+  /// five in a row beyond it the covariance of the position grows by the innovation, and the last one counts as within.
+  bool admits(int own, const RelativeRow& row, const Matrix2& R);
+  /// Number of such measurements beyond it in a row.
+  int refused_sights(int own) const { return at(own).refused_sights; }
+  void set_refused_sights(int own, int count) { at(own).refused_sights = count; }
+  /// Updates with it, unless it is beyond the gate.
+  Outcome see(int own, const RelativeRow& row, const Matrix2& R);
 
   /// Updates with a scalar measurement z = H x + noise.
   void update(const Eigen::VectorXd& H, double innovation, double R);
@@ -119,7 +126,7 @@ class JointFilter {
     Time time = 0;
     Vector2 v_W = Vector2::Zero();
     DeviceErrors errors;
-    int refused_fixes = 0;
+    int refused_fixes = 0, refused_sights = 0;  ///< in a row
     bool in_use = true;
   };
   const Part& at(int part) const { return parts_[static_cast<std::size_t>(part)]; }
@@ -128,6 +135,10 @@ class JointFilter {
   /// Heading error b + h of a part.
   double heading_error(const Part& part) const;
   Vector2 corrected(const Part& part, const Vector2& v_W) const;
+  /// Adds the heading error of the observer to the row of a bearing.
+  void turn_by_heading(const Part& observer, RelativeRow& row) const;
+  /// Makes a position as uncertain as an error that was found.
+  void open_position(const Part& part, const Vector2& error_W);
   static Matrix2 bend_of(const Vector2& d_W, const Matrix2& P);
   Outcome use_range(const RangeRow& row, double range_m, double variance_m2);
   /// Coefficients of the motion over some time.

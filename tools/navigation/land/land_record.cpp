@@ -93,6 +93,7 @@ std::optional<LandRecord> read_land_record(const std::string& path) {
     }
     record.has_radio = record.has_radio || std::holds_alternative<shoal::modem_send_t>(record.items.back().message);
   }
+  record.run.problems = reader.problems();
   if (!record.run.team) throw std::invalid_argument("'" + path + "' has no sim.info: it is not the record of a run");
   // Radio carries what it must, unlike sound.
   record.run.frame_bytes = max_frame_bytes;

@@ -39,6 +39,7 @@ void subscribe(shoal::Client& client, State& pilot, const navigation::NavVehicle
   listen<shoal::compass_t>(client, pilot, vehicle.compass);
   listen<shoal::pressure_t>(client, pilot, vehicle.pressure);
   listen<shoal::gps_data_t>(client, pilot, vehicle.gps);
+  listen<shoal::usbl_t>(client, pilot, vehicle.usbl);
   listen<shoal::acoustic_received_t>(client, pilot, vehicle.modem);
 }
 
@@ -68,6 +69,8 @@ int drive(const Options& options) {
 }
 
 int run(int argc, char** argv) {
+  if (navigation::is_list(argc, argv) && navigation::is_offline(argc, argv))
+    throw std::invalid_argument("--list prints the algorithms, and reads no --log: give one of them");
   if (navigation::is_list(argc, argv)) return navigation::run_list_command(argc, argv);
   if (navigation::is_offline(argc, argv)) return navigation::run_offline_command(argc, argv);
   Options options;
@@ -75,7 +78,8 @@ int run(int argc, char** argv) {
   CLI::App app{"Steers a marine vehicle that navigates cooperatively, by an algorithm of a list.", "shoal-nav"};
   command_line::DeclaredOptions declared(app);
   declared.publishes({"{name}.autopilot.cmd", "{name}.estimate", "{name}.modem.cmd"});
-  declared.subscribes({"{name}.dvl", "{name}.ahrs", "{name}.compass", "{name}.pressure", "{name}.gps", "{name}.modem"});
+  declared.subscribes(
+      {"{name}.dvl", "{name}.ahrs", "{name}.compass", "{name}.pressure", "{name}.gps", "{name}.usbl", "{name}.modem"});
   autonomy::add_name(declared, options.pilot.name, "vehicle to steer").required();
   declared.text("algorithm", "NAME", options.algorithm,
                 "algorithm, see docs/guides/compare_estimators.md, or python:FILE.Class");
@@ -109,7 +113,8 @@ int run(int argc, char** argv) {
        "shoal-nav --log run.lcm --algorithm dr,naive,ci,iu,cekf", "shoal-nav --list"},
       "Errors of devices, clocks and the speed of sound are those in the vehicle files of the world.  It reads "
       "NAME.dvl, "
-      ".ahrs or .compass, .pressure, .gps and .modem; it publishes NAME.autopilot.cmd, .estimate and, with --slot or "
+      ".ahrs or .compass, .pressure, .gps, .usbl and .modem; it publishes NAME.autopilot.cmd, .estimate and, with "
+      "--slot or "
       "--random-s, .modem.cmd.  With --log it navigates all vehicles of a record instead: "
       "see `shoal-nav --log FILE --help`.");
   if (const auto exit_code = declared.parse(argc, argv)) return *exit_code;

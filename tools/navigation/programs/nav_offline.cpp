@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <functional>
 #include <iostream>
 #include <stdexcept>
@@ -82,15 +83,43 @@ int navigate_all(const OfflineOptions& options, const NavRecord& record,
   return 0;
 }
 
+/// Refuses wrong options before the work.
+void check_options(const OfflineOptions& options) {
+  for (auto name = options.algorithms.begin(); name != options.algorithms.end(); ++name) {
+    algorithm_named(*name);
+    if (std::find(options.algorithms.begin(), name, *name) != name)
+      throw std::invalid_argument("--algorithm: '" + *name + "' is named twice");
+  }
+  std::error_code none;
+  const auto out = std::filesystem::status(options.out, none);
+  if (!options.out.empty() && std::filesystem::exists(out) && !std::filesystem::is_directory(out))
+    throw std::invalid_argument("--out: '" + options.out + "' is a file, but must be a folder, or a new one");
+}
+
+/// Says what is wrong with a record that was read.  Throws std::invalid_argument when nothing of it is scored.
+void check_record(const OfflineOptions& options, const NavRecord& record) {
+  for (const std::string& problem : record.problems)
+    std::cerr << "shoal-nav: " << options.log << ": " << problem << "; the scores are of the rest\n";
+  const double end_s = 1e-6 * static_cast<double>(record.end_us);
+  if (options.from_s > end_s) {
+    char text[100];
+    std::snprintf(text, sizeof text, "--from-s must be at most %g, the end of the record, got %g", end_s,
+                  options.from_s);
+    throw std::invalid_argument(text);
+  }
+}
+
 int navigate(const OfflineOptions& options) {
-  for (const std::string& name : options.algorithms) algorithm_named(name);  // a wrong one is refused before the work
+  check_options(options);
   if (const auto land = read_land_record(options.log)) {
+    check_record(options, land->run);
     const NavOptions of_all = options_of(options, {}, frame_bytes_of(options, land->run));
     return navigate_all(options, land->run, [&](const Algorithm& algorithm) {
       return run_on_land(*land, algorithm, of_all, of_all.period_us);
     });
   }
   const NavRecord record = read_record(options.log);
+  check_record(options, record);
   std::vector<NavOptions> by_vehicle;
   for (const NavArguments& arguments : record.arguments)
     by_vehicle.push_back(options_of(options, arguments, frame_bytes_of(options, record)));

@@ -95,6 +95,7 @@ class PythonEstimator final : public Estimator {
                  {"other", seen.other},
                  {"range", seen.range_m},
                  {"bearing", seen.bearing_rad},
+                 {"by_other", seen.by_other},
                  {"range_std", seen.range_std_m},
                  {"bearing_std", seen.bearing_std_rad},
                  {"payload_time", seconds(seen.payload_time)},

@@ -193,6 +193,21 @@ TEST(TeamBound, UsesASightingInTheFrameOfTheObserver) {
   EXPECT_NEAR(variances.y(), updated(0.25 + 0.0225 + 0.16), 1e-6);
 }
 
+TEST(TeamBound, UsesASightByUSBLWithItsErrorsAlongAndAcross) {
+  VehicleErrors craft = beacon(0.5);
+  craft.usbl = VehicleErrors::Usbl{{}, 0.4, 0.02, 0.03};
+  TeamBound bound({submarine(), craft}, 0, start_of(10));
+  travel(bound, {{0, 0, -30}, {40, 0, 0}}, {{0, 0, 0}, {0, 0, 0}}, 0, 10);
+  bound.add_fix(seconds(5), 1);
+  bound.add_usbl(seconds(5.1), 1, 0);
+  const Eigen::Vector2d variances = variances_of(bound, 10);
+  const auto updated = [](double r) { return 100 - 1e4 / (100 + r); };
+  // 40 m away and 30 m below: 50 m, cos 0.8, sin 0.6.
+  EXPECT_NEAR(variances.x(), updated(0.25 + std::pow(0.8 * 0.4, 2) + std::pow(30 * 0.03, 2)), 1e-6);
+  EXPECT_NEAR(variances.y(), updated(0.25 + std::pow(40 * 0.02, 2)), 1e-6);
+  EXPECT_EQ(bound.result().sightings, 1);
+}
+
 TEST(TeamBound, OfRobotsThatSeeEachOtherIsThatOfTheirInformation) {
   VehicleErrors robot;
   robot.motion = Motion::wheels;

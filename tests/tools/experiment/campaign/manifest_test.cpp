@@ -66,6 +66,28 @@ struct PlannedFolder {
   tools::LoadedStudy study;
 };
 
+TEST(Manifest, KeepsTheAlgorithmsThatWereAdded) {
+  PlannedFolder folder;
+  folder.write("small.yaml", test::rover_world("        - {name: gps, type: gps}\n", "", "",
+                                               "metrics: [{name: b, type: bound, vehicle: r1}]\n"));
+  folder.write_study("seeds: [3, 4]\nlaunch: true\nalgorithms: [dr]\n");
+  tools::StudyChanges changes;
+  changes.algorithms = {"ci"};
+  try {
+    folder.study = tools::load_study(folder.folder.file("study.yaml"), changes);
+  } catch (const std::exception& error) {
+    FAIL() << error.what();
+  }
+  tools::write_manifest(folder.out(), folder.study, tools::plan_study(folder.study, folder.out()));
+  const tools::Manifest manifest(folder.out());
+  EXPECT_THAT(manifest.algorithms(), ElementsAre("ci"));
+  EXPECT_THAT(tools::load_planned(manifest, {}).study.config.algorithms, ElementsAre("dr", "ci"));
+  EXPECT_THAT(tools::load_planned(manifest, {}, {"ci", "naive"}).study.config.algorithms,
+              ElementsAre("dr", "ci", "naive"));
+  EXPECT_THAT(folder.error_after("\"ci\"", "7"), HasSubstr("manifest.jsonl:1: 'algorithms' must be names"));
+  EXPECT_THAT(folder.error_after("\"ci\"", "\"dr\""), HasSubstr("'algorithms': two algorithms have the name 'dr'"));
+}
+
 TEST(Manifest, ListsTheRunsInTheOrderOfCasesPointsAndSeeds) {
   const PlannedFolder folder;
   const tools::Manifest manifest(folder.out());

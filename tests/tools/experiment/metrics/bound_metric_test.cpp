@@ -97,6 +97,36 @@ TEST(BoundMetric, CountsThePacketsOfItsScope) {
   EXPECT_LT(world.figure("own.final_m"), world.figure("none.final_m"));
 }
 
+TEST(BoundMetric, CountsSightsByUSBLOfItsScope) {
+  const std::string world = test::modem_sea(
+      {{"auv", "[0, 0, -10]",
+        "{name: dvl, type: dvl}, {name: ahrs, type: ahrs}, {name: modem, type: acoustic_modem}, "
+        "{name: transponder, type: transponder}",
+        ""},
+       {"boat", "[40, 0, 0]",
+        "{name: gps, type: gps, position_m: [0, 0, 1], rate_hz: 1, phase_s: 0, horizontal_noise: {gaussian_std: 0.5}}, "
+        "{name: modem, type: acoustic_modem, position_m: [0, 0, -1]}, {name: ahrs, type: ahrs}, "
+        "{name: usbl, type: usbl, position_m: [0, 0, -1], rate_hz: 10, ping_period_s: 1, range_noise: {gaussian_std: "
+        "0.4}}",
+        ""}},
+      "metrics:\n"
+      "  - {name: all, type: bound, vehicle: auv, start_std_m: 10}\n"
+      "  - {name: own, type: bound, vehicle: auv, of: received, start_std_m: 10}\n"
+      "  - {name: none, type: bound, vehicle: auv, of: alone, start_std_m: 10}\n");
+  test::TestWorld test(world);
+  tools::Scoring scoring(test.world);
+  while (test.world.now() < sim::from_seconds(20)) {
+    test.world.step();
+    scoring.after_step();
+  }
+  const auto figures = scoring.figures();
+  EXPECT_NEAR(figures.at("all.sightings"), 20, 1);  // one a second
+  EXPECT_EQ(figures.at("own.sightings"), figures.at("all.sightings"));
+  EXPECT_EQ(figures.at("none.sightings"), 0);
+  EXPECT_NEAR(figures.at("none.final_m"), std::sqrt(200.0), 1e-6);
+  EXPECT_LT(figures.at("all.final_m"), 0.5);
+}
+
 TEST(BoundRatio, DividesTheErrorOfAnEstimate) {
   BoundedWorld world(std::string(bound_with_clock) +
                      "  - {name: e, type: position_error, vehicle: auv, channel: est, from_s: 1}\n"

@@ -196,6 +196,109 @@ vehicles:
   EXPECT_NEAR(reports.heard(packet, frame)->heard.std_m, std::hypot(stamps_m, 0.5 * 2), 1e-3);
 }
 
+/// A craft with USBL that heads north, and an AUV.
+NavTeam usbl_team(const std::string& heading_noise = "{gaussian_std: 0.03}") {
+  return team_of_text(R"(
+shoal: 1
+name: usbl
+medium: {water: {sound_speed_mps: 1500}}
+vehicles:
+  - {name: craft, model: {shoal: 1, bodies: [{name: hull, kinematic: true, parts: [{shape: sphere, radius_m: 0.1}]}],
+     devices: [{name: modem, type: acoustic_modem, position_m: [1, 0, 0]}, {name: gps, type: gps},
+     {name: ahrs, type: ahrs, heading_noise: )" +
+                      heading_noise + R"(},
+     {name: usbl, type: usbl, position_m: [3, 0, 0], range_noise: {gaussian_std: 0.5},
+      azimuth_noise: {gaussian_std: 0.04}, elevation_noise: {gaussian_std: 0.02}}]}}
+  - {name: auv, model: {shoal: 1, bodies: [{name: hull, kinematic: true, parts: [{shape: sphere, radius_m: 0.1}]}],
+     devices: [{name: modem, type: acoustic_modem}, {name: gps, type: gps}, {name: pressure, type: pressure}]}}
+)");
+}
+
+/// The craft at 10 s: it heads north at 2 m/s, and measured the AUV 48 m ahead of the USBL, and 40 m below.
+struct Sighting {
+  explicit Sighting(const NavTeam& of) : team(std::make_shared<const NavTeam>(of)) {
+    shoal::ins_t north{};
+    north.utime = 9'000'000;
+    north.quat[0] = north.quat[3] = std::sqrt(0.5);
+    craft.receive(north);
+    shoal::gps_data_t fix{};
+    fix.utime = 9'000'000;
+    fix.gps_lock = 1;
+    fix.speed = 2;
+    craft.receive(fix);
+    auv.receive(fix);
+    fix.utime = 10'000'000;
+    craft.receive(fix);
+    shoal::usbl_t sight{};
+    sight.utime = 10'000'000;
+    sight.target = "auv/transponder";
+    sight.position_m[0] = 48;
+    sight.position_m[2] = -40;
+    events = craft.receive(sight);
+    shoal::pressure_t pressure{};
+    pressure.utime = 10'000'000;
+    pressure.depth_m = 40;
+    auv.receive(pressure);
+  }
+  /// What the AUV makes of a frame that the craft sends at this time.
+  std::optional<NavEvent> sent_at(Time time) {
+    shoal::acoustic_received_t packet{};
+    packet.source = "craft";
+    packet.sent_utime = time;
+    packet.utime = time + 50'000;
+    packet.travel_time_s = 0.05;
+    return auv.seen_by(packet, craft.frame(time, {7}));
+  }
+
+  std::shared_ptr<const NavTeam> team;
+  VehicleReports craft{team, 0, {}}, auv{team, 1, {}};
+  std::vector<NavEvent> events;
+};
+
+TEST(VehicleReports, USBLMeasuresARangeAndADirectionFromModemToModem) {
+  const Sighting sighting(usbl_team());
+  ASSERT_EQ(sighting.events.size(), 1U);
+  const Relative& seen = sighting.events[0].seen;
+  EXPECT_EQ(seen.other, 1);
+  EXPECT_FALSE(seen.by_other);
+  // The USBL is 2 m ahead of the modem: 50 m to the north.
+  EXPECT_NEAR(seen.range_m, 50, 1e-9);
+  EXPECT_NEAR(seen.bearing_rad, M_PI / 2, 1e-9);
+  const double cosine = 50 / std::hypot(50, 40);
+  EXPECT_NEAR(seen.range_std_m, std::hypot(cosine * 0.5, 40 * 0.02, 0.1), 1e-9);
+  EXPECT_NEAR(seen.bearing_std_rad, std::hypot(0.04, 0.03, 0.1 / 50), 1e-9);
+}
+
+TEST(VehicleReports, AFrameTellsTheVehicleWhereItWasSeen) {
+  Sighting sighting(usbl_team());
+  // In the 0.4 s until the frame the craft went 0.8 m: the AUV was 49.2 m ahead of where it then is.
+  const auto event = sighting.sent_at(10'400'000);
+  ASSERT_TRUE(event);
+  EXPECT_EQ(event->kind, NavEvent::Kind::saw);
+  EXPECT_EQ(event->time, 10'000'000);
+  EXPECT_EQ(event->payload, Bytes{7});
+  EXPECT_EQ(event->seen.payload_time, 10'400'000);
+  EXPECT_EQ(event->seen.other, 0);
+  EXPECT_TRUE(event->seen.by_other);
+  EXPECT_NEAR(event->seen.range_m, 49.2, 1e-9);
+  EXPECT_NEAR(event->seen.bearing_rad, -M_PI / 2, 1e-9);
+  // The same sight again is not new.
+  EXPECT_FALSE(sighting.sent_at(11'400'000));
+}
+
+TEST(VehicleReports, AnOldSightIsNotSent) {
+  Sighting sighting(usbl_team());
+  EXPECT_FALSE(sighting.sent_at(15'100'000));
+  EXPECT_TRUE(sighting.sent_at(14'900'000));
+}
+
+TEST(NavTeam, AHeadingThatTurnsNoVelocityHasItsErrorsInTheSights) {
+  const NavVehicle craft = usbl_team("{bias_std: 0.05, gauss_markov_std: 0.02}").vehicles[0];
+  EXPECT_EQ(craft.errors.heading_bias_rad, 0);
+  EXPECT_EQ(craft.errors.slow_heading_rad, 0);
+  EXPECT_NEAR(craft.usbl_azimuth_std_rad, std::hypot(0.04, 0.05, 0.02), 1e-12);
+}
+
 TEST(VehicleReports, FramesThatAreNotARangeToTheirSenderAreNotHeard) {
   const auto team = std::make_shared<const NavTeam>(team_of_text(R"(
 shoal: 1

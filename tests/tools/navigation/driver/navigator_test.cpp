@@ -126,4 +126,24 @@ TEST(TeamNavigator, CallsInTheOrderOfTimes) {
   EXPECT_LT(ordered.P(0, 0), 1.2);  // the range was used: without it 1 + 0.2
 }
 
+TEST(TeamNavigator, MovesTheVehicleThatIsSeenToTheTimeOfTheSight) {
+  TeamNavigator team(2);
+  team.start(0, nav_setup(2, 0, {0, 0}, 1e-3));
+  team.start(1, nav_setup(2, 1, {100, 0}, 1e-3));
+  for (int i = 1; i <= 2; ++i)
+    for (int vehicle : {0, 1}) team.add(vehicle, moved_at(10 * i * nav_second, {vehicle == 1 ? 2.0 : 0.0, 0}));
+  NavEvent sight;
+  sight.kind = NavEvent::Kind::saw;
+  sight.time = 15 * nav_second;
+  sight.seen.time = sight.time;
+  sight.seen.other = 1;
+  sight.seen.range_m = 130;  // 100 + 2 * 15
+  sight.seen.range_std_m = sight.seen.bearing_std_rad = 1e-3;
+  team.add(0, sight);
+  Estimate estimate;
+  team.query(1, 20 * nav_second, [&](const Estimate& answer) { estimate = answer; });
+  team.run(*algorithm_named("cekf").make_team());
+  EXPECT_NEAR(estimate.p_W.x(), 140, 1e-6);
+}
+
 }  // namespace

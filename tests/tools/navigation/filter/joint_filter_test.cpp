@@ -111,6 +111,43 @@ TEST(JointFilter, ADirectionAndADistanceAreAPosition) {
   EXPECT_NEAR(filter.position(rover).y(), 20, 1e-4);
 }
 
+TEST(JointFilter, ABearingByAnotherVehicleSaysNothingOfTheOwnHeading) {
+  JointFilter filter;
+  const DeviceErrors errors{.heading_bias_rad = 0.1};
+  const int own = filter.add(errors, 0, {0, 0}, 1), other = filter.add(errors, 0, {100, 0}, 1e-3);
+  navigation::Relative seen;
+  seen.range_m = 100;
+  seen.by_other = true;
+  const JointFilter::RelativeRow row = filter.relative_row(own, other, seen);
+  EXPECT_EQ(row.H(1, filter.offset(own) + 2), 0);
+  EXPECT_EQ(row.H(1, filter.offset(other) + 2), -1);
+  // Of a position outside of the filter: across, 0.02 rad at 100 m against 1 m.
+  const Position craft{{100, 0}, 1e-9 * Matrix2::Identity()};
+  const Matrix2 R = navigation::Vector2(1e-4, 4e-4).asDiagonal();
+  filter.see(own, filter.relative_row(own, craft, seen), R);
+  EXPECT_NEAR(filter.covariance(own)(1, 1), 1 - 1 / (1 + 4.0), 1e-3);
+  EXPECT_NEAR(filter.P()(filter.offset(own) + 2, filter.offset(own) + 2), 0.01, 1e-12);
+}
+
+TEST(JointFilter, FiveRefusedSightsInARowOpenThePosition) {
+  JointFilter filter(1500, 10.83);
+  const int rover = filter.add(DeviceErrors{}, 0, {0, 0}, 0.1);
+  const Position other{{20, 0}, 1e-4 * Matrix2::Identity()};
+  navigation::Relative seen;
+  seen.range_m = 10;
+  seen.bearing_rad = 0;
+  const Matrix2 R = navigation::Vector2(0.01, 1e-4).asDiagonal();
+  const auto see = [&] { return filter.see(rover, filter.relative_row(rover, other, seen), R); };
+  for (int i = 0; i < 4; ++i) EXPECT_EQ(see(), JointFilter::Outcome::refused);
+  // One that fits begins the row again.
+  seen.range_m = 20;
+  EXPECT_EQ(see(), JointFilter::Outcome::used);
+  seen.range_m = 10;
+  for (int i = 0; i < 4; ++i) EXPECT_EQ(see(), JointFilter::Outcome::refused);
+  EXPECT_EQ(see(), JointFilter::Outcome::used);
+  EXPECT_NEAR(filter.position(rover).x(), 10, 0.5);
+}
+
 TEST(JointFilter, FiveRefusedFixesInARowOpenThePosition) {
   JointFilter filter(1500, 10.83);
   const int auv = filter.add(DeviceErrors{}, 0, {0, 0}, 1);
