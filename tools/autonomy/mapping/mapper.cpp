@@ -67,7 +67,9 @@ std::optional<shoal::estimate_t> Mapper::step() {
   scan_.reset();
   if (lost_) {
     pose_ = moved(pose_, by);
-    for (Vector2d& point : collected_B_) point = turned(point - Vector2d(by.forward_m, by.left_m), -by.turn_rad);
+    for (Sight& sight : collected_)
+      for (Vector2d* point : {&sight.from_B, &sight.end_B})
+        *point = turned(*point - Vector2d(by.forward_m, by.left_m), -by.turn_rad);
     search(beams);
   } else {
     track(beams, by);
@@ -92,7 +94,7 @@ void Mapper::track(const Beams& beams, const Increment& by) {
     if (++bad_scans_ < params_.max_bad_scans) return;
     lost_ = true;
     ++times_lost_;
-    collected_B_.clear();
+    collected_.clear();
     searched_utime_ = 0;
     return;
   }
@@ -123,20 +125,20 @@ void Mapper::search(const Beams& beams) {
   // Collect scans from different poses, with fewer points.
   constexpr double apart_m = 0.5, apart_rad = 0.5;
   constexpr std::size_t every = 4, most_points = 225, enough_points = 80;
-  const bool differs = collected_B_.empty() || (pose_.p_W - collected_at_.p_W).norm() > apart_m ||
+  const bool differs = collected_.empty() || (pose_.p_W - collected_at_.p_W).norm() > apart_m ||
                        std::abs(sim::wrap_angle(pose_.yaw_rad - collected_at_.yaw_rad)) > apart_rad;
-  if (differs && collected_B_.size() < most_points) {
-    for (std::size_t i = 0; i < beams.points_B.size(); i += every) collected_B_.push_back(beams.points_B[i]);
+  if (differs) {
+    for (std::size_t i = 0; i < beams.points_B.size(); i += every)
+      collected_.push_back({params_.lidar.p_W, beams.points_B[i]});
     collected_at_ = pose_;
   }
-  if (collected_B_.size() < enough_points || seconds(utime_ - searched_utime_) < params_.search_s) return;
+  if (collected_.size() < enough_points || seconds(utime_ - searched_utime_) < params_.search_s) return;
   searched_utime_ = utime_;
-  const auto found = search_map(map_, collected_B_, params_.accept_score);
-  if (!found) {
-    if (collected_B_.size() >= most_points) collected_B_.clear();
-    return;
-  }
-  if (found->best.score < std::max(found->other_score, params_.accept_score) + params_.accept_lead) return;
+  const bool complete = collected_.size() >= most_points;
+  const auto found = search_map(map_, collected_, params_.accept_score);
+  if (complete) collected_.clear();
+  const double lead = complete ? params_.last_lead : params_.accept_lead;
+  if (!found || found->best.score < found->other_score + lead) return;
   lost_ = false;
   bad_scans_ = 0;
   pose_ = found->best.pose;

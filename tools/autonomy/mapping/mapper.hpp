@@ -37,7 +37,8 @@ class Mapper {
     int max_bad_scans = 4;         ///< consecutive ones below it; then the vehicle is lost
     double search_s = 3;           ///< time between searches of the whole map
     double accept_score = 0.5;     ///< score of a pose to be accepted
-    double accept_lead = 0.12;     ///< and its lead over any other pose
+    double accept_lead = 0.1;      ///< and its lead over any other pose
+    double last_lead = 0.03;       ///< lead that suffices when it has seen all around
   };
 
   explicit Mapper(const Params& params);
@@ -91,7 +92,7 @@ class Mapper {
   // Lost.
   bool lost_ = false;
   int times_lost_ = 0;
-  std::vector<Vector2d> collected_B_;  ///< points of the scans since then, in the frame of the vehicle now
+  std::vector<Sight> collected_;  ///< beams of the scans since then, in the frame of the vehicle now
   Pose2 collected_at_;                 ///< pose by odometry of the last scan among them
   std::int64_t searched_utime_ = 0;
 };

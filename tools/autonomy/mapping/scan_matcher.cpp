@@ -87,6 +87,23 @@ ScanMatch refine(const OccupancyMap& map, const std::vector<Vector2d>& points_B,
   return best;
 }
 
+/// Returns the share of beams that pass through something in the map before they end.
+double blocked_share(const OccupancyMap& map, const std::vector<Sight>& sights, const Pose2& pose) {
+  constexpr double step_m = 0.1, before_end_m = 0.3, something = 0.6;
+  int blocked = 0;
+  for (const Sight& sight : sights) {
+    const Vector2d from_W = pose.p_W + turned(sight.from_B, pose.yaw_rad);
+    const Vector2d ray_W = turned(sight.end_B - sight.from_B, pose.yaw_rad);
+    const double length_m = ray_W.norm();
+    for (double at_m = 0; at_m < length_m - before_end_m; at_m += step_m) {
+      if (map.field(from_W + at_m / length_m * ray_W) < something) continue;
+      ++blocked;
+      break;
+    }
+  }
+  return static_cast<double>(blocked) / static_cast<double>(sights.size());
+}
+
 }  // namespace
 
 double score_of(const OccupancyMap& map, const std::vector<Vector2d>& points_B, const Pose2& pose) {
@@ -131,8 +148,10 @@ ScanMatch ScanMatcher::match(const OccupancyMap& map, const std::vector<Vector2d
   return best;
 }
 
-std::optional<GlobalMatch> search_map(const OccupancyMap& map, const std::vector<Vector2d>& points_B, double min_score) {
-  if (points_B.empty()) return std::nullopt;
+std::optional<GlobalMatch> search_map(const OccupancyMap& map, const std::vector<Sight>& sights, double min_score) {
+  if (sights.empty()) return std::nullopt;
+  std::vector<Vector2d> points_B;
+  for (const Sight& sight : sights) points_B.push_back(sight.end_B);
   // Maxima over squares of 2, 4, ... cells.  The finest ones also allow for the steps of the heading.
   constexpr int finest = 1, coarsest = 5;
   std::vector<FieldPatch> levels;
@@ -174,8 +193,10 @@ std::optional<GlobalMatch> search_map(const OccupancyMap& map, const std::vector
   bool any = false;
   const auto take = [&](const Candidate& leaf) {
     const Pose2 pose = pose_of(leaf);
-    const ScanMatch match = refine(map, points_B, {pose, 0}, cell_m, std::numbers::pi / headings, 5,
-                                   [](const Pose2&) { return 0.0; });
+    ScanMatch match = refine(map, points_B, {pose, 0}, cell_m, std::numbers::pi / headings, 5,
+                             [](const Pose2&) { return 0.0; });
+    if (match.score <= std::max(min_score, found.other_score)) return;
+    match.score -= blocked_share(map, sights, match.pose);
     if (match.score > found.best.score) {
       if (any && is_other(match.pose, found.best.pose)) found.other_score = found.best.score;
       found.best = match;

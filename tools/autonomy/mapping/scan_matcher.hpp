@@ -39,7 +39,14 @@ class ScanMatcher {
 /// Returns the mean of the field at points in the frame of a pose.
 double score_of(const OccupancyMap& map, const std::vector<Vector2d>& points_B, const Pose2& pose);
 
-/// Result of a search of the whole map.
+/// Beam that met something: where it began and ended, in the frame of the vehicle.
+struct Sight {
+  Vector2d from_B = Vector2d::Zero();
+  Vector2d end_B = Vector2d::Zero();
+};
+
+/// Result of a search of the whole map.  The score of a pose is that of score_of() less the share of the beams that pass
+/// through something in the map.
 struct GlobalMatch {
   ScanMatch best;
   double other_score = 0;  ///< best score more than 1 m or 0.5 rad away
@@ -47,6 +54,6 @@ struct GlobalMatch {
 
 /// Searches the whole map, by branch and bound with the maxima of the field over growing squares (Hess et al. 2016).
 /// None when no pose scores more than `min_score`.
-std::optional<GlobalMatch> search_map(const OccupancyMap& map, const std::vector<Vector2d>& points_B, double min_score);
+std::optional<GlobalMatch> search_map(const OccupancyMap& map, const std::vector<Sight>& sights, double min_score);
 
 }  // namespace autonomy

@@ -53,13 +53,14 @@ struct DrawnRoom {
   }
 };
 
-/// A hall of 16 x 10 m with a pillar and two boxes: no two places look the same.
+/// A hall of 16 x 10 m with a pillar and two boxes: no two places look the same.  Its surfaces are in the middle of cells
+/// of 0.05 m, because a surface on the border of two cells is half a cell off in a map.
 inline DrawnRoom hall() {
+  constexpr double half_cell_m = 0.025;
   DrawnRoom room;
-  room.add_box({-8, -5}, {8, 5});
-  room.add_box({-5, 2}, {-3, 4});
-  room.add_box({2, -4}, {5, -3});
-  room.add_box({5.5, 1}, {6, 1.5});
+  for (const auto& [low, high] : {std::pair{Vector2d(-8, -5), Vector2d(8, 5)}, {Vector2d(-5, 2), Vector2d(-3, 4)},
+                                  {Vector2d(2, -4), Vector2d(5, -3)}, {Vector2d(5.5, 1), Vector2d(6, 1.5)}})
+    room.add_box(low + Vector2d::Constant(half_cell_m), high + Vector2d::Constant(half_cell_m));
   return room;
 }
 

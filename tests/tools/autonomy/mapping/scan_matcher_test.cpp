@@ -25,6 +25,12 @@ std::vector<Vector2d> points_of(const shoal::planar_lidar_t& scan) {
   return points;
 }
 
+std::vector<autonomy::Sight> sights_of(const shoal::planar_lidar_t& scan) {
+  std::vector<autonomy::Sight> sights;
+  for (const Vector2d& point : points_of(scan)) sights.push_back({Vector2d::Zero(), point});
+  return sights;
+}
+
 /// The map of the hall, seen from many places.
 OccupancyMap hall_map() {
   OccupancyMap::Params params;
@@ -79,7 +85,7 @@ TEST(ScanMatcher, WithoutPointsKeepsThePrediction) {
 TEST(SearchMap, FindsAScanAnywhereInTheHall) {
   const OccupancyMap map = hall_map();
   for (const Pose2& truth : {Pose2{{-4, -3}, 0.4}, Pose2{{6.5, 3.5}, -2.2}, Pose2{{1, 1}, 3.0}}) {
-    const auto found = autonomy::search_map(map, points_of(test::hall().scan(truth, 0)), 0.4);
+    const auto found = autonomy::search_map(map, sights_of(test::hall().scan(truth, 0)), 0.4);
     ASSERT_TRUE(found);
     EXPECT_LT((found->best.pose.p_W - truth.p_W).norm(), 0.1);
     EXPECT_LT(std::abs(sim::wrap_angle(found->best.pose.yaw_rad - truth.yaw_rad)), 0.03);
@@ -105,14 +111,14 @@ TEST(SearchMap, OfTwoEqualPlacesSaysSo) {
         ends.push_back(Vector2d(x, 0) + autonomy::turned(point, yaw_rad));
       for (int times = 0; times < 3; ++times) map.insert({x, 0}, ends, std::vector<char>(ends.size(), 1), 0);
     }
-  const auto found = autonomy::search_map(map, points_of(rooms.scan({{-4, 0}, 0.2}, 0)), 0.4);
+  const auto found = autonomy::search_map(map, sights_of(rooms.scan({{-4, 0}, 0.2}, 0)), 0.4);
   ASSERT_TRUE(found);
   // The rooms are 160 cells apart, so that even their cells are equal.
   EXPECT_NEAR(found->other_score, found->best.score, 0.05);
 }
 
 TEST(SearchMap, FindsNothingInAnEmptyMap) {
-  EXPECT_FALSE(autonomy::search_map(OccupancyMap({}), points_of(test::hall().scan({}, 0)), 0.4));
+  EXPECT_FALSE(autonomy::search_map(OccupancyMap({}), sights_of(test::hall().scan({}, 0)), 0.4));
   EXPECT_FALSE(autonomy::search_map(hall_map(), {}, 0.4));
 }
 
