@@ -123,10 +123,12 @@ void OccupancyMap::insert(const Vector2d& sensor_W, const std::vector<Vector2d>&
   };
   changed_.clear();
   ends_.clear();
-  // A cell in which a beam ends is not passed by its neighbours, which graze the surface.
+  // A cell in which a beam ends is not passed by its neighbours, which graze the surface.  A beam that ends beside an
+  // occupied cell has met the same surface: otherwise surfaces would become thick, and move with the errors of poses.
   for (std::size_t i = 0; i < ends_W.size(); ++i) {
-    const int column = column_of(ends_W[i].x()), row = row_of(ends_W[i].y());
+    int column = column_of(ends_W[i].x()), row = row_of(ends_W[i].y());
     if (hits[i] == 0 || column < 0 || row < 0 || column >= columns_ || row >= rows_) continue;
+    if (!is_occupied(column, row)) use_neighbour(column, row);
     CellState& cell = cell_at(column, row);
     if (cell.is_end) continue;
     cell.is_end = true;
@@ -153,6 +155,17 @@ bool OccupancyMap::is_occupied(int column, int row) const {
   if (column < 0 || row < 0 || column >= columns_ || row >= rows_) return false;
   const Tile* tile = tile_of(column, row).get();
   return tile != nullptr && tile->cells[cell_of(column, row)].occupied;
+}
+
+void OccupancyMap::use_neighbour(int& column, int& row) const {
+  // Those beside it, then those across its corners.
+  static constexpr int neighbours[8][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {1, -1}, {-1, 1}, {-1, -1}};
+  for (const auto& [right, up] : neighbours) {
+    if (!is_occupied(column + right, row + up)) continue;
+    column += right;
+    row += up;
+    return;
+  }
 }
 
 void OccupancyMap::update_field() {

@@ -92,6 +92,8 @@ class OccupancyMap {
   template <class Visit>
   void visit_passed(const Vector2d& sensor_W, const Vector2d& end_W, double less_m, Visit visit) const;
   bool is_occupied(int column, int row) const;
+  /// Replaces a cell by an occupied neighbour, if there is one.
+  void use_neighbour(int& column, int& row) const;
   /// Computes the field again around the cells whose state has changed.
   void update_field();
 
