@@ -45,7 +45,10 @@ TEST(Mapping, TenMinutesOfTheCarParkAreMappedRepeatedAndReplayed) {
 
 TEST(Mapping, ACarriedRoverIsFoundAgain) {
   const Ended run = run_shoal(
-      mapping("700", {"--set", "events.carry.at=500", "--set", "pass=[path.max_m > 2, path.lost_s < 60]", "--seed", "3"}),
+      mapping("700", {"--set",
+                      "events=[{name: carry, at: 500, do: [{move: {name: rover1, position_m: [5, 2, 0], rpy_deg: [0, 0, "
+                      "150]}}]}]",
+                      "--set", "pass=[path.max_m > 2, path.lost_s < 60]", "--seed", "3"}),
       3 * timeout);
   EXPECT_EQ(run.exit_code, 0) << run.output << run.errors;
   EXPECT_THAT(run.errors, HasSubstr("mapper: lost 1 times"));

@@ -95,7 +95,7 @@ void Mapper::track(const Beams& beams, const Increment& by) {
     lost_ = true;
     ++times_lost_;
     collected_.clear();
-    searched_utime_ = 0;
+    next_search_s_ = 0;
     return;
   }
   bad_scans_ = 0;
@@ -132,8 +132,9 @@ void Mapper::search(const Beams& beams) {
       collected_.push_back({params_.lidar.p_W, beams.points_B[i]});
     collected_at_ = pose_;
   }
-  if (collected_.size() < enough_points || seconds(utime_ - searched_utime_) < params_.search_s) return;
+  if (collected_.size() < enough_points || seconds(utime_ - searched_utime_) < next_search_s_) return;
   searched_utime_ = utime_;
+  next_search_s_ = std::clamp(2 * next_search_s_, params_.search_s, params_.max_search_s);
   const bool complete = collected_.size() >= most_points;
   const auto found = search_map(map_, collected_, params_.accept_score);
   if (complete) collected_.clear();

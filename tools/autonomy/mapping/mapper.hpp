@@ -35,7 +35,8 @@ class Mapper {
     double insert_s = 10;          ///< or this time
     double min_agreement = 0.35;   ///< share of the beams in known cells that must end near something in the map
     int max_bad_scans = 4;         ///< consecutive ones below it; then the vehicle is lost
-    double search_s = 3;           ///< time between searches of the whole map
+    double search_s = 3;           ///< time between the first searches of the whole map; it doubles up to max_search_s
+    double max_search_s = 60;
     double accept_score = 0.5;     ///< score of a pose to be accepted
     double accept_lead = 0.1;      ///< and its lead over any other pose
     double last_lead = 0.03;       ///< lead that suffices when it has seen all around
@@ -95,6 +96,7 @@ class Mapper {
   std::vector<Sight> collected_;  ///< beams of the scans since then, in the frame of the vehicle now
   Pose2 collected_at_;                 ///< pose by odometry of the last scan among them
   std::int64_t searched_utime_ = 0;
+  double next_search_s_ = 0;  ///< time from that search to the next one
 };
 
 }  // namespace autonomy

@@ -125,14 +125,24 @@ void OccupancyMap::insert(const Vector2d& sensor_W, const std::vector<Vector2d>&
   ends_.clear();
   // A cell in which a beam ends is not passed by its neighbours, which graze the surface.  A beam that ends beside an
   // occupied cell has met the same surface: otherwise surfaces would become thick, and move with the errors of poses.
-  for (std::size_t i = 0; i < ends_W.size(); ++i) {
-    int column = column_of(ends_W[i].x()), row = row_of(ends_W[i].y());
-    if (hits[i] == 0 || column < 0 || row < 0 || column >= columns_ || row >= rows_) continue;
+  const auto add_end = [&](const Vector2d& end_W) {
+    int column = column_of(end_W.x()), row = row_of(end_W.y());
+    if (column < 0 || row < 0 || column >= columns_ || row >= rows_) return;
     if (!is_occupied(column, row)) use_neighbour(column, row);
     CellState& cell = cell_at(column, row);
-    if (cell.is_end) continue;
+    if (cell.is_end) return;
     cell.is_end = true;
     ends_.push_back({column, row});
+  };
+  for (std::size_t i = 0; i < ends_W.size(); ++i) {
+    if (hits[i] == 0) continue;
+    add_end(ends_W[i]);
+    // The surface between two beams that end near each other.
+    if (i == 0 || hits[i - 1] == 0) continue;
+    const Vector2d gap = ends_W[i] - ends_W[i - 1];
+    const double gap_m = gap.norm();
+    if (gap_m > params_.surface_m) continue;
+    for (double at_m = params_.cell_m; at_m < gap_m; at_m += params_.cell_m) add_end(ends_W[i - 1] + at_m / gap_m * gap);
   }
   const auto time_s = static_cast<float>(now_s);
   const auto take = [&](CellState& cell, int column, int row, float evidence) {

@@ -32,6 +32,7 @@ class OccupancyMap {
     double hit = 0.85;           ///< log-odds that a beam that ends in a cell adds
     double miss = 0.4;           ///< log-odds that a beam that passes a cell takes away
     double max_log_odds = 3.5;   ///< limit with `forget`
+    double surface_m = 0.5;      ///< neighbouring beams that end nearer to each other have met one surface
     double field_std_m = 0.06;   ///< standard deviation of the likelihood field
   };
   static constexpr int unknown_percent = -1;
