@@ -127,7 +127,7 @@ void Mapper::search(const Beams& beams) {
   constexpr std::size_t every = 4, most_points = 225, enough_points = 80;
   const bool differs = collected_.empty() || (pose_.p_W - collected_at_.p_W).norm() > apart_m ||
                        std::abs(sim::wrap_angle(pose_.yaw_rad - collected_at_.yaw_rad)) > apart_rad;
-  if (differs) {
+  if (differs && collected_.size() < most_points) {
     for (std::size_t i = 0; i < beams.points_B.size(); i += every)
       collected_.push_back({params_.lidar.p_W, beams.points_B[i]});
     collected_at_ = pose_;

@@ -154,6 +154,8 @@ std::optional<GlobalMatch> search_map(const OccupancyMap& map, const std::vector
   for (const Sight& sight : sights) points_B.push_back(sight.end_B);
   // Maxima over squares of 2, 4, ... cells.  The finest ones also allow for the steps of the heading.
   constexpr int finest = 1, coarsest = 5;
+  // Scans that fit nowhere are like many places: the search is given up then.
+  constexpr int max_visited = 200'000;
   std::vector<FieldPatch> levels;
   levels.emplace_back(map, 0, 0, map.columns(), map.rows());
   for (int level = 0; level < coarsest; ++level) levels.emplace_back(levels.back(), 1 << level);
@@ -205,9 +207,11 @@ std::optional<GlobalMatch> search_map(const OccupancyMap& map, const std::vector
       found.other_score = std::max(found.other_score, match.score);
     }
   };
+  int visited = 0;
   for (const Candidate& square : squares) {
     std::vector<std::pair<int, Candidate>> open{{coarsest, square}};
     while (!open.empty()) {
+      if (++visited > max_visited) return std::nullopt;
       const auto [level, candidate] = open.back();
       open.pop_back();
       if (candidate.score <= std::max(min_score, found.other_score)) continue;
