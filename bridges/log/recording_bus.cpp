@@ -120,8 +120,9 @@ bool RecordingBus::leaves_out(std::string_view channel, std::size_t bytes) {
   if (thins_ && !needed && !is_first) return true;
   if (position() + bytes + head_bytes > budget_->bytes) {
     if (!needed) return true;
-    spdlog::warn("{}: the record has used its budget of {} MB at {} s and ends; what is needed for a replay does not fit",
-                 path_, static_cast<double>(budget_->bytes) / 1e6, second);
+    spdlog::warn(
+        "{}: the record has used its budget of {} MB at {} s and ends; what is needed for a replay does not fit", path_,
+        static_cast<double>(budget_->bytes) / 1e6, second);
     close();
     return false;
   }

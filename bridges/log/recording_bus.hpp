@@ -55,9 +55,9 @@ class RecordingBus final : public sim::Bus {
   sim::BusCounts counts() const override { return inner_.counts(); }
 
   /// Limits the size of the record.  In each simulated second in which the record is ahead of its share of the budget,
-  /// messages are left out, except for the first of each channel in a minute and those by which the run can be replayed:
-  /// all sim.* apart from sim.state and sim.bodies.  When these alone exceed the budget, the record ends, with a warning.
-  /// To be called before the first message.
+  /// messages are left out, except for the first of each channel in a minute and those by which the run can be
+  /// replayed: all sim.* apart from sim.state and sim.bodies.  When these alone exceed the budget, the record ends,
+  /// with a warning. To be called before the first message.
   void set_budget(const RecordBudget& budget);
   /// Returns the number of messages that were left out because of the budget.
   std::uint64_t left_out() const { return left_out_; }
@@ -110,8 +110,8 @@ class RecordingBus final : public sim::Bus {
   std::optional<std::string> error_;
   std::uint64_t recorded_ = 0;
   std::optional<RecordBudget> budget_;
-  std::int64_t decided_s_ = -1;  // simulated second for which `thins_` holds
-  bool thins_ = false;           // messages are left out in this second
+  std::int64_t decided_s_ = -1;                              // simulated second for which `thins_` holds
+  bool thins_ = false;                                       // messages are left out in this second
   std::map<std::string, std::int64_t, std::less<>> kept_s_;  // by channel: second of the last message that was kept
   std::uint64_t left_out_ = 0;
 };

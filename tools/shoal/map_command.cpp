@@ -35,7 +35,8 @@ std::optional<MapArea> parse_area(const std::string& text) {
   const char* const end = at + text.size();
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     const auto [next, error] = std::from_chars(at, end, numbers[i]);
-    const bool good = error == std::errc{} && std::abs(numbers[i]) <= 1e7 && (i == 3 ? next == end : next != end && *next == ',');
+    const bool good =
+        error == std::errc{} && std::abs(numbers[i]) <= 1e7 && (i == 3 ? next == end : next != end && *next == ',');
     if (!good)
       throw CLI::ValidationError("--area", "must be four numbers in metres such as -20,-15,20,15, got '" + text + "'");
     at = next + 1;
@@ -72,9 +73,10 @@ void for_times(const MapArguments& arguments, Take take) {
 MapFrame frame_of(const MapArguments& arguments, const std::optional<MapArea>& area, const sim::World& world) {
   const std::optional<MapArea> all = area ? area : area_of_objects(world, arguments.height_m);
   if (!all)
-    throw std::runtime_error(fmt::format("{}: no object is {:g} m above zero at {:.6g} s: give --area, or another "
-                                         "--height",
-                                         arguments.source, arguments.height_m, sim::to_seconds(world.now())));
+    throw std::runtime_error(
+        fmt::format("{}: no object is {:g} m above zero at {:.6g} s: give --area, or another "
+                    "--height",
+                    arguments.source, arguments.height_m, sim::to_seconds(world.now())));
   try {
     return frame_of_area(*all, arguments.cell_m);
   } catch (const std::invalid_argument& error) {

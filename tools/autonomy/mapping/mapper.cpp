@@ -42,7 +42,8 @@ Mapper::Beams Mapper::beams_of(const shoal::planar_lidar_t& scan) const {
     const double range_m = static_cast<double>(scan.ranges[i]);
     if (!(range_m > 0)) continue;
     const bool hit = range_m < 0.99 * params_.lidar_range_m && range_m <= params_.use_range_m;
-    const double angle_rad = static_cast<double>(scan.rad0) + static_cast<double>(i) * static_cast<double>(scan.radstep);
+    const double angle_rad =
+        static_cast<double>(scan.rad0) + static_cast<double>(i) * static_cast<double>(scan.radstep);
     const double length_m = std::min(range_m, params_.use_range_m);
     beams.ends_B.push_back(placed(params_.lidar, length_m * Vector2d(std::cos(angle_rad), std::sin(angle_rad))));
     beams.hits.push_back(hit ? 1 : 0);

@@ -15,31 +15,32 @@
 
 namespace autonomy {
 
-/// Simultaneous localisation and mapping by a planar lidar and odometry: a pure function of the messages in their order,
-/// independent of clock and bus.  Its copy is its whole state.
+/// Simultaneous localisation and mapping by a planar lidar and odometry: a pure function of the messages in their
+/// order, independent of clock and bus.  Its copy is its whole state.
 ///
 ///   - track: each scan is matched to the map near the pose that odometry predicts, and then added to the map.
-///   - lost: several scans in a row hit what the map has as free, as after the vehicle was carried.  It collects scans by
+///   - lost: several scans in a row hit what the map has as free, as after the vehicle was carried.  It collects scans
+///   by
 ///     odometry and searches the whole map until one pose is clearly the best.  Nothing is added to the map.
 class Mapper {
  public:
   struct Params {
-    Pose2 start;                   ///< pose of the vehicle at the start, in the frame of the map
+    Pose2 start;  ///< pose of the vehicle at the start, in the frame of the map
     OccupancyMap::Params map;
     ScanMatcher::Params matcher;
-    Pose2 lidar;                   ///< pose of the lidar on the vehicle
-    double lidar_range_m = 20;     ///< a beam of this length has met nothing
-    double use_range_m = 15;       ///< longer beams only clear this length
-    double insert_m = 0.1;         ///< a scan is added after this distance
-    double insert_rad = 0.05;      ///< or this turn
-    double insert_s = 10;          ///< or this time
-    double min_agreement = 0.35;   ///< share of the beams in known cells that must end near something in the map
-    int max_bad_scans = 4;         ///< consecutive ones below it; then the vehicle is lost
-    double search_s = 3;           ///< time between the first searches of the whole map; it doubles up to max_search_s
+    Pose2 lidar;                  ///< pose of the lidar on the vehicle
+    double lidar_range_m = 20;    ///< a beam of this length has met nothing
+    double use_range_m = 15;      ///< longer beams only clear this length
+    double insert_m = 0.1;        ///< a scan is added after this distance
+    double insert_rad = 0.05;     ///< or this turn
+    double insert_s = 10;         ///< or this time
+    double min_agreement = 0.35;  ///< share of the beams in known cells that must end near something in the map
+    int max_bad_scans = 4;        ///< consecutive ones below it; then the vehicle is lost
+    double search_s = 3;          ///< time between the first searches of the whole map; it doubles up to max_search_s
     double max_search_s = 60;
-    double accept_score = 0.5;     ///< score of a pose to be accepted
-    double accept_lead = 0.1;      ///< and its lead over any other pose
-    double last_lead = 0.03;       ///< lead that suffices when it has seen all around
+    double accept_score = 0.5;  ///< score of a pose to be accepted
+    double accept_lead = 0.1;   ///< and its lead over any other pose
+    double last_lead = 0.03;    ///< lead that suffices when it has seen all around
   };
 
   explicit Mapper(const Params& params);
@@ -85,7 +86,7 @@ class Mapper {
   // Tracking.
   bool has_map_ = false;
   std::int64_t first_utime_ = 0;  ///< from which the map counts its time
-  Pose2 inserted_;  ///< pose of the last scan in the map
+  Pose2 inserted_;                ///< pose of the last scan in the map
   std::int64_t inserted_utime_ = 0;
   double still_score_ = 0;  ///< score where it stands, after the last match
   std::int64_t matched_utime_ = 0;
@@ -94,7 +95,7 @@ class Mapper {
   bool lost_ = false;
   int times_lost_ = 0;
   std::vector<Sight> collected_;  ///< beams of the scans since then, in the frame of the vehicle now
-  Pose2 collected_at_;                 ///< pose by odometry of the last scan among them
+  Pose2 collected_at_;            ///< pose by odometry of the last scan among them
   std::int64_t searched_utime_ = 0;
   double next_search_s_ = 0;  ///< time from that search to the next one
 };

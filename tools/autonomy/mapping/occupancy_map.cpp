@@ -20,13 +20,16 @@ constexpr int reach = 3;
 
 OccupancyMap::OccupancyMap(const Params& params) : params_(params) {
   const Vector2d size_m = params.high_W - params.low_W;
-  if (!(size_m.minCoeff() > 0)) throw std::invalid_argument("the area of the map must go from smaller to larger x and y");
-  const double columns = std::ceil(size_m.x() / params.cell_m - 1e-6), rows = std::ceil(size_m.y() / params.cell_m - 1e-6);
+  if (!(size_m.minCoeff() > 0))
+    throw std::invalid_argument("the area of the map must go from smaller to larger x and y");
+  const double columns = std::ceil(size_m.x() / params.cell_m - 1e-6),
+               rows = std::ceil(size_m.y() / params.cell_m - 1e-6);
   if (columns * rows > 16e6) throw std::invalid_argument("the map must have at most 16 million cells");
   columns_ = static_cast<int>(columns);
   rows_ = static_cast<int>(rows);
   tile_columns_ = (columns_ + tile_cells - 1) / tile_cells;
-  tiles_.resize(static_cast<std::size_t>(tile_columns_) * static_cast<std::size_t>((rows_ + tile_cells - 1) / tile_cells));
+  tiles_.resize(static_cast<std::size_t>(tile_columns_) *
+                static_cast<std::size_t>((rows_ + tile_cells - 1) / tile_cells));
   const auto unit = [&](double log_odds) {
     return static_cast<float>(params.forget ? std::tanh(0.5 * log_odds) : log_odds);
   };
@@ -39,13 +42,14 @@ OccupancyMap::OccupancyMap(const Params& params) : params_(params) {
   for (int i = 0; i <= reach; ++i)
     for (int k = 0; k <= reach; ++k) {
       const double distance_m = std::hypot(i, k) * params.cell_m;
-      kernel_[static_cast<std::size_t>(i)][static_cast<std::size_t>(k)] = static_cast<std::uint8_t>(
-          std::lround(255 * std::exp(-0.5 * squared(distance_m / params.field_std_m))));
+      kernel_[static_cast<std::size_t>(i)][static_cast<std::size_t>(k)] =
+          static_cast<std::uint8_t>(std::lround(255 * std::exp(-0.5 * squared(distance_m / params.field_std_m))));
     }
 }
 
 OccupancyMap::Tile& OccupancyMap::own_tile(int column, int row) {
-  std::shared_ptr<Tile>& tile = tiles_[static_cast<std::size_t>(row / tile_cells * tile_columns_ + column / tile_cells)];
+  std::shared_ptr<Tile>& tile =
+      tiles_[static_cast<std::size_t>(row / tile_cells * tile_columns_ + column / tile_cells)];
   if (!tile)
     tile = std::make_shared<Tile>();
   else if (tile.use_count() > 1)
@@ -57,7 +61,8 @@ float OccupancyMap::forgotten(const CellState& cell, float now_s) const {
   const float dt_s = now_s - cell.seen_s;
   if (!params_.forget || dt_s <= 0) return cell.belief;
   const auto dwell_s = static_cast<float>(params_.dwell_s) + cell.observed_s;
-  const float mean_s = std::max(static_cast<float>(params_.min_dwell_s), dwell_s / static_cast<float>(1 + cell.changes));
+  const float mean_s =
+      std::max(static_cast<float>(params_.min_dwell_s), dwell_s / static_cast<float>(1 + cell.changes));
   return cell.belief * std::exp(-2 * dt_s / mean_s);
 }
 
@@ -142,7 +147,8 @@ void OccupancyMap::insert(const Vector2d& sensor_W, const std::vector<Vector2d>&
     const Vector2d gap = ends_W[i] - ends_W[i - 1];
     const double gap_m = gap.norm();
     if (gap_m > params_.surface_m) continue;
-    for (double at_m = params_.cell_m; at_m < gap_m; at_m += params_.cell_m) add_end(ends_W[i - 1] + at_m / gap_m * gap);
+    for (double at_m = params_.cell_m; at_m < gap_m; at_m += params_.cell_m)
+      add_end(ends_W[i - 1] + at_m / gap_m * gap);
   }
   const auto time_s = static_cast<float>(now_s);
   const auto take = [&](CellState& cell, int column, int row, float evidence) {

@@ -14,11 +14,11 @@ namespace autonomy {
 
 /// Occupancy grid with a probability for each cell, and a likelihood field for matching scans.
 ///
-/// With `forget` a cell follows a two-state Markov chain (Meyer-Delius, Beinhofer and Burgard 2012, in continuous time):
-/// occupied and free each last the dwell time T on average, and without observations for dt the probability p goes
-/// towards 1/2: p - 1/2 decreases by exp(-2 dt / T).  Each cell learns T: the time that it has been observed, by the
-/// number of changes that were seen; both begin as if one change had been seen in `dwell_s`.  Without `forget` log-odds
-/// add up for ever, as in a world that does not change (Moravec and Elfes 1985).
+/// With `forget` a cell follows a two-state Markov chain (Meyer-Delius, Beinhofer and Burgard 2012, in continuous
+/// time): occupied and free each last the dwell time T on average, and without observations for dt the probability p
+/// goes towards 1/2: p - 1/2 decreases by exp(-2 dt / T).  Each cell learns T: the time that it has been observed, by
+/// the number of changes that were seen; both begin as if one change had been seen in `dwell_s`.  Without `forget`
+/// log-odds add up for ever, as in a world that does not change (Moravec and Elfes 1985).
 ///
 /// A copy shares the tiles of the original until one of them changes: copies for rewinds are cheap.
 class OccupancyMap {
@@ -27,13 +27,13 @@ class OccupancyMap {
     Vector2d low_W{-25, -20}, high_W{25, 20};  ///< corners of the area
     double cell_m = 0.05;
     bool forget = true;
-    double dwell_s = 21600;      ///< expected dwell time of a cell in which no change was seen
-    double min_dwell_s = 900;    ///< shortest dwell time
-    double hit = 0.85;           ///< log-odds that a beam that ends in a cell adds
-    double miss = 0.4;           ///< log-odds that a beam that passes a cell takes away
-    double max_log_odds = 3.5;   ///< limit with `forget`
-    double surface_m = 0.5;      ///< neighbouring beams that end nearer to each other have met one surface
-    double field_std_m = 0.06;   ///< standard deviation of the likelihood field
+    double dwell_s = 21600;     ///< expected dwell time of a cell in which no change was seen
+    double min_dwell_s = 900;   ///< shortest dwell time
+    double hit = 0.85;          ///< log-odds that a beam that ends in a cell adds
+    double miss = 0.4;          ///< log-odds that a beam that passes a cell takes away
+    double max_log_odds = 3.5;  ///< limit with `forget`
+    double surface_m = 0.5;     ///< neighbouring beams that end nearer to each other have met one surface
+    double field_std_m = 0.06;  ///< standard deviation of the likelihood field
   };
   static constexpr int unknown_percent = -1;
 
@@ -101,9 +101,9 @@ class OccupancyMap {
   Params params_;
   int columns_, rows_, tile_columns_;
   std::vector<std::shared_ptr<Tile>> tiles_;
-  std::vector<std::array<int, 2>> changed_, ends_;  ///< cells, during insert()
+  std::vector<std::array<int, 2>> changed_, ends_;              ///< cells, during insert()
   float hit_, miss_, limit_, becomes_occupied_, becomes_free_;  ///< in the unit of CellState::belief
-  std::vector<std::array<std::uint8_t, 4>> kernel_;  ///< field by distance in rows and columns
+  std::vector<std::array<std::uint8_t, 4>> kernel_;             ///< field by distance in rows and columns
 };
 
 }  // namespace autonomy

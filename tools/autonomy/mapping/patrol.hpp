@@ -23,13 +23,13 @@ class Patrol {
   struct Params {
     std::vector<Vector2d> waypoints_W;  ///< the first is the place where it charges
     double speed_mps = 0.6;
-    double pause_s = 5;        ///< at each waypoint
-    double charge_s = 480;     ///< at the first waypoint
-    double reached_m = 0.6;    ///< acceptance radius of a waypoint
-    double give_up_s = 60;     ///< a waypoint is skipped after this time without progress
-    double lost_std_m = 1;     ///< standard deviation of the estimate from which on it turns on the spot
-    double search_radps = 0.4; ///< turn rate of this
-    double period_s = 1;       ///< between ticks: the longer, the smaller its turns
+    double pause_s = 5;         ///< at each waypoint
+    double charge_s = 480;      ///< at the first waypoint
+    double reached_m = 0.6;     ///< acceptance radius of a waypoint
+    double give_up_s = 60;      ///< a waypoint is skipped after this time without progress
+    double lost_std_m = 1;      ///< standard deviation of the estimate from which on it turns on the spot
+    double search_radps = 0.4;  ///< turn rate of this
+    double period_s = 1;        ///< between ticks: the longer, the smaller its turns
   };
 
   /// Throws std::invalid_argument without waypoints.

@@ -29,7 +29,10 @@ struct Offsets {
 class FieldPatch {
  public:
   FieldPatch(const OccupancyMap& map, int first_column, int first_row, int columns, int rows)
-      : first_column_(first_column), first_row_(first_row), columns_(columns), rows_(rows),
+      : first_column_(first_column),
+        first_row_(first_row),
+        columns_(columns),
+        rows_(rows),
         field_(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows)) {
     for (int row = 0; row < rows; ++row)
       for (int column = 0; column < columns; ++column)
@@ -37,14 +40,16 @@ class FieldPatch {
   }
   /// Maxima over squares of twice the side, to the right and up, of those of a patch over `side` cells.
   FieldPatch(const FieldPatch& finer, int side)
-      : first_column_(finer.first_column_), first_row_(finer.first_row_), columns_(finer.columns_), rows_(finer.rows_),
+      : first_column_(finer.first_column_),
+        first_row_(finer.first_row_),
+        columns_(finer.columns_),
+        rows_(finer.rows_),
         field_(finer.field_.size()) {
     for (int row = 0; row < rows_; ++row)
       for (int column = 0; column < columns_; ++column) {
         const int right = std::min(column + side, columns_ - 1), up = std::min(row + side, rows_ - 1);
-        field_[index(column, row)] =
-            std::max({finer.field_[index(column, row)], finer.field_[index(right, row)],
-                      finer.field_[index(column, up)], finer.field_[index(right, up)]});
+        field_[index(column, row)] = std::max({finer.field_[index(column, row)], finer.field_[index(right, row)],
+                                               finer.field_[index(column, up)], finer.field_[index(right, up)]});
       }
   }
   int sum(const Offsets& offsets, int column, int row) const {
@@ -109,7 +114,8 @@ double blocked_share(const OccupancyMap& map, const std::vector<Sight>& sights, 
 double score_of(const OccupancyMap& map, const std::vector<Vector2d>& points_B, const Pose2& pose) {
   const double c = std::cos(pose.yaw_rad), s = std::sin(pose.yaw_rad);
   double sum = 0;
-  for (const Vector2d& p : points_B) sum += map.field(pose.p_W + Vector2d(c * p.x() - s * p.y(), s * p.x() + c * p.y()));
+  for (const Vector2d& p : points_B)
+    sum += map.field(pose.p_W + Vector2d(c * p.x() - s * p.y(), s * p.x() + c * p.y()));
   return points_B.empty() ? 0 : sum / static_cast<double>(points_B.size());
 }
 
@@ -195,8 +201,8 @@ std::optional<GlobalMatch> search_map(const OccupancyMap& map, const std::vector
   bool any = false;
   const auto take = [&](const Candidate& leaf) {
     const Pose2 pose = pose_of(leaf);
-    ScanMatch match = refine(map, points_B, {pose, 0}, cell_m, std::numbers::pi / headings, 5,
-                             [](const Pose2&) { return 0.0; });
+    ScanMatch match =
+        refine(map, points_B, {pose, 0}, cell_m, std::numbers::pi / headings, 5, [](const Pose2&) { return 0.0; });
     if (match.score <= std::max(min_score, found.other_score)) return;
     match.score -= blocked_share(map, sights, match.pose);
     if (match.score > found.best.score) {
@@ -232,7 +238,8 @@ std::optional<GlobalMatch> search_map(const OccupancyMap& map, const std::vector
           quarters.push_back(quarter);
         }
       std::stable_sort(quarters.begin(), quarters.end(), better);
-      for (auto quarter = quarters.rbegin(); quarter != quarters.rend(); ++quarter) open.emplace_back(level - 1, *quarter);
+      for (auto quarter = quarters.rbegin(); quarter != quarters.rend(); ++quarter)
+        open.emplace_back(level - 1, *quarter);
     }
   }
   return any ? std::optional(found) : std::nullopt;

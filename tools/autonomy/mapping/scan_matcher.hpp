@@ -15,17 +15,17 @@ struct ScanMatch {
   double score = 0;
 };
 
-/// Correlative scan matching (Olson 2009): the pose near a prediction at which the ends of the beams are the most likely,
-/// by trying all poses of a window in steps of a cell, and then halving the steps around the best one.
+/// Correlative scan matching (Olson 2009): the pose near a prediction at which the ends of the beams are the most
+/// likely, by trying all poses of a window in steps of a cell, and then halving the steps around the best one.
 class ScanMatcher {
  public:
   struct Params {
-    double window_m = 0.2;            ///< of each coordinate, to both sides of the prediction
-    double window_rad = 0.09;         ///< of the heading
+    double window_m = 0.2;     ///< of each coordinate, to both sides of the prediction
+    double window_rad = 0.09;  ///< of the heading
     double step_rad = 0.0125;
-    double prior_std_m = 0.1;         ///< standard deviation of the prediction, for directions that the scan leaves open
+    double prior_std_m = 0.1;  ///< standard deviation of the prediction, for directions that the scan leaves open
     double prior_std_rad = 0.05;
-    double prior_weight = 0.02;       ///< loss of score at one standard deviation
+    double prior_weight = 0.02;  ///< loss of score at one standard deviation
   };
   explicit ScanMatcher(const Params& params) : params_(params) {}
 
@@ -45,8 +45,8 @@ struct Sight {
   Vector2d end_B = Vector2d::Zero();
 };
 
-/// Result of a search of the whole map.  The score of a pose is that of score_of() less the share of the beams that pass
-/// through something in the map.
+/// Result of a search of the whole map.  The score of a pose is that of score_of() less the share of the beams that
+/// pass through something in the map.
 struct GlobalMatch {
   ScanMatch best;
   double other_score = 0;  ///< best score more than 1 m or 0.5 rad away

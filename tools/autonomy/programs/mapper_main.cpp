@@ -66,7 +66,8 @@ int map(const Options& options) {
 }
 
 void declare_map(command_line::DeclaredOptions& declared, autonomy::OccupancyMap::Params& map, std::string& memory) {
-  declared.tuple(
+  declared
+      .tuple(
           "area_m", {"x_min", "y_min", "x_max", "y_max"}, sim::any_place(),
           [&](const auto& numbers) {
             map.low_W = {numbers[0], numbers[1]};

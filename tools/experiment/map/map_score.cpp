@@ -56,10 +56,8 @@ void CellHistory::visit_state(sim::StateArchive& archive) {
 }
 
 MapScores score_map(const GridMap& map, const CellHistory& truth, int tolerance, double now_s) {
-  const auto near_true =
-      near(map.frame, tolerance, [&](std::size_t i) { return truth.now(i) == Cell::occupied; });
-  const auto near_mapped =
-      near(map.frame, tolerance, [&](std::size_t i) { return map.cells[i] == Cell::occupied; });
+  const auto near_true = near(map.frame, tolerance, [&](std::size_t i) { return truth.now(i) == Cell::occupied; });
+  const auto near_mapped = near(map.frame, tolerance, [&](std::size_t i) { return map.cells[i] == Cell::occupied; });
   const auto near_change = near(map.frame, tolerance, [&](std::size_t i) { return truth.has_changed(i); });
   MapScores scores;
   for (std::size_t i = 0; i < map.cells.size(); ++i) {

@@ -65,8 +65,8 @@ struct MapScores {
   CellCounts still;  ///< of cells that have not changed, nor any within the tolerance
 };
 
-/// Compares a map with the truth at the last look().  Both have the same frame.  An occupied cell of either map is right
-/// when the other has one at most `tolerance` columns and rows away.  Solid cells of the truth do not count.
+/// Compares a map with the truth at the last look().  Both have the same frame.  An occupied cell of either map is
+/// right when the other has one at most `tolerance` columns and rows away.  Solid cells of the truth do not count.
 MapScores score_map(const GridMap& map, const CellHistory& truth, int tolerance, double now_s);
 
 }  // namespace tools

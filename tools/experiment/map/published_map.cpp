@@ -28,9 +28,9 @@ PublishedMap decode_map(std::span<const std::byte> payload) {
   published.map.frame = {message.origin_m[0], message.origin_m[1], message.cell_m, message.width, message.height};
   published.map.cells.reserve(message.cells.size());
   for (const std::int8_t percent : message.cells)
-    published.map.cells.push_back(percent >= 65                    ? Cell::occupied
+    published.map.cells.push_back(percent >= 65                   ? Cell::occupied
                                   : percent >= 0 && percent <= 20 ? Cell::free
-                                                                   : Cell::unknown);
+                                                                  : Cell::unknown);
   return published;
 }
 

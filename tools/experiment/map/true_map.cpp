@@ -61,7 +61,8 @@ class LineCaster {
     entered_.clear();
     double travelled_m = 0;
     int begun = 0;  // first cell, in the direction of the ray, that has not been looked at
-    while (const auto hit = scene_.cast(origin_W + travelled_m * direction_W, direction_W, total_m - travelled_m, filter_)) {
+    while (const auto hit =
+               scene_.cast(origin_W + travelled_m * direction_W, direction_W, total_m - travelled_m, filter_)) {
       const double at_m = travelled_m + hit->range_m;
       travelled_m = at_m + behind_m;
       if (vehicles_.contains(parts_[static_cast<std::size_t>(hit->part)].group)) continue;
@@ -74,7 +75,8 @@ class LineCaster {
         entered_.insert(hit->part);
       else
         entered_.erase(hit->part);
-      if (cell >= 0 && cell < cells) map_.cells[at(line, along_x, sense > 0 ? cell : cells - 1 - cell)] = Cell::occupied;
+      if (cell >= 0 && cell < cells)
+        map_.cells[at(line, along_x, sense > 0 ? cell : cells - 1 - cell)] = Cell::occupied;
     }
     fill(line, along_x, sense, begun, cells);
   }
@@ -106,15 +108,17 @@ class LineCaster {
 MapFrame frame_of_area(const MapArea& area, double cell_m) {
   const double width_m = area.x_max_m - area.x_min_m, height_m = area.y_max_m - area.y_min_m;
   if (!(width_m > 0 && height_m > 0))
-    throw std::invalid_argument(fmt::format("the area must go from a smaller to a larger x and y, got {:.6g},{:.6g} to "
-                                            "{:.6g},{:.6g}",
-                                            area.x_min_m, area.y_min_m, area.x_max_m, area.y_max_m));
+    throw std::invalid_argument(
+        fmt::format("the area must go from a smaller to a larger x and y, got {:.6g},{:.6g} to "
+                    "{:.6g},{:.6g}",
+                    area.x_min_m, area.y_min_m, area.x_max_m, area.y_max_m));
   // Rounding must not add a cell.
   const double columns = std::ceil(width_m / cell_m - 1e-6), rows = std::ceil(height_m / cell_m - 1e-6);
   if (columns * rows > static_cast<double>(max_map_cells))
-    throw std::invalid_argument(fmt::format("a map must have at most {} cells, got {:.0f} x {:.0f}: give a smaller area "
-                                            "or larger cells",
-                                            max_map_cells, columns, rows));
+    throw std::invalid_argument(
+        fmt::format("a map must have at most {} cells, got {:.0f} x {:.0f}: give a smaller area "
+                    "or larger cells",
+                    max_map_cells, columns, rows));
   return {area.x_min_m, area.y_min_m, cell_m, std::max(1, static_cast<int>(columns)),
           std::max(1, static_cast<int>(rows))};
 }

@@ -86,7 +86,8 @@ class MapMetric final : public Metric {
     add(figures, "maps", maps_);
   }
   std::string why_none(const std::string& figure) const override {
-    if (maps_ > 0) return figure == "stale_percent" ? "no cell that the map knows has changed" : "there are no such cells";
+    if (maps_ > 0)
+      return figure == "stale_percent" ? "no cell that the map knows has changed" : "there are no such cells";
     if (bad_messages_ > 0) return fmt::format("none of {} messages could be used", bad_messages_);
     return "no map was received on '" + params_.channel + "'" + since_from_s();
   }

@@ -52,9 +52,7 @@ struct AlignmentSums {
     const double both = squares - (truth.squaredNorm() + estimate.squaredNorm()) / count;
     return std::sqrt(std::max(0.0, both - 2 * std::hypot(c, s)) / count);
   }
-  void visit_state(sim::StateArchive& archive) {
-    archive(count, dot, cross, squares, error_squares, truth, estimate);
-  }
+  void visit_state(sim::StateArchive& archive) { archive(count, dot, cross, squares, error_squares, truth, estimate); }
 };
 
 /// Compares the poses of a vehicle on a channel with the truth, as a whole and in segments.
@@ -62,17 +60,17 @@ class TrajectoryMetric final : public Metric {
  public:
   static constexpr const char* meaning = "errors of the planar poses on a channel, as a whole and in segments";
   static std::vector<sim::FigureKind> figures() {
-    return {
-        {"ate_m", "m", "absolute trajectory error: root mean square of the position errors in the world frame"},
-        {"aligned_ate_m", "m", "the same after the rigid motion of the trajectory that makes it smallest"},
-        {"yaw_rms_deg", "deg", "root mean square of the heading errors"},
-        {"max_m", "m", "largest position error"},
-        {"segment_m", "m", "root mean square of the position errors at the end of segments of `segment_m`, seen from "
-                           "their starts"},
-        {"segment_deg", "deg", "the same of the headings"},
-        {"segments", "segments", "segments that were compared, one from every metre travelled", true},
-        {"lost_s", "s", "longest time with a position error above `lost_m`, from the first estimate on"},
-        {"poses", "poses", "poses that were compared with the truth", true}};
+    return {{"ate_m", "m", "absolute trajectory error: root mean square of the position errors in the world frame"},
+            {"aligned_ate_m", "m", "the same after the rigid motion of the trajectory that makes it smallest"},
+            {"yaw_rms_deg", "deg", "root mean square of the heading errors"},
+            {"max_m", "m", "largest position error"},
+            {"segment_m", "m",
+             "root mean square of the position errors at the end of segments of `segment_m`, seen from "
+             "their starts"},
+            {"segment_deg", "deg", "the same of the headings"},
+            {"segments", "segments", "segments that were compared, one from every metre travelled", true},
+            {"lost_s", "s", "longest time with a position error above `lost_m`, from the first estimate on"},
+            {"poses", "poses", "poses that were compared with the truth", true}};
   }
   struct Params final : sim::MetricParams {
     double segment_m = 10;

@@ -29,9 +29,9 @@ constexpr std::int64_t steps_ahead = 2;
 bool is_of_the_run(std::string_view channel) {
   if (!channel.starts_with("sim.")) return false;
   static constexpr std::array<std::string_view, 20> names{
-      "sim.ack",    "sim.control",       "sim.control.reply", "sim.hash",   "sim.info",   "sim.inputs", "sim.audit",
-      "sim.resend", "sim.resent",        "sim.snapshot",      "sim.record", "sim.tick",   "sim.scene",  "sim.asset",  "sim.bodies",
-      "sim.sound",  "sim.sound.arrival", "sim.event",         "sim.scores", "sim.current"};
+      "sim.ack",    "sim.control", "sim.control.reply", "sim.hash",   "sim.info",   "sim.inputs", "sim.audit",
+      "sim.resend", "sim.resent",  "sim.snapshot",      "sim.record", "sim.tick",   "sim.scene",  "sim.asset",
+      "sim.bodies", "sim.sound",   "sim.sound.arrival", "sim.event",  "sim.scores", "sim.current"};
   return std::find(names.begin(), names.end(), channel) != names.end();
 }
 

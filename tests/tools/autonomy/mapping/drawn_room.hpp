@@ -47,19 +47,21 @@ struct DrawnRoom {
     scan.rad0 = static_cast<float>(-std::numbers::pi / 2);
     scan.radstep = static_cast<float>(std::numbers::pi / 179);
     for (int i = 0; i < scan.nranges; ++i)
-      scan.ranges.push_back(
-          static_cast<float>(range_m(pose.p_W, pose.yaw_rad + static_cast<double>(scan.rad0 + static_cast<float>(i) * scan.radstep))));
+      scan.ranges.push_back(static_cast<float>(
+          range_m(pose.p_W, pose.yaw_rad + static_cast<double>(scan.rad0 + static_cast<float>(i) * scan.radstep))));
     return scan;
   }
 };
 
-/// A hall of 16 x 10 m with a pillar and two boxes: no two places look the same.  Its surfaces are in the middle of cells
-/// of 0.05 m, because a surface on the border of two cells is half a cell off in a map.
+/// A hall of 16 x 10 m with a pillar and two boxes: no two places look the same.  Its surfaces are in the middle of
+/// cells of 0.05 m, because a surface on the border of two cells is half a cell off in a map.
 inline DrawnRoom hall() {
   constexpr double half_cell_m = 0.025;
   DrawnRoom room;
-  for (const auto& [low, high] : {std::pair{Vector2d(-8, -5), Vector2d(8, 5)}, {Vector2d(-5, 2), Vector2d(-3, 4)},
-                                  {Vector2d(2, -4), Vector2d(5, -3)}, {Vector2d(5.5, 1), Vector2d(6, 1.5)}})
+  for (const auto& [low, high] : {std::pair{Vector2d(-8, -5), Vector2d(8, 5)},
+                                  {Vector2d(-5, 2), Vector2d(-3, 4)},
+                                  {Vector2d(2, -4), Vector2d(5, -3)},
+                                  {Vector2d(5.5, 1), Vector2d(6, 1.5)}})
     room.add_box(low + Vector2d::Constant(half_cell_m), high + Vector2d::Constant(half_cell_m));
   return room;
 }

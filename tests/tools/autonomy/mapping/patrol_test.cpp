@@ -61,7 +61,8 @@ TEST(Patrol, DrivesRoundsAndRestsAtItsWaypoints) {
     const Twist twist = run.tick();
     resting += twist.forward_mps == 0 && twist.turn_radps == 0 ? 1 : 0;
   }
-  // It starts at the first waypoint.  A round is 20 m at 0.6 m/s, 33 s, with turns, and rests of 100 s and three of 5 s.
+  // It starts at the first waypoint.  A round is 20 m at 0.6 m/s, 33 s, with turns, and rests of 100 s and three of 5
+  // s.
   EXPECT_GE(run.patrol.rounds(), 5);
   EXPECT_LE(run.patrol.rounds(), 1 + 1000 / 148);
   EXPECT_EQ(run.patrol.follower().given_up(), 0);

@@ -45,7 +45,8 @@ std::string reason(const shoal::occupancy_grid_t& message) {
 TEST(PublishedMap, RefusesSizesThatDoNotFit) {
   shoal::occupancy_grid_t message = grid();
   message.width = 4;
-  EXPECT_THAT(reason(message), testing::HasSubstr("'ncells' must be width * height, above 0 and at most 64000000, got 6 of 4 x 2"));
+  EXPECT_THAT(reason(message),
+              testing::HasSubstr("'ncells' must be width * height, above 0 and at most 64000000, got 6 of 4 x 2"));
   message = grid();
   message.width = message.height = -1;
   EXPECT_THAT(reason(message), testing::HasSubstr("'ncells'"));

@@ -46,8 +46,8 @@ TEST(TrueMap, HasTheOutlineOfABoxAndItsInsideIsSolid) {
 }
 
 TEST(TrueMap, SurfacesOnTheBorderOfTwoCellsBelongToTheInside) {
-  const test::TestWorld test(map_world(
-      "  - {name: crate, fixed: true, position_m: [0, 0, 0.5], parts: [{shape: box, size_m: [1, 1, 1]}]}\n"));
+  const test::TestWorld test(
+      map_world("  - {name: crate, fixed: true, position_m: [0, 0, 0.5], parts: [{shape: box, size_m: [1, 1, 1]}]}\n"));
   const GridMap map = tools::true_map(test.world, frame, 0.3);
   EXPECT_EQ(counts_of(map).at(Cell::occupied), 10 * 10 - 8 * 8);
   EXPECT_EQ(map.cells[frame.index(15, 20)], Cell::occupied);
@@ -91,17 +91,17 @@ TEST(TrueMap, ObjectsThatTouchLeaveNoTrace) {
 }
 
 TEST(TrueMap, FollowsTheWorld) {
-  test::TestWorld test(map_world(
-      "  - {name: crate, fixed: true, position_m: [0, 0, 0.5], parts: [{shape: box, size_m: [1, 1, 1]}]}\n"));
+  test::TestWorld test(
+      map_world("  - {name: crate, fixed: true, position_m: [0, 0, 0.5], parts: [{shape: box, size_m: [1, 1, 1]}]}\n"));
   test.world.editor().remove_object("crate");
   test.world.step();
   EXPECT_EQ(counts_of(tools::true_map(test.world, frame, 0.3)).at(Cell::free), 40 * 40);
 }
 
 TEST(TrueMap, AreaIsThatOfTheObjectsAtItsHeight) {
-  const test::TestWorld test(map_world(
-      "  - {name: crate, fixed: true, position_m: [3, -2, 0.5], parts: [{shape: box, size_m: [1, 1, 1]}]}\n"
-      "  - {name: lamp, fixed: true, position_m: [30, 0, 5], parts: [{shape: box, size_m: [1, 1, 1]}]}\n"));
+  const test::TestWorld test(
+      map_world("  - {name: crate, fixed: true, position_m: [3, -2, 0.5], parts: [{shape: box, size_m: [1, 1, 1]}]}\n"
+                "  - {name: lamp, fixed: true, position_m: [30, 0, 5], parts: [{shape: box, size_m: [1, 1, 1]}]}\n"));
   const auto area = tools::area_of_objects(test.world, 0.3);
   ASSERT_TRUE(area);
   // 2.5 to 3.5 and -2.5 to -1.5, a metre more, in whole metres.
