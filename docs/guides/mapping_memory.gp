@@ -1,7 +1,7 @@
-# The image of docs/guides/mapping.md, from the study:  gnuplot docs/guides/mapping_memory.gp
+# A figure of the study slam_days:  gnuplot docs/guides/mapping_memory.gp
 if (!exists("study")) study = "results/slam_days/study.csv"
 set terminal pngcairo size 900,420 font "sans,11"
-set output "docs/guides/mapping_memory.png"
+set output "results/slam_days/memory.png"
 set datafile separator ","
 set datafile missing ""
 set multiplot layout 1,2
@@ -15,8 +15,8 @@ do for [figure in "map.iou map.stale_percent"] {
   set ylabel figure eq "map.iou" ? "intersection over union" : "stale cells, % of those that changed"
   if (figure eq "map.iou") { set key bottom left } else { set key top left }
   # A small point for each run, a line through the means.
-  plot study using (days(strcol("case"), "forget") - 0.06):figure with points pt 7 ps 0.5 lc rgb "#9fb4dd" notitle, \
+  plot study using (days(strcol("case"), "decay") - 0.06):figure with points pt 7 ps 0.5 lc rgb "#9fb4dd" notitle, \
        "" using (days(strcol("case"), "keep") + 0.06):figure with points pt 7 ps 0.5 lc rgb "#e8b090" notitle, \
-       "" using (days(strcol("case"), "forget")):figure smooth unique with linespoints pt 7 lw 2 lc rgb "#204080" title "forgets", \
-       "" using (days(strcol("case"), "keep")):figure smooth unique with linespoints pt 9 lw 2 lc rgb "#b05020" title "keeps all"
+       "" using (days(strcol("case"), "decay")):figure smooth unique with linespoints pt 7 lw 2 lc rgb "#204080" title "forgetting", \
+       "" using (days(strcol("case"), "keep")):figure smooth unique with linespoints pt 9 lw 2 lc rgb "#b05020" title "all evidence"
 }

@@ -18,7 +18,7 @@ namespace autonomy {
 /// time): occupied and free each last the dwell time T on average, and without observations for dt the probability p
 /// goes towards 1/2: p - 1/2 decreases by exp(-2 dt / T).  Each cell learns T: the time that it has been observed, by
 /// the number of changes that were seen; both begin as if one change had been seen in `dwell_s`.  Without `forget`
-/// log-odds add up for ever, as in a world that does not change (Moravec and Elfes 1985).
+/// log-odds add up forever, as in a world that does not change (Moravec and Elfes 1985).
 ///
 /// A copy shares the tiles of the original until one of them changes: copies for rewinds are cheap.
 class OccupancyMap {

@@ -77,7 +77,7 @@ void declare_map(command_line::DeclaredOptions& declared, autonomy::OccupancyMap
       .by_default({map.low_W.x(), map.low_W.y(), map.high_W.x(), map.high_W.y()});
   declared.number("cell_m", map.cell_m, 0.01, 10, "side of a cell");
   declared.choice("memory", memory, {"forget", "keep"},
-                  "forget: what was not seen for longer than it usually lasts; keep: all evidence for ever");
+                  "forget: what was not seen for longer than it usually lasts; keep: all evidence forever");
   declared.number("dwell_s", map.dwell_s, 1, 1e9, "expected time between changes of a cell in which none was seen");
   declared.number("min_dwell_s", map.min_dwell_s, 1, 1e9, "shortest such time, however often a cell changes");
 }
