@@ -15,6 +15,9 @@ Pose2 moved(const Pose2& pose, const Increment& by) {
   return {pose.p_W + turned({by.forward_m, by.left_m}, pose.yaw_rad), sim::wrap_angle(pose.yaw_rad + by.turn_rad)};
 }
 
+/// Number of points in known cells from which on their agreement with the map counts.
+constexpr int enough_known = 20;
+
 Vector2d placed(const Pose2& pose, const Vector2d& p_B) {
   return pose.p_W + turned(p_B, pose.yaw_rad);
 }
@@ -109,7 +112,6 @@ void Mapper::track(const Beams& beams, const Increment& by) {
 }
 
 double Mapper::agreement(const std::vector<Vector2d>& points_B, const Pose2& pose) const {
-  constexpr int enough = 20;
   constexpr double near_something = 0.2;
   int known = 0, near = 0;
   for (const Vector2d& point : points_B) {
@@ -119,10 +121,18 @@ double Mapper::agreement(const std::vector<Vector2d>& points_B, const Pose2& pos
     ++known;
     near += is_near ? 1 : 0;
   }
-  return known < enough ? 1 : static_cast<double>(near) / known;
+  return known < enough_known ? 1 : static_cast<double>(near) / known;
 }
 
 void Mapper::search(const Beams& beams) {
+  // It may be where it was: something large that is new stood before the lidar.
+  const ScanMatch here = matcher_.match(map_, beams.points_B, pose_);
+  if (static_cast<int>(beams.points_B.size()) >= enough_known && agreement(beams.points_B, here.pose) >= params_.certain_agreement) {
+    lost_ = false;
+    bad_scans_ = 0;
+    pose_ = here.pose;
+    return;
+  }
   // Collect scans from different poses, with fewer points.
   constexpr double apart_m = 0.5, apart_rad = 0.5;
   constexpr std::size_t every = 4, most_points = 225, enough_points = 80;

@@ -34,7 +34,8 @@ class Mapper {
     double insert_m = 0.1;        ///< a scan is added after this distance
     double insert_rad = 0.05;     ///< or this turn
     double insert_s = 10;         ///< or this time
-    double min_agreement = 0.35;  ///< share of the beams in known cells that must end near something in the map
+    double min_agreement = 0.25;  ///< share of the beams in known cells that must end near something in the map
+    double certain_agreement = 0.6;  ///< share of them from which on a lost vehicle is where it was
     int max_bad_scans = 4;        ///< consecutive ones below it; then the vehicle is lost
     double search_s = 3;          ///< time between the first searches of the whole map; it doubles up to max_search_s
     double max_search_s = 60;

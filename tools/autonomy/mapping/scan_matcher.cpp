@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <tuple>
+#include <utility>
 
 #include "sim/base/math.hpp"
 
@@ -161,7 +163,7 @@ std::optional<GlobalMatch> search_map(const OccupancyMap& map, const std::vector
   // Maxima over squares of 2, 4, ... cells.  The finest ones also allow for the steps of the heading.
   constexpr int finest = 1, coarsest = 5;
   // Scans that fit nowhere are like many places: the search is given up then.
-  constexpr int max_visited = 200'000;
+  constexpr int max_visited = 40'000, max_taken = 400;
   std::vector<FieldPatch> levels;
   levels.emplace_back(map, 0, 0, map.columns(), map.rows());
   for (int level = 0; level < coarsest; ++level) levels.emplace_back(levels.back(), 1 << level);
@@ -173,7 +175,7 @@ std::optional<GlobalMatch> search_map(const OccupancyMap& map, const std::vector
     int heading, column, row;
     double score;
   };
-  // Squares of the coarsest level, the best first.
+  // Squares of the coarsest level.
   std::vector<Offsets> offsets(static_cast<std::size_t>(headings));
   std::vector<Candidate> squares;
   for (int heading = 0; heading < headings; ++heading) {
@@ -185,9 +187,7 @@ std::optional<GlobalMatch> search_map(const OccupancyMap& map, const std::vector
         if (score > min_score) squares.push_back({heading, column, row, score});
       }
   }
-  const auto better = [](const Candidate& a, const Candidate& b) { return a.score > b.score; };
-  std::stable_sort(squares.begin(), squares.end(), better);
-  // Divide squares, depth first; what cannot be among the best is left.
+  // Divide squares; what cannot be among the best is left.
   GlobalMatch found;
   found.best.score = min_score;
   const auto pose_of = [&](const Candidate& square) {
@@ -213,34 +213,39 @@ std::optional<GlobalMatch> search_map(const OccupancyMap& map, const std::vector
       found.other_score = std::max(found.other_score, match.score);
     }
   };
-  int visited = 0;
-  for (const Candidate& square : squares) {
-    std::vector<std::pair<int, Candidate>> open{{coarsest, square}};
-    while (!open.empty()) {
-      if (++visited > max_visited) return std::nullopt;
-      const auto [level, candidate] = open.back();
-      open.pop_back();
-      if (candidate.score <= std::max(min_score, found.other_score)) continue;
-      const bool near_best = any && !is_other(pose_of(candidate), found.best.pose);
-      if (near_best && candidate.score <= found.best.score) continue;
-      if (level == finest) {
-        take(candidate);
-        continue;
-      }
-      const int half = 1 << (level - 1);
-      std::vector<Candidate> quarters;
-      for (const int up : {0, half})
-        for (const int right : {0, half}) {
-          Candidate quarter{candidate.heading, candidate.column + right, candidate.row + up, 0};
-          const Offsets& each = offsets[static_cast<std::size_t>(candidate.heading)];
-          quarter.score = score_from(levels[static_cast<std::size_t>(level - 1)].sum(each, quarter.column, quarter.row),
-                                     points_B.size());
-          quarters.push_back(quarter);
-        }
-      std::stable_sort(quarters.begin(), quarters.end(), better);
-      for (auto quarter = quarters.rbegin(); quarter != quarters.rend(); ++quarter)
-        open.emplace_back(level - 1, *quarter);
+  // The best square of any size next: its bound is that of all that remain.
+  const auto worse = [](const std::pair<int, Candidate>& a, const std::pair<int, Candidate>& b) {
+    const auto key = [](const std::pair<int, Candidate>& each) {
+      const Candidate& c = each.second;
+      return std::tuple(c.score, -each.first, c.heading, c.row, c.column);
+    };
+    return key(a) < key(b);
+  };
+  std::vector<std::pair<int, Candidate>> open;
+  for (const Candidate& square : squares) open.emplace_back(coarsest, square);
+  std::make_heap(open.begin(), open.end(), worse);
+  for (int visited = 0, taken = 0; !open.empty() && visited < max_visited && taken < max_taken; ++visited) {
+    std::pop_heap(open.begin(), open.end(), worse);
+    const auto [level, candidate] = open.back();
+    open.pop_back();
+    if (candidate.score <= std::max(min_score, found.other_score)) break;
+    const bool near_best = any && !is_other(pose_of(candidate), found.best.pose);
+    if (near_best && candidate.score <= found.best.score) continue;
+    if (level == finest) {
+      take(candidate);
+      ++taken;
+      continue;
     }
+    const int half = 1 << (level - 1);
+    const Offsets& each = offsets[static_cast<std::size_t>(candidate.heading)];
+    for (const int up : {0, half})
+      for (const int right : {0, half}) {
+        Candidate quarter{candidate.heading, candidate.column + right, candidate.row + up, 0};
+        quarter.score = score_from(levels[static_cast<std::size_t>(level - 1)].sum(each, quarter.column, quarter.row),
+                                   points_B.size());
+        open.emplace_back(level - 1, quarter);
+        std::push_heap(open.begin(), open.end(), worse);
+      }
   }
   return any ? std::optional(found) : std::nullopt;
 }

@@ -53,7 +53,7 @@ struct GlobalMatch {
 };
 
 /// Searches the whole map, by branch and bound with the maxima of the field over growing squares (Hess et al. 2016).
-/// None when no pose scores more than `min_score`, and when too many places are alike.
+/// Where too many places are alike it is given up.  None when no pose was found that scores more than `min_score`.
 std::optional<GlobalMatch> search_map(const OccupancyMap& map, const std::vector<Sight>& sights, double min_score);
 
 }  // namespace autonomy

@@ -73,8 +73,12 @@ TEST(TrueMap, OutlineOfACircleHasTheLengthOfItsRows) {
     for (int column = 0; column < frame.width; ++column) {
       const Cell cell = map.cells[frame.index(column, row)];
       const double r = std::hypot(-2 + 0.1 * (column + 0.5) - 0.013, -2 + 0.1 * (row + 0.5) - 0.021);
-      if (cell == Cell::occupied) EXPECT_NEAR(r, 1.5, 0.5 * std::numbers::sqrt2 * 0.1);
-      if (cell == Cell::solid) EXPECT_LT(r, 1.5);
+      if (cell == Cell::occupied) {
+        EXPECT_NEAR(r, 1.5, 0.5 * std::numbers::sqrt2 * 0.1);
+      }
+      if (cell == Cell::solid) {
+        EXPECT_LT(r, 1.5);
+      }
       covered += cell != Cell::free ? 1 : 0;
     }
   // The circle and at most half of the cells of its outline, 2 pi r / cell, more.
