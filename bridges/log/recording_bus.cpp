@@ -9,6 +9,9 @@
 #include <cstring>
 #include <utility>
 
+#include "shoal/message_codec.hpp"
+#include "shoal/sim_event_t.hpp"
+
 namespace bridges {
 namespace {
 
@@ -71,6 +74,11 @@ void RecordingBus::set_time(sim::Time at) {
 void RecordingBus::record(std::string_view channel, std::span<const std::byte> payload) {
   if (first_) return first_->record(channel, payload);
   if (!log_ || error_) return;
+  if (budget_ && leaves_out(channel, payload.size())) {
+    ++left_out_;
+    return;
+  }
+  if (!log_) return;  // the budget is used up
   errno = 0;
   if (!log_->write(static_cast<std::int64_t>(recorded_), utime_, channel, payload)) return fail(errno);
   ++recorded_;
@@ -80,6 +88,49 @@ void RecordingBus::record(std::string_view channel, std::span<const std::byte> p
     checked_s_ = second;
     hand_over();
   }
+}
+
+void RecordingBus::set_budget(const RecordBudget& budget) {
+  budget_ = budget;
+  shoal::sim_event_t note{};
+  note.utime = utime_;
+  note.kind = "budget";
+  note.who = "record";
+  note.text = std::to_string(budget.bytes) + " bytes: messages may be left out";
+  record(budget_channel, shoal::encode(note));
+}
+
+bool RecordingBus::leaves_out(std::string_view channel, std::size_t bytes) {
+  constexpr double head_start = 0.02;  // of the budget, for the description of the world
+  constexpr std::int64_t minute_s = 60;
+  constexpr std::size_t head_bytes = 100;  // of an event, with its channel
+  // The share of the budget at this second.
+  const std::int64_t second = (utime_ - epoch_utime_) / 1'000'000;
+  if (second != decided_s_) {
+    decided_s_ = second;
+    const double passed = budget_->duration_us > 0
+                              ? static_cast<double>(utime_ - epoch_utime_) / static_cast<double>(budget_->duration_us)
+                              : 1;
+    const double share = std::min(1.0, head_start + (1 - head_start) * passed);
+    thins_ = static_cast<double>(position()) > share * static_cast<double>(budget_->bytes);
+  }
+  const auto kept = kept_s_.find(channel);
+  const bool is_first = kept == kept_s_.end() || second >= kept->second + minute_s;
+  const bool needed = channel.starts_with("sim.") && channel != "sim.state" && channel != "sim.bodies";
+  if (thins_ && !needed && !is_first) return true;
+  if (position() + bytes + head_bytes > budget_->bytes) {
+    if (!needed) return true;
+    spdlog::warn(
+        "{}: the record has used its budget of {} MB at {} s and ends; what is needed for a replay does not fit", path_,
+        static_cast<double>(budget_->bytes) / 1e6, second);
+    close();
+    return false;
+  }
+  if (kept == kept_s_.end())
+    kept_s_.emplace(channel, second);
+  else if (is_first)
+    kept->second = second;
+  return false;
 }
 
 void RecordingBus::end_of_step() {

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -15,6 +16,15 @@
 #include "sim/bus/message_gate.hpp"
 
 namespace bridges {
+
+/// Limit of the size of a record, which is spread over the simulated time of its run.
+struct RecordBudget {
+  std::uint64_t bytes = 0;
+  std::int64_t duration_us = 0;  ///< simulated time of the run
+};
+
+/// Channel of a shoal.sim_event_t with which a record within a budget begins.
+inline constexpr const char* budget_channel = "sim.record";
 
 /// Bus that records its messages in an LCM event log or, by the name of the file, in an MCAP file.  The time stamp is
 /// epoch + simulated time: lcm-logplayer plays a log back at the right speed, and two equal runs produce equal files.
@@ -44,6 +54,13 @@ class RecordingBus final : public sim::Bus {
   void end_of_step() override;
   sim::BusCounts counts() const override { return inner_.counts(); }
 
+  /// Limits the size of the record.  In each simulated second in which the record is ahead of its share of the budget,
+  /// messages are left out, except for the first of each channel in a minute and those by which the run can be
+  /// replayed: all sim.* apart from sim.state and sim.bodies.  When these alone exceed the budget, the record ends,
+  /// with a warning. To be called before the first message.
+  void set_budget(const RecordBudget& budget);
+  /// Returns the number of messages that were left out because of the budget.
+  std::uint64_t left_out() const { return left_out_; }
   /// Sets the time of the step that starts, which is the time stamp of messages admitted from now on.
   void set_time(sim::Time at);
   /// Returns the first error, with path and reason; nothing is written after it.  Events written before remain
@@ -75,6 +92,8 @@ class RecordingBus final : public sim::Bus {
   };
 
   void record(std::string_view channel, std::span<const std::byte> payload);
+  /// Returns whether the budget has no room for a message.
+  bool leaves_out(std::string_view channel, std::size_t bytes);
   void hand_over_after(std::chrono::milliseconds pause);
   void fail(int error_number);
 
@@ -90,6 +109,11 @@ class RecordingBus final : public sim::Bus {
   std::optional<Next> next_;  // prepared
   std::optional<std::string> error_;
   std::uint64_t recorded_ = 0;
+  std::optional<RecordBudget> budget_;
+  std::int64_t decided_s_ = -1;                              // simulated second for which `thins_` holds
+  bool thins_ = false;                                       // messages are left out in this second
+  std::map<std::string, std::int64_t, std::less<>> kept_s_;  // by channel: second of the last message that was kept
+  std::uint64_t left_out_ = 0;
 };
 
 }  // namespace bridges

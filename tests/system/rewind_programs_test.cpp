@@ -96,6 +96,7 @@ TEST_P(ProgramsGoBack, ToAFileOfTheirRunAsWell) {
 INSTANTIATE_TEST_SUITE_P(Worlds, ProgramsGoBack,
                          testing::Values(RewoundMission{"worlds/segway.yaml", "30", {"9.005", "4.5", "14", "6.035"}},
                                          RewoundMission{"worlds/ball_chase.yaml", "6", {"3.005", "1.5", "5", "2.035"}},
+                                         RewoundMission{"worlds/slam_days.yaml", "120", {"55.5", "20", "90", "40.3"}},
                                          RewoundMission{"worlds/coop_land.yaml", "30", {"12.34", "5", "20", "11.27"}},
                                          RewoundMission{
                                              "worlds/coop_underwater.yaml", "150", {"90", "33.3", "120", "40.14"}},

@@ -70,6 +70,7 @@ int run(int argc, char** argv) {
   tools::add_motion_command(app, exit_code);
   tools::add_snap_command(app, exit_code);
   tools::add_film_command(app, exit_code);
+  tools::add_map_command(app, exit_code);
   tools::add_snapshot_command(app, exit_code);
   tools::add_describe_command(app, exit_code);
   tools::add_list_command(app, exit_code);

@@ -154,8 +154,15 @@ void add_snapshot_options(CLI::App& command, RunArguments& arguments) {
 }
 
 void add_output_options(CLI::App& command, RunArguments& arguments) {
-  command.add_option("--record", arguments.run.record, "write an LCM event log, or an MCAP file (*.mcap)")
-      ->type_name("FILE");
+  CLI::Option* record =
+      command.add_option("--record", arguments.run.record, "write an LCM event log, or an MCAP file (*.mcap)")
+          ->type_name("FILE");
+  command
+      .add_option("--record-mb", arguments.run.record_mb,
+                  "size of the record, MB: messages are left out evenly, but not what a replay needs")
+      ->type_name("MB")
+      ->check(number_from(0.1, 1e9))
+      ->needs(record);
   command.add_flag("--overwrite", arguments.run.overwrite, "the record may replace a file");
   command.add_flag("--special-files", arguments.run.special_files,
                    "the world and the record may be pipes and devices, such as /dev/stdin");

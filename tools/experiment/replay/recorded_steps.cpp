@@ -18,9 +18,9 @@ bool is_message(const ReplayLog::Input& input) {
 }  // namespace
 
 bool is_of_the_handshake(std::string_view channel) {
-  static constexpr std::array<std::string_view, 10> names{
-      "sim.ack",   "sim.control", "sim.control.reply", "sim.hash",     "sim.inputs",
-      "sim.audit", "sim.resend",  "sim.resent",        "sim.snapshot", "sim.tick"};
+  static constexpr std::array<std::string_view, 11> names{
+      "sim.ack",    "sim.control", "sim.control.reply", "sim.hash",   "sim.inputs", "sim.audit",
+      "sim.resend", "sim.resent",  "sim.snapshot",      "sim.record", "sim.tick"};
   return std::find(names.begin(), names.end(), channel) != names.end();
 }
 

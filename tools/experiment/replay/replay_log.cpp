@@ -16,6 +16,7 @@
 
 #include "bridges/control/run_audit.hpp"
 #include "bridges/log/event_log.hpp"
+#include "bridges/log/recording_bus.hpp"
 #include "bridges/log/run_journal.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/sim_audit_t.hpp"
@@ -96,6 +97,7 @@ class Reader {
     // Check that the log is complete.
     for (const Count& count : counts_) log_.events.emplace(count.channel, count.events);
     for (const std::string& text : file_.problems()) problem(text);
+    log_.is_thinned = log_.events.contains(bridges::budget_channel);
     if (!informed_) fail_without_info();
     note_missing_pieces();
     leave_out_incomplete();

@@ -46,6 +46,7 @@ struct ReplayLog {
   std::vector<std::string> problems;        ///< damage, and messages that cannot be read
   std::map<std::string, std::uint64_t> events;  ///< by channel
   bool own_stamps = true;                       ///< time stamps are simulated time: a record without losses
+  bool is_thinned = false;                      ///< a record within a budget: messages were left out
   bool is_rewound = false;                      ///< holds the same steps more than once, from several branches
 
   /// Step at which the repetition starts.

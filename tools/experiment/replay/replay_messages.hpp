@@ -21,7 +21,7 @@ namespace tools {
 std::string message_difference(std::span<const std::byte> logged, std::span<const std::byte> here);
 
 /// Compares the messages of a replayed world with those in its log: byte by byte, in order per channel. Messages that
-/// the log lacks are counted; in a record, which has no losses, they are differences.
+/// the log lacks are counted; in a record that was not thinned, which has no losses, they are differences.
 class ReplayMessages {
  public:
   struct Difference {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/experiment/run/run_buses.hpp"
 
+#include <cmath>
 #include <filesystem>
 #include <thread>
 
@@ -33,6 +34,11 @@ RunBuses::RunBuses(const sim::WorldConfig& world, const RunOptions& options, con
     main_.recorder = std::make_unique<bridges::RecordingBus>(
         *main_.network, options.record, world.epoch_us,
         options.overwrite ? bridges::Existing::overwrite : bridges::Existing::refuse);
+  if (main_.recorder && options.record_mb) {
+    const double duration_s = options.duration_s.value_or(world.run.duration_s);
+    main_.recorder->set_budget({static_cast<std::uint64_t>(*options.record_mb * 1e6),
+                                std::isfinite(duration_s) ? sim::from_seconds(duration_s).count() : 0});
+  }
   main_.close_gate(tap);
   std::map<std::string, std::string> names{{main_.lcm ? main_.lcm->url() : "", "the world's"}};
   for (const sim::BusConfig& bus : world.buses) {

@@ -24,6 +24,7 @@ struct RunOptions {
   bool control_key = false;          ///< control needs the run's key, also on a bus of this machine
   bool open_control = false;         ///< control needs no key, also on a bus that leaves this machine
   std::string record;                ///< file for the LCM event log; empty: none
+  std::optional<double> record_mb;   ///< budget of the record in MB; unset: no limit
   bool overwrite = false;            ///< replaces an existing record
   bool special_files = false;        ///< the record may be a pipe or a device
   std::string results;               ///< directory; empty: none

@@ -45,6 +45,18 @@ TEST_F(ReplayTest, ARunWithAClientIsEqualWithoutIt) {
   EXPECT_THAT(outcome.to_text(), HasSubstr("equal for 300 steps (7 hashes, "));
 }
 
+TEST_F(ReplayTest, OfARecordWithinABudgetIsEqualInWhatTheRecordHas) {
+  record(driven_world(), [](RecordedRun& run, std::int64_t step) {
+    // As at its start.
+    if (step == 0) run.recorder.set_budget({60'000, 3'000'000});
+  });
+  const ReplayOutcome outcome = again();
+  EXPECT_EQ(outcome.exit_code(), 0) << outcome.to_text();
+  EXPECT_EQ(outcome.steps, steps);
+  EXPECT_GT(outcome.missing_messages, 0u);
+  EXPECT_THAT(outcome.to_text(), HasSubstr("messages that were published here are not in the log"));
+}
+
 TEST_F(ReplayTest, TheInputsAreNeeded) {
   record(driven_world());
   const std::string whole = log;

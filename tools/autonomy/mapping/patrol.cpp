@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/autonomy/mapping/patrol.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace autonomy {
+
+namespace {
+
+/// Odometry is kept for this long; an older estimate is not used.
+constexpr double memory_s = 10;
+
+ObstacleAvoidance::Params avoidance_params(const Patrol::Params& params) {
+  ObstacleAvoidance::Params avoidance;
+  avoidance.speed_mps = params.speed_mps;
+  return avoidance;
+}
+
+}  // namespace
+
+Patrol::Patrol(const Params& params)
+    : params_(params),
+      follower_(params.waypoints_W, {.reached_m = params.reached_m, .give_up_s = params.give_up_s}),
+      avoidance_(avoidance_params(params)) {}
+
+void Patrol::receive(const shoal::odometry_t& odometry) {
+  odometry_.emplace_back(odometry.utime, Pose2{{odometry.x_m, odometry.y_m}, odometry.theta_rad});
+  while (seconds(odometry.utime - odometry_.front().first) > memory_s) odometry_.pop_front();
+}
+
+void Patrol::receive(const shoal::planar_lidar_t& scan) {
+  scan_ = {scan.ranges, static_cast<double>(scan.rad0), static_cast<double>(scan.radstep)};
+  scan_utime_ = scan.utime;
+}
+
+void Patrol::receive(const shoal::estimate_t& estimate) {
+  estimate_ = estimate;
+}
+
+Pose2 Patrol::present_pose() const {
+  const Pose2 estimated{{estimate_->position_m[0], estimate_->position_m[1]}, estimate_->yaw_rad};
+  const auto then = std::find_if(odometry_.begin(), odometry_.end(),
+                                 [&](const auto& each) { return each.first >= estimate_->utime; });
+  if (then == odometry_.end()) return estimated;
+  const Pose2 &before = then->second, &now = odometry_.back().second;
+  const Vector2d moved_B = turned(now.p_W - before.p_W, -before.yaw_rad);
+  return {estimated.p_W + turned(moved_B, estimated.yaw_rad), estimated.yaw_rad + now.yaw_rad - before.yaw_rad};
+}
+
+Twist Patrol::step(std::int64_t utime) {
+  // It needs a pose and a scan of the last periods.
+  if (!estimate_ || odometry_.empty() || scan_.ranges_m.empty()) return {};
+  const std::int64_t newest = odometry_.back().first;
+  const double oldest_s = 2.5 * params_.period_s;
+  if (seconds(newest - scan_utime_) > oldest_s || seconds(newest - estimate_->utime) > memory_s) return {};
+  const double variance_m2 = estimate_->covariance_m2[0] + estimate_->covariance_m2[4];
+  if (!(variance_m2 < 2 * squared(params_.lost_std_m))) return {0, params_.search_radps};
+  if (utime < rests_until_) return {};
+  // The next waypoint.
+  const Vector2d goal_B = follower_.goal_B(present_pose(), seconds(utime));
+  if (follower_.reached() + follower_.given_up() > passed_) {
+    passed_ = follower_.reached() + follower_.given_up();
+    const bool charges = follower_.current() == 1 % params_.waypoints_W.size();
+    rounds_ += charges ? 1 : 0;
+    rests_until_ = utime + static_cast<std::int64_t>(1e6 * (charges ? params_.charge_s : params_.pause_s));
+    return {};
+  }
+  Twist twist = avoidance_.steer(goal_B, scan_);
+  // Its gain of 1.5 /s would overshoot when a command lasts longer: two thirds of the error in a period are enough.
+  twist.turn_radps *= std::min(1.0, 0.67 / (1.5 * params_.period_s));
+  return twist;
+}
+
+}  // namespace autonomy
