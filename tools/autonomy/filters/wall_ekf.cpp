@@ -64,6 +64,11 @@ void WallEkf::predict(double dt_s, double gyro_yaw_rad, double speed_mps) {
   P_(4, 4) += squared(params_.current_noise_mpsprtHz) * dt_s;
 }
 
+void WallEkf::loosen_current(double std_mps) {
+  P_(3, 3) += squared(std_mps);
+  P_(4, 4) += squared(std_mps);
+}
+
 bool WallEkf::update(double innovation, const Eigen::Matrix<double, 1, 5>& H, double variance, bool gated) {
   const double S = (H * P_ * H.transpose())(0) + variance;
   if (gated && innovation * innovation > params_.gate * S) return false;

@@ -33,9 +33,9 @@ std::optional<WallHit> first_wall(const std::vector<Wall>& walls, const Vector2d
 class WallEkf {
  public:
   struct Params {
-    double speed_noise_mpsprtHz = 0.05;    ///< of the speed through the water
+    double speed_noise_mpsprtHz = 0.1;     ///< of the speed through the water
     double heading_noise_radprtHz = 1e-3;  ///< drift of the gyro
-    double current_noise_mpsprtHz = 2e-3;
+    double current_noise_mpsprtHz = 5e-3;
     double current_std_mps = 0.3;  ///< at the start
     double gate = 10.83;           ///< of a squared normalised innovation: 99.9 % of one degree of freedom
   };
@@ -53,6 +53,9 @@ class WallEkf {
   /// origin.
   bool update_range(const std::vector<Wall>& walls, double gyro_yaw_rad, double beam_rad, double lever_m,
                     double range_m, double std_m);
+
+  /// The current may have changed by this much.
+  void loosen_current(double std_mps);
 
   Vector2d p_W() const { return x_.head<2>(); }
   double yaw_rad(double gyro_yaw_rad) const;

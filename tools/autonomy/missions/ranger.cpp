@@ -22,8 +22,10 @@ constexpr double level_per_s = 0.05;
 constexpr double course_min_mps = 0.5;
 /// Angle between course and heading at the first fix: a current, and a turn in progress.
 constexpr double first_heading_std_rad = 0.3;
-/// The sonar is used while the vehicle is level, so that its beams are horizontal.
-constexpr double level_rad = 0.1;
+/// Beams keep this distance from the surface and the bottom: their width, and the error of the pitch.
+constexpr double beam_margin_m = 0.5;
+/// The propeller drives the vehicle a little faster under water than at the surface, which looked like a current.
+constexpr double dive_current_std_mps = 0.1;
 /// Beams used of a ping; their errors by the pose are the same, so that all of them would add little.
 constexpr int beams_of_ping = 9;
 constexpr double pressure_std_m = 0.1;
@@ -126,15 +128,24 @@ void Ranger::receive(const shoal::multibeam_t& ping) {
   utime_ = std::max(utime_, ping.utime);
   if (!filter_ || !q_GB_ || phase_ == Phase::lost) return;
   const Eigen::Matrix3d R_GB = q_GB_->toRotationMatrix();
-  if (std::abs(R_GB(2, 0)) > level_rad || std::abs(R_GB(2, 1)) > level_rad) return;
   const int step = std::max(1, (ping.count - 1) / (beams_of_ping - 1));
   for (int i = 0; i < ping.count; i += step) {
     const auto beam = static_cast<std::size_t>(i);
-    if (ping.valid[beam] == 0 || ping.ranges_m[beam] > params_.range_max_m) continue;
+    const double range_m = ping.ranges_m[beam];
+    if (ping.valid[beam] == 0 || range_m > params_.range_max_m) continue;
+    // The walls are vertical: only the horizontal part of the beam counts.  A beam that comes near the surface or the
+    // bottom may have its echo from there.
+    const double angle_rad = ping.angles_rad[beam];
+    const Eigen::Vector3d beam_G = R_GB * Eigen::Vector3d(std::cos(angle_rad), std::sin(angle_rad), 0);
+    const double up_m = range_m * beam_G.z();
+    const double room_up_m = depth_m_ - beam_margin_m;
+    const double room_down_m = altitude_m_.value_or(0) - beam_margin_m;
+    if (up_m > std::max(room_up_m, beam_margin_m) || -up_m > std::max(room_down_m, beam_margin_m)) continue;
+    const double off_bow_rad = sim::wrap_angle(std::atan2(beam_G.y(), beam_G.x()) - gyro_yaw_rad());
     // Beams share the error of the pose that the filter does not model: each counts less.
-    const bool used =
-        filter_->update_range(params_.walls_W, gyro_yaw_rad(), ping.angles_rad[beam], params_.sonar_ahead_m,
-                              ping.ranges_m[beam], params_.range_std_m * std::sqrt(static_cast<double>(beams_of_ping)));
+    const bool used = filter_->update_range(params_.walls_W, gyro_yaw_rad(), off_bow_rad, params_.sonar_ahead_m,
+                                            range_m * beam_G.head<2>().norm(),
+                                            params_.range_std_m * std::sqrt(static_cast<double>(beams_of_ping)));
     ++(used ? counts_.ranges : counts_.refused);
   }
 }
@@ -159,7 +170,10 @@ void Ranger::update_phase() {
   const bool has_imu = imu_utime_ && seconds(utime_ - *imu_utime_) <= oldest_imu_s;
   if (filter_ && !has_imu) phase_ = Phase::lost;
   if (phase_ == Phase::waiting_for_fix && filter_) phase_ = Phase::at_surface;
-  if (phase_ == Phase::at_surface && surface_.finished()) phase_ = Phase::dived;
+  if (phase_ == Phase::at_surface && surface_.finished()) {
+    phase_ = Phase::dived;
+    filter_->loosen_current(dive_current_std_mps);
+  }
   if (phase_ == Phase::dived && dive_.finished()) phase_ = Phase::rising;
   if (phase_ == Phase::rising && rise_.finished() && before_last_fix_) phase_ = Phase::done;
 }
@@ -174,7 +188,7 @@ Ranger::Decision Ranger::step() {
     decision.before_last_fix = before_last_fix_;
     before_last_fix_->utime = 0;  // published once
   }
-  if (!filter_ || phase_ == Phase::lost) return decision;
+  if (!filter_ || phase_ == Phase::lost || phase_ == Phase::done) return decision;
   decision.estimate = estimate();
   if (access_.take_turn(utime_)) decision.send = state_frame();
   return decision;

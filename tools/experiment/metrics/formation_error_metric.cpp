@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include "sim/base/math.hpp"
 #include "tools/experiment/score/metric_registry.hpp"
@@ -24,7 +25,7 @@ class FormationErrorMetric final : public Metric {
   }
   struct Params final : sim::MetricParams {
     std::string leader;
-    std::array<double, 2> offset_m = {0, 0};
+    std::vector<double> offset_m;
     void read(sim::ParamReader& in) override {
       in.require("vehicle");
       in.require("leader");
@@ -32,6 +33,8 @@ class FormationErrorMetric final : public Metric {
       read_vehicle(in);
       read_known_name(in, "leader", leader, "vehicle", "vehicle that leads the formation");
       in.read("offset_m", offset_m, sim::any_place(), "place, ahead and to the left by the true course of the leader");
+      if (!in.describing() && in.has("offset_m") && offset_m.size() != 2)
+        in.error("offset_m", "'offset_m' must be 2 numbers, got " + std::to_string(offset_m.size()));
       read_from_s(in);
     }
   };
@@ -50,7 +53,7 @@ class FormationErrorMetric final : public Metric {
       course_rad_ = sim::yaw_of(leader->X_WV().linear());
     if (sim::to_seconds(world_.now()) < params_.from_s) return;
     const double c = std::cos(course_rad_), s = std::sin(course_rad_);
-    const auto [ahead_m, left_m] = params_.offset_m;
+    const double ahead_m = params_.offset_m[0], left_m = params_.offset_m[1];
     const sim::Vector3d place_W =
         leader->X_WV().translation() + sim::Vector3d(c * ahead_m - s * left_m, s * ahead_m + c * left_m, 0);
     final_m_ = (vehicle->X_WV().translation() - place_W).head<2>().norm();
