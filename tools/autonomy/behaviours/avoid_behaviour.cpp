@@ -5,17 +5,17 @@
 
 namespace autonomy {
 
-Course Avoidance::steer(const Motion& own, const Course& wanted) {
-  Course course = wanted;
+Course Avoidance::steer(const Motion& own, const Course& desired) {
+  Course course = desired;
   drift_.update(own);
-  if (std::isfinite(own.yaw_rad)) course = law_->steer(own, drift_.drift_W(), wanted, tracks_.at(own.utime));
+  if (std::isfinite(own.yaw_rad)) course = law_->steer(own, drift_.drift_W(), desired, tracks_.at(own.utime));
   drift_.command(course);
   return course;
 }
 
 Course AvoidBehaviour::steer(const Motion& own) {
-  const Course wanted = inner_->steer(own);
-  return inner_->finished() ? wanted : avoidance_.steer(own, wanted);
+  const Course desired = inner_->steer(own);
+  return inner_->finished() ? desired : avoidance_.steer(own, desired);
 }
 
 }  // namespace autonomy

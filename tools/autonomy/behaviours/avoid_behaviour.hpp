@@ -18,8 +18,8 @@ class Avoidance {
       : law_(std::move(law)), tracks_(tracks) {}
 
   void receive(const Scan& scan, const Motion& own) { tracks_.receive(scan, own); }
-  /// Returns `wanted`, turned as far as the law requires it.  Without a heading it is not changed.
-  Course steer(const Motion& own, const Course& wanted);
+  /// Returns `desired`, turned as far as the law requires it.  Without a heading it is not changed.
+  Course steer(const Motion& own, const Course& desired);
 
  private:
   Cloned<AvoidanceLaw> law_;

@@ -20,12 +20,12 @@ struct AvoidanceParams {
   double speed_min_mps = 0;  ///< slowest speed at which it can be steered
 };
 
-/// Turns the wanted course so that the vehicle keeps clear of obstacles.
+/// Turns the desired course so that the vehicle keeps clear of obstacles.
 class AvoidanceLaw {
  public:
   virtual ~AvoidanceLaw() = default;
   /// `own.yaw_rad` must be known.  `drift_W`: motion of the water.
-  virtual Course steer(const Motion& own, const Vector2d& drift_W, const Course& wanted,
+  virtual Course steer(const Motion& own, const Vector2d& drift_W, const Course& desired,
                        std::span<const Obstacle> obstacles) = 0;
   virtual std::unique_ptr<AvoidanceLaw> clone() const = 0;
 };

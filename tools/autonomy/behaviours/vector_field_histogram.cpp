@@ -52,29 +52,29 @@ std::array<bool, VectorFieldHistogram::sectors> VectorFieldHistogram::blocked(
   return blocked;
 }
 
-Course VectorFieldHistogram::steer(const Motion& own, const Vector2d& drift_W, const Course& wanted,
+Course VectorFieldHistogram::steer(const Motion& own, const Vector2d& drift_W, const Course& desired,
                                    std::span<const Obstacle> obstacles) {
-  if (obstacles.empty() || wanted.speed_mps <= 0) {
+  if (obstacles.empty() || desired.speed_mps <= 0) {
     last_rad_ = unknown;
-    return wanted;
+    return desired;
   }
-  const double speed_mps = std::max(wanted.speed_mps, (own.v_W - drift_W).norm());
-  const double range_m = params_.keep_m + std::min(params_.horizon_s * speed_mps, wanted.distance_m);
+  const double speed_mps = std::max(desired.speed_mps, (own.v_W - drift_W).norm());
+  const double range_m = params_.keep_m + std::min(params_.horizon_s * speed_mps, desired.distance_m);
   const auto is_blocked = blocked(own, speed_mps, range_m, obstacles);
-  const double previous_rad = std::isfinite(last_rad_) ? last_rad_ : wanted.heading_rad;
+  const double previous_rad = std::isfinite(last_rad_) ? last_rad_ : desired.heading_rad;
   const auto cost_of = [&](double direction_rad) {
-    return 5 * std::abs(sim::wrap_angle(direction_rad - wanted.heading_rad)) +
+    return 5 * std::abs(sim::wrap_angle(direction_rad - desired.heading_rad)) +
            2 * std::abs(sim::wrap_angle(direction_rad - own.yaw_rad)) +
            2 * std::abs(sim::wrap_angle(direction_rad - previous_rad));
   };
   double lowest = std::numeric_limits<double>::infinity();
-  double chosen_rad = wanted.heading_rad;
+  double chosen_rad = desired.heading_rad;
   for (int i = 0; i < sectors; ++i) {
     if (is_blocked[static_cast<std::size_t>(i)]) continue;
     const double direction_rad = sim::wrap_angle(direction_of_sector(i));
-    // The wanted heading itself, when it lies in this sector.
-    const bool is_wanted = std::abs(sim::wrap_angle(direction_rad - wanted.heading_rad)) <= 0.5 * sector_rad;
-    const double candidate_rad = is_wanted ? wanted.heading_rad : direction_rad;
+    // The desired heading itself, when it lies in this sector.
+    const bool is_desired = std::abs(sim::wrap_angle(direction_rad - desired.heading_rad)) <= 0.5 * sector_rad;
+    const double candidate_rad = is_desired ? desired.heading_rad : direction_rad;
     const double cost = cost_of(candidate_rad);
     if (cost >= lowest) continue;
     lowest = cost;
@@ -84,7 +84,7 @@ Course VectorFieldHistogram::steer(const Motion& own, const Vector2d& drift_W, c
     last_rad_ = chosen_rad;
     // Slow in a sharp turn.
     const double ahead = std::max(0.0, std::cos(sim::wrap_angle(chosen_rad - own.yaw_rad)));
-    return {std::max(params_.speed_min_mps, wanted.speed_mps * (0.3 + 0.7 * ahead)), chosen_rad};
+    return {std::max(params_.speed_min_mps, desired.speed_mps * (0.3 + 0.7 * ahead)), chosen_rad};
   }
   // No opening: away from the nearest obstacle, as slowly as it can be steered.
   const Obstacle* nearest = &obstacles.front();

@@ -10,13 +10,13 @@ namespace autonomy {
 /// Vector field histogram VFH+ (Ulrich, Borenstein, ICRA 1998): obstacles within `keep_m` of which the vehicle must not
 /// come block the sectors of a polar histogram in which they are seen; sectors that it cannot reach at its rate of turn
 /// without touching one are blocked too.  Of the openings it takes the direction with the lowest weighted sum of the
-/// angles to the wanted heading, to its own heading and to its last choice, 5 : 2 : 2.  Obstacles count as still.
+/// angles to the desired heading, to its own heading and to its last choice, 5 : 2 : 2.  Obstacles count as still.
 class VectorFieldHistogram final : public AvoidanceLaw {
  public:
   static constexpr int sectors = 72;
 
   explicit VectorFieldHistogram(const AvoidanceParams& params) : params_(params) {}
-  Course steer(const Motion& own, const Vector2d& drift_W, const Course& wanted,
+  Course steer(const Motion& own, const Vector2d& drift_W, const Course& desired,
                std::span<const Obstacle> obstacles) override;
   std::unique_ptr<AvoidanceLaw> clone() const override { return std::make_unique<VectorFieldHistogram>(*this); }
 

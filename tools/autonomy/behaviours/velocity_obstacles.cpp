@@ -14,7 +14,7 @@ namespace autonomy {
 
 namespace {
 
-// Weights of the cost, relative to a deviation as large as the wanted speed.
+// Weights of the cost, relative to a deviation as large as the desired speed.
 constexpr double collision_weight_s = 10;
 constexpr double near_weight = 0.5;
 constexpr double port_weight = 0.1;
@@ -54,22 +54,22 @@ VelocityObstacles::Outcome VelocityObstacles::outcome(const Motion& own, const V
   return outcome;
 }
 
-Course VelocityObstacles::steer(const Motion& own, const Vector2d& drift_W, const Course& wanted,
+Course VelocityObstacles::steer(const Motion& own, const Vector2d& drift_W, const Course& desired,
                                 std::span<const Obstacle> obstacles) {
-  if (obstacles.empty() || wanted.speed_mps <= 0) {
+  if (obstacles.empty() || desired.speed_mps <= 0) {
     last_turn_rad_ = 0;
-    return wanted;
+    return desired;
   }
   constexpr std::array<double, 4> speed_shares = {1, 0.6, 0.3, 0};
-  Course best = wanted;
+  Course best = desired;
   double lowest = std::numeric_limits<double>::infinity();
   double best_turn_rad = 0;
   for (const double share : speed_shares) {
-    const double speed_mps = std::min(wanted.speed_mps, std::max(share * wanted.speed_mps, params_.speed_min_mps));
+    const double speed_mps = std::min(desired.speed_mps, std::max(share * desired.speed_mps, params_.speed_min_mps));
     for (int i = -headings / 2; i < headings / 2; ++i) {
       const double turn_rad = 2 * std::numbers::pi * i / headings;
-      const Course control{speed_mps, sim::wrap_angle(wanted.heading_rad + turn_rad), wanted.distance_m};
-      const double s = speed_mps / wanted.speed_mps;
+      const Course control{speed_mps, sim::wrap_angle(desired.heading_rad + turn_rad), desired.distance_m};
+      const double s = speed_mps / desired.speed_mps;
       double cost = (turned({s, 0}, turn_rad) - Vector2d(1, 0)).norm();
       cost += turn_rad > 0 ? port_weight : 0.0;
       cost += habit_weight * std::abs(sim::wrap_angle(turn_rad - last_turn_rad_)) / std::numbers::pi;

@@ -51,11 +51,12 @@ double WallEkf::heading_std_rad() const {
   return std::sqrt(P_(2, 2));
 }
 
-void WallEkf::predict(double dt_s, double gyro_yaw_rad, double speed_mps) {
+void WallEkf::predict(double dt_s, double gyro_yaw_rad, double speed_mps, double slip_mps) {
   const Vector2d u_W = turned({1, 0}, yaw_rad(gyro_yaw_rad));
-  x_.head<2>() += (speed_mps * u_W + current_W()) * dt_s;
+  const Vector2d v_W = speed_mps * u_W + slip_mps * left_of(u_W);
+  x_.head<2>() += (v_W + current_W()) * dt_s;
   Covariance F = Covariance::Identity();
-  F.block<2, 1>(0, 2) = speed_mps * dt_s * left_of(u_W);
+  F.block<2, 1>(0, 2) = dt_s * left_of(v_W);
   F.block<2, 2>(0, 3) = dt_s * Eigen::Matrix2d::Identity();
   P_ = F * P_ * F.transpose();
   P_.topLeftCorner<2, 2>() += squared(params_.speed_noise_mpsprtHz) * dt_s * Eigen::Matrix2d::Identity();

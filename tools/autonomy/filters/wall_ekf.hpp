@@ -25,8 +25,8 @@ std::optional<WallHit> first_wall(const std::vector<Wall>& walls, const Vector2d
 
 /// Extended Kalman filter of a vehicle with an IMU, a known speed through the water, and ranges to known walls.  Its
 /// states are x = (east, north, b, current east, current north), with b the heading minus the integral of the gyro.
-/// Prediction over dt, with the direction u of the heading and left(u) 90 degrees to its left:
-///     p' = p + (s u + c) dt,   dp'/db = s left(u) dt,   dp'/dc = dt
+/// Prediction over dt, with the direction u of the heading, the slip w, and left(u) 90 degrees to its left:
+///     p' = p + (v + c) dt,   v = s u + w left(u),   dp'/db = left(v) dt,   dp'/dc = dt
 /// A range z along a beam at the angle a from the bow, of a sonar l ahead of the origin, to a wall n p = d:
 ///     h = (d - n (p + l u)) / (n v),   v: direction of the beam
 ///     dh/dp = -n / (n v),   dh/db = -(l n left(u) + h n left(v)) / (n v)
@@ -46,8 +46,8 @@ class WallEkf {
   WallEkf(const Vector2d& p_W, double position_std_m, double heading_offset_rad, double heading_std_rad,
           const Params& params);
 
-  /// `gyro_yaw_rad`: integral of the gyro.
-  void predict(double dt_s, double gyro_yaw_rad, double speed_mps);
+  /// `gyro_yaw_rad`: integral of the gyro; `slip_mps`: velocity through the water to the left.
+  void predict(double dt_s, double gyro_yaw_rad, double speed_mps, double slip_mps = 0);
   void update_position(const Vector2d& p_W, double std_m);
   /// Returns whether it was used.  `beam_rad`: from the bow, counter-clockwise; `lever_m`: the sonar ahead of the
   /// origin.

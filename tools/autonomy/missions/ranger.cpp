@@ -77,6 +77,7 @@ void Ranger::receive(const shoal::imu_t& imu) {
   const double off_rad = axis_G.norm();
   if (off_rad > 0) *q_GB_ = Eigen::AngleAxisd(level_per_s * dt_s * off_rad, axis_G / off_rad) * *q_GB_;
   q_GB_->normalize();
+  turn_radps_ = (*q_GB_ * w_B).z();
   predict(imu.utime);
 }
 
@@ -86,7 +87,7 @@ void Ranger::predict(std::int64_t utime) {
   speed_mps_ += (commanded_mps_ - speed_mps_) * std::min(1.0, dt_s / speed_time_s);
   if (!filter_ || !q_GB_) return;
   const Eigen::Vector3d bow_G = *q_GB_ * Eigen::Vector3d::UnitX();
-  filter_->predict(dt_s, gyro_yaw_rad(), speed_mps_ * bow_G.head<2>().norm());
+  filter_->predict(dt_s, gyro_yaw_rad(), speed_mps_ * bow_G.head<2>().norm(), -params_.pivot_m * turn_radps_);
 }
 
 void Ranger::start(const shoal::gps_data_t& fix, const Vector2d& p_W) {
@@ -202,11 +203,11 @@ shoal::helm_command_t Ranger::helm() {
     helm.speed_mps = has_fix && q_GB_ ? params_.speed_mps : 0;
     return helm;
   }
-  RouteBehaviour* const way = route();
-  if (way == nullptr || !filter_) return helm;
+  RouteBehaviour* const path = route();
+  if (path == nullptr || !filter_) return helm;
   const double yaw_rad = filter_->yaw_rad(gyro_yaw_rad());
   const Vector2d v_W = turned({speed_mps_, 0}, yaw_rad) + filter_->current_W();
-  const Course course = way->steer({utime_, filter_->p_W(), v_W, yaw_rad});
+  const Course course = path->steer({utime_, filter_->p_W(), v_W, yaw_rad});
   // Against the current across the course.
   const Vector2d across = turned(filter_->current_W(), -course.heading_rad);
   const double crab_rad = std::asin(std::clamp(across.y() / params_.speed_mps, -0.5, 0.5));

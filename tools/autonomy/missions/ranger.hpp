@@ -34,6 +34,7 @@ class Ranger {
     std::vector<Wall> walls_W;
     double depth_m = 4;
     double speed_mps = 1.2;
+    double pivot_m = 0;          ///< pivot point ahead of the origin: in a turn the hull slips outwards about it
     double altitude_min_m = 2;   ///< it does not go deeper than this height over the bottom
     double sonar_ahead_m = 0.7;  ///< of the origin of the vehicle
     double range_std_m = 0.2;
@@ -90,6 +91,7 @@ class Ranger {
   std::optional<WallEkf> filter_;
   double speed_mps_ = 0;  ///< through the water, by the commands
   double commanded_mps_ = 0;
+  double turn_radps_ = 0;
   double depth_m_ = 0;
   std::optional<double> altitude_m_;
   std::optional<shoal::estimate_t> before_last_fix_;

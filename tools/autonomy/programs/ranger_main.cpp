@@ -85,6 +85,8 @@ void declare(command_line::DeclaredOptions& options, Ranger::Params& ranger) {
       .required();
   options.number("depth_m", ranger.depth_m, 0, 1000, "depth of the route under water");
   options.number("speed_mps", ranger.speed_mps, 0.05, 10, "speed through the water");
+  options.number("pivot_m", ranger.pivot_m, 0, 100,
+                 "pivot point ahead of the origin, about which the vehicle slips outwards in a turn");
   options.number("altitude_min_m", ranger.altitude_min_m, 0, 1000, "smallest height over the bottom");
   options.number("sonar_ahead_m", ranger.sonar_ahead_m, -10, 10, "forward sonar ahead of the origin of the vehicle");
   options.number("range_std_m", ranger.range_std_m, 0.001, 100, "error of a range to a wall");

@@ -42,10 +42,10 @@ FormationBehaviour::Params params_of(const Vector2d& offset_m) {
 TEST(Formation, CommandsTheVelocityOfConstantBearingGuidance) {
   FormationBehaviour behaviour(params_of({0, 10}));
   behaviour.receive_state("leader", {second, {0, 0}, {1, 0}});
-  // The place is (0, 10), the error e = (0, 6), U = 0.8, D = 8: v = (1, 0.8 * 6 / sqrt(36 + 64)) = (1, 0.48).
+  // The place is (0, 10), the error e = (0, 6), U = 1, D = 8: v = (1, 1 * 6 / sqrt(36 + 64)) = (1, 0.6).
   const Course course = behaviour.steer({second, {0, 4}, {1, 0}, 0});
-  EXPECT_NEAR(course.speed_mps, std::hypot(1, 0.48), 1e-12);
-  EXPECT_NEAR(course.heading_rad, std::atan2(0.48, 1), 1e-12);
+  EXPECT_NEAR(course.speed_mps, std::hypot(1, 0.6), 1e-12);
+  EXPECT_NEAR(course.heading_rad, std::atan2(0.6, 1), 1e-12);
 }
 
 TEST(Formation, StopsWithoutAStateOfItsLeaderOrWithAnOldOne) {
