@@ -28,8 +28,8 @@ class FormationBehaviour final : public HelmBehaviour {
     Vector2d offset_m = Vector2d::Zero();  ///< ahead and to the left, by the course of the leader
     double speed_max_mps = 2;
     double speed_min_mps = 0.3;   ///< slowest speed through the water
-    double approach_mps = 0.8;    ///< U
-    double distance_m = 8;        ///< D
+    double approach_mps = 1.2;    ///< U
+    double distance_m = 9;        ///< D
     double discard_after_s = 60;  ///< maximum age of the state of the leader, after which it stops
   };
   explicit FormationBehaviour(const Params& params) : params_(params) {}

@@ -42,10 +42,10 @@ FormationBehaviour::Params params_of(const Vector2d& offset_m) {
 TEST(Formation, CommandsTheVelocityOfConstantBearingGuidance) {
   FormationBehaviour behaviour(params_of({0, 10}));
   behaviour.receive_state("leader", {second, {0, 0}, {1, 0}});
-  // The place is (0, 10), the error e = (0, 6), U = 1, D = 8: v = (1, 1 * 6 / sqrt(36 + 64)) = (1, 0.6).
-  const Course course = behaviour.steer({second, {0, 4}, {1, 0}, 0});
-  EXPECT_NEAR(course.speed_mps, std::hypot(1, 0.6), 1e-12);
-  EXPECT_NEAR(course.heading_rad, std::atan2(0.6, 1), 1e-12);
+  // The place is (0, 10), the error e = (0, 12), U = 1.2, D = 9: v = (1, 1.2 * 12 / sqrt(144 + 81)) = (1, 0.96).
+  const Course course = behaviour.steer({second, {0, -2}, {1, 0}, 0});
+  EXPECT_NEAR(course.speed_mps, std::hypot(1, 0.96), 1e-12);
+  EXPECT_NEAR(course.heading_rad, std::atan2(0.96, 1), 1e-12);
 }
 
 TEST(Formation, StopsWithoutAStateOfItsLeaderOrWithAnOldOne) {
@@ -86,7 +86,7 @@ TEST(Formation, KeepsItsPlaceInACurrentAcrossItsCourse) {
     const Vector2d place_W(1.2 * (t_s + 0.5) - 20, 20);
     if (i > 200) worst_m = std::max(worst_m, (own.p_W - place_W).norm());
   }
-  // Without the estimate of the current it would be off by D c / sqrt(U^2 - c^2), 2 m.
+  // Without the estimate of the current it would be off by D c / sqrt(U^2 - c^2), 1.5 m.
   EXPECT_LT(worst_m, 0.5);
 }
 

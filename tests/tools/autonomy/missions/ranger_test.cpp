@@ -100,7 +100,7 @@ TEST(Ranger, TakesFixesDivesFollowsTheWallAndTakesALastFix) {
   Voyage voyage;
   voyage.run_for(70);
   EXPECT_EQ(voyage.ranger.phase(), Ranger::Phase::dived);
-  voyage.run_for(60);
+  voyage.run_for(45);
   EXPECT_EQ(voyage.ranger.phase(), Ranger::Phase::dived);
   // The wall bounds the error across it.
   EXPECT_NEAR(voyage.ranger.filter()->p_W().y(), voyage.p_W.y(), 0.3);
