@@ -26,7 +26,8 @@ Ended run(const std::string& name, std::vector<std::string> arguments) {
 }
 
 TEST(MarinePrograms, HelpShowsExamplesAndExitCodes) {
-  for (const char* name : {"shoal-coop-craft", "shoal-coop-auv", "shoal-coop-rover", "shoal-coop-station"}) {
+  for (const char* name :
+       {"shoal-coop-craft", "shoal-coop-auv", "shoal-coop-rover", "shoal-coop-station", "shoal-ranger"}) {
     const Ended ended = run(name, {"--help"});
     EXPECT_EQ(ended.exit_code, 0) << name;
     EXPECT_THAT(ended.output, HasSubstr("Example"));
@@ -43,7 +44,7 @@ struct Mistake {
 TEST(MarinePrograms, WrongUsageIsExitCodeTwoAndSaysWhat) {
   const std::vector<Mistake> mistakes = {
       {"shoal-coop-craft", {}, "--name is required"},
-      {"shoal-coop-craft", {"--name", "b"}, "needs --waypoints-m, --circle-m, --zigzag-m or --follow"},
+      {"shoal-coop-craft", {"--name", "b"}, "needs --waypoints-m, --circle-m, --zigzag-m, --follow or --leader"},
       {"shoal-coop-craft",
        {"--name", "b", "--waypoints-m", "[[1,x]]"},
        "shoal-coop-craft: --waypoints-m: item 2 of 'waypoints_m[1]' must be a number, got 'x'"},
@@ -84,6 +85,17 @@ TEST(MarinePrograms, WrongUsageIsExitCodeTwoAndSaysWhat) {
        {"--name", "b", "--waypoints-m", "[[1,1]]", "--join-timeout-s", "nan"},
        "must be from 0.1 to 3600, got 'nan'"},
       {"shoal-coop-craft", {"--name", "b", "--follow", "b", "--follow-offset-m", "[0,10]"}, "'b' cannot follow itself"},
+      {"shoal-coop-craft", {"--name", "b", "--leader", "b"}, "'b' cannot lead itself"},
+      {"shoal-coop-craft",
+       {"--name", "b", "--leader", "a", "--formation", "offset"},
+       "the formation 'offset' needs formation_offset_m"},
+      {"shoal-coop-craft",
+       {"--name", "b", "--leader", "a", "--formation-offset-m", "[0,10]"},
+       "formation_offset_m is for the formation 'offset', not 'vee'"},
+      {"shoal-coop-craft", {"--name", "b", "--leader", "a", "--formation", "ring"}, "--formation"},
+      {"shoal-coop-craft", {"--name", "b", "--waypoints-m", "[[1,1]]", "--avoid", "luck"}, "--avoid"},
+      {"shoal-coop-craft", {"--name", "b", "--waypoints-m", "[[1,1]]", "--formation", "vee"}, "needs --leader"},
+      {"shoal-ranger", {"--name", "r"}, "is required"},
       {"shoal-coop-craft", {"--name", "b", "--follow", "a"}, "--follow needs --follow-offset-m"},
       {"shoal-coop-auv", {"--name", "a", "--waypoints-m", "[[1,1]]", "--hold-radius-m", "0"}, "--hold-radius-m"},
       {"shoal-coop-auv",

@@ -40,7 +40,9 @@ TEST_P(ReplayOf, AMissionWithItsProgramsIsEqual) {
 
 INSTANTIATE_TEST_SUITE_P(Worlds, ReplayOf,
                          testing::Values("worlds/coop_land.yaml", "worlds/coop_underwater.yaml",
-                                         "worlds/coop_relay.yaml"),
+                                         "worlds/coop_relay.yaml", "worlds/ranger_dock.yaml",
+                                         "worlds/avoid_crossing.yaml", "worlds/avoid_piles.yaml",
+                                         "worlds/avoid_rovers.yaml", "worlds/formation.yaml"),
                          [](const auto& test) { return std::filesystem::path(test.param).stem().string(); });
 
 TEST(Replay, FindsAPlantedDifferenceAndWritesAReport) {

@@ -93,24 +93,27 @@ TEST_P(ProgramsGoBack, ToAFileOfTheirRunAsWell) {
   EXPECT_EQ(run_hash_in({exit_code, program.output(), program.errors()}), run_hash_in(straight));
 }
 
-INSTANTIATE_TEST_SUITE_P(Worlds, ProgramsGoBack,
-                         testing::Values(RewoundMission{"worlds/segway.yaml", "30", {"9.005", "4.5", "14", "6.035"}},
-                                         RewoundMission{"worlds/ball_chase.yaml", "6", {"3.005", "1.5", "5", "2.035"}},
-                                         RewoundMission{"worlds/slam_days.yaml", "120", {"55.5", "20", "90", "40.3"}},
-                                         RewoundMission{"worlds/coop_land.yaml", "30", {"12.34", "5", "20", "11.27"}},
-                                         RewoundMission{
-                                             "worlds/coop_underwater.yaml", "150", {"90", "33.3", "120", "40.14"}},
-                                         RewoundMission{"worlds/coop_relay.yaml", "200", {"150", "20", "160", "50.3"}},
-                                         // Small steps, so that it does not end before the second rewind.
-                                         RewoundMission{"worlds/benchmark/09_thermocline.yaml",
-                                                        "150",
-                                                        {"90", "33.3", "120", "40.14"},
-                                                        {"--set", "physics.step_s=0.005"}}),
-                         [](const auto& test) {
-                           const std::string path = test.param.world;
-                           const std::size_t name = path.rfind('/') + 1;
-                           return path.substr(name, path.find('.') - name);
-                         });
+INSTANTIATE_TEST_SUITE_P(
+    Worlds, ProgramsGoBack,
+    testing::Values(RewoundMission{"worlds/segway.yaml", "30", {"9.005", "4.5", "14", "6.035"}},
+                    RewoundMission{"worlds/ball_chase.yaml", "6", {"3.005", "1.5", "5", "2.035"}},
+                    RewoundMission{"worlds/slam_days.yaml", "120", {"55.5", "20", "90", "40.3"}},
+                    RewoundMission{"worlds/coop_land.yaml", "30", {"12.34", "5", "20", "11.27"}},
+                    RewoundMission{"worlds/coop_underwater.yaml", "150", {"90", "33.3", "120", "40.14"}},
+                    RewoundMission{"worlds/coop_relay.yaml", "200", {"150", "20", "160", "50.3"}},
+                    RewoundMission{"worlds/ranger_dock.yaml", "130", {"90", "33.3", "120", "100.14"}},
+                    RewoundMission{"worlds/avoid_rovers.yaml", "30", {"12.34", "5", "20", "11.27"}},
+                    RewoundMission{"worlds/formation.yaml", "60", {"40", "5.3", "50", "41.14"}},
+                    // Small steps, so that it does not end before the second rewind.
+                    RewoundMission{"worlds/benchmark/09_thermocline.yaml",
+                                   "150",
+                                   {"90", "33.3", "120", "40.14"},
+                                   {"--set", "physics.step_s=0.005"}}),
+    [](const auto& test) {
+      const std::string path = test.param.world;
+      const std::size_t name = path.rfind('/') + 1;
+      return path.substr(name, path.find('.') - name);
+    });
 
 TEST(Rewind, AProgramThatIsNotToGoBackEndsAndSaysSo) {
   const ScratchFolder folder;

@@ -73,4 +73,26 @@ TEST(ShippedRules, OfCoopLandFailWithAHelperWithoutGps) {
   EXPECT_THAT(lost.output, HasSubstr("FAILED: helper2.rms_m"));
 }
 
+TEST(ShippedRules, OfTheRangerHoldAndFailWithoutEachOfItsSensors) {
+  const Ended whole = whole_run("ranger_dock", {});
+  EXPECT_EQ(whole.exit_code, 0) << whole.output << whole.errors;
+  for (const char* sensor : {"gps", "forward_sonar", "imu"}) {
+    const Ended ended = whole_run("ranger_dock", {std::string("vehicles.ranger.devices.") + sensor + ".dropout=1"});
+    EXPECT_EQ(ended.exit_code, 1) << sensor << ended.errors;
+    EXPECT_THAT(ended.output, HasSubstr("FAILED: berth.time_s")) << sensor;
+  }
+}
+
+TEST(ShippedRules, OfTheRoversThatAvoidHold) {
+  const Ended whole = whole_run("avoid_rovers", {});
+  EXPECT_EQ(whole.exit_code, 0) << whole.output << whole.errors;
+}
+
+TEST(ShippedRules, OfTheFormationFailWithAMuteLeader) {
+  EXPECT_EQ(whole_run("formation", {"run.duration_s=200"}).exit_code, 0);
+  const Ended mute = whole_run("formation", {"run.duration_s=200", "vehicles.leader.devices.modem.source_level_dB=0"});
+  EXPECT_EQ(mute.exit_code, 1) << mute.errors;
+  EXPECT_THAT(mute.output, HasSubstr("FAILED: place1.rms_m"));
+}
+
 }  // namespace

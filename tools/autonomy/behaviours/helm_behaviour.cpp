@@ -45,7 +45,7 @@ Course RouteBehaviour::steer(const Motion& own) {
   const double leg_rad = direction_of(leg_W);
   const double across_m = turned(own.p_W - *from_W_, -leg_rad).y();
   heading_rad_ = sim::wrap_angle(leg_rad - std::atan2(across_m, params_.lookahead_m));
-  return {params_.speed_mps, heading_rad_};
+  return {params_.speed_mps, heading_rad_, (waypoints_W_[current_] - own.p_W).norm()};
 }
 
 Course CircleBehaviour::steer(const Motion& own) {

@@ -3,11 +3,13 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "tools/autonomy/behaviours/scan.hpp"
 #include "tools/autonomy/filters/pose2.hpp"
 
 namespace autonomy {
@@ -17,12 +19,15 @@ struct Motion {
   std::int64_t utime = 0;
   Vector2d p_W = Vector2d::Zero();
   Vector2d v_W = Vector2d::Zero();  ///< over ground
+  double yaw_rad = unknown;         ///< direction of the bow, counter-clockwise from east; unknown: not measured
 };
 
 /// Setpoints for the helm.
 struct Course {
   double speed_mps = 0;
   double heading_rad = 0;  ///< counter-clockwise from east
+  /// Distance for which the course is kept, such as to the next waypoint; what stands beyond is not in its way.
+  double distance_m = std::numeric_limits<double>::infinity();
 };
 
 /// Decides on course and speed by the vehicle's own navigation estimate.
@@ -34,6 +39,8 @@ class HelmBehaviour {
   virtual std::unique_ptr<HelmBehaviour> clone() const = 0;
   /// Processes a received state of another vehicle.
   virtual void receive_state(const std::string& /*vehicle*/, const Motion& /*other*/) {}
+  /// Processes a scan of a lidar or a forward sonar, and the own motion at its time.
+  virtual void receive_scan(const Scan& /*scan*/, const Motion& /*own*/) {}
   virtual bool finished() const { return false; }
   /// Remark for the end of a run; empty: none.
   virtual std::string remark() const { return {}; }

@@ -7,7 +7,8 @@
 
 namespace autonomy {
 
-/// Scan of a planar lidar: beam i at first_angle_rad + i * step_rad, counter-clockwise from straight ahead.
+/// Scan of a planar lidar or of a forward sonar: beam i at first_angle_rad + i * step_rad, counter-clockwise from
+/// straight ahead.
 struct Scan {
   std::vector<float> ranges_m;
   double first_angle_rad = 0;

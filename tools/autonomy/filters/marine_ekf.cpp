@@ -13,10 +13,6 @@ namespace {
 constexpr double max_memory_s = 60;
 constexpr double bad_clock_mps = 0.15;  ///< 100 ppm, the worst error of common quartz clocks, times the speed of sound
 
-Vector2d left_of(const Vector2d& v) {
-  return {-v.y(), v.x()};
-}
-
 }  // namespace
 
 MarineEkf::MarineEkf(std::int64_t utime, const Vector2d& p_W, double position_std_m, const Params& params)

@@ -29,6 +29,11 @@ inline Vector2d turned(const Vector2d& v, double angle_rad) {
   return {c * v.x() - s * v.y(), s * v.x() + c * v.y()};
 }
 
+/// Rotates a vector by 90 degrees to the left.
+inline Vector2d left_of(const Vector2d& v) {
+  return {-v.y(), v.x()};
+}
+
 /// Unknown value in messages and estimates.
 inline constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 

@@ -26,6 +26,14 @@ constexpr double oldest_attitude_s = 2;
 constexpr double lost_heading_s = 60;
 /// Silence of all devices together, which is longer than their intervals.
 constexpr double max_quiet_s = 1;
+/// Returns the ranges of a ping; infinity without an echo.
+std::vector<float> scan_of(const shoal::multibeam_t& ping) {
+  std::vector<float> ranges_m = ping.ranges_m;
+  for (std::size_t i = 0; i < ranges_m.size(); ++i)
+    if (ping.valid[i] == 0) ranges_m[i] = std::numeric_limits<float>::infinity();
+  return ranges_m;
+}
+
 /// Sound travels 90 km in this time, beyond the range of any modem.
 constexpr double max_travel_s = 60;
 
@@ -172,6 +180,19 @@ void CoopAuv::receive(const shoal::acoustic_received_t& packet) {
   if (cooperative_ && params_.use_ranges) use_range(packet, *state);
 }
 
+Motion CoopAuv::motion_at(const MarineEkf& filter, std::int64_t utime) const {
+  Motion motion{utime, filter.position_at(utime), filter.velocity()};
+  if (q_WB_) motion.yaw_rad = sim::wrap_angle(sim::yaw_of(q_WB_->toRotationMatrix()) + filter.heading_bias_rad());
+  return motion;
+}
+
+void CoopAuv::receive(const shoal::multibeam_t& ping) {
+  note_time(ping.utime);
+  if (!cooperative_ || ping.count < 2) return;
+  const double step_rad = ping.angles_rad[1] - ping.angles_rad[0];
+  behaviour_->receive_scan({scan_of(ping), ping.angles_rad[0], step_rad}, motion_at(steered_by(), ping.utime));
+}
+
 OrderRefusal CoopAuv::refusal_of(const AcousticOrder& order) const {
   if (order.depth_m > params_.order_depth_max_m) return OrderRefusal::too_deep;
   if (order.speed_mps > params_.order_speed_max_mps) return OrderRefusal::too_fast;
@@ -246,8 +267,7 @@ CoopAuv::Decision CoopAuv::step() {
 shoal::helm_command_t CoopAuv::helm() {
   shoal::helm_command_t helm{utime_, 0, unknown, 0, unknown};
   if (phase_ != Phase::under_way) return helm;
-  const MarineEkf& filter = params_.steer_by_dead_reckoning ? *dead_reckoning_ : *cooperative_;
-  const Course course = behaviour_->steer({utime_, filter.position_at(utime_), filter.velocity()});
+  const Course course = behaviour_->steer(motion_at(steered_by(), utime_));
   helm.speed_mps = course.speed_mps;
   helm.heading_rad = course.heading_rad;
   helm.depth_m = desired_depth_m_;

@@ -15,13 +15,14 @@
 #include "shoal/helm_command_t.hpp"
 #include "shoal/ins_t.hpp"
 #include "shoal/modem_send_t.hpp"
+#include "shoal/multibeam_t.hpp"
 #include "shoal/pressure_t.hpp"
 #include "tools/autonomy/acomms/acoustic_frame.hpp"
 #include "tools/autonomy/acomms/channel_access.hpp"
 #include "tools/autonomy/acomms/state_packet.hpp"
+#include "tools/autonomy/behaviours/cloned.hpp"
 #include "tools/autonomy/behaviours/helm_behaviour.hpp"
 #include "tools/autonomy/filters/marine_ekf.hpp"
-#include "tools/autonomy/missions/cloned.hpp"
 
 namespace autonomy {
 
@@ -84,6 +85,8 @@ class CoopAuv {
   void receive(const shoal::pressure_t& pressure);
   void receive(const shoal::gps_data_t& fix);
   void receive(const shoal::acoustic_received_t& packet);
+  /// Processes a ping of the forward sonar, a multibeam sonar whose swath is horizontal and centred on the bow.
+  void receive(const shoal::multibeam_t& ping);
   /// Computes the commands after all reports up to now.
   Decision step();
 
@@ -100,6 +103,8 @@ class CoopAuv {
   void start(std::int64_t utime, const Vector2d& p_W, double std_m);
   void predict(std::int64_t utime);
   bool is_silent() const;
+  Motion motion_at(const MarineEkf& filter, std::int64_t utime) const;
+  const MarineEkf& steered_by() const { return params_.steer_by_dead_reckoning ? *dead_reckoning_ : *cooperative_; }
   /// Returns a point of the vehicle relative to the estimated one
   Eigen::Vector3d turned_into_world(const Eigen::Vector3d& point_B) const;
   void execute(const AcousticOrder& order);

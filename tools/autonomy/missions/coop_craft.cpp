@@ -6,9 +6,16 @@
 #include <limits>
 #include <numbers>
 
+#include "sim/base/math.hpp"
+
 namespace autonomy {
 
-namespace {}  // namespace
+namespace {
+
+/// Maximum age of a heading.
+constexpr double oldest_yaw_s = 2;
+
+}  // namespace
 
 CoopCraft::CoopCraft(const Params& params, std::unique_ptr<HelmBehaviour> behaviour)
     : params_(params), behaviour_(std::move(behaviour)), access_(params.access, params.name) {}
@@ -39,6 +46,26 @@ void CoopCraft::receive(const shoal::acoustic_received_t& packet) {
     ++counts_.relayed;
 }
 
+void CoopCraft::receive(const shoal::ins_t& attitude) {
+  const Eigen::Quaterniond q(attitude.quat[0], attitude.quat[1], attitude.quat[2], attitude.quat[3]);
+  if (!(std::abs(q.norm() - 1) < 0.01)) return;
+  yaw_rad_ = sim::yaw_of(q.normalized().toRotationMatrix());
+  yaw_utime_ = attitude.utime;
+}
+
+Motion CoopCraft::motion_at(std::int64_t utime) const {
+  Motion motion = *motion_;
+  motion.p_W += motion.v_W * seconds(utime - motion.utime);
+  motion.utime = utime;
+  if (std::abs(seconds(utime - yaw_utime_)) <= oldest_yaw_s) motion.yaw_rad = yaw_rad_;
+  return motion;
+}
+
+void CoopCraft::receive(const shoal::planar_lidar_t& scan) {
+  if (!motion_ || std::abs(seconds(scan.utime - motion_->utime)) > params_.oldest_fix_s) return;
+  behaviour_->receive_scan({scan.ranges, scan.rad0, scan.radstep}, motion_at(scan.utime));
+}
+
 CoopCraft::Decision CoopCraft::step() {
   Decision decision;
   shoal::helm_command_t helm{utime_, 0, unknown, unknown, unknown};
@@ -48,7 +75,7 @@ CoopCraft::Decision CoopCraft::step() {
   if (!motion_) return decision;
   decision.remark = remark();
   if (has_fix) {
-    const Course course = behaviour_->steer(*motion_);
+    const Course course = behaviour_->steer(motion_at(motion_->utime));
     helm.speed_mps = course.speed_mps;
     helm.heading_rad = course.heading_rad;
     decision.estimate = estimate();

@@ -10,11 +10,13 @@
 #include "shoal/estimate_t.hpp"
 #include "shoal/gps_data_t.hpp"
 #include "shoal/helm_command_t.hpp"
+#include "shoal/ins_t.hpp"
 #include "shoal/modem_send_t.hpp"
+#include "shoal/planar_lidar_t.hpp"
 #include "tools/autonomy/acomms/channel_access.hpp"
 #include "tools/autonomy/acomms/state_packet.hpp"
+#include "tools/autonomy/behaviours/cloned.hpp"
 #include "tools/autonomy/behaviours/helm_behaviour.hpp"
-#include "tools/autonomy/missions/cloned.hpp"
 
 namespace autonomy {
 
@@ -49,6 +51,8 @@ class CoopCraft {
 
   void receive(const shoal::gps_data_t& fix);
   void receive(const shoal::acoustic_received_t& packet);
+  void receive(const shoal::ins_t& attitude);
+  void receive(const shoal::planar_lidar_t& scan);
   /// Computes the commands after all reports up to now.
   Decision step();
 
@@ -59,6 +63,8 @@ class CoopCraft {
   shoal::estimate_t estimate() const;
   std::optional<shoal::modem_send_t> state_frame();
   std::string remark();
+  /// Returns the own motion at a time, by the last fix.  There must be one.
+  Motion motion_at(std::int64_t utime) const;
 
   Params params_;
   Cloned<HelmBehaviour> behaviour_;
@@ -68,6 +74,8 @@ class CoopCraft {
   std::optional<std::int64_t> patient_since_;
   bool remarked_ = false;
   std::optional<Motion> motion_;
+  double yaw_rad_ = unknown;
+  std::int64_t yaw_utime_ = 0;
   int steps_since_fix_ = 0;
   double position_std_m_ = 0;
   Counts counts_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/autonomy/missions/coop_rover.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -9,6 +10,7 @@
 #include "shoal/planar_lidar_t.hpp"
 #include "shoal/pose_t.hpp"
 #include "shoal/twist_command_t.hpp"
+#include "sim/base/math.hpp"
 
 namespace autonomy {
 
@@ -88,6 +90,27 @@ void CoopRover::receive_scan(Payload payload) {
   auto scan = shoal::decode<shoal::planar_lidar_t>(payload, shoal::Finite::required);
   scan_ = {std::move(scan.ranges), scan.rad0, scan.radstep};
   scan_utime_ = scan.utime;
+  if (params_.avoidance && odometry_utime_) params_.avoidance->receive(scan_, motion_at(scan.utime));
+}
+
+Motion CoopRover::motion_at(std::int64_t utime) const {
+  const Increment moved = since_odometry(utime);
+  Motion motion;
+  motion.utime = utime;
+  motion.yaw_rad = sim::wrap_angle(filter_.pose().yaw_rad + moved.turn_rad);
+  motion.p_W = filter_.pose().p_W + turned({moved.forward_m, 0}, filter_.pose().yaw_rad);
+  motion.v_W = turned({measured_.forward_mps, 0}, motion.yaw_rad);
+  return motion;
+}
+
+Twist CoopRover::drive_by_helm(std::int64_t utime) {
+  const Vector2d goal_B = follower_.goal_B(filter_.pose(), seconds(utime));
+  const Motion own = motion_at(utime);
+  const double goal_rad = sim::wrap_angle(filter_.pose().yaw_rad + std::atan2(goal_B.y(), goal_B.x()));
+  const Course course = params_.avoidance->steer(own, {params_.speed_mps, goal_rad, goal_B.norm()});
+  const double error_rad = sim::wrap_angle(course.heading_rad - own.yaw_rad);
+  // It turns on the spot to a course on the other side.
+  return {course.speed_mps * std::max(0.0, std::cos(error_rad)), std::clamp(2 * error_rad, -1.0, 1.0)};
 }
 
 std::vector<CoopRover::Outgoing> CoopRover::step(std::int64_t utime) {
@@ -111,6 +134,7 @@ std::vector<CoopRover::Outgoing> CoopRover::step(std::int64_t utime) {
 Twist CoopRover::drive(std::int64_t utime) {
   // Without a scan it stops.
   if (scan_.ranges_m.empty() || seconds(utime - scan_utime_) > oldest_scan_s) return {};
+  if (params_.avoidance) return odometry_utime_ ? drive_by_helm(utime) : Twist{};
   return avoidance_.steer(follower_.goal_B(filter_.pose(), seconds(utime)), scan_);
 }
 

@@ -12,6 +12,7 @@
 #include "shoal/gps_data_t.hpp"
 #include "shoal/swarm_position_t.hpp"
 #include "tools/autonomy/acomms/position_reports.hpp"
+#include "tools/autonomy/behaviours/avoid_behaviour.hpp"
 #include "tools/autonomy/behaviours/obstacle_avoidance.hpp"
 #include "tools/autonomy/behaviours/waypoint_follower.hpp"
 #include "tools/autonomy/filters/ekf.hpp"
@@ -33,6 +34,7 @@ class CoopRover {
     double start_yaw_std_rad = 0.03;
     double seen_std_m = 0.15;  ///< of each coordinate of a detection
     double report_period_s = 1.0;
+    std::optional<Avoidance> avoidance;  ///< unset: ObstacleAvoidance
   };
   struct Outgoing {
     std::string channel;
@@ -61,6 +63,8 @@ class CoopRover {
   Increment since_odometry(std::int64_t utime) const;
 
   Twist drive(std::int64_t utime);
+  Twist drive_by_helm(std::int64_t utime);
+  Motion motion_at(std::int64_t utime) const;
   bool report_is_due(std::int64_t utime) const;
   std::vector<std::byte> report() const;
   std::vector<std::byte> pose_message(const Pose2& pose) const;

@@ -3,6 +3,7 @@
 
 #include "sim/base/math.hpp"
 #include "tools/autonomy/missions/coop_auv.hpp"
+#include "tools/autonomy/programs/avoid_options.hpp"
 #include "tools/autonomy/programs/marine_options.hpp"
 #include "tools/autonomy/programs/program.hpp"
 
@@ -11,6 +12,7 @@ namespace {
 struct Options {
   autonomy::CoopAuv::Params auv;
   autonomy::MarineOptions marine;
+  autonomy::AvoidOptions avoid;
   autonomy::Participation participation;
   std::string steer = "cooperative";
   bool no_cooperation = false;
@@ -29,11 +31,12 @@ void subscribe(shoal::Client& client, autonomy::CoopAuv& auv, const std::string&
   listen.operator()<shoal::pressure_t>(".pressure");
   listen.operator()<shoal::gps_data_t>(".gps");
   listen.operator()<shoal::acoustic_received_t>(".modem");
+  listen.operator()<shoal::multibeam_t>(".forward_sonar");
 }
 
 int drive(const Options& options) {
   const std::string& name = options.auv.name;
-  autonomy::CoopAuv auv(options.auv, options.marine.make(name));
+  autonomy::CoopAuv auv(options.auv, options.avoid.around(options.marine.make(name)));
   shoal::Client client(name, options.participation.lcm_url);
   subscribe(client, auv, name);
   const int exit_code = autonomy::take_part(client, options.participation, auv, [&](std::int64_t) {
@@ -85,7 +88,8 @@ void declare(command_line::DeclaredOptions& declared, Options& options) {
   autonomy::CoopAuv::Params& auv = options.auv;
   // Channels.
   declared.publishes({"{name}.autopilot.cmd", "{name}.estimate", "{name}.dead_reckoning", "{name}.modem.cmd"});
-  declared.subscribes({"{name}.dvl", "{name}.ahrs", "{name}.compass", "{name}.pressure", "{name}.gps", "{name}.modem"});
+  declared.subscribes({"{name}.dvl", "{name}.ahrs", "{name}.compass", "{name}.pressure", "{name}.gps", "{name}.modem",
+                       "{name}.forward_sonar"});
   // Options of the mission.
   autonomy::add_name(declared, auv.name, "vehicle to steer").required();
   autonomy::add_id(declared, "id", auv.id, "number of the vehicle in its frames");
@@ -104,6 +108,7 @@ void declare(command_line::DeclaredOptions& declared, Options& options) {
   declared.number("order_speed_max_mps", auv.order_speed_max_mps, 0.01, 10, "maximum speed of an order");
   declared.number("hold_radius_m", auv.hold_radius_m, 1, 10'000, "radius of the circle at an ordered position");
   options.marine.declare(declared);
+  options.avoid.declare(declared);
   declared.at_most_one({"slot", "random_s"});
   declare_filter(declared, options);
   options.participation.declare(declared);
@@ -112,7 +117,8 @@ void declare(command_line::DeclaredOptions& declared, Options& options) {
       declared,
       {"shoal-coop-auv --name auv --waypoints-m '[[400,0],[400,40],[0,40],[0,80]]' --depth-m 15 --states 6",
        "shoal-coop-auv --name auv --start-m '[0,0]' --waypoints-m '[[2000,0]]' --no-cooperation"},
-      "It reads NAME.dvl, .ahrs or .compass, .pressure, .gps and .modem; it publishes NAME.autopilot.cmd, .estimate, "
+      "It reads NAME.dvl, .ahrs or .compass, .pressure, .gps, .modem and, for --avoid, .forward_sonar; it publishes "
+      "NAME.autopilot.cmd, .estimate, "
       ".dead_reckoning and, with --slot or --random-s, .modem.cmd.");
 }
 

@@ -3,6 +3,7 @@
 
 #include "sim/base/math.hpp"
 #include "tools/autonomy/missions/coop_rover.hpp"
+#include "tools/autonomy/programs/avoid_options.hpp"
 #include "tools/autonomy/programs/marine_options.hpp"
 #include "tools/autonomy/programs/program.hpp"
 
@@ -25,6 +26,18 @@ int drive(const autonomy::CoopRover::Params& params, const autonomy::Participati
 
 int run(int argc, char** argv) {
   autonomy::CoopRover::Params rover;
+  autonomy::AvoidOptions avoid;
+  avoid.params = {.keep_m = 0.7, .horizon_s = 6, .turn_radps = 1, .speed_time_s = 0.3, .speed_min_mps = 0};
+  avoid.tracks = {.range_m = 8,
+                  .range_min_m = 0.1,
+                  .gap_m = 0.4,
+                  .extent_m = 0.8,
+                  .gate_m = 0.6,
+                  .alpha = 0.5,
+                  .beta = 0.1,
+                  .still_mps = 0.15,
+                  .hits = 5,
+                  .memory_s = 1};
   autonomy::Participation participation;
   double start_yaw_deg = 0;
   CLI::App app{"Drives one rover of the cooperative experiment, in lockstep with `shoal run`.", "shoal-coop-rover"};
@@ -50,6 +63,7 @@ int run(int argc, char** argv) {
   options.number("start_yaw_deg", start_yaw_deg, -360, 360, "its heading at the start, counter-clockwise from east");
   options.number("speed_mps", rover.speed_mps, 0.05, 5, "speed of the rover");
   options.number("seen_std_m", rover.seen_std_m, 0.001, 100, "error of a swarm_position sighting");
+  avoid.declare(options);
   participation.declare(options);
   autonomy::set_help_end(
       options,
@@ -61,6 +75,7 @@ int run(int argc, char** argv) {
   // Parse the command line and run.
   if (const auto exit_code = options.parse(argc, argv)) return *exit_code;
   rover.start.yaw_rad = sim::wrap_angle(sim::degrees_to_radians(start_yaw_deg));
+  rover.avoidance = avoid.make();
   return drive(rover, participation);
 }
 

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "tools/autonomy/acomms/tdma.hpp"
+#include "tools/autonomy/behaviours/formation_behaviour.hpp"
 
 namespace autonomy {
 
@@ -27,7 +28,21 @@ void MarineOptions::declare(command_line::DeclaredOptions& options) {
           "follow_offset_m", {"ahead", "left"}, sim::any_place(),
           [this](const auto& numbers) { follow_offset_m = numbers; }, "place beside that vehicle, by its course")
       .needs({"follow"});
-  options.exactly_one({"waypoints_m", "circle_m", "zigzag_m", "follow"});
+  options.text("leader", "VEHICLE", leader, "leader of the formation in which to keep a place; it must send its state");
+  std::vector<std::string> formations = formation_names();
+  formations.emplace_back("offset");
+  options.choice("formation", formation, formations, "shape of the formation; offset: the place is formation_offset_m")
+      .needs({"leader"});
+  options.integer("formation_place", formation_place, 1, 1000, "place in the formation, counted from its leader")
+      .needs({"leader"});
+  options.number("spacing_m", spacing_m, 1, 10'000, "distance between neighbours in the formation, along and across")
+      .needs({"leader"});
+  options
+      .tuple(
+          "formation_offset_m", {"ahead", "left"}, sim::any_place(),
+          [this](const auto& numbers) { formation_offset = numbers; }, "place beside the leader, by its course")
+      .needs({"leader"});
+  options.exactly_one({"waypoints_m", "circle_m", "zigzag_m", "follow", "leader"});
   // Parameters of all behaviours.
   options.flag("loop", loop, "restart the route after its last waypoint; without it the vehicle stops there");
   options.number("speed_mps", speed_mps, 0.05, 10, "speed through the water; when it follows, the largest");
@@ -43,7 +58,23 @@ std::unique_ptr<HelmBehaviour> MarineOptions::make(const std::string& name) cons
     if (follow == name) throw std::invalid_argument("'" + name + "' cannot follow itself");
     return make_follow(follow, follow_offset_m[0], follow_offset_m[1], speed_mps);
   }
+  if (!leader.empty()) return make_place(name);
   return make_route(waypoints_W, speed_mps, loop);
+}
+
+std::unique_ptr<HelmBehaviour> MarineOptions::make_place(const std::string& name) const {
+  if (leader == name) throw std::invalid_argument("'" + name + "' cannot lead itself");
+  const bool by_offset = formation == "offset";
+  if (by_offset == formation_offset.empty())
+    throw std::invalid_argument(by_offset
+                                    ? "the formation 'offset' needs formation_offset_m"
+                                    : "formation_offset_m is for the formation 'offset', not '" + formation + "'");
+  FormationBehaviour::Params params;
+  params.leader = leader;
+  params.offset_m = by_offset ? Vector2d(formation_offset[0], formation_offset[1])
+                              : formation_offset_m(formation, formation_place, spacing_m);
+  params.speed_max_mps = speed_mps;
+  return std::make_unique<FormationBehaviour>(params);
 }
 
 void AccessOptions::declare(command_line::DeclaredOptions& options, const std::string& what) {

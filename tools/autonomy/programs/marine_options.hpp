@@ -33,6 +33,10 @@ struct MarineOptions {
   std::optional<int> zigzag_legs;
   std::string follow;
   std::vector<double> follow_offset_m;
+  std::string leader, formation = "vee";
+  int formation_place = 1;
+  double spacing_m = 20;
+  std::vector<double> formation_offset;  ///< as `follow_offset_m`
   double speed_mps = 1.5;
   bool loop = false;
   AccessOptions sending;
@@ -41,6 +45,9 @@ struct MarineOptions {
   /// Returns the behaviour of the vehicle `name`.  Throws std::invalid_argument with the reason.
   std::unique_ptr<HelmBehaviour> make(const std::string& name) const;
   ChannelAccess::Params access() const { return sending.access(); }
+
+ private:
+  std::unique_ptr<HelmBehaviour> make_place(const std::string& name) const;
 };
 
 /// Returns the waypoints of the columns x and y.

@@ -10,8 +10,8 @@
 #include "shoal/helm_command_t.hpp"
 #include "shoal/modem_send_t.hpp"
 #include "tools/autonomy/acomms/channel_access.hpp"
+#include "tools/autonomy/behaviours/cloned.hpp"
 #include "tools/autonomy/behaviours/helm_behaviour.hpp"
-#include "tools/autonomy/missions/cloned.hpp"
 #include "tools/navigation/driver/vehicle_navigation.hpp"
 
 namespace navigation {

@@ -118,8 +118,10 @@ int run(int argc, char** argv) {
       "--random-s, .modem.cmd.  With --log it navigates all vehicles of a record instead: "
       "see `shoal-nav --log FILE --help`.");
   if (const auto exit_code = declared.parse(argc, argv)) return *exit_code;
-  if (!options.marine.follow.empty())
-    throw std::invalid_argument("--follow needs frames with the state of a vehicle, which only shoal-coop-auv sends");
+  const bool follows = !options.marine.follow.empty();
+  if (follows || !options.marine.leader.empty())
+    throw std::invalid_argument(std::string(follows ? "--follow" : "--leader") +
+                                " needs frames with the state of a vehicle, which only shoal-coop-auv sends");
   options.pilot.algorithm = &navigation::algorithm_named(options.algorithm);
   if (!options.pilot.algorithm->make)
     throw std::invalid_argument(options.algorithm + " has the measurements of all vehicles: it runs with --log only");
