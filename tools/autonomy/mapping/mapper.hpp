@@ -38,7 +38,7 @@ class Mapper {
     double certain_agreement = 0.6;  ///< share of them from which on a lost vehicle is where it was
     int max_bad_scans = 4;        ///< consecutive ones below it; then the vehicle is lost
     double search_s = 3;          ///< time between the first searches of the whole map; it doubles up to max_search_s
-    double max_search_s = 60;
+    double max_search_s = 12;
     double accept_score = 0.5;  ///< score of a pose to be accepted
     double accept_lead = 0.1;   ///< and its lead over any other pose
     double last_lead = 0.03;    ///< lead that suffices when it has seen all around

@@ -163,7 +163,7 @@ std::optional<GlobalMatch> search_map(const OccupancyMap& map, const std::vector
   // Maxima over squares of 2, 4, ... cells.  The finest ones also allow for the steps of the heading.
   constexpr int finest = 1, coarsest = 5;
   // Scans that fit nowhere are like many places: the search is given up then.
-  constexpr int max_visited = 40'000, max_taken = 400;
+  constexpr int max_visited = 200'000, max_taken = 1000;
   std::vector<FieldPatch> levels;
   levels.emplace_back(map, 0, 0, map.columns(), map.rows());
   for (int level = 0; level < coarsest; ++level) levels.emplace_back(levels.back(), 1 << level);
