@@ -51,8 +51,8 @@ TEST(RecordBudget, IsKeptAndSpreadOverTheRun) {
   EXPECT_EQ(seconds["sim.inputs"].size(), 600u);
   EXPECT_EQ(seconds["rover1.map"].size(), 2u);
   EXPECT_EQ(seconds[budget_channel].size(), 1u);
-  // Each minute has scans: 196 kB, of which 3 kB are inputs, are some 185 of 1.04 kB, in whole seconds of ten; the first
-  // minute has 40 kB more.
+  // Each minute has scans: 196 kB, of which 3 kB are inputs, are some 185 of 1.04 kB, in whole seconds of ten; the
+  // first minute has 40 kB more.
   std::map<std::int64_t, int> by_minute;
   for (const std::int64_t second : seconds["rover1.lidar"]) ++by_minute[second / 60];
   ASSERT_EQ(by_minute.size(), 10u);

@@ -127,7 +127,8 @@ double Mapper::agreement(const std::vector<Vector2d>& points_B, const Pose2& pos
 void Mapper::search(const Beams& beams) {
   // It may be where it was: something large that is new stood before the lidar.
   const ScanMatch here = matcher_.match(map_, beams.points_B, pose_);
-  if (static_cast<int>(beams.points_B.size()) >= enough_known && agreement(beams.points_B, here.pose) >= params_.certain_agreement) {
+  if (static_cast<int>(beams.points_B.size()) >= enough_known &&
+      agreement(beams.points_B, here.pose) >= params_.certain_agreement) {
     lost_ = false;
     bad_scans_ = 0;
     pose_ = here.pose;

@@ -163,7 +163,7 @@ std::optional<GlobalMatch> search_map(const OccupancyMap& map, const std::vector
   // Maxima over squares of 2, 4, ... cells.  The finest ones also allow for the steps of the heading.
   constexpr int finest = 1, coarsest = 5;
   // Scans that fit nowhere are like many places: the search is given up then.
-  constexpr int max_visited = 600'000, max_taken = 1000;
+  constexpr int max_visited = 600'000, max_taken = 4000;
   std::vector<FieldPatch> levels;
   levels.emplace_back(map, 0, 0, map.columns(), map.rows());
   for (int level = 0; level < coarsest; ++level) levels.emplace_back(levels.back(), 1 << level);
@@ -203,7 +203,7 @@ std::optional<GlobalMatch> search_map(const OccupancyMap& map, const std::vector
   std::vector<Pose2> judged;
   const auto is_judged = [&](const Pose2& pose) {
     return std::any_of(judged.begin(), judged.end(), [&](const Pose2& each) {
-      return (each.p_W - pose.p_W).norm() < 0.15 && std::abs(sim::wrap_angle(each.yaw_rad - pose.yaw_rad)) < 0.05;
+      return (each.p_W - pose.p_W).norm() < 0.08 && std::abs(sim::wrap_angle(each.yaw_rad - pose.yaw_rad)) < 0.02;
     });
   };
   const auto take = [&](const Candidate& leaf) {
