@@ -163,7 +163,7 @@ std::optional<GlobalMatch> search_map(const OccupancyMap& map, const std::vector
   // Maxima over squares of 2, 4, ... cells.  The finest ones also allow for the steps of the heading.
   constexpr int finest = 1, coarsest = 5;
   // Scans that fit nowhere are like many places: the search is given up then.
-  constexpr int max_visited = 40'000, max_taken = 400;
+  constexpr int max_visited = 600'000, max_taken = 4000;
   std::vector<FieldPatch> levels;
   levels.emplace_back(map, 0, 0, map.columns(), map.rows());
   for (int level = 0; level < coarsest; ++level) levels.emplace_back(levels.back(), 1 << level);
@@ -199,10 +199,18 @@ std::optional<GlobalMatch> search_map(const OccupancyMap& map, const std::vector
     return (a.p_W - b.p_W).norm() > 1 || std::abs(sim::wrap_angle(a.yaw_rad - b.yaw_rad)) > 0.5;
   };
   bool any = false;
+  // Squares near a pose that was refined lead to the same pose.
+  std::vector<Pose2> judged;
+  const auto is_judged = [&](const Pose2& pose) {
+    return std::any_of(judged.begin(), judged.end(), [&](const Pose2& each) {
+      return (each.p_W - pose.p_W).norm() < 0.08 && std::abs(sim::wrap_angle(each.yaw_rad - pose.yaw_rad)) < 0.02;
+    });
+  };
   const auto take = [&](const Candidate& leaf) {
     const Pose2 pose = pose_of(leaf);
     ScanMatch match =
         refine(map, points_B, {pose, 0}, cell_m, std::numbers::pi / headings, 5, [](const Pose2&) { return 0.0; });
+    judged.push_back(match.pose);
     if (match.score <= std::max(min_score, found.other_score)) return;
     match.score -= blocked_share(map, sights, match.pose);
     if (match.score > found.best.score) {
@@ -232,6 +240,7 @@ std::optional<GlobalMatch> search_map(const OccupancyMap& map, const std::vector
     const bool near_best = any && !is_other(pose_of(candidate), found.best.pose);
     if (near_best && candidate.score <= found.best.score) continue;
     if (level == finest) {
+      if (is_judged(pose_of(candidate))) continue;
       take(candidate);
       ++taken;
       continue;
