@@ -101,7 +101,7 @@ INSTANTIATE_TEST_SUITE_P(
                     RewoundMission{"worlds/coop_land.yaml", "30", {"12.34", "5", "20", "11.27"}},
                     RewoundMission{"worlds/coop_underwater.yaml", "150", {"90", "33.3", "120", "40.14"}},
                     RewoundMission{"worlds/coop_relay.yaml", "200", {"150", "20", "160", "50.3"}},
-                    RewoundMission{"worlds/ranger_dock.yaml", "130", {"90", "33.3", "120", "100.14"}},
+                    RewoundMission{"worlds/ranger_dock.yaml", "130", {"90", "33.3", "120", "40.14"}},
                     RewoundMission{"worlds/avoid_rovers.yaml", "30", {"12.34", "5", "20", "11.27"}},
                     RewoundMission{"worlds/formation.yaml", "60", {"40", "5.3", "50", "41.14"}},
                     // Small steps, so that it does not end before the second rewind.

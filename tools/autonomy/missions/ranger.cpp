@@ -24,7 +24,8 @@ constexpr double course_min_mps = 0.5;
 constexpr double first_heading_std_rad = 0.3;
 /// Beams keep this distance from the surface and the bottom: their width, and the error of the pitch.
 constexpr double beam_margin_m = 0.5;
-/// The propeller drives the vehicle a little faster under water than at the surface, which looked like a current.
+/// Between the surface and the depth of the dive the current changes; the propeller also drives the vehicle a little
+/// slower at the surface, which looks like a current.
 constexpr double dive_current_std_mps = 0.1;
 /// Beams used of a ping; their errors by the pose are the same, so that all of them would add little.
 constexpr int beams_of_ping = 9;
@@ -175,7 +176,10 @@ void Ranger::update_phase() {
     phase_ = Phase::dived;
     filter_->loosen_current(dive_current_std_mps);
   }
-  if (phase_ == Phase::dived && dive_.finished()) phase_ = Phase::rising;
+  if (phase_ == Phase::dived && dive_.finished()) {
+    phase_ = Phase::rising;
+    filter_->loosen_current(dive_current_std_mps);
+  }
   if (phase_ == Phase::rising && rise_.finished() && before_last_fix_) phase_ = Phase::done;
 }
 
