@@ -28,16 +28,16 @@ class Mapper {
     Pose2 start;  ///< pose of the vehicle at the start, in the frame of the map
     OccupancyMap::Params map;
     ScanMatcher::Params matcher;
-    Pose2 lidar;                  ///< pose of the lidar on the vehicle
-    double lidar_range_m = 20;    ///< a beam of this length has met nothing
-    double use_range_m = 15;      ///< longer beams only clear this length
-    double insert_m = 0.1;        ///< a scan is added after this distance
-    double insert_rad = 0.05;     ///< or this turn
-    double insert_s = 10;         ///< or this time
-    double min_agreement = 0.25;  ///< share of the beams in known cells that must end near something in the map
+    Pose2 lidar;                     ///< pose of the lidar on the vehicle
+    double lidar_range_m = 20;       ///< a beam of this length has met nothing
+    double use_range_m = 15;         ///< longer beams only clear this length
+    double insert_m = 0.1;           ///< a scan is added after this distance
+    double insert_rad = 0.05;        ///< or this turn
+    double insert_s = 10;            ///< or this time
+    double min_agreement = 0.25;     ///< share of the beams in known cells that must end near something in the map
     double certain_agreement = 0.6;  ///< share of them from which on a lost vehicle is where it was
-    int max_bad_scans = 4;        ///< consecutive ones below it; then the vehicle is lost
-    double search_s = 3;          ///< time between the first searches of the whole map; it doubles up to max_search_s
+    int max_bad_scans = 4;           ///< consecutive ones below it; then the vehicle is lost
+    double search_s = 3;  ///< time between the first searches of the whole map; it doubles up to max_search_s
     double max_search_s = 12;
     double accept_score = 0.5;  ///< score of a pose to be accepted
     double accept_lead = 0.1;   ///< and its lead over any other pose

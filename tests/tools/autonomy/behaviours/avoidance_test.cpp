@@ -36,7 +36,7 @@ Motion eastwards(const Vector2d& p_W = {0, 0}) {
 }
 
 /// A craft as the laws assume it.
-struct Craft {
+struct AvoidingCraft {
   Motion motion;
   void go(const Course& course) {
     constexpr double dt_s = 0.5;
@@ -60,7 +60,7 @@ TEST_P(EachLaw, ChangesNothingWithoutObstacles) {
 TEST_P(EachLaw, PassesAPileOnItsCourseAtItsDistance) {
   const auto law = autonomy::make_avoidance(GetParam(), params);
   const Obstacle pile{{40, 0.5}, {0, 0}, 1};
-  Craft craft{eastwards()};
+  AvoidingCraft craft{eastwards()};
   double nearest_m = 1e9;
   for (int i = 0; i < 120 && craft.motion.p_W.x() < 80; ++i) {
     const Vector2d to_goal_W = Vector2d(120, 0) - craft.motion.p_W;
@@ -76,7 +76,7 @@ TEST_P(EachLaw, TakesTheGapBetweenTwoPiles) {
   const auto law = autonomy::make_avoidance(GetParam(), params);
   // The gap, 14 m wide, is to port.
   const std::vector<Obstacle> piles{{{30, -2}, {0, 0}, 1}, {{30, 16}, {0, 0}, 1}};
-  Craft craft{eastwards()};
+  AvoidingCraft craft{eastwards()};
   double nearest_m = 1e9;
   for (int i = 0; i < 100; ++i) {
     const Vector2d to_goal_W = Vector2d(80, 10) - craft.motion.p_W;
@@ -116,8 +116,8 @@ TEST(VelocityObstacles, LetTheWaterCarryTheVehicle) {
 
 TEST(VelocityObstacles, MakeTwoVehiclesThatMeetPassPortToPort) {
   VelocityObstacles east_law(params), west_law(params);
-  Craft east{eastwards()};
-  Craft west{{0, {60, 0}, {-1.5, 0}, pi}};
+  AvoidingCraft east{eastwards()};
+  AvoidingCraft west{{0, {60, 0}, {-1.5, 0}, pi}};
   double nearest_m = 1e9;
   for (int i = 0; i < 70; ++i) {
     const Obstacle west_now{west.motion.p_W, west.motion.v_W, 0.5};
@@ -130,7 +130,9 @@ TEST(VelocityObstacles, MakeTwoVehiclesThatMeetPassPortToPort) {
     if (distance_m < nearest_m) {
       nearest_m = distance_m;
       // Each has the other to port: the eastbound one is south of the other.
-      if (distance_m < 15) EXPECT_LT(east.motion.p_W.y(), west.motion.p_W.y());
+      if (distance_m < 15) {
+        EXPECT_LT(east.motion.p_W.y(), west.motion.p_W.y());
+      }
     }
   }
   EXPECT_GT(nearest_m, params.keep_m);
@@ -160,7 +162,7 @@ TEST(AvoidBehaviour, FollowsItsRouteAroundWhatTheScanShows) {
       autonomy::make_route({{100, 0}}, 1.5, false),
       autonomy::Avoidance(autonomy::make_avoidance("velocity_obstacles", params), tracks));
   const Vector2d pile_W(50, 0);
-  Craft craft{eastwards()};
+  AvoidingCraft craft{eastwards()};
   craft.motion.utime = second;
   double nearest_m = 1e9;
   for (int i = 0; i < 300 && !behaviour.finished(); ++i) {

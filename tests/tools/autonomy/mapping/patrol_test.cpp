@@ -16,13 +16,13 @@ using autonomy::Pose2;
 using autonomy::Twist;
 using autonomy::Vector2d;
 
-constexpr std::int64_t second = 1'000'000;
+constexpr std::int64_t patrol_second = 1'000'000;
 
 /// A vehicle on a free ground that does what it is commanded.
 struct PatrolRun {
   explicit PatrolRun(Patrol::Params params) : patrol(params) {}
   Twist tick() {
-    utime += second;
+    utime += patrol_second;
     patrol.receive(test::odometry_at(pose, utime));
     patrol.receive(test::DrawnRoom{}.scan(pose, utime));
     shoal::estimate_t estimate{};
@@ -80,23 +80,23 @@ TEST(Patrol, TurnsOnTheSpotWhileTheEstimateIsUncertain) {
 TEST(Patrol, MovesAnOldEstimateByItsOdometry) {
   PatrolRun run(square());
   // The estimate of 1 s says (10, 0), towards north; odometry has gone 2 m ahead since, so it is at (10, 2).
-  run.patrol.receive(test::odometry_at({{3, 0}, 0}, second));
-  run.patrol.receive(test::odometry_at({{5, 0}, 0}, 2 * second));
+  run.patrol.receive(test::odometry_at({{3, 0}, 0}, patrol_second));
+  run.patrol.receive(test::odometry_at({{5, 0}, 0}, 2 * patrol_second));
   shoal::estimate_t estimate{};
-  estimate.utime = second;
+  estimate.utime = patrol_second;
   estimate.position_m[0] = 10;
   estimate.yaw_rad = std::numbers::pi / 2;
   run.patrol.receive(estimate);
-  run.patrol.receive(test::DrawnRoom{}.scan({}, 2 * second));
+  run.patrol.receive(test::DrawnRoom{}.scan({}, 2 * patrol_second));
   // The first waypoint, (0, 0), is to the left and behind: it turns left, most of the way.
-  const Twist twist = run.patrol.step(2 * second);
+  const Twist twist = run.patrol.step(2 * patrol_second);
   EXPECT_GT(twist.turn_radps, 0.1);
 }
 
 TEST(Patrol, StandsWithoutAnEstimateOrAScan) {
   Patrol patrol(square());
-  patrol.receive(test::odometry_at({}, second));
-  EXPECT_EQ(patrol.step(second).forward_mps, 0);
+  patrol.receive(test::odometry_at({}, patrol_second));
+  EXPECT_EQ(patrol.step(patrol_second).forward_mps, 0);
   EXPECT_THROW(Patrol(Patrol::Params{}), std::invalid_argument);
 }
 
