@@ -35,6 +35,7 @@ class FieldPatch {
         first_row_(first_row),
         columns_(columns),
         rows_(rows),
+        side_(1),
         field_(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows)) {
     for (int row = 0; row < rows; ++row)
       for (int column = 0; column < columns; ++column)
@@ -46,6 +47,7 @@ class FieldPatch {
         first_row_(finer.first_row_),
         columns_(finer.columns_),
         rows_(finer.rows_),
+        side_(2 * side),
         field_(finer.field_.size()) {
     for (int row = 0; row < rows_; ++row)
       for (int column = 0; column < columns_; ++column) {
@@ -58,7 +60,8 @@ class FieldPatch {
     int sum = 0;
     for (std::size_t i = 0; i < offsets.columns.size(); ++i) {
       const int c = offsets.columns[i] + column - first_column_, r = offsets.rows[i] + row - first_row_;
-      if (c >= 0 && r >= 0 && c < columns_ && r < rows_) sum += field_[index(c, r)];
+      // A square that begins before the patch may end in it.
+      if (c > -side_ && r > -side_ && c < columns_ && r < rows_) sum += field_[index(std::max(c, 0), std::max(r, 0))];
     }
     return sum;
   }
@@ -68,7 +71,7 @@ class FieldPatch {
     return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column);
   }
 
-  int first_column_, first_row_, columns_, rows_;
+  int first_column_, first_row_, columns_, rows_, side_;
   std::vector<std::uint8_t> field_;
 };
 
