@@ -39,6 +39,10 @@ const std::map<std::string, std::vector<TimeCase>>& cases() {
        {{"vehicle: r2", "carried_share"},
         {"vehicle: r2", "static_min_m"},
         {"vehicle: r1, from_s: 1", "static_mean_m"}}},
+      {"separation", {{"", "min_m"}, {"vehicle: r2, from_s: 1", "at_s"}}},
+      {"formation_error", {{"vehicle: r2, leader: r1, offset_m: [0, 5]", "rms_m"}}},
+      {"trajectory", {{"vehicle: r1, channel: r1.far", "ate_m"}, {"vehicle: r1, channel: r1.far, from_s: 1", "poses"}}},
+      {"map", {{"channel: r1.map, height_m: 0.5", "iou"}, {"channel: r1.map, from_s: 1", "maps"}}},
       {"tilt", {{"vehicle: r2", "fell_s"}, {"vehicle: r2", "max_deg"}, {"vehicle: r1, from_s: 1", "pitch_std_deg"}}},
   };
   return all;
@@ -52,7 +56,7 @@ std::string world_text() {
       "  - {name: ball, position_m: [9, 9, 0.5], parts: [{shape: sphere, radius_m: 0.2, mass_kg: 1}]}\n"
       "vehicles:\n  - {name: r1, file: " +
       source("vehicles/rover.yaml") +
-      "}\n  - {name: r2, position_m: [0, 5, 0], file: " + source("vehicles/rover.yaml") +
+      "}\n  - {name: r2, position_m: [4, 5, 0], file: " + source("vehicles/rover.yaml") +
       "}\n"
       "zones: [{name: goal, shape: box, position_m: [2, 0, 0], size_m: [2, 2, 2]}]\n"
       "events:\n"
@@ -65,6 +69,9 @@ std::string world_text() {
       "0]}}}]}\n"
       "  - {name: talk, every: 0.7, do: [{publish: {channel: r1.modem.cmd, type: shoal.modem_send_t, value: {data: [1, "
       "2]}}}]}\n"
+      "  - {name: draw, every: 0.5, do: [{publish: {channel: r1.map, type: shoal.occupancy_grid_t, value: "
+      "{cell_m: 0.25, origin_m: [8.5, 8.5], width: 4, height: 4, ncells: 16, "
+      "cells: [100, 100, 100, 100, 100, 100, 100, 100, 100, 100, 100, 100, 100, 100, 100, 100]}}}]}\n"
       "  - {name: hello, at: 3, do: [{publish: {channel: r1.hello, type: shoal.pose_t, value: {}}}]}\n"
       "  - {name: throw, at: 3, do: [{move: {name: r2, position_m: [0, 5, 0.5], rpy_deg: [90, 0, 0]}}, "
       "{move: {name: ball, position_m: [0, 5, 1.5]}}]}\n"

@@ -31,7 +31,7 @@ OccupancyMap::OccupancyMap(const Params& params) : params_(params) {
   tiles_.resize(static_cast<std::size_t>(tile_columns_) *
                 static_cast<std::size_t>((rows_ + tile_cells - 1) / tile_cells));
   const auto unit = [&](double log_odds) {
-    return static_cast<float>(params.forget ? std::tanh(0.5 * log_odds) : log_odds);
+    return static_cast<float>(params.forgets ? std::tanh(0.5 * log_odds) : log_odds);
   };
   hit_ = unit(params.hit);
   miss_ = unit(params.miss);
@@ -59,7 +59,7 @@ OccupancyMap::Tile& OccupancyMap::own_tile(int column, int row) {
 
 float OccupancyMap::forgotten(const CellState& cell, float now_s) const {
   const float dt_s = now_s - cell.seen_s;
-  if (!params_.forget || dt_s <= 0) return cell.belief;
+  if (!params_.forgets || dt_s <= 0) return cell.belief;
   const auto dwell_s = static_cast<float>(params_.dwell_s) + cell.observed_s;
   const float mean_s =
       std::max(static_cast<float>(params_.min_dwell_s), dwell_s / static_cast<float>(1 + cell.changes));
@@ -77,8 +77,8 @@ bool OccupancyMap::observe(CellState& cell, float evidence, float now_s) const {
   }
   // Bayes' rule for independent observations: log-odds add up, which for b = 2 p - 1 = tanh(L / 2) is the sum of tanh.
   const float sum = cell.belief + evidence;
-  cell.belief = params_.forget ? std::clamp(sum / (1 + cell.belief * evidence), -limit_, limit_) : sum;
-  // Hysteresis: noise at the border of two cells is no change.
+  cell.belief = params_.forgets ? std::clamp(sum / (1 + cell.belief * evidence), -limit_, limit_) : sum;
+  // Hysteresis: noise at the border of two cells is not a change.
   const bool occupied = cell.belief > (cell.occupied ? becomes_free_ : becomes_occupied_);
   if (occupied == cell.occupied) return false;
   if (cell.observed_s > 0 && cell.changes < 65535) ++cell.changes;
@@ -211,7 +211,7 @@ int OccupancyMap::percent(int column, int row, double now_s) const {
   const CellState& cell = tile->cells[cell_of(column, row)];
   if (cell.seen_s < 0) return unknown_percent;
   const double belief = static_cast<double>(forgotten(cell, static_cast<float>(now_s)));
-  return static_cast<int>(std::lround(params_.forget ? 50 + 50 * belief : 100 / (1 + std::exp(-belief))));
+  return static_cast<int>(std::lround(params_.forgets ? 50 + 50 * belief : 100 / (1 + std::exp(-belief))));
 }
 
 double OccupancyMap::field(const Vector2d& p_W) const {

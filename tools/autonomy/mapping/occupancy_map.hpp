@@ -14,10 +14,10 @@ namespace autonomy {
 
 /// Occupancy grid with a probability for each cell, and a likelihood field for matching scans.
 ///
-/// With `forget` a cell follows a two-state Markov chain (Meyer-Delius, Beinhofer and Burgard 2012, in continuous
+/// With `forgets` a cell follows a two-state Markov chain (Meyer-Delius, Beinhofer and Burgard 2012, in continuous
 /// time): occupied and free each last the dwell time T on average, and without observations for dt the probability p
 /// goes towards 1/2: p - 1/2 decreases by exp(-2 dt / T).  Each cell learns T: the time that it has been observed, by
-/// the number of changes that were seen; both begin as if one change had been seen in `dwell_s`.  Without `forget`
+/// the number of changes that were seen; both begin as if one change had been seen in `dwell_s`.  Without `forgets`
 /// log-odds add up forever, as in a world that does not change (Moravec and Elfes 1985).
 ///
 /// A copy shares the tiles of the original until one of them changes: copies for rewinds are cheap.
@@ -26,12 +26,12 @@ class OccupancyMap {
   struct Params {
     Vector2d low_W{-25, -20}, high_W{25, 20};  ///< corners of the area
     double cell_m = 0.05;
-    bool forget = true;
+    bool forgets = true;
     double dwell_s = 21600;     ///< expected dwell time of a cell in which no change was seen
     double min_dwell_s = 900;   ///< shortest dwell time
     double hit = 0.85;          ///< log-odds that a beam that ends in a cell adds
     double miss = 0.4;          ///< log-odds that a beam that passes a cell takes away
-    double max_log_odds = 3.5;  ///< limit with `forget`
+    double max_log_odds = 3.5;  ///< limit with `forgets`
     double surface_m = 0.5;     ///< neighbouring beams that end nearer to each other have met one surface
     double field_std_m = 0.06;  ///< standard deviation of the likelihood field
   };
@@ -67,7 +67,7 @@ class OccupancyMap {
  private:
   static constexpr int tile_cells = 32;
   struct CellState {
-    float belief = 0;      ///< 2 p - 1 with `forget`, else log-odds
+    float belief = 0;      ///< 2 p - 1 with `forgets`, else log-odds
     float seen_s = -1;     ///< time of the last update; negative: never
     float observed_s = 0;  ///< how long it has been under observation
     std::uint16_t changes = 0;

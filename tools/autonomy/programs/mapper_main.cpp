@@ -11,7 +11,7 @@
 namespace {
 
 struct Options {
-  std::string name, vehicle, memory = "forget";
+  std::string name, vehicle, memory = "forgetting";
   autonomy::Mapper::Params mapper;
   double start_yaw_deg = 0, lidar_yaw_deg = 0;
   double map_every_s = 600;
@@ -43,10 +43,10 @@ int map(const Options& options) {
   client.subscribe<shoal::planar_lidar_t>(
       prefix + "lidar", [&](const shoal::planar_lidar_t& scan) { state.mapper.receive(scan); }, Finite::required);
   const int exit_code = autonomy::take_part(client, options.participation, state, [&](std::int64_t utime) {
-    const std::clock_t begun = std::clock();
+    const std::clock_t started = std::clock();
     const auto estimate = state.mapper.step();
     if (!estimate) return;
-    const double took_s = static_cast<double>(std::clock() - begun) / CLOCKS_PER_SEC;
+    const double took_s = static_cast<double>(std::clock() - started) / CLOCKS_PER_SEC;
     timing.total_s += took_s;
     timing.max_s = std::max(timing.max_s, took_s);
     ++timing.scans;
@@ -76,8 +76,9 @@ void declare_map(command_line::DeclaredOptions& declared, autonomy::OccupancyMap
           "area of the map")
       .by_default({map.low_W.x(), map.low_W.y(), map.high_W.x(), map.high_W.y()});
   declared.number("cell_m", map.cell_m, 0.01, 10, "side of a cell");
-  declared.choice("memory", memory, {"forget", "keep"},
-                  "forget: what was not seen for longer than it usually lasts; keep: all evidence forever");
+  declared.choice(
+      "memory", memory, {"forgetting", "static"},
+      "forgetting: less is known of what was not seen for longer than it usually lasts; static: all evidence stays");
   declared.number("dwell_s", map.dwell_s, 1, 1e9, "expected time between changes of a cell in which none was seen");
   declared.number("min_dwell_s", map.min_dwell_s, 1, 1e9, "shortest such time, however often a cell changes");
 }
@@ -130,7 +131,7 @@ int run(int argc, char** argv) {
   if (options.vehicle.empty()) throw std::invalid_argument("--vehicle is required");
   options.mapper.start.yaw_rad = sim::degrees_to_radians(options.start_yaw_deg);
   options.mapper.lidar.yaw_rad = sim::degrees_to_radians(options.lidar_yaw_deg);
-  options.mapper.map.forget = options.memory == "forget";
+  options.mapper.map.forgets = options.memory == "forgetting";
   return map(options);
 }
 

@@ -60,7 +60,7 @@ class LineCaster {
     // Hits in their order; a part is entered and left in turn.
     entered_.clear();
     double travelled_m = 0;
-    int begun = 0;  // first cell, in the direction of the ray, that has not been looked at
+    int next = 0;  // first cell, in the direction of the ray, that has not been looked at
     while (const auto hit =
                scene_.cast(origin_W + travelled_m * direction_W, direction_W, total_m - travelled_m, filter_)) {
       const double at_m = travelled_m + hit->range_m;
@@ -69,8 +69,8 @@ class LineCaster {
       const bool enters = !entered_.contains(hit->part);
       const double within_m = at_m - margin_m + (enters ? behind_m : -behind_m);
       const int cell = static_cast<int>(std::floor(std::clamp(within_m / frame_.cell_m, -1.0, cells + 1.0)));
-      fill(line, along_x, sense, begun, cell);
-      begun = std::max(begun, cell);
+      fill(line, along_x, sense, next, cell);
+      next = std::max(next, cell);
       if (enters)
         entered_.insert(hit->part);
       else
@@ -78,7 +78,7 @@ class LineCaster {
       if (cell >= 0 && cell < cells)
         map_.cells[at(line, along_x, sense > 0 ? cell : cells - 1 - cell)] = Cell::occupied;
     }
-    fill(line, along_x, sense, begun, cells);
+    fill(line, along_x, sense, next, cells);
   }
 
   /// Counts the cells from `first` to before `end`, in the direction of the ray, when they are inside of something.

@@ -135,6 +135,7 @@ ReplayMessages::Channel* ReplayMessages::find_next(std::string_view name, Channe
 
 std::optional<ReplayMessages::Payload> ReplayMessages::head(Channel& channel) {
   if (channel.left == 0) return std::nullopt;
+  if (!channel.queue.empty()) return Payload(channel.queue.front());
   if (current_ == &channel) return event_.payload;
   while (channel.queue.empty() && !at_end_) {
     if (current_ != nullptr) {
@@ -150,12 +151,12 @@ std::optional<ReplayMessages::Payload> ReplayMessages::head(Channel& channel) {
     current_ = find_next(event_.channel, last_read_, &Channel::next_read);
     if (current_ == &channel) return event_.payload;
   }
-  return channel.queue.empty() ? std::nullopt : std::optional<Payload>(channel.queue.front());
+  return std::nullopt;
 }
 
 void ReplayMessages::pop(Channel& channel) {
   --channel.left;
-  if (current_ == &channel) {
+  if (channel.queue.empty()) {  // it is the event that was read last
     current_ = nullptr;
     return;
   }

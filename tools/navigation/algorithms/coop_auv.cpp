@@ -13,8 +13,8 @@ namespace {
 
 using autonomy::MarineEkf;
 
-/// Filter of the program `coop_auv` as a plug-in: naive, but it doubts a beacon whose ranges contradict, and finds an
-/// error of its own clock behind contradictions of several beacons.  Slow errors of heading are a random walk of the
+/// Filter of the program `coop_auv` as a plug-in: naive, but it doubts a beacon whose ranges contradict, and finds the
+/// error of the own clock behind contradictions of several beacons.  Slow errors of heading are a random walk of the
 /// bias with the same initial growth, and those of fixes are not modelled.
 class CoopAuvFilter final : public EstimatorOf<CoopAuvFilter> {
  public:

@@ -11,12 +11,12 @@ namespace {
 using autonomy::OccupancyMap;
 using autonomy::Vector2d;
 
-OccupancyMap::Params small(bool forget = true) {
+OccupancyMap::Params small(bool forgets = true) {
   OccupancyMap::Params params;
   params.low_W = {-1, -1};
   params.high_W = {3, 1};
   params.cell_m = 0.1;
-  params.forget = forget;
+  params.forgets = forgets;
   return params;
 }
 
@@ -30,8 +30,8 @@ int percent_at(const OccupancyMap& map, double x_m, double now_s) {
 }
 
 TEST(OccupancyMap, OneBeamAddsItsEvidenceByBayesRule) {
-  for (const bool forget : {true, false}) {
-    OccupancyMap map(small(forget));
+  for (const bool forgets : {true, false}) {
+    OccupancyMap map(small(forgets));
     look(map, 1.05, true, 0);
     // 1 / (1 + e^-0.85) and 1 / (1 + e^0.4).
     EXPECT_EQ(percent_at(map, 1.05, 0), 70);

@@ -210,15 +210,15 @@ TEST(CoopAuvFilter, DoubtsASenderThatContradictsAndStillUsesTheOther) {
   const auto west = started("naive", nav_setup(3, 1, {-far_m, 0}, 1)),
              south = started("naive", nav_setup(3, 2, {0, -far_m}, 1));
   Time now = 0;
-  const auto hear = [&](int sender, const Bytes& payload, double range_m) {
+  const auto receive = [&](int sender, const Bytes& payload, double range_m) {
     now += nav_second;
     own->moved(now, {0, 0}, 1e-6 * Matrix2::Identity());
     own->heard(heard_from(sender, payload, range_m, 1, now));
   };
-  for (int i = 0; i < 6; ++i) hear(1, west->say(0, 100), far_m + 500);
-  hear(1, west->say(0, 100), far_m + 1);  // agrees, but it is in doubt
+  for (int i = 0; i < 6; ++i) receive(1, west->say(0, 100), far_m + 500);
+  receive(1, west->say(0, 100), far_m + 1);  // agrees, but it is in doubt
   EXPECT_NEAR(own->now(now).p_W.x(), 0, 1e-9);
-  hear(2, south->say(0, 100), far_m + 6);
+  receive(2, south->say(0, 100), far_m + 6);
   EXPECT_NEAR(own->now(now).p_W.y(), 6 * 4.0 / (4 + 1 + 1), 1e-3);
 }
 
