@@ -42,7 +42,7 @@ const std::map<std::string, std::vector<TimeCase>>& cases() {
       {"separation", {{"", "min_m"}, {"vehicle: r2, from_s: 1", "at_s"}}},
       {"formation_error", {{"vehicle: r2, leader: r1, offset_m: [0, 5]", "rms_m"}}},
       {"trajectory", {{"vehicle: r1, channel: r1.far", "ate_m"}, {"vehicle: r1, channel: r1.far, from_s: 1", "poses"}}},
-      {"map", {{"channel: r1.map, height_m: 0.5", "iou"}, {"channel: r1.map, from_s: 1", "maps"}}},
+      {"map", {{"channel: r1.map, height_m: 0.15", "iou"}, {"channel: r1.map, from_s: 1", "maps"}}},
       {"tilt", {{"vehicle: r2", "fell_s"}, {"vehicle: r2", "max_deg"}, {"vehicle: r1, from_s: 1", "pitch_std_deg"}}},
   };
   return all;

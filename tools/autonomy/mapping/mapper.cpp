@@ -94,7 +94,7 @@ void Mapper::track(const Beams& beams, const Increment& by) {
   if (rests && score > 0.9 * still_score_ && seconds(utime_ - matched_utime_) < params_.insert_s) return;
   // Match, unless the scan contradicts the map.
   const ScanMatch match = matcher_.match(map_, beams.points_B, predicted);
-  if (agreement(beams.points_B, match.pose) < params_.min_agreement) {
+  if (agreement(beams.points_B, match.pose).value_or(1) < params_.min_agreement) {
     if (++bad_scans_ < params_.max_bad_scans) return;
     lost_ = true;
     ++times_lost_;
@@ -111,7 +111,7 @@ void Mapper::track(const Beams& beams, const Increment& by) {
   if (far || seconds(utime_ - inserted_utime_) >= params_.insert_s) insert(beams);
 }
 
-double Mapper::agreement(const std::vector<Vector2d>& points_B, const Pose2& pose) const {
+std::optional<double> Mapper::agreement(const std::vector<Vector2d>& points_B, const Pose2& pose) const {
   constexpr double near_something = 0.2;
   int known = 0, near = 0;
   for (const Vector2d& point : points_B) {
@@ -121,14 +121,13 @@ double Mapper::agreement(const std::vector<Vector2d>& points_B, const Pose2& pos
     ++known;
     near += is_near ? 1 : 0;
   }
-  return known < enough_known ? 1 : static_cast<double>(near) / known;
+  return known < enough_known ? std::nullopt : std::optional(static_cast<double>(near) / known);
 }
 
 void Mapper::search(const Beams& beams) {
   // It may be where it was: something large that is new stood before the lidar.
   const ScanMatch here = matcher_.match(map_, beams.points_B, pose_);
-  if (static_cast<int>(beams.points_B.size()) >= enough_known &&
-      agreement(beams.points_B, here.pose) >= params_.certain_agreement) {
+  if (agreement(beams.points_B, here.pose).value_or(0) >= params_.certain_agreement) {
     lost_ = false;
     bad_scans_ = 0;
     pose_ = here.pose;

@@ -71,8 +71,8 @@ class Mapper {
   Increment moved_since_scan();
   void track(const Beams& beams, const Increment& moved);
   void search(const Beams& beams);
-  /// Returns the share of points in known cells that end near something; 1 when too few cells are known.
-  double agreement(const std::vector<Vector2d>& points_B, const Pose2& pose) const;
+  /// Returns the share of points in known cells that end near something; none when there are too few.
+  std::optional<double> agreement(const std::vector<Vector2d>& points_B, const Pose2& pose) const;
   void insert(const Beams& beams);
   shoal::estimate_t estimate() const;
 
