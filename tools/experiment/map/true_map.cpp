@@ -36,9 +36,12 @@ class LineCaster {
         map_(map),
         inside_(frame.size()) {
     filter_.kind = sim::RayKind::laser;
-    for (int row = 0; row < frame.height; ++row)
+  }
+
+  void cast() {
+    for (int row = 0; row < frame_.height; ++row)
       for (const int sense : {1, -1}) cast_line(row, true, sense);
-    for (int column = 0; column < frame.width; ++column)
+    for (int column = 0; column < frame_.width; ++column)
       for (const int sense : {1, -1}) cast_line(column, false, sense);
     // Where the outlines of two objects coincide, a ray misses one of them: a cell is inside when all four rays say so.
     for (std::size_t i = 0; i < inside_.size(); ++i)
@@ -140,7 +143,7 @@ std::optional<MapArea> area_of_objects(const sim::World& world, double height_m)
 GridMap true_map(const sim::World& world, const MapFrame& frame, double height_m) {
   GridMap map{frame, std::vector<Cell>(frame.size(), Cell::free)};
   world.scene().prepare();
-  LineCaster(world, frame, height_m, map);
+  LineCaster(world, frame, height_m, map).cast();
   return map;
 }
 
