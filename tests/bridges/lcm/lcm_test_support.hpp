@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <fcntl.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include <chrono>
@@ -22,9 +24,24 @@ namespace lcm_test {
 
 using namespace std::chrono_literals;
 
+/// Eight ports that no other test has until this process ends: process numbers alone would repeat while a long test
+/// runs.
+inline int own_ports() {
+  constexpr int slots = 2500;
+  for (int i = 0; i < slots; ++i) {
+    const int slot = (static_cast<int>(getpid()) + i) % slots;
+    const std::string path = "/tmp/shoal-test-ports-" + std::to_string(slot);
+    const int lock = open(path.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0666);
+    if (lock >= 0 && flock(lock, LOCK_EX | LOCK_NB) == 0) return 10'000 + 8 * slot;  // locked until the end
+    if (lock >= 0) close(lock);
+  }
+  return 10'000 + 8 * (static_cast<int>(getpid()) % slots);
+}
+
 /// A port of this process's own, offset 0 to 7: LCM 1.3 keeps apart ports only, and tests run in parallel.
 inline std::string own_url(int offset = 0) {
-  const int port = 10'000 + (static_cast<int>(getpid()) * 8 + offset) % 20'000;
+  static const int first = own_ports();
+  const int port = first + offset;
   return "udpm://239.255.76.67:" + std::to_string(port) + "?ttl=0";
 }
 
