@@ -135,18 +135,18 @@ void Mapper::search(const Beams& beams) {
   }
   // Collect scans from different poses, with fewer points.
   constexpr double apart_m = 0.5, apart_rad = 0.5;
-  constexpr std::size_t every = 4, most_points = 225, enough_points = 80;
+  constexpr std::size_t every = 4, max_points = 225, min_points = 80;
   const bool differs = collected_.empty() || (pose_.p_W - collected_at_.p_W).norm() > apart_m ||
                        std::abs(sim::wrap_angle(pose_.yaw_rad - collected_at_.yaw_rad)) > apart_rad;
-  if (differs && collected_.size() < most_points) {
+  if (differs && collected_.size() < max_points) {
     for (std::size_t i = 0; i < beams.points_B.size(); i += every)
       collected_.push_back({params_.lidar.p_W, beams.points_B[i]});
     collected_at_ = pose_;
   }
-  if (collected_.size() < enough_points || seconds(utime_ - searched_utime_) < next_search_s_) return;
+  if (collected_.size() < min_points || seconds(utime_ - searched_utime_) < next_search_s_) return;
   searched_utime_ = utime_;
   next_search_s_ = std::clamp(2 * next_search_s_, params_.search_s, params_.max_search_s);
-  const bool complete = collected_.size() >= most_points;
+  const bool complete = collected_.size() >= max_points;
   const auto found = search_map(map_, collected_, params_.accept_score);
   if (complete) collected_.clear();
   const double lead = complete ? params_.last_lead : params_.accept_lead;
