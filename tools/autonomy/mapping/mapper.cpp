@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/autonomy/mapping/mapper.hpp"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
@@ -12,7 +13,20 @@ namespace autonomy {
 namespace {
 
 Pose2 moved(const Pose2& pose, const Increment& by) {
-  return {pose.p_W + turned({by.forward_m, by.left_m}, pose.yaw_rad), sim::wrap_angle(pose.yaw_rad + by.turn_rad)};
+  return composed(pose, {{by.forward_m, by.left_m}, by.turn_rad});
+}
+
+/// Scans of the survey that do not close a loop with the present one.
+constexpr std::size_t recent_scans = 20;
+
+struct OdometryStd {
+  double m, rad;
+};
+
+/// Standard deviation of a move by odometry: of any move, and as a share of it.
+OdometryStd std_of(const Increment& by) {
+  constexpr double least_m = 0.005, share_m = 0.02, least_rad = 0.003, share_rad = 0.03;
+  return {least_m + share_m * std::hypot(by.forward_m, by.left_m), least_rad + share_rad * std::abs(by.turn_rad)};
 }
 
 /// Number of points in known cells from which on their agreement with the map counts.
@@ -25,7 +39,12 @@ Vector2d placed(const Pose2& pose, const Vector2d& p_B) {
 }  // namespace
 
 Mapper::Mapper(const Params& params)
-    : params_(params), map_(params.map), matcher_(params.matcher), pose_(params.start), odometer_(Pose2{}) {}
+    : params_(params),
+      map_(params.map),
+      matcher_(params.matcher),
+      pose_(params.start),
+      odometer_(Pose2{}),
+      search_(params.search) {}
 
 void Mapper::receive(const shoal::odometry_t& odometry) {
   constexpr double farthest_m = 1e6, fastest = 1e3;
@@ -39,8 +58,9 @@ void Mapper::receive(const shoal::planar_lidar_t& scan) {
   scan_ = scan;
 }
 
-Mapper::Beams Mapper::beams_of(const shoal::planar_lidar_t& scan) const {
+Beams Mapper::beams_of(const shoal::planar_lidar_t& scan) const {
   Beams beams;
+  beams.sensor_B = params_.lidar.p_W;
   for (std::size_t i = 0; i < scan.ranges.size(); ++i) {
     const double range_m = static_cast<double>(scan.ranges[i]);
     if (!(range_m > 0)) continue;
@@ -70,45 +90,57 @@ std::optional<shoal::estimate_t> Mapper::step() {
   utime_ = scan_->utime;
   scan_.reset();
   if (lost_) {
-    pose_ = moved(pose_, by);
-    for (Sight& sight : collected_)
-      for (Vector2d* point : {&sight.from_B, &sight.end_B})
-        *point = turned(*point - Vector2d(by.forward_m, by.left_m), -by.turn_rad);
-    search(beams);
+    search(beams, by);
   } else {
     track(beams, by);
   }
   return estimate();
 }
 
+void Mapper::predict(const Increment& by) {
+  const Vector2d moved_W = turned({by.forward_m, by.left_m}, pose_.yaw_rad);
+  pose_ = moved(pose_, by);
+  since_survey_ = moved(since_survey_, by);
+  Eigen::Matrix3d turns = Eigen::Matrix3d::Identity();
+  turns.topRightCorner<2, 1>() = left_of(moved_W);
+  covariance_ = turns * covariance_ * turns.transpose();
+  const OdometryStd std = std_of(by);
+  covariance_.diagonal() += Eigen::Vector3d(squared(std.m), squared(std.m), squared(std.rad));
+}
+
 void Mapper::track(const Beams& beams, const Increment& by) {
-  const Pose2 predicted = moved(pose_, by);
-  pose_ = predicted;
+  predict(by);
   if (!has_map_) {
     first_utime_ = utime_;
-    return insert(beams);
+    return survey(beams);
   }
   // A vehicle at rest is matched only from time to time, and when the scan fits worse.
   const bool rests = std::hypot(by.forward_m, by.left_m) < 0.001 && std::abs(by.turn_rad) < 0.0005;
-  const double score = rests ? score_of(map_, beams.points_B, predicted) : 0;
+  const double score = rests ? score_of(map_, beams.points_B, pose_) : 0;
   if (rests && score > 0.9 * still_score_ && seconds(utime_ - matched_utime_) < params_.insert_s) return;
   // Match, unless the scan contradicts the map.
-  const ScanMatch match = matcher_.match(map_, beams.points_B, predicted);
+  const ScanMatch match = matcher_.match(map_, beams.points_B, pose_, covariance_.inverse());
   if (agreement(beams.points_B, match.pose).value_or(1) < params_.min_agreement) {
     if (++bad_scans_ < params_.max_bad_scans) return;
+    if (surveys_) end_survey();
     lost_ = true;
     ++times_lost_;
-    collected_.clear();
-    next_search_s_ = 0;
+    search_ = PlaceSearch(params_.search);
     return;
   }
   bad_scans_ = 0;
   pose_ = match.pose;
+  covariance_ = (covariance_.inverse() + matcher_.information_of(map_, beams.points_B, pose_)).inverse();
   still_score_ = match.score;
   matched_utime_ = utime_;
-  const bool far = (pose_.p_W - inserted_.p_W).norm() >= params_.insert_m ||
-                   std::abs(sim::wrap_angle(pose_.yaw_rad - inserted_.yaw_rad)) >= params_.insert_rad;
-  if (far || seconds(utime_ - inserted_utime_) >= params_.insert_s) insert(beams);
+  const double away_m = (pose_.p_W - inserted_.p_W).norm();
+  const double turned_rad = std::abs(sim::wrap_angle(pose_.yaw_rad - inserted_.yaw_rad));
+  const bool far = away_m >= (surveys_ ? params_.survey_m : params_.insert_m) ||
+                   turned_rad >= (surveys_ ? params_.survey_rad : params_.insert_rad);
+  if (surveys_ && far)
+    survey(beams);
+  else if (far || seconds(utime_ - inserted_utime_) >= params_.insert_s)
+    insert(beams, pose_, utime_);
 }
 
 std::optional<double> Mapper::agreement(const std::vector<Vector2d>& points_B, const Pose2& pose) const {
@@ -124,57 +156,122 @@ std::optional<double> Mapper::agreement(const std::vector<Vector2d>& points_B, c
   return known < enough_known ? std::nullopt : std::optional(static_cast<double>(near) / known);
 }
 
-void Mapper::search(const Beams& beams) {
+void Mapper::search(const Beams& beams, const Increment& by) {
+  predict(by);
+  search_.move(by);
   // It may be where it was: something large that is new stood before the lidar.
-  const ScanMatch here = matcher_.match(map_, beams.points_B, pose_);
-  if (agreement(beams.points_B, here.pose).value_or(0) >= params_.certain_agreement) {
-    lost_ = false;
-    bad_scans_ = 0;
-    pose_ = here.pose;
-    return;
-  }
-  // Collect scans from different poses, with fewer points.
-  constexpr double apart_m = 0.5, apart_rad = 0.5;
-  constexpr std::size_t every = 4, max_points = 225, min_points = 80;
-  const bool differs = collected_.empty() || (pose_.p_W - collected_at_.p_W).norm() > apart_m ||
-                       std::abs(sim::wrap_angle(pose_.yaw_rad - collected_at_.yaw_rad)) > apart_rad;
-  if (differs && collected_.size() < max_points) {
-    for (std::size_t i = 0; i < beams.points_B.size(); i += every)
-      collected_.push_back({params_.lidar.p_W, beams.points_B[i]});
-    collected_at_ = pose_;
-  }
-  if (collected_.size() < min_points || seconds(utime_ - searched_utime_) < next_search_s_) return;
-  searched_utime_ = utime_;
-  next_search_s_ = std::clamp(2 * next_search_s_, params_.search_s, params_.max_search_s);
-  const bool complete = collected_.size() >= max_points;
-  const auto found = search_map(map_, collected_, params_.accept_score);
-  if (complete) collected_.clear();
-  const double lead = complete ? params_.last_lead : params_.accept_lead;
-  if (!found || found->best.score < found->other_score + lead) return;
+  constexpr double found_std_m = 0.1, found_std_rad = 0.05;
+  const Eigen::Matrix3d covariance =
+      Eigen::Vector3d(squared(found_std_m), squared(found_std_m), squared(found_std_rad)).asDiagonal();
+  const ScanMatch here = matcher_.match(map_, beams.points_B, pose_, covariance.inverse());
+  std::optional<Pose2> found;
+  if (agreement(beams.points_B, here.pose).value_or(0) >= params_.certain_agreement)
+    found = here.pose;
+  else
+    found = search_.look(map_, matcher_, beams);
+  if (!found) return;
   lost_ = false;
   bad_scans_ = 0;
-  pose_ = found->best.pose;
+  pose_ = *found;
+  covariance_ = covariance;
   still_score_ = 0;
 }
 
-void Mapper::insert(const Beams& beams) {
+void Mapper::survey(const Beams& beams) {
+  constexpr double near_m = 5, near_rad = 1.2, metres_per_rad = 2;
+  constexpr std::size_t most_recent = 2, most_old = 4;
+  const std::size_t last = surveyed_.size();
+  graph_.add_pose(pose_);
+  surveyed_.push_back(
+      {std::make_shared<const Beams>(beams), std::make_shared<const Outline>(beams.points_B), utime_, pose_});
+  if (last > 0) {
+    Alignment by_odometry{since_survey_, Eigen::Matrix3d::Zero()};
+    const OdometryStd std = std_of({since_survey_.p_W.norm(), 0, since_survey_.yaw_rad});
+    by_odometry.information.diagonal() << 1 / squared(std.m), 1 / squared(std.m), 1 / squared(std.rad);
+    graph_.add_measurement(static_cast<int>(last) - 1, static_cast<int>(last), by_odometry);
+    close_loop(last - 1);
+  }
+  // Further scans near it: some of the last ones, and some of earlier rounds.
+  std::vector<std::pair<double, std::size_t>> close;
+  for (std::size_t i = 0; i + 1 < last; ++i) {
+    const Pose2 away = seen_from(graph_.poses()[i], pose_);
+    if (away.p_W.norm() < near_m && std::abs(away.yaw_rad) < near_rad)
+      close.emplace_back(away.p_W.norm() + metres_per_rad * std::abs(away.yaw_rad), i);
+  }
+  std::sort(close.begin(), close.end());
+  std::size_t taken_recent = 0, taken_old = 0;
+  for (const auto& [distance, other] : close) {
+    std::size_t& taken = other + recent_scans > last ? taken_recent : taken_old;
+    if (taken == (other + recent_scans > last ? most_recent : most_old)) continue;
+    taken += close_loop(other) ? 1 : 0;
+  }
+  since_survey_ = {};
+  graph_.optimize(2);
+  pose_ = graph_.poses().back();
+  insert(beams, pose_, utime_);
+  surveyed_.back().drawn = pose_;
+  double most_moved_m = 0;
+  for (std::size_t i = 0; i < surveyed_.size(); ++i)
+    most_moved_m = std::max(most_moved_m, (graph_.poses()[i].p_W - surveyed_[i].drawn.p_W).norm());
+  if (static_cast<int>(surveyed_.size()) >= params_.survey_scans)
+    end_survey();
+  else if (most_moved_m > params_.redraw_m)
+    redraw();
+}
+
+bool Mapper::close_loop(std::size_t other) {
+  constexpr double gate_m = 0.4, loop_gate_m = 1, farthest_rad = 0.3;
+  const std::size_t last = surveyed_.size() - 1;
+  const double most_m = other + recent_scans > last ? gate_m : loop_gate_m;
+  const Pose2 guess = seen_from(graph_.poses()[other], graph_.poses()[last]);
+  const auto aligned = align(*surveyed_[other].outline, *surveyed_[last].outline, guess, most_m);
+  if (!aligned) return false;
+  const Pose2 off = seen_from(guess, aligned->pose);
+  if (off.p_W.norm() > most_m || std::abs(off.yaw_rad) > farthest_rad) return false;
+  graph_.add_measurement(static_cast<int>(other), static_cast<int>(last), *aligned);
+  return true;
+}
+
+void Mapper::end_survey() {
+  constexpr int iterations = 10;
+  const Pose2 since = seen_from(graph_.poses().back(), pose_);
+  graph_.optimize(iterations);
+  redraw();
+  pose_ = composed(graph_.poses().back(), since);
+  surveys_ = false;
+  surveyed_.clear();
+  graph_ = PoseGraph();
+}
+
+void Mapper::redraw() {
+  map_ = OccupancyMap(params_.map);
+  for (std::size_t i = 0; i < surveyed_.size(); ++i) {
+    surveyed_[i].drawn = graph_.poses()[i];
+    insert(*surveyed_[i].beams, surveyed_[i].drawn, surveyed_[i].utime);
+  }
+}
+
+void Mapper::insert(const Beams& beams, const Pose2& pose, std::int64_t utime) {
   std::vector<Vector2d> ends_W;
   ends_W.reserve(beams.ends_B.size());
-  for (const Vector2d& end : beams.ends_B) ends_W.push_back(placed(pose_, end));
-  map_.insert(placed(pose_, params_.lidar.p_W), ends_W, beams.hits, seconds(utime_ - first_utime_));
+  for (const Vector2d& end : beams.ends_B) ends_W.push_back(placed(pose, end));
+  map_.insert(placed(pose, beams.sensor_B), ends_W, beams.hits, seconds(utime - first_utime_));
   has_map_ = true;
-  inserted_ = pose_;
-  inserted_utime_ = utime_;
+  inserted_ = pose;
+  inserted_utime_ = utime;
 }
 
 shoal::estimate_t Mapper::estimate() const {
-  // Of the grid and the noise of a scan; lost, it can be anywhere in the map.
-  const double std_m = lost_ ? 10 : 0.03;
+  // At least that of the grid; lost, it can be anywhere in the map.
+  constexpr double grid_std_m = 0.02, lost_std_m = 10;
   shoal::estimate_t message{};
   message.utime = utime_;
   message.position_m[0] = pose_.p_W.x();
   message.position_m[1] = pose_.p_W.y();
-  message.covariance_m2[0] = message.covariance_m2[4] = squared(std_m);
+  for (int row = 0; row < 2; ++row)
+    for (int column = 0; column < 2; ++column)
+      message.covariance_m2[3 * row + column] =
+          covariance_(row, column) + (row == column ? squared(lost_ ? lost_std_m : grid_std_m) : 0);
   message.covariance_m2[8] = 1;
   message.yaw_rad = pose_.yaw_rad;
   message.clock_error_s = unknown;

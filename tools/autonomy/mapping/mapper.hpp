@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -10,18 +11,20 @@
 #include "shoal/odometry_t.hpp"
 #include "shoal/planar_lidar_t.hpp"
 #include "tools/autonomy/filters/odometer.hpp"
-#include "tools/autonomy/mapping/occupancy_map.hpp"
-#include "tools/autonomy/mapping/scan_matcher.hpp"
+#include "tools/autonomy/mapping/place_search.hpp"
+#include "tools/autonomy/mapping/pose_graph.hpp"
+#include "tools/autonomy/mapping/scan_alignment.hpp"
 
 namespace autonomy {
 
 /// Simultaneous localisation and mapping by a planar lidar and odometry: a pure function of the messages in their
 /// order, independent of clock and bus.  Its copy is its whole state.
 ///
+///   - survey: the first `survey_scans` scans are poses of a graph.  Each is aligned with those near it, so that loops
+///   close, and the map is drawn again when the poses have moved.
 ///   - track: each scan is matched to the map near the pose that odometry predicts, and then added to the map.
-///   - lost: several scans in a row hit what the map has as free, as after the vehicle was carried.  It collects scans
-///   by
-///     odometry and searches the whole map until one pose is clearly the best.  Nothing is added to the map.
+///   - lost: several scans in a row hit what the map has as free, as after the vehicle was carried.  The whole map is
+///   searched for its place, and nothing is added to it.
 class Mapper {
  public:
   struct Params {
@@ -31,17 +34,17 @@ class Mapper {
     Pose2 lidar;                     ///< pose of the lidar on the vehicle
     double lidar_range_m = 20;       ///< a beam of this length has met nothing
     double use_range_m = 15;         ///< longer beams only clear this length
-    double insert_m = 0.1;           ///< a scan is added after this distance
-    double insert_rad = 0.05;        ///< or this turn
+    double survey_m = 0.1;           ///< a scan is added to the survey after this distance
+    double survey_rad = 0.05;        ///< or this turn
+    double insert_m = 1;             ///< later scans are added to the map after this distance
+    double insert_rad = 0.3;         ///< or this turn
     double insert_s = 10;            ///< or this time
     double min_agreement = 0.25;     ///< share of the beams in known cells that must end near something in the map
     double certain_agreement = 0.6;  ///< share of them from which on a lost vehicle is where it was
     int max_bad_scans = 4;           ///< consecutive ones below it; then the vehicle is lost
-    double search_s = 3;  ///< time between the first searches of the whole map; it doubles up to max_search_s
-    double max_search_s = 12;
-    double accept_score = 0.5;  ///< score of a pose to be accepted
-    double accept_lead = 0.1;   ///< and its lead over any other pose
-    double last_lead = 0.03;    ///< lead that suffices when it has seen all around
+    int survey_scans = 400;
+    double redraw_m = 0.02;  ///< the map is drawn again when a pose of the survey has moved by this
+    PlaceSearch::Params search;
   };
 
   explicit Mapper(const Params& params);
@@ -61,25 +64,35 @@ class Mapper {
   int times_lost() const { return times_lost_; }
 
  private:
-  /// Scan in the frame of the vehicle.
-  struct Beams {
-    std::vector<Vector2d> ends_B;
-    std::vector<char> hits;
-    std::vector<Vector2d> points_B;  ///< of the hits
+  /// Scan of the survey.
+  struct Surveyed {
+    std::shared_ptr<const Beams> beams;
+    std::shared_ptr<const Outline> outline;
+    std::int64_t utime = 0;
+    Pose2 drawn;  ///< pose with which it is in the map
   };
   Beams beams_of(const shoal::planar_lidar_t& scan) const;
   Increment moved_since_scan();
+  /// Moves pose and covariance by odometry.
+  void predict(const Increment& moved);
   void track(const Beams& beams, const Increment& moved);
-  void search(const Beams& beams);
+  void search(const Beams& beams, const Increment& moved);
   /// Returns the share of points in known cells that end near something; none when there are too few.
   std::optional<double> agreement(const std::vector<Vector2d>& points_B, const Pose2& pose) const;
-  void insert(const Beams& beams);
+  /// Adds a scan to the graph, and with it to the map.
+  void survey(const Beams& beams);
+  void end_survey();
+  /// Aligns the last scan of the survey with another one.  Returns whether they fit.
+  bool close_loop(std::size_t other);
+  void insert(const Beams& beams, const Pose2& pose, std::int64_t utime);
+  void redraw();
   shoal::estimate_t estimate() const;
 
   Params params_;
   OccupancyMap map_;
   ScanMatcher matcher_;
   Pose2 pose_;
+  Eigen::Matrix3d covariance_ = Eigen::Matrix3d::Zero();  ///< of x, y and yaw
   std::optional<shoal::odometry_t> odometry_;
   std::optional<shoal::planar_lidar_t> scan_;
   Odometer odometer_;
@@ -92,13 +105,15 @@ class Mapper {
   double still_score_ = 0;  ///< score where it stands, after the last match
   std::int64_t matched_utime_ = 0;
   int bad_scans_ = 0;
+  // Survey.
+  bool surveys_ = true;
+  PoseGraph graph_;
+  std::vector<Surveyed> surveyed_;
+  Pose2 since_survey_;  ///< move since the last of them, by odometry
   // Lost.
   bool lost_ = false;
   int times_lost_ = 0;
-  std::vector<Sight> collected_;  ///< beams of the scans since then, in the frame of the vehicle now
-  Pose2 collected_at_;            ///< pose by odometry of the last scan among them
-  std::int64_t searched_utime_ = 0;
-  double next_search_s_ = 0;  ///< time from that search to the next one
+  PlaceSearch search_;
 };
 
 }  // namespace autonomy

@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/autonomy/mapping/scan_matcher.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
-#include <tuple>
-#include <utility>
-
-#include "sim/base/math.hpp"
 
 namespace autonomy {
 
@@ -27,91 +23,33 @@ struct Offsets {
   }
 };
 
-/// Part of a map's field, as one block of memory.
-class FieldPatch {
- public:
-  FieldPatch(const OccupancyMap& map, int first_column, int first_row, int columns, int rows)
-      : first_column_(first_column),
-        first_row_(first_row),
-        columns_(columns),
-        rows_(rows),
-        side_(1),
-        field_(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows)) {
-    for (int row = 0; row < rows; ++row)
-      for (int column = 0; column < columns; ++column)
-        field_[index(column, row)] = map.field_at(first_column + column, first_row + row);
-  }
-  /// Maxima over squares of twice the side, to the right and up, of those of a patch over `side` cells.
-  FieldPatch(const FieldPatch& finer, int side)
-      : first_column_(finer.first_column_),
-        first_row_(finer.first_row_),
-        columns_(finer.columns_),
-        rows_(finer.rows_),
-        side_(2 * side),
-        field_(finer.field_.size()) {
-    for (int row = 0; row < rows_; ++row)
-      for (int column = 0; column < columns_; ++column) {
-        const int right = std::min(column + side, columns_ - 1), up = std::min(row + side, rows_ - 1);
-        field_[index(column, row)] = std::max({finer.field_[index(column, row)], finer.field_[index(right, row)],
-                                               finer.field_[index(column, up)], finer.field_[index(right, up)]});
-      }
-  }
-  int sum(const Offsets& offsets, int column, int row) const {
-    int sum = 0;
-    for (std::size_t i = 0; i < offsets.columns.size(); ++i) {
-      const int c = offsets.columns[i] + column - first_column_, r = offsets.rows[i] + row - first_row_;
-      // A square that begins before the patch may end in it.
-      if (c > -side_ && r > -side_ && c < columns_ && r < rows_) sum += field_[index(std::max(c, 0), std::max(r, 0))];
-    }
-    return sum;
-  }
-
- private:
-  std::size_t index(int column, int row) const {
-    return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column);
-  }
-
-  int first_column_, first_row_, columns_, rows_, side_;
-  std::vector<std::uint8_t> field_;
-};
-
 double score_from(int sum, std::size_t points) {
   return sum / (255.0 * static_cast<double>(points));
 }
 
-/// Improves a pose by trying its neighbours in steps that are halved.  `loss(pose)` is taken from the score.
+/// Improves a pose by trying a step of each coordinate to both sides, and halving the steps when none is better.
+/// `loss(pose)` is taken from the score.
 template <class Loss>
-ScanMatch refine(const OccupancyMap& map, const std::vector<Vector2d>& points_B, ScanMatch best, double step_m,
-                 double step_rad, int halvings, Loss loss) {
+ScanMatch climb(const OccupancyMap& map, const std::vector<Vector2d>& points_B, ScanMatch best, double step_m,
+                double step_rad, Loss loss) {
+  constexpr double finest_m = 0.001;
   best.score = score_of(map, points_B, best.pose) - loss(best.pose);
-  for (int level = 0; level < halvings; ++level, step_m /= 2, step_rad /= 2) {
-    const Pose2 centre = best.pose;
-    for (int x = -1; x <= 1; ++x)
-      for (int y = -1; y <= 1; ++y)
-        for (int turn = -1; turn <= 1; ++turn) {
-          const Pose2 pose{centre.p_W + step_m * Vector2d(x, y), centre.yaw_rad + turn * step_rad};
-          const double score = score_of(map, points_B, pose) - loss(pose);
-          if (score > best.score) best = {pose, score};
-        }
+  while (step_m > finest_m) {
+    const double before = best.score;
+    for (int axis = 0; axis < 3; ++axis)
+      for (const double side : {-1.0, 1.0}) {
+        Pose2 pose = best.pose;
+        (axis == 0 ? pose.p_W.x() : axis == 1 ? pose.p_W.y() : pose.yaw_rad) += side * (axis == 2 ? step_rad : step_m);
+        const double score = score_of(map, points_B, pose) - loss(pose);
+        if (score <= best.score) continue;
+        best = {pose, score};
+        break;
+      }
+    if (best.score > before) continue;
+    step_m /= 2;
+    step_rad /= 2;
   }
   return best;
-}
-
-/// Returns the share of beams that pass through something in the map before they end.
-double blocked_share(const OccupancyMap& map, const std::vector<Sight>& sights, const Pose2& pose) {
-  constexpr double step_m = 0.1, before_end_m = 0.3, something = 0.6;
-  int blocked = 0;
-  for (const Sight& sight : sights) {
-    const Vector2d from_W = pose.p_W + turned(sight.from_B, pose.yaw_rad);
-    const Vector2d ray_W = turned(sight.end_B - sight.from_B, pose.yaw_rad);
-    const double length_m = ray_W.norm();
-    for (double at_m = 0; at_m < length_m - before_end_m; at_m += step_m) {
-      if (map.field(from_W + at_m / length_m * ray_W) < something) continue;
-      ++blocked;
-      break;
-    }
-  }
-  return static_cast<double>(blocked) / static_cast<double>(sights.size());
 }
 
 }  // namespace
@@ -124,14 +62,19 @@ double score_of(const OccupancyMap& map, const std::vector<Vector2d>& points_B, 
   return points_B.empty() ? 0 : sum / static_cast<double>(points_B.size());
 }
 
-ScanMatch ScanMatcher::match(const OccupancyMap& map, const std::vector<Vector2d>& points_B,
-                             const Pose2& predicted) const {
+ScanMatch ScanMatcher::match(const OccupancyMap& map, const std::vector<Vector2d>& points_B, const Pose2& predicted,
+                             const Eigen::Matrix3d& information) const {
   if (points_B.empty()) return {predicted, 0};
   const double cell_m = map.params().cell_m;
+  const double independent = params_.independent * static_cast<double>(points_B.size());
   const auto loss = [&](const Pose2& pose) {
-    return params_.prior_weight * ((pose.p_W - predicted.p_W).squaredNorm() / squared(params_.prior_std_m) +
-                                   squared((pose.yaw_rad - predicted.yaw_rad) / params_.prior_std_rad));
+    const Eigen::Vector3d off(pose.p_W.x() - predicted.p_W.x(), pose.p_W.y() - predicted.p_W.y(),
+                              pose.yaw_rad - predicted.yaw_rad);
+    return 0.5 * off.dot(information * off) / independent;
   };
+  // Mostly odometry is right to a part of a cell.
+  const ScanMatch near = climb(map, points_B, {predicted, 0}, cell_m / 2, params_.step_rad / 2, loss);
+  if (near.score >= params_.good_score) return {near.pose, near.score + loss(near.pose)};
   // All poses of the window; half of the points suffice.
   std::vector<Vector2d> some;
   for (std::size_t i = 0; i < points_B.size(); i += 2) some.push_back(points_B[i]);
@@ -153,113 +96,31 @@ ScanMatch ScanMatcher::match(const OccupancyMap& map, const std::vector<Vector2d
         if (score > best.score) best = {pose, score};
       }
   }
-  constexpr int halvings = 5;
-  best = refine(map, points_B, best, cell_m / 2, params_.step_rad / 2, halvings, loss);
+  best = climb(map, points_B, best, cell_m / 2, params_.step_rad / 2, loss);
   best.score += loss(best.pose);
   return best;
 }
 
-std::optional<GlobalMatch> search_map(const OccupancyMap& map, const std::vector<Sight>& sights, double min_score) {
-  if (sights.empty()) return std::nullopt;
-  std::vector<Vector2d> points_B;
-  for (const Sight& sight : sights) points_B.push_back(sight.end_B);
-  // Maxima over squares of 2, 4, ... cells.  The finest ones also allow for the steps of the heading.
-  constexpr int finest = 1, coarsest = 5;
-  // Scans that fit nowhere are like many places: the search is given up then.
-  constexpr int max_visited = 600'000, max_taken = 4000;
-  std::vector<FieldPatch> levels;
-  levels.emplace_back(map, 0, 0, map.columns(), map.rows());
-  for (int level = 0; level < coarsest; ++level) levels.emplace_back(levels.back(), 1 << level);
-  const double cell_m = map.params().cell_m;
-  double reach_m = 1;
-  for (const Vector2d& point : points_B) reach_m = std::max(reach_m, point.norm());
-  const int headings = static_cast<int>(std::ceil(2 * std::numbers::pi * reach_m / (2 * cell_m)));
-  struct Candidate {
-    int heading, column, row;
-    double score;
+Eigen::Matrix3d ScanMatcher::information_of(const OccupancyMap& map, const std::vector<Vector2d>& points_B,
+                                            const Pose2& pose) const {
+  // Of the order of the width of the field.
+  const Eigen::Vector3d steps(0.04, 0.04, 0.005);
+  const auto score = [&](const Eigen::Vector3d& off) {
+    return score_of(map, points_B, {pose.p_W + off.head<2>(), pose.yaw_rad + off.z()});
   };
-  // Squares of the coarsest level.
-  std::vector<Offsets> offsets(static_cast<std::size_t>(headings));
-  std::vector<Candidate> squares;
-  for (int heading = 0; heading < headings; ++heading) {
-    Offsets& each = offsets[static_cast<std::size_t>(heading)];
-    each.set(points_B, 2 * std::numbers::pi * heading / headings, 0, 0, cell_m);
-    for (int row = 0; row < map.rows(); row += 1 << coarsest)
-      for (int column = 0; column < map.columns(); column += 1 << coarsest) {
-        const double score = score_from(levels[coarsest].sum(each, column, row), points_B.size());
-        if (score > min_score) squares.push_back({heading, column, row, score});
-      }
-  }
-  // Divide squares; what cannot be among the best is left.
-  GlobalMatch found;
-  found.best.score = min_score;
-  const auto pose_of = [&](const Candidate& square) {
-    const double half = 0.5 * (1 << finest);
-    return Pose2{map.params().low_W + cell_m * Vector2d(square.column + half, square.row + half),
-                 sim::wrap_angle(2 * std::numbers::pi * square.heading / headings)};
-  };
-  const auto is_other = [](const Pose2& a, const Pose2& b) {
-    return (a.p_W - b.p_W).norm() > 1 || std::abs(sim::wrap_angle(a.yaw_rad - b.yaw_rad)) > 0.5;
-  };
-  bool any = false;
-  // Squares near a pose that was refined lead to the same pose.
-  std::vector<Pose2> judged;
-  const auto is_judged = [&](const Pose2& pose) {
-    return std::any_of(judged.begin(), judged.end(), [&](const Pose2& each) {
-      return (each.p_W - pose.p_W).norm() < 0.08 && std::abs(sim::wrap_angle(each.yaw_rad - pose.yaw_rad)) < 0.02;
-    });
-  };
-  const auto take = [&](const Candidate& leaf) {
-    const Pose2 pose = pose_of(leaf);
-    ScanMatch match =
-        refine(map, points_B, {pose, 0}, cell_m, std::numbers::pi / headings, 5, [](const Pose2&) { return 0.0; });
-    judged.push_back(match.pose);
-    if (match.score <= std::max(min_score, found.other_score)) return;
-    match.score -= blocked_share(map, sights, match.pose);
-    if (match.score > found.best.score) {
-      if (any && is_other(match.pose, found.best.pose)) found.other_score = found.best.score;
-      found.best = match;
-      any = true;
-    } else if (any && is_other(match.pose, found.best.pose)) {
-      found.other_score = std::max(found.other_score, match.score);
+  Eigen::Matrix3d curvature;
+  const double here = score(Eigen::Vector3d::Zero());
+  for (int i = 0; i < 3; ++i)
+    for (int k = 0; k <= i; ++k) {
+      const Eigen::Vector3d a = steps[i] * Eigen::Vector3d::Unit(i), b = steps[k] * Eigen::Vector3d::Unit(k);
+      const double sum = i == k ? 2 * here - score(a) - score(-a)
+                                : 0.25 * (score(a - b) + score(b - a) - score(a + b) - score(-a - b));
+      curvature(i, k) = curvature(k, i) = sum / (steps[i] * steps[k]);
     }
-  };
-  // The best square of any size next: its bound is that of all that remain.
-  const auto worse = [](const std::pair<int, Candidate>& a, const std::pair<int, Candidate>& b) {
-    const auto key = [](const std::pair<int, Candidate>& each) {
-      const Candidate& c = each.second;
-      return std::tuple(c.score, -each.first, c.heading, c.row, c.column);
-    };
-    return key(a) < key(b);
-  };
-  std::vector<std::pair<int, Candidate>> open;
-  for (const Candidate& square : squares) open.emplace_back(coarsest, square);
-  std::make_heap(open.begin(), open.end(), worse);
-  for (int visited = 0, taken = 0; !open.empty() && visited < max_visited && taken < max_taken; ++visited) {
-    std::pop_heap(open.begin(), open.end(), worse);
-    const auto [level, candidate] = open.back();
-    open.pop_back();
-    if (candidate.score <= std::max(min_score, found.other_score)) break;
-    const bool near_best = any && !is_other(pose_of(candidate), found.best.pose);
-    if (near_best && candidate.score <= found.best.score) continue;
-    if (level == finest) {
-      if (is_judged(pose_of(candidate))) continue;
-      take(candidate);
-      ++taken;
-      continue;
-    }
-    const int half = 1 << (level - 1);
-    const Offsets& each = offsets[static_cast<std::size_t>(candidate.heading)];
-    for (const int up : {0, half})
-      for (const int right : {0, half}) {
-        Candidate quarter{candidate.heading, candidate.column + right, candidate.row + up, 0};
-        quarter.score = score_from(levels[static_cast<std::size_t>(level - 1)].sum(each, quarter.column, quarter.row),
-                                   points_B.size());
-        open.emplace_back(level - 1, quarter);
-        std::push_heap(open.begin(), open.end(), worse);
-      }
-  }
-  return any ? std::optional(found) : std::nullopt;
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(curvature);
+  const Eigen::Vector3d values = axes.eigenvalues().cwiseMax(0);
+  return params_.independent * static_cast<double>(points_B.size()) * axes.eigenvectors() * values.asDiagonal() *
+         axes.eigenvectors().transpose();
 }
 
 }  // namespace autonomy

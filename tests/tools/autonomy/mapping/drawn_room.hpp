@@ -11,6 +11,7 @@
 #include "shoal/odometry_t.hpp"
 #include "shoal/planar_lidar_t.hpp"
 #include "tools/autonomy/filters/pose2.hpp"
+#include "tools/autonomy/mapping/occupancy_map.hpp"
 
 namespace test {
 
@@ -73,6 +74,33 @@ inline shoal::odometry_t odometry_at(const Pose2& pose, std::int64_t utime) {
   odometry.y_m = pose.p_W.y();
   odometry.theta_rad = pose.yaw_rad;
   return odometry;
+}
+
+/// Returns the ends of the beams that met something, in the frame of the lidar.
+inline std::vector<Vector2d> points_of(const shoal::planar_lidar_t& scan) {
+  std::vector<Vector2d> points;
+  for (std::size_t i = 0; i < scan.ranges.size(); ++i) {
+    const double angle = static_cast<double>(scan.rad0) + static_cast<double>(i) * static_cast<double>(scan.radstep);
+    if (scan.ranges[i] < 19.9F)
+      points.emplace_back(static_cast<double>(scan.ranges[i]) * Vector2d(std::cos(angle), std::sin(angle)));
+  }
+  return points;
+}
+
+/// The map of the hall, seen from many places.
+inline autonomy::OccupancyMap hall_map() {
+  autonomy::OccupancyMap::Params params;
+  params.low_W = {-9, -6};
+  params.high_W = {9, 6};
+  autonomy::OccupancyMap map(params);
+  for (const Vector2d& from : {Vector2d(-6, -2), Vector2d(0, 0), Vector2d(6, -1), Vector2d(3, 3), Vector2d(-6, 3)})
+    for (const double yaw_rad : {0.0, 1.5, 3.0, 4.5}) {
+      std::vector<Vector2d> ends;
+      for (const Vector2d& point : points_of(hall().scan({from, yaw_rad}, 0)))
+        ends.push_back(from + autonomy::turned(point, yaw_rad));
+      for (int times = 0; times < 3; ++times) map.insert(from, ends, std::vector<char>(ends.size(), 1), 0);
+    }
+  return map;
 }
 
 }  // namespace test

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "tools/autonomy/filters/odometer.hpp"
+#include "tools/autonomy/mapping/occupancy_map.hpp"
+#include "tools/autonomy/mapping/scan_matcher.hpp"
+
+namespace autonomy {
+
+/// Scan in the frame of the vehicle.
+struct Beams {
+  Vector2d sensor_B = Vector2d::Zero();
+  std::vector<Vector2d> ends_B;
+  std::vector<char> hits;          ///< whether a beam met something
+  std::vector<Vector2d> points_B;  ///< the ends of those that did
+};
+
+/// Finds the place of a vehicle that may be anywhere in the map.  The places where a first scan fits are followed by
+/// odometry and matched with each further view, until one of them fits clearly better than all others; when none does
+/// for long, it begins again.  A value: its copy is its whole state.
+class PlaceSearch {
+ public:
+  struct Params {
+    std::size_t candidates = 40;  ///< places that are followed
+    double step_m = 0.4;          ///< between the places that are tried
+    double step_rad = 0.0873;
+    double apart_m = 0.3, apart_rad = 0.3;  ///< move or turn between views
+    int min_views = 3;                      ///< before one is accepted
+    int max_views = 16;                     ///< then it begins again
+    double min_mean = 0.45;                 ///< mean evidence of a view to be accepted, see evidence_of()
+    double lead = 0.6;                      ///< sum by which it is ahead of all others
+  };
+  explicit PlaceSearch(const Params& params) : params_(params) {}
+
+  /// Moves all candidates by odometry.
+  void move(const Increment& by);
+  /// Takes a scan.  Returns the place once it is found.
+  std::optional<Pose2> look(const OccupancyMap& map, const ScanMatcher& matcher, const Beams& beams);
+
+ private:
+  struct Candidate {
+    Pose2 pose;
+    double evidence = 0;  ///< sum over the views
+  };
+  void begin(const OccupancyMap& map, const ScanMatcher& matcher, const Beams& beams);
+  /// Leaves the best candidates that are not at one place, best first.
+  void sort(std::size_t most);
+
+  Params params_;
+  std::vector<Candidate> candidates_;
+  int views_ = 0;
+  Increment since_view_;
+};
+
+/// Returns how well a scan fits to the map at a pose: over the beams that met something, the mean of 1 for an end near
+/// something, -1 for one in what is known as free or for a beam that passes through something, and 0 in the unknown.
+double evidence_of(const OccupancyMap& map, const Beams& beams, const Pose2& pose);
+
+}  // namespace autonomy
