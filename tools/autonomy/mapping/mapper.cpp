@@ -25,12 +25,9 @@ struct OdometryStd {
 
 /// Standard deviation of a move by odometry: of any move, and as a share of it.
 OdometryStd std_of(const Increment& by) {
-  constexpr double least_m = 0.005, share_m = 0.02, least_rad = 0.003, share_rad = 0.03;
+  constexpr double least_m = 0.01, share_m = 0.02, least_rad = 0.01, share_rad = 0.03;
   return {least_m + share_m * std::hypot(by.forward_m, by.left_m), least_rad + share_rad * std::abs(by.turn_rad)};
 }
-
-/// Number of points in known cells from which on their agreement with the map counts.
-constexpr int enough_known = 20;
 
 Vector2d placed(const Pose2& pose, const Vector2d& p_B) {
   return pose.p_W + turned(p_B, pose.yaw_rad);
@@ -109,18 +106,19 @@ void Mapper::predict(const Increment& by) {
 }
 
 void Mapper::track(const Beams& beams, const Increment& by) {
-  predict(by);
   if (!has_map_) {
     first_utime_ = utime_;
     return survey(beams);
   }
+  predict(by);
   // A vehicle at rest is matched only from time to time, and when the scan fits worse.
   const bool rests = std::hypot(by.forward_m, by.left_m) < 0.001 && std::abs(by.turn_rad) < 0.0005;
   const double score = rests ? score_of(map_, beams.points_B, pose_) : 0;
   if (rests && score > 0.9 * still_score_ && seconds(utime_ - matched_utime_) < params_.insert_s) return;
   // Match, unless the scan contradicts the map.
   const ScanMatch match = matcher_.match(map_, beams.points_B, pose_, covariance_.inverse());
-  if (agreement(beams.points_B, match.pose).value_or(1) < params_.min_agreement) {
+  const Fit fit = fit_of(map_, beams, match.pose);
+  if (fit.evidence() < (surveys_ ? params_.min_survey_evidence : params_.min_evidence) && fit.near < params_.min_near) {
     if (++bad_scans_ < params_.max_bad_scans) return;
     if (surveys_) end_survey();
     lost_ = true;
@@ -143,19 +141,6 @@ void Mapper::track(const Beams& beams, const Increment& by) {
     insert(beams, pose_, utime_);
 }
 
-std::optional<double> Mapper::agreement(const std::vector<Vector2d>& points_B, const Pose2& pose) const {
-  constexpr double near_something = 0.2;
-  int known = 0, near = 0;
-  for (const Vector2d& point : points_B) {
-    const Vector2d p_W = placed(pose, point);
-    const bool is_near = map_.field(p_W) > near_something;
-    if (!is_near && !map_.is_known(p_W)) continue;
-    ++known;
-    near += is_near ? 1 : 0;
-  }
-  return known < enough_known ? std::nullopt : std::optional(static_cast<double>(near) / known);
-}
-
 void Mapper::search(const Beams& beams, const Increment& by) {
   predict(by);
   search_.move(by);
@@ -165,7 +150,7 @@ void Mapper::search(const Beams& beams, const Increment& by) {
       Eigen::Vector3d(squared(found_std_m), squared(found_std_m), squared(found_std_rad)).asDiagonal();
   const ScanMatch here = matcher_.match(map_, beams.points_B, pose_, covariance.inverse());
   std::optional<Pose2> found;
-  if (agreement(beams.points_B, here.pose).value_or(0) >= params_.certain_agreement)
+  if (fit_of(map_, beams, here.pose).evidence() >= params_.certain_evidence)
     found = here.pose;
   else
     found = search_.look(map_, matcher_, beams);
@@ -178,20 +163,21 @@ void Mapper::search(const Beams& beams, const Increment& by) {
 }
 
 void Mapper::survey(const Beams& beams) {
-  constexpr double near_m = 5, near_rad = 1.2, metres_per_rad = 2;
-  constexpr std::size_t most_recent = 2, most_old = 4;
+  constexpr double near_m = 6, near_rad = 1.2, metres_per_rad = 2;
   const std::size_t last = surveyed_.size();
   graph_.add_pose(pose_);
   surveyed_.push_back(
       {std::make_shared<const Beams>(beams), std::make_shared<const Outline>(beams.points_B), utime_, pose_});
   if (last > 0) {
     Alignment by_odometry{since_survey_, Eigen::Matrix3d::Zero()};
-    const OdometryStd std = std_of({since_survey_.p_W.norm(), 0, since_survey_.yaw_rad});
+    // Its errors are the same in each step, so that they do not average out.
+    const OdometryStd std = std_of({3 * since_survey_.p_W.norm(), 0, since_survey_.yaw_rad});
     by_odometry.information.diagonal() << 1 / squared(std.m), 1 / squared(std.m), 1 / squared(std.rad);
     graph_.add_measurement(static_cast<int>(last) - 1, static_cast<int>(last), by_odometry);
     close_loop(last - 1);
   }
-  // Further scans near it: some of the last ones, and some of earlier rounds.
+  // Further scans near it: some of the last ones, farther from each other so that small errors do not add up, and some
+  // of earlier rounds.
   std::vector<std::pair<double, std::size_t>> close;
   for (std::size_t i = 0; i + 1 < last; ++i) {
     const Pose2 away = seen_from(graph_.poses()[i], pose_);
@@ -199,11 +185,15 @@ void Mapper::survey(const Beams& beams) {
       close.emplace_back(away.p_W.norm() + metres_per_rad * std::abs(away.yaw_rad), i);
   }
   std::sort(close.begin(), close.end());
-  std::size_t taken_recent = 0, taken_old = 0;
+  struct Taken {
+    std::size_t most, count = 0;
+    double apart, last = 0;
+  } recent{.most = 3, .apart = 1.3}, earlier{.most = 4, .apart = 0.3};
   for (const auto& [distance, other] : close) {
-    std::size_t& taken = other + recent_scans > last ? taken_recent : taken_old;
-    if (taken == (other + recent_scans > last ? most_recent : most_old)) continue;
-    taken += close_loop(other) ? 1 : 0;
+    Taken& taken = other + recent_scans > last ? recent : earlier;
+    if (taken.count == taken.most || distance < taken.last + taken.apart || !close_loop(other)) continue;
+    ++taken.count;
+    taken.last = distance;
   }
   since_survey_ = {};
   graph_.optimize(2);
@@ -237,6 +227,7 @@ void Mapper::end_survey() {
   const Pose2 since = seen_from(graph_.poses().back(), pose_);
   graph_.optimize(iterations);
   redraw();
+  map_.anchor();
   pose_ = composed(graph_.poses().back(), since);
   surveys_ = false;
   surveyed_.clear();

@@ -31,17 +31,19 @@ class Mapper {
     Pose2 start;  ///< pose of the vehicle at the start, in the frame of the map
     OccupancyMap::Params map;
     ScanMatcher::Params matcher;
-    Pose2 lidar;                     ///< pose of the lidar on the vehicle
-    double lidar_range_m = 20;       ///< a beam of this length has met nothing
-    double use_range_m = 15;         ///< longer beams only clear this length
-    double survey_m = 0.1;           ///< a scan is added to the survey after this distance
-    double survey_rad = 0.05;        ///< or this turn
-    double insert_m = 1;             ///< later scans are added to the map after this distance
-    double insert_rad = 0.3;         ///< or this turn
-    double insert_s = 10;            ///< or this time
-    double min_agreement = 0.25;     ///< share of the beams in known cells that must end near something in the map
-    double certain_agreement = 0.6;  ///< share of them from which on a lost vehicle is where it was
-    int max_bad_scans = 4;           ///< consecutive ones below it; then the vehicle is lost
+    Pose2 lidar;                        ///< pose of the lidar on the vehicle
+    double lidar_range_m = 20;          ///< a beam of this length has met nothing
+    double use_range_m = 15;            ///< longer beams only clear this length
+    double survey_m = 0.1;              ///< a scan is added to the survey after this distance
+    double survey_rad = 0.05;           ///< or this turn
+    double insert_m = 1;                ///< later scans are added to the map after this distance
+    double insert_rad = 0.3;            ///< or this turn
+    double insert_s = 10;               ///< or this time
+    double min_evidence = 0.1;          ///< of a scan, see Fit
+    double min_survey_evidence = -0.3;  ///< in the survey, when much is unknown
+    double min_near = 0.25;             ///< and share of its beams near something
+    double certain_evidence = 0.6;      ///< from which on a lost vehicle is where it was
+    int max_bad_scans = 5;              ///< consecutive ones below it; then the vehicle is lost
     int survey_scans = 400;
     double redraw_m = 0.02;  ///< the map is drawn again when a pose of the survey has moved by this
     PlaceSearch::Params search;
@@ -77,8 +79,6 @@ class Mapper {
   void predict(const Increment& moved);
   void track(const Beams& beams, const Increment& moved);
   void search(const Beams& beams, const Increment& moved);
-  /// Returns the share of points in known cells that end near something; none when there are too few.
-  std::optional<double> agreement(const std::vector<Vector2d>& points_B, const Pose2& pose) const;
   /// Adds a scan to the graph, and with it to the map.
   void survey(const Beams& beams);
   void end_survey();

@@ -129,11 +129,13 @@ void OccupancyMap::insert(const Vector2d& sensor_W, const std::vector<Vector2d>&
   changed_.clear();
   ends_.clear();
   // A cell in which a beam ends is not passed by its neighbours, which graze the surface.  A beam that ends beside an
-  // occupied cell has met the same surface: otherwise surfaces would become thick, and move with the errors of poses.
+  // occupied cell has met the same surface, first one that is kept: otherwise surfaces would become thick, and move
+  // with the errors of poses.
   const auto add_end = [&](const Vector2d& end_W) {
     int column = column_of(end_W.x()), row = row_of(end_W.y());
     if (column < 0 || row < 0 || column >= columns_ || row >= rows_) return;
-    if (!is_occupied(column, row)) use_neighbour(column, row);
+    if (!is_anchor(column, row) && !use_neighbour(column, row, &OccupancyMap::is_anchor) && !is_occupied(column, row))
+      use_neighbour(column, row, &OccupancyMap::is_occupied);
     CellState& cell = cell_at(column, row);
     if (cell.is_end) return;
     cell.is_end = true;
@@ -173,15 +175,31 @@ bool OccupancyMap::is_occupied(int column, int row) const {
   return tile != nullptr && tile->cells[cell_of(column, row)].occupied;
 }
 
-void OccupancyMap::use_neighbour(int& column, int& row) const {
+bool OccupancyMap::is_anchor(int column, int row) const {
+  if (column < 0 || row < 0 || column >= columns_ || row >= rows_) return false;
+  const Tile* tile = tile_of(column, row).get();
+  return tile != nullptr && tile->anchor[cell_of(column, row)] == 255;
+}
+
+bool OccupancyMap::use_neighbour(int& column, int& row, bool (OccupancyMap::*is_surface)(int, int) const) const {
   // Those beside it, then those across its corners.
   static constexpr int neighbours[8][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {1, -1}, {-1, 1}, {-1, -1}};
   for (const auto& [right, up] : neighbours) {
-    if (!is_occupied(column + right, row + up)) continue;
+    if (!(this->*is_surface)(column + right, row + up)) continue;
     column += right;
     row += up;
-    return;
+    return true;
   }
+  return false;
+}
+
+void OccupancyMap::anchor() {
+  for (std::shared_ptr<Tile>& tile : tiles_) {
+    if (!tile) continue;
+    tile = std::make_shared<Tile>(*tile);
+    tile->anchor = tile->field;
+  }
+  anchored_shift_ = 3;
 }
 
 void OccupancyMap::update_field() {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -53,8 +54,14 @@ class OccupancyMap {
   std::uint8_t field_at(int column, int row) const {
     if (column < 0 || row < 0 || column >= columns_ || row >= rows_) return 0;
     const Tile* tile = tile_of(column, row).get();
-    return tile == nullptr ? std::uint8_t{0} : tile->field[cell_of(column, row)];
+    if (tile == nullptr) return 0;
+    const std::uint8_t now = tile->field[cell_of(column, row)], anchor = tile->anchor[cell_of(column, row)];
+    return std::max<std::uint8_t>(anchor, now - (now >> anchored_shift_));
   }
+  /// Keeps the present field: from now on it is the larger of it and of seven eighths of that of each time.  So a map
+  /// whose parts come and go does not creep with the errors of poses.
+  void anchor();
+  bool is_occupied(int column, int row) const;
   /// Returns whether a beam has passed or met the cell at a point.
   bool is_known(const Vector2d& p_W) const;
 
@@ -76,7 +83,7 @@ class OccupancyMap {
   };
   struct Tile {
     std::array<CellState, tile_cells * tile_cells> cells;
-    std::array<std::uint8_t, tile_cells * tile_cells> field{};
+    std::array<std::uint8_t, tile_cells * tile_cells> field{}, anchor{};
   };
 
   static std::size_t cell_of(int column, int row) {
@@ -92,15 +99,17 @@ class OccupancyMap {
   float forgotten(const CellState& cell, float now_s) const;
   template <class Visit>
   void visit_passed(const Vector2d& sensor_W, const Vector2d& end_W, double less_m, Visit visit) const;
-  bool is_occupied(int column, int row) const;
-  /// Replaces a cell by an occupied neighbour, if there is one.
-  void use_neighbour(int& column, int& row) const;
+  /// Whether the cell was occupied when the field was kept.
+  bool is_anchor(int column, int row) const;
+  /// Replaces a cell by a neighbour that is part of a surface.  Returns whether there is one.
+  bool use_neighbour(int& column, int& row, bool (OccupancyMap::*is_surface)(int, int) const) const;
   /// Computes the field again around the cells whose state has changed.
   void update_field();
 
   Params params_;
   int columns_, rows_, tile_columns_;
   std::vector<std::shared_ptr<Tile>> tiles_;
+  int anchored_shift_ = 8;
   std::vector<std::array<int, 2>> changed_, ends_;              ///< cells, during insert()
   float hit_, miss_, limit_, becomes_occupied_, becomes_free_;  ///< in the unit of CellState::belief
   std::vector<std::array<std::uint8_t, 4>> kernel_;             ///< field by distance in rows and columns

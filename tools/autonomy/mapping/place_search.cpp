@@ -40,11 +40,13 @@ struct CoarseField {
 };
 
 bool is_blocked(const OccupancyMap& map, const Vector2d& from_W, const Vector2d& end_W) {
-  constexpr double step_m = 0.1, before_end_m = 0.3, something = 0.6;
+  constexpr double step_m = 0.04, before_end_m = 0.3;
   const Vector2d ray_W = end_W - from_W;
   const double length_m = ray_W.norm();
-  for (double at_m = 0; at_m < length_m - before_end_m; at_m += step_m)
-    if (map.field(from_W + at_m / length_m * ray_W) >= something) return true;
+  for (double at_m = 0; at_m < length_m - before_end_m; at_m += step_m) {
+    const Vector2d at_W = from_W + at_m / length_m * ray_W;
+    if (map.is_occupied(map.column_of(at_W.x()), map.row_of(at_W.y()))) return true;
+  }
   return false;
 }
 
@@ -56,19 +58,20 @@ Eigen::Matrix3d loose() {
 
 }  // namespace
 
-double evidence_of(const OccupancyMap& map, const Beams& beams, const Pose2& pose) {
+Fit fit_of(const OccupancyMap& map, const Beams& beams, const Pose2& pose) {
   const Vector2d from_W = pose.p_W + turned(beams.sensor_B, pose.yaw_rad);
-  int sum = 0;
+  int near = 0, contradicting = 0;
   for (const Vector2d& point_B : beams.points_B) {
     const Vector2d end_W = pose.p_W + turned(point_B, pose.yaw_rad);
     if (is_blocked(map, from_W, end_W))
-      --sum;
+      ++contradicting;
     else if (map.field(end_W) > near_something)
-      ++sum;
+      ++near;
     else if (map.is_known(end_W))
-      --sum;
+      ++contradicting;
   }
-  return static_cast<double>(sum) / static_cast<double>(std::max<std::size_t>(1, beams.points_B.size()));
+  const auto all = static_cast<double>(std::max<std::size_t>(1, beams.points_B.size()));
+  return {near / all, contradicting / all};
 }
 
 void PlaceSearch::move(const Increment& by) {
@@ -131,7 +134,7 @@ void PlaceSearch::begin(const OccupancyMap& map, const ScanMatcher& matcher, con
   candidates_.resize(most);
   for (Candidate& each : candidates_) {
     each.pose = matcher.match(map, beams.points_B, each.pose, loose()).pose;
-    each.evidence = evidence_of(map, beams, each.pose);
+    each.evidence = fit_of(map, beams, each.pose).evidence();
   }
   sort(params_.candidates);
 }
@@ -148,7 +151,7 @@ std::optional<Pose2> PlaceSearch::look(const OccupancyMap& map, const ScanMatche
   const bool moved = since_view_.forward_m > params_.apart_m || since_view_.turn_rad > params_.apart_rad;
   for (Candidate& each : candidates_) {
     each.pose = matcher.match(map, beams.points_B, each.pose, loose()).pose;
-    if (moved) each.evidence += evidence_of(map, beams, each.pose);
+    if (moved) each.evidence += fit_of(map, beams, each.pose).evidence();
   }
   if (!moved) return std::nullopt;
   since_view_ = {};

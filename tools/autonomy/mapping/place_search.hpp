@@ -30,7 +30,7 @@ class PlaceSearch {
     double apart_m = 0.3, apart_rad = 0.3;  ///< move or turn between views
     int min_views = 3;                      ///< before one is accepted
     int max_views = 16;                     ///< then it begins again
-    double min_mean = 0.45;                 ///< mean evidence of a view to be accepted, see evidence_of()
+    double min_mean = 0.45;                 ///< mean evidence of a view to be accepted, see Fit
     double lead = 0.6;                      ///< sum by which it is ahead of all others
   };
   explicit PlaceSearch(const Params& params) : params_(params) {}
@@ -55,8 +55,12 @@ class PlaceSearch {
   Increment since_view_;
 };
 
-/// Returns how well a scan fits to the map at a pose: over the beams that met something, the mean of 1 for an end near
-/// something, -1 for one in what is known as free or for a beam that passes through something, and 0 in the unknown.
-double evidence_of(const OccupancyMap& map, const Beams& beams, const Pose2& pose);
+/// How a scan fits to the map at a pose: shares of the beams that met something.
+struct Fit {
+  double near = 0;           ///< end near something
+  double contradicting = 0;  ///< end in what is known as free, or pass through something
+  double evidence() const { return near - contradicting; }
+};
+Fit fit_of(const OccupancyMap& map, const Beams& beams, const Pose2& pose);
 
 }  // namespace autonomy

@@ -119,4 +119,20 @@ TEST(OccupancyMap, RefusesEmptyAndHugeAreas) {
   EXPECT_THROW(OccupancyMap{params}, std::invalid_argument);
 }
 
+TEST(OccupancyMap, AKeptSurfaceStaysInItsCell) {
+  OccupancyMap map(small());
+  for (int i = 0; i < 5; ++i) look(map, 1.05, true, 0);
+  map.anchor();
+  // Poses off by a cell for long: the surface does not creep.
+  for (int i = 0; i < 100; ++i) look(map, 1.15, true, 10 * i);
+  EXPECT_GT(percent_at(map, 1.05, 1000), 90);
+  EXPECT_EQ(percent_at(map, 1.15, 1000), OccupancyMap::unknown_percent);
+  // Something else behind it: it has gone from the map, and stays in the field.
+  for (int i = 0; i < 100; ++i) look(map, 1.55, true, 1000 + 10 * i);
+  EXPECT_LT(percent_at(map, 1.05, 2000), 10);
+  EXPECT_GT(percent_at(map, 1.55, 2000), 90);
+  EXPECT_EQ(map.field_at(map.column_of(1.05), map.row_of(0.05)), 255);
+  EXPECT_EQ(map.field_at(map.column_of(1.55), map.row_of(0.05)), 255 - 255 / 8);
+}
+
 }  // namespace

@@ -63,7 +63,7 @@ TEST(PlaceSearch, DoesNotChooseBetweenTwoEqualPlaces) {
       for (int times = 0; times < 3; ++times) map.insert({x, 0}, ends, std::vector<char>(ends.size(), 1), 0);
     }
   Pose2 truth{{-4, 0}, 0.2};
-  EXPECT_FALSE(search(rooms, map, truth, 40));
+  EXPECT_FALSE(search(rooms, map, truth, 18));
 }
 
 TEST(PlaceSearch, FindsNothingInAnEmptyMap) {
@@ -72,13 +72,13 @@ TEST(PlaceSearch, FindsNothingInAnEmptyMap) {
   EXPECT_FALSE(search({}, test::hall_map(), truth, 5));  // a lidar that sees nothing
 }
 
-TEST(PlaceSearch, EvidenceCountsWhatContradictsTheMap) {
+TEST(PlaceSearch, AFitCountsWhatContradictsTheMap) {
   const OccupancyMap map = test::hall_map();
   const Pose2 truth{{0.5, -0.3}, 0.7};
   const Beams beams = beams_of(test::hall().scan(truth, 0));
-  EXPECT_GT(autonomy::evidence_of(map, beams, truth), 0.9);
-  EXPECT_LT(autonomy::evidence_of(map, beams, {{0.5, -0.3}, 2.2}), 0.2);
-  EXPECT_EQ(autonomy::evidence_of(OccupancyMap({}), beams, truth), 0);  // all is unknown
+  EXPECT_GT(autonomy::fit_of(map, beams, truth).near, 0.95);
+  EXPECT_LT(autonomy::fit_of(map, beams, {{0.5, -0.3}, 2.2}).evidence(), 0.2);
+  EXPECT_EQ(autonomy::fit_of(OccupancyMap({}), beams, truth).evidence(), 0);  // all is unknown
 }
 
 }  // namespace
