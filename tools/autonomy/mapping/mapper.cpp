@@ -25,8 +25,8 @@ struct OdometryStd {
 
 /// Standard deviation of a move by odometry: of any move, and as a share of it.
 OdometryStd std_of(const Increment& by) {
-  constexpr double least_m = 0.01, share_m = 0.02, least_rad = 0.01, share_rad = 0.03;
-  return {least_m + share_m * std::hypot(by.forward_m, by.left_m), least_rad + share_rad * std::abs(by.turn_rad)};
+  constexpr double min_m = 0.01, share_m = 0.02, min_rad = 0.01, share_rad = 0.03;
+  return {min_m + share_m * std::hypot(by.forward_m, by.left_m), min_rad + share_rad * std::abs(by.turn_rad)};
 }
 
 Vector2d placed(const Pose2& pose, const Vector2d& p_B) {
@@ -186,12 +186,12 @@ void Mapper::survey(const Beams& beams) {
   }
   std::sort(close.begin(), close.end());
   struct Taken {
-    std::size_t most, count = 0;
+    std::size_t max, count = 0;
     double apart, last = 0;
-  } recent{.most = 3, .apart = 1.3}, earlier{.most = 4, .apart = 0.3};
+  } recent{.max = 3, .apart = 1.3}, earlier{.max = 4, .apart = 0.3};
   for (const auto& [distance, other] : close) {
     Taken& taken = other + recent_scans > last ? recent : earlier;
-    if (taken.count == taken.most || distance < taken.last + taken.apart || !close_loop(other)) continue;
+    if (taken.count == taken.max || distance < taken.last + taken.apart || !close_loop(other)) continue;
     ++taken.count;
     taken.last = distance;
   }
@@ -200,24 +200,24 @@ void Mapper::survey(const Beams& beams) {
   pose_ = graph_.poses().back();
   insert(beams, pose_, utime_);
   surveyed_.back().drawn = pose_;
-  double most_moved_m = 0;
+  double max_moved_m = 0;
   for (std::size_t i = 0; i < surveyed_.size(); ++i)
-    most_moved_m = std::max(most_moved_m, (graph_.poses()[i].p_W - surveyed_[i].drawn.p_W).norm());
+    max_moved_m = std::max(max_moved_m, (graph_.poses()[i].p_W - surveyed_[i].drawn.p_W).norm());
   if (static_cast<int>(surveyed_.size()) >= params_.survey_scans)
     end_survey();
-  else if (most_moved_m > params_.redraw_m)
+  else if (max_moved_m > params_.redraw_m)
     redraw();
 }
 
 bool Mapper::close_loop(std::size_t other) {
   constexpr double gate_m = 0.4, loop_gate_m = 1, farthest_rad = 0.3;
   const std::size_t last = surveyed_.size() - 1;
-  const double most_m = other + recent_scans > last ? gate_m : loop_gate_m;
+  const double max_m = other + recent_scans > last ? gate_m : loop_gate_m;
   const Pose2 guess = seen_from(graph_.poses()[other], graph_.poses()[last]);
-  const auto aligned = align(*surveyed_[other].outline, *surveyed_[last].outline, guess, most_m);
+  const auto aligned = align(*surveyed_[other].outline, *surveyed_[last].outline, guess, max_m);
   if (!aligned) return false;
   const Pose2 off = seen_from(guess, aligned->pose);
-  if (off.p_W.norm() > most_m || std::abs(off.yaw_rad) > farthest_rad) return false;
+  if (off.p_W.norm() > max_m || std::abs(off.yaw_rad) > farthest_rad) return false;
   graph_.add_measurement(static_cast<int>(other), static_cast<int>(last), *aligned);
   return true;
 }

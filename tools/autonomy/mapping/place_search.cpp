@@ -83,13 +83,13 @@ void PlaceSearch::move(const Increment& by) {
   since_view_.turn_rad += std::abs(by.turn_rad);
 }
 
-void PlaceSearch::sort(std::size_t most) {
+void PlaceSearch::sort(std::size_t max) {
   std::stable_sort(candidates_.begin(), candidates_.end(),
                    [](const Candidate& a, const Candidate& b) { return a.evidence > b.evidence; });
   constexpr double same_m = 0.3, same_rad = 0.2;
   std::vector<Candidate> kept;
   for (const Candidate& each : candidates_) {
-    if (kept.size() == most) break;
+    if (kept.size() == max) break;
     const bool is_new = std::none_of(kept.begin(), kept.end(), [&](const Candidate& other) {
       return (other.pose.p_W - each.pose.p_W).norm() < same_m &&
              std::abs(sim::wrap_angle(other.pose.yaw_rad - each.pose.yaw_rad)) < same_rad;
@@ -123,15 +123,15 @@ void PlaceSearch::begin(const OccupancyMap& map, const ScanMatcher& matcher, con
         candidates_.push_back({{p_W, yaw_rad}, static_cast<double>(sum)});
       }
   }
-  const std::size_t most = std::min(candidates_.size(), tried * params_.candidates);
-  std::partial_sort(candidates_.begin(), candidates_.begin() + static_cast<std::ptrdiff_t>(most), candidates_.end(),
+  const std::size_t max = std::min(candidates_.size(), tried * params_.candidates);
+  std::partial_sort(candidates_.begin(), candidates_.begin() + static_cast<std::ptrdiff_t>(max), candidates_.end(),
                     [](const Candidate& a, const Candidate& b) {
                       const auto key = [](const Candidate& each) {
                         return std::tuple(-each.evidence, each.pose.yaw_rad, each.pose.p_W.x(), each.pose.p_W.y());
                       };
                       return key(a) < key(b);
                     });
-  candidates_.resize(most);
+  candidates_.resize(max);
   for (Candidate& each : candidates_) {
     each.pose = matcher.match(map, beams.points_B, each.pose, loose()).pose;
     each.evidence = fit_of(map, beams, each.pose).evidence();

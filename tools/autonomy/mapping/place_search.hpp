@@ -47,7 +47,7 @@ class PlaceSearch {
   };
   void begin(const OccupancyMap& map, const ScanMatcher& matcher, const Beams& beams);
   /// Leaves the best candidates that are not at one place, best first.
-  void sort(std::size_t most);
+  void sort(std::size_t max);
 
   Params params_;
   std::vector<Candidate> candidates_;

@@ -13,7 +13,7 @@ Pose2 seen_from(const Pose2& a, const Pose2& b);
 Pose2 composed(const Pose2& a, const Pose2& in_a);
 
 /// Poses and what was measured between them, at their least squares (Lu and Milios 1997; Grisetti et al. 2010): by
-/// Gauss-Newton with a sparse Cholesky factorisation.  The first pose is fixed.  A measurement that contradicts the
+/// Gauss-Newton with a sparse Cholesky decomposition.  The first pose is fixed.  A measurement that contradicts the
 /// others loses weight (Huber).
 class PoseGraph {
  public:

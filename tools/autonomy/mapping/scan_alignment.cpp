@@ -18,11 +18,11 @@ constexpr double shared_std_m = 0.003, shared_std_rad = 0.0005;
 }  // namespace
 
 Outline::Outline(std::vector<Vector2d> points_B) : points_B_(std::move(points_B)), lines_(points_B_.size()) {
-  constexpr double longest_m = 1.5, straight_m = 0.04;
+  constexpr double max_m = 1.5, straight_m = 0.04;
   for (std::size_t i = 1; i + 1 < points_B_.size(); ++i) {
     const Vector2d along = points_B_[i + 1] - points_B_[i - 1];
     const double length_m = along.norm();
-    if (length_m > longest_m || !(length_m > 0)) continue;
+    if (length_m > max_m || !(length_m > 0)) continue;
     const Vector2d normal = left_of(along) / length_m;
     if (std::abs(normal.dot(points_B_[i] - points_B_[i - 1])) > straight_m) continue;
     lines_[i] = {normal, 0.5 * length_m};
