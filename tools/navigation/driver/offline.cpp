@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/navigation/driver/offline.hpp"
 
-#include <ctime>
 #include <deque>
 #include <type_traits>
 
@@ -181,7 +180,7 @@ OfflineRun run_offline(const NavRecord& record, const Algorithm& algorithm, cons
   run.estimates.resize(options.size());
   run.payload_bytes.resize(options.size());
   run.events = record.items.size();
-  const std::clock_t start = std::clock();
+  const AlgorithmClock clock(algorithm);
   if (algorithm.make_team) {
     TeamRun team(record, algorithm, options, run);
     play(record, options, team);
@@ -189,7 +188,7 @@ OfflineRun run_offline(const NavRecord& record, const Algorithm& algorithm, cons
     OwnRun own(record, algorithm, options, run);
     play(record, options, own);
   }
-  run.cpu_s = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+  run.cpu_s = clock.elapsed_s();
   return run;
 }
 

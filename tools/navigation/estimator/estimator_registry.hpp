@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <ctime>
 #include <functional>
 #include <memory>
 #include <string>
@@ -18,6 +19,25 @@ struct Algorithm {
   std::function<std::unique_ptr<Estimator>()> make;
   std::function<std::unique_ptr<TeamEstimator>()> make_team;  ///< of a reference that runs from a record only
   bool on_land = true;                                        ///< it says what it does with sights of other vehicles
+  /// Returns the CPU time that a program of the algorithm has used outside of this process; may be empty.
+  std::function<double()> outside_cpu_s = {};
+};
+
+/// Clock of the CPU time of an algorithm and what calls it.
+class AlgorithmClock {
+ public:
+  explicit AlgorithmClock(const Algorithm& algorithm) : algorithm_(algorithm), start_s_(used_s()) {}
+  /// Returns the time since the construction.
+  double elapsed_s() const { return used_s() - start_s_; }
+
+ private:
+  double used_s() const {
+    return static_cast<double>(std::clock()) / CLOCKS_PER_SEC +
+           (algorithm_.outside_cpu_s ? algorithm_.outside_cpu_s() : 0);
+  }
+
+  const Algorithm& algorithm_;
+  double start_s_;
 };
 
 /// Returns the algorithm with this name, or one of a family: `python:FILE.Class`.  Throws std::invalid_argument, with
