@@ -2,6 +2,7 @@
 #include "tools/navigation/driver/offline.hpp"
 
 #include <deque>
+#include <stdexcept>
 #include <type_traits>
 
 #include "tools/navigation/driver/team_navigator.hpp"
@@ -175,6 +176,8 @@ void play(const NavRecord& record, const std::vector<NavOptions>& options, Run& 
 }  // namespace
 
 OfflineRun run_offline(const NavRecord& record, const Algorithm& algorithm, const std::vector<NavOptions>& options) {
+  if (!algorithm.at_sea)
+    throw std::invalid_argument(algorithm.name + " has no use for ranges by sound: it works on land only");
   OfflineRun run;
   run.algorithm = algorithm.name;
   run.estimates.resize(options.size());

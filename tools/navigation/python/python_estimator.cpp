@@ -138,6 +138,7 @@ Algorithm python_algorithm(const std::string& rest) {
           [host] { return std::make_unique<PythonEstimator>(host); },
           {},
           host->has_saw(),
+          true,
           [host] { return host->cpu_s(); }};
 }
 
