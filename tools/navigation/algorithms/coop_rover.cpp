@@ -12,8 +12,8 @@ namespace {
 
 using autonomy::Ekf;
 
-/// Filter of the program `coop_rover` as a plug-in, for land vehicles: naive, with the error of the heading as its third
-/// state, fixed errors of odometry, and a position without GPS that is not sent.
+/// Filter of the program `coop_rover` as a plug-in, for land vehicles: naive, with the error of the heading as its
+/// third state, fixed errors of odometry, and a position without GPS that is not sent.
 ///
 /// The program knows the heading of its odometry.  Here it is the direction of the measured motion: a turn on the spot
 /// counts when the vehicle moves on, and a vehicle that goes backwards seems to have turned.
@@ -39,8 +39,7 @@ class CoopRoverFilter final : public EstimatorOf<CoopRoverFilter> {
         return;
       }
       direction_rad_ = std::atan2(v_W.y(), v_W.x());
-      filter_.emplace(autonomy::Pose2{p_W_, direction_rad_}, std::sqrt(variance_m2_),
-                      setup_.errors().heading_bias_rad);
+      filter_.emplace(autonomy::Pose2{p_W_, direction_rad_}, std::sqrt(variance_m2_), setup_.errors().heading_bias_rad);
     }
     if (v_W.norm() >= min_speed_mps) {
       const double turn_rad = std::remainder(std::atan2(v_W.y(), v_W.x()) - direction_rad_, 2 * M_PI);
@@ -96,7 +95,7 @@ class CoopRoverFilter final : public EstimatorOf<CoopRoverFilter> {
   Setup setup_;
   Time time_ = 0;
   Vector2 v_W_ = Vector2::Zero();
-  double direction_rad_ = 0;  ///< of the measured motion
+  double direction_rad_ = 0;   ///< of the measured motion
   std::optional<Ekf> filter_;  ///< from the first motion on, which shows the direction
   Vector2 p_W_ = Vector2::Zero();
   double variance_m2_ = 0;  ///< of each coordinate; with the position, until there is a filter

@@ -68,10 +68,14 @@ constexpr bool is_at_sea() {
 
 /// Registers an algorithm, in its own file: an Estimator with `static constexpr const char* meaning`.  Without a saw()
 /// of its own it does not work on land.
-#define SHOAL_ESTIMATOR(name, Type)                                                                     \
-  [[maybe_unused]] static const bool registered_estimator_##Type = ::navigation::detail::add_algorithm( \
-      {name, Type::meaning, [] { return std::make_unique<Type>(); }, {}, ::navigation::has_own_saw<Type>, \
-       ::navigation::is_at_sea<Type>()})
+#define SHOAL_ESTIMATOR(name, Type)                                                 \
+  [[maybe_unused]] static const bool registered_estimator_##Type =                  \
+      ::navigation::detail::add_algorithm({name,                                    \
+                                           Type::meaning,                           \
+                                           [] { return std::make_unique<Type>(); }, \
+                                           {},                                      \
+                                           ::navigation::has_own_saw<Type>,         \
+                                           ::navigation::is_at_sea<Type>()})
 
 /// Registers a TeamEstimator.
 #define SHOAL_TEAM_ESTIMATOR(name, Type)                           \

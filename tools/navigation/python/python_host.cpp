@@ -52,7 +52,8 @@ double limit_of_environment() {
 /// Whether a descriptor is ready for these events within a time; an end of the other side counts as ready.
 bool is_ready(int descriptor, short events, double limit_s) {
   using Clock = std::chrono::steady_clock;
-  const Clock::time_point end = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(limit_s));
+  const Clock::time_point end =
+      Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(limit_s));
   for (;;) {
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(end - Clock::now()).count();
     pollfd waited{descriptor, events, 0};
@@ -103,9 +104,9 @@ PythonHost::~PythonHost() {
 void PythonHost::end() {
   { const bridges::FileDescriptor closed = std::move(to_child_); }  // the end of its input
   // It closes its output at its end, unless the class never returns.
-  constexpr double patience_s = 2;
+  constexpr double timeout_s = 2;
   char rest[4096];
-  while (!is_stuck_ && is_ready(from_child_.number(), POLLIN, std::min(patience_s, limit_s_)) &&
+  while (!is_stuck_ && is_ready(from_child_.number(), POLLIN, std::min(timeout_s, limit_s_)) &&
          read(from_child_.number(), rest, sizeof rest) > 0) {
   }
   if (child_ <= 0) return;

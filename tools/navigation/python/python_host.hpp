@@ -20,7 +20,7 @@ struct HostFile {
 /// Interpreter in a child process that has the estimators of one class.
 class PythonHost {
  public:
-  /// Starts /usr/bin/python3, or the interpreter in SHOAL_PYTHON, and loads the class from a file.  SHOAL_PYTHON_LIMIT_S
+  /// Starts /usr/bin/python3, or the interpreter in SHOAL_PYTHON, and loads the class from a file. SHOAL_PYTHON_LIMIT_S
   /// is the wall time for an answer, without it 60 s.  Throws std::invalid_argument with the reason.
   PythonHost(const std::string& file, const std::string& class_name);
   ~PythonHost();

@@ -70,9 +70,10 @@ std::size_t verify_table(const LoadedStudy& study, const std::vector<StudyRow>& 
   for (std::size_t i = 0; i < std::min(max_shown, verified.differences.size()); ++i)
     std::cout << verified.differences[i] << '\n';
   if (verified.differences.size() > max_shown) std::cout << "...\n";
-  std::cout << (verified.differences.empty() ? fmt::format("algorithms.csv: {} rows are those of study.csv\n", verified.rows)
-                                             : fmt::format("algorithms.csv: DIFFERS from study.csv in {} values\n",
-                                                           verified.differences.size()));
+  std::cout << (verified.differences.empty()
+                    ? fmt::format("algorithms.csv: {} rows are those of study.csv\n", verified.rows)
+                    : fmt::format("algorithms.csv: DIFFERS from study.csv in {} values\n",
+                                  verified.differences.size()));
   return verified.differences.size();
 }
 

@@ -259,10 +259,10 @@ TEST(CoopRoverFilter, SendsItsPositionWithGpsOnlyAndNotBetterThanAFix) {
   const auto rover = driven_rover();
   EXPECT_TRUE(rover->say(10 * nav_second, 100).empty());
   rover->fix(10 * nav_second, {15, 0}, 0.5);
-  const auto said = position_in(rover->say(10 * nav_second, 100));
-  ASSERT_TRUE(said);
-  EXPECT_NEAR(said->P(0, 0), 0.5 * 0.5, 1e-9);
-  EXPECT_NEAR(said->P(1, 1), 0.5 * 0.5, 1e-9);
+  const auto sent = position_in(rover->say(10 * nav_second, 100));
+  ASSERT_TRUE(sent);
+  EXPECT_NEAR(sent->P(0, 0), 0.5 * 0.5, 1e-9);
+  EXPECT_NEAR(sent->P(1, 1), 0.5 * 0.5, 1e-9);
 }
 
 TEST(CoopRoverFilter, UsesFixesBeforeItMoves) {

@@ -104,8 +104,8 @@ TEST(PythonEstimator, AClassThatNeverReturnsIsSaidAfterTheLimit) {
                 .find("s.Mine: no answer within 3 s to now() or a call before it; SHOAL_PYTHON_LIMIT_S is the limit"),
             std::string::npos);
   // One that takes no calls: they fill the pipe, of 64 kB.
-  const auto stuck = started(python_with(folder, "m", start + "  def moved(self, t, v, q): " + sleep),
-                             nav_setup(2, 0, {0, 0}, 1));
+  const auto stuck =
+      started(python_with(folder, "m", start + "  def moved(self, t, v, q): " + sleep), nav_setup(2, 0, {0, 0}, 1));
   EXPECT_THROW(
       {
         for (int i = 1; i < 10'000; ++i) stuck->moved(i * nav_second, {1, 0}, Matrix2::Zero());
@@ -115,24 +115,25 @@ TEST(PythonEstimator, AClassThatNeverReturnsIsSaidAfterTheLimit) {
 
 TEST(PythonEstimator, AWrongLimitIsSaid) {
   const test_support::ScratchFolder folder;
-  const std::string mine = python_with(folder, "w", "  def start(self, s): pass\n");
+  const std::string source = python_with(folder, "w", "  def start(self, s): pass\n");
   for (const char* wrong : {"soon", "0", "nan", ""}) {
     const Environment limit("SHOAL_PYTHON_LIMIT_S", wrong);
-    EXPECT_EQ(error_of(mine), std::string("SHOAL_PYTHON_LIMIT_S must be a number from 0.01 to 1e6, got '") + wrong + "'");
+    EXPECT_EQ(error_of(source),
+              std::string("SHOAL_PYTHON_LIMIT_S must be a number from 0.01 to 1e6, got '") + wrong + "'");
   }
 }
 
 TEST(PythonEstimator, TheTimeOfTheInterpreterCounts) {
   const test_support::ScratchFolder folder;
-  const std::string mine = python_with(folder, "t",
+  const std::string source = python_with(folder, "t",
                                        "  def start(self, s): pass\n"
                                        "  def now(self, t):\n"
                                        "    import time\n"
                                        "    end = time.process_time() + 0.05\n"
                                        "    while time.process_time() < end: pass\n"
                                        "    return [0, 0], [[1, 0], [0, 1]]\n");
-  const auto own = started(mine, nav_setup(2, 0, {0, 0}, 1));
-  const AlgorithmClock clock(algorithm_named(mine));
+  const auto own = started(source, nav_setup(2, 0, {0, 0}, 1));
+  const AlgorithmClock clock(algorithm_named(source));
   own->now(0);
   EXPECT_GE(clock.elapsed_s(), 0.05);
 }
