@@ -58,6 +58,12 @@ TEST(Nav, EstimatesFromTheRecordAreThoseOfTheRunByteForByte) {
     EXPECT_EQ(of_record.at(channel), estimates) << channel;
   }
   EXPECT_NE(estimates_in(folder.file("out/naive.lcm")), of_run);
+  // An MCAP file of the record gives the same.
+  ASSERT_EQ(run_shoal({"log", "mcap", record, "--out", folder.file("dive.mcap")}).exit_code, 0);
+  const Ended of_mcap =
+      run_nav({"--log", folder.file("dive.mcap"), "--algorithm", "iu", "--out", folder.file("of_mcap")});
+  ASSERT_EQ(of_mcap.exit_code, 0) << of_mcap.errors;
+  EXPECT_EQ(estimates_in(folder.file("of_mcap/iu.lcm")), of_record);
   EXPECT_THAT(text_of_file(folder.file("out/iu/auv1.csv")), HasSubstr("time_s,utime,x_m,"));
   EXPECT_THAT(text_of_file(folder.file("out/iu/auv1.tum")), HasSubstr("# t x y z qx qy qz qw\n"));
   EXPECT_THAT(text_of_file(folder.file("out/iu/Robot4_Estimate.dat")), HasSubstr("# craft\n# Time [s]\tx [m]\t"));
@@ -163,13 +169,17 @@ TEST(Nav, AStudyRunsAlgorithmsOnTheRecordOfEachRunAndVerifiesThem) {
   const Ended verified = run_shoal(command);
   EXPECT_EQ(verified.exit_code, 0) << verified.errors << verified.output;
   EXPECT_THAT(verified.output, HasSubstr("dive, seed 2: equal: run hash "));
-  EXPECT_THAT(verified.output, HasSubstr("2 of 2 runs are equal\n"));
+  EXPECT_THAT(verified.output, HasSubstr("2 of 2 runs are equal\nalgorithms.csv: 3 rows are those of study.csv\n"));
+  std::string algorithms = text_of_file(folder.file("out/algorithms.csv"));
+  algorithms.replace(algorithms.find("\ndive,iu,2,") + 9, 1, "3");
+  system_test::write_file(folder.file("out/algorithms.csv"), algorithms);
   std::string table = text_of_file(folder.file("out/study.csv"));
   table.insert(table.rfind("\ndive,2,") + 7, "1");  // seed 2 becomes seed 12
   system_test::write_file(folder.file("out/study.csv"), table);
   const Ended different = run_shoal(command);
   EXPECT_EQ(different.exit_code, 1);
   EXPECT_THAT(different.output, HasSubstr("dive, seed 2: the table has no such run\n1 of 2 runs are equal\n"));
+  EXPECT_THAT(different.output, HasSubstr("algorithms.csv:3: 'runs' is '3', study.csv gives '2'\n"));
 }
 
 TEST(Nav, AStudyOfAnUnknownAlgorithmIsRefusedBeforeItsRuns) {
@@ -309,8 +319,13 @@ TEST(Nav, AWorldWithoutAVehicleThatItCanNavigateIsRefused) {
 TEST(Nav, ALogThatIsNotOfARunIsRefused) {
   EXPECT_EQ(run_nav({"--log", "/nonexistent/a.lcm", "--algorithm", "dr"}).exit_code, 4);
   const Ended ended = run_nav({"--log", source("README.md"), "--algorithm", "dr"});
-  EXPECT_EQ(ended.exit_code, 2);
-  EXPECT_THAT(ended.errors, HasSubstr("has no sim.info"));
+  EXPECT_EQ(ended.exit_code, 4);
+  EXPECT_THAT(ended.errors, HasSubstr("README.md: is not an LCM log"));
+  const ScratchFolder folder;
+  system_test::write_file(folder.file("a.mcap"), "not one");
+  const Ended mcap = run_nav({"--log", folder.file("a.mcap"), "--algorithm", "dr"});
+  EXPECT_EQ(mcap.exit_code, 4);
+  EXPECT_THAT(mcap.errors, HasSubstr("a.mcap: is not an MCAP file"));
 }
 
 }  // namespace

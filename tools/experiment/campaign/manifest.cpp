@@ -42,7 +42,7 @@ std::string read_manifest_file(const std::string& path) {
 Json parse_line(std::string_view line, const std::string& where) {
   try {
     Json json = Json::parse(line);
-    if (!json.is_object()) throw std::runtime_error(where + ": must be a JSON object");
+    if (!json.is_object()) throw std::runtime_error(where + ": must be a JSON object, got " + shown_json(json));
     return json;
   } catch (const nlohmann::json::exception&) {
     throw std::runtime_error(where + ": is not JSON: '" + sim::shortened(sim::printable(line)) + "'");
@@ -108,21 +108,24 @@ void Manifest::read_head(std::string_view line) {
   if (!in.at("duration_s").is_null()) {
     duration_s_ = in.number("duration_s");
     if (!(*duration_s_ > 0 && *duration_s_ <= 1e9))
-      throw std::runtime_error(where + ": 'duration_s' must be > 0 and <= 1e9");
+      throw std::runtime_error(where + ": 'duration_s' must be > 0 and <= 1e9, got " + shown_json(in.at("duration_s")));
   }
   std::set<std::int64_t> distinct;
   for (const Json& seed : in.list("seeds")) {
-    if (!seed.is_number_integer()) throw std::runtime_error(where + ": 'seeds' must be whole numbers");
+    if (!seed.is_number_integer())
+      throw std::runtime_error(where + ": 'seeds' must be whole numbers, got " + shown_json(seed));
     seeds_.push_back(seed.get<std::int64_t>());
     check_seed(seeds_.back(), where);
     if (!distinct.insert(seeds_.back()).second)
-      throw std::runtime_error(where + ": 'seeds' must differ from each other");
+      throw std::runtime_error(where + ": 'seeds' must differ from each other, got " + shown_json(seed) + " twice");
   }
   if (seeds_.empty() || seeds_.size() > runs_)
-    throw std::runtime_error(where + ": 'seeds' must be at least one, and not more than the runs");
+    throw std::runtime_error(where + ": 'seeds' must be at least one, and not more than the runs, got " +
+                             shown_json(in.at("seeds")));
   if (!in.has("algorithms")) return;
   for (const Json& algorithm : in.list("algorithms")) {
-    if (!algorithm.is_string()) throw std::runtime_error(where + ": 'algorithms' must be names");
+    if (!algorithm.is_string())
+      throw std::runtime_error(where + ": 'algorithms' must be names, got " + shown_json(algorithm));
     algorithms_.push_back(algorithm.get<std::string>());
   }
 }

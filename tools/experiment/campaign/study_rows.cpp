@@ -17,27 +17,6 @@ namespace {
 
 using Fields = std::vector<std::string>;
 
-/// Splits a line into fields, of which some are in quotes.  Nothing when a quote is not closed.
-std::optional<Fields> fields_of(std::string_view line) {
-  Fields fields(1);
-  bool quoted = false;
-  for (std::size_t i = 0; i < line.size(); ++i) {
-    if (quoted && line[i] == '"') {
-      if (i + 1 < line.size() && line[i + 1] == '"')
-        fields.back() += line[++i];
-      else
-        quoted = false;
-    } else if (!quoted && line[i] == '"' && fields.back().empty()) {
-      quoted = true;
-    } else if (!quoted && line[i] == ',') {
-      fields.emplace_back();
-    } else {
-      fields.back() += line[i];
-    }
-  }
-  return quoted ? std::nullopt : std::optional(std::move(fields));
-}
-
 template <class Number>
 std::optional<Number> number_of(const std::string& text) {
   Number value{};
@@ -111,6 +90,26 @@ class RowReader {
 
 }  // namespace
 
+std::optional<std::vector<std::string>> csv_fields(std::string_view line) {
+  Fields fields(1);
+  bool quoted = false;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    if (quoted && line[i] == '"') {
+      if (i + 1 < line.size() && line[i + 1] == '"')
+        fields.back() += line[++i];
+      else
+        quoted = false;
+    } else if (!quoted && line[i] == '"' && fields.back().empty()) {
+      quoted = true;
+    } else if (!quoted && line[i] == ',') {
+      fields.emplace_back();
+    } else {
+      fields.back() += line[i];
+    }
+  }
+  return quoted ? std::nullopt : std::optional(std::move(fields));
+}
+
 std::vector<StudyRow> parse_study_rows(const std::string& text, const std::string& name) {
   std::vector<StudyRow> rows;
   std::set<std::tuple<std::string, std::size_t, std::int64_t>> runs;
@@ -122,7 +121,7 @@ std::vector<StudyRow> parse_study_rows(const std::string& text, const std::strin
     if (of_line.ends_with('\r')) of_line.remove_suffix(1);
     begin = end + 1;
     ++line;
-    auto fields = fields_of(of_line);
+    auto fields = csv_fields(of_line);
     if (!fields) throw std::runtime_error(fmt::format("{}:{}: a quote is not closed", name, line));
     if (!reader)
       reader.emplace(std::move(*fields), name);

@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace tools {
@@ -19,6 +20,9 @@ struct StudyRow {
   std::map<std::string, std::optional<double>> figures;
   std::string shoal, processor, c_library;
 };
+
+/// Splits a line of a CSV file into fields, of which some are in quotes.  Nothing when a quote is not closed.
+std::optional<std::vector<std::string>> csv_fields(std::string_view line);
 
 /// Parses the text of a study.csv, with all its columns.  `name`: of the file, for errors.  Throws std::runtime_error
 /// with line, column and rule.

@@ -6,8 +6,11 @@
 #include <algorithm>
 #include <iostream>
 #include <set>
+#include <stdexcept>
 
+#include "sim/config/message_text.hpp"
 #include "tools/experiment/process/signals.hpp"
+#include "tools/experiment/study/algorithm_table.hpp"
 #include "tools/experiment/study/study_algorithms.hpp"
 #include "tools/experiment/study/study_tables.hpp"
 
@@ -78,6 +81,86 @@ Verified compare_with_row(const StudyRun& run, const StudyRow& row) {
     ++verified.figures;
     const auto there = value_in(row.figures, name), here = value_in(run.record->metrics, name);
     if (there != here) verified.differences.push_back(name + ": " + shown(there) + " there, " + shown(here) + " here");
+  }
+  return verified;
+}
+
+namespace {
+
+/// Runs with the figures of rows, in their order, on which the bootstrap depends.
+std::vector<StudyRun> runs_of(const LoadedStudy& study, const std::vector<StudyRow>& rows) {
+  std::vector<StudyRun> runs;
+  for (const StudyRow& row : rows) {
+    const auto& cases = study.config.cases;
+    const auto in_case =
+        std::find_if(cases.begin(), cases.end(), [&](const StudyCase& each) { return each.name == row.in_case; });
+    if (in_case == cases.end()) continue;
+    StudyRun& run = runs.emplace_back();
+    run.in_case = static_cast<std::size_t>(in_case - cases.begin());
+    run.point = std::min(row.point > 0 ? row.point - 1 : 0, study.points.size() - 1);
+    run.seed = row.seed;
+    if (row.run_hash.empty()) continue;
+    run.record.emplace();
+    run.record->metrics = row.figures;
+  }
+  return runs;
+}
+
+struct CsvLine {
+  std::size_t line = 0;
+  std::vector<std::string> fields;
+};
+
+std::vector<CsvLine> csv_lines(const std::string& text, const std::string& name) {
+  std::vector<CsvLine> lines;
+  for (std::size_t begin = 0, line = 1; begin < text.size(); ++line) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    std::string_view of_line(text.data() + begin, end - begin);
+    if (of_line.ends_with('\r')) of_line.remove_suffix(1);
+    auto fields = csv_fields(of_line);
+    if (!fields) throw std::runtime_error(fmt::format("{}:{}: a quote is not closed", name, line));
+    lines.push_back({line, std::move(*fields)});
+    begin = end + 1;
+  }
+  return lines;
+}
+
+}  // namespace
+
+VerifiedTable compare_with_table(const LoadedStudy& study, const std::vector<StudyRow>& rows, const std::string& text,
+                                 const std::string& name, const std::vector<std::string>& cases) {
+  const std::vector<StudyRun> runs = runs_of(study, rows);
+  const std::vector<CsvLine> here = csv_lines(AlgorithmTable(StudyResults(study, runs)).csv(), ""),
+                             there = csv_lines(text, name);
+  const std::vector<std::string>& columns = here.front().fields;
+  if (there.empty() || there.front().fields != columns)
+    throw std::runtime_error(name + ":1: the columns must be " + fmt::format("{}", fmt::join(columns, ",")));
+  VerifiedTable verified;
+  for (std::size_t i = 1; i < there.size(); ++i) {
+    const auto& [line, fields] = there[i];
+    if (fields.size() != columns.size())
+      throw std::runtime_error(
+          fmt::format("{}:{}: must have {} fields, got {}", name, line, columns.size(), fields.size()));
+    // With factors the name of a world is followed by the values of its point.
+    if (!cases.empty() && std::none_of(cases.begin(), cases.end(), [&world = fields[0]](const std::string& each) {
+          return world == each || world.starts_with(each + " (");
+        }))
+      continue;
+    ++verified.rows;
+    const auto found = std::find_if(here.begin() + 1, here.end(), [&of_table = fields](const CsvLine& each) {
+      return each.fields[0] == of_table[0] && each.fields[1] == of_table[1];
+    });
+    if (found == here.end()) {
+      verified.differences.push_back(fmt::format("{}:{}: study.csv has no '{}' in '{}'", name, line,
+                                                 sim::shortened(sim::printable(fields[1])),
+                                                 sim::shortened(sim::printable(fields[0]))));
+      continue;
+    }
+    for (std::size_t column = 2; column < columns.size(); ++column)
+      if (fields[column] != found->fields[column])
+        verified.differences.push_back(fmt::format("{}:{}: '{}' is '{}', study.csv gives '{}'", name, line,
+                                                   columns[column], sim::shortened(sim::printable(fields[column])),
+                                                   found->fields[column]));
   }
   return verified;
 }

@@ -23,4 +23,15 @@ Verified compare_with_row(const StudyRun& run, const StudyRow& row);
 std::size_t verify_runs(const LoadedStudy& study, const StudyOptions& options, std::vector<StudyRun>& runs,
                         const std::vector<std::size_t>& which, const std::vector<StudyRow>& rows);
 
+/// Differences of an algorithms.csv from the table that the rows of its study.csv give, for some cases or, when
+/// `cases` is empty, all of them.
+struct VerifiedTable {
+  std::size_t rows = 0;                  ///< that were compared
+  std::vector<std::string> differences;  ///< `algorithms.csv:7: 'rms_m' is 2.1, study.csv gives 2.2`
+};
+/// `text`, `name`: content and name of the algorithms.csv.  Throws std::runtime_error with line and rule when it is not
+/// a table of this version.
+VerifiedTable compare_with_table(const LoadedStudy& study, const std::vector<StudyRow>& rows, const std::string& text,
+                                 const std::string& name, const std::vector<std::string>& cases);
+
 }  // namespace tools

@@ -8,12 +8,17 @@
 
 namespace tools {
 
+/// Returns a value as JSON for an error, shortened and printable.
+std::string shown_json(const nlohmann::ordered_json& value);
+/// Parses the text of a file.  Throws std::runtime_error: file, line, column, rule, what is there.
+nlohmann::ordered_json parse_json(const std::string& text, const std::string& file);
+
 /// Reads values of a JSON object with type checks.  Errors are std::runtime_error: file, key, rule, value.
 class JsonReader {
  public:
   /// `where`: file, and the path of the object in it when that is not the root.
   JsonReader(const nlohmann::ordered_json& json, std::string where) : json_(json), where_(std::move(where)) {
-    if (!json.is_object()) throw std::runtime_error(where_ + ": must be an object, got " + json.type_name());
+    if (!json.is_object()) throw std::runtime_error(where_ + ": must be an object, got " + shown_json(json));
   }
 
   bool has(const char* key) const { return json_.contains(key); }
@@ -44,7 +49,7 @@ class JsonReader {
     return at(key).get<T>();
   }
   [[noreturn]] void wrong(const char* key, const char* rule) const {
-    throw std::runtime_error(where_ + ": '" + key + "' must be " + rule + ", got " + at(key).type_name());
+    throw std::runtime_error(where_ + ": '" + key + "' must be " + rule + ", got " + shown_json(at(key)));
   }
 
   const nlohmann::ordered_json& json_;

@@ -22,6 +22,7 @@
 #include "tools/experiment/results/run_record.hpp"
 #include "tools/experiment/results/verdict_json.hpp"
 #include "tools/experiment/run/runner.hpp"
+#include "tools/experiment/score/saved_scores.hpp"
 #include "tools/experiment/score/scoring.hpp"
 #include "tools/experiment/terminal/progress.hpp"
 #include "tools/experiment/trajectory/estimate_file.hpp"
@@ -181,7 +182,9 @@ class LogScoring {
 
   LogScore run() {
     sim::World& world = replayed_.world();
-    restore_scores();
+    if (log_.snapshot)
+      if (const std::string problem = restore_scores(scoring_, log_.snapshot->scores); !problem.empty())
+        notes_.push_back(problem);
     Progress progress(sim::to_seconds(world.step_time()) * static_cast<double>(log_.usable_step()), options_.quiet);
     replayed_.start();
     exports_->after_step();
@@ -217,18 +220,6 @@ class LogScoring {
       load.sets.push_back("metrics." + metric.name + ".channel=" + file_channel);
     }
     return load;
-  }
-
-  /// The scores of a run that began with a snapshot continue from it.
-  void restore_scores() {
-    if (!log_.snapshot) return;
-    try {
-      auto scores = sim::StateArchive::restorer(log_.snapshot->scores);
-      scoring_.visit_state(scores, History::whole);
-      scores.end();
-    } catch (const sim::SnapshotError& error) {
-      notes_.push_back(std::string("the scores begin with the log: ") + error.what());
-    }
   }
 
   std::int64_t utime_of(const EstimateFile::Row& row) const {

@@ -32,7 +32,8 @@ struct Estimated {
 
 Estimated estimated(const JsonReader& in, const char* key, const char* interval) {
   const auto& ends = in.list(interval);
-  if (ends.size() != 2) throw std::runtime_error(in.where() + ": '" + interval + "' must be two numbers");
+  if (ends.size() != 2)
+    throw std::runtime_error(in.where() + ": '" + interval + "' must be two numbers, got " + shown_json(ends));
   return {number_or_nan(in.at(key)), number_or_nan(ends[0]), number_or_nan(ends[1])};
 }
 
@@ -181,7 +182,8 @@ std::string study_algorithms_html(const JsonReader& in) {
   const std::vector<Cell> cells = cells_of(algorithms);
   std::vector<std::string> sentences;
   for (const auto& item : algorithms.list("sentences")) {
-    if (!item.is_string()) throw std::runtime_error(algorithms.where() + ": 'sentences' must be a list of texts");
+    if (!item.is_string())
+      throw std::runtime_error(algorithms.where() + ": 'sentences' must be a list of texts, got " + shown_json(item));
     sentences.push_back(item.get<std::string>() + ".");
   }
   return "<h2>Algorithms</h2>\n" + list_html(sentences) + chart(cells) + table(cells) + pairs(algorithms);

@@ -170,7 +170,8 @@ std::vector<PointOfFile> points_of(const JsonReader& in) {
     PointOfFile& point = points.emplace_back();
     point.in_case = reader.text("case");
     for (const auto& value : reader.list("values")) {
-      if (!value.is_string()) throw std::runtime_error(reader.where() + ": 'values' must be texts");
+      if (!value.is_string())
+        throw std::runtime_error(reader.where() + ": 'values' must be texts, got " + shown_json(value));
       point.values.push_back(value.get<std::string>());
     }
     for (const auto& [name, figure] : reader.object("figures").items()) {
@@ -259,7 +260,7 @@ std::string convergence_charts(const JsonReader& in, const std::map<std::string,
     curve.name = reader.text("case");
     for (const auto& point : reader.list("points")) {
       if (!point.is_array() || point.size() != 4 || !point[0].is_number())
-        throw std::runtime_error(reader.where() + ": 'points' must be lists of four numbers");
+        throw std::runtime_error(reader.where() + ": 'points' must be lists of four numbers, got " + shown_json(point));
       curve.points.push_back(
           {point[0].get<double>(), number_or_nan(point[1]), number_or_nan(point[2]), number_or_nan(point[3])});
     }

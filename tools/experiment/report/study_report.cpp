@@ -36,7 +36,7 @@ std::vector<std::string> texts_of(const JsonReader& in, const char* key) {
   std::vector<std::string> texts;
   for (const auto& item : in.list(key)) {
     if (!item.is_string())
-      throw std::runtime_error(in.where() + ": '" + key + "' must be a list of texts, got " + item.type_name());
+      throw std::runtime_error(in.where() + ": '" + key + "' must be a list of texts, got " + shown_json(item));
     texts.push_back(item.get<std::string>());
   }
   return texts;

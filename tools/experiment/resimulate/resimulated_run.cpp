@@ -15,6 +15,7 @@
 #include "sim/state/state_archive.hpp"
 #include "tools/experiment/results/run_error.hpp"
 #include "tools/experiment/run/scores_message.hpp"
+#include "tools/experiment/score/saved_scores.hpp"
 
 namespace tools {
 
@@ -51,24 +52,14 @@ ResimulatedRun::ResimulatedRun(const Options& options, const std::string& versio
   if (options.launch && !replayed_.loaded().config.processes.empty())
     programs_ = std::make_unique<BranchPrograms>(
         replayed_, [this](const std::string& command, double value) { return execute(command, value, ""); });
-  restore_scores();
+  if (log_.snapshot)
+    if (const std::string problem = restore_scores(scoring_, log_.snapshot->scores); !problem.empty())
+      spdlog::warn("{}: {}", log_.path, problem);
   control_.speed = 1;
   page_.start(world(), end_s(), {"recorded", programs(), programs_ != nullptr});
   replayed_.start();
   first_ = save();
   after_step();
-}
-
-/// The scores of a run that began with a snapshot continue from it.
-void ResimulatedRun::restore_scores() {
-  if (!log_.snapshot) return;
-  try {
-    auto scores = sim::StateArchive::restorer(log_.snapshot->scores);
-    scoring_.visit_state(scores, History::whole);
-    scores.end();
-  } catch (const sim::SnapshotError& error) {
-    spdlog::warn("{}: the scores begin with the log: {}", log_.path, error.what());
-  }
 }
 
 /// Programs need buses of this machine without another simulator.

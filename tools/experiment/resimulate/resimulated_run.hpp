@@ -64,7 +64,6 @@ class ResimulatedRun {
   /// Returns a function that passes messages of the world on to the pages.
   ReplayedWorld::Watch page_tap();
   void check_buses();
-  void restore_scores();
   void serve();
   void step();
   void after_step();

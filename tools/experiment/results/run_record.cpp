@@ -20,7 +20,7 @@ std::map<std::string, std::optional<double>> read_figures(const JsonReader& in) 
   for (const auto& [name, value] : in.object("metrics").items()) {
     if (!value.is_number() && !value.is_null())
       throw std::runtime_error(in.where() + ": 'metrics': '" + name + "' must be a number or null, got " +
-                               value.type_name());
+                               shown_json(value));
     figures[name] = value.is_null() ? std::nullopt : std::optional<double>(value.get<double>());
   }
   return figures;
@@ -49,11 +49,7 @@ std::string read_whole_file(const std::string& path) {
 }
 
 nlohmann::ordered_json read_json_file(const std::string& path) {
-  try {
-    return nlohmann::ordered_json::parse(read_whole_file(path));
-  } catch (const nlohmann::json::exception& error) {
-    throw std::runtime_error(path + ": is not a JSON: " + error.what());
-  }
+  return parse_json(read_whole_file(path), path);
 }
 
 RunRecord read_run(const std::string& directory) {

@@ -165,7 +165,7 @@ void write_study(const std::string& directory, const LoadedStudy& study, const s
   write_whole_file(directory + "/study.csv", results.to_csv());
   write_whole_file(directory + "/points.csv", results.points_csv());
   if (!study.config.algorithms.empty()) {
-    const AlgorithmTable table(results);
+    const AlgorithmTable& table = results.algorithm_table();
     write_whole_file(directory + "/algorithms.csv", table.csv());
     write_whole_file(directory + "/algorithms.md", table.markdown());
   }

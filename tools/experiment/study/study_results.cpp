@@ -173,6 +173,11 @@ Judgement StudyResults::judgement() const {
   return all.empty() ? Judgement::not_judged : Judgement::passed;
 }
 
+const AlgorithmTable& StudyResults::algorithm_table() const {
+  if (!algorithm_table_) algorithm_table_ = std::make_shared<const AlgorithmTable>(*this);
+  return *algorithm_table_;
+}
+
 std::string StudyResults::to_text(const std::string& directory) const {
   const StudyConfig& config = study_.config;
   std::size_t widest_figure = 6, widest_case = 4;
@@ -196,7 +201,7 @@ std::string StudyResults::to_text(const std::string& directory) const {
                    number(s.mean_95.high));
     }
   text += points_text();
-  if (!config.algorithms.empty()) text += AlgorithmTable(*this).text();
+  if (!config.algorithms.empty()) text += algorithm_table().text();
   for (const Scoring::Verdict& verdict : verdicts())
     text += fmt::format("{}: {}\n", verdict.passed ? "passed" : "FAILED", verdict.text());
   if (config.pass.empty() && runs_with_failed_programs() > 0)
@@ -306,7 +311,7 @@ std::string StudyResults::to_json(int exit_code) const {
                                      {"run", run.index},
                                      {"repeat", command_of(study_, run)}});
   // Points and comparisons.
-  if (!config.algorithms.empty()) json["algorithms"] = AlgorithmTable(*this).json();
+  if (!config.algorithms.empty()) json["algorithms"] = algorithm_table().json();
   add_points(json, *this);
   add_convergence(json, *this);
   add_extremes(json, *this);

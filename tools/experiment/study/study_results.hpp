@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -13,6 +14,8 @@
 #include "tools/experiment/study/study_runs.hpp"
 
 namespace tools {
+
+class AlgorithmTable;
 
 /// Statistics over the seeds of a case.  NaN where there is no data.
 struct Statistics {
@@ -72,6 +75,8 @@ class StudyResults {
   std::string mixture() const;
   const std::vector<StudyRun>& runs() const { return runs_; }
   const LoadedStudy& study() const { return study_; }
+  /// Returns the table of the algorithms, which is computed at the first call.
+  const AlgorithmTable& algorithm_table() const;
   /// Number of runs with failed programs that nevertheless reached their end.
   std::size_t runs_with_failed_programs() const;
 
@@ -94,6 +99,7 @@ class StudyResults {
   const std::vector<StudyRun>& runs_;
   std::vector<std::string> figures_;
   std::map<std::pair<std::size_t, std::size_t>, std::vector<const StudyRun*>> groups_;  ///< by case and point
+  mutable std::shared_ptr<const AlgorithmTable> algorithm_table_;
 };
 
 /// Returns the plot files of a study, in order.

@@ -20,12 +20,7 @@ class Naive final : public OwnFilterEstimator<Naive> {
     need_bytes(setup, "naive", position_bytes);
     OwnFilterEstimator::start(setup);
   }
-  void heard(const Heard& heard) override {
-    const auto sender = position_in(heard.payload);
-    if (!sender) return;
-    filter_.range(own, *sender, heard.own_z_m - heard.sender_z_m, heard.range_m, heard.std_m,
-                  sender_clock_variance_m2(setup_, heard.sender, heard.toa - setup_.time));
-  }
+  void heard(const Heard& heard) override { hear_independent(heard); }
   void saw(const Relative& seen) override { see_independent(seen); }
   Bytes say(Time time, std::size_t) override { return payload_of(own_position(time)); }
 };

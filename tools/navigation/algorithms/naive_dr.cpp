@@ -25,12 +25,7 @@ class NaiveOfDeadReckoning final : public OwnFilterEstimator<NaiveOfDeadReckonin
     OwnFilterEstimator::fix(time, p_W, std_m);
     alone_.fix(own, p_W, std_m);
   }
-  void heard(const Heard& heard) override {
-    const auto sender = position_in(heard.payload);
-    if (!sender) return;
-    filter_.range(own, *sender, heard.own_z_m - heard.sender_z_m, heard.range_m, heard.std_m,
-                  sender_clock_variance_m2(setup_, heard.sender, heard.toa - setup_.time));
-  }
+  void heard(const Heard& heard) override { hear_independent(heard); }
   void saw(const Relative& seen) override { see_independent(seen); }
   Bytes say(Time time, std::size_t) override {
     const Estimate estimate = alone_.now(own, time);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
 #include <map>
 
 #include "tools/navigation/estimator/estimator_registry.hpp"
@@ -33,6 +34,7 @@ class OriginStateMethod final : public EstimatorOf<OriginStateMethod> {
     chains_ = SenderChains(setup);
     alone_ = chains_.filter();
     origin_ = alone_.copy(own);
+    origin_noise_m2_ = std::pow(origin_noise_share * setup.position_std_m, 2);
   }
   void moved(Time time, const Vector2& v_W, const Matrix2& q) override {
     chains_.filter().move(own, time, v_W, q);
@@ -86,7 +88,8 @@ class OriginStateMethod final : public EstimatorOf<OriginStateMethod> {
     const int size = max_bytes > 8 * numbers ? 8 : 4;
     for (const int place : places) writer.real(alone_.x()[place], size);
     for (int i = 0; i < 4; ++i)
-      for (int j = i; j < 4; ++j) writer.real(alone_.P()(places[i], places[j]), size);
+      for (int j = i; j < 4; ++j)
+        writer.real(alone_.P()(places[i], places[j]) + (i == j && i < 2 ? origin_noise_m2_ : 0), size);
     return payload;
   }
   Estimate now(Time time) const override { return chains_.filter().now(own, time); }
@@ -95,6 +98,9 @@ class OriginStateMethod final : public EstimatorOf<OriginStateMethod> {
   static constexpr int own = SenderChains::own;
 
   static constexpr std::uint64_t pair_kind = 0, position_kind = 1;
+  /// The origin is the start with a white error of this share of its standard deviation.  Otherwise the joint
+  /// distribution of a vehicle that has not moved yet would be singular, and nothing could be linked to it.
+  static constexpr double origin_noise_share = 0.01;
 
   /// Numbers have 8 bytes where all fit, otherwise 4.
   static std::optional<Pair> read_pair(PayloadReader& reader) {
@@ -112,6 +118,7 @@ class OriginStateMethod final : public EstimatorOf<OriginStateMethod> {
   SenderChains chains_;
   JointFilter alone_;  ///< the own vehicle without ranges, and its origin
   int origin_ = 0;
+  double origin_noise_m2_ = 0;
   std::map<int, Pair> last_;  ///< newest packet of each sender
   Independence independence_;
   bool has_said_ = false;

@@ -4,9 +4,10 @@
 #include <algorithm>
 #include <functional>
 #include <map>
+#include <memory>
 #include <stdexcept>
 
-#include "bridges/log/event_log.hpp"
+#include "bridges/log/record_reader.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/sim_info_t.hpp"
 #include "shoal/sim_state_t.hpp"
@@ -63,10 +64,10 @@ void add_truth(NavRecord& record, const shoal::sim_state_t& state) {
 
 NavRecord read_record(const std::string& path) {
   NavRecord record;
-  bridges::EventLogReader reader(path);
-  bridges::LogEventView event;
+  const std::unique_ptr<bridges::RecordReader> reader = bridges::open_record(path);
+  bridges::RecordEvent event;
   std::map<std::string, NavChannel, std::less<>> channels;
-  while (reader.next(event)) {
+  while (reader->next(event)) {
     if (event.channel == "sim.info" && !record.team) {
       const auto info = shoal::decode<shoal::sim_info_t>(event.payload, shoal::Finite::any);
       record.world = info.world;
@@ -95,7 +96,7 @@ NavRecord read_record(const std::string& path) {
     if (const auto* send = std::get_if<shoal::modem_send_t>(&record.items.back().message))
       record.frame_bytes = std::max(record.frame_bytes, send->data.size());
   }
-  record.problems = reader.problems();
+  record.problems = reader->problems();
   if (!record.team) throw std::invalid_argument("'" + path + "' has no sim.info: it is not the record of a run");
   return record;
 }

@@ -37,8 +37,9 @@ struct NavRecord {
   std::vector<std::string> problems;  ///< of the file, such as an end that is cut off
 };
 
-/// Reads an LCM event log.  Items begin at the first sim.info, from which on programs know the world.  Throws
-/// bridges::BusError when it cannot be read, std::invalid_argument when it has no sim.info or no vehicle with a modem.
+/// Reads an LCM event log or an MCAP file.  Items begin at the first sim.info, from which on programs know the world.
+/// Throws bridges::BusError when it cannot be read, std::invalid_argument when it has no sim.info or no vehicle with a
+/// modem.
 NavRecord read_record(const std::string& path);
 
 /// Returns the true position at a time, between two reports; nothing outside of them.

@@ -145,18 +145,6 @@ NavVehicle vehicle_of(const sim::WorldConfig& world, const sim::VehicleInstance&
 
 }  // namespace
 
-std::optional<int> NavTeam::index_of(const std::string& name) const {
-  for (std::size_t i = 0; i < vehicles.size(); ++i)
-    if (vehicles[i].name == name) return static_cast<int>(i);
-  return std::nullopt;
-}
-
-std::vector<Member> NavTeam::members() const {
-  std::vector<Member> members;
-  for (const NavVehicle& vehicle : vehicles) members.push_back({vehicle.name, vehicle.errors});
-  return members;
-}
-
 NavTeam team_of(const sim::WorldConfig& world) {
   NavTeam team;
   for (const sim::VehicleInstance& instance : world.vehicles) {

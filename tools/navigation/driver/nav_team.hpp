@@ -43,8 +43,8 @@ struct NavTeam {
   SoundRanges sound;
 
   /// Returns the index of a vehicle; nothing when it is not in the team.
-  std::optional<int> index_of(const std::string& name) const;
-  std::vector<Member> members() const;
+  std::optional<int> index_of(const std::string& name) const { return index_of_vehicle(vehicles, name); }
+  std::vector<Member> members() const { return members_of(vehicles); }
 };
 
 /// Returns the team of a world.  Errors of devices that are known for certain (`bias`, `scale_error`) count as unknown

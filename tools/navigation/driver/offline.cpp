@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/navigation/driver/offline.hpp"
 
-#include <ctime>
 #include <deque>
+#include <stdexcept>
 #include <type_traits>
 
 #include "tools/navigation/driver/team_navigator.hpp"
@@ -176,12 +176,14 @@ void play(const NavRecord& record, const std::vector<NavOptions>& options, Run& 
 }  // namespace
 
 OfflineRun run_offline(const NavRecord& record, const Algorithm& algorithm, const std::vector<NavOptions>& options) {
+  if (!algorithm.at_sea)
+    throw std::invalid_argument(algorithm.name + " has no use for ranges by sound: it works on land only");
   OfflineRun run;
   run.algorithm = algorithm.name;
   run.estimates.resize(options.size());
   run.payload_bytes.resize(options.size());
   run.events = record.items.size();
-  const std::clock_t start = std::clock();
+  const AlgorithmClock clock(algorithm);
   if (algorithm.make_team) {
     TeamRun team(record, algorithm, options, run);
     play(record, options, team);
@@ -189,7 +191,7 @@ OfflineRun run_offline(const NavRecord& record, const Algorithm& algorithm, cons
     OwnRun own(record, algorithm, options, run);
     play(record, options, own);
   }
-  run.cpu_s = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+  run.cpu_s = clock.elapsed_s();
   return run;
 }
 

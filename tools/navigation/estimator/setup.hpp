@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -38,6 +39,22 @@ struct Member {
   std::string name;
   DeviceErrors errors;
 };
+
+/// Returns the index of the vehicle with this name; nothing when it is not among them.
+template <class Vehicle>
+std::optional<int> index_of_vehicle(const std::vector<Vehicle>& vehicles, const std::string& name) {
+  for (std::size_t i = 0; i < vehicles.size(); ++i)
+    if (vehicles[i].name == name) return static_cast<int>(i);
+  return std::nullopt;
+}
+
+/// Returns vehicles as the members of a team.
+template <class Vehicle>
+std::vector<Member> members_of(const std::vector<Vehicle>& vehicles) {
+  std::vector<Member> members;
+  for (const Vehicle& vehicle : vehicles) members.push_back({vehicle.name, vehicle.errors});
+  return members;
+}
 
 /// What an estimator knows when it starts.
 struct Setup {

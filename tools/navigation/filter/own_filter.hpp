@@ -72,6 +72,13 @@ class OwnFilterEstimator : public EstimatorOf<Own> {
       filter_.update(row.H, row.innovation, R);
   }
 
+  /// Updates with the range to a sender whose payload is a position, as if that were independent.
+  void hear_independent(const Heard& heard) {
+    if (const auto sender = position_in(heard.payload))
+      filter_.range(own, *sender, heard.own_z_m - heard.sender_z_m, heard.range_m, heard.std_m,
+                    sender_clock_variance_m2(setup_, heard.sender, heard.toa - setup_.time));
+  }
+
   Setup setup_;
   JointFilter filter_;
   Independence independence_;

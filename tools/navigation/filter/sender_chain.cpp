@@ -6,6 +6,14 @@
 
 namespace navigation {
 
+namespace {
+
+bool is_positive_definite(const Matrix2& M) {
+  return M.allFinite() && M(0, 0) > 0 && M.determinant() > 0;
+}
+
+}  // namespace
+
 std::optional<ChainLink> link_between(const Pair& before, const Pair& after) {
   ChainLink link;
   link.about_W = before.mean.tail<2>();
@@ -20,7 +28,7 @@ std::optional<ChainLink> link_between(const Pair& before, const Pair& after) {
   const Matrix2 difference = A.topLeftCorner<2, 2>() - B.topLeftCorner<2, 2>();
   const Matrix2 inverse_M = to_before * difference * to_before.transpose();
   const Matrix2 M = inverse_M.inverse();
-  if (!M.allFinite()) return std::nullopt;
+  if (!is_positive_definite(M)) return std::nullopt;
   const Vector2 both = M * (to_before * (a.head<2>() - b.head<2>()));  // a_b + f_b
   const Matrix2 F_ba = -M * to_before * B.topRightCorner<2, 2>();
   link.information.topLeftCorner<2, 2>() = M - A.bottomRightCorner<2, 2>();
@@ -30,7 +38,7 @@ std::optional<ChainLink> link_between(const Pair& before, const Pair& after) {
   link.information = (0.5 * (link.information + link.information.transpose())).eval();
   link.vector << both - a.tail<2>(), b.tail<2>() + F_ba.transpose() * (inverse_M * both);
   if (!link.information.allFinite() || !link.vector.allFinite() ||
-      !(link.information.bottomRightCorner<2, 2>().determinant() > 0))
+      !is_positive_definite(link.information.bottomRightCorner<2, 2>()))
     return std::nullopt;
   return link;
 }

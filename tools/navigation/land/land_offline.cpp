@@ -2,7 +2,6 @@
 #include "tools/navigation/land/land_offline.hpp"
 
 #include <cmath>
-#include <ctime>
 #include <map>
 #include <numbers>
 #include <stdexcept>
@@ -216,7 +215,7 @@ OfflineRun run_on_land(const LandRecord& record, const Algorithm& algorithm, con
   run.payload_bytes.resize(record.land.vehicles.size());
   run.events = record.items.size();
   const LandEvents events = events_of(record);
-  const std::clock_t start = std::clock();
+  const AlgorithmClock clock(algorithm);
   if (algorithm.make_team) {
     TeamOnLand team(record, algorithm, options);
     play_on_land(record, events, period_us, team, run);
@@ -224,7 +223,7 @@ OfflineRun run_on_land(const LandRecord& record, const Algorithm& algorithm, con
     OwnOnLand own(record, algorithm, options, run);
     play_on_land(record, events, period_us, own, run);
   }
-  run.cpu_s = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+  run.cpu_s = clock.elapsed_s();
   return run;
 }
 

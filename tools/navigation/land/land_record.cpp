@@ -4,9 +4,10 @@
 #include <algorithm>
 #include <functional>
 #include <map>
+#include <memory>
 #include <stdexcept>
 
-#include "bridges/log/event_log.hpp"
+#include "bridges/log/record_reader.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/sim_info_t.hpp"
 #include "shoal/sim_state_t.hpp"
@@ -68,10 +69,10 @@ void add_true_positions(LandRecord& record, const shoal::sim_state_t& state) {
 
 std::optional<LandRecord> read_land_record(const std::string& path) {
   LandRecord record;
-  bridges::EventLogReader reader(path);
-  bridges::LogEventView event;
+  const std::unique_ptr<bridges::RecordReader> reader = bridges::open_record(path);
+  bridges::RecordEvent event;
   LandChannels channels;
-  while (reader.next(event)) {
+  while (reader->next(event)) {
     if (event.channel == "sim.info" && !record.run.team) {
       const auto info = shoal::decode<shoal::sim_info_t>(event.payload, shoal::Finite::any);
       const sim::WorldConfig world = world_of_text(info.resolved_config);
@@ -93,7 +94,7 @@ std::optional<LandRecord> read_land_record(const std::string& path) {
     }
     record.has_radio = record.has_radio || std::holds_alternative<shoal::modem_send_t>(record.items.back().message);
   }
-  record.run.problems = reader.problems();
+  record.run.problems = reader->problems();
   if (!record.run.team) throw std::invalid_argument("'" + path + "' has no sim.info: it is not the record of a run");
   // Radio carries what it must, unlike sound.
   record.run.frame_bytes = max_frame_bytes;

@@ -33,7 +33,7 @@ struct LandRecord {
   bool has_radio = false;  ///< modems of the team sent something
 };
 
-/// Reads an LCM event log when its world is on land; nothing otherwise.  Throws bridges::BusError when it cannot be
+/// Reads a record when its world is on land; nothing otherwise.  Throws bridges::BusError when it cannot be
 /// read, std::invalid_argument when it has no sim.info, or no vehicle with odometry.
 std::optional<LandRecord> read_land_record(const std::string& path);
 

@@ -82,18 +82,6 @@ std::optional<LandVehicle> land_vehicle_of(const sim::WorldConfig& world, const 
 
 }  // namespace
 
-std::optional<int> LandTeam::index_of(const std::string& name) const {
-  for (std::size_t i = 0; i < vehicles.size(); ++i)
-    if (vehicles[i].name == name) return static_cast<int>(i);
-  return std::nullopt;
-}
-
-std::vector<Member> LandTeam::members() const {
-  std::vector<Member> members;
-  for (const LandVehicle& vehicle : vehicles) members.push_back({vehicle.name, vehicle.errors});
-  return members;
-}
-
 bool is_on_land(const sim::WorldConfig& world) {
   return std::none_of(world.vehicles.begin(), world.vehicles.end(), [](const sim::VehicleInstance& instance) {
     const auto& devices = instance.config->devices;

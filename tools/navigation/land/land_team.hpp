@@ -33,8 +33,8 @@ struct LandTeam {
   static constexpr double start_heading_std_rad = 0.03;
 
   std::vector<LandVehicle> vehicles;
-  std::optional<int> index_of(const std::string& name) const;
-  std::vector<Member> members() const;
+  std::optional<int> index_of(const std::string& name) const { return index_of_vehicle(vehicles, name); }
+  std::vector<Member> members() const { return members_of(vehicles); }
 };
 
 /// Whether a world is one of land vehicles: no acoustic modem.

@@ -125,6 +125,8 @@ int run(int argc, char** argv) {
   options.pilot.algorithm = &navigation::algorithm_named(options.algorithm);
   if (!options.pilot.algorithm->make)
     throw std::invalid_argument(options.algorithm + " has the measurements of all vehicles: it runs with --log only");
+  if (!options.pilot.algorithm->at_sea)
+    throw std::invalid_argument(options.algorithm + " has no use for ranges by sound: it works on land only");
   options.pilot.navigation.frame_bytes = static_cast<std::size_t>(options.frame_bytes);
   options.pilot.navigation.sound = navigation::sound_models().at(options.sound);
   options.pilot.access = options.marine.access();

@@ -137,7 +137,7 @@ bool is_offline(int argc, const char* const* argv) {
 int run_offline_command(int argc, const char* const* argv) {
   OfflineOptions options;
   CLI::App app{"Navigates all vehicles of a recorded run by other algorithms.", "shoal-nav"};
-  app.add_option("--log", options.log, "LCM event log of a run")->type_name("FILE")->required();
+  app.add_option("--log", options.log, "record of a run, an LCM event log or MCAP file")->type_name("FILE")->required();
   command_line::add_name_list(app, "--algorithm", options.algorithms,
                               "algorithms, each for all vehicles on the recorded deliveries")
       ->required();

@@ -137,7 +137,9 @@ Algorithm python_algorithm(const std::string& rest) {
           "an algorithm in Python",
           [host] { return std::make_unique<PythonEstimator>(host); },
           {},
-          host->has_saw()};
+          host->has_saw(),
+          true,
+          [host] { return host->cpu_s(); }};
 }
 
 [[maybe_unused]] const bool registered_python = detail::add_family("python:", python_algorithm);

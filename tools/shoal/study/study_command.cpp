@@ -2,6 +2,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <stdexcept>
@@ -55,6 +56,27 @@ int study(const std::string& path, const StudyChanges& changes, StudyOptions opt
   }
 }
 
+/// Compares the table of algorithms with the runs that it is made of.  Returns the number of differences.
+std::size_t verify_table(const LoadedStudy& study, const std::vector<StudyRow>& rows, const std::string& directory,
+                         const std::vector<std::string>& cases) {
+  const std::string path = directory + "/algorithms.csv";
+  std::error_code error;
+  if (!std::filesystem::exists(path, error)) {
+    std::cout << "there is no algorithms.csv to compare with study.csv\n";
+    return 0;
+  }
+  const VerifiedTable verified = compare_with_table(study, rows, read_whole_file(path), path, cases);
+  constexpr std::size_t max_shown = 5;
+  for (std::size_t i = 0; i < std::min(max_shown, verified.differences.size()); ++i)
+    std::cout << verified.differences[i] << '\n';
+  if (verified.differences.size() > max_shown) std::cout << "...\n";
+  std::cout << (verified.differences.empty()
+                    ? fmt::format("algorithms.csv: {} rows are those of study.csv\n", verified.rows)
+                    : fmt::format("algorithms.csv: DIFFERS from study.csv in {} values\n",
+                                  verified.differences.size()));
+  return verified.differences.size();
+}
+
 /// Executes runs again and compares them with those of a table, perhaps of someone else.
 int verify(const std::string& path, const StudyChanges& changes, StudyOptions options, const std::string& directory,
            const std::vector<std::string>& cases) {
@@ -78,7 +100,8 @@ int verify(const std::string& path, const StudyChanges& changes, StudyOptions op
       if (cases.empty() ||
           std::find(cases.begin(), cases.end(), loaded.config.cases[runs[i].in_case].name) != cases.end())
         which.push_back(i);
-    const std::size_t different = verify_runs(loaded, options, runs, which, rows);
+    const std::size_t different = verify_runs(loaded, options, runs, which, rows) +
+                                  (loaded.config.algorithms.empty() ? 0 : verify_table(loaded, rows, directory, cases));
     if (caught_signal() != 0) return 128 + caught_signal();
     return different > 0 ? exit_failed : exit_ok;
   } catch (const std::runtime_error& error) {

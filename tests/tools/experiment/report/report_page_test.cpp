@@ -343,17 +343,19 @@ TEST(Report, ReportsWhatIsWrongWithASummary) {
     EXPECT_NE(at, text.npos) << from;
     return text.replace(at, from.size(), to);
   };
-  EXPECT_THAT(error_with(good.substr(0, good.size() / 2)), HasSubstr("summary.json: is not a JSON"));
-  EXPECT_THAT(error_with(""), HasSubstr("summary.json: is not a JSON"));
-  EXPECT_THAT(error_with("[1, 2]"), HasSubstr("must be an object, got array"));
+  EXPECT_THAT(error_with(good.substr(0, good.size() / 2)), HasSubstr(": must be JSON, got "));
+  EXPECT_THAT(error_with(""), HasSubstr("summary.json:1:1: must be JSON, got the end of the file"));
+  EXPECT_THAT(error_with("{\n  \"seed\": 7;\n}\n"), HasSubstr("summary.json:2:12: must be JSON, got ';'"));
+  EXPECT_THAT(error_with("{\"seed\": 1e999}"), HasSubstr("summary.json: must be JSON with numbers of at most"));
+  EXPECT_THAT(error_with("[1, 2]"), HasSubstr("must be an object, got [1,2]"));
   EXPECT_THAT(error_with("{}"), HasSubstr("has no 'world'"));
   EXPECT_THAT(error_with(changed("\"seed\": 7", "\"seed\": \"x\"")),
-              HasSubstr("'seed' must be a whole number, got string"));
-  EXPECT_THAT(error_with(changed("\"rules\": []", "\"rules\": 3")), HasSubstr("'rules' must be a list, got number"));
+              HasSubstr("'seed' must be a whole number, got \"x\""));
+  EXPECT_THAT(error_with(changed("\"rules\": []", "\"rules\": 3")), HasSubstr("'rules' must be a list, got 3"));
   EXPECT_THAT(error_with(changed("\"rules\": []", "\"rules\": [{\"rule\": 1}]")),
               HasSubstr("rules: 'rule' must be text"));
   EXPECT_THAT(error_with(changed("\"distance.travelled_m\": ", "\"distance.travelled_m\": \"far\", \"x\": ")),
-              HasSubstr("'distance.travelled_m' must be a number or null, got string"));
+              HasSubstr("'distance.travelled_m' must be a number or null, got \"far\""));
   write(directory + "/summary.json", good);
   EXPECT_EQ(error_of_report({directory}), "");
 }

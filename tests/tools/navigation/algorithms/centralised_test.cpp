@@ -76,6 +76,32 @@ TEST(OriginStateMethod, IsSoToCentimetresInFramesOfHalfTheSize) {
       [](const Estimate& own, const Estimate& team) { EXPECT_LT((own.p_W - team.p_W).norm(), 0.05); });
 }
 
+TEST(OriginStateMethod, LinksToAPacketThatWasSentBeforeTheSenderMoved) {
+  for (const std::size_t max_bytes : {118U, 57U}) {
+    const navigation::Setup server_setup = nav_setup(2, 0, {300, 0}, 1), client_setup = nav_setup(2, 1, {0, 0}, 1);
+    const auto server = started("osm", server_setup), client = started("osm", client_setup);
+    const auto team = algorithm_named("cekf").make_team();
+    team->start(0, server_setup);
+    team->start(1, client_setup);
+    for (int second = 0; second <= 60; second += 20) {
+      const Time now = second * nav_second;
+      const Vector2 v_server(0, 1), v_client(1, 0);
+      server->moved(now, v_server, 1e-2 * Matrix2::Identity());
+      client->moved(now, v_client, 1e-2 * Matrix2::Identity());
+      team->moved(0, now, v_server, 1e-2 * Matrix2::Identity());
+      team->moved(1, now, v_client, 1e-2 * Matrix2::Identity());
+      const double range_m = std::hypot(300 - second, second) + 0.5;
+      team->sent(0, now);
+      client->heard(heard_from(0, server->say(now, max_bytes), range_m, 1, now));
+      team->heard(1, heard_from(0, {}, range_m, 1, now));
+      // Numbers of 8 bytes, or 4: as in the tests above.
+      EXPECT_LT((client->now(now).p_W - team->now(1, now).p_W).norm(), max_bytes > 57 ? 1e-6 : 0.05) << second;
+    }
+    // The first range alone leaves 1 - 1 / (1 + 1 + 1) = 0.67 m^2 along the line, and 0.6 m^2 come by the motion.
+    EXPECT_LT(client->now(60 * nav_second).P(0, 0), 1.2);
+  }
+}
+
 TEST(OriginStateMethod, SaysItsPositionAloneWhenFixesReplacedWhatItSaid) {
   const auto server = started("osm", nav_setup(2, 0, {0, 0}, 100));
   const auto fix_at = [&](int second) {

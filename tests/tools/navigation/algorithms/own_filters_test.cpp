@@ -2,8 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "tests/tools/navigation/algorithms/conversation.hpp"
+#include "tools/navigation/filter/own_filter.hpp"
 
 namespace {
 
@@ -220,6 +222,55 @@ TEST(CoopAuvFilter, DoubtsASenderThatContradictsAndStillUsesTheOther) {
   EXPECT_NEAR(own->now(now).p_W.x(), 0, 1e-9);
   receive(2, south->say(0, 100), far_m + 6);
   EXPECT_NEAR(own->now(now).p_W.y(), 6 * 4.0 / (4 + 1 + 1), 1e-3);
+}
+
+/// A rover that has driven 10 m east.
+std::unique_ptr<Estimator> driven_rover() {
+  auto rover = started("coop_rover", nav_setup(2, 0, {5, 0}, 0.1));
+  for (int i = 1; i <= 10; ++i) rover->moved(i * nav_second, {1, 0}, 100 * Matrix2::Identity());
+  return rover;
+}
+
+TEST(CoopRoverFilter, HasTheErrorsOfOdometryOfTheProgram) {
+  const Estimate estimate = driven_rover()->now(10.5 * nav_second);
+  EXPECT_NEAR(estimate.p_W.x(), 5 + 10.5, 1e-9);
+  EXPECT_NEAR(estimate.P(0, 0), 0.1 * 0.1 + 0.03 * 0.03 * 10, 1e-9);
+  // Across: slip, and the random walk of the heading over the rest of each way, m^2: 0.015^2 (9^2 + ... + 1).
+  EXPECT_NEAR(estimate.P(1, 1), 0.1 * 0.1 + 0.01 * 0.01 * 10 + 0.015 * 0.015 * 285, 1e-9);
+}
+
+TEST(CoopRoverFilter, UsesASightFromItsHeading) {
+  const auto rover = driven_rover();
+  const auto other = started("naive", nav_setup(2, 1, {15, 4}, 0.2));
+  const Bytes payload = other->say(0, 100);
+  Relative seen;
+  seen.time = 10 * nav_second;
+  seen.other = 1;
+  seen.range_m = 4.1;  // north of it, 0.1 m too far
+  seen.bearing_rad = std::numbers::pi / 2;
+  seen.range_std_m = 0.1;
+  seen.payload = payload;
+  const double P = rover->now(10 * nav_second).P(1, 1);
+  rover->saw(seen);
+  EXPECT_NEAR(rover->now(10 * nav_second).p_W.y(), -0.1 * P / (P + 0.2 * 0.2 + 0.1 * 0.1), 1e-3);
+}
+
+TEST(CoopRoverFilter, SendsItsPositionWithGpsOnlyAndNotBetterThanAFix) {
+  const auto rover = driven_rover();
+  EXPECT_TRUE(rover->say(10 * nav_second, 100).empty());
+  rover->fix(10 * nav_second, {15, 0}, 0.5);
+  const auto sent = position_in(rover->say(10 * nav_second, 100));
+  ASSERT_TRUE(sent);
+  EXPECT_NEAR(sent->P(0, 0), 0.5 * 0.5, 1e-9);
+  EXPECT_NEAR(sent->P(1, 1), 0.5 * 0.5, 1e-9);
+}
+
+TEST(CoopRoverFilter, UsesFixesBeforeItMoves) {
+  const auto rover = started("coop_rover", nav_setup(2, 0, {0, 0}, 1));
+  rover->fix(0, {3, 0}, 1);
+  const Estimate estimate = rover->now(0);  // K = 1 / 2
+  EXPECT_NEAR(estimate.p_W.x(), 1.5, 1e-12);
+  EXPECT_NEAR(estimate.P(0, 0), 0.5, 1e-12);
 }
 
 TEST(ParticleStart, FindsAnUnknownStartByTheRangesOfThreeSenders) {

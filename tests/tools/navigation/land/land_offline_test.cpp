@@ -89,6 +89,13 @@ TEST_F(LandOffline, AnAlgorithmWithoutAUseOfSightsIsRefused) {
   for (const char* algorithm : {"iu", "osm", "fls"}) EXPECT_THROW(run(algorithm), std::invalid_argument) << algorithm;
 }
 
+TEST_F(LandOffline, TheFilterOfTheRoversIsForLandOnly) {
+  EXPECT_EQ(run("coop_rover").estimates[0].size(), 2U * end_s + 1);
+  EXPECT_FALSE(algorithm_named("coop_rover").at_sea);
+  EXPECT_TRUE(algorithm_named("naive").at_sea);
+  EXPECT_THROW(run_offline(record_.run, algorithm_named("coop_rover"), {}), std::invalid_argument);
+}
+
 TEST_F(LandOffline, ASightHasThePayloadOfThatInstantWithoutRadio) {
   for (int t = 1; t <= end_s; ++t) sight(t);
   const double dr_m = error_m(run("dr"));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <fstream>
 
 #include "tests/project_paths.hpp"
@@ -82,6 +83,59 @@ TEST(PythonEstimator, AFileThatEndsItsInterpreterIsSaid) {
   const test_support::ScratchFolder folder;
   python_with(folder, "q", "  pass\nimport os\nos._exit(0)\n");
   EXPECT_NE(error_of("python:" + folder.file("q") + ".Mine").find("its interpreter has ended"), std::string::npos);
+}
+
+/// Sets an environment variable for a scope.
+class Environment {
+ public:
+  Environment(const char* name, const char* value) : name_(name) { setenv(name, value, 1); }
+  ~Environment() { unsetenv(name_); }
+
+ private:
+  const char* name_;
+};
+
+TEST(PythonEstimator, AClassThatNeverReturnsIsSaidAfterTheLimit) {
+  const test_support::ScratchFolder folder;
+  const std::string start = "  def start(self, s): pass\n", sleep = "import time; time.sleep(1000)\n";
+  // Long enough for the interpreter to start.
+  const Environment limit("SHOAL_PYTHON_LIMIT_S", "3");
+  EXPECT_NE(error_of(python_with(folder, "s", start + "  def now(self, t): " + sleep))
+                .find("s.Mine: no answer within 3 s to now() or a call before it; SHOAL_PYTHON_LIMIT_S is the limit"),
+            std::string::npos);
+  // One that takes no calls: they fill the pipe, of 64 kB.
+  const auto stuck =
+      started(python_with(folder, "m", start + "  def moved(self, t, v, q): " + sleep), nav_setup(2, 0, {0, 0}, 1));
+  EXPECT_THROW(
+      {
+        for (int i = 1; i < 10'000; ++i) stuck->moved(i * nav_second, {1, 0}, Matrix2::Zero());
+      },
+      std::invalid_argument);
+}
+
+TEST(PythonEstimator, AWrongLimitIsSaid) {
+  const test_support::ScratchFolder folder;
+  const std::string source = python_with(folder, "w", "  def start(self, s): pass\n");
+  for (const char* wrong : {"soon", "0", "nan", ""}) {
+    const Environment limit("SHOAL_PYTHON_LIMIT_S", wrong);
+    EXPECT_EQ(error_of(source),
+              std::string("SHOAL_PYTHON_LIMIT_S must be a number from 0.01 to 1e6, got '") + wrong + "'");
+  }
+}
+
+TEST(PythonEstimator, TheTimeOfTheInterpreterCounts) {
+  const test_support::ScratchFolder folder;
+  const std::string source = python_with(folder, "t",
+                                       "  def start(self, s): pass\n"
+                                       "  def now(self, t):\n"
+                                       "    import time\n"
+                                       "    end = time.process_time() + 0.05\n"
+                                       "    while time.process_time() < end: pass\n"
+                                       "    return [0, 0], [[1, 0], [0, 1]]\n");
+  const auto own = started(source, nav_setup(2, 0, {0, 0}, 1));
+  const AlgorithmClock clock(algorithm_named(source));
+  own->now(0);
+  EXPECT_GE(clock.elapsed_s(), 0.05);
 }
 
 TEST(PythonEstimator, WhatIsNotThereIsSaid) {
