@@ -92,6 +92,7 @@ class AcousticModem final : public sim::Sensor, public MessageModem, private sim
 
   bool listens_to(const sim::Signal& signal) const override;
   void receive(const sim::Reception& received) override;
+  bool wants_undetected() const override { return false; }
   void transmit(sim::Time at, Outgoing message);
   /// Returns the number of transmitted bits of a message.
   std::int64_t bits(std::size_t bytes) const;

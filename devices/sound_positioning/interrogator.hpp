@@ -57,6 +57,7 @@ class Interrogator final : public sim::AcousticListener {
 
   bool listens_to(const sim::Signal& signal) const override;
   void receive(const sim::Reception& received) override;
+  bool wants_undetected() const override { return false; }
 
  private:
   sim::Matrix3d R_WS(sim::Time at) const;

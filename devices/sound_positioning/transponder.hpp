@@ -39,6 +39,7 @@ class Transponder final : public sim::Sensor, public sim::AcousticListener {
   void visit_state(sim::StateArchive& archive) override;
   bool listens_to(const sim::Signal& signal) const override;
   void receive(const sim::Reception& received) override;
+  bool wants_undetected() const override { return false; }
 
   const Params& params() const { return params_; }
   double answer_Hz() const { return answer_Hz_; }

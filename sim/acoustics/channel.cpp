@@ -86,6 +86,7 @@ void AcousticChannel::leave(Transducer& transducer) {
   transducers_[static_cast<std::size_t>(transducer.number())] = nullptr;
   for (const auto& sending : sendings_)
     if (sending && sending->from == &transducer) sending->from = nullptr;
+  sum_outdated_ = true;  // by flights to it
   discard_messages_for(transducer.own_);
   clear_receivers();
 }
@@ -102,7 +103,6 @@ void AcousticChannel::discard_messages_for(const Audience& removed) {
 
 void AcousticChannel::discard_places() {
   neighbours_age_ = -1;
-  ahead_.clear();
 }
 
 void AcousticChannel::clear_receivers() {
@@ -179,11 +179,17 @@ void AcousticChannel::watch() {
     const bool works = each->works();
     if (each->sending_ >= 0) cut(each->sending_, works ? SignalLoss::out_of_water : SignalLoss::sender_off, step_end_);
     const SignalLoss loss = works ? SignalLoss::out_of_water : SignalLoss::receiver_off;
-    for (std::int64_t flight = each->receiver_.drop(); flight >= 0; flight = each->receiver_.drop())
-      flights_[static_cast<std::size_t>(flight)].loss = loss;
+    drop_receptions(*each, loss);
   }
   watching_ = more;
   if (more) schedule(step_end_ + watch_period, watch_event, 0);
+}
+
+void AcousticChannel::drop_receptions(Transducer& of, SignalLoss why) {
+  for (std::int64_t flight = of.receiver_.drop(); flight >= 0; flight = of.receiver_.drop()) {
+    flights_[static_cast<std::size_t>(flight)].loss = why;
+    update_hash(static_cast<int>(flight), flights_sum_);
+  }
 }
 
 int AcousticChannel::new_sending() {
@@ -279,11 +285,12 @@ void AcousticChannel::handle(const Event& event, Time now) {
       end_emission(item, event.due);
       break;
     case near_event:
-      approach(item, event.due);
+    case start_event: {
+      Consequences consequences;
+      handle_at_receiver(item, static_cast<EventKind>(event.kind), event.due, consequences);
+      carry_out(item, consequences);
       break;
-    case start_event:
-      begin(item);
-      break;
+    }
     case end_event:
       end(item);
       break;
@@ -326,8 +333,7 @@ void AcousticChannel::emit(int number, Time now) {
     ++messages_[sending.signal.to.group][sending.signal.to.address];
     if (from->is_meant_by(sending.signal)) ++from->meant_near_;
   }
-  for (std::int64_t flight = from->receiver_.drop(); flight >= 0; flight = from->receiver_.drop())
-    flights_[static_cast<std::size_t>(flight)].loss = SignalLoss::half_duplex;
+  drop_receptions(*from, SignalLoss::half_duplex);
 
   // Send to each transducer in audible range.
   const double reach_m = update_neighbours(sending.signal, now) + stray_m;
@@ -374,8 +380,10 @@ void AcousticChannel::send_to(int number, Transducer& to) {
   flight.meant = signal.kind == Signal::Kind::message && to.is_meant_by(signal) && to.listener_.listens_to(signal);
   if (flight.meant) ++to.meant_near_;
   ++sending.users;
+  sending.flights.push_back(flight_number);
   const double travel_s = travel_time_s(around_.medium, sending.p_W, to.p_W(sending.sent));
   const double share = propagation_.bends() ? early_ray : early;
+  update_hash(flight_number, flights_sum_);
   schedule(sending.sent + from_seconds(travel_s * (1 - share)), near_event, flight_number);
 }
 
@@ -401,16 +409,19 @@ void AcousticChannel::cut(int number, SignalLoss why, Time at) {
     sending.from->sending_ = -1;
     sending.from->sending_until_ = std::min(sending.from->sending_until_, at);
   }
-  for (std::size_t i = 0; i < flights_.size(); ++i)
-    if (flights_[i].sending == number && flights_[i].present) schedule_silence(static_cast<int>(i), sending, at);
+  for (const int i : sending.flights) {
+    const Flight& flight = flights_[static_cast<std::size_t>(i)];
+    if (flight.sending != number || !flight.present) continue;
+    if (const auto from = silent_from(i, sending, at)) schedule(*from, silence_event, i);
+  }
 }
 
-void AcousticChannel::schedule_silence(int number, const Sending& sending, Time now) {
+std::optional<Time> AcousticChannel::silent_from(int number, const Sending& sending, Time now) const {
   const Flight& flight = flights_[static_cast<std::size_t>(number)];
   const double whole_s = to_seconds(sending.signal.duration);
   const double share = whole_s > 0 ? to_seconds(sending.cut_after) / whole_s : 1;
   const Time at = std::max(now, flight.started + from_seconds(share * to_seconds(flight.ended - flight.started)));
-  if (at < flight.ended) schedule(at, silence_event, number);
+  return at < flight.ended ? std::optional(at) : std::nullopt;
 }
 
 /// Corrects the arrival along the straight line to that of the first ray: Newton's method on the travel time, whose
@@ -434,12 +445,11 @@ std::optional<Arrival> AcousticChannel::arrival_at(const Transducer& to, const S
   return arrival;
 }
 
-void AcousticChannel::approach(int number, Time due) {
+void AcousticChannel::approach(int number, Time due, Consequences& out) {
   Flight& flight = flights_[static_cast<std::size_t>(number)];
   if (const Transducer* const to = receiver_of(flight)) {
     const Sending& sending = *sendings_[static_cast<std::size_t>(flight.sending)];
-    const Ahead* const ahead = take_ahead(flight, near_event);
-    const std::optional<Arrival> arrival = ahead != nullptr ? ahead->arrival : arrival_at(*to, sending);
+    const std::optional<Arrival> arrival = arrival_at(*to, sending);
     if (arrival) {
       flight.travel_time_s = arrival->travel_time_s;
       flight.started = std::max(due, sending.sent + from_seconds(arrival->travel_time_s));
@@ -448,7 +458,8 @@ void AcousticChannel::approach(int number, Time due) {
       set_receiver(flight, nullptr);  // faster than sound: the body has diverged
     }
   }
-  schedule(std::max(flight.started, due), start_event, number);
+  update_hash(number, out.sum);
+  out.schedule(std::max(flight.started, due), start_event);
 }
 
 }  // namespace sim

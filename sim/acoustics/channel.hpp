@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -52,11 +53,14 @@ class AcousticChannel {
 
   const AcousticsConfig& config() const { return config_; }
   bool has_water() const { return around_.medium.has_water(); }
-  /// Computes paths and levels of the signals whose events are due at `now`, the end of the step that just ended, in
-  /// the threads of a pool; null, or few signals: none.  handle() uses them, and has the same results without.
-  void look_ahead(Time now, ThreadPool* threads);
-  /// Handles an event of the channel; `now` as above.
+  /// Handles an event of the channel; `now`: the end of the step that just ended.
   void handle(const Event& event, Time now);
+  /// Takes a due event that changes nothing but its receiver, so that threads may handle it with others.  Returns false
+  /// for other events: call handle_deferred() before those are handled.
+  bool defer(const Event& event, Time now);
+  /// Handles the deferred events, and those that follow from them before `until`, in their order at each receiver, in
+  /// the threads of a pool; null: none.  The result does not depend on the threads.  Returns whether there were any.
+  bool handle_deferred(Time until, Time now, ThreadPool* threads);
   /// Sets an observer of all signals; null: none.  It must outlive the channel or be removed.
   void set_observer(SoundObserver* observer) { observer_ = observer; }
   /// Discards the list of neighbours.  Call after a transducer was moved.
@@ -85,12 +89,15 @@ class AcousticChannel {
   const Propagation& propagation() const { return propagation_; }
   /// Number of receptions since the start, successful or not: a measure of the work.
   std::int64_t flights() const { return flights_made_; }
-  /// Number of events whose paths or levels look_ahead() computed, since the start.
-  std::int64_t looked_ahead() const { return looked_ahead_; }
+  /// Number of events deferred since the start.
+  std::int64_t deferred() const { return deferred_events_; }
   /// Number of transducers examined in the search for receivers, since the start.
   std::int64_t examined() const { return examined_; }
   /// Visits the state, including transducers and continuous sounds; their devices do not visit them.
   void visit_state(StateArchive& archive);
+  /// Returns a hash of the state that costs little with many signals in flight: it has sums over them that are kept up
+  /// to date.  The order of the sounds at a receiver, which their sum depends on in the last bits, is not in it.
+  std::uint64_t content_hash();
   /// Checks restored events against the signals.  `events`: all queued events of the world.  Throws SnapshotError when
   /// events and signals of the channel do not match.
   void check_events(std::span<const Event> events, const StateArchive& archive) const;
@@ -115,6 +122,7 @@ class AcousticChannel {
     SignalLoss cut = SignalLoss::none;        // cause of an early end
     Time cut_after{0};                        // duration sent until then
     int users = 0;                            // flights and events that refer to it
+    std::vector<int> flights;                 // all that were made; numbers of ended ones may have other signals now
     void visit_state(StateArchive& archive);  // except `from`
   };
   /// Propagation of a signal to one receiver.
@@ -134,7 +142,7 @@ class AcousticChannel {
     bool bent = false;                        // arrives_W is that of a ray
     Vector3d arrives_W = Vector3d::Zero();    // unit vector along the sound at the receiver
     double lock_later_s = 0;                  // delay of the echo that the receiver takes for the first arrival
-    int ahead = -1;                           // number in `ahead_`, while events are handled
+    std::uint64_t hash = 0;                   // as in flights_sum_
     void visit_state(StateArchive& archive);  // except `to`
   };
 
@@ -149,12 +157,25 @@ class AcousticChannel {
     Vector3d arrives_W = Vector3d::Zero();
     std::vector<Propagation::Gain::Echo> echoes;
   };
-  /// What look_ahead() found for a flight: the arrival for near_event, the level for start_event.
-  struct Ahead {
+  /// What follows from an event at a receiver, outside of it.
+  struct Consequences {
+    struct Due {
+      Time at{0};
+      EventKind kind = near_event;
+    };
+    std::array<Due, 2> events;  // of the same flight
+    int count = 0;
+    bool ended = false;     // the flight
+    std::uint64_t sum = 0;  // change of flights_sum_
+    void schedule(Time at, EventKind kind) { events[static_cast<std::size_t>(count++)] = {at, kind}; }
+  };
+  /// Event that is handled with others.
+  struct Deferred {
+    Time due{0};
+    EventKind kind = near_event;
     int flight = -1;
-    int kind = 0;  // of its event
-    std::optional<Arrival> arrival;
-    Level level;
+    int next = -1;  // at the same receiver
+    Consequences consequences;
   };
 
   /// Add and remove transducers and continuous sounds.
@@ -183,26 +204,37 @@ class AcousticChannel {
   void end_emission(int sending, Time at);
   /// Ends a transmission early.
   void cut(int sending, SignalLoss why, Time at);
-  /// Schedules the early end at a receiver, unless the signal ends before.
-  void schedule_silence(int flight, const Sending& sending, Time now);
+  /// Time of the early end of a cut signal at a receiver; empty: it ends before.
+  std::optional<Time> silent_from(int flight, const Sending& sending, Time now) const;
   void follow_ray(Arrival& arrival, const Sending& sending, const Vector3d& velocity_W) const;
   /// Arrival at a receiver that moves on at constant velocity; empty: it is faster than sound.
   std::optional<Arrival> arrival_at(const Transducer& to, const Sending& sending) const;
-  /// Takes what look_ahead() found for an event of this kind; null: nothing.
-  Ahead* take_ahead(Flight& flight, EventKind kind);
-  void find_ahead(Ahead& ahead) const;
-  void approach(int flight, Time due);
-  void begin(int flight);
+  // Events at a receiver.
+  void approach(int flight, Time due, Consequences& out);
+  void begin(int flight, Consequences& out);
+  /// Ends a flight without a call of the listener.
+  void end_quietly(int flight, Consequences& out);
+  void end(int flight);
   void fall_silent(int flight, Time due);
+  void handle_at_receiver(int first, Time until);
+  void handle_at_receiver(int flight, EventKind kind, Time due, Consequences& out);
+  void carry_out(int flight, const Consequences& consequences);
+  /// Determines the result of a reception, and counts it.  Returns the minimum ratio of the signal to all else.
+  Decibels end_at(Transducer& to, int flight);
+  void notify(Transducer& to, const Flight& flight, const Sending& sending, Decibels sinr);
+  /// Reports a flight that has ended.
+  void conclude(int flight);
+  void discard(int flight);
   /// Checks whether active senders and receivers still have power and are in the water.
   void watch();
   bool can(const Transducer& transducer) const;
+  /// Aborts all receptions of a transducer.
+  void drop_receptions(Transducer& of, SignalLoss why);
   /// Updates the noise of receptions after a continuous sound started, ended or changed.
   void noise_changed();
   /// Margin below the noise within which a signal can affect a receiver.
   Decibels min_level(double frequency_Hz) const;
   Decibels compute_min_level(double frequency_Hz) const;
-  void end(int flight);
   // Reports to the observer; they change nothing.
   void report_sent(const Sending& sending) const;
   void report_beyond_range(const Sending& sending, double reach_m) const;
@@ -216,13 +248,17 @@ class AcousticChannel {
   Decibels link_loss(const Transducer& to, const Sending& sending, double& loss_probability) const;
   /// Noise of the sea and of continuous sounds in the band of a signal, as received.
   PowerRatio noise_at(const Transducer& to, const Vector3d& p_W, const Signal& signal) const;
-  void take(int number, Flight& flight, const Sending& sending, PowerRatio power, PowerRatio disturbing);
+  void take(int number, Flight& flight, const Sending& sending, PowerRatio power, PowerRatio disturbing,
+            Consequences& out);
   void finish(const Transducer& to, Flight& flight, const Sending& sending, const SignalReceiver::Outcome& outcome);
   /// Random stream of a signal at a receiver, for its start or its end.
   Random stream(const Transducer& to, const Sending& sending, bool at_end) const;
   void schedule(Time due, EventKind kind, int item);
   Transducer* visit_transducer(StateArchive& archive, const Transducer* transducer);
   void check_numbers(const StateArchive& archive) const;
+  std::uint64_t hash_of(int number, const Flight& flight) const;
+  /// Must be called after a flight has changed.  `sum`: flights_sum_, or a change of it.
+  void update_hash(int number, std::uint64_t& sum);
   int new_sending();
   int new_flight();
   void release(int sending);
@@ -241,6 +277,8 @@ class AcousticChannel {
   std::vector<int> free_sendings_;
   std::vector<Flight> flights_;
   std::vector<int> free_flights_;
+  std::uint64_t flights_sum_ = 0;  // of the hashes of the flights in use
+  bool sum_outdated_ = false;
   std::int64_t flights_made_ = 0;
   Time step_end_{0};
   std::uint32_t joins_ = 0;
@@ -257,8 +295,11 @@ class AcousticChannel {
   Transducer::Counts removed_;
   std::vector<ShadowLoss> shadow_losses_;
   std::vector<int> near_;
-  std::vector<Ahead> ahead_;
-  std::int64_t looked_ahead_ = 0;
+  // While events are deferred: the first and last at each receiver, or -1, and the receivers that have any.
+  std::vector<Deferred> deferred_;
+  std::vector<std::array<int, 2>> deferred_at_;
+  std::vector<std::size_t> receivers_;
+  std::int64_t deferred_events_ = 0;
 };
 
 }  // namespace sim

@@ -4,10 +4,9 @@
 
 #include "sim/acoustics/channel.hpp"
 #include "sim/acoustics/sound_path.hpp"
-#include "sim/base/thread_pool.hpp"
 #include "sim/device/fault.hpp"
 
-// Reception of signals at their receivers, and what threads compute of it before the events of a step are handled.
+// Reception of signals at their receivers.
 
 namespace sim {
 
@@ -146,12 +145,12 @@ void AcousticChannel::lock(Flight& flight, const Sending& sending,
   }
 }
 
-void AcousticChannel::begin(int number) {
+void AcousticChannel::begin(int number, Consequences& out) {
   Flight& flight = flights_[static_cast<std::size_t>(number)];
   const Sending& sending = *sendings_[static_cast<std::size_t>(flight.sending)];
   Transducer* const receiver = receiver_of(flight);
   if (receiver == nullptr) {
-    end(number);
+    end_quietly(number, out);
     return;
   }
   Transducer& to = *receiver;
@@ -159,7 +158,7 @@ void AcousticChannel::begin(int number) {
   // The position is as predicted except for rotation in this short time; after a jump of the transducer, predict the
   // arrival again.
   if (!flight.delayed && (p_W - flight.p_started_W).norm() > 0.01) {
-    approach(number, flight.started);
+    approach(number, flight.started, out);
     return;
   }
   flight.p_started_W = p_W;
@@ -167,12 +166,10 @@ void AcousticChannel::begin(int number) {
   if (config_.range_max_m && (p_W - sending.p_W).norm() > *config_.range_max_m) {
     if (flight.meant) ++to.counts_.lost[static_cast<std::size_t>(SignalLoss::range)];
     flight.loss = SignalLoss::range;
-    if (observer_ != nullptr && flight.meant) report_arrival(flight, sending, to);
-    end(number);
+    end_quietly(number, out);
     return;
   }
-  Ahead* const ahead = take_ahead(flight, start_event);
-  const Level found = ahead != nullptr ? std::move(ahead->level) : level_at(to, p_W, flight, sending);
+  const Level found = level_at(to, p_W, flight, sending);
   flight.level = found.level;
   flight.ended = found.ended;
   flight.closing_mps = found.closing_mps;
@@ -185,7 +182,8 @@ void AcousticChannel::begin(int number) {
     flight.delayed = true;
     flight.travel_time_s += found.later_s;
     flight.started += from_seconds(found.later_s);
-    schedule(flight.started, start_event, number);
+    update_hash(number, out.sum);
+    out.schedule(flight.started, start_event);
     return;
   }
   // Start the reception.
@@ -196,10 +194,12 @@ void AcousticChannel::begin(int number) {
     to.receiver_.begin({number, sending.signal.centre_Hz, sending.signal.bandwidth_Hz, power + found.disturbing,
                         flight.ended, sending.signal.kind == Signal::Kind::message},
                        flight.started);
-  if (flight.listened) take(number, flight, sending, power, found.disturbing);
+  if (flight.listened) take(number, flight, sending, power, found.disturbing, out);
   if (flight.detected && !found.echoes.empty()) lock(flight, sending, found.echoes);
-  schedule(flight.ended, end_event, number);
-  if (flight.present && sending.cut != SignalLoss::none) schedule_silence(number, sending, flight.started);
+  update_hash(number, out.sum);
+  out.schedule(flight.ended, end_event);
+  if (!flight.present || sending.cut == SignalLoss::none) return;
+  if (const auto from = silent_from(number, sending, flight.started)) out.schedule(*from, silence_event);
 }
 
 void AcousticChannel::fall_silent(int number, Time due) {
@@ -208,8 +208,8 @@ void AcousticChannel::fall_silent(int number, Time due) {
   if (to != nullptr && flight.present) to->receiver_.silence(number, due);
 }
 
-void AcousticChannel::take(int number, Flight& flight, const Sending& sending, PowerRatio power,
-                           PowerRatio disturbing) {
+void AcousticChannel::take(int number, Flight& flight, const Sending& sending, PowerRatio power, PowerRatio disturbing,
+                           Consequences& out) {
   const Signal& signal = sending.signal;
   Transducer& to = *receiver_of(flight);
   TakenSignal taken;
@@ -229,7 +229,9 @@ void AcousticChannel::take(int number, Flight& flight, const Sending& sending, P
   std::int64_t displaced = -1;
   flight.loss = to.receiver_.take(taken, {to.config().detection_dB, to.config().capture_dB}, displaced);
   flight.detected = flight.loss == SignalLoss::none;
-  if (displaced >= 0) flights_[static_cast<std::size_t>(displaced)].loss = SignalLoss::captured;
+  if (displaced < 0) return;
+  flights_[static_cast<std::size_t>(displaced)].loss = SignalLoss::captured;
+  update_hash(static_cast<int>(displaced), out.sum);
 }
 
 void AcousticChannel::finish(const Transducer& to, Flight& flight, const Sending& sending,
@@ -243,101 +245,79 @@ void AcousticChannel::finish(const Transducer& to, Flight& flight, const Sending
   if (flight.loss == SignalLoss::none && link_luck < loss_probability) flight.loss = SignalLoss::link;
 }
 
-void AcousticChannel::end(int number) {
+Decibels AcousticChannel::end_at(Transducer& to, int number) {
   Flight& flight = flights_[static_cast<std::size_t>(number)];
   const Sending& sending = *sendings_[static_cast<std::size_t>(flight.sending)];
-  if (Transducer* const to = receiver_of(flight)) {
-    // Determine the result of the reception.
-    SignalReceiver::Outcome outcome;
-    const bool taken = flight.present && to->receiver_.end(number, flight.ended, outcome);
-    if (flight.listened) {
-      Decibels sinr = flight.snr;
-      if (taken) {
-        sinr = to_decibels(outcome.worst_sinr);
-        finish(*to, flight, sending, outcome);
-        if (sending.cut != SignalLoss::none) flight.loss = sending.cut;
-        if (!around_.medium.in_water(to->p_W(flight.ended))) flight.loss = SignalLoss::out_of_water;
-        if (!to->works()) flight.loss = SignalLoss::receiver_off;
-      }
-      // Count messages addressed to the receiver.
-      if (flight.meant) ++to->counts_.lost[static_cast<std::size_t>(flight.loss)];
-      if (flight.meant && flight.loss == SignalLoss::shadow && shadow_losses_.size() < max_shadow_losses)
-        shadow_losses_.push_back(
-            {sending.sent, sending.source, to->full_name(), (flight.p_started_W - sending.p_W).norm()});
-      if (flight.meant && flight.loss == SignalLoss::none) {
-        ++to->counts_.understood;
-        to->counts_.understood_bytes += static_cast<std::int64_t>(sending.signal.payload.size());
-      }
-      if (observer_ != nullptr) report_arrival(flight, sending, *to);
-      // Notify the listener unless the receiver itself cannot receive: the end of a signal is received when only the
-      // sender left the water.
-      const bool out_itself = flight.loss == SignalLoss::out_of_water && sending.cut != SignalLoss::out_of_water;
-      const bool deaf = out_itself || flight.loss == SignalLoss::receiver_off || flight.loss == SignalLoss::blocked ||
-                        !to->works() || !around_.medium.in_water(to->p_W(flight.ended));
-      const Vector3d back_W = sending.p_W - flight.p_started_W;
-      const Vector3d apparent_W = flight.bent ? Vector3d(-back_W.norm() * flight.arrives_W) : back_W;
-      const Time started = flight.started + from_seconds(flight.lock_later_s);
-      if (!deaf)
-        to->listener_.receive({sending.signal, sending.source, sending.number, sending.sent, started, flight.ended,
-                               flight.travel_time_s + flight.lock_later_s, sending.p_W, flight.p_started_W, apparent_W,
-                               flight.level, flight.snr, sinr, flight.closing_mps, flight.loss, flight.detected});
-    }
+  // Determine the result of the reception.
+  SignalReceiver::Outcome outcome;
+  const bool taken = flight.present && to.receiver_.end(number, flight.ended, outcome);
+  if (!flight.listened) return flight.snr;
+  if (taken) {
+    finish(to, flight, sending, outcome);
+    if (sending.cut != SignalLoss::none) flight.loss = sending.cut;
+    if (!around_.medium.in_water(to.p_W(flight.ended))) flight.loss = SignalLoss::out_of_water;
+    if (!to.works()) flight.loss = SignalLoss::receiver_off;
   }
-  // receive() may have transmitted, which invalidates references.
-  const int of = flights_[static_cast<std::size_t>(number)].sending;
-  free_flights_.push_back(number);
-  flights_[static_cast<std::size_t>(number)] = {};
-  release(of);
+  // Count messages addressed to the receiver.
+  if (flight.meant) ++to.counts_.lost[static_cast<std::size_t>(flight.loss)];
+  if (flight.meant && flight.loss == SignalLoss::none) {
+    ++to.counts_.understood;
+    to.counts_.understood_bytes += static_cast<std::int64_t>(sending.signal.payload.size());
+  }
+  return taken ? to_decibels(outcome.worst_sinr) : flight.snr;
 }
 
-void AcousticChannel::look_ahead(Time now, ThreadPool* threads) {
-  // A restored world may have fewer flights.
-  for (const Ahead& done : ahead_)
-    if (const auto number = static_cast<std::size_t>(done.flight); number < flights_.size())
-      flights_[number].ahead = -1;
-  ahead_.clear();
-  if (threads == nullptr || threads->threads() == 1 || !around_.physics.scene().concurrent()) return;
-  // Collect the signals, and what the functions below would otherwise cache while they run.
-  begin_handling(now);
-  around_.events.for_each_due(now, [&](const Time& item, int device, int kind) {
-    const auto number = static_cast<std::size_t>(item.count());
-    if (device != Event::of_acoustics || (kind != near_event && kind != start_event) || number >= flights_.size())
-      return;
-    const Transducer* const to = receiver_of(flights_[number]);
-    if (to == nullptr) return;
-    to->motion();
-    ahead_.push_back({static_cast<int>(number), kind, {}, {}});
-  });
-  if (ahead_.size() < min_shared) {
-    ahead_.clear();
-  } else {
-    looked_ahead_ += static_cast<std::int64_t>(ahead_.size());
-    const bool casts = config_.occlusion || config_.multipath || propagation_.bends();
-    if (casts) around_.physics.scene().prepare();
-    for_each_block(threads, ahead_.size(), [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) find_ahead(ahead_[i]);
-    });
-    for (std::size_t i = 0; i < ahead_.size(); ++i)
-      flights_[static_cast<std::size_t>(ahead_[i].flight)].ahead = static_cast<int>(i);
-  }
-  handling_ = false;
+void AcousticChannel::end_quietly(int number, Consequences& out) {
+  if (Transducer* const to = receiver_of(flights_[static_cast<std::size_t>(number)])) end_at(*to, number);
+  out.ended = true;
 }
 
-void AcousticChannel::find_ahead(Ahead& ahead) const {
-  const Flight& flight = flights_[static_cast<std::size_t>(ahead.flight)];
+void AcousticChannel::end(int number) {
+  if (Transducer* const to = receiver_of(flights_[static_cast<std::size_t>(number)])) {
+    const Decibels sinr = end_at(*to, number);
+    conclude(number);
+    const Flight& flight = flights_[static_cast<std::size_t>(number)];
+    if (flight.listened && (flight.detected || to->listener_.wants_undetected()))
+      notify(*to, flight, *sendings_[static_cast<std::size_t>(flight.sending)], sinr);
+  }
+  discard(number);
+}
+
+/// Notifies the listener unless the receiver itself cannot receive: the end of a signal is received when only the
+/// sender left the water.
+void AcousticChannel::notify(Transducer& to, const Flight& flight, const Sending& sending, Decibels sinr) {
+  const bool out_itself = flight.loss == SignalLoss::out_of_water && sending.cut != SignalLoss::out_of_water;
+  const bool deaf = out_itself || flight.loss == SignalLoss::receiver_off || flight.loss == SignalLoss::blocked ||
+                    !to.works() || !around_.medium.in_water(to.p_W(flight.ended));
+  if (deaf) return;
+  const Vector3d back_W = sending.p_W - flight.p_started_W;
+  const Vector3d apparent_W = flight.bent ? Vector3d(-back_W.norm() * flight.arrives_W) : back_W;
+  const Time started = flight.started + from_seconds(flight.lock_later_s);
+  to.listener_.receive({sending.signal, sending.source, sending.number, sending.sent, started, flight.ended,
+                        flight.travel_time_s + flight.lock_later_s, sending.p_W, flight.p_started_W, apparent_W,
+                        flight.level, flight.snr, sinr, flight.closing_mps, flight.loss, flight.detected});
+}
+
+void AcousticChannel::conclude(int number) {
+  const Flight& flight = flights_[static_cast<std::size_t>(number)];
+  const Transducer* const to = receiver_of(flight);
+  const bool beyond = flight.loss == SignalLoss::range && flight.meant;
+  if (to == nullptr || !(flight.listened || beyond)) return;
   const Sending& sending = *sendings_[static_cast<std::size_t>(flight.sending)];
-  const Transducer& to = *receiver_of(flight);
-  if (ahead.kind == near_event)
-    ahead.arrival = arrival_at(to, sending);
-  else
-    ahead.level = level_at(to, to.p_W(flight.started), flight, sending);
+  if (flight.meant && flight.loss == SignalLoss::shadow && shadow_losses_.size() < max_shadow_losses)
+    shadow_losses_.push_back(
+        {sending.sent, sending.source, to->full_name(), (flight.p_started_W - sending.p_W).norm()});
+  if (observer_ != nullptr) report_arrival(flight, sending, *to);
 }
 
-AcousticChannel::Ahead* AcousticChannel::take_ahead(Flight& flight, EventKind kind) {
-  const int number = std::exchange(flight.ahead, -1);
-  if (number < 0 || static_cast<std::size_t>(number) >= ahead_.size()) return nullptr;
-  Ahead& ahead = ahead_[static_cast<std::size_t>(number)];
-  return &flights_[static_cast<std::size_t>(ahead.flight)] == &flight && ahead.kind == kind ? &ahead : nullptr;
+void AcousticChannel::discard(int number) {
+  // A listener may have transmitted, which invalidates references.
+  Flight& flight = flights_[static_cast<std::size_t>(number)];
+  const int of = flight.sending;
+  flights_sum_ -= flight.hash;
+  free_flights_.push_back(number);
+  flight = {};
+  release(of);
 }
 
 void AcousticChannel::report_sent(const Sending& sending) const {

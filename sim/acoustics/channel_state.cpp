@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "sim/acoustics/channel.hpp"
+#include "sim/base/record_hash.hpp"
 
 // The state of the channel, for hashes and snapshots.
 
@@ -66,14 +67,65 @@ void AcousticChannel::visit_state(StateArchive& archive) {
     if (archive.restoring()) flights_.emplace_back();
     archive(flights_[i]);
     const Transducer* const to = visit_transducer(archive, receiver_of(flights_[i]));
-    if (archive.restoring()) set_receiver(flights_[i], to);
+    if (!archive.restoring()) continue;
+    set_receiver(flights_[i], to);
+    const int sending = flights_[i].sending;
+    if (sending >= 0 && static_cast<std::size_t>(sending) < sendings_.size())
+      sendings_[static_cast<std::size_t>(sending)]->flights.push_back(static_cast<int>(i));
   }
-  if (archive.restoring()) ++polls_;
+  if (archive.restoring()) {
+    ++polls_;
+    sum_outdated_ = true;
+    // Bands are added to a cache, which threads must not do.
+    for (const auto& sending : sendings_)
+      propagation_.ambient_level(sending->signal.centre_Hz, sending->signal.bandwidth_Hz);
+  }
   // Free lists, neighbours and counts.
   archive.unhashed(free_sendings_, free_flights_, flights_made_, step_end_, neighbours_, neighbours_age_);
   if (!archive.hashing()) archive.not_only_finite(lowest_m_);  // infinity: without a receiver
   archive.unhashed(messages_, watching_, removed_, shadow_losses_);
   if (archive.restoring()) check_numbers(archive);
+}
+
+std::uint64_t AcousticChannel::hash_of(int number, const Flight& flight) const {
+  const bool flags[] = {flight.listened, flight.present, flight.detected, flight.delayed, flight.meant};
+  int all_flags = 0;
+  for (const bool flag : flags) all_flags = all_flags << 1 | static_cast<int>(flag);
+  const Transducer* const to = receiver_of(flight);
+  const Vector3d& p_W = flight.p_started_W;
+  return record_hash({word_of(number, flight.sending), word_of(to != nullptr ? to->number() : -1, all_flags),
+                      static_cast<std::uint64_t>(flight.started.count()),
+                      static_cast<std::uint64_t>(flight.ended.count()), word_of(flight.travel_time_s),
+                      word_of(flight.closing_mps), word_of(p_W.x()), word_of(p_W.y()), word_of(p_W.z()),
+                      word_of(flight.level.dB()), word_of(flight.snr.dB()), static_cast<std::uint64_t>(flight.loss)});
+}
+
+void AcousticChannel::update_hash(int number, std::uint64_t& sum) {
+  Flight& flight = flights_[static_cast<std::size_t>(number)];
+  sum -= flight.hash;
+  flight.hash = hash_of(number, flight);
+  sum += flight.hash;
+}
+
+std::uint64_t AcousticChannel::content_hash() {
+  if (std::exchange(sum_outdated_, false)) {
+    flights_sum_ = 0;
+    for (std::size_t i = 0; i < flights_.size(); ++i) {
+      flights_[i].hash = 0;
+      if (flights_[i].sending >= 0) update_hash(static_cast<int>(i), flights_sum_);
+    }
+  }
+  StateArchive hash = StateArchive::quick_hasher();
+  for (Transducer* transducer : transducers_)
+    if (transducer != nullptr) transducer->add_content(hash);
+  for (ContinuousSound* sound : sounds_) hash(*sound);
+  for (const auto& sending : sendings_) {
+    hash(*sending);
+    visit_transducer(hash, sending->from);
+  }
+  auto flights = static_cast<std::uint64_t>(flights_.size() - free_flights_.size());
+  hash(flights, flights_sum_);
+  return hash.hash();
 }
 
 namespace {

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/base/record_hash.hpp"
+
 namespace sim {
 
 namespace {
@@ -20,7 +22,7 @@ inline double share_in_band(const PresentSound& of, const PresentSound& band) {
 
 SignalReceiver::Others SignalReceiver::others(const PresentSound& but, Time at) const {
   Others sum;
-  for (const PresentSound& sound : present_) {
+  for (const PresentSound& sound : present()) {
     if (sound.flight == but.flight || sound.ended <= at) continue;
     const PowerRatio power = share_in_band(sound, but) * sound.power;
     sum.all += power;
@@ -34,10 +36,11 @@ bool SignalReceiver::is_detectable(const TakenSignal& signal, PowerRatio needed)
   PowerRatio sum{0};
   // A sum of powers never decreases, rounded or not, so that the loop can end as soon as it is too large.
   constexpr std::size_t check_interval = 8;
-  for (std::size_t i = 0; i < present_.size();) {
-    const std::size_t end = std::min(i + check_interval, present_.size());
+  const std::span<const PresentSound> sounds = present();
+  for (std::size_t i = 0; i < sounds.size();) {
+    const std::size_t end = std::min(i + check_interval, sounds.size());
     for (; i < end; ++i) {
-      const PresentSound& sound = present_[i];
+      const PresentSound& sound = sounds[i];
       if (sound.flight != signal.sound.flight && sound.ended > signal.started)
         sum += share_in_band(sound, signal.sound) * sound.power;
     }
@@ -75,7 +78,7 @@ void SignalReceiver::count_bits(Taken& taken, Time until) const {
 void SignalReceiver::begin(const PresentSound& sound, Time at) {
   count_bits(at);
   present_.push_back(sound);
-  present_flights_.push_back(sound.flight);
+  present_sum_ += hash_of(sound);
 }
 
 SignalLoss SignalReceiver::take(const TakenSignal& signal, const Rules& rules, std::int64_t& displaced) {
@@ -118,7 +121,7 @@ bool SignalReceiver::flights_are_below(std::size_t count) const {
   const auto below = [&](const PresentSound& sound) {
     return sound.flight >= 0 && static_cast<std::uint64_t>(sound.flight) < count;
   };
-  return std::all_of(present_.begin(), present_.end(), below) &&
+  return std::all_of(present().begin(), present().end(), below) &&
          std::all_of(taken_.begin(), taken_.end(), [&](const Taken& taken) { return below(taken.signal.sound); });
 }
 
@@ -129,8 +132,12 @@ bool SignalReceiver::takes(std::int64_t flight) const {
 
 void SignalReceiver::silence(std::int64_t flight, Time at) {
   count_bits(at);
-  for (PresentSound& sound : present_)
-    if (sound.flight == flight) sound.power = PowerRatio{0};
+  for (PresentSound& sound : present()) {
+    if (sound.flight != flight) continue;
+    present_sum_ -= hash_of(sound);
+    sound.power = PowerRatio{0};
+    present_sum_ += hash_of(sound);
+  }
   for (Taken& taken : taken_)
     if (taken.signal.sound.flight == flight) taken.signal.sound.power = taken.signal.disturbing = PowerRatio{0};
 }
@@ -144,13 +151,14 @@ bool SignalReceiver::end(std::int64_t flight, Time at, Outcome& outcome) {
     outcome = {std::exp(taken->log_success), std::exp(taken->log_success_alone), taken->worst_sinr};
     taken_.erase(taken);
   }
-  const auto removed = std::find(present_flights_.begin(), present_flights_.end(), flight);
-  if (removed != present_flights_.end()) {
-    present_[static_cast<std::size_t>(removed - present_flights_.begin())] = present_.back();
-    present_.pop_back();
-    *removed = present_flights_.back();
-    present_flights_.pop_back();
-  }
+  const std::span<PresentSound> sounds = present();
+  const auto removed =
+      std::find_if(sounds.begin(), sounds.end(), [&](const PresentSound& each) { return each.flight == flight; });
+  if (removed == sounds.end()) return was_taken;
+  present_sum_ -= hash_of(*removed);
+  std::move_backward(sounds.begin(), removed, removed + 1);
+  ++first_;
+  if (4 * first_ >= present_.size()) drop_ended();
   return was_taken;
 }
 
@@ -161,11 +169,28 @@ std::int64_t SignalReceiver::drop() {
   return flight;
 }
 
+void SignalReceiver::drop_ended() {
+  present_.erase(present_.begin(), present_.begin() + static_cast<std::ptrdiff_t>(first_));
+  first_ = 0;
+}
+
 void SignalReceiver::visit_state(StateArchive& archive) {
+  drop_ended();
   archive(present_, taken_);
   if (!archive.restoring()) return;
-  present_flights_.clear();
-  for (const PresentSound& sound : present_) present_flights_.push_back(sound.flight);
+  present_sum_ = 0;
+  for (const PresentSound& sound : present_) present_sum_ += hash_of(sound);
+}
+
+void SignalReceiver::add_content(StateArchive& hash) {
+  auto sounds = static_cast<std::uint64_t>(present().size());
+  hash(sounds, present_sum_, taken_);
+}
+
+std::uint64_t SignalReceiver::hash_of(const PresentSound& sound) {
+  return record_hash({static_cast<std::uint64_t>(sound.flight), static_cast<std::uint64_t>(sound.ended.count()),
+                      word_of(sound.power.linear()), word_of(sound.centre_Hz), word_of(sound.bandwidth_Hz),
+                      static_cast<std::uint64_t>(sound.message)});
 }
 
 }  // namespace sim

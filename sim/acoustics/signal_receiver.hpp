@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "sim/acoustics/signal.hpp"
@@ -74,6 +75,8 @@ class SignalReceiver {
   /// Whether all its flights have numbers in [0, count).
   bool flights_are_below(std::size_t count) const;
   void visit_state(StateArchive& archive);
+  /// Adds its content to a hash, with a sum over the sounds that is kept up to date: their order is not in it.
+  void add_content(StateArchive& hash);
 
  private:
   /// Reception in progress.
@@ -100,8 +103,16 @@ class SignalReceiver {
   void count_bits(Time until);
   void count_bits(Taken& taken, Time until) const;
 
+  static std::uint64_t hash_of(const PresentSound& sound);
+  std::span<PresentSound> present() { return std::span(present_).subspan(first_); }
+  std::span<const PresentSound> present() const { return std::span(present_).subspan(first_); }
+  void drop_ended();
+
+  // In the order of their starts, from `first_` on.  Most sounds end in about this order, so that they are found near the
+  // front.
   std::vector<PresentSound> present_;
-  std::vector<std::int64_t> present_flights_;  // parallel to present_, for fast search
+  std::size_t first_ = 0;
+  std::uint64_t present_sum_ = 0;  // of the hashes of present()
   std::vector<Taken> taken_;
 };
 

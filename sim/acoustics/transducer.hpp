@@ -17,12 +17,15 @@ namespace sim {
 class AcousticListener {
  public:
   virtual ~AcousticListener() = default;
-  /// Whether the device tries to decode a signal.  Other signals are noise in its band.
+  /// Whether the device tries to decode a signal.  Other signals are noise in its band.  Called from any thread.
   virtual bool listens_to(const Signal& signal) const = 0;
   /// Called when a signal that it receives has ended, decoded or not (not for a transducer without power or out of the
   /// water).  Called at a simulated time within the step that just ended, `received.ended`; the listener may transmit
   /// at that time or later.
   virtual void receive(const Reception& received) = 0;
+  /// Whether receive() is called for signals that the receiver did not lock on to, too.  Without them, threads may
+  /// handle what arrives at many receivers.
+  virtual bool wants_undetected() const { return true; }
 };
 
 /// Configuration of the receiver of a transducer.
@@ -92,6 +95,11 @@ class Transducer {
   void visit_state(StateArchive& archive) {
     archive(busy_until_, sending_until_, sending_, signals_, receiver_, counts_);
     archive.unhashed(own_, meant_before_, meant_near_);
+  }
+  /// Adds its content to a hash: see SignalReceiver::add_content().
+  void add_content(StateArchive& hash) {
+    hash(busy_until_, sending_until_, sending_, signals_, counts_);
+    receiver_.add_content(hash);
   }
 
  private:

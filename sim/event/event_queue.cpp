@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "sim/base/record_hash.hpp"
+#include "sim/base/state_hash.hpp"
+
 namespace sim {
 
 void EventQueue::schedule(Event event) {
@@ -21,9 +24,10 @@ void EventQueue::insert(Event event) {
     }
     entry.payload = free_payloads_.back();
     free_payloads_.pop_back();
-    payloads_[static_cast<std::size_t>(entry.payload)] = std::move(event.payload);
+    payloads_[static_cast<std::size_t>(entry.payload)] = {std::move(event.payload), hash_of(entry), true};
   }
   ++size_;
+  sum_ += hash_of(entry);
   // Insert into a later slice, or into the heap of late events.
   if (const std::int64_t slice = slice_of(event.due); slice > reached_) {
     const auto [found, is_new] = slices_.try_emplace(slice);
@@ -60,10 +64,11 @@ void EventQueue::reach(std::int64_t slice) {
 Event EventQueue::take(const Entry& entry) {
   Event event{entry.due, entry.sequence, entry.device, entry.kind, entry.stamp, {}};
   if (entry.payload != Entry::no_payload) {
-    event.payload = std::exchange(payloads_[static_cast<std::size_t>(entry.payload)], {});
+    event.payload = std::exchange(payloads_[static_cast<std::size_t>(entry.payload)], {}).bytes;
     free_payloads_.push_back(entry.payload);
   }
   --size_;
+  sum_ -= hash_of(entry);
   return event;
 }
 
@@ -112,6 +117,27 @@ void EventQueue::for_each_in_order(const Use& use) const {
   }
 }
 
+std::uint64_t EventQueue::hash_of(const Entry& entry) {
+  return record_hash({static_cast<std::uint64_t>(entry.due.count()), word_of(entry.device, entry.kind),
+                      static_cast<std::uint64_t>(entry.stamp.count()), 0});
+}
+
+std::uint64_t EventQueue::content_hash() const {
+  std::uint64_t of_payloads = 0;
+  for (const Payload& payload : payloads_) {
+    if (!payload.used) continue;
+    StateHash hash;
+    hash.add(payload.event_hash);
+    hash.add_bytes(payload.bytes.data(), payload.bytes.size());
+    of_payloads += hash.value();
+  }
+  StateHash hash;
+  hash.add(static_cast<std::uint64_t>(size_));
+  hash.add(sum_);
+  hash.add(of_payloads);
+  return hash.value();
+}
+
 /// Visits the events in the order of delivery, because their storage depends on the history.
 void EventQueue::visit_state(StateArchive& archive) {
   archive.unhashed(reached_, next_sequence_);
@@ -137,7 +163,7 @@ void EventQueue::visit_state(StateArchive& archive) {
     Event event{entry.due, entry.sequence, entry.device, entry.kind, entry.stamp, {}};
     // Move payloads out and back, so that hashing copies no camera images.
     Bytes* const payload =
-        entry.payload != Entry::no_payload ? &payloads_[static_cast<std::size_t>(entry.payload)] : nullptr;
+        entry.payload != Entry::no_payload ? &payloads_[static_cast<std::size_t>(entry.payload)].bytes : nullptr;
     if (payload != nullptr) std::swap(event.payload, *payload);
     archive(event);
     if (payload != nullptr) std::swap(event.payload, *payload);

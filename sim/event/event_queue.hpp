@@ -55,6 +55,9 @@ class EventQueue {
   /// Drops the events of a device that is removed.
   void drop_device(int device);
   std::size_t size() const { return size_; }
+  /// Returns a hash of all events that is kept up to date, unlike that of visit_state().  The order of those due at the
+  /// same time is not in it.
+  std::uint64_t content_hash() const;
   void visit_state(StateArchive& archive);
 
  private:
@@ -76,6 +79,14 @@ class EventQueue {
   struct Later {
     bool operator()(const Entry& a, const Entry& b) const { return Earlier()(b, a); }
   };
+  /// Payload of an event.
+  struct Payload {
+    Bytes bytes;
+    std::uint64_t event_hash = 0;  // of its event without it
+    bool used = false;
+  };
+  /// Hash of an event without its payload.
+  static std::uint64_t hash_of(const Entry& entry);
   /// Returns the slice of a time.  Slices are sorted when they are reached: a heap of all distant events would not fit
   /// into the cache.
   static std::int64_t slice_of(Time due) { return due.count() >> 14; }
@@ -93,7 +104,8 @@ class EventQueue {
   std::vector<std::vector<Entry>> spare_;  // empty, with reserved memory
   std::int64_t reached_ = -1;
   std::size_t size_ = 0;
-  std::vector<Bytes> payloads_;
+  std::uint64_t sum_ = 0;  // of the hashes of all events, without payloads
+  std::vector<Payload> payloads_;
   std::vector<int> free_payloads_;
   std::uint64_t next_sequence_ = 0;
 };

@@ -74,6 +74,7 @@ void EmbreeScene::intersect(const RTCIntersectFunctionNArguments* arguments) {
   if (!shape.stops(query.filter)) return;
   const unsigned n = arguments->N;
   RTCRayN* rays = RTCRayHitN_RayN(arguments->rayhit, n);
+  if (n == 1 && passes_by(shape, query.rays, static_cast<int>(RTCRayN_id(rays, 1, 0)))) return;
   const unsigned hit = cast_at(shape, query.rays, lanes_of(arguments->valid, rays, n));
   if (hit == 0) return;
   for (unsigned i = 0; i < n; ++i) {

@@ -125,17 +125,6 @@ SHOAL_INLINE double range_to(const RayShape& shape, const RayPacket& rays, int l
   }
 }
 
-/// Whether a ray clearly misses the shape: a cheap test, as most candidates of a tree are missed by far.
-SHOAL_INLINE bool passes_by(const RayShape& shape, const RayPacket& rays, int lane) {
-  const double x = rays.origin[0][lane] - shape.center[0];
-  const double y = rays.origin[1][lane] - shape.center[1];
-  const double z = rays.origin[2][lane] - shape.center[2];
-  const double vx = rays.direction[0][lane], vy = rays.direction[1][lane], vz = rays.direction[2][lane];
-  const double along = x * vx + y * vy + z * vz;
-  const double px = x - along * vx, py = y - along * vy, pz = z - along * vz;
-  return px * px + py * py + pz * pz > shape.misses_beyond_m2;
-}
-
 template <Kind kind>
 SHOAL_INLINE void ranges_to(const RayShape& shape, const RayPacket& rays, unsigned lanes,
                             double (&range_m)[RayPacket::size]) {

@@ -94,6 +94,16 @@ struct alignas(64) RayPacket {
   Vector3d direction_W(int lane) const { return {direction[0][lane], direction[1][lane], direction[2][lane]}; }
 };
 
+/// Whether a ray clearly misses the shape: a cheap test, as most candidates of a tree are missed by far.
+inline bool passes_by(const RayShape& shape, const RayPacket& rays, int lane) {
+  const double x = rays.origin[0][lane] - shape.center[0];
+  const double y = rays.origin[1][lane] - shape.center[1];
+  const double z = rays.origin[2][lane] - shape.center[2];
+  const double vx = rays.direction[0][lane], vy = rays.direction[1][lane], vz = rays.direction[2][lane];
+  const double along = x * vx + y * vy + z * vz;
+  const double px = x - along * vx, py = y - along * vy, pz = z - along * vz;
+  return px * px + py * py + pz * pz > shape.misses_beyond_m2;
+}
 /// Computes the range at which each lane of `lanes` (bits) hits the shape, which must not be a mesh: where it enters in
 /// front of its origin, or leaves when it starts inside; infinity when it misses.  The bits of the result do not depend
 /// on the number of lanes.  Other elements of `range_m` are undefined.

@@ -118,10 +118,18 @@ void World::act_in_water(StageClock& stages) {
 }
 
 void World::run_due_events() {
-  parts_->acoustics->look_ahead(now(), parts_->schedule.threads());
-  for (Event event; parts_->events.take_due(now(), event);) {
+  AcousticChannel& sound = *parts_->acoustics;
+  ThreadPool* const threads = parts_->schedule.threads();
+  const Time now = this->now();
+  for (Event event;;) {
+    if (!parts_->events.take_due(now, event)) {
+      if (sound.handle_deferred(now + Time{1}, now, threads)) continue;  // more may be due
+      return;
+    }
+    if (event.device == Event::of_acoustics && sound.defer(event, now)) continue;
+    sound.handle_deferred(event.due, now, threads);
     if (event.device == Event::of_acoustics)
-      parts_->acoustics->handle(event, now());
+      sound.handle(event, now);
     else if (MountedDevice* device = parts_->devices.at(event.device))
       device->handle(event);
   }

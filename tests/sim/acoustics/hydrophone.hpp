@@ -47,9 +47,11 @@ class Hydrophone final : public sim::Sensor, public sim::AcousticListener {
                          r.sinr, r.loss});
     if (answer) answer(r);
   }
+  bool wants_undetected() const override { return undetected; }
   sim::Transducer& transducer() { return transducer_; }
   const std::vector<Received>& all() const { return received_; }
   std::function<void(const sim::Reception&)> answer;
+  bool undetected = true;
 
  private:
   sim::Transducer transducer_;

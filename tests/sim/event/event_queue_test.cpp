@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <map>
+#include <set>
 
 #include "sim/random/random.hpp"
 #include "tests/state_hash_of.hpp"
@@ -76,6 +78,7 @@ TEST(EventQueue, GivesWhatASortedListGives) {
       sim::StateArchive restorer = sim::StateArchive::restorer(bytes);
       restorer(restored);
       ASSERT_EQ(test::state_hash_of(restored), test::state_hash_of(queue));
+      ASSERT_EQ(restored.content_hash(), queue.content_hash());
       queue = std::move(restored);
     }
   }
@@ -90,6 +93,43 @@ TEST(EventQueue, HashDependsOnWhatIsQueuedNotOnHowItCame) {
   EXPECT_EQ(test::state_hash_of(first), test::state_hash_of(second));
   second.schedule(event_at(30, 3));
   EXPECT_NE(test::state_hash_of(first), test::state_hash_of(second));
+}
+
+/// Of the content hash, which is kept up to date.
+TEST(EventQueue, ContentHashDependsOnAllOfEachEvent) {
+  sim::EventQueue queue;
+  const auto with = [&](const Event& event) {
+    queue.schedule(event);
+    const std::uint64_t hash = queue.content_hash();
+    queue.drop_device(event.device);
+    return hash;
+  };
+  queue.schedule(event_at(10, 1));
+  const std::uint64_t before = queue.content_hash();
+  std::set<std::uint64_t> hashes{before};
+  Event event = event_at(20, 2);
+  EXPECT_TRUE(hashes.insert(with(event)).second);
+  EXPECT_EQ(queue.content_hash(), before);
+  event.due = Time{21};
+  EXPECT_TRUE(hashes.insert(with(event)).second);
+  event.kind = 5;
+  EXPECT_TRUE(hashes.insert(with(event)).second);
+  event.stamp = Time{6};
+  EXPECT_TRUE(hashes.insert(with(event)).second);
+  event.payload = sim::Bytes(3);
+  EXPECT_TRUE(hashes.insert(with(event)).second);
+  event.payload[1] = std::byte{1};
+  EXPECT_TRUE(hashes.insert(with(event)).second);
+  EXPECT_EQ(queue.content_hash(), before);
+}
+
+TEST(EventQueue, ContentHashChangesWhenTwoEventsExchangeTheirTimes) {
+  sim::EventQueue first, second;
+  first.schedule(event_at(10, 1));
+  first.schedule(event_at(20, 2));
+  second.schedule(event_at(20, 1));
+  second.schedule(event_at(10, 2));
+  EXPECT_NE(first.content_hash(), second.content_hash());
 }
 
 }  // namespace

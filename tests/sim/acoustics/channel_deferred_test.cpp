@@ -1,22 +1,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
+#include <cstdint>
+#include <set>
 #include <string>
-#include <vector>
 
 #include "sim/world/world_state.hpp"
 #include "tests/sim/acoustics/sea_of_hydrophones.hpp"
 
-// Paths and levels that threads compute before the events of a step are handled.
+// Receptions that threads handle together.
 
 namespace {
 
 /// 10 vehicles that move and send in turn, every 7 steps, to 150 vehicles 300 m away, so close together that the sound
 /// reaches them within 7 ms: 75 of them at least in one step.  While sound is on its way to them one is removed, and
-/// one changes its receiver.
+/// one changes its receiver.  Every other one ignores what it does not detect, so that ends are deferred, too.
 struct ManyHearers {
   explicit ManyHearers(const std::string& acoustics, int threads) : test(text(acoustics)) {
     test.world.use_threads(threads);
+    for (int i = 0; i < 150; i += 2) test::phone(test, "v" + std::to_string(i)).undetected = false;
   }
   static std::string text(const std::string& acoustics) {
     std::string vehicles;
@@ -46,22 +48,50 @@ struct ManyHearers {
   test::TestWorld test;
 };
 
-class ChannelAhead : public testing::TestWithParam<const char*> {};
+class DeferredReceptions : public testing::TestWithParam<const char*> {};
 
-TEST_P(ChannelAhead, ThreadsGiveTheSameReceptionsAsNone) {
+TEST_P(DeferredReceptions, AreThoseOfOneThreadWithAny) {
   ManyHearers alone(GetParam(), 1), shared(GetParam(), 3);
   for (int number = 0; number < 140; ++number) {
     alone.step(number);
     shared.step(number);
     ASSERT_EQ(alone.test.world.state().run_hash(), shared.test.world.state().run_hash()) << "step " << number;
   }
-  EXPECT_EQ(alone.test.world.acoustics().looked_ahead(), 0);
-  // The 17 messages that have arrived by now, with two events at each of 75 receivers.
-  EXPECT_GT(shared.test.world.acoustics().looked_ahead(), 17 * 2 * 75);
-  EXPECT_GT(alone.test.world.acoustics().flights(), 17 * 149);
+  const auto &one = alone.test.world.acoustics(), &three = shared.test.world.acoustics();
+  EXPECT_EQ(one.deferred(), three.deferred());
+  // The 17 messages that have arrived by now, with two events at each of 75 receivers at least.
+  EXPECT_GT(one.deferred(), 17 * 2 * 75);
+  EXPECT_GT(one.flights(), 17 * 149);
 }
 
-INSTANTIATE_TEST_SUITE_P(Sound, ChannelAhead,
+/// A restored world computes anew what is kept up to date.
+TEST_P(DeferredReceptions, KeepTheHashOfTheChannelUpToDate) {
+  ManyHearers hearers(GetParam(), 1), other(GetParam(), 1);
+  std::set<std::uint64_t> hashes;
+  for (int number = 0; number < 60; ++number) {
+    hearers.step(number);
+    if (number % 4 != 3) continue;
+    other.test.world.state().restore(hearers.test.world.state().snapshot());
+    const std::uint64_t hash = hearers.test.world.acoustics().content_hash();
+    ASSERT_EQ(hash, other.test.world.acoustics().content_hash()) << "step " << number;
+    EXPECT_TRUE(hashes.insert(hash).second) << "step " << number;
+  }
+}
+
+TEST(RestoredReceptions, ContinueAfterARestoreAsWithoutIt) {
+  ManyHearers run("{}", 1), again("{}", 2);
+  for (int number = 0; number < 40; ++number) run.step(number);
+  again.test.world.state().restore(run.test.world.state().snapshot());
+  for (int i = 0; i < 150; i += 2)
+    test::phone(again.test, "v" + std::to_string(i)).undetected = false;
+  for (int number = 40; number < 80; ++number) {
+    run.step(number);
+    again.step(number);
+    ASSERT_EQ(run.test.world.state().run_hash(), again.test.world.state().run_hash()) << "step " << number;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Sound, DeferredReceptions,
                          testing::Values("{}", "{multipath: {water_depth_m: 60}, fading: {type: rayleigh}}",
                                          "{propagation: rays, multipath: {water_depth_m: 60}, echo_lock: {}}",
                                          "{occlusion: false}"));
