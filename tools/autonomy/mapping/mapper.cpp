@@ -118,7 +118,8 @@ void Mapper::track(const Beams& beams, const Increment& by) {
   // Match, unless the scan contradicts the map.
   const ScanMatch match = matcher_.match(map_, beams.points_B, pose_, covariance_.inverse());
   const Fit fit = fit_of(map_, beams, match.pose);
-  if (fit.evidence() < (surveys_ ? params_.min_survey_evidence : params_.min_evidence) && fit.near < params_.min_near) {
+  if (beams.points_B.size() >= min_judged_points && fit.near < params_.min_near &&
+      fit.evidence() < (surveys_ ? params_.min_survey_evidence : params_.min_evidence)) {
     if (++bad_scans_ < params_.max_bad_scans) return;
     if (surveys_) end_survey();
     lost_ = true;
@@ -153,7 +154,7 @@ void Mapper::search(const Beams& beams, const Increment& by) {
   if (fit_of(map_, beams, here.pose).evidence() >= params_.certain_evidence)
     found = here.pose;
   else
-    found = search_.look(map_, matcher_, beams);
+    found = search_.look(map_, matcher_, beams, pose_);
   if (!found) return;
   lost_ = false;
   bad_scans_ = 0;

@@ -99,7 +99,8 @@ void PlaceSearch::sort(std::size_t max) {
   candidates_ = std::move(kept);
 }
 
-void PlaceSearch::begin(const OccupancyMap& map, const ScanMatcher& matcher, const Beams& beams) {
+void PlaceSearch::begin(const OccupancyMap& map, const ScanMatcher& matcher, const Beams& beams,
+                        const Pose2& expected) {
   const double cell_m = map.params().cell_m;
   const int side = std::max(1, static_cast<int>(std::lround(params_.step_m / cell_m)));
   const CoarseField field(map, side);
@@ -132,18 +133,20 @@ void PlaceSearch::begin(const OccupancyMap& map, const ScanMatcher& matcher, con
                       return key(a) < key(b);
                     });
   candidates_.resize(max);
+  candidates_.push_back({expected, 0});
   for (Candidate& each : candidates_) {
     each.pose = matcher.match(map, beams.points_B, each.pose, loose()).pose;
     each.evidence = fit_of(map, beams, each.pose).evidence();
   }
+  candidates_.back().evidence += params_.expected_lead;
   sort(params_.candidates);
 }
 
-std::optional<Pose2> PlaceSearch::look(const OccupancyMap& map, const ScanMatcher& matcher, const Beams& beams) {
-  constexpr std::size_t min_points = 40;
-  if (beams.points_B.size() < min_points) return std::nullopt;
+std::optional<Pose2> PlaceSearch::look(const OccupancyMap& map, const ScanMatcher& matcher, const Beams& beams,
+                                       const Pose2& expected) {
+  if (beams.points_B.size() < min_judged_points) return std::nullopt;
   if (candidates_.empty() || views_ >= params_.max_views) {
-    begin(map, matcher, beams);
+    begin(map, matcher, beams, expected);
     views_ = 1;
     since_view_ = {};
     return std::nullopt;

@@ -30,22 +30,24 @@ class PlaceSearch {
     double apart_m = 0.3, apart_rad = 0.3;  ///< move or turn between views
     int min_views = 3;                      ///< before one is accepted
     int max_views = 16;                     ///< then it begins again
-    double min_mean = 0.45;                 ///< mean evidence of a view to be accepted, see Fit
+    double min_mean = 0.6;                 ///< mean evidence of a view to be accepted, see Fit
+    double expected_lead = 0.5;             ///< evidence for the place where it is if it was not carried
     double lead = 0.6;                      ///< sum by which it is ahead of all others
   };
   explicit PlaceSearch(const Params& params) : params_(params) {}
 
   /// Moves all candidates by odometry.
   void move(const Increment& by);
-  /// Takes a scan.  Returns the place once it is found.
-  std::optional<Pose2> look(const OccupancyMap& map, const ScanMatcher& matcher, const Beams& beams);
+  /// Takes a scan.  `expected`: pose by odometry, if the vehicle was not carried.  Returns the place once it is found.
+  std::optional<Pose2> look(const OccupancyMap& map, const ScanMatcher& matcher, const Beams& beams,
+                            const Pose2& expected);
 
  private:
   struct Candidate {
     Pose2 pose;
     double evidence = 0;  ///< sum over the views
   };
-  void begin(const OccupancyMap& map, const ScanMatcher& matcher, const Beams& beams);
+  void begin(const OccupancyMap& map, const ScanMatcher& matcher, const Beams& beams, const Pose2& expected);
   /// Leaves the best candidates that are not at one place, best first.
   void sort(std::size_t max);
 
@@ -54,6 +56,9 @@ class PlaceSearch {
   int views_ = 0;
   Increment since_view_;
 };
+
+/// A scan with fewer points says too little about the place.
+inline constexpr std::size_t min_judged_points = 40;
 
 /// How a scan fits to the map at a pose: shares of the beams that met something.
 struct Fit {

@@ -26,7 +26,7 @@ std::optional<Pose2> search(const test::DrawnRoom& room, const OccupancyMap& map
   PlaceSearch search({});
   const autonomy::ScanMatcher matcher({});
   for (int i = 0; i < scans; ++i) {
-    if (const auto found = search.look(map, matcher, beams_of(room.scan(truth, 0)))) return found;
+    if (const auto found = search.look(map, matcher, beams_of(room.scan(truth, 0)), {})) return found;
     constexpr double turn_rad = 0.4;
     truth.yaw_rad = sim::wrap_angle(truth.yaw_rad + turn_rad);
     search.move({0, 0, 1.02 * turn_rad});
