@@ -17,6 +17,7 @@
 #include "python/bindings/in_use.hpp"
 #include "python/bindings/message_objects.hpp"
 #include "python/world/error.hpp"
+#include "sim/bus/bus.hpp"
 #include "sim/config/message_text.hpp"
 
 namespace py = pybind11;

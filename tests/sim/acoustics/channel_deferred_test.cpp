@@ -64,7 +64,7 @@ TEST_P(DeferredReceptions, AreThoseOfOneThreadWithAny) {
   EXPECT_GT(one.flights(), 17 * 149);
 }
 
-/// A restored world computes anew what is kept up to date.
+/// A restored world computes again what is kept up to date.
 TEST_P(DeferredReceptions, KeepTheHashOfTheChannelUpToDate) {
   ManyHearers hearers(GetParam(), 1), other(GetParam(), 1);
   std::set<std::uint64_t> hashes;
