@@ -76,6 +76,10 @@ void AcousticChannel::visit_state(StateArchive& archive) {
   if (archive.restoring()) {
     ++polls_;
     sum_outdated_ = true;
+    // Of a step that failed.
+    deferred_.clear();
+    deferred_at_.clear();
+    receivers_.clear();
     // Bands are added to a cache, which threads must not do.
     for (const auto& sending : sendings_)
       propagation_.ambient_level(sending->signal.centre_Hz, sending->signal.bandwidth_Hz);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <span>
 
 #include "sim/acoustics/echoes.hpp"
 #include "sim/acoustics/rays/ray_tables.hpp"
@@ -90,29 +91,43 @@ double Propagation::free_part(const Vector3d& from_W, int from_group, const Vect
   filter.exclude_group = to_group;
   // Cast from the receiver to the past position of the sender; the sender's own hull, which has moved on, does not
   // block.
-  const auto hit = [&](const Vector3d& p_W, const Vector3d& q_W) {
+  const auto ray = [](const Vector3d& p_W, const Vector3d& q_W) {
     const Vector3d d_W = q_W - p_W;
     const double d_m = d_W.norm();
-    const auto found = d_m > 1e-3 ? physics_.scene().cast(p_W, d_W / d_m, d_m - 1e-3, filter) : std::nullopt;
-    const bool counts = found && physics_.parts()[static_cast<std::size_t>(found->part)].group != from_group;
-    return counts ? std::optional(found->range_m) : std::nullopt;
+    return d_m > 1e-3 ? Ray{p_W, d_W / d_m, d_m - 1e-3} : Ray{p_W, Vector3d::UnitX(), 0};
   };
-  const auto at_m = hit(to_W, from_W);
-  if (!at_m) return 1;
+  const auto blocks = [&](int part) { return physics_.parts()[static_cast<std::size_t>(part)].group != from_group; };
+  const Ray direct = ray(to_W, from_W);
+  const auto found = physics_.scene().cast(direct.origin_W, direct.direction_W, direct.range_max_m, filter);
+  if (!found || !blocks(found->part)) return 1;
   // The direct path is blocked.  Sound diffracts around obstacles smaller than the first Fresnel zone; the free
   // fraction of the rim of that zone approximates the sound that passes.
+  const double at_m = found->range_m;
   const double wavelength_m = medium_.sound_speed_mps(to_W) / frequency_Hz;
-  const double radius_m = std::sqrt(wavelength_m * *at_m * (length_m - *at_m) / length_m);
+  const double radius_m = std::sqrt(wavelength_m * at_m * (length_m - at_m) / length_m);
   const Vector3d along_W = displacement_W / length_m;
   const Vector3d across_W = along_W.unitOrthogonal(), other_W = along_W.cross(across_W);
   constexpr int rim = 8;
-  int free = 0;
+  std::array<Vector3d, rim> bends_W;
+  std::size_t free = 0;
   for (int i = 0; i < rim; ++i) {
     const double angle = 2 * std::numbers::pi * i / rim;
-    const Vector3d bend_W =
-        to_W + along_W * *at_m + radius_m * (std::cos(angle) * across_W + std::sin(angle) * other_W);
-    if (medium_.in_water(bend_W) && !hit(to_W, bend_W) && !hit(bend_W, from_W)) ++free;
+    const Vector3d bend_W = to_W + along_W * at_m + radius_m * (std::cos(angle) * across_W + std::sin(angle) * other_W);
+    if (medium_.in_water(bend_W)) bends_W[free++] = bend_W;
   }
+  // Keep the bends that both ends reach; rays of nearly one direction are cast together.
+  const auto keep_free = [&](const auto& ray_of) {
+    std::array<Ray, rim> rays;
+    std::array<RayHit, rim> hits;
+    for (std::size_t i = 0; i < free; ++i) rays[i] = ray_of(bends_W[i]);
+    physics_.scene().cast(std::span(rays).first(free), filter, std::span(hits).first(free));
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < free; ++i)
+      if (!hits[i].hit() || !blocks(hits[i].part)) bends_W[kept++] = bends_W[i];
+    free = kept;
+  };
+  keep_free([&](const Vector3d& bend_W) { return ray(to_W, bend_W); });
+  keep_free([&](const Vector3d& bend_W) { return ray(bend_W, from_W); });
   return static_cast<double>(free) / (rim + 1);
 }
 

@@ -74,8 +74,14 @@ void EmbreeScene::intersect(const RTCIntersectFunctionNArguments* arguments) {
   if (!shape.stops(query.filter)) return;
   const unsigned n = arguments->N;
   RTCRayN* rays = RTCRayHitN_RayN(arguments->rayhit, n);
+  // Most candidates are missed by far.
+  constexpr unsigned all = (1u << RayPacket::size) - 1;
   if (n == 1 && passes_by(shape, query.rays, static_cast<int>(RTCRayN_id(rays, 1, 0)))) return;
-  const unsigned hit = cast_at(shape, query.rays, lanes_of(arguments->valid, rays, n));
+  const unsigned near = n == 1 ? all : near_lanes(shape, query.rays, all);
+  if (near == 0) return;
+  const unsigned lanes = near & lanes_of(arguments->valid, rays, n);
+  if (lanes == 0) return;
+  const unsigned hit = cast_at(shape, query.rays, lanes);
   if (hit == 0) return;
   for (unsigned i = 0; i < n; ++i) {
     const int lane = static_cast<int>(RTCRayN_id(rays, n, i));

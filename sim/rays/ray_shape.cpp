@@ -169,7 +169,31 @@ SHOAL_INLINE void transform_all_to(const RayShape& shape, const RayPacket& rays,
     }
 }
 
+/// As passes_by() for all lanes.
+SHOAL_INLINE unsigned near_lanes_of(const RayShape& shape, const RayPacket& rays) {
+  double over_m2[RayPacket::size];
+  const auto& c = shape.center;
+  for (int i = 0; i < RayPacket::size; ++i) {
+    const double x = rays.origin[0][i] - c[0], y = rays.origin[1][i] - c[1], z = rays.origin[2][i] - c[2];
+    const double vx = rays.direction[0][i], vy = rays.direction[1][i], vz = rays.direction[2][i];
+    const double along = x * vx + y * vy + z * vz;
+    const double px = x - along * vx, py = y - along * vy, pz = z - along * vz;
+    over_m2[i] = px * px + py * py + pz * pz;
+  }
+  unsigned lanes = 0;
+  for (int i = 0; i < RayPacket::size; ++i) lanes |= static_cast<unsigned>(!(over_m2[i] > shape.misses_beyond_m2)) << i;
+  return lanes;
+}
+
 #undef SHOAL_INLINE
+
+unsigned near_lanes_sse2(const RayShape& shape, const RayPacket& rays) {
+  return near_lanes_of(shape, rays);
+}
+
+[[gnu::target("avx2")]] unsigned near_lanes_avx2(const RayShape& shape, const RayPacket& rays) {
+  return near_lanes_of(shape, rays);
+}
 
 void ranges_sse2(const RayShape& shape, const RayPacket& rays, unsigned lanes, double (&range_m)[RayPacket::size]) {
   ranges_to_any(shape, rays, lanes, range_m);
@@ -193,6 +217,11 @@ void see_sse2(const RayShape& shape, const RayPacket& rays, double (&from)[3][Ra
 }
 
 }  // namespace
+
+unsigned near_lanes(const RayShape& shape, const RayPacket& rays, unsigned lanes) {
+  static const auto best = __builtin_cpu_supports("avx2") ? near_lanes_avx2 : near_lanes_sse2;
+  return lanes & best(shape, rays);
+}
 
 void find_ranges(const RayShape& shape, const RayPacket& rays, unsigned lanes, double (&range_m)[RayPacket::size]) {
   static const auto best = __builtin_cpu_supports("avx2") ? ranges_avx2 : ranges_sse2;

@@ -104,6 +104,8 @@ inline bool passes_by(const RayShape& shape, const RayPacket& rays, int lane) {
   const double px = x - along * vx, py = y - along * vy, pz = z - along * vz;
   return px * px + py * py + pz * pz > shape.misses_beyond_m2;
 }
+/// Returns the lanes of `lanes` (bits) that do not clearly miss the shape.
+unsigned near_lanes(const RayShape& shape, const RayPacket& rays, unsigned lanes);
 /// Computes the range at which each lane of `lanes` (bits) hits the shape, which must not be a mesh: where it enters in
 /// front of its origin, or leaves when it starts inside; infinity when it misses.  The bits of the result do not depend
 /// on the number of lanes.  Other elements of `range_m` are undefined.
