@@ -67,8 +67,7 @@ void AcousticChannel::handle_at_receiver(int first, Time until) {
   for (int next = first; next >= 0 || next_start < starts.size();) {
     // Take the earlier one; at the same time, that which was scheduled earlier.
     Deferred* const listed = next >= 0 ? &deferred_[static_cast<std::size_t>(next)] : nullptr;
-    const bool starts_now =
-        listed == nullptr || (next_start < starts.size() && starts[next_start].at < listed->due);
+    const bool starts_now = listed == nullptr || (next_start < starts.size() && starts[next_start].at < listed->due);
     Deferred& each = starts_now ? *starts[next_start].of : *listed;
     Consequences& out = each.consequences;
     if (starts_now) {

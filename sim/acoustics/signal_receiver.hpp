@@ -108,8 +108,8 @@ class SignalReceiver {
   std::span<const PresentSound> present() const { return std::span(present_).subspan(first_); }
   void drop_ended();
 
-  // In the order of their starts, from `first_` on.  Most sounds end in about this order, so that they are found near the
-  // front.
+  // In the order of their starts, from `first_` on.  Most sounds end in about this order, so that they are found near
+  // the front.
   std::vector<PresentSound> present_;
   std::size_t first_ = 0;
   std::uint64_t present_sum_ = 0;  // of the hashes of present()

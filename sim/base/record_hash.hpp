@@ -48,7 +48,8 @@ constexpr std::uint64_t product_hash(const std::uint64_t (&words)[count]) {
 }
 
 /// Hash of a record of a set.  That of the set is the sum over its records, which is updated when one is added, removed
-/// or changed, and does not depend on their order.  Mixed, so that an exchange of words between records changes the sum.
+/// or changed, and does not depend on their order.  Mixed, so that an exchange of words between records changes the
+/// sum.
 template <std::size_t count>
 constexpr std::uint64_t record_hash(const std::uint64_t (&words)[count]) {
   return record_hash_detail::mixed(product_hash(words) + 0x9e3779b97f4a7c15ULL);

@@ -82,8 +82,7 @@ TEST(RestoredReceptions, ContinueAfterARestoreAsWithoutIt) {
   ManyHearers run("{}", 1), again("{}", 2);
   for (int number = 0; number < 40; ++number) run.step(number);
   again.test.world.state().restore(run.test.world.state().snapshot());
-  for (int i = 0; i < 150; i += 2)
-    test::phone(again.test, "v" + std::to_string(i)).undetected = false;
+  for (int i = 0; i < 150; i += 2) test::phone(again.test, "v" + std::to_string(i)).undetected = false;
   for (int number = 40; number < 80; ++number) {
     run.step(number);
     again.step(number);
