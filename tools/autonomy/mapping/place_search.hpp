@@ -30,7 +30,7 @@ class PlaceSearch {
     double apart_m = 0.3, apart_rad = 0.3;  ///< move or turn between views
     int min_views = 3;                      ///< before one is accepted
     int max_views = 16;                     ///< then it begins again
-    double min_mean = 0.6;                 ///< mean evidence of a view to be accepted, see Fit
+    double min_mean = 0.6;                  ///< mean evidence of a view to be accepted, see Fit
     double expected_lead = 0.5;             ///< evidence for the place where it is if it was not carried
     double lead = 0.6;                      ///< sum by which it is ahead of all others
   };

@@ -250,9 +250,13 @@ TEST(CoopRoverFilter, UsesASightFromItsHeading) {
   seen.bearing_rad = std::numbers::pi / 2;
   seen.range_std_m = 0.1;
   seen.payload = payload;
-  const double P = rover->now(10 * nav_second).P(1, 1);
   rover->saw(seen);
-  EXPECT_NEAR(rover->now(10 * nav_second).p_W.y(), -0.1 * P / (P + 0.2 * 0.2 + 0.1 * 0.1), 1e-3);
+  // Across, as above, with the error of the heading, 0.015^2 (9 + ... + 1), which a sight from 4 m away shows along.
+  const double R = 0.2 * 0.2 + 0.1 * 0.1, across = 0.1 * 0.1 + 0.01 * 0.01 * 10 + 0.015 * 0.015 * 285;
+  const double both = 4 * 0.015 * 0.015 * 45;
+  const double along = 0.1 * 0.1 + 0.03 * 0.03 * 10 + 4 * 4 * 0.015 * 0.015 * 10 + R;
+  const double gain = (across * along - both * both) / (along * (across + R) - both * both);
+  EXPECT_NEAR(rover->now(10 * nav_second).p_W.y(), -0.1 * gain, 1e-6);
 }
 
 TEST(CoopRoverFilter, SendsItsPositionWithGpsOnlyAndNotBetterThanAFix) {

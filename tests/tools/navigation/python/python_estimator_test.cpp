@@ -126,12 +126,12 @@ TEST(PythonEstimator, AWrongLimitIsSaid) {
 TEST(PythonEstimator, TheTimeOfTheInterpreterCounts) {
   const test_support::ScratchFolder folder;
   const std::string source = python_with(folder, "t",
-                                       "  def start(self, s): pass\n"
-                                       "  def now(self, t):\n"
-                                       "    import time\n"
-                                       "    end = time.process_time() + 0.05\n"
-                                       "    while time.process_time() < end: pass\n"
-                                       "    return [0, 0], [[1, 0], [0, 1]]\n");
+                                         "  def start(self, s): pass\n"
+                                         "  def now(self, t):\n"
+                                         "    import time\n"
+                                         "    end = time.process_time() + 0.05\n"
+                                         "    while time.process_time() < end: pass\n"
+                                         "    return [0, 0], [[1, 0], [0, 1]]\n");
   const auto own = started(source, nav_setup(2, 0, {0, 0}, 1));
   const AlgorithmClock clock(algorithm_named(source));
   own->now(0);
