@@ -40,8 +40,8 @@ constexpr std::uint64_t folded(std::uint64_t a, std::uint64_t b) {
 /// do not wait for each other, which a chain would.  Not cryptographic.
 template <std::size_t count>
 constexpr std::uint64_t product_hash(const std::uint64_t (&words)[count]) {
-  using namespace record_hash_detail;
-  static_assert(count % 2 == 0 && count <= max_words);
+  using record_hash_detail::folded, record_hash_detail::keys;
+  static_assert(count % 2 == 0 && count <= record_hash_detail::max_words);
   std::uint64_t sum = 0;
   for (std::size_t i = 0; i < count; i += 2) sum += folded(words[i] ^ keys[i], words[i + 1] ^ keys[i + 1]);
   return sum;
