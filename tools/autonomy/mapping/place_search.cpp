@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "sim/base/math.hpp"
+#include "tools/autonomy/mapping/pose_graph.hpp"
 
 namespace autonomy {
 
@@ -14,7 +15,7 @@ namespace {
 
 constexpr double near_something = 0.2;
 
-/// The largest field within half a step of each point of a grid with this step.
+/// The largest field in each square of `side` cells.
 struct CoarseField {
   CoarseField(const OccupancyMap& map, int square)
       : side(square), columns((map.columns() + side - 1) / side), rows((map.rows() + side - 1) / side) {
@@ -28,7 +29,7 @@ struct CoarseField {
   std::size_t index(int column, int row) const {
     return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(column);
   }
-  /// Of the square with this cell, or beside it: the grid of places is as coarse.
+  /// Of the square with this cell; 0 outside of the map.
   int at(int column, int row) const {
     const int c = column / side, r = row / side;
     if (column < 0 || row < 0 || c >= columns || r >= rows) return 0;
@@ -75,10 +76,7 @@ Fit fit_of(const OccupancyMap& map, const Beams& beams, const Pose2& pose) {
 }
 
 void PlaceSearch::move(const Increment& by) {
-  for (Candidate& each : candidates_) {
-    each.pose.p_W += turned({by.forward_m, by.left_m}, each.pose.yaw_rad);
-    each.pose.yaw_rad = sim::wrap_angle(each.pose.yaw_rad + by.turn_rad);
-  }
+  for (Candidate& each : candidates_) each.pose = composed(each.pose, {{by.forward_m, by.left_m}, by.turn_rad});
   since_view_.forward_m += std::hypot(by.forward_m, by.left_m);
   since_view_.turn_rad += std::abs(by.turn_rad);
 }
