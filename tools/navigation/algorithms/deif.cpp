@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <algorithm>
 #include <deque>
 #include <map>
@@ -10,6 +12,25 @@
 namespace navigation {
 
 namespace {
+
+/// Removes from a link what it seems to say of its earlier position by rounding to 32 bits alone.  After a gap, when
+/// nothing else is known of that position, it would count.
+ChainLink without_rounding(ChainLink link) {
+  constexpr double rounding = 1e-6;  ///< of a sum of such numbers
+  const Matrix2 F_ba = link.information.topRightCorner<2, 2>();
+  const Matrix2 Q = link.information.bottomRightCorner<2, 2>().inverse();
+  const Matrix2 by_later = F_ba * Q * F_ba.transpose();
+  const Vector2 vector_by_later = F_ba * Q * link.vector.tail<2>();
+  const Eigen::SelfAdjointEigenSolver<Matrix2> own(link.information.topLeftCorner<2, 2>() - by_later);
+  const Vector2 eta = own.eigenvectors().transpose() * (link.vector.head<2>() - vector_by_later);
+  Vector2 L = own.eigenvalues(), kept = eta;
+  for (int i = 0; i < 2; ++i)
+    if (L[i] < rounding * link.information.cwiseAbs().maxCoeff()) L[i] = kept[i] = 0;
+  link.information.topLeftCorner<2, 2>() =
+      by_later + own.eigenvectors() * L.asDiagonal() * own.eigenvectors().transpose();
+  link.vector.head<2>() = vector_by_later + own.eigenvectors() * kept;
+  return link;
+}
 
 /// Decentralised extended information filter (Webster, Walls, Whitcomb and Eustice, IEEE T-RO 29(4), 2013).  A sender
 /// sends what it measured since its last packet, in information form, numbered; a receiver puts these links into its
@@ -115,7 +136,7 @@ class DecentralisedInformationFilter final : public EstimatorOf<DecentralisedInf
     for (int i = 0; i < 4; ++i) link.vector[i] = reader.real();
     for (int i = 0; i < 4; ++i)
       for (int j = i; j < 4; ++j) link.information(i, j) = link.information(j, i) = reader.real();
-    return link;
+    return without_rounding(link);
   }
 
   Setup setup_;

@@ -31,7 +31,9 @@ class PairwiseCommunication final : public TeamEstimator {
   void moved(int vehicle, Time time, const Vector2& v_W, const Matrix2& q) override {
     Own& own = vehicles_.at(vehicle);
     const Eigen::MatrixXd F = own.filter.jacobian(number, time, v_W);
+    const Vector2 before_W = own.filter.position(number);
     own.filter.move(number, time, v_W, q);
+    own.travelled_W += own.filter.position(number) - before_W;
     for (auto& [other, s] : own.factors) s = (F * s).eval();
   }
   void fix(int vehicle, Time, const Vector2& p_W, double std_m) override {
@@ -42,12 +44,25 @@ class PairwiseCommunication final : public TeamEstimator {
     const Eigen::MatrixXd kept = own.filter.P() * P.inverse();
     for (auto& [other, s] : own.factors) s = (kept * s).eval();
   }
-  void sent(int, Time) override {}
+  void sent(int vehicle, Time time) override {
+    Own& own = vehicles_.at(vehicle);
+    std::erase_if(own.sent_W, [&](const auto& each) { return seconds(time - each.first) > max_flight_s; });
+    own.sent_W[time] = own.travelled_W;
+  }
   void heard(int vehicle, const Heard& heard) override {
     if (!vehicles_.contains(heard.sender)) return;
+    const Own& sender = vehicles_.at(heard.sender);
+    const auto sent = sender.sent_W.find(heard.payload_time);
+    if (sent == sender.sent_W.end()) return;
+    // The range refers to the place of the transmission.
+    const Vector2 since_W = sender.travelled_W - sent->second;
     meet(
         vehicle, heard.sender, [](JointFilter&) { return true; },
-        [&](JointFilter& both) { both.range(0, 1, heard.own_z_m - heard.sender_z_m, heard.range_m, heard.std_m); });
+        [&](JointFilter& both) {
+          shift(both, 1, -since_W);
+          both.range(0, 1, heard.own_z_m - heard.sender_z_m, heard.range_m, heard.std_m);
+          shift(both, 1, since_W);
+        });
   }
   void saw(int vehicle, const Relative& seen) override {
     if (!vehicles_.contains(seen.other)) return;
@@ -68,11 +83,21 @@ class PairwiseCommunication final : public TeamEstimator {
 
  private:
   static constexpr int number = 0;  ///< of each vehicle in its own filter
+  /// A transmission is no longer received after this, 15 km.
+  static constexpr double max_flight_s = 10;
 
   struct Own {
     JointFilter filter;
     std::map<int, Eigen::MatrixXd> factors;  ///< s_ij, by j; none: 0
+    Vector2 travelled_W = Vector2::Zero();   ///< since the start, by its motions
+    std::map<Time, Vector2> sent_W;          ///< that at each transmission
   };
+
+  static void shift(JointFilter& filter, int part, const Vector2& by_W) {
+    Eigen::VectorXd x = filter.x();
+    x.segment<2>(filter.offset(part)) += by_W;
+    filter.set_x(x);
+  }
 
   /// `admits`: whether to update, which may make the position of i more uncertain.
   template <class Admits, class Update>
