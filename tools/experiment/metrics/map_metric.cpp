@@ -10,6 +10,7 @@
 #include "tools/experiment/map/map_score.hpp"
 #include "tools/experiment/map/published_map.hpp"
 #include "tools/experiment/map/true_map.hpp"
+#include "tools/experiment/metrics/scored_period.hpp"
 #include "tools/experiment/score/metric_registry.hpp"
 
 namespace tools {
@@ -33,7 +34,7 @@ class MapMetric final : public Metric {
             {"stale_age_s", "s", "mean time since such a cell changed"},
             {"maps", "maps", "maps that were compared with the truth", true}};
   }
-  struct Params final : sim::MetricParams {
+  struct Params final : ScoredPeriod {
     double height_m = 0.3;
     int tolerance_cells = 1;
     double truth_period_s = 60;
@@ -41,7 +42,7 @@ class MapMetric final : public Metric {
       in.require("channel");
       read_channel(in);
       read_vehicle(in);
-      read_from_s(in);
+      read_period(in);
       in.read("height_m", height_m, sim::between(-1e6, 1e6), "height of the true map above zero, such as of the lidar");
       in.read("tolerance_cells", tolerance_cells, sim::between(0, 10),
               "an occupied cell is right when the other map has one at most this many columns and rows away");
@@ -60,10 +61,10 @@ class MapMetric final : public Metric {
 
   void after_step() override {
     const double now_s = sim::to_seconds(world_.now());
-    if (history_.started() && now_s >= next_truth_s_) look(now_s);
+    if (history_.started() && now_s >= next_truth_s_ && now_s <= params_.until_s) look(now_s);
     while (const auto message = mailbox_->take()) {
       try {
-        if (now_s >= params_.from_s) take(decode_map(message->payload), now_s);
+        take(decode_map(message->payload), now_s);
       } catch (const std::runtime_error& error) {
         if (bad_messages_++ == 0)
           spdlog::warn("metric '{}': {}: {} (ignored, as are all more bad ones)", config().name, message->channel,
@@ -125,6 +126,7 @@ class MapMetric final : public Metric {
   void take(const PublishedMap& published, double now_s) {
     const sim::Time stamped{published.utime - world_.epoch_us()};
     constexpr double oldest_s = 3600;
+    if (now_s > params_.until_s) return;
     if (stamped > world_.now() + sim::from_seconds(1) || stamped < world_.now() - sim::from_seconds(oldest_s))
       throw std::runtime_error(fmt::format("'utime' is not within the last {} s of simulated time", oldest_s));
     if (!history_.started()) {
@@ -135,6 +137,8 @@ class MapMetric final : public Metric {
     }
     next_truth_s_ = std::min(next_truth_s_, now_s);
     look(now_s);
+    // What a map of a later day has wrong may have changed days before.
+    if (now_s < params_.from_s) return;
     add_score(score_map(published.map, history_, params_.tolerance_cells, now_s));
   }
 

@@ -11,6 +11,7 @@
 #include "shoal/estimate_t.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/pose_t.hpp"
+#include "tools/experiment/metrics/scored_period.hpp"
 #include "tools/experiment/score/metric_registry.hpp"
 
 namespace tools {
@@ -72,7 +73,7 @@ class TrajectoryMetric final : public Metric {
             {"lost_s", "s", "longest time with a position error above `lost_m`, from the first estimate on"},
             {"poses", "poses", "poses that were compared with the truth", true}};
   }
-  struct Params final : sim::MetricParams {
+  struct Params final : ScoredPeriod {
     double segment_m = 10;
     double lost_m = 0.5;
     void read(sim::ParamReader& in) override {
@@ -80,7 +81,7 @@ class TrajectoryMetric final : public Metric {
       read_vehicle(in);
       in.require("channel");
       read_channel(in);
-      read_from_s(in);
+      read_period(in);
       in.read("segment_m", segment_m, sim::between(1, 1000), "distance travelled in a segment");
       in.read("lost_m", lost_m, sim::above_to(0, 1e6), "position error from which the vehicle counts as lost");
     }
@@ -116,7 +117,8 @@ class TrajectoryMetric final : public Metric {
     add(figures, "segment_deg",
         segments_ > 0 ? sim::radians_to_degrees(std::sqrt(segment_squares_rad2_ / segments_)) : no_figure);
     add(figures, "segments", segments_);
-    const double lost_s = lost_since_s_ ? sim::to_seconds(world_.now()) - *lost_since_s_ : 0;
+    const double end_s = std::min(sim::to_seconds(world_.now()), params_.until_s);
+    const double lost_s = lost_since_s_ ? end_s - *lost_since_s_ : 0;
     add(figures, "lost_s", any ? std::max(max_lost_s_, lost_s) : no_figure);
     add(figures, "poses", sums_.count);
   }
@@ -189,7 +191,7 @@ class TrajectoryMetric final : public Metric {
     const std::int64_t step_us = world_.step_time().count();
     const bool near = time.count() >= 0 && time <= world_.now() && time > world_.now() - sim::from_seconds(memory_s);
     if (!near) throw std::runtime_error(fmt::format("'utime' is not within the last {} s of simulated time", memory_s));
-    if (sim::to_seconds(time) < params_.from_s) return;
+    if (sim::to_seconds(time) < params_.from_s || sim::to_seconds(time) > params_.until_s) return;
     compare(recent_[slot_of((time.count() + step_us / 2) / step_us)], estimate, sim::to_seconds(time));
   }
 

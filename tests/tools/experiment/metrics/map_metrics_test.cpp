@@ -107,6 +107,23 @@ TEST(MapMetric, IgnoresMapsOfAnotherFrameAndOtherMessages) {
   EXPECT_EQ(world.scoring.bad_messages(), 2);
 }
 
+TEST(MapMetric, CountsMapsOfAPeriodAndKnowsWhatChangedBefore) {
+  MappedWorld world("  - {name: m, type: map, channel: map, truth_period_s: 0.01, from_s: 0.1, until_s: 0.3}\n");
+  const tools::GridMap before = tools::true_map(world.test.world, world.frame, 0.3);
+  const double step_s = sim::to_seconds(world.test.world.step_time());
+  world.publish(before);
+  world.test.world.editor().remove_object("crate");
+  world.step(static_cast<int>(0.2 / step_s));
+  EXPECT_EQ(world.figure("m.maps"), 0);
+  world.publish(before);
+  EXPECT_EQ(world.figure("m.maps"), 1);
+  EXPECT_EQ(world.figure("m.stale_percent"), 100);
+  EXPECT_NEAR(world.figure("m.stale_age_s"), 0.2, 0.02);
+  world.step(static_cast<int>(0.2 / step_s));
+  world.publish(before);
+  EXPECT_EQ(world.figure("m.maps"), 1);
+}
+
 TEST(MapMetric, IsRestoredWithItsRun) {
   MappedWorld world(map_metric);
   world.publish_truth();
@@ -136,6 +153,19 @@ TEST(TrajectoryMetric, IsTheRootMeanSquareOfTheErrors) {
   EXPECT_NEAR(world.figure("p.max_m"), 0.4, creep_m);
   EXPECT_EQ(world.figure("p.poses"), 2);
   EXPECT_TRUE(std::isnan(world.figure("p.segment_m")));
+}
+
+TEST(TrajectoryMetric, CountsPosesOfAPeriod) {
+  MappedWorld world("  - {name: p, type: trajectory, vehicle: r1, channel: est, from_s: 0.1, until_s: 0.3}\n");
+  const double step_s = sim::to_seconds(world.test.world.step_time());
+  for (const double error_m : {9.0, 0.6, 5.0}) {
+    world.estimate(world.position_m() + sim::Vector3d(error_m, 0, 0), 0);
+    world.step(static_cast<int>(0.2 / step_s));
+  }
+  EXPECT_EQ(world.figure("p.poses"), 1);
+  EXPECT_NEAR(world.figure("p.ate_m"), 0.6, creep_m);
+  // Lost from 0.2 s to the end of the period.
+  EXPECT_NEAR(world.figure("p.lost_s"), 0.1, 2 * step_s);
 }
 
 TEST(TrajectoryMetric, AlignmentRemovesARigidMotion) {
