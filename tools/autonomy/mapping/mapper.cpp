@@ -115,10 +115,11 @@ void Mapper::track(const Beams& beams, const Increment& by) {
   const bool rests = std::hypot(by.forward_m, by.left_m) < 0.001 && std::abs(by.turn_rad) < 0.0005;
   const double score = rests ? score_of(map_, beams.points_B, pose_) : 0;
   if (rests && score > 0.9 * still_score_ && seconds(utime_ - matched_utime_) < params_.insert_s) return;
-  // Match, unless the scan contradicts the map.
+  // Match, unless the scan contradicts the map.  Beams may pass through what has gone, such as a truck beside the
+  // vehicle, when they end where something is.
   const ScanMatch match = matcher_.match(map_, beams.points_B, pose_, covariance_.inverse());
-  const Fit fit = fit_of(map_, beams, match.pose);
-  if (beams.points_B.size() >= min_judged_points && fit.near < params_.min_near &&
+  const Fit fit = fit_of(map_, beams, match.pose, params_.min_near);
+  if (beams.points_B.size() >= min_judged_points && fit.ends_near() < params_.min_near &&
       fit.evidence() < (surveys_ ? params_.min_survey_evidence : params_.min_evidence)) {
     if (++bad_scans_ < params_.max_bad_scans) return;
     if (surveys_) end_survey();
@@ -146,10 +147,7 @@ void Mapper::search(const Beams& beams, const Increment& by) {
   predict(by);
   search_.move(by);
   // It may be where it was: something large that is new stood before the lidar.
-  constexpr double found_std_m = 0.1, found_std_rad = 0.05;
-  const Eigen::Matrix3d covariance =
-      Eigen::Vector3d(squared(found_std_m), squared(found_std_m), squared(found_std_rad)).asDiagonal();
-  const ScanMatch here = matcher_.match(map_, beams.points_B, pose_, covariance.inverse());
+  const ScanMatch here = matcher_.match(map_, beams.points_B, pose_, loose_covariance().inverse());
   std::optional<Pose2> found;
   if (fit_of(map_, beams, here.pose).evidence() >= params_.certain_evidence)
     found = here.pose;
@@ -159,7 +157,7 @@ void Mapper::search(const Beams& beams, const Increment& by) {
   lost_ = false;
   bad_scans_ = 0;
   pose_ = *found;
-  covariance_ = covariance;
+  covariance_ = loose_covariance();
   still_score_ = 0;
 }
 

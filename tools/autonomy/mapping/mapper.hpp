@@ -41,7 +41,7 @@ class Mapper {
     double insert_s = 10;               ///< or this time
     double min_evidence = 0.1;          ///< of a scan, see Fit
     double min_survey_evidence = -0.3;  ///< in the survey, when much is unknown
-    double min_near = 0.25;             ///< and share of its beams near something
+    double min_near = 0.25;             ///< and share of its beams that end near something
     double certain_evidence = 0.6;      ///< from which on a lost vehicle is where it was
     int max_bad_scans = 5;              ///< consecutive ones below it; then the vehicle is lost
     int survey_scans = 400;

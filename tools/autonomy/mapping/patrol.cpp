@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace autonomy {
 
@@ -55,7 +56,8 @@ Twist Patrol::step(std::int64_t utime) {
   const double oldest_s = 2.5 * params_.period_s;
   if (seconds(newest - scan_utime_) > oldest_s || seconds(newest - estimate_->utime) > memory_s) return {};
   const double variance_m2 = estimate_->covariance_m2[0] + estimate_->covariance_m2[4];
-  if (!(variance_m2 < 2 * squared(params_.lost_std_m))) return {0, params_.search_radps};
+  if (!(variance_m2 < 2 * squared(params_.lost_std_m))) return seek_place(utime);
+  lost_since_.reset();
   if (utime < rests_until_) return {};
   // The next waypoint.
   const Vector2d goal_B = follower_.goal_B(present_pose(), seconds(utime));
@@ -66,10 +68,22 @@ Twist Patrol::step(std::int64_t utime) {
     rests_until_ = utime + static_cast<std::int64_t>(1e6 * (charges ? params_.charge_s : params_.pause_s));
     return {};
   }
+  return steer(goal_B);
+}
+
+Twist Patrol::steer(const Vector2d& goal_B) {
   Twist twist = avoidance_.steer(goal_B, scan_);
   // Its gain of 1.5 /s would overshoot when a command lasts longer: two thirds of the error in a period are enough.
   twist.turn_radps *= std::min(1.0, 0.67 / (1.5 * params_.period_s));
   return twist;
+}
+
+Twist Patrol::seek_place(std::int64_t utime) {
+  if (!lost_since_) lost_since_ = utime;
+  const double turn_s = 2 * std::numbers::pi / params_.search_radps;
+  const double at_s = std::fmod(seconds(utime - *lost_since_), turn_s + params_.search_drive_s);
+  if (at_s < turn_s) return {0, params_.search_radps};
+  return steer({params_.speed_mps * params_.search_drive_s, 0});
 }
 
 }  // namespace autonomy

@@ -17,7 +17,8 @@ namespace autonomy {
 
 /// Drives rounds by the pose that another program estimates: along waypoints with a pause at each, and a longer one at
 /// the first, where it charges.  It drives around what its lidar sees.  While the estimate is uncertain it turns on the
-/// spot, so that the other program sees all around.  A pure function of the messages and ticks in their order.
+/// spot, so that the other program sees all around, and then drives on, since another place may be easier to know, in
+/// turns.  A pure function of the messages and ticks in their order.
 class Patrol {
  public:
   struct Params {
@@ -29,6 +30,7 @@ class Patrol {
     double give_up_s = 60;      ///< a waypoint is skipped after this time without progress
     double lost_std_m = 1;      ///< standard deviation of the estimate from which on it turns on the spot
     double search_radps = 0.4;  ///< turn rate of this
+    double search_drive_s = 8;  ///< after each full turn it drives for this long
     double period_s = 1;        ///< between ticks: the longer, the smaller its turns
   };
 
@@ -48,6 +50,9 @@ class Patrol {
  private:
   /// Returns the estimate moved by the odometry since its time.
   Pose2 present_pose() const;
+  Twist steer(const Vector2d& goal_B);
+  /// What it does while the estimate is uncertain.
+  Twist seek_place(std::int64_t utime);
 
   Params params_;
   WaypointFollower follower_;
@@ -59,6 +64,7 @@ class Patrol {
   int passed_ = 0;  ///< waypoints reached or given up
   int rounds_ = 0;
   std::int64_t rests_until_ = 0;
+  std::optional<std::int64_t> lost_since_;
 };
 
 }  // namespace autonomy

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/autonomy/mapping/place_search.hpp"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -53,26 +54,32 @@ bool is_blocked(const OccupancyMap& map, const Vector2d& from_W, const Vector2d&
 
 /// Information of a candidate.
 Eigen::Matrix3d loose() {
-  constexpr double std_m = 0.1, std_rad = 0.05;
-  return Eigen::Vector3d(1 / squared(std_m), 1 / squared(std_m), 1 / squared(std_rad)).asDiagonal();
+  return loose_covariance().inverse();
 }
 
 }  // namespace
 
-Fit fit_of(const OccupancyMap& map, const Beams& beams, const Pose2& pose) {
+Eigen::Matrix3d loose_covariance() {
+  constexpr double std_m = 0.1, std_rad = 0.05;
+  return Eigen::Vector3d(squared(std_m), squared(std_m), squared(std_rad)).asDiagonal();
+}
+
+Fit fit_of(const OccupancyMap& map, const Beams& beams, const Pose2& pose, double enough_near) {
   const Vector2d from_W = pose.p_W + turned(beams.sensor_B, pose.yaw_rad);
-  int near = 0, contradicting = 0;
+  const auto all = static_cast<double>(std::max<std::size_t>(1, beams.points_B.size()));
+  int near = 0, contradicting = 0, through = 0;
   for (const Vector2d& point_B : beams.points_B) {
     const Vector2d end_W = pose.p_W + turned(point_B, pose.yaw_rad);
-    if (is_blocked(map, from_W, end_W))
+    if (is_blocked(map, from_W, end_W)) {
       ++contradicting;
-    else if (map.field(end_W) > near_something)
+      if (map.field(end_W) > near_something) ++through;
+    } else if (map.field(end_W) > near_something)
       ++near;
     else if (map.is_known(end_W))
       ++contradicting;
+    if (near >= enough_near * all) break;
   }
-  const auto all = static_cast<double>(std::max<std::size_t>(1, beams.points_B.size()));
-  return {near / all, contradicting / all};
+  return {near / all, contradicting / all, through / all};
 }
 
 void PlaceSearch::move(const Increment& by) {

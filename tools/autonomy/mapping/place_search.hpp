@@ -64,8 +64,14 @@ inline constexpr std::size_t min_judged_points = 40;
 struct Fit {
   double near = 0;           ///< end near something
   double contradicting = 0;  ///< end in what is known as free, or pass through something
+  double through = 0;        ///< of these, pass through something and end near something
+  double ends_near() const { return near + through; }
   double evidence() const { return near - contradicting; }
 };
-Fit fit_of(const OccupancyMap& map, const Beams& beams, const Pose2& pose);
+/// `enough_near`: looks at no more beams when this share of them ends near something.
+Fit fit_of(const OccupancyMap& map, const Beams& beams, const Pose2& pose, double enough_near = 1);
+
+/// Covariance of a place that is only guessed.
+Eigen::Matrix3d loose_covariance();
 
 }  // namespace autonomy

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <spdlog/fmt/fmt.h>
+
 #include <algorithm>
 #include <ctime>
 #include <iostream>
@@ -12,6 +14,7 @@ namespace {
 
 struct Options {
   std::string name, vehicle, memory = "forgetting";
+  std::string pose = "estimate", map = "map";
   autonomy::Mapper::Params mapper;
   double start_yaw_deg = 0, lidar_yaw_deg = 0;
   double map_every_s = 600;
@@ -22,6 +25,7 @@ struct Options {
 /// All state of the program: it is rewound with the world.
 struct State {
   autonomy::Mapper mapper;
+  bool was_lost = false;
   std::int64_t next_map_utime = 0;
 };
 
@@ -50,10 +54,17 @@ int map(const Options& options) {
     timing.total_s += took_s;
     timing.max_s = std::max(timing.max_s, took_s);
     ++timing.scans;
-    client.publish(prefix + "estimate", *estimate);
+    if (state.mapper.is_lost() != state.was_lost) {
+      state.was_lost = state.mapper.is_lost();
+      const autonomy::Pose2& pose = state.mapper.pose();
+      std::cerr << fmt::format("{}: {} at ({:.2f}, {:.2f}), {:.0f} deg, utime {}\n", options.name,
+                               state.was_lost ? "lost" : "found", pose.p_W.x(), pose.p_W.y(),
+                               sim::radians_to_degrees(pose.yaw_rad), utime);
+    }
+    client.publish(prefix + options.pose, *estimate);
     if (utime < state.next_map_utime) return;
     state.next_map_utime = utime + static_cast<std::int64_t>(1e6 * options.map_every_s);
-    client.publish(prefix + "map", state.mapper.map_message());
+    client.publish(prefix + options.map, state.mapper.map_message());
   });
   // A single write, because the programs of a run share a terminal.
   std::string text = options.name + ": lost " + std::to_string(state.mapper.times_lost()) + " times\n";
@@ -85,10 +96,12 @@ void declare_map(command_line::DeclaredOptions& declared, autonomy::OccupancyMap
 
 void declare(command_line::DeclaredOptions& declared, Options& options) {
   autonomy::Mapper::Params& mapper = options.mapper;
-  declared.publishes({"{vehicle}.estimate", "{vehicle}.map"});
+  declared.publishes({"{vehicle}.{pose}", "{vehicle}.{map}"});
   declared.subscribes({"{vehicle}.odometry", "{vehicle}.lidar"});
   declared.text("name", "NAME", options.name, "its name in the lockstep").required_in_worlds();
   declared.text("vehicle", "VEHICLE", options.vehicle, "vehicle that maps").required_in_worlds();
+  declared.text("pose", "CHANNEL", options.pose, "channel of its estimated pose, after VEHICLE.");
+  declared.text("map", "CHANNEL", options.map, "channel of its map, after VEHICLE.");
   declared
       .tuple(
           "start_m", {"x", "y"}, sim::any_place(),

@@ -61,6 +61,7 @@ void declare(command_line::DeclaredOptions& declared, Options& options) {
   declared.number("lost_std_m", patrol.lost_std_m, 0.01, 1000,
                   "standard deviation of the estimate from which on it turns on the spot");
   declared.number("search_radps", patrol.search_radps, 0.01, 10, "turn rate of this");
+  declared.number("search_drive_s", patrol.search_drive_s, 0, 1e6, "after each full turn it drives for this long");
   options.participation.declare(declared);
   autonomy::set_help_end(declared,
                          {"shoal-patrol --name patrol --vehicle rover1 --waypoints-m '[[-18,0],[18,4],[18,-4]]'"},

@@ -69,12 +69,17 @@ TEST(Patrol, DrivesRoundsAndRestsAtItsWaypoints) {
   EXPECT_GT(resting, 500);
 }
 
-TEST(Patrol, TurnsOnTheSpotWhileTheEstimateIsUncertain) {
+TEST(Patrol, TurnsAndDrivesInTurnsWhileTheEstimateIsUncertain) {
   PatrolRun run(square());
   run.variance_m2 = 100;
   const Twist twist = run.tick();
   EXPECT_EQ(twist.forward_mps, 0);
   EXPECT_EQ(twist.turn_radps, 0.4);
+  // 15 further seconds until a full turn, then 8 s at up to 0.6 m/s.
+  for (int i = 0; i < 15; ++i) EXPECT_EQ(run.tick().forward_mps, 0);
+  for (int i = 0; i < 8; ++i) run.tick();
+  EXPECT_GT(run.pose.p_W.norm(), 3);
+  EXPECT_EQ(run.tick().turn_radps, 0.4);
 }
 
 TEST(Patrol, MovesAnOldEstimateByItsOdometry) {

@@ -77,6 +77,7 @@ TEST(PlaceSearch, AFitCountsWhatContradictsTheMap) {
   const Pose2 truth{{0.5, -0.3}, 0.7};
   const Beams beams = beams_of(test::hall().scan(truth, 0));
   EXPECT_GT(autonomy::fit_of(map, beams, truth).near, 0.95);
+  EXPECT_NEAR(autonomy::fit_of(map, beams, truth, 0.25).near, 0.25, 0.02);
   EXPECT_LT(autonomy::fit_of(map, beams, {{0.5, -0.3}, 2.2}).evidence(), 0.2);
   EXPECT_EQ(autonomy::fit_of(OccupancyMap({}), beams, truth).evidence(), 0);  // all is unknown
 }
