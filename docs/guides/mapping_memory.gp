@@ -1,22 +1,38 @@
-# A figure of the study slam_days:  gnuplot docs/guides/mapping_memory.gp
-if (!exists("study")) study = "results/slam_days/study.csv"
+# A figure of the study slam_memory:  gnuplot docs/guides/mapping_memory.gp
+if (!exists("folder")) folder = "results/slam_memory"
+study = folder."/study.csv"
 set terminal pngcairo size 900,420 font "sans,11"
-set output "results/slam_days/memory.png"
+set output folder."/memory.png"
 set datafile separator ","
 set datafile missing ""
+set datafile columnheaders
 set multiplot layout 1,2
-set xlabel "days"
+set xlabel "day"
 set xrange [0.5:7.5]
 set xtics (1, 3, 7)
 set grid
-# Days in the name of a case, such as static_3, or nothing for another kind.
-days(name, kind) = strstrt(name, kind."_") == 1 ? substr(name, strlen(kind) + 2, strlen(kind) + 2) + 0 : NaN
-do for [figure in "map.iou map.stale_percent"] {
-  set ylabel figure eq "map.iou" ? "intersection over union" : "stale cells, % of those that changed"
-  if (figure eq "map.iou") { set key bottom left } else { set key top left }
+array days[3] = [1, 3, 7]
+do for [figure in "iou stale_percent"] {
+  set ylabel figure eq "iou" ? "intersection over union" : "stale cells, % of those that have changed"
+  if (figure eq "iou") { set key bottom left } else { set key top left }
+  # The means; a day that no run has reached has none.
+  set print $means
+  print "day,forgetting,static"
+  do for [i = 1:3] {
+    array means[2]
+    do for [k = 1:2] {
+      undefine STATS_*
+      stats study using sprintf("%sday%d.%s", k == 1 ? "" : "static_", days[i], figure) nooutput
+      means[k] = exists("STATS_records") ? sprintf("%g", STATS_mean) : ""
+    }
+    print sprintf("%d,%s,%s", days[i], means[1], means[2])
+  }
+  set print
   # A small point for each run, a line through the means.
-  plot study using (days(strcol("case"), "forgetting") - 0.06):figure with points pt 7 ps 0.5 lc rgb "#9fb4dd" notitle, \
-       "" using (days(strcol("case"), "static") + 0.06):figure with points pt 7 ps 0.5 lc rgb "#e8b090" notitle, \
-       "" using (days(strcol("case"), "forgetting")):figure smooth unique with linespoints pt 7 lw 2 lc rgb "#204080" title "forgetting", \
-       "" using (days(strcol("case"), "static")):figure smooth unique with linespoints pt 9 lw 2 lc rgb "#b05020" title "all evidence"
+  plot for [i = 1:3] study using (days[i] - 0.06):sprintf("day%d.%s", days[i], figure) \
+         with points pt 7 ps 0.5 lc rgb "#9fb4dd" notitle, \
+       for [i = 1:3] "" using (days[i] + 0.06):sprintf("static_day%d.%s", days[i], figure) \
+         with points pt 7 ps 0.5 lc rgb "#e8b090" notitle, \
+       $means using 1:2 with linespoints pt 7 lw 2 lc rgb "#204080" title "forgetting", \
+       $means using 1:3 with linespoints pt 9 lw 2 lc rgb "#b05020" title "all evidence"
 }
