@@ -42,7 +42,7 @@ class DecentralisedInformationFilter final : public EstimatorOf<DecentralisedInf
   static constexpr const char* meaning =
       "decentralised information filter: exact until too many packets are lost in a row";
   static constexpr std::size_t link_bytes = 4 * 16;
-  static constexpr std::size_t head_bytes = 2;  ///< number of the newest link, and how many there are
+  static constexpr std::size_t head_bytes = 3;  ///< number of the newest link, and how many there are
   /// Standard deviation of a position of which nothing is known.
   static constexpr double unknown_m = 1e4;
 
@@ -66,7 +66,7 @@ class DecentralisedInformationFilter final : public EstimatorOf<DecentralisedInf
   }
   void heard(const Heard& heard) override {
     PayloadReader reader(heard.payload);
-    const auto newest = static_cast<int>(reader.whole(1));
+    const auto newest = static_cast<int>(reader.whole(2));
     const auto count = static_cast<int>(reader.whole(1));
     std::deque<ChainLink> links;  // the oldest first
     for (int i = 0; i < count && reader.ok(); ++i) links.push_front(read_link(reader));
@@ -105,7 +105,7 @@ class DecentralisedInformationFilter final : public EstimatorOf<DecentralisedInf
     if (said_.size() > fitting) said_.resize(fitting);
     Bytes payload;
     PayloadWriter writer(payload);
-    writer.whole(static_cast<std::uint64_t>(number_), 1);
+    writer.whole(static_cast<std::uint64_t>(number_), 2);
     writer.whole(said_.size(), 1);
     for (const ChainLink& link : said_) write_link(writer, link);
     return payload;
@@ -114,7 +114,7 @@ class DecentralisedInformationFilter final : public EstimatorOf<DecentralisedInf
 
  private:
   static constexpr int own = SenderChains::own;
-  static constexpr int cycle = 256;
+  static constexpr int cycle = 65536;
 
   static Position nothing_known(const Vector2& p_W) { return {p_W, unknown_m * unknown_m * Matrix2::Identity()}; }
   void break_chain(int sender, const Vector2& near_W) {

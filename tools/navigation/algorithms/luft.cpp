@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <Eigen/LU>
+#include <Eigen/QR>
 #include <map>
 #include <utility>
 
@@ -38,10 +39,8 @@ class PairwiseCommunication final : public TeamEstimator {
   }
   void fix(int vehicle, Time, const Vector2& p_W, double std_m) override {
     Own& own = vehicles_.at(vehicle);
-    const Eigen::MatrixXd P = own.filter.P();
-    own.filter.fix(number, p_W, std_m);
-    // P+ = (I - K H) P.
-    const Eigen::MatrixXd kept = own.filter.P() * P.inverse();
+    Eigen::MatrixXd kept;
+    if (own.filter.fix(number, p_W, std_m, &kept) == JointFilter::Outcome::refused) return;
     for (auto& [other, s] : own.factors) s = (kept * s).eval();
   }
   void sent(int vehicle, Time time) override {
@@ -93,6 +92,11 @@ class PairwiseCommunication final : public TeamEstimator {
     std::map<Time, Vector2> sent_W;          ///< that at each transmission
   };
 
+  /// Returns P+ P^-1.  P may be singular, as with a clock whose error is its drift alone.
+  static Eigen::MatrixXd kept_of(const Eigen::MatrixXd& P_after, const Eigen::MatrixXd& P) {
+    return P.completeOrthogonalDecomposition().solve(P_after).transpose();
+  }
+
   static void shift(JointFilter& filter, int part, const Vector2& by_W) {
     Eigen::VectorXd x = filter.x();
     x.segment<2>(filter.offset(part)) += by_W;
@@ -117,8 +121,8 @@ class PairwiseCommunication final : public TeamEstimator {
     const Eigen::MatrixXd P = both.P();
     update(both);
     const Eigen::MatrixXd P_after = both.P();
-    const Eigen::MatrixXd kept_a = P_after.topLeftCorner(n, n) * P.topLeftCorner(n, n).inverse();
-    const Eigen::MatrixXd kept_b = P_after.bottomRightCorner(m, m) * P.bottomRightCorner(m, m).inverse();
+    const Eigen::MatrixXd kept_a = kept_of(P_after.topLeftCorner(n, n), P.topLeftCorner(n, n));
+    const Eigen::MatrixXd kept_b = kept_of(P_after.bottomRightCorner(m, m), P.bottomRightCorner(m, m));
     for (auto& [other, s] : a.factors) s = (kept_a * s).eval();
     for (auto& [other, s] : b.factors) s = (kept_b * s).eval();
     a.factors[j] = P_after.topRightCorner(n, m);

@@ -228,7 +228,7 @@ void JointFilter::move_linear(int part, const Matrix2& F, const Vector2& offset,
   symmetrise();
 }
 
-JointFilter::Outcome JointFilter::fix(int vehicle, const Vector2& p_W, double std_m) {
+JointFilter::Outcome JointFilter::fix(int vehicle, const Vector2& p_W, double std_m, Eigen::MatrixXd* kept) {
   Part& part = at(vehicle);
   const int o = part.offset;
   const int slow = part.layout.slow_fix;
@@ -246,6 +246,10 @@ JointFilter::Outcome JointFilter::fix(int vehicle, const Vector2& p_W, double st
       open_position(part, innovation);
     }
     part.refused_fixes = 0;
+  }
+  if (kept != nullptr) {
+    const Eigen::MatrixXd PH = P_ * H.transpose();
+    *kept = Eigen::MatrixXd::Identity(size(), size()) - PH * (H * PH + R).inverse() * H;
   }
   update(H, innovation, R);
   return Outcome::used;
