@@ -146,6 +146,7 @@ void Mapper::track(const Beams& beams, const Increment& by) {
 void Mapper::search(const Beams& beams, const Increment& by) {
   predict(by);
   search_.move(by);
+  if (beams.points_B.size() < min_judged_points) return;
   // It may be where it was: something large that is new stood before the lidar.
   const ScanMatch here = matcher_.match(map_, beams.points_B, pose_, loose_covariance().inverse());
   std::optional<Pose2> found;

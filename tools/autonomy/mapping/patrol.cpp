@@ -62,7 +62,10 @@ Twist Patrol::step(std::int64_t utime) {
   // The next waypoint.
   const Vector2d goal_B = follower_.goal_B(present_pose(), seconds(utime));
   if (follower_.reached() + follower_.given_up() > passed_) {
+    const bool reached = follower_.reached() > reached_;
     passed_ = follower_.reached() + follower_.given_up();
+    reached_ = follower_.reached();
+    if (!reached) return {};
     const bool charges = follower_.current() == 1 % params_.waypoints_W.size();
     rounds_ += charges ? 1 : 0;
     rests_until_ = utime + static_cast<std::int64_t>(1e6 * (charges ? params_.charge_s : params_.pause_s));

@@ -62,6 +62,7 @@ class Patrol {
   Scan scan_;
   std::int64_t scan_utime_ = 0;
   int passed_ = 0;  ///< waypoints reached or given up
+  int reached_ = 0;
   int rounds_ = 0;
   std::int64_t rests_until_ = 0;
   std::optional<std::int64_t> lost_since_;

@@ -118,6 +118,24 @@ TEST(Mapper, FindsItsPlaceAgainAfterItWasCarried) {
   EXPECT_LT(run.error_m(), 0.1);
 }
 
+TEST(Mapper, IsNotFoundByAFewBeams) {
+  HallRun run(from({-3, -1}));
+  run.look();
+  for (int round = 0; round < 2; ++round) run.drive_round();
+  run.truth = {{6.5, -1.5}, 2.5};
+  for (int i = 0; i < 5; ++i) run.look();
+  ASSERT_TRUE(run.mapper.is_lost());
+  // Three beams that fit where it was.
+  run.utime += second;
+  shoal::planar_lidar_t scan = run.room.scan(run.mapper.pose(), run.utime);
+  for (int i = 0; i < scan.nranges; ++i)
+    if (i % 60 != 30) scan.ranges[static_cast<std::size_t>(i)] = 20;
+  run.mapper.receive(test::odometry_at(run.odometry, run.utime));
+  run.mapper.receive(scan);
+  EXPECT_TRUE(run.mapper.step());
+  EXPECT_TRUE(run.mapper.is_lost());
+}
+
 TEST(Mapper, StaysWhereItIsWhenSomethingNewStandsInTheHall) {
   HallRun run(from({-3, -1}));
   run.look();
@@ -133,8 +151,8 @@ TEST(Mapper, StaysWhereItIsWhenWhatStoodBeforeItHasGone) {
   HallRun run(from({-3, -1}));
   run.look();
   for (int round = 0; round < 2; ++round) run.drive_round();
-  // A truck arrives to the west, is mapped, and leaves when it covers 147 of 180 degrees: the beams pass through where it
-  // was and end at the wall behind.
+  // A truck arrives to the west, is mapped, and leaves when it covers 147 of 180 degrees: the beams pass through where
+  // it was and end at the wall behind.
   run.room.add_box({-4.5, -3}, {-4, 0.5});
   for (int i = 0; i < 8; ++i) run.drive(0, std::numbers::pi / 8);
   for (int i = 0; i < 100; ++i) run.look();
