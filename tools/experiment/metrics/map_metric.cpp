@@ -90,7 +90,7 @@ class MapMetric final : public Metric {
     if (maps_ > 0)
       return figure == "stale_percent" ? "no cell that the map knows has changed" : "there are no such cells";
     if (bad_messages_ > 0) return fmt::format("none of {} messages could be used", bad_messages_);
-    return "no map was received on '" + params_.channel + "'" + since_from_s();
+    return "no map was received on '" + params_.channel + "'" + since_from_s() + params_.to_until_s();
   }
   std::int64_t bad_messages() const override { return bad_messages_; }
 

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <spdlog/fmt/fmt.h>
+
+#include <cmath>
 #include <limits>
 #include <optional>
+#include <string>
 
 #include "sim/world_file/metric_registry.hpp"
 
@@ -11,6 +15,9 @@ namespace tools {
 /// Parameters of a metric that scores from `from_s` until `until_s`.
 struct ScoredPeriod : sim::MetricParams {
   double until_s = std::numeric_limits<double>::infinity();
+
+  /// ` until 3700 s`, or nothing.
+  std::string to_until_s() const { return std::isfinite(until_s) ? fmt::format(" until {:.6g} s", until_s) : ""; }
 
  protected:
   void read_period(sim::ParamReader& in) {

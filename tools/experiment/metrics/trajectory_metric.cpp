@@ -126,7 +126,7 @@ class TrajectoryMetric final : public Metric {
     if (sums_.count > 0 && figure.starts_with("segment"))
       return fmt::format("the vehicle did not travel {:g} m", params_.segment_m);
     if (bad_messages_ > 0) return fmt::format("none of {} messages could be used", bad_messages_);
-    return "no pose was received on '" + params_.channel + "'" + since_from_s();
+    return "no pose was received on '" + params_.channel + "'" + since_from_s() + params_.to_until_s();
   }
   std::int64_t bad_messages() const override { return bad_messages_; }
 

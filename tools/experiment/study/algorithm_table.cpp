@@ -19,6 +19,7 @@ namespace {
 
 constexpr std::size_t bootstrap_samples = 2000;
 constexpr double right_nees = 2;  ///< dimensions of the horizontal error
+constexpr double clear_nees = 4;  ///< an interval up to there tells enough
 constexpr std::int64_t min_trust_runs = 5;
 /// Logarithms of a ratio that differ from 0 by rounding only.
 constexpr double equal_log = 1e-9;
@@ -61,7 +62,8 @@ Interval bootstrap_95(const std::vector<SeedSquares>& seeds, Statistic statistic
 Trust trust_of(const Statistics& nees) {
   if (nees.count < min_trust_runs) return Trust::unknown;
   if (nees.mean_95.low > right_nees) return Trust::too_sure;
-  return nees.mean_95.high < right_nees ? Trust::too_careful : Trust::right;
+  if (nees.mean_95.high < right_nees) return Trust::too_careful;
+  return nees.mean_95.high > clear_nees ? Trust::unclear : Trust::right;
 }
 
 /// Runs of a case at a point.
@@ -178,6 +180,8 @@ const char* trust_word(Trust trust) {
       return "too sure";
     case Trust::too_careful:
       return "too careful";
+    case Trust::unclear:
+      return "unclear";
     case Trust::unknown:
       break;
   }
@@ -207,8 +211,9 @@ std::vector<std::string> AlgorithmTable::sentences() const {
                                    pair.world, pair.base, short_text(order[0]->rms_m), pair.algorithm,
                                    short_text(order[1]->rms_m), with_interval(pair.factor, pair.factor_95));
     if (order[0]->trust == Trust::too_sure) {
-      const auto trusted =
-          std::find_if(order.begin(), order.end(), [](const auto* cell) { return cell->trust != Trust::too_sure; });
+      const auto trusted = std::find_if(order.begin(), order.end(), [](const auto* cell) {
+        return cell->trust != Trust::too_sure && cell->trust != Trust::unclear;
+      });
       text += fmt::format("; {} is too sure of itself (NEES {})", pair.base, short_text(order[0]->nees));
       if (trusted != order.end())
         text +=

@@ -13,6 +13,7 @@ namespace tools {
 enum class Trust {
   unknown,      ///< fewer than five runs
   right,        ///< the interval has 2 in it
+  unclear,      ///< so it has, but it reaches beyond 4: a few runs decide
   too_sure,     ///< it lies above 2: the errors are larger than the algorithm says
   too_careful,  ///< it lies below 2
 };

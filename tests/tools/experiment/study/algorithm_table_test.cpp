@@ -87,6 +87,16 @@ TEST(AlgorithmTable, HasTheRootMeanSquareTheEfficiencyAndTheNeesOverTheSeeds) {
   EXPECT_EQ(table.cells()[1].trust, tools::Trust::right);  // 2 -/+ 2.78 x 0.354 / sqrt(5) holds 2
 }
 
+TEST(AlgorithmTable, CallsACovarianceUnclearWhenAFewRunsDecide) {
+  const AlgorithmStudy folder;
+  const tools::LoadedStudy study = folder.load();
+  const auto runs = runs_with(study, {{"ci", {2, 2, 4, 4, 3}}, {"iu", {1, 1, 2, 2, 1.5}}},
+                              {{"ci", {1, 1, 1, 1, 21}}, {"iu", {1.5, 2, 2.5, 2, 2}}});
+  const tools::StudyResults results(study, runs);
+  const tools::AlgorithmTable table(results);
+  EXPECT_EQ(table.cells()[0].trust, tools::Trust::unclear);  // 5 -/+ 2.78 x 8.94 / sqrt(5): -6 to 16
+}
+
 TEST(AlgorithmTable, ComparesInPairsOfEqualSeedsByTheirRatio) {
   const AlgorithmStudy folder;
   const tools::LoadedStudy study = folder.load();
