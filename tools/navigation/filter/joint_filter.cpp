@@ -247,11 +247,8 @@ JointFilter::Outcome JointFilter::fix(int vehicle, const Vector2& p_W, double st
     }
     part.refused_fixes = 0;
   }
-  if (kept != nullptr) {
-    const Eigen::MatrixXd PH = P_ * H.transpose();
-    *kept = Eigen::MatrixXd::Identity(size(), size()) - PH * (H * PH + R).inverse() * H;
-  }
-  update(H, innovation, R);
+  const Eigen::MatrixXd kept_here = update(H, innovation, R);
+  if (kept != nullptr) *kept = kept_here;
   return Outcome::used;
 }
 
@@ -392,7 +389,8 @@ void JointFilter::update(const Eigen::VectorXd& H, double innovation, double R) 
   symmetrise();
 }
 
-void JointFilter::update(const Eigen::MatrixXd& H, const Eigen::VectorXd& innovation, const Eigen::MatrixXd& R) {
+Eigen::MatrixXd JointFilter::update(const Eigen::MatrixXd& H, const Eigen::VectorXd& innovation,
+                                    const Eigen::MatrixXd& R) {
   const Eigen::MatrixXd PH = P_ * H.transpose();
   const Eigen::MatrixXd S = H * PH + R;
   const Eigen::MatrixXd K = PH * S.inverse();
@@ -400,6 +398,7 @@ void JointFilter::update(const Eigen::MatrixXd& H, const Eigen::VectorXd& innova
   const Eigen::MatrixXd A = Eigen::MatrixXd::Identity(size(), size()) - K * H;
   P_ = A * P_ * A.transpose() + K * R * K.transpose();
   symmetrise();
+  return A;
 }
 
 void JointFilter::inform(int part, const Matrix2& L, const Vector2& eta) {

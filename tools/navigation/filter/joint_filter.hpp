@@ -96,8 +96,8 @@ class JointFilter {
 
   /// Updates with a scalar measurement z = H x + noise.
   void update(const Eigen::VectorXd& H, double innovation, double R);
-  /// Updates with several.
-  void update(const Eigen::MatrixXd& H, const Eigen::VectorXd& innovation, const Eigen::MatrixXd& R);
+  /// Updates with several.  Returns I - K H.
+  Eigen::MatrixXd update(const Eigen::MatrixXd& H, const Eigen::VectorXd& innovation, const Eigen::MatrixXd& R);
   /// Multiplies a part of the information into that of a position: information matrix L and vector about the position.
   void inform(int part, const Matrix2& L, const Vector2& eta);
   /// Whether an innovation is within the gate; of two numbers within that of the same probability, 99.9 %.
