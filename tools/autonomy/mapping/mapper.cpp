@@ -82,14 +82,19 @@ Increment Mapper::moved_since_scan() {
 
 std::optional<shoal::estimate_t> Mapper::step() {
   if (!scan_ || !odometry_) return std::nullopt;
-  const Increment by = moved_since_scan();
+  Increment by = moved_since_scan();
+  const double dt_s = seconds(scan_->utime - utime_);
+  const bool rests = std::hypot(by.forward_m, by.left_m) < params_.rest_mps * dt_s &&
+                     std::abs(by.turn_rad) < params_.rest_radps * dt_s;
+  if (rests) by = {};
+  if (surveys_ && (!has_map_ || (rests && surveyed_.size() == 1))) first_scan_.add(*scan_);
   const Beams beams = beams_of(*scan_);
   utime_ = scan_->utime;
   scan_.reset();
   if (lost_) {
     search(beams, by);
   } else {
-    track(beams, by);
+    track(beams, by, rests);
   }
   return estimate();
 }
@@ -105,14 +110,13 @@ void Mapper::predict(const Increment& by) {
   covariance_.diagonal() += Eigen::Vector3d(squared(std.m), squared(std.m), squared(std.rad));
 }
 
-void Mapper::track(const Beams& beams, const Increment& by) {
+void Mapper::track(const Beams& beams, const Increment& by, bool rests) {
   if (!has_map_) {
     first_utime_ = utime_;
     return survey(beams);
   }
   predict(by);
   // A vehicle at rest is matched only from time to time, and when the scan fits worse.
-  const bool rests = std::hypot(by.forward_m, by.left_m) < 0.001 && std::abs(by.turn_rad) < 0.0005;
   const double score = rests ? score_of(map_, beams.points_B, pose_) : 0;
   if (rests && score > 0.9 * still_score_ && seconds(utime_ - matched_utime_) < params_.insert_s) return;
   // Match, unless the scan contradicts the map.  Beams may pass through what has gone, such as a truck beside the
@@ -168,6 +172,12 @@ void Mapper::survey(const Beams& beams) {
   graph_.add_pose(pose_);
   surveyed_.push_back(
       {std::make_shared<const Beams>(beams), std::make_shared<const Outline>(beams.points_B), utime_, pose_});
+  if (last == 1) {
+    const Beams first = beams_of(*first_scan_.scan());
+    surveyed_[0].beams = std::make_shared<const Beams>(first);
+    surveyed_[0].outline = std::make_shared<const Outline>(first.points_B);
+    first_scan_.clear();
+  }
   if (last > 0) {
     Alignment by_odometry{since_survey_, Eigen::Matrix3d::Zero()};
     // Its errors are the same in each step, so that they do not average out.

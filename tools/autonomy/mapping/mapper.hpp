@@ -11,6 +11,7 @@
 #include "shoal/odometry_t.hpp"
 #include "shoal/planar_lidar_t.hpp"
 #include "tools/autonomy/filters/odometer.hpp"
+#include "tools/autonomy/mapping/mean_scan.hpp"
 #include "tools/autonomy/mapping/place_search.hpp"
 #include "tools/autonomy/mapping/pose_graph.hpp"
 #include "tools/autonomy/mapping/scan_alignment.hpp"
@@ -21,7 +22,8 @@ namespace autonomy {
 /// order, independent of clock and bus.  Its copy is its whole state.
 ///
 ///   - survey: the first `survey_scans` scans are poses of a graph.  Each is aligned with those near it, so that loops
-///   close, and the map is drawn again when the poses have moved.
+///   close, and the map is drawn again when the poses have moved.  The first pose is that of the start: its scan, whose
+///   errors would be those of the whole map, is the mean of all until the vehicle leaves.
 ///   - track: each scan is matched to the map near the pose that odometry predicts, and then added to the map.
 ///   - lost: several scans in a row hit what the map has as free, as after the vehicle was carried.  The whole map is
 ///   searched for its place, and nothing is added to it.
@@ -34,11 +36,13 @@ class Mapper {
     Pose2 lidar;                        ///< pose of the lidar on the vehicle
     double lidar_range_m = 20;          ///< a beam of this length has met nothing
     double use_range_m = 15;            ///< longer beams only clear this length
+    double rest_mps = 0.003;            ///< odometry below both is noise at rest
+    double rest_radps = 0.01;           ///< and does not move the pose
     double survey_m = 0.1;              ///< a scan is added to the survey after this distance
     double survey_rad = 0.05;           ///< or this turn
     double insert_m = 1;                ///< later scans are added to the map after this distance
     double insert_rad = 0.3;            ///< or this turn
-    double insert_s = 10;               ///< or this time
+    double insert_s = 20;               ///< or this time
     double min_evidence = 0.1;          ///< of a scan, see Fit
     double min_survey_evidence = -0.3;  ///< in the survey, when much is unknown
     double min_near = 0.25;             ///< and share of its beams that end near something
@@ -77,7 +81,8 @@ class Mapper {
   Increment moved_since_scan();
   /// Moves pose and covariance by odometry.
   void predict(const Increment& moved);
-  void track(const Beams& beams, const Increment& moved);
+  /// `rests`: and did not move.
+  void track(const Beams& beams, const Increment& moved, bool rests);
   void search(const Beams& beams, const Increment& moved);
   /// Adds a scan to the graph, and with it to the map.
   void survey(const Beams& beams);
@@ -107,6 +112,7 @@ class Mapper {
   int bad_scans_ = 0;
   // Survey.
   bool surveys_ = true;
+  MeanScan first_scan_;
   PoseGraph graph_;
   std::vector<Surveyed> surveyed_;
   Pose2 since_survey_;  ///< move since the last of them, by odometry

@@ -239,6 +239,16 @@ double OccupancyMap::field(const Vector2d& p_W) const {
   if (!(std::abs(column) < 1e8 && std::abs(row) < 1e8)) return 0;
   const double right = x - column, up = y - row;
   const int c = static_cast<int>(column), r = static_cast<int>(row);
+  if (c >= 0 && r >= 0 && c + 1 < columns_ && r + 1 < rows_ && c % tile_cells + 1 < tile_cells &&
+      r % tile_cells + 1 < tile_cells) {
+    // Usually all four are in one tile.
+    const Tile* tile = tile_of(c, r).get();
+    if (tile == nullptr) return 0;
+    const std::size_t cell = cell_of(c, r);
+    return ((1 - up) * ((1 - right) * field_of(*tile, cell) + right * field_of(*tile, cell + 1)) +
+            up * ((1 - right) * field_of(*tile, cell + tile_cells) + right * field_of(*tile, cell + tile_cells + 1))) /
+           255;
+  }
   return ((1 - up) * ((1 - right) * field_at(c, r) + right * field_at(c + 1, r)) +
           up * ((1 - right) * field_at(c, r + 1) + right * field_at(c + 1, r + 1))) /
          255;

@@ -54,9 +54,7 @@ class OccupancyMap {
   std::uint8_t field_at(int column, int row) const {
     if (column < 0 || row < 0 || column >= columns_ || row >= rows_) return 0;
     const Tile* tile = tile_of(column, row).get();
-    if (tile == nullptr) return 0;
-    const std::uint8_t now = tile->field[cell_of(column, row)], anchor = tile->anchor[cell_of(column, row)];
-    return std::max<std::uint8_t>(anchor, now - (now >> anchored_shift_));
+    return tile == nullptr ? 0 : field_of(*tile, cell_of(column, row));
   }
   /// Keeps the present field: from now on it is the larger of it and of seven eighths of that of each time.  So a map
   /// whose parts come and go does not creep with the errors of poses.
@@ -88,6 +86,10 @@ class OccupancyMap {
 
   static std::size_t cell_of(int column, int row) {
     return static_cast<std::size_t>(row % tile_cells * tile_cells + column % tile_cells);
+  }
+  std::uint8_t field_of(const Tile& tile, std::size_t cell) const {
+    const std::uint8_t now = tile.field[cell], anchor = tile.anchor[cell];
+    return std::max<std::uint8_t>(anchor, now - (now >> anchored_shift_));
   }
   const std::shared_ptr<Tile>& tile_of(int column, int row) const {
     return tiles_[static_cast<std::size_t>(row / tile_cells * tile_columns_ + column / tile_cells)];

@@ -100,6 +100,32 @@ TEST(Mapper, MapsTheWallsOfTheHall) {
   EXPECT_GT(mapped, 0.95 * 180);
 }
 
+TEST(Mapper, TheErrorOfItsFirstScanIsNotThatOfTheMap) {
+  // The first scan is as from 5 cm ahead; then it stands for 100 s.
+  HallRun run(from({-3, -1}));
+  run.truth.p_W.x() += 0.05;
+  run.look();
+  run.truth.p_W.x() -= 0.05;
+  for (int i = 0; i < 100; ++i) run.look();
+  for (int round = 0; round < 2; ++round) run.drive_round();
+  EXPECT_LT(run.error_m(), 0.025);
+}
+
+TEST(Mapper, NoiseOfOdometryAtRestDoesNotMoveIt) {
+  HallRun run(from({-3, -1}));
+  run.look();
+  run.drive_round();
+  run.look();
+  const Pose2 before = run.mapper.pose();
+  for (const double noise_rad : {0.004, -0.003, 0.005}) {
+    run.odometry.yaw_rad += noise_rad;
+    run.odometry.p_W.x() += 0.001;
+    run.look();
+    EXPECT_EQ(run.mapper.pose().yaw_rad, before.yaw_rad);
+    EXPECT_EQ(run.mapper.pose().p_W, before.p_W);
+  }
+}
+
 TEST(Mapper, FindsItsPlaceAgainAfterItWasCarried) {
   HallRun run(from({-3, -1}));
   run.look();
