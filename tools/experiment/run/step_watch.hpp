@@ -29,9 +29,9 @@ class StepWatch {
   const sim::World& world_;
   double begun_wall_s_ = 0, last_s_ = 0;
   double mark_cpu_s_ = 0, mark_wall_s_ = -1;  ///< CPU and wall time of the last time when the CPU time was read
-  int slow_steps_ = 0;          ///< consecutive slow steps
-  double reported_times_ = 0;   ///< ratio of CPU time to step length at the last report
-  std::optional<double> warn_;  ///< ratio of CPU time to step length of the last step
+  int slow_steps_ = 0;                        ///< consecutive slow steps
+  double reported_times_ = 0;                 ///< ratio of CPU time to step length at the last report
+  std::optional<double> warn_;                ///< ratio of CPU time to step length of the last step
 };
 
 }  // namespace tools
