@@ -3,7 +3,7 @@
 
     shoal-nav --log run.lcm --algorithm naive,python:examples/navigation/naive.Naive
 
-An extended Kalman filter that takes what others say as independent, and the clock of the sender as right.
+An extended Kalman filter that takes what others say as independent.  Without sights of other vehicles, saw().
 docs/guides/compare_estimators.md has the calls.
 """
 
@@ -14,7 +14,8 @@ from shoal_nav import pack, unpack
 class Naive:
     def start(self, s):
         e = s.errors
-        self.e, self.c, self.gate, self.t, self.v = e, s.sound_speed, s.gate, s.time, np.zeros(2)
+        self.e, self.of_team, self.c, self.gate = e, s.team_errors, s.sound_speed, s.gate
+        self.start_t, self.t, self.v = s.time, s.time, np.zeros(2)
         # East and north (m), constant and slow heading error (rad), scale error of the speed, clock error (s) and drift.
         std = [s.position_std, s.position_std, e["heading_bias_rad"], e["slow_heading_rad"], e["speed_scale"],
                e["clock_s"], e["clock_drift"]]
@@ -44,10 +45,13 @@ class Naive:
             return
         y, B = unpack(m.payload)  # what the sender said of itself
         d = self.x[:2] - y
-        h = np.hypot(np.linalg.norm(d), m.own_z - m.z)
+        h = max(np.hypot(np.linalg.norm(d), m.own_z - m.z), 0.1)
         u = d[None] / h
+        clock, dt = self.of_team[m.sender], m.toa - self.start_t  # of the sender, which only it could estimate
+        clock_var = clock["clock_s"] ** 2 + (clock["clock_drift"] * dt) ** 2 + clock["clock_walk_srts"] ** 2 * dt
+        R = m.std**2 + self.c**2 * clock_var + u @ B @ u.T
         H = np.hstack([u, [[0, 0, 0, self.c, 0]]])
-        self.update(H, np.array([m.range - h - self.c * self.x[5]]), m.std**2 + u @ B @ u.T, self.gate)
+        self.update(H, np.array([m.range - h - self.c * self.x[5]]), R, self.gate)
 
     def say(self, t, max_bytes):
         return pack(self.x[:2], self.P[:2, :2])

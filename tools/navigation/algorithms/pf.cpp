@@ -88,10 +88,10 @@ class ParticleStart final : public OwnFilterEstimator<ParticleStart> {
       const double error_m = range_m - distance_m;
       exponents[i] = -0.5 * error_m * error_m / (R + u.dot(sender.P * u));
     }
-    const double max_bytes = *std::max_element(exponents.begin(), exponents.end());
+    const double largest = *std::max_element(exponents.begin(), exponents.end());
     double sum = 0;
     for (std::size_t i = 0; i < count; ++i) {
-      weights_[i] *= std::exp(exponents[i] - max_bytes);
+      weights_[i] *= std::exp(exponents[i] - largest);
       sum += weights_[i];
     }
     for (double& weight : weights_) weight = sum > 0 ? weight / sum : 1.0 / count;

@@ -37,10 +37,8 @@ class SplitCovarianceIntersection final : public EstimatorOf<SplitCovarianceInte
     Pd_ = (F * Pd_ * F.transpose()).eval();
   }
   void fix(Time, const Vector2& p_W, double std_m) override {
-    const Eigen::MatrixXd before = total_.P();
-    if (total_.fix(own, p_W, std_m) == JointFilter::Outcome::refused) return;
-    // P+ = A P.
-    const Eigen::MatrixXd A = total_.P() * before.inverse();
+    Eigen::MatrixXd A;  // P+ = A P
+    if (total_.fix(own, p_W, std_m, &A) == JointFilter::Outcome::refused) return;
     Pd_ = (A * Pd_ * A.transpose()).eval();
   }
   void heard(const Heard& heard) override {

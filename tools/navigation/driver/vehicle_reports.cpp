@@ -23,6 +23,8 @@ constexpr double max_travel_s = 60;
 constexpr double pressure_std_m = 0.1;
 /// An older sight is not sent.
 constexpr double max_sight_age_s = 5;
+/// A sight by a clock that is further ahead of the own one is not used.
+constexpr double max_ahead_s = 1;
 /// Times of sights in frames have milliseconds: one that was sent again differs by less than this.
 constexpr double same_sight_s = 0.01;
 
@@ -205,6 +207,9 @@ std::optional<NavEvent> VehicleReports::seen_by(const shoal::acoustic_received_t
   NavEvent event;
   event.kind = NavEvent::Kind::saw;
   event.time = frame.payload_time - sight->age + offset_;
+  // Its time is by the clock of the sender, which may be wrong by hours.
+  const double before_arrival_s = seconds(packet.utime + offset_ - event.time);
+  if (!(before_arrival_s >= -max_ahead_s && before_arrival_s <= max_travel_s + max_sight_age_s)) return std::nullopt;
   const auto before = seen_at_.find(frame.sender);
   if (before != seen_at_.end() && seconds(event.time - before->second) < same_sight_s) return std::nullopt;
   seen_at_[frame.sender] = event.time;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <stdexcept>
 #include <vector>
 
 #include "tools/navigation/estimator/setup.hpp"
@@ -12,6 +13,12 @@
 namespace navigation {
 
 using Bytes = std::vector<std::uint8_t>;
+
+/// A mistake of an algorithm while it works, in contrast to one that cannot work with its set-up.
+class EstimatorFailure : public std::invalid_argument {
+ public:
+  using std::invalid_argument::invalid_argument;
+};
 
 /// Frame that arrived by sound, with its one-way range.
 struct Heard {

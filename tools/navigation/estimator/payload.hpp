@@ -42,7 +42,7 @@ class PayloadReader {
   bool ok_ = true;
 };
 
-/// Position with covariance, as max_bytes algorithms send it.
+/// Position with covariance, as most algorithms send it.
 struct Position {
   Vector2 p_W = Vector2::Zero();
   Matrix2 P = Matrix2::Identity();

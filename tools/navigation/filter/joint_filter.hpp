@@ -55,7 +55,7 @@ class JointFilter {
   /// Moves a part by the linear motion p' = F p + offset + noise of covariance Q, for other models than that of move().
   void move_linear(int part, const Matrix2& F, const Vector2& offset, const Matrix2& Q);
   /// Updates with a satellite position.  One beyond the gate is refused, but after five in a row the covariance of the
-  /// position grows by the innovation, and the next one is used.  `kept`, if not null, becomes the I - K H of the
+  /// position grows by the innovation, and that one is used.  `kept`, if not null, becomes the I - K H of the
   /// update.
   Outcome fix(int vehicle, const Vector2& p_W, double std_m, Eigen::MatrixXd* kept = nullptr);
 

@@ -12,7 +12,7 @@ double sender_clock_variance_m2(const Setup& setup, int sender, Time since_start
 
 /// Returns the position that a payload begins with.
 std::optional<Position> position_in(std::span<const std::uint8_t> payload);
-/// Returns the payload with a position alone; throws std::invalid_argument when `most` is less than position_bytes.
+/// Returns the payload with a position alone.
 Bytes payload_of(const Position& position);
 /// Throws std::invalid_argument unless the frame has `needed` bytes for the payload.
 void need_bytes(const Setup& setup, const char* algorithm, std::size_t needed);

@@ -73,6 +73,8 @@ int navigate_all(const OfflineOptions& options, const NavRecord& record,
                   1e6 * run.cpu_s / static_cast<double>(std::max<std::size_t>(run.events, 1)));
       if (!options.out.empty()) write_estimates(options.out, record, run);
       scores.add(run);
+    } catch (const EstimatorFailure&) {
+      throw;
     } catch (const std::invalid_argument& error) {
       if (++refused == options.algorithms.size()) throw;
       std::printf("%-10s left out: %s\n", name.c_str(), error.what());

@@ -30,6 +30,19 @@ Bytes bytes_of_hex(const std::string& text) {
   return bytes;
 }
 
+json json_of(const DeviceErrors& errors) {
+  return {{"heading_bias_rad", errors.heading_bias_rad},
+          {"heading_walk_radprts", errors.heading_walk_radprts},
+          {"slow_heading_rad", errors.slow_heading_rad},
+          {"slow_heading_time_s", errors.slow_heading_time_s},
+          {"speed_scale", errors.speed_scale},
+          {"clock_s", errors.clock_s},
+          {"clock_drift", errors.clock_drift},
+          {"clock_walk_srts", errors.clock_walk_srts},
+          {"slow_fix_m", errors.slow_fix_m},
+          {"slow_fix_time_s", errors.slow_fix_time_s}};
+}
+
 /// Estimator whose object is in a PythonHost; the driver goes back by copies there.
 class PythonEstimator final : public Estimator {
  public:
@@ -49,20 +62,13 @@ class PythonEstimator final : public Estimator {
   }
 
   void start(const Setup& setup) override {
-    json team = json::array();
-    for (const Member& member : setup.team) team.push_back(member.name);
-    const DeviceErrors& errors = setup.errors();
-    const json known = {{"heading_bias_rad", errors.heading_bias_rad},
-                        {"heading_walk_radprts", errors.heading_walk_radprts},
-                        {"slow_heading_rad", errors.slow_heading_rad},
-                        {"slow_heading_time_s", errors.slow_heading_time_s},
-                        {"speed_scale", errors.speed_scale},
-                        {"clock_s", errors.clock_s},
-                        {"clock_drift", errors.clock_drift},
-                        {"clock_walk_srts", errors.clock_walk_srts},
-                        {"slow_fix_m", errors.slow_fix_m},
-                        {"slow_fix_time_s", errors.slow_fix_time_s}};
+    json team = json::array(), team_errors = json::array();
+    for (const Member& member : setup.team) {
+      team.push_back(member.name);
+      team_errors.push_back(json_of(member.errors));
+    }
     request("start", {{"team", team},
+                      {"team_errors", team_errors},
                       {"own", setup.own},
                       {"time", seconds(setup.time)},
                       {"position", {setup.position_W.x(), setup.position_W.y()}},
@@ -70,7 +76,8 @@ class PythonEstimator final : public Estimator {
                       {"sound_speed", setup.sound_speed_mps},
                       {"payload_bytes", setup.payload_bytes},
                       {"gate", setup.gate},
-                      {"errors", known}});
+                      {"seed", setup.seed},
+                      {"errors", json_of(setup.errors())}});
   }
   void moved(Time time, const Vector2& v_W, const Matrix2& q) override {
     v_W_ = v_W;

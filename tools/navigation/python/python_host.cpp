@@ -20,6 +20,7 @@
 #include <stdexcept>
 
 #include "sim/config/message_text.hpp"
+#include "tools/navigation/estimator/estimator.hpp"
 #include "tools/navigation/python/host_files.hpp"
 
 extern char** environ;
@@ -126,8 +127,8 @@ void PythonHost::wait_for(const bridges::FileDescriptor& descriptor, short event
   is_stuck_ = true;
   char limit[32];
   std::snprintf(limit, sizeof limit, "%g", limit_s_);
-  throw std::invalid_argument(what_ + ": no answer within " + limit + " s to " + request["do"].get<std::string>() +
-                              "() or a call before it; SHOAL_PYTHON_LIMIT_S is the limit in seconds");
+  throw EstimatorFailure(what_ + ": no answer within " + limit + " s to " + request["do"].get<std::string>() +
+                         "() or a call before it; SHOAL_PYTHON_LIMIT_S is the limit in seconds");
 }
 
 void PythonHost::send(const nlohmann::json& request) {
@@ -139,7 +140,7 @@ void PythonHost::send(const nlohmann::json& request) {
       wait_for(to_child_, POLLOUT, request);
       continue;
     }
-    if (written < 0) throw std::invalid_argument(what_ + ": its interpreter has ended");
+    if (written < 0) throw EstimatorFailure(what_ + ": its interpreter has ended");
     done += static_cast<std::size_t>(written);
   }
 }
@@ -152,14 +153,17 @@ nlohmann::json PythonHost::request(const nlohmann::json& request) {
     char buffer[4096];
     const ssize_t got = read(from_child_.number(), buffer, sizeof buffer);
     if (got < 0 && errno == EINTR) continue;
-    if (got <= 0) throw std::invalid_argument(what_ + ": its interpreter has ended");
+    if (got <= 0) throw EstimatorFailure(what_ + ": its interpreter has ended");
     unread_.append(buffer, static_cast<std::size_t>(got));
   }
   const nlohmann::json answer = nlohmann::json::parse(unread_.substr(0, end), nullptr, false);
   unread_.erase(0, end + 1);
-  if (!answer.is_object())
-    throw std::invalid_argument(what_ + ": its interpreter gives no answers: it must be Python 3");
-  if (answer.contains("error")) throw std::invalid_argument(what_ + ": " + answer.value("error", "unknown"));
+  if (!answer.is_object()) throw EstimatorFailure(what_ + ": its interpreter gives no answers: it must be Python 3");
+  if (answer.contains("error")) {
+    const std::string error = what_ + ": " + answer.value("error", "unknown");
+    if (answer.value("cannot_work", false)) throw std::invalid_argument(error);
+    throw EstimatorFailure(error);
+  }
   return answer;
 }
 

@@ -27,10 +27,11 @@ class PythonHost {
   PythonHost(const PythonHost&) = delete;
   PythonHost& operator=(const PythonHost&) = delete;
 
-  /// Sends a request that has no answer.  Throws std::invalid_argument when the interpreter has ended, or takes no
-  /// request within the limit.
+  /// Sends a request that has no answer.  Throws EstimatorFailure when the interpreter has ended, or takes no request
+  /// within the limit.
   void send(const nlohmann::json& request);
-  /// Sends a request and returns its answer.  Throws std::invalid_argument, too, with the error of the estimator.
+  /// Sends a request and returns its answer.  Throws EstimatorFailure, too, with the error of the estimator; for a
+  /// ValueError of start() std::invalid_argument: it cannot work with this set-up.
   nlohmann::json request(const nlohmann::json& request);
   /// Whether the class has saw(), for sights of other vehicles.
   bool has_saw() const { return has_saw_; }

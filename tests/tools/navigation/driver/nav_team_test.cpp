@@ -240,12 +240,12 @@ struct Sighting {
     pressure.depth_m = 40;
     auv.receive(pressure);
   }
-  /// What the AUV makes of a frame that the craft sends at this time.
-  std::optional<NavEvent> sent_at(Time time) {
+  /// What the AUV makes of a frame that the craft sends at this time, by its clock, which is ahead.
+  std::optional<NavEvent> sent_at(Time time, Time ahead = 0) {
     shoal::acoustic_received_t packet{};
     packet.source = "craft";
     packet.sent_utime = time;
-    packet.utime = time + 50'000;
+    packet.utime = time - ahead + 50'000;
     packet.travel_time_s = 0.05;
     return auv.seen_by(packet, craft.frame(time, {7}));
   }
@@ -290,6 +290,15 @@ TEST(VehicleReports, AnOldSightIsNotSent) {
   Sighting sighting(usbl_team());
   EXPECT_FALSE(sighting.sent_at(15'100'000));
   EXPECT_TRUE(sighting.sent_at(14'900'000));
+}
+
+TEST(VehicleReports, ASightByAClockThatIsFarAheadIsNotUsed) {
+  Sighting sighting(usbl_team());
+  constexpr Time hour = 3'600'000'000;
+  EXPECT_FALSE(sighting.sent_at(10'400'000, hour));
+  EXPECT_FALSE(sighting.sent_at(10'400'000, -hour));
+  // And does not keep a right one from being used.
+  EXPECT_TRUE(sighting.sent_at(10'400'000));
 }
 
 TEST(NavTeam, AHeadingThatTurnsNoVelocityHasItsErrorsInTheSights) {

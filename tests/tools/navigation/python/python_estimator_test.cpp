@@ -89,6 +89,41 @@ TEST(PythonEstimator, AMistakeIsSaidWithItsLine) {
             std::string::npos);
 }
 
+TEST(PythonEstimator, OnlyAValueErrorOfItsStartMeansThatItCannotWork) {
+  const test_support::ScratchFolder folder;
+  const auto start = [&](const std::string& name, const std::string& lines) {
+    started(python_with(folder, name, lines), nav_setup(2, 0, {0, 0}, 1))->now(0);
+  };
+  EXPECT_THROW(start("f", "  def start(self, s): self.y\n"), EstimatorFailure);
+  EXPECT_THROW(start("g", "  def start(self, s): pass\n  def now(self, t): raise ValueError('no')\n"),
+               EstimatorFailure);
+  try {
+    start("h", "  def start(self, s): raise ValueError('needs a third vehicle')\n");
+    FAIL();
+  } catch (const EstimatorFailure&) {
+    FAIL();
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find("needs a third vehicle"), std::string::npos);
+  }
+}
+
+TEST(PythonEstimator, AClassMayHaveDataclassesAndKnowsTheErrorsOfTheTeam) {
+  const test_support::ScratchFolder folder;
+  const std::string file = folder.file("z");
+  std::ofstream(file + ".py") << "from __future__ import annotations\n"
+                                 "from dataclasses import dataclass\n"
+                                 "@dataclass\n"
+                                 "class State:\n"
+                                 "  x: float = 3\n"
+                                 "class Mine:\n"
+                                 "  def start(self, s): self.s = State(s.team_errors[1]['clock_s'] + s.seed)\n"
+                                 "  def now(self, t): return [self.s.x, 0], [[1, 0], [0, 1]]\n";
+  navigation::Setup setup = nav_setup(2, 0, {0, 0}, 1);
+  setup.team[1].errors.clock_s = 0.25;
+  setup.seed = 7;
+  EXPECT_EQ(started("python:" + file + ".Mine", setup)->now(0).p_W.x(), 7.25);
+}
+
 TEST(PythonEstimator, AFileThatEndsItsInterpreterIsSaid) {
   const test_support::ScratchFolder folder;
   python_with(folder, "q", "  pass\nimport os\nos._exit(0)\n");

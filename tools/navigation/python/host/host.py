@@ -58,7 +58,7 @@ def load(path, name):
     sys.modules["shoal_nav"] = shoal_nav()
     sys.path.insert(0, os.path.dirname(os.path.abspath(path)))
     spec = importlib.util.spec_from_file_location(os.path.splitext(os.path.basename(path))[0], path)
-    module = importlib.util.module_from_spec(spec)
+    module = sys.modules[spec.name] = importlib.util.module_from_spec(spec)  # dataclasses look it up there
     spec.loader.exec_module(module)
     if not isinstance(getattr(module, name, None), type):
         raise TypeError(f"has no class {name}")
@@ -108,7 +108,7 @@ def main():
     for line in requests:
         request = json.loads(line)
         what, number = request["do"], request["id"]
-        answer = None
+        answer, cannot_work = None, False
         try:
             if what == "load":
                 kind = load(request["path"], request["class"])
@@ -126,9 +126,11 @@ def main():
             place = os.path.basename(last.filename)
             where = "" if place.startswith("<") else f" ({place}:{last.lineno})"
             text = "".join(c if c.isprintable() else " " for c in str(exception))[:300]
+            cannot_work = what == "start" and isinstance(exception, ValueError)
             error = f"{type(exception).__name__}: {text}{where}".encode("utf-8", "replace").decode()
         if what in ("load", "start", "say", "now"):
-            answers.write(json.dumps({"error": error} if error is not None else answer) + "\n")
+            failed = {"error": error, "cannot_work": cannot_work}
+            answers.write(json.dumps(failed if error is not None else answer) + "\n")
             answers.flush()
 
 
