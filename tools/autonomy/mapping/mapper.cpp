@@ -83,11 +83,22 @@ Increment Mapper::moved_since_scan() {
 std::optional<shoal::estimate_t> Mapper::step() {
   if (!scan_ || !odometry_) return std::nullopt;
   Increment by = moved_since_scan();
-  const double dt_s = seconds(scan_->utime - utime_);
-  const bool rests = std::hypot(by.forward_m, by.left_m) < params_.rest_mps * dt_s &&
+  // Whatever it moved while odometry was silent is in no increment, neither then nor when odometry is back.
+  constexpr double silent_s = 2;
+  const bool silent = std::abs(seconds(scan_->utime - odometry_->utime)) > silent_s;
+  const bool missed = silent || missed_odometry_;
+  missed_odometry_ = silent;
+  if (missed) {
+    by = {};
+    covariance_ += loose_covariance();
+  }
+  constexpr double longest_s = 2;
+  const double dt_s = std::min(seconds(scan_->utime - utime_), longest_s);
+  const bool rests = !missed && std::hypot(by.forward_m, by.left_m) < params_.rest_mps * dt_s &&
                      std::abs(by.turn_rad) < params_.rest_radps * dt_s;
   if (rests) by = {};
-  if (surveys_ && (!has_map_ || (rests && surveyed_.size() == 1))) first_scan_.add(*scan_);
+  left_ = has_map_ && (left_ || !rests);
+  if (!left_) first_scan_.add(*scan_);
   const Beams beams = beams_of(*scan_);
   utime_ = scan_->utime;
   scan_.reset();
@@ -256,7 +267,8 @@ void Mapper::insert(const Beams& beams, const Pose2& pose, std::int64_t utime) {
   std::vector<Vector2d> ends_W;
   ends_W.reserve(beams.ends_B.size());
   for (const Vector2d& end : beams.ends_B) ends_W.push_back(placed(pose, end));
-  map_.insert(placed(pose, beams.sensor_B), ends_W, beams.hits, seconds(utime - first_utime_));
+  const std::int64_t since = std::max<std::int64_t>(0, utime - first_utime_);  // a clock may be set back
+  map_.insert(placed(pose, beams.sensor_B), ends_W, beams.hits, seconds(since));
   has_map_ = true;
   inserted_ = pose;
   inserted_utime_ = utime;

@@ -101,6 +101,7 @@ class Mapper {
   std::optional<shoal::odometry_t> odometry_;
   std::optional<shoal::planar_lidar_t> scan_;
   Odometer odometer_;
+  bool missed_odometry_ = false;
   std::int64_t utime_ = 0;  ///< time of the pose
   // Tracking.
   bool has_map_ = false;
@@ -113,6 +114,7 @@ class Mapper {
   // Survey.
   bool surveys_ = true;
   MeanScan first_scan_;
+  bool left_ = false;  ///< it has moved since the first scan
   PoseGraph graph_;
   std::vector<Surveyed> surveyed_;
   Pose2 since_survey_;  ///< move since the last of them, by odometry

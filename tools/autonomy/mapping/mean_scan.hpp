@@ -14,14 +14,15 @@ class MeanScan {
   /// A scan with other beams than the first one has no effect.
   void add(const shoal::planar_lidar_t& scan);
   void clear() { *this = {}; }
-  /// Returns the first scan with the mean ranges; none without a scan.  A beam whose ranges vary by more than the noise
-  /// of a lidar, such as one that grazes an edge, has range 0.
+  /// Returns the first scan with the mean ranges; none without a scan.  Ranges that differ from the first by more than
+  /// 0.2 m do not count.  A beam with many of them, as one that grazes an edge, has range 0.
   std::optional<shoal::planar_lidar_t> scan() const;
 
  private:
   std::optional<shoal::planar_lidar_t> first_;
   int count_ = 0;
-  Eigen::ArrayXd off_m_, off_m2_;  ///< sums of the differences to the first scan, and of their squares
+  Eigen::ArrayXd off_m_;   ///< sum of the differences to the first scan that count
+  Eigen::ArrayXi counts_;  ///< their number
 };
 
 }  // namespace autonomy

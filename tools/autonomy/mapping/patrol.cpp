@@ -53,7 +53,12 @@ Twist Patrol::step(std::int64_t utime) {
   // It needs a pose and a scan of the last periods.
   if (!estimate_ || odometry_.empty() || scan_.ranges_m.empty()) return {};
   const std::int64_t newest = odometry_.back().first;
+  if (newest != newest_utime_) {
+    newest_utime_ = newest;
+    newest_tick_ = utime;
+  }
   const double oldest_s = 2.5 * params_.period_s;
+  if (seconds(utime - newest_tick_) > oldest_s) return {};
   if (seconds(newest - scan_utime_) > oldest_s || seconds(newest - estimate_->utime) > memory_s) return {};
   const double variance_m2 = estimate_->covariance_m2[0] + estimate_->covariance_m2[4];
   if (!(variance_m2 < 2 * squared(params_.lost_std_m))) return seek_place(utime);
@@ -67,7 +72,7 @@ Twist Patrol::step(std::int64_t utime) {
     reached_ = follower_.reached();
     if (!reached) return {};
     const bool charges = follower_.current() == 1 % params_.waypoints_W.size();
-    rounds_ += charges ? 1 : 0;
+    rounds_ += charges && reached_ > 1 ? 1 : 0;
     rests_until_ = utime + static_cast<std::int64_t>(1e6 * (charges ? params_.charge_s : params_.pause_s));
     return {};
   }

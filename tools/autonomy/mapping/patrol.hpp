@@ -61,7 +61,8 @@ class Patrol {
   std::optional<shoal::estimate_t> estimate_;
   Scan scan_;
   std::int64_t scan_utime_ = 0;
-  int passed_ = 0;  ///< waypoints reached or given up
+  std::int64_t newest_utime_ = 0, newest_tick_ = 0;  ///< of the last odometry, and the tick when it was first there
+  int passed_ = 0;                                   ///< waypoints reached or given up
   int reached_ = 0;
   int rounds_ = 0;
   std::int64_t rests_until_ = 0;

@@ -86,7 +86,7 @@ void declare_map(command_line::DeclaredOptions& declared, autonomy::OccupancyMap
           },
           "area of the map")
       .by_default({map.low_W.x(), map.low_W.y(), map.high_W.x(), map.high_W.y()});
-  declared.number("cell_m", map.cell_m, 0.01, 10, "side of a cell");
+  declared.number("cell_m", map.cell_m, 0.03, 0.1, "side of a cell");
   declared.choice(
       "memory", memory, {"forgetting", "static"},
       "forgetting: less is known of what was not seen for longer than it usually lasts; static: all evidence stays");
@@ -122,6 +122,8 @@ void declare(command_line::DeclaredOptions& declared, Options& options) {
   declared.number("lidar_yaw_deg", options.lidar_yaw_deg, -360, 360, "its direction, counter-clockwise from forward");
   declared.number("lidar_range_m", mapper.lidar_range_m, 0.1, 1000, "a beam of this length has met nothing");
   declared.number("use_range_m", mapper.use_range_m, 0.1, 1000, "beams are cut to this length");
+  declared.number("rest_mps", mapper.rest_mps, 0, 1, "odometry below it and below rest-radps is noise at rest");
+  declared.number("rest_radps", mapper.rest_radps, 0, 1, "its turn rate");
   declare_map(declared, mapper.map, options.memory);
   declared.number("map_every_s", options.map_every_s, 0.1, 1e9, "simulated seconds between published maps");
   declared.flag("timing", options.timing, "prints the CPU time of the scans at the end");

@@ -111,6 +111,34 @@ TEST(Mapper, TheErrorOfItsFirstScanIsNotThatOfTheMap) {
   EXPECT_LT(run.error_m(), 0.025);
 }
 
+TEST(Mapper, OnlyScansOfThePlaceOfTheStartAreInTheMean) {
+  // It moves by less than the distance for a new scan of the survey, and stands there for long.
+  HallRun run(from({-3, -1}));
+  for (int i = 0; i < 10; ++i) run.look();
+  run.drive(0.08, 0);
+  for (int i = 0; i < 100; ++i) run.look();
+  for (int round = 0; round < 2; ++round) run.drive_round();
+  EXPECT_LT(run.error_m(), 0.025);
+}
+
+TEST(Mapper, AMoveWhileOdometryWasSilentCountsOnce) {
+  HallRun run(from({-3, -1}));
+  run.look();
+  for (int round = 0; round < 2; ++round) run.drive_round();
+  // 0.3 m without odometry, which the scans show; then it is back and has them, too.
+  for (int i = 0; i < 8; ++i) {
+    run.truth.p_W.x() += i >= 2 ? 0.05 : 0;
+    run.utime += second;
+    run.mapper.receive(run.room.scan(run.truth, run.utime));
+    run.mapper.step();
+  }
+  EXPECT_LT(run.error_m(), 0.05);
+  run.odometry.p_W += 0.3 * Vector2d(std::cos(run.odometry.yaw_rad), std::sin(run.odometry.yaw_rad));
+  run.look();
+  EXPECT_LT(run.error_m(), 0.05);
+  EXPECT_EQ(run.mapper.times_lost(), 0);
+}
+
 TEST(Mapper, NoiseOfOdometryAtRestDoesNotMoveIt) {
   HallRun run(from({-3, -1}));
   run.look();

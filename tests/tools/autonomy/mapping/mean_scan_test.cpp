@@ -37,6 +37,13 @@ TEST(MeanScan, LeavesOutABeamThatGrazesAnEdge) {
   EXPECT_THAT(mean.scan()->ranges, ElementsAre(0, 3));
 }
 
+TEST(MeanScan, AnOutlierDoesNotCount) {
+  MeanScan mean;
+  for (int i = 0; i < 10; ++i) mean.add(scan_of({i == 5 ? 7.0F : 2.0F}));
+  mean.add(scan_of({2.11F}));
+  EXPECT_THAT(mean.scan()->ranges, ElementsAre(FloatNear(2.011F, rounding_m)));
+}
+
 TEST(MeanScan, IgnoresAScanWithOtherBeams) {
   MeanScan mean;
   EXPECT_FALSE(mean.scan());
