@@ -92,8 +92,8 @@ std::optional<shoal::estimate_t> Mapper::step() {
     by = {};
     covariance_ += loose_covariance();
   }
-  constexpr double longest_s = 2;
-  const double dt_s = std::min(seconds(scan_->utime - utime_), longest_s);
+  constexpr double max_gap_s = 2;
+  const double dt_s = std::min(seconds(scan_->utime - utime_), max_gap_s);
   const bool rests = !missed && std::hypot(by.forward_m, by.left_m) < params_.rest_mps * dt_s &&
                      std::abs(by.turn_rad) < params_.rest_radps * dt_s;
   if (rests) by = {};

@@ -58,7 +58,7 @@ def load(path, name):
     sys.modules["shoal_nav"] = shoal_nav()
     sys.path.insert(0, os.path.dirname(os.path.abspath(path)))
     spec = importlib.util.spec_from_file_location(os.path.splitext(os.path.basename(path))[0], path)
-    module = sys.modules[spec.name] = importlib.util.module_from_spec(spec)  # dataclasses look it up there
+    module = sys.modules[spec.name] = importlib.util.module_from_spec(spec)  # as an import does
     spec.loader.exec_module(module)
     if not isinstance(getattr(module, name, None), type):
         raise TypeError(f"has no class {name}")
