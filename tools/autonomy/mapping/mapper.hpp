@@ -25,8 +25,8 @@ namespace autonomy {
 ///   close, and the map is drawn again when the poses have moved.  The first pose is that of the start: its scan, whose
 ///   errors would be those of the whole map, is the mean of all until the vehicle leaves.
 ///   - track: each scan is matched to the map near the pose that odometry predicts, and then added to the map.
-///   - lost: several scans in a row do not fit to the map, as after the vehicle was carried or left the mapped area.  The
-///   whole map is searched for its place, and nothing is added to it.
+///   - lost: several scans in a row do not fit to the map, as after the vehicle was carried or left the mapped area.
+///   The whole map is searched for its place, and nothing is added to it.
 class Mapper {
  public:
   struct Params {
