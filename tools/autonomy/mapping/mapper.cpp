@@ -84,15 +84,14 @@ std::optional<shoal::estimate_t> Mapper::step() {
   if (!scan_ || !odometry_) return std::nullopt;
   Increment by = moved_since_scan();
   // Whatever it moved while odometry was silent is in no increment, neither then nor when odometry is back.
-  constexpr double silent_s = 2;
-  const bool silent = std::abs(seconds(scan_->utime - odometry_->utime)) > silent_s;
+  constexpr double max_gap_s = 2;
+  const bool silent = std::abs(seconds(scan_->utime - odometry_->utime)) > max_gap_s;
   const bool missed = silent || missed_odometry_;
   missed_odometry_ = silent;
   if (missed) {
     by = {};
     covariance_ += loose_covariance();
   }
-  constexpr double max_gap_s = 2;
   const double dt_s = std::min(seconds(scan_->utime - utime_), max_gap_s);
   const bool rests = !missed && std::hypot(by.forward_m, by.left_m) < params_.rest_mps * dt_s &&
                      std::abs(by.turn_rad) < params_.rest_radps * dt_s;

@@ -81,7 +81,7 @@ class Mapper {
   Increment moved_since_scan();
   /// Moves pose and covariance by odometry.
   void predict(const Increment& moved);
-  /// `rests`: and did not move.
+  /// `rests`: it has not moved since the last scan.
   void track(const Beams& beams, const Increment& moved, bool rests);
   void search(const Beams& beams, const Increment& moved);
   /// Adds a scan to the graph, and with it to the map.

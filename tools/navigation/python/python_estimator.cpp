@@ -76,8 +76,7 @@ class PythonEstimator final : public Estimator {
                       {"sound_speed", setup.sound_speed_mps},
                       {"payload_bytes", setup.payload_bytes},
                       {"gate", setup.gate},
-                      {"seed", setup.seed},
-                      {"errors", json_of(setup.errors())}});
+                      {"seed", setup.seed}});
   }
   void moved(Time time, const Vector2& v_W, const Matrix2& q) override {
     v_W_ = v_W;

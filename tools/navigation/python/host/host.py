@@ -70,6 +70,7 @@ def call(estimator, what, given):
     if what == "start":
         setup = types.SimpleNamespace(**given)
         setup.position = vector(given["position"])
+        setup.errors = setup.team_errors[setup.own]
         estimator.start(setup)
         return {}
     if what == "moved":
