@@ -183,12 +183,7 @@ TEST(PairwiseCommunication, KeepsACovarianceWhenFixesOpenThePosition) {
     setup.gate = 10.83;
     luft->start(vehicle, setup);
   }
-  Relative seen;
-  seen.time = nav_second;
-  seen.other = 1;
-  seen.range_m = 20;
-  seen.range_std_m = 0.1;
-  seen.bearing_std_rad = 0.005;
+  Relative seen{.time = nav_second, .other = 1, .range_m = 20, .range_std_m = 0.1, .bearing_std_rad = 0.005};
   luft->saw(0, seen);
   // Five fixes that are 100 m off, of which the last is used.
   for (int i = 2; i < 7; ++i) luft->fix(0, i * nav_second, {100, 0}, 3);
@@ -219,14 +214,9 @@ TEST(PairwiseCommunication, IsTheCentralisedFilterForTwo) {
       each->moved(1, now, {0, 1}, 0.2 * Matrix2::Identity());
       if (i == 1) each->fix(0, now, {1.5, 0.2}, 0.5);
       if (i % 2 != 0) continue;
-      Relative seen;
-      seen.time = now;
-      seen.other = 1;
-      seen.range_m = 21;
-      seen.bearing_rad = 0.2;
-      seen.range_std_m = 0.15;
-      seen.bearing_std_rad = 0.05;
-      each->saw(0, seen);
+      each->saw(
+          0,
+          {.time = now, .other = 1, .range_m = 21, .bearing_rad = 0.2, .range_std_m = 0.15, .bearing_std_rad = 0.05});
     }
   }
   for (const int vehicle : {0, 1}) {
