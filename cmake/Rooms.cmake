@@ -2,13 +2,14 @@
 # Rooms: every folder of sources is a target, which declares the rooms that it uses (docs/develop/architecture.md shows
 # them); tests/sim/include_direction_test.cpp reads the list that shoal_write_rooms() writes, and checks includes by it.
 
-# shoal_room(<folder> [MAIN] [USES <room>...] [PUBLIC <library>...] [PRIVATE <library>...] [EXCEPT <file>...])
+# shoal_room(<folder> [MAIN] [COLD] [USES <room>...] [PUBLIC <library>...] [PRIVATE <library>...] [EXCEPT <file>...])
 # MAIN: one of its sources has main(), or the entry of a module; linking what is made of its objects tests its
 # dependencies.
+# COLD: no code of it runs in the steps of a world, so that it is optimized less: -O1 takes a quarter less time to compile.
 # <folder>: relative to the folder of the calling CMakeLists.txt; `.` is that folder itself.  The name of the target,
 # and of the room in USES, is the path from the root with `_` for `/`: sim/physics is sim_physics.
 function(shoal_room folder)
-  cmake_parse_arguments(ARG "MAIN" "" "USES;PUBLIC;PRIVATE;EXCEPT" ${ARGN})
+  cmake_parse_arguments(ARG "MAIN;COLD" "" "USES;PUBLIC;PRIVATE;EXCEPT" ${ARGN})
   cmake_path(ABSOLUTE_PATH folder NORMALIZE OUTPUT_VARIABLE directory)
   cmake_path(RELATIVE_PATH directory BASE_DIRECTORY ${PROJECT_SOURCE_DIR} OUTPUT_VARIABLE path)
   string(REGEX REPLACE "/$" "" path "${path}")
@@ -37,9 +38,14 @@ function(shoal_room folder)
   set_property(GLOBAL PROPERTY SHOAL_ROOM_${room}_PATH ${path})
   set_property(GLOBAL PROPERTY SHOAL_ROOM_${room}_USES ${ARG_USES})
   set_property(GLOBAL PROPERTY SHOAL_ROOM_${room}_LIBRARIES ${ARG_PUBLIC} ${ARG_PRIVATE})
+  set(options "")
+  if(ARG_COLD AND sources AND CMAKE_BUILD_TYPE STREQUAL RelWithDebInfo)
+    set(options -O1)
+    target_compile_options(${room} PRIVATE ${options})
+  endif()
   shoal_room_closure(${room} closure)
   if(SHOAL_UNITY AND sources AND sim_base IN_LIST closure)
-    shoal_use_headers(${room} ${path})
+    shoal_use_headers(${room} ${path} ${options})
   endif()
 endfunction()
 
@@ -60,6 +66,7 @@ endfunction()
 
 # A third of a unit's time are headers.  Those of libraries are parsed once for sim/, and those of a world once for all
 # above.  Without unity builds each source stands alone, so that a missing #include is found.
+# shoal_use_headers(<target> <path> [<option>...]): headers that are compiled with other options are others.
 function(shoal_use_headers target path)
   set(libraries spdlog::spdlog Eigen3::Eigen)
   set(headers <algorithm> <array> <chrono> <cmath> <filesystem> <fstream> <functional> <map> <memory> <optional> <set>
@@ -67,12 +74,12 @@ function(shoal_use_headers target path)
   if(path MATCHES "^sim/")
     set(name library_headers)
   else()
-    set(name world_headers)
+    string(MAKE_C_IDENTIFIER "world_headers${ARGN}" name)
     list(APPEND libraries sim_world)
     list(APPEND headers "${PROJECT_SOURCE_DIR}/sim/config/param_reader.hpp" "${PROJECT_SOURCE_DIR}/sim/world/world.hpp")
   endif()
   if(NOT TARGET ${name})
-    shoal_headers(${name} LIBRARIES ${libraries} HEADERS ${headers})
+    shoal_headers(${name} LIBRARIES ${libraries} HEADERS ${headers} OPTIONS ${ARGN})
   endif()
   target_precompile_headers(${target} REUSE_FROM ${name})
 endfunction()
@@ -109,6 +116,51 @@ function(shoal_room_objects rooms result)
     endif()
   endforeach()
   set(${result} ${objects} PARENT_SCOPE)
+endfunction()
+
+# shoal_command_library(<name> ROOMS <room>... [USES <name>...])
+# lib/shoal/<name>.so of the build folder, target shoal_<name>: what the rooms need beyond the program shoal and the
+# libraries that it uses.  The program loads it when one of its commands is called, and builds it first if necessary, so
+# that a first run compiles only what a run needs.
+function(shoal_command_library name)
+  cmake_parse_arguments(ARG "" "" "ROOMS;USES" ${ARGN})
+  shoal_room_closure("${ARG_ROOMS}" own)
+  get_property(present GLOBAL PROPERTY SHOAL_PROGRAM_ROOMS)
+  foreach(used IN LISTS ARG_USES)
+    get_property(of_used GLOBAL PROPERTY SHOAL_LIBRARY_${used}_ROOMS)
+    list(APPEND present ${of_used})
+  endforeach()
+  list(REMOVE_ITEM own ${present})
+  # A room in two libraries would exist twice in a program that loads both.
+  get_property(taken GLOBAL PROPERTY SHOAL_LIBRARY_ROOMS)
+  foreach(room IN LISTS own)
+    if(room IN_LIST taken)
+      message(FATAL_ERROR "${room} is in two command libraries: one has to use the other, or both a third")
+    endif()
+  endforeach()
+  set_property(GLOBAL APPEND PROPERTY SHOAL_LIBRARY_ROOMS ${own})
+  set_property(GLOBAL PROPERTY SHOAL_LIBRARY_${name}_ROOMS ${own} ${present})
+  set_property(GLOBAL APPEND PROPERTY SHOAL_COMMAND_LIBRARIES shoal_${name})
+  add_library(shoal_${name} SHARED)
+  shoal_link_rooms(shoal_${name} "${own}")
+  list(TRANSFORM ARG_USES PREPEND shoal_)
+  target_link_libraries(shoal_${name} PRIVATE ${ARG_USES})
+  # It is never older than the program when both are up to date.
+  set_target_properties(shoal_${name} PROPERTIES OUTPUT_NAME ${name} PREFIX "" LINKER_LANGUAGE CXX
+                        LINK_DEPENDS $<TARGET_FILE:shoal> BUILD_RPATH "$ORIGIN" INSTALL_RPATH "$ORIGIN"
+                        LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/lib/shoal)
+  add_dependencies(shoal_${name} shoal)
+  install(TARGETS shoal_${name} LIBRARY DESTINATION lib/shoal COMPONENT programs)
+endfunction()
+
+# Links the objects of rooms, and the libraries of others that they need.
+function(shoal_link_rooms target rooms)
+  shoal_room_objects("${rooms}" objects)
+  target_sources(${target} PRIVATE ${objects})
+  foreach(room IN LISTS rooms)
+    get_property(libraries GLOBAL PROPERTY SHOAL_ROOM_${room}_LIBRARIES)
+    target_link_libraries(${target} PRIVATE ${libraries})
+  endforeach()
 endfunction()
 
 # Adds a program for each room that links only its declared dependencies, so that a missing one is a linker error. They

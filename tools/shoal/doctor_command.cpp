@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "bridges/bus/network_check.hpp"
-#include "tools/shoal/commands.hpp"
+#include "tools/shoal/commands/commands.hpp"
 
 namespace tools {
 
@@ -38,13 +38,15 @@ int examine(const std::string& url) {
 
 }  // namespace
 
-void add_doctor_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("doctor", "Check whether LCM works on this machine, and print how to fix it");
+static void add_doctor_command(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.get_subcommand("doctor");
   const auto url = std::make_shared<std::string>();
   add_log_level_option(*command);
   add_lcm_url_option(*command, *url);
   command_line::set_help_end(*command, {{"shoal doctor"}, {{0, "usable"}, {2, "wrong usage"}, {4, "not usable"}}, {}});
   command->callback([url, &exit_code] { exit_code = examine(*url); });
 }
+
+SHOAL_COMMAND(add_doctor_command);
 
 }  // namespace tools

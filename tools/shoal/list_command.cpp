@@ -10,7 +10,7 @@
 #include "sim/device/device_registry.hpp"
 #include "tools/command_line/text_layout.hpp"
 #include "tools/experiment/world_files/world_by_name.hpp"
-#include "tools/shoal/commands.hpp"
+#include "tools/shoal/commands/commands.hpp"
 
 namespace tools {
 
@@ -69,8 +69,8 @@ int list(const std::string& what) {
 
 }  // namespace
 
-void add_list_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("list", "List shipped worlds and vehicles, device types or message types");
+static void add_list_command(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.get_subcommand("list");
   add_log_level_option(*command);
   const auto what = std::make_shared<std::string>();
   command->add_option("WHAT", *what, "worlds, vehicles, studies, devices or messages; unset: worlds, studies, vehicles")
@@ -81,5 +81,7 @@ void add_list_command(CLI::App& app, int& exit_code) {
                                         {}});
   command->callback([what, &exit_code] { exit_code = list(*what); });
 }
+
+SHOAL_COMMAND(add_list_command);
 
 }  // namespace tools

@@ -10,7 +10,7 @@
 #include <iostream>
 #include <stdexcept>
 #include <string>
-#include <vector>
+#include <string_view>
 
 #include "bridges/base/bus_error.hpp"
 #include "sim/config/diagnostics.hpp"
@@ -21,11 +21,7 @@
 #include "tools/command_line/text_layout.hpp"
 #include "tools/experiment/run/runner.hpp"
 #include "tools/experiment/snapshot/run_identity.hpp"
-#include "tools/shoal/bug_command.hpp"
-#include "tools/shoal/commands.hpp"
-#include "tools/shoal/motion/motion_commands.hpp"
-#include "tools/shoal/new_command.hpp"
-#include "tools/shoal/study/study_commands.hpp"
+#include "tools/shoal/commands/commands.hpp"
 
 namespace {
 
@@ -37,6 +33,13 @@ std::string versions() {
   return tools::version_text() + "machine: " + tools::build_text() +
          "\nworlds and vehicles: " + (shipped.empty() ? "none were found" : shipped) + ", format " +
          std::to_string(sim::VehicleConfig{}.shoal) + "\n";
+}
+
+/// Returns the first argument that may name a command: `film` of `shoal help film`.
+std::string called_command(int argc, char** argv) {
+  for (int i = 1; i < argc; ++i)
+    if (argv[i][0] != '-' && std::string_view(argv[i]) != "help") return argv[i];
+  return {};
 }
 
 int run(int argc, char** argv) {
@@ -60,37 +63,10 @@ int run(int argc, char** argv) {
        {"`shoal COMMAND --help` has the options and exit codes of a command."}});
   for (const std::string& problem : sim::DeviceRegistry::instance().take_problems())
     throw std::logic_error("this program was built wrong: " + problem);
-  // Commands.
+  // Commands: all are named, and the one that is called is complete.
   int exit_code = tools::exit_ok;
-  tools::add_run_command(app, exit_code);
-  tools::add_replay_command(app, exit_code);
-  tools::add_score_command(app, exit_code);
-  tools::add_check_command(app, exit_code);
-  tools::add_view_command(app, exit_code);
-  tools::add_motion_command(app, exit_code);
-  tools::add_snap_command(app, exit_code);
-  tools::add_film_command(app, exit_code);
-  tools::add_map_command(app, exit_code);
-  tools::add_snapshot_command(app, exit_code);
-  tools::add_describe_command(app, exit_code);
-  tools::add_list_command(app, exit_code);
-  tools::add_new_command(app, exit_code);
-  tools::add_spy_command(app, exit_code);
-  tools::add_control_command(app, exit_code);
-  tools::add_drive_command(app, exit_code);
-  tools::add_doctor_command(app, exit_code);
-  tools::add_log_command(app, exit_code);
-  tools::add_bench_command(app, exit_code);
-  tools::add_mesh_command(app, exit_code);
-  tools::add_import_command(app, exit_code);
-  tools::add_medium_command(app, exit_code);
-  tools::add_fidelity_command(app, exit_code);
-  tools::add_acoustics_command(app, exit_code);
-  tools::add_report_command(app, exit_code);
-  tools::add_bug_command(app, exit_code);
-  tools::add_study_command(app, exit_code);
-  tools::add_tune_command(app, exit_code);
-  tools::add_upgrade_command(app, exit_code);
+  tools::list_commands(app);
+  tools::complete_command(app, exit_code, called_command(argc, argv));
   // Parse and run.
   try {
     if (const auto ended = command_line::parse(app, argc, argv)) return *ended;

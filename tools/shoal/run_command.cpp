@@ -7,18 +7,19 @@
 #include <memory>
 #include <sstream>
 
+#include "bridges/log/record_file.hpp"
 #include "messages/yaml/message_writer.hpp"
 #include "tools/command_line/name_list.hpp"
-#include "tools/experiment/bug_report/bug_report.hpp"
 #include "tools/experiment/process/browser.hpp"
 #include "tools/experiment/process/world_programs.hpp"
 #include "tools/experiment/run/runner.hpp"
 #include "tools/experiment/snapshot/run_identity.hpp"
 #include "tools/experiment/world_files/world_by_name.hpp"
-#include "tools/shoal/commands.hpp"
+#include "tools/shoal/commands/command_library.hpp"
+#include "tools/shoal/commands/commands.hpp"
+#include "tools/shoal/commands/live_page.hpp"
 #include "tools/shoal/options/speed_option.hpp"
 #include "tools/shoal/options/view_options.hpp"
-#include "tools/shoal/run_watched.hpp"
 
 namespace tools {
 
@@ -112,14 +113,19 @@ int run(RunArguments& arguments) {
     throw CLI::ValidationError("--snapshot-at", "needs --snapshots DIR or --results DIR");
   Browser browser;
   if (arguments.open) arguments.view.opened = [&browser](const std::string& url) { browser.open(url); };
-  if (arguments.with_page) arguments.run.view = arguments.view;
+  if (arguments.with_page) {
+    load_library("page");
+    arguments.run.page = [&view = arguments.view] { return live_page->make(view); };
+  }
+  // Topics of ROS 2 in an MCAP record.
+  if (bridges::is_mcap_name(arguments.run.record)) load_library("ros2");
   const bool writes = !arguments.run.results.empty() || !arguments.run.record.empty();
   if (arguments.watch && (writes || !arguments.from.empty()))
     throw CLI::ValidationError("--watch", "cannot be given with --results, --record or --from");
   if (arguments.watch) {
     catch_signals(true);
-    return run_watched(
-        world_file(arguments.world), arguments.run, [&] { return load_with_programs(arguments); },
+    return live_page->run_watched(
+        world_file(arguments.world), arguments.run, arguments.view, [&] { return load_with_programs(arguments); },
         [&](const sim::LoadedWorld& loaded) { return run_loaded(loaded, arguments); });
   }
   const sim::LoadedWorld loaded = load_with_programs(arguments);
@@ -204,8 +210,8 @@ void add_bus_options(CLI::App& command, RunArguments& arguments) {
 
 }  // namespace
 
-void add_run_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("run", "Run a world");
+static void add_run_command(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.get_subcommand("run");
   const auto arguments = std::make_shared<RunArguments>();
   add_log_level_option(*command);
   // World, time and seed.
@@ -258,5 +264,7 @@ void add_run_command(CLI::App& app, int& exit_code) {
        {}});
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }
+
+SHOAL_COMMAND(add_run_command);
 
 }  // namespace tools

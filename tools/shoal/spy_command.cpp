@@ -17,7 +17,7 @@
 #include "shoal/message_schema.hpp"
 #include "tools/command_line/text_layout.hpp"
 #include "tools/experiment/run/runner.hpp"
-#include "tools/shoal/commands.hpp"
+#include "tools/shoal/commands/commands.hpp"
 
 namespace tools {
 
@@ -177,8 +177,8 @@ int spy(const SpyArguments& arguments) {
 
 }  // namespace
 
-void add_spy_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("spy", "Watch the live channels: rates and decoded fields");
+static void add_spy_command(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.get_subcommand("spy");
   const auto arguments = std::make_shared<SpyArguments>();
   add_log_level_option(*command);
   command->add_option("CHANNEL", arguments->channel, "show every message of this channel in full");
@@ -195,5 +195,7 @@ void add_spy_command(CLI::App& app, int& exit_code) {
                   "second, or with --duration one of all of it; or the fields of each message of CHANNEL."}});
   command->callback([arguments, &exit_code] { exit_code = spy(*arguments); });
 }
+
+SHOAL_COMMAND(add_spy_command);
 
 }  // namespace tools

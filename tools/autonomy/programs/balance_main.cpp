@@ -4,8 +4,8 @@
 
 #include "shoal/utime_t.hpp"
 #include "sim/base/math.hpp"
-#include "tools/autonomy/missions/balance.hpp"
-#include "tools/autonomy/missions/balance_model.hpp"
+#include "tools/autonomy/missions/robots/balance.hpp"
+#include "tools/autonomy/missions/robots/balance_model.hpp"
 #include "tools/autonomy/programs/program.hpp"
 
 namespace {

@@ -2,7 +2,7 @@
 #include <stdexcept>
 
 #include "shoal/twist_command_t.hpp"
-#include "tools/autonomy/missions/ball_chase.hpp"
+#include "tools/autonomy/missions/robots/ball_chase.hpp"
 #include "tools/autonomy/programs/program.hpp"
 
 namespace {

@@ -4,7 +4,7 @@
 
 #include "shoal/joint_servo_command_t.hpp"
 #include "shoal/motion_command_t.hpp"
-#include "tools/autonomy/missions/dog_steering.hpp"
+#include "tools/autonomy/missions/robots/dog_steering.hpp"
 #include "tools/autonomy/programs/program.hpp"
 
 namespace {

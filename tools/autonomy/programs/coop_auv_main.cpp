@@ -2,7 +2,7 @@
 #include <iostream>
 
 #include "sim/base/math.hpp"
-#include "tools/autonomy/missions/coop_auv.hpp"
+#include "tools/autonomy/missions/marine/coop_auv.hpp"
 #include "tools/autonomy/programs/avoid_options.hpp"
 #include "tools/autonomy/programs/marine_options.hpp"
 #include "tools/autonomy/programs/program.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <iostream>
 
-#include "tools/autonomy/missions/coop_craft.hpp"
+#include "tools/autonomy/missions/marine/coop_craft.hpp"
 #include "tools/autonomy/programs/avoid_options.hpp"
 #include "tools/autonomy/programs/marine_options.hpp"
 #include "tools/autonomy/programs/program.hpp"

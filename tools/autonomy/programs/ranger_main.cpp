@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <iostream>
 
-#include "tools/autonomy/missions/ranger.hpp"
+#include "tools/autonomy/missions/marine/ranger.hpp"
 #include "tools/autonomy/programs/marine_options.hpp"
 #include "tools/autonomy/programs/program.hpp"
 

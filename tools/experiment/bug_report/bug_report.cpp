@@ -271,13 +271,6 @@ class BugPacker {
 
 }  // namespace
 
-std::string bug_hint(const std::string& results, const std::string& record) {
-  const std::string with_record = " --record " + (record.empty() ? "FILE" : record);
-  if (results.empty())
-    return "to report this: run it again with --results DIR" + with_record + ", then shoal bug DIR" + with_record;
-  return "to report this: shoal bug " + results + (record.empty() ? "" : with_record);
-}
-
 BugReport write_bug_report(const BugOptions& options) {
   return BugPacker(options).pack();
 }

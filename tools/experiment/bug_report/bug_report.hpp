@@ -29,7 +29,4 @@ struct BugReport {
 /// written.
 BugReport write_bug_report(const BugOptions& options);
 
-/// Returns the command that reports a failed run; `results` and `record` as of `shoal run`, empty: none.
-std::string bug_hint(const std::string& results, const std::string& record);
-
 }  // namespace tools

@@ -27,7 +27,7 @@ using Clock = std::chrono::steady_clock;
 Run::Run(const sim::LoadedWorld& loaded, const RunOptions& options)
     : loaded_(loaded),
       options_(options),
-      page_(make_page()),
+      page_(options.page ? options.page() : nullptr),
       files_(files_text(loaded.resolved)),
       buses_(loaded.config, options, page_tap()),
       others_(buses_.networks(), options.lcm_shared),
@@ -108,7 +108,7 @@ std::unique_ptr<RunKeyFile> Run::make_key() {
 TimeControl::Options Run::time_options() const {
   constexpr double usual_rewind_s = 60;
   const bool accepts_requests =
-      options_.view || options_.bus != "none" || (options_.keys && !options_.quiet && TerminalKeys::possible());
+      options_.page || options_.bus != "none" || (options_.keys && !options_.quiet && TerminalKeys::possible());
   TimeControl::Options time;
   time.rewind_s = options_.rewind_s.value_or(accepts_requests ? usual_rewind_s : 0);
   time.max_bytes = static_cast<std::size_t>(options_.rewind_MB * 1e6);
@@ -121,10 +121,6 @@ TimeControl::Options Run::time_options() const {
   return time;
 }
 
-std::unique_ptr<RunView> Run::make_page() const {
-  return options_.view ? std::make_unique<RunView>(*options_.view, short_version()) : nullptr;
-}
-
 TapBus::Listener Run::page_tap() {
   if (!page_) return {};
   return [this](std::string_view channel, std::span<const std::byte> payload, sim::Time at) {
@@ -132,7 +128,7 @@ TapBus::Listener Run::page_tap() {
   };
 }
 
-PageDrive::Publish Run::drive_publisher() {
+RunPage::Publish Run::drive_publisher() {
   return [this](const std::string& vehicle, const std::string& channel, std::span<const std::byte> payload) {
     const sim::Vehicle* driven = world_.find_vehicle(vehicle);
     if (driven == nullptr) return;
@@ -143,7 +139,7 @@ PageDrive::Publish Run::drive_publisher() {
 
 void Run::serve_page() {
   page_->serve(world_, view_, control_, service_.waits_for(),
-               [this](const std::string& command, double value, const std::string& text) -> RunView::Answer {
+               [this](const std::string& command, double value, const std::string& text) -> RunPage::Answer {
                  shoal::sim_control_request_t request;
                  request.client = "live page";
                  request.command = command;
@@ -249,9 +245,9 @@ void Run::await(const std::vector<std::string>& clients) {
 void Run::loop() {
   journal_.start();
   if (page_) {
-    page_->start(world_, duration_s_);
+    page_->start(world_, duration_s_, {});
     progress_.report("live page: " + page_->url());
-    if (options_.view->opened) options_.view->opened(page_->url());
+    page_->announce();
   }
   end_of_step();
   const sim::Time end = duration_s_ > 0 ? sim::from_seconds(duration_s_) : sim::Time::max();

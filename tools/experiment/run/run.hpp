@@ -51,10 +51,9 @@ class Run final : private Timeline {
   void hold_here() override;
   void start_branch(bool ours) override;
   std::vector<bridges::LockstepBus> lockstep_buses();
-  std::unique_ptr<RunView> make_page() const;
   TapBus::Listener page_tap();
   /// Returns the way of commands of pages that drive: as messages from outside.
-  PageDrive::Publish drive_publisher();
+  RunPage::Publish drive_publisher();
   /// Carries out the requests of the pages.
   void serve_page();
   bridges::ServiceLinks service_links();
@@ -87,7 +86,7 @@ class Run final : private Timeline {
 
   const sim::LoadedWorld& loaded_;
   const RunOptions& options_;
-  std::unique_ptr<RunView> page_;  ///< live page; null: none.  Outlives the buses, which it taps.
+  std::unique_ptr<RunPage> page_;  ///< live page; null: none.  Outlives the buses, which it taps.
   const std::string files_;        ///< hashes of the files that the world names
   RunBuses buses_;
   bridges::OtherSimulators others_;  ///< queried before the world is built

@@ -46,7 +46,7 @@ void Run::start_branch(bool ours) {
   branch_log_.branch(control_.branch);
   view_.set_branch(control_.branch);
   view_.discard();
-  if (page_) page_->moved(world_, control_, ours);
+  if (page_) page_->moved(world_, control_, ours, {});
   lockstep_.set_branch(control_.branch);
   buses_.set_time(world_.now());
   service_.report_changes();

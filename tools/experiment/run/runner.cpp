@@ -54,4 +54,11 @@ Summary run_world(const sim::LoadedWorld& loaded, const RunOptions& options) {
   return summary;
 }
 
+std::string bug_hint(const std::string& results, const std::string& record) {
+  const std::string with_record = " --record " + (record.empty() ? "FILE" : record);
+  if (results.empty())
+    return "to report this: run it again with --results DIR" + with_record + ", then shoal bug DIR" + with_record;
+  return "to report this: shoal bug " + results + (record.empty() ? "" : with_record);
+}
+
 }  // namespace tools

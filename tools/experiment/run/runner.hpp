@@ -9,8 +9,8 @@
 #include "sim/world_file/load_world.hpp"
 #include "tools/experiment/process/signals.hpp"
 #include "tools/experiment/results/results.hpp"
+#include "tools/experiment/run/run_page.hpp"
 #include "tools/experiment/snapshot/snapshot_file.hpp"
-#include "tools/experiment/view/run_view.hpp"
 
 namespace tools {
 
@@ -44,7 +44,7 @@ struct RunOptions {
   std::optional<double> snapshot_every_s;  ///< interval of snapshot files
   std::optional<double> rewind_s;          ///< longest rewind; unset: 60 s when requests are possible
   double rewind_MB = 64;                   ///< memory for rewinding
-  std::optional<ViewOptions> view;         ///< the live page; unset: none
+  RunPage::Make page = {};                 ///< makes the live page; empty: there is none
   std::function<bool()> leave = {};        ///< asked in each step: true ends the run; empty: nothing does so
 };
 
@@ -52,6 +52,9 @@ struct RunOptions {
 /// lockstep clients, scores, writes the results.  Errors are reported in the summary with their exit code; only
 /// ConfigError is thrown.
 Summary run_world(const sim::LoadedWorld& loaded, const RunOptions& options);
+
+/// Returns the command that reports a failed run; `results` and `record` as of `shoal run`, empty: none.
+std::string bug_hint(const std::string& results, const std::string& record);
 
 /// Returns the versions of shoal and of the libraries it runs with.
 std::string version_text();

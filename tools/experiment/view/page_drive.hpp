@@ -9,6 +9,7 @@
 
 #include "sim/world/world.hpp"
 #include "tools/experiment/drive/driver.hpp"
+#include "tools/experiment/run/run_page.hpp"
 
 namespace tools {
 
@@ -20,9 +21,7 @@ DrivenVehicle driven_vehicle(const sim::Vehicle& vehicle);
 class PageDrive {
  public:
   using Clock = Driver::Clock;
-  /// Publishes a command of a vehicle, as a message from outside.
-  using Publish =
-      std::function<void(const std::string& vehicle, const std::string& channel, std::span<const std::byte> payload)>;
+  using Publish = RunPage::Publish;
 
   explicit PageDrive(DriveProfile profile) : profile_(std::move(profile)) {}
 

@@ -32,9 +32,14 @@ bridges::WebOptions web_options(const ViewOptions& options) {
 
 RunView::RunView(const ViewOptions& options, const std::string& version)
     : server_(web_options(options)),
+      opened_(options.opened),
       foxglove_control_(options.foxglove_control),
       version_(version),
       drive_(read_drive_profile(options.drive_profile)) {}
+
+void RunView::announce() const {
+  if (opened_) opened_(url());
+}
 
 void RunView::start(const sim::World& world, std::optional<double> duration_s, const Source& source) {
   messages_.set_epoch(world.epoch_us());

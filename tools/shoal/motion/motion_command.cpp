@@ -3,6 +3,7 @@
 #include "sim/world_file/vehicle_loader.hpp"
 #include "tools/experiment/motion_formats/motion_format.hpp"
 #include "tools/experiment/world_files/world_by_name.hpp"
+#include "tools/shoal/commands/commands.hpp"
 #include "tools/shoal/motion/motion_commands.hpp"
 
 namespace tools {
@@ -32,9 +33,8 @@ sim::VehicleConfig vehicle_of(const std::string& file, const sim::JointMotion& m
   return sim::load_vehicle(file_by_name({ShippedKind::vehicle}, file.empty() ? motion.vehicle : file), {});
 }
 
-void add_motion_command(CLI::App& app, int& exit_code) {
-  CLI::App* command =
-      app.add_subcommand("motion", "Record, show, check, edit, play and convert motions of robots with joints");
+static void add_motion_command(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.get_subcommand("motion");
   command->require_subcommand(1);
   add_motion_show_command(*command, exit_code);
   add_motion_check_command(*command, exit_code);
@@ -55,5 +55,7 @@ void add_motion_command(CLI::App& app, int& exit_code) {
                               {{0, "success"}, {2, "wrong usage"}},
                               {}});
 }
+
+SHOAL_COMMAND(add_motion_command);
 
 }  // namespace tools

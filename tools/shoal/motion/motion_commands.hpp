@@ -11,9 +11,6 @@ namespace tools {
 
 constexpr double mm = 1000;  ///< in a metre
 
-/// Adds `shoal motion`.
-void add_motion_command(CLI::App& app, int& exit_code);
-
 /// Each function adds a sub-command of `shoal motion`.
 void add_motion_show_command(CLI::App& motion, int& exit_code);
 void add_motion_check_command(CLI::App& motion, int& exit_code);

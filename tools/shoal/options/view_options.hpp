@@ -3,7 +3,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "tools/experiment/view/run_view.hpp"
+#include "tools/experiment/run/run_page.hpp"
 
 namespace tools {
 

@@ -15,7 +15,7 @@
 #include "tools/experiment/study/study_results.hpp"
 #include "tools/experiment/study/study_seeds.hpp"
 #include "tools/experiment/world_files/world_by_name.hpp"
-#include "tools/shoal/study/study_commands.hpp"
+#include "tools/shoal/commands/commands.hpp"
 #include "tools/shoal/study/study_parts.hpp"
 
 namespace tools {
@@ -172,8 +172,8 @@ void add_study_plan_command(CLI::App& study_command, int& exit_code) {
 
 }  // namespace
 
-void add_study_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("study", "Run a world with many seeds and settings, and compare");
+static void add_study_command(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.get_subcommand("study");
   struct Arguments {
     std::string path, seeds;
     std::string verified;
@@ -231,5 +231,7 @@ void add_study_command(CLI::App& app, int& exit_code) {
       exit_code = study(arguments->path, arguments->changes, arguments->options);
   });
 }
+
+SHOAL_COMMAND(add_study_command);
 
 }  // namespace tools

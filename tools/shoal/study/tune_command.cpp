@@ -15,7 +15,7 @@
 #include "tools/experiment/study/study_seeds.hpp"
 #include "tools/experiment/study/study_tables.hpp"
 #include "tools/experiment/world_files/world_by_name.hpp"
-#include "tools/shoal/study/study_commands.hpp"
+#include "tools/shoal/commands/commands.hpp"
 #include "tools/shoal/study/study_parts.hpp"
 
 namespace tools {
@@ -89,8 +89,8 @@ int tune(TuneArguments& arguments) {
 
 }  // namespace
 
-void add_tune_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("tune", "Search for the settings of a study that make a figure best");
+static void add_tune_command(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.get_subcommand("tune");
   const auto arguments = std::make_shared<TuneArguments>();
   TuneOptions& options = arguments->options;
   options.study.jobs = 0;
@@ -150,5 +150,7 @@ void add_tune_command(CLI::App& app, int& exit_code) {
     exit_code = tune(*arguments);
   });
 }
+
+SHOAL_COMMAND(add_tune_command);
 
 }  // namespace tools

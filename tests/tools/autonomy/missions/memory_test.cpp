@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tools/autonomy/behaviours/helm_behaviour.hpp"
-#include "tools/autonomy/missions/coop_auv.hpp"
+#include "tools/autonomy/missions/marine/coop_auv.hpp"
 
 namespace {
 

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/shoal/commands/commands.hpp"
+
+#include <utility>
+#include <vector>
+
+#include "tools/shoal/commands/command_library.hpp"
+
+namespace tools {
+
+namespace {
+
+struct Command {
+  const char* name;
+  const char* library;  ///< empty: the command is part of the program
+  const char* description;
+};
+
+/// In the order of the help.  CMakeLists.txt says what each library consists of.
+constexpr Command commands[] = {
+    {"run", "", "Run a world"},
+    {"replay", "records", "Replay the world of a log, and compare"},
+    {"score", "records", "Score a log again, or an estimate that was made elsewhere"},
+    {"check", "files", "Check a world, vehicle, study or motion file without running it"},
+    {"view", "view", "Serve a live page of a log, or of a run in another process, in 3-D"},
+    {"motion", "motion", "Record, show, check, edit, play and convert motions of robots with joints"},
+    {"snap", "film", "Run a world as fast as possible, without a bus, or a log again, and render an image"},
+    {"film", "film", "Make a film of a recorded run, or of a world without programs"},
+    {"map", "film", "Write the true map of a world or log, or one that a program published, for ROS map_server"},
+    {"snapshot", "records", "Show the contents of a snapshot file"},
+    {"describe", "files", "Describe a device, a message, a program or the keys of a file"},
+    {"list", "", "List shipped worlds and vehicles, device types or message types"},
+    {"new", "files", "Write a world, a vehicle or a program to start with"},
+    {"spy", "", "Watch the live channels: rates and decoded fields"},
+    {"control", "", "Send a request to a running simulator and print its answer"},
+    {"drive", "drive", "Drive a vehicle of a running simulator by hand"},
+    {"doctor", "", "Check whether LCM works on this machine, and print how to fix it"},
+    {"log", "records", "Inspect and convert LCM event logs"},
+    {"bench", "models", "Measure the speed of this machine on benchmark scenes"},
+    {"mesh", "models", "Describe a mesh file, and convert it for worlds and vehicles"},
+    {"import", "models", "Convert robots and data sets of other programs"},
+    {"medium", "models", "Show the water and the air of a world at a place and a time"},
+    {"fidelity", "models", "Compare vehicles with published trajectories"},
+    {"acoustics", "models", "Show the propagation of sound between two positions under water"},
+    {"report", "view", "Make one HTML page of the results of a run or a study"},
+    {"bug", "records", "Pack a run into one archive for a report to the developers"},
+    {"study", "study", "Run a world with many seeds and settings, and compare"},
+    {"tune", "study", "Search for the settings of a study that make a figure best"},
+    {"upgrade", "files", "Rewrite files of an older version in the format of this one"},
+};
+
+/// Those that were registered since the last add_registered().
+std::vector<AddCommand>& registered() {
+  static std::vector<AddCommand> all;
+  return all;
+}
+
+void add_registered(CLI::App& app, int& exit_code) {
+  for (const AddCommand add : std::exchange(registered(), {})) add(app, exit_code);
+}
+
+}  // namespace
+
+bool register_command(AddCommand add) {
+  registered().push_back(add);
+  return true;
+}
+
+void list_commands(CLI::App& app) {
+  for (const Command& command : commands) app.add_subcommand(command.name, command.description);
+}
+
+void complete_command(CLI::App& app, int& exit_code, const std::string& name) {
+  for (const Command& command : commands)
+    if (command.name == name && *command.library != '\0') load_library(command.library);
+  add_registered(app, exit_code);
+}
+
+void complete_commands(CLI::App& app, int& exit_code) {
+  for (const Command& command : commands) complete_command(app, exit_code, command.name);
+}
+
+}  // namespace tools

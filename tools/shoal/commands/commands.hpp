@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include "tools/shoal/options/shared_options.hpp"
+
+namespace tools {
+
+/// Adds options and action to the command of that name, which `app` has; when chosen, the command sets `exit_code`.
+using AddCommand = void (*)(CLI::App& app, int& exit_code);
+
+/// Registers a command: before main, or when its library is loaded.  Returns true.
+bool register_command(AddCommand add);
+#define SHOAL_COMMAND(add) [[maybe_unused]] static const bool add##_is_registered = ::tools::register_command(add)
+
+/// Adds the names and descriptions of all commands to the command line.
+void list_commands(CLI::App& app);
+
+/// Makes a command complete, with its options and action; loads its library.  Throws LibraryError.
+void complete_command(CLI::App& app, int& exit_code, const std::string& name);
+
+/// Does so for all commands.
+void complete_commands(CLI::App& app, int& exit_code);
+
+}  // namespace tools

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "sim/world_file/load_world.hpp"
+#include "tools/experiment/run/runner.hpp"
+
+namespace tools {
+
+/// What `shoal run --view` needs of the library `page`.
+struct LivePage {
+  /// Starts the page of a run.  Throws bridges::WebError, and sim::ConfigError for the profile.
+  std::unique_ptr<RunPage> (*make)(const ViewOptions& view);
+  /// Runs a world each time that one of its files was saved, until a signal, and shows its errors on the page (`shoal
+  /// run --view --watch`).  All runs have the same address.  `load` reads the world; `go` runs it and returns an exit
+  /// code.  Returns the exit code of the last run, or 2 after an error of the world.
+  int (*run_watched)(const std::string& world_file, RunOptions& options, ViewOptions& view,
+                     const std::function<sim::LoadedWorld()>& load,
+                     const std::function<int(const sim::LoadedWorld&)>& go);
+};
+
+/// The library sets it when it is loaded.
+inline const LivePage* live_page = nullptr;
+
+}  // namespace tools
