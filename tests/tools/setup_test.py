@@ -306,7 +306,7 @@ class Build(Scratch):
 
     def failing(self, output):
         text = output.replace("'", "'\\''")
-        self.stub("ninja", f"printf '%s\\n' '[1/2] Building CXX object a.o' 'FAILED: a.o' 'g++ -c a.cpp' '{text}' "
+        self.stub("ninja", f"printf '%s\\n' '[1/1] Building CXX object a.o' 'FAILED: a.o' 'g++ -c a.cpp' '{text}' "
                            "'ninja: build stopped: subcommand failed.'; exit 1")
 
     def test_a_full_disk_while_compiling(self):
@@ -314,19 +314,19 @@ class Build(Scratch):
         lines = self.run_script("tools/build", code=1)
         self.assertRegex(lines[-1], r"^tools/build: the disk of \S+( or \S+)? is full: free some space, then run the "
                                     "same command again$")
-        self.assertEqual(lines[:-1], ["[1/2]"])
+        self.assertEqual(lines[:-1], ["[1/1]"])
         self.stub("ninja", STUBS["ninja"])
         self.assertEqual(self.run_script("tools/build"), [self.BUILT])
 
     def test_too_little_memory_while_compiling(self):
         self.failing("g++: fatal error: Killed signal terminated program cc1plus")
         self.build_fails("the compiler ran out of memory: put CMAKE_BUILD_PARALLEL_LEVEL=1 before the command",
-                         before=["[1/2]"])
+                         before=["[1/1]"])
 
     def test_an_error_in_the_code_is_printed_whole(self):
         self.failing("a.cpp:1:1: error: oops")
         self.assertEqual(self.run_script("tools/build", code=1),
-                         ["[1/2]", "FAILED: a.o", "g++ -c a.cpp", "a.cpp:1:1: error: oops"])
+                         ["[1/1]", "FAILED: a.o", "g++ -c a.cpp", "a.cpp:1:1: error: oops"])
 
     def test_run_reports_a_missing_world_before_it_builds(self):
         self.assertEqual(self.run_script("tools/run", "no_such", code=2), [
