@@ -70,7 +70,7 @@ endfunction()
 function(shoal_use_headers target path)
   set(libraries spdlog::spdlog Eigen3::Eigen)
   set(headers <algorithm> <array> <chrono> <cmath> <filesystem> <fstream> <functional> <map> <memory> <optional> <set>
-              <span> <sstream> <string> <thread> <unordered_map> <variant> <vector> <Eigen/Geometry> <spdlog/spdlog.h>)
+              <span> <sstream> <string> <thread> <unordered_map> <variant> <vector> <Eigen/Geometry> <spdlog/fmt/fmt.h>)
   if(path MATCHES "^sim/")
     set(name library_headers)
   else()

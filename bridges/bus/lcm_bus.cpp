@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bridges/bus/lcm_bus.hpp"
 
-#include <spdlog/spdlog.h>
 #include <sys/eventfd.h>
 #include <unistd.h>
 
@@ -20,6 +19,7 @@
 
 #include "bridges/base/poll_set.hpp"
 #include "bridges/bus/outgoing_sender.hpp"
+#include "sim/base/log.hpp"
 
 namespace bridges {
 /// Parts of LcmBus; not in an unnamed namespace, because LcmBus::Threads contains it.
@@ -224,8 +224,8 @@ struct LcmBus::Threads final : Arrivals::Port {
     if (payload.size() <= options.max_message_bytes) return true;
     refused.fetch_add(1);
     if (!warned_of_size.exchange(true))
-      spdlog::warn("channel {}: message of {} bytes is not sent; LCM carries at most {} bytes", channel, payload.size(),
-                   options.max_message_bytes);
+      sim::log_warn("channel {}: message of {} bytes is not sent; LCM carries at most {} bytes", channel,
+                    payload.size(), options.max_message_bytes);
     return false;
   }
 
@@ -242,7 +242,7 @@ struct LcmBus::Threads final : Arrivals::Port {
 
   void count_refused() {
     if (refused.fetch_add(1) == 0)
-      spdlog::warn("LCM did not send a message on {}; further failures are only counted", connection.url());
+      sim::log_warn("LCM did not send a message on {}; further failures are only counted", connection.url());
   }
 
   void receive_all() {
@@ -260,7 +260,7 @@ struct LcmBus::Threads final : Arrivals::Port {
     // Notify once: a waiting thread then reads its mailboxes while the messages are in the cache.
     if (connected && connection.handle() == LcmConnection::Handled::lost) {
       connected = false;
-      spdlog::warn("the connection to {} is lost; messages are dropped from now on", connection.url());
+      sim::log_warn("the connection to {} is lost; messages are dropped from now on", connection.url());
     }
     return connected;
   }

@@ -2,7 +2,6 @@
 #include "bridges/control/sim_service.hpp"
 
 #include <spdlog/fmt/fmt.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <array>
@@ -15,6 +14,7 @@
 #include "shoal/sim_info_t.hpp"
 #include "shoal/sim_state_t.hpp"
 #include "shoal/utime_t.hpp"
+#include "sim/base/log.hpp"
 #include "sim/config/message_text.hpp"
 
 namespace bridges {
@@ -133,7 +133,7 @@ void SimService::publish_state() {
 }
 
 void SimService::warn_client(const std::string& text) {
-  if (++bad_messages_ <= 100) spdlog::warn("{} (ignored)", sim::shortened(sim::printable(text), 300));
+  if (++bad_messages_ <= 100) sim::log_warn("{} (ignored)", sim::shortened(sim::printable(text), 300));
 }
 
 void SimService::handle_requests(TimeMachine* machine) {
@@ -165,8 +165,8 @@ bool SimService::is_own_request(Link& link, const shoal::sim_control_request_t& 
 
 void SimService::warn_of_another(const Link& link, const char* how) {
   if (std::exchange(warned_of_another_, true)) return;
-  spdlog::warn("another simulator {} on {} of this run: clients and reports of the two runs will mix", how,
-               lockstep_.called(number_of(link)));
+  sim::log_warn("another simulator {} on {} of this run: clients and reports of the two runs will mix", how,
+                lockstep_.called(number_of(link)));
 }
 
 void SimService::handle_request(Link& link, const sim::Message& message, TimeMachine* machine) {
@@ -192,9 +192,9 @@ void SimService::refuse(Link& link, const shoal::sim_control_request_t& request,
   ++refused_requests_;
   ++bad_messages_;
   if (warned_refused_.size() < max_warned && warned_refused_.insert(sim::shortened(request.client)).second)
-    spdlog::warn("sim.control: '{}' of client '{}' is refused: {} (further requests of this client are only counted)",
-                 sim::shortened(sim::printable(request.command)), sim::shortened(sim::printable(request.client)),
-                 opened.refusal);
+    sim::log_warn("sim.control: '{}' of client '{}' is refused: {} (further requests of this client are only counted)",
+                  sim::shortened(sim::printable(request.command)), sim::shortened(sim::printable(request.client)),
+                  opened.refusal);
   const auto now = std::chrono::steady_clock::now();
   if (now - refusals_since_ > std::chrono::seconds(1)) {
     refusals_since_ = now;
@@ -260,8 +260,8 @@ void SimService::note(const shoal::sim_control_request_t& request, const std::st
   const std::string what = request.command == "rewind"  ? fmt::format("{:g} s", request.value)
                            : request.command == "leave" ? "without its session"
                                                         : request.text;
-  spdlog::info("{} requests '{}{}{}'", who_asked(request.client, signer), request.command, what.empty() ? "" : " ",
-               sim::shortened(sim::printable(what)));
+  sim::log_info("{} requests '{}{}{}'", who_asked(request.client, signer), request.command, what.empty() ? "" : " ",
+                sim::shortened(sim::printable(what)));
   audit_.add({0, request.command, request.client, signer, what}, lockstep_.branch());
 }
 

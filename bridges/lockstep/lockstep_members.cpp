@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -8,6 +6,7 @@
 #include "bridges/lockstep/lockstep_link.hpp"
 #include "bridges/lockstep_client/resend.hpp"
 #include "shoal/sim_control_reply_t.hpp"
+#include "sim/base/log.hpp"
 #include "sim/config/message_text.hpp"
 
 // Members of the lockstep: joining, leaving, name conflicts.
@@ -167,13 +166,13 @@ void LockstepService::report_who_left(const sim::LockstepMember& member, int lin
   const std::string at = " at " + seconds_text(world_.now()) + " on " + link_of(link).called;
   const std::string more = reported_left_ == max_reports ? " (further ones are not reported)" : "";
   if (terms.session == 0 && member.terms.session != 0)
-    spdlog::warn("lockstep: a request without its session{} released {}; the world continues without it{}", at, called,
-                 more);
+    sim::log_warn("lockstep: a request without its session{} released {}; the world continues without it{}", at, called,
+                  more);
   else if (!terms.reason.empty())
-    spdlog::warn("lockstep: {} left{}: {}; the world continues without it{}", called, at,
-                 sim::printable(sim::shortened(terms.reason, 300)), more);
+    sim::log_warn("lockstep: {} left{}: {}; the world continues without it{}", called, at,
+                  sim::printable(sim::shortened(terms.reason, 300)), more);
   else
-    spdlog::info("lockstep: {} left{}{}", called, at, more);
+    sim::log_info("lockstep: {} left{}{}", called, at, more);
 }
 
 void LockstepService::follow(int link, const shoal::sim_control_request_t& request) {
@@ -232,7 +231,7 @@ void LockstepService::discard(const std::string& client, const std::string& why)
 void LockstepService::drop(const std::string& client, const std::string& why) {
   const sim::LockstepMember* member = lockstep_.find(client);
   if (member == nullptr) return;
-  spdlog::warn("lockstep: {}; the world continues without it", why);
+  sim::log_warn("lockstep: {}; the world continues without it", why);
   if (dropped_.size() < 1000)
     dropped_[client] = {member->terms.session, join_ids_[client], member->link,
                         why + "; the world continued without it: join again"};

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <spdlog/spdlog.h>
-
 #include "bridges/lockstep/lockstep_link.hpp"
 #include "bridges/lockstep_client/resend.hpp"
 #include "shoal/sim_ack_t.hpp"
 #include "shoal/sim_resend_t.hpp"
 #include "shoal/sim_tick_t.hpp"
+#include "sim/base/log.hpp"
 #include "sim/config/message_text.hpp"
 
 // Messages of the lockstep: ticks, acknowledgements, requests for repetition and repeated messages.
@@ -220,7 +219,7 @@ void LockstepService::compare_answers(const shoal::sim_ack_t& ack, const std::st
   const std::string text = "client '" + ack.client + "' gave two different answers to the tick of step " +
                            std::to_string(ack.step) + ": " + *difference;
   if (++summary.contradictions == 1)
-    spdlog::warn(
+    sim::log_warn(
         "lockstep: {}; another program answers under its name (the first answer is used; further ones are only "
         "counted)",
         sim::shortened(sim::printable(text), 300));

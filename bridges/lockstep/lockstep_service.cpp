@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bridges/lockstep/lockstep_service.hpp"
 
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 #include <cstdio>
 #include <utility>
 
 #include "bridges/lockstep/lockstep_link.hpp"
 #include "bridges/lockstep_client/resend.hpp"
+#include "sim/base/log.hpp"
 #include "sim/config/message_text.hpp"
 
 namespace bridges {
@@ -99,7 +98,7 @@ std::uint64_t LockstepService::dropped_messages() const {
 void LockstepService::warn_client(const std::string& client, const std::string& text) {
   ++bad_messages_;
   if (warned_.size() < 100 && warned_.insert(client).second)
-    spdlog::warn("{} (ignored; more of this client are only counted)", sim::shortened(sim::printable(text), 300));
+    sim::log_warn("{} (ignored; more of this client are only counted)", sim::shortened(sim::printable(text), 300));
 }
 
 void LockstepService::suspend(bool suspended) {
@@ -170,7 +169,7 @@ void LockstepService::resume() {
   if (control_.pause_requests != pause_requests_) return;  // another client paused it
   control_.paused = false;
   ++control_.changes;
-  spdlog::info("lockstep: the world continues");
+  sim::log_info("lockstep: the world continues");
 }
 
 milliseconds LockstepService::nap(const std::vector<std::string>& late) const {
@@ -208,7 +207,7 @@ void LockstepService::report_repeated() {
     const auto repeated = link->messages.take_repeated();
     if (!repeated || warned_repeated_) continue;
     warned_repeated_ = true;
-    spdlog::warn(
+    sim::log_warn(
         "lockstep: a message on '{}' was dropped: it equals one of client '{}' and may be the same message, delayed or "
         "duplicated by the network (further ones are only counted)",
         sim::printable(repeated->channel), sim::printable(repeated->client));
@@ -267,11 +266,11 @@ void LockstepService::check_time(const std::string& client, Pending& requested, 
   // Execute the agreed action.
   switch (member->terms.on_timeout) {
     case sim::OnTimeout::wait:
-      if (!requested.reported) spdlog::warn("lockstep: {}; the world waits", why);
+      if (!requested.reported) sim::log_warn("lockstep: {}; the world waits", why);
       break;
     case sim::OnTimeout::pause:
       if (!requested.reported) {
-        spdlog::warn("lockstep: {}; the world pauses", why);
+        sim::log_warn("lockstep: {}; the world pauses", why);
         if (!control_.paused) {
           paused_here_ = control_.paused = true;
           pause_requests_ = control_.pause_requests;

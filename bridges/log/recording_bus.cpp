@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bridges/log/recording_bus.hpp"
 
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
@@ -11,6 +9,7 @@
 
 #include "shoal/message_codec.hpp"
 #include "shoal/sim_event_t.hpp"
+#include "sim/base/log.hpp"
 
 namespace bridges {
 namespace {
@@ -120,7 +119,7 @@ bool RecordingBus::leaves_out(std::string_view channel, std::size_t bytes) {
   if (thins_ && !needed && !is_first) return true;
   if (position() + bytes + head_bytes > budget_->bytes) {
     if (!needed) return true;
-    spdlog::warn(
+    sim::log_warn(
         "{}: the record has used its budget of {} MB at {} s and ends; what is needed for a replay does not fit", path_,
         static_cast<double>(budget_->bytes) / 1e6, second);
     close();
@@ -188,7 +187,7 @@ void RecordingBus::close() {
   if (!log_) return;
   errno = 0;
   if (!error_ && !log_->finish()) fail(errno);
-  for (const std::string& problem : log_->problems()) spdlog::warn("{}: {}", path_, problem);
+  for (const std::string& problem : log_->problems()) sim::log_warn("{}: {}", path_, problem);
   log_.reset();
 }
 

@@ -4,7 +4,6 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <pty.h>
-#include <spdlog/spdlog.h>
 #include <sys/stat.h>
 #include <termios.h>
 #include <unistd.h>
@@ -16,6 +15,8 @@
 #include <filesystem>
 #include <stdexcept>
 #include <utility>
+
+#include "sim/base/log.hpp"
 
 namespace bridges {
 
@@ -171,7 +172,7 @@ void remove_stale_link(const Place& place) {
   if (!target.starts_with(own_spelling) || is_held(place))
     throw std::runtime_error("serial port '" + place.path + "': is in use: " + std::strerror(EEXIST) +
                              "; if no run uses it, remove the link");
-  spdlog::warn("serial port '{}': replaced a link left behind by a killed run", place.path);
+  sim::log_warn("serial port '{}': replaced a link left behind by a killed run", place.path);
   unlinkat(*place.folder, place.name.c_str(), 0);
 }
 
@@ -263,7 +264,7 @@ class Fifo {
       errno = EEXIST;
       fail("is in use", path_);
     }
-    spdlog::warn("serial port '{}': replaced a FIFO left behind by a killed run", path_);
+    sim::log_warn("serial port '{}': replaced a FIFO left behind by a killed run", path_);
     unlinkat(*folder_, name_.c_str(), 0);
   }
 

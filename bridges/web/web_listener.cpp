@@ -439,7 +439,7 @@ void WebListener::Impl::run() {
       hub.context.run();
       return;
     } catch (const std::exception& error) {
-      spdlog::error("page server: {}", error.what());
+      spdlog::error("page server: " + std::string(error.what()));
     }
   }
 }

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "devices/comms/micromodem.hpp"
 
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 #include <map>
 #include <utility>
@@ -11,6 +9,7 @@
 #include "devices/common/own_clock.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/nmea_sentence_t.hpp"
+#include "sim/base/log.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/world/world.hpp"
 
@@ -110,8 +109,8 @@ void Micromodem::check_beacons(const sim::DeviceContext& context) const {
 void Micromodem::warn_of_address() const {
   const auto& names = addresses_.names[{params_.network, address_}];
   if (names.size() == 2 && names[0] != names[1])
-    spdlog::warn("micromodems '{}' and '{}' have the same address {} in network '{}'", names[0], names[1], address_,
-                 params_.network);
+    sim::log_warn("micromodems '{}' and '{}' have the same address {} in network '{}'", names[0], names[1], address_,
+                  params_.network);
 }
 
 void Micromodem::list(int address) {

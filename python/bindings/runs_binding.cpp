@@ -14,6 +14,7 @@
 #include "python/bindings/gil.hpp"
 #include "python/bindings/in_use.hpp"
 #include "python/world/error.hpp"
+#include "sim/base/log.hpp"
 #include "sim/config/shipped_files.hpp"
 #include "tools/experiment/process/world_programs.hpp"
 #include "tools/experiment/run/runner.hpp"
@@ -81,7 +82,7 @@ void log_to_stderr() {
   constexpr const char* name = "shoal";
   if (spdlog::get(name)) return;
   spdlog::set_default_logger(spdlog::stderr_color_mt(name));
-  spdlog::set_level(spdlog::level::warn);
+  sim::set_log_level("warn");
   spdlog::set_pattern("%^%l%$: %v");
 }
 
@@ -89,7 +90,7 @@ void set_log_level(const std::string& name) {
   const std::vector<std::string> names{"debug", "info", "warn", "error", "off"};
   if (std::find(names.begin(), names.end(), name) == names.end())
     throw Error("a log level is debug, info, warn, error or off, got '" + name + "'");
-  spdlog::set_level(spdlog::level::from_str(name));
+  sim::set_log_level(name);
 }
 
 }  // namespace
@@ -99,7 +100,7 @@ void add_runs(py::module_& module) {
   log_to_stderr();
   module.def("set_log_level", &set_log_level, "level"_a);
   module.def(
-      "warn", [](const std::string& text) { spdlog::warn("{}", text); }, "text"_a, "Logs a warning.");
+      "warn", [](const std::string& text) { sim::log_warn("{}", text); }, "text"_a, "Logs a warning.");
   module.def(
       "run",
       [](std::string world, std::optional<std::string> text, std::optional<std::int64_t> seed,

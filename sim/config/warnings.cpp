@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/config/warnings.hpp"
 
-#include <spdlog/spdlog.h>
-
+#include "sim/base/log.hpp"
 #include "sim/config/message_text.hpp"
 
 namespace sim {
@@ -18,7 +17,7 @@ void Warnings::warn(const SourcePlace& place, const std::string& who, const std:
   // Report an error in a vehicle file once, independent of the number of vehicles that use it.
   if (!seen_.insert(place.line > 0 ? printable(place.text() + ": " + text) : line).second) return;
   if (lines_.size() == max_lines) line = "more warnings are not shown";
-  spdlog::warn("{}", line);
+  log_warn("{}", line);
   lines_.push_back(std::move(line));
 }
 

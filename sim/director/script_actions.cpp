@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <spdlog/spdlog.h>
-
+#include "sim/base/log.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/director/action_run.hpp"
 #include "sim/director/script.hpp"
@@ -66,9 +65,9 @@ void Script::log(const std::string& who, const std::string& text) {
   constexpr int max_lines = 1000;
   if (++log_lines_ > max_lines + 1) return;
   if (log_lines_ > max_lines)
-    spdlog::warn("events have logged {} lines; further lines are left out", max_lines);
+    log_warn("events have logged {} lines; further lines are left out", max_lines);
   else
-    spdlog::info("{}{}{} (at {:.3f} s)", who, who.empty() ? "" : ": ", printable(text), to_seconds(stage_.now()));
+    log_info("{}{}{} (at {:.3f} s)", who, who.empty() ? "" : ": ", printable(text), to_seconds(stage_.now()));
   if (WorldObserver* const observer = stage_.observer(); observer != nullptr && log_lines_ <= max_lines)
     observer->happened({Occurrence::Kind::event, who, printable(text)});
 }

@@ -2,7 +2,6 @@
 #include "sim/hydrodynamics/hydrodynamics.hpp"
 
 #include <spdlog/fmt/fmt.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <cmath>
@@ -10,8 +9,10 @@
 #include <mutex>
 
 #include "sim/base/first_failure.hpp"
+#include "sim/base/log.hpp"
 #include "sim/config/diagnostics.hpp"
 #include "sim/config/message_text.hpp"
+#include "sim/hydrodynamics/coefficient_model.hpp"
 #include "sim/model/hydrodynamics_checks.hpp"
 #include "sim/physics/physics_world.hpp"
 
@@ -83,8 +84,8 @@ void Hydrodynamics::check_step(const CoefficientModel& model, const Hydrodynamic
   if (limit.step_s < step_s_)
     throw_config_error(config.place, who,
                        std::string("the ") + limit.why + " are too stiff for 'step_s' " + number_text(step_s_) +
-                           ": they need a step below " + number_text(limit.step_s) + " s");
-  for (const std::string& doubt : doubts_about(config, who)) spdlog::warn("{}", doubt);
+                           fmt::format(": they need a step below {:.6g} s", limit.step_s));
+  for (const std::string& doubt : doubts_about(config, who)) log_warn("{}", doubt);
 }
 
 void Hydrodynamics::remove_group(int group) {

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/medium/medium.hpp"
 
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 #include <limits>
 
+#include "sim/base/log.hpp"
 #include "sim/medium/stability.hpp"
 
 namespace sim {
@@ -25,7 +24,7 @@ Medium::Medium(const MediumConfig& config, double gravity_mps2, std::uint64_t se
   if (config.water) {
     column_.emplace(*config.water, gravity_mps2);
     if (const auto depth_m = unstable_at_m(*config.water, *column_))
-      spdlog::warn("medium: water: 'profile' is lighter at {:g} m than above: such water would overturn", *depth_m);
+      log_warn("medium: water: 'profile' is lighter at {:g} m than above: such water would overturn", *depth_m);
     current_.emplace(config.current, config.tides, seed);
     if (config.waves) waves_.emplace(*config.waves, gravity_mps2, seed);
   }

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/ode/ode_library.hpp"
 
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 #include <cstdarg>
 #include <cstddef>
@@ -12,6 +10,7 @@
 #include <new>
 #include <string>
 
+#include "sim/base/log.hpp"
 #include "sim/base/step_memory.hpp"
 #include "sim/ode/ode_version.hpp"
 #include "sim/ode/physics_fault.hpp"
@@ -29,7 +28,7 @@ std::string formatted(const char* text, va_list arguments) {
 
 // "LCP internal error, s <= 0" occurs hundreds of times in stacks of boxes, so that only the first is logged.
 void on_message(int, const char* text, va_list arguments) {
-  if (message_count++ == 0) spdlog::debug("ODE: {} (further messages are only counted)", formatted(text, arguments));
+  if (message_count++ == 0) log_debug("ODE: {} (further messages are only counted)", formatted(text, arguments));
 }
 
 [[noreturn]] void on_error(int, const char* text, va_list arguments) {

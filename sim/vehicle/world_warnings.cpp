@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/vehicle/world_warnings.hpp"
 
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 
+#include "sim/base/log.hpp"
 #include "sim/config/message_text.hpp"
 
 namespace sim {
@@ -16,11 +15,11 @@ void WorldWarnings::bad_message(const std::string& who, const std::string& text)
   const std::string line = who + ": " + shortened(printable(text), 300);
   if (lines_.size() >= max_lines || std::find(lines_.begin(), lines_.end(), line) != lines_.end()) return;
   lines_.push_back(line);
-  spdlog::warn("{} (ignored, at {:.3f} s)", line, to_seconds(clock_.now()));
+  log_warn("{} (ignored, at {:.3f} s)", line, to_seconds(clock_.now()));
 }
 
 void WorldWarnings::warn(const std::string& who, const std::string& text) const {
-  spdlog::warn("{}: {} (at {:.3f} s)", who, text, to_seconds(clock_.now()));
+  log_warn("{}: {} (at {:.3f} s)", who, text, to_seconds(clock_.now()));
 }
 
 void WorldWarnings::device_fault(const std::string& device, const std::string& text) const {

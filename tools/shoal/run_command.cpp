@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <spdlog/spdlog.h>
-
 #include <charconv>
 #include <filesystem>
 #include <iostream>
@@ -9,6 +7,7 @@
 
 #include "bridges/log/record_file.hpp"
 #include "messages/yaml/message_writer.hpp"
+#include "sim/base/log.hpp"
 #include "tools/command_line/name_list.hpp"
 #include "tools/experiment/process/browser.hpp"
 #include "tools/experiment/process/world_programs.hpp"
@@ -78,7 +77,7 @@ int run_loaded(const sim::LoadedWorld& loaded, RunArguments& arguments) {
   arguments.run.speed = parse_speed(arguments.speed);
   if (arguments.with_page && arguments.speed.empty() && loaded.config.run.speed == 0) {
     arguments.run.speed = 1;
-    spdlog::info("--view: the run goes at real time; --speed max lets it go as fast as possible");
+    sim::log_info("--view: the run goes at real time; --speed max lets it go as fast as possible");
   }
   const Summary summary = run_world(loaded, arguments.run);
   if (!summary.error.empty()) std::cerr << "shoal: " << summary.error << '\n';

@@ -2,7 +2,6 @@
 #include "tools/experiment/film/film.hpp"
 
 #include <spdlog/fmt/fmt.h>
-#include <spdlog/spdlog.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -11,6 +10,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "sim/base/log.hpp"
 #include "tools/experiment/film/background_writer.hpp"
 #include "tools/experiment/film/camera_rig.hpp"
 #include "tools/experiment/film/film_source.hpp"
@@ -133,8 +133,8 @@ class Film {
   /// Runs to the first frame, and makes the cameras.
   void start() {
     if (const std::size_t programs = world_.config().processes.size(); programs > 0 && source_->log().empty())
-      spdlog::warn("a world is shown without its {} programs; record a run with them: shoal run --launch --record",
-                   programs);
+      sim::log_warn("a world is shown without its {} programs; record a run with them: shoal run --launch --record",
+                    programs);
     const double start_s = sim::to_seconds(world_.now());
     if (options_.from_s < start_s)
       throw std::runtime_error(fmt::format("{}: begins at {:.6g} s, after --from", options_.source, start_s));

@@ -2,7 +2,6 @@
 #include "tools/experiment/metrics/estimate_metric.hpp"
 
 #include <spdlog/fmt/fmt.h>
-#include <spdlog/spdlog.h>
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -12,6 +11,7 @@
 #include "shoal/estimate_t.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/pose_t.hpp"
+#include "sim/base/log.hpp"
 
 namespace tools {
 
@@ -54,7 +54,7 @@ EstimateMetric::EstimateMetric(const MetricContext& context, const Params& param
 EstimateMetric::~EstimateMetric() {
   report_sample_count();
   if (warnings_ > max_warnings)
-    spdlog::warn("metric '{}': {} messages were ignored in all", config().name, bad_messages_);
+    sim::log_warn("metric '{}': {} messages were ignored in all", config().name, bad_messages_);
 }
 
 void EstimateMetric::after_step() {
@@ -120,7 +120,7 @@ void EstimateMetric::report_sample_count() {
 }
 
 void EstimateMetric::warn(const std::string& text) {
-  if (warnings_ < max_warnings) spdlog::warn("metric '{}': {}", config().name, text);
+  if (warnings_ < max_warnings) sim::log_warn("metric '{}': {}", config().name, text);
   ++warnings_;
 }
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <spdlog/fmt/fmt.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
 #include "shoal/message_codec.hpp"
+#include "sim/base/log.hpp"
 #include "tools/experiment/map/map_score.hpp"
 #include "tools/experiment/map/published_map.hpp"
 #include "tools/experiment/map/true_map.hpp"
@@ -67,8 +67,8 @@ class MapMetric final : public Metric {
         take(decode_map(message->payload), now_s);
       } catch (const std::runtime_error& error) {
         if (bad_messages_++ == 0)
-          spdlog::warn("metric '{}': {}: {} (ignored, as are all more bad ones)", config().name, message->channel,
-                       error.what());
+          sim::log_warn("metric '{}': {}: {} (ignored, as are all more bad ones)", config().name, message->channel,
+                        error.what());
       }
     }
   }

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <spdlog/fmt/fmt.h>
-#include <spdlog/spdlog.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -11,6 +10,7 @@
 #include "shoal/estimate_t.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/pose_t.hpp"
+#include "sim/base/log.hpp"
 #include "tools/experiment/metrics/scored_period.hpp"
 #include "tools/experiment/score/metric_registry.hpp"
 
@@ -101,8 +101,8 @@ class TrajectoryMetric final : public Metric {
         take(message->payload);
       } catch (const std::runtime_error& error) {
         if (bad_messages_++ == 0)
-          spdlog::warn("metric '{}': {}: {} (ignored, as are all more bad ones)", config().name, message->channel,
-                       error.what());
+          sim::log_warn("metric '{}': {}: {} (ignored, as are all more bad ones)", config().name, message->channel,
+                        error.what());
       }
     }
   }

@@ -4,7 +4,6 @@
 #include <fcntl.h>
 #include <signal.h>
 #include <spawn.h>
-#include <spdlog/spdlog.h>
 #include <sys/wait.h>
 
 #include <algorithm>
@@ -14,6 +13,8 @@
 #include <cstdlib>
 #include <cstring>
 #include <mutex>
+
+#include "sim/base/log.hpp"
 
 extern char** environ;
 
@@ -60,7 +61,7 @@ void watch(const std::stop_token& stop, pid_t pid, const std::string& program) {
     if (ended < 0 && errno != EINTR) return;
     if (ended == pid) {
       if (WIFEXITED(status) && WEXITSTATUS(status) != 0)
-        spdlog::warn("--open: '{}' ended with exit code {}; open the address by hand", program, WEXITSTATUS(status));
+        sim::log_warn("--open: '{}' ended with exit code {}; open the address by hand", program, WEXITSTATUS(status));
       return;
     }
     std::unique_lock lock(mutex);
@@ -96,7 +97,7 @@ void Browser::open(const std::string& url) {
   const std::vector<std::string> command = browser_command(browser == nullptr ? "" : browser, url);
   pid_t pid = 0;
   if (const int error = start(command, pid); error != 0)
-    spdlog::warn("--open: cannot start '{}': {}; open the address by hand", command[0], std::strerror(error));
+    sim::log_warn("--open: cannot start '{}': {}; open the address by hand", command[0], std::strerror(error));
   else
     watch_ = std::jthread([pid, program = command[0]](const std::stop_token& stop) { watch(stop, pid, program); });
 }

@@ -2,7 +2,6 @@
 #include "tools/experiment/replay/player_requests.hpp"
 
 #include <spdlog/fmt/fmt.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <array>
@@ -12,6 +11,7 @@
 #include "bridges/signing/signed_message.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/sim_control_request_t.hpp"
+#include "sim/base/log.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/run/lockstep.hpp"
 #include "tools/experiment/replay/recorded_steps.hpp"
@@ -56,8 +56,8 @@ void PlayerRequests::check_joins() {
       const sim::LockstepTerms terms = sim::read_lockstep_terms(request.text, {});
       for (const std::string& channel : terms.receives)
         if (!has(channel) && warned_.size() < max_warnings && warned_.emplace(request.client, channel).second)
-          spdlog::warn("client '{}' asks for '{}', of which the record has no message",
-                       sim::shortened(sim::printable(request.client)), sim::shortened(sim::printable(channel)));
+          sim::log_warn("client '{}' asks for '{}', of which the record has no message",
+                        sim::shortened(sim::printable(request.client)), sim::shortened(sim::printable(channel)));
     } catch (const std::exception&) {
       // The reply to the request contains the error.
     }

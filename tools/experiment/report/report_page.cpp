@@ -2,7 +2,6 @@
 #include "tools/experiment/report/report_page.hpp"
 
 #include <spdlog/fmt/fmt.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <cmath>

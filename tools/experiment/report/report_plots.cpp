@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/experiment/report/report_plots.hpp"
 
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 #include <filesystem>
 #include <stdexcept>
 
+#include "sim/base/log.hpp"
 #include "tools/experiment/files/html.hpp"
 #include "tools/experiment/files/png_check.hpp"
 #include "tools/experiment/results/run_plots.hpp"
@@ -61,7 +60,7 @@ std::string plots_html(const std::string& directory, const std::vector<std::stri
       continue;
     }
     if (!is_whole_png(bytes)) {
-      spdlog::warn("{}/{}: is not a complete PNG file; the page omits it", directory, file);
+      sim::log_warn("{}/{}: is not a complete PNG file; the page omits it", directory, file);
       html += note(file + " is not a complete PNG file.");
       continue;
     }

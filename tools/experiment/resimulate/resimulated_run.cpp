@@ -2,7 +2,6 @@
 #include "tools/experiment/resimulate/resimulated_run.hpp"
 
 #include <spdlog/fmt/fmt.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,6 +10,7 @@
 #include <stdexcept>
 #include <thread>
 
+#include "sim/base/log.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/state/state_archive.hpp"
 #include "tools/experiment/results/run_error.hpp"
@@ -54,7 +54,7 @@ ResimulatedRun::ResimulatedRun(const Options& options, const std::string& versio
         replayed_, [this](const std::string& command, double value) { return execute(command, value, ""); });
   if (log_.snapshot)
     if (const std::string problem = restore_scores(scoring_, log_.snapshot->scores); !problem.empty())
-      spdlog::warn("{}: {}", log_.path, problem);
+      sim::log_warn("{}: {}", log_.path, problem);
   control_.speed = 1;
   page_.start(world(), end_s(), {"recorded", programs(), programs_ != nullptr});
   replayed_.start();
@@ -167,7 +167,7 @@ void ResimulatedRun::fail(const std::string& why) {
   control_.set_paused(true);
   catch_up_.reset();
   if (programs_) programs_->stop();
-  spdlog::error("{}", why);
+  sim::log_error("{}", why);
   page_.problem(why);
 }
 

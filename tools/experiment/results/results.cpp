@@ -2,7 +2,6 @@
 #include "tools/experiment/results/results.hpp"
 
 #include <spdlog/fmt/fmt.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -14,6 +13,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "sim/base/log.hpp"
 #include "tools/experiment/files/gnuplot.hpp"
 #include "tools/experiment/results/audit_text.hpp"
 #include "tools/experiment/results/results_world.hpp"
@@ -281,7 +281,7 @@ void try_to_write_summary(const std::string& directory, const Summary& summary) 
   try {
     write_summary(directory, summary);
   } catch (const std::exception& error) {
-    spdlog::debug("{}", error.what());
+    sim::log_debug("{}", error.what());
   }
 }
 
@@ -430,7 +430,7 @@ void Results::plot(const Summary& summary, const Scoring& scoring, const std::fu
   write("plot.gp", run_plots_script(world_, scoring));
   const bool plotted = run_gnuplot(directory_, "plot.gp", std::chrono::seconds(30), give_up);
   if (!plotted && !give_up() && summary.ended != "signal")
-    spdlog::warn("no plots: gnuplot failed, see {}/plot.log", directory_);
+    sim::log_warn("no plots: gnuplot failed, see {}/plot.log", directory_);
 }
 
 }  // namespace tools

@@ -2,13 +2,13 @@
 #include "tools/experiment/run/run.hpp"
 
 #include <spdlog/fmt/fmt.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <chrono>
 #include <thread>
 
 #include "bridges/base/bus_error.hpp"
+#include "sim/base/log.hpp"
 #include "sim/world/world_state.hpp"
 #include "tools/experiment/results/results_world.hpp"
 #include "tools/experiment/results/run_error.hpp"
@@ -48,7 +48,7 @@ Run::Run(const sim::LoadedWorld& loaded, const RunOptions& options)
       branch_log_(buses_, journal_, options.record, options.overwrite),
       time_(world_, control_, scoring_, service_, inputs_, time_options(), *this),
       duration_s_(options.duration_s.value_or(loaded.config.run.duration_s)),
-      progress_(duration_s_, options.quiet || !spdlog::should_log(spdlog::level::info)),
+      progress_(duration_s_, options.quiet || !sim::log_shows(sim::LogLevel::info)),
       key_file_(make_key()),
       programs_(loaded.config, options, buses_, key_file_ ? key_file_->key().text() : "") {
   world_.use_threads(options.threads);
@@ -97,11 +97,11 @@ bridges::ServiceLinks Run::service_links() {
 std::unique_ptr<RunKeyFile> Run::make_key() {
   const bool from_elsewhere = buses_.over_lcm() && buses_.leave_machine();
   if (from_elsewhere && options_.open_control)
-    spdlog::warn("--open-control: any program that reaches the network of this run can control it");
+    sim::log_warn("--open-control: any program that reaches the network of this run can control it");
   if (!buses_.over_lcm() || options_.open_control || (!from_elsewhere && !options_.control_key)) return nullptr;
   auto file = std::make_unique<RunKeyFile>(options_.results);
   lockstep_.guard().require(file->key());
-  spdlog::info("control of this run needs its key: shoal control --run {}, or SHOAL_RUN_KEY", file->folder());
+  sim::log_info("control of this run needs its key: shoal control --run {}, or SHOAL_RUN_KEY", file->folder());
   return file;
 }
 
@@ -234,7 +234,7 @@ void Run::await(const std::vector<std::string>& clients) {
             fmt::format("lockstep: client '{}' has not joined within {:g} s; clients that have: {}", client,
                         loaded_.config.lockstep.join_timeout_s, lockstep_.empty() ? "none" : lockstep_.names()));
       if (!reported && Clock::now() - begin > std::chrono::seconds(1)) {
-        spdlog::info("waiting for '{}' to join the lockstep", client);
+        sim::log_info("waiting for '{}' to join the lockstep", client);
         reported = true;
       }
       buses_.wait(std::chrono::milliseconds(20));
@@ -294,7 +294,7 @@ void Run::step() {
 void Run::check_step_time() {
   if (const auto warning = watch_.take_warning()) {
     progress_.clear();
-    spdlog::warn("{}", *warning);
+    sim::log_warn("{}", *warning);
   }
   if (const auto why = watch_.beyond_limit()) throw RunError(5, "limit", *why);
 }

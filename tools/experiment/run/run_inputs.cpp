@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/experiment/run/run_inputs.hpp"
 
-#include <spdlog/spdlog.h>
-
 #include "shoal/message_codec.hpp"
+#include "sim/base/log.hpp"
 
 namespace tools {
 
@@ -61,7 +60,7 @@ void RunInputs::deliver(const bridges::RunJournal::Input& input) {
   try {
     service_.execute_again(shoal::decode<shoal::sim_control_request_t>(input.payload, shoal::Finite::any));
   } catch (const std::exception& error) {  // it was rejected the first time as well
-    spdlog::debug("again: {}", error.what());
+    sim::log_debug("again: {}", error.what());
   }
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/experiment/run/run_ports.hpp"
 
-#include <spdlog/spdlog.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -11,6 +10,7 @@
 #include <stdexcept>
 
 #include "bridges/serial/serial_port.hpp"
+#include "sim/base/log.hpp"
 #include "sim/config/message_text.hpp"
 #include "tools/experiment/run/run_name.hpp"
 
@@ -65,9 +65,9 @@ sim::PortOpener serial_ports_of(const sim::WorldConfig& world, const RunOptions&
              sim::PortKind kind, const std::string& path) {
     const PortPlace place = place_of(with_run_name(path, name), files, results, world_name);
     auto port = bridges::open_serial_port(kind, place.folder, place.path);
-    spdlog::info("serial port '{}' is {}{}", sim::printable(path),
-                 sim::printable((fs::path(place.folder) / place.path).string()),
-                 kind == sim::PortKind::fifo ? ".in and .out" : "");
+    sim::log_info("serial port '{}' is {}{}", sim::printable(path),
+                  sim::printable((fs::path(place.folder) / place.path).string()),
+                  kind == sim::PortKind::fifo ? ".in and .out" : "");
     return port;
   };
 }

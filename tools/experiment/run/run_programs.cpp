@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/experiment/run/run_programs.hpp"
 
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 
+#include "sim/base/log.hpp"
 #include "tools/experiment/results/run_error.hpp"
 #include "tools/experiment/run/run_name.hpp"
 
@@ -18,9 +17,9 @@ std::vector<std::string> RunPrograms::start() {
   std::vector<std::string> awaited = options_.await;
   if (!options_.launch) {
     if (!config_.processes.empty() && !options_.quiet)
-      spdlog::info("the world names {} {}; --launch starts {}", config_.processes.size(),
-                   config_.processes.size() == 1 ? "process" : "processes",
-                   config_.processes.size() == 1 ? "it" : "them");
+      sim::log_info("the world names {} {}; --launch starts {}", config_.processes.size(),
+                    config_.processes.size() == 1 ? "process" : "processes",
+                    config_.processes.size() == 1 ? "it" : "them");
     return awaited;
   }
   for (sim::ProcessConfig process : config_.processes) {
@@ -57,9 +56,9 @@ void RunPrograms::check(sim::Time now, const Clients& clients) {
     if (exit.ends_run) throw RunError(1, "process", text + "; the run ends with it, as the world requires");
     const bool goes_on = clients.removed(exit.client);
     if (exit.failed && !exit.ignored)
-      spdlog::error("{}; {}", text, goes_on ? "the run continues without it, and fails" : "its `on_timeout` applies");
+      sim::log_error("{}; {}", text, goes_on ? "the run continues without it, and fails" : "its `on_timeout` applies");
     else
-      spdlog::info("{}", text);
+      sim::log_info("{}", text);
     removed_.insert(exit.client);
   }
 }

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <spdlog/spdlog.h>
-
 #include "devices/common/serial_port.hpp"
 #include "devices/comms/message_modem.hpp"
 #include "sim/acoustics/channel.hpp"
+#include "sim/base/log.hpp"
 #include "sim/base/thread_pool.hpp"
 #include "sim/world/world_state.hpp"
 #include "tools/experiment/run/run.hpp"
@@ -121,7 +120,7 @@ void Run::write_results(Summary& summary) {
   try {
     results_->write_summary_again(summary);
   } catch (const std::exception& error) {
-    spdlog::debug("{}", error.what());
+    sim::log_debug("{}", error.what());
   }
 }
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <spdlog/fmt/fmt.h>
-#include <spdlog/spdlog.h>
 
 #include <cmath>
 
 #include "shoal/message_codec.hpp"
+#include "sim/base/log.hpp"
 #include "tools/experiment/results/run_error.hpp"
 #include "tools/experiment/run/run.hpp"
 #include "tools/experiment/snapshot/snapshot_pieces.hpp"
@@ -79,8 +79,8 @@ void Run::plan_snapshots() {
 
 void Run::report_missed_snapshots() const {
   for (const std::int64_t step : snapshot_steps_)
-    spdlog::warn("--snapshot-at: no snapshot of {:.6g} s was written: the run ended before it",
-                 sim::to_seconds(world_.step_time() * step));
+    sim::log_warn("--snapshot-at: no snapshot of {:.6g} s was written: the run ended before it",
+                  sim::to_seconds(world_.step_time() * step));
 }
 
 void Run::take_snapshots() {
@@ -94,7 +94,7 @@ void Run::take_snapshots() {
   if (!due) return;
   try {
     progress_.clear();
-    spdlog::info("{}", time_.write_planned_snapshot());
+    sim::log_info("{}", time_.write_planned_snapshot());
   } catch (const std::exception& error) {  // requested on the command line: a failure must be reported
     throw RunError(4, "bus", error.what());
   }

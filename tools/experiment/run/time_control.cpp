@@ -2,13 +2,13 @@
 #include "tools/experiment/run/time_control.hpp"
 
 #include <spdlog/fmt/fmt.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
 
+#include "sim/base/log.hpp"
 #include "sim/base/state_hash.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/state/state_archive.hpp"
@@ -127,7 +127,7 @@ void TimeControl::after_step() {
     const Saved saved = save(History::length);
     ring_.add(step, joined(saved.state, saved.scores, saved.owners), inputs_.bytes());
   } catch (const sim::SnapshotError& error) {
-    spdlog::warn("this run cannot be rewound: {}", error.what());
+    sim::log_warn("this run cannot be rewound: {}", error.what());
     options_.rewind_s = 0;
     return discard_all();
   }

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <spdlog/fmt/fmt.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <map>
 
+#include "sim/base/log.hpp"
 #include "tools/experiment/files/file_replacement.hpp"
 #include "tools/experiment/files/gnuplot.hpp"
 #include "tools/experiment/files/no_links.hpp"
@@ -49,7 +49,7 @@ class StudyPainter {
     if (!any) return;
     write_whole_file(directory_ + "/plot.gp", script_);
     if (!run_gnuplot(directory_, "plot.gp", std::chrono::seconds(60), [] { return caught_signal() != 0; }))
-      spdlog::warn("no plots: gnuplot failed, see {}/plot.log", directory_);
+      sim::log_warn("no plots: gnuplot failed, see {}/plot.log", directory_);
   }
 
  private:

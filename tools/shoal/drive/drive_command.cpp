@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <spdlog/fmt/fmt.h>
-#include <spdlog/spdlog.h>
 #include <unistd.h>
 
 #include <chrono>
@@ -14,6 +13,7 @@
 #include "shoal/message_codec.hpp"
 #include "shoal/sim_state_t.hpp"
 #include "shoal/sim_vehicle_t.hpp"
+#include "sim/base/log.hpp"
 #include "sim/config/message_text.hpp"
 #include "tools/experiment/drive/drive_error.hpp"
 #include "tools/experiment/drive/drive_keys.hpp"
@@ -145,7 +145,7 @@ class RemoteVehicle {
         else
           take_state(shoal::decode<shoal::sim_state_t>(message->payload, shoal::Finite::required));
       } catch (const shoal::MessageError& error) {
-        spdlog::debug("{}: {}", message->channel, error.what());
+        sim::log_debug("{}: {}", message->channel, error.what());
       }
     }
   }
@@ -272,7 +272,7 @@ int drive_on(const DriveArguments& arguments, RemoteVehicle& vehicle, Driver& dr
       if (!goes_on) break;
       std::this_thread::sleep_for(tick);
     }
-    if (vehicle.removed()) spdlog::info("vehicle '{}' was removed", arguments.vehicle);
+    if (vehicle.removed()) sim::log_info("vehicle '{}' was removed", arguments.vehicle);
   } catch (const DriveError& error) {
     std::cerr << "shoal drive: " << error.what() << '\n';
     exit_code = exit_bus;

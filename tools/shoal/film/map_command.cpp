@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <spdlog/spdlog.h>
-
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -8,6 +6,7 @@
 #include <memory>
 #include <optional>
 
+#include "sim/base/log.hpp"
 #include "tools/experiment/film/film_source.hpp"
 #include "tools/experiment/map/map_files.hpp"
 #include "tools/experiment/map/published_map.hpp"
@@ -64,7 +63,7 @@ template <class Take>
 void for_times(const MapArguments& arguments, Take take) {
   int number = 0;
   for (double at_s = arguments.at_s; number == 0 || at_s <= arguments.until_s + 1e-9; ++number) {
-    if (!take(at_s, number)) return spdlog::warn("the log ends before {:.6g} s", at_s);
+    if (!take(at_s, number)) return sim::log_warn("the log ends before {:.6g} s", at_s);
     if (!arguments.every_s) return;
     at_s = arguments.at_s + (number + 1) * *arguments.every_s;
   }

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <spdlog/spdlog.h>
-
 #include <charconv>
 #include <chrono>
 #include <iostream>
 #include <memory>
 #include <optional>
 
+#include "sim/base/log.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/image/image_file.hpp"
 #include "sim/world/world.hpp"
@@ -141,11 +140,11 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 void warn(const SnapView& view) {
   if (!view.overview) return;
   if (!view.overview->hidden.empty())
-    spdlog::warn("hidden behind something in this view: {}; see --eye and --look",
-                 sim::list_text(view.overview->hidden, 8));
+    sim::log_warn("hidden behind something in this view: {}; see --eye and --look",
+                  sim::list_text(view.overview->hidden, 8));
   if (!view.overview->tiny.empty())
-    spdlog::warn("only a few pixels wide in this view: {}; see --eye and --look",
-                 sim::list_text(view.overview->tiny, 8));
+    sim::log_warn("only a few pixels wide in this view: {}; see --eye and --look",
+                  sim::list_text(view.overview->tiny, 8));
 }
 
 void take_one(const SnapArguments& arguments, const sim::World& world, const std::string& path, ScenePainter& painter,
@@ -184,7 +183,7 @@ void take_all(const SnapArguments& arguments, FilmSource& source) {
   for (double at_s = arguments.at_s; number == 0 || at_s <= arguments.until_s + 1e-9; ++number) {
     while (source.world().now() < sim::from_seconds(at_s) && source.step())
       if (arguments.overlay.any() && sim::to_seconds(source.world().now()) > at_s - trail_s) overlay.observe();
-    if (source.world().now() < sim::from_seconds(at_s)) return spdlog::warn("the log ends before {:.6g} s", at_s);
+    if (source.world().now() < sim::from_seconds(at_s)) return sim::log_warn("the log ends before {:.6g} s", at_s);
     take_one(arguments, source.world(), arguments.every_s ? numbered(arguments.out, number) : arguments.out, painter,
              overlay);
     if (!arguments.every_s) return;

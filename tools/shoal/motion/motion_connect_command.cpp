@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
@@ -9,6 +7,7 @@
 
 #include "devices/motion/motion_player.hpp"
 #include "messages/yaml/message_writer.hpp"
+#include "sim/base/log.hpp"
 #include "sim/config/message_text.hpp"
 #include "tools/experiment/motion/connect.hpp"
 #include "tools/experiment/motion/motion_file.hpp"
@@ -108,7 +107,7 @@ int connect(ConnectArguments arguments) {
   Connector connector(loaded.config, vehicle, from.motion, arguments.options);
   Connection connection = connector.connect(values_at(to.motion, 0));
   for (const std::size_t world : connection.left_out)
-    spdlog::warn("perturbed world {} is left out: '{}' does not stand in it", world, from.name);
+    sim::log_warn("perturbed world {} is left out: '{}' does not stand in it", world, from.name);
   // Print the worlds, then the result.
   for (std::size_t w = 0; w < connection.straight.size(); ++w)
     std::cout << fmt::format("world {:<3} straight: {}; best: {}\n", w, outcome(connection.straight[w]),

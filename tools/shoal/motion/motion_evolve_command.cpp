@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <memory>
 
 #include "messages/yaml/message_writer.hpp"
+#include "sim/base/log.hpp"
 #include "tools/experiment/files/file_replacement.hpp"
 #include "tools/experiment/motion/evolve.hpp"
 #include "tools/experiment/motion/evolve_page.hpp"
@@ -163,8 +162,8 @@ int evolve(EvolveArguments arguments) {
   check_frames(arguments.output, gait->motion(start), arguments.overwrite);
   arguments.options.method = arguments.method == "genetic" ? SearchMethod::genetic : SearchMethod::cma_es;
   Evolution evolution(loaded.config, vehicle, *gait, arguments.options);
-  spdlog::info("start of the search: {:.1f} mm/s {}", evolution.start().value_mps * mm,
-               in_worlds(evolution.perturbations().size()));
+  sim::log_info("start of the search: {:.1f} mm/s {}", evolution.start().value_mps * mm,
+                in_worlds(evolution.perturbations().size()));
   write_best(arguments, *gait, evolution);
   const double start_mps = evolution.start().value_mps;
   std::vector<EvolveGeneration> generations{{0, start_mps, start_mps}};
@@ -172,9 +171,9 @@ int evolve(EvolveArguments arguments) {
     const Candidate& of_generation = evolution.best_of_generation();
     generations.push_back({evolution.tried(), evolution.best().value_mps, of_generation.value_mps});
     if (evolution.best().number == of_generation.number) write_best(arguments, *gait, evolution);
-    spdlog::info("{} of {} candidates: best {:.1f} mm/s in the worst world, of this generation {:.1f} mm/s",
-                 evolution.tried(), arguments.options.candidates, evolution.best().value_mps * mm,
-                 of_generation.value_mps * mm);
+    sim::log_info("{} of {} candidates: best {:.1f} mm/s in the worst world, of this generation {:.1f} mm/s",
+                  evolution.tried(), arguments.options.candidates, evolution.best().value_mps * mm,
+                  of_generation.value_mps * mm);
   }
   EvolveReport report = print_result(arguments, *gait, evolution);
   report.title = "Search for a gait: " + motion_name_of(arguments.output);

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/shoal/options/shared_options.hpp"
 
-#include <spdlog/spdlog.h>
+#include "sim/base/log.hpp"
 
 namespace tools {
 
 CLI::Option* add_log_level_option(CLI::App& command, const std::string& usual) {
-  const auto set = [](const std::string& level) { spdlog::set_level(spdlog::level::from_str(level)); };
+  const auto set = [](const std::string& level) { sim::set_log_level(level); };
   command.preparse_callback([set, usual](std::size_t) { set(usual); });
   return command
       .add_option_function<std::string>(

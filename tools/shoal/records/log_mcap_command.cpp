@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/shoal/records/log_mcap_command.hpp"
 
-#include <spdlog/spdlog.h>
-
 #include <chrono>
 #include <filesystem>
 #include <iostream>
@@ -10,6 +8,7 @@
 #include <regex>
 
 #include "bridges/log/mcap_conversion.hpp"
+#include "sim/base/log.hpp"
 #include "tools/shoal/options/output_file.hpp"
 #include "tools/shoal/options/shared_options.hpp"
 
@@ -31,7 +30,7 @@ class ConversionProgress {
     const auto now = std::chrono::steady_clock::now();
     if (now - last_ < std::chrono::seconds(5)) return;
     last_ = now;
-    spdlog::info("{} of {} MB converted", done / 1'000'000, total / 1'000'000);
+    sim::log_info("{} of {} MB converted", done / 1'000'000, total / 1'000'000);
   }
 
  private:

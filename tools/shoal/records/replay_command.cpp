@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <spdlog/spdlog.h>
-
 #include <fstream>
 #include <iostream>
 #include <memory>
 
 #include "bridges/lockstep/lockstep_service.hpp"
+#include "sim/base/log.hpp"
 #include "tools/command_line/name_list.hpp"
 #include "tools/experiment/replay/play.hpp"
 #include "tools/experiment/replay/replay.hpp"
@@ -125,8 +124,8 @@ static void add_replay_command(CLI::App& app, int& exit_code) {
         "the bus to those that only listen. What they publish changes nothing; it is compared with the record."}});
   // Action.
   command->callback([arguments, log_level, &exit_code] {
-    if (log_level->count() > 0 && !spdlog::should_log(spdlog::level::info)) arguments->replay.quiet = true;
-    if (log_level->count() == 0 && arguments->play) spdlog::set_level(spdlog::level::warn);
+    if (log_level->count() > 0 && !sim::log_shows(sim::LogLevel::info)) arguments->replay.quiet = true;
+    if (log_level->count() == 0 && arguments->play) sim::set_log_level("warn");
     try {
       exit_code = arguments->play ? run_player(*arguments) : run(*arguments);
     } catch (const sim::ConfigError&) {

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <spdlog/spdlog.h>
-
 #include <fstream>
 #include <iostream>
 #include <memory>
 #include <stdexcept>
 
+#include "sim/base/log.hpp"
 #include "sim/config/diagnostics.hpp"
 #include "tools/experiment/log_score/log_score.hpp"
 #include "tools/experiment/run/runner.hpp"
@@ -72,7 +71,7 @@ static void add_score_command(CLI::App& app, int& exit_code) {
        {"The world of the log is run again, so all metrics are known as in the run.  docs/guides/scoring.md has the "
         "columns of --estimate."}});
   command->callback([arguments, log_level, &exit_code] {
-    if (log_level->count() > 0 && !spdlog::should_log(spdlog::level::info)) arguments->score.quiet = true;
+    if (log_level->count() > 0 && !sim::log_shows(sim::LogLevel::info)) arguments->score.quiet = true;
     try {
       exit_code = score(*arguments);
     } catch (const sim::ConfigError&) {

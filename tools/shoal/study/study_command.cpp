@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <memory>
 #include <stdexcept>
 
+#include "sim/base/log.hpp"
 #include "tools/command_line/checks.hpp"
 #include "tools/command_line/name_list.hpp"
 #include "tools/experiment/campaign/manifest.hpp"
@@ -222,7 +221,7 @@ static void add_study_command(CLI::App& app, int& exit_code) {
   command->callback([command, path, arguments, log_level, &exit_code] {
     if (!command->get_subcommands().empty()) return;
     if (path->count() == 0) throw command_line::UsageError("STUDY is required, or a command: plan, run or collect");
-    if (log_level->count() > 0 && !spdlog::should_log(spdlog::level::info)) arguments->options.quiet = true;
+    if (log_level->count() > 0 && !sim::log_shows(sim::LogLevel::info)) arguments->options.quiet = true;
     take_seeds(arguments->seeds, arguments->changes);
     if (!arguments->verified.empty())
       exit_code =

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <spdlog/spdlog.h>
-
 #include <iostream>
 #include <memory>
 #include <numeric>
 #include <stdexcept>
 
+#include "sim/base/log.hpp"
 #include "tools/command_line/checks.hpp"
 #include "tools/experiment/campaign/engines.hpp"
 #include "tools/experiment/campaign/manifest.hpp"
@@ -162,7 +161,7 @@ void add_study_run_command(CLI::App& study_command, int& exit_code) {
                   {130, "ended by Ctrl-C"}},
                  {"Runs with a result are not repeated; several of these commands may work on one folder at a time."}});
   command->callback([arguments, log_level, &exit_code] {
-    if (log_level->count() > 0 && !spdlog::should_log(spdlog::level::info)) arguments->options.study.quiet = true;
+    if (log_level->count() > 0 && !sim::log_shows(sim::LogLevel::info)) arguments->options.study.quiet = true;
     exit_code = run_planned(*arguments);
   });
 }

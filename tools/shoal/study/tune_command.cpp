@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 #include <iostream>
 #include <memory>
 #include <stdexcept>
 
+#include "sim/base/log.hpp"
 #include "sim/config/message_text.hpp"
 #include "tools/experiment/campaign/tune.hpp"
 #include "tools/experiment/files/file_replacement.hpp"
@@ -141,7 +140,7 @@ static void add_tune_command(CLI::App& app, int& exit_code) {
         "of their world is better, whatever the figure. After Ctrl-C or a kill the "
         "same command continues: finished runs are not repeated."}});
   command->callback([arguments, log_level, &exit_code] {
-    if (log_level->count() > 0 && !spdlog::should_log(spdlog::level::info)) arguments->options.study.quiet = true;
+    if (log_level->count() > 0 && !sim::log_shows(sim::LogLevel::info)) arguments->options.study.quiet = true;
     try {
       if (!arguments->seeds.empty()) arguments->changes.seeds = parse_seeds(arguments->seeds);
     } catch (const std::invalid_argument& error) {

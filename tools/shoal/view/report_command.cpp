@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <spdlog/fmt/fmt.h>
-#include <spdlog/spdlog.h>
 #include <unistd.h>
 
 #include <cctype>
@@ -12,6 +11,7 @@
 #include <memory>
 #include <stdexcept>
 
+#include "sim/base/log.hpp"
 #include "tools/experiment/files/no_links.hpp"
 #include "tools/experiment/recording/recording_page.hpp"
 #include "tools/experiment/report/report_page.hpp"
@@ -84,7 +84,7 @@ std::string page_in_3d(const ReportArguments& arguments) {
     return path;
   } catch (const std::runtime_error& reason) {
     if (demanded) throw;
-    spdlog::info("no page in three dimensions: {}", reason.what());
+    sim::log_info("no page in three dimensions: {}", reason.what());
     return "";
   }
 }

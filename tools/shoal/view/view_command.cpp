@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <spdlog/fmt/fmt.h>
-#include <spdlog/spdlog.h>
 #include <unistd.h>
 
 #include <chrono>
@@ -13,6 +12,7 @@
 #include "bridges/lcm/lcm_listener.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/sim_control_request_t.hpp"
+#include "sim/base/log.hpp"
 #include "sim/config/message_text.hpp"
 #include "tools/experiment/process/browser.hpp"
 #include "tools/experiment/process/signals.hpp"
@@ -67,7 +67,7 @@ LogIndex read_index(const std::string& log) {
     if (terminal) std::cerr << fmt::format("\r{}: {:.0f} % read", log, 100 * share) << std::flush;
   });
   if (terminal) std::cerr << "\r\033[K";
-  for (const std::string& problem : index.problems()) spdlog::warn("{}: {}", log, problem);
+  for (const std::string& problem : index.problems()) sim::log_warn("{}: {}", log, problem);
   std::cout << fmt::format("{}: {}, {:.3f} to {:.3f} s, {} events of the world, read in {:.2f} s\n", log,
                            index.world().empty() ? "a run" : "world " + index.world(),
                            static_cast<double>(index.start_us()) / 1e6, static_cast<double>(index.end_us()) / 1e6,
