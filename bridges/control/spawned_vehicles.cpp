@@ -2,13 +2,12 @@
 #include "bridges/control/spawned_vehicles.hpp"
 
 #include <spdlog/fmt/fmt.h>
-#include <spdlog/spdlog.h>
 
-#include <regex>
 #include <vector>
 
 #include "bridges/log/run_journal.hpp"
 #include "shoal/message_codec.hpp"
+#include "sim/base/log.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/state/state_archive.hpp"
 #include "sim/world/world_editor.hpp"
@@ -58,20 +57,32 @@ sim::SpawnRequest read_request(const sim::WorldConfig& world, const std::string&
   try {
     return sim::read_spawn_request(world, text, &hidden);
   } catch (const sim::ConfigError&) {
-    for (const std::string& line : hidden) spdlog::warn("{}", line);
+    for (const std::string& line : hidden) sim::log_warn("{}", line);
     throw;
   }
 }
 
+/// Returns `FILE:LINE:COLUMN` of a line `FILE:LINE:COLUMN: TEXT`, by the last such place; empty: it has none.
+std::string place_in_file(const std::string& line) {
+  const auto skip_number = [&line](std::size_t colon) {  // backwards from a colon, to the colon before its number
+    std::size_t at = colon;
+    while (at > 0 && line[at - 1] >= '0' && line[at - 1] <= '9') --at;
+    return at > 1 && at < colon && line[at - 1] == ':' ? at - 1 : std::string::npos;
+  };
+  for (std::size_t end = line.rfind(": "); end != std::string::npos && end > 0; end = line.rfind(": ", end - 1)) {
+    const std::size_t column = skip_number(end);
+    if (column != std::string::npos && skip_number(column) != std::string::npos) return line.substr(0, end);
+  }
+  return "";
+}
+
 /// Throws the error of the construction of a vehicle for the requester: with only the place of an error in a file.
 [[noreturn]] void throw_without_files(const sim::ConfigError& error) {
-  static const std::regex place_in_a_file(R"(^(.+:[0-9]+:[0-9]+): .*)");
   std::vector<std::string> lines;
   for (const std::string& line : error.lines()) {
-    std::smatch place;
-    const bool of_a_file = !line.starts_with("spawn:") && std::regex_match(line, place, place_in_a_file);
-    if (of_a_file) spdlog::warn("{}", line);
-    lines.push_back(of_a_file ? place[1].str() + ": is wrong; the file is not quoted" : line);
+    const std::string place = line.starts_with("spawn:") ? "" : place_in_file(line);
+    if (!place.empty()) sim::log_warn("{}", line);
+    lines.push_back(place.empty() ? line : place + ": is wrong; the file is not quoted");
   }
   throw sim::ConfigError(lines);
 }
@@ -167,8 +178,8 @@ std::string SpawnedVehicles::add(const std::string& client, const sim::SpawnRequ
     owner.last_seen = Clock::now();
     owner.timeout = std::max(owner.timeout, std::chrono::duration<double>(request.alive_timeout_s));
   }
-  spdlog::info("client '{}' spawned vehicle '{}' at {:.3f} s", sim::printable(sim::shortened(client)), vehicle.name(),
-               sim::to_seconds(world_.now()));
+  sim::log_info("client '{}' spawned vehicle '{}' at {:.3f} s", sim::printable(sim::shortened(client)), vehicle.name(),
+                sim::to_seconds(world_.now()));
   report_changes();
   return in_words(known_.at(vehicle.name()));
 }
@@ -213,7 +224,7 @@ void SpawnedVehicles::remove_timed_out() {
   for (const auto& [name, client] : clients_)
     if (now - client.last_seen > client.timeout) silent.push_back(name);
   for (const std::string& name : silent) {
-    spdlog::warn("client '{}' timed out: its vehicles are removed", sim::printable(sim::shortened(name)));
+    sim::log_warn("client '{}' timed out: its vehicles are removed", sim::printable(sim::shortened(name)));
     remove_vehicles_of(name);
   }
 }
@@ -226,7 +237,7 @@ void SpawnedVehicles::remove_vehicles_of(const std::string& client) {
     try {
       if (world_.find_vehicle(vehicle) != nullptr) remove(client, vehicle);  // otherwise an event has removed it
     } catch (const std::runtime_error& error) {
-      spdlog::warn("{}", error.what());
+      sim::log_warn("{}", error.what());
     }
     owners_.erase(vehicle);
   }
