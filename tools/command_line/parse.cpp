@@ -3,6 +3,9 @@
 
 #include <unistd.h>
 
+// The whole of CLI11 once: it defines the virtual functions of two classes in headers that <CLI/App.hpp>, which all
+// other sources include, does not need; they are two seconds of compilation in each object.
+#include <CLI/CLI.hpp>
 #include <iostream>
 
 #include "tools/command_line/arguments.hpp"

@@ -3,7 +3,7 @@
 
 #include <spdlog/fmt/fmt.h>
 
-#include <CLI/CLI.hpp>
+#include <CLI/App.hpp>
 
 #include "sim/world_file/load_world.hpp"
 #include "tools/command_line/checks.hpp"
