@@ -137,6 +137,13 @@ class Substitution {
 
 }  // namespace
 
+ConfigNode::ConfigNode() = default;
+ConfigNode::ConfigNode(const ConfigNode&) = default;
+ConfigNode::ConfigNode(ConfigNode&&) noexcept = default;
+ConfigNode& ConfigNode::operator=(const ConfigNode&) = default;
+ConfigNode& ConfigNode::operator=(ConfigNode&&) noexcept = default;
+ConfigNode::~ConfigNode() = default;
+
 const std::string* name_of(const ConfigNode& item) {
   const ConfigNode* name = item.kind == Kind::map ? item.find("name") : nullptr;
   return name != nullptr && name->kind == Kind::scalar ? &name->scalar : nullptr;

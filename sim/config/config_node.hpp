@@ -23,6 +23,14 @@ struct ConfigNode {
   std::vector<Entry> entries;     ///< of a map, in file order, keys unique
   SourcePlace place;
 
+  // Defined once: compilers repeat it in a hundred objects otherwise.
+  ConfigNode();
+  ConfigNode(const ConfigNode&);
+  ConfigNode(ConfigNode&&) noexcept;
+  ConfigNode& operator=(const ConfigNode&);
+  ConfigNode& operator=(ConfigNode&&) noexcept;
+  ~ConfigNode();
+
   const ConfigNode* find(std::string_view key) const;
   ConfigNode* find(std::string_view key);
 };

@@ -3,6 +3,13 @@
 
 namespace sim {
 
+ObjectConfig::ObjectConfig() = default;
+ObjectConfig::ObjectConfig(const ObjectConfig&) = default;
+ObjectConfig::ObjectConfig(ObjectConfig&&) noexcept = default;
+ObjectConfig& ObjectConfig::operator=(const ObjectConfig&) = default;
+ObjectConfig& ObjectConfig::operator=(ObjectConfig&&) noexcept = default;
+ObjectConfig::~ObjectConfig() = default;
+
 void refuse_reserved(ParamReader& in, const std::string& name) {
   if (name == "any" || name == "world" || name == "sim")
     in.error("name", "'" + name + "' cannot be a name: it is a keyword");

@@ -23,6 +23,14 @@ struct ObjectConfig {
   std::vector<PartConfig> parts;
   std::shared_ptr<const ConfigNode> source;  ///< YAML node it was read from; null: created in code
   SourcePlace place;
+
+  ObjectConfig();
+  ObjectConfig(const ObjectConfig&);
+  ObjectConfig(ObjectConfig&&) noexcept;
+  ObjectConfig& operator=(const ObjectConfig&);
+  ObjectConfig& operator=(ObjectConfig&&) noexcept;
+  ~ObjectConfig();
+
   void read(ParamReader& in);
 };
 

@@ -106,6 +106,13 @@ std::string path_beside(const ConfigNode* node, const std::string& file) {
 
 }  // namespace
 
+JointMotion::JointMotion() = default;
+JointMotion::JointMotion(const JointMotion&) = default;
+JointMotion::JointMotion(JointMotion&&) noexcept = default;
+JointMotion& JointMotion::operator=(const JointMotion&) = default;
+JointMotion& JointMotion::operator=(JointMotion&&) noexcept = default;
+JointMotion::~JointMotion() = default;
+
 double JointMotion::unit_of(const std::string& joint) const {
   const bool is_slider = std::find(sliders.begin(), sliders.end(), joint) != sliders.end();
   return angles == AngleUnit::deg && !is_slider ? rad_per_deg : 1.0;

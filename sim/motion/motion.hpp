@@ -71,6 +71,13 @@ struct JointMotion {
   std::vector<MotionChange> changes;
   std::optional<MotionOrigin> recorded;
 
+  JointMotion();
+  JointMotion(const JointMotion&);
+  JointMotion(JointMotion&&) noexcept;
+  JointMotion& operator=(const JointMotion&);
+  JointMotion& operator=(JointMotion&&) noexcept;
+  ~JointMotion();
+
   /// Reads a motion file, and its file of frames.
   void read(ParamReader& in);
   /// As read(), without the version of the file format: for a motion within another file.

@@ -3,6 +3,13 @@
 
 namespace sim {
 
+VehicleConfig::VehicleConfig() = default;
+VehicleConfig::VehicleConfig(const VehicleConfig&) = default;
+VehicleConfig::VehicleConfig(VehicleConfig&&) noexcept = default;
+VehicleConfig& VehicleConfig::operator=(const VehicleConfig&) = default;
+VehicleConfig& VehicleConfig::operator=(VehicleConfig&&) noexcept = default;
+VehicleConfig::~VehicleConfig() = default;
+
 void VehicleConfig::read(ParamReader& in) {
   // Identification and parameters.
   in.require("shoal");

@@ -28,6 +28,13 @@ struct VehicleConfig {
   std::vector<DeviceConfig> devices;
   std::shared_ptr<const ConfigNode> source;  ///< source tree with parameters substituted; null: not read from a file
 
+  VehicleConfig();
+  VehicleConfig(const VehicleConfig&);
+  VehicleConfig(VehicleConfig&&) noexcept;
+  VehicleConfig& operator=(const VehicleConfig&);
+  VehicleConfig& operator=(VehicleConfig&&) noexcept;
+  ~VehicleConfig();
+
   void read(ParamReader& in);
   /// Declares its bodies and parts, for keys that refer to them.
   void declare_bodies(ParamReader& in) const;

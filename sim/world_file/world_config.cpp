@@ -89,6 +89,13 @@ void read_command(ParamReader& in, std::vector<std::string>& command) {
 
 }  // namespace
 
+WorldConfig::WorldConfig() = default;
+WorldConfig::WorldConfig(const WorldConfig&) = default;
+WorldConfig::WorldConfig(WorldConfig&&) noexcept = default;
+WorldConfig& WorldConfig::operator=(const WorldConfig&) = default;
+WorldConfig& WorldConfig::operator=(WorldConfig&&) noexcept = default;
+WorldConfig::~WorldConfig() = default;
+
 void ProcessConfig::read(ParamReader& in) {
   in.require("name");
   in.read_name("name", name, "name of the process in messages");

@@ -169,6 +169,14 @@ struct WorldConfig {
   double state_rate_hz = 10;     ///< rate of sim.state and sim.clock
   ViewConfig view;
 
+  // Defined once: compilers repeat it in each object that holds a world otherwise.
+  WorldConfig();
+  WorldConfig(const WorldConfig&);
+  WorldConfig(WorldConfig&&) noexcept;
+  WorldConfig& operator=(const WorldConfig&);
+  WorldConfig& operator=(WorldConfig&&) noexcept;
+  ~WorldConfig();
+
   void read(ParamReader& in);
 };
 
