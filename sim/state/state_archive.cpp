@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/state/state_archive.hpp"
 
+#include <cstring>
+
 #include "sim/config/message_text.hpp"
 
 namespace sim {
@@ -39,6 +41,23 @@ void StateArchive::section(std::string_view name) {
     part_start_ = output_.size();
   }
   in_part_ = true;
+}
+
+void StateArchive::save_or_restore(void* data, std::size_t size) {
+  if (saving()) {
+    const auto* from = static_cast<const std::byte*>(data);
+    output_.insert(output_.end(), from, from + size);
+    return;
+  }
+  if (size > left()) fail_short(size);
+  if (size > 0) std::memcpy(data, input_.data() + at_, size);
+  at_ += size;
+}
+
+void StateArchive::visit_class(std::string& text) {
+  const std::size_t size = count(text.size(), 1);
+  if (restoring()) text.resize(size);
+  raw(text.data(), size);
 }
 
 void StateArchive::end() {

@@ -7,7 +7,6 @@
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <deque>
 #include <map>
 #include <optional>
@@ -133,26 +132,17 @@ class StateArchive {
 
   /// Visits raw memory.
   void raw(void* data, std::size_t size) {
-    switch (purpose_) {
-      case Purpose::hash:
-        part_hash_.add_bytes(data, size);
-        return;
-      case Purpose::save: {
-        const auto* from = static_cast<const std::byte*>(data);
-        output_.insert(output_.end(), from, from + size);
-        return;
-      }
-      case Purpose::restore:
-        if (size > left()) fail_short(size);
-        if (size > 0) std::memcpy(data, input_.data() + at_, size);
-        at_ += size;
-        return;
-    }
+    if (hashing())
+      part_hash_.add_bytes(data, size);
+    else
+      save_or_restore(data, size);
   }
 
  private:
   enum class Purpose { hash, save, restore };
   explicit StateArchive(Purpose purpose) : purpose_(purpose) {}
+
+  void save_or_restore(void* data, std::size_t size);
 
   template <typename T>
   static constexpr bool is_plain = std::is_arithmetic_v<T> || std::is_enum_v<T>;
@@ -178,8 +168,8 @@ class StateArchive {
         return;
       }
     }
-    if (purpose_ != Purpose::hash) {
-      raw(&value, sizeof value);
+    if (!hashing()) {
+      save_or_restore(&value, sizeof value);
       if (restoring()) check_scalar(value);
       return;
     }
@@ -227,11 +217,7 @@ class StateArchive {
   void visit_class(Eigen::Transform<Scalar, Dim, Mode, Options>& value) {
     visit(value.matrix());
   }
-  void visit_class(std::string& text) {
-    const std::size_t size = count(text.size(), 1);
-    if (restoring()) text.resize(size);
-    raw(text.data(), size);
-  }
+  void visit_class(std::string& text);
   template <typename T>
   void visit_class(std::vector<T>& values) {
     static_assert(!std::is_same_v<T, bool>, "use std::vector<char>");
