@@ -24,6 +24,10 @@ void FaultConfig::read(ParamReader& in) {
   belongs_to("effectiveness", {FaultKind::partial});
 }
 
+void FaultConfig::visit_state(StateArchive& archive) {
+  archive(kind, quantity, bias, noise_factor, dropout, effectiveness);
+}
+
 void DeviceFaults::set(const FaultConfig& fault) {
   std::erase_if(active_,
                 [&](const FaultConfig& other) { return other.kind == fault.kind && other.quantity == fault.quantity; });

@@ -40,7 +40,7 @@ struct FaultConfig {
   /// Compares all members.
   bool operator==(const FaultConfig&) const = default;
   /// Visits all members.
-  void visit_state(StateArchive& archive) { archive(kind, quantity, bias, noise_factor, dropout, effectiveness); }
+  void visit_state(StateArchive& archive);
 };
 
 /// Faults of one device: at most one of each kind (and quantity), the last one set.

@@ -10,13 +10,17 @@
 
 #include "sim/base/thread_pool.hpp"
 #include "sim/hydrodynamics/body_in_water.hpp"
-#include "sim/hydrodynamics/coefficient_model.hpp"
 #include "sim/hydrodynamics/immersed_bodies.hpp"
 #include "sim/medium/medium.hpp"
+#include "sim/model/hydrodynamics_config.hpp"
 #include "sim/model/physics_config.hpp"
 #include "sim/physics/body.hpp"
 
 namespace sim {
+
+class CoefficientModel;
+struct CraftState;
+struct Six;
 
 /// Hydrodynamic forces on the bodies of a world: stage 3 of a step.
 class Hydrodynamics {

@@ -89,6 +89,10 @@ Vector3d Medium::air_velocity_W(const Vector3d& p_W) const {
   return wind_->velocity_W(p_W.z() - (has_water() ? still_m_ : 0));
 }
 
+double Medium::mean_wind_mps() const {
+  return config_.wind ? config_.wind->mean_mps().head<2>().norm() : 0;
+}
+
 double Medium::density_kgpm3(const Vector3d& p_W) const {
   const double depth = depth_m(p_W);
   return depth > 0 ? column_->density_kgpm3(depth) : air_density_kgpm3;

@@ -71,7 +71,7 @@ class Medium {
   /// Velocity of the wind, m/s.  Below the surface: as at the surface.
   Vector3d air_velocity_W(const Vector3d& p_W) const;
   /// Horizontal mean wind speed at the reference height, without gusts; 0 without wind.
-  double mean_wind_mps() const { return config_.wind ? config_.wind->mean_mps().head<2>().norm() : 0; }
+  double mean_wind_mps() const;
   /// Density of water or air, kg/m^3.
   double density_kgpm3(const Vector3d& p_W) const;
   /// Absolute pressure in water or air, Pa, including the dynamic pressure of waves.

@@ -28,6 +28,10 @@ Vehicle::Vehicle(std::string name, int number, int group, std::shared_ptr<const 
       X_BV_(make_pose(config_->bodies.front().position_m, config_->bodies.front().rpy_rad).inverse()),
       clock_(std::move(clock)) {}
 
+Pose Vehicle::X_WV() const {
+  return base().X_WB() * X_BV_;
+}
+
 MountedDevice* Vehicle::find_device(const std::string& name) const {
   for (MountedDevice* device : devices_)
     if (device->config().name == name) return device;

@@ -45,7 +45,7 @@ class Vehicle {
   Bus& bus() const { return bus_; }
   /// Returns the first body, which carries the vehicle frame.
   const Body& base() const { return *bodies_.front().second; }
-  Pose X_WV() const { return base().X_WB() * X_BV_; }
+  Pose X_WV() const;
 
   /// Return a body or joint by its name in the vehicle file.  Throw std::out_of_range when there is none.
   Body& body(const std::string& name) const;
