@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "devices/autopilot/thrust_allocation.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/LU>
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+
+#include "sim/base/eigenvalues.hpp"
 
 namespace devices {
 
@@ -49,11 +52,15 @@ ThrustAllocation::ThrustAllocation(std::vector<ThrusterPlace> thrusters, const s
 
 /// Returns true when the axes are independent with a margin: a singular value below 0.05 would need huge forces.
 bool ThrustAllocation::controllable(const std::vector<int>& axes) const {
-  if (static_cast<Eigen::Index>(axes.size()) > effect_.cols()) return false;
-  Eigen::MatrixXd rows(static_cast<Eigen::Index>(axes.size()), effect_.cols());
+  constexpr double min_singular_value = 0.05;
+  if (axes.size() > 6 || static_cast<Eigen::Index>(axes.size()) > effect_.cols()) return false;
+  // The eigenvalues of these products are the squares of the singular values.  Axes that are left out have 1.
+  Eigen::Matrix<double, 6, 6> products = Eigen::Matrix<double, 6, 6>::Identity();
   for (std::size_t i = 0; i < axes.size(); ++i)
-    rows.row(static_cast<Eigen::Index>(i)) = effect_.row(axes[i]) / (axes[i] < 3 ? 1 : arm_m_);
-  return Eigen::JacobiSVD<Eigen::MatrixXd>(rows).singularValues().minCoeff() > 0.05;
+    for (std::size_t k = 0; k < axes.size(); ++k)
+      products(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)) =
+          effect_.row(axes[i]).dot(effect_.row(axes[k])) / ((axes[i] < 3 ? 1 : arm_m_) * (axes[k] < 3 ? 1 : arm_m_));
+  return sim::smallest_eigenvalue(products) > min_singular_value * min_singular_value;
 }
 
 bool ThrustAllocation::gives(int axis) const {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "devices/drive/weight_on_wheels.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -113,13 +113,21 @@ std::optional<std::vector<Support>> supports_of(const sim::VehicleConfig& vehicl
 bool weight_is_determined(const std::vector<Support>& supports) {
   const auto count = static_cast<Eigen::Index>(supports.size());
   Eigen::MatrixX3d places(count, 3);
-  Eigen::VectorXd share(count);
+  Eigen::VectorXd left(count);
   for (Eigen::Index i = 0; i < count; ++i) {
     const Support& support = supports[static_cast<std::size_t>(i)];
     places.row(i) << 1, support.p_V_m.x(), support.p_V_m.y();
-    share[i] = support.driven ? 1 : 0;
+    left[i] = support.driven ? 1 : 0;
   }
-  const Eigen::VectorXd left = share - places * places.colPivHouseholderQr().solve(share);
+  // Subtract what the columns explain, after making each orthogonal to those before it.
+  for (int column = 0; column < 3; ++column) {
+    Eigen::VectorXd direction = places.col(column);
+    for (int before = 0; before < column; ++before) direction -= places.col(before).dot(direction) * places.col(before);
+    const double rest = direction.norm();
+    const bool depends = rest <= 1e-9 * places.col(column).norm();  // on the columns before it
+    places.col(column) = direction / (depends ? std::numeric_limits<double>::infinity() : rest);
+    left -= places.col(column).dot(left) * places.col(column);
+  }
   return left.cwiseAbs().maxCoeff() < 0.02;
 }
 

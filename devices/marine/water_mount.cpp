@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "devices/marine/water_mount.hpp"
 
-#include <Eigen/Eigenvalues>
+#include "sim/base/eigenvalues.hpp"
 
 namespace devices {
 
 double WaterMount::mass_at(const sim::Body& body, const sim::Vector3d& p_BD) {
   if (!(body.mass_kg() > 0)) return 0;
-  const double smallest_inertia = Eigen::SelfAdjointEigenSolver<sim::Matrix3d>(body.inertia_C_B()).eigenvalues()[0];
+  const double smallest_inertia = sim::symmetric_eigenvalues(body.inertia_C_B())[0];
   return 1 / (1 / body.mass_kg() + (p_BD - body.p_BC()).squaredNorm() / smallest_inertia);
 }
 

@@ -30,7 +30,7 @@ void RangeSonar::change(const Params& params) {
   params_ = params;
   receiver_.change(params.sonar);
   // Rays over the cone, weighted by the two-way beam pattern.
-  const sim::Quaterniond R_SA = sim::Quaterniond::FromTwoVectors(sim::Vector3d::UnitX(), axis_S_);
+  const sim::Quaterniond R_SA = sim::rotation_between(sim::Vector3d::UnitX(), axis_S_);
   const double share_sr = cone_solid_angle_sr(params.beam_rad / 2) / params.rays;
   rays_S_.clear();
   for (const sim::Vector3d& d : cone_pattern(params.beam_rad / 2, params.rays)) {

@@ -25,6 +25,10 @@ double yaw_of(const Matrix3d& R) {
   return std::atan2(R(1, 0), R(0, 0));
 }
 
+Quaterniond rotation_between(const Vector3d& from, const Vector3d& to) {
+  return Quaterniond::FromTwoVectors(from, to);
+}
+
 double wrap_angle(double angle_rad) {
   if (std::abs(angle_rad) < std::numbers::pi) return angle_rad;  // as the remainder, but without its cost
   const double wrapped = std::remainder(angle_rad, 2 * std::numbers::pi);

@@ -30,6 +30,9 @@ double yaw_of(const Matrix3d& R);
 /// Returns the angle wrapped to (-pi, pi].
 double wrap_angle(double angle_rad);
 
+/// Smallest rotation that turns one direction into another.
+Quaterniond rotation_between(const Vector3d& from, const Vector3d& to);
+
 /// Skew-symmetric cross-product matrix S(v): S(v) * x equals the cross product of v and x.
 inline Matrix3d cross_matrix(const Vector3d& v) {
   Matrix3d m;

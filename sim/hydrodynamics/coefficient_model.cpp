@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "sim/hydrodynamics/spectral_radius.hpp"
+#include "sim/base/eigenvalues.hpp"
 
 namespace sim {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/model/hydrodynamics_checks.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <cstdio>
 
+#include "sim/base/eigenvalues.hpp"
 #include "sim/config/message_text.hpp"
 
 namespace sim {
@@ -21,11 +21,6 @@ std::string derivative_name(const DerivativeTerm& term) {
   std::string name{derivative_rows[term.row], '_', derivative_states[term.first]};
   if (term.second >= 0) name += derivative_states[term.second];
   return name;
-}
-
-template <typename Matrix>
-double smallest_eigenvalue(const Matrix& matrix) {
-  return Eigen::SelfAdjointEigenSolver<Matrix>(matrix, Eigen::EigenvaluesOnly).eigenvalues()[0];
 }
 
 /// Returns a computed value as text with 6 digits, which hides rounding errors.
@@ -72,7 +67,7 @@ void check_inertia(const HydrodynamicsConfig& config, ParamReader& in) {
     in.error("inertia_kgm2", "'inertia_kgm2' must be symmetric");
     return;
   }
-  const double min = smallest_eigenvalue(I);
+  const double min = symmetric_eigenvalues(I)[0];
   if (!(min > 0))
     in.error("inertia_kgm2",
              "'inertia_kgm2' about the centre of mass must be positive definite, its smallest eigenvalue is " +
@@ -92,7 +87,7 @@ void check_damping(const char* key, const Matrix6d& damping, ParamReader& in) {
 void check_damping_couplings(const HydrodynamicsConfig& config, ParamReader& in) {
   const Matrix6d& D = config.linear_damping;
   if (!(D.diagonal().minCoeff() >= 0)) return;  // already reported
-  const double min = smallest_eigenvalue(Matrix6d((D + D.transpose()) / 2));
+  const double min = smallest_eigenvalue((D + D.transpose()) / 2);
   if (!not_negative(min, D))
     in.error("linear_damping", "the symmetric part of 'linear_damping' has a negative eigenvalue, " +
                                    computed_text(min) + ": it would accelerate some motions");
@@ -137,8 +132,7 @@ std::vector<std::string> doubts_about(const HydrodynamicsConfig& config, const s
                      " m above its centre of buoyancy, so that it turns over; is 'frame' " +
                      std::string(word_of(axes_frame_words, config.frame)) + " right?");
   // Triangle inequality of the principal moments of inertia.
-  const Eigen::SelfAdjointEigenSolver<Matrix3d> principal(config.inertia_kgm2);
-  const Vector3d moments = principal.eigenvalues();  // in ascending order
+  const Vector3d moments = symmetric_eigenvalues(config.inertia_kgm2);
   if (moments[2] > (1 + 1e-9) * (moments[0] + moments[1]))
     doubts.push_back(config.place.text() + ": " + who + ": no solid has its principal moments of inertia, " +
                      number_text(moments[0]) + ", " + number_text(moments[1]) + " and " + number_text(moments[2]) +

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cassert>
 #include <utility>
 
+#include "sim/base/eigenvalues.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/ode/ode_math.hpp"
 #include "sim/physics/physics_world_impl.hpp"
@@ -215,8 +215,7 @@ void PhysicsWorld::Impl::set_mass(Body& body, const BodyConfig& config_, const d
   const double mean = body.inertia_C_B_.trace() / 3;
   body.gyroscopic_ = !body.inertia_C_B_.isApprox(mean * Matrix3d::Identity(), 1e-12);
   // Check the range in which ODE can invert the inertia; ODE's own error would not name the body.
-  const Vector3d moments =
-      Eigen::SelfAdjointEigenSolver<Matrix3d>(body.inertia_C_B_, Eigen::EigenvaluesOnly).eigenvalues();
+  const Vector3d moments = symmetric_eigenvalues(body.inertia_C_B_);
   const bool solvable = mass.mass < 1e30 && moments.minCoeff() > 1e-60 && moments.maxCoeff() < 1e60;
   if (!solvable)
     throw_config_error(

@@ -3,9 +3,9 @@
 
 #include <spdlog/fmt/fmt.h>
 
-#include <Eigen/Eigenvalues>
 #include <utility>
 
+#include "sim/base/eigenvalues.hpp"
 #include "sim/config/message_text.hpp"
 #include "tools/shoal/urdf/shoal_names.hpp"
 
@@ -33,8 +33,7 @@ bool same_shapes(const std::vector<UrdfShape>& a, const std::vector<UrdfShape>& 
 /// Checks the moments of inertia: of a solid they are positive, and none is larger than the sum of the others.
 void check_inertia(const ImportedBody& body, std::vector<UrdfNote>& notes) {
   const std::string who = "body '" + body.name + "'";
-  const sim::Vector3d moments =
-      Eigen::SelfAdjointEigenSolver<sim::Matrix3d>(body.inertia_kgm2, Eigen::EigenvaluesOnly).eigenvalues();
+  const sim::Vector3d moments = sim::symmetric_eigenvalues(body.inertia_kgm2);
   if (!(moments[0] > 1e-9 * moments[2] && moments[0] > 1e-30))
     sim::throw_config_error(
         body.place, who,

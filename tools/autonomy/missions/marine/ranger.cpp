@@ -67,7 +67,7 @@ void Ranger::receive(const shoal::imu_t& imu) {
     return;
   }
   if (!q_GB_) {
-    q_GB_ = Eigen::Quaterniond::FromTwoVectors(f_B, Eigen::Vector3d::UnitZ());
+    q_GB_ = sim::rotation_between(f_B, Eigen::Vector3d::UnitZ());
     return;
   }
   const double angle_rad = w_B.norm() * dt_s;
