@@ -11,12 +11,12 @@
 #include "bridges/log/recording_bus.hpp"
 #include "shoal/message_codec.hpp"
 #include "sim/bus/in_process_bus.hpp"
+#include "tests/own_ports.hpp"
 
 namespace {
 
 using namespace std::chrono_literals;
 
-constexpr const char* url = "udpm://239.255.76.67:19667?ttl=0";
 constexpr int messages_per_step = 100;
 
 class NoBus final : public sim::Bus {
@@ -28,7 +28,7 @@ class NoBus final : public sim::Bus {
 
 // A step publishes a burst; then the sender gets time to empty the queue, as it does in a run at real time.
 void lcm_publish(benchmark::State& state) {
-  bridges::LcmBus bus(url);
+  bridges::LcmBus bus(test_support::own_url());
   const sim::Bytes payload(static_cast<std::size_t>(state.range(0)));
   int in_step = 0;
   for (auto _ : state) {
@@ -46,7 +46,7 @@ BENCHMARK(lcm_publish)->Arg(64)->Arg(800);
 
 // Without a pause: the sender is busy all the time and takes the lock for every message.
 void lcm_publish_flat_out(benchmark::State& state) {
-  bridges::LcmBus bus(url);
+  bridges::LcmBus bus(test_support::own_url());
   const sim::Bytes payload(static_cast<std::size_t>(state.range(0)));
   int in_step = 0;
   for (auto _ : state) {
@@ -57,7 +57,7 @@ void lcm_publish_flat_out(benchmark::State& state) {
 BENCHMARK(lcm_publish_flat_out)->Arg(64)->Arg(800);
 
 void lcm_end_of_step_wakes_the_sender(benchmark::State& state) {
-  bridges::LcmBus bus(url);
+  bridges::LcmBus bus(test_support::own_url());
   const sim::Bytes payload(64);
   for (auto _ : state) {
     state.PauseTiming();
@@ -71,7 +71,7 @@ void lcm_end_of_step_wakes_the_sender(benchmark::State& state) {
 BENCHMARK(lcm_end_of_step_wakes_the_sender)->Iterations(2000);
 
 void lcm_take_from_empty_mailbox(benchmark::State& state) {
-  bridges::LcmBus bus(url);
+  bridges::LcmBus bus(test_support::own_url());
   const auto mailbox = bus.open_mailbox("bench.cmd");
   for (auto _ : state) benchmark::DoNotOptimize(mailbox->take());
 }

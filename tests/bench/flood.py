@@ -13,8 +13,13 @@ import os
 import resource
 import statistics
 import subprocess
+import sys
 import tempfile
 import time
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
+
+from own_ports import own_ports, url_of  # noqa: E402
 
 
 def run(arguments, port, flood_port, kind, rate):
@@ -29,7 +34,7 @@ def run(arguments, port, flood_port, kind, rate):
             before = resource.getrusage(resource.RUSAGE_CHILDREN)
             subprocess.run([f"{arguments.bin}/shoal", "run", arguments.world, "--launch", "--results", folder,
                             "--duration", str(arguments.duration), "--log-level", "off",
-                            "--lcm-url", f"udpm://239.255.76.67:{port}?ttl=0"],
+                            "--lcm-url", url_of(port)],
                            timeout=arguments.limit, stdout=subprocess.DEVNULL, check=False)
             after = resource.getrusage(resource.RUSAGE_CHILDREN)
         finally:
@@ -62,7 +67,7 @@ def main():
     parser.add_argument("--pairs", type=int, default=9)
     parser.add_argument("--limit", type=float, default=120, help="seconds after which a run is given up")
     arguments = parser.parse_args()
-    port = 20000 + os.getpid() % 10000
+    port = own_ports()
     for kind in arguments.kinds.split(","):
         walls, cpus, hashes, seconds = [], [], set(), []
         for pair in range(arguments.pairs):

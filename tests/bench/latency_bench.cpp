@@ -16,14 +16,11 @@
 
 #include "bridges/bus/lcm_bus.hpp"
 #include "bridges/lcm/lcm_listener.hpp"
+#include "tests/own_ports.hpp"
 
 namespace {
 
 using namespace std::chrono_literals;
-
-std::string url() {
-  return "udpm://239.255.76.67:" + std::to_string(10'000 + getpid() % 20'000) + "?ttl=0";
-}
 
 std::int64_t now_ns() {
   // The same clock in all processes of a machine.
@@ -107,7 +104,7 @@ void measure(const std::string& name, std::size_t bytes, int messages, const Pin
 
 int main(int argc, char** argv) {
   const int messages = argc > 1 ? std::atoi(argv[1]) : 5000;
-  const std::string on = url();
+  const std::string on = test_support::own_url();
   for (const std::size_t bytes : {std::size_t{64}, std::size_t{800}}) {
     for (const bool with_bus : {false, true}) {
       const pid_t child = fork();  // before there is any thread

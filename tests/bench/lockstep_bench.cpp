@@ -17,15 +17,12 @@
 #include "bridges/lcm/lcm_listener.hpp"
 #include "bridges/lockstep_client/lockstep_client.hpp"
 #include "sim/world_file/load_world.hpp"
+#include "tests/own_ports.hpp"
 
 namespace {
 
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
-
-std::string url() {
-  return "udpm://239.255.76.67:" + std::to_string(10'000 + getpid() % 20'000) + "?ttl=0";
-}
 
 struct Times {
   double p50_us = 0, p99_us = 0;
@@ -141,7 +138,7 @@ Cost lockstep(const std::string& on, int clients, int steps) {
 
 int main(int argc, char** argv) {
   const int steps = argc > 1 ? std::atoi(argv[1]) : 2000;
-  const std::string on = url();
+  const std::string on = test_support::own_url();
   std::vector<int> numbers;
   for (int i = 2; i < argc; ++i) numbers.push_back(std::atoi(argv[i]));
   if (numbers.empty()) numbers = {1, 10};

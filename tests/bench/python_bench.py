@@ -16,9 +16,13 @@ import numpy as np
 import shoal
 from shoal import messages, vector
 
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
+
+from own_ports import own_url  # noqa: E402
+
 BINARIES = sys.argv[1] if len(sys.argv) > 1 else 'build/release/bin'
 ROUNDS = int(os.environ.get('ROUNDS', '5'))
-os.environ['LCM_DEFAULT_URL'] = f'udpm://239.255.76.67:{10000 + os.getpid() * 4 % 20000}?ttl=0'
+os.environ['LCM_DEFAULT_URL'] = own_url()
 GROUND = {'name': 'ground', 'fixed': True, 'parts': [{'shape': 'plane'}]}
 # The shipped rover has a lidar of 180 rays, odometry and a modem; the small one has only its drive and odometry.
 PLAIN = {'shoal': 1, 'name': 'plain', 'objects': [GROUND], 'vehicles': [{'name': 'rover1', 'file': 'rover.yaml'}]}

@@ -13,6 +13,7 @@
 
 #include "bridges/bus/lcm_bus.hpp"
 #include "bridges/lcm/lcm_listener.hpp"
+#include "tests/own_ports.hpp"
 
 namespace {
 
@@ -57,7 +58,7 @@ std::uint64_t number_in(const sim::Bytes& payload) {
 
 int main(int argc, char** argv) {
   const double seconds = argc > 1 ? std::atof(argv[1]) : 2;
-  const std::string on = "udpm://239.255.76.67:" + std::to_string(10'000 + getpid() % 20'000) + "?ttl=0";
+  const std::string on = test_support::own_url();
   for (const std::size_t bytes : {64u, 800u, 65'000u, 300'000u}) {
     {
       bridges::LcmBus bus(on);

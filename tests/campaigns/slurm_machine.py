@@ -13,20 +13,18 @@ import os
 import pathlib
 import shutil
 import signal
-import socket
 import subprocess
+import sys
 import tempfile
 import time
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+
+from own_ports import own_ports  # noqa: E402
 
 
 class NotAvailable(Exception):
     """Slurm cannot be used here."""
-
-
-def free_port():
-    with socket.socket() as probe:
-        probe.bind(('127.0.0.1', 0))
-        return probe.getsockname()[1]
 
 
 def children_of(pid):
@@ -123,7 +121,8 @@ class SlurmMachine:
         key.chmod(0o400)
         host = socket.gethostname().split('.')[0]
         socket_path = self.folder / 'munge.socket'
-        controller, node = free_port(), free_port()
+        controller = own_ports()
+        node = controller + 1
         (self.folder / 'slurm.conf').write_text(f'''ClusterName=shoal
 SlurmctldHost={host}(127.0.0.1)
 SlurmctldPort={controller}

@@ -21,20 +21,16 @@ import csv
 import json
 import math
 import os
-import socket
 import subprocess
 import sys
 import time
 
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
+
+from own_ports import own_url  # noqa: E402
+
 WORLDS = ["coop_underwater", "dynamic_warehouse"]
 SETTLING = 1 / 6  # share of a run in which buffers, caches and rings may still fill
-
-
-def free_port():
-    """A UDP port that no one has now."""
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
-        probe.bind(("0.0.0.0", 0))
-        return probe.getsockname()[1]
 
 
 def descendants(root):
@@ -74,7 +70,7 @@ def run(shoal, world, hours, folder, interval_s, alone, extra):
     """One run; gives the samples by process, and the summary."""
     results = os.path.join(folder, "results")
     os.makedirs(folder, exist_ok=True)
-    url = f"udpm://239.255.76.67:{free_port()}?ttl=0"
+    url = own_url()
     command = [shoal, "run", world, "--duration", str(hours * 3600), "--speed", "max", "--no-keys", "--quiet",
                "--no-serial-ports", "--no-plots", "--results", results, *extra]
     command += ["--bus", "none"] if alone else ["--launch", "--lcm-url", url]

@@ -6,6 +6,7 @@ A test is run in the root folder, by Debian's interpreter; SHOAL_BINARY_DIR is t
 import atexit
 import os
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -15,7 +16,11 @@ BINARY_DIR = os.path.abspath(os.environ.get('SHOAL_BINARY_DIR', os.path.join(ROO
 PACKAGE = os.path.join(BINARY_DIR, 'lib', 'python')
 SHOAL = os.path.join(BINARY_DIR, 'bin', 'shoal')
 PILOT = os.path.join(BINARY_DIR, 'bin', 'lockstep_pilot')
-LCM_URL = f'udpm://239.255.76.67:{10000 + os.getpid() * 4 % 20000}?ttl=0'
+sys.path.insert(0, os.path.join(ROOT, 'tests'))
+
+from own_ports import end_with_parent, own_url  # noqa: E402
+
+LCM_URL = own_url()
 SCRATCH = tempfile.mkdtemp(prefix='shoal-python-')
 OWN_PID = os.getpid()
 
@@ -25,6 +30,7 @@ os.environ['LCM_DEFAULT_URL'] = LCM_URL
 os.environ['MPLBACKEND'] = 'Agg'
 os.environ['MPLCONFIGDIR'] = SCRATCH
 os.chdir(ROOT)
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell ignores it in background jobs
 
 
 @atexit.register
@@ -44,11 +50,11 @@ class ShoalRun:
     def __init__(self, world, *options, speed='max'):
         with open(scratch('run.out'), 'w', encoding='utf-8') as out:
             self.child = subprocess.Popen([SHOAL, 'run', world, '--speed', speed, *options], stdout=out,
-                                          stderr=subprocess.STDOUT)
+                                          stderr=subprocess.STDOUT, preexec_fn=end_with_parent)
 
     def wait(self):
         """Returns the exit code and the output."""
-        code = self.child.wait(120)
+        code = self.child.wait(240)
         with open(scratch('run.out'), encoding='utf-8') as file:
             return code, file.read()
 
@@ -64,7 +70,7 @@ class ShoalRun:
 def run_python(code, *arguments):
     """Runs a program in Python with the package; returns exit code, output and errors."""
     done = subprocess.run([sys.executable, '-X', 'faulthandler', '-c', code, *arguments], capture_output=True, text=True,
-                          timeout=120, check=False)
+                          timeout=240, check=False)
     return done.returncode, done.stdout, done.stderr
 
 

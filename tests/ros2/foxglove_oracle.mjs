@@ -5,9 +5,12 @@
 // usage: node foxglove_oracle.mjs SHOAL JOBS FOLDER-OF-LAYOUTS WORLD.yaml...
 import { MessageWriter } from "@foxglove/rosmsg2-serialization";
 import { parse } from "@foxglove/rosmsg";
+import { spawn } from "node:child_process";
+import { once } from "node:events";
 import { mkdtempSync, readFileSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { basename, join } from "node:path";
+import { fileURLToPath } from "node:url";
 import WebSocket from "ws";
 
 import { check, older, sdk, Server, until, upgradeStatus, Viewer } from "./foxglove_client.mjs";
@@ -232,7 +235,8 @@ async function checkLog(world) {
 }
 
 async function checkBus(world) {
-  const url = `udpm://239.255.76.67:${7700 + (process.pid % 200)}?ttl=0`;
+  const ports = spawn("python3", [fileURLToPath(new URL("../own_ports.py", import.meta.url))]);  // until its input ends
+  const url = String(await once(ports.stdout, "data")).trim();
   const run = new Server(shoal, ["run", world, "--lcm-url", url, "--speed", "1", "--quiet"]);
   try {
     await withServer(["view", "--lcm-url", url, "--view-port", "0"], async ({ port }) => {
@@ -247,6 +251,7 @@ async function checkBus(world) {
     });
   } finally {
     await run.end();
+    ports.stdin.end();
   }
 }
 

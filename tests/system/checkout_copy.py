@@ -11,6 +11,10 @@ import subprocess
 import sys
 import tempfile
 
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
+
+from own_ports import own_url  # noqa: E402
+
 STAND_IN_CMAKE = """#!/usr/bin/env python3
 import os, re, shutil, subprocess, sys
 binary_dir, arguments, here = {binary_dir!r}, sys.argv[1:], "build/release"
@@ -81,7 +85,7 @@ def own_bus():
     """The environment, with LCM's default, or with a port of this test's own where it shares the network."""
     environment = {key: value for key, value in os.environ.items() if not key.startswith("LCM_")}
     if environment.get("PAGE_TEST_NETWORK") != "own":
-        environment["LCM_DEFAULT_URL"] = f"udpm://239.255.76.67:{10000 + os.getpid() * 4 % 20000}?ttl=0"
+        environment["LCM_DEFAULT_URL"] = own_url()
     return environment
 
 

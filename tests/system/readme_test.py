@@ -14,7 +14,8 @@ import shlex
 import sys
 import unittest
 
-from checkout_copy import CheckoutCopy, in_own_network
+from checkout_copy import CheckoutCopy, in_own_network  # it adds the folder of own_ports
+from own_ports import own_ports, url_of
 from page_run import PageRun, Terminal
 from page_steps import commands_outside_blocks
 
@@ -44,6 +45,9 @@ def shortened(command):
     command = command.split(" #")[0]
     for option, value in zip(more[::2], more[1::2]):
         command = re.sub(f" {option} \\S+", "", command) + f" {option} {value}"
+    if "coop_land_separate" in words and os.environ["PAGE_TEST_NETWORK"] != "own":  # its buses have fixed ports
+        first = own_ports()
+        command += "".join(f" --set 'buses.bus{i}.lcm_url={url_of(first + i)}'" for i in (1, 2, 3))
     return command
 
 

@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <fcntl.h>
-#include <sys/file.h>
-#include <unistd.h>
-
 #include <chrono>
 #include <cstddef>
 #include <filesystem>
@@ -18,32 +14,14 @@
 #include "shoal/message_schema.hpp"
 #include "sim/bus/bus.hpp"
 #include "tests/bytes_of.hpp"
+#include "tests/own_ports.hpp"
 #include "tests/scratch_folder.hpp"
 
 namespace lcm_test {
 
 using namespace std::chrono_literals;
 
-/// Eight ports that no other test has until this process ends: process numbers alone would repeat while a long test
-/// runs.
-inline int own_ports() {
-  constexpr int slots = 2500;
-  for (int i = 0; i < slots; ++i) {
-    const int slot = (static_cast<int>(getpid()) + i) % slots;
-    const std::string path = "/tmp/shoal-test-ports-" + std::to_string(slot);
-    const int lock = open(path.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0666);
-    if (lock >= 0 && flock(lock, LOCK_EX | LOCK_NB) == 0) return 10'000 + 8 * slot;  // locked until the end
-    if (lock >= 0) close(lock);
-  }
-  return 10'000 + 8 * (static_cast<int>(getpid()) % slots);
-}
-
-/// A port of this process's own, offset 0 to 7: LCM 1.3 keeps apart ports only, and tests run in parallel.
-inline std::string own_url(int offset = 0) {
-  static const int first = own_ports();
-  const int port = first + offset;
-  return "udpm://239.255.76.67:" + std::to_string(port) + "?ttl=0";
-}
+using test_support::own_url;
 
 /// Whether the kernel grants the receive buffer that bursts and images need; stock Debian does not.
 inline bool has_large_receive_buffers() {
@@ -58,9 +36,10 @@ inline std::string text_of(const sim::Bytes& bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-/// Waits for what another thread or process brings about, looking once a millisecond; returns false at the limit.
+/// Waits for what another thread or process brings about, looking once a millisecond; returns false at the limit, which
+/// only ends a test that has failed.
 template <class Condition>
-bool await(const Condition& condition, std::chrono::milliseconds limit = 10s) {
+bool await(const Condition& condition, std::chrono::milliseconds limit = 60s) {
   const auto deadline = std::chrono::steady_clock::now() + limit;
   while (!condition()) {
     if (std::chrono::steady_clock::now() > deadline) return false;

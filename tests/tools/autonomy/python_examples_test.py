@@ -11,7 +11,7 @@ import types
 import unittest
 
 ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "..")
-sys.path.insert(0, os.path.join(ROOT, "examples", "python"))
+sys.path[:0] = [os.path.join(ROOT, "examples", "python"), os.path.join(ROOT, "tests")]
 
 # coop_auv.py imports them; Debian has no lcm for Python, and nothing of them is called here.
 for name in ("lcm", "shoal"):
@@ -20,6 +20,7 @@ for name in ("lcm", "shoal"):
 import coop_auv  # noqa: E402
 import small_lcm  # noqa: E402
 from marine_ekf import MarineEkf, turned  # noqa: E402
+from own_ports import own_url  # noqa: E402
 
 
 class Filter(unittest.TestCase):
@@ -203,9 +204,10 @@ class Navigator(unittest.TestCase):
 
 class SmallLcm(unittest.TestCase):
     """Datagrams as LCM 1.3.1 writes them: lcm/udpm_util.h."""
+    URL = own_url()
 
     def setUp(self):
-        self.lcm = small_lcm.LCM("udpm://239.255.76.67:27667?ttl=0")
+        self.lcm = small_lcm.LCM(self.URL)
         self.addCleanup(self.lcm.socket.close)
 
     def test_a_short_message_is_one_datagram(self):

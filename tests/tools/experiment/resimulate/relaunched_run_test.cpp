@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gmock/gmock.h>
 #include <spdlog/fmt/fmt.h>
-#include <unistd.h>
 
 #include "messages/yaml/message_writer.hpp"
 #include "sim/world/world_state.hpp"
+#include "tests/own_ports.hpp"
 #include "tests/project_paths.hpp"
 #include "tests/scratch_folder.hpp"
 #include "tools/experiment/process/world_programs.hpp"
@@ -16,10 +16,6 @@
 namespace {
 
 using testing::HasSubstr;
-
-std::string url_of_test() {
-  return "udpm://239.255.76.67:" + std::to_string(20'000 + getpid() % 20'000) + "?ttl=0";
-}
 
 /// Figures with all digits; a figure without data equals itself.
 std::map<std::string, std::string> texts_of(const tools::Figures& figures) {
@@ -40,7 +36,7 @@ class RelaunchedRun : public testing::Test {
     tools::read_programs(loaded, {});
     tools::RunOptions options;
     options.launch = options.quiet = true;
-    options.lcm_url = url_of_test();
+    options.lcm_url = test_support::own_url();
     options.record = log;
     options.speed = 0;
     options.duration_s = 0.005 * steps;
@@ -52,7 +48,7 @@ class RelaunchedRun : public testing::Test {
     options.log = log;
     options.view.port = 0;
     options.launch = launch;
-    options.lcm_url = url_of_test();
+    options.lcm_url = test_support::own_url();
     auto run = std::make_unique<tools::ResimulatedRun>(options, tools::short_version());
     run->execute("speed", 0, "");
     return run;
