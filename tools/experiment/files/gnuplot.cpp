@@ -5,6 +5,7 @@
 #include <spawn.h>
 #include <spdlog/fmt/fmt.h>
 #include <sys/wait.h>
+#include <time.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -38,6 +39,14 @@ pid_t start(std::string directory, std::string script) {
   return error == 0 ? pid : 0;
 }
 
+/// Processor time of a child; it is kept until waitpid().
+std::chrono::nanoseconds cpu_time(pid_t pid) {
+  clockid_t clock{};
+  timespec time{};
+  if (clock_getcpuclockid(pid, &clock) != 0 || clock_gettime(clock, &time) != 0) return {};
+  return std::chrono::seconds(time.tv_sec) + std::chrono::nanoseconds(time.tv_nsec);
+}
+
 }  // namespace
 
 std::string gnuplot_text(const std::string& text) {
@@ -61,13 +70,13 @@ std::string axis_of_errors(const std::vector<double>& errors_m) {
   return fmt::format("set logscale y\nset yrange [{:.3g}:*]\n", 0.05 * min);
 }
 
-bool run_gnuplot(const std::string& directory, const std::string& script, std::chrono::milliseconds limit,
+bool run_gnuplot(const std::string& directory, const std::string& script, std::chrono::milliseconds cpu_limit,
                  const std::function<bool()>& give_up) {
   using Clock = std::chrono::steady_clock;
   const pid_t pid = start(directory, script);
   if (pid == 0) return false;
-  const auto deadline = Clock::now() + limit;
-  while (Clock::now() < deadline && !give_up()) {
+  const auto deadline = Clock::now() + 20 * cpu_limit;
+  while (Clock::now() < deadline && cpu_time(pid) < cpu_limit && !give_up()) {
     int status = 0;
     const pid_t ended = waitpid(pid, &status, WNOHANG);
     if (ended == pid) return status == 0;
