@@ -84,7 +84,7 @@ async function withPage(test, {fragment = '#t=secret', hello = {}} = {}) {
 
 /** Waits until a condition of what the server received holds. */
 async function arrives(holds, what) {
-  for (let i = 0; i < 600; ++i) {
+  for (let i = 0; i < 1200; ++i) {
     if (holds()) return;
     await new Promise((resolve) => {
       setTimeout(resolve, 50);

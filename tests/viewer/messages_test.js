@@ -94,7 +94,7 @@ describe('messages', () => {
     await withPage(scenes.land(), async (page, server) => {
       const subscribed = () => server.received.findLast((message) => message.op === 'subscribe')?.channels ?? [];
       const settle = async (names) => {
-        for (let i = 0; i < 300 && subscribed().map((one) => one.name).sort().join() !== names; ++i)
+        for (let i = 0; i < 3000 && subscribed().map((one) => one.name).sort().join() !== names; ++i)
           await new Promise((resolve) => {
             setTimeout(resolve, 20);
           });

@@ -231,7 +231,7 @@ export class MockServer {
 
   /** Waits until a page wants a channel, then publishes. */
   async publishOnceWanted(channel, ...rest) {
-    for (const start_ms = performance.now(); performance.now() - start_ms < 30000;) {
+    for (const start_ms = performance.now(); performance.now() - start_ms < 60000;) {
       if (this.publish(channel, ...rest) > 0) return;
       await new Promise((resolve) => {
         setTimeout(resolve, 20);

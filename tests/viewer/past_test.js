@@ -20,7 +20,7 @@ const pick = (page, time_s) => page.$eval('#seek', (seek, value) => {
 
 /** Waits for an element to be hidden: while time passes the panels are written some times per second. */
 const hidden = (page, selector) =>
-    page.waitForFunction((name) => document.querySelector(name).hidden, {timeout: 5000}, selector);
+    page.waitForFunction((name) => document.querySelector(name).hidden, {}, selector);
 
 /** Where rover1 of the scene `land` is: on a circle of 2 m, once around in 20 s. */
 const roverAt = (t_s) => [2 * Math.cos(2 * Math.PI * t_s / 20), 2 * Math.sin(2 * Math.PI * t_s / 20)];

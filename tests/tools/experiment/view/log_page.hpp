@@ -112,7 +112,7 @@ struct LogPage {
     const std::size_t colon = url.rfind(':');
     return static_cast<std::uint16_t>(std::stoi(url.substr(colon + 1)));
   }
-  /// Reads the next frame; nothing at the end of the connection.  The test may take twenty seconds: the status comes
+  /// Reads the next frame; nothing at the end of the connection.  The test may take a minute: the status comes
   /// again and again.
   std::optional<web_test::Frame> frame() {
     if (std::chrono::steady_clock::now() > deadline) throw std::runtime_error("what the test waits for has not come");
@@ -184,7 +184,7 @@ struct LogPage {
   tools::LogIndex index;
   tools::LogView view;
   web_test::Client client;
-  const std::chrono::steady_clock::time_point deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+  const std::chrono::steady_clock::time_point deadline = std::chrono::steady_clock::now() + std::chrono::minutes(1);
   std::atomic<bool> end = false;
   std::thread thread;
 };
