@@ -126,6 +126,7 @@ void LockstepService::request_from_client(const sim::LockstepMember& member) {
 }
 
 void LockstepService::take_messages() {
+  taken_ = Clock::now();
   for (std::size_t i = 0; i < links_.size(); ++i) {
     Link& link = *links_[i];
     if (!lockstep_.empty()) link.messages.collect();

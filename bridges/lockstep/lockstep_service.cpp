@@ -222,7 +222,9 @@ void LockstepService::rest_time_outs(Clock::time_point now) {
 }
 
 void LockstepService::serve(const std::vector<std::string>& late) {
-  rest_time_outs(Clock::now());
+  // Time-outs end at the last look at the messages: in the time since then, which is long when the machine is busy, an
+  // answer may have come.
+  rest_time_outs(taken_);
   // Check the time-outs, and repeat requests with back-off.
   std::vector<std::string> to_tick;
   for (const std::string& client : late) {
@@ -230,7 +232,7 @@ void LockstepService::serve(const std::vector<std::string>& late) {
     const auto [entry, fresh] = pending_.try_emplace(client);
     Pending& requested = entry->second;
     if (fresh) requested = {now, now, now, now, first_resend_interval, false};
-    check_time(client, requested, now);
+    check_time(client, requested, taken_);
     const sim::LockstepMember* member = lockstep_.find(client);
     if (member == nullptr || requested.send_at > now) continue;
     requested.send_at = now + requested.interval;

@@ -215,6 +215,7 @@ class LockstepService {
   std::deque<std::pair<std::string, std::int64_t>> ended_;  // most recent ended clients and sessions
   std::deque<Follower> followers_;                          // most recent ones
   Clock::time_point served_, window_start_;
+  Clock::time_point taken_;  ///< what came before has been taken
   bool warned_repeated_ = false;
   int reported_left_ = 0;
   std::map<std::string, LockstepSummary, std::less<>> summaries_;

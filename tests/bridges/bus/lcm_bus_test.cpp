@@ -27,7 +27,7 @@ using namespace std::chrono_literals;
 constexpr sim::Time now{0};
 
 /// The next message of the mailbox, waiting for it.
-std::optional<sim::Message> take(sim::Mailbox& mailbox, std::chrono::milliseconds limit = 10s) {
+std::optional<sim::Message> take(sim::Mailbox& mailbox, std::chrono::milliseconds limit = 60s) {
   std::optional<sim::Message> message;
   await([&] { return (message = mailbox.take()).has_value(); }, limit);
   return message;
@@ -85,10 +85,10 @@ TEST(LcmUrl, NoTcpServerIsSaidAtOnce) {
   }
 }
 
-/// Takes what a bus sends over TCP.
+/// Takes what a bus sends over TCP, or lets it wait.
 class TcpServer {
  public:
-  TcpServer() : listener_(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
+  explicit TcpServer(bool reads = true) : reads_(reads), listener_(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
     address_.sin_family = AF_INET;
     address_.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     socklen_t size = sizeof address_;
@@ -101,6 +101,7 @@ class TcpServer {
     shutdown(listener_, SHUT_RDWR);
     thread_.join();
     close(listener_);
+    if (unread_ >= 0) close(unread_);
   }
   std::string url() const { return "tcpq://127.0.0.1:" + std::to_string(ntohs(address_.sin_port)); }
   bool has(const std::string& text) {
@@ -115,6 +116,7 @@ class TcpServer {
       if (recv(fd, part.data(), 8, MSG_WAITALL) != 8) continue;  // someone knocked only
       const std::array<std::uint32_t, 2> answer{htonl(0x287617fa), htonl(0x0100)};
       if (send(fd, answer.data(), sizeof answer, MSG_NOSIGNAL) < 0) continue;
+      if (!reads_) return static_cast<void>(unread_ = fd);
       for (ssize_t size = 0; (size = read(fd, part.data(), part.size())) > 0;) {
         const std::lock_guard lock(mutex_);
         got_.append(part.data(), static_cast<std::size_t>(size));
@@ -122,7 +124,8 @@ class TcpServer {
     }
   }
 
-  int listener_;
+  bool reads_;
+  int listener_, unread_ = -1;
   sockaddr_in address_{};
   std::mutex mutex_;
   std::string got_;
@@ -133,7 +136,8 @@ TEST(LcmBus, WhoWaitsHasMessagesSentOverTcpToo) {
   TcpServer server;
   LcmBus bus(server.url());
   int quick = 0;
-  for (int i = 0; i < 20; ++i) {
+  // Until some were quick, which a busy machine may delay.
+  for (int i = 0; quick < 5 && i < 1000; ++i) {
     const std::string text = "message " + std::to_string(i) + ".";
     const auto begin = std::chrono::steady_clock::now();
     bus.publish("a", bytes_of(text), now);
@@ -226,7 +230,7 @@ TEST_P(LcmBusFrom, WaitingEndsWhenAMessageComes) {
     sender.publish("a", bytes_of("x"), now);
     sender.end_of_step();
   });
-  EXPECT_TRUE(bus.wait_for_message(10s));
+  EXPECT_TRUE(bus.wait_for_message(60s));
   EXPECT_TRUE(mailbox->take());
   EXPECT_FALSE(bus.wait_for_message(1ms));
   other.join();
@@ -325,19 +329,18 @@ TEST(LcmBus, DropsTooLargeMessagesAndCounts) {
   EXPECT_EQ(bus.counts().dropped_outgoing, 1u);
 }
 
-// No one listens, and the sender is slower than we are: publishing must not wait for it.
+// What is sent is never taken, so the sender waits for ever: who waited for the sender would not come to the end.
 TEST(LcmBus, PublishNeverWaits) {
-  LcmBus bus(own_url());
+  TcpServer server(false);
+  LcmBus bus(server.url());
   const sim::Bytes payload(64'000);
-  const auto start = std::chrono::steady_clock::now();
   for (int i = 0; i < 10'000; ++i) {
     bus.publish("nobody", payload, now);
     bus.end_of_step();
   }
-  const auto took = std::chrono::steady_clock::now() - start;
-  EXPECT_LT(took, 5s);  // 640 MB of copies; a loaded machine with sanitizers included
   const sim::BusCounts counts = bus.counts();
   EXPECT_EQ(counts.published, 10'000u);
+  EXPECT_GT(counts.dropped_outgoing, 1000u);  // the queue holds 64 MiB, and the network less
 }
 
 TEST(LcmBus, TheDestructorSendsWhatIsQueued) {
@@ -348,7 +351,7 @@ TEST(LcmBus, TheDestructorSendsWhatIsQueued) {
     for (int i = 0; i < 100; ++i) bus.publish("last", bytes_of(std::to_string(i)), now);
   }
   for (int i = 0; i < 100; ++i) {
-    const auto message = listener.next(10s);
+    const auto message = listener.next(60s);
     ASSERT_TRUE(message);
     EXPECT_EQ(text_of(message->payload), std::to_string(i));
   }
@@ -358,13 +361,17 @@ TEST(LcmListener, ReceivesAllChannelsInOrder) {
   LcmListener listener(own_url());
   listener.listen_to_all();
   LcmBus bus(own_url());
-  for (int i = 0; i < 500; ++i) bus.publish("channel" + std::to_string(i), bytes_of(std::to_string(i)), now);
-  bus.end_of_step();
-  for (int i = 0; i < 500; ++i) {
-    const auto message = listener.next(10s);
-    ASSERT_TRUE(message);
-    EXPECT_EQ(message->channel, "channel" + std::to_string(i));
-    EXPECT_GT(message->wall_utime, 0);
+  // A hundred at once: the receive buffer of a stock kernel holds some 500, and what does not fit is lost.
+  for (int begin = 0; begin < 500; begin += 100) {
+    const auto channel = [begin](int i) { return "channel" + std::to_string(begin + i); };
+    for (int i = 0; i < 100; ++i) bus.publish(channel(i), bytes_of(std::to_string(i)), now);
+    bus.end_of_step();
+    for (int i = 0; i < 100; ++i) {
+      const auto message = listener.next(60s);
+      ASSERT_TRUE(message);
+      EXPECT_EQ(message->channel, channel(i));
+      EXPECT_GT(message->wall_utime, 0);
+    }
   }
   EXPECT_FALSE(listener.next(0ms));
 }

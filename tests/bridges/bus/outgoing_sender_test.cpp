@@ -35,7 +35,7 @@ TEST(OutgoingSender, WhoWaitsSendsInItsOwnThread) {
   EXPECT_TRUE(lcm_test::await([&] {
     sender.push("a", {});
     sender.help();
-    EXPECT_TRUE(sender.wait_until_sent(10s));
+    EXPECT_TRUE(sender.wait_until_sent(60s));
     const std::lock_guard lock(sent.mutex);
     return sent.threads.back() == std::this_thread::get_id();
   }));
@@ -77,7 +77,7 @@ TEST(OutgoingSender, AMessageThatTheNetworkHoldsUpCostsTheHelperOneSendAndThenNo
     sender.help();
     sender.push("c", {});
     sender.help();
-    EXPECT_TRUE(sender.wait_until_sent(10s));
+    EXPECT_TRUE(sender.wait_until_sent(60s));
   };
   // Again when the machine stood, or the thread was faster, which looks by itself every 20 ms.
   ASSERT_TRUE(lcm_test::await([&] {
@@ -103,7 +103,7 @@ TEST(OutgoingSender, HelpDoesNotWaitForAThreadThatIsHeldUp) {
   sender.help();  // would never return
   EXPECT_FALSE(sender.wait_until_sent(1ms));
   go_on.set_value();
-  EXPECT_TRUE(sender.wait_until_sent(10s));
+  EXPECT_TRUE(sender.wait_until_sent(60s));
 }
 
 TEST(OutgoingSender, ClosingFreesAThreadThatIsHeldUp) {

@@ -51,7 +51,7 @@ TEST(Client, RunsInStepWithTheSimulator) {
       EXPECT_EQ(helm.depth_m, step);
     }
   });
-  client.join(0.1, 10s);
+  client.join(0.1, 60s);
   int ticks = 0;
   while (const auto utime = client.next_tick()) {
     EXPECT_EQ(*utime, 1000 + 10 * ++ticks);
@@ -70,7 +70,7 @@ TEST(Client, RunsInStepWithTheSimulator) {
 TEST(Client, JoinsAgainWhileATickIsOpen) {
   FakeSimulator simulator;
   shoal::Client client("pilot", own_url(1));
-  client.set_silence_limit(10s);
+  client.set_silence_limit(60s);
   std::thread thread([&] {
     simulator.reply(simulator.await_request(), true, "");
     simulator.tick(1, {"pilot"});
@@ -84,10 +84,10 @@ TEST(Client, JoinsAgainWhileATickIsOpen) {
     EXPECT_EQ(simulator.await_ack().sequence, 2);
     simulator.tick(3, {"pilot"}, true);
   });
-  client.join(0.1, 10s);
+  client.join(0.1, 60s);
   EXPECT_TRUE(client.next_tick());
   client.publish("auv1.cmd", shoal::helm_command_t{});
-  client.join(0.2, 10s);
+  client.join(0.2, 60s);
   EXPECT_TRUE(client.next_tick());
   EXPECT_FALSE(client.next_tick());
   EXPECT_EQ(client.end(), shoal::Client::End::last_tick);
@@ -103,7 +103,7 @@ TEST(Client, GivesNothingAtOnceWhenAskedAgainAfterTheEnd) {
     simulator.tick(1, {"pilot"}, true);
     simulator.await_ack();
   });
-  client.join(0.1, 10s);
+  client.join(0.1, 60s);
   EXPECT_FALSE(client.next_tick());
   thread.join();
   const auto before = std::chrono::steady_clock::now();
@@ -145,8 +145,8 @@ TEST(Client, SaysThatItWaitsForItsFirstTick) {
   FakeSimulator simulator;
   std::thread thread([&] { simulator.reply(simulator.await_request(), true, ""); });
   const std::string shown = said_by([](shoal::Client& client) {
-    client.set_wait_warning(10s);
-    client.join(0.1, 10s);
+    client.set_wait_warning(60s);
+    client.join(0.1, 60s);
     client.set_wait_warning(1ms);
     EXPECT_FALSE(client.next_tick());
     EXPECT_EQ(client.end(), shoal::Client::End::silence);
@@ -165,7 +165,7 @@ TEST(Client, WaitsForATime) {
       EXPECT_EQ(simulator.await_ack().step, step);
     }
   });
-  client.join(0.1, 10s);
+  client.join(0.1, 60s);
   EXPECT_EQ(client.wait_until(1031), 1040);  // ticks come at 1010, 1020 and so on
   EXPECT_EQ(client.wait_until(1000), 1050);  // in the past: the next one
   EXPECT_EQ(client.wait_until(1'000'000), std::nullopt);
@@ -190,7 +190,7 @@ TEST(Client, LeavesWhenItEndsBeforeTheRun) {
   });
   {
     shoal::Client client("pilot", own_url(1));
-    client.join(0.1, 10s);
+    client.join(0.1, 60s);
     ASSERT_TRUE(client.next_tick());
   }
   thread.join();
@@ -204,7 +204,7 @@ TEST(Client, SaysWhyItLeaves) {
   });
   {
     shoal::Client client("pilot", own_url(1));
-    client.join(0.1, 10s);
+    client.join(0.1, 60s);
     ASSERT_TRUE(client.next_tick());
     client.set_reason_to_leave("no map");
   }
@@ -298,7 +298,7 @@ TEST(Client, SaysWhyTheSimulatorRefuses) {
   shoal::Client client("pilot", own_url(1));
   std::thread thread([&] { simulator.reply(simulator.await_request(), false, "the period must be > 0"); });
   try {
-    client.join(-1, 10s);
+    client.join(-1, 60s);
     ADD_FAILURE();
   } catch (const shoal::ClientError& error) {
     EXPECT_STREQ(error.what(), "the simulator rejects 'pilot': the period must be > 0");

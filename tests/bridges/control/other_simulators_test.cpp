@@ -115,7 +115,7 @@ TEST(OtherSimulators, OneThatAskedAndStartsAllTheSameIsWarnedOf) {
   testing::internal::CaptureStdout();
   service.publish_info();  // its own
   bus.end_of_step();
-  EXPECT_TRUE(bus.flush(std::chrono::seconds(10)));
+  EXPECT_TRUE(bus.flush(std::chrono::seconds(60)));
   service.handle_requests();
   others_bus.publish("sim.info", shoal::encode(shoal::sim_info_t{}), sim::Time(0));
   others_bus.end_of_step();

@@ -16,7 +16,7 @@ using testing::HasSubstr;
 using Service = lcm_test::LockstepWorld;
 
 TEST(LockstepAnswers, SaysThatWhatAnAnswerNamesHasNotCome) {
-  Service s;
+  Service s("{timeout_s: 0.02}");
   const auto reader = s.gate.open_mailbox("cmd");
   ASSERT_TRUE(s.join("liar", "{session: 5}").ok);
   try {
@@ -31,7 +31,7 @@ TEST(LockstepAnswers, SaysThatWhatAnAnswerNamesHasNotCome) {
 }
 
 TEST(LockstepAnswers, SaysWhatDoesNotMatchInWhatIsSentAgain) {
-  Service s;
+  Service s("{timeout_s: 0.02}");
   const auto reader = s.gate.open_mailbox("cmd");
   ASSERT_TRUE(s.join("liar", "{session: 5}").ok);
   shoal::sim_resent_t bundle{};

@@ -18,7 +18,7 @@ namespace lcm_test {
 
 /// A world with one box, whose clients are in lockstep.
 struct LockstepWorld : ServedWorld {
-  explicit LockstepWorld(const std::string& terms = "{timeout_s: 0.02}",
+  explicit LockstepWorld(const std::string& terms = "{timeout_s: 60}",
                          const std::vector<bridges::LockstepBus>& vehicle_buses = {})
       : ServedWorld("shoal: 1\nphysics: {step_s: 0.01, gravity_mps2: 0}\nlockstep: " + terms +
                         "\nvehicles: [{name: a, model: {shoal: 1, bodies: [{name: b, parts: [{shape: box, mass_kg: "

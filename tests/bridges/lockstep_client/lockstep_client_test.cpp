@@ -16,7 +16,7 @@ using namespace std::chrono_literals;
 
 void join(FakeSimulator& simulator, LockstepClient& client) {
   std::thread thread([&] { simulator.reply(simulator.await_request(), true, ""); });
-  client.join(0.1, 10s);
+  client.join(0.1, 60s);
   thread.join();
 }
 
@@ -45,7 +45,7 @@ TEST(LockstepClient, RunsInStepWithTheSimulator) {
       }
     }
   });
-  client.join(0.1, 10s);
+  client.join(0.1, 60s);
   shoal::sim_tick_t tick;
   int ticks = 0;
   while (client.next_tick(tick)) {
@@ -80,8 +80,8 @@ TEST(LockstepClient, IsNotNotifiedOfWhatAnotherClientOfItsNameIs) {
     simulator.tick(1, {"pilot"}, true);
     EXPECT_EQ(simulator.await_ack().step, 1);
   });
-  client.join(0.1, 10s);
-  client.set_silence_limit(10s);
+  client.join(0.1, 60s);
+  client.set_silence_limit(60s);
   shoal::sim_tick_t tick;
   ASSERT_TRUE(client.next_tick(tick));
   client.acknowledge(tick);
@@ -100,7 +100,7 @@ TEST(LockstepClient, RequestsWithANumberThatNoOneElseHas) {
       ids.push_back(request.id);
       simulator.reply(request, true, "");
     });
-    client.join(0.1, 10s);
+    client.join(0.1, 60s);
     thread.join();
   }
   // In one process, so the number of the process does not make them differ.  They are drawn out of a thousand millions.
@@ -126,8 +126,8 @@ TEST(LockstepClient, SaysThatItLivesBeforeItsFirstTick) {
     simulator.tick(1, {"pilot"}, true);
     EXPECT_EQ(simulator.await_ack().sequence, 1);
   });
-  client.join(0.1, 10s);
-  client.set_silence_limit(10s);
+  client.join(0.1, 60s);
+  client.set_silence_limit(60s);
   shoal::sim_tick_t tick;
   EXPECT_FALSE(client.next_tick(tick));
   thread.join();
@@ -155,8 +155,8 @@ TEST(LockstepClient, ContinuesWhenALastTickThatDoesNotListItEndsAnotherRun) {
     simulator.tick(2, {"pilot"}, true);
     EXPECT_EQ(simulator.await_ack().sequence, 3);
   });
-  client.join(0.1, 10s);
-  client.set_silence_limit(10s);
+  client.join(0.1, 60s);
+  client.set_silence_limit(60s);
   shoal::sim_tick_t tick;
   ASSERT_TRUE(client.next_tick(tick));
   client.acknowledge(tick);
@@ -177,7 +177,7 @@ TEST(LockstepClient, RequestsAgainUntilItIsAnswered) {
     EXPECT_EQ(first.id, second.id);
     simulator.reply(second, true, "");
   });
-  EXPECT_NO_THROW(client.join(1, 10s));
+  EXPECT_NO_THROW(client.join(1, 60s));
   thread.join();
 }
 
@@ -186,7 +186,7 @@ TEST(LockstepClient, SaysWhyTheSimulatorRefuses) {
   LockstepClient client(own_url(1), "pilot");
   std::thread thread([&] { simulator.reply(simulator.await_request(), false, "the period must be > 0"); });
   try {
-    client.join(-1, 10s);
+    client.join(-1, 60s);
     ADD_FAILURE();
   } catch (const BusError& error) {
     EXPECT_STREQ(error.what(), "the simulator rejects 'pilot': the period must be > 0");
@@ -198,7 +198,7 @@ TEST(LockstepClient, SaysThatItWasStoppedWhileItWaited) {
   LockstepClient client(own_url(1), "pilot");
   client.stop();
   try {
-    client.join(1, 10s);
+    client.join(1, 60s);
     ADD_FAILURE();
   } catch (const BusError& error) {
     EXPECT_EQ(std::string(error.what()).find("'pilot' was stopped while it waited for a simulator on udpm:"), 0u);
@@ -415,7 +415,7 @@ TEST(LockstepClient, EndsWhenTheWorldGoesBackUnlessItGoesWithIt) {
     test.simulator.reply(test.simulator.await_request(), true, "");
     test.simulator.repeat_tick();
   });
-  test.client.join(0.1, 10s);
+  test.client.join(0.1, 60s);
   ASSERT_TRUE(test.client.next_tick(test.tick));
   thread.join();
   EXPECT_EQ(test.tick.branch, 2);

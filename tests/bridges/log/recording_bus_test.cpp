@@ -118,13 +118,11 @@ TEST(RecordingBus, IsWrittenWhileASimulatedSecondLasts) {
   // A run at a thousandth of real time: nothing more comes for a long while of wall time.
   constexpr std::size_t event_bytes = 28 + 1 + 1;
   const auto size = [&] { return std::filesystem::file_size(folder.file("log")); };
-  EXPECT_TRUE(await(
-      [&] {
-        bus.end_of_step();
-        return size() == 2 * event_bytes;
-      },
-      5s))
-      << size() << " bytes were written";
+  EXPECT_TRUE(await([&] {
+    bus.end_of_step();
+    return size() == 2 * event_bytes;
+  })) << size()
+      << " bytes were written";
 }
 
 TEST(RecordingBus, LcmReadsTheLog) {
@@ -203,15 +201,12 @@ TEST(RecordingBus, NothingStaysInMemoryForLong) {
   ScriptedBus inner;
   RecordingBus bus(inner, folder.file("log"), epoch);
   bus.publish("a", bytes_of("x"), sim::Time(1'000'000));
-  EXPECT_TRUE(await([&] { return std::filesystem::file_size(folder.file("log")) == 30; }, 3s)) << "once a second";
+  EXPECT_TRUE(await([&] { return std::filesystem::file_size(folder.file("log")) == 30; })) << "once a second";
   bus.publish("a", bytes_of("x"), sim::Time(2'000'000));  // too early, if this machine is fast
-  EXPECT_TRUE(await(
-      [&] {
-        bus.hand_over();
-        return std::filesystem::file_size(folder.file("log")) == 2 * 30;
-      },
-      3s))
-      << "a run that stands still asks for it";
+  EXPECT_TRUE(await([&] {
+    bus.hand_over();
+    return std::filesystem::file_size(folder.file("log")) == 2 * 30;
+  })) << "a run that stands still asks for it";
 }
 
 TEST(RecordingBus, OverwritesOnlyWhenTold) {

@@ -42,10 +42,10 @@ struct Frame {
   }
 };
 
-/// Waits for a condition that another thread brings about; false after ten seconds.
+/// Waits for a condition that another thread brings about; false after a minute.
 template <typename Condition>
 bool await(const Condition& condition) {
-  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(10);
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60);
   while (!condition()) {
     if (std::chrono::steady_clock::now() > end) return false;
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
@@ -149,7 +149,7 @@ class Client {
   }
   void send_json(const Json& message) const { send_frame(1, message.dump()); }
 
-  /// Reads the next frame; answers pings.  Nothing when the connection ends, or after ten seconds.
+  /// Reads the next frame; answers pings.  Nothing when the connection ends, or after a minute.
   std::optional<Frame> read_frame() {
     for (;;) {
       const std::string head = read_bytes(2);
@@ -173,7 +173,7 @@ class Client {
       throw std::runtime_error("no text, but opcode " + std::to_string(frame ? frame->opcode : -1));
     return frame->json();
   }
-  /// Reads until the connection ends; false after ten seconds.
+  /// Reads until the connection ends; false after a minute.
   bool is_closed() {
     while (receive()) {
     }
@@ -183,7 +183,7 @@ class Client {
  private:
   bool receive() {
     pollfd waiting{socket_, POLLIN, 0};
-    if (poll(&waiting, 1, 10'000) != 1) return false;
+    if (poll(&waiting, 1, 60'000) != 1) return false;
     char chunk[65536];
     const ssize_t got = recv(socket_, chunk, sizeof chunk, 0);
     ended_ = got <= 0;
