@@ -37,7 +37,6 @@ Vector3d cell(int robot, int robots) {
 class BareFleet {
  public:
   explicit BareFleet(int robots) {
-    sim::start_ode();
     world_.reset(dWorldCreate());
     space_.reset(dSweepAndPruneSpaceCreate(nullptr, dSAP_AXES_XYZ));
     dWorldSetGravity(world_.get(), 0, 0, -9.80665);
@@ -110,7 +109,7 @@ class BareFleet {
   }
 
   sim::WorldHandle world_;
-  sim::JointGroupHandle contacts_{dJointGroupCreate(0)};
+  sim::JointGroupHandle contacts_{(sim::start_ode(), dJointGroupCreate(0))};  // ODE first gets our allocators
   std::unique_ptr<dxSpace, sim::SpaceDeleter> space_;
   std::vector<dBodyID> chassis_;
 };

@@ -19,8 +19,7 @@ const pick = (page, time_s) => page.$eval('#seek', (seek, value) => {
 }, 1000 * time_s);
 
 /** Waits for an element to be hidden: while time passes the panels are written some times per second. */
-const hidden = (page, selector) =>
-    page.waitForFunction((name) => document.querySelector(name).hidden, {}, selector);
+const hidden = (page, selector) => page.waitForFunction((name) => document.querySelector(name).hidden, {}, selector);
 
 /** Where rover1 of the scene `land` is: on a circle of 2 m, once around in 20 s. */
 const roverAt = (t_s) => [2 * Math.cos(2 * Math.PI * t_s / 20), 2 * Math.sin(2 * Math.PI * t_s / 20)];

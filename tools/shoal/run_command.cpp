@@ -114,7 +114,7 @@ int run(RunArguments& arguments) {
   if (arguments.open) arguments.view.opened = [&browser](const std::string& url) { browser.open(url); };
   if (arguments.with_page) {
     load_library("page");
-    arguments.run.page = [&view = arguments.view] { return live_page->make(view); };
+    arguments.run.page = live_page->page(arguments.view);
   }
   // Topics of ROS 2 in an MCAP record.
   if (bridges::is_mcap_name(arguments.run.record)) load_library("ros2");

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "shoal/client.hpp"
-#include "tools/autonomy/missions/memory.hpp"
+#include "tools/autonomy/behaviours/memory.hpp"
 #include "tools/command_line/declared_options.hpp"
 
 namespace autonomy {

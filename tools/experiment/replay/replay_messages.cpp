@@ -192,11 +192,12 @@ void ReplayMessages::published(std::string_view name, std::span<const std::byte>
     // Compare the time stamps.
     const auto* schema = shoal::embedded_types().find(static_cast<std::uint64_t>(shoal::fingerprint(payload)));
     const bool one_type = shoal::fingerprint(*logged) == shoal::fingerprint(payload);
-    const auto here = stamp_of(schema, payload);
-    const auto there = one_type ? stamp_of(schema, *logged) : std::nullopt;
-    if (here && there && *there > *here) break;  // the log lacks this message
-    if (here && there && *there < *here) {
-      differ(name, step, fmt::format("a message stamped {} is in the log and was not published here", *there));
+    const auto here = one_type ? stamp_of(schema, payload) : std::nullopt;
+    const std::int64_t stamp = here.value_or(0);
+    const std::int64_t logged_stamp = here ? stamp_of(schema, *logged).value_or(stamp) : stamp;
+    if (logged_stamp > stamp) break;  // the log lacks this message
+    if (logged_stamp < stamp) {
+      differ(name, step, fmt::format("a message stamped {} is in the log and was not published here", logged_stamp));
       pop(channel);
       continue;
     }

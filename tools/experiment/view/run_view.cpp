@@ -6,6 +6,7 @@
 #include "shoal/message_codec.hpp"
 #include "tools/experiment/drive/drive_error.hpp"
 #include "tools/experiment/page_data/view_json.hpp"
+#include "tools/experiment/run/runner.hpp"
 #include "tools/experiment/view/forms_text.hpp"
 
 namespace tools {
@@ -36,6 +37,10 @@ RunView::RunView(const ViewOptions& options, const std::string& version)
       foxglove_control_(options.foxglove_control),
       version_(version),
       drive_(read_drive_profile(options.drive_profile)) {}
+
+RunPage::Make run_page(const ViewOptions& options) {
+  return [&options] { return std::make_unique<RunView>(options, short_version()); };
+}
 
 void RunView::announce() const {
   if (opened_) opened_(url());

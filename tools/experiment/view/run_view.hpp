@@ -85,4 +85,7 @@ class RunView final : public RunPage {
   double rate_ = 0;
 };
 
+/// Returns the function that starts such a page; `options` must outlive it.
+RunPage::Make run_page(const ViewOptions& options);
+
 }  // namespace tools

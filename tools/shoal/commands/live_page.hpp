@@ -2,7 +2,6 @@
 #pragma once
 
 #include <functional>
-#include <memory>
 #include <string>
 
 #include "sim/world_file/load_world.hpp"
@@ -12,8 +11,9 @@ namespace tools {
 
 /// What `shoal run --view` needs of the library `page`.
 struct LivePage {
-  /// Starts the page of a run.  Throws bridges::WebError, and sim::ConfigError for the profile.
-  std::unique_ptr<RunPage> (*make)(const ViewOptions& view);
+  /// Returns the function that starts the page of a run; `view` must outlive it.  It throws bridges::WebError, and
+  /// sim::ConfigError for the profile.
+  RunPage::Make (*page)(const ViewOptions& view);
   /// Runs a world each time that one of its files was saved, until a signal, and shows its errors on the page (`shoal
   /// run --view --watch`).  All runs have the same address.  `load` reads the world; `go` runs it and returns an exit
   /// code.  Returns the exit code of the last run, or 2 after an error of the world.

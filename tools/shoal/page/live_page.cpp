@@ -45,10 +45,6 @@ void wait_for_files(WatchedFiles& files, ViewOptions& view, const std::string& w
   }
 }
 
-std::unique_ptr<RunPage> make_page(const ViewOptions& view) {
-  return std::make_unique<RunView>(view, short_version());
-}
-
 int run_watched(const std::string& world_file, RunOptions& options, ViewOptions& view,
                 const std::function<sim::LoadedWorld()>& load, const std::function<int(const sim::LoadedWorld&)>& go) {
   bool shown = false;  // the page stays open over all runs
@@ -80,7 +76,7 @@ int run_watched(const std::string& world_file, RunOptions& options, ViewOptions&
   return exit_code;
 }
 
-constexpr LivePage of_this_library{make_page, run_watched};
+constexpr LivePage of_this_library{run_page, run_watched};
 [[maybe_unused]] const bool is_set = (live_page = &of_this_library) != nullptr;
 
 }  // namespace

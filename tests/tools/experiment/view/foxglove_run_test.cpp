@@ -14,6 +14,7 @@
 #include "tests/tools/experiment/replay/replay_fixture.hpp"
 #include "tools/experiment/replay/replay.hpp"
 #include "tools/experiment/run/runner.hpp"
+#include "tools/experiment/view/run_view.hpp"
 
 // Runs that are steered by a Foxglove client, and watched by one that does not read.
 
@@ -83,12 +84,12 @@ class FoxgloveRun {
     options_.speed = 0;
     options_.duration_s = duration_s;
     options_.record = record;
-    options_.view.emplace();
-    options_.view->port = 0;
-    options_.view->foxglove_control = true;
+    view_.port = 0;
+    view_.foxglove_control = true;
+    options_.page = tools::run_page(view_);
     std::promise<std::string> url;
     auto opened = url.get_future();
-    options_.view->opened = [&url](const std::string& text) { url.set_value(text); };
+    view_.opened = [&url](const std::string& text) { url.set_value(text); };
     thread_ = std::thread([this] { summary = tools::run_world(loaded_, options_); });
     const std::string address = opened.get();
     port = static_cast<std::uint16_t>(std::stoi(address.substr(address.rfind(':') + 1)));
@@ -108,6 +109,7 @@ class FoxgloveRun {
  private:
   sim::LoadedWorld loaded_;
   tools::RunOptions options_;
+  tools::ViewOptions view_;
   std::thread thread_;
 };
 

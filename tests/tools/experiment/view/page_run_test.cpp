@@ -10,6 +10,7 @@
 #include "tests/tools/experiment/view/view_page.hpp"
 #include "tools/experiment/replay/replay.hpp"
 #include "tools/experiment/run/runner.hpp"
+#include "tools/experiment/view/run_view.hpp"
 
 // Runs that are watched and steered by a page.
 
@@ -35,11 +36,11 @@ class PageRun {
     options_.quiet = options_.paused = true;
     options_.speed = 0;
     options_.record = record;
-    options_.view.emplace();
-    options_.view->port = 0;
+    view_.port = 0;
+    options_.page = tools::run_page(view_);
     std::promise<std::string> address;
     auto opened = address.get_future();
-    options_.view->opened = [&address](const std::string& text) { address.set_value(text); };
+    view_.opened = [&address](const std::string& text) { address.set_value(text); };
     thread_ = std::thread([this] { summary = tools::run_world(loaded_, options_); });
     url = opened.get();
     page = std::make_unique<test::ViewPage>(url);
@@ -64,6 +65,7 @@ class PageRun {
  private:
   sim::LoadedWorld loaded_;
   tools::RunOptions options_;
+  tools::ViewOptions view_;
   std::thread thread_;
 };
 

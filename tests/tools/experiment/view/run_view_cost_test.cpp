@@ -99,7 +99,7 @@ double peak_MB(const Work& work) {
   throw std::runtime_error("/proc/self/status has no VmHWM");
 }
 
-tools::RunOptions fast_run() {
+tools::RunOptions fast_run(const tools::ViewOptions& view) {
   tools::RunOptions options;
   options.bus = "none";
   options.quiet = true;
@@ -107,19 +107,20 @@ tools::RunOptions fast_run() {
   options.speed = 0;
   options.rewind_s = 0;
   options.duration_s = 30;
-  options.view = any_port();
+  options.page = tools::run_page(view);
   return options;
 }
 
 TEST(RunViewCost, APageThatDoesNotReadTakesAtMostEightMegabytesAndChangesNothing) {
   const sim::LoadedWorld loaded = sim::load_world_text(measured_world, "small.yaml");
   // A first run, so that both that are compared find the same memory in the process.
-  tools::run_world(loaded, fast_run());
+  tools::ViewOptions view = any_port();
+  tools::run_world(loaded, fast_run(view));
   tools::Summary alone, watched;
-  const double alone_MB = peak_MB([&] { alone = tools::run_world(loaded, fast_run()); });
-  tools::RunOptions options = fast_run();
+  const double alone_MB = peak_MB([&] { alone = tools::run_world(loaded, fast_run(view)); });
+  const tools::RunOptions options = fast_run(view);
   std::unique_ptr<web_test::Client> frozen;
-  options.view->opened = [&](const std::string& url) {
+  view.opened = [&](const std::string& url) {
     frozen = std::make_unique<web_test::Client>(static_cast<std::uint16_t>(std::stoi(url.substr(url.rfind(':') + 1))),
                                                 false, 4096);
     frozen->upgrade();

@@ -77,9 +77,10 @@ Seen watch(std::uint16_t port, const std::string& channel) {
 TEST(RunView, ASubscriptionDoesNotChangeTheRun) {
   const tools::Summary alone = tools::run_world(rover(), quiet_run());
   tools::RunOptions options = quiet_run();
-  options.view = tools::ViewOptions{.port = static_cast<std::uint16_t>(test_support::own_port()), .port_tries = 1};
+  const tools::ViewOptions view{.port = static_cast<std::uint16_t>(test_support::own_port()), .port_tries = 1};
+  options.page = tools::run_page(view);
   Seen seen;
-  std::thread page([&] { seen = watch(options.view->port, "r1.lidar"); });
+  std::thread page([&] { seen = watch(view.port, "r1.lidar"); });
   const auto begin = std::chrono::steady_clock::now();
   const tools::Summary watched = tools::run_world(rover(), options);
   page.join();

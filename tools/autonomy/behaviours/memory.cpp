@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tools/autonomy/missions/memory.hpp"
+#include "tools/autonomy/behaviours/memory.hpp"
 
 namespace autonomy {
 
