@@ -11,31 +11,8 @@ Vector3d symmetric_eigenvalues(const Matrix3d& matrix) {
   return Eigen::SelfAdjointEigenSolver<Matrix3d>(matrix, Eigen::EigenvaluesOnly).eigenvalues();
 }
 
-/// Jacobi's method: each rotation of the axes i and k clears the element (i, k).
 double smallest_eigenvalue(const Matrix6d& matrix) {
-  constexpr int max_sweeps = 50;  // 6 are enough in general
-  Matrix6d a = matrix;
-  for (int sweep = 0; sweep < max_sweeps; ++sweep) {
-    if (a.squaredNorm() - a.diagonal().squaredNorm() <= 0) break;
-    for (int i = 0; i < 6; ++i)
-      for (int k = i + 1; k < 6; ++k) {
-        if (a(i, k) == 0) continue;
-        const double ratio = (a(k, k) - a(i, i)) / (2 * a(i, k));
-        const double tangent = (ratio < 0 ? -1 : 1) / (std::abs(ratio) + std::hypot(1, ratio));
-        const double c = 1 / std::hypot(1, tangent), s = c * tangent;
-        for (int n = 0; n < 6; ++n) {
-          const double first = a(n, i), second = a(n, k);
-          a(n, i) = c * first - s * second;
-          a(n, k) = s * first + c * second;
-        }
-        for (int n = 0; n < 6; ++n) {
-          const double first = a(i, n), second = a(k, n);
-          a(i, n) = c * first - s * second;
-          a(k, n) = s * first + c * second;
-        }
-      }
-  }
-  return a.diagonal().minCoeff();
+  return Eigen::SelfAdjointEigenSolver<Matrix6d>(matrix, Eigen::EigenvaluesOnly).eigenvalues()[0];
 }
 
 /// Gelfand's formula: the limit of |A^k|^(1/k), here for k = 1, 2, 4, ...
