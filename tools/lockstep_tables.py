@@ -24,7 +24,11 @@ import tempfile
 import threading
 import time
 
-URL = f"udpm://239.255.76.67:{30000 + os.getpid() % 10000}?ttl=0"
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "tests"))
+
+from own_ports import end_with_parent, own_url  # noqa: E402
+
+URL = own_url()
 
 
 class Run:
@@ -35,22 +39,25 @@ class Run:
         self.process = subprocess.Popen(
             [self.shoal, "run", options.world, "--launch", "--quiet", "--no-keys", "--no-plots", "--lcm-url", URL,
              "--duration", str(options.duration), "--set", "pass=[]", "--results", self.results.name, *more],
-            stderr=subprocess.PIPE, text=True)
+            stderr=subprocess.PIPE, text=True, preexec_fn=end_with_parent)
         self.reader = threading.Thread(target=lambda: self.shown.extend(self.process.stderr))
         self.reader.start()
 
     def clients(self):
-        """Returns process ids and command lines."""
-        children = ""
-        with contextlib.suppress(OSError):
-            children = open(f"/proc/{self.process.pid}/task/{self.process.pid}/children", encoding="ascii").read()
-        for pid in children.split():
+        """Returns process ids and command lines, by the parent of each process: /proc/PID/task/PID/children is exact
+        only for a process that stands still."""
+        for pid in filter(str.isdecimal, os.listdir("/proc")):
             with contextlib.suppress(OSError):
-                yield int(pid), open(f"/proc/{pid}/cmdline", encoding="utf-8").read()
+                if parent_of(open(f"/proc/{pid}/stat", encoding="utf-8", errors="replace").read()) == self.process.pid:
+                    yield int(pid), open(f"/proc/{pid}/cmdline", encoding="utf-8").read()
 
     def request(self, *arguments):
-        return subprocess.run([self.shoal, "control", "--lcm-url", URL, "--timeout", "1", *arguments],
-                              capture_output=True, text=True, check=False).stdout
+        """What the run answers, however busy the machine is; nothing after its end."""
+        control = subprocess.Popen([self.shoal, "control", "--lcm-url", URL, "--timeout", "1000", *arguments],
+                                   stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+        self.await_that(lambda: control.poll() is not None)
+        control.kill()
+        return control.communicate()[0]
 
     def await_that(self, condition):
         while self.process.poll() is None and not condition():
@@ -61,6 +68,11 @@ class Run:
         self.reader.join()
         with open(os.path.join(self.results.name, "summary.json"), encoding="utf-8") as file:
             return code, json.load(file)
+
+
+def parent_of(stat):
+    """Of the process with this /proc/PID/stat: the second word behind its name."""
+    return int(stat[stat.rindex(")") + 1:].split()[1])
 
 
 def stop_at_random(run, chance):

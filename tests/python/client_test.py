@@ -6,7 +6,6 @@ import re
 import signal
 import sys
 import threading
-import time
 import unittest
 
 from support import BALL, ROOT, ShoalRun, run_python, scratch
@@ -218,7 +217,8 @@ class ClientTest(unittest.TestCase):
         self.assertRegex(errors, "no acknowledgement from 'pilot' .*; 'pilot' is a client of this process .* a future")
 
     def test_checks_its_numbers_at_once(self):
-        client, start = shoal.Client('pilot'), time.monotonic()
+        # Without the check join() would fail as well, but by another error, after waiting for a simulator.
+        client = shoal.Client('pilot')
         for wrong in [-1, 0, float('nan'), float('inf'), 1e10]:
             for wait in client.join, client.follow:
                 with self.assertRaisesRegex(shoal.Error, 'period_s must be > 0 and <= 1e'):
@@ -231,7 +231,6 @@ class ClientTest(unittest.TestCase):
             client.wait_until(1.5)
         with self.assertRaisesRegex(shoal.Error, 'Client.set_silence_limit: seconds must be >= 0 and <= 1e'):
             client.set_silence_limit(-1)
-        self.assertLess(time.monotonic() - start, 5)
 
     def test_refuses_what_is_no_message(self):
         client = shoal.Client('pilot')
@@ -269,10 +268,9 @@ class ClientTest(unittest.TestCase):
         for wait in [lambda client: client.join(0.1), lambda client: (client.follow(1), client.next_tick())]:
             client = shoal.Client('pilot')
             client.set_wait_warning(0)
-            timer, start = interrupt_after(0.3), time.monotonic()
-            with self.assertRaises(KeyboardInterrupt):
+            with self.assertRaises(KeyboardInterrupt):  # join() would otherwise end by another error, next_tick() never
+                timer = interrupt_after(0.3)
                 wait(client)
-            self.assertLess(time.monotonic() - start, 10)
             timer.join()
 
     def test_of_a_fork_is_another_one(self):

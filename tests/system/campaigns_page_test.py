@@ -40,7 +40,7 @@ class CampaignsPage(unittest.TestCase):
                 words = shlex.split(command, comments=True)
                 shorter = ["--seeds", "1-2", "--duration", "2"] if "plan" in words else []
                 done = subprocess.run([*words, *shorter], cwd=folder, env=environment, capture_output=True, text=True,
-                                      timeout=250, check=False)
+                                      timeout=580, check=False)
                 self.assertEqual(done.returncode, 0, f"{command}:\n{done.stdout}{done.stderr}")
             query = re.search(r'sqlite3 (\S+) "(SELECT [^"]*)"', TEXT)
             with sqlite3.connect(os.path.join(folder, query[1])) as database:

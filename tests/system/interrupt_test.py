@@ -19,8 +19,12 @@ BINARIES = os.path.abspath(sys.argv[1])
 HOW_MANY = int(sys.argv[2]) if len(sys.argv) > 2 else 12
 SEED = int(sys.argv[3]) if len(sys.argv) > 3 else 1
 del sys.argv[1:]
-URL = f"udpm://239.255.76.67:{20000 + os.getpid() % 10000}?ttl=0"
-PATIENCE_S = 60
+sys.path.insert(0, os.path.join(ROOT, "tests"))
+
+from own_ports import end_with_parent, own_url  # noqa: E402
+
+URL = own_url()
+PATIENCE_S = 200
 # Files that a run may leave: what it was asked to write.
 WANTED = ("world.yaml", "said", "run.lcm", "results", "tmp")
 
@@ -64,7 +68,8 @@ class Attempt:
             [os.path.join(BINARIES, "shoal"), "run", "world.yaml", "--launch", "--lcm-url", URL, "--duration", "5",
              "--snapshot-at", "2,4", "--record", "run.lcm", "--results", "results", "--allow-path", folder],
             cwd=folder, env={**os.environ, name: value, "TMPDIR": os.path.join(folder, "tmp")}, stdin=subprocess.DEVNULL,
-            stdout=self.shown, stderr=self.shown, start_new_session=True)
+            stdout=self.shown, stderr=self.shown, start_new_session=True,
+            preexec_fn=end_with_parent)
 
     def interrupt(self):
         try:  # the group in the foreground, as a terminal does
@@ -78,8 +83,11 @@ class Attempt:
         except subprocess.TimeoutExpired:
             return "still runs"
 
-    def left(self):
-        """What stayed behind that should not have."""
+    def left(self, patience_s=0):
+        """What stayed behind that should not have, after `patience_s` for processes that die with their run."""
+        until = time.monotonic() + patience_s
+        while processes_of(self.mark) and time.monotonic() < until:
+            time.sleep(0.01)
         left = [f"process {pid}: {line}" for pid, line in processes_of(self.mark)]
         for where, folders, files in os.walk(self.folder):
             for name in folders + files:
@@ -119,7 +127,7 @@ class Interrupt(unittest.TestCase):
                     time.sleep(again_s)
                     attempt.interrupt()
                 code = attempt.wait()
-                left, shown = attempt.left(), attempt.end()
+                left, shown = attempt.left(PATIENCE_S if again_s else 0), attempt.end()
             codes[code] = codes.get(code, 0) + 1
             print(f"{i}: {at_s:.2f} s: exit code {code}, {len(left)} left", flush=True)
             # A second signal that came late, on a busy machine, ends the run at once: only its processes must be gone.

@@ -11,13 +11,13 @@ import time
 
 from page_steps import Change, Commands, File, PageError, missing_lines, steps_of
 
-READY_S = 30
+READY_S = 200
 
 
 class Terminal:
     """A shell whose folder and exported variables last from one block of commands to the next."""
 
-    def __init__(self, folder, environment, limit_s=100):
+    def __init__(self, folder, environment, limit_s=250):
         self.folder, self.environment, self.limit_s = folder, environment, limit_s
         state = tempfile.NamedTemporaryFile(prefix="terminal-", delete=False, mode="w")
         state.write(f"cd {shlex.quote(folder)}\n")

@@ -19,6 +19,9 @@ from unittest import mock
 HERE = os.path.dirname(os.path.abspath(__file__))
 ROOT = os.path.join(HERE, "..", "..")
 BINARIES, LCM_GEN, *PACKAGES = sys.argv[1:]
+sys.path.insert(0, os.path.join(ROOT, "tests"))
+
+from own_ports import end_with_parent, own_url  # noqa: E402
 
 
 def options_of_the_page():
@@ -31,7 +34,7 @@ def options_of_the_page():
 def prepare():
     """The message types of this tree and a bus of the test's own; once, before the examples are imported."""
     types = tempfile.TemporaryDirectory()
-    os.environ["LCM_DEFAULT_URL"] = f"udpm://239.255.76.67:{10000 + os.getpid() * 4 % 20000}?ttl=0"
+    os.environ["LCM_DEFAULT_URL"] = own_url()
     if PACKAGES:
         sys.path[:0] = [*PACKAGES, os.path.join(ROOT, "examples", "python")]
         return types
@@ -162,7 +165,8 @@ class Example(unittest.TestCase):
         """`client`, or a function that makes its pilot once the file `wait_for` is there."""
         with tempfile.TemporaryFile("w+") as log:
             run = subprocess.Popen([os.path.join(BINARIES, "shoal"), "run", os.path.join(ROOT, "worlds", world),
-                                    *options], stdout=log, stderr=subprocess.STDOUT)
+                                    *options], stdout=log, stderr=subprocess.STDOUT,
+                                   preexec_fn=end_with_parent)
             pilot = None
             try:
                 while wait_for and not (os.path.exists(wait_for) and os.path.getsize(wait_for)):
@@ -171,7 +175,7 @@ class Example(unittest.TestCase):
                     pilot = client()
                     client = pilot.client
                 client.run()
-                exit_code = run.wait(60)
+                exit_code = run.wait(240)
             finally:
                 run.kill()
                 run.wait()
