@@ -41,11 +41,7 @@ struct ControlKey : testing::Test {
     arguments.insert(arguments.end(), options.begin(), options.end());
     return std::make_unique<Program>(arguments);
   }
-  Ended control(std::vector<std::string> arguments) {
-    arguments.insert(arguments.begin(), "control");
-    arguments.insert(arguments.end(), {"--lcm-url", far_url()});
-    return run_shoal(arguments);
-  }
+  Ended control(std::vector<std::string> arguments) { return system_test::control(std::move(arguments), far_url()); }
 
   ScratchFolder folder;
 };
@@ -143,7 +139,7 @@ TEST_F(ControlKey, IsHandedToLaunchedProgramsAndLeavesTheRunAsItIs) {
 TEST_F(ControlKey, IsNotNeededWithOpenControlWhichSaysSo) {
   const auto shoal =
       run(source("worlds/minimal.yaml"), {"--duration", "forever", "--lcm-url", far_url(), "--open-control"});
-  EXPECT_TRUE(await([&] { return control({"quit", "--timeout", "0.3"}).exit_code == 0; }, timeout));
+  EXPECT_EQ(control({"quit"}).exit_code, 0);
   EXPECT_EQ(shoal->wait(), 0) << shoal->errors();
   EXPECT_THAT(shoal->errors(),
               HasSubstr("--open-control: any program that reaches the network of this run can control it"));
@@ -169,7 +165,7 @@ TEST_F(ControlKey, IsInAFolderOfItsOwnWithoutResults) {
 TEST_F(ControlKey, IsReadFromTheEnvironment) {
   const auto shoal = run(source("worlds/minimal.yaml"), {"--duration", "forever", "--lcm-url", far_url()});
   const Program control({"/usr/bin/env", "SHOAL_RUN_KEY=" + key_in(results()), built("shoal"), "control", "quit",
-                         "--lcm-url", far_url()});
+                         "--timeout", "60", "--lcm-url", far_url()});
   EXPECT_EQ(shoal->wait(), 0) << shoal->errors();
 }
 

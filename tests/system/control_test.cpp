@@ -61,7 +61,7 @@ TEST(Control, AVehicleGoesWithTheProgramThatBroughtIt) {
   Program shoal(
       {built("shoal"), "run", source("worlds/minimal.yaml"), "--duration", "forever", "--lcm-url", own_url()});
   ASSERT_TRUE(receives<shoal::sim_state_t>(listener, "sim.state", [](const auto& state) { return state.count == 1; }));
-  Program client({built("shoal"), "control", "spawn", "--stay", "--lcm-url", own_url(),
+  Program client({built("shoal"), "control", "spawn", "--stay", "--timeout", "60", "--lcm-url", own_url(),
                   "{name: guest, file: rover.yaml, position_m: [0, 3, 0], with_client: true, alive_timeout_s: 2}"});
   EXPECT_TRUE(receives<shoal::sim_state_t>(listener, "sim.state", [](const auto& state) { return state.count == 2; }));
   client.send_signal(SIGKILL);  // it cannot say good-bye

@@ -237,7 +237,7 @@ TEST(ExitCode, Is128PlusTheSignal) {
                    folder.file("run.lcm"), "--allow-path", folder.file("")});
     ASSERT_TRUE(listener.next(timeout));
     EXPECT_TRUE(std::filesystem::is_symlink(folder.file("port")));
-    const auto children = shoal.children();
+    const auto children = shoal.await_children(1);
     ASSERT_EQ(children.size(), 1u);
     EXPECT_TRUE(is_running(children[0]));
 

@@ -157,24 +157,25 @@ TEST(New, WritesAPythonProgramThatFindsItsModules) {
   EXPECT_THAT(pilot.errors(), ContainsRegex("the run is over, 0\\.[89][0-9]* m before the wall"));
 }
 
+void await_error(const Program& program, const std::string& text) {
+  EXPECT_TRUE(await([&] { return program.errors().find(text) != std::string::npos; })) << program.errors();
+}
+
 TEST(Waiting, ProgramsAndCommandsSayAfterThreeSecondsForWhat) {
   const std::string url = own_url();
   Program rover({built("shoal-coop-rover"), "--name", "rover1", "--waypoints-m", "[[1,1]]", "--lcm-url", url,
-                 "--join-timeout-s", "5"});
-  Program spy({built("shoal"), "spy", "rover1.odometry", "--lcm-url", url, "--duration", "5"});
-  Program control({built("shoal"), "control", "where", "--lcm-url", url, "--timeout", "5"});
-  rover.wait();
-  spy.wait();
-  control.wait();
-  EXPECT_THAT(rover.errors(), HasSubstr("waits for a simulator to answer its join on 'sim.control.reply', at " + url));
-  EXPECT_THAT(spy.errors(), HasSubstr("waiting for messages on 'rover1.odometry', at " + url));
-  EXPECT_THAT(control.errors(), HasSubstr("waiting for a simulator to answer on 'sim.control.reply', at " + url));
+                 "--join-timeout-s", "60"});
+  Program spy({built("shoal"), "spy", "rover1.odometry", "--lcm-url", url, "--duration", "60"});
+  Program control({built("shoal"), "control", "where", "--lcm-url", url, "--timeout", "60"});
+  await_error(rover, "waits for a simulator to answer its join on 'sim.control.reply', at " + url);
+  await_error(spy, "waiting for messages on 'rover1.odometry', at " + url);
+  await_error(control, "waiting for a simulator to answer on 'sim.control.reply', at " + url);
 }
 
 TEST(Waiting, ARequestMayBeMadeBeforeTheRunHasStarted) {
   const std::string url = own_url();
-  Program control({built("shoal"), "control", "quit", "--lcm-url", url, "--timeout", "30"});
-  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  Program control({built("shoal"), "control", "quit", "--lcm-url", url, "--timeout", "120"});
+  await_error(control, "waiting for a simulator to answer");
   Program run({built("shoal"), "run", "minimal", "--lcm-url", url, "--speed", "1", "--duration", "1000"});
   EXPECT_EQ(control.wait(), 0) << control.errors();
   EXPECT_EQ(control.output(), "ok\n");

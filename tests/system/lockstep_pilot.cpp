@@ -25,7 +25,7 @@ struct Pilot {
   shoal::Client::JoinOptions join;
   double slow_ms = 0;          ///< of wall time, at random up to this before each answer
   unsigned seed = 1;           ///< of that
-  std::int64_t stop_at = -1;   ///< tick after which it says nothing any more, but lives
+  std::int64_t stop_at = -1;   ///< tick at which it stands still; `join` applies only from then on
   std::int64_t die_at = -1;    ///< tick at which it kills itself
   std::int64_t quit_at = -1;   ///< tick at which it ends with exit code 0, and does not leave
   std::int64_t leave_at = -1;  ///< tick after which it leaves
@@ -46,7 +46,9 @@ int fly(const Pilot& pilot) {
       hash = mixed(mixed(hash, channel.data(), channel.size()), payload.data(), payload.size());
     });
   if (pilot.rewinds) client.on_rewind([&hash](std::int64_t) { hash = 0; });
-  client.join(pilot.period_s, pilot.join);
+  shoal::Client::JoinOptions patient = pilot.join;
+  if (pilot.stop_at > 0) patient.timeout_s = 1000;  // what counts is the silence that is meant
+  client.join(pilot.period_s, patient);
   std::cerr << "joined\n";
   std::mt19937 random(pilot.seed);
   std::int64_t ticks = 0;
@@ -54,7 +56,10 @@ int fly(const Pilot& pilot) {
     if (++ticks == pilot.leave_at) break;
     if (ticks == pilot.die_at) kill(getpid(), SIGKILL);
     if (ticks == pilot.quit_at) _exit(0);
-    while (ticks == pilot.stop_at) pause();
+    if (ticks == pilot.stop_at) {
+      client.join(pilot.period_s, pilot.join);
+      raise(SIGSTOP);
+    }
     if (pilot.slow_ms > 0)
       std::this_thread::sleep_for(
           std::chrono::duration<double, std::milli>(std::uniform_real_distribution<>(0, pilot.slow_ms)(random)));

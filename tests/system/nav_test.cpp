@@ -145,7 +145,8 @@ std::string short_dive() {
   }
   return "shoal: 1\nname: short_dive\nrun: {duration_s: 60}\nphysics: {step_s: 0.1}\nmedium: {water: {}}\n"
          "objects: [{name: bottom, fixed: true, position_m: [0, 0, -40], parts: [{shape: plane}]}]\nvehicles:\n" +
-         vehicles + "processes:\n" + processes + "lockstep: {timeout_s: 10, join_timeout_s: 30}\nmetrics:\n" + metrics;
+         vehicles + "processes:\n" + processes + "lockstep: {timeout_s: 1000, join_timeout_s: 1000}\nmetrics:\n" +
+         metrics;
 }
 
 TEST(Nav, AStudyRunsAlgorithmsOnTheRecordOfEachRunAndVerifiesThem) {

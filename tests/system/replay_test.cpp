@@ -133,9 +133,7 @@ TEST(Replay, WhatClientsDidToTheWorldIsDoneAgain) {
   const ScratchFolder folder;
   const std::string log = folder.file("run.lcm");
   const auto control = [](std::vector<std::string> arguments) {
-    arguments.insert(arguments.begin(), "control");
-    arguments.insert(arguments.end(), {"--lcm-url", own_url()});
-    const Ended ended = run_shoal(arguments);
+    const Ended ended = system_test::control(std::move(arguments));
     EXPECT_EQ(ended.exit_code, 0) << ended.errors;
   };
   const auto vehicles = [](bridges::LcmListener& listener, int count) {
@@ -154,7 +152,7 @@ TEST(Replay, WhatClientsDidToTheWorldIsDoneAgain) {
   ASSERT_TRUE(vehicles(listener, 1));
   control({"spawn", "{name: guest, file: rover.yaml, position_m: [0, 3, 0]}"});
   ASSERT_TRUE(vehicles(listener, 2));
-  Program client({built("shoal"), "control", "spawn", "--stay", "--lcm-url", own_url(),
+  Program client({built("shoal"), "control", "spawn", "--stay", "--timeout", "60", "--lcm-url", own_url(),
                   "{name: other, file: rover.yaml, position_m: [0, -3, 0], with_client: true, alive_timeout_s: 1}"});
   ASSERT_TRUE(vehicles(listener, 3));
   client.send_signal(SIGKILL);  // its vehicle goes when it has been silent for 1 s of wall time

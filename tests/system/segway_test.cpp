@@ -16,7 +16,7 @@ Ended run_segway(std::vector<std::string> more) {
   std::vector<std::string> arguments{"run", source("worlds/segway.yaml"), "--launch", "--lcm-url",
                                      system_test::own_url(0)};
   arguments.insert(arguments.end(), more.begin(), more.end());
-  return run_shoal(std::move(arguments), std::chrono::minutes(4));
+  return run_shoal(std::move(arguments));
 }
 
 TEST(SegwayRun, AnotherProcessBalancesItForTenMinutesOnCommand) {

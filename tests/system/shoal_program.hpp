@@ -17,8 +17,9 @@ using lcm_test::await;
 using lcm_test::own_url;
 using lcm_test::ScratchFolder;
 
-/// Much more than anything here takes: other tests may run at the same time.
-constexpr std::chrono::seconds timeout{60};
+/// Much more than anything here takes: other tests may run at the same time.  It only ends a test that has failed,
+/// before CTest does.
+constexpr std::chrono::seconds timeout{240};
 
 /// A program of the build tree, such as `shoal`.
 std::string built(const std::string& program);
@@ -30,7 +31,7 @@ void write_file(const std::string& path, const std::string& text);
 /// A child process, killed at the latest when this goes.
 class Program {
  public:
-  /// `arguments[0]` is the program, looked up in PATH.
+  /// `arguments[0]` is the program, looked up in PATH.  The thread must outlive it.
   explicit Program(std::vector<std::string> arguments);
   ~Program();
   Program(const Program&) = delete;
@@ -41,16 +42,22 @@ class Program {
   /// The exit code, 128 + signal when one killed it.  Kills it when it does not end in time, and gives -1.
   int wait(std::chrono::milliseconds limit = timeout);
   bool running();
+  /// The most memory that it had, once it is over.
+  long peak_kB() const { return peak_kB_; }
   std::string output() const { return text_of_file(scratch_.file("out")); }
   std::string errors() const { return text_of_file(scratch_.file("err")); }
-  /// Processes that it started itself.
+  /// Processes that it started itself, by the parent in /proc/PID/stat: /proc/PID/task/PID/children is exact only for a
+  /// process that stands still.
   std::vector<pid_t> children() const;
+  /// The same, once there are so many.
+  std::vector<pid_t> await_children(std::size_t count) const;
 
  private:
   ScratchFolder scratch_;
   pid_t pid_ = 0;
   bool over_ = false;
   int exit_code_ = -1;
+  long peak_kB_ = 0;
 };
 
 struct Ended {
@@ -61,8 +68,8 @@ struct Ended {
 
 /// Runs `shoal` with these arguments to its end.
 Ended run_shoal(std::vector<std::string> arguments, std::chrono::milliseconds limit = timeout);
-/// `shoal control` on own_url().
-Ended control(std::vector<std::string> arguments);
+/// `shoal control`; a simulator that is there answers, however busy the machine is.
+Ended control(std::vector<std::string> arguments, const std::string& url = own_url());
 /// The 16 digits after `state hash`, or what was said instead.
 std::string state_hash_in(const Ended& ended);
 /// The same after `run hash`: equal for equal runs, not only for equal ends.

@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fcntl.h>
 #include <signal.h>
-#include <spawn.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <regex>
@@ -13,9 +18,24 @@
 #include "tests/project_paths.hpp"
 #include "tests/system/shoal_program.hpp"
 
-extern char** environ;
-
 namespace system_test {
+
+namespace {
+
+/// Who is given no LCM URL does not reach the common default.
+const int own_default_bus = setenv("LCM_DEFAULT_URL", own_url(7).c_str(), 1);
+
+/// What /proc/PID/stat has behind the name: the state, a letter, and the parent; nothing without such a process, also
+/// when it goes while this is read.
+std::string status_of(const std::string& pid) {
+  std::ifstream in("/proc/" + pid + "/stat");
+  std::string line;
+  std::getline(in, line);
+  const std::size_t name_end = line.rfind(") ");
+  return name_end == std::string::npos ? "" : line.substr(name_end + 2);
+}
+
+}  // namespace
 
 std::string built(const std::string& program) {
   return test_support::built_path("bin/" + program);
@@ -39,14 +59,22 @@ Program::Program(std::vector<std::string> arguments) {
   std::vector<char*> pointers;
   for (std::string& argument : arguments) pointers.push_back(argument.data());
   pointers.push_back(nullptr);
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_addopen(&actions, 1, scratch_.file("out").c_str(), O_WRONLY | O_CREAT | O_APPEND, 0600);
-  posix_spawn_file_actions_addopen(&actions, 2, scratch_.file("err").c_str(), O_WRONLY | O_CREAT | O_APPEND, 0600);
-  const int error = posix_spawnp(&pid_, pointers[0], &actions, nullptr, pointers.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  if (error != 0) throw std::runtime_error("cannot start " + arguments[0]);
+  const std::string out = scratch_.file("out"), err = scratch_.file("err");
+  pid_ = fork();
+  if (pid_ < 0) throw std::runtime_error("cannot start " + arguments[0]);
+  if (pid_ > 0) return;
+  prctl(PR_SET_PDEATHSIG, SIGKILL);  // it does not outlive a test that is killed
+  const auto replace = [](int descriptor, const char* path, int flags) {
+    const int file = open(path, flags, 0600);
+    if (file < 0 || dup2(file, descriptor) < 0) _exit(126);
+    close(file);
+  };
+  replace(0, "/dev/null", O_RDONLY);
+  replace(1, out.c_str(), O_WRONLY | O_CREAT | O_APPEND);
+  replace(2, err.c_str(), O_WRONLY | O_CREAT | O_APPEND);
+  execvp(pointers[0], pointers.data());
+  perror(pointers[0]);
+  _exit(127);
 }
 
 Program::~Program() {
@@ -61,8 +89,10 @@ void Program::send_signal(int signal) const {
 
 bool Program::running() {
   int status = 0;
-  if (!over_ && waitpid(pid_, &status, WNOHANG) == pid_) {
+  rusage usage{};
+  if (!over_ && wait4(pid_, &status, WNOHANG, &usage) == pid_) {
     over_ = true;
+    peak_kB_ = usage.ru_maxrss;
     exit_code_ = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   }
   return !over_;
@@ -77,9 +107,19 @@ int Program::wait(std::chrono::milliseconds limit) {
 }
 
 std::vector<pid_t> Program::children() const {
-  const std::string task = "/proc/" + std::to_string(pid_) + "/task/" + std::to_string(pid_) + "/children";
-  std::ifstream in(task);
-  return {std::istream_iterator<pid_t>(in), {}};
+  std::vector<pid_t> found;
+  for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
+    const std::string name = entry.path().filename();
+    if (name.find_first_not_of("0123456789") != std::string::npos) continue;
+    const std::string status = status_of(name);
+    if (!status.empty() && std::stoi(status.substr(2)) == pid_) found.push_back(std::stoi(name));
+  }
+  return found;
+}
+
+std::vector<pid_t> Program::await_children(std::size_t count) const {
+  await([&] { return children().size() >= count; });
+  return children();
 }
 
 Ended run_shoal(std::vector<std::string> arguments, std::chrono::milliseconds limit) {
@@ -89,9 +129,11 @@ Ended run_shoal(std::vector<std::string> arguments, std::chrono::milliseconds li
   return {exit_code, program.output(), program.errors()};
 }
 
-Ended control(std::vector<std::string> arguments) {
+Ended control(std::vector<std::string> arguments, const std::string& url) {
   arguments.insert(arguments.begin(), "control");
-  arguments.insert(arguments.end(), {"--lcm-url", own_url()});
+  arguments.insert(arguments.end(), {"--lcm-url", url});
+  if (std::find(arguments.begin(), arguments.end(), "--timeout") == arguments.end())
+    arguments.insert(arguments.end(), {"--timeout", "60"});
   return run_shoal(arguments);
 }
 
@@ -114,9 +156,8 @@ std::string run_hash_in(const Ended& ended) {
 }
 
 bool is_running(pid_t pid) {
-  const std::string status = text_of_file("/proc/" + std::to_string(pid) + "/stat");
-  const std::size_t name_end = status.rfind(") ");
-  return name_end != std::string::npos && status[name_end + 2] != 'Z';
+  const std::string status = status_of(std::to_string(pid));
+  return !status.empty() && status[0] != 'Z';
 }
 
 std::string summary_value(const std::string& directory, const std::string& key) {

@@ -174,8 +174,8 @@ TEST(Study, EndsItsRunsOnASignal) {
   const StudyFolder study("seeds: [1, 2]\nduration_s: 1e9\n");
   Program program(
       {built("shoal"), "study", study.folder.file("study.yaml"), "--output", study.folder.file("out"), "--jobs", "2"});
-  ASSERT_TRUE(await([&] { return program.children().size() == 2; }, timeout));
-  const auto children = program.children();
+  const auto children = program.await_children(2);
+  ASSERT_EQ(children.size(), 2u) << program.errors();
   program.send_signal(SIGINT);
   EXPECT_EQ(program.wait(), 130) << program.errors();
   for (const pid_t child : children) EXPECT_FALSE(is_running(child));
@@ -278,8 +278,9 @@ TEST(Run, ItsProgramsEndWhenItIsKilled) {
   const ScratchFolder folder;
   write_file(folder.file("world.yaml"), endless_world("processes: [{name: pilot, command: [sleep, '1000']}]\n"));
   Program program({built("shoal"), "run", folder.file("world.yaml"), "--launch", "--lcm-url", own_url(2)});
-  ASSERT_TRUE(await([&] { return program.children().size() == 1; }, timeout)) << program.errors();
-  const pid_t pilot = program.children()[0];
+  const auto children = program.await_children(1);
+  ASSERT_EQ(children.size(), 1u) << program.errors();
+  const pid_t pilot = children[0];
   program.send_signal(SIGKILL);
   EXPECT_EQ(program.wait(), 128 + SIGKILL);
   EXPECT_TRUE(await([&] { return !is_running(pilot); }, timeout));

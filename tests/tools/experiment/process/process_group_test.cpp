@@ -42,7 +42,9 @@ std::string await_line(const std::string& path) {
 
 /// Neither gone nor waiting for whoever adopted it to notice.
 bool is_running(pid_t pid) {
-  const std::string status = text_of_file("/proc/" + std::to_string(pid) + "/stat");
+  std::ifstream in("/proc/" + std::to_string(pid) + "/stat");
+  std::string status;
+  std::getline(in, status);  // which does not throw when the process goes meanwhile
   const std::size_t name_end = status.rfind(") ");
   return name_end != std::string::npos && status[name_end + 2] != 'Z';
 }
