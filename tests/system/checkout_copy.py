@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A copy of the checkout in which the commands of a page run as they would for someone who has just cloned it.
 
-Nothing is compiled: a stand-in for cmake puts those programs into the copy's build/release/bin that `--build` was asked
+Nothing is compiled: a stand-in for ninja puts those programs into the copy's build/release/bin that it was asked
 for, out of the build tree of the test, so a program that tools/run forgets to build is missing here as it is in a clone.
 A stand-in for ctest notes that it was called.
 """
@@ -22,17 +22,26 @@ os.makedirs(here + "/bin", exist_ok=True)
 if arguments[:2] == ["--preset", "release"]:
     with open(here + "/CMakeCache.txt", "w") as cache:
         cache.write("CMAKE_HOME_DIRECTORY:INTERNAL=" + os.getcwd() + "\\n")
+    open(here + "/build.ninja", "w").close()
     sys.exit(0)
 if arguments[:2] == ["--install", here]:
     os.execv({cmake!r}, [{cmake!r}, "--install", binary_dir, *arguments[2:]])
-if arguments[:2] != ["--build", here]:
-    sys.exit("cmake: not expected: " + " ".join(arguments))
-if arguments[2:3] != ["--target"]:
-    sys.exit(0)  # everything, for the tests; programs come only by what tools/run asks for
-links = subprocess.run(["ninja", "-C", binary_dir, "-t", "commands", *arguments[3:]], capture_output=True, text=True,
+if arguments in (["--version"], ["--list-presets"]):
+    os.execv({cmake!r}, [{cmake!r}, *arguments])
+sys.exit("cmake: not expected: " + " ".join(arguments))
+"""
+
+STAND_IN_NINJA = """#!/usr/bin/env python3
+import os, re, shutil, subprocess, sys
+binary_dir, arguments = {binary_dir!r}, sys.argv[1:]
+here, targets = arguments[1], [each for each in arguments[2:] if not each.startswith("-")]
+if "-n" in arguments or not targets:
+    sys.exit(0)  # a plan; or everything, for the tests: programs come only by what tools/run asks for
+links = subprocess.run([{ninja!r}, "-C", binary_dir, "-t", "commands", *targets], capture_output=True, text=True,
                        check=True)
-for program in re.findall(r" -o (bin/[^ ]+)", links.stdout):
-    for path in program, program + ".args.yaml":  # the declaration of its arguments, where it has one
+for linked in re.findall(r" -o ((?:bin|lib/shoal)/[^ ]+)", links.stdout):
+    os.makedirs(os.path.dirname(here + "/" + linked), exist_ok=True)
+    for path in linked, linked + ".args.yaml":  # the declaration of its arguments, where it has one
         if os.path.exists(here + "/" + path) or not os.path.exists(binary_dir + "/" + path):
             continue
         try:
@@ -54,6 +63,7 @@ class CheckoutCopy:
         self.copy_files()
         os.mkdir(self.stand_ins)
         self.write_program("cmake", STAND_IN_CMAKE.format(binary_dir=binary_dir, cmake=shutil.which("cmake")))
+        self.write_program("ninja", STAND_IN_NINJA.format(binary_dir=binary_dir, ninja=shutil.which("ninja")))
         self.write_program("ctest", f'#!/bin/sh\necho "$PWD $*" >> "{self.ctest_calls}"\n')
         self.environment = dict(own_bus(), HOME=self.folder, PATH=self.stand_ins + os.pathsep + os.environ["PATH"])
 
