@@ -43,7 +43,7 @@ inline int take_port_slot(int slot) {
   sockaddr_un name{};
   name.sun_family = AF_UNIX;
   const std::string text = "shoal-test-ports-" + std::to_string(slot);
-  std::memcpy(name.sun_path + 1, text.data(), text.size());  // a name that starts with 0 is no file
+  std::memcpy(name.sun_path + 1, text.data(), text.size());  // a name that starts with 0 is not a file
   const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + text.size());
   bool free = bind(lock, reinterpret_cast<const sockaddr*>(&name), size) == 0;
   if (!free && errno != EADDRINUSE) throw std::system_error(errno, std::generic_category(), "cannot lock ports");

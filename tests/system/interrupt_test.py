@@ -83,9 +83,9 @@ class Attempt:
         except subprocess.TimeoutExpired:
             return "still runs"
 
-    def left(self, patience_s=0):
-        """What stayed behind that should not have, after `patience_s` for processes that die with their run."""
-        until = time.monotonic() + patience_s
+    def left(self, timeout_s=0):
+        """What stayed behind that should not have, after `timeout_s` for processes that die with their run."""
+        until = time.monotonic() + timeout_s
         while processes_of(self.mark) and time.monotonic() < until:
             time.sleep(0.01)
         left = [f"process {pid}: {line}" for pid, line in processes_of(self.mark)]

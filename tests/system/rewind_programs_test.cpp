@@ -30,7 +30,7 @@ std::vector<std::string> mission(const RewoundMission& of, const std::vector<std
   return run;
 }
 
-/// Lets the run, which is paused, go on to a time; control() waits until the simulator listens.
+/// Lets the run, which is paused, continue to a time; control() waits until the simulator listens.
 void run_until(const std::string& time_s) {
   const Ended until = control({"until", "--value", time_s});
   EXPECT_EQ(until.exit_code, 0) << until.errors;

@@ -329,7 +329,7 @@ TEST(LcmBus, DropsTooLargeMessagesAndCounts) {
   EXPECT_EQ(bus.counts().dropped_outgoing, 1u);
 }
 
-// What is sent is never taken, so the sender waits for ever: who waited for the sender would not come to the end.
+// What is sent is never taken, so the sender waits forever: who waited for the sender would not come to the end.
 TEST(LcmBus, PublishNeverWaits) {
   TcpServer server(false);
   LcmBus bus(server.url());

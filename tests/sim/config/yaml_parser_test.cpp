@@ -179,11 +179,11 @@ double cpu_s() {
 }
 
 TEST(YamlParser, AnAliasBombEndsInOneErrorSoon) {
-  const double begin_s = cpu_s();
+  const double start_s = cpu_s();
   const std::string errors = errors_of(alias_bomb(20));
   EXPECT_NE(errors.find("more than 2000000 values or 256 MB of text, aliases expanded"), std::string::npos) << errors;
   EXPECT_EQ(errors.find('\n'), std::string::npos);
-  EXPECT_LT(cpu_s() - begin_s, 10.0);  // 0.1 s; a sanitizer is some 50 times slower
+  EXPECT_LT(cpu_s() - start_s, 10.0);  // 0.1 s; a sanitizer is some 50 times slower
 }
 
 TEST(YamlParser, AnAliasOfALongTextCannotFillTheMemory) {
@@ -196,10 +196,10 @@ TEST(YamlParser, TenMegabytesOfGarbageEndInAnErrorSoon) {
   std::mt19937 random(1);
   std::string bytes(10'000'000, ' ');
   for (char& byte : bytes) byte = static_cast<char>(random());
-  const double begin_s = cpu_s();
+  const double start_s = cpu_s();
   EXPECT_NE(errors_of(bytes), "");
   EXPECT_NE(errors_of(std::string(10'000'000, '[')), "");
-  EXPECT_LT(cpu_s() - begin_s, 10.0);  // 0.1 s; a sanitizer is some 50 times slower
+  EXPECT_LT(cpu_s() - start_s, 10.0);  // 0.1 s; a sanitizer is some 50 times slower
 }
 
 const char* const document =
