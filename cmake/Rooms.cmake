@@ -145,6 +145,8 @@ function(shoal_command_library name)
   shoal_link_rooms(shoal_${name} "${own}")
   list(TRANSFORM ARG_USES PREPEND shoal_)
   target_link_libraries(shoal_${name} PRIVATE ${ARG_USES})
+  # One that only registers itself, such as ros2, has no symbol that is needed.
+  target_link_options(shoal_${name} PRIVATE -Wl,--no-as-needed)
   # It is never older than the program when both are up to date.
   set_target_properties(shoal_${name} PROPERTIES OUTPUT_NAME ${name} PREFIX "" LINKER_LANGUAGE CXX
                         LINK_DEPENDS $<TARGET_FILE:shoal> BUILD_RPATH "$ORIGIN" INSTALL_RPATH "$ORIGIN"
