@@ -11,6 +11,7 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <stdexcept>
 #include <vector>
 
 #include "bridges/base/file_descriptor.hpp"
@@ -53,12 +54,12 @@ void build(const std::string& name, const fs::path& folder, const fs::path& libr
   // One process builds at a time, and the others find the library then.
   const bridges::FileDescriptor lock(open((folder / ".command_libraries").c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0666));
   if (lock.number() < 0)
-    throw LibraryError("the commands of '" + name + "' are not built, and " + folder.string() +
-                       " cannot be written: " + std::strerror(errno) + "; its owner builds them by " + by_hand);
+    throw std::runtime_error("the commands of '" + name + "' are not built, and " + folder.string() +
+                             " cannot be written: " + std::strerror(errno) + "; its owner builds them by " + by_hand);
   flock(lock.number(), LOCK_EX);
   if (is_current(library)) return;
   if (!run_program({sim::shipped_folder() + "/tools/build_progress", "--title", name, folder, "shoal_" + name}))
-    throw LibraryError("the commands of '" + name + "' could not be built; " + by_hand + " says more");
+    throw std::runtime_error("the commands of '" + name + "' could not be built; " + by_hand + " says more");
   // Up to date, although nothing was linked again.
   std::error_code ignored;
   fs::last_write_time(library, fs::file_time_type::clock::now(), ignored);
@@ -72,7 +73,7 @@ void load_library(const std::string& name) {
   std::error_code error;
   if (fs::exists(folder / "CMakeCache.txt", error) && !is_current(library)) build(name, folder, library);
   if (dlopen(library.c_str(), RTLD_NOW) == nullptr)
-    throw LibraryError(std::string("the commands of '") + name + "' cannot be loaded: " + dlerror());
+    throw std::runtime_error(std::string("the commands of '") + name + "' cannot be loaded: " + dlerror());
 }
 
 }  // namespace tools

@@ -18,7 +18,7 @@ bool register_command(AddCommand add);
 /// Adds the names and descriptions of all commands to the command line.
 void list_commands(CLI::App& app);
 
-/// Makes a command complete, with its options and action; loads its library.  Throws LibraryError.
+/// Makes a command complete, with its options and action; loads its library.  Throws std::runtime_error.
 void complete_command(CLI::App& app, int& exit_code, const std::string& name);
 
 /// Does so for all commands.
