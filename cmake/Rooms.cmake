@@ -64,6 +64,23 @@ function(shoal_headers name)
   endif()
 endfunction()
 
+# shoal_hot_sources(<room> <file>... OPTIONS <option>...): sources that are optimized more, in the folder that made the
+# room.  They are one unit, because precompiled headers do not fit their options.
+function(shoal_hot_sources room)
+  cmake_parse_arguments(ARG "" "" "OPTIONS" ${ARGN})
+  set(files ${ARG_UNPARSED_ARGUMENTS})
+  if(SHOAL_UNITY)
+    cmake_path(RELATIVE_PATH CMAKE_CURRENT_SOURCE_DIR BASE_DIRECTORY ${PROJECT_SOURCE_DIR} OUTPUT_VARIABLE here)
+    set_source_files_properties(${files} PROPERTIES HEADER_FILE_ONLY ON)
+    list(TRANSFORM files REPLACE "(.+)" "#include \"${here}/\\1\"\n")
+    list(JOIN files "" text)
+    set(files ${CMAKE_CURRENT_BINARY_DIR}/${room}_hot.cpp)
+    file(CONFIGURE OUTPUT ${files} CONTENT "${text}" @ONLY)
+    target_sources(${room} PRIVATE ${files})
+  endif()
+  set_source_files_properties(${files} PROPERTIES COMPILE_OPTIONS "${ARG_OPTIONS}" SKIP_PRECOMPILE_HEADERS ON)
+endfunction()
+
 # A third of a unit's time are headers.  Those of libraries are parsed once for sim/, and those of a world once for all
 # above.  Without unity builds each source stands alone, so that a missing #include is found.
 # shoal_use_headers(<target> <path> [<option>...]): headers that are compiled with other options are others.

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "devices/autopilot/autopilot_actuators.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
 #include "devices/autopilot/autopilot_control.hpp"
+#include "devices/autopilot/least_squares.hpp"
 #include "devices/joint/joint_of_device.hpp"
 #include "devices/marine/fin.hpp"
 #include "shoal/actuator_command_t.hpp"
@@ -123,7 +123,9 @@ void AutopilotActuators::add_fins(const AutopilotParams& params, const sim::Devi
     planes_.push_back({{params.fins[i]}, fin->limit_rad});
   }
   // The pseudo-inverse ignores fins with a negligible effect on an axis.
-  fin_angles_ = Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(torque).pseudoInverse();
+  fin_angles_.resize(torque.cols(), 2);
+  for (Eigen::Index axis = 0; axis < 2; ++axis)
+    fin_angles_.col(axis) = least_squares(torque, Eigen::Vector2d::Unit(axis));
   if (torque.norm() < 1e-9 || !fin_angles_.allFinite()) refuse(context, "'fins' neither pitch nor turn the vehicle");
 }
 

@@ -2,11 +2,11 @@
 #include "devices/autopilot/thrust_allocation.hpp"
 
 #include <Eigen/LU>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
+#include "devices/autopilot/least_squares.hpp"
 #include "sim/base/eigenvalues.hpp"
 
 namespace devices {
@@ -95,10 +95,7 @@ double ThrustAllocation::nearest(const Wrench& desired, std::vector<bool> droppe
     for (Eigen::Index i = 0; i < ease.size(); ++i)
       ease[i] =
           dropped[static_cast<std::size_t>(i)] ? 0 : 1 / std::sqrt(thrusters_[static_cast<std::size_t>(i)].weight);
-    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
-    solver.setThreshold(0.05);
-    solver.compute(effect * ease.asDiagonal());
-    forces_N = ease.cwiseProduct(solver.solve(target));
+    forces_N = ease.cwiseProduct(least_squares(effect * ease.asDiagonal(), target, 0.05));
     for (Eigen::Index i = 0; i < forces_N.size(); ++i)
       if (!dropped[static_cast<std::size_t>(i)] && cannot_push(i, forces_N[i]))
         again = dropped[static_cast<std::size_t>(i)] = true;

@@ -235,8 +235,12 @@ async function checkLog(world) {
 }
 
 async function checkBus(world) {
-  const ports = spawn("python3", [fileURLToPath(new URL("../own_ports.py", import.meta.url))]);  // until its input ends
-  const url = String(await once(ports.stdout, "data")).trim();
+  // tools/test_foxglove puts it beside this file.  The ports are ours until its input ends.
+  const ports = spawn("python3", [fileURLToPath(new URL("own_ports.py", import.meta.url))]);
+  ports.stderr.pipe(process.stderr);
+  const [line] = await Promise.race([once(ports.stdout, "data"), once(ports.stdout, "end")]);
+  check(line !== undefined, "own_ports.py gives a URL");
+  const url = String(line).trim();
   const run = new Server(shoal, ["run", world, "--lcm-url", url, "--speed", "1", "--quiet"]);
   try {
     await withServer(["view", "--lcm-url", url, "--view-port", "0"], async ({ port }) => {

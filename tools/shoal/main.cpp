@@ -19,7 +19,7 @@
 #include "sim/world_file/vehicle_config.hpp"
 #include "tools/command_line/parse.hpp"
 #include "tools/command_line/text_layout.hpp"
-#include "tools/experiment/run/runner.hpp"
+#include "tools/experiment/run/version.hpp"
 #include "tools/experiment/snapshot/run_identity.hpp"
 #include "tools/shoal/commands/commands.hpp"
 

@@ -12,6 +12,7 @@
 #include "tools/experiment/process/browser.hpp"
 #include "tools/experiment/process/world_programs.hpp"
 #include "tools/experiment/run/runner.hpp"
+#include "tools/experiment/run/version.hpp"
 #include "tools/experiment/snapshot/run_identity.hpp"
 #include "tools/experiment/world_files/world_by_name.hpp"
 #include "tools/shoal/commands/command_library.hpp"

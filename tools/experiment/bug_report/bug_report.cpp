@@ -16,7 +16,7 @@
 #include "tools/experiment/files/scratch_directory.hpp"
 #include "tools/experiment/files/tar_file.hpp"
 #include "tools/experiment/results/run_record.hpp"
-#include "tools/experiment/run/runner.hpp"
+#include "tools/experiment/run/version.hpp"
 #include "tools/experiment/snapshot/record_tail.hpp"
 #include "tools/experiment/snapshot/run_identity.hpp"
 

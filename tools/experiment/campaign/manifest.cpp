@@ -16,7 +16,7 @@
 #include "tools/experiment/files/file_replacement.hpp"
 #include "tools/experiment/files/json_reader.hpp"
 #include "tools/experiment/files/no_links.hpp"
-#include "tools/experiment/run/runner.hpp"
+#include "tools/experiment/run/version.hpp"
 
 namespace tools {
 

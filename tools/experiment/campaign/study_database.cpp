@@ -13,7 +13,7 @@
 #include <optional>
 #include <stdexcept>
 
-#include "tools/experiment/run/runner.hpp"
+#include "tools/experiment/run/version.hpp"
 #include "tools/experiment/study/study_rules.hpp"
 #include "tools/experiment/study/study_tables.hpp"
 

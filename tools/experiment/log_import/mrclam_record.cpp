@@ -23,7 +23,7 @@
 #include "sim/world/world.hpp"
 #include "sim/world_file/load_world.hpp"
 #include "tools/experiment/results/run_record.hpp"
-#include "tools/experiment/run/runner.hpp"
+#include "tools/experiment/run/version.hpp"
 #include "tools/experiment/snapshot/run_identity.hpp"
 
 namespace tools {

@@ -16,7 +16,7 @@
 #include "tools/experiment/replay/line_difference.hpp"
 #include "tools/experiment/replay/replay_messages.hpp"
 #include "tools/experiment/replay/replayed_world.hpp"
-#include "tools/experiment/run/runner.hpp"
+#include "tools/experiment/run/version.hpp"
 #include "tools/experiment/snapshot/run_identity.hpp"
 #include "tools/experiment/snapshot/world_difference.hpp"
 #include "tools/experiment/terminal/progress.hpp"

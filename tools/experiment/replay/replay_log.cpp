@@ -26,7 +26,7 @@
 #include "shoal/sim_state_t.hpp"
 #include "sim/config/message_text.hpp"
 #include "tools/experiment/results/audit_text.hpp"
-#include "tools/experiment/run/runner.hpp"
+#include "tools/experiment/run/version.hpp"
 #include "tools/experiment/snapshot/snapshot_pieces.hpp"
 
 namespace tools {

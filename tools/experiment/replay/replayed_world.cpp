@@ -14,6 +14,7 @@
 #include "sim/world/world_state.hpp"
 #include "tools/experiment/process/world_programs.hpp"
 #include "tools/experiment/run/runner.hpp"
+#include "tools/experiment/run/version.hpp"
 #include "tools/experiment/snapshot/run_identity.hpp"
 
 namespace tools {

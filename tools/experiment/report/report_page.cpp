@@ -14,7 +14,7 @@
 #include "tools/experiment/report/report_plots.hpp"
 #include "tools/experiment/report/run_words.hpp"
 #include "tools/experiment/report/study_report.hpp"
-#include "tools/experiment/run/runner.hpp"
+#include "tools/experiment/run/version.hpp"
 
 namespace tools {
 

@@ -14,6 +14,7 @@
 #include "tools/experiment/results/run_error.hpp"
 #include "tools/experiment/run/run_ports.hpp"
 #include "tools/experiment/run/scores_message.hpp"
+#include "tools/experiment/run/version.hpp"
 #include "tools/experiment/snapshot/run_identity.hpp"
 
 namespace tools {

@@ -6,6 +6,7 @@
 #include "sim/base/thread_pool.hpp"
 #include "sim/world/world_state.hpp"
 #include "tools/experiment/run/run.hpp"
+#include "tools/experiment/run/version.hpp"
 #include "tools/experiment/snapshot/run_identity.hpp"
 
 namespace tools {

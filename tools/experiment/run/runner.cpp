@@ -9,6 +9,7 @@
 #include "tools/experiment/results/results_lock.hpp"
 #include "tools/experiment/results/run_error.hpp"
 #include "tools/experiment/run/run.hpp"
+#include "tools/experiment/run/version.hpp"
 #include "tools/experiment/snapshot/run_identity.hpp"
 
 namespace tools {

@@ -56,9 +56,4 @@ Summary run_world(const sim::LoadedWorld& loaded, const RunOptions& options);
 /// Returns the command that reports a failed run; `results` and `record` as of `shoal run`, empty: none.
 std::string bug_hint(const std::string& results, const std::string& record);
 
-/// Returns the versions of shoal and of the libraries it runs with.
-std::string version_text();
-/// Returns the version of shoal only: `0.5.0 (a1b2c3d)`.
-std::string short_version();
-
 }  // namespace tools

@@ -1,24 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <spdlog/fmt/fmt.h>
-
-#include "bridges/bus/lcm_version.hpp"
-#include "sim/ode/ode_version.hpp"
-#include "tools/experiment/run/runner.hpp"
+#include "tools/experiment/run/version.hpp"
 
 namespace tools {
 
 std::string short_version() {
-  return fmt::format("{} ({})", SHOAL_VERSION, SHOAL_GIT_HASH);
-}
-
-std::string version_text() {
-  return fmt::format(
-      "shoal {}\n"
-      "ODE: {}\n"
-      "LCM {}, Eigen {}.{}.{}, fmt {}\n"
-      "compiler: {}\n",
-      short_version(), sim::ode_configuration(), bridges::lcm_version(), EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION,
-      EIGEN_MINOR_VERSION, FMT_VERSION, __VERSION__);
+  return std::string(SHOAL_VERSION) + " (" + SHOAL_GIT_HASH + ")";
 }
 
 }  // namespace tools

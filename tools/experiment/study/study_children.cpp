@@ -17,7 +17,7 @@
 #include "bridges/control/other_simulators.hpp"
 #include "tools/experiment/files/no_links.hpp"
 #include "tools/experiment/process/child_program.hpp"
-#include "tools/experiment/run/runner.hpp"
+#include "tools/experiment/run/version.hpp"
 #include "tools/experiment/study/run_claim.hpp"
 #include "tools/experiment/study/run_files.hpp"
 #include "tools/experiment/study/study_algorithms.hpp"

@@ -10,7 +10,7 @@
 #include <set>
 
 #include "tools/experiment/results/verdict_json.hpp"
-#include "tools/experiment/run/runner.hpp"
+#include "tools/experiment/run/version.hpp"
 #include "tools/experiment/study/algorithm_table.hpp"
 #include "tools/experiment/study/study_equal_cases.hpp"
 #include "tools/experiment/study/study_rules.hpp"

@@ -10,7 +10,7 @@
 #include "sim/random/random.hpp"
 #include "tools/experiment/process/shell_word.hpp"
 #include "tools/experiment/process/signals.hpp"
-#include "tools/experiment/run/runner.hpp"
+#include "tools/experiment/run/version.hpp"
 #include "tools/experiment/study/run_files.hpp"
 #include "tools/experiment/study/study_algorithms.hpp"
 #include "tools/experiment/study/study_results.hpp"

@@ -6,7 +6,7 @@
 #include "shoal/message_codec.hpp"
 #include "tools/experiment/drive/drive_error.hpp"
 #include "tools/experiment/page_data/view_json.hpp"
-#include "tools/experiment/run/runner.hpp"
+#include "tools/experiment/run/version.hpp"
 #include "tools/experiment/view/forms_text.hpp"
 
 namespace tools {

@@ -13,6 +13,12 @@ std::map<std::string, Algorithm>& algorithms_by_name() {
   return algorithms;
 }
 
+/// Those of families, which exist once somebody has named them.
+std::map<std::string, Algorithm>& made_algorithms() {
+  static std::map<std::string, Algorithm> algorithms;
+  return algorithms;
+}
+
 using AlgorithmFamily = std::function<Algorithm(const std::string& rest)>;
 
 std::map<std::string, AlgorithmFamily>& families_by_prefix() {
@@ -34,9 +40,11 @@ bool detail::add_algorithm(Algorithm algorithm) {
 const Algorithm& algorithm_named(const std::string& name) {
   const auto found = algorithms_by_name().find(name);
   if (found != algorithms_by_name().end()) return found->second;
+  const auto made = made_algorithms().find(name);
+  if (made != made_algorithms().end()) return made->second;
   for (const auto& [prefix, make] : families_by_prefix())
     if (name.starts_with(prefix))
-      return algorithms_by_name().emplace(name, make(name.substr(prefix.size()))).first->second;
+      return made_algorithms().emplace(name, make(name.substr(prefix.size()))).first->second;
   std::string known;
   for (const auto& [each, algorithm] : algorithms_by_name()) known += (known.empty() ? "" : ", ") + each;
   throw std::invalid_argument("unknown algorithm '" + name + "'; known algorithms: " + known);

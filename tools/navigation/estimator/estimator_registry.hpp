@@ -44,7 +44,7 @@ class AlgorithmClock {
 /// Returns the algorithm with this name, or one of a family: `python:FILE.Class`.  Throws std::invalid_argument, with
 /// the known names.
 const Algorithm& algorithm_named(const std::string& name);
-/// Returns all, by name.
+/// Returns all that this program has, by name; none of a family, such as those in Python.
 std::vector<const Algorithm*> all_algorithms();
 
 namespace detail {

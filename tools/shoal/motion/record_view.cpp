@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/shoal/motion/record_view.hpp"
 
-#include "tools/experiment/run/runner.hpp"
+#include "tools/experiment/run/version.hpp"
 
 namespace tools {
 

@@ -8,6 +8,7 @@
 #include <thread>
 #include <utility>
 
+#include "tools/experiment/run/version.hpp"
 #include "tools/experiment/view/run_view.hpp"
 #include "tools/experiment/view/waiting_page.hpp"
 #include "tools/experiment/world_files/watched_files.hpp"

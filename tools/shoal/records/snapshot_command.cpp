@@ -8,7 +8,7 @@
 #include "sim/world/world.hpp"
 #include "sim/world/world_state.hpp"
 #include "sim/world_file/load_world.hpp"
-#include "tools/experiment/run/runner.hpp"
+#include "tools/experiment/run/version.hpp"
 #include "tools/experiment/snapshot/run_identity.hpp"
 #include "tools/experiment/snapshot/snapshot_file.hpp"
 #include "tools/shoal/commands/commands.hpp"

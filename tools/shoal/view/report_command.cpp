@@ -16,7 +16,7 @@
 #include "tools/experiment/recording/recording_page.hpp"
 #include "tools/experiment/report/report_page.hpp"
 #include "tools/experiment/results/run_record.hpp"
-#include "tools/experiment/run/runner.hpp"
+#include "tools/experiment/run/version.hpp"
 #include "tools/shoal/commands/commands.hpp"
 #include "tools/shoal/options/output_file.hpp"
 

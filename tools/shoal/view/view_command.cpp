@@ -17,7 +17,7 @@
 #include "tools/experiment/process/browser.hpp"
 #include "tools/experiment/process/signals.hpp"
 #include "tools/experiment/resimulate/resimulated_run.hpp"
-#include "tools/experiment/run/runner.hpp"
+#include "tools/experiment/run/version.hpp"
 #include "tools/experiment/view/log_view.hpp"
 #include "tools/shoal/commands/commands.hpp"
 #include "tools/shoal/options/view_options.hpp"

@@ -10,6 +10,7 @@
 #include "tests/devices/world_fixture.hpp"
 #include "tests/scratch_folder.hpp"
 #include "tools/experiment/run/runner.hpp"
+#include "tools/experiment/run/version.hpp"
 
 namespace {
 

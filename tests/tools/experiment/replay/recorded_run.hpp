@@ -15,7 +15,7 @@
 #include "shoal/message_codec.hpp"
 #include "sim/world/world_state.hpp"
 #include "tests/devices/comms/port_fixture.hpp"
-#include "tools/experiment/run/runner.hpp"
+#include "tools/experiment/run/version.hpp"
 #include "tools/experiment/snapshot/run_identity.hpp"
 #include "tools/experiment/snapshot/snapshot_pieces.hpp"
 

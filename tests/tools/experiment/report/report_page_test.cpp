@@ -14,6 +14,7 @@
 #include "tools/experiment/files/html.hpp"
 #include "tools/experiment/files/png_check.hpp"
 #include "tools/experiment/run/runner.hpp"
+#include "tools/experiment/run/version.hpp"
 
 namespace {
 

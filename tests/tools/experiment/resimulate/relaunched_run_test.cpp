@@ -10,6 +10,7 @@
 #include "tools/experiment/process/world_programs.hpp"
 #include "tools/experiment/resimulate/resimulated_run.hpp"
 #include "tools/experiment/run/runner.hpp"
+#include "tools/experiment/run/version.hpp"
 
 // A record whose branches start the programs of its world again, and its scores.
 

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include "tests/tools/experiment/replay/replay_fixture.hpp"
+#include "tools/experiment/run/version.hpp"
 
 namespace {
 

@@ -32,6 +32,13 @@ std::string python_with(const test_support::ScratchFolder& folder, const std::st
   return "python:" + folder.file(name) + ".Mine";
 }
 
+TEST(PythonEstimator, IsNotListedAmongTheAlgorithmsOfTheProgram) {
+  const test_support::ScratchFolder folder;
+  const std::string name = python_with(folder, "listed", "  def __init__(self):\n    pass\n");
+  EXPECT_EQ(&algorithm_named(name), &algorithm_named(name));
+  for (const Algorithm* algorithm : all_algorithms()) EXPECT_FALSE(algorithm->name.starts_with("python:"));
+}
+
 TEST(PythonEstimator, TheExampleIsTheNaiveFilter) {
   const std::string example = "python:" + test_support::source_path("examples/navigation/naive.Naive");
   navigation::Setup setup = nav_setup(2, 0, {10, 20}, 2);
