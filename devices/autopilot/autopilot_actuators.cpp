@@ -6,11 +6,11 @@
 #include <stdexcept>
 
 #include "devices/autopilot/autopilot_control.hpp"
-#include "devices/autopilot/least_squares.hpp"
 #include "devices/joint/joint_of_device.hpp"
 #include "devices/marine/fin.hpp"
 #include "shoal/actuator_command_t.hpp"
 #include "shoal/message_codec.hpp"
+#include "sim/base/linear_algebra.hpp"
 #include "sim/vehicle/mounted_device.hpp"
 #include "sim/world/world.hpp"
 
@@ -125,7 +125,7 @@ void AutopilotActuators::add_fins(const AutopilotParams& params, const sim::Devi
   // The pseudo-inverse ignores fins with a negligible effect on an axis.
   fin_angles_.resize(torque.cols(), 2);
   for (Eigen::Index axis = 0; axis < 2; ++axis)
-    fin_angles_.col(axis) = least_squares(torque, Eigen::Vector2d::Unit(axis));
+    fin_angles_.col(axis) = sim::least_squares(torque, Eigen::Vector2d::Unit(axis));
   if (torque.norm() < 1e-9 || !fin_angles_.allFinite()) refuse(context, "'fins' neither pitch nor turn the vehicle");
 }
 

@@ -6,8 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "devices/autopilot/least_squares.hpp"
-#include "sim/base/eigenvalues.hpp"
+#include "sim/base/linear_algebra.hpp"
 
 namespace devices {
 
@@ -95,7 +94,7 @@ double ThrustAllocation::nearest(const Wrench& desired, std::vector<bool> droppe
     for (Eigen::Index i = 0; i < ease.size(); ++i)
       ease[i] =
           dropped[static_cast<std::size_t>(i)] ? 0 : 1 / std::sqrt(thrusters_[static_cast<std::size_t>(i)].weight);
-    forces_N = ease.cwiseProduct(least_squares(effect * ease.asDiagonal(), target, 0.05));
+    forces_N = ease.cwiseProduct(sim::least_squares(effect * ease.asDiagonal(), target, 0.05));
     for (Eigen::Index i = 0; i < forces_N.size(); ++i)
       if (!dropped[static_cast<std::size_t>(i)] && cannot_push(i, forces_N[i]))
         again = dropped[static_cast<std::size_t>(i)] = true;

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "devices/drive/wheel_geometry.hpp"
+#include "sim/base/linear_algebra.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/vehicle/vehicle.hpp"
 #include "sim/world/world.hpp"
@@ -119,16 +120,7 @@ bool weight_is_determined(const std::vector<Support>& supports) {
     places.row(i) << 1, support.p_V_m.x(), support.p_V_m.y();
     left[i] = support.driven ? 1 : 0;
   }
-  // Subtract what the columns explain, after making each orthogonal to those before it.
-  for (int column = 0; column < 3; ++column) {
-    Eigen::VectorXd direction = places.col(column);
-    for (int before = 0; before < column; ++before) direction -= places.col(before).dot(direction) * places.col(before);
-    const double rest = direction.norm();
-    const bool depends = rest <= 1e-9 * places.col(column).norm();  // on the columns before it
-    places.col(column) = direction / (depends ? std::numeric_limits<double>::infinity() : rest);
-    left -= places.col(column).dot(left) * places.col(column);
-  }
-  return left.cwiseAbs().maxCoeff() < 0.02;
+  return (left - places * sim::least_squares(places, left)).cwiseAbs().maxCoeff() < 0.02;
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "sim/base/eigenvalues.hpp"
+#include "sim/base/linear_algebra.hpp"
 
 namespace sim {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "sim/base/eigenvalues.hpp"
+#include "sim/base/linear_algebra.hpp"
 #include "sim/config/message_text.hpp"
 
 namespace sim {

@@ -3,7 +3,7 @@
 #include <cassert>
 #include <utility>
 
-#include "sim/base/eigenvalues.hpp"
+#include "sim/base/linear_algebra.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/ode/ode_math.hpp"
 #include "sim/physics/physics_world_impl.hpp"

@@ -74,6 +74,17 @@ TEST_F(CommandLibrary, IsNotNeededForTheListOfCommands) {
   EXPECT_THAT(program.output(), HasSubstr("  film "));
 }
 
+TEST_F(CommandLibrary, ThatOnlyRegistersItselfIsLoadedWithThoseThatUseIt) {
+  // No symbol of ros2.so is called: without it each message would be one of LCM.
+  const std::string log = folder_.file("run.lcm"), mcap = folder_.file("run.mcap");
+  Program run({built("shoal"), "run", source("worlds/minimal.yaml"), "--bus", "none", "--speed", "max", "--duration",
+               "1", "--quiet", "--record", log});
+  ASSERT_LE(run.wait(), 1) << run.errors();
+  Program convert({built("shoal"), "log", "mcap", log, "--out", mcap});
+  EXPECT_EQ(convert.wait(), 0) << convert.errors();
+  EXPECT_THAT(text_of_file(mcap), HasSubstr("tf2_msgs/msg/TFMessage"));
+}
+
 TEST_F(CommandLibrary, ThatAnInstallationLacksIsOneError) {
   fs::remove(folder_.file("build/CMakeCache.txt"));
   const Ended ended = film_help();

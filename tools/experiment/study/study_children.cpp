@@ -17,6 +17,7 @@
 #include "bridges/control/other_simulators.hpp"
 #include "tools/experiment/files/no_links.hpp"
 #include "tools/experiment/process/child_program.hpp"
+#include "tools/experiment/process/signals.hpp"
 #include "tools/experiment/run/version.hpp"
 #include "tools/experiment/study/run_claim.hpp"
 #include "tools/experiment/study/run_files.hpp"

@@ -5,7 +5,7 @@
 
 #include <utility>
 
-#include "sim/base/eigenvalues.hpp"
+#include "sim/base/linear_algebra.hpp"
 #include "sim/config/message_text.hpp"
 #include "tools/shoal/urdf/shoal_names.hpp"
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sim/base/eigenvalues.hpp"
+#include "sim/base/linear_algebra.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/QR>
 
 namespace sim {
 
@@ -15,19 +16,15 @@ double smallest_eigenvalue(const Matrix6d& matrix) {
   return Eigen::SelfAdjointEigenSolver<Matrix6d>(matrix, Eigen::EigenvaluesOnly).eigenvalues()[0];
 }
 
-/// Gelfand's formula: the limit of |A^k|^(1/k), here for k = 1, 2, 4, ...
 double spectral_radius(const Matrix6d& matrix) {
-  constexpr int doublings = 50;
-  Matrix6d power = matrix;  // divided by its norm each time
-  double log_radius = 0, share = 1;
-  for (int i = 0; i < doublings; ++i, share /= 2) {
-    const double norm = power.norm();
-    if (!(norm > 0)) return 0;
-    log_radius += share * std::log(norm);
-    power /= norm;
-    power = (power * power).eval();
-  }
-  return std::exp(log_radius);
+  return Eigen::EigenSolver<Matrix6d>(matrix, false).eigenvalues().cwiseAbs().maxCoeff();
+}
+
+Eigen::VectorXd least_squares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b, std::optional<double> threshold) {
+  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
+  if (threshold) solver.setThreshold(*threshold);
+  solver.compute(A);
+  return solver.solve(b);
 }
 
 }  // namespace sim
