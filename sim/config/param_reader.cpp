@@ -246,6 +246,14 @@ bool ParamReader::take_text(const std::string& what, const ConfigNode& node, std
     error_at(node.place, what + " must be text, got " + shown(node));
     return false;
   }
+  // A terminal would obey them wherever the text is printed.
+  std::string line = node.scalar;
+  std::replace_if(
+      line.begin(), line.end(), [](char c) { return c == '\n' || c == '\t'; }, ' ');
+  if (printable(line) != line) {
+    error_at(node.place, what + " must have no control characters, got '" + shortened(printable(node.scalar)) + "'");
+    return false;
+  }
   value = node.scalar;
   return true;
 }

@@ -99,6 +99,18 @@ TEST(Results, AreNotWrittenThroughLinks) {
   EXPECT_THAT(text_of_file(folder.file("results") + "/summary.json"), HasSubstr("\"steps\""));
 }
 
+TEST(Snapshots, AreNotWrittenThroughALinkInTheResults) {
+  const ScratchFolder folder;
+  write_file(folder.file("world.yaml"), "shoal: 1\nrun: {duration_s: 0.1, speed: max}\n");
+  for (const char* name : {"results", "home"}) std::filesystem::create_directory(folder.file(name));
+  std::filesystem::create_directory_symlink(folder.file("home"), folder.file("results") + "/snapshots");
+  const Ended ended = run_shoal({"run", folder.file("world.yaml"), "--bus", "none", "--results", folder.file("results"),
+                                 "--snapshot-at", "0.05"});
+  EXPECT_EQ(ended.exit_code, 4);
+  EXPECT_THAT(ended.errors, HasSubstr("/results/snapshots: is a symbolic link, through which nothing is written"));
+  EXPECT_TRUE(std::filesystem::is_empty(folder.file("home")));
+}
+
 TEST(SpecialFiles, AreRefusedAsLogsToo) {
   const ScratchFolder folder;
   ASSERT_EQ(mkfifo(folder.file("pipe").c_str(), 0600), 0);

@@ -10,6 +10,7 @@
 #include "bridges/base/bus_error.hpp"
 #include "sim/base/log.hpp"
 #include "sim/world/world_state.hpp"
+#include "tools/experiment/files/no_links.hpp"
 #include "tools/experiment/results/results_world.hpp"
 #include "tools/experiment/results/run_error.hpp"
 #include "tools/experiment/run/run_ports.hpp"
@@ -114,7 +115,10 @@ TimeControl::Options Run::time_options() const {
   time.rewind_s = options_.rewind_s.value_or(accepts_requests ? usual_rewind_s : 0);
   time.max_bytes = static_cast<std::size_t>(options_.rewind_MB * 1e6);
   time.directory = options_.snapshots;
-  if (time.directory.empty() && !options_.results.empty()) time.directory = options_.results + "/snapshots";
+  if (time.directory.empty() && !options_.results.empty()) {
+    time.directory = options_.results + "/snapshots";
+    refuse_links(options_.results, time.directory);
+  }
   time.overwrite = options_.overwrite;
   time.resolved_world = sim::to_yaml(loaded_.resolved);
   time.files = files_;

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "bridges/log/record_reader.hpp"
+#include "bridges/log/run_info.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/sim_info_t.hpp"
 #include "shoal/sim_state_t.hpp"
@@ -69,7 +70,7 @@ NavRecord read_record(const std::string& path) {
   std::map<std::string, NavChannel, std::less<>> channels;
   while (reader->next(event)) {
     if (event.channel == "sim.info" && !record.team) {
-      const auto info = shoal::decode<shoal::sim_info_t>(event.payload, shoal::Finite::any);
+      const auto info = bridges::read_run_info(event.payload);
       record.world = info.world;
       record.epoch_utime = info.epoch_utime;
       record.team = std::make_shared<NavTeam>(team_of_text(info.resolved_config));

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "bridges/log/record_reader.hpp"
+#include "bridges/log/run_info.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/sim_info_t.hpp"
 #include "shoal/sim_state_t.hpp"
@@ -74,7 +75,7 @@ std::optional<LandRecord> read_land_record(const std::string& path) {
   LandChannels channels;
   while (reader->next(event)) {
     if (event.channel == "sim.info" && !record.run.team) {
-      const auto info = shoal::decode<shoal::sim_info_t>(event.payload, shoal::Finite::any);
+      const auto info = bridges::read_run_info(event.payload);
       const sim::WorldConfig world = world_of_text(info.resolved_config);
       if (!is_on_land(world)) return std::nullopt;
       begin(info, world, record);

@@ -11,6 +11,7 @@
 #include <regex>
 
 #include "bridges/log/event_log.hpp"
+#include "bridges/log/run_info.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/sim_info_t.hpp"
 #include "sim/config/message_text.hpp"
@@ -40,7 +41,7 @@ std::string type_name(const shoal::MessageTypes& types, std::int64_t fingerprint
 void print_run(const bridges::LogEvent& event) {
   if (event.channel != "sim.info") return;
   try {
-    const auto info = shoal::decode<shoal::sim_info_t>(event.payload, shoal::Finite::any);
+    const auto info = bridges::read_run_info(event.payload);
     fmt::print("world {}, seed {}, step {} us\n{}", info.world, info.seed, info.step_us, info.versions);
   } catch (const shoal::MessageError&) {
     // The channel belongs to another program that uses the name.
