@@ -111,6 +111,21 @@ TEST(Snapshots, AreNotWrittenThroughALinkInTheResults) {
   EXPECT_TRUE(std::filesystem::is_empty(folder.file("home")));
 }
 
+TEST(Snapshots, OfAnEarlierRunAreAnErrorBeforeTheRun) {
+  const ScratchFolder folder;
+  write_file(folder.file("world.yaml"), "shoal: 1\nrun: {duration_s: 2, speed: max}\n");
+  const std::vector<std::string> run = {"run",  folder.file("world.yaml"), "--bus", "none", "--snapshots",
+                                        folder.file("snaps"), "--snapshot-every", "0.7"};
+  EXPECT_EQ(run_shoal(run).exit_code, 0);
+  const Ended again = run_shoal(run);
+  EXPECT_EQ(again.exit_code, 4);
+  EXPECT_THAT(again.errors, HasSubstr("branch0_step70.snapshot: a snapshot of an earlier run"));
+  EXPECT_THAT(again.output, Not(HasSubstr("run hash")));
+  std::vector<std::string> replaced = run;
+  replaced.push_back("--overwrite");
+  EXPECT_EQ(run_shoal(replaced).exit_code, 0);
+}
+
 TEST(SpecialFiles, AreRefusedAsLogsToo) {
   const ScratchFolder folder;
   ASSERT_EQ(mkfifo(folder.file("pipe").c_str(), 0600), 0);
