@@ -16,6 +16,7 @@ namespace {
 
 using namespace system_test;
 using testing::HasSubstr;
+using testing::Not;
 
 const char* const endless =
     "shoal: 1\nrun: {duration_s: forever, speed: 1}\nobjects: [{name: ground, fixed: true, parts: [{shape: plane}]}]\n";
