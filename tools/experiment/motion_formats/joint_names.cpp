@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <set>
 
+#include "sim/config/format_version.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/motion/motion.hpp"
 
@@ -32,8 +33,7 @@ void JointNameList::read(sim::ParamReader& in) {
 
 void JointNamesFile::read(sim::ParamReader& in) {
   int version = 1;
-  in.require("shoal");
-  in.read("shoal", version, sim::between(1, 1), "version of the file format");
+  sim::read_format_version(in, version);
   in.require("joint_names");
   in.read_name("joint_names", vehicle, "name of the vehicle model");
   in.read("description", description, "description in one sentence");

@@ -116,6 +116,26 @@ nlohmann::ordered_json contacts_json(const std::vector<FirstContacts::Contact>& 
   return json;
 }
 
+/// Text of the figures, one in a line; those of a metric that are 0 share one.
+std::string figures_text(const std::map<std::string, double>& figures) {
+  std::size_t width = 28;
+  for (const auto& [name, value] : figures)
+    if (value != 0) width = std::max(width, name.size());
+  std::string text;
+  std::map<std::string, std::string> zeros;
+  for (const auto& [name, value] : figures) {
+    const std::size_t dot = name.rfind('.');
+    if (value != 0 || dot == std::string::npos) {
+      text += fmt::format("  {:<{}} {}\n", name, width, std::isnan(value) ? "none" : fmt::format("{:.4g}", value));
+      continue;
+    }
+    std::string& names = zeros[name.substr(0, dot)];
+    names += (names.empty() ? "" : ", ") + name.substr(dot + 1);
+  }
+  for (const auto& [metric, names] : zeros) text += fmt::format("  0 in {}: {}\n", metric, names);
+  return text;
+}
+
 }  // namespace
 
 std::string Summary::to_json() const {
@@ -197,11 +217,18 @@ std::string Summary::to_json() const {
 }
 
 std::string Summary::to_text() const {
-  std::string text = fmt::format(
-      "world {}  seed {}\n"
+  std::string text = fmt::format("world {}  seed {}\n", world, seed);
+  // The verdict.
+  for (const Scoring::Verdict& verdict : verdicts)
+    text += fmt::format("  {}: {}\n", verdict.passed ? "passed" : "FAILED", verdict.text());
+  if (event) text += fmt::format("  ended by an event, {}: {}\n", event->passed ? "passed" : "FAILED", event->text);
+  if (!judged())
+    text += ended_by_hand() ? fmt::format("  {}: not judged\n", why_not_judged())
+                            : fmt::format("  not judged: {}\n", why_not_judged());
+  text += fmt::format(
       "  {} steps, {:.2f} s simulated in {:.2f} s: {:.1f} x real time\n"
       "  {} messages, {} dropped, {} bad\n",
-      world, seed, steps, sim_time_s, wall_s, real_time_factor(), messages, dropped_messages, bad_messages);
+      steps, sim_time_s, wall_s, real_time_factor(), messages, dropped_messages, bad_messages);
   // Branches and accuracy.
   if (!snapshot.empty())
     text += fmt::format("  {:.2f} s of it here, from {}; metrics count from {:.2f} s\n", stepped_s, snapshot, from_s);
@@ -222,14 +249,8 @@ std::string Summary::to_text() const {
   if (modem_dropped_messages > 0)
     text += fmt::format("  {} messages were dropped from full queues of modems\n", modem_dropped_messages);
   if (serial_dropped_bytes > 0) text += fmt::format("  {} bytes of serial ports were not read\n", serial_dropped_bytes);
-  // Contacts, metrics and rules.
-  text += contacts_text(contacts);
-  std::size_t width = 28;
-  for (const auto& [name, value] : metrics) width = std::max(width, name.size());
-  for (const auto& [name, value] : metrics)
-    text += fmt::format("  {:<{}} {}\n", name, width, std::isnan(value) ? "none" : fmt::format("{:.4g}", value));
-  for (const Scoring::Verdict& verdict : verdicts)
-    text += fmt::format("  {}: {}\n", verdict.passed ? "passed" : "FAILED", verdict.text());
+  // Contacts and metrics.
+  text += contacts_text(contacts) + figures_text(metrics);
   // Programs, interventions and zones.
   for (const Process& process : processes)
     text += fmt::format("  process '{}' {} at {:.2f} s\n", process.name, process.how, process.sim_time_s);
@@ -240,11 +261,6 @@ std::string Summary::to_text() const {
     if (record.finish_s) text += fmt::format("  {} finished at {:.2f} s\n", vehicle, *record.finish_s);
     if (record.speeding_s > 0) text += fmt::format("  {} was too fast for {:.2f} s\n", vehicle, record.speeding_s);
   }
-  // End of the run.
-  if (event) text += fmt::format("  ended by an event, {}: {}\n", event->passed ? "passed" : "FAILED", event->text);
-  if (!judged())
-    text += ended_by_hand() ? fmt::format("  {}: not judged\n", why_not_judged())
-                            : fmt::format("  not judged: {}\n", why_not_judged());
   text += fmt::format("  run hash {:016x}, state hash {:016x}\n", run_hash, state_hash);
   return text;
 }
