@@ -24,14 +24,15 @@ PAGES = sorted(glob.glob(os.path.join(SOURCE, "docs", "**", "*.md"), recursive=T
 # First line of the block: what comes before and after it.
 PARTS = {
     "void DriveController::receive(sim::Time, std::span<const std::byte> payload) {": ("""
-#include "devices/drive/drive.hpp"
+#include "devices/drive/differential_drive.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/twist_command_t.hpp"
-#include "sim/device/registry.hpp"
+#include "sim/device/device_registry.hpp"
 namespace devices {
+using Drive = DifferentialDrive;
 class DriveController final : public sim::Controller {
  public:
-  using Messages = shoal::twist_command_t;
+  static constexpr const char* command_messages = "shoal.twist_command_t";
   explicit DriveController(Drive& drive) : drive_(drive) {}
   void receive(sim::Time now, std::span<const std::byte> payload) override;
   Drive& drive_;
@@ -42,7 +43,7 @@ class DriveController final : public sim::Controller {
 #include "shoal/client.hpp"
 struct Filter {};
 struct Plan {};
-struct State;
+template <class State>
 void decide(State& state, std::int64_t utime);
 void fly(shoal::Client& client) {
 """, "}"),
@@ -53,8 +54,8 @@ void fly(shoal::Client& client) {
 void fly(void (*on_scan)(const shoal::planar_lidar_t&)) {
 """, "}"),
     "class Mine final : public OwnFilterEstimator<Mine> {  // or EstimatorOf<Mine>: all seven functions": ("""
-#include "tools/navigation/algorithms/own_filter.hpp"
 #include "tools/navigation/estimator/estimator_registry.hpp"
+#include "tools/navigation/filter/own_filter.hpp"
 namespace navigation {
 """, "}"),
 }
@@ -89,6 +90,9 @@ class PageCode(unittest.TestCase):
                         made = self.write(folder, name[1], block)
                         subprocess.run(["lcm-gen", "-x", "--cpp-hpath", folder, made], check=True,
                                        stdout=subprocess.DEVNULL)
+                        types = glob.glob(os.path.join(SOURCE, "messages", "*", "*.lcm"))
+                        subprocess.run([os.path.join(BUILD, "messages", "generate_type_tables"), folder + "/texts.cpp",
+                                        folder + "/shoal/array_lengths.hpp", made, *types], check=True)
                     if language != "cpp":
                         continue
                     around = PARTS.get(block.partition("\n")[0], ("", ""))
@@ -99,7 +103,8 @@ class PageCode(unittest.TestCase):
 
             def errors_of(source):
                 place, folder, path = source
-                done = subprocess.run([COMPILER, "-std=c++20", "-fsyntax-only", "-x", "c++", f"-I{folder}", *INCLUDES, path],
+                done = subprocess.run([COMPILER, "-std=c++20", "-fsyntax-only", "-x", "c++", f"-I{folder}", *INCLUDES,
+                                       f"-I{SOURCE}/bridges/client", path],
                                       capture_output=True, text=True)
                 return f"{place}\n{done.stderr}" if done.returncode != 0 else ""
 
