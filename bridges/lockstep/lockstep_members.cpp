@@ -131,6 +131,11 @@ std::string LockstepService::reason_to_leave(const std::string& client) const {
                                                                         : "";
 }
 
+double LockstepService::end_s(const std::string& client) const {
+  const auto summary = summaries_.find(client);
+  return summary == summaries_.end() ? 0 : summary->second.ended_s;
+}
+
 bool LockstepService::leave(int link, const shoal::sim_control_request_t& request) {
   const std::string called = "client '" + sim::printable(sim::shortened(request.client)) + "'";
   // Identify the client and its session.
@@ -199,7 +204,7 @@ void LockstepService::client_exited(const std::string& client) {
   if (member == nullptr || member->removed) return;
   if (!member->terms.agreed) return discard(client, "its process ended");
   member->removed = true;
-  summary_of(client).ended = "its process ended";
+  end_summary(client, "its process ended");
 }
 
 void LockstepService::remove_all(const std::string& why) {
@@ -212,8 +217,7 @@ void LockstepService::remove_all(const std::string& why) {
 
 void LockstepService::discard(const std::string& client, const std::string& why) {
   if (const sim::LockstepMember* member = lockstep_.find(client)) {
-    Link& link = link_of(member->link);
-    link.messages.give_up(client);
+    give_up(*member);
     if (member->terms.session != 0) {
       ended_.emplace_back(client, member->terms.session);
       if (ended_.size() > max_ended_sessions) ended_.pop_front();
@@ -224,8 +228,14 @@ void LockstepService::discard(const std::string& client, const std::string& why)
   join_ids_.erase(client);
   challenges_.erase(client);
   answers_.erase(client);
-  summary_of(client).ended = why;
+  end_summary(client, why);
   watch_gates();
+}
+
+void LockstepService::end_summary(const std::string& client, const std::string& why) {
+  LockstepSummary& summary = summary_of(client);
+  summary.ended = why;
+  summary.ended_s = sim::to_seconds(world_.now());
 }
 
 void LockstepService::drop(const std::string& client, const std::string& why) {

@@ -42,7 +42,7 @@ LockstepService::~LockstepService() {
 
 void LockstepService::add_link(const LockstepBus& bus) {
   const int index = static_cast<int>(links_.size());
-  links_.push_back(std::make_unique<Link>(bus.network, bus.gate, bus.name));
+  links_.push_back(std::make_unique<Link>(bus));
   bus.gate.set_order([this, index, link = links_.back().get()](std::vector<sim::MessageGate::Delivery>& messages) {
     if (!suspended_) link->messages.order(messages);
     if (!posts_messages_) return;
@@ -235,6 +235,7 @@ void LockstepService::serve(const std::vector<std::string>& late) {
     check_time(client, requested, taken_);
     const sim::LockstepMember* member = lockstep_.find(client);
     if (member == nullptr || requested.send_at > now) continue;
+    if (member->answered && link_of(member->link).messages.is_complete(client)) continue;  // it goes on without some
     requested.send_at = now + requested.interval;
     requested.interval = fresh ? requested.interval : next_resend_interval(requested.interval);
     if (member->answered) {
@@ -255,6 +256,7 @@ void LockstepService::check_time(const std::string& client, Pending& requested, 
   const sim::LockstepMember* member = lockstep_.find(client);
   const double timeout_s = member->terms.timeout_s;
   if (now - requested.begin < std::chrono::duration<double>(timeout_s) && !member->removed) return;
+  if (do_without(*member)) return;
   // Describe what is late.
   char limit[32];
   std::snprintf(limit, sizeof limit, "%g s", timeout_s);
@@ -288,7 +290,7 @@ void LockstepService::check_time(const std::string& client, Pending& requested, 
       return drop(client, why);
     case sim::OnTimeout::end_run:
       requested.reported = true;
-      summary_of(client).ended = why;
+      end_summary(client, why);
       throw LockstepTimeout("lockstep: " + why);
   }
   requested.reported = true;

@@ -104,6 +104,14 @@ void Summary::fail(int code, const std::string& how_ended, const std::string& wh
 
 namespace {
 
+/// Lists the first phrases in one line.
+std::string listed(const std::vector<std::string>& phrases) {
+  constexpr std::size_t max = 5;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(max, phrases.size()); ++i) text += (i == 0 ? "" : "; ") + phrases[i];
+  return phrases.size() <= max ? text : text + fmt::format("; and {} more, see summary.json", phrases.size() - max);
+}
+
 /// Lists the first hundred pairs: a dense swarm has thousands.
 nlohmann::ordered_json contacts_json(const std::vector<FirstContacts::Contact>& contacts) {
   constexpr std::size_t max = 100;
@@ -148,7 +156,7 @@ std::string Summary::to_json() const {
     json["processes"].push_back(
         {{"name", process.name}, {"how", process.how}, {"sim_time_s", process.sim_time_s}, {"failed", process.failed}});
   if (!clients.empty()) json["clients"] = nlohmann::ordered_json::array();
-  for (const bridges::LockstepSummary& client : clients)
+  for (const bridges::LockstepSummary& client : clients) {
     json["clients"].push_back({{"name", client.client},
                                {"ticks", client.ticks},
                                {"repeated_ticks", client.repeated_ticks},
@@ -158,6 +166,9 @@ std::string Summary::to_json() const {
                                {"timeouts", client.timeouts},
                                {"contradictions", client.contradictions},
                                {"ended", client.ended.empty() ? "with the run" : client.ended}});
+    if (!client.ended.empty()) json["clients"].back()["ended_s"] = client.ended_s;
+  }
+  if (!not_recorded.empty()) json["not_recorded"] = not_recorded;
   // Control, zones and modems.
   json["control"] = {{"needs_key", needs_key}, {"refused_requests", refused_requests}, {"audit_count", audit_count}};
   json["control"]["audit"] = audit_json(audit);
@@ -233,6 +244,7 @@ std::string Summary::to_text() const {
   // Programs, interventions and zones.
   for (const Process& process : processes)
     text += fmt::format("  process '{}' {} at {:.2f} s\n", process.name, process.how, process.sim_time_s);
+  if (!not_recorded.empty()) text += "  not in the record: " + listed(not_recorded) + "\n";
   for (const bridges::AuditEntry& audit_entry : audit) text += "  " + audit_text(audit_entry) + "\n";
   if (refused_requests > 0)
     text += fmt::format("  {} requests without the key of the run were rejected\n", refused_requests);
@@ -295,12 +307,6 @@ Results::Results(const std::string& directory, const sim::World& world, bool plo
   remove_link(path);
   tracks_ = std::fopen(path.c_str(), "w");
   if (tracks_ == nullptr) throw cannot_write(path, std::strerror(errno));
-  std::error_code error;
-  // Remove the files of an earlier run, which would be mistaken for those of this one if it is killed.
-  for (const char* image : run_plots) std::filesystem::remove(directory + "/" + image, error);
-  for (const char* file : {"summary.json", "metrics.csv", "errors.csv"})
-    if (!std::filesystem::is_directory(directory + "/" + file, error))
-      std::filesystem::remove(directory + "/" + file, error);
   // Start the tracks.
   std::fprintf(tracks_, "time_s,vehicle,x_m,y_m,z_m,yaw_rad\n");
   const double step_s = sim::to_seconds(world.step_time());

@@ -10,7 +10,6 @@
 #include "bridges/base/bus_error.hpp"
 #include "sim/base/log.hpp"
 #include "sim/world/world_state.hpp"
-#include "tools/experiment/results/results_world.hpp"
 #include "tools/experiment/results/run_error.hpp"
 #include "tools/experiment/run/run_ports.hpp"
 #include "tools/experiment/run/scores_message.hpp"
@@ -66,10 +65,7 @@ Run::Run(const sim::LoadedWorld& loaded, const RunOptions& options)
     // Earlier messages are not in this run's log, which a gap indicates.
     journal_.start_branch(control_.branch, 1);
   }
-  if (!options.results.empty()) {
-    results_ = std::make_unique<Results>(options.results, world_, options.plots);
-    write_results_world(options.results, loaded.resolved);
-  }
+  if (!options.results.empty()) results_ = std::make_unique<Results>(options.results, world_, options.plots);
   progress_.restart(world_.now());
   plan_snapshots();
   if (options.keys && !options.quiet && TerminalKeys::possible()) {
@@ -81,9 +77,10 @@ Run::Run(const sim::LoadedWorld& loaded, const RunOptions& options)
 }
 
 std::vector<bridges::LockstepBus> Run::lockstep_buses() {
-  std::vector<bridges::LockstepBus> all{{buses_.network(), buses_.gate()}};
+  const bool is_recorded = !options_.record.empty();
+  std::vector<bridges::LockstepBus> all{{buses_.network(), buses_.gate(), "", is_recorded}};
   for (const sim::BusConfig& bus : loaded_.config.buses)
-    all.push_back({buses_.network(bus.name), buses_.gate(bus.name), bus.name});
+    all.push_back({buses_.network(bus.name), buses_.gate(bus.name), bus.name, is_recorded});
   return all;
 }
 
@@ -368,7 +365,9 @@ RunPrograms::Clients Run::clients(bool goes_on) {
             service_.client_exited(client);
             return !lockstep_.has(client);
           },
-          [this](const std::string& client) { return lockstep_.reason_to_leave(client); }};
+          [this](const std::string& client) {
+            return RunPrograms::Left{lockstep_.reason_to_leave(client), lockstep_.end_s(client)};
+          }};
 }
 
 void Run::check_programs() {
