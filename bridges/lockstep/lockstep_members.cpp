@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <spdlog/fmt/fmt.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "bridges/lockstep/lockstep_link.hpp"
 #include "bridges/lockstep_client/resend.hpp"
 #include "shoal/sim_control_reply_t.hpp"
 #include "sim/base/log.hpp"
+#include "sim/base/number.hpp"
 #include "sim/config/message_text.hpp"
 
 // Members of the lockstep: joining, leaving, name conflicts.
@@ -22,9 +24,7 @@ constexpr std::size_t max_ended_sessions = 1000;
 constexpr const char* left = "left";
 
 std::string seconds_text(sim::Time time) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.2f s", sim::to_seconds(time));
-  return text;
+  return fmt::format("{:.2f} s", sim::to_seconds(time));
 }
 
 }  // namespace
@@ -45,7 +45,7 @@ bool LockstepService::join(int link, const shoal::sim_control_request_t& request
   const auto period_steps = static_cast<std::int64_t>(std::llround(steps));
   if (std::abs(steps - static_cast<double>(period_steps)) > 1e-6)
     throw std::runtime_error("'join' needs a period that is a multiple of the step of " +
-                             std::to_string(sim::to_seconds(world_.step_time())) + " s");
+                             sim::shortest_text(sim::to_seconds(world_.step_time())) + " s");
   // Read the terms, and check for clients of the same name.
   const sim::LockstepTerms terms = sim::read_lockstep_terms(request.text, defaults_);
   check_session(request.client, terms.session);

@@ -14,6 +14,7 @@
 #include "shoal/message_codec.hpp"
 #include "shoal/station_command_t.hpp"
 #include "shoal/waypoints_command_t.hpp"
+#include "sim/config/message_text.hpp"
 #include "sim/vehicle/mounted_device.hpp"
 #include "sim/world/world.hpp"
 
@@ -306,8 +307,8 @@ namespace {
 /// Throws when a field is outside its limits.  NaN is valid and means no change.
 void check(const char* field, double value, double low, double high) {
   if (!std::isnan(value) && !(value >= low && value <= high))
-    throw std::runtime_error(std::string("field '") + field + "' must be between " + std::to_string(low) + " and " +
-                             std::to_string(high) + ", got " + std::to_string(value));
+    throw std::runtime_error(std::string("field '") + field + "' must be between " + sim::number_text(low) + " and " +
+                             sim::number_text(high) + ", got " + sim::number_text(value));
 }
 
 constexpr double far_m = 1e7;

@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "sim/base/log.hpp"
+#include "sim/base/number.hpp"
 #include "tools/experiment/files/gnuplot.hpp"
 #include "tools/experiment/results/audit_text.hpp"
 #include "tools/experiment/results/results_world.hpp"
@@ -326,9 +327,10 @@ void Results::after_step() {
   for (const auto& vehicle : world_.vehicles()) {
     const sim::Pose X_WV = vehicle->X_WV();
     const sim::Vector3d p = X_WV.translation();
-    const int written = std::fprintf(tracks_, "%.6f,%s,%.6f,%.6f,%.6f,%.6f\n", sim::to_seconds(world_.now()),
-                                     vehicle->name().c_str(), p.x(), p.y(), p.z(), sim::yaw_of(X_WV.linear()));
-    if (written < 0 && !error_) error_ = cannot_write(directory_ + "/tracks.csv", std::strerror(errno)).what();
+    const std::string row = fmt::format("{:.6f},{},{:.6f},{:.6f},{:.6f},{:.6f}\n", sim::to_seconds(world_.now()),
+                                        vehicle->name(), p.x(), p.y(), p.z(), sim::yaw_of(X_WV.linear()));
+    if (std::fputs(row.c_str(), tracks_) < 0 && !error_)
+      error_ = cannot_write(directory_ + "/tracks.csv", std::strerror(errno)).what();
   }
 }
 
@@ -378,7 +380,8 @@ void Results::start_branch(sim::Time back_to, bool ours) {
   std::uintmax_t keep = 0;
   // Times are written with all digits.
   for (bool first = true; std::getline(in, line); first = false) {
-    if (!first && (!ours || std::strtod(line.c_str(), nullptr) > sim::to_seconds(back_to) + 1e-7)) break;
+    const double time_s = sim::read_number(std::string_view(line).substr(0, line.find(','))).value_or(0);
+    if (!first && (!ours || time_s > sim::to_seconds(back_to) + 1e-7)) break;
     keep += line.size() + 1;
   }
   std::error_code error;
