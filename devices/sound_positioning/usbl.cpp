@@ -30,6 +30,7 @@ Usbl::Usbl(const Params& params, const sim::DeviceContext& context)
       range_noise_(context, params),
       azimuth_noise_(context, params),
       elevation_noise_(context, params) {
+  warn_of_assumed_water(params_.assumed_water, context);
   assume();
 }
 

@@ -35,6 +35,12 @@ inline std::string shortest_text(double value) {
   return std::string(text, std::to_chars(text, text + sizeof text, value).ptr);
 }
 
+/// Returns whether a number has only nines, such as 9999, -99.9 or 99.999: in many files a code for a missing value.
+inline bool is_nines(double value) {
+  const std::string text = shortest_text(value);
+  return text.find_first_not_of("-.9") == text.npos && text.find('9') != text.npos;
+}
+
 /// Rounds a number to significant digits, at most 17.
 inline double rounded_to(double value, int digits) {
   char text[40];

@@ -19,6 +19,12 @@ class ConfigCheck {
   ConfigCheck(const WorldConfig& world, const ConfigNode& root, Warnings& warnings, double end_s)
       : world_(world), root_(root), warnings_(warnings), end_s_(end_s) {}
 
+  void check_water() const {
+    if (!world_.medium.water) return;
+    for (const std::string& warning : world_.medium.water->warnings)
+      warnings_.warn(world_.medium.water->place, "medium: water", warning);
+  }
+
   void check_rates() const {
     std::set<const VehicleConfig*> seen;  // for look-ups, never iterated
     for (const VehicleInstance& vehicle : world_.vehicles)
@@ -145,6 +151,7 @@ void warn_of_config(const WorldConfig& world, const ConfigNode& root, Warnings& 
   const double given_s = duration_s.value_or(world.run.duration_s);
   const bool endless = given_s == 0 || world.run.duration_s == 0;
   const ConfigCheck check(world, root, warnings, endless ? 0 : std::max(given_s, world.run.duration_s));
+  check.check_water();
   check.check_rates();
   check.check_metrics();
   check.check_events();
