@@ -2,8 +2,8 @@
 #pragma once
 
 #include "sim/acoustics/rays/eigenrays.hpp"
-#include "sim/vehicle/device_context.hpp"
 #include "sim/medium/medium_config.hpp"
+#include "sim/vehicle/device_context.hpp"
 
 namespace devices {
 
