@@ -234,7 +234,7 @@ void LockstepService::serve(const std::vector<std::string>& late) {
     check_time(client, requested, taken_);
     const sim::LockstepMember* member = lockstep_.find(client);
     if (member == nullptr || requested.send_at > now) continue;
-    if (member->answered && link_of(member->link).messages.is_complete(client)) continue;  // it goes on without some
+    if (member->answered && link_of(member->link).messages.is_complete(client)) continue;  // it continues without some
     requested.send_at = now + requested.interval;
     requested.interval = fresh ? requested.interval : next_resend_interval(requested.interval);
     if (member->answered) {

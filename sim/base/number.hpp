@@ -13,8 +13,8 @@ namespace sim {
 // Numbers and their text, with a decimal point in every locale.  The locale of the process is not ours: a Python
 // program may have set one with a comma, which printf, std::to_string(double) and strtod follow.
 
-/// Reads all of a text as a decimal number.  One too small for a double is 0, one too large is infinite.  None: it is
-/// no number.
+/// Reads all of a text as a decimal number.  One too small for a double is 0, one too large is infinite.  None for
+/// other text.
 inline std::optional<double> read_number(std::string_view text) {
   if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
   const char* const end = text.data() + text.size();

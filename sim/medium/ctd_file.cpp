@@ -20,13 +20,13 @@ enum CtdColumn : std::size_t { depth, pressure, temperature, salinity, sound, de
 constexpr std::array<const char*, ctd_columns> ctd_names{"depth_m",      "pressure_dbar",   "temperature_C",
                                                          "salinity_psu", "sound_speed_mps", "density_kgpm3"};
 struct CtdRange {
-  double least, most;
-  bool has(double value) const { return value >= least && value <= most; }
+  double min, max;
+  bool has(double value) const { return value >= min && value <= max; }
 };
 /// Limits of the values, as for the rows of a world.
 constexpr std::array<CtdRange, ctd_columns> ctd_limits{
     {{-5, 12000}, {-5, 12400}, {-5, 100}, {0, 400}, {100, 10000}, {1, 20000}}};
-/// What waters have, apart from vents and brines.
+/// What waters have, apart from vents and brine.
 constexpr std::array<CtdRange, ctd_columns> ctd_usual{
     {{-5, 12000}, {-5, 12400}, {-5, 45}, {0, 45}, {1350, 1700}, {900, 1300}}};
 
@@ -105,48 +105,49 @@ void check_deepest(const CtdLines& lines, std::size_t at, double heave_m) {
                                    number_text(beside_m) + " m; remove the line");
 }
 
-/// Refuses a way to the deepest row that jumps back by more than `heave_m`.
-void check_steps(const CtdLines& way, double heave_m) {
-  for (std::size_t i = 1; i < way.size(); ++i)
-    if (way[i - 1].depth_m() - way[i].depth_m() > heave_m)
-      ctd_fail(std::max(way[i - 1].number, way[i].number),
-               "the depth jumps between " + number_text(way[i - 1].depth_m()) + " and " +
-                   number_text(way[i].depth_m()) +
+/// Refuses a cast towards its deepest row that jumps back by more than `heave_m`.
+void check_steps(const CtdLines& cast, double heave_m) {
+  for (std::size_t i = 1; i < cast.size(); ++i)
+    if (cast[i - 1].depth_m() - cast[i].depth_m() > heave_m)
+      ctd_fail(std::max(cast[i - 1].number, cast[i].number),
+               "the depth jumps between " + number_text(cast[i - 1].depth_m()) + " and " +
+                   number_text(cast[i].depth_m()) +
                    " m, against the direction of the cast: a spike, or more than one cast");
 }
 
-/// Refuses a way to the deepest row, which is not used, that comes back by more than twice `heave_m`: another cast.
-void check_other_way(const CtdLines& way, double heave_m) {
+/// Refuses a cast towards its deepest row, which is not used, that comes back by more than twice `heave_m`: it is more
+/// than one.
+void check_unused(const CtdLines& cast, double heave_m) {
   const CtdLine* furthest = nullptr;
-  for (const CtdLine& line : way) {
+  for (const CtdLine& line : cast) {
     if (furthest != nullptr && furthest->depth_m() - line.depth_m() > 2 * heave_m)
       ctd_fail(line.number, "the cast is at " + number_text(line.depth_m()) + " m, but at " +
                                 number_text(furthest->depth_m()) + " m in line " + std::to_string(furthest->number) +
-                                ", and deepest in line " + std::to_string(way.back().number) + " at " +
-                                number_text(way.back().depth_m()) + " m: a spike, or more than one cast");
+                                ", and deepest in line " + std::to_string(cast.back().number) + " at " +
+                                number_text(cast.back().depth_m()) + " m: a spike, or more than one cast");
     if (furthest == nullptr || line.depth_m() > furthest->depth_m()) furthest = &line;
   }
 }
 
-/// Returns the way down, or the way up when it is more than twice as long, in the order of depth and without heave.
-std::vector<CtdRow> one_way(const CtdLines& lines) {
+/// Returns the downcast, or the upcast when it is more than twice as long, in the order of depth and without heave.
+std::vector<CtdRow> one_cast(const CtdLines& lines) {
   std::vector<CtdRow> rows;
   if (lines.empty()) return rows;
   const auto by_depth = [](const CtdLine& a, const CtdLine& b) { return a.depth_m() < b.depth_m(); };
   const auto deepest = std::max_element(lines.begin(), lines.end(), by_depth);
-  const double least_m = std::min_element(lines.begin(), lines.end(), by_depth)->depth_m();
-  const double heave_m = std::clamp((deepest->depth_m() - least_m) / 10, 2.0, 5.0);
+  const double min_m = std::min_element(lines.begin(), lines.end(), by_depth)->depth_m();
+  const double heave_m = std::clamp((deepest->depth_m() - min_m) / 10, 2.0, 5.0);
   check_deepest(lines, static_cast<std::size_t>(deepest - lines.begin()), heave_m);
-  // Both ways, towards the deepest row.
+  // Both casts, towards the deepest row.
   CtdLines down(lines.begin(), deepest + 1), up(deepest, lines.end());
   std::reverse(up.begin(), up.end());
-  const auto length_m = [&](const CtdLines& way) {
-    return deepest->depth_m() - std::min_element(way.begin(), way.end(), by_depth)->depth_m();
+  const auto length_m = [&](const CtdLines& cast) {
+    return deepest->depth_m() - std::min_element(cast.begin(), cast.end(), by_depth)->depth_m();
   };
   const bool is_down = length_m(down) >= length_m(up) / 2;
   check_steps(down, heave_m);
   check_steps(up, heave_m);
-  check_other_way(is_down ? up : down, heave_m);
+  check_unused(is_down ? up : down, heave_m);
   for (const CtdLine& line : is_down ? down : up)
     if (rows.empty() || line.depth_m() > rows.back()[depth]) rows.push_back(line.values);
   return rows;
@@ -176,7 +177,7 @@ class CtdReader {
   }
 
   CtdCast cast() const {
-    const std::vector<CtdRow> rows = one_way(lines_);
+    const std::vector<CtdRow> rows = one_cast(lines_);
     if (rows.size() < 2)
       throw CtdError("needs two rows of rising depth below the header" +
                      (missing_.count > 0 ? "; " + missing_text() : ""));
@@ -193,8 +194,8 @@ class CtdReader {
     for (std::size_t i = 0; i < ctd_columns; ++i)
       if (const CtdProblem& unusual = unusual_[i]; unusual.count > 0)
         cast.warnings.push_back("line " + std::to_string(unusual.line) + ": " + unusual.text +
-                                " is no usual value of water, which is from " + number_text(ctd_usual[i].least) +
-                                " to " + number_text(ctd_usual[i].most) +
+                                " is unusual for water, which has " + number_text(ctd_usual[i].min) + " to " +
+                                number_text(ctd_usual[i].max) +
                                 (unusual.count > 1 ? "; in " + std::to_string(unusual.count) + " rows" : ""));
     return cast;
   }
@@ -227,8 +228,8 @@ class CtdReader {
       if (error != std::errc{} || at != cell.data() + cell.size()) ctd_fail(number, name + " is not a number" + got);
       if (is_missing_code(static_cast<CtdColumn>(i), value)) return missing_.add(number, name, cell);
       if (!ctd_limits[i].has(value))
-        ctd_fail(number, name + " must be in [" + number_text(ctd_limits[i].least) + ", " +
-                             number_text(ctd_limits[i].most) + "]" + got);
+        ctd_fail(number, name + " must be in [" + number_text(ctd_limits[i].min) + ", " +
+                             number_text(ctd_limits[i].max) + "]" + got);
       if (!ctd_usual[i].has(value)) unusual_[i].add(number, name, cell);
     }
     if (!columns_[depth]) line.values[depth] = depth_of_pressure_m(line.values[pressure]);

@@ -28,7 +28,7 @@ struct CtdCast {
 /// Reads a profile of water from the CSV text of a CTD.  The header names `depth_m` or `pressure_dbar`, `temperature_C`
 /// and `salinity_psu`, and perhaps `sound_speed_mps` and `density_kgpm3`, in any order; other columns and lines that
 /// begin with # are ignored.  Rows with missing values (empty, NaN, or a code such as -9.99e-29, 9999 or 99.999) are
-/// skipped with a warning.  The profile is the way down, or the way up if that is more than twice as long; heave of up
+/// skipped with a warning.  The profile is the downcast, or the upcast if that is more than twice as long; heave of up
 /// to a tenth of the depth, from 2 to 5 m, is taken out.  More than `ctd_rows` rows are averaged in layers of equal
 /// thickness.  Throws CtdError with the line, also for a spike of the depth and for more than one cast.
 CtdCast parse_ctd(std::string_view text);

@@ -121,12 +121,12 @@ TEST(CtdFile, WarnsOfValuesThatNoUsualWaterHas) {
       "depth_m,temperature_C,salinity_psu,sound_speed_mps\n1,60,35,1800\n2,61,35,1500\n3,9,46,"
       "1500\n");
   EXPECT_EQ(cast.rows.size(), 3u);
-  EXPECT_EQ(cast.warnings, (std::vector<std::string>{
-                               "line 2: 'temperature_C' '60' is no usual value of water, which is from -5 to 45; in 2 "
-                               "rows",
-                               "line 4: 'salinity_psu' '46' is no usual value of water, which is from 0 to 45",
-                               "line 2: 'sound_speed_mps' '1800' is no usual value of water, which is from 1350 to "
-                               "1700"}));
+  EXPECT_EQ(cast.warnings,
+            (std::vector<std::string>{"line 2: 'temperature_C' '60' is unusual for water, which has -5 to 45; in 2 "
+                                      "rows",
+                                      "line 4: 'salinity_psu' '46' is unusual for water, which has 0 to 45",
+                                      "line 2: 'sound_speed_mps' '1800' is unusual for water, which has 1350 to "
+                                      "1700"}));
 }
 
 TEST(CtdFile, RefusesASpikeOfTheDepthWithItsLine) {

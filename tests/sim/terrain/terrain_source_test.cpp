@@ -91,7 +91,7 @@ TEST(AsciiGrid, ErrorsSayTheLineAndWhatIsWrong) {
 TEST(AsciiGrid, HolesAreReadInAllSpellings) {
   const std::string size = "ncols 3\nnrows 1\nxllcenter 0\nyllcenter 0\ncellsize 10\n";
   for (const char* word : {"nan", "NaN", "-nan", "-nan(ind)", "1.#QNAN", "-1.#IND", "null", "-9999"}) {
-    // By NODATA_value nan, by a number, and without; also as the first height, which is no key.
+    // By NODATA_value nan, by a number, and without; also as the first height, which is not a key.
     for (const char* nodata : {"NODATA_value nan\n", "NODATA_value -9999\n", "NODATA_value null\n", ""}) {
       if (std::string(word) == "-9999" && std::string(nodata).find("value n") != std::string::npos) continue;
       const HeightGrid grid = sim::parse_ascii_grid(size + nodata + word + " 2 4\n", 1, Holes::nearest);
@@ -107,7 +107,7 @@ TEST(AsciiGrid, HolesAreReadInAllSpellings) {
 
 TEST(AsciiGrid, CellsAreGivenByTheirSizeOrByDxAndDy) {
   const std::string head = "ncols 2\nnrows 1\nxllcenter 0\nyllcenter 0\n";
-  // As GDAL writes cells that are square but for rounding.
+  // As GDAL writes cells that are square except for rounding.
   EXPECT_EQ(sim::parse_ascii_grid(head + "dx 10\ndy 10\n1 2\n", 1, Holes::error).cell_m, 10);
   EXPECT_EQ(sim::parse_ascii_grid(head + "dx 10.000000000\ndy 10.000000001\n1 2\n", 1, Holes::error).cell_m, 10);
   EXPECT_EQ(error_of_ascii(head + "dx 10\ndy 20\n1 2\n"), "line 6: cells must be square, but 'dx' is 10 and 'dy' 20");
