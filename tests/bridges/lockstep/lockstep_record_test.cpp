@@ -79,7 +79,6 @@ TEST(LockstepRecord, AMessageThatTheWorldReadsIsStillNeeded) {
   Recorded s("{timeout_s: 0.02}");
   const auto reader = s.gate.open_mailbox("cmd");
   ASSERT_TRUE(s.join("pilot", "{session: 5}").ok);
-  s.acknowledge(0, "pilot", 5, 1);
   EXPECT_THROW(s.synchronize([&] {
     s.acknowledge(0, "pilot", 5, 1, {{"note", "1"}, {"cmd", "2"}});
   }),
