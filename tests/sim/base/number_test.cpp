@@ -67,8 +67,11 @@ std::vector<std::string> lines_by_locale(const std::string& text) {
   std::size_t since_print = 100;
   std::istringstream in(text);
   for (std::string line; std::getline(in, line); ++since_print) {
-    if (std::regex_search(line, prints)) since_print = 0;  // its format may be on the next lines
-    if (std::regex_search(line, reads) || (since_print < 3 && std::regex_search(line, number))) lines.push_back(line);
+    const auto has = [&](const char* word) { return line.find(word) != std::string::npos; };
+    if ((has("printf") || has("scanf")) && std::regex_search(line, prints)) since_print = 0;  // and the next lines
+    if (((has("sto") || has("strto") || has("atof")) && std::regex_search(line, reads)) ||
+        (since_print < 3 && std::regex_search(line, number)))
+      lines.push_back(line);
   }
   return lines;
 }

@@ -89,37 +89,36 @@ TEST(AsciiGrid, ErrorsSayTheLineAndWhatIsWrong) {
 }
 
 TEST(AsciiGrid, HolesAreReadInAllSpellings) {
-  const std::string size = "ncols 3\nnrows 1\nxllcenter 0\nyllcenter 0\ncellsize 10\n";
+  const std::string size = "ncols 3\nnrows 2\nxllcenter 0\nyllcenter 0\ncellsize 10\n";
   for (const char* word : {"nan", "NaN", "-nan", "-nan(ind)", "1.#QNAN", "-1.#IND", "null", "-9999"}) {
     // By NODATA_value nan, by a number, and without; also as the first height, which is not a key.
     for (const char* nodata : {"NODATA_value nan\n", "NODATA_value -9999\n", "NODATA_value null\n", ""}) {
       if (std::string(word) == "-9999" && std::string(nodata).find("value n") != std::string::npos) continue;
-      const HeightGrid grid = sim::parse_ascii_grid(size + nodata + word + " 2 4\n", 1, Holes::nearest);
-      EXPECT_EQ(grid.at(0, 0), 2) << word << " " << nodata;
-      EXPECT_EQ(grid.at(2, 0), 4);
+      const HeightGrid grid = sim::parse_ascii_grid(size + nodata + word + " 2 4\n2 6 7\n", 1, Holes::nearest);
+      EXPECT_EQ(grid.at(0, 1), 2) << word << " " << nodata;  // as both beside it
+      EXPECT_EQ(grid.at(2, 1), 4);
     }
-    EXPECT_EQ(error_of_ascii(size + "2 " + word + " 4\n"),
+    EXPECT_EQ(error_of_ascii(size + "2 " + word + " 4\n5 6 7\n"),
               "line 6: a hole (NODATA) at column 2 of row 1: fill holes with 'holes: nearest' or 'holes: linear'");
   }
   // With NODATA_value nan a number is a height, whatever it is.
-  EXPECT_EQ(sim::parse_ascii_grid(size + "NODATA_value nan\n-9999 2 4\n", 1, Holes::nearest).at(0, 0), -9999);
+  EXPECT_EQ(sim::parse_ascii_grid(size + "NODATA_value nan\n-9999 2 4\n5 6 7\n", 1, Holes::nearest).at(0, 1), -9999);
 }
 
 TEST(AsciiGrid, CellsAreGivenByTheirSizeOrByDxAndDy) {
-  const std::string head = "ncols 2\nnrows 1\nxllcenter 0\nyllcenter 0\n";
+  const std::string head = "ncols 2\nnrows 2\nxllcenter 0\nyllcenter 0\n";
   // As GDAL writes cells that are square except for rounding.
-  EXPECT_EQ(sim::parse_ascii_grid(head + "dx 10\ndy 10\n1 2\n", 1, Holes::error).cell_m, 10);
-  EXPECT_EQ(sim::parse_ascii_grid(head + "dx 10.000000000\ndy 10.000000001\n1 2\n", 1, Holes::error).cell_m, 10);
-  EXPECT_EQ(error_of_ascii(head + "dx 10\ndy 20\n1 2\n"), "line 6: cells must be square, but 'dx' is 10 and 'dy' 20");
-  EXPECT_EQ(error_of_ascii(head + "dx 10\n1 2\n"),
+  EXPECT_EQ(sim::parse_ascii_grid(head + "dx 10\ndy 10\n1 2\n3 4\n", 1, Holes::error).cell_m, 10);
+  EXPECT_EQ(sim::parse_ascii_grid(head + "dx 10.000000000\ndy 10.000000001\n1 2\n3 4\n", 1, Holes::error).cell_m, 10);
+  EXPECT_EQ(error_of_ascii(head + "dx 10\ndy 20\n1 2\n3 4\n"),
+            "line 6: cells must be square, but 'dx' is 10 and 'dy' 20");
+  EXPECT_EQ(error_of_ascii(head + "dx 10\n1 2\n3 4\n"),
             "line 5: is not an ESRI ASCII grid: 'cellsize' is missing before the heights");
 }
 
 TEST(AsciiGrid, BeginsWithAByteOrderMarkOrNot) {
-  EXPECT_EQ(sim::parse_ascii_grid("\xef\xbb\xbfncols 2\nnrows 1\nxllcenter 0\nyllcenter 0\ncellsize 1\n1 2\n", 1,
-                                  Holes::error)
-                .at(1, 0),
-            2);
+  const std::string text = "ncols 2\nnrows 2\nxllcenter 0\nyllcenter 0\ncellsize 1\n1 2\n3 4\n";
+  EXPECT_EQ(sim::parse_ascii_grid("\xef\xbb\xbf" + text, 1, Holes::error).at(1, 0), 4);
 }
 
 struct PictureExtra {
