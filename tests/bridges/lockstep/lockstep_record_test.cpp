@@ -22,7 +22,8 @@ struct Recorded : lcm_test::LockstepWorld {
 
 /// Answers of a client with session 5 that publishes `text` on `channel` in each tick; a request for what was published
 /// before anyone listened is served.
-void answer(lcm_test::LockstepWorld& s, std::int64_t sequence, const std::string& channel, const std::string& text) {
+void answer_tick(lcm_test::LockstepWorld& s, std::int64_t sequence, const std::string& channel,
+                 const std::string& text) {
   bool answered = false;
   s.synchronize([&] {
     if (!answered) {
@@ -37,10 +38,10 @@ void answer(lcm_test::LockstepWorld& s, std::int64_t sequence, const std::string
 TEST(LockstepRecord, HasWhatAClientListsOnAChannelThatNothingReads) {
   Recorded s;
   ASSERT_TRUE(s.join("pilot", "{session: 5}").ok);
-  answer(s, 1, "note", "1");
+  answer_tick(s, 1, "note", "1");
   EXPECT_EQ(s.admitted(), "1");  // the first one was requested: no one listened yet
   s.test.world.step();
-  answer(s, 2, "note", "2");
+  answer_tick(s, 2, "note", "2");
   EXPECT_EQ(s.admitted(), "2");
   EXPECT_THAT(s.lockstep.not_recorded(), IsEmpty());
 }
@@ -48,7 +49,7 @@ TEST(LockstepRecord, HasWhatAClientListsOnAChannelThatNothingReads) {
 TEST(LockstepRecord, WithoutARecordTheWorldDoesNotWaitForThem) {
   lcm_test::LockstepWorld s;
   ASSERT_TRUE(s.join("pilot", "{session: 5}").ok);
-  answer(s, 1, "note", "1");
+  answer_tick(s, 1, "note", "1");
   EXPECT_EQ(s.admitted(), "");
   EXPECT_TRUE(s.resend_requests.take_all().empty());
   EXPECT_THAT(s.lockstep.not_recorded(), IsEmpty());

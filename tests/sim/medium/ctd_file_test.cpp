@@ -31,7 +31,7 @@ std::vector<sim::WaterLayerConfig> rows_of(const std::string& text) {
   return parse_ctd(text).rows;
 }
 
-const std::string header = "depth_m,temperature_C,salinity_psu\n";
+const std::string ctd_header = "depth_m,temperature_C,salinity_psu\n";
 
 /// Temperature of a cast at a depth, linear between its rows, C.
 double temperature_at(const std::vector<sim::WaterLayerConfig>& rows, double depth_m) {
@@ -77,17 +77,17 @@ TEST(CtdFile, AveragesManyRowsInLayers) {
 TEST(CtdFile, SaysWhatIsWrong) {
   EXPECT_THAT(ctd_error("temperature_C,salinity_psu\n"), HasSubstr("line 1: the header must name 'depth_m'"));
   EXPECT_THAT(ctd_error("depth_m,salinity_psu\n"), HasSubstr("must name 'temperature_C'"));
-  EXPECT_THAT(ctd_error(header + "1,warm,35\n"), HasSubstr("line 2: 'temperature_C' is not a number"));
-  EXPECT_THAT(ctd_error(header + "1,9\n"), HasSubstr("line 2: 'salinity_psu' is missing"));
-  EXPECT_THAT(ctd_error(header + "1,9,500\n"), HasSubstr("line 2: 'salinity_psu' must be in [0, 400], got '500'"));
-  EXPECT_THAT(ctd_error(header + "1,9,35\n"), HasSubstr("needs two rows"));
+  EXPECT_THAT(ctd_error(ctd_header + "1,warm,35\n"), HasSubstr("line 2: 'temperature_C' is not a number"));
+  EXPECT_THAT(ctd_error(ctd_header + "1,9\n"), HasSubstr("line 2: 'salinity_psu' is missing"));
+  EXPECT_THAT(ctd_error(ctd_header + "1,9,500\n"), HasSubstr("line 2: 'salinity_psu' must be in [0, 400], got '500'"));
+  EXPECT_THAT(ctd_error(ctd_header + "1,9,35\n"), HasSubstr("needs two rows"));
 }
 
 TEST(CtdFile, SkipsRowsWithMissingValuesAndSaysSo) {
   // The bad flag of Sea-Bird, nines, fill values of netCDF, words and nothing.
   for (const char* cell : {"-9.990e-29", "-9.99e-29", "99.999", "99.99", "-99", "-999.0", "-9999", "99999",
                            "9.96921e36", "1e35", "1e400", "nan", "NaN", "-nan", "NULL", "NA", ""}) {
-    const auto cast = parse_ctd(header + "41,3,31\n43," + cell + ",31.39\n45,2,32\n47," + cell + ",32\n");
+    const auto cast = parse_ctd(ctd_header + "41,3,31\n43," + cell + ",31.39\n45,2,32\n47," + cell + ",32\n");
     ASSERT_EQ(cast.rows.size(), 2u) << cell;
     EXPECT_EQ(temperature_at(cast.rows, 43), 2.5) << cell;  // between 3 and 2
     EXPECT_EQ(cast.warnings,
@@ -103,7 +103,7 @@ TEST(CtdFile, SkipsRowsWithMissingValuesAndSaysSo) {
     ASSERT_EQ(cast.warnings.size(), 1u) << row;
     EXPECT_THAT(cast.warnings[0], HasSubstr("1 row is skipped for missing values, the first in line 3: '")) << row;
   }
-  EXPECT_THAT(ctd_error(header + "1,-999,35\n2,-999,35\n"),
+  EXPECT_THAT(ctd_error(ctd_header + "1,-999,35\n2,-999,35\n"),
               HasSubstr("needs two rows of rising depth below the header; 2 rows are skipped for missing values, the "
                         "first in line 2: 'temperature_C' '-999'"));
 }
@@ -131,33 +131,34 @@ TEST(CtdFile, WarnsOfValuesThatNoUsualWaterHas) {
 
 TEST(CtdFile, RefusesASpikeOfTheDepthWithItsLine) {
   for (const char* depth : {"150", "9999"})
-    EXPECT_THAT(ctd_error(header + "0,8,35\n5,7,35\n" + depth + ",6,35\n10,6,35\n20,5,35\n30,4,35\n40,3,35\n60,1,35\n"),
-                HasSubstr("line 4: a depth of " + std::string(depth) + " m is a spike: beside it the cast is at 10 m"));
+    EXPECT_THAT(
+        ctd_error(ctd_header + "0,8,35\n5,7,35\n" + depth + ",6,35\n10,6,35\n20,5,35\n30,4,35\n40,3,35\n60,1,35\n"),
+        HasSubstr("line 4: a depth of " + std::string(depth) + " m is a spike: beside it the cast is at 10 m"));
   // At the end, and upwards.
-  EXPECT_THAT(ctd_error(header + "0,8,35\n5,7,35\n10,6,35\n20,5,35\n9999,5,35\n"),
+  EXPECT_THAT(ctd_error(ctd_header + "0,8,35\n5,7,35\n10,6,35\n20,5,35\n9999,5,35\n"),
               HasSubstr("line 6: a depth of 9999 m is a spike"));
-  EXPECT_THAT(ctd_error(header + "0,8,35\n5,7,35\n10,6,35\n0.1,6,35\n20,5,35\n30,4,35\n"),
+  EXPECT_THAT(ctd_error(ctd_header + "0,8,35\n5,7,35\n10,6,35\n0.1,6,35\n20,5,35\n30,4,35\n"),
               HasSubstr("line 5: the depth jumps between 10 and 0.1 m"));
   // One that is not the deepest, and one of some rows.
-  EXPECT_THAT(ctd_error(header + "0,8,35\n5,7,35\n40,6,35\n41,6,35\n10,6,35\n20,5,35\n60,1,35\n"),
+  EXPECT_THAT(ctd_error(ctd_header + "0,8,35\n5,7,35\n40,6,35\n41,6,35\n10,6,35\n20,5,35\n60,1,35\n"),
               HasSubstr("line 6: the depth jumps between 41 and 10 m"));
   // Among rows so near each other that no step after it is large.
-  std::string fine = header + "0,20,35\n150,20,35\n151,20,35\n";
+  std::string fine = ctd_header + "0,20,35\n150,20,35\n151,20,35\n";
   for (int i = 1; i <= 600; ++i) fine += std::to_string(0.1 * i) + "," + std::to_string(20 - 0.01 * i) + ",35\n";
   EXPECT_THAT(ctd_error(fine), HasSubstr("a spike, or more than one cast"));
 }
 
 TEST(CtdFile, TakesTablesOfStandardDepths) {
-  const auto cast = parse_ctd(header + "0,20,35\n10,19,35\n100,12,35\n1000,5,35\n6000,2,35\n");
+  const auto cast = parse_ctd(ctd_header + "0,20,35\n10,19,35\n100,12,35\n1000,5,35\n6000,2,35\n");
   EXPECT_EQ(cast.rows.size(), 5u);
   EXPECT_TRUE(cast.warnings.empty());
   // Down and up.
-  EXPECT_EQ(rows_of(header + "0,20,35\n200,12,35\n500,8,35\n1000,5,35\n500,8,35\n200,12,35\n0,20,35\n").size(), 4u);
+  EXPECT_EQ(rows_of(ctd_header + "0,20,35\n200,12,35\n500,8,35\n1000,5,35\n500,8,35\n200,12,35\n0,20,35\n").size(), 4u);
 }
 
 /// A cast of 60 m whose temperature is 20 C less 0.1 C for each metre.
 std::string cast_of(const std::vector<double>& depths_m) {
-  std::string text = header;
+  std::string text = ctd_header;
   for (const double depth_m : depths_m)
     text += std::to_string(depth_m) + "," + std::to_string(20 - 0.1 * depth_m) + ",35\n";
   return text;
@@ -194,7 +195,7 @@ TEST(CtdFile, TakesTheWayDownOfACastWithBothAndASoakAndHeave) {
 }
 
 TEST(CtdFile, BeginsWithAByteOrderMarkOrNot) {
-  EXPECT_EQ(rows_of("\xef\xbb\xbf" + header + "1,9,35\n2,8,35\n").size(), 2u);
+  EXPECT_EQ(rows_of("\xef\xbb\xbf" + ctd_header + "1,9,35\n2,8,35\n").size(), 2u);
 }
 
 TEST(CtdFile, IsTheProfileOfAWorld) {
