@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/navigation/filter/joint_filter.hpp"
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace navigation {
 
 namespace {
 
 constexpr double position_gate = 13.82;  ///< 99.9 % of chi-square with 2 degrees of freedom
-constexpr int max_refused = 5;           ///< in a row, of fixes or of sights
+constexpr int max_refused_fixes = 5;     ///< in a row
+constexpr double min_seen_m = 0.1;       ///< least distance at which a bearing has its error
 
 double square(double x) {
   return x * x;
@@ -25,10 +26,6 @@ Vector2 turned(const Vector2& v, double angle_rad) {
   const double c = std::cos(angle_rad);
   const double s = std::sin(angle_rad);
   return {c * v.x() - s * v.y(), s * v.x() + c * v.y()};
-}
-
-double wrapped(double angle_rad) {
-  return std::remainder(angle_rad, 2 * std::numbers::pi);
 }
 
 }  // namespace
@@ -188,6 +185,7 @@ void JointFilter::move(int vehicle, Time time, const Vector2& v_W, const Matrix2
   const StateLayout& layout = part.layout;
   const DeviceErrors& errors = part.errors;
   const int o = part.offset;
+  const Matrix2 turn = Eigen::Rotation2Dd(heading_error(part)).toRotationMatrix();
   part.time = time;
   part.v_W = v_W;
   // State.
@@ -201,7 +199,7 @@ void JointFilter::move(int vehicle, Time time, const Vector2& v_W, const Matrix2
     apply(part, step, [this](int i) { return P_.col(i); });
   }
   // Noise.
-  P_.block<2, 2>(o, o) += q * step.dt_s;
+  P_.block<2, 2>(o, o) += turn * q * turn.transpose() * step.dt_s;
   const auto grow = [&](int index, double variance) {
     if (index >= 0) P_(o + index, o + index) += variance;
   };
@@ -242,18 +240,14 @@ JointFilter::Outcome JointFilter::fix(int vehicle, const Vector2& p_W, double st
   if (gate_ > 0) {
     const Matrix2 S = H * P_ * H.transpose() + R;
     if (!(innovation.dot(S.inverse() * innovation) <= position_gate)) {
-      if (++part.refused_fixes < max_refused || !innovation.allFinite()) return Outcome::refused;
-      open_position(part, innovation);
+      if (++part.refused_fixes < max_refused_fixes || !innovation.allFinite()) return Outcome::refused;
+      P_.block<2, 2>(o, o) += innovation.squaredNorm() * Matrix2::Identity();
     }
     part.refused_fixes = 0;
   }
   const Eigen::MatrixXd kept_here = update(H, innovation, R);
   if (kept != nullptr) *kept = kept_here;
   return Outcome::used;
-}
-
-void JointFilter::open_position(const Part& part, const Vector2& error_W) {
-  P_.block<2, 2>(part.offset, part.offset) += error_W.squaredNorm() * Matrix2::Identity();
 }
 
 JointFilter::RangeRow JointFilter::range_row(int own, const Position& other, double dz_m) const {
@@ -310,45 +304,36 @@ JointFilter::Outcome JointFilter::range(int own, const Position& other, double d
   return use_range(row, range_m, square(std_m) + row.u.dot(other.P * row.u) + more_variance_m2);
 }
 
-Matrix2 JointFilter::bend_of(const Vector2& d_W, const Matrix2& P) {
-  const double distance_m = std::max(d_W.norm(), 0.1);
-  const Vector2 u = d_W / distance_m;
-  const double along_m2 = std::max(0.0, u.dot(P * u));
-  const double sideways_m2 = std::max(0.0, P.trace() - along_m2);
-  const Vector2 variances(3 * square(sideways_m2 / (2 * distance_m)),
-                          along_m2 * sideways_m2 / square(square(distance_m)));
-  return variances.asDiagonal();
-}
-
-void JointFilter::turn_by_heading(const Part& observer, RelativeRow& row) const {
-  for (const int index : {observer.layout.heading_bias, observer.layout.slow_heading})
-    if (index >= 0) row.H(1, observer.offset + index) = -1;
-  row.innovation[1] = wrapped(row.innovation[1] + heading_error(observer));
-}
-
-JointFilter::RelativeRow JointFilter::relative_row(int own, const Position& other, const Relative& seen) const {
-  const Part& part = at(own);
-  const Vector2 d_W = other.p_W - position(own);
-  const double distance_m = std::max(d_W.norm(), 0.01);
-  const Vector2 u = d_W / distance_m;
+JointFilter::RelativeRow JointFilter::relative_row(const Part& own, const Vector2& other_W, const Relative& seen,
+                                                   const Part* observer) const {
   RelativeRow row;
-  row.J.row(0) = u.transpose();
-  row.J.row(1) = left_of(u).transpose() / distance_m;
   row.H = Eigen::MatrixXd::Zero(2, size());
-  row.H.middleCols<2>(part.offset) = -row.J;
-  row.innovation << seen.range_m - distance_m, wrapped(seen.bearing_rad - std::atan2(d_W.y(), d_W.x()));
-  if (!seen.by_other) turn_by_heading(part, row);
-  row.bend = bend_of(d_W, covariance(own) + other.P);
+  row.H.middleCols<2>(own.offset) = -Matrix2::Identity();
+  double bearing_rad = seen.bearing_rad, variance_rad2 = square(seen.bearing_std_rad);
+  Eigen::VectorXd turn = Eigen::VectorXd::Zero(size());  // of the heading of the observer
+  if (observer != nullptr) {
+    for (const int index : {observer->layout.heading_bias, observer->layout.slow_heading})
+      if (index >= 0) turn[observer->offset + index] = 1;
+    bearing_rad += heading_error(*observer);
+    variance_rad2 += turn.dot(P_ * turn);
+  }
+  const Vector2 u(std::cos(bearing_rad), std::sin(bearing_rad));
+  const Vector2 d_W = seen.range_m * u;
+  row.H -= left_of(d_W) * turn.transpose();
+  row.innovation = d_W - (other_W - x_.segment<2>(own.offset));
+  const double along_m2 = square(seen.range_std_m) + 3 * square(0.5 * seen.range_m * variance_rad2);
+  const double across_m2 = square(std::max(seen.range_m, min_seen_m) * seen.bearing_std_rad);
+  row.R = along_m2 * u * u.transpose() + across_m2 * left_of(u) * left_of(u).transpose();
   return row;
 }
 
+JointFilter::RelativeRow JointFilter::relative_row(int own, const Position& other, const Relative& seen) const {
+  return relative_row(at(own), other.p_W, seen, seen.by_other ? nullptr : &at(own));
+}
+
 JointFilter::RelativeRow JointFilter::relative_row(int own, int other, const Relative& seen) const {
-  RelativeRow row = relative_row(own, Position{position(other), Matrix2::Zero()}, seen);
-  row.H.middleCols<2>(at(other).offset) += row.J;
-  if (seen.by_other) turn_by_heading(at(other), row);
-  const Matrix2 across = P_.block<2, 2>(at(own).offset, at(other).offset);
-  row.bend =
-      bend_of(position(other) - position(own), covariance(own) + covariance(other) - across - across.transpose());
+  RelativeRow row = relative_row(at(own), position(other), seen, &at(seen.by_other ? other : own));
+  row.H.middleCols<2>(at(other).offset) += Matrix2::Identity();
   return row;
 }
 
@@ -356,20 +341,13 @@ bool JointFilter::within_gate(const Vector2& innovation, const Matrix2& S) const
   return gate_ <= 0 || innovation.dot(S.inverse() * innovation) <= position_gate;
 }
 
-bool JointFilter::admits(int own, const RelativeRow& row, const Matrix2& R) {
-  if (!row.innovation.allFinite()) return false;
-  Part& part = at(own);
-  if (!within_gate(row.innovation, row.H * P_ * row.H.transpose() + R + row.bend)) {
-    if (++part.refused_sights < max_refused) return false;
-    open_position(part, row.J.inverse() * row.innovation);
-  }
-  part.refused_sights = 0;
-  return true;
+bool JointFilter::within_gate(const RelativeRow& row, const Matrix2& more) const {
+  return row.innovation.allFinite() && within_gate(row.innovation, row.H * P_ * row.H.transpose() + row.R + more);
 }
 
-JointFilter::Outcome JointFilter::see(int own, const RelativeRow& row, const Matrix2& R) {
-  if (!admits(own, row, R)) return Outcome::refused;
-  update(row.H, row.innovation, R + row.bend);
+JointFilter::Outcome JointFilter::see(const RelativeRow& row, const Matrix2& more) {
+  if (!within_gate(row, more)) return Outcome::refused;
+  update(row.H, row.innovation, row.R + more);
   return Outcome::used;
 }
 
