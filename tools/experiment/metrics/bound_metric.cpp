@@ -37,8 +37,8 @@ const std::vector<std::pair<std::string, TeamBound::Known>>& known_words() {
 class BoundMetric final : public Metric {
  public:
   static constexpr const char* meaning =
-      "smallest rms position error that any estimator can have with the measurements of the run: the posterior "
-      "Cramer-Rao bound, horizontal";
+      "reference for the rms position error with the measurements of the run: the posterior Cramer-Rao bound, "
+      "horizontal, in which a vehicle without DVL and odometry knows its newest fix alone";
   static std::vector<sim::FigureKind> figures() {
     return {{"rms_m", "m", "root of the mean variance of the position, from `from_s` to the end"},
             {"final_m", "m", "standard deviation of the position at the end"},
