@@ -56,7 +56,7 @@ class CovarianceIntersection final : public OwnFilterEstimator<CovarianceInterse
     const auto other = position_in(seen.payload);
     if (!other) return;
     const JointFilter::RelativeRow row = filter_.relative_row(own, *other, seen);
-    const Matrix2& B = other->P;
+    const Matrix2 B = row.J * other->P * row.J.transpose();
     if (!filter_.within_gate(row, B)) return;
     const Eigen::MatrixXd PH = filter_.P() * row.H.transpose();
     const Matrix2 A = row.H * PH;

@@ -5,6 +5,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace navigation {
 
@@ -16,6 +17,10 @@ constexpr double min_seen_m = 0.1;       ///< least distance at which a bearing 
 
 double square(double x) {
   return x * x;
+}
+
+double wrapped(double angle_rad) {
+  return std::remainder(angle_rad, 2 * std::numbers::pi);
 }
 
 Vector2 left_of(const Vector2& v) {
@@ -304,36 +309,59 @@ JointFilter::Outcome JointFilter::range(int own, const Position& other, double d
   return use_range(row, range_m, square(std_m) + row.u.dot(other.P * row.u) + more_variance_m2);
 }
 
-JointFilter::RelativeRow JointFilter::relative_row(const Part& own, const Vector2& other_W, const Relative& seen,
+Matrix2 JointFilter::bend_of(const Vector2& d_W, const Matrix2& P) {
+  const double distance_m = std::max(d_W.norm(), 0.1);
+  const Vector2 u = d_W / distance_m;
+  const double along_m2 = std::max(0.0, u.dot(P * u));
+  const double sideways_m2 = std::max(0.0, P.trace() - along_m2);
+  const Vector2 variances(3 * square(sideways_m2 / (2 * distance_m)),
+                          along_m2 * sideways_m2 / square(square(distance_m)));
+  return variances.asDiagonal();
+}
+
+JointFilter::RelativeRow JointFilter::relative_row(const Part& own, const Position& other, const Relative& seen,
                                                    const Part* observer) const {
   RelativeRow row;
   row.H = Eigen::MatrixXd::Zero(2, size());
-  row.H.middleCols<2>(own.offset) = -Matrix2::Identity();
   double bearing_rad = seen.bearing_rad, variance_rad2 = square(seen.bearing_std_rad);
-  Eigen::VectorXd turn = Eigen::VectorXd::Zero(size());  // of the heading of the observer
   if (observer != nullptr) {
-    for (const int index : {observer->layout.heading_bias, observer->layout.slow_heading})
-      if (index >= 0) turn[observer->offset + index] = 1;
+    for (const int index : {observer->layout.heading_bias, observer->layout.slow_heading}) {
+      if (index < 0) continue;
+      row.H(1, observer->offset + index) = -1;
+      variance_rad2 += P_(observer->offset + index, observer->offset + index);
+    }
     bearing_rad += heading_error(*observer);
-    variance_rad2 += turn.dot(P_ * turn);
   }
-  const Vector2 u(std::cos(bearing_rad), std::sin(bearing_rad));
-  const Vector2 d_W = seen.range_m * u;
-  row.H -= left_of(d_W) * turn.transpose();
-  row.innovation = d_W - (other_W - x_.segment<2>(own.offset));
-  const double along_m2 = square(seen.range_std_m) + 3 * square(0.5 * seen.range_m * variance_rad2);
-  const double across_m2 = square(std::max(seen.range_m, min_seen_m) * seen.bearing_std_rad);
-  row.R = along_m2 * u * u.transpose() + across_m2 * left_of(u) * left_of(u).transpose();
+  // Where they are, by their positions and by the sight: the measurement is linearised at what both give together.
+  const Vector2 predicted_W = other.p_W - x_.segment<2>(own.offset);
+  const Vector2 u_seen(std::cos(bearing_rad), std::sin(bearing_rad));
+  const Matrix2 R_seen = square(seen.range_std_m) * u_seen * u_seen.transpose() +
+                         square(std::max(seen.range_m, min_seen_m)) * variance_rad2 * left_of(u_seen) *
+                             left_of(u_seen).transpose();
+  const Matrix2 gain = other.P * (other.P + R_seen).inverse();
+  const Vector2 d_W = predicted_W + gain * (seen.range_m * u_seen - predicted_W);
+  const double distance_m = std::max(d_W.norm(), 0.01);
+  const Vector2 u = d_W / distance_m;
+  row.J.row(0) = u.transpose();
+  row.J.row(1) = left_of(u).transpose() / distance_m;
+  row.H.middleCols<2>(own.offset) = -row.J;
+  row.innovation << seen.range_m - distance_m, wrapped(bearing_rad - std::atan2(d_W.y(), d_W.x()));
+  row.innovation -= row.J * (predicted_W - d_W);
+  row.R = Vector2(square(seen.range_std_m), square(seen.bearing_std_rad)).asDiagonal();
+  row.R += bend_of(d_W, other.P - gain * other.P);
   return row;
 }
 
 JointFilter::RelativeRow JointFilter::relative_row(int own, const Position& other, const Relative& seen) const {
-  return relative_row(at(own), other.p_W, seen, seen.by_other ? nullptr : &at(own));
+  const Position relative{other.p_W, covariance(own) + other.P};
+  return relative_row(at(own), relative, seen, seen.by_other ? nullptr : &at(own));
 }
 
 JointFilter::RelativeRow JointFilter::relative_row(int own, int other, const Relative& seen) const {
-  RelativeRow row = relative_row(at(own), position(other), seen, &at(seen.by_other ? other : own));
-  row.H.middleCols<2>(at(other).offset) += Matrix2::Identity();
+  const Matrix2 across = P_.block<2, 2>(at(own).offset, at(other).offset);
+  const Position relative{position(other), covariance(own) + covariance(other) - across - across.transpose()};
+  RelativeRow row = relative_row(at(own), relative, seen, &at(seen.by_other ? other : own));
+  row.H.middleCols<2>(at(other).offset) += row.J;
   return row;
 }
 

@@ -75,14 +75,16 @@ class JointFilter {
   /// Updates with a range to a position, whose error is regarded as independent; `more_variance_m2`: of its clock.
   Outcome range(int own, const Position& other, double dz_m, double range_m, double std_m, double more_variance_m2 = 0);
 
-  /// Linearised measurement by a sensor: the displacement d = r (cos, sin)(bearing + b + h) of another part or a
-  /// position, in east and north (m), with the heading error of the observer.  As a displacement it is linear in both
-  /// positions, however unsure they are (converted measurements: Lerro and Bar-Shalom, IEEE TAES 29(3), 1993).  A
-  /// position has no heading error.
+  /// Linearised measurement by a sensor: (horizontal range, bearing by the heading of the observer) of another part or
+  /// a position.  A position has no heading error.  It is linearised at the displacement that positions and sight give
+  /// together, not at the predicted one, which may be wrong by more than the distance: the first iteration of an
+  /// iterated filter (Bell and Cathey, IEEE Trans. Automatic Control 38(2), 1993).
   struct RelativeRow {
-    Eigen::MatrixXd H;  ///< 2 rows; the derivative with respect to the other position is 1
+    Eigen::MatrixXd H;  ///< 2 rows
     Vector2 innovation = Vector2::Zero();
-    /// Covariance of its error; along d with the term of second order of a bearing of variance s: 3 (r s / 2)^2.
+    Matrix2 J = Matrix2::Zero();  ///< derivative with respect to the other position
+    /// Covariance of its error, with the terms of second order.  By the variances a along and s sideways of the relative
+    /// position after the sight they are 3 (s / 2r)^2 of the range, a s / r^4 of the bearing.
     Matrix2 R = Matrix2::Zero();
   };
   RelativeRow relative_row(int own, int other, const Relative& seen) const;
@@ -135,8 +137,9 @@ class JointFilter {
   /// Heading error b + h of a part.
   double heading_error(const Part& part) const;
   Vector2 corrected(const Part& part, const Vector2& v_W) const;
-  /// `observer`: whose heading error counts; null: of none.
-  RelativeRow relative_row(const Part& own, const Vector2& other_W, const Relative& seen, const Part* observer) const;
+  /// `other`: its position, with the covariance of the relative one; `observer`: whose heading error counts, or null.
+  RelativeRow relative_row(const Part& own, const Position& other, const Relative& seen, const Part* observer) const;
+  static Matrix2 bend_of(const Vector2& d_W, const Matrix2& P);
   Outcome use_range(const RangeRow& row, double range_m, double variance_m2);
   /// Coefficients of the motion over some time.
   struct Step {

@@ -60,7 +60,10 @@ class OwnFilterEstimator : public EstimatorOf<Own> {
 
   /// Updates with a sight of a vehicle whose payload is a position, as if that were independent.
   void see_independent(const Relative& seen) {
-    if (const auto other = position_in(seen.payload)) filter_.see(filter_.relative_row(own, *other, seen), other->P);
+    const auto other = position_in(seen.payload);
+    if (!other) return;
+    const JointFilter::RelativeRow row = filter_.relative_row(own, *other, seen);
+    filter_.see(row, row.J * other->P * row.J.transpose());
   }
 
   /// Updates with the range to a sender whose payload is a position, as if that were independent.
