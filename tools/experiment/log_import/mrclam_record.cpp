@@ -228,8 +228,8 @@ MrclamData read_mrclam(const std::string& directory) {
     if (end_of_truth(data.robots[i], start_s) <= 0)
       sim::throw_config_error(
           {sim::intern_file_name(path(fmt::format("Robot{}_Groundtruth.dat", i + 1)))}, "",
-          fmt::format("must have poses after {:.0f} s, when the last robot begins, the last one is of {:.3f} s", start_s,
-                      data.robots[i].truth.back().time_s));
+          fmt::format("must have poses after {:.0f} s, when the last robot begins, the last one is of {:.3f} s",
+                      start_s, data.robots[i].truth.back().time_s));
   return data;
 }
 
@@ -263,8 +263,9 @@ std::string mrclam_world(const MrclamData& data) {
   yaml += "metrics:\n";
   for (std::size_t i = 0; i < data.robots.size(); ++i) {
     const double until_s = end_of_truth(data.robots[i], start_s);
-    yaml += fmt::format("  - {{name: {0}, type: position_error, vehicle: {0}, channel: {0}.estimate{1}}}\n",
-                        robot_name(i), until_s < duration_s - mrclam_step_s ? fmt::format(", until_s: {:.2f}", until_s) : "");
+    yaml +=
+        fmt::format("  - {{name: {0}, type: position_error, vehicle: {0}, channel: {0}.estimate{1}}}\n", robot_name(i),
+                    until_s < duration_s - mrclam_step_s ? fmt::format(", until_s: {:.2f}", until_s) : "");
   }
   return yaml;
 }

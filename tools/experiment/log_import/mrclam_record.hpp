@@ -9,7 +9,8 @@ namespace tools {
 
 /// Reads the files of a data set: Barcodes.dat, Landmark_Groundtruth.dat, and for N from 1 on, as long as there is a
 /// RobotN_Groundtruth.dat, RobotN_Odometry.dat and RobotN_Measurement.dat.  Throws sim::ConfigError,
-/// also when the truth of a robot ends before that of another begins, and std::runtime_error when a file cannot be read.
+/// also when the truth of a robot ends before that of another begins, and std::runtime_error when a file cannot be
+/// read.
 MrclamData read_mrclam(const std::string& directory);
 
 /// Returns the world of a data set: its robots as kinematic bodies, `robot1` and so on, landmarks as objects,

@@ -32,7 +32,7 @@ struct NavRecord {
   std::shared_ptr<const NavTeam> team;
   std::vector<NavArguments> arguments;  ///< by vehicle, of the programs that the world starts
   std::vector<Item> items;
-  std::vector<std::vector<Truth>> truth;      ///< by vehicle
+  std::vector<std::vector<Truth>> truth;     ///< by vehicle
   std::vector<std::int64_t> truth_until_us;  ///< by vehicle: there is none later
   std::int64_t end_us = 0;
   std::size_t frame_bytes = 0;        ///< the longest that was transmitted

@@ -170,7 +170,8 @@ Relative VehicleReports::sight_of(const NavVehicle& observer, const Eigen::Vecto
   const double along_m = range_m > 0 ? level_m / range_m * observer.usbl_range_std_m : observer.usbl_range_std_m;
   seen.range_std_m = std::hypot(along_m, d_W.z() * observer.usbl_elevation_std_rad, VehicleReports::min_range_std_m);
   seen.bearing_std_rad =
-      std::hypot(observer.usbl_azimuth_std_rad, VehicleReports::min_range_std_m / std::max(level_m, VehicleReports::min_range_std_m));
+      std::hypot(observer.usbl_azimuth_std_rad,
+                 VehicleReports::min_range_std_m / std::max(level_m, VehicleReports::min_range_std_m));
   return seen;
 }
 

@@ -335,9 +335,9 @@ JointFilter::RelativeRow JointFilter::relative_row(const Part& own, const Positi
   // Where they are, by their positions and by the sight: the measurement is linearised at what both give together.
   const Vector2 predicted_W = other.p_W - x_.segment<2>(own.offset);
   const Vector2 u_seen(std::cos(bearing_rad), std::sin(bearing_rad));
-  const Matrix2 R_seen = square(seen.range_std_m) * u_seen * u_seen.transpose() +
-                         square(std::max(seen.range_m, min_seen_m)) * variance_rad2 * left_of(u_seen) *
-                             left_of(u_seen).transpose();
+  const Matrix2 R_seen =
+      square(seen.range_std_m) * u_seen * u_seen.transpose() +
+      square(std::max(seen.range_m, min_seen_m)) * variance_rad2 * left_of(u_seen) * left_of(u_seen).transpose();
   const Matrix2 gain = other.P * (other.P + R_seen).inverse();
   const Vector2 d_W = predicted_W + gain * (seen.range_m * u_seen - predicted_W);
   const double distance_m = std::max(d_W.norm(), 0.01);

@@ -83,8 +83,8 @@ class JointFilter {
     Eigen::MatrixXd H;  ///< 2 rows
     Vector2 innovation = Vector2::Zero();
     Matrix2 J = Matrix2::Zero();  ///< derivative with respect to the other position
-    /// Covariance of its error, with the terms of second order.  By the variances a along and s sideways of the relative
-    /// position after the sight they are 3 (s / 2r)^2 of the range, a s / r^4 of the bearing.
+    /// Covariance of its error, with the terms of second order.  By the variances a along and s sideways of the
+    /// relative position after the sight they are 3 (s / 2r)^2 of the range, a s / r^4 of the bearing.
     Matrix2 R = Matrix2::Zero();
   };
   RelativeRow relative_row(int own, int other, const Relative& seen) const;

@@ -100,7 +100,7 @@ TEST_F(MrclamTest, ARobotIsScoredUntilItsTruthEnds) {
   EXPECT_THAT(world, HasSubstr("channel: robot2.estimate, until_s: 6.00}"));
   EXPECT_THAT(world, HasSubstr("channel: robot1.estimate}"));
   tools::write_mrclam_record(data, folder_.file("run.lcm"), false);
-  // 0.4 m wrong while there is a truth; nobody knows where it is at 8 s.
+  // 0.4 m wrong while there is a truth; at 8 s its place is unknown.
   write("mine.csv", fmt::format("t,x,y\n{:.1f},5.4,2\n{:.1f},1,2\n", start_s + 5, start_s + 8));
   tools::LogScoreOptions options;
   options.log = folder_.file("run.lcm");
