@@ -18,6 +18,7 @@
 #include "sim/config/shipped_files.hpp"
 #include "tools/experiment/process/world_programs.hpp"
 #include "tools/experiment/run/runner.hpp"
+#include "tools/experiment/run/version.hpp"
 #include "tools/experiment/world_files/world_by_name.hpp"
 
 namespace py = pybind11;
