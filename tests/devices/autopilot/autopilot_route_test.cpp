@@ -67,7 +67,7 @@ TEST(Route, NoCurrentBelowItsSpeedLeavesAnErrorWhereverItStarts) {
       devices::Route route({12, 0.5, 3});
       route.start({at(1e5, 0)}, false, {0, 0});
       // The slowest rate is kappa / Delta cos^3(drift), with sin(drift) = 1.4 / 1.6: 22 m exp(-2000 s x 0.0047/s) = 2
-      // mm, and up to 1000 s before, for 4 Delta from afar.
+      // mm, and up to 1000 s before, for 4 Delta when it starts far away.
       EXPECT_NEAR(drive(route, {0, start_m}, 1.6, {0, current}, 3000), 0, 5e-3) << current << ' ' << start_m;
     }
 }

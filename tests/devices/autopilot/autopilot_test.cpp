@@ -397,14 +397,14 @@ TEST(Autopilot, SaysUpToWhichSpeedItsGainsOutweighTheMunkMoment) {
   using testing::HasSubstr;
   using testing::IsEmpty;
   // (w^2 (I + A) + W BG) / (Az - Ax) = (25 x 0.365 + 1.347) / 12.32 ahead, (25 x 0.449 + 1.347) / 11.56 aside.
-  const std::string said = "vehicle 'v': device 'autopilot': it holds the vehicle level up to ";
+  const std::string reported = "vehicle 'v': device 'autopilot': it holds the vehicle level up to ";
   EXPECT_THAT(
       level_lines("      devices.autopilot.mode: hold\n", false),
-      ElementsAre(HasSubstr(said + "0.92 m/s ahead and 1.04 m/s to the side; the thrusters reach 0.85 m/s and")));
+      ElementsAre(HasSubstr(reported + "0.92 m/s ahead and 1.04 m/s to the side; the thrusters reach 0.85 m/s and")));
   EXPECT_THAT(level_lines("      devices.autopilot.mode: hold\n", true), Not(testing::Contains(HasSubstr("level"))));
   // With 1.2 rad/s: (0.526 + 1.347) / 12.32, and the gain needed at 0.847 m/s is 4.53.
   EXPECT_THAT(level_lines("      devices.autopilot.gains.attitude.bandwidth_radps: 1.2\n", true),
-              testing::Contains(AllOf(HasSubstr(said + "0.39 m/s ahead"),
+              testing::Contains(AllOf(HasSubstr(reported + "0.39 m/s ahead"),
                                       HasSubstr("unless 'gains: attitude: bandwidth_radps' is above 4.53"))));
   EXPECT_THAT(level_lines("      devices.autopilot.axes: [surge, sway, heave, yaw]\n", true),
               testing::Contains(HasSubstr("the thrusters do not control its tilt")));
