@@ -168,7 +168,6 @@ Summary Run::go() {
     start_clients();
     loop();
     summary.ended = how_ended();
-    if (page_) page_->ended(world_, control_, summary.ended);
     if (caught_signal() != 0) summary.exit_code = 128 + caught_signal();
   } catch (const RunError& error) {
     summary.fail(error.exit_code, error.ended, error.what());
@@ -180,6 +179,9 @@ Summary Run::go() {
     summary.fail(4, "error", error.what());
   }
   progress_.clear();
+  if (page_)
+    page_->ended(world_, control_, summary.ended + (summary.error.empty() ? "" : ": " + summary.error),
+                 options_.record);
   summary.wall_s = std::chrono::duration<double>(Clock::now() - begin).count();
   finish(summary);
   return summary;
