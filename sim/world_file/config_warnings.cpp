@@ -71,6 +71,18 @@ class ConfigCheck {
     }
   }
 
+  /// Spreading that has no effect.  Spherical spreading is what it becomes.
+  void check_spreading() const {
+    const ConfigNode* acoustics = root_.find("acoustics");
+    if (acoustics == nullptr || acoustics->find("spreading") == nullptr || !world_.medium.water) return;
+    if (world_.acoustics.paths(world_.medium.water->has_sound_profile()) != SoundPaths::rays) return;
+    const SpreadingConfig& spreading = world_.acoustics.spreading;
+    if (!spreading.transition_range_m && spreading.factor == 2) return;
+    warnings_.warn(place_of(*acoustics, "spreading"), "acoustics",
+                   "'spreading' has no effect: in this water sound travels along rays, and their tubes are the "
+                   "spreading; remove it, or set 'propagation: straight'");
+  }
+
  private:
   void check_device(const DeviceConfig& device, const std::string& who) const {
     if (device.device_type == nullptr) return;
@@ -148,6 +160,7 @@ void warn_of_config(const WorldConfig& world, const ConfigNode& root, Warnings& 
   check.check_rates();
   check.check_metrics();
   check.check_events();
+  check.check_spreading();
 }
 
 }  // namespace sim

@@ -118,4 +118,20 @@ TEST(ConfigWarnings, AreOfWhatComesAfterTheEndOfTheFileAndOfTheCommandLine) {
   EXPECT_EQ(warnings_of(0), "") << "without end";
 }
 
+TEST(ConfigWarnings, ReportASpreadingThatRaysDoNotHave) {
+  const auto text = [](const std::string& acoustics) {
+    return warnings_of_file(world("        []\n",
+                                  "medium: {water: {surface_m: -9, profile: [{depth_m: 0, sound_speed_mps: 1510}, "
+                                  "{depth_m: 20, sound_speed_mps: 1490}]}}\nacoustics: " +
+                                      acoustics + "\n"));
+  };
+  EXPECT_EQ(text("{spreading: {factor: 1.5}}"),
+            "worlds/test.yaml:13:24: acoustics: 'spreading' has no effect: in this water sound travels along rays, and "
+            "their tubes are the spreading; remove it, or set 'propagation: straight'\n");
+  EXPECT_THAT(text("{spreading: {transition_range_m: 100}}"), HasSubstr("'spreading' has no effect"));
+  EXPECT_EQ(text("{spreading: {factor: 2}}"), "");
+  EXPECT_EQ(text("{spreading: {factor: 1.5}, propagation: straight}"), "");
+  EXPECT_EQ(text("{}"), "");
+}
+
 }  // namespace

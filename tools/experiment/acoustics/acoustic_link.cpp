@@ -170,8 +170,7 @@ std::vector<AcousticPacket> micromodem_packets() {
 }
 
 bool sound_bends(const sim::AcousticsConfig& acoustics, const sim::Medium& medium) {
-  const auto by_default = medium.has_sound_profile() ? sim::SoundPaths::rays : sim::SoundPaths::straight;
-  return medium.has_water() && acoustics.propagation.value_or(by_default) == sim::SoundPaths::rays;
+  return medium.has_water() && acoustics.paths(medium.has_sound_profile()) == sim::SoundPaths::rays;
 }
 
 LinkBudget link_budget(const AcousticLink& link, const sim::AcousticsConfig& acoustics, const sim::Medium& medium,
@@ -182,7 +181,8 @@ LinkBudget link_budget(const AcousticLink& link, const sim::AcousticsConfig& aco
   budget.travel_time_s = sim::travel_time_s(medium, link.from.p_W, link.to.p_W);
   budget.absorption_dBpkm =
       sim::absorption_dBpkm(acoustics.absorption, link.centre_Hz, medium, link.from.p_W, link.to.p_W);
-  budget.spreading = -sim::spreading_loss(budget.range_m, acoustics.spreading);
+  budget.spreading =
+      -sim::spreading_loss(budget.range_m, acoustics.straight_spreading(acoustics.paths(medium.has_sound_profile())));
   budget.absorption = -sim::absorption_loss(budget.range_m, budget.absorption_dBpkm);
   const sim::AmbientNoise noise = acoustics.noise.with_wind(medium.mean_wind_mps());
   budget.wind_mps = noise.wind_mps;

@@ -160,9 +160,15 @@ std::vector<std::string> BoundMetric::names_of(const Params& params, const sim::
 }
 
 std::vector<VehicleErrors> BoundMetric::errors_of_team(const std::vector<std::string>& names, const sim::World& world) {
+  std::vector<const sim::VehicleConfig*> vehicles;
+  for (const std::string& name : names) vehicles.push_back(&world.find_vehicle(name)->config());
   std::vector<VehicleErrors> team;
-  for (const std::string& name : names)
-    team.push_back(errors_of(world.find_vehicle(name)->config(), sim::to_seconds(world.step_time())));
+  for (const sim::VehicleConfig* vehicle : vehicles) {
+    VehicleErrors errors = errors_of(*vehicle, sim::to_seconds(world.step_time()));
+    if (errors.usbl)
+      errors.usbl->errors.hearing = usbl_hearing(*vehicle, vehicles, world.acoustics().config(), world.medium());
+    team.push_back(std::move(errors));
+  }
   return team;
 }
 
