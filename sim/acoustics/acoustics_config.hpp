@@ -51,16 +51,6 @@ struct AcousticsConfig {
   std::optional<double> range_max_m;        ///< maximum range of reception
   std::vector<LinkConfig> links;
   void read(ParamReader& in);
-
-  /// Returns how sound travels in water with or without a profile of its speed.
-  SoundPaths paths(bool has_profile) const {
-    return propagation.value_or(has_profile ? SoundPaths::rays : SoundPaths::straight);
-  }
-  /// Returns the spreading of sound along straight lines: spherical where the other sound travels along rays, whose
-  /// tubes are the spreading.
-  SpreadingConfig straight_spreading(SoundPaths paths) const {
-    return paths == SoundPaths::rays ? SpreadingConfig{.factor = 2, .transition_range_m = {}} : spreading;
-  }
 };
 
 }  // namespace sim

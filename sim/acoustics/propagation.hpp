@@ -94,7 +94,6 @@ class Propagation {
   double water_depth_m(const Vector3d& p_W) const;
 
   std::unique_ptr<RayTables> rays_;  // null: straight lines
-  SpreadingConfig straight_;         // spreading along straight lines
 
   /// Values of a band that are constant in a run, as mean wind and water are.
   struct Band {

@@ -134,7 +134,7 @@ std::vector<double> Medium::profile_depths_m() const {
 }
 
 bool Medium::has_sound_profile() const {
-  return has_water() && config_.water->has_sound_profile();
+  return has_water() && config_.water->profile.size() > 1 && !config_.water->sound_speed_mps;
 }
 
 void Medium::visit_state(StateArchive& archive) {

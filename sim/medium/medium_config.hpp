@@ -37,8 +37,6 @@ struct WaterConfig {
   SoundSpeed sound = SoundSpeed::mackenzie;  ///< unless profile or constant are given
   std::optional<double> sound_speed_mps;     ///< constant
   void read(ParamReader& in);
-  /// Returns whether the speed of sound depends on the depth by a profile.
-  bool has_sound_profile() const { return profile.size() > 1 && !sound_speed_mps; }
 };
 
 /// Row of `profile:` of a current.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/acoustics/sound_paths.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/device/device_registry.hpp"
 
@@ -75,7 +76,9 @@ class ConfigCheck {
   void check_spreading() const {
     const ConfigNode* acoustics = root_.find("acoustics");
     if (acoustics == nullptr || acoustics->find("spreading") == nullptr || !world_.medium.water) return;
-    if (world_.acoustics.paths(world_.medium.water->has_sound_profile()) != SoundPaths::rays) return;
+    const WaterConfig& water = *world_.medium.water;
+    const bool has_profile = water.profile.size() > 1 && !water.sound_speed_mps;
+    if (sound_paths(world_.acoustics, has_profile) != SoundPaths::rays) return;
     const SpreadingConfig& spreading = world_.acoustics.spreading;
     if (!spreading.transition_range_m && spreading.factor == 2) return;
     warnings_.warn(place_of(*acoustics, "spreading"), "acoustics",

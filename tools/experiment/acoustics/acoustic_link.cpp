@@ -15,6 +15,7 @@
 #include "sim/acoustics/ray_paths.hpp"
 #include "sim/acoustics/rays/ray_tables.hpp"
 #include "sim/acoustics/sound_path.hpp"
+#include "sim/acoustics/sound_paths.hpp"
 #include "sim/random/random.hpp"
 
 namespace tools {
@@ -170,7 +171,7 @@ std::vector<AcousticPacket> micromodem_packets() {
 }
 
 bool sound_bends(const sim::AcousticsConfig& acoustics, const sim::Medium& medium) {
-  return medium.has_water() && acoustics.paths(medium.has_sound_profile()) == sim::SoundPaths::rays;
+  return medium.has_water() && sim::sound_paths(acoustics, medium.has_sound_profile()) == sim::SoundPaths::rays;
 }
 
 LinkBudget link_budget(const AcousticLink& link, const sim::AcousticsConfig& acoustics, const sim::Medium& medium,
@@ -182,7 +183,7 @@ LinkBudget link_budget(const AcousticLink& link, const sim::AcousticsConfig& aco
   budget.absorption_dBpkm =
       sim::absorption_dBpkm(acoustics.absorption, link.centre_Hz, medium, link.from.p_W, link.to.p_W);
   budget.spreading =
-      -sim::spreading_loss(budget.range_m, acoustics.straight_spreading(acoustics.paths(medium.has_sound_profile())));
+      -sim::spreading_loss(budget.range_m, sim::straight_spreading(acoustics, medium.has_sound_profile()));
   budget.absorption = -sim::absorption_loss(budget.range_m, budget.absorption_dBpkm);
   const sim::AmbientNoise noise = acoustics.noise.with_wind(medium.mean_wind_mps());
   budget.wind_mps = noise.wind_mps;

@@ -5,6 +5,7 @@
 
 #include "devices/sound_positioning/transponder.hpp"
 #include "devices/sound_positioning/usbl.hpp"
+#include "sim/acoustics/sound_paths.hpp"
 #include "tools/experiment/bound/device_params.hpp"
 
 namespace tools {
@@ -44,7 +45,7 @@ std::optional<UsblHearing> usbl_hearing(const sim::VehicleConfig& own,
         sim::to_power(sim::Decibels(answer.source_level_dB) - noise.band_level(frequency_Hz, answer.bandwidth_Hz));
     hearing.tone.time_bandwidth = answer.bandwidth_Hz * answer.ping_s;
     hearing.tone.wavelength_m = medium.sound_speed_mps(p_W) / frequency_Hz;
-    hearing.spreading = acoustics.straight_spreading(acoustics.paths(medium.has_sound_profile()));
+    hearing.spreading = sim::straight_spreading(acoustics, medium.has_sound_profile());
     hearing.absorption_dBpkm = sim::absorption_dBpkm(acoustics.absorption, frequency_Hz, medium, p_W, p_W);
     return hearing;
   }
