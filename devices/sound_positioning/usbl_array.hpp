@@ -21,7 +21,7 @@ struct UsblArrayParams {
   double phase_std_rad = 0;  ///< error of each difference at any level
   void read(sim::ParamReader& in);
   /// Returns the standard deviation of each of both cosines: wavelength / (2 pi baseline) times that of the difference
-  /// of phase, whose variance is (1 + 2 snr) / (2 snr^2 time_bandwidth) (Quazi, IEEE Trans. ASSP 29, 1981, for a band
+  /// of phase, whose variance is (1 + 2 SNR) / (2 SNR^2 time_bandwidth) (Quazi, IEEE Trans. ASSP 29, 1981, for a band
   /// that is narrow to its frequency), and that of `phase_std_rad`.
   double cosine_std(const UsblTone& tone) const;
 };

@@ -15,7 +15,7 @@ namespace {
 
 /// Share of an interval that is left out at its ends, where derivatives are infinite.
 constexpr double margin = 1e-5;
-/// Layers of less difference in speed are those of a smooth profile, and their borders are no kinks of it.
+/// Layers of less difference in speed are those of a smooth profile, and their borders are not kinks of it.
 constexpr double thin_mps = 1;
 /// Most reversals at each end of one ray.
 constexpr int max_cycles = 200;

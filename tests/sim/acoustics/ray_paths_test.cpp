@@ -63,7 +63,7 @@ TEST(RayGains, AreSphericalSpreadingInWaterOfOneSpeed) {
 
 TEST(RayGains, AreThoseOfAWaveAtACaustic) {
   // n^2 = 1 + 2 g z / c0: rays are parabolas, which return to their depth after r = r0 sin(2 a), r0 = c0 n_s^2 / g.  At
-  // 45 degrees it is longest: beyond r0 is no ray, and before it there are two, which merge there.
+  // 45 degrees it is longest: beyond r0 none arrives, and before it there are two, which merge there.
   const double c0 = 1500, g = 0.6, depth_m = 2500, frequency_Hz = 500, omega = 2 * pi * frequency_Hz;
   const auto speed = [&](double z_m) { return c0 / std::sqrt(1 + 2 * g * z_m / c0); };
   const double c = speed(depth_m), r0_m = c0 * c0 * c0 / (c * c) / g;

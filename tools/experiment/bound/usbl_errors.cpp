@@ -11,10 +11,10 @@
 namespace tools {
 
 double UsblHearing::cosine_std(double range_m) const {
-  devices::UsblTone heard = tone;
-  heard.snr = tone.snr *
-              sim::to_power(-sim::spreading_loss(range_m, spreading) - sim::absorption_loss(range_m, absorption_dBpkm));
-  return array.cosine_std(heard);
+  devices::UsblTone received = tone;
+  received.snr = tone.snr * sim::to_power(-sim::spreading_loss(range_m, spreading) -
+                                          sim::absorption_loss(range_m, absorption_dBpkm));
+  return array.cosine_std(received);
 }
 
 UsblErrors::Plane UsblErrors::at(const sim::Vector3d& displacement_m) const {

@@ -11,7 +11,7 @@
 
 namespace tools {
 
-/// Answers as a USBL with an `array:` hears them: the sonar equation along a straight line, without echoes, fading,
+/// Answers as a USBL with an `array:` receives them: the sonar equation along a straight line, without echoes, fading,
 /// shadows and other sounds.
 struct UsblHearing {
   devices::UsblArrayParams array;
@@ -26,7 +26,7 @@ struct UsblErrors {
   double range_std_m = 0;
   double across_std_rad = 0;     ///< of the direction
   double elevation_std_rad = 0;  ///< of the direction
-  double heading_std_rad = 0;    ///< of the heading of the vehicle, as far as it is no state
+  double heading_std_rad = 0;    ///< of the heading of the vehicle, as far as it is not a state
   std::optional<UsblHearing> hearing;
 
   /// Variances of a measured horizontal displacement: along it and across it.
@@ -37,7 +37,7 @@ struct UsblErrors {
   Plane at(const sim::Vector3d& displacement_m) const;
 };
 
-/// Returns what the first USBL of a vehicle hears of the first transponder of its network on `vehicles`; nothing
+/// Returns what the first USBL of a vehicle receives of the first transponder of its network on `vehicles`; nothing
 /// without an `array:` or a transponder.
 std::optional<UsblHearing> usbl_hearing(const sim::VehicleConfig& own,
                                         const std::vector<const sim::VehicleConfig*>& vehicles,

@@ -33,8 +33,8 @@ struct NavVehicle {
   double fix_std_m = 0;          ///< white error of a fix; 0: as reported
   double stamp_std_s = 0;        ///< error of a stamp, by the resolution of the clock
   double depth_std_m = 0;        ///< white error of the depth, by pressure
-  /// White errors of USBL.  That of the heading has its other parts, too, in a vehicle without DVL, where they are no
-  /// states.
+  /// White errors of USBL.  That of the heading has its other parts, too, in a vehicle without DVL, where they are
+  /// not states.
   tools::UsblErrors usbl_errors;
 };
 

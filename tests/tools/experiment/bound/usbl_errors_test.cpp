@@ -47,7 +47,7 @@ TEST(UsblErrors, GrowAsTheAnswerGetsWeaker) {
   const double expected = 0.05 / (2 * pi * 0.1) * std::sqrt((1 + 2 * snr) / (2 * snr * snr * 20));
   EXPECT_NEAR(hearing->cosine_std(1000), expected, 1e-9 * expected);
   EXPECT_NEAR(hearing->cosine_std(2000) / hearing->cosine_std(1000), 2, 0.02);
-  // The AUV hears nothing by USBL.
+  // The AUV receives nothing by USBL.
   EXPECT_FALSE(tools::usbl_hearing(*vehicles[1], vehicles, loaded.config.acoustics, medium));
   EXPECT_FALSE(tools::usbl_hearing(*vehicles[0], {vehicles[0]}, loaded.config.acoustics, medium));
 }
