@@ -37,7 +37,7 @@ std::optional<UsblHearing> usbl_hearing(const sim::VehicleConfig& own,
     if (!transponder || transponder.params->network != usbl.params->interrogator.network) continue;
     const devices::Transponder::Params& answer = *transponder.params;
     const double frequency_Hz = answer.answer_frequency_Hz.value_or(devices::lowest_answer_Hz);
-    const sim::Vector3d p_W(0, 0, medium.still_surface_m());
+    const sim::Vector3d p_W(0, 0, medium.still_surface_m() - 1);  // in the water, as a USBL of a boat
     const sim::AmbientNoise noise = acoustics.noise.with_wind(medium.mean_wind_mps());
     UsblHearing hearing;
     hearing.array = *usbl.params->array;

@@ -166,7 +166,7 @@ std::vector<VehicleErrors> BoundMetric::errors_of_team(const std::vector<std::st
   for (const sim::VehicleConfig* vehicle : vehicles) {
     VehicleErrors errors = errors_of(*vehicle, sim::to_seconds(world.step_time()));
     if (errors.usbl)
-      errors.usbl->errors.hearing = usbl_hearing(*vehicle, vehicles, world.acoustics().config(), world.medium());
+      errors.usbl->errors.hearing = usbl_hearing(*vehicle, vehicles, world.config().acoustics, world.medium());
     team.push_back(std::move(errors));
   }
   return team;
