@@ -185,8 +185,7 @@ struct Eigenrays::Search {
   std::vector<SoundRay>& out;
   /// Where the rays of `out` are in their families.
   struct Root {
-    Family family;
-    int cycles;
+    int family, cycles;
     double xi, slope;
     double power_by_slope;  ///< power by the ray tube times the size of dr/dxi
   };
@@ -265,7 +264,7 @@ void Eigenrays::Search::add(double xi, Family family, int cycles) {
   const double xi_by_range = vertical ? 1 / reach.by_xi : xi / query.range_m;
   ray.power_per_m2 = xi_by_range * depths.upper_mps * depths.lower_mps / std::max(tube, 1e-300);
   out.push_back(ray);
-  roots.push_back({family, cycles, xi, slope, ray.power_per_m2 * std::abs(reach.by_xi)});
+  roots.push_back({static_cast<int>(family), cycles, xi, slope, ray.power_per_m2 * std::abs(reach.by_xi)});
 }
 
 bool Eigenrays::Search::same_kind(std::size_t i, std::size_t j) const {
@@ -477,7 +476,7 @@ void Eigenrays::find(const RayQuery& query, std::vector<SoundRay>& rays) const {
     ray.travel_time_s = query.range_m / depths.upper_mps;
     ray.power_per_m2 = 1 / std::max(query.range_m * query.range_m, 1e-12);
     rays.push_back(ray);
-    search.roots.push_back({Family::down_down, 0, 1 / depths.upper_mps, -1, 0});
+    search.roots.push_back({static_cast<int>(Family::down_down), 0, 1 / depths.upper_mps, -1, 0});
   }
   // The direct ray.
   if (!level) search.search_steep(depths.highest_between_mps, Family::down_down, 0);
