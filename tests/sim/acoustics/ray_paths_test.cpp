@@ -16,8 +16,7 @@ using sim::Eigenrays;
 using sim::SoundProfile;
 using sim::SoundRay;
 
-constexpr double no_bottom = 1e9;
-constexpr double pi = std::numbers::pi;
+constexpr double bottomless_m = 1e9;
 
 sim::MultipathMedium lossless(double frequency_Hz) {
   sim::MultipathMedium water;
@@ -57,13 +56,14 @@ TEST(RayGains, TheFirstConvergenceZoneOfTheMunkProfileIsAsLoudAsItsRayTubes) {
 TEST(RayGains, AreSphericalSpreadingInWaterOfOneSpeed) {
   const Eigenrays rays(SoundProfile({{0, 1500}, {100, 1500}}));
   for (const double range_m : {2.0, 300.0, 20e3})
-    EXPECT_NEAR(loss_dB(gains(rays, {50, 50, range_m, no_bottom, 0}, 25000)), 20 * std::log10(range_m), 1e-9);
-  EXPECT_EQ(loss_dB(gains(rays, {50, 50, 0.1, no_bottom, 0}, 25000)), 0) << "nothing is louder than at 1 m";
+    EXPECT_NEAR(loss_dB(gains(rays, {50, 50, range_m, bottomless_m, 0}, 25000)), 20 * std::log10(range_m), 1e-9);
+  EXPECT_EQ(loss_dB(gains(rays, {50, 50, 0.1, bottomless_m, 0}, 25000)), 0) << "nothing is louder than at 1 m";
 }
 
 TEST(RayGains, AreThoseOfAWaveAtACaustic) {
   // n^2 = 1 + 2 g z / c0: rays are parabolas, which return to their depth after r = r0 sin(2 a), r0 = c0 n_s^2 / g.  At
   // 45 degrees it is longest: beyond r0 none arrives, and before it there are two, which merge there.
+  constexpr double pi = std::numbers::pi;
   const double c0 = 1500, g = 0.6, depth_m = 2500, frequency_Hz = 500, omega = 2 * pi * frequency_Hz;
   const auto speed = [&](double z_m) { return c0 / std::sqrt(1 + 2 * g * z_m / c0); };
   const double c = speed(depth_m), r0_m = c0 * c0 * c0 / (c * c) / g;
@@ -88,7 +88,7 @@ TEST(RayGains, AreThoseOfAWaveAtACaustic) {
   double loudest = 0, worst = 0;
   for (const double short_m : {0.01, 1.0, 3.0, 6.0, 10.0, 15.0, 20.0, 30.0, 40.0, 60.0, 80.0}) {
     std::complex<double> pressure = 0;
-    const auto found = gains(rays, {depth_m, depth_m, r0_m - short_m, no_bottom, 0}, frequency_Hz);
+    const auto found = gains(rays, {depth_m, depth_m, r0_m - short_m, bottomless_m, 0}, frequency_Hz);
     ASSERT_EQ(found.size(), 2u) << short_m;
     for (const sim::PathGain& gain : found)
       pressure += std::polar(std::sqrt(sim::to_power(gain.gain).linear()), gain.phase_rad);
