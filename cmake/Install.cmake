@@ -41,8 +41,23 @@ install(DIRECTORY examples/python/ ${PROJECT_BINARY_DIR}/python/ DESTINATION sha
         FILES_MATCHING PATTERN "*.py" PATTERN __pycache__ EXCLUDE PATTERN CMakeFiles EXCLUDE
         REGEX "/(${package_examples})$" EXCLUDE)
 
-configure_package_config_file(cmake/ShoalConfig.cmake.in ${PROJECT_BINARY_DIR}/ShoalConfig.cmake
+# Two packages: the one that is installed, and one of the build folder, which CMake finds when its bin is in PATH.
+set(shoal_include_dirs "\${PACKAGE_PREFIX_DIR}/include/shoal")
+set(shoal_type_tables "\${PACKAGE_PREFIX_DIR}/lib/shoal/generate_type_tables")
+set(shoal_lcm_files "\${PACKAGE_PREFIX_DIR}/share/shoal/types/*.lcm")
+set(shoal_client_library "\${PACKAGE_PREFIX_DIR}/lib/libshoal_client.a")
+configure_package_config_file(cmake/ShoalConfig.cmake.in ${PROJECT_BINARY_DIR}/package/ShoalConfig.cmake
                               INSTALL_DESTINATION ${package_dir})
+set(shoal_include_dirs ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR}/sim/generated ${types_dir}
+                       ${PROJECT_BINARY_DIR}/messages/generated ${PROJECT_SOURCE_DIR}/bridges/client)
+set(shoal_type_tables ${PROJECT_BINARY_DIR}/messages/generate_type_tables)
+set(shoal_lcm_files ${types_dir}/*/*.lcm)
+set(shoal_client_library ${PROJECT_BINARY_DIR}/bridges/libshoal_client.a)
+configure_package_config_file(cmake/ShoalConfig.cmake.in ${PROJECT_BINARY_DIR}/ShoalConfig.cmake
+                              INSTALL_DESTINATION . INSTALL_PREFIX ${PROJECT_BINARY_DIR})
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/ShoalConfigVersion.cmake COMPATIBILITY ExactVersion)
-install(FILES ${PROJECT_BINARY_DIR}/ShoalConfig.cmake ${PROJECT_BINARY_DIR}/ShoalConfigVersion.cmake
+foreach(module IN ITEMS LcmGenerate DescribeProgram)
+  configure_file(cmake/${module}.cmake ${PROJECT_BINARY_DIR}/${module}.cmake COPYONLY)
+endforeach()
+install(FILES ${PROJECT_BINARY_DIR}/package/ShoalConfig.cmake ${PROJECT_BINARY_DIR}/ShoalConfigVersion.cmake
               cmake/LcmGenerate.cmake cmake/DescribeProgram.cmake DESTINATION ${package_dir} COMPONENT client)

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <map>
 #include <memory>
+#include <set>
 #include <string>
-#include <vector>
 
 #include "bridges/lockstep/lockstep_service.hpp"
 #include "shoal/message_codec.hpp"
@@ -12,14 +13,15 @@ namespace bridges {
 
 /// Bus on which clients may be.
 struct LockstepService::Link {
-  Link(sim::Bus& bus, sim::MessageGate& message_gate, const std::string& name)
-      : network(bus),
-        gate(message_gate),
-        called(name.empty() ? "the world's bus" : "bus '" + name + "'"),
-        messages(message_gate),
-        acks(bus.open_mailbox("sim.ack")),
-        resend_requests(bus.open_mailbox("sim.resend")),
-        bundles(bus.open_mailbox("sim.resent")) {}
+  explicit Link(const LockstepBus& bus)
+      : network(bus.network),
+        gate(bus.gate),
+        called(bus.name.empty() ? "the world's bus" : "bus '" + bus.name + "'"),
+        is_recorded(bus.is_recorded),
+        messages(bus.gate),
+        acks(bus.network.open_mailbox("sim.ack")),
+        resend_requests(bus.network.open_mailbox("sim.resend")),
+        bundles(bus.network.open_mailbox("sim.resent")) {}
 
   /// Publishes a message on the network, bypassing the gate.  It is sent when the world waits for the answer, or at the
   /// end of the step.
@@ -32,9 +34,12 @@ struct LockstepService::Link {
   sim::Bus& network;
   sim::MessageGate& gate;
   const std::string called;  // name in texts
+  const bool is_recorded;
   sim::ClientMessages messages;
   std::unique_ptr<sim::Mailbox> acks, resend_requests, bundles;
-  std::vector<std::unique_ptr<sim::Mailbox>> passed_on;  // opened only to forward messages to other clients
+  // By channel: opened only for other clients, or for the record.
+  std::map<std::string, std::unique_ptr<sim::Mailbox>, std::less<>> passed_on;
+  std::set<std::string, std::less<>> lost;  // channels with messages that did not arrive, closed for the record
   sim::Bytes buffer;
 };
 

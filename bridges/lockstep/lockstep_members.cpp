@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <spdlog/fmt/fmt.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "bridges/lockstep/lockstep_link.hpp"
 #include "bridges/lockstep_client/resend.hpp"
 #include "shoal/sim_control_reply_t.hpp"
 #include "sim/base/log.hpp"
+#include "sim/base/number.hpp"
 #include "sim/config/message_text.hpp"
 
 // Members of the lockstep: joining, leaving, name conflicts.
@@ -22,9 +24,7 @@ constexpr std::size_t max_ended_sessions = 1000;
 constexpr const char* left = "left";
 
 std::string seconds_text(sim::Time time) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.2f s", sim::to_seconds(time));
-  return text;
+  return fmt::format("{:.2f} s", sim::to_seconds(time));
 }
 
 }  // namespace
@@ -45,7 +45,7 @@ bool LockstepService::join(int link, const shoal::sim_control_request_t& request
   const auto period_steps = static_cast<std::int64_t>(std::llround(steps));
   if (std::abs(steps - static_cast<double>(period_steps)) > 1e-6)
     throw std::runtime_error("'join' needs a period that is a multiple of the step of " +
-                             std::to_string(sim::to_seconds(world_.step_time())) + " s");
+                             sim::shortest_text(sim::to_seconds(world_.step_time())) + " s");
   // Read the terms, and check for clients of the same name.
   const sim::LockstepTerms terms = sim::read_lockstep_terms(request.text, defaults_);
   check_session(request.client, terms.session);
@@ -131,6 +131,11 @@ std::string LockstepService::reason_to_leave(const std::string& client) const {
                                                                         : "";
 }
 
+double LockstepService::end_s(const std::string& client) const {
+  const auto summary = summaries_.find(client);
+  return summary == summaries_.end() ? 0 : summary->second.ended_s;
+}
+
 bool LockstepService::leave(int link, const shoal::sim_control_request_t& request) {
   const std::string called = "client '" + sim::printable(sim::shortened(request.client)) + "'";
   // Identify the client and its session.
@@ -199,7 +204,7 @@ void LockstepService::client_exited(const std::string& client) {
   if (member == nullptr || member->removed) return;
   if (!member->terms.agreed) return discard(client, "its process ended");
   member->removed = true;
-  summary_of(client).ended = "its process ended";
+  end_summary(client, "its process ended");
 }
 
 void LockstepService::remove_all(const std::string& why) {
@@ -212,8 +217,7 @@ void LockstepService::remove_all(const std::string& why) {
 
 void LockstepService::discard(const std::string& client, const std::string& why) {
   if (const sim::LockstepMember* member = lockstep_.find(client)) {
-    Link& link = link_of(member->link);
-    link.messages.give_up(client);
+    give_up(*member);
     if (member->terms.session != 0) {
       ended_.emplace_back(client, member->terms.session);
       if (ended_.size() > max_ended_sessions) ended_.pop_front();
@@ -224,8 +228,14 @@ void LockstepService::discard(const std::string& client, const std::string& why)
   join_ids_.erase(client);
   challenges_.erase(client);
   answers_.erase(client);
-  summary_of(client).ended = why;
+  end_summary(client, why);
   watch_gates();
+}
+
+void LockstepService::end_summary(const std::string& client, const std::string& why) {
+  LockstepSummary& summary = summary_of(client);
+  summary.ended = why;
+  summary.ended_s = sim::to_seconds(world_.now());
 }
 
 void LockstepService::drop(const std::string& client, const std::string& why) {

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+
 #include "bridges/lockstep/lockstep_link.hpp"
 #include "bridges/lockstep_client/resend.hpp"
 #include "shoal/sim_ack_t.hpp"
@@ -17,6 +19,10 @@ namespace {
 
 /// Maximum number of messages of one kind that are handled at a time.
 constexpr int max_at_once = 1000;
+/// Reasons why the record lacks messages.
+constexpr const char* did_not_arrive = "they did not arrive";
+constexpr const char* too_many_channels = "more than 1000 channels";
+static_assert(LockstepService::max_recorded_only == 1000);
 
 template <typename Take>
 void take_up_to(int max, sim::Mailbox& mailbox, Take&& take) {
@@ -135,7 +141,7 @@ void LockstepService::take_messages() {
                [&](const sim::Message& question) { take_request(static_cast<int>(i), question); });
     take_up_to(max_at_once, *link.bundles,
                [&](const sim::Message& bundle) { take_bundle(static_cast<int>(i), bundle); });
-    for (const auto& mailbox : link.passed_on)
+    for (const auto& [channel, mailbox] : link.passed_on)
       while (mailbox->take()) {
       }
   }
@@ -196,12 +202,12 @@ void LockstepService::take_ack(int link_index, const sim::Message& message) {
         link.messages.drop_unnamed();
       return;
     }
-    // Expect the listed messages, also those for other clients only.
-    if (!ack.listed) return;
-    for (const std::string& channel : ack.channel)
-      if (!link.gate.reads(channel) && lockstep_.has_receiver(link_index, channel) && !channel.empty() &&
-          channel.size() <= sim::Bus::max_channel_length)
-        link.passed_on.push_back(link.gate.open_mailbox(channel));
+    // Expect the listed messages, also those for other clients or for the record only.
+    if (!ack.listed) {
+      if (link.is_recorded) note_not_recorded(ack.client, "", "its answers list nothing");
+      return;
+    }
+    open_channels(link_index, ack);
     link.messages.collect();  // messages before this answer that arrived since the last collection
     link.messages.expect(ack.client, named);
     Pending& requested = pending_[ack.client];
@@ -210,6 +216,77 @@ void LockstepService::take_ack(int link_index, const sim::Message& message) {
   } catch (const std::runtime_error& error) {
     warn_client(who, std::string("sim.ack: ") + error.what());
   }
+}
+
+void LockstepService::open_channels(int link_index, const shoal::sim_ack_t& ack) {
+  Link& link = link_of(link_index);
+  for (const std::string& channel : ack.channel) {
+    if (link.gate.reads(channel) || channel.empty() || channel.size() > sim::Bus::max_channel_length) continue;
+    const bool has_receiver = lockstep_.has_receiver(link_index, channel);
+    if (!has_receiver && !link.is_recorded) continue;
+    const char* why_not = nullptr;
+    if (!has_receiver) {
+      if (link.passed_on.size() >= max_recorded_only) why_not = too_many_channels;
+      if (link.lost.contains(channel)) why_not = did_not_arrive;
+      if (channel.starts_with("sim.")) why_not = "channels of the simulator";
+    }
+    if (why_not == nullptr)
+      link.passed_on.emplace(channel, link.gate.open_mailbox(channel));
+    else
+      note_not_recorded(ack.client, channel, why_not);
+  }
+}
+
+bool LockstepService::is_only_recorded(int link_index, std::string_view channel) const {
+  const Link& link = link_of(link_index);
+  return link.is_recorded && link.passed_on.contains(channel) && link.gate.readers(channel) == 1 &&
+         !lockstep_.has_receiver(link_index, channel);
+}
+
+bool LockstepService::do_without(const sim::LockstepMember& member) {
+  Link& link = link_of(member.link);
+  const std::vector<std::string> missing = link.messages.missing_channels(member.name);
+  if (!member.answered || missing.empty() || !std::all_of(missing.begin(), missing.end(), [&](const std::string& each) {
+        return is_only_recorded(member.link, each);
+      }))
+    return false;
+  sim::log_warn("lockstep: {}; only the record needs them, and the run continues without them",
+                what_is_missing(member));
+  give_up(member);
+  for (const std::string& channel : missing) {
+    link.passed_on.erase(channel);
+    link.lost.insert(channel);
+  }
+  return true;
+}
+
+void LockstepService::give_up(const sim::LockstepMember& member) {
+  sim::ClientMessages& messages = link_of(member.link).messages;
+  for (const std::string& channel : messages.missing_channels(member.name))
+    if (is_only_recorded(member.link, channel)) note_not_recorded(member.name, channel, did_not_arrive);
+  messages.give_up(member.name);
+}
+
+void LockstepService::note_not_recorded(const std::string& client, const std::string& channel, const char* why) {
+  constexpr std::size_t max_noted = 1000;
+  if (not_recorded_.size() >= max_noted && !not_recorded_.contains({client, channel})) return;
+  NotRecorded& noted = not_recorded_[{client, channel}];
+  ++noted.messages;
+  noted.why = why;
+}
+
+std::vector<std::string> LockstepService::not_recorded() const {
+  std::vector<std::string> phrases;
+  for (const auto& [place, noted] : not_recorded_) {
+    const auto& [client, channel] = place;
+    const std::string of = " of client '" + sim::printable(sim::shortened(client)) + "'";
+    phrases.push_back((channel.empty()
+                           ? "messages" + of + " on channels that nothing reads"
+                           : std::to_string(noted.messages) + (noted.messages == 1 ? " message" : " messages") + of +
+                                 " on '" + sim::printable(sim::shortened(channel)) + "'") +
+                      " (" + noted.why + ")");
+  }
+  return phrases;
 }
 
 /// Compares the answers to a tick, because a forged one may arrive before that of the client.

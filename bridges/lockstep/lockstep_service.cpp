@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bridges/lockstep/lockstep_service.hpp"
 
+#include <spdlog/fmt/fmt.h>
+
 #include <algorithm>
-#include <cstdio>
 #include <utility>
 
 #include "bridges/lockstep/lockstep_link.hpp"
@@ -42,7 +43,7 @@ LockstepService::~LockstepService() {
 
 void LockstepService::add_link(const LockstepBus& bus) {
   const int index = static_cast<int>(links_.size());
-  links_.push_back(std::make_unique<Link>(bus.network, bus.gate, bus.name));
+  links_.push_back(std::make_unique<Link>(bus));
   bus.gate.set_order([this, index, link = links_.back().get()](std::vector<sim::MessageGate::Delivery>& messages) {
     if (!suspended_) link->messages.order(messages);
     if (!posts_messages_) return;
@@ -185,10 +186,8 @@ std::string LockstepService::waits_for() {
   for (const auto& [client, requested] : pending_) {
     const sim::LockstepMember* member = lockstep_.find(client);
     if (member == nullptr || (member->answered && link_of(member->link).messages.is_complete(client))) continue;
-    char wait[32];
-    std::snprintf(wait, sizeof wait, "waits %.1f s for '",
-                  std::chrono::duration<double>(Clock::now() - requested.since).count());
-    text += (text.empty() ? "" : ", ") + std::string(wait) + client + "'";
+    text += fmt::format("{}waits {:.1f} s for '{}'", text.empty() ? "" : ", ",
+                        std::chrono::duration<double>(Clock::now() - requested.since).count(), client);
     if (text.size() > 1000) return text + ", ...";
   }
   return text;
@@ -235,6 +234,7 @@ void LockstepService::serve(const std::vector<std::string>& late) {
     check_time(client, requested, taken_);
     const sim::LockstepMember* member = lockstep_.find(client);
     if (member == nullptr || requested.send_at > now) continue;
+    if (member->answered && link_of(member->link).messages.is_complete(client)) continue;  // it continues without some
     requested.send_at = now + requested.interval;
     requested.interval = fresh ? requested.interval : next_resend_interval(requested.interval);
     if (member->answered) {
@@ -255,11 +255,10 @@ void LockstepService::check_time(const std::string& client, Pending& requested, 
   const sim::LockstepMember* member = lockstep_.find(client);
   const double timeout_s = member->terms.timeout_s;
   if (now - requested.begin < std::chrono::duration<double>(timeout_s) && !member->removed) return;
+  if (do_without(*member)) return;
   // Describe what is late.
-  char limit[32];
-  std::snprintf(limit, sizeof limit, "%g s", timeout_s);
   const std::string step = std::to_string(member->requested);
-  const std::string when = member->removed ? "before its process ended" : "within " + std::string(limit);
+  const std::string when = member->removed ? "before its process ended" : fmt::format("within {:g} s", timeout_s);
   const std::string why = member->answered ? what_is_missing(*member) + " " + when
                           : member->removed
                               ? "the process of client '" + client + "' ended before it answered step " + step
@@ -288,7 +287,7 @@ void LockstepService::check_time(const std::string& client, Pending& requested, 
       return drop(client, why);
     case sim::OnTimeout::end_run:
       requested.reported = true;
-      summary_of(client).ended = why;
+      end_summary(client, why);
       throw LockstepTimeout("lockstep: " + why);
   }
   requested.reported = true;

@@ -45,7 +45,8 @@ enum class LockstepOutcome {
 struct LockstepBus {
   sim::Bus& network;  ///< bus behind `gate`; the handshake uses it directly, so that records exclude it
   sim::MessageGate& gate;
-  std::string name = {};  ///< empty: bus of the world, which is the first
+  std::string name = {};     ///< empty: bus of the world, which is the first
+  bool is_recorded = false;  ///< what clients list is admitted, and so recorded, on channels without a reader as well
 };
 
 /// Lockstep protocol on the buses: sends sim.tick, receives sim.ack, and requests and repeats messages on sim.resend
@@ -97,6 +98,8 @@ class LockstepService {
   bool has_left(const std::string& client) const;
   /// Returns the reason that a client gave when it left; empty: it gave none, or has not left.
   std::string reason_to_leave(const std::string& client) const;
+  /// Returns the simulated time at which the client was last removed; 0: it never was.
+  double end_s(const std::string& client) const;
   bool empty() const { return lockstep_.empty(); }
   /// Returns the names of the clients in the lockstep, in order, separated by commas.
   std::string names() const;
@@ -133,6 +136,12 @@ class LockstepService {
   std::uint64_t dropped_messages() const;
   /// Returns the summaries by name, including former clients, up to 2000.
   std::vector<LockstepSummary> summaries() const;
+  /// Returns what clients published and the record lacks, one phrase for each client and channel, such as `50 messages
+  /// of client 'pilot' on 'sim.note' (channels of the simulator)`.  Only with recorded buses.
+  std::vector<std::string> not_recorded() const;
+
+  /// Maximum number of channels of a bus that are open only for the record.
+  static constexpr std::size_t max_recorded_only = 1000;
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -175,6 +184,7 @@ class LockstepService {
   void serve(const std::vector<std::string>& late);
   void check_time(const std::string& client, Pending& requested, Clock::time_point now);
   void drop(const std::string& client, const std::string& why);
+  void end_summary(const std::string& client, const std::string& why);
   void discard(const std::string& client, const std::string& why);
   void report_who_left(const sim::LockstepMember& member, int link, const sim::LeaveTerms& terms);
   void notify_dropped(const Dropped& dropped, const std::string& client);
@@ -191,6 +201,14 @@ class LockstepService {
   void request_from_client(const sim::LockstepMember& member);
   void take_messages();
   void take_ack(int link, const sim::Message& message);
+  /// Opens the channels of an answer that the world does not read, for other clients and for the record.
+  void open_channels(int link, const shoal::sim_ack_t& ack);
+  bool is_only_recorded(int link, std::string_view channel) const;
+  /// Continues without the missing messages of a client when only the record needs them; otherwise returns false.
+  bool do_without(const sim::LockstepMember& member);
+  /// Stops waiting for the missing messages of a client.
+  void give_up(const sim::LockstepMember& member);
+  void note_not_recorded(const std::string& client, const std::string& channel, const char* why);
   void take_request(int link, const sim::Message& message);
   void take_bundle(int link, const sim::Message& message);
   void compare_answers(const shoal::sim_ack_t& ack, const std::string& signer);
@@ -224,6 +242,11 @@ class LockstepService {
   ControlGuard guard_;
   std::map<std::string, AnswerHistory, std::less<>> answers_;  // of the clients in the lockstep
   Contradiction contradiction_;
+  struct NotRecorded {
+    std::int64_t messages = 0;
+    const char* why;
+  };
+  std::map<std::pair<std::string, std::string>, NotRecorded> not_recorded_;  // by client and channel
   bool paused_here_ = false;
   std::int64_t pause_requests_ = 0;  // RunControl::pause_requests at that time
   bool suspended_ = false;

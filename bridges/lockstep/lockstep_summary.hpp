@@ -17,6 +17,7 @@ struct LockstepSummary {
   std::int64_t timeouts = 0;
   std::int64_t contradictions = 0;  ///< answers that differ from its first answer to the same tick
   std::string ended;                ///< reason why it left; empty: in the lockstep until the end
+  double ended_s = 0;               ///< simulated time of that
 };
 
 }  // namespace bridges

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "bridges/base/bus_error.hpp"
+#include "sim/base/number.hpp"
 
 namespace bridges {
 namespace {
@@ -46,7 +47,7 @@ std::string text_of(const sim::LockstepTerms& terms) {
   for (const std::string& channel : terms.receives) text += std::exchange(between, ", ") + quoted(channel);
   text += "]";
   if (terms.agreed) text += ", on_timeout: " + std::string(word_of(sim::on_timeout_words, terms.on_timeout));
-  if (terms.timeout_s != 0) text += ", timeout_s: " + std::to_string(terms.timeout_s);
+  if (terms.timeout_s != 0) text += ", timeout_s: " + sim::shortest_text(terms.timeout_s);
   return text + "}";
 }
 

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bridges/log/mcap_conversion.hpp"
 
+#include <spdlog/fmt/fmt.h>
+
 #include <algorithm>
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <map>
 
 #include "bridges/log/event_log.hpp"
+#include "bridges/log/time_order.hpp"
 #include "bridges/mcap/mcap_record.hpp"
 
 namespace bridges {
@@ -20,6 +24,7 @@ McapConverted convert_to_mcap(const McapConversion& conversion, const shoal::Mes
   // Convert the events.
   McapConverted converted;
   std::map<std::string, bool, std::less<>> converts;
+  TimeOrder order;
   LogEventView event;
   while (log.next(event)) {
     if (conversion.progress) conversion.progress(event.offset, log.file_bytes());
@@ -28,6 +33,11 @@ McapConverted convert_to_mcap(const McapConversion& conversion, const shoal::Mes
       if (known == converts.end()) known = converts.emplace(event.channel, conversion.wants(event.channel)).first;
       if (!known->second) continue;
     }
+    if (const std::string why = mcap::time_error(event.utime); !why.empty()) {
+      std::remove(conversion.out.c_str());
+      throw BusError(fmt::format("{}: byte {}: {}", conversion.log, event.offset, why));
+    }
+    order.add(event.utime, event.channel);
     require(out.write(event.utime, event.channel, event.payload));
     ++converted.events;
   }
@@ -39,6 +49,7 @@ McapConverted convert_to_mcap(const McapConversion& conversion, const shoal::Mes
   converted.channels = counts.size();
   converted.bytes = out.file().bytes();
   converted.log_problems = log.problems();
+  converted.time_problem = order.problem();
   converted.problems = out.problems();
   return converted;
 }

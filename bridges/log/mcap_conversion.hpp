@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -28,12 +29,14 @@ struct McapConverted {
   std::uint64_t not_decoded = 0;  ///< of these, kept as bytes
   std::uint64_t messages = 0;
   std::size_t channels = 0;
-  std::uint64_t bytes = 0;                ///< of the file
-  std::vector<std::string> log_problems;  ///< of the log, such as a damaged event
-  std::vector<std::string> problems;      ///< of its messages
+  std::uint64_t bytes = 0;                  ///< of the file
+  std::vector<std::string> log_problems;    ///< of the log, such as a damaged event
+  std::vector<std::string> problems;        ///< of its messages
+  std::optional<std::string> time_problem;  ///< where time goes back
 };
 
-/// Converts a log.  Throws BusError when a file cannot be read, created or written.
+/// Converts a log.  Throws BusError when a file cannot be read, created or written, and for times outside of what an
+/// MCAP file can hold.
 McapConverted convert_to_mcap(const McapConversion& conversion, const shoal::MessageTypes& types);
 
 }  // namespace bridges

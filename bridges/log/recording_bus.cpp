@@ -7,6 +7,7 @@
 #include <cstring>
 #include <utility>
 
+#include "bridges/mcap/mcap_record.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/sim_event_t.hpp"
 #include "sim/base/log.hpp"
@@ -17,6 +18,14 @@ namespace {
 constexpr std::chrono::milliseconds shortest_pause{50};
 constexpr std::chrono::milliseconds max_buffered{250};
 
+/// Returns the path of a record.  Throws BusError when its format cannot hold the epoch.
+const std::string& with_valid_epoch(const std::string& path, std::int64_t epoch_utime) {
+  if (is_mcap_name(path))
+    if (const std::string why = mcap::time_error(epoch_utime); !why.empty())
+      throw BusError(path + ": the 'epoch' of the world cannot be recorded: " + why);
+  return path;
+}
+
 }  // namespace
 
 RecordingBus::RecordingBus(std::unique_ptr<sim::Bus> inner, const std::string& path, std::int64_t epoch_utime,
@@ -26,7 +35,11 @@ RecordingBus::RecordingBus(std::unique_ptr<sim::Bus> inner, const std::string& p
 }
 
 RecordingBus::RecordingBus(sim::Bus& inner, const std::string& path, std::int64_t epoch_utime, Existing existing)
-    : inner_(inner), path_(path), epoch_utime_(epoch_utime), utime_(epoch_utime), log_(create_record(path, existing)) {}
+    : inner_(inner),
+      path_(path),
+      epoch_utime_(epoch_utime),
+      utime_(epoch_utime),
+      log_(create_record(with_valid_epoch(path, epoch_utime), existing)) {}
 
 RecordingBus::RecordingBus(sim::Bus& inner, RecordingBus& first) : inner_(inner), first_(&first) {}
 

@@ -31,6 +31,17 @@ std::uint64_t length_of(std::span<const std::byte> head) {
   return in.number<std::uint64_t>();
 }
 
+std::size_t bytes_of(const Schema& schema) {
+  return schema.name.size() + schema.encoding.size() + schema.text.size();
+}
+
+std::size_t bytes_of(const Channel& channel) {
+  constexpr std::size_t entry_bytes = 64;  // of the map itself
+  std::size_t bytes = channel.topic.size() + channel.encoding.size();
+  for (const auto& [key, value] : channel.metadata) bytes += key.size() + value.size() + entry_bytes;
+  return bytes;
+}
+
 }  // namespace
 
 McapReader::McapReader(const std::string& path)
@@ -190,11 +201,22 @@ bool McapReader::use(Opcode opcode, std::span<const std::byte> content, Item& it
   }
 }
 
+bool McapReader::keep(std::size_t bytes, std::size_t before) {
+  kept_bytes_ += bytes - before;
+  if (kept_bytes_ <= max_kept_bytes) return true;
+  report("its schemas and channels have more than " + std::to_string(max_kept_bytes >> 20) + " MB together");
+  ended_ = true;
+  chunk_.clear();
+  chunk_at_ = 0;
+  return false;
+}
+
 void McapReader::use_schema(RecordParser& in) {
   const auto number = in.number<std::uint16_t>();
   Schema schema{in.text(), in.text(), in.text()};
   if (!in.ok() || number == 0) return report("invalid schema");
-  schemas_.insert_or_assign(number, std::move(schema));
+  Schema& kept = schemas_[number];
+  if (keep(bytes_of(schema), bytes_of(kept))) kept = std::move(schema);
 }
 
 void McapReader::use_channel(RecordParser& in) {
@@ -205,7 +227,8 @@ void McapReader::use_channel(RecordParser& in) {
   channel.encoding = in.text();
   channel.metadata = in.map();
   if (!in.ok() || (channel.schema != 0 && !schemas_.contains(channel.schema))) return report("invalid channel");
-  channels_.insert_or_assign(number, std::move(channel));
+  Channel& kept = channels_[number];
+  if (keep(bytes_of(channel), bytes_of(kept))) kept = std::move(channel);
 }
 
 bool McapReader::use_message(RecordParser& in) {

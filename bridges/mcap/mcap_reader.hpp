@@ -51,6 +51,9 @@ class McapReader {
   bool read_in_chunk(Item& item);
   /// Uses the content of a record, in a chunk or outside; returns true when `item` was read.
   bool use(Opcode opcode, std::span<const std::byte> content, Item& item);
+  /// Counts the bytes of a schema or channel that replaces another one of `before`; ends the reading, and returns
+  /// false, when all of them have more than max_kept_bytes.
+  bool keep(std::size_t bytes, std::size_t before);
   void use_schema(RecordParser& in);
   void use_channel(RecordParser& in);
   bool use_message(RecordParser& in);
@@ -64,7 +67,7 @@ class McapReader {
   bool ended_ = false, complete_ = false;
   std::string profile_;
   std::vector<std::byte> record_, chunk_;
-  std::size_t chunk_at_ = 0;
+  std::size_t chunk_at_ = 0, kept_bytes_ = 0;
   std::map<std::uint16_t, Schema> schemas_;
   std::map<std::uint16_t, Channel> channels_;
   Message message_;

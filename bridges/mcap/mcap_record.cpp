@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bridges/mcap/mcap_record.hpp"
 
-#include <algorithm>
-#include <limits>
+#include <cerrno>
+#include <ctime>
 
 #include "bridges/mcap/mcap_reader.hpp"
 #include "shoal/sim_info_t.hpp"
@@ -19,18 +19,32 @@ constexpr const char* static_qos =
     "854775807\n  lifespan:\n    sec: 9223372036\n    nsec: 854775807\n  liveliness: 1\n  liveliness_lease_duration:\n"
     "    sec: 9223372036\n    nsec: 854775807\n  avoid_ros_namespace_conventions: false\n";
 
-std::uint64_t ns_of(std::int64_t utime) {
-  return static_cast<std::uint64_t>(
-      std::clamp<std::int64_t>(utime, 0, std::numeric_limits<std::int64_t>::max() / ns_per_us) * ns_per_us);
+std::string utc_text(std::int64_t utime) {
+  const std::time_t seconds = static_cast<std::time_t>(utime / 1'000'000 - (utime % 1'000'000 < 0 ? 1 : 0));
+  std::tm utc{};
+  char text[80];
+  if (gmtime_r(&seconds, &utc) == nullptr || std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc) == 0)
+    return std::to_string(seconds) + " s since 1970";
+  return text;
 }
 
 }  // namespace
+
+std::string time_error(std::int64_t utime) {
+  if (utime >= 0 && utime <= max_utime) return "";
+  return "the time " + utc_text(utime) + " is outside of " + utc_text(0) + " to " + utc_text(max_utime) +
+         ", which messages of ROS 2 in an MCAP file can hold";
+}
 
 McapRecord::McapRecord(FileDescriptor file, const shoal::MessageTypes& types)
     : types_(types), file_(std::move(file)), topics_(types) {}
 
 bool McapRecord::write(std::int64_t utime, std::string_view channel, std::span<const std::byte> payload) {
-  time_ns_ = ns_of(utime);
+  if (utime < 0 || utime > max_utime) {
+    errno = EOVERFLOW;
+    return false;
+  }
+  time_ns_ = static_cast<std::uint64_t>(utime * ns_per_us);
   if (channel == "sim.info" && !write_info(payload)) return false;
   return topics_.encode(channel, payload, *this);
 }

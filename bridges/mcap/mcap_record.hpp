@@ -16,6 +16,11 @@
 
 namespace bridges::mcap {
 
+/// Last time that messages of ROS 2 can hold, 2038-01-19T03:14:07Z; the first one is 1970, us.
+inline constexpr std::int64_t max_utime = 2'147'483'647'999'999;
+/// Returns why a record cannot have a time; empty: it can.
+std::string time_error(std::int64_t utime);
+
 /// MCAP file of the messages of a run, for Foxglove and the tools of ROS 2.  Each LCM channel becomes a topic with all
 /// its messages in CDR, and further topics with those that a standard type of ROS 2 can express.  Payloads of unknown
 /// types, and invalid ones, are kept as they are.
@@ -24,7 +29,8 @@ class McapRecord final : private ros2::TopicSink {
   /// `types` must outlive this.
   McapRecord(FileDescriptor file, const shoal::MessageTypes& types = shoal::embedded_types());
 
-  /// Writes a message with its simulated time.  Returns false after a failed write; errno has the reason.
+  /// Writes a message with its simulated time.  Returns false after a failed write, and for a time of which
+  /// time_error() says why; errno has the reason.
   bool write(std::int64_t utime, std::string_view channel, std::span<const std::byte> payload);
   /// Continues with another file, which starts with the first `messages` messages of this record; `path`: its file.
   /// Returns null when the file cannot be read or written.

@@ -175,6 +175,7 @@ Json SceneWriter::vehicles() const {
     all.push_back({{"name", vehicle->name()},
                    {"body", vehicle->base().number()},
                    {"pose", pose_json(vehicle->base().X_WB().inverse() * vehicle->X_WV())},
+                   {"own_clock", !vehicle->clock().perfect()},
                    {"devices", std::move(devices)}});
   }
   return all;

@@ -112,6 +112,7 @@ class ViewSession final : public WebSession {
   void receive(std::string_view bytes, bool is_text) override;
   bool next(WebFrame& frame) override;
   bool awaits_greeting() const override { return !greeted_; }
+  bool has_token() const override { return may_control_; }
 
  private:
   friend class ViewProtocol;

@@ -18,6 +18,7 @@
 #include <boost/beast/websocket.hpp>
 #include <chrono>
 #include <list>
+#include <map>
 #include <optional>
 #include <set>
 #include <thread>
@@ -39,7 +40,8 @@ using namespace std::chrono_literals;
 
 constexpr std::size_t max_header_bytes = 16 * 1024;
 constexpr std::size_t max_other_connections = 64;
-constexpr int kernel_send_bytes = 256 * 1024;  // bounds what a client that does not read costs the kernel
+constexpr std::size_t max_greeting_clients = 8;  // beyond the limit: also those with the token of the page
+constexpr int kernel_send_bytes = 256 * 1024;    // bounds what a client that does not read costs the kernel
 constexpr std::chrono::milliseconds request_time = 10s, answer_time = 120s, silence = 60s, farewell_time = 500ms,
                                     accept_pause = 100ms;
 
@@ -53,6 +55,8 @@ class Peer {
   virtual void cut() = 0;
 };
 
+class WebSocketPeer;
+
 /// What all connections share.
 struct Hub {
   HttpSite& site;
@@ -60,7 +64,7 @@ struct Hub {
   net::io_context context{1};
   net::steady_timer farewell{context};  // at the end: for peers that do not say goodbye
   std::set<Peer*> peers{};
-  std::size_t clients = 0;
+  std::map<int, WebSocketPeer*> sockets{};  // by number: the oldest first
   int last_number = 0;
   bool ends = false;
 
@@ -76,6 +80,10 @@ std::vector<std::string_view> values_of(const http::fields& fields, http::field 
   for (auto field = range.first; field != range.second; ++field)
     values.emplace_back(field->value().data(), field->value().size());
   return values;
+}
+
+std::string limit_text(std::size_t clients) {
+  return "the limit of " + std::to_string(clients) + " clients is reached";
 }
 
 std::string_view view_of(boost::string_view text) {
@@ -102,11 +110,11 @@ class WebSocketPeer final : public Peer, public WebLink, public std::enable_shar
         greeting_(hub.context),
         number_(++hub.last_number) {
     hub_.peers.insert(this);
-    ++hub_.clients;
+    hub_.sockets.emplace(number_, this);
   }
   ~WebSocketPeer() override {
     session_.reset();
-    --hub_.clients;
+    hub_.sockets.erase(number_);
     hub_.remove(this);
   }
 
@@ -118,8 +126,13 @@ class WebSocketPeer final : public Peer, public WebLink, public std::enable_shar
   void leave() override { begin_close({websocket::close_code::going_away, "the server ends"}); }
   void cut() override;
 
+  bool awaits_greeting() const { return !session_ || session_->awaits_greeting(); }
+  /// Whether it is one of the clients that are limited: those with the token of the page always get in.
+  bool is_reader() const { return !awaits_greeting() && !session_->has_token(); }
+
  private:
   void set_options();
+  void admit();
   void opened();
   void await_greeting();
   void read();
@@ -137,7 +150,7 @@ class WebSocketPeer final : public Peer, public WebLink, public std::enable_shar
   WebFrame frame_;
   std::optional<websocket::close_reason> close_when_sent_;
   const int number_;
-  bool sending_ = false, woken_ = false, closing_ = false;
+  bool sending_ = false, woken_ = false, closing_ = false, admitted_ = false;
 };
 
 void WebSocketPeer::set_options() {
@@ -167,8 +180,19 @@ void WebSocketPeer::opened() {
     if (kind == websocket::frame_type::close) leave_session();
   });
   await_greeting();
+  admit();
   read();
   send();
+}
+
+/// Closes a client without the token, once that is known, when there are too many of them.
+void WebSocketPeer::admit() {
+  if (admitted_ || awaits_greeting()) return;
+  admitted_ = true;
+  const auto readers = std::count_if(hub_.sockets.begin(), hub_.sockets.end(),
+                                     [](const auto& each) { return each.second->is_reader(); });
+  if (is_reader() && static_cast<std::size_t>(readers) > hub_.max_clients)
+    close(WebClose::policy, limit_text(hub_.max_clients));
 }
 
 void WebSocketPeer::await_greeting() {
@@ -187,6 +211,7 @@ void WebSocketPeer::read() {
     const auto data = self->buffer_.cdata();
     if (self->session_)
       self->session_->receive({static_cast<const char*>(data.data()), data.size()}, self->socket_.got_text());
+    self->admit();
     self->buffer_.consume(self->buffer_.size());
     self->read();
   });
@@ -294,8 +319,15 @@ void HttpPeer::received(error_code error) {
 void HttpPeer::upgrade() {
   auto choice = hub_.site.choose(head_of(parser_->get()));
   if (HttpAnswer* refusal = std::get_if<HttpAnswer>(&choice)) return send(std::move(*refusal), false);
-  if (hub_.clients >= hub_.max_clients)
-    return send(plain_answer(503, "the limit of " + std::to_string(hub_.max_clients) + " clients is reached\n"), false);
+  // Those that have not said yet whether they have the token give way, the oldest first.
+  if (hub_.sockets.size() >= hub_.max_clients + max_greeting_clients) {
+    const auto oldest = std::find_if(hub_.sockets.begin(), hub_.sockets.end(),
+                                     [](const auto& each) { return each.second->awaits_greeting(); });
+    if (oldest == hub_.sockets.end()) return send(plain_answer(503, limit_text(hub_.max_clients) + "\n"), false);
+    WebSocketPeer* peer = oldest->second;
+    hub_.sockets.erase(oldest);
+    peer->cut();
+  }
   const auto peer = std::make_shared<WebSocketPeer>(hub_, std::move(stream_), std::get<ChosenProtocol>(choice));
   peer->start(parser_->get());
 }

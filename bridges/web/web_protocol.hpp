@@ -42,6 +42,8 @@ class WebSession {
   virtual bool next(WebFrame& frame) = 0;
   /// Returns true while the client has not introduced itself, for which it has ten seconds.
   virtual bool awaits_greeting() const { return false; }
+  /// Returns true when the client has given the token of the page.
+  virtual bool has_token() const { return false; }
 };
 
 /// WebSocket subprotocol: makes a session for each client.

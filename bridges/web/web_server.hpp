@@ -26,7 +26,7 @@ struct WebOptions {
   std::string token;                 ///< what a page needs to steer; empty: 128 random bits
   std::vector<std::string> origins;  ///< further web sites whose pages may connect, such as https://example.org
   std::string page_directory;        ///< folder with the page; empty: the page in the program
-  std::size_t max_clients = 32;      ///< limit of WebSocket clients
+  std::size_t max_clients = 32;      ///< limit of WebSocket clients without the token
 };
 
 /// Server of the live page: files by HTTP, and WebSocket clients of the subprotocol `shoal.view.v1`

@@ -6,6 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "devices/autopilot/level_check.hpp"
 #include "devices/joint/joint_of_device.hpp"
 #include "messages/reporter/message_reporter.hpp"
 #include "shoal/autopilot_command_t.hpp"
@@ -14,6 +15,7 @@
 #include "shoal/message_codec.hpp"
 #include "shoal/station_command_t.hpp"
 #include "shoal/waypoints_command_t.hpp"
+#include "sim/config/message_text.hpp"
 #include "sim/vehicle/mounted_device.hpp"
 #include "sim/world/world.hpp"
 
@@ -65,6 +67,7 @@ Autopilot::Autopilot(const Params& params, const sim::DeviceContext& context)
       circle_(params.circle_radius_m),
       mode_(params.first_mode()) {
   check_helm(context, params.helm);
+  if (actuators_) check_level(*actuators_, params.gains.attitude, context);
   const HoldParams& hold = params.hold;
   desired_.speed_mps = hold.speed_mps;
   desired_.heading_rad =
@@ -187,7 +190,7 @@ double Autopilot::height_desired(const sim::SenseContext& context) {
 
 void Autopilot::follow_route(double dt_s) {
   const std::size_t before = route_.index();
-  const Aim aim = route_.aim(place(), dt_s);
+  const Aim aim = route_.aim(place(), body_.v_WB_W().head<2>(), sim::yaw_of(body_.X_WB().linear()), dt_s);
   if (route_.index() != before) take_waypoint();
   reading_.cross_track_m = aim.cross_track_m;
   reading_.distance_m = aim.distance_m;
@@ -224,7 +227,7 @@ void Autopilot::measure(const sim::SenseContext& context) {
   reading_ = {mode_, nothing, nothing, nothing, nothing, nothing, nothing, nothing, nothing, nothing, nothing, false};
   if (!driving) {
     law_.reset();
-    limited_ = {};
+    given_ = {};
     return;
   }
   if (mode_ == Mode::waypoints)
@@ -232,7 +235,7 @@ void Autopilot::measure(const sim::SenseContext& context) {
   else if (mode_ == Mode::circle)
     follow_circle();
   desired_.height_m = height_desired(context);
-  drive(context, law_.step(motion_of(context.world), desired_, context.dt_s, limited_));
+  drive(context, law_.step(motion_of(context.world), desired_, context.dt_s, given_.wrench));
 }
 
 void Autopilot::drive(const sim::SenseContext& context, const Demand& demand) {
@@ -246,8 +249,8 @@ void Autopilot::drive(const sim::SenseContext& context, const Demand& demand) {
   if (desired_.station_m) reading_.distance_m = (*desired_.station_m - place()).norm();
   if (!actuators_) return drive_helm(demand, context.now);
   const CraftMotion motion = motion_of(context.world);
-  limited_ = actuators_->share(demand.wrench, motion.v_S, context.world.hydrodynamics().water_at(body_).density_kgpm3);
-  reading_.saturated = limited_.any();
+  given_ = actuators_->share(demand.wrench, motion.v_S, context.world.hydrodynamics().water_at(body_).density_kgpm3);
+  reading_.saturated = given_.saturated;
   actuators_->publish(context.now);
 }
 
@@ -275,7 +278,7 @@ void Autopilot::Reading::visit_state(sim::StateArchive& archive) {
 }
 
 void Autopilot::visit_state(sim::StateArchive& archive) {
-  archive(law_, route_, circle_, mode_, desired_, depth_desired_m_, altitude_desired_m_, limited_, reading_);
+  archive(law_, route_, circle_, mode_, desired_, depth_desired_m_, altitude_desired_m_, given_, reading_);
   if (!archive.restoring()) return;
   if (mode_ < Mode::off || mode_ > Mode::circle) archive.fail("unknown autopilot mode");
   if (mode_ == Mode::waypoints && route_.size() == 0) archive.fail("an autopilot follows a route without waypoints");
@@ -306,8 +309,8 @@ namespace {
 /// Throws when a field is outside its limits.  NaN is valid and means no change.
 void check(const char* field, double value, double low, double high) {
   if (!std::isnan(value) && !(value >= low && value <= high))
-    throw std::runtime_error(std::string("field '") + field + "' must be between " + std::to_string(low) + " and " +
-                             std::to_string(high) + ", got " + std::to_string(value));
+    throw std::runtime_error(std::string("field '") + field + "' must be between " + sim::number_text(low) + " and " +
+                             sim::number_text(high) + ", got " + sim::number_text(value));
 }
 
 constexpr double far_m = 1e7;

@@ -91,7 +91,7 @@ class Autopilot final : public sim::Sensor {
   Setpoint desired_;
   // Exactly one of the two is set.
   std::optional<double> depth_desired_m_, altitude_desired_m_;
-  Limited limited_;
+  AutopilotActuators::Given given_;  // of the last step
   Reading reading_;
   std::unique_ptr<sim::OpenChannel> helm_channel_;  // opened by the first command
 };

@@ -47,9 +47,7 @@ Wrench mass_of(const sim::DeviceContext& context) {
   mass.head<3>().setConstant(body.mass_kg());
   mass.tail<3>() =
       body.inertia_C_B().diagonal() + body.mass_kg() * (sim::Vector3d::Constant(r.squaredNorm()) - r.cwiseAbs2());
-  for (const sim::BodyConfig& config : context.vehicle.config().bodies)
-    if (body.name() == context.vehicle.name() + "/" + config.name && config.hydrodynamics)
-      mass += config.hydrodynamics->added_mass.diagonal();
+  if (const sim::HydrodynamicsConfig* water = hydrodynamics_of(context)) mass += water->added_mass.diagonal();
   return mass;
 }
 
@@ -72,6 +70,13 @@ void refuse_two_masters(const AutopilotParams& params, const sim::DeviceContext&
 }
 
 }  // namespace
+
+const sim::HydrodynamicsConfig* hydrodynamics_of(const sim::DeviceContext& context) {
+  for (const sim::BodyConfig& config : context.vehicle.config().bodies)
+    if (context.body.name() == context.vehicle.name() + "/" + config.name && config.hydrodynamics)
+      return &*config.hydrodynamics;
+  return nullptr;
+}
 
 AutopilotActuators::AutopilotActuators(const AutopilotParams& params, const sim::DeviceContext& context)
     : vehicle_(context.vehicle), epoch_us_(context.world.epoch_us()), mass_(mass_of(context)) {
@@ -126,6 +131,7 @@ void AutopilotActuators::add_fins(const AutopilotParams& params, const sim::Devi
   fin_angles_.resize(torque.cols(), 2);
   for (Eigen::Index axis = 0; axis < 2; ++axis)
     fin_angles_.col(axis) = sim::least_squares(torque, Eigen::Vector2d::Unit(axis));
+  fin_torques_ = torque;
   if (torque.norm() < 1e-9 || !fin_angles_.allFinite()) refuse(context, "'fins' neither pitch nor turn the vehicle");
 }
 
@@ -133,33 +139,40 @@ CraftAbilities AutopilotActuators::abilities() const {
   CraftAbilities craft;
   craft.mass = mass_;
   craft.fins = !planes_.empty();
-  craft.sideways = allocation_ && allocation_->gives(1);
-  craft.heaves = allocation_ && allocation_->gives(2);
+  craft.sideways = gives(1);
+  craft.heaves = gives(2);
   return craft;
 }
 
-Limited AutopilotActuators::share(const Wrench& wrench, const sim::Vector3d& v_B, double density_kgpm3) {
-  // Allocate the wrench to the thrusters.
+AutopilotActuators::Given AutopilotActuators::share(const Wrench& wrench, const sim::Vector3d& v_B,
+                                                    double density_kgpm3) {
+  // Allocate the wrench to the thrusters, whose thrust depends on their inflow too.
   const double density = density_kgpm3 > 0 ? density_kgpm3 : plan_density_kgpm3;
-  Limited limited;
-  constexpr double all = 1 - 1e-9;  // except for rounding
-  limited.thrusters = allocation_->allocate(wrench, forces_N_) < all;
+  constexpr double all = 1 - 1e-9, rounding_N = 1e-6;
+  Given given;
+  given.saturated = allocation_->allocate(wrench, forces_N_) < all;
   for (std::size_t i = 0; i < propellers_.size(); ++i) {
     Propeller& propeller = propellers_[i];
-    propeller.device.command =
-        propeller.curve.command_for_N(forces_N_[static_cast<Eigen::Index>(i)], propeller.axis_B.dot(v_B), density);
+    double& force_N = forces_N_[static_cast<Eigen::Index>(i)];
+    const double inflow_mps = propeller.axis_B.dot(v_B), desired_N = force_N;
+    propeller.device.command = propeller.curve.command_for_N(desired_N, inflow_mps, density);
+    force_N = propeller.curve.force_N(propeller.device.command, inflow_mps, density);
+    given.saturated = given.saturated || std::abs(force_N - desired_N) > rounding_N * (1 + std::abs(desired_N));
   }
-  if (planes_.empty()) return limited;
+  given.wrench = allocation_->wrench_of(forces_N_);
+  if (planes_.empty()) return given;
   // Deflect the fins in proportion to torque over speed squared.
   const double speed = std::max(slowest_mps, v_B.x());
-  const Eigen::VectorXd angles = fin_angles_ * wrench.tail<2>() / (speed * speed);
+  Eigen::VectorXd angles = fin_angles_ * wrench.tail<2>() / (speed * speed);
   for (std::size_t i = 0; i < planes_.size(); ++i) {
     Plane& plane = planes_[i];
-    const double angle = angles[static_cast<Eigen::Index>(i)];
+    double& angle = angles[static_cast<Eigen::Index>(i)];
     plane.device.command = std::clamp(angle, -plane.limit_rad, plane.limit_rad);
-    limited.fins = limited.fins || plane.device.command != angle;
+    given.saturated = given.saturated || plane.device.command != angle;
+    angle = plane.device.command;
   }
-  return limited;
+  given.wrench.tail<2>() += fin_torques_ * angles * (speed * speed);
+  return given;
 }
 
 void AutopilotActuators::publish(Driven& device, sim::Time now) {

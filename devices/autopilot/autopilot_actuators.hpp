@@ -13,6 +13,9 @@
 
 namespace devices {
 
+/// Returns the coefficients of the body of a device; null: it has none.
+const sim::HydrodynamicsConfig* hydrodynamics_of(const sim::DeviceContext& context);
+
 /// Actuators of an autopilot, with the geometry and thrust curves from the vehicle file.
 class AutopilotActuators {
  public:
@@ -21,8 +24,16 @@ class AutopilotActuators {
 
   /// Returns mass and controllable axes of the craft.
   CraftAbilities abilities() const;
-  /// Computes the commands for a wrench at a velocity through the water.  Returns which actuators are saturated.
-  Limited share(const Wrench& wrench, const sim::Vector3d& v_B, double density_kgpm3);
+  /// Returns true when the thrusters control an axis of the wrench.
+  bool gives(int axis) const { return allocation_ && allocation_->gives(axis); }
+  /// What the actuators give of a wrench.
+  struct Given {
+    Wrench wrench = Wrench::Zero();  ///< in the frame of the body, N and N m
+    bool saturated = false;          ///< it is not the wrench demanded
+    void visit_state(sim::StateArchive& archive) { archive(wrench, saturated); }
+  };
+  /// Computes the commands for a wrench at a velocity through the water.  Returns what they give.
+  Given share(const Wrench& wrench, const sim::Vector3d& v_B, double density_kgpm3);
   /// Publishes the commands computed by share().
   void publish(sim::Time now);
 
@@ -54,7 +65,8 @@ class AutopilotActuators {
   std::vector<Propeller> propellers_;
   std::vector<Plane> planes_;
   std::optional<ThrustAllocation> allocation_;
-  Eigen::MatrixXd fin_angles_;  // fins x torque: rad per N m at 1 m/s
+  Eigen::MatrixXd fin_torques_;  // pitch and yaw x fins: N m per rad at 1 m/s
+  Eigen::MatrixXd fin_angles_;   // fins x torque: rad per N m at 1 m/s
   Eigen::VectorXd forces_N_;
   sim::Bytes payload_;
 };

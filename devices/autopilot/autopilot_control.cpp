@@ -11,21 +11,29 @@ void HoldGains::read(sim::ParamReader& in) {
   in.read("damping", damping, sim::between(0.3, 10), "1: no overshoot");
   in.read("rate_max", rate_max, sim::above(0), "rate limit: m/s, or rad/s for an angle");
   in.read("integral", integral, sim::between(0, 0.5),
-          "gain of the integral of the error, which removes a steady error");
+          "bandwidth of the estimate of the disturbance over that of the hold; 0: a steady error remains");
 }
 
-double AxisHold::step(double error, double rate, double dt_s, bool frozen) {
+double Disturbance::update(double rate, double given, double dt_s, double weight) {
+  if (rate_before_ && dt_s > 0) {
+    const double found = (rate - *rate_before_) / dt_s - given;
+    estimate_ += std::min(1.0, weight * bandwidth_radps_ * dt_s) * (found - estimate_);
+  }
+  rate_before_ = rate;
+  return estimate_;
+}
+
+void Disturbance::reset() {
+  estimate_ = 0;
+  rate_before_.reset();
+}
+
+double AxisHold::step(double error, double rate, double given, double dt_s) {
   const double w = gains_.bandwidth_radps, damping = gains_.damping;
   const double desired = w / (2 * damping) * error;
   const double rate_desired = std::clamp(desired, -gains_.rate_max, gains_.rate_max);
-  // Hold the integral while the rate is limited (anti-windup).
-  if (!frozen && desired == rate_desired) sum_ += gains_.integral * w * w * w * error * dt_s;
-  return 2 * damping * w * (rate_desired - rate) + sum_;
-}
-
-double RateHold::step(double error, double dt_s, bool frozen) {
-  if (!frozen) sum_ += integral_ * bandwidth_radps_ * bandwidth_radps_ * error * dt_s;
-  return bandwidth_radps_ * error + sum_;
+  const double missed = desired == rate_desired ? 1 : 1 - std::clamp(rate / rate_desired, 0.0, 1.0);
+  return 2 * damping * w * (rate_desired - rate) - disturbance_.update(rate, given, dt_s, missed);
 }
 
 }  // namespace devices

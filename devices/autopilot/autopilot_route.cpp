@@ -80,7 +80,7 @@ void Route::start(std::vector<Waypoint> points, bool loop, const Eigen::Vector2d
   finished_ = false;
   to_ = 0;
   from_W_ = from_W;
-  sum_m_ = 0;
+  bias_m_ = 0;
 }
 
 bool Route::reached(const Eigen::Vector2d& p_W) const {
@@ -88,7 +88,7 @@ bool Route::reached(const Eigen::Vector2d& p_W) const {
   return (to().p_W - p_W).norm() <= params_.acceptance_radius_m || (p_W - to().p_W).dot(leg) > 0;
 }
 
-Aim Route::aim(const Eigen::Vector2d& p_W, double dt_s) {
+Aim Route::aim(const Eigen::Vector2d& p_W, const Eigen::Vector2d& v_W, double heading_rad, double dt_s) {
   // Switch past all waypoints reached, each at most once.
   for (std::size_t looked = 0; !finished_ && looked < points_.size() && reached(p_W); ++looked) {
     if (to_ + 1 == points_.size() && !loop_) {
@@ -97,7 +97,7 @@ Aim Route::aim(const Eigen::Vector2d& p_W, double dt_s) {
     }
     from_W_ = to().p_W;
     to_ = (to_ + 1) % points_.size();
-    sum_m_ = 0;
+    bias_m_ = 0;
   }
   const Eigen::Vector2d leg = to().p_W - from_W_, offset = p_W - from_W_;
   Aim aim;
@@ -110,11 +110,16 @@ Aim Route::aim(const Eigen::Vector2d& p_W, double dt_s) {
   }
   // Line-of-sight heading with integral action.
   aim.cross_track_m = (leg.x() * offset.y() - leg.y() * offset.x()) / length;
-  const double lookahead = params_.lookahead_m, biased = aim.cross_track_m + params_.integral * sum_m_;
+  const double lookahead = params_.lookahead_m, biased = aim.cross_track_m + bias_m_;
   aim.heading_rad = sim::wrap_angle(std::atan2(leg.y(), leg.x()) - std::atan(biased / lookahead));
-  // Integrate near the leg only (anti-windup in turns).
-  if (std::abs(aim.cross_track_m) < lookahead / 2)
-    sum_m_ += dt_s * lookahead * aim.cross_track_m / (lookahead * lookahead + biased * biased);
+  // Integrate where the heading follows (anti-windup in turns), up to a drift of 97 % of the speed.
+  constexpr double turning_rad = 0.3, slow_mps = 0.1, max_lookaheads = 4;
+  if (std::abs(sim::wrap_angle(aim.heading_rad - heading_rad)) > turning_rad) return aim;
+  const auto sine = [lookahead](double y) { return y / std::hypot(lookahead, y); };
+  const double speed = v_W.norm(), across_mps = (leg.x() * v_W.y() - leg.y() * v_W.x()) / length;
+  const double missed = (across_mps + speed * (sine(biased) - sine(bias_m_))) / std::max(speed, slow_mps);
+  bias_m_ =
+      std::clamp(bias_m_ + params_.integral * missed * dt_s, -max_lookaheads * lookahead, max_lookaheads * lookahead);
   return aim;
 }
 
@@ -142,7 +147,7 @@ void Circle::visit_state(sim::StateArchive& archive) {
 }
 
 void Route::visit_state(sim::StateArchive& archive) {
-  archive(points_, loop_, finished_, to_, from_W_, sum_m_);
+  archive(points_, loop_, finished_, to_, from_W_, bias_m_);
   if (to_ >= std::max<std::size_t>(points_.size(), 1))
     archive.fail("a route of " + std::to_string(points_.size()) + " waypoints has no number " + std::to_string(to_));
 }

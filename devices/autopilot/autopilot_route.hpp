@@ -48,20 +48,23 @@ struct Aim {
   double distance_m = 0;     ///< distance to the waypoint
 };
 
-/// Follows the legs of a route by integral line-of-sight guidance, which compensates drift (ILOS: Borhaug, Pavlov,
-/// Pettersen 2008; Fossen 2021, section 12.4):
-///   heading = direction of the leg - atan((e + kappa s) / Delta),  s' = Delta e / (Delta^2 + (e + kappa s)^2),
-/// with e the cross-track error, Delta the lookahead distance, kappa the integral gain.  The integral s is held while
-/// |e| >= Delta / 2.  A waypoint is reached within its acceptance radius, or when the craft passes the line through it
-/// perpendicular to the leg, so that the craft does not return to a missed waypoint.
+/// Follows the legs of a route by integral line-of-sight guidance, which compensates drift (after ILOS: Borhaug,
+/// Pavlov, Pettersen 2008; Fossen 2021, section 12.4):
+///   heading = direction of the leg - atan((e + b) / Delta),  b' = kappa (e' / U + f(e + b) - f(b)),
+/// with e the cross-track error, Delta the lookahead distance, U the speed over ground, kappa the integral gain, and
+/// f(y) = y / sqrt(Delta^2 + y^2).  Near the leg b' is kappa / Delta (e + Delta e' / U): the integral of the error,
+/// less the way that the guidance itself makes towards the leg, so that it does not wind up there.  b is held while the
+/// craft turns to its heading.  A waypoint is reached within its acceptance radius, or when the craft passes the line
+/// through it perpendicular to the leg, so that the craft does not return to a missed waypoint.
 class Route {
  public:
   explicit Route(const GuidanceParams& params) : params_(params) {}
 
   /// Starts a route at `from_W`.
   void start(std::vector<Waypoint> points, bool loop, const Eigen::Vector2d& from_W);
-  /// Switches to the next waypoint when one is reached and returns the guidance.  The route must not be empty.
-  Aim aim(const Eigen::Vector2d& p_W, double dt_s);
+  /// Switches to the next waypoint when one is reached and returns the guidance.  `v_W`: velocity over ground;
+  /// `heading_rad`: of the craft.  The route must not be empty.
+  Aim aim(const Eigen::Vector2d& p_W, const Eigen::Vector2d& v_W, double heading_rad, double dt_s);
   /// Returns the current waypoint.
   const Waypoint& to() const { return points_[to_]; }
   std::size_t index() const { return to_; }
@@ -80,7 +83,7 @@ class Route {
   bool finished_ = false;
   std::size_t to_ = 0;
   Eigen::Vector2d from_W_ = Eigen::Vector2d::Zero();
-  double sum_m_ = 0;
+  double bias_m_ = 0;  // b
 };
 
 /// Circles around a point by a vector field (Nelson, Barber, McLain, Beard, Vector field path following for miniature

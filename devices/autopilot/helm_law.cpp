@@ -42,18 +42,9 @@ HelmLaw::HelmLaw(const HelmGains& gains, const CraftAbilities& craft)
       north_(gains.position),
       speed_(gains.speed_bandwidth_radps, gains.speed_integral) {}
 
-/// Returns the acceleration in W towards the station, for a craft with sway control.
-sim::Vector3d HelmLaw::hold_station_sideways(const CraftMotion& motion, const Eigen::Vector2d& station, double dt_s,
-                                             bool frozen) {
-  const sim::Vector3d p = motion.X_WS.translation();
-  return {east_.step(station.x() - p.x(), motion.v_WS_W.x(), dt_s, frozen),
-          north_.step(station.y() - p.y(), motion.v_WS_W.y(), dt_s, frozen), 0};
-}
-
 /// Sets heading and speed towards the station, for a craft without sway control.  In the steady state it heads against
-/// the current, which the integral of the error estimates.
-void HelmLaw::hold_station_ahead(const CraftMotion& motion, const Eigen::Vector2d& station, double dt_s, bool frozen,
-                                 Demand& demand) {
+/// the current.
+void HelmLaw::hold_station_ahead(const CraftMotion& motion, const Eigen::Vector2d& station, Demand& demand) const {
   const HoldGains& gains = gains_.position;
   // Lower bandwidth than with sway control, because the heading must settle first.
   const double k = 0.2 * gains.bandwidth_radps / gains.damping;
@@ -63,10 +54,8 @@ void HelmLaw::hold_station_ahead(const CraftMotion& motion, const Eigen::Vector2
     demand.speed_mps = std::clamp(k * error.norm(), gains_.steerage_mps, std::max(gains_.steerage_mps, gains.rate_max));
     return;
   }
-  // Velocity through the water: proportional part and estimate of the drift.
-  const Eigen::Vector2d near = at_most(k * error, gains.rate_max);
-  if (!frozen && (k * error).norm() <= gains.rate_max) drift_sum_mps_ += gains.integral * k * k * error * dt_s;
-  const Eigen::Vector2d desired = near + drift_sum_mps_;
+  // Velocity through the water: towards the station, and against the drift.
+  const Eigen::Vector2d desired = at_most(k * error, gains.rate_max) - drift_mps_;
   if (desired.norm() < idle_mps) return;
   // Head along it; advance only as far as the heading is aligned.
   demand.heading_rad = std::atan2(desired.y(), desired.x());
@@ -75,46 +64,65 @@ void HelmLaw::hold_station_ahead(const CraftMotion& motion, const Eigen::Vector2
 }
 
 /// Returns the desired pitch (positive nose down) of a craft with fins, to reach a height.
-double HelmLaw::pitch_for(const CraftMotion& motion, double height_m, double dt_s, bool frozen) {
+double HelmLaw::pitch_for(const CraftMotion& motion, double height_m, double dt_s) {
   const double k = gains_.climb_gain_per_s;
   const double error = height_m - motion.X_WS.translation().z();
   const double speed = std::max(slowest_mps, motion.v_S.x());
   const double nose_up = std::asin(std::clamp(k * error / speed, -1.0, 1.0)) + climb_sum_rad_;
   const double kept = std::clamp(nose_up, -gains_.pitch_max_rad, gains_.pitch_max_rad);
-  if (!frozen && kept == nose_up) climb_sum_rad_ += gains_.depth.integral * k * k / speed * error * dt_s;
+  // The integral grows only where the pitch follows its setpoint (anti-windup).
+  constexpr double followed_rad = 0.2;
+  const bool follows =
+      kept == nose_up && std::abs(kept + sim::rpy_from_rotation(motion.X_WS.linear()).y()) < followed_rad;
+  if (follows || error * climb_sum_rad_ < 0) climb_sum_rad_ += gains_.depth.integral * k * k / speed * error * dt_s;
   return -kept;
 }
 
-Demand HelmLaw::step(const CraftMotion& motion, const Setpoint& desired, double dt_s, const Limited& limited) {
-  const bool frozen = limited.thrusters, turn_frozen = craft_.fins ? limited.fins : limited.thrusters;
+Demand HelmLaw::step(const CraftMotion& motion, const Setpoint& desired, double dt_s, const Wrench& given) {
+  // Rotation from W by yaw alone: a force against a current must tilt with the craft, as its drag does.  Beside a drag
+  // that has tilted it would push the craft down or up, which adds to the Munk moment.
+  const sim::Matrix3d& R_WS = motion.X_WS.linear();
+  sim::Matrix3d R_WL = Eigen::AngleAxisd(sim::yaw_of(R_WS), sim::Vector3d::UnitZ()).toRotationMatrix();
+  R_WL(2, 2) = R_WS(2, 2);  // what heave gives of a vertical acceleration
+  // Accelerations by the actuators since the last step.
+  const Wrench gave_S = given.cwiseQuotient(craft_.mass);
+  const sim::Vector3d gave_W = R_WL * gave_S.head<3>();
+  // Drift, as steady as the position is held.
+  const Eigen::Vector2d drift_mps = (motion.v_WS_W - R_WS.col(0) * motion.v_S.x()).head<2>();
+  drift_mps_ +=
+      std::min(1.0, gains_.position.integral * gains_.position.bandwidth_radps * dt_s) * (drift_mps - drift_mps_);
   // Setpoints of heading and speed.
   Demand demand;
   demand.heading_rad = desired.heading_rad;
   demand.speed_mps = desired.station_m ? 0 : desired.speed_mps;
-  const sim::Vector3d rpy = sim::rpy_from_rotation(motion.X_WS.linear());
+  const sim::Vector3d rpy = sim::rpy_from_rotation(R_WS), p = motion.X_WS.translation();
   sim::Vector3d a_W = sim::Vector3d::Zero(), a_S = sim::Vector3d::Zero(), turn_S;
   // Horizontal accelerations: station keeping or speed.
   if (desired.station_m && craft_.sideways) {
-    a_W = hold_station_sideways(motion, *desired.station_m, dt_s, frozen);
+    a_W.x() = east_.step(desired.station_m->x() - p.x(), motion.v_WS_W.x(), gave_W.x(), dt_s);
+    a_W.y() = north_.step(desired.station_m->y() - p.y(), motion.v_WS_W.y(), gave_W.y(), dt_s);
+    speed_.reset();
   } else {
-    if (desired.station_m) hold_station_ahead(motion, *desired.station_m, dt_s, frozen, demand);
+    if (desired.station_m) hold_station_ahead(motion, *desired.station_m, demand);
     demand.speed_error_mps = demand.speed_mps - motion.v_S.x();
-    a_S.x() = speed_.step(demand.speed_error_mps, dt_s, frozen);
+    a_S.x() = speed_.step(demand.speed_error_mps, motion.v_S.x(), gave_S.x(), dt_s);
     a_S.y() = -gains_.speed_bandwidth_radps * motion.v_S.y();
+    east_.reset();
+    north_.reset();
   }
   // Vertical motion: by pitch with fins, by heave with thrusters.
   double pitch = 0;
   if (craft_.fins)
-    pitch = pitch_for(motion, desired.height_m, dt_s, turn_frozen);
+    pitch = pitch_for(motion, desired.height_m, dt_s);
   else if (craft_.heaves)
-    a_W.z() = depth_.step(desired.height_m - motion.X_WS.translation().z(), motion.v_WS_W.z(), dt_s, frozen);
+    a_W.z() = depth_.step(desired.height_m - p.z(), motion.v_WS_W.z(), gave_W.z(), dt_s);
   // Angular accelerations.
   demand.heading_error_rad = sim::wrap_angle(demand.heading_rad - rpy.z());
-  turn_S.x() = roll_.step(-rpy.x(), motion.w_S.x(), dt_s, turn_frozen);
-  turn_S.y() = pitch_.step(pitch - rpy.y(), motion.w_S.y(), dt_s, turn_frozen);
-  turn_S.z() = heading_.step(demand.heading_error_rad, motion.w_S.z(), dt_s, turn_frozen);
+  turn_S.x() = roll_.step(-rpy.x(), motion.w_S.x(), gave_S[3], dt_s);
+  turn_S.y() = pitch_.step(pitch - rpy.y(), motion.w_S.y(), gave_S[4], dt_s);
+  turn_S.z() = heading_.step(demand.heading_error_rad, motion.w_S.z(), gave_S[5], dt_s);
   // Convert accelerations to a wrench.
-  a_S += motion.X_WS.linear().transpose() * a_W;
+  a_S += R_WL.transpose() * a_W;
   demand.wrench.head<3>() = craft_.mass.head<3>().cwiseProduct(a_S);
   demand.wrench.tail<3>() = craft_.mass.tail<3>().cwiseProduct(turn_S);
   return demand;
@@ -124,7 +132,7 @@ void HelmLaw::reset() {
   for (AxisHold* hold : {&heading_, &depth_, &roll_, &pitch_, &east_, &north_}) hold->reset();
   speed_.reset();
   climb_sum_rad_ = 0;
-  drift_sum_mps_.setZero();
+  drift_mps_.setZero();
 }
 
 }  // namespace devices

@@ -55,40 +55,30 @@ struct CraftAbilities {
   bool heaves = false;           ///< thrusters control heave
 };
 
-/// Actuators that were saturated in the last step.
-struct Limited {
-  bool thrusters = false;
-  bool fins = false;
-  bool any() const { return thrusters || fins; }
-  void visit_state(sim::StateArchive& archive) { archive(thrusters, fins); }
-};
-
 /// Control law from setpoints to forces and torques.
 class HelmLaw {
  public:
   HelmLaw(const HelmGains& gains, const CraftAbilities& craft);
 
-  /// Returns the wrench and setpoints for one control period of `dt_s`.
-  Demand step(const CraftMotion& motion, const Setpoint& desired, double dt_s, const Limited& limited);
-  /// Resets the integral terms.
+  /// Returns the wrench and setpoints for one control period of `dt_s`.  `given`: wrench of the actuators since the
+  /// last step, in S.
+  Demand step(const CraftMotion& motion, const Setpoint& desired, double dt_s, const Wrench& given);
+  /// Resets the estimates of disturbances.
   void reset();
   void visit_state(sim::StateArchive& archive) {
-    archive(heading_, depth_, roll_, pitch_, east_, north_, speed_, climb_sum_rad_, drift_sum_mps_);
+    archive(heading_, depth_, roll_, pitch_, east_, north_, speed_, climb_sum_rad_, drift_mps_);
   }
 
  private:
-  sim::Vector3d hold_station_sideways(const CraftMotion& motion, const Eigen::Vector2d& station, double dt_s,
-                                      bool frozen);
-  void hold_station_ahead(const CraftMotion& motion, const Eigen::Vector2d& station, double dt_s, bool frozen,
-                          Demand& demand);
-  double pitch_for(const CraftMotion& motion, double height_m, double dt_s, bool frozen);
+  void hold_station_ahead(const CraftMotion& motion, const Eigen::Vector2d& station, Demand& demand) const;
+  double pitch_for(const CraftMotion& motion, double height_m, double dt_s);
 
   HelmGains gains_;
   CraftAbilities craft_;
   AxisHold heading_, depth_, roll_, pitch_, east_, north_;
   RateHold speed_;
   double climb_sum_rad_ = 0;
-  Eigen::Vector2d drift_sum_mps_ = Eigen::Vector2d::Zero();
+  Eigen::Vector2d drift_mps_ = Eigen::Vector2d::Zero();  // velocity over ground without the speed ahead, smoothed
 };
 
 }  // namespace devices

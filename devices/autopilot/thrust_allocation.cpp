@@ -105,27 +105,45 @@ double ThrustAllocation::nearest(const Wrench& desired, std::vector<bool> droppe
   return square > 0 ? std::clamp(given.dot(target) / square, 0.0, 1.0) : 1;
 }
 
+/// Returns the largest share, 0 to 1, of the second forces that the thrusters can give beside the first.
+double ThrustAllocation::possible_share(const Eigen::VectorXd& first_N, const Eigen::VectorXd& then_N) const {
+  double share = 1;
+  for (Eigen::Index i = 0; i < then_N.size(); ++i) {
+    const ThrusterPlace& thruster = thrusters_[static_cast<std::size_t>(i)];
+    const double both_N = first_N[i] + then_N[i], limit_N = both_N > 0 ? thruster.max_N : thruster.min_N;
+    if (both_N * then_N[i] > 0 && std::abs(both_N) > std::abs(limit_N))
+      share = std::min(share, std::max(0.0, (limit_N - first_N[i]) / then_N[i]));
+  }
+  return share;
+}
+
 double ThrustAllocation::allocate(const Wrench& desired, Eigen::VectorXd& forces_N) const {
-  forces_N = Eigen::VectorXd::Zero(effect_.cols());
+  const Eigen::VectorXd none = Eigen::VectorXd::Zero(effect_.cols());
+  forces_N = none;
   if (!desired.allFinite()) return 0;
-  // Unconstrained solution.
-  for (std::size_t i = 0; i < axes_.size(); ++i)
-    forces_N += inverse_.col(static_cast<Eigen::Index>(i)) * desired[axes_[i]];
+  // Unconstrained solution, and the part of it for roll and pitch.
+  Eigen::VectorXd level_N = none;
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    const Eigen::VectorXd part_N = inverse_.col(static_cast<Eigen::Index>(i)) * desired[axes_[i]];
+    forces_N += part_N;
+    if (axes_[i] == 3 || axes_[i] == 4) level_N += part_N;
+  }
   // Drop thrusters that cannot push in the required direction.
   std::vector<bool> dropped(thrusters_.size());
   for (std::size_t i = 0; i < dropped.size(); ++i)
     dropped[i] = cannot_push(static_cast<Eigen::Index>(i), forces_N[static_cast<Eigen::Index>(i)]);
-  const bool any = std::find(dropped.begin(), dropped.end(), true) != dropped.end();
-  const double share = any ? nearest(desired, dropped, forces_N) : 1;
-  // Scale all forces to the limits.
-  double scale = 1;
-  for (Eigen::Index i = 0; i < forces_N.size(); ++i) {
-    const ThrusterPlace& thruster = thrusters_[static_cast<std::size_t>(i)];
-    const double limit = forces_N[i] > 0 ? thruster.max_N : thruster.min_N;
-    if (std::abs(forces_N[i]) > std::abs(limit)) scale = std::min(scale, limit / forces_N[i]);
+  double share = 1;
+  if (std::find(dropped.begin(), dropped.end(), true) != dropped.end()) {
+    share = nearest(desired, dropped, forces_N);
+    level_N = none;
   }
-  forces_N *= scale;
-  return scale * share;
+  // Scale the forces to the limits.
+  const Eigen::VectorXd rest_N = forces_N - level_N;
+  const double level = possible_share(none, level_N);
+  level_N *= level;
+  const double rest = possible_share(level_N, rest_N);
+  forces_N = level_N + rest * rest_N;
+  return std::min(level, rest) * share;
 }
 
 }  // namespace devices

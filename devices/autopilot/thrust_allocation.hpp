@@ -32,9 +32,10 @@ class ThrustAllocation {
   ThrustAllocation(std::vector<ThrusterPlace> thrusters, const std::vector<int>& axes);
 
   /// Computes the forces of the thrusters, N.  Thrusters that cannot push in the required direction are dropped, and
-  /// the others approximate the wrench in the least-squares sense.  When a force exceeds its limit, all forces are
-  /// scaled by one factor, which preserves the direction of the wrench.  Returns the share of the wrench that is
-  /// produced: 1 without drops and saturation.
+  /// the others approximate the wrench in the least-squares sense.  When a force exceeds its limit, the forces for
+  /// roll and pitch are given first, since a craft that turns over is lost; all others are scaled by one factor, which
+  /// preserves the direction of the rest of the wrench.  Returns the share of the wrench that is produced: 1 without
+  /// drops and saturation.
   double allocate(const Wrench& desired, Eigen::VectorXd& forces_N) const;
   /// Returns the wrench of the given forces.
   Wrench wrench_of(const Eigen::VectorXd& forces_N) const { return effect_ * forces_N; }
@@ -45,6 +46,7 @@ class ThrustAllocation {
  private:
   bool controllable(const std::vector<int>& axes) const;
   bool cannot_push(Eigen::Index thruster, double force_N) const;
+  double possible_share(const Eigen::VectorXd& first_N, const Eigen::VectorXd& then_N) const;
   double nearest(const Wrench& desired, std::vector<bool> dropped, Eigen::VectorXd& forces_N) const;
 
   std::vector<ThrusterPlace> thrusters_;

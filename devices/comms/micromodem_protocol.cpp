@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "devices/comms/micromodem_protocol.hpp"
 
+#include <spdlog/fmt/fmt.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -284,9 +286,7 @@ void MicromodemProtocol::received_reply(const MicromodemPacket& packet, const Mi
   }
   const double one_way_s = (side_.elapsed_s(ping_->sent, arrival.started) - micromodem_turnaround_s) / 2;
   ping_.reset();
-  char time[24];
-  std::snprintf(time, sizeof time, "%.4f", one_way_s);
-  side_.emit(who + "," + time);
+  side_.emit(fmt::format("{},{:.4f}", who, one_way_s));
   emit_statistics(packet, arrival, 0);
 }
 
@@ -302,9 +302,7 @@ void MicromodemProtocol::report_beacons(sim::Time now) {
     body += ",";
     if (!beacon_ping_->is_requested[i] || !beacon_ping_->answered[i]) continue;
     const double both_s = side_.elapsed_s(beacon_ping_->sent, *beacon_ping_->answered[i]);
-    char time[24];
-    std::snprintf(time, sizeof time, "%.4f", (both_s - beacon_ping_->turnaround_s) / 2);
-    body += time;
+    body += fmt::format("{:.4f}", (both_s - beacon_ping_->turnaround_s) / 2);
   }
   side_.emit(body + "," + time_of_day(beacon_ping_->sent, 2));
   beacon_ping_.reset();
@@ -346,9 +344,7 @@ void MicromodemProtocol::emit_statistics(const MicromodemPacket& packet, const M
                           psk ? -snr : 0,
                           psk ? 0 : rounded(4 * arrival.snr_dB + 100, 0, 255)})
     body += "," + std::to_string(field);
-  char doppler[24];
-  std::snprintf(doppler, sizeof doppler, "%.1f", arrival.closing_mps);
-  body += std::string(",") + doppler + "," + std::to_string(rounded(arrival.noise_dB, 0, 999)) + "," +
+  body += fmt::format(",{:.1f},", arrival.closing_mps) + std::to_string(rounded(arrival.noise_dB, 0, 999)) + "," +
           std::to_string(rounded(config_.frequency_Hz, 0, 10000000)) + "," +
           std::to_string(rounded(rate.bandwidth_Hz, 0, 1000000));
   side_.emit(body);

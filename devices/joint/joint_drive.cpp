@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 
 #include "devices/joint/joint_of_device.hpp"
@@ -107,9 +106,8 @@ void JointDrive::check_stops(const Axis& axis, const Settings& settings) const {
   for (const double stop : {settings.low_stop, settings.high_stop}) {
     if (std::isnan(stop)) continue;
     if (!axis.has_stops) throw std::runtime_error(text("the wheel of a hinge2 has no stops"));
-    if (sim::joint_info(joint_.type()).turns && std::isfinite(stop) && std::abs(stop) > std::numbers::pi)
-      throw std::runtime_error(
-          text("stops of a rotational axis are in rad and must lie between -pi and pi, got " + sim::number_text(stop)));
+    const std::string error = std::isfinite(stop) ? sim::error_of_stop(joint_.type(), stop) : "";
+    if (!error.empty()) throw std::runtime_error(text(error));
   }
   if (settings.low_stop == std::numeric_limits<double>::infinity() ||
       settings.high_stop == -std::numeric_limits<double>::infinity())

@@ -57,6 +57,13 @@ double ThrusterCommand::level_in_table(double thrust_N) const {
   return best;
 }
 
+double ThrusterCommand::force_N(double level, double inflow_mps, double density_kgpm3) const {
+  const double still_N = thrust_N(level, density_kgpm3);
+  if (params_.curve == Thruster::Curve::direct || params_.curve == Thruster::Curve::table) return still_N;
+  const double against_mps = (1 - params_.wake_fraction) * std::max(0.0, level > 0 ? inflow_mps : -inflow_mps);
+  return still_N - bilinear(level >= 0, density_kgpm3).loss * level * against_mps;
+}
+
 double ThrusterCommand::command_for_N(double thrust_N, double inflow_mps, double density_kgpm3) const {
   double level = 0;
   if (params_.curve == Thruster::Curve::direct) {

@@ -13,6 +13,8 @@ class ThrusterCommand {
   /// Return the limits of the thrust without inflow, N.
   double max_N(double density_kgpm3) const;
   double min_N(double density_kgpm3) const;
+  /// Returns the thrust of a command within the limits.
+  double force_N(double level, double inflow_mps, double density_kgpm3) const;
   /// Returns the command for a thrust, in the unit of the thruster's commands and within its limits.  `inflow_mps`:
   /// inflow speed along the axis.
   double command_for_N(double thrust_N, double inflow_mps, double density_kgpm3) const;

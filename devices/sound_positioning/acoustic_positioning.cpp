@@ -60,14 +60,14 @@ std::optional<PingAnswer> decode_answer(const sim::Bytes& payload) {
 }
 
 double TransponderNetwork::free_answer_Hz(const std::string& network, double bandwidth_Hz) const {
-  constexpr double lowest_Hz = 28000, min_apart_Hz = 1000;
+  constexpr double min_apart_Hz = 1000;
   const auto taken = [&](double answer_Hz) {
     return std::any_of(members_.begin(), members_.end(), [&](const Transponder* member) {
       return member->params().network == network &&
              std::abs(member->answer_Hz() - answer_Hz) < (member->params().bandwidth_Hz + bandwidth_Hz) / 2;
     });
   };
-  double answer_Hz = lowest_Hz;
+  double answer_Hz = lowest_answer_Hz;
   while (taken(answer_Hz)) answer_Hz += std::max(min_apart_Hz, bandwidth_Hz);
   return answer_Hz;
 }

@@ -33,6 +33,9 @@ sim::Bytes encode_answer(const PingAnswer& answer);
 /// Decodes an answer; none when it is not an answer of a transponder.
 std::optional<PingAnswer> decode_answer(const sim::Bytes& payload);
 
+/// Lowest frequency of answers that are not configured.
+inline constexpr double lowest_answer_Hz = 28000;
+
 /// Transponders of a world, in the order in which they were added.
 class TransponderNetwork {
  public:

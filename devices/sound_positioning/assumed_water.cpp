@@ -21,6 +21,12 @@ sim::SoundProfile profile_of(const sim::WaterConfig& config) {
 
 }  // namespace
 
+void warn_of_assumed_water(const std::optional<sim::WaterConfig>& water, const sim::DeviceContext& context) {
+  if (!water) return;
+  for (const std::string& warning : water->warnings)
+    context.host.warnings.building().warn(water->place, "device '" + context.config.name + "': assumed_water", warning);
+}
+
 AssumedWater::AssumedWater(const sim::WaterConfig& config) : rays_(profile_of(config)) {}
 
 double AssumedWater::first_arrival_s(double own_depth_m, double depth_m, double across_m) const {

@@ -3,8 +3,12 @@
 
 #include "sim/acoustics/rays/eigenrays.hpp"
 #include "sim/medium/medium_config.hpp"
+#include "sim/vehicle/device_context.hpp"
 
 namespace devices {
+
+/// Warns of rows of its `profile_file` that are skipped or unusual.
+void warn_of_assumed_water(const std::optional<sim::WaterConfig>& water, const sim::DeviceContext& context);
 
 /// Water as the user of a device knows it, through which the device follows the sound.
 class AssumedWater {

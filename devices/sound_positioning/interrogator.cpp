@@ -79,7 +79,9 @@ void Interrogator::receive(const sim::Reception& received) {
   if (distance_m > params_.range_max_m) return;
   const sim::Matrix3d R_SW = R_WS(received.started).transpose();
   answers_.push_back({received.source, received.started, sim::to_seconds(received.started - pinged_) - turnaround_s,
-                      distance_m, R_SW * p_ST_W, R_SW * received.apparent_W});
+                      distance_m, R_SW * p_ST_W, R_SW * received.apparent_W, sim::to_power(received.sinr).linear(),
+                      received.signal.centre_Hz,
+                      received.signal.bandwidth_Hz * sim::to_seconds(received.signal.duration)});
 }
 
 sim::Matrix3d Interrogator::R_WS(sim::Time at) const {

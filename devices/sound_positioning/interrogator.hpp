@@ -35,9 +35,12 @@ class Interrogator final : public sim::AcousticListener {
     sim::Vector3d p_ST_S =
         sim::Vector3d::Zero();  ///< position of the transponder at its answer, in the sensor frame S at `started`
     sim::Vector3d apparent_S = sim::Vector3d::Zero();  ///< the same, where it appears by the direction of the sound
+    double snr = 0;                                    ///< signal over noise and other sounds, a ratio of powers
+    double frequency_Hz = 0, time_bandwidth = 1;       ///< of the answer
     void visit_state(sim::StateArchive& archive) {
       archive(transponder, started, two_way_s, distance_m, p_ST_S);
-      archive.unhashed(apparent_S);  // of the same places
+      // Of the same places and signal.
+      archive.unhashed(apparent_S, snr, frequency_Hz, time_bandwidth);
     }
   };
 

@@ -31,6 +31,7 @@ void Lbl::Params::read(sim::ParamReader& in) {
 
 Lbl::Lbl(const Params& params, const sim::DeviceContext& context)
     : params_(params), interrogator_(params.interrogator, context), time_noise_(context, params) {
+  warn_of_assumed_water(params_.assumed_water, context);
   assume();
 }
 

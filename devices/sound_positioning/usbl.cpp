@@ -20,8 +20,9 @@ void Usbl::Params::read(sim::ParamReader& in) {
   in.read("answer_dropout", answer_dropout, sim::between(0, 1),
           "probability that an answer is missed, drawn for each answer");
   in.read("range_noise", range_noise, "error of each range, m");
-  in.read("azimuth_noise", azimuth_noise, "error of each azimuth, rad");
-  in.read("elevation_noise", elevation_noise, "error of each elevation, rad");
+  in.read("array", array, "hydrophones whose errors depend on level and angle; unset: only the errors below");
+  in.read("azimuth_noise", azimuth_noise, "error of each direction across it, rad; of a level one: of its azimuth");
+  in.read("elevation_noise", elevation_noise, "error of the elevation of each direction, rad");
 }
 
 Usbl::Usbl(const Params& params, const sim::DeviceContext& context)
@@ -29,7 +30,9 @@ Usbl::Usbl(const Params& params, const sim::DeviceContext& context)
       interrogator_(params.interrogator, context),
       range_noise_(context, params),
       azimuth_noise_(context, params),
-      elevation_noise_(context, params) {
+      elevation_noise_(context, params),
+      fault_(*context.noise_origin(params.azimuth_noise).fault) {
+  warn_of_assumed_water(params_.assumed_water, context);
   assume();
 }
 
@@ -54,8 +57,12 @@ void Usbl::follow_ray(Fix& fix) const {
   if (level > 0) p_W.head<2>() = towards_W.head<2>() / level * place.range_m;
   const sim::Vector3d p_S = R_WS_.transpose() * p_W;
   fix.range_m = p_S.norm();
-  fix.azimuth_rad = std::atan2(p_S.y(), p_S.x());
-  fix.elevation_rad = std::atan2(p_S.z(), std::hypot(p_S.x(), p_S.y()));
+  fix.point_at(p_S);
+}
+
+void Usbl::Fix::point_at(const sim::Vector3d& direction_S) {
+  azimuth_rad = std::atan2(direction_S.y(), direction_S.x());
+  elevation_rad = std::atan2(direction_S.z(), std::hypot(direction_S.x(), direction_S.y()));
 }
 
 sim::Vector3d Usbl::Fix::position_S() const {
@@ -72,8 +79,11 @@ void Usbl::measure(const sim::SenseContext& context) {
     const auto elevation_rad = [](const sim::Vector3d& p_S) {
       return std::atan2(p_S.z(), std::hypot(p_S.x(), p_S.y()));
     };
+    const UsblTone tone{sim::PowerRatio(answer.snr), answer.time_bandwidth,
+                        medium.sound_speed_mps(p_WS) / answer.frequency_Hz};
     fixes_.push_back({answer.transponder, answer.two_way_s, answer.distance_m, azimuth_rad(answer.p_ST_S),
-                      elevation_rad(answer.p_ST_S), azimuth_rad(answer.apparent_S), elevation_rad(answer.apparent_S)});
+                      elevation_rad(answer.p_ST_S), azimuth_rad(answer.apparent_S), elevation_rad(answer.apparent_S),
+                      params_.array ? params_.array->cosine_std(tone) : 0});
   }
   assumed_mps_ = params_.assumed_sound_speed_mps.value_or(medium.sound_speed_mps(p_WS));
   R_WS_ = context.X_WS.linear();
@@ -87,11 +97,8 @@ void Usbl::disturb(double dt_s, sim::Random& random) {
   since_fix_s_ += dt_s;
   for (Fix& fix : fixes_) {
     fix.range_m = fix.travel_time_s / 2 * assumed_mps_;
-    fix.azimuth_rad = fix.sound_azimuth_rad;
-    fix.elevation_rad = fix.sound_elevation_rad;
     range_noise_.apply(fix.range_m, since_fix_s_, random);
-    azimuth_noise_.apply(fix.azimuth_rad, since_fix_s_, random);
-    elevation_noise_.apply(fix.elevation_rad, since_fix_s_, random);
+    disturb_direction(fix, random);
     fix.range_m = std::max(fix.range_m, 0.0);
     if (assumed_ && fix.range_m > 0) follow_ray(fix);
     fix.azimuth_rad = sim::wrap_angle(fix.azimuth_rad);
@@ -99,6 +106,22 @@ void Usbl::disturb(double dt_s, sim::Random& random) {
   }
   if (params_.answer_dropout > 0)
     std::erase_if(fixes_, [&](const Fix&) { return random.uniform() < params_.answer_dropout; });
+}
+
+void Usbl::disturb_direction(Fix& fix, sim::Random& random) {
+  fix.azimuth_rad = fix.sound_azimuth_rad;
+  fix.elevation_rad = fix.sound_elevation_rad;
+  if (fix.cosine_std > 0) {
+    const double std = fault_.factor * fix.cosine_std;
+    const double error_x = std * random.gaussian(), error_y = std * random.gaussian();
+    fix.point_at(with_cosine_errors(turned(fix.azimuth_rad, fix.elevation_rad, 0, 0), error_x, error_y));
+  }
+  // An azimuth has no meaning above the target, so its error is an angle across the direction.
+  double azimuth_rad = fix.azimuth_rad, elevation_rad = fix.elevation_rad;
+  azimuth_noise_.apply(azimuth_rad, since_fix_s_, random);
+  elevation_noise_.apply(elevation_rad, since_fix_s_, random);
+  const double across_rad = azimuth_rad - fix.azimuth_rad, up_rad = elevation_rad - fix.elevation_rad;
+  if (across_rad != 0 || up_rad != 0) fix.point_at(turned(fix.azimuth_rad, fix.elevation_rad, across_rad, up_rad));
 }
 
 void Usbl::visit_state(sim::StateArchive& archive) {

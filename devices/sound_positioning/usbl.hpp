@@ -7,6 +7,7 @@
 
 #include "devices/sound_positioning/assumed_water.hpp"
 #include "devices/sound_positioning/interrogator.hpp"
+#include "devices/sound_positioning/usbl_array.hpp"
 #include "sim/medium/medium_config.hpp"
 #include "sim/random/noise.hpp"
 
@@ -27,8 +28,9 @@ class Usbl final : public sim::Sensor {
     std::optional<double> assumed_sound_speed_mps;
     std::optional<sim::WaterConfig> assumed_water;  ///< rays through it give position from time and direction
     double answer_dropout = 0;
-    sim::NoiseParams range_noise;      ///< m
-    sim::NoiseParams azimuth_noise;    ///< rad
+    sim::NoiseParams range_noise;  ///< m
+    std::optional<UsblArrayParams> array;
+    sim::NoiseParams azimuth_noise;    ///< rad, across the direction
     sim::NoiseParams elevation_noise;  ///< rad
     void read(sim::ParamReader& in);
   };
@@ -37,10 +39,12 @@ class Usbl final : public sim::Sensor {
     std::string target;
     double travel_time_s = 0, range_m = 0, azimuth_rad = 0, elevation_rad = 0;
     double sound_azimuth_rad = 0, sound_elevation_rad = 0;  ///< from where the sound came
+    double cosine_std = 0;                                  ///< of the direction, by `array`
     sim::Vector3d position_S() const;
+    void point_at(const sim::Vector3d& direction_S);  ///< sets azimuth and elevation
     void visit_state(sim::StateArchive& archive) {
       archive(target, travel_time_s, range_m, azimuth_rad, elevation_rad);
-      archive.unhashed(sound_azimuth_rad, sound_elevation_rad);  // of the same places
+      archive.unhashed(sound_azimuth_rad, sound_elevation_rad, cosine_std);  // of the same places
     }
   };
 
@@ -55,6 +59,8 @@ class Usbl final : public sim::Sensor {
  private:
   void assume();
   void follow_ray(Fix& fix) const;
+  /// Direction with its errors.
+  void disturb_direction(Fix& fix, sim::Random& random);
 
   Params params_;
   Interrogator interrogator_;
@@ -62,6 +68,7 @@ class Usbl final : public sim::Sensor {
   sim::NoiseOf<&Params::range_noise> range_noise_;
   sim::NoiseOf<&Params::azimuth_noise> azimuth_noise_;
   sim::NoiseOf<&Params::elevation_noise> elevation_noise_;
+  const sim::NoiseFault& fault_;  ///< of the azimuth, also for the errors of the array
   sim::Time next_ping_{0};
   std::vector<Fix> fixes_;
   double assumed_mps_ = 0;                          ///< sound speed used for the ranges of this sample

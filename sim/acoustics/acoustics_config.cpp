@@ -25,7 +25,8 @@ void AcousticsConfig::read(ParamReader& in) {
   in.read("shadow_loss_dB", shadow_loss_dB, between(0, 200),
           "rays: loss of the sound that leaks into shadows, beyond that of the straight line; unset: none leaks");
   in.read("echo_lock", echo_lock, "receivers sometimes take an echo for the first arrival; unset: never");
-  in.read("spreading", spreading, "spreading loss of sound with range");
+  in.read("spreading", spreading,
+          "spreading loss along straight lines; of no effect with rays, whose tubes are the spreading");
   in.read("absorption", absorption, "absorption of sound with range");
   in.read("noise", noise, "ambient noise of the sea");
   in.read("multipath", multipath, "echoes of surface and bottom; unset: the direct path alone");

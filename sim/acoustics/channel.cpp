@@ -162,7 +162,6 @@ Decibels AcousticChannel::compute_min_level(double frequency_Hz) const {
   // Margin for fading: exceeded by at most one signal in fifty.
   if (config_.fading.type == FadingConfig::Type::rayleigh) gain_dB += 6;
   if (config_.fading.type == FadingConfig::Type::log_normal) gain_dB += 2 * config_.fading.std_dB;
-  if (propagation_.bends()) gain_dB += Propagation::max_focus_dB;
   return Decibels{below_dB + gain_dB};
 }
 

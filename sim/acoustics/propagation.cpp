@@ -15,8 +15,7 @@ namespace sim {
 
 Propagation::Propagation(const AcousticsConfig& config, const Medium& medium, const PhysicsWorld& physics)
     : config_(config), medium_(medium), physics_(physics) {
-  const SoundPaths by_default = medium.has_sound_profile() ? SoundPaths::rays : SoundPaths::straight;
-  if (medium.has_water() && config.propagation.value_or(by_default) == SoundPaths::rays)
+  if (medium.has_water() && sound_paths(config, medium.has_sound_profile()) == SoundPaths::rays)
     rays_ = std::make_unique<RayTables>([&medium](double depth_m) { return medium.sound_speed_at_depth_mps(depth_m); },
                                         medium.profile_depths_m());
 }
@@ -26,7 +25,8 @@ Propagation::~Propagation() = default;
 Decibels Propagation::transmission_loss(const Vector3d& from_W, const Vector3d& to_W, double frequency_Hz) const {
   const double range_m = (to_W - from_W).norm();
   const double dBpkm = absorption_dBpkm(config_.absorption, frequency_Hz, medium_, from_W, to_W);
-  return spreading_loss(range_m, config_.spreading) + absorption_loss(range_m, dBpkm);
+  return spreading_loss(range_m, straight_spreading(config_, medium_.has_sound_profile())) +
+         absorption_loss(range_m, dBpkm);
 }
 
 Propagation::Band Propagation::band(double centre_Hz, double bandwidth_Hz) const {
@@ -67,10 +67,10 @@ double Propagation::audible_range_m(const Signal& signal, Decibels below, double
   const double min_dBpkm = of.min_dBpkm[static_cast<std::size_t>(depth - depths_m.begin())];
   const Decibels floor = of.ambient - below;
   const double max_m = config_.range_max_m.value_or(1e6);
+  const SpreadingConfig spreading = bends() ? SpreadingConfig{} : config_.spreading;
   // Bisect the range on a logarithmic scale.
   const auto received = [&](double range_m) {
-    return signal.source_level - spreading_loss(range_m, config_.spreading) - absorption_loss(range_m, min_dBpkm) >
-           floor;
+    return signal.source_level - spreading_loss(range_m, spreading) - absorption_loss(range_m, min_dBpkm) > floor;
   };
   if (received(max_m)) return max_m;
   double near_m = 1, far_m = max_m;
@@ -165,7 +165,7 @@ MultipathMedium Propagation::water_between(const Vector3d& from_W, const Vector3
   water.sound_speed_mps = 1 / medium_.mean_slowness_spm(from_W.z(), to_W.z());
   water.absorption_dBpkm = absorption_dBpkm(config_.absorption, frequency_Hz, medium_, from_W, to_W);
   water.wind_mps = config_.noise.wind_mps.value_or(medium_.mean_wind_mps());
-  water.spreading = config_.spreading;
+  water.spreading = straight_spreading(config_, medium_.has_sound_profile());
   return water;
 }
 

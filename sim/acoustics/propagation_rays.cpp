@@ -8,6 +8,7 @@
 
 #include "sim/acoustics/propagation.hpp"
 #include "sim/acoustics/ray_paths.hpp"
+#include "sim/acoustics/rays/caustic.hpp"
 #include "sim/acoustics/rays/ray_tables.hpp"
 #include "sim/acoustics/sound_path.hpp"
 
@@ -16,6 +17,17 @@
 namespace sim {
 
 namespace {
+
+/// Most power of a ray without a twin over that of a straight path of its length: 30 dB.  Caustics at which more than
+/// two rays merge have no finite power by ray tubes.
+constexpr double max_unpaired_focus = 1000;
+
+/// Phase between twins at which their tubes and the fold between them count equally.
+constexpr double near_caustic_rad = 6;
+
+double square_of(double x) {
+  return x * x;
+}
 
 /// Unit vector with this elevation, in the vertical plane through two points.
 Vector3d ray_direction_W(const Vector3d& from_W, const Vector3d& to_W, double elevation_rad) {
@@ -37,11 +49,20 @@ std::vector<PathGain> ray_gains(std::span<const SoundRay> rays, const MultipathC
   for (const SoundRay& ray : rays) {
     PathGain path;
     const double length_m = std::max(ray.travel_time_s * water.sound_speed_mps, 1.0);
-    const double focus_dB = 10 * std::log10(std::max(ray.power_per_m2 * length_m * length_m, 1e-30));
+    double power = ray.power_per_m2;
     path.delay_s = ray.travel_time_s;
-    path.gain = Decibels(std::min(focus_dB, Propagation::max_focus_dB)) - spreading_loss(length_m, water.spreading) -
-                absorption_loss(length_m, water.absorption_dBpkm);
     path.phase_rad = std::fmod(2 * pi * water.frequency_Hz * ray.travel_time_s, 2 * pi) - ray.caustics * pi / 2;
+    if (ray.twin) {
+      const double apart_rad = 2 * pi * water.frequency_Hz * std::abs(ray.twin->later_s);
+      const CausticChange change = caustic_change(apart_rad);
+      // Near the caustic the power of the tube has the errors of a small slope between layers.
+      const double near = 1 / (1 + square_of(apart_rad / near_caustic_rad));
+      power = change.power * std::pow(power, 1 - near) * std::pow(ray.twin->fold_power_per_m2, near);
+      path.phase_rad += ray.twin->later_s < 0 ? change.later_rad : -change.later_rad;
+    } else {
+      power = std::min(power, max_unpaired_focus / (length_m * length_m));
+    }
+    path.gain = to_decibels(PowerRatio(std::min(power, 1.0))) - absorption_loss(length_m, water.absorption_dBpkm);
     if (ray.surface_bounces > 0) {
       path.gain +=
           ray.surface_bounces * (multipath->surface_loss_dB

@@ -10,9 +10,9 @@
 
 namespace sim {
 
-/// Computes gain and phase of rays, in their order: spreading over their length by the configured law, focusing by the
-/// ray tube relative to a straight path of this length (at most Propagation::max_focus_dB), absorption, bounces and
-/// caustics.  `multipath`: needed for rays with bounces.
+/// Computes gain and phase of rays, in their order: spreading by the ray tube (nothing is louder than at 1 m), by waves
+/// where twins merge at a caustic, absorption, bounces, and the caustics that they have passed.  `multipath`: needed
+/// for rays with bounces.
 std::vector<PathGain> ray_gains(std::span<const SoundRay> rays, const MultipathConfig* multipath,
                                 const MultipathMedium& water);
 

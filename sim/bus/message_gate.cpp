@@ -171,6 +171,11 @@ void MessageGate::close(GateMailbox& mailbox) {
   free_slots_.push_back(slot);
 }
 
+std::size_t MessageGate::readers(std::string_view channel) const {
+  const auto known = by_name_.find(channel);
+  return known == by_name_.end() ? 0 : known->second->mailboxes.size();
+}
+
 bool MessageGate::collect() {
   for (const auto& channel : channels_)
     if (channel && has_arrivals(*channel)) collect_from(*channel);

@@ -61,6 +61,8 @@ class MessageGate final : public Bus {
   void set_order(Order order) { order_ = std::move(order); }
   /// Returns whether this channel has a reader at the gate.
   bool reads(std::string_view channel) const { return by_name_.contains(channel); }
+  /// Returns the number of mailboxes of this channel.
+  std::size_t readers(std::string_view channel) const;
 
   /// Callback for every publication, called before the message is sent to the network; empty: none.
   using Watch = std::function<void(std::string_view channel, std::span<const std::byte> payload)>;

@@ -5,11 +5,10 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <limits>
 
+#include "sim/base/number.hpp"
 #include "sim/config/file_access.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/config/yaml_writer.hpp"
@@ -39,25 +38,21 @@ std::string yaml_list(const Values& values, const ToText& to_text) {
 
 /// Rounds the conversion error of angles: 45 degrees are converted from radians to about 45.000000000000007.
 double rounded_degrees(double angle_rad) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.12g", radians_to_degrees(angle_rad));
-  return std::strtod(text, nullptr);
+  return rounded_to(radians_to_degrees(angle_rad), 12);
 }
 
 enum class NumberText { number, not_finite, no_number };
 
 /// Parses a decimal number in YAML syntax.
 NumberText parse_number(std::string_view text, double& value) {
-  if (text.starts_with('+') && text.size() > 1 && text[1] != '-' && text[1] != '+') text.remove_prefix(1);
-  std::string magnitude(text.starts_with('-') ? text.substr(1) : text);
+  std::string magnitude(text.substr(text.starts_with('-') || text.starts_with('+') ? 1 : 0));
   std::transform(magnitude.begin(), magnitude.end(), magnitude.begin(),
                  [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
   for (const char* word : {".inf", ".nan", "inf", "nan", "infinity"})
     if (magnitude == word) return NumberText::not_finite;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error == std::errc::invalid_argument || end != text.data() + text.size()) return NumberText::no_number;
-  // The parser reports out of range at both ends; strtod distinguishes too large from too small.
-  if (error == std::errc::result_out_of_range) value = std::strtod(std::string(text).c_str(), nullptr);
+  const std::optional<double> number = read_number(text);
+  if (!number) return NumberText::no_number;
+  value = *number;
   return std::isfinite(value) ? NumberText::number : NumberText::not_finite;
 }
 
@@ -244,6 +239,14 @@ bool ParamReader::take_integer(const std::string& what, const ConfigNode& node, 
 bool ParamReader::take_text(const std::string& what, const ConfigNode& node, std::string& value) {
   if (node.kind != Kind::scalar) {
     error_at(node.place, what + " must be text, got " + shown(node));
+    return false;
+  }
+  // A terminal would execute them wherever the text is printed.
+  std::string line = node.scalar;
+  std::replace_if(
+      line.begin(), line.end(), [](char c) { return c == '\n' || c == '\t'; }, ' ');
+  if (printable(line) != line) {
+    error_at(node.place, what + " must have no control characters, got '" + shortened(printable(node.scalar)) + "'");
     return false;
   }
   value = node.scalar;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -10,17 +11,23 @@
 
 namespace sim {
 
-/// Warnings of input that is valid but probably unintended, each logged as one line: `file:line:column: who: text`.
+/// Warnings of input that is valid but probably unintended, each logged as one line: `file:line:column: who: text`; and
+/// notes on valid input, which `shoal check` prints.
 class Warnings {
  public:
   /// Logs `place: who: text` (place and who may be empty).  The same text at the same place is logged once,
   /// independent of `who`; at most 100 lines are logged.
   void warn(const SourcePlace& place, const std::string& who, const std::string& text);
+  /// Keeps a line in the same form, without logging it.
+  void note(const SourcePlace& place, const std::string& who, const std::string& text);
+  const std::vector<std::string>& notes() const { return notes_; }
   /// Returns all logged lines.
   const std::vector<std::string>& lines() const { return lines_; }
 
  private:
-  std::vector<std::string> lines_;
+  std::optional<std::string> new_line(const SourcePlace& place, const std::string& who, const std::string& text);
+
+  std::vector<std::string> lines_, notes_;
   std::set<std::string> seen_;
 };
 

@@ -10,6 +10,7 @@
 
 #include "sim/base/whole_file.hpp"
 #include "sim/config/message_text.hpp"
+#include "sim/config/utf8.hpp"
 
 namespace sim {
 namespace {
@@ -174,7 +175,8 @@ Mesh load_mesh(const std::string& path, double scale) {
                  [](unsigned char c) { return static_cast<char>(c >= 'A' && c <= 'Z' ? c + 32 : c); });
   if (extension != ".stl" && extension != ".obj") throw MeshError("must end in .stl or .obj");
   const std::string bytes = whole_file<MeshError>(path);
-  Mesh mesh = extension == ".stl" ? parse_stl(bytes) : parse_obj(bytes);
+  const std::string_view text = without_byte_order_mark(bytes);
+  Mesh mesh = extension == ".obj" ? parse_obj(text) : parse_stl(text.starts_with("solid") ? text : bytes);
   for (Vector3d& p : mesh.vertices_m) {
     p = checked_vertex(p * scale);
     if (p.cwiseAbs().maxCoeff() > max_mesh_coordinate_m)

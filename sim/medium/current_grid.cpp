@@ -7,8 +7,10 @@
 #include <cmath>
 #include <filesystem>
 
+#include "sim/base/number.hpp"
 #include "sim/base/whole_file.hpp"
 #include "sim/config/message_text.hpp"
+#include "sim/config/utf8.hpp"
 #include "sim/terrain/terrain.hpp"
 
 namespace sim {
@@ -16,6 +18,8 @@ namespace sim {
 namespace {
 
 constexpr double fastest_mps = 100;
+/// No current is so fast, so that nines above it are a code.
+constexpr double fastest_code_free_mps = 9.5;
 
 struct CsvRow {
   double x_m, y_m, east_mps, north_mps;
@@ -54,6 +58,7 @@ std::vector<CsvRow> parse_rows(std::string_view text) {
   std::array<std::size_t, 4> columns{};
   std::vector<CsvRow> rows;
   bool has_header = false;
+  text = without_byte_order_mark(text);
   for (int number = 1; !text.empty(); ++number) {
     const auto end = text.find('\n');
     const std::string_view line = trimmed(text.substr(0, end));
@@ -79,7 +84,8 @@ std::vector<CsvRow> parse_rows(std::string_view text) {
       const std::string_view cell = cells[columns[i]];
       const auto [at, error] = std::from_chars(cell.data(), cell.data() + cell.size(), values[i]);
       if (error != std::errc{} || at != cell.data() + cell.size() || !std::isfinite(values[i]))
-        fail(number, "'" + std::string(names[i]) + "' is not a number");
+        fail(number, "'" + std::string(names[i]) + "' is not a number, got '" + printable(shortened(cell)) +
+                         "'; a grid in a CSV file must have all its points");
     }
     for (int i = 0; i < 2; ++i)
       if (std::abs(values[static_cast<std::size_t>(i)]) > 1e8) fail(number, "a place must be within 1e8 m");
@@ -116,8 +122,11 @@ CurrentGrid::CurrentGrid(const CurrentConfig& config) : edge_(config.outside == 
       read_esri(path, (folder / config.north_file).string());
     }
     for (const auto& v : velocities_mps_)
-      if (v.cwiseAbs().maxCoeff() > fastest_mps)
-        throw TerrainError("has a current of " + number_text(v.cwiseAbs().maxCoeff()) + " m/s, more than 100");
+      if (const double speed = v.cwiseAbs().maxCoeff(); speed > fastest_mps)
+        throw TerrainError("has a current of " + number_text(speed) + " m/s, more than 100");
+      else if (speed > fastest_code_free_mps && is_nines(speed))
+        throw TerrainError("has a current of " + number_text(speed) +
+                           " m/s, which is a code for a missing value: an ESRI grid names it by NODATA_value");
   } catch (const TerrainError& error) {
     const std::string text = error.what();
     throw TerrainError(text.starts_with("file ") ? text : "file '" + path + "' " + text);
@@ -157,7 +166,7 @@ void CurrentGrid::read_csv(std::string_view text) {
 void CurrentGrid::read_esri(const std::string& east_path, const std::string& north_path) {
   const auto read = [](const std::string& path) {
     try {
-      return parse_ascii_grid(bytes_of(path), 1, Holes::nearest);
+      return parse_ascii_grid(bytes_of(path), 1, Holes::nearest, "current");
     } catch (const TerrainError& error) {
       throw TerrainError("file '" + path + "' " + error.what());
     }

@@ -48,7 +48,7 @@ void keep_place(ParamReader& in, SourcePlace& place) {
 namespace {
 
 /// Reads `profile_file:` in place of the rows of `profile:`.
-void read_profile_file(ParamReader& in, std::vector<WaterLayerConfig>& profile) {
+void read_profile_file(ParamReader& in, WaterConfig& water) {
   std::string file;
   const bool may_read = in.read_path("profile_file", file, PathUse::read,
                                      "instead of 'profile': CSV of a CTD with depth_m or pressure_dbar, temperature_C, "
@@ -58,7 +58,10 @@ void read_profile_file(ParamReader& in, std::vector<WaterLayerConfig>& profile) 
   const SourcePlace& place = in.node()->place;
   const std::filesystem::path folder = std::filesystem::path(place.file != nullptr ? *place.file : "").parent_path();
   try {
-    profile = read_ctd_file((folder / file).string());
+    CtdCast cast = read_ctd_file((folder / file).string());
+    water.profile = std::move(cast.rows);
+    for (const std::string& warning : cast.warnings)
+      water.warnings.push_back("'profile_file' '" + file + "' " + warning);
   } catch (const CtdError& error) {
     in.error("profile_file", "'profile_file' '" + file + "' " + error.what());
   }
@@ -76,6 +79,7 @@ void WaterLayerConfig::read(ParamReader& in) {
 }
 
 void WaterConfig::read(ParamReader& in) {
+  keep_place(in, place);
   // Surface, density, temperature and salinity.
   in.read("surface_m", surface_m, between(-1e6, 1e6), "height of the still surface in the world");
   in.read_choice("density", density, {{"constant", Density::constant}, {"eos80", Density::eos80}},
@@ -84,7 +88,7 @@ void WaterConfig::read(ParamReader& in) {
   in.read("temperature_C", temperature_C, between(-5, 100), "temperature of the water");
   in.read("salinity_psu", salinity_psu, between(0, 400), "salinity of the water");
   in.read_list("profile", profile, "row", "temperature and salinity by depth, linear in between");
-  read_profile_file(in, profile);
+  read_profile_file(in, *this);
   // Speed of sound.
   in.read_choice("sound_speed", sound,
                  {{"mackenzie", SoundSpeed::mackenzie}, {"medwin", SoundSpeed::medwin}, {"unesco", SoundSpeed::unesco}},

@@ -36,6 +36,8 @@ struct WaterConfig {
   std::vector<WaterLayerConfig> profile;     ///< by depth; linear between rows, constant beyond the ends
   SoundSpeed sound = SoundSpeed::mackenzie;  ///< unless profile or constant are given
   std::optional<double> sound_speed_mps;     ///< constant
+  std::vector<std::string> warnings;         ///< about 'profile_file'
+  SourcePlace place;
   void read(ParamReader& in);
 };
 

@@ -2,9 +2,9 @@
 #include "sim/model/hydrodynamics_checks.hpp"
 
 #include <cmath>
-#include <cstdio>
 
 #include "sim/base/linear_algebra.hpp"
+#include "sim/base/number.hpp"
 #include "sim/config/message_text.hpp"
 
 namespace sim {
@@ -25,9 +25,7 @@ std::string derivative_name(const DerivativeTerm& term) {
 
 /// Returns a computed value as text with 6 digits, which hides rounding errors.
 std::string computed_text(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
+  return number_text(rounded_to(value, 6));
 }
 
 /// Returns false when an eigenvalue is below zero by more than the rounding error of the matrix.

@@ -2,9 +2,9 @@
 #include "sim/model/hydrodynamics_config.hpp"
 
 #include <cmath>
-#include <cstdlib>
 #include <optional>
 
+#include "sim/base/number.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/model/hydrodynamics_checks.hpp"
 #include "sim/model/spheroid.hpp"
@@ -218,8 +218,8 @@ void HydrodynamicsConfig::read(ParamReader& in) {
               "forces in SNAME notation, signs as printed: X_uu: -1.62, Y_uv: -28.6, Z_wdot: -35.5");
   for (const ConfigNode::Entry& entry : named.entries) {
     DerivativeTerm term;
-    char* end = nullptr;
-    term.coefficient = std::strtod(entry.value.scalar.c_str(), &end);
+    const std::optional<double> number = read_number(entry.value.scalar);
+    term.coefficient = number.value_or(0);
     if (!parse_derivative(entry.key, term)) {
       in.diagnostics().error(
           entry.place, in.who(),
@@ -228,8 +228,7 @@ void HydrodynamicsConfig::read(ParamReader& in) {
       continue;
     }
     // Check that the value is a finite number.
-    if (entry.value.kind != ConfigNode::Kind::scalar || entry.value.scalar.empty() || *end != 0 ||
-        !std::isfinite(term.coefficient)) {
+    if (entry.value.kind != ConfigNode::Kind::scalar || !number || !std::isfinite(*number)) {
       in.diagnostics().error(entry.value.place, in.who(),
                              "'" + entry.key + "' must be a number, got " + shown(entry.value));
       continue;

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <limits>
+#include <numbers>
+
 #include "sim/config/choice_words.hpp"
 
 namespace sim {
@@ -18,6 +21,9 @@ struct JointInfo {
   bool second_axis;      ///< has the key `axis2`
   bool carries_a_wheel;  ///< allows unlimited rotation of one body on the other about its last axis
   bool turns;            ///< positions of its axes are angles
+  /// Greatest stop, rad or m.  Two turns are more than most joints with stops have, and less than most angles that were
+  /// meant in degrees.
+  double max_stop = 4 * std::numbers::pi;
 };
 
 constexpr JointInfo joint_info(JointType type) {
@@ -25,7 +31,7 @@ constexpr JointInfo joint_info(JointType type) {
     case JointType::fixed:
       return {.second_axis = false, .carries_a_wheel = false, .turns = true};
     case JointType::ball:
-      return {.second_axis = false, .carries_a_wheel = false, .turns = true};
+      return {.second_axis = false, .carries_a_wheel = false, .turns = true, .max_stop = std::numbers::pi};
     case JointType::hinge:
       return {.second_axis = false, .carries_a_wheel = true, .turns = true};
     case JointType::hinge2:
@@ -35,7 +41,10 @@ constexpr JointInfo joint_info(JointType type) {
     case JointType::slider:
       break;
   }
-  return {.second_axis = false, .carries_a_wheel = false, .turns = false};
+  return {.second_axis = false,
+          .carries_a_wheel = false,
+          .turns = false,
+          .max_stop = std::numeric_limits<double>::infinity()};
 }
 
 }  // namespace sim

@@ -158,6 +158,14 @@ void BodyConfig::read(ParamReader& in) {
           "mass and forces in water by published coefficients, see docs/models/marine.md");
 }
 
+std::string error_of_stop(JointType type, double stop) {
+  const double max_stop = joint_info(type).max_stop, pi = std::numbers::pi;
+  if (std::abs(stop) <= max_stop) return "";
+  const std::string bound = max_stop == pi ? "pi" : number_text(max_stop / pi) + " pi";
+  return "stops of a rotational axis are in rad and must lie between -" + bound + " and " + bound + ", got " +
+         number_text(stop);
+}
+
 void JointAxisConfig::read(ParamReader& in) {
   in.read("axis", axis, any_number(), "direction in the frame of the vehicle, of any length");
   if (axis.norm() < 1e-9) {
@@ -172,7 +180,7 @@ void JointAxisConfig::read(ParamReader& in) {
   in.read("motor_velocity", motor_velocity, any_number(), "speed of the motor at the start, rad/s or m/s");
   in.read("motor_max_force", motor_max_force, at_least(0), "N m, or N of a slider; 0: no motor until a device sets it");
   in.read("restitution", restitution, between(0, 1), "restitution at the stops");
-  in.read("erp", erp, between(0, 1), "error reduction of the joint, instead of the world's");
+  in.read("erp", erp, between(0, 1), "fixed, ball: error reduction of the joint, instead of the world's");
   in.read("cfm", cfm, between(0, 1), "softness of the motor");
   in.read("stop_erp", stop_erp, between(0, 1), "error reduction at the stops");
   in.read("stop_cfm", stop_cfm, between(0, 1), "softness of the stops");
@@ -190,11 +198,8 @@ void check_axes(ParamReader& in, const JointConfig& joint) {
       joint.axis1.axis.cross(joint.axis2.axis).norm() < 1e-6 * joint.axis1.axis.norm() * joint.axis2.axis.norm())
     in.error("axis2", "the axes of a " + word + " must not be parallel");
   if (!info.second_axis && in.has("axis2")) in.error("axis2", "a " + word + " has no second axis");
-  if (!info.turns) return;
-  // ODE measures angles from -pi to pi, so a stop outside this range would have no effect.
   for (const auto& stop : {joint.axis1.low_stop, joint.axis1.high_stop, joint.axis2.low_stop, joint.axis2.high_stop})
-    if (stop && std::abs(*stop) > std::numbers::pi)
-      in.error("stops of a rotational axis are in rad and must lie between -pi and pi, got " + number_text(*stop));
+    if (const std::string error = error_of_stop(joint.type, stop.value_or(0)); !error.empty()) in.error(error);
 }
 
 }  // namespace

@@ -109,6 +109,9 @@ struct BodyConfig {
   void read(ParamReader& in);
 };
 
+/// Returns what is wrong with a finite stop of a joint's axis; empty: nothing.
+std::string error_of_stop(JointType type, double stop);
+
 /// Parameters of one axis of a joint.
 struct JointAxisConfig {
   Vector3d axis = Vector3d::UnitZ();  ///< in the vehicle frame

@@ -9,6 +9,7 @@
 
 #include "sim/base/whole_file.hpp"
 #include "sim/config/message_text.hpp"
+#include "sim/config/utf8.hpp"
 #include "sim/motion/joint_name.hpp"
 #include "sim/motion/motion.hpp"
 
@@ -129,7 +130,7 @@ class FramesParser {
 }  // namespace
 
 std::vector<MotionTrack> parse_motion_frames(std::string_view text, FramesError& error) {
-  return FramesParser(text, error).parse();
+  return FramesParser(without_byte_order_mark(text), error).parse();
 }
 
 std::vector<MotionTrack> read_motion_frames(const std::string& path, ParamReader& in, const char* key) {

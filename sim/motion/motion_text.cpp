@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cctype>
-#include <cstdio>
-#include <cstdlib>
 #include <iterator>
 
+#include "sim/base/number.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/config/yaml_writer.hpp"
 #include "sim/motion/motion.hpp"
@@ -34,9 +33,7 @@ std::string quoted(const std::string& text) {
 
 /// Rounded to 12 digits: conversions between rad and deg do not add digits.
 double rounded(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.12g", value);
-  return std::strtod(text, nullptr);
+  return rounded_to(value, 12);
 }
 
 class MotionWriter {

@@ -2,6 +2,7 @@
 #include "sim/physics/contact_table.hpp"
 
 #include <algorithm>
+#include <cstdint>
 #include <stdexcept>
 
 namespace sim {
@@ -43,41 +44,38 @@ Surface make_surface(const ContactConfig& config) {
   return surface;
 }
 
-bool names(const std::string& pattern, const std::string& material) {
-  return pattern == "any" || pattern == material;
+std::uint64_t key_of(int first, int second) {
+  const auto [low, high] = std::minmax(first, second);
+  return static_cast<std::uint64_t>(low) << 32 | static_cast<std::uint32_t>(high);
 }
 
 }  // namespace
 
 ContactTable::ContactTable(const std::vector<MaterialConfig>& materials, const std::vector<ContactConfig>& contacts)
     : contacts_(contacts) {
-  materials_.emplace_back().name = "default";
+  MaterialConfig usual;
+  usual.name = "default";
+  add_materials({usual});
   add_materials(materials);
   compute_surfaces();
 }
 
 void ContactTable::add(const std::vector<MaterialConfig>& materials, const std::vector<ContactConfig>& contacts) {
+  const std::size_t known = contacts_.size(), known_materials = materials_.size();
   add_materials(materials);
-  const std::size_t known = contacts_.size();
   for (const ContactConfig& contact : contacts)
     if (std::find(contacts_.begin(), contacts_.end(), contact) == contacts_.end())
       contacts_.insert(contacts_.begin() + static_cast<std::ptrdiff_t>(added_++), contact);
   // A second vehicle of the same kind adds no materials or contacts.
-  if (contacts_.size() > known || static_cast<int>(materials_.size()) > count_) compute_surfaces();
+  if (contacts_.size() > known || materials_.size() > known_materials) compute_surfaces();
 }
 
 void ContactTable::add_materials(const std::vector<MaterialConfig>& materials) {
   for (const MaterialConfig& material : materials)
-    if (find(material.name) == materials_.end()) materials_.push_back(material);
-}
-
-std::vector<MaterialConfig>::const_iterator ContactTable::find(const std::string& material) const {
-  return std::find_if(materials_.begin(), materials_.end(), [&](const auto& each) { return each.name == material; });
+    if (numbers_.emplace(material.name, static_cast<int>(materials_.size())).second) materials_.push_back(material);
 }
 
 void ContactTable::compute_surfaces() {
-  count_ = static_cast<int>(materials_.size());
-  surfaces_.assign(materials_.size() * materials_.size(), make_surface(ContactConfig{}));
   // An entry that names both materials takes precedence over one with `any`; among equals the last one.
   std::vector<ContactConfig> by_weight = contacts_;
   std::stable_sort(by_weight.begin(), by_weight.end(), [](const ContactConfig& a, const ContactConfig& b) {
@@ -86,17 +84,42 @@ void ContactTable::compute_surfaces() {
     };
     return named(a) < named(b);
   });
-  for (const ContactConfig& contact : by_weight)
-    for (int i = 0; i < count_; ++i)
-      for (int j = 0; j < count_; ++j)
-        if (names(contact.between[0], materials_[i].name) && names(contact.between[1], materials_[j].name))
-          surfaces_[i * count_ + j] = surfaces_[j * count_ + i] = make_surface(contact);
+  surfaces_.assign(1, make_surface(ContactConfig{}));
+  of_any_ = 0;
+  of_material_.assign(materials_.size(), 0);
+  of_pair_.clear();
+  for (const ContactConfig& contact : by_weight) {
+    const int surface = static_cast<int>(surfaces_.size());
+    surfaces_.push_back(make_surface(contact));
+    std::vector<int> named;
+    bool known = true;
+    for (const std::string& name : contact.between) {
+      if (name == "any") continue;
+      const auto found = numbers_.find(name);
+      known = known && found != numbers_.end();
+      if (known) named.push_back(found->second);
+    }
+    if (!known) continue;
+    if (named.empty()) of_any_ = surface;
+    if (named.size() == 1) of_material_[static_cast<std::size_t>(named[0])] = surface;
+    if (named.size() == 2) of_pair_[key_of(named[0], named[1])] = surface;
+  }
+}
+
+const Surface& ContactTable::of(int first, int second) const {
+  if (!of_pair_.empty()) {
+    const auto found = of_pair_.find(key_of(first, second));
+    if (found != of_pair_.end()) return surfaces_[static_cast<std::size_t>(found->second)];
+  }
+  const int surface = std::max(
+      {of_any_, of_material_[static_cast<std::size_t>(first)], of_material_[static_cast<std::size_t>(second)]});
+  return surfaces_[static_cast<std::size_t>(surface)];
 }
 
 int ContactTable::number_of(const std::string& material) const {
-  const auto at = find(material);
-  if (at == materials_.end()) throw std::out_of_range("unknown material '" + material + "'");
-  return static_cast<int>(at - materials_.begin());
+  const auto found = numbers_.find(material);
+  if (found == numbers_.end()) throw std::out_of_range("unknown material '" + material + "'");
+  return found->second;
 }
 
 }  // namespace sim

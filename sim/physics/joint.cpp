@@ -85,7 +85,7 @@ Joint::Joint(dWorldID world, std::string name, const JointConfig& config, dBodyI
   for (int axis = 0; axis < axes_; ++axis) configure_axis(axis_config(config, axis), axis);
   for (int axis = 0; axis < axes_; ++axis) {
     wrapped_[axis] = wrapped_position(axis);
-    configured_stops_[static_cast<std::size_t>(axis)] = stops_of(axis);
+    configured_stops_[axis] = stops_[axis];
   }
 }
 
@@ -102,13 +102,19 @@ void Joint::create(dWorldID world, dBodyID first, dBodyID second) {
     return joint;
   };
   switch (type_) {
-    case JointType::fixed:
-      dJointSetFixed(attach(dJointCreateFixed(world, nullptr)));
+    case JointType::fixed: {
+      const dJointID joint = attach(dJointCreateFixed(world, nullptr));
+      dJointSetFixed(joint);
+      if (config.axis1.erp) dJointSetFixedParam(joint, dParamERP, *config.axis1.erp);
       return;
-    case JointType::ball:
-      dJointSetBallAnchor(attach(dJointCreateBall(world, nullptr)), anchor.x(), anchor.y(), anchor.z());
+    }
+    case JointType::ball: {
+      const dJointID joint = attach(dJointCreateBall(world, nullptr));
+      dJointSetBallAnchor(joint, anchor.x(), anchor.y(), anchor.z());
+      if (config.axis1.erp) dJointSetBallParam(joint, dParamERP, *config.axis1.erp);
       if (config.motor) create_ball_motor(world, first, second);
       return;
+    }
     case JointType::hinge: {
       const dJointID joint = attach(dJointCreateHinge(world, nullptr));
       dJointSetHingeAnchor(joint, anchor.x(), anchor.y(), anchor.z());
@@ -170,7 +176,6 @@ void Joint::configure_axis(const JointAxisConfig& config, int axis) {
   place_stops(config.low_stop, config.high_stop, axis);
   set(dParamBounce, config.restitution);
   set(dParamCFM, config.cfm);
-  set(dParamERP, config.erp);
   set(dParamStopERP, config.stop_erp);
   set(dParamStopCFM, config.stop_cfm);
   set(dParamFudgeFactor, config.fudge_factor);
@@ -186,27 +191,33 @@ void Joint::place_stops(std::optional<double> low, std::optional<double> high, i
 }
 
 void Joint::put_stops(const OdeStops& stops, int axis) {
-  const OdeStops before = stops_of(axis);
+  const bool none = stops.low > stops.high || (type_ == JointType::hinge2 && axis == 1);
+  stops_[axis] = none ? OdeStops{} : stops;
+  give_stops_to_ode(axis);
+}
+
+void Joint::give_stops_to_ode(int axis) {
+  OdeStops stops = stops_[axis];
+  if (type_ != JointType::slider && type_ != JointType::ball) {
+    const double turn = 2 * std::numbers::pi;
+    const double turns = sign_ * turn * std::round((position_[axis] - wrapped_[axis]) / turn);
+    stops.low -= turns;
+    stops.high -= turns;
+  }
+  give_ode_stops(stops, axis);
+}
+
+void Joint::give_ode_stops(OdeStops stops, int axis) {
+  // ODE tests the angle of a hinge only if there is a stop from -pi to pi, and otherwise leaves it at the stop at which
+  // it was.  This angle is below pi.
+  const OdeStops before{get_parameter(dParamLoStop, axis), get_parameter(dParamHiStop, axis)};
+  if (type_ == JointType::hinge && (before.any() || stops.any()) && stops.low < -std::numbers::pi &&
+      stops.high > std::numbers::pi)
+    stops = {-dInfinity, std::numbers::pi};
   set_parameter(dParamLoStop, stops.low, axis);
   set_parameter(dParamHiStop, stops.high, axis);
   // ODE moves one stop when the other one would be beyond it.
-  if (stops.low <= stops.high) set_parameter(dParamLoStop, stops.low, axis);
-  const OdeStops after = stops_of(axis);
-  const bool had_stops = before.low > -dInfinity || before.high < dInfinity;
-  if (!had_stops || after.low > -dInfinity || after.high < dInfinity) return;
-  // ODE clears the state "at a stop" only when it tests the stops, and without any stop it does not test.
-  set_parameter(dParamHiStop, dInfinity, axis);
-  set_parameter(dParamLoStop, stop_never_reached(), axis);
-}
-
-double Joint::stop_never_reached() const {
-  return type_ == JointType::slider ? -1e300 : -std::numbers::pi;
-}
-
-Joint::OdeStops Joint::stops_of(int axis) const {
-  const OdeStops stops{get_parameter(dParamLoStop, axis), get_parameter(dParamHiStop, axis)};
-  if (stops.low > stops.high || (stops.low <= stop_never_reached() && stops.high == dInfinity)) return {};
-  return stops;
+  set_parameter(dParamLoStop, stops.low, axis);
 }
 
 void Joint::set_stops(std::optional<double> low, std::optional<double> high, int axis) {
@@ -296,7 +307,12 @@ void Joint::update_position(double step_s) {
     return;
   }
   if (type_ == JointType::ball) {
-    const Vector3d rotation = rotation_of_ball();
+    Vector3d rotation = rotation_of_ball();
+    const Eigen::Map<const Vector3d> before(position_);
+    if (const double angle = rotation.norm(); angle > 0) {
+      const Vector3d other = (1 - 2 * std::numbers::pi / angle) * rotation;
+      if ((other - before).squaredNorm() < (rotation - before).squaredNorm()) rotation = other;
+    }
     for (int axis = 0; axis < axes_; ++axis) position_[axis] = rotation[axis];
     set_ball_angles(ball_motor_.get(), sign_, position_);
     return;
@@ -311,10 +327,11 @@ void Joint::update_position(double step_s) {
     const double wrapped = wrapped_position(axis);
     double moved = wrapped - wrapped_[axis];
     // ODE's angle wraps at pi.  The rate gives the number of turns in the step; the angle gives the exact remainder.
-    if (std::abs(moved - expected) > std::numbers::pi)
-      moved += 2 * std::numbers::pi * std::round((expected - moved) / (2 * std::numbers::pi));
+    const bool wraps = std::abs(moved - expected) > std::numbers::pi;
+    if (wraps) moved += 2 * std::numbers::pi * std::round((expected - moved) / (2 * std::numbers::pi));
     wrapped_[axis] = wrapped;
     position_[axis] += moved;
+    if (wraps && stops_[axis].any()) give_stops_to_ode(axis);
   }
 }
 
@@ -385,7 +402,7 @@ void Joint::make_again(const Pose& X_WV, const Pose& X_WC) {
 void Joint::create_again(dWorldID world, dBodyID first, dBodyID second) {
   // Save stops and motor set-points.
   OdeStops stops[max_axes];
-  for (int axis = 0; axis < axes_; ++axis) stops[axis] = stops_of(axis);
+  std::copy_n(stops_, max_axes, stops);
   // Create the joint with the bodies at its creation poses, and move them back.
   const OdePose first_now = copy_pose<OdePose>(first);
   const OdePose second_now = second != nullptr ? copy_pose<OdePose>(second) : first_now;
@@ -419,20 +436,24 @@ void Joint::visit_state(StateArchive& archive) {
       if (!std::isfinite(number)) archive.fail("joint '" + name_ + "' has a number that is not finite");
     set_parameter(dParamVel, sign_ * motor_velocity_[axis], axis);
     set_parameter(dParamFMax, motor_max_force_[axis], axis);
+    give_stops_to_ode(axis);  // by the position
   }
-  if (archive.restoring()) set_ball_angles(ball_motor_.get(), sign_, position_);
+  if (archive.restoring()) {
+    set_ball_angles(ball_motor_.get(), sign_, position_);
+    leaves_stops_ = false;  // after a step that failed
+  }
   visit_load(archive);
 }
 
 /// Visits the stops: state when they were set at run time, else those of the configuration.
 void Joint::visit_stops(StateArchive& archive, int axis) {
-  OdeStops stops = stops_of(axis);
+  OdeStops stops = stops_[axis];
   if (stops_were_set_) {
     archive.not_only_finite(stops.low, stops.high);
     if (std::isnan(stops.low) || std::isnan(stops.high))
       archive.fail("joint '" + name_ + "' has a stop that is not a number");
   } else if (archive.restoring()) {
-    stops = configured_stops_[static_cast<std::size_t>(axis)];
+    stops = configured_stops_[axis];
   }
   if (archive.restoring()) put_stops(stops, axis);
 }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <array>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -13,6 +12,7 @@
 
 struct dxBody;  // of ODE; only the sources of physics include its headers
 struct dxJoint;
+struct dxJointGroup;
 struct dxWorld;
 
 namespace sim {
@@ -44,8 +44,8 @@ class Joint {
   int axes() const { return axes_; }
 
   /// Angle since the joint was created, not wrapped (rad), or position of a slider (m).  The second axis of hinge2 is a
-  /// free wheel: its angle is integrated from its rate.  For a ball: components of the rotation vector, with norm up to
-  /// pi.
+  /// free wheel: its angle is integrated from its rate.  For a ball: components of the rotation vector, with norm below
+  /// 2 pi: of both that describe the rotation, the one nearer to that of the step before.
   double position(int axis = 0) const { return position_[axis]; }
   /// Rate of the position (rad/s, or m/s for a slider).
   double velocity(int axis = 0) const;
@@ -58,8 +58,8 @@ class Joint {
   /// Returns the velocity that an impulse of 1 N m s about an axis (1 N s along it) gives its two bodies, which only
   /// the anchor holds together, in 1/(kg m^2) or 1/kg.  Other joints and contacts of the bodies only reduce it.
   double mobility(int axis = 0) const;
-  /// Sets the stops of an axis, in the joint's sign (rad, or m for a slider); nullopt: no stop.  With low above high
-  /// neither stop has an effect.  The second axis of hinge2 has no stops.
+  /// Sets the stops of an axis, limits of its position() (rad, or m for a slider); nullopt: no stop.  With low above
+  /// high neither stop has an effect.  The second axis of hinge2 has no stops.
   void set_stops(std::optional<double> low, std::optional<double> high, int axis = 0);
 
   /// Switches the measurement of the load on, from the next step; until then the load reads zero.
@@ -92,9 +92,12 @@ class Joint {
     Pose X_WC;              // to the world: of the moving body
     OdePose first, second;  // of ODE's bodies; without a second one its pose is not used
   };
-  /// Stops in ODE's sign and units.
+  /// Stops in ODE's sign and units, of the position that is not wrapped.
   struct OdeStops {
     double low = -std::numeric_limits<double>::infinity(), high = std::numeric_limits<double>::infinity();
+    bool any() const {
+      return low > -std::numeric_limits<double>::infinity() || high < std::numeric_limits<double>::infinity();
+    }
   };
   /// Attaches the bodies at their present poses.  `second` null: the world.
   Joint(dxWorld* world, std::string name, const JointConfig& config, dxBody* first, dxBody* second, const Pose& X_WV);
@@ -106,13 +109,14 @@ class Joint {
   void configure_axis(const JointAxisConfig& config, int axis);
   void place_stops(std::optional<double> low, std::optional<double> high, int axis);
   void put_stops(const OdeStops& stops, int axis);
-  OdeStops stops_of(int axis) const;  ///< none where the stops have no effect
-  double stop_never_reached() const;
+  /// Gives ODE the stops of an axis where they are on its angle, which it wraps at pi.
+  void give_stops_to_ode(int axis);
+  void give_ode_stops(OdeStops stops, int axis);
   void visit_stops(StateArchive& archive, int axis);
   void visit_load(StateArchive& archive);
   void measure_no_load();
   void set_parameter(int parameter, double value, int axis);
-  int max_rows() const;  ///< constraint rows with all motors and stops active
+  int max_rows() const;  ///< constraint rows with all motors and stops active; motors that leave a stop add some
   double wrapped_position(int axis) const;
   double get_parameter(int parameter, int axis) const;
   Vector3d axis_W(int axis) const;
@@ -120,6 +124,15 @@ class Joint {
   void note_before_step();
   void note_load();
   double motor_at_stop(int axis) const;
+  /// Returns whether the motor of an axis drives it away from a stop at which it is.
+  bool leaves_stop(int axis) const;
+  /// How far an axis is beyond the stop that it leaves.
+  double depth_in_stop(int axis) const;
+  /// Gives the stops from which motors drive away to a joint of `group` for the next step.  Returns whether there are
+  /// any; then end_leaving_stops() must follow the step.
+  bool start_leaving_stops(dxJointGroup* group, double step_s);
+  void end_leaving_stops();
+  dxJoint* create_slider_stop(dxJointGroup* group) const;
   void move_world_side(const Pose& X_move_W);
   void make_again(const Pose& X_WV, const Pose& X_WC);
   bool is_measured() const { return load_ != nullptr; }
@@ -137,7 +150,9 @@ class Joint {
   double wrapped_[max_axes] = {};
   double motor_velocity_[max_axes] = {};
   double motor_max_force_[max_axes] = {};
-  std::array<OdeStops, max_axes> configured_stops_;
+  OdeStops stops_[max_axes];  // none where they have no effect
+  OdeStops configured_stops_[max_axes];
+  bool leaves_stops_ = false;           // in this step
   bool stops_were_set_ = false;         ///< set_stops() was called
   dxBody* loaded_ = nullptr;            // whose load is measured
   Vector3d p_CA_C_ = Vector3d::Zero();  // the anchor in ODE's frame of the loaded body

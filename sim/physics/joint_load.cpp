@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/physics/joint_load.hpp"
 
+#include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 #include "sim/ode/ode_math.hpp"
@@ -12,6 +12,13 @@
 // Efforts on a joint, and its load.
 
 namespace sim {
+
+namespace {
+
+constexpr double solver_rounding = 1e-9;  // rad/s or m/s: above that of a velocity
+constexpr double stop_rounding = 1e-9;    // rad or m: above that of a position, which sums the angles that ODE measures
+
+}  // namespace
 
 void Joint::add_effort(double effort, int axis) {
   if (!std::isfinite(effort)) throw PhysicsFault("joint '" + name_ + "': an effort on it is not finite");
@@ -64,20 +71,97 @@ void Joint::note_before_step() {
   }
 }
 
-/// Motor effort that is missing in the feedback.  At a stop, ODE uses the row of the motor for the stop and applies the
-/// motor as an external force (dxJointLimitMotor::addLimot).
+bool Joint::leaves_stop(int axis) const {
+  const OdeStops& stops = stops_[axis];
+  const double velocity = sign_ * motor_velocity_[axis], position = sign_ * position_[axis];
+  if (!(motor_max_force_[axis] > 0) || stops.low >= stops.high) return false;
+  return (velocity > 0 && position <= stops.low + stop_rounding) ||
+         (velocity < 0 && position >= stops.high - stop_rounding);
+}
+
+double Joint::depth_in_stop(int axis) const {
+  const OdeStops& stops = stops_[axis];
+  const double position = sign_ * position_[axis];
+  return std::max(sign_ * motor_velocity_[axis] > 0 ? stops.low - position : position - stops.high, 0.0);
+}
+
+// ODE has one row of constraints for the motor and the stops of an axis.  At a stop this row is the stop's, and ODE
+// applies the motor as an external force, at its maximum (dxJointLimitMotor::addLimot).  That is right for a motor that
+// pushes into the stop or holds.  One that drives away would be accelerated without regard to its velocity: it keeps
+// the row, and the stop gets one of another joint for this step.  ODE's exact solver treats the row of that joint last.
+// Two equal rows are nearly singular, but not when the motor comes first and meets the stop too, or is at its limit: it
+// runs at least at the velocity with which the stop pushes the joint back.
+bool Joint::start_leaving_stops(dJointGroupID group, double step_s) {
+  int leaving[max_axes], count = 0;
+  for (int axis = 0; axis < axes_; ++axis)
+    if (leaves_stop(axis)) leaving[count++] = axis;
+  if (count == 0) return false;
+  leaves_stops_ = true;
+  const dJointID stop =
+      type_ == JointType::slider ? create_slider_stop(group) : dJointCreateAMotor(dBodyGetWorld(loaded_), group);
+  dJointAttach(stop, dJointGetBody(ode_.get(), 0), dJointGetBody(ode_.get(), 1));
+  if (type_ != JointType::slider) dJointSetAMotorNumAxes(stop, count);
+  for (int i = 0; i < count; ++i) {
+    const int axis = leaving[i];
+    if (type_ != JointType::slider) {
+      const Vector3d along = axis_W(axis);
+      dJointSetAMotorAxis(stop, i, 0, along.x(), along.y(), along.z());
+      dJointSetAMotorAngle(stop, i, sign_ * position_[axis]);
+      const auto set = [&](int parameter, double value) {
+        dJointSetAMotorParam(stop, parameter + dParamGroup * i, value);
+      };
+      set(dParamLoStop, stops_[axis].low);
+      set(dParamHiStop, stops_[axis].high);
+      for (const int parameter : {dParamStopERP, dParamStopCFM, dParamBounce})
+        set(parameter, get_parameter(parameter, axis));
+    }
+    const double back = get_parameter(dParamStopERP, axis) * depth_in_stop(axis) / step_s + solver_rounding;
+    const double velocity = sign_ * motor_velocity_[axis];
+    set_parameter(dParamVel, std::copysign(std::max(std::abs(velocity), back), velocity), axis);
+    set_parameter(dParamFMax, get_parameter(dParamFudgeFactor, axis) * motor_max_force_[axis], axis);
+    give_ode_stops({}, axis);
+  }
+  if (load_) dJointSetFeedback(stop, &load_->leaving_feedback);
+  return true;
+}
+
+/// Makes a contact without friction whose row is that of the stop that the slider leaves: ODE's linear motor has none.
+dJointID Joint::create_slider_stop(dJointGroupID group) const {
+  const dBodyID first = dJointGetBody(ode_.get(), 0), second = dJointGetBody(ode_.get(), 1);
+  const bool at_low = sign_ * motor_velocity_[0] > 0;
+  dContact contact = {};
+  contact.surface.mode = dContactSoftERP | dContactSoftCFM | dContactBounce;
+  contact.surface.soft_erp = get_parameter(dParamStopERP, 0);
+  contact.surface.soft_cfm = get_parameter(dParamStopCFM, 0);
+  contact.surface.bounce = get_parameter(dParamBounce, 0);
+  contact.geom.depth =
+      depth_in_stop(0) + dWorldGetContactSurfaceLayer(dBodyGetWorld(loaded_));  // in which a contact has no depth
+  const Vector3d normal_W = (at_low ? 1 : -1) * axis_W(0);
+  Vector3d p_W = to_eigen(dBodyGetPosition(first));
+  if (second != nullptr) p_W = (p_W + to_eigen(dBodyGetPosition(second))) / 2;
+  std::copy_n(normal_W.data(), 3, contact.geom.normal);
+  std::copy_n(p_W.data(), 3, contact.geom.pos);
+  return dJointCreateContact(dBodyGetWorld(loaded_), group, &contact);
+}
+
+void Joint::end_leaving_stops() {
+  for (int axis = 0; axis < axes_; ++axis) {
+    set_parameter(dParamVel, sign_ * motor_velocity_[axis], axis);
+    set_parameter(dParamFMax, motor_max_force_[axis], axis);
+    give_stops_to_ode(axis);
+  }
+  leaves_stops_ = false;
+}
+
+/// Motor effort that is missing in the feedback: at a stop ODE applies it as an external force.
 double Joint::motor_at_stop(int axis) const {
   const double max_force = get_parameter(dParamFMax, axis);
   const double low = get_parameter(dParamLoStop, axis), high = get_parameter(dParamHiStop, axis);
-  const double bound = type_ == JointType::slider ? dInfinity : std::numbers::pi;
-  const bool has_stops = type_ == JointType::slider ? low > -bound || high < bound : low >= -bound || high <= bound;
-  if (!(max_force > 0) || !has_stops || low >= high || (type_ == JointType::hinge2 && axis == 1)) return 0;
+  if (!(max_force > 0) || !stops_[axis].any() || low >= high) return 0;
   const double position = sign_ * wrapped_position(axis), velocity = get_parameter(dParamVel, axis);
   const bool at_low = position <= low, at_high = !at_low && position >= high;
   if (!at_low && !at_high) return 0;
-  const bool upwards = velocity > 0 || (velocity == 0 && at_high);
-  const bool away = (at_low && velocity > 0) || (at_high && velocity < 0);
-  return sign_ * (upwards ? max_force : -max_force) * (away ? get_parameter(dParamFudgeFactor, axis) : 1);
+  return velocity > 0 || (velocity == 0 && at_high) ? sign_ * max_force : -sign_ * max_force;
 }
 
 void Joint::note_load() {
@@ -87,6 +171,12 @@ void Joint::note_load() {
   load.force_W_N = to_eigen(first ? load.feedback.f1 : load.feedback.f2);
   load.torque_W_Nm = to_eigen(first ? load.feedback.t1 : load.feedback.t2) - load.p_CA_W.cross(load.force_W_N);
   if (ball_motor_) load.torque_W_Nm += to_eigen(first ? load.motor_feedback.t1 : load.motor_feedback.t2);
+  if (leaves_stops_) {
+    const Vector3d force_W_N = to_eigen(first ? load.leaving_feedback.f1 : load.leaving_feedback.f2);
+    load.force_W_N += force_W_N;
+    load.torque_W_Nm +=
+        to_eigen(first ? load.leaving_feedback.t1 : load.leaving_feedback.t2) - load.p_CA_W.cross(force_W_N);
+  }
   for (int axis = 0; axis < axes_; ++axis) {
     // Add the efforts that are missing in ODE's feedback.
     const Vector3d beside_W = load.beside[axis] * load.axis_W[axis];

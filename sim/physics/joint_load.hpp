@@ -10,7 +10,8 @@ namespace sim {
 /// Load of a joint; internal to the sources of joints.
 struct Joint::Load {
   dJointFeedback feedback = {};
-  dJointFeedback motor_feedback = {};  // of a ball's motor
+  dJointFeedback motor_feedback = {};    // of a ball's motor
+  dJointFeedback leaving_feedback = {};  // of stops that motors leave
   // Values at the start of the step, since the load acts at those poses.
   Vector3d p_CA_W = Vector3d::Zero();  // from the centre of mass of the loaded body to the anchor
   Vector3d p_AM_W = Vector3d::Zero();  // to the point where ODE applies the added force of a slider

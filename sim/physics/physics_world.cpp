@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/physics/physics_world.hpp"
 
+#include <spdlog/fmt/fmt.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <map>
 #include <mutex>
 #include <utility>
@@ -136,17 +137,15 @@ bool PhysicsWorld::Impl::out_of_bounds(const Body& body) const {
 
 void PhysicsWorld::Impl::fault(const Body& body, std::int64_t step_number) const {
   const double speed = to_eigen(body.v_WC_W_).norm(), distance = to_eigen(body.p_WC_).norm();
-  char text[160];
+  std::string text = "angular velocity is not finite";
   if (!std::isfinite(distance))
-    std::snprintf(text, sizeof text, "position is not finite");
+    text = "position is not finite";
   else if (!std::isfinite(speed))
-    std::snprintf(text, sizeof text, "velocity is not finite");
+    text = "velocity is not finite";
   else if (speed > config.max_speed_mps)
-    std::snprintf(text, sizeof text, "speed %.2g m/s is over %g m/s", speed, config.max_speed_mps);
+    text = fmt::format("speed {:.2g} m/s is over {:g} m/s", speed, config.max_speed_mps);
   else if (distance > config.max_distance_m)
-    std::snprintf(text, sizeof text, "distance %.3g m from the origin is over %g m", distance, config.max_distance_m);
-  else
-    std::snprintf(text, sizeof text, "angular velocity is not finite");
+    text = fmt::format("distance {:.3g} m from the origin is over {:g} m", distance, config.max_distance_m);
   throw PhysicsFault("body '" + body.name() + "': " + text + " at step " + std::to_string(step_number));
 }
 

@@ -48,6 +48,7 @@ struct ShardStepper {
   SolverMemory memory;
   Collider::Making making;
   std::vector<Body*> lone;                   ///< bodies without contacts and joints in this step
+  std::vector<Joint*> leaving;               ///< joints whose motors leave a stop in this step
   std::vector<BodyCopy> before;              ///< of the bodies that the exact solver steps
   std::vector<dBodyID> small, crowd, mixed;  ///< bodies by their islands
   CrowdContacts crowd_contacts;

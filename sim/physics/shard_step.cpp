@@ -151,6 +151,9 @@ void PhysicsWorld::Impl::solve(Shard& shard, ShardStepper& stepper, std::int64_t
   if (!some_are_not_alone) return;  // ODE has nothing to do
   for (Body* body : shard.moving)
     if (body->gyroscopic_ && !body->alone()) body->add_gyroscopic_torque(config.step_s);
+  stepper.leaving.clear();
+  for (Joint* joint : shard.joints)
+    if (joint->start_leaving_stops(stepper.making.contacts.get(), config.step_s)) stepper.leaving.push_back(joint);
   // Record the poses at the start of the step for the joint loads.
   const auto for_each_measured_joint = [&](const auto& visit) {
     for (Joint* joint : shard.joints)
@@ -176,6 +179,7 @@ void PhysicsWorld::Impl::solve(Shard& shard, ShardStepper& stepper, std::int64_t
   Collider::read_forces(stepper.making, shard.contacts);
   dJointGroupEmpty(stepper.making.contacts.get());
   for_each_measured_joint([](Joint& joint) { joint.note_load(); });
+  for (Joint* joint : stepper.leaving) joint->end_leaving_stops();
 }
 
 bool PhysicsWorld::Impl::is_large(const Body& body) {

@@ -89,6 +89,14 @@ std::int32_t ClientMessages::first_missing(const std::string& client) const {
   return -1;
 }
 
+std::vector<std::string> ClientMessages::missing_channels(const std::string& client) const {
+  std::vector<std::string> channels;
+  if (const auto found = expected_.find(client); found != expected_.end())
+    for (const Expected& expected : found->second)
+      if (expected.is_read && !expected.there) channels.push_back(expected.named.channel);
+  return channels;
+}
+
 std::string ClientMessages::missing_text(const std::string& client) const {
   const auto found = expected_.find(client);
   const std::int32_t first = first_missing(client);

@@ -33,6 +33,8 @@ class ClientMessages {
   bool is_complete(const std::string& client) const;
   /// Index, in the list given to expect(), of the first missing message; -1: none is missing.
   std::int32_t first_missing(const std::string& client) const;
+  /// Returns the channels of the missing messages of the list, one for each message.
+  std::vector<std::string> missing_channels(const std::string& client) const;
   /// Returns the number of missing messages of the list, and the first: `2 of the 3 messages that it lists were not
   /// received, first 'a.cmd' with CRC-32 1a2b3c4d`.  Empty: none is missing.
   std::string missing_text(const std::string& client) const;

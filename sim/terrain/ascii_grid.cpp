@@ -6,12 +6,28 @@
 #include <optional>
 
 #include "sim/config/message_text.hpp"
+#include "sim/config/utf8.hpp"
 #include "sim/terrain/terrain.hpp"
 
 namespace sim {
 namespace {
 
 constexpr double hole = std::numeric_limits<double>::quiet_NaN();
+
+std::string lower_case(std::string_view word) {
+  std::string lower(word);
+  std::transform(lower.begin(), lower.end(), lower.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
+  return lower;
+}
+
+/// Returns whether a word stands for a missing height: as GDAL writes NaN, also on Windows, and `null`.
+bool is_hole_word(std::string_view word) {
+  const std::string lower = lower_case(word);
+  for (const char* each : {"nan", "-nan", "nan(ind)", "-nan(ind)", "1.#qnan", "-1.#ind", "null"})
+    if (lower == each) return true;
+  return false;
+}
 
 /// Splits a text into words and counts lines.
 class Words {
@@ -33,13 +49,16 @@ class Words {
   [[noreturn]] void fail(const std::string& text) const {
     throw TerrainError("line " + std::to_string(line_) + ": " + text);
   }
+  /// Returns a number, or NaN for a word that stands for a missing one.
+  double number_or_hole(const std::string& what) { return is_hole_word(peek()) ? (next(), hole) : number(what); }
   double number(const std::string& what) {
     std::string_view word = next();
     if (word.empty()) fail("the file ends before " + what);
     if (word[0] == '+') word.remove_prefix(1);
     double value = 0;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (error != std::errc{} || end != word.data() + word.size()) fail(what + " is not a number");
+    if (error != std::errc{} || end != word.data() + word.size())
+      fail(what + " is not a number, got '" + printable(shortened(word)) + "'");
     if (!std::isfinite(value)) fail(what + " is not finite");
     return value;
   }
@@ -50,22 +69,20 @@ class Words {
   int line_ = 1;
 };
 
-std::string lower_case(std::string_view word) {
-  std::string lower(word);
-  std::transform(lower.begin(), lower.end(), lower.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
-  return lower;
-}
-
 struct Header {
-  std::optional<double> ncols, nrows, xllcorner, yllcorner, xllcenter, yllcenter, cellsize, nodata_value;
+  std::optional<double> ncols, nrows, xllcorner, yllcorner, xllcenter, yllcenter, cellsize, dx, dy, nodata_value;
 
   std::optional<double>* find(const std::string& key) {
-    const std::pair<const char*, std::optional<double>*> keys[] = {
-        {"ncols", &ncols},         {"nrows", &nrows},
-        {"xllcorner", &xllcorner}, {"yllcorner", &yllcorner},
-        {"xllcenter", &xllcenter}, {"yllcenter", &yllcenter},
-        {"cellsize", &cellsize},   {"nodata_value", &nodata_value}};
+    const std::pair<const char*, std::optional<double>*> keys[] = {{"ncols", &ncols},
+                                                                   {"nrows", &nrows},
+                                                                   {"xllcorner", &xllcorner},
+                                                                   {"yllcorner", &yllcorner},
+                                                                   {"xllcenter", &xllcenter},
+                                                                   {"yllcenter", &yllcenter},
+                                                                   {"cellsize", &cellsize},
+                                                                   {"nodata_value", &nodata_value},
+                                                                   {"dx", &dx},
+                                                                   {"dy", &dy}};
     for (const auto& [name, value] : keys)
       if (key == name) return value;
     return nullptr;
@@ -74,7 +91,7 @@ struct Header {
 
 bool is_word(std::string_view word) {
   return !word.empty() && ((word[0] >= 'a' && word[0] <= 'z') || (word[0] >= 'A' && word[0] <= 'Z')) &&
-         lower_case(word) != "nan" && lower_case(word) != "inf";
+         !is_hole_word(word) && lower_case(word) != "inf";
 }
 
 Header read_header(Words& words) {
@@ -85,7 +102,7 @@ Header read_header(Words& words) {
     std::optional<double>* value = header.find(key);
     if (value == nullptr) words.fail("unknown key of an ESRI ASCII grid");
     if (*value) words.fail("'" + key + "' comes twice");
-    *value = words.number(key);
+    *value = key == "nodata_value" ? words.number_or_hole(key) : words.number(key);
   }
   // Check that required keywords are present.
   const auto need = [&](const std::optional<double>& value, const char* name) {
@@ -93,6 +110,13 @@ Header read_header(Words& words) {
   };
   need(header.ncols, "ncols");
   need(header.nrows, "nrows");
+  // GDAL writes dx and dy where they differ in any digit.
+  if (header.dx && header.dy && !header.cellsize) {
+    if (std::abs(*header.dx - *header.dy) > 1e-6 * std::abs(*header.dx))
+      words.fail("cells must be square, but 'dx' is " + number_text(*header.dx) + " and 'dy' " +
+                 number_text(*header.dy));
+    header.cellsize = header.dx;
+  }
   need(header.cellsize, "cellsize");
   need(header.xllcorner ? header.xllcorner : header.xllcenter, "xllcorner");
   need(header.yllcorner ? header.yllcorner : header.yllcenter, "yllcorner");
@@ -177,7 +201,8 @@ void fill_linear(HeightGrid& grid) {
 
 }  // namespace
 
-HeightGrid parse_ascii_grid(std::string_view text, double vertical_scale, Holes holes) {
+HeightGrid parse_ascii_grid(std::string_view text, double vertical_scale, Holes holes, const std::string& quantity) {
+  text = without_byte_order_mark(text);
   // Geometry of the grid from the header.
   Words words(text);
   const Header header = read_header(words);
@@ -198,9 +223,9 @@ HeightGrid parse_ascii_grid(std::string_view text, double vertical_scale, Holes 
   std::size_t holes_found = 0;
   for (int row = grid.rows - 1; row >= 0; --row)
     for (int column = 0; column < grid.columns; ++column) {
-      const double value =
-          words.number("height " + std::to_string(column + 1) + " of row " + std::to_string(grid.rows - row));
-      const bool is_hole = value == nodata;
+      const double value = words.number_or_hole(quantity + " " + std::to_string(column + 1) + " of row " +
+                                                std::to_string(grid.rows - row));
+      const bool is_hole = value == nodata || std::isnan(value);
       if (is_hole && ++holes_found == 1 && holes == Holes::error)
         words.fail("a hole (NODATA) at column " + std::to_string(column + 1) + " of row " +
                    std::to_string(grid.rows - row) + ": fill holes with 'holes: nearest' or 'holes: linear'");

@@ -24,8 +24,11 @@ Terrain load_terrain(const TerrainConfig& config);
 
 /// Parses an ESRI ASCII grid.  Keywords are accepted in any case and order; rows of heights run from north to south.
 /// The position of the south-west point is taken from the file: xllcenter and yllcenter, or xllcorner and yllcorner,
-/// which lie half a cell to the south-west of it.  Throws TerrainError with the line number.
-HeightGrid parse_ascii_grid(std::string_view text, double vertical_scale, Holes holes);
+/// which lie half a cell to the south-west of it.  NODATA_value, NaN in all spellings of GDAL and `null` are holes; dx
+/// and dy, if equal, are the cellsize.  `quantity`: name of a value in errors.  Throws TerrainError with the line
+/// number.
+HeightGrid parse_ascii_grid(std::string_view text, double vertical_scale, Holes holes,
+                            const std::string& quantity = "height");
 /// Reads a PNG with 8 or 16 bits of grey, northernmost row first.  Black is `low_m`, white `high_m`.  Throws
 /// TerrainError.
 HeightGrid read_png_grid(const std::string& path, double cell_m, double low_m, double high_m);

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 
+#include "sim/acoustics/propagation.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/device/device_registry.hpp"
 
@@ -19,12 +21,26 @@ class ConfigCheck {
   ConfigCheck(const WorldConfig& world, const ConfigNode& root, Warnings& warnings, double end_s)
       : world_(world), root_(root), warnings_(warnings), end_s_(end_s) {}
 
-  void check_rates() const {
+  void check_water() const {
+    if (!world_.medium.water) return;
+    for (const std::string& warning : world_.medium.water->warnings)
+      warnings_.warn(world_.medium.water->place, "medium: water", warning);
+  }
+
+  void check_vehicles() const {
     std::set<const VehicleConfig*> seen;  // for look-ups, never iterated
-    for (const VehicleInstance& vehicle : world_.vehicles)
-      if (seen.insert(vehicle.config.get()).second)
-        for (const DeviceConfig& device : vehicle.config->devices)
-          check_device(device, "vehicle '" + vehicle.name + "': device '" + device.name + "'");
+    for (const VehicleInstance& vehicle : world_.vehicles) {
+      if (!seen.insert(vehicle.config.get()).second) continue;
+      const std::string who = "vehicle '" + vehicle.name + "': ";
+      for (const DeviceConfig& device : vehicle.config->devices)
+        check_device(device, who + "device '" + device.name + "'");
+      const ConfigNode* joints = vehicle.config->source ? vehicle.config->source->find("joints") : nullptr;
+      for (std::size_t i = 0; joints != nullptr && i < vehicle.config->joints.size(); ++i)
+        check_joint(vehicle.config->joints[i], joints->items[i], who);
+    }
+  }
+
+  void check_rates() const {
     if (root_.find("state_rate_hz") != nullptr)
       check_rate("'state_rate_hz'", world_.state_rate_hz, place_of(root_, "state_rate_hz"), "");
     const ConfigNode* run = root_.find("run");
@@ -71,6 +87,20 @@ class ConfigCheck {
     }
   }
 
+  /// Spreading that has no effect.  Spherical spreading is what it becomes.
+  void check_spreading() const {
+    const ConfigNode* acoustics = root_.find("acoustics");
+    if (acoustics == nullptr || acoustics->find("spreading") == nullptr || !world_.medium.water) return;
+    const WaterConfig& water = *world_.medium.water;
+    const bool has_profile = water.profile.size() > 1 && !water.sound_speed_mps;
+    if (sound_paths(world_.acoustics, has_profile) != SoundPaths::rays) return;
+    const SpreadingConfig& spreading = world_.acoustics.spreading;
+    if (!spreading.transition_range_m && spreading.factor == 2) return;
+    warnings_.warn(place_of(*acoustics, "spreading"), "acoustics",
+                   "'spreading' has no effect: in this water sound travels along rays, and their tubes are the "
+                   "spreading; remove it, or set 'propagation: straight'");
+  }
+
  private:
   void check_device(const DeviceConfig& device, const std::string& who) const {
     if (device.device_type == nullptr) return;
@@ -85,6 +115,32 @@ class ConfigCheck {
         warnings_.warn(
             place(key), who,
             "'" + std::string(key) + "' has no effect: a device of type '" + device.type + "' publishes no reports");
+  }
+
+  void check_joint(const JointConfig& joint, const ConfigNode& source, const std::string& who) const {
+    const bool fixed = joint.type == JointType::fixed, ball = joint.type == JointType::ball;
+    const std::string type = std::string(word_of(joint_type_words, joint.type)) + (fixed ? " joint" : "");
+    const auto warn_of = [&](const ConfigNode* axis, std::initializer_list<const char*> keys,
+                             const std::string& where) {
+      for (const char* key : keys)
+        if (axis != nullptr && axis->find(key) != nullptr)
+          warnings_.warn(place_of(*axis, key), who + "joint '" + joint.name + "'",
+                         "'" + std::string(key) + "' has no effect on a " + type + where);
+    };
+    const auto stop_keys = {"low_stop", "high_stop", "restitution", "stop_erp", "stop_cfm", "fudge_factor"};
+    const auto motor_keys = {"motor_velocity", "motor_max_force", "cfm"};
+    const auto suspension_keys = {"suspension_erp", "suspension_cfm"};
+    warn_of(&source, {fixed || ball ? "axis" : "erp"}, "");
+    if (fixed || (ball && !joint.motor)) {
+      const std::string where = fixed ? "" : " without 'motor: true'";
+      warn_of(&source, stop_keys, where);
+      warn_of(&source, motor_keys, where);
+    }
+    if (joint.type != JointType::hinge2) warn_of(&source, suspension_keys, "");
+    const ConfigNode* axis2 = source.find("axis2");
+    warn_of(axis2, {"erp"}, "");
+    warn_of(axis2, suspension_keys, "'s second axis");
+    if (joint.type == JointType::hinge2) warn_of(axis2, stop_keys, "'s second axis");
   }
 
   void check_rate(const std::string& what, double rate_hz, const SourcePlace& place, const std::string& who) const {
@@ -145,9 +201,12 @@ void warn_of_config(const WorldConfig& world, const ConfigNode& root, Warnings& 
   const double given_s = duration_s.value_or(world.run.duration_s);
   const bool endless = given_s == 0 || world.run.duration_s == 0;
   const ConfigCheck check(world, root, warnings, endless ? 0 : std::max(given_s, world.run.duration_s));
+  check.check_vehicles();
+  check.check_water();
   check.check_rates();
   check.check_metrics();
   check.check_events();
+  check.check_spreading();
 }
 
 }  // namespace sim

@@ -140,8 +140,8 @@ bool set_override(ConfigNode& root, const std::string& path, const ConfigNode& v
   return false;
 }
 
-void apply_sets(ConfigNode& root, const LoadOptions& options, Diagnostics& diagnostics) {
-  for (const std::string& set : options.sets) {
+void apply_sets(ConfigNode& root, const std::vector<std::string>& sets, Origin origin, Diagnostics& diagnostics) {
+  for (const std::string& set : sets) {
     const std::size_t equals = set.find('=');
     const SourcePlace place{intern_file_name("--set " + shortened(set, 240)), 0, 0};
     if (equals == std::string::npos || equals == 0) {
@@ -149,7 +149,7 @@ void apply_sets(ConfigNode& root, const LoadOptions& options, Diagnostics& diagn
       continue;
     }
     ConfigNode value = parse_config_text(set.substr(equals + 1), *place.file, diagnostics);
-    set_origin(value, Origin::command_line);
+    set_origin(value, origin);
     // Relative file names in the value are relative to the world file.
     const std::string path = set.substr(0, equals);
     if (!set_override(root, path, value, place, diagnostics)) set_config_path(root, path, value, place, diagnostics);
@@ -280,7 +280,8 @@ LoadedWorld load(ConfigNode root, const SourcePlace& file, const LoadOptions& op
   LoadedWorld loaded;
   loaded.config.encode_message = options.encode_message;
   loaded.config.files = diagnostics.files();
-  apply_sets(root, options, diagnostics);
+  apply_sets(root, options.sets, Origin::command_line, diagnostics);
+  apply_sets(root, options.study_sets, Origin::file, diagnostics);
   diagnostics.throw_if_any();
   // Read the keys of the world.
   ParamReader in(root, "", diagnostics);

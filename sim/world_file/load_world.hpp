@@ -11,7 +11,9 @@
 namespace sim {
 
 struct LoadOptions {
-  std::vector<std::string> sets;      ///< `path=value`, as given with --set
+  std::vector<std::string> sets;  ///< `path=value`, as given with --set
+  /// The same of a study file, applied after `sets`: they may name only the files that the world may.
+  std::vector<std::string> study_sets = {};
   std::optional<std::int64_t> seed;   ///< seed instead of that of the file
   bool allow_plugins = false;         ///< load the `plugins:` of the world, which execute code
   EncodeMessage encode_message = {};  ///< for events that publish messages

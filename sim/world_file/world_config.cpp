@@ -214,6 +214,7 @@ void WorldConfig::read(ParamReader& in) {
   in.require("shoal");
   in.read("shoal", shoal, between(1, 1), "version of the file format");
   in.read("name", name, "name of the world");
+  if (name.find('\n') != std::string::npos) in.error("name", "'name' must be one line");
   in.read("description", description, "description in one sentence");
   in.read("origin", origin, "geographic position of the world");
   in.read("epoch", epoch, "UTC of simulated time 0, as 2026-01-01T00:00:00Z");

@@ -4,6 +4,8 @@
 A test is run in the root folder, by Debian's interpreter; SHOAL_BINARY_DIR is the build folder, build/ci without it.
 """
 import atexit
+import contextlib
+import locale
 import os
 import shutil
 import signal
@@ -42,6 +44,21 @@ def _clean():
 def scratch(name):
     """Returns the path of a file in the scratch folder."""
     return os.path.join(SCRATCH, name)
+
+
+@contextlib.contextmanager
+def comma_locale():
+    """In the block the process has the numbers of de_DE, as Qt and `locale.setlocale` set them: 1,5."""
+    os.environ['LOCPATH'] = SCRATCH
+    # localedef fails for the other categories, which are not defined.
+    subprocess.run(['localedef', '-c', '-i', 'tests/comma_locale.txt', scratch('comma')], stderr=subprocess.DEVNULL,
+                   check=False)
+    locale.setlocale(locale.LC_NUMERIC, 'comma')
+    try:
+        yield
+    finally:
+        locale.setlocale(locale.LC_NUMERIC, 'C')
+        del os.environ['LOCPATH']
 
 
 class ShoalRun:

@@ -10,7 +10,7 @@ import threading
 import unittest
 
 import numpy as np
-from support import BALL, SHOAL, run_python, scratch
+from support import BALL, SHOAL, comma_locale, run_python, scratch
 
 import shoal
 
@@ -30,6 +30,24 @@ def hashes_of_program(world, duration_s, *more):
 
 
 class WorldTest(unittest.TestCase):
+
+    def test_is_the_same_where_numbers_have_a_comma(self):
+        # Two hulls by their derivatives.
+        world = """
+shoal: 1
+medium: {water: {}}
+vehicles:
+  - {name: auv, file: remus_prestero.yaml, position_m: [0, 0, -10]}
+  - {name: float, file: glider.yaml, position_m: [50, 0, -10]}
+"""
+        with open(scratch('comma.yaml'), 'w', encoding='utf-8') as file:
+            file.write(world)
+        with comma_locale():
+            self.assertEqual(f'{1.5:n}', '1,5')
+            here = shoal.World(scratch('comma.yaml'), seed=7)
+            here.run_until(3)
+            hashes = f'{here.state_hash():016x}', f'{here.run_hash():016x}'
+        self.assertEqual(hashes, hashes_of_program(scratch('comma.yaml'), 3, '--seed', '7'))
 
     def test_has_the_hashes_of_the_program(self):
         for name in ['coop_land', 'coop_underwater', 'dynamic_warehouse', 'ers7_show']:

@@ -175,6 +175,9 @@ TEST(CommandLine, UnknownWordsAreNamedWithWhatWasMeantAndTheRightHelp) {
   const std::string world = source("worlds/minimal.yaml");
   const std::vector<std::pair<Words, std::string>> cases = {
       {{"rum"}, "shoal: unknown command 'rum'; did you mean 'run'?\nSee `shoal --help`.\n"},
+      {{"version"}, "shoal: unknown command 'version'; use `shoal --version`\n"},
+      {{"play", "a.lcm"},
+       "shoal: unknown command 'play'; use `shoal view LOG`, or `shoal replay --play LOG` for programs on a bus\n"},
       {{}, "shoal: needs a command: "},
       {{"log", "inof"}, "shoal log: unknown command 'inof'; did you mean 'info'?\nSee `shoal log --help`.\n"},
       {{"run", world, "--durration", "3"},
@@ -204,6 +207,13 @@ TEST(CommandLine, UnknownWordsAreNamedWithWhatWasMeantAndTheRightHelp) {
     EXPECT_EQ(lines_of(ended.errors).size(), 2u) << ended.errors;
     EXPECT_EQ(ended.output, "");
   }
+}
+
+TEST(CommandLine, AWorldThatIsGivenForALogIsAnErrorWithTheRightCommand) {
+  const Ended ended = run_shoal({"view", "minimal"});
+  EXPECT_EQ(ended.exit_code, 2);
+  EXPECT_EQ(ended.errors,
+            "'minimal': is a world, and this command shows logs; `shoal run minimal --view` shows its run\n");
 }
 
 TEST(CommandLine, EveryOptionSaysWhatIsWrongWithIt) {

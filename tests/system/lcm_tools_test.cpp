@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 #include <signal.h>
 
 #include <algorithm>
@@ -19,6 +19,7 @@
 namespace {
 
 using namespace system_test;
+using testing::HasSubstr;
 
 /// The payloads of each channel of a log, which must be whole.
 std::map<std::string, std::vector<sim::Bytes>> payloads_in(const std::string& path) {
@@ -111,6 +112,29 @@ TEST(LcmTools, InfoAndCsvReadARecord) {
   EXPECT_EQ(std::count(csv.output.begin(), csv.output.end(), '\n'), 1 + 40);  // 20 Hz for 2 s
   EXPECT_EQ(run_shoal({"log", "csv", log, "rover9.odometry"}).exit_code, 4);
   EXPECT_EQ(run_shoal({"log", "info", folder.file("no.lcm")}).exit_code, 4);
+}
+
+TEST(LcmTools, TimesThatGoBackAndTimesThatRosCannotHoldAreReported) {
+  const ScratchFolder folder;
+  const auto record = [&](const std::string& name, const std::string& epoch) {
+    return run_shoal({"run", source("worlds/minimal.yaml"), "--duration", "2", "--speed", "max", "--bus", "none",
+                      "--set", "epoch=" + epoch, "--record", folder.file(name)});
+  };
+  ASSERT_EQ(record("a.lcm", "2026-01-01T00:00:00Z").exit_code, 0);
+  write_file(folder.file("joined.lcm"), text_of_file(folder.file("a.lcm")) + text_of_file(folder.file("a.lcm")));
+  const Ended info = run_shoal({"log", "info", folder.file("joined.lcm")});
+  EXPECT_EQ(info.exit_code, 0) << info.errors;
+  EXPECT_THAT(info.output, HasSubstr(" bytes, 2.000 s\n"));  // from the earliest to the latest
+  EXPECT_THAT(info.errors, HasSubstr("joined.lcm: time goes back by 2 s at event "));
+  // An epoch after the end of 32-bit seconds.
+  ASSERT_EQ(record("late.lcm", "2040-01-01T00:00:00Z").exit_code, 0);
+  const Ended mcap = run_shoal({"log", "mcap", folder.file("late.lcm"), "--out", folder.file("late.mcap")});
+  EXPECT_EQ(mcap.exit_code, 4);
+  EXPECT_THAT(mcap.errors,
+              HasSubstr("the time 2040-01-01T00:00:00Z is outside of 1970-01-01T00:00:00Z to 2038-01-19T"));
+  const Ended run = record("late.mcap", "2040-01-01T00:00:00Z");
+  EXPECT_EQ(run.exit_code, 4);
+  EXPECT_THAT(run.errors, HasSubstr("late.mcap: the 'epoch' of the world cannot be recorded: the time 2040-01-01T"));
 }
 
 TEST(LcmTools, SpyShowsWhatIsOnTheBus) {

@@ -29,6 +29,7 @@ struct Pilot {
   std::int64_t die_at = -1;    ///< tick at which it kills itself
   std::int64_t quit_at = -1;   ///< tick at which it ends with exit code 0, and does not leave
   std::int64_t leave_at = -1;  ///< tick after which it leaves
+  std::string reason;          ///< why it leaves; it then waits until it is ended
   bool rewinds = false;        ///< with the world
 };
 
@@ -75,6 +76,7 @@ int fly(const Pilot& pilot) {
     note.yaw_rad = static_cast<double>(hash % 6);
     client.publish(pilot.name + ".note", note);
   }
+  if (ticks == pilot.leave_at) client.set_reason_to_leave(pilot.reason);
   const auto counts = client.counts();
   std::printf("hash %016" PRIx64 " ticks %" PRId64 " requested %" PRIu64 " repeated %" PRIu64 " end %d\n", hash, ticks,
               counts.requested, counts.repeated, static_cast<int>(client.end()));
@@ -99,11 +101,14 @@ int main(int argc, char** argv) {
   app.add_option("--die-at", pilot.die_at);
   app.add_option("--quit-at", pilot.quit_at);
   app.add_option("--leave-at", pilot.leave_at);
+  app.add_option("--reason", pilot.reason);
   app.add_flag("--go-back", pilot.rewinds);
   app.add_option("--lcm-url", pilot.lcm_url);
   CLI11_PARSE(app, argc, argv);
   try {
-    return fly(pilot);
+    const int exit_code = fly(pilot);
+    if (!pilot.reason.empty()) pause();
+    return exit_code;
   } catch (const std::exception& error) {
     std::cerr << error.what() << '\n';
     return 4;

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "bridges/lcm/lcm_listener.hpp"
+#include "bridges/log/event_log.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/sim_ack_t.hpp"
 #include "shoal/sim_control_reply_t.hpp"
@@ -133,6 +134,33 @@ TEST(LockstepMission, IsTheSameOverANetworkThatLosesAThird) {
   EXPECT_GT(relay.swapped(), 30);
 }
 
+/// The channels of a record with their numbers of messages.
+std::map<std::string, int> channels_in(const std::string& record) {
+  std::map<std::string, int> counts;
+  bridges::EventLogReader reader(record);
+  while (const auto event = reader.next()) ++counts[event->channel];
+  return counts;
+}
+
+TEST(LockstepMission, IsRecordedWithAllThatItsClientsPublishAlsoOverANetworkThatLosesAThird) {
+  const ScratchFolder folder;
+  Mission mission;
+  mission.clients["d"] = {"--period", "0.1"};  // no one receives d.note
+  mission.run = {"--record", folder.file("a.lcm")};
+  const std::string result = mission.fly();
+  EXPECT_THAT(result, testing::Not(HasSubstr("exit code")));
+  const auto counts = channels_in(folder.file("a.lcm"));
+  EXPECT_EQ(counts.at("a.note"), 41);  // every 0.05 s from 0 to 2 s
+  EXPECT_EQ(counts.at("d.note"), 21);
+  // The same again, with losses.
+  Mission with_losses = mission;
+  with_losses.run = {"--record", folder.file("b.lcm")};
+  with_losses.client_url = own_url(1);
+  const LossyRelay relay(own_url(0), own_url(1), 0.3, 7);
+  EXPECT_EQ(with_losses.fly(), result);
+  EXPECT_EQ(text_of_file(folder.file("b.lcm")), text_of_file(folder.file("a.lcm")));
+}
+
 TEST(LockstepMission, ContinuesAtOnceWithoutAClientThatLeavesOverANetworkThatLosesAThird) {
   LossyRelay relay(own_url(0), own_url(1), 0.3, 7);
   Mission mission;
@@ -254,6 +282,17 @@ TEST_F(Policy, AClientThatLeavesHasNotFailed) {
       << "between its last answer and its next tick";
   EXPECT_THAT(summary(), testing::Not(HasSubstr("\"failed\": true")));
   EXPECT_THAT(summary(), HasSubstr("\"ended\": \"left\""));
+}
+
+TEST_F(Policy, AClientThatLeavesForAReasonHasFailedAtThatTime) {
+  start("--leave-at, '5', --reason, no echo", "lockstep: {timeout_s: 1000}\n");
+  EXPECT_EQ(shoal_->wait(), 1) << shoal_->errors();
+  // Between its last answer and its next tick.
+  const char* at = "0\\.(39999|4[0-9]|50)";
+  EXPECT_THAT(shoal_->output(), testing::ContainsRegex("FAILED: process 'pilot' must not fail; it left: no echo at " +
+                                                       std::string(at) + " s"));
+  EXPECT_THAT(summary(), testing::ContainsRegex("\"how\": \"left: no echo\",\\s*\"sim_time_s\": " + std::string(at)));
+  EXPECT_THAT(summary(), testing::ContainsRegex("\"ended\": \"left: no echo\",\\s*\"ended_s\": " + std::string(at)));
 }
 
 TEST_F(Policy, AFailureDoesNotCountWhereTheWorldSaysIgnore) {

@@ -16,6 +16,7 @@ namespace {
 
 using namespace system_test;
 using testing::HasSubstr;
+using testing::Not;
 
 const char* const endless =
     "shoal: 1\nrun: {duration_s: forever, speed: 1}\nobjects: [{name: ground, fixed: true, parts: [{shape: plane}]}]\n";
@@ -97,6 +98,34 @@ TEST(Results, AreNotWrittenThroughLinks) {
   EXPECT_EQ(ended.exit_code, 0) << ended.errors;
   EXPECT_EQ(text_of_file(folder.file("profile")), "mine");
   EXPECT_THAT(text_of_file(folder.file("results") + "/summary.json"), HasSubstr("\"steps\""));
+}
+
+TEST(Snapshots, AreNotWrittenThroughALinkInTheResults) {
+  const ScratchFolder folder;
+  write_file(folder.file("world.yaml"), "shoal: 1\nrun: {duration_s: 0.1, speed: max}\n");
+  for (const char* name : {"results", "home"}) std::filesystem::create_directory(folder.file(name));
+  std::filesystem::create_directory_symlink(folder.file("home"), folder.file("results") + "/snapshots");
+  const Ended ended = run_shoal({"run", folder.file("world.yaml"), "--bus", "none", "--results", folder.file("results"),
+                                 "--snapshot-at", "0.05"});
+  EXPECT_EQ(ended.exit_code, 4);
+  EXPECT_THAT(ended.errors, HasSubstr("/results/snapshots: is a symbolic link, through which nothing is written"));
+  EXPECT_TRUE(std::filesystem::is_empty(folder.file("home")));
+}
+
+TEST(Snapshots, OfAnEarlierRunAreAnErrorBeforeTheRun) {
+  const ScratchFolder folder;
+  write_file(folder.file("world.yaml"), "shoal: 1\nrun: {duration_s: 2, speed: max}\n");
+  const std::vector<std::string> run = {
+      "run", folder.file("world.yaml"), "--bus", "none", "--snapshots", folder.file("snaps"), "--snapshot-every",
+      "0.7"};
+  EXPECT_EQ(run_shoal(run).exit_code, 0);
+  const Ended again = run_shoal(run);
+  EXPECT_EQ(again.exit_code, 4);
+  EXPECT_THAT(again.errors, HasSubstr("branch0_step70.snapshot: a snapshot of an earlier run"));
+  EXPECT_THAT(again.output, Not(HasSubstr("run hash")));
+  std::vector<std::string> replaced = run;
+  replaced.push_back("--overwrite");
+  EXPECT_EQ(run_shoal(replaced).exit_code, 0);
 }
 
 TEST(SpecialFiles, AreRefusedAsLogsToo) {

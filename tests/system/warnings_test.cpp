@@ -37,6 +37,23 @@ TEST(Warnings, AreTheSameInCheckAndRun) {
   }
 }
 
+TEST(Notes, SayAtWhichSpeedAVehicleTurnsOverAndWhatHoldsIt) {
+  const system_test::Ended bare = system_test::run_shoal({"check", "bluerov2_heavy"});
+  EXPECT_EQ(bare.exit_code, 0);
+  EXPECT_EQ(bare.errors, "");
+  EXPECT_THAT(bare.output, HasSubstr("note: vehicle 'bluerov2_heavy': nothing keeps it level: above 0.33 m/s ahead"));
+  EXPECT_THAT(bare.output, HasSubstr("bluerov2_station has an autopilot"));
+  const system_test::Ended held = system_test::run_shoal({"check", "bluerov2_station"});
+  EXPECT_EQ(held.errors, "");
+  EXPECT_THAT(held.output, HasSubstr("device 'autopilot': it holds the vehicle level up to 0.92 m/s ahead"));
+  const system_test::Ended world = system_test::run_shoal({"check", "rov_station"});
+  EXPECT_THAT(world.output, HasSubstr("device 'autopilot': it holds the vehicle level up to 0.92 m/s ahead"));
+  const system_test::Ended weak = system_test::run_shoal(
+      {"check", "rov_station", "--set", "vehicles.rov.devices.autopilot.gains.attitude.bandwidth_radps=1.2"});
+  EXPECT_THAT(weak.errors, HasSubstr("up to 0.39 m/s ahead"));
+  EXPECT_THAT(weak.errors, HasSubstr("the Munk moment of the added mass turns it over"));
+}
+
 TEST(Warnings, NameAProgramThatIsNotThere) {
   const system_test::ScratchFolder scratch;
   const std::string file = scratch.file("programs.yaml");

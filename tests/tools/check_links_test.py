@@ -56,6 +56,18 @@ class CheckLinks(unittest.TestCase):
     def test_code_is_not_searched_for_links(self):
         self.assertEqual(self.faults_of("```\n[a](gone.md)\n```\n`[b](gone.md)`\n"), (0, []))
 
+    def test_paths_in_code_exist(self):
+        code, faults = self.faults_of("`sim/world/world.hpp` `tools/docs` `sim/gone.hpp`, and `docs/gone/x.md`.\n")
+        self.assertEqual((code, faults), (1, ["sim/gone.hpp: no such file", "docs/gone/x.md: no such file"]))
+
+    def test_of_a_file_that_the_reader_writes_the_folder_exists(self):
+        code, faults = self.faults_of("`sim/world/mine.hpp`:\n\n`sim/gone/mine.hpp`:\n")
+        self.assertEqual((code, faults), (1, ["sim/gone/mine.hpp: no such folder"]))
+
+    def test_names_to_be_filled_in_and_paths_of_others_are_no_paths_of_the_project(self):
+        text = "`tests/fuzz/NAME_fuzz.cpp` `vehicles/joint_names/VEHICLE.yaml` `results/gone.csv` `moos/ivp/x.cpp`\n"
+        self.assertEqual(self.faults_of(text), (0, []))
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -255,6 +255,30 @@ describe('forms', () => {
     });
   });
 
+  it('show the command that they send, also where nothing was touched', async () => {
+    await withPage(async (page, server) => {
+      const controls = () => server.received.filter(({op}) => op === 'control');
+      await page.click('#tab-act');
+      for (const [i, [word, text]] of [
+               ['trigger', '{trigger: storm}'], ['fault', '{fault: {device: rover1/lidar, kind: stuck}}'],
+               ['clear_fault', '{clear_fault: rover1/lidar}']]
+               .entries()) {
+        if (i > 0) await page.select('#act-word', word);
+        // What was chosen stays while another tab is shown, and when vehicles come or go.
+        await page.click('#tab-events');
+        server.send(server.script.forms);
+        server.send(server.script.scene);
+        await page.waitForFunction(() => document.querySelectorAll('#act-fields [name]').length > 0);
+        await page.click('#tab-act');
+        assert.equal(await page.$eval('#act-text', (one) => one.textContent), `shoal control do '${text}'`);
+        await page.click('#act-send');
+        await arrives(() => controls().length === i + 1, 'the request');
+        assert.deepEqual([controls()[i].command, controls()[i].text], ['do', text]);
+        assert.equal(await page.$eval('#act-text', (one) => one.textContent), `shoal control do '${text}'`);
+      }
+    });
+  });
+
   it('fires events by their names, also strange ones, and adds a vehicle', async () => {
     await withPage(async (page, server) => {
       await page.click('#tab-act');

@@ -256,6 +256,21 @@ export class MockServer {
         client, {op: 'series', id, t_us, values: t_us.map((t) => this.script.seriesAt(channel, field, t / 1e6))});
   }
 
+  /** Ends as a run that ends does: says why, then goodbye. */
+  async end(ended, log) {
+    this.ended = ended;
+    this.log = log;
+    for (const client of this.clients) {
+      this.sendStatus(client);
+      client.socket.close(1001, 'the server ends');
+    }
+    while (this.clients.size > 0)
+      await new Promise((resolve) => {
+        setTimeout(resolve, 10);
+      });
+    await this.close();
+  }
+
   sendStatus(client) {
     this.sendTo(client, {
       op: 'status',
@@ -266,7 +281,8 @@ export class MockServer {
       speed: this.speed,
       rate: this.paused ? 0 : this.speed,
       waits_for: '',
-      ended: null
+      ended: this.ended ?? null,
+      log: this.log
     });
   }
 

@@ -14,6 +14,12 @@ import {browser, near, show, text, useBrowser, withPage} from './with_page.js';
 /** A PNG file of one pixel. */
 const ONE_PIXEL = 'iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNk+M9QDwADhgGAWjR9awAAAABJRU5ErkJggg==';
 
+/** A page that may steer has the tab of actions. */
+const FORMS = {
+  op: 'forms',
+  actions: [{word: 'log', meaning: 'writes', main: 'text', main_alone: true, keys: [{key: 'text', type: 'text'}]}]
+};
+
 useBrowser();
 
 describe('scene', () => {
@@ -147,7 +153,11 @@ describe('sound', () => {
           reception('auv1', [0, 0, -10], 'half_duplex')
         ]
       });
-      const probe = await until(page, (p) => p.marks.length === 3);
+      const probe = await until(page, (p) => p.marks.length === 3 && p.labels.length >= 6);
+      // A mark hides no name.
+      assert.deepEqual(
+          [...probe.labels].sort(),
+          ['auv1', 'auv2', 'auv3', 'collision 9 dB', 'collision 9 dB', 'receiver was sending 9 dB']);
       assert.equal(probe.marks.filter((mark) => mark.outcome === 'interference').length, 2);
       assert.match(await text(page, '#legend'), /collision.*receiver was sending|receiver was sending.*collision/);
     });
@@ -202,6 +212,23 @@ describe('connection', () => {
       assert.equal(back.vehicles.length, 3);
       assert.deepEqual(await faultsOf(page), []);
       await second.close();
+    } finally {
+      await page.close();
+    }
+  });
+
+  it('says that a run has ended, and where its log is, not that the connection is lost', async () => {
+    const server = await new MockServer(scenes.land()).listen();
+    const page =
+        await open(browser, `${server.url}#t=secret`, {allowed: /ERR_CONNECTION_REFUSED|WebSocket connection to/});
+    try {
+      await until(page, (p) => p.scene !== null);
+      await show(page, server, 4);
+      await server.end('duration', 'runs/a.lcm');
+      const probe = await until(page, (p) => p.banner !== '');
+      assert.equal(probe.banner, 'the run has ended (duration), showing t = 4.00 s; its log: runs/a.lcm');
+      assert.ok(await page.$eval('#banner', (banner) => banner.classList.contains('calm')));
+      assert.deepEqual(await faultsOf(page), []);
     } finally {
       await page.close();
     }
@@ -380,6 +407,56 @@ describe('views', () => {
     });
   });
 
+  it('chases a vehicle from ten times its radius, or from where the user came closer', async () => {
+    await withPage(scenes.land(), async (page) => {
+      await page.evaluate(() => {
+        window.shoal.select('rover1');
+        window.shoal.setView('orbit,20,0,10,2,0,0');
+      });
+      await page.focus('#view');
+      await page.keyboard.press('c');
+      const distance_m = ({camera, vehicles: [{position}]}) =>
+          Math.hypot(...camera.position.map((value, i) => value - position[i]));
+      let probe = await until(page, (p) => p.camera.mode === 'chase');
+      const near_m = 10 * probe.vehicles[0].radius_m;
+      near(distance_m(probe), near_m, 0.01 * near_m, 'distance');
+      // Closer in another mode: that distance stays.
+      await page.keyboard.press('f');
+      for (let i = 0; i < 4; ++i) await page.keyboard.press('+');
+      await page.keyboard.press('c');
+      probe = await until(page, (p) => p.camera.mode === 'chase');
+      near(distance_m(probe), 0.8 ** 4 * near_m, 0.01 * near_m, 'distance that the user chose');
+    });
+  });
+
+  it('keeps the selected vehicle in the view from above', async () => {
+    await withPage(scenes.land(), async (page, server) => {
+      await page.evaluate(() => {
+        window.shoal.select('rover1');
+        window.shoal.setView('orbit,40,-8,6,40,0,0');
+      });
+      await page.focus('#view');
+      await page.keyboard.press('2');
+      const rover = (p) => p.vehicles[0].pixel;
+      let probe =
+          await until(page, (p) => p.camera.mode === 'top' && p.vehicles[0].pixel !== null, 'the rover in view');
+      near(rover(probe)[0], 480, 2, 'pixel x');
+      near(rover(probe)[1], 300, 2, 'pixel y');
+      // Half a circle of 4 m moves it out of a view of 9 m, which moves along; north stays up.
+      for (const t_s of [2, 6, 10]) {
+        probe = await show(page, server, t_s);
+        near(rover(probe)[0], 480, 2, `pixel x at ${t_s} s`);
+        near(rover(probe)[1], 300, 2, `pixel y at ${t_s} s`);
+      }
+      near(probe.camera.position[0], probe.vehicles[0].position[0], 0.01, 'above it');
+      // Another one that is in view already moves nothing.
+      await page.evaluate(() => window.shoal.setView('top,0,0,40,0,0,0'));
+      await page.keyboard.press(']');
+      probe = await until(page, (p) => p.selected === 'rover2');
+      near(probe.camera.position[0], 0, 0.01, 'x of the view');
+    });
+  });
+
   it('looks along the vehicle, and through its camera', async () => {
     await withPage(scenes.land(), async (page, server) => {
       await page.evaluate(() => window.shoal.select('rover1'));
@@ -469,7 +546,7 @@ describe('safety and reach', () => {
 
   it('fits a phone without sideways scrolling', async () => {
     await withPage(scenes.land(), async (page) => {
-      for (const open_panel of [null, '#fold-left', '#fold-left', '#fold-right', '#fold-right', '#show']) {
+      for (const open_panel of [null, '#fold-left', '#fold-left', '#tab-scores', '#fold-right', '#show']) {
         if (open_panel) await page.click(open_panel);
         const out = await page.evaluate(
             () => [...document.querySelectorAll('body *')]
@@ -482,6 +559,26 @@ describe('safety and reach', () => {
         assert.deepEqual(out, [], `after ${open_panel}`);
       }
     }, {width: 390, height: 844});
+  });
+
+  it('has all tabs and the chip of the vehicles side by side on a phone', async () => {
+    for (const width of [320, 360, 390]) {
+      await withPage({...scenes.thousand(), forms: FORMS}, async (page) => {
+        await page.waitForFunction(() => !document.getElementById('tab-act').hidden);
+        const hidden = await page.evaluate(() => ['fold-left', 'count', 'tab-vehicle'].filter((id) => {
+          const {left, right, top, bottom} = document.getElementById(id).getBoundingClientRect();
+          const at = document.elementFromPoint((left + right) / 2, (top + bottom) / 2);
+          return at?.id !== id;
+        }));
+        assert.deepEqual(hidden, [], `${width} px`);
+        // A tab opens its sheet over the whole width, and the button folds it.
+        await page.click('#tab-scores');
+        near(await page.$eval('#right', (right) => right.getBoundingClientRect().width), width - 12, 1, 'sheet');
+        await page.click('#fold-right');
+        await page.click('#fold-left');
+        near(await page.$eval('#left', (left) => left.getBoundingClientRect().width), width - 12, 1, 'sheet');
+      }, {width, height: 740});
+    }
   });
 
   it('changes between light and dark', async () => {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Panels of clocks, traffic and water; moments of scores and events; images, films, and who can reach all of it.
 import assert from 'node:assert/strict';
+import {readFile} from 'node:fs/promises';
 import {describe, it} from 'node:test';
 
 import {until} from './browser.js';
@@ -65,6 +66,29 @@ describe('data', () => {
     }, {...SIZE, fragment: '#t=secret&data=clocks'});
   });
 
+  it('says which clocks no device reports, and how one would', async () => {
+    const script = scenes.underwater();
+    for (const [i, one] of script.scene.vehicles.entries()) one.own_clock = i < 2;
+    await withPage(script, async (page, server) => {
+      await page.waitForFunction(() => /own clocks/.test(document.getElementById('dock-clocks').textContent));
+      const shown = () => page.$$eval(
+          '#dock-clocks p', (all) => all.filter((one) => one.checkVisibility()).map((one) => one.textContent));
+      assert.deepEqual(await shown(), [
+        '2 vehicles have their own clocks without a device that reports it (auv1, auv2); add {name: clock, type: clock, ' +
+        'truth: true} to \'devices\' of the vehicle to see it here.'
+      ]);
+      server.sendChannels(2e6, [['auv1.clock', 'shoal.clock_status_t', 'auv1', 1, 50]]);
+      await page.waitForFunction(
+          () => /^1 vehicle has its own clock .*\(auv2\)/.test(
+              document.querySelector('#dock-clocks p:not([hidden])').textContent));
+      for (const one of script.scene.vehicles) one.own_clock = false;
+      server.sendChannels(2e6, []);
+      server.send({...script.scene, revision: 2});
+      await page.waitForFunction(
+          () => /^No vehicle .* own clock/.test(document.querySelector('#dock-clocks p:not([hidden])').textContent));
+    }, {...SIZE, fragment: '#t=secret&data=clocks'});
+  });
+
   it('of another run replaces that of the run before', async () => {
     await withPage(scenes.land(), async (page, server) => {
       server.sendChannels(1e6, [['rover1.lidar', 'shoal.planar_lidar_t', 'rover1', 5, 100]]);
@@ -100,6 +124,47 @@ describe('moments', () => {
       await page.keyboard.press('Enter');
       await until(page, (p) => p.time_us === 33e6, 'the time of the event');
     }, SIZE);
+  });
+});
+
+describe('rules', () => {
+  it('are gray as long as they are not decided, and decided at the end', async () => {
+    await withPage(scenes.land(), async (page, server) => {
+      const rules = [
+        ['distance.travelled_m > 2000', false, 323.9, 2000, '…'],
+        ['link.lost_noise >= 10 * 2', false, 3, 20, '…'],
+        ['100 < link.received', false, 100, 24, '…'],
+        ['bumps.count == 3', false, 1, 3, '…'],
+        ['early.rms_m < 4', false, null, 4, '…'],
+        // More time cannot help, may or may not, or is not needed.
+        ['bumps.count == 0', false, 1, 0, '✕'],
+        ['gap.max_gap_s < 10', false, 12, 10, '✕'],
+        ['error.rms_m < 4', false, 5, 4, '✕'],
+        ['link.received > 0.2 * error.samples', false, 5, 9, '✕'],
+        ['error.max_m < 4', true, 3, 4, '✓'],
+      ];
+      const send = (time_us) => server.send(
+          {op: 'scores', time_us, rules: rules.map(([rule, holds, value, bound]) => ({rule, holds, value, bound}))});
+      const signs = () => page.$$eval('#rules li', (lines) => lines.map((line) => line.firstChild.textContent));
+      send(215e6);
+      await page.click('#tab-scores');
+      await page.waitForFunction(() => document.querySelectorAll('#rules li').length === 10);
+      assert.deepEqual(await signs(), rules.map((rule) => rule[4]));
+      server.ended = 'duration';
+      await page.waitForFunction(() => !/…/.test(document.getElementById('rules').textContent));
+      assert.deepEqual(await signs(), rules.map((rule) => rule[4].replace('…', '✕')));
+    }, SIZE);
+  });
+
+  it('that may be undecided name figures that there are', async () => {
+    const metrics = await readFile(new URL('../../docs/reference/metrics.md', import.meta.url), 'utf8');
+    const source = await readFile(new URL('../../viewer/page/panels.js', import.meta.url), 'utf8');
+    const growing = /GROWING = new Set\(\[([^\]]*)\]/.exec(source)[1].match(/\w+/g);
+    const rows = [...metrics.matchAll(/^\| `(\w+)` \| (\S+) \|/gm)].map(([, name, unit]) => ({name, unit}));
+    assert.deepEqual(growing.filter((name) => !rows.some((row) => row.name === name)), []);
+    // Each count is one of them.
+    const counts = rows.filter(({unit}) => !/^(m|s|deg|ratio|%|bytes\/m|cells|-)$/.test(unit)).map(({name}) => name);
+    assert.deepEqual(counts.filter((name) => !growing.includes(name.replace(/^lost_.*/, 'lost'))), []);
   });
 });
 

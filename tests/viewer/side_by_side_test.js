@@ -42,7 +42,7 @@ async function besides(page, server) {
   await until(page, (p) => p.sides?.others.length > 0, 'two parts');
   await page.keyboard.press('Home');
   const inside = (p) => p.sides.others.every(({pixel: at}) => {
-    const {x, y, width, height} = p.sides.regions[1];
+    const {x, y, width, height} = p.sides.regions[1].clip;
     return at && at[0] > x && at[0] < x + width && at[1] > y && at[1] < y + height;
   });
   return until(page, inside, 'all in view');
@@ -54,15 +54,18 @@ describe('side by side', () => {
       const probe = await besides(page, server);
       assert.deepEqual(probe.sides.names, ['a.lcm', '<i>b.lcm']);
       const [left, right] = probe.sides.regions;
-      assert.deepEqual([left.width, right.x], [640, 640]);
+      // Between the list and the details, whose widths are 220 and 300 px, 10 px from the edges.
+      const split = (230 + (1280 - 310)) / 2;
+      assert.deepEqual([left.clip.width, right.clip.x], [split, split]);
+      assert.deepEqual([left.width, left.height], [right.width, right.height]);
       const here = probe.vehicles.find((one) => one.name === 'rover1');
       const there = probe.sides.others.find((one) => one.name === 'rover1');
       near(there.position[2] - here.position[2], 1, 1e-3, 'height in the second log');
       near(there.position[0], here.position[0], 1e-3, 'x in the second log');
       // The same camera: 1 m higher, so above, in the other half.
-      assert.ok(here.pixel[0] < 640 && there.pixel[0] > 640, `${here.pixel} ${there.pixel}`);
+      assert.ok(here.pixel[0] < split && there.pixel[0] > split, `${here.pixel} ${there.pixel}`);
       assert.ok(there.pixel[1] < here.pixel[1] - 2, 'higher on the page');
-      near(there.pixel[0] - 640, here.pixel[0], 0.08 * 640, 'x in its half');
+      near(there.pixel[0] - right.x, here.pixel[0] - left.x, 0.08 * left.width, 'x in its half');
       // What is picked in a half is what it shows.
       await page.mouse.click(...there.pixel);
       await until(page, (p) => p.selected === 'rover1');
@@ -75,10 +78,56 @@ describe('side by side', () => {
     await withPage(twoLogs(), async (page, server) => {
       const probe = await besides(page, server);
       const [upper, lower] = probe.sides.regions;
-      assert.deepEqual([upper.width, upper.height, lower.y], [390, 422, 422]);
+      assert.deepEqual([upper.clip.width, upper.clip.height], [390, lower.clip.y]);
       const there = probe.sides.others.find((one) => one.name === 'rover1');
-      assert.ok(there.pixel[1] > 422, `${there.pixel}`);
+      assert.ok(there.pixel[1] > lower.clip.y, `${there.pixel}`);
+      // An open sheet leaves both in view above it.
+      await page.click('#tab-scores');
+      const sheet = await page.$eval('#sheets', (sheets) => sheets.getBoundingClientRect().top);
+      await page.focus('#view');
+      await page.keyboard.press('Home');
+      await until(page, `(p) => p.vehicles.concat(p.sides.others).every(({pixel}) => pixel && pixel[1] < ${sheet})`);
     }, {width: 390, height: 844});
+  });
+
+  it('hides no vehicle behind a panel', async () => {
+    await withPage(twoLogs(), async (page, server) => {
+      await besides(page, server);
+      await page.evaluate(() => window.shoal.select('rover1'));
+      await page.focus('#view');
+      for (const key of ['f', 'c', 'Home']) {
+        await page.keyboard.press(key);
+        const seen = `(p) => [p.vehicles[0], p.sides.others.find(({name}) => name === 'rover1')].every(({pixel}) =>
+            pixel && document.elementFromPoint(...pixel)?.id === 'view')`;
+        await until(page, seen, `both in view after ${key}`);
+      }
+      // With another size of what is free the views have other sizes.
+      const before = await until(page, (p) => p);
+      await page.click('#fold-right');
+      await until(page, `(p) => p.sides.regions[1].clip.x > ${before.sides.regions[1].clip.x} + 100`);
+    }, {width: 1000, height: 600});
+  });
+
+  it('has the estimates of both logs, each against its own truth', async () => {
+    await withPage(twoLogs(), async (page, server) => {
+      await besides(page, server);
+      const [x, y, z] = server.script.posesAt(7)[0];
+      const estimate = (dz) => ({vehicle: 'rover1', time_us: 7e6, pose: [x, y, z + dz, 1, 0, 0, 0]});
+      server.send({op: 'estimates', items: [estimate(0.25)]});
+      // In the second log the rover is 1 m higher.
+      server.send({op: 'estimates', branch: 1, items: [estimate(1.5)]});
+      const other = `p.sides.others.find(({name}) => name === 'rover1')`;
+      let probe = await until(page, `(p) => p.estimates[0]?.error_m && ${other}.error_m !== null`, 'both errors');
+      near(probe.estimates[0].error_m, 0.25, 1e-3, 'error in the first log');
+      near(probe.sides.others.find(({name}) => name === 'rover1').error_m, 0.5, 1e-3, 'error in the second log');
+      await page.evaluate(() => window.shoal.select('rover1'));
+      probe = await until(page, (p) => p.labels.filter((label) => /^rover1 {2}error/.test(label)).length === 2);
+      assert.deepEqual(
+          probe.labels.filter((label) => /error/.test(label)), ['rover1  error 0.25 m', 'rover1  error 0.50 m']);
+      // A time without estimates has none.
+      server.send({op: 'estimates', branch: 1, items: []});
+      await until(page, `(p) => ${other}.error_m === null`);
+    }, {width: 1280, height: 800});
   });
 
   it('turns both with one camera, and goes back to ghosts', async () => {

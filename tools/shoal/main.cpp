@@ -66,7 +66,12 @@ int run(int argc, char** argv) {
   // Commands: all are named, and the one that is called is complete.
   int exit_code = tools::exit_ok;
   tools::list_commands(app);
-  tools::complete_command(app, exit_code, called_command(argc, argv));
+  const std::string called = called_command(argc, argv);
+  if (const std::string call = tools::meant_call(called); !call.empty()) {
+    std::cerr << "shoal: unknown command '" << called << "'; use " << call << "\nSee `shoal --help`.\n";
+    return tools::exit_usage;
+  }
+  tools::complete_command(app, exit_code, called);
   // Parse and run.
   try {
     if (const auto ended = command_line::parse(app, argc, argv)) return *ended;

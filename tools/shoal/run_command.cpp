@@ -169,7 +169,7 @@ void add_output_options(CLI::App& command, RunArguments& arguments) {
       ->type_name("MB")
       ->check(number_from(0.1, 1e9))
       ->needs(record);
-  command.add_flag("--overwrite", arguments.run.overwrite, "the record may replace a file");
+  command.add_flag("--overwrite", arguments.run.overwrite, "the record and snapshots may replace files");
   command.add_flag("--special-files", arguments.run.special_files,
                    "the world and the record may be pipes and devices, such as /dev/stdin");
   command.add_option("--results", arguments.run.results, "directory for summary.json, CSV files and plots")

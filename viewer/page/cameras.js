@@ -6,7 +6,7 @@ import {Matrix4, OrbitControls, PerspectiveCamera, Quaternion, Vector3} from './
 /** Modes of the camera and what they are for. */
 export const MODES = {
   orbit: 'Orbit: drag to turn, right button or two fingers to move, wheel to zoom',
-  top: 'Seen from above, north up',
+  top: 'Seen from above, north up; the selected vehicle stays in view',
   follow: 'Follow the position of the selected vehicle; you may still turn and zoom',
   chase: 'Follow position and heading of the selected vehicle',
   first: 'From the selected vehicle, along its x axis; drag to look around',
@@ -15,6 +15,8 @@ export const MODES = {
 };
 const FOV_DEG = 50;
 const NEEDS_VEHICLE = new Set(['follow', 'chase', 'first', 'device']);
+/** Share of the view from above, from its middle to its nearest edge, that panels leave free. */
+const FREE_SHARE = 0.75;
 
 /** Rotation of a camera (looks along -z, y up) that looks along x with z up. */
 const LOOK_ALONG_X = new Quaternion().setFromRotationMatrix(
@@ -63,7 +65,7 @@ export class Cameras {
     addEventListener('blur', () => this.keys.clear());
   }
 
-  /** Changes the mode; vehicle: {X_WV, radius_m} or null. */
+  /** Changes the mode; vehicle: {name, X_WV, radius_m} or null. */
   setMode(mode, vehicle) {
     if (NEEDS_VEHICLE.has(mode) && !vehicle) return false;
     const before = this.mode;
@@ -73,6 +75,8 @@ export class Cameras {
     this.controls.enableRotate = mode !== 'top';
     this.last = null;
     if (mode === 'top') {
+      // The place that an orbit turns about is of no use after a camera without one.
+      if (vehicle && ['first', 'fly', 'device'].includes(before)) this.approach(vehicle, mode, before);
       const distance_m = this.camera.position.distanceTo(this.controls.target);
       this.camera.position.copy(this.controls.target).add(new Vector3(0, -1e-4 * distance_m, distance_m));
     }
@@ -98,20 +102,20 @@ export class Cameras {
     if (['first', 'fly', 'device', 'top'].includes(before)) offset.set(-1, -0.6, 0.7).setLength(near_m);
     if (offset.length() > 8 * near_m || offset.length() < vehicle.radius_m) offset.setLength(near_m);
     if (mode === 'chase') {
-      const yaw = headingOf(vehicle.X_WV);
-      offset.set(-Math.cos(yaw), -Math.sin(yaw), 0.42).setLength(Math.min(offset.length(), near_m));
+      const yaw = headingOf(vehicle.X_WV), distance_m = Math.min(offset.length(), near_m);
+      offset.set(-Math.cos(yaw), -Math.sin(yaw), 0.42).setLength(distance_m);
     }
     this.controls.target.copy(at);
     this.camera.position.copy(at).add(offset);
-    // The vehicle may move before the next update: the offset belongs to this heading.
-    this.last = {yaw: headingOf(vehicle.X_WV)};
+    // The vehicle may move before the next update: the offset belongs to this place and heading.
+    this.last = {name: vehicle.name, at, yaw: headingOf(vehicle.X_WV)};
   }
 
-  /** Shows a sphere as a whole; aspect_free: that of the part of the page that no panel covers. */
-  fit(sphere, aspect_free) {
+  /** Shows a sphere as a whole; free_share: of the height of the view, the smaller side of what no panel covers. */
+  fit(sphere, free_share) {
     if (!this.controls.enabled) this.setMode('orbit', null);
-    const aspect = Math.max(0.3, Math.min(1, aspect_free));
-    const distance_m = 1.3 * Math.max(sphere.radius, 0.5) / Math.sin(FOV_DEG * Math.PI / 360) / aspect;
+    const share = Math.max(0.1, Math.min(1, free_share));
+    const distance_m = 1.3 * Math.max(sphere.radius, 0.5) / Math.sin(FOV_DEG * Math.PI / 360) / share;
     const direction = this.mode === 'top' ? new Vector3(0, -1e-4, 1) : new Vector3(-0.55, -0.75, 0.5);
     this.controls.target.copy(sphere.center);
     this.camera.position.copy(sphere.center).addScaledVector(direction.normalize(), distance_m);
@@ -122,6 +126,7 @@ export class Cameras {
   update(dt_s, vehicle, X_WB) {
     if (NEEDS_VEHICLE.has(this.mode) && !vehicle) this.setMode('orbit', null);
     if (this.mode === 'follow' || this.mode === 'chase') this.followVehicle(vehicle);
+    if (this.mode === 'top') this.keepInView(vehicle);
     if (this.mode === 'first') this.sitOn(vehicle.X_WV, vehicle.radius_m);
     if (this.mode === 'fly') this.fly(dt_s);
     if (this.mode === 'device') this.lookThrough(X_WB);
@@ -147,6 +152,28 @@ export class Cameras {
     }
     this.last = {yaw};
     this.controls.target.copy(at);
+  }
+
+  /**
+   * Moves the view from above along with a vehicle, from where the user put it; one that is outside comes to its
+   * middle.
+   */
+  keepInView(vehicle) {
+    if (vehicle) {
+      const at = new Vector3().setFromMatrixPosition(vehicle.X_WV), {target} = this.controls;
+      const height_m = this.camera.position.distanceTo(target);
+      const half_m = FREE_SHARE * height_m * Math.tan(FOV_DEG * Math.PI / 360) * Math.min(1, this.camera.aspect);
+      const known = this.last?.name === vehicle.name;
+      const outside = Math.hypot(at.x - target.x, at.y - target.y) > half_m;
+      const step = at.clone().sub(known ? this.last.at : target);
+      if (known || outside) {
+        target.add(step);
+        this.camera.position.add(step);
+      }
+      this.last = {name: vehicle.name, at};
+    } else {
+      this.last = null;
+    }
   }
 
   sitOn(X_WV, radius_m) {

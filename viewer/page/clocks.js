@@ -5,6 +5,7 @@ import {element, formatNumber} from './panels.js';
 
 const RATE_HZ = 2;
 const SOUND_SPEED_MPS = 1500;
+const NAMES_MAX = 12;
 const HEADS =
     ['Clock', 'Offset, ms', 'Drift, ppm', 'Disciplined', 'Since fix, s', 'Estimated σ, ms', 'Range error c·Δt, m'];
 
@@ -44,14 +45,15 @@ export class Clocks {
     this.name = 'clocks';
     this.title = 'Clocks';
     this.root = element('div');
-    this.empty = element('p', 'No vehicle of this run has its own clock.', 'quiet');
+    this.empty = element('p', '', 'quiet');
     this.table = table('Clocks of vehicles', HEADS);
     this.table.className = 'grid';
     this.note = element(
         'p',
         '± : from the standard deviation that the clock itself estimates; its true error needs the truth channel of the clock.',
         'quiet');
-    this.root.append(this.empty, this.table, this.note);
+    this.hidden = element('p', '', 'quiet');
+    this.root.append(this.empty, this.table, this.hidden, this.note);
     this.open = false;
   }
 
@@ -78,10 +80,29 @@ export class Clocks {
     return soundSpeedAt(data?.water?.sound_speed, vehicle ? vehicle.at.z + data.origin_m[2] : 0);
   }
 
+  /** What to say of vehicles with a clock that no device reports. */
+  hiddenText() {
+    const {data, channels} = this.app;
+    const reported = new Set(this.names.map((name) => channels.byName.get(name)?.vehicle));
+    const names =
+        (data?.vehicles ?? []).filter((one) => one.own_clock && !reported.has(one.name)).map(({name}) => name);
+    if (names.length === 0) return '';
+    const shown = names.slice(0, NAMES_MAX).join(', ') + (names.length > NAMES_MAX ? ', …' : '');
+    const have = names.length === 1 ? '1 vehicle has its own clock' : `${names.length} vehicles have their own clocks`;
+    return `${have} without a device that reports it (${
+        shown}); add {name: clock, type: clock, truth: true} to 'devices' of the vehicle to see it here.`;
+  }
+
   update() {
     if (!this.stale) return;
     this.stale = false;
-    this.empty.hidden = this.names.length > 0;
+    this.hidden.textContent = this.hiddenText();
+    this.hidden.hidden = this.hidden.textContent === '';
+    this.empty.hidden = this.names.length > 0 || !this.hidden.hidden;
+    // Logs of versions before own_clock do not say which clocks there are.
+    const isKnown = this.app.data?.vehicles.every((one) => one.own_clock === false);
+    this.empty.textContent = isKnown ? 'No vehicle of this run has its own clock: all keep true time.' :
+                                       'No device of this run reports the clock of its vehicle.';
     this.table.hidden = this.names.length === 0;
     let estimated = false;
     fillTable(this.table, this.names.map((name) => {

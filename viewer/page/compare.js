@@ -87,6 +87,12 @@ export class Ghosts {
   /** Poses of the branch at the time shown, after its end the last ones, as those of a playback; null: not known. */
   get poses() { return this.mixer.poses.length > 0 ? this.mixer.poses : null; }
 
+  /** Pose of a movable body of the branch at a time near the one shown, as Playback.poseAt; null: not known. */
+  poseAt(slot, time_us) {
+    this.mixer.states = this.states;
+    return this.mixer.poseAt(slot, time_us);
+  }
+
   /** Moves the ghosts to a time, and asks for the states around it; returns true if they moved. */
   update(time_us) {
     if (this.branch === null || !this.data) return false;

@@ -7,6 +7,8 @@ const PROTOCOL = 'shoal.view.v1';
 const RETRY_S = [1, 2, 4, 8];
 /** A server sends a status every second; after this time without any message it is said not to answer. */
 const SILENCE_MS = 3000;
+/** Close code of a server that ends (RFC 6455, 7.4.1). */
+const GOING_AWAY = 1001;
 
 /**
  * Connection to the server.  Events: handlers.state(state), handlers.message(object), handlers.data(message of a
@@ -24,6 +26,9 @@ export class Connection {
     this.attempts = 0;
     this.unacknowledged = [];
     this.nextId = 1;
+    this.ended = null;  // why the run has ended, as its status says
+    this.log = '';
+    this.closed = false;  // by a server that said goodbye
     document.addEventListener('visibilitychange', () => {
       this.heardAt_ms = performance.now();
     });
@@ -37,14 +42,18 @@ export class Connection {
     socket.binaryType = 'arraybuffer';
     socket.onopen = () => {
       this.everOpened = true;
-      this.lostAt_ms = null;
+      this.lostAt_ms = this.ended = null;
+      this.closed = false;
       this.attempts = 0;
       this.heardAt_ms = performance.now();
       this.unacknowledged = [];
       this.send({op: 'hello', token: this.token});
     };
     socket.onmessage = (event) => this.receive(event.data);
-    socket.onclose = () => this.lost();
+    socket.onclose = (event) => {
+      this.closed ||= event.code === GOING_AWAY;
+      this.lost();
+    };
     this.socket = socket;
   }
 
@@ -104,11 +113,23 @@ export class Connection {
     return this.everOpened && !document.hidden && silent_ms > SILENCE_MS ? silent_ms / 1000 : 0;
   }
 
+  /** Takes a message `status`. */
+  setStatus({ended, log}) {
+    this.ended = ended ?? null;
+    this.log = String(log ?? '');
+  }
+
+  /** Has the server ended in an orderly way, so that nothing is wrong? */
+  get isOver() { return this.lostAt_ms !== null && (this.ended !== null || this.closed); }
+
   /** Text of the banner; empty while all is well. */
   banner(time_text, now_ms = performance.now()) {
     const stale_s = this.staleFor_s(now_ms);
     if (stale_s === 0) return '';
     const shown = this.everOpened ? `, showing t = ${time_text}` : '';
+    if (this.isOver && this.ended !== null)
+      return `the run has ended (${this.ended})${shown}${this.log ? `; its log: ${this.log}` : ''}`;
+    if (this.isOver) return `the server has ended${shown}`;
     if (this.lostAt_ms === null) return `no data for ${stale_s.toFixed(0)} s: the server does not answer${shown}`;
     return this.everOpened ? `disconnected since ${stale_s.toFixed(0)} s${shown}` : 'no server answers; trying again';
   }

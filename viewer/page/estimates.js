@@ -148,6 +148,12 @@ export class Estimates {
     }
   }
 
+  /** Takes the estimates of a time in place of all. */
+  replace(items) {
+    this.rewind(-Infinity);
+    this.add(items);
+  }
+
   /** Drops estimates later than a time: the run went back. */
   rewind(time_us) {
     for (const vehicle of this.vehicles)

@@ -140,7 +140,7 @@ export class Forms {
 
   values() {
     return Object.fromEntries([...$('act-fields').querySelectorAll('input, select')]
-                                  .filter((field) => !field.closest('[hidden]'))
+                                  .filter((field) => !field.parentElement.hidden)
                                   .map((field) => [field.name, field.value]));
   }
 

@@ -86,6 +86,7 @@ export class Instruments {
     this.ranges.clear();
     this.water.apply('scene', (view) => view.setScene(data));
     this.loadSonars(data);
+    this.listChanged();
     this.key = null;
   }
 

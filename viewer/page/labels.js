@@ -15,6 +15,7 @@ export class Labels {
     this.context = canvas.getContext('2d');
     this.at = new Vector3();
     this.widths = new Map();
+    this.used = [];  // boxes of texts: left, middle, right, the text
     this.inked = true;
     this.region = null;  // part of the page that is written on; null: all of it
   }
@@ -76,7 +77,7 @@ export class Labels {
   /** Keeps what is written within the region. */
   limit() {
     if (!this.region) return;
-    const {x, y, width, height} = this.region;
+    const {x, y, width, height} = this.region.clip;
     this.context.save();
     this.limited = true;
     this.context.beginPath();
@@ -84,15 +85,20 @@ export class Labels {
     this.context.clip();
   }
 
-  /** Draws a text beside a point, on a small plate; returns false where another label has the place. */
+  /**
+   * Draws a text beside a point, on a small plate, at the first of some heights where no other label is; returns false
+   * where there is none.
+   */
   text(point, text, {color = null, dx = 10, dy = 0, bold = false} = {}) {
     const at = this.project(point, this.camera);
     if (!at || this.used.length >= LABELS_MAX) return false;
     const c = this.context;
     c.font = bold ? `600 ${FONT}` : FONT;
-    const x = at[0] + dx, y = at[1] + dy, width = this.widthOf(text, bold) + 10;
-    if (!bold && this.used.some((box) => Math.abs(box[1] - y) < 17 && x < box[2] && x + width > box[0])) return false;
-    this.used.push([x, y, x + width]);
+    const x = at[0] + dx, width = this.widthOf(text, bold) + 10;
+    const isFree = (y) => !this.used.some((box) => Math.abs(box[1] - y) < 17 && x < box[2] && x + width > box[0]);
+    const heights = [dy].flat().map((one) => at[1] + one), y = bold ? heights[0] : heights.find(isFree);
+    if (y === undefined) return false;
+    this.used.push([x, y, x + width, text]);
     this.inked = true;
     c.fillStyle = this.colors.plate;
     c.beginPath();
@@ -125,7 +131,7 @@ export class Labels {
     c.font = `600 ${FONT}`;
     c.fillText(look.sign, at[0], at[1] - 17.5);
     c.textAlign = 'left';
-    if (text) this.text(point, text, {dx: 14, dy: -18});
+    if (text) this.text(point, text, {dx: 14, dy: [-18, -36, -54, 2]});
   }
 
   /** Draws a horizontal circle about a point, such as the front of a sound. */
@@ -179,6 +185,8 @@ export function drawAnnotations(app) {
   const {labels} = app;
   labels.begin(app.camera, app.theme.colors);
   for (const ring of app.sounds.shown ? app.sounds.rings : []) drawRing(app, ring);
+  // Names come first: whatever else is written finds another place.
+  drawNames(app, app.vehicles, app.estimates);
   for (const mark of app.sounds.visibleMarks ?? []) {
     const snr = Number.isFinite(mark.snr_dB) ? ` ${mark.snr_dB.toFixed(0)} dB` : '';
     labels.mark(mark.at, mark.look, `${mark.look.text}${snr}`);
@@ -192,38 +200,35 @@ export function drawAnnotations(app) {
   } else if (app.picking.points.length === 1) {
     labels.text(app.picking.points[0], '× first point', {bold: true});
   }
-  drawNames(app, app.vehicles);
 }
 
 /** The front of a sound at the depth of its source, as wide as the sound lasts. */
 function drawRing(app, {sound, outer_m, inner_m}) {
   const middle_m = (outer_m + inner_m) / 2;
-  const metre_px =
-      app.camera.projectionMatrix.elements[5] * innerHeight / 2 / Math.max(1, app.camera.position.distanceTo(sound.at));
+  const metre_px = app.camera.projectionMatrix.elements[5] * app.sides.regions[0].height / 2 /
+      Math.max(1, app.camera.position.distanceTo(sound.at));
   const width_px = Math.min(40, Math.max(1.5, (outer_m - inner_m) * metre_px));
   const color = {ping: '#f0e442', answer: '#009e73', noise: '#cc79a7'}[sound.kind] ?? '#56b4e9';
   app.labels.circle(sound.at, middle_m, color, width_px, 0.38);
 }
 
-/** Names of vehicles, which may be those of another branch. */
-export function drawNames(app, vehicles) {
+/** Names of vehicles, which may be those of another branch, with its estimates. */
+export function drawNames(app, vehicles, estimates) {
   const {labels} = app;
   const selected = vehicles.find((vehicle) => vehicle.name === app.selected) ?? null;
   const onBoard = ['first', 'device'].includes(app.cameras.mode);
   if (selected && !onBoard) {
-    const estimate = app.estimates.vehicles[app.estimates.byName.get(selected.name)];
-    const error = selected === app.vehicle && estimate?.estimate && app.estimates.showGhosts ?
-        `  error ${estimate.error_m.toFixed(2)} m` :
-        '';
+    const estimate = estimates.vehicles[estimates.byName.get(selected.name)];
+    const error = estimate?.estimate && estimates.showGhosts ? `  error ${estimate.error_m.toFixed(2)} m` : '';
     labels.text(selected.at, selected.name + error, {color: selected.color, dy: -22, bold: true});
   }
   if (!app.options.get('labels')) return;
   // Of many vehicles only those that are near have their names.
-  const metre_px = app.camera.projectionMatrix.elements[5] * innerHeight / 2;
+  const metre_px = app.camera.projectionMatrix.elements[5] * app.sides.regions[0].height / 2;
   for (const vehicle of vehicles) {
     const seen_px = vehicle.radius_m * metre_px / vehicle.at.distanceTo(app.camera.position);
     if (vehicle === selected || (vehicles.length > MANY && seen_px < 6)) continue;
-    labels.text(vehicle.at, vehicle.name, {color: vehicle.color, dy: -16});
+    labels.text(vehicle.at, vehicle.name, {color: vehicle.color, dy: [-16, -34, 12]});
   }
   if (app.zones.root.visible)
     for (const zone of app.zones.labels ?? []) labels.text(zone.at, zone.text, {color: '#cc79a7'});

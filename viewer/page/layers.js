@@ -40,6 +40,7 @@ export function makeLayers(canvas, problem, changed) {
     shared: new Set(scene.children),  // what two branches have in common
     sounds: new Sounds(scene),
     estimates: new Estimates(scene, assets),
+    otherEstimates: new Estimates(scene, assets),
     trails: new Trails(scene),
     estimateTrails: new Trails(scene),
     views: new FieldsOfView(scene),
@@ -56,8 +57,10 @@ export function applyOptions(layers, options) {
   const get = (name) => options.get(name);
   layers.water.shown = get('water');
   layers.sounds.shown = get('sounds');
-  layers.estimates.showGhosts = get('ghosts');
-  layers.estimates.showEllipsoids = get('ellipsoids');
+  for (const estimates of [layers.estimates, layers.otherEstimates]) {
+    estimates.showGhosts = get('ghosts');
+    estimates.showEllipsoids = get('ellipsoids');
+  }
   layers.zones.root.visible = get('zones');
   layers.currents.which = get('currents');
   layers.currents.depth_m = Math.max(0, Number(get('current-depth')) || 0);

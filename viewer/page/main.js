@@ -16,7 +16,7 @@ import {Playback} from './playback.js';
 import {probe} from './probe.js';
 import {readScene} from './protocol.js';
 import {Resolution} from './resolution.js';
-import {Address, coveredWidth, Options, pressKey, setUpFolds, setUpKeyList, Tabs, Theme} from './settings.js';
+import {Address, Options, pressKey, setUpFolds, setUpKeyList, Tabs, Theme} from './settings.js';
 import {SideBySide} from './side_by_side.js';
 import {Stability} from './stability.js';
 import {TimeBar} from './time_bar.js';
@@ -112,6 +112,7 @@ class App {
     const goTo = (time_us) => this.timeBar.goTo(time_us);
     this.branches = new Branches((branch) => {
       this.ghosts.show(branch);
+      this.otherEstimates.replace([]);
       this.sides?.show();
       this.dirty = true;
     }, goTo);
@@ -152,6 +153,7 @@ class App {
   jumpTo(time_us) {
     this.sounds.clear();
     this.estimates.rewind(time_us);
+    this.otherEstimates.rewind(time_us);
     this.trails.clear();
     this.estimateTrails.clear();
     this.instruments.rewind(time_us);
@@ -164,6 +166,15 @@ class App {
     if (!this.events.take(items, message)) return;
     if (message.all) this.marks.clearEvents();
     this.marks.add(items);
+  }
+
+  /** Takes estimates: of the run or log that is shown, or of another branch. */
+  takeEstimates(branch, items) {
+    if (Number.isInteger(branch)) {
+      if (branch === this.ghosts.branch) this.otherEstimates.replace(items);
+    } else if (!this.past.active) {
+      this.estimates.add(items);
+    }
   }
 
   /** Takes the greeting of a server, which may be another one than before. */
@@ -192,8 +203,8 @@ class App {
         this.forms.setForms(message);
       },
       scene: () => this.setScene(readScene(message)),
-      status: () => this.timeBar.setStatus(message),
-      estimates: () => this.past.active || this.estimates.add(items),
+      status: () => this.setStatus(message),
+      estimates: () => this.takeEstimates(message.branch, items),
       sounds: () => this.sounds.origin_m && this.sounds.add(items),
       receptions: () => {
         if (this.sounds.origin_m) this.sounds.addReceptions(items);
@@ -210,6 +221,13 @@ class App {
     };
     if (Object.hasOwn(handlers, message.op)) handlers[message.op]();
     this.dirty = true;
+  }
+
+  setStatus(message) {
+    const {hello} = this.timeBar;
+    this.timeBar.setStatus(message);
+    this.connection.setStatus(message);
+    this.scores.setOver(Boolean(message.ended) || (hello.source === 'log' && message.time_us >= hello.end_us));
   }
 
   setScores(message) {
@@ -241,6 +259,7 @@ class App {
     this.currents.setScene(data);
     this.sounds.setScene(data, this.extent_m);
     this.estimates.setScene(data);
+    this.otherEstimates.setScene(data);
     this.views.setScene(data);
     this.zones.setScene(data, this.extent_m);
     this.instruments.setScene(data);
@@ -336,7 +355,7 @@ class App {
   fit() {
     const sphere = this.bodies.boundingSphere();
     sphere.radius = Math.max(sphere.radius, ...this.vehicles.slice(0, 1).map((vehicle) => 3 * vehicle.radius_m));
-    this.cameras.fit(sphere, this.sides?.on ? this.sides.aspect : (innerWidth - coveredWidth()) / innerHeight);
+    this.cameras.fit(sphere, this.sides.freeShare);
     this.showMode();
     this.dirty = true;
   }
@@ -426,6 +445,7 @@ class App {
     if ($('banner').textContent === text) return;
     $('banner').textContent = text;
     $('banner').hidden = text === '';
+    $('banner').classList.toggle('calm', this.connection.isOver);
   }
 
   /** Moves the bodies and what belongs to them to the poses of the playback. */
@@ -444,7 +464,7 @@ class App {
     const {time_us} = this.playback;
     const X_WVs = this.vehicles.map((vehicle) => vehicle.X_WV);
     const focus = this.cameras.focus, distance_m = this.camera.position.distanceTo(focus);
-    const height_px = innerHeight * this.renderer.getPixelRatio();
+    const height_px = this.sides.regions[0].height * this.renderer.getPixelRatio();
     // Everything that depends on the time or the camera.
     if (this.currents.motion.setTime(time_us)) this.environment.setLevel(this.level());
     this.environment.update(this.camera, focus, distance_m, this.options.get('shadows'));

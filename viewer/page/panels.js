@@ -259,6 +259,26 @@ export class Details {
   }
 }
 
+/** Figures that never fall while a run continues: counts, a path, largest values (docs/reference/metrics.md). */
+export const GROWING = new Set([
+  'bytes', 'bytes_sent', 'count',   'dropped',  'fixes',     'lost_s',      'maps',   'max_deg', 'max_gap_s', 'max_m',
+  'poses', 'ranges',     'samples', 'segments', 'sightings', 'travelled_m', 'unsent', 'sent',    'received',  'lost',
+]);
+const CONSTANT = '[\\d.eE+\\-*/() ]+', FIGURE = '[\\w-]+\\.(\\w+)';
+const MORE = [new RegExp(`^ *${FIGURE} *(?:>=?|==)${CONSTANT}$`), new RegExp(`^${CONSTANT}(?:<=?|==) *${FIGURE} *$`)];
+
+/**
+ * Is a rule that does not hold still undecided: has it no value yet, or does it want more of a figure that never falls,
+ * so that more time can only help?
+ */
+export function isUndecided({rule, holds, value, bound}) {
+  if (holds) return false;
+  if (!Number.isFinite(value) || !Number.isFinite(bound)) return true;
+  const figure = MORE.map((form) => form.exec(rule)?.[1]).find(Boolean)?.replace(/^lost_(?!s$).*/, 'lost');
+  const less = MORE[0].test(rule) ? value <= bound : bound <= value;
+  return GROWING.has(figure) && less;
+}
+
 /** Scores and rules; goTo(time_us) is called for a moment that the user picks. */
 export class Scores {
   constructor(goTo) {
@@ -268,7 +288,15 @@ export class Scores {
 
   clear() {
     this.moments = new Map();
+    this.over = false;
     this.set({});
+  }
+
+  /** Takes whether the time shown is the end: then every rule is decided. */
+  setOver(over) {
+    if (over === this.over) return;
+    this.over = over;
+    this.set(this.message);
   }
 
   /** Button for the moment at which a rule failed, or a maximum rose last, as far as this page has seen it. */
@@ -288,13 +316,18 @@ export class Scores {
 
   /** Takes a message `scores`. */
   set(message) {
+    this.message = message;
     const rules = message.rules ?? [], metrics = message.metrics ?? [], time_us = message.time_us ?? 0;
     $('no-scores').hidden = rules.length + metrics.length > 0;
     $('rules').replaceChildren(...rules.map((rule) => {
       const item = document.createElement('li');
-      const sign = rule.holds === null || rule.holds === undefined ? '·' : rule.holds ? '✓' : '✕';
-      const mark = element('span', sign, rule.holds ? 'holds' : 'fails');
-      mark.setAttribute('aria-label', rule.holds ? 'holds' : 'does not hold');
+      const open = !this.over && isUndecided(rule);
+      const [sign, look, meaning] = rule.holds ? ['✓', 'holds', 'holds'] :
+          open                                 ? ['…', 'quiet', 'not yet decided'] :
+                                                 ['✕', 'fails', 'does not hold'];
+      const mark = element('span', sign, look);
+      mark.setAttribute('aria-label', meaning);
+      mark.title = meaning;
       const value = element('span', formatNumber(rule.value), 'quiet');
       value.title = `now ${formatNumber(rule.value)}, bound ${formatNumber(rule.bound)}`;
       const text = element('span', `${rule.rule} `);

@@ -24,6 +24,7 @@ export function probe(app) {
     banner: document.getElementById('banner').textContent,
     control: app.timeBar.hello.control === true,
     selected: app.selected,
+    labels: app.labels.used.map((box) => box[3]),
     camera: {
       mode: app.cameras.mode,
       position: world(app.camera.position),

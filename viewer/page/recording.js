@@ -174,6 +174,8 @@ export class Recording {
     return 0;
   }
 
+  setStatus() {}
   staleFor_s() { return 0; }
+  get isOver() { return false; }
   banner() { return ''; }
 }

@@ -3,6 +3,8 @@
 
 const $ = (id) => document.getElementById(id);
 const THEME_KEY = 'shoal.theme';
+/** Pages up to this width have sheets at the bottom in place of panels at the sides, as in style.css. */
+export const NARROW_PX = 760;
 
 /** Keys of the page, for the list under `?`. */
 export const KEYS = [
@@ -169,30 +171,32 @@ function fold(side, folded) {
 
 /** Folding of the panels at the sides; on a phone one of them is open at most. */
 export function setUpFolds() {
-  const narrow = () => innerWidth <= 760;
+  const narrow = () => innerWidth <= NARROW_PX;
   for (const [side, other] of [['left', 'right'], ['right', 'left']]) {
     $(`fold-${side}`).addEventListener('click', () => {
       const open = $(`${side}-body`).hidden;
       fold(side, !open);
-      if (!narrow()) return;
-      fold(other, true);
-      $(other).hidden = open;
+      if (narrow()) fold(other, true);
     });
     if (narrow()) fold(side, true);
   }
 }
 
-/** Width of the scene that panels cover, in pixels. */
-export function coveredWidth() {
-  if (innerWidth <= 760) return 0;
-  return ['left', 'right'].reduce((sum, side) => sum + ($(`${side}-body`).hidden ? 0 : $(side).offsetWidth), 0);
+/** Part of the page that no bar or panel covers, in CSS pixels from its upper left corner. */
+export function freeArea() {
+  const box = (id) => $(id).getBoundingClientRect(), narrow = innerWidth <= NARROW_PX;
+  const covers = (side) => !narrow && !$(`${side}-body`).hidden;
+  const below = ['bottom', ...($('dock').hidden ? [] : ['dock']), ...(narrow ? ['sheets'] : [])];
+  const x = covers('left') ? box('left').right : 0, y = box('top').bottom;
+  const right = covers('right') ? box('right').left : innerWidth;
+  return {x, y, width: right - x, height: Math.max(80, Math.min(...below.map((id) => box(id).top)) - y)};
 }
 
 /** Which panels are open, such as "left,events"; empty as long as they are as at the start. */
 export function panelsText() {
   const tab = document.querySelector('#tabs [aria-selected="true"]').id.replace('tab-', '');
   const open = [$('left-body').hidden ? 'no-left' : 'left', $('right-body').hidden ? 'no-right' : tab].join();
-  return open === (innerWidth <= 760 ? 'no-left,no-right' : 'left,vehicle') ? '' : open;
+  return open === (innerWidth <= NARROW_PX ? 'no-left,no-right' : 'left,vehicle') ? '' : open;
 }
 
 /** Opens the panels that a text names. */

@@ -3,11 +3,11 @@
 // Where the page is higher than wide they stand one above the other.
 import {drawAnnotations, drawNames} from './labels.js';
 import {formatTime} from './panels.js';
+import {freeArea, NARROW_PX} from './settings.js';
+import {truthAt} from './vehicles.js';
 import {Vector3} from './vendor/three.js';
 
 const $ = (id) => document.getElementById(id);
-/** Pages that are narrower than this have the parts one above the other, as in style.css. */
-const NARROW_PX = 760;
 /** The server keeps states this far apart. */
 const END_US = 100000;
 
@@ -26,15 +26,13 @@ export class SideBySide {
   get on() { return this.chosen && this.app.ghosts.branch !== null; }
 
   choose(beside) {
-    const before = this.aspect;
+    const before = this.freeShare;
     this.chosen = beside;
     $('sides').value = beside ? 'beside' : 'over';
     this.show();
-    // What was seen from left to right still is.
-    const after = this.aspect;
-    if (before !== after && this.app.cameras.controls.enabled)
-      this.app.cameras.zoom(
-          Math.max(1, innerWidth / innerHeight / after) / Math.max(1, innerWidth / innerHeight / before));
+    // What was seen between the panels still is.
+    const after = this.freeShare;
+    if (before !== after && this.app.cameras.controls.enabled) this.app.cameras.zoom(before / after);
   }
 
   /** The key: the other way of showing both. */
@@ -53,8 +51,7 @@ export class SideBySide {
     this.present = named(branches.present);
     this.other = named(app.ghosts.branch);
     this.showNames();
-    app.camera.aspect = this.aspect;
-    app.camera.updateProjectionMatrix();
+    this.fitCamera();
     app.dirty = true;
   }
 
@@ -69,13 +66,27 @@ export class SideBySide {
       if ($(id).textContent !== text) $(id).textContent = text;
   }
 
-  /** Parts of the page, in CSS pixels from its upper left corner. */
+  /**
+   * Views of the page, in CSS pixels from its upper left corner, and `clip`, the part of each that is seen.  Two
+   * have the same size and share the page where the middle between the panels is; the middle of each is in the middle
+   * of its share of what no panel covers.
+   */
   get regions() {
-    const whole = {x: 0, y: 0, width: innerWidth, height: innerHeight};
-    if (!this.on) return [whole];
-    if (innerWidth <= NARROW_PX)
-      return [0, 1].map((i) => ({...whole, y: i * innerHeight / 2, height: innerHeight / 2}));
-    return [0, 1].map((i) => ({...whole, x: i * innerWidth / 2, width: innerWidth / 2}));
+    const page = {x: 0, y: 0, width: innerWidth, height: innerHeight};
+    if (!this.on) return [{...page, clip: page}];
+    const free = freeArea(), stacked = innerWidth <= NARROW_PX;
+    const [at, size] = stacked ? ['y', 'height'] : ['x', 'width'];
+    const split = Math.round(free[at] + free[size] / 2);
+    const clips = [{...page, [size]: split}, {...page, [at]: split, [size]: page[size] - split}];
+    const middles = [0.25, 0.75].map((share) => ({
+                                       x: free.x + free.width * (stacked ? 0.5 : share),
+                                       y: free.y + free.height * (stacked ? share : 0.5),
+                                     }));
+    const reach = (axis, extent) => 2 *
+        Math.max(...clips.flatMap(
+            (clip, i) => [middles[i][axis] - clip[axis], clip[axis] + clip[extent] - middles[i][axis]]));
+    const width = reach('x', 'width'), height = reach('y', 'height');
+    return clips.map((clip, i) => ({x: middles[i].x - width / 2, y: middles[i].y - height / 2, width, height, clip}));
   }
 
   get aspect() {
@@ -83,10 +94,26 @@ export class SideBySide {
     return width / height;
   }
 
+  /** The smaller side of what is seen between the panels, as a share of the height of a view. */
+  get freeShare() {
+    const free = freeArea(), [{height}] = this.regions;
+    if (!this.on) return Math.min(1, free.width / height);
+    const sides = innerWidth <= NARROW_PX ? [free.width, free.height / 2] : [free.width / 2, free.height];
+    return Math.min(1, Math.min(...sides) / height);
+  }
+
+  /** Brings the camera in line with the size of a view, which changes with the panels. */
+  fitCamera() {
+    const {camera} = this.app, {aspect} = this;
+    if (camera.aspect === aspect) return;
+    camera.aspect = aspect;
+    camera.updateProjectionMatrix();
+  }
+
   /** The part at a position of the page: its place, and whether it is that of the other one. */
   regionAt(x, y) {
     const {regions} = this;
-    const other = regions.length > 1 && (x >= regions[1].x && y >= regions[1].y);
+    const other = regions.length > 1 && (x >= regions[1].clip.x && y >= regions[1].clip.y);
     return {...regions[other ? 1 : 0], other};
   }
 
@@ -102,12 +129,16 @@ export class SideBySide {
   /** Numbers for tests: null as long as there is one part. */
   probe(world) {
     if (!this.on) return null;
-    const [, b] = this.regions;
-    const others = this.others.map((vehicle) => ({
-                                     name: vehicle.name,
-                                     position: world(vehicle.at),
-                                     pixel: this.pixelOf(vehicle, b.x + 1, b.y + 1),
-                                   }));
+    const [, {clip}] = this.regions, {otherEstimates} = this.app;
+    const others = this.others.map((vehicle) => {
+      const {estimate, error_m} = otherEstimates.vehicles[otherEstimates.byName.get(vehicle.name)];
+      return {
+        name: vehicle.name,
+        position: world(vehicle.at),
+        pixel: this.pixelOf(vehicle, clip.x + 1, clip.y + 1),
+        error_m: estimate ? error_m : null,
+      };
+    });
     return {regions: this.regions, names: [$('side-a').textContent, $('side-b').textContent], others};
   }
 
@@ -128,8 +159,12 @@ export class SideBySide {
   /** Draws the scene and what is written over it. */
   render() {
     const {app} = this, {renderer, scene, camera} = app;
+    app.otherEstimates.root.visible = false;
     if (!this.on) {
-      if (this.drawn) this.drawIn({x: 0, y: 0, width: innerWidth, height: innerHeight}, false);
+      if (this.drawn) {
+        this.drawIn(this.regions[0], false);
+        this.fitCamera();
+      }
       this.drawn = false;
       app.labels.region = null;
       renderer.render(scene, camera);
@@ -139,7 +174,10 @@ export class SideBySide {
     }
     this.drawn = true;
     this.showNames();
+    this.fitCamera();
     const [a, b] = this.regions;
+    const grid = b.clip.x === 0 ? `${b.clip.y}px 1fr / 1fr` : `1fr / ${b.clip.x}px 1fr`;
+    if (this.grid !== grid) this.grid = $('side-names').style.gridTemplate = grid;
     // The present one without the ghosts.
     app.ghosts.root.visible = false;
     this.drawIn(a, true);
@@ -150,36 +188,42 @@ export class SideBySide {
     this.drawIn(b, true);
     const hidden = scene.children.filter((object) => object.visible && !app.shared.has(object));
     for (const object of hidden) object.visible = false;
+    app.otherEstimates.root.visible = true;
     this.withOther(() => {
       this.placeOthers();
       renderer.render(scene, camera);
     });
+    app.otherEstimates.root.visible = false;
     for (const object of hidden) object.visible = true;
     app.ghosts.root.visible = true;
     app.labels.region = b;
     app.labels.enter();
     app.labels.limit();
-    drawNames(app, this.others);
+    drawNames(app, this.others, app.otherEstimates);
     app.labels.end();
     app.labels.enter();
     app.labels.region = a;  // positions on the page are those of the present one
   }
 
   /** Limits drawing to a part; three.js measures from the lower left corner. */
-  drawIn({x, y, width, height}, only) {
-    const {renderer} = this.app, bottom = innerHeight - y - height;
-    renderer.setViewport(x, bottom, width, height);
-    renderer.setScissor(x, bottom, width, height);
+  drawIn({x, y, width, height, clip}, only) {
+    const {renderer} = this.app;
+    renderer.setViewport(x, innerHeight - y - height, width, height);
+    renderer.setScissor(clip.x, innerHeight - clip.y - clip.height, clip.width, clip.height);
     renderer.setScissorTest(only);
   }
 
+  /** Places the vehicles of the other one, and its estimates. */
   placeOthers() {
-    this.others = this.app.vehicles
-                      .map((vehicle) => {
-                        const X_WV = this.app.bodies.X_WB[vehicle.body].clone().multiply(vehicle.X_BV);
-                        return {...vehicle, at: new Vector3().setFromMatrixPosition(X_WV)};
-                      })
-                      .filter((vehicle) => Number.isFinite(vehicle.at.x));
+    const {bodies, ghosts, otherEstimates, vehicles} = this.app;
+    const all = vehicles.map((vehicle) => {
+      const X_WV = bodies.X_WB[vehicle.body].clone().multiply(vehicle.X_BV);
+      return {...vehicle, X_WV, at: new Vector3().setFromMatrixPosition(X_WV)};
+    });
+    this.others = all.filter((vehicle) => Number.isFinite(vehicle.at.x));
+    otherEstimates.update(
+        all.map((vehicle) => vehicle.X_WV),
+        (i, at_us) => (Number.isFinite(all[i].at.x) ? truthAt(vehicles[i], at_us, bodies, ghosts) : null));
   }
 
   /** For the address of the page. */

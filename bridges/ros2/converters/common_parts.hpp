@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <string>
 #include <string_view>
@@ -20,9 +22,11 @@ inline std::string body_frame(std::string_view owner, std::string_view body) {
   return owner.empty() ? "body/" + std::string(body) : std::string(owner) + "/body/" + std::string(body);
 }
 
-/// Appends builtin_interfaces/Time.
+/// Appends builtin_interfaces/Time, which ends on 2038-01-19; beyond its range the nearest time.
 inline void put_time(CdrWriter& out, std::int64_t utime) {
   constexpr std::int64_t us_per_s = 1'000'000;
+  utime = std::clamp(utime, std::numeric_limits<std::int32_t>::min() * us_per_s,
+                     std::numeric_limits<std::int32_t>::max() * us_per_s);
   const std::int64_t us = utime % us_per_s;  // negative before the epoch
   const std::int64_t borrowed = us < 0 ? 1 : 0;
   out.put(static_cast<std::int32_t>(utime / us_per_s - borrowed));

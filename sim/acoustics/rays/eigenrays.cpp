@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
+#include <tuple>
 
 namespace sim {
 
@@ -13,6 +15,8 @@ namespace {
 
 /// Share of an interval that is left out at its ends, where derivatives are infinite.
 constexpr double margin = 1e-5;
+/// Layers of less difference in speed are those of a smooth profile, and their borders are not kinks of it.
+constexpr double thin_mps = 1;
 /// Most reversals at each end of one ray.
 constexpr int max_cycles = 200;
 
@@ -179,6 +183,13 @@ struct Eigenrays::Search {
   const RayDepths& depths;
   bool source_is_upper;
   std::vector<SoundRay>& out;
+  /// Where the rays of `out` are in their families.
+  struct Root {
+    int family, cycles;
+    double xi, slope;
+    double power_by_slope;  ///< power by the ray tube times the size of dr/dxi
+  };
+  std::vector<Root> roots{};
 
   const SoundProfile& profile() const { return rays.profile_; }
   void add(double xi, Family family, int cycles);
@@ -190,6 +201,16 @@ struct Eigenrays::Search {
   void solve(double low, double high, double v1, double v2, double f1, Family family, int cycles);
   void search_steep(double fastest_mps, Family family, int cycles);
   void search_bounces();
+  /// Merges rays that the borders of the layers have made of one or two, where the reach has kinks.
+  void merge_false_rays();
+  /// Finds the twins among the rays, the closest in time first.
+  void pair_twins();
+  /// Width in xi of the thin layer in which a ray turns; 0: of another one.
+  double thin_layer(double xi) const;
+  /// Derivative of the reach: about a ray that turns in a thin layer, whose borders are kinks, the mean over some.
+  double slope_about(double xi, Family family, int cycles, const RayLegs& legs) const;
+  /// Whether two rays are of one family, reversed as often by the same.
+  bool same_kind(std::size_t i, std::size_t j) const;
   /// Whether rays of an interval of xi can have few enough bounces.
   bool may_turn(const Interval& interval) const;
 };
@@ -234,14 +255,103 @@ void Eigenrays::Search::add(double xi, Family family, int cycles) {
   const double at_lower = arrives_up ? angle(depths.lower_mps) : -angle(depths.lower_mps);
   ray.launch_rad = source_is_upper ? at_upper : -at_lower;
   ray.arrival_rad = source_is_upper ? at_lower : -at_upper;
+  const double slope = ray.turns > 0 ? slope_about(xi, family, cycles, legs) : reach.by_xi;
   // Each leg between two turning points has a caustic, and the last one when the range grows again with xi.
-  ray.caustics = std::max(0, ray.turns - (reach.by_xi < 0));
+  ray.caustics = std::max(0, ray.turns - (slope < 0));
   const double tube = std::abs(reach.by_xi) * ray_sine(xi, depths.upper_mps) * ray_sine(xi, depths.lower_mps);
   // For a vertical ray the ratio of xi and the range is a derivative.
   const bool vertical = xi * depths.highest_mps < 1e-6;
   const double xi_by_range = vertical ? 1 / reach.by_xi : xi / query.range_m;
   ray.power_per_m2 = xi_by_range * depths.upper_mps * depths.lower_mps / std::max(tube, 1e-300);
   out.push_back(ray);
+  roots.push_back({static_cast<int>(family), cycles, xi, slope, ray.power_per_m2 * std::abs(reach.by_xi)});
+}
+
+bool Eigenrays::Search::same_kind(std::size_t i, std::size_t j) const {
+  return roots[i].family == roots[j].family && roots[i].cycles == roots[j].cycles &&
+         out[i].surface_bounces == out[j].surface_bounces && out[i].bottom_bounces == out[j].bottom_bounces;
+}
+
+void Eigenrays::Search::merge_false_rays() {
+  std::vector<std::size_t> order(out.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const auto key = [&](std::size_t i) {
+    return std::tuple(roots[i].family, roots[i].cycles, out[i].surface_bounces, out[i].bottom_bounces, roots[i].xi);
+  };
+  std::sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) { return key(i) < key(j); });
+  std::vector<std::size_t> kept;
+  for (std::size_t first = 0, last = 0; first < order.size(); first = last + 1) {
+    const double near = thin_layer(roots[order[first]].xi);
+    for (last = first; last + 1 < order.size() && same_kind(order[last], order[last + 1]) &&
+                       roots[order[last + 1]].xi - roots[order[last]].xi < near;)
+      ++last;
+    // The reach crosses the range up and down in turn: an even number in all is a caustic, an odd one is one ray.
+    if ((last - first) % 2 == 1) {
+      kept.push_back(order[first]);
+      kept.push_back(order[last]);
+    } else {
+      kept.push_back(order[first]);
+    }
+  }
+  if (kept.size() == out.size()) return;
+  std::sort(kept.begin(), kept.end());
+  for (std::size_t i = 0; i < kept.size(); ++i) {
+    out[i] = out[kept[i]];
+    roots[i] = roots[kept[i]];
+  }
+  out.resize(kept.size());
+  roots.resize(kept.size());
+}
+
+double Eigenrays::Search::thin_layer(double xi) const {
+  const auto after = std::upper_bound(rays.intervals_.begin(), rays.intervals_.end(), 1 / xi,
+                                      [](double mps, const Interval& each) { return mps < each.low_mps; });
+  if (after == rays.intervals_.begin()) return 0;
+  const double width_mps = std::prev(after)->high_mps - std::prev(after)->low_mps;
+  return width_mps > thin_mps ? 0 : width_mps * xi * xi;
+}
+
+double Eigenrays::Search::slope_about(double xi, Family family, int cycles, const RayLegs& legs) const {
+  const double exact = reach_of(family, cycles, legs).by_xi;
+  const double far = thin_layer(xi);
+  if (far == 0 || xi + far > 1 / depths.highest_between_mps) return exact;
+  const RayLegs less = ray_legs(profile(), depths, xi - far), more = ray_legs(profile(), depths, xi + far);
+  for (const RayLegs* each : {&less, &more})
+    if (each->upper_end != legs.upper_end || each->lower_end != legs.lower_end) return exact;
+  return (reach_of(family, cycles, more).r_m - reach_of(family, cycles, less).r_m) / (2 * far);
+}
+
+void Eigenrays::Search::pair_twins() {
+  while (true) {
+    std::size_t first = out.size(), second = 0;
+    double closest_s = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i + 1 < out.size(); ++i) {
+      if (out[i].twin) continue;
+      for (std::size_t j = i + 1; j < out.size(); ++j) {
+        // The reach has an extreme between them.
+        const bool merges = (roots[i].slope < 0) != (roots[j].slope < 0);
+        if (out[j].twin || !merges || !same_kind(i, j)) continue;
+        const double apart_s = std::abs(out[j].travel_time_s - out[i].travel_time_s);
+        if (apart_s >= closest_s) continue;
+        closest_s = apart_s;
+        first = i, second = j;
+      }
+    }
+    if (first == out.size()) return;
+    // Time changes by xi with the range, so twins are apart by the area between the reach and the range over xi.  Of a
+    // parabola with this second derivative it is two thirds of the cube of the slope at both ends over its square.
+    const double slopes = std::abs(roots[first].slope) + std::abs(roots[second].slope);
+    const double bend = slopes / std::max(std::abs(roots[first].xi - roots[second].xi), 1e-300);
+    const double fold = std::max(std::cbrt(1.5 * bend * bend * closest_s), 1e-300);
+    const double later_s = out[second].travel_time_s - out[first].travel_time_s;
+    for (const std::size_t i : {first, second}) {
+      SoundRay& ray = out[i];
+      ray.twin = SoundRay::Twin{i == first ? later_s : -later_s, roots[i].power_by_slope / fold};
+      ray.power_per_m2 = roots[i].power_by_slope / std::max(std::abs(roots[i].slope), 1e-300);
+      // The later one has passed the caustic.
+      ray.caustics = std::max(0, ray.turns - (ray.twin->later_s > 0));
+    }
+  }
 }
 
 /// Solves for the one crossing of the range between two places of an interval, by Newton's method in a bracket.
@@ -366,6 +476,7 @@ void Eigenrays::find(const RayQuery& query, std::vector<SoundRay>& rays) const {
     ray.travel_time_s = query.range_m / depths.upper_mps;
     ray.power_per_m2 = 1 / std::max(query.range_m * query.range_m, 1e-12);
     rays.push_back(ray);
+    search.roots.push_back({static_cast<int>(Family::down_down), 0, 1 / depths.upper_mps, -1, 0});
   }
   // The direct ray.
   if (!level) search.search_steep(depths.highest_between_mps, Family::down_down, 0);
@@ -391,6 +502,10 @@ void Eigenrays::find(const RayQuery& query, std::vector<SoundRay>& rays) const {
         legs[static_cast<std::size_t>(node)] = ray_legs(profile_, depths, xi_of_node(low, high, node));
       search.search_piece(low, high, legs);
     }
+  }
+  if (rays.size() > 1) {
+    search.merge_false_rays();
+    search.pair_twins();
   }
   std::stable_sort(rays.begin(), rays.end(),
                    [](const SoundRay& a, const SoundRay& b) { return a.travel_time_s < b.travel_time_s; });

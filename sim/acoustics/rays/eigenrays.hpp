@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "sim/acoustics/rays/ray_legs.hpp"
@@ -20,6 +21,12 @@ struct SoundRay {
   int caustics = 0;                                        ///< passed; each delays the phase by a quarter period
   double surface_grazing_rad = 0, bottom_grazing_rad = 0;  ///< at each bounce
   double power_per_m2 = 0;  ///< squared pressure relative to that at 1 m, by the ray tube; large near a caustic
+  /// The ray with which it merges at a caustic.
+  struct Twin {
+    double later_s = 0;            ///< its travel time less that of this ray
+    double fold_power_per_m2 = 0;  ///< as power_per_m2, of a caustic at the middle of both: near it
+  };
+  std::optional<Twin> twin;  ///< unset: it has none
   int bounces() const { return surface_bounces + bottom_bounces; }
 };
 

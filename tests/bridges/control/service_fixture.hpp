@@ -13,10 +13,11 @@ namespace lcm_test {
 
 /// A world from YAML text, and its service on the same in-process bus.
 struct ServedWorld {
-  /// `vehicle_buses`: beside the world's.
-  explicit ServedWorld(const std::string& yaml, const std::vector<bridges::LockstepBus>& vehicle_buses = {})
+  /// `vehicle_buses`: beside the world's.  `is_recorded`: whether the world's bus is.
+  explicit ServedWorld(const std::string& yaml, const std::vector<bridges::LockstepBus>& vehicle_buses = {},
+                       bool is_recorded = false)
       : test(yaml),
-        lockstep(test.world, control, with(vehicle_buses)),
+        lockstep(test.world, control, with(vehicle_buses, is_recorded)),
         service(test.bus, test.bus, test.world, control, lockstep, {"{}", "test"}, links_of(vehicle_buses)) {}
 
   /// Sends a request, has it answered, and gives the answer.
@@ -44,8 +45,8 @@ struct ServedWorld {
   std::int32_t id = 0;
 
  private:
-  std::vector<bridges::LockstepBus> with(const std::vector<bridges::LockstepBus>& vehicle_buses) {
-    std::vector<bridges::LockstepBus> all{{test.bus, gate}};
+  std::vector<bridges::LockstepBus> with(const std::vector<bridges::LockstepBus>& vehicle_buses, bool is_recorded) {
+    std::vector<bridges::LockstepBus> all{{test.bus, gate, "", is_recorded}};
     for (const bridges::LockstepBus& bus : vehicle_buses) all.push_back(bus);
     return all;
   }

@@ -19,11 +19,11 @@ namespace lcm_test {
 /// A world with one box, whose clients are in lockstep.
 struct LockstepWorld : ServedWorld {
   explicit LockstepWorld(const std::string& terms = "{timeout_s: 60}",
-                         const std::vector<bridges::LockstepBus>& vehicle_buses = {})
+                         const std::vector<bridges::LockstepBus>& vehicle_buses = {}, bool is_recorded = false)
       : ServedWorld("shoal: 1\nphysics: {step_s: 0.01, gravity_mps2: 0}\nlockstep: " + terms +
                         "\nvehicles: [{name: a, model: {shoal: 1, bodies: [{name: b, parts: [{shape: box, mass_kg: "
                         "1}]}]}}]\n",
-                    vehicle_buses) {}
+                    vehicle_buses, is_recorded) {}
 
   shoal::sim_control_reply_t join(const std::string& client, const std::string& text = "", double period_s = 0.01) {
     return request_reply("join", period_s, text, client);

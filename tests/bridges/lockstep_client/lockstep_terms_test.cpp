@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include "bridges/base/bus_error.hpp"
+#include "tests/comma_locale.hpp"
 
 namespace bridges {
 namespace {
@@ -24,6 +25,14 @@ TEST(LockstepTermsText, IsReadAsItWasMeant) {
   EXPECT_EQ(read.on_timeout, sim::OnTimeout::wait);
   EXPECT_EQ(read.timeout_s, 7);
   EXPECT_FALSE(read.agreed);
+}
+
+TEST(LockstepTermsText, HasAPointInItsNumbersInEveryLocaleOfTheProgram) {
+  const test_support::CommaLocale comma;
+  for (const double timeout_s : {0.5, 1e-3, 1e6}) {
+    const sim::LockstepTerms terms{.session = 5, .timeout_s = timeout_s};
+    EXPECT_EQ(sim::read_lockstep_terms(bridges::text_of(terms), {}).timeout_s, timeout_s);
+  }
 }
 
 TEST(LockstepTermsText, AWordOfTheClientIsOneOfThoseOfTheWorld) {

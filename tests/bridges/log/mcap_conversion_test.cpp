@@ -6,6 +6,8 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <utility>
+#include <vector>
 
 #include "bridges/log/event_log.hpp"
 #include "bridges/log/recording_bus.hpp"
@@ -89,6 +91,59 @@ TEST(McapConversion, RefusesAnExistingFileAndAnMcapFileAsLog) {
   };
   EXPECT_THAT([&] { convert("a.lcm", "b.mcap"); }, ThrowsMessage<bridges::BusError>(HasSubstr("already exists")));
   EXPECT_THAT([&] { convert("b.mcap", "c.mcap"); }, ThrowsMessage<bridges::BusError>(HasSubstr("is an MCAP file")));
+}
+
+void record_at(const std::string& path, const std::vector<std::int64_t>& utimes) {
+  bridges::EventLogWriter log(bridges::create_record_file(path, bridges::Existing::refuse));
+  std::int64_t number = 0;
+  for (const std::int64_t utime : utimes) log.write(number++, utime, "sim.clock", shoal::encode(shoal::utime_t{utime}));
+  log.flush();
+}
+
+constexpr std::int64_t us_per_s = 1'000'000;
+
+TEST(McapConversion, RefusesTimesThatRos2CannotHold) {
+  const ScratchFolder folder;
+  const std::string range =
+      " is outside of 1970-01-01T00:00:00Z to 2038-01-19T03:14:07Z, which messages of ROS 2 in an MCAP file can hold";
+  // Midnights in UTC, in seconds of 1970.
+  for (const auto& [utc, utime] : {std::pair{"2040-01-01T00:00:00Z", 2'208'988'800 * us_per_s},
+                                   {"1969-01-01T00:00:00Z", -31'536'000 * us_per_s},
+                                   {"9999-01-01T00:00:00Z", 253'370'764'800 * us_per_s},
+                                   {"2038-01-19T03:14:08Z", 2'147'483'648 * us_per_s},
+                                   {"1969-12-31T23:59:59Z", std::int64_t{-1}}}) {
+    record_at(folder.file(utc), {1, utime});
+    EXPECT_THAT(
+        [&] {
+          bridges::convert_to_mcap({folder.file(utc), folder.file("a.mcap"), {}, {}, {}}, shoal::embedded_types());
+        },
+        ThrowsMessage<bridges::BusError>(folder.file(utc) + ": byte 53: the time " + utc + range));
+    EXPECT_FALSE(std::filesystem::exists(folder.file("a.mcap")));
+    if (std::string(utc) == "2040-01-01T00:00:00Z") {
+      sim::InProcessBus network;
+      EXPECT_THAT(
+          [&] { bridges::RecordingBus(network, folder.file("b.mcap"), utime); },
+          ThrowsMessage<bridges::BusError>(folder.file("b.mcap") +
+                                           ": the 'epoch' of the world cannot be recorded: the time " + utc + range));
+      EXPECT_FALSE(std::filesystem::exists(folder.file("b.mcap")));
+    }
+  }
+  // A run that comes to the end of that time stops to record with the reason.
+  sim::InProcessBus network;
+  bridges::RecordingBus bus(network, folder.file("c.mcap"), 2'147'483'647 * us_per_s);
+  bus.publish("sim.clock", shoal::encode(shoal::utime_t{0}), sim::Time(0));
+  EXPECT_EQ(bus.error(), std::nullopt);
+  bus.publish("sim.clock", shoal::encode(shoal::utime_t{0}), sim::Time(us_per_s));
+  EXPECT_EQ(bus.error(), folder.file("c.mcap") + ": cannot record: Value too large for defined data type");
+}
+
+TEST(McapConversion, ReportsTimeThatGoesBack) {
+  const ScratchFolder folder;
+  record_at(folder.file("a.lcm"), {2'000'000, 3'000'000, 1'500'000});
+  const auto converted =
+      bridges::convert_to_mcap({folder.file("a.lcm"), folder.file("a.mcap"), {}, {}, {}}, shoal::embedded_types());
+  EXPECT_EQ(converted.events, 3u);
+  EXPECT_THAT(converted.time_problem, testing::Optional(HasSubstr("time goes back by 1.5 s at event 3")));
 }
 
 TEST(RecordBranch, AnMcapRecordContinuesInAnotherFile) {

@@ -203,6 +203,23 @@ TEST(McapReader, RefusesOtherFiles) {
   EXPECT_THROW(McapReader("/dev/null"), bridges::BusError);
 }
 
+TEST(McapReader, EndsWhereItsSchemasTakeTooMuchMemory) {
+  const ScratchFolder folder;
+  const std::string path = folder.file("bomb.mcap");
+  McapWriter writer(file_at(path));
+  constexpr int schemas = 6;
+  const std::string text(max_kept_bytes / 4, ' ');
+  for (int i = 0; i < schemas; ++i) {
+    const std::uint16_t schema = writer.add_schema({"Type" + std::to_string(i), "ros2msg", text});
+    const std::uint16_t channel = writer.add_channel({schema, "/t" + std::to_string(i), "cdr", {}});
+    EXPECT_TRUE(writer.write(channel, 1, {}));
+  }
+  EXPECT_TRUE(writer.finish());
+  std::vector<std::string> problems;
+  EXPECT_EQ(messages_of(path, &problems).size(), 3u);  // with its name the fourth schema is beyond four quarters
+  EXPECT_THAT(problems, ElementsAre(HasSubstr("its schemas and channels have more than 64 MB together")));
+}
+
 TEST(McapReader, DoesNotAllocateWhatALengthClaims) {
   const ScratchFolder folder;
   std::vector<std::byte> file;

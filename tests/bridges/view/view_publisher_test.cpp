@@ -65,6 +65,14 @@ TEST(ViewPublisher, TheSceneHasEveryBodyInTheOrderOfItsNumber) {
   EXPECT_NEAR(lidar["field_of_view"]["to_rad"].get<double>(), 0.7854, 1e-3);
 }
 
+TEST(ViewPublisher, TheSceneSaysWhichVehiclesHaveTheirOwnClock) {
+  ViewedWorld viewed(test::modem_sea({{"a", "[0, 0, -5]", "", "clock: {offset_s: 1}"}, {"b", "[9, 0, -5]", "", ""}}));
+  const Json vehicles = viewed.last_scene()["vehicles"];
+  ASSERT_EQ(vehicles.size(), 2u);
+  EXPECT_EQ(vehicles[0]["own_clock"], true);
+  EXPECT_EQ(vehicles[1]["own_clock"], false);
+}
+
 TEST(ViewPublisher, BodiesAreTheMovableOnesOfTheSceneAtTheirPoses) {
   ViewedWorld viewed(rover_and_ball);
   const Json scene = viewed.last_scene();

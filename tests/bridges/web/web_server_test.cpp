@@ -323,18 +323,36 @@ TEST_F(WebServerTest, InvalidFramesCloseTheConnection) {
   EXPECT_TRUE(await([&] { return server.clients() == 0; }));
 }
 
-TEST_F(WebServerTest, TheNumberOfClientsIsLimited) {
+TEST_F(WebServerTest, TheNumberOfClientsWithoutTheTokenIsLimited) {
   WebOptions two = options();
   two.max_clients = 2;
   WebServer server(two);
   server.retain("hello", R"({"op":"hello"})");
-  Client first = page_of(server), second = page_of(server);
-  Client third(server.port());
-  const Answer answer = third.upgrade();
-  EXPECT_EQ(answer.status, 503);
-  EXPECT_EQ(answer.body, "the limit of 2 clients is reached\n");
+  Client first = page_of(server, ""), second = page_of(server, "");
+  Client third = page_of(server, "");
+  const auto frame = third.read_frame();
+  ASSERT_TRUE(frame);
+  EXPECT_EQ(frame->close_code(), 1008);
+  EXPECT_THAT(frame->payload, HasSubstr("the limit of 2 clients is reached"));
+  Client owner = page_of(server, token);  // those who may control get in
   second.reset();
-  EXPECT_TRUE(await([&] { return Client(server.port()).upgrade().status == 101; }));
+  EXPECT_TRUE(await([&] { return server.clients() == 2; }));
+  Client fourth = page_of(server, "");
+  EXPECT_TRUE(await([&] { return server.clients() == 3; }));
+}
+
+TEST_F(WebServerTest, ClientsThatDoNotGreetKeepNobodyOut) {
+  WebOptions two = options();
+  two.max_clients = 2;
+  WebServer server(two);
+  server.retain("hello", R"({"op":"hello"})");
+  std::vector<std::unique_ptr<Client>> silent;
+  for (int i = 0; i < 30; ++i) {
+    silent.push_back(std::make_unique<Client>(server.port()));
+    EXPECT_EQ(silent.back()->upgrade().status, 101) << i;
+  }
+  Client owner = page_of(server, token), reader = page_of(server, "");
+  EXPECT_EQ(server.clients(), 2);
 }
 
 TEST_F(WebServerTest, SurvivesRandomDisconnects) {

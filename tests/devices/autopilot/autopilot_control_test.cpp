@@ -4,17 +4,19 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 namespace {
 
-/// x'' = a + disturbance, from rest; the error of x against 1 after a time.
+/// x'' = a + disturbance, from rest, with an actuator that gives no more than its limit; the error of x after a time.
 struct Plant {
-  double x = 0, v = 0, fastest = 0;
+  double x = 0, v = 0, fastest = 0, limit = std::numeric_limits<double>::infinity(), given = 0;
 
   double run(devices::AxisHold& hold, double time_s, double disturbance, double desired) {
     const double dt_s = 0.01;
     for (double t = 0; t < time_s; t += dt_s) {
-      v += (hold.step(desired - x, v, dt_s, false) + disturbance) * dt_s;
+      given = std::clamp(hold.step(desired - x, v, given, dt_s), -limit, limit);
+      v += (given + disturbance) * dt_s;
       x += v * dt_s;
       fastest = std::max(fastest, std::abs(v));
     }
@@ -33,7 +35,7 @@ TEST(AxisHold, FollowsTheCriticallyDampedStepOfTheTextbook) {
 TEST(AxisHold, TakesAwayASteadyDisturbance) {
   devices::AxisHold hold({0.5, 1, 100, 0.1});
   Plant plant;
-  // The slow pole of s^3 + 2 w s^2 + w^2 s + 0.1 w^3 is at -0.126 w: exp(-0.126 * 0.5 * 200) = 3e-6.
+  // The estimate decays to it at 0.1 w: 0.3 exp(-0.1 * 0.5 * 200) = 1.4e-5, over the stiffness of about w^2 = 0.25.
   EXPECT_NEAR(plant.run(hold, 200, 0.3, 1), 0, 1e-4);
 }
 
@@ -48,21 +50,58 @@ TEST(AxisHold, KeepsItsRateAndDoesNotWindUpOnALongWay) {
   Plant plant;
   double furthest = 0;
   for (int i = 0; i < 100; ++i) furthest = std::max(furthest, -plant.run(hold, 2, 0, 10));
-  EXPECT_LE(plant.fastest, 0.2 * 1.001);  // the sum begins to push where the rate becomes free
+  EXPECT_LE(plant.fastest, 0.2 * 1.001);
   EXPECT_GT(plant.fastest, 0.19);
-  // The sum begins only on the last 0.8 m, where the rate is free.
-  EXPECT_LT(furthest, 0.2);
-  EXPECT_NEAR(plant.x, 10, 0.01);
+  EXPECT_LT(furthest, 1e-9) << "without a disturbance there is nothing to sum";
+  EXPECT_NEAR(plant.x, 10, 1e-3);
 }
 
-TEST(RateHold, BringsAPlantWithDragToItsSpeedAndAFrozenSumStands) {
+TEST(AxisHold, NoDisturbanceWithinTheLimitOfItsActuatorStopsItForGood) {
+  // Of the limited rate alone it would give 2 w 0.2 = 0.2.
+  for (const double disturbance : {-0.15, -0.25, -0.9, 0.9}) {
+    devices::AxisHold hold({0.5, 1, 0.2, 0.1});
+    Plant plant;
+    plant.limit = 1;
+    // It is carried along at up to |d| / (2 w) for the 20 s of the estimate, and comes back at 0.2.
+    EXPECT_NEAR(plant.run(hold, 600, disturbance, 10), 0, 1e-3) << disturbance;
+  }
+}
+
+TEST(AxisHold, WhatItCouldNotStandDoesNotMatterAfterwards) {
+  devices::AxisHold hold({0.5, 1, 0.2, 0.1});
+  Plant plant;
+  plant.limit = 1;
+  plant.run(hold, 60, -1.01, 0);  // pushed off, slowly at the end
+  EXPECT_LT(plant.x, -10);
+  EXPECT_NEAR(plant.run(hold, 600, -0.5, 0), 0, 1e-3);
+}
+
+TEST(RateHold, BringsAPlantWithDragToItsSpeed) {
   devices::RateHold hold(0.5, 0.25);
-  double v = 0;
-  for (int i = 0; i < 8000; ++i) v += (hold.step(1.5 - v, 0.01, false) - 0.2 * v) * 0.01;
+  double v = 0, given = 0;
+  // The slow pole of s^2 + (0.5 + 0.2 + 0.125) s + 0.125 * 0.5 is at -0.084: exp(-0.084 * 130) = 2e-5.
+  for (int i = 0; i < 13000; ++i) v += ((given = hold.step(1.5 - v, v, given, 0.01)) - 0.2 * v) * 0.01;
   EXPECT_NEAR(v, 1.5, 1e-4);
-  const double before = hold.step(0, 0.01, false);
-  for (int i = 0; i < 100; ++i) hold.step(1, 0.01, true);
-  EXPECT_EQ(hold.step(0, 0.01, false), before);
+}
+
+TEST(RateHold, DoesNotWindUpAtTheLimitOfItsActuator) {
+  devices::RateHold hold(0.5, 0.25);
+  double v = 0, given = 0;
+  const auto run = [&](double desired, double time_s) {
+    double slowest = v;
+    for (double t = 0; t < time_s; t += 0.01) {
+      given = std::clamp(hold.step(desired - v, v, given, 0.01), -0.2, 0.2);
+      v += (given - 0.2 * v) * 0.01;
+      slowest = std::min(slowest, v);
+    }
+    return slowest;
+  };
+  run(1.5, 1000);
+  EXPECT_NEAR(v, 1, 1e-3) << "0.2 against a drag of 0.2 v";
+  // At once the drag of 1 m/s is 0.1 too much for 0.5 m/s: 0.1 / w, and less as the estimate follows.
+  const double slowest = run(0.5, 100);
+  EXPECT_GT(slowest, 0.45);
+  EXPECT_NEAR(v, 0.5, 1e-4);
 }
 
 }  // namespace

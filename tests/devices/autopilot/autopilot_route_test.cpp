@@ -20,9 +20,11 @@ devices::Waypoint at(double x, double y) {
 /// A craft that heads at once where it is commanded, through water that flows.  Its cross-track error in the end.
 double drive(devices::Route& route, Vector2d p, double speed, const Vector2d& current, double time_s) {
   devices::Aim aim;
+  Vector2d v(0, 0);
   for (double t = 0; t < time_s && !route.finished(); t += 0.1) {
-    aim = route.aim(p, 0.1);
-    p += 0.1 * (speed * Vector2d(std::cos(aim.heading_rad), std::sin(aim.heading_rad)) + current);
+    aim = route.aim(p, v, aim.heading_rad, 0.1);
+    v = speed * Vector2d(std::cos(aim.heading_rad), std::sin(aim.heading_rad)) + current;
+    p += 0.1 * v;
   }
   return aim.cross_track_m;
 }
@@ -30,7 +32,7 @@ double drive(devices::Route& route, Vector2d p, double speed, const Vector2d& cu
 TEST(Route, HeadsForALineAtTheAngleOfItsLookahead) {
   devices::Route route({10, 0, 3});
   route.start({at(100, 0)}, false, {0, 0});
-  const devices::Aim aim = route.aim({20, 10}, 0.1);
+  const devices::Aim aim = route.aim({20, 10}, {0, 0}, 0, 0.1);
   EXPECT_NEAR(aim.cross_track_m, 10, 1e-12);
   EXPECT_NEAR(aim.heading_rad, -std::numbers::pi / 4, 1e-12);
   EXPECT_NEAR(aim.distance_m, std::hypot(80, 10), 1e-12);
@@ -59,6 +61,57 @@ TEST(Route, ACurrentLeavesAnErrorWithoutTheIntegralAndNoneWithIt) {
   EXPECT_NEAR(drive(integral, {0, 0}, 1.5, across, 400), 0, 1e-3);
 }
 
+TEST(Route, NoCurrentBelowItsSpeedLeavesAnErrorWhereverItStarts) {
+  for (const double current : {0.9, 1.1, -1.4})
+    for (const double start_m : {0.0, 100.0, -100.0}) {
+      devices::Route route({12, 0.5, 3});
+      route.start({at(1e5, 0)}, false, {0, 0});
+      // The slowest rate is kappa / Delta cos^3(drift), with sin(drift) = 1.4 / 1.6: 22 m exp(-2000 s x 0.0047/s) = 2
+      // mm, and up to 1000 s before, for 4 Delta when it starts far away.
+      EXPECT_NEAR(drive(route, {0, start_m}, 1.6, {0, current}, 3000), 0, 5e-3) << current << ' ' << start_m;
+    }
+}
+
+TEST(Route, ComesToItsLegFromAfarWithoutGoingBeyond) {
+  devices::Route route({12, 0.5, 3});
+  route.start({at(1e5, 0)}, false, {0, 0});
+  Vector2d p(0, 100), v(0, 0);
+  devices::Aim aim;
+  for (int i = 0; i < 6000; ++i) {
+    aim = route.aim(p, v, aim.heading_rad, 0.1);
+    v = 1.5 * Vector2d(std::cos(aim.heading_rad), std::sin(aim.heading_rad));
+    p += 0.1 * v;
+    // The first steps, without a speed, are all that the integral takes for drift.
+    ASSERT_GT(p.y(), -0.1) << i;
+  }
+  EXPECT_NEAR(p.y(), 0, 1e-3);
+}
+
+TEST(Route, TheIntegralStandsInATurn) {
+  devices::Route route({12, 0.5, 3});
+  route.start({at(1000, 0)}, false, {0, 0});
+  // For 10 s it goes to the left, across its leg, because its heading is not yet that of the leg.
+  for (int i = 0; i < 100; ++i) route.aim({20, 0}, {0, 1.5}, std::numbers::pi / 2, 0.1);
+  EXPECT_NEAR(route.aim({20, 0}, {1.5, 0}, 0, 0.1).heading_rad, 0, 1e-12);
+}
+
+TEST(Route, ACurrentThatItCannotStandIsForgottenWhenItIsOver) {
+  devices::Route route({12, 0.5, 3});
+  route.start({at(1e5, 0)}, false, {0, 0});
+  // An hour in 2 m/s, with a speed of 1.6 m/s: 4 Delta is the most that the integral takes.
+  Vector2d p(0, 0), v(0, 0);
+  devices::Aim aim;
+  const auto step = [&](double current) {
+    aim = route.aim(p, v, aim.heading_rad, 0.1);
+    v = 1.6 * Vector2d(std::cos(aim.heading_rad), std::sin(aim.heading_rad)) + Vector2d(0, current);
+    p += 0.1 * v;
+  };
+  for (int i = 0; i < 36000; ++i) step(2);
+  p = {0, 0};
+  for (int i = 0; i < 6000; ++i) step(0);  // 48 m at 0.5 m/s, and 12 times Delta / kappa after that
+  EXPECT_NEAR(p.y(), 0, 0.01);
+}
+
 TEST(Route, GoesFromPointToPointAndRoundWhenItLoops) {
   devices::Route route({5, 0.3, 2});
   route.start({at(20, 0), at(20, 20), at(0, 20)}, false, {0, 0});
@@ -74,16 +127,16 @@ TEST(Route, GoesFromPointToPointAndRoundWhenItLoops) {
 TEST(Route, DoesNotTurnBackForAPointThatItMissed) {
   devices::Route route({10, 0, 3});
   route.start({at(50, 0), at(100, 0)}, false, {0, 0});
-  route.aim({49, 20}, 0.1);
+  route.aim({49, 20}, {0, 0}, 0, 0.1);
   EXPECT_EQ(route.index(), 0u);
-  route.aim({51, 20}, 0.1);
+  route.aim({51, 20}, {0, 0}, 0, 0.1);
   EXPECT_EQ(route.index(), 1u);
 }
 
 TEST(Route, TakesPointsOnOneSpotWithoutEnd) {
   devices::Route route({10, 0.3, 3});
   route.start({at(0, 0), at(0, 0), at(0, 0)}, true, {0, 0});
-  const devices::Aim aim = route.aim({0, 0}, 0.1);
+  const devices::Aim aim = route.aim({0, 0}, {0, 0}, 0, 0.1);
   EXPECT_TRUE(std::isfinite(aim.heading_rad));
 }
 

@@ -11,6 +11,7 @@
 #include "shoal/helm_command_t.hpp"
 #include "shoal/station_command_t.hpp"
 #include "shoal/waypoints_command_t.hpp"
+#include "shoal/wrench_t.hpp"
 #include "sim/vehicle/vehicle.hpp"
 #include "sim/world/world_state.hpp"
 #include "tests/devices/world_fixture.hpp"
@@ -239,6 +240,195 @@ vehicles:
   const auto state = test.state_after(120);
   EXPECT_NEAR(state.altitude_error_m, 0, 0.01);
   EXPECT_NEAR(test.place().z(), -24, 0.01);
+}
+
+/// A medium with a constant current.
+std::string current_of(double x_mps, double y_mps) {
+  return "{water: {}, current: [{type: constant, velocity_mps: [" + std::to_string(x_mps) + ", " +
+         std::to_string(y_mps) + ", 0]}]}";
+}
+
+double tilt_deg(const AutopilotWorld& test) {
+  return std::acos(std::min(1.0, test.world.find_vehicle("v")->base().X_WB().linear()(2, 2))) /
+         sim::degrees_to_radians(1);
+}
+
+double forward_mps(const AutopilotWorld& test) {
+  const sim::Body& body = test.world.find_vehicle("v")->base();
+  return body.X_WB().linear().col(0).dot(body.v_WB_W());
+}
+
+/// What an autopilot holds as long as its actuators have the force for it, with steps of 5, 10 and 20 ms.
+class AutopilotHolds : public testing::TestWithParam<const char*> {
+ protected:
+  std::string stepped(std::string yaml) const {
+    const std::string step = "step_s: 0.01";
+    return yaml.replace(yaml.find(step), step.size(), std::string("step_s: ") + GetParam());
+  }
+};
+
+INSTANTIATE_TEST_SUITE_P(Steps, AutopilotHolds, testing::Values("0.005", "0.01", "0.02"));
+
+TEST_P(AutopilotHolds, ABoatStaysWhereItIsWhereverTheCurrentComesFrom) {
+  // Its drag of 77.55 V is 155 N in 2 m/s, its thrust 2 x 119.7 N.
+  for (const double current : {-2.0, -0.8, 0.6, 0.8, 2.0}) {
+    AutopilotWorld test(stepped(
+        world_with("otter_autopilot.yaml", "      devices.autopilot.mode: station\n", current_of(current, 0), 0)));
+    test.run_for(150);
+    for (int i = 0; i < 10; ++i) EXPECT_LT(test.state_after(10).distance_m, 0.5) << current;
+  }
+}
+
+TEST_P(AutopilotHolds, ABoatStaysAtTheEndOfItsRoute) {
+  AutopilotWorld test(stepped(world_with("otter_autopilot.yaml",
+                                         "      devices.autopilot.waypoints: [{at_m: [40, 0], speed_mps: 1.5}]\n",
+                                         current_of(0.9, 0), 0)));
+  const auto state = test.state_after(200);
+  EXPECT_EQ(state.mode, 3);
+  EXPECT_LT(state.distance_m, 0.5);
+}
+
+TEST_P(AutopilotHolds, ARovStaysLevelAtItsStation) {
+  // 13.7 V + 141 V^2 against 4 x 39.91 N x cos 45 deg ahead: 0.847 m/s.  Aside 217 V^2: 0.72 m/s.
+  for (const auto& [x_mps, y_mps] : {std::pair{-0.5, 0.0}, {-0.6, 0.0}, {-0.8, 0.0}, {0.8, 0.0}, {0.0, 0.65}}) {
+    AutopilotWorld test(stepped(world_with("bluerov2_station.yaml", "      devices.autopilot.hold: {heading_deg: 0}\n",
+                                           current_of(x_mps, y_mps))));
+    double tilt = 0;
+    for (int i = 0; i < 90; ++i) {
+      test.run_for(1);
+      tilt = std::max(tilt, tilt_deg(test));
+    }
+    EXPECT_LT(tilt, 5) << x_mps << ' ' << y_mps;
+    const auto state = test.state_after(1);
+    EXPECT_LT(state.distance_m, 0.1) << x_mps << ' ' << y_mps;
+    EXPECT_EQ(state.saturated, 0) << x_mps << ' ' << y_mps;
+  }
+}
+
+TEST_P(AutopilotHolds, ARovTooHeavyOrTooLightKeepsItsDepth) {
+  // Its 13.5 kg and 0.0194 m3: 62.6 N up; 0.0077 m3: 55 N down.
+  for (const char* volume : {"0.0194", "0.0077"}) {
+    AutopilotWorld test(stepped(world_with("bluerov2_station.yaml",
+                                           std::string("      devices.autopilot.hold: {depth_m: 20}\n"
+                                                       "      bodies.frame.hydrodynamics.volume_m3: ") +
+                                               volume + "\n",
+                                           "{water: {}}", -20)));
+    test.run_for(100);
+    for (int i = 0; i < 10; ++i) EXPECT_NEAR(test.state_after(2).depth_error_m, 0, 0.1) << volume;
+  }
+}
+
+TEST_P(AutopilotHolds, ARovWithstandsATorque) {
+  // Of 30 N m about z and 19 N m about y.
+  for (const auto& [axis, torque_Nm] : {std::pair{2, 1.0}, {2, 2.0}, {2, 8.0}, {1, 2.0}, {1, 4.0}}) {
+    AutopilotWorld test(
+        stepped(world_with("bluerov2_station.yaml", "      devices.autopilot.hold: {heading_deg: 0}\n")));
+    test.run_for(5);
+    shoal::wrench_t wrench{};
+    wrench.torque_Nm[static_cast<std::size_t>(axis)] = torque_Nm;
+    test.send("v.wrench.cmd", wrench);
+    const auto state = test.state_after(60);
+    EXPECT_NEAR(state.heading_error_rad, 0, 0.01) << axis << ' ' << torque_Nm;
+    EXPECT_LT(tilt_deg(test), 0.5) << axis << ' ' << torque_Nm;
+    EXPECT_LT(test.world.find_vehicle("v")->base().w_WB_W().norm(), 1e-3) << axis << ' ' << torque_Nm;
+  }
+}
+
+TEST_P(AutopilotHolds, ACraftKeepsToItsLegAcrossAnyCurrentBelowItsSpeed) {
+  struct Case {
+    const char *file, *speed;
+    double current_mps;
+  };
+  for (const Case& one : {Case{"remus100_survey.yaml", "1.6", 0.9}, Case{"remus100_survey.yaml", "1.6", 1.1},
+                          Case{"otter_autopilot.yaml", "1.5", 1.2}}) {
+    AutopilotWorld test(stepped(world_with(
+        one.file, std::string("      devices.autopilot.waypoints: [{at_m: [3000, 0], speed_mps: ") + one.speed + "}]\n",
+        current_of(0, one.current_mps), one.file[0] == 'o' ? 0 : -10)));
+    EXPECT_NEAR(test.state_after(500).cross_track_m, 0, 0.1) << one.file << ' ' << one.current_mps;
+  }
+}
+
+TEST_P(AutopilotHolds, ARovDrivesLevelUpToItsTopSpeed) {
+  for (const double speed_mps : {0.4, 0.5, 0.7, 1.0}) {
+    AutopilotWorld test(
+        stepped(world_with("bluerov2_station.yaml", "      devices.autopilot.mode: hold\n", "{water: {}}", -50)));
+    test.run_for(5);
+    test.helm(speed_mps, 0, 50);
+    double tilt = 0;
+    for (int i = 0; i < 110; ++i) {
+      // A knock on its nose for a second; it would tilt by 0.5 / (25 x 0.365) rad at rest.
+      shoal::wrench_t knock{};
+      knock.torque_Nm[1] = i == 60 ? 0.5 : 0;
+      if (i >= 60) test.send("v.wrench.cmd", knock);
+      test.run_for(1);
+      tilt = std::max(tilt, tilt_deg(test));
+    }
+    const auto state = test.state_after(1);
+    EXPECT_GT(tilt, 1) << speed_mps;
+    EXPECT_LT(tilt, 8) << speed_mps;
+    EXPECT_LT(tilt_deg(test), 0.5) << speed_mps;
+    EXPECT_NEAR(state.depth_error_m, 0, 0.2) << speed_mps;
+    // 1 m/s is above the 0.847 m/s at which its thrust is its drag.
+    EXPECT_NEAR(forward_mps(test), std::min(speed_mps, 0.847), 0.01 * speed_mps);
+    EXPECT_EQ(state.saturated, speed_mps > 0.847) << speed_mps;
+  }
+}
+
+TEST(Autopilot, WhatItHoldsDoesNotDependOnWhatWasBefore) {
+  // Its propellers do not answer for a minute, and the current carries it away.
+  AutopilotWorld test(
+      world_with("otter_autopilot.yaml", "      devices.autopilot.mode: station\n", current_of(1, 0), 0) +
+      "events:\n"
+      "  - {name: dead, at: 20, do: [{fault: {device: v/port, kind: dead}}, {fault: {device: v/starboard, "
+      "kind: dead}}]}\n"
+      "  - {name: back, at: 80, do: [{clear_fault: v/port}, {clear_fault: v/starboard}]}\n");
+  EXPECT_GT(test.state_after(80).distance_m, 30);
+  EXPECT_LT(test.state_after(320).distance_m, 0.5);
+}
+
+std::vector<std::string> level_lines(const std::string& overrides, bool warnings) {
+  AutopilotWorld test(world_with("bluerov2_station.yaml", overrides));
+  sim::Warnings& building = test.world.warnings().building();
+  return warnings ? building.lines() : building.notes();
+}
+
+TEST(Autopilot, SaysUpToWhichSpeedItsGainsOutweighTheMunkMoment) {
+  using testing::ElementsAre;
+  using testing::HasSubstr;
+  using testing::IsEmpty;
+  // (w^2 (I + A) + W BG) / (Az - Ax) = (25 x 0.365 + 1.347) / 12.32 ahead, (25 x 0.449 + 1.347) / 11.56 aside.
+  const std::string reported = "vehicle 'v': device 'autopilot': it holds the vehicle level up to ";
+  EXPECT_THAT(
+      level_lines("      devices.autopilot.mode: hold\n", false),
+      ElementsAre(HasSubstr(reported + "0.92 m/s ahead and 1.04 m/s to the side; the thrusters reach 0.85 m/s and")));
+  EXPECT_THAT(level_lines("      devices.autopilot.mode: hold\n", true), Not(testing::Contains(HasSubstr("level"))));
+  // With 1.2 rad/s: (0.526 + 1.347) / 12.32, and the gain needed at 0.847 m/s is 4.53.
+  EXPECT_THAT(level_lines("      devices.autopilot.gains.attitude.bandwidth_radps: 1.2\n", true),
+              testing::Contains(AllOf(HasSubstr(reported + "0.39 m/s ahead"),
+                                      HasSubstr("unless 'gains: attitude: bandwidth_radps' is above 4.53"))));
+  EXPECT_THAT(level_lines("      devices.autopilot.axes: [surge, sway, heave, yaw]\n", true),
+              testing::Contains(HasSubstr("the thrusters do not control its tilt")));
+}
+
+TEST(Autopilot, TurnsOverWhereItsGainsLoseToTheMunkMoment) {
+  // The gains that are said to be enough below 0.39 m/s.
+  const auto tilt_at = [](double speed_mps) {
+    AutopilotWorld test(world_with("bluerov2_station.yaml",
+                                   "      devices.autopilot.gains.attitude.bandwidth_radps: 1.2\n"
+                                   "      devices.autopilot.mode: hold\n",
+                                   "{water: {}}", -50));
+    test.run_for(1);
+    test.helm(speed_mps, 0, 50);
+    double tilt = 0;
+    for (int i = 0; i < 120; ++i) {
+      test.run_for(1);
+      tilt = std::max(tilt, tilt_deg(test));
+    }
+    return tilt;
+  };
+  EXPECT_LT(tilt_at(0.37), 5);
+  // The estimate of the disturbance and a heave that gives way hold some more than the closed form.
+  EXPECT_GT(tilt_at(0.5), 20);
 }
 
 TEST(Autopilot, TakesSetpointsAndLeavesWhatIsNaN) {

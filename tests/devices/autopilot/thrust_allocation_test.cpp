@@ -48,10 +48,29 @@ TEST(ThrustAllocation, GivesTheWrenchOfEightThrustersExactly) {
 TEST(ThrustAllocation, ScalesAllForcesByOneNumberWhereOneIsOverItsLimit) {
   const ThrustAllocation allocation(heavy(), {});
   Eigen::VectorXd forces;
-  const double scale = allocation.allocate(100 * some_wrench(), forces);
+  Wrench desired = 100 * some_wrench();
+  desired.segment<2>(3).setZero();
+  const double scale = allocation.allocate(desired, forces);
   EXPECT_LT(scale, 1);
   EXPECT_NEAR(forces.cwiseAbs().maxCoeff(), 40, 1e-12);
-  EXPECT_NEAR((allocation.wrench_of(forces) - scale * 100 * some_wrench()).norm(), 0, 1e-10);
+  EXPECT_NEAR((allocation.wrench_of(forces) - scale * desired).norm(), 0, 1e-10);
+}
+
+TEST(ThrustAllocation, RollAndPitchComeFirst) {
+  const ThrustAllocation allocation(heavy(), {});
+  Eigen::VectorXd forces;
+  Wrench level = Wrench::Zero(), rest = 100 * some_wrench();
+  level.segment<2>(3) << 3, -2;
+  rest.segment<2>(3).setZero();
+  const double scale = allocation.allocate(level + rest, forces);
+  EXPECT_GT(scale, 0);
+  EXPECT_LT(scale, 1);
+  EXPECT_NEAR(forces.cwiseAbs().maxCoeff(), 40, 1e-12);
+  EXPECT_NEAR((allocation.wrench_of(forces) - level - scale * rest).norm(), 0, 1e-10);
+  // Too much of them leaves nothing to the others: 4 x 40 N x 0.218 m about x.
+  level.segment<2>(3) << 1000, 0;
+  EXPECT_NEAR(allocation.allocate(level + rest, forces), 0, 1e-12);
+  EXPECT_NEAR(allocation.wrench_of(forces)[3], 4 * 40 * 0.218, 1e-9);
 }
 
 TEST(ThrustAllocation, AThrusterOfTwiceTheWeightDoesHalfAsMuch) {

@@ -6,6 +6,7 @@
 #include "shoal/nmea_sentence_t.hpp"
 #include "sim/world/world_editor.hpp"
 #include "sim/world/world_state.hpp"
+#include "tests/comma_locale.hpp"
 #include "tests/devices/comms/modem_fixture.hpp"
 #include "tests/devices/comms/sentence_field.hpp"
 #include "tests/fidelity/closed_forms.hpp"
@@ -136,6 +137,19 @@ TEST(Micromodem, APingMeasuresTheTravelTime) {
   hosts.emit("a", "$CCMPC,1,77");
   hosts.run_for(9);
   EXPECT_THAT(hosts.take("a"), Contains("CAMPR,77,1"));
+}
+
+TEST(Micromodem, ItsSentencesHaveAPointInTheirNumbersInEveryLocaleOfTheProgram) {
+  const test_support::CommaLocale comma;
+  Hosts hosts(three_micromodems());
+  hosts.emit("b", "$CCCFG,CST,1");
+  hosts.run_for(0.05);
+  hosts.emit("a", "$CCMPC,1,2");
+  hosts.run_for(4);
+  EXPECT_THAT(hosts.take("a"), Contains("CAMPR,2,1,0.5000"));  // 750 m at 1500 m/s
+  const auto statistics = only(hosts.take("b"), "CACST");
+  ASSERT_FALSE(statistics.empty());
+  EXPECT_THAT(statistics[0], HasSubstr(",0.0,"));  // the Doppler of modems at rest
 }
 
 TEST(Micromodem, APingOfAMovingOneMeasuresTheMeanOfBothWays) {

@@ -144,6 +144,37 @@ TEST_P(EveryAxisWithStops, HoldsThemAndMovesThemWhileItRuns) {
   EXPECT_EQ(rig.refused(), 0);
 }
 
+TEST_P(EveryAxisWithStops, LeavesThemAtItsVelocity) {
+  Rig rig(GetParam().joint);
+  const int axis = GetParam().axis;
+  // In a step its force makes it 5 rad/s (m/s) faster.
+  rig.set(axis, 0.5, 5000 * GetParam().inertia, -0.1, 0.2);
+  rig.run_for(1);
+  ASSERT_NEAR(rig.joint().position(axis), 0.2, 1e-6);
+  for (const double velocity : {-0.3, 0.4, -0.3}) {
+    rig.set(axis, velocity);
+    for (int i = 0; i < 1500; ++i) {
+      rig.world.step();
+      ASSERT_LE(std::abs(rig.joint().velocity(axis)), std::abs(velocity) + 1e-6) << velocity << " in step " << i;
+    }
+    EXPECT_NEAR(rig.joint().position(axis), velocity < 0 ? -0.1 : 0.2, 1e-6);
+  }
+}
+
+TEST_P(EveryAxisWithStops, HoldsThemNearHalfATurn) {
+  Rig rig(GetParam().joint);
+  const int axis = GetParam().axis;
+  for (const double sign : {1.0, -1.0}) {
+    // With 50 rad/s it comes up to 0.05 rad too far: beyond half a turn.
+    rig.set(axis, 50 * sign, 5e4 * GetParam().inertia, -3.14, 3.14);
+    rig.run_for(1);
+    EXPECT_NEAR(rig.joint().position(axis), 3.14 * sign, 1e-6);
+    rig.set(axis, -1 * sign);
+    rig.run_for(1);
+    EXPECT_NEAR(rig.joint().position(axis), 2.14 * sign, 2e-3);
+  }
+}
+
 TEST_P(EveryAxisWithStops, AStopThatIsSetBehindItPushesItBack) {
   Rig rig(GetParam().joint);
   const int axis = GetParam().axis;
@@ -254,15 +285,9 @@ TEST(JointDrive, RefusesBadCommandsAndContinues) {
     int axis;
     double velocity, max_force, low_stop, high_stop;
   } bad[] = {
-      {1, 0.1, 1, nan_, nan_},
-      {-2, 0.1, 1, nan_, nan_},
-      {0, infinity, nan_, nan_, nan_},
-      {0, nan_, -1, nan_, nan_},
-      {0, nan_, infinity, nan_, nan_},
-      {0, 9, 9, 2, nan_},
-      {0, 9, 9, 0.5, 0.4},
-      {0, 9, 9, nan_, 4},
-      {0, 9, 9, infinity, nan_},
+      {1, 0.1, 1, nan_, nan_},    {-2, 0.1, 1, nan_, nan_},        {0, infinity, nan_, nan_, nan_},
+      {0, nan_, -1, nan_, nan_},  {0, nan_, infinity, nan_, nan_}, {0, 9, 9, 2, nan_},
+      {0, 9, 9, 0.5, 0.4},        {0, 9, 9, nan_, 12.6},           {0, 9, 9, infinity, nan_},
       {0, 9, 9, nan_, -infinity},
   };
   std::int64_t count = 0;

@@ -38,6 +38,11 @@ TEST(ThrusterCommand, AllowsForTheInflowOfAPropeller) {
   const double n = 20, D = 0.14;
   const double thrust_N = 0.9 * 1026 * D * D * D * D * n * (0.4566 * n - 0.41737033 * 0.944 * 1.5 / D);
   EXPECT_NEAR(curve.command_for_N(thrust_N, 1.5, 1026), 1200, 1e-9);
+  EXPECT_NEAR(curve.force_N(1200, 1.5, 1026), thrust_N, 1e-9);
+  // What its speed allows in this flow is less than at the bollard.
+  EXPECT_EQ(curve.command_for_N(curve.max_N(1026), 1.5, 1026), 1525);
+  EXPECT_LT(curve.force_N(1525, 1.5, 1026), 0.8 * curve.max_N(1026));
+  EXPECT_NEAR(curve.force_N(curve.command_for_N(-10, -0.5, 1026), -0.5, 1026), -10, 1e-9);
 }
 
 TEST(ThrusterCommand, ReadsATableBackwardsAndStepsOverItsDeadBand) {
@@ -49,6 +54,7 @@ TEST(ThrusterCommand, ReadsATableBackwardsAndStepsOverItsDeadBand) {
   EXPECT_NEAR(curve.command_for_N(-20, 0, 1000), -0.55, 1e-12);
   EXPECT_EQ(curve.command_for_N(0, 0, 1000), 0);
   EXPECT_NEAR(curve.command_for_N(0.1, 0, 1000), 0.1018, 1e-12);
+  EXPECT_NEAR(curve.force_N(0.1018, 3, 1000), 0.1, 1e-12);
 }
 
 }  // namespace

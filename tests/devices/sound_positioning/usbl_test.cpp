@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gmock/gmock.h>
 
+#include "devices/sound_positioning/usbl_array.hpp"
 #include "shoal/transponder_t.hpp"
 #include "shoal/usbl_t.hpp"
 #include "sim/world/world_editor.hpp"
@@ -213,6 +214,85 @@ TEST(Usbl, ErrorsHaveTheSpreadAskedFor) {
   const double n = in_azimuth.count;
   EXPECT_NEAR(above / n, 0.1587, 4 * std::sqrt(0.1587 * 0.8413 / n));
   EXPECT_NEAR(truths.last().range_m, 1, 1e-9);
+}
+
+/// Standard deviations of the measured position in the axes of the sensor.
+sim::Vector3d position_std_m(const std::string& keys, const std::string& position_m) {
+  test::TestWorld test(usbl_world(", ping_period_s: 0.01" + keys, transponder("t", position_m, ", turnaround_s: 0")));
+  test::Listener<usbl_t> fixes(test, "r1.s");
+  test.run_for(300);
+  std::vector<double> of[3];
+  for (const auto& fix : fixes.take_all())
+    for (int i = 0; i < 3; ++i) of[i].push_back(fix.position_m[i]);
+  EXPECT_GT(of[0].size(), 900u);
+  return {test::statistics(of[0]).std, test::statistics(of[1]).std, test::statistics(of[2]).std};
+}
+
+TEST(Usbl, AboveItsTransponderItsErrorsAreTheSameInBothDirections) {
+  const std::string keys = ", azimuth_noise: {gaussian_std: 0.01}, elevation_noise: {gaussian_std: 0.01}";
+  // 200 m below, 2 m ahead and to the left; the standard deviation of some 1000 values is known to 2.3 %.
+  const sim::Vector3d below = position_std_m(keys, "[0, 0, -210]");
+  EXPECT_NEAR(below.x(), 2, 4 * 0.046);
+  EXPECT_NEAR(below.y(), 2, 4 * 0.046);
+  EXPECT_LT(below.z(), 0.05);
+  // At an elevation of 60 degrees: across 2 m, along 2 m times its sine, up 2 m times its cosine.
+  const sim::Vector3d aside = position_std_m(keys, "[0, 100, -183.205]");
+  EXPECT_NEAR(aside.x(), 2, 4 * 0.046);
+  EXPECT_NEAR(aside.y(), 2 * std::sqrt(3) / 2, 4 * 0.046);
+  EXPECT_NEAR(aside.z(), 1, 4 * 0.023);
+}
+
+TEST(Usbl, APlanarArrayMeasuresTwoCosinesAndHardlyElevationsNearItsPlane) {
+  // A difference of phase of 0.1 rad: with 28 kHz, 0.2 m and 1490 m/s 4.23e-3 of each cosine, 0.85 m at 200 m.  The
+  // standard deviation of some 1000 values is known to 2.3 %.
+  const std::string keys = ", array: {baseline_m: 0.2, phase_std_deg: 5.729578}";
+  const double std_m = 200 * 1490 / 28000.0 / (2 * M_PI * 0.2) * 0.1;
+  const sim::Vector3d below = position_std_m(keys, "[0, 0, -210]");
+  EXPECT_NEAR(below.x(), std_m, 0.1 * std_m);
+  EXPECT_NEAR(below.y(), std_m, 0.1 * std_m);
+  // 30 degrees below the level: horizontally the same, and the height by the cotangent of that: sqrt(3) times as much.
+  const sim::Vector3d aside = position_std_m(keys, "[173.205, 0, -110]");
+  EXPECT_NEAR(aside.x(), std_m, 0.1 * std_m);
+  EXPECT_NEAR(aside.y(), std_m, 0.1 * std_m);
+  EXPECT_NEAR(aside.z(), std::sqrt(3) * std_m, 0.1 * std::sqrt(3) * std_m);
+}
+
+TEST(Usbl, TheErrorsOfAnArrayGrowAsTheSignalGetsWeaker) {
+  // 20 dB less are ten times the error of a phase.  sqrt(n) for the deviation of 1000 values: 2.3 %.
+  const auto across_m = [](int source_level_dB) {
+    test::TestWorld test(usbl_world(
+        ", ping_period_s: 0.01, array: {baseline_m: 0.1}",
+        transponder("t", "[0, 0, -110]", ", turnaround_s: 0, source_level_dB: " + std::to_string(source_level_dB))));
+    test::Listener<usbl_t> fixes(test, "r1.s");
+    test.run_for(170);
+    std::vector<double> y_m;
+    for (const auto& fix : fixes.take_all()) y_m.push_back(fix.position_m[1]);
+    EXPECT_GT(y_m.size(), 900u);
+    return test::statistics(y_m).std;
+  };
+  EXPECT_NEAR(across_m(130) / across_m(150), 10, 4 * 0.33);
+}
+
+TEST(UsblArray, HasTheErrorOfTwoPhasesInNoise) {
+  devices::UsblArrayParams array;
+  array.baseline_m = 0.2;
+  // 20 dB and 10 independent samples: phases of 1 / sqrt(2 * 1000) rad each, sqrt(2) times that for their difference.
+  EXPECT_NEAR(array.cosine_std({sim::PowerRatio(100), 10, 0.05}),
+              0.05 / (2 * M_PI * 0.2) * std::sqrt(1 / 1000.0 * (1 + 1 / 200.0)), 1e-12);
+  array.phase_std_rad = 0.3;
+  EXPECT_NEAR(array.cosine_std({sim::PowerRatio(1e12), 10, 0.05}), 0.05 / (2 * M_PI * 0.2) * 0.3, 1e-9);
+}
+
+TEST(UsblArray, DirectionsTurnAsOnASphere) {
+  const sim::Vector3d level = devices::turned(0.3, 0, 0.1, 0);
+  EXPECT_NEAR(std::atan2(level.y(), level.x()), 0.4, 1e-12);
+  EXPECT_NEAR(level.z(), 0, 1e-12);
+  const sim::Vector3d below = devices::turned(0, -M_PI / 2, 0.1, 0);
+  EXPECT_NEAR((below - sim::Vector3d(0, std::sin(0.1), -std::cos(0.1))).norm(), 0, 1e-12);
+  EXPECT_NEAR(devices::turned(1, -1, 0.2, 0.3).norm(), 1, 1e-12);
+  // Beyond the plane of the array: in it.  The side is known.
+  EXPECT_EQ(devices::with_cosine_errors({1, 0, 0}, 0.01, 0), sim::Vector3d(1, 0, 0));
+  EXPECT_NEAR(devices::with_cosine_errors({0, 0, -1}, 0.6, 0).z(), -0.8, 1e-12);
 }
 
 TEST(Usbl, TranspondersComeAndGoWithTheirVehicles) {

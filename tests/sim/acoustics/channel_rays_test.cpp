@@ -58,7 +58,7 @@ TEST(AcousticRays, TravelTimesAreThoseOfBellhop) {
   // Level range and travel time in ms.
   for (const auto& [range_m, time_ms] :
        {std::pair{100.0, 74.10549}, {500.0, 333.46289}, {1000.0, 663.03492}, {2000.0, 1322.57724}}) {
-    TestWorld test(thermocline("{spreading: {factor: 2}}", two_at(range_m)));
+    TestWorld test(thermocline("{}", two_at(range_m)));
     const Arrived received = send_one(test);
     ASSERT_TRUE(received.any) << range_m;
     EXPECT_EQ(received.loss, SignalLoss::none) << range_m;
@@ -68,7 +68,7 @@ TEST(AcousticRays, TravelTimesAreThoseOfBellhop) {
 
 TEST(AcousticRays, LevelsAreThoseOfTheRayTube) {
   for (const auto& [range_m, loss_dB] : {std::pair{100.0, 41.05}, {500.0, 58.22}, {1000.0, 69.26}}) {
-    TestWorld test(thermocline("{spreading: {factor: 2}, absorption: {model: constant, dBpkm: 0}}", two_at(range_m)));
+    TestWorld test(thermocline("{absorption: {model: constant, dBpkm: 0}}", two_at(range_m)));
     EXPECT_NEAR(send_one(test).level_dB, 185 - loss_dB, 0.03) << range_m;
   }
 }
@@ -92,7 +92,7 @@ TEST(AcousticRays, AreTheDefaultWhereTheWaterHasAProfileOnly) {
 
 TEST(AcousticRays, InWaterOfOneSpeedNothingChanges) {
   TestWorld straight(test::sea("{spreading: {factor: 2}}", two_at(700))),
-      rays(test::sea("{spreading: {factor: 2}, propagation: rays}", two_at(700)));
+      rays(test::sea("{propagation: rays}", two_at(700)));
   const Arrived one = send_one(straight), other = send_one(rays);
   EXPECT_NEAR(one.travel_time_s, other.travel_time_s, 1e-9);
   EXPECT_NEAR(one.level_dB, other.level_dB, 1e-6);
@@ -101,7 +101,7 @@ TEST(AcousticRays, InWaterOfOneSpeedNothingChanges) {
 
 TEST(AcousticRays, AShadowTakesWhatTheStraightLineWouldDeliver) {
   // The last ray from 1 m to 50 m grazes the bottom of the mixed layer.
-  TestWorld inside(thermocline("{spreading: {factor: 2}}", two_at(1900)));
+  TestWorld inside(thermocline("{}", two_at(1900)));
   EXPECT_EQ(send_one(inside).loss, SignalLoss::none);
   TestWorld beyond(thermocline("{}", two_at(2300)));
   EXPECT_EQ(send_one(beyond).loss, SignalLoss::shadow);
@@ -116,7 +116,7 @@ TEST(AcousticRays, AWaveReachesTheEdgeOfAShadow) {
     return vehicle("a", "[0, 0, -20]") + vehicle("b", "[" + std::to_string(range_m) + ", 0, -20]");
   };
   TestWorld near(thermocline("{}", both_at_20_m(100))),
-      straight(thermocline("{propagation: straight}", both_at_20_m(100)));
+      straight(thermocline("{propagation: straight, spreading: {factor: 2}}", both_at_20_m(100)));
   const Arrived near_one = send_one(near);
   EXPECT_EQ(near_one.loss, SignalLoss::none);
   EXPECT_NEAR(near_one.level_dB, send_one(straight).level_dB - 6, 1e-6);
@@ -125,7 +125,7 @@ TEST(AcousticRays, AWaveReachesTheEdgeOfAShadow) {
 }
 
 TEST(AcousticRays, SoundLeaksIntoAShadowWithTheLossOfItsKey) {
-  TestWorld straight(thermocline("{propagation: straight}", two_at(2300)));
+  TestWorld straight(thermocline("{propagation: straight, spreading: {factor: 2}}", two_at(2300)));
   TestWorld leaks(thermocline("{shadow_loss_dB: 25}", two_at(2300)));
   const Arrived full = send_one(straight), leaked = send_one(leaks);
   EXPECT_EQ(leaked.loss, SignalLoss::none);
@@ -143,8 +143,7 @@ TEST(AcousticRays, AnEchoOfTheBottomReachesAShadowLater) {
 }
 
 TEST(AcousticRays, MeetAMovingReceiver) {
-  TestWorld test(thermocline("{spreading: {factor: 2}}",
-                             vehicle("a", "[0, 0, -1]", "", 2, 90) + vehicle("b", "[900, 0, -50]", "", 3, 0)));
+  TestWorld test(thermocline("{}", vehicle("a", "[0, 0, -1]", "", 2, 90) + vehicle("b", "[900, 0, -50]", "", 3, 0)));
   test.run_for(10);
   const Arrived received = send_one(test, 10s);
   ASSERT_EQ(received.loss, SignalLoss::none);

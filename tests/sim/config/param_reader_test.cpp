@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/config/param_reader.hpp"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <functional>
+#include <map>
 #include <numbers>
 #include <optional>
 #include <string>
@@ -40,6 +41,17 @@ std::string error_of(T& value, const std::string& yaml, const Rest&... rest) {
   const Lines lines = errors_of("x: " + yaml + "\n", [&](ParamReader& in) { in.read("x", value, rest..., "a test"); });
   EXPECT_LE(lines.size(), 1u);
   return lines.empty() ? "" : lines[0];
+}
+
+// Text
+
+TEST(ParamReader, RefusesControlCharactersWhichATerminalWouldObey) {
+  std::string text;
+  EXPECT_EQ(error_of(text, R"("two\nlines\tand ü")"), "");
+  EXPECT_EQ(text, "two\nlines\tand ü");
+  for (const auto& [yaml, shown] : std::map<std::string, std::string>{
+           {R"("\e]0;x\a")", R"(\x1b]0;x\x07)"}, {R"("a\rb")", R"(a\rb)"}, {R"("\x9b2J")", R"(\x9b2J)"}})
+    EXPECT_THAT(error_of(text, yaml), testing::EndsWith("'x' must have no control characters, got '" + shown + "'"));
 }
 
 // Rules

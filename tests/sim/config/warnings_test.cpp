@@ -44,4 +44,13 @@ TEST(Warnings, CommandNoTerminal) {
   EXPECT_THAT(log.text(), testing::Not(testing::HasSubstr("\x1b")));
 }
 
+TEST(Warnings, NotesAreKeptOnceAndAreNoWarnings) {
+  const test_support::LogCapture log;
+  sim::Warnings warnings;
+  for (const char* who : {"vehicle 'a'", "vehicle 'b'"}) warnings.note(at(7), who, "it holds");
+  EXPECT_THAT(warnings.notes(), testing::ElementsAre("w.yaml:7:3: vehicle 'a': it holds"));
+  EXPECT_TRUE(warnings.lines().empty());
+  EXPECT_EQ(log.text(), "");
+}
+
 }  // namespace

@@ -181,7 +181,11 @@ TEST(Current, BadGridsAreRefusedWithTheLine) {
   const std::string header = "x_m,y_m,east_mps,north_mps\n";
   EXPECT_THAT(error("x,y,u,v\n"), HasSubstr("line 1: the header must name"));
   EXPECT_THAT(error(header + "0,0,a,1\n"), HasSubstr("line 2: 'east_mps' is not a number"));
-  EXPECT_THAT(error(header + "0,0,nan,1\n"), HasSubstr("line 2: 'east_mps' is not a number"));
+  EXPECT_THAT(error(header + "0,0,nan,1\n"), HasSubstr("line 2: 'east_mps' is not a number, got 'nan'; a grid in a CSV "
+                                                       "file must have all its points"));
+  EXPECT_THAT(error(header + "0,0,,1\n"), HasSubstr("line 2: 'east_mps' is not a number, got ''"));
+  EXPECT_THAT(error(header + "0,0,-99,1\n0,1,1,1\n1,0,1,1\n1,1,1,1\n"),
+              HasSubstr("has a current of 99 m/s, which is a code for a missing value"));
   EXPECT_THAT(error(header + "0,0,1\n"), HasSubstr("line 2: 'north_mps' is missing"));
   EXPECT_THAT(error(header + "0,0,1,1\n0,1,1,1\n1,0,1,1\n"), HasSubstr("one row for each of 2 x 2 points, has 3"));
   EXPECT_THAT(error(header + "0,0,1,1\n0,1,1,1\n1,0,1,1\n1,0,1,1\n"), HasSubstr("has the point 1, 0 twice"));
@@ -189,6 +193,26 @@ TEST(Current, BadGridsAreRefusedWithTheLine) {
               HasSubstr("is not a regular grid"));
   EXPECT_THAT(error(header + "0,0,101,1\n0,1,1,1\n1,0,1,1\n1,1,1,1\n"), HasSubstr("a current of 101 m/s"));
   EXPECT_THAT(error(""), HasSubstr("has no rows"));
+}
+
+TEST(Current, GridsAreReadAsSpreadsheetsAndGdalWriteThem) {
+  const test_support::ScratchFolder folder;
+  write(folder.file("flow.csv"),
+        "\xef\xbb\xbfx_m,y_m,east_mps,north_mps\r\n0,0,1,0\r\n10,0,1,0\r\n0,10,1,0\r\n10,10,"
+        "1,0\r\n");
+  const std::string grid = "\xef\xbb\xbfncols 2\nnrows 2\nxllcenter 0\nyllcenter 0\ndx 10\ndy 10\nNODATA_value nan\n";
+  write(folder.file("u.asc"), grid + "1 nan\n1 1\n");
+  write(folder.file("v.asc"), grid + "0 0\n0 0\n");
+  for (const char* files : {"file: flow.csv", "east_file: u.asc, north_file: v.asc"}) {
+    const sim::Medium medium(
+        read_medium("{water: {}, current: [{type: grid, " + std::string(files) + "}]}", folder.file("world.yaml")),
+        9.81, 1);
+    EXPECT_EQ(medium.water_velocity_W({7, 7, -1}), Vector3d(1, 0, 0)) << files;
+  }
+  write(folder.file("v.asc"), grid + "0 0\n0 zero\n");
+  EXPECT_THAT(
+      error_of("{water: {}, current: [{type: grid, east_file: u.asc, north_file: v.asc}]}", folder.file("world.yaml")),
+      HasSubstr("v.asc' line 9: current 2 of row 2 is not a number, got 'zero'"));
 }
 
 TEST(Current, ABadFileIsSaidOfItsEntry) {

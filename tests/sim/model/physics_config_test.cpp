@@ -100,7 +100,9 @@ TEST(JointConfig, MistakesAreErrors) {
   };
   EXPECT_NE(error("axis: [0, 0, 0]").find("'axis' must not be zero"), std::string::npos);
   EXPECT_NE(error("low_stop: 1, high_stop: 0").find("'low_stop' must not be above 'high_stop'"), std::string::npos);
-  EXPECT_NE(error("low_stop: -4").find("between -pi and pi"), std::string::npos);
+  EXPECT_NE(error("low_stop: -13").find("between -4 pi and 4 pi, got -13"), std::string::npos);
+  EXPECT_EQ(error("low_stop: -12.5, high_stop: 12.5").find("stops of"), std::string::npos);
+  EXPECT_NE(error("type: ball, motor: true, high_stop: 4").find("between -pi and pi, got 4"), std::string::npos);
   EXPECT_NE(error("type: universal, axis2: {axis: [0, 0, -1]}").find("must not be parallel"), std::string::npos);
   EXPECT_NE(error("axis2: {axis: [0, 1, 0]}").find("has no second axis"), std::string::npos);
   EXPECT_NE(error_of<sim::JointConfig>("{name: left, bodies: [wheel]}").find("must name two bodies, got 1"),

@@ -213,6 +213,41 @@ TEST(JointLoad, OfAStopIsCountedAsEffortWithTheMotorThatPushesIntoIt) {
   }
 }
 
+TEST(JointLoad, OfAMotorThatLeavesAStopIsThatOfTheMotor) {
+  for (const bool to_world : {true, false}) {
+    // The arm rests on its stop, which it reaches a little softly, and is then lifted from it.
+    JointConfig config = joint("elbow", JointType::hinge, {0, 0, 0}, Vector3d::UnitY());
+    config.axis1.high_stop = 0;
+    Arm rig(config, to_world);
+    run(*rig.world, 100);
+    EXPECT_NEAR(rig.joint->effort(), -g, 1e-4);
+    rig.joint->set_motor(-0.001, 100);
+    run(*rig.world, 1);
+    // Its inertia about the joint is m (l^2 + w^2) / 12 + m (l / 2)^2.
+    const double inertia_kgm2 = 2 * (1 + 0.01) / 12 + 2 * 0.25;
+    EXPECT_NEAR(rig.joint->effort(), -g - inertia_kgm2 * 0.001 / 0.01, 1e-3);
+    run(*rig.world, 1);
+    EXPECT_NEAR(rig.joint->effort(), -g, 1e-3);
+    EXPECT_NEAR((rig.joint->force_W_N() - Vector3d(0, 0, 2 * g)).norm(), 0, 1e-3);
+    EXPECT_NEAR((rig.joint->torque_W_Nm() - Vector3d(0, -g, 0)).norm(), 0, 1e-3);
+  }
+}
+
+TEST(JointLoad, OfASliderThatLeavesItsStopIsTheForceAlongIt) {
+  for (const bool to_world : {true, false}) {
+    JointConfig config = joint("lift", JointType::slider, {0, 0, 0});
+    config.axis1.low_stop = 0;
+    Arm rig(config, to_world);
+    run(*rig.world, 100);
+    rig.joint->set_motor(1, 30);
+    run(*rig.world, 1);
+    EXPECT_NEAR(rig.joint->velocity(), (30.0 / 2 - g) * 0.01, 1e-6);
+    EXPECT_NEAR(rig.joint->effort(), 30, 1e-4);
+    EXPECT_NEAR((rig.joint->force_W_N() - Vector3d(0, 0, 30)).norm(), 0, 1e-4);
+    EXPECT_NEAR((rig.joint->torque_W_Nm() - Vector3d(0, -15, 0)).norm(), 0, 1e-4);
+  }
+}
+
 TEST(JointLoad, HasTheAddedEffortOfThatStep) {
   for (const bool to_world : {true, false}) {
     Arm rig(joint("elbow", JointType::hinge, {0, 0, 0}, Vector3d::UnitY()), to_world, false, 0);

@@ -71,7 +71,7 @@ TEST(AsciiGrid, ErrorsSayTheLineAndWhatIsWrong) {
   EXPECT_EQ(error_of_ascii(""), "line 1: is not an ESRI ASCII grid: 'ncols' is missing before the heights");
   EXPECT_EQ(error_of_ascii("solid hill\n"), "line 1: unknown key of an ESRI ASCII grid");
   EXPECT_EQ(error_of_ascii("ncols 3\nncols 3\n"), "line 2: 'ncols' comes twice");
-  EXPECT_EQ(error_of_ascii("ncols three\n"), "line 1: ncols is not a number");
+  EXPECT_EQ(error_of_ascii("ncols three\n"), "line 1: ncols is not a number, got 'three'");
   EXPECT_EQ(error_of_ascii("ncols 3\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize -10\n1 2 3 4 5 6"),
             "line 5: cellsize must be > 0, got -10");
   EXPECT_EQ(error_of_ascii("ncols 3\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1e-300\n1 2 3 4 5 6"),
@@ -84,8 +84,41 @@ TEST(AsciiGrid, ErrorsSayTheLineAndWhatIsWrong) {
             "is too short for 1000 x 1000 heights");
   EXPECT_EQ(error_of_ascii(header + "1 2 3\n4 5\n"), "line 8: the file ends before height 3 of row 2");
   EXPECT_EQ(error_of_ascii(header + "1 2 3\n4 5 6 7\n"), "line 7: there are more heights than ncols times nrows");
-  EXPECT_EQ(error_of_ascii(header + "1 2 3\n4 nan 6\n"), "line 7: height 2 of row 2 is not finite");
-  EXPECT_EQ(error_of_ascii(header + "1 2 3\n4 1,5 6\n"), "line 7: height 2 of row 2 is not a number");
+  EXPECT_EQ(error_of_ascii(header + "1 2 3\n4 inf 6\n"), "line 7: height 2 of row 2 is not finite");
+  EXPECT_EQ(error_of_ascii(header + "1 2 3\n4 1,5 6\n"), "line 7: height 2 of row 2 is not a number, got '1,5'");
+}
+
+TEST(AsciiGrid, HolesAreReadInAllSpellings) {
+  const std::string size = "ncols 3\nnrows 2\nxllcenter 0\nyllcenter 0\ncellsize 10\n";
+  for (const char* word : {"nan", "NaN", "-nan", "-nan(ind)", "1.#QNAN", "-1.#IND", "null", "-9999"}) {
+    // By NODATA_value nan, by a number, and without; also as the first height, which is not a key.
+    for (const char* nodata : {"NODATA_value nan\n", "NODATA_value -9999\n", "NODATA_value null\n", ""}) {
+      if (std::string(word) == "-9999" && std::string(nodata).find("value n") != std::string::npos) continue;
+      const HeightGrid grid = sim::parse_ascii_grid(size + nodata + word + " 2 4\n2 6 7\n", 1, Holes::nearest);
+      EXPECT_EQ(grid.at(0, 1), 2) << word << " " << nodata;  // as both beside it
+      EXPECT_EQ(grid.at(2, 1), 4);
+    }
+    EXPECT_EQ(error_of_ascii(size + "2 " + word + " 4\n5 6 7\n"),
+              "line 6: a hole (NODATA) at column 2 of row 1: fill holes with 'holes: nearest' or 'holes: linear'");
+  }
+  // With NODATA_value nan a number is a height, whatever it is.
+  EXPECT_EQ(sim::parse_ascii_grid(size + "NODATA_value nan\n-9999 2 4\n5 6 7\n", 1, Holes::nearest).at(0, 1), -9999);
+}
+
+TEST(AsciiGrid, CellsAreGivenByTheirSizeOrByDxAndDy) {
+  const std::string head = "ncols 2\nnrows 2\nxllcenter 0\nyllcenter 0\n";
+  // As GDAL writes cells that are square except for rounding.
+  EXPECT_EQ(sim::parse_ascii_grid(head + "dx 10\ndy 10\n1 2\n3 4\n", 1, Holes::error).cell_m, 10);
+  EXPECT_EQ(sim::parse_ascii_grid(head + "dx 10.000000000\ndy 10.000000001\n1 2\n3 4\n", 1, Holes::error).cell_m, 10);
+  EXPECT_EQ(error_of_ascii(head + "dx 10\ndy 20\n1 2\n3 4\n"),
+            "line 6: cells must be square, but 'dx' is 10 and 'dy' 20");
+  EXPECT_EQ(error_of_ascii(head + "dx 10\n1 2\n3 4\n"),
+            "line 5: is not an ESRI ASCII grid: 'cellsize' is missing before the heights");
+}
+
+TEST(AsciiGrid, BeginsWithAByteOrderMarkOrNot) {
+  const std::string text = "ncols 2\nnrows 2\nxllcenter 0\nyllcenter 0\ncellsize 1\n1 2\n3 4\n";
+  EXPECT_EQ(sim::parse_ascii_grid("\xef\xbb\xbf" + text, 1, Holes::error).at(1, 0), 4);
 }
 
 struct PictureExtra {

@@ -10,6 +10,7 @@
 #include <string>
 #include <tuple>
 
+#include "shoal/joint_command_t.hpp"
 #include "sim/world/world_editor.hpp"
 #include "sim/world/world_state.hpp"
 #include "sim/world_file/vehicle_loader.hpp"
@@ -197,6 +198,50 @@ vehicles:
     if (step == 300) test.world.editor().move_vehicle("mast", sim::make_pose({-3, 1, 0.2}, {0.2, 0, 2}));
   };
   SavedRun(yaml, move).expect_restored_worlds_go_on_alike({50, 150, 350}, 300);
+}
+
+/// A winch turns beyond half a turn to a stop and back, and an arm leaves its stop.
+TEST(WorldSnapshot, JointsAtTheirStopsComeBack) {
+  const std::string yaml = R"(
+shoal: 1
+physics: {step_s: 0.01}
+vehicles:
+  - name: crane
+    model:
+      shoal: 1
+      vehicle: crane
+      bodies:
+        - {name: drum, position_m: [0, 0, 1], parts: [{shape: box, size_m: [0.3, 0.1, 0.1], mass_kg: 2}]}
+        - {name: boom, position_m: [1, 0, 1], parts: [{shape: box, size_m: [1, 0.1, 0.1], mass_kg: 1}]}
+      joints:
+        - {name: winch, type: hinge, bodies: [drum, world], axis: [0, 0, 1], low_stop: -7, high_stop: 9}
+        - {name: foot, type: hinge, bodies: [boom, world], anchor_m: [0.5, 0, 1], axis: [0, 1, 0], high_stop: 0}
+      devices:
+        - {name: winch, type: joint_motor, joint: winch, max_velocity: 8, max_force: 5}
+        - {name: foot, type: joint_motor, joint: foot, max_force: 50}
+        - {name: joints, type: joint_state, rate_hz: 100}
+)";
+  const auto drive = [](TappedWorld& test, int step) {
+    shoal::joint_command_t command{};
+    command.velocity = step < 200 ? 8 : -8;
+    if (step % 200 == 0) test.send("crane.winch.cmd", command);
+    command.velocity = -0.5;
+    if (step == 150) test.send("crane.foot.cmd", command);
+  };
+  TappedWorld turned(yaml);
+  for (int step = 0; step < 200; ++step) {
+    drive(turned, step);
+    turned.world.step();
+    const double position = turned.world.find_vehicle("crane")->joint("winch").position();
+    if (step == 80) {
+      ASSERT_GT(position, 5);
+      ASSERT_LT(position, 9);
+    }
+    if (step > 150) {
+      ASSERT_NEAR(position, 9, 1e-3);
+    }
+  }
+  SavedRun(yaml, drive).expect_restored_worlds_go_on_alike({80, 150, 151, 201}, 250);
 }
 
 /// What the world sends in its last step waits in mailboxes when the snapshot is taken.

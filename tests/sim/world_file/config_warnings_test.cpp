@@ -63,6 +63,42 @@ TEST(ConfigWarnings, ReportKeysOfReportsOfADeviceThatReportsNothing) {
             "'body_wrench' publishes no reports\n");
 }
 
+std::string warnings_of_joint(const std::string& keys) {
+  std::string yaml = world("        []\n");
+  const std::string hull = "{name: hull, parts: [{shape: box, mass_kg: 1}]}";
+  yaml.replace(yaml.find(hull), hull.size(), hull + ", {name: arm, parts: [{shape: box, mass_kg: 1}]}");
+  return warnings_of_file(yaml + "      joints:\n        - {name: j, bodies: [hull, arm], " + keys + "}\n");
+}
+
+TEST(ConfigWarnings, ReportKeysOfJointsThatTheirTypeDoesNotHave) {
+  const std::string second_axis = ", axis2: {axis: [0, 1, 0], ";
+  EXPECT_EQ(warnings_of_joint("type: hinge2" + second_axis + "low_stop: -1}"),
+            "worlds/test.yaml:13:91: vehicle 'r1': joint 'j': 'low_stop' has no effect on a hinge2's second axis\n");
+  EXPECT_THAT(warnings_of_joint("type: hinge2" + second_axis + "suspension_erp: 0.5}"),
+              HasSubstr("'suspension_erp' has no effect on a hinge2's second axis"));
+  EXPECT_THAT(warnings_of_joint("type: hinge, suspension_erp: 0.5"),
+              HasSubstr("'suspension_erp' has no effect on a hinge\n"));
+  EXPECT_THAT(warnings_of_joint("type: slider, erp: 0.5"), HasSubstr("'erp' has no effect on a slider\n"));
+  EXPECT_THAT(warnings_of_joint("type: ball, high_stop: 1"),
+              HasSubstr("'high_stop' has no effect on a ball without 'motor: true'\n"));
+  const std::string of_fixed = warnings_of_joint("type: fixed, axis: [1, 0, 0], low_stop: -1, high_stop: 1, cfm: 0.1");
+  for (const std::string key : {"axis", "low_stop", "high_stop", "cfm"})
+    EXPECT_THAT(of_fixed, HasSubstr("'" + key + "' has no effect on a fixed joint\n"));
+}
+
+TEST(ConfigWarnings, AreSilentAboutTheKeysOfATypeOfJoint) {
+  const std::string stops = "low_stop: -1, high_stop: 1, restitution: 0.1, stop_erp: 0.1, stop_cfm: 0.1";
+  const std::string motor = "motor_velocity: 1, motor_max_force: 1, cfm: 0.1, fudge_factor: 0.5";
+  for (const std::string type : {"hinge", "slider"})
+    EXPECT_EQ(warnings_of_joint("type: " + type + ", axis: [1, 0, 0], " + stops + ", " + motor), "");
+  EXPECT_EQ(warnings_of_joint("type: universal, axis2: {axis: [0, 1, 0], " + stops + ", " + motor + "}, " + stops), "");
+  EXPECT_EQ(warnings_of_joint("type: hinge2, axis2: {axis: [0, 1, 0], motor_max_force: 1}, suspension_erp: 0.5, " +
+                              stops + ", " + motor),
+            "");
+  EXPECT_EQ(warnings_of_joint("type: ball, motor: true, erp: 0.5, " + stops + ", " + motor), "");
+  EXPECT_EQ(warnings_of_joint("type: fixed, erp: 0.5"), "");
+}
+
 TEST(ConfigWarnings, ReportAMetricOfAChannelOnWhichNoOnePublishes) {
   const std::string gps = "        - {name: gps, type: gps}\n";
   const auto metric = [&](const std::string& channel, const std::string& more = "") {
@@ -116,6 +152,22 @@ TEST(ConfigWarnings, AreOfWhatComesAfterTheEndOfTheFileAndOfTheCommandLine) {
   EXPECT_THAT(warnings_of(305), HasSubstr("ends at 305 s"));
   EXPECT_EQ(warnings_of(311), "");
   EXPECT_EQ(warnings_of(0), "") << "without end";
+}
+
+TEST(ConfigWarnings, ReportASpreadingThatRaysDoNotHave) {
+  const auto text = [](const std::string& acoustics) {
+    return warnings_of_file(world("        []\n",
+                                  "medium: {water: {surface_m: -9, profile: [{depth_m: 0, sound_speed_mps: 1510}, "
+                                  "{depth_m: 20, sound_speed_mps: 1490}]}}\nacoustics: " +
+                                      acoustics + "\n"));
+  };
+  EXPECT_EQ(text("{spreading: {factor: 1.5}}"),
+            "worlds/test.yaml:13:24: acoustics: 'spreading' has no effect: in this water sound travels along rays, and "
+            "their tubes are the spreading; remove it, or set 'propagation: straight'\n");
+  EXPECT_THAT(text("{spreading: {transition_range_m: 100}}"), HasSubstr("'spreading' has no effect"));
+  EXPECT_EQ(text("{spreading: {factor: 2}}"), "");
+  EXPECT_EQ(text("{spreading: {factor: 1.5}, propagation: straight}"), "");
+  EXPECT_EQ(text("{}"), "");
 }
 
 }  // namespace

@@ -36,8 +36,8 @@ TEST(LoadWorld, OverridesChangeOneValueOfTheVehicle) {
 }
 
 TEST(LoadWorld, SetChangesTheWorldFromTheCommandLine) {
-  const auto loaded = sim::load_world_text(lidar_world(""), "test.yaml",
-                                           {{"run.duration_s=7", "vehicles.r1.position_m=[1, 2, 3]"}, 42});
+  const auto loaded = sim::load_world_text(
+      lidar_world(""), "test.yaml", {.sets = {"run.duration_s=7", "vehicles.r1.position_m=[1, 2, 3]"}, .seed = 42});
   EXPECT_EQ(loaded.config.run.duration_s, 7);
   EXPECT_EQ(loaded.config.run.seed, 42);
   EXPECT_EQ(loaded.config.vehicles[0].X_WV.translation(), sim::Vector3d(1, 2, 3));
@@ -113,7 +113,7 @@ TEST(LoadWorld, WhatASingleVehicleOfACountCannotHaveIsSaid) {
 }
 
 TEST(LoadWorld, TheResolvedWorldKeepsTheSeedOfTheCommandLine) {
-  const auto loaded = sim::load_world_text(lidar_world(""), "test.yaml", {{}, 42});
+  const auto loaded = sim::load_world_text(lidar_world(""), "test.yaml", {.seed = 42});
   EXPECT_EQ(sim::load_world_text(sim::to_yaml(loaded.resolved), "again.yaml").config.run.seed, 42);
 }
 

@@ -3,13 +3,13 @@
 
 #include <gmock/gmock.h>
 
-#include <clocale>
 #include <cmath>
 #include <limits>
 #include <map>
 
 #include "sim/world_file/load_world.hpp"
 #include "sim/world_file/rule_of_map.hpp"
+#include "tests/comma_locale.hpp"
 #include "tests/sim/config/parse.hpp"
 
 namespace {
@@ -182,11 +182,8 @@ TEST(RuleExpression, IsBoundedInLengthAndDepth) {
 }
 
 TEST(RuleExpression, ReadsNumbersTheSameInEveryLanguage) {
-  const std::string before = std::setlocale(LC_ALL, nullptr);
-  for (const char* comma : {"de_DE.UTF-8", "de_DE.utf8", "fr_FR.UTF-8"})
-    if (std::setlocale(LC_ALL, comma) != nullptr) break;
+  const test_support::CommaLocale comma;
   EXPECT_EQ(outcome_of("a.x_m < 0.25").right, 0.25);
-  std::setlocale(LC_ALL, before.c_str());
 }
 
 // Worlds

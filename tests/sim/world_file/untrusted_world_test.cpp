@@ -98,6 +98,21 @@ TEST_F(StrangersWorld, NamesNoOtherFiles) {
               HasSubstr("'mesh' " + rule));
 }
 
+TEST_F(StrangersWorld, ASettingOfAStudyNamesNoMoreThanTheWorldMay) {
+  write("world/w.yaml", "shoal: 1\n" + object("stone.obj"));
+  sim::LoadOptions options;
+  options.only_own_files = true;
+  options.study_sets = {"objects.o.parts.1.mesh=../vehicles/stone.obj"};
+  EXPECT_NO_THROW(sim::load_world(at("world/w.yaml"), options));
+  options.study_sets = {"objects.o.parts.1.mesh=" + at("home/stone.obj")};
+  try {
+    sim::load_world(at("world/w.yaml"), options);
+    FAIL();
+  } catch (const sim::ConfigError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("'mesh' " + rule));
+  }
+}
+
 TEST_F(StrangersWorld, NamesMoreWhenTheCommandLineAllowsIt) {
   EXPECT_EQ(error_of(object("../home/stone.obj"), {at("home")}), "");
   EXPECT_EQ(error_of(object("../home/stone.obj"), {at("home/stone.obj")}), "");

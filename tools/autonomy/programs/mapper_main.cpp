@@ -69,9 +69,8 @@ int map(const Options& options) {
   // A single write, because the programs of a run share a terminal.
   std::string text = options.name + ": lost " + std::to_string(state.mapper.times_lost()) + " times\n";
   if (options.timing && timing.scans > 0)
-    text += options.name + ": " + std::to_string(timing.scans) + " scans, each " +
-            std::to_string(1e3 * timing.total_s / static_cast<double>(timing.scans)) + " ms, at most " +
-            std::to_string(1e3 * timing.max_s) + " ms\n";
+    text += fmt::format("{}: {} scans, each {:.6f} ms, at most {:.6f} ms\n", options.name, timing.scans,
+                        1e3 * timing.total_s / static_cast<double>(timing.scans), 1e3 * timing.max_s);
   std::cerr << text;
   return exit_code;
 }

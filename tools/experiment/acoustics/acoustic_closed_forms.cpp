@@ -14,6 +14,7 @@
 #include "sim/acoustics/modulation.hpp"
 #include "sim/acoustics/sound_path.hpp"
 #include "sim/acoustics/transmission_loss.hpp"
+#include "sim/base/number.hpp"
 #include "sim/medium/absorption.hpp"
 #include "sim/medium/sea_water.hpp"
 
@@ -24,6 +25,11 @@ namespace {
 using sim::Decibels;
 using sim::Modulation;
 
+double number_in(const std::string& text) {
+  if (const auto number = sim::read_number(text)) return *number;
+  throw std::invalid_argument("'" + text + "' is not a number");
+}
+
 /// Numbers of `T=5;depth=10`.
 class Parameters {
  public:
@@ -31,7 +37,7 @@ class Parameters {
     std::istringstream all(text);
     for (std::string each; std::getline(all, each, ';');) {
       const std::size_t equals = each.find('=');
-      if (equals != std::string::npos) values_[each.substr(0, equals)] = std::stod(each.substr(equals + 1));
+      if (equals != std::string::npos) values_[each.substr(0, equals)] = number_in(each.substr(equals + 1));
     }
   }
   double operator[](const std::string& key) const { return values_.at(key); }
@@ -122,8 +128,8 @@ std::vector<ClosedFormRow> acoustic_closed_forms(const std::string& file) {
     if (compute == computations().end()) continue;
     // Compute the quantity of the row.
     try {
-      ClosedFormRow row{field[0], field[1], field[2], field[4], std::stod(field[3])};
-      row.tolerance = std::stod(field[5]) * (field[6] == "rel" ? std::abs(row.expected) : 1);
+      ClosedFormRow row{field[0], field[1], field[2], field[4], number_in(field[3])};
+      row.tolerance = number_in(field[5]) * (field[6] == "rel" ? std::abs(row.expected) : 1);
       row.computed = compute->second(Parameters(row.parameters), row.quantity);
       rows.push_back(row);
     } catch (const std::logic_error&) {  // not a number, or a parameter is missing

@@ -12,6 +12,7 @@
 #include "devices/comms/micromodem_rates.hpp"
 #include "sim/acoustics/echoes.hpp"
 #include "sim/acoustics/fading.hpp"
+#include "sim/acoustics/propagation.hpp"
 #include "sim/acoustics/ray_paths.hpp"
 #include "sim/acoustics/rays/ray_tables.hpp"
 #include "sim/acoustics/sound_path.hpp"
@@ -170,8 +171,7 @@ std::vector<AcousticPacket> micromodem_packets() {
 }
 
 bool sound_bends(const sim::AcousticsConfig& acoustics, const sim::Medium& medium) {
-  const auto by_default = medium.has_sound_profile() ? sim::SoundPaths::rays : sim::SoundPaths::straight;
-  return medium.has_water() && acoustics.propagation.value_or(by_default) == sim::SoundPaths::rays;
+  return medium.has_water() && sim::sound_paths(acoustics, medium.has_sound_profile()) == sim::SoundPaths::rays;
 }
 
 LinkBudget link_budget(const AcousticLink& link, const sim::AcousticsConfig& acoustics, const sim::Medium& medium,
@@ -182,7 +182,8 @@ LinkBudget link_budget(const AcousticLink& link, const sim::AcousticsConfig& aco
   budget.travel_time_s = sim::travel_time_s(medium, link.from.p_W, link.to.p_W);
   budget.absorption_dBpkm =
       sim::absorption_dBpkm(acoustics.absorption, link.centre_Hz, medium, link.from.p_W, link.to.p_W);
-  budget.spreading = -sim::spreading_loss(budget.range_m, acoustics.spreading);
+  budget.spreading =
+      -sim::spreading_loss(budget.range_m, sim::straight_spreading(acoustics, medium.has_sound_profile()));
   budget.absorption = -sim::absorption_loss(budget.range_m, budget.absorption_dBpkm);
   const sim::AmbientNoise noise = acoustics.noise.with_wind(medium.mean_wind_mps());
   budget.wind_mps = noise.wind_mps;

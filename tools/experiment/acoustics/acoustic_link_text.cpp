@@ -38,7 +38,7 @@ std::string budget_text(const AcousticLink& link, const LinkBudget& budget, cons
   std::string text = row_text("source level", link.source_level, "re 1 uPa at 1 m");
   text += row_text("directivity, sender", budget.from_gain, "");
   text += row_text("spreading", budget.spreading,
-                   budget.bent ? "of the ray, with its focusing"
+                   budget.bent ? "of the ray, by its tube"
                    : spreading.transition_range_m
                        ? fmt::format("spherical to {:g} m, then cylindrical; {:.1f} m", *spreading.transition_range_m,
                                      budget.range_m)

@@ -73,7 +73,6 @@ RayField ray_field(double source_m, double range_m, double frequency_Hz, const s
       water.sound_speed_mps = 1 / medium.mean_slowness_spm(source_W.z(), point_W.z());
       water.absorption_dBpkm = sim::absorption_dBpkm(acoustics.absorption, frequency_Hz, medium, source_W, point_W);
       water.wind_mps = acoustics.noise.wind_mps.value_or(medium.mean_wind_mps());
-      water.spreading = acoustics.spreading;
       sim::PowerRatio power;
       for (const sim::PathGain& gain : sim::ray_gains(found, multipath, water)) power += sim::to_power(gain.gain);
       for (const sim::SoundRay& ray : found) point.shadow = point.shadow && ray.bounces() > 0;

@@ -373,14 +373,11 @@ Matrix2d TeamBound::sight_covariance(const Event& event, const sim::Vector3d& d_
   const VehicleErrors& own = errors(event.site.vehicle);
   if (event.what == What::sighting)
     return std::max(square_of(own.sightings->white_std_m), min_variance_m2) * Matrix2d::Identity();
-  // USBL: range r and elevation e along the level, (cos e dr)^2 + (r sin e de)^2, and the azimuth across it.
-  const double level_m = d_V.head<2>().norm(), range_m = d_V.norm();
+  const double level_m = d_V.head<2>().norm();
   const Vector2d u = level_m > 0 ? Vector2d(d_V.head<2>() / level_m) : Vector2d::UnitX();
-  const double cosine = range_m > 0 ? level_m / range_m : 1;
-  const double along_m2 = square_of(cosine * own.usbl->range_std_m) + square_of(d_V.z() * own.usbl->elevation_std_rad);
-  const double across_m2 = square_of(level_m * own.usbl->azimuth_std_rad);
-  return std::max(along_m2, min_variance_m2) * u * u.transpose() +
-         std::max(across_m2, min_variance_m2) * left_of(u) * left_of(u).transpose();
+  const UsblErrors::Plane variances = own.usbl->errors.at(d_V);
+  return std::max(variances.along_m2, min_variance_m2) * u * u.transpose() +
+         std::max(variances.across_m2, min_variance_m2) * left_of(u) * left_of(u).transpose();
 }
 
 void TeamBound::visit_state(sim::StateArchive& archive) {

@@ -12,36 +12,11 @@
 #include "devices/navigation/odometry.hpp"
 #include "devices/navigation/swarm_position.hpp"
 #include "devices/sound_positioning/usbl.hpp"
-#include "sim/device/device_registry.hpp"
+#include "tools/experiment/bound/device_params.hpp"
 
 namespace tools {
 
 namespace {
-
-/// Returns the parameters of a device of this model; null for one of another type.
-template <typename Model>
-const typename Model::Params* params_as(const sim::DeviceConfig& device) {
-  const auto* own = dynamic_cast<const sim::detail::ParamsOf<typename Model::Params>*>(device.params.get());
-  return own == nullptr ? nullptr : &own->params;
-}
-
-/// Finds the first device of a model and its parameters.
-template <typename Model>
-struct FirstDevice {
-  const sim::DeviceConfig* device = nullptr;
-  const typename Model::Params* params = nullptr;
-
-  explicit FirstDevice(const sim::VehicleConfig& vehicle) {
-    for (const sim::DeviceConfig& each : vehicle.devices) {
-      params = params_as<Model>(each);
-      if (params == nullptr) continue;
-      device = &each;
-      return;
-    }
-  }
-  explicit operator bool() const { return device != nullptr; }
-  double period_s(double step_s) const { return device->rate_hz > 0 ? std::max(1 / device->rate_hz, step_s) : step_s; }
-};
 
 void read_velocity(const FirstDevice<devices::Dvl>& dvl, double step_s, VehicleErrors& errors) {
   // Four beams 90 degrees apart: the sum of b b^T has 2 sin^2 of the beam angle for each horizontal component.
@@ -78,13 +53,14 @@ void read_wheels(const FirstDevice<devices::Odometry>& odometry, const sim::Vehi
 
 /// Direction in the world needs a heading.
 void read_usbl(const FirstDevice<devices::Usbl>& usbl, const QuantityErrors& heading, VehicleErrors& errors) {
-  errors.usbl = VehicleErrors::Usbl{{usbl.device->name, usbl.device->position_m},
-                                    errors_of(usbl.params->range_noise).white_std,
-                                    std::hypot(errors_of(usbl.params->azimuth_noise).white_std, heading.white_std),
-                                    errors_of(usbl.params->elevation_noise).white_std};
-  if (errors.motion == VehicleErrors::Motion::measured_velocity) return;
-  for (const SlowError& slow : heading.slow)
-    errors.usbl->azimuth_std_rad = std::hypot(errors.usbl->azimuth_std_rad, slow.initial_std);
+  UsblErrors own;
+  own.range_std_m = errors_of(usbl.params->range_noise).white_std;
+  own.across_std_rad = errors_of(usbl.params->azimuth_noise).white_std;
+  own.elevation_std_rad = errors_of(usbl.params->elevation_noise).white_std;
+  own.heading_std_rad = heading.white_std;
+  if (errors.motion != VehicleErrors::Motion::measured_velocity)
+    for (const SlowError& slow : heading.slow) own.heading_std_rad = std::hypot(own.heading_std_rad, slow.initial_std);
+  errors.usbl = VehicleErrors::Usbl{{usbl.device->name, usbl.device->position_m}, own};
 }
 
 void read_clock(const sim::ClockConfig& clock, VehicleErrors& errors) {

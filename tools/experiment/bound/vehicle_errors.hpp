@@ -10,6 +10,7 @@
 #include "sim/base/math.hpp"
 #include "sim/random/noise.hpp"
 #include "sim/world_file/vehicle_config.hpp"
+#include "tools/experiment/bound/usbl_errors.hpp"
 
 namespace tools {
 
@@ -85,9 +86,7 @@ struct VehicleErrors {
   /// USBL of other vehicles.
   struct Usbl {
     Point sensor;
-    double range_std_m = 0;
-    double azimuth_std_rad = 0;  ///< with the error of a heading that is not a state: of a vehicle without DVL
-    double elevation_std_rad = 0;
+    UsblErrors errors;  ///< with those of the heading, all in a vehicle without DVL, where they are not states
   };
   std::optional<Usbl> usbl;
 
@@ -107,8 +106,8 @@ struct VehicleErrors {
   bool can_navigate() const { return gps || motion != Motion::unknown; }
 };
 
-/// Reads the errors from the devices and the clock of a vehicle.  `step_s`: step of the world, the period of devices
-/// that sample in every step.
+/// Reads the errors from the devices and the clock of a vehicle, those of a USBL without its array, see usbl_hearing().
+/// `step_s`: step of the world, the period of devices that sample in every step.
 VehicleErrors errors_of(const sim::VehicleConfig& vehicle, double step_s);
 
 }  // namespace tools

@@ -8,11 +8,12 @@
 #include <cerrno>
 #include <cmath>
 #include <cstring>
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <stdexcept>
+#include <system_error>
 
+#include "tools/experiment/files/no_links.hpp"
 #include "tools/experiment/run/version.hpp"
 #include "tools/experiment/study/study_rules.hpp"
 #include "tools/experiment/study/study_tables.hpp"
@@ -45,8 +46,11 @@ struct FinalizeStatement {
 class NewDatabase {
  public:
   explicit NewDatabase(const std::string& path) : path_(path), part_(path + ".part") {
-    std::error_code ignored;
-    std::filesystem::remove(part_, ignored);
+    try {
+      make_new_file(part_);
+    } catch (const std::system_error& error) {
+      throw std::runtime_error(path_ + ": cannot be written: " + error.code().message());
+    }
     sqlite3* opened = nullptr;
     const int code = sqlite3_open_v2(part_.c_str(), &opened, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, nullptr);
     database_.reset(opened);

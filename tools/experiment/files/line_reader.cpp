@@ -33,7 +33,7 @@ bool take(std::string_view text, Number& value) {
 }  // namespace
 
 LineReader::LineReader(std::string_view text, const std::string& file)
-    : text_(text), file_(sim::intern_file_name(file)) {}
+    : text_(sim::without_byte_order_mark(text)), file_(sim::intern_file_name(file)) {}
 
 bool LineReader::next() {
   if (at_ >= text_.size()) return false;

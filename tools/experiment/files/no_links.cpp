@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/experiment/files/no_links.hpp"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <cassert>
+#include <cerrno>
 #include <filesystem>
 #include <stdexcept>
+#include <system_error>
 
 namespace tools {
 
@@ -26,6 +31,13 @@ void make_folders(const std::string& root, const std::string& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) throw std::runtime_error(folder + ": cannot be made: " + error.message());
+}
+
+bridges::FileDescriptor make_new_file(const std::string& path) {
+  if (unlink(path.c_str()) != 0 && errno != ENOENT) throw std::system_error(errno, std::generic_category());
+  bridges::FileDescriptor file(open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666));
+  if (file.number() < 0) throw std::system_error(errno, std::generic_category());
+  return file;
 }
 
 }  // namespace tools

@@ -3,6 +3,8 @@
 
 #include <string>
 
+#include "bridges/base/file_descriptor.hpp"
+
 namespace tools {
 
 /// Checks of paths below a folder that someone else may have made: a symbolic link there would let this program write
@@ -15,5 +17,10 @@ void refuse_links(const std::string& root, const std::string& path);
 /// Creates the folder `root` and those below it on the way to `folder`, without following links below `root`.  Throws
 /// std::runtime_error when one is a link or cannot be made.
 void make_folders(const std::string& root, const std::string& folder);
+
+/// Makes a new, empty file for reading and writing, in place of a file or link of this name: what a link there leads to
+/// is not touched.  Also for files that another program or library then opens by this name.  Throws std::system_error
+/// with the reason alone.
+bridges::FileDescriptor make_new_file(const std::string& path);
 
 }  // namespace tools

@@ -10,7 +10,10 @@
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
+#include <system_error>
 #include <vector>
+
+#include "tools/experiment/files/no_links.hpp"
 
 namespace tools {
 
@@ -18,10 +21,16 @@ TarFile::TarFile(const std::string& path) : path_(path), part_(path + ".part"), 
   if (archive_ == nullptr) throw std::bad_alloc();
   archive_write_add_filter_gzip(archive_);
   archive_write_set_format_pax_restricted(archive_);
-  if (archive_write_open_filename(archive_, part_.c_str()) == ARCHIVE_OK) return;
-  const std::string reason = archive_error_string(archive_);
-  archive_write_free(archive_);
-  throw std::runtime_error(path_ + ": cannot be written: " + reason);
+  try {
+    file_ = make_new_file(part_);
+    if (archive_write_open_fd(archive_, file_.number()) != ARCHIVE_OK) fail();
+  } catch (const std::system_error& error) {
+    archive_write_free(archive_);
+    throw std::runtime_error(path_ + ": cannot be written: " + error.code().message());
+  } catch (...) {
+    archive_write_free(archive_);
+    throw;
+  }
 }
 
 TarFile::~TarFile() {

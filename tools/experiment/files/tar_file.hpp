@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <string>
 
+#include "bridges/base/file_descriptor.hpp"
+
 struct archive;
 
 namespace tools {
@@ -30,6 +32,7 @@ class TarFile {
   [[noreturn]] void fail() const;
 
   std::string path_, part_;
+  bridges::FileDescriptor file_;
   archive* archive_;
 };
 

@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/experiment/film/avi_file.hpp"
 
+#include <fcntl.h>
 #include <spdlog/fmt/fmt.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <system_error>
 
 #include "sim/image/image_file.hpp"
+#include "tools/experiment/files/no_links.hpp"
 
 namespace tools {
 
@@ -37,7 +40,13 @@ std::string chunk(const std::string& name, const std::string& content) {
 }  // namespace
 
 AviFile::AviFile(std::string file, const FilmFormat& format)
-    : file_(std::move(file)), part_(file_ + ".part"), format_(format), out_(std::fopen(part_.c_str(), "wb")) {
+    : file_(std::move(file)), part_(file_ + ".part"), format_(format) {
+  try {
+    const bridges::FileDescriptor part = make_new_file(part_);
+    out_ = fdopen(fcntl(part.number(), F_DUPFD_CLOEXEC, 0), "wb");
+  } catch (const std::system_error& error) {
+    throw FilmError(file_ + ": cannot be written: " + error.code().message());
+  }
   if (out_ == nullptr) throw FilmError(file_ + ": cannot be written: " + std::strerror(errno));
   try {
     write(header());

@@ -32,7 +32,7 @@ class AviFile final : public FilmWriter {
 
   std::string file_, part_;
   FilmFormat format_;
-  std::FILE* out_;
+  std::FILE* out_ = nullptr;
   std::vector<Entry> entries_;
   std::uint64_t data_bytes_ = 0;  // of all frames with their heads
   std::uint32_t max_frame_bytes_ = 0;

@@ -12,9 +12,11 @@
 #include <cstring>
 #include <fstream>
 #include <sstream>
+#include <system_error>
 #include <utility>
 
 #include "sim/config/message_text.hpp"
+#include "tools/experiment/files/no_links.hpp"
 #include "tools/experiment/process/child_program.hpp"
 
 namespace tools {
@@ -57,6 +59,11 @@ bool has_ffmpeg() {
 
 EncoderProgram::EncoderProgram(std::string file, const FilmFormat& format, const std::vector<std::string>& codec)
     : file_(std::move(file)), part_(file_ + ".part"), log_(file_ + ".log") {
+  try {
+    for (const std::string* path : {&part_, &log_}) make_new_file(*path);
+  } catch (const std::system_error& error) {
+    throw FilmError(file_ + ": cannot be written: " + error.code().message());
+  }
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0) throw FilmError(file_ + ": no pipe to ffmpeg: " + std::strerror(errno));
   const bridges::FileDescriptor read_end(ends[0]);
@@ -65,6 +72,7 @@ EncoderProgram::EncoderProgram(std::string file, const FilmFormat& format, const
   ChildProgram program{"ffmpeg", arguments_of(format, codec, part_), own_environment(), log_, read_end.number()};
   const int error = start_child(program, pid_);
   if (error == 0) return;
+  unlink(part_.c_str());
   unlink(log_.c_str());
   throw FilmError(file_ + ": ffmpeg cannot be started: " + std::strerror(error));
 }

@@ -76,7 +76,7 @@ void Overlay::observe() {
   }
   if (settings_.choice.ellipses)
     for (const auto& vehicle : world_.vehicles())
-      if (const FilmEstimate* estimate = estimates_.find(vehicle->name(), now_s, max_estimate_age_s))
+      if (const LogEstimate* estimate = estimates_.find(vehicle->name(), now_s, max_estimate_age_s))
         extend(estimate_trails_[vehicle->name()], now_s, estimate->position_m, settings_.trail_s);
   // Sound that has left the range.
   std::erase_if(pings_, [&](const FilmPing& ping) {
@@ -109,7 +109,7 @@ void Overlay::draw_trails(OverlayCanvas& canvas) const {
 void Overlay::draw_estimates(OverlayCanvas& canvas) const {
   const double now_s = sim::to_seconds(world_.now());
   for (const auto& vehicle : world_.vehicles()) {
-    const FilmEstimate* estimate = estimates_.find(vehicle->name(), now_s, max_estimate_age_s);
+    const LogEstimate* estimate = estimates_.find(vehicle->name(), now_s, max_estimate_age_s);
     if (estimate == nullptr) continue;
     // Where it thinks it is, and the error.
     const Pen pen{estimate_color, 1.5F, 0.9F};
@@ -121,7 +121,8 @@ void Overlay::draw_estimates(OverlayCanvas& canvas) const {
     canvas.dot(estimate->position_m, dot);
     canvas.line(estimate->position_m, vehicle->X_WV().translation(), error);
     // The ellipsoid of 3 sigma by its three principal ellipses.
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(estimate->covariance_m2);
+    if (!estimate->covariance_m2 || !estimate->covariance_m2->allFinite()) continue;
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(*estimate->covariance_m2);
     if (solver.info() != Eigen::Success || !solver.eigenvalues().allFinite()) continue;
     sim::Vector3d axes_W[3];
     for (int i = 0; i < 3; ++i)

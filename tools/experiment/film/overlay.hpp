@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "sim/world/world.hpp"
-#include "tools/experiment/film/log_estimates.hpp"
+#include "tools/experiment/estimates/log_estimates.hpp"
 #include "tools/experiment/film/overlay_canvas.hpp"
 
 namespace tools {

@@ -42,9 +42,10 @@ std::string subject_name(const MrclamData& data, int subject) {
   return is_robot ? robot_name(static_cast<std::size_t>(subject - 1)) : fmt::format("landmark{}", subject);
 }
 
+/// Returns the whole second in which the truth of the last robot begins: from then on the places of all are known.
 double start_of_data(const MrclamData& data) {
-  double start_s = data.robots.front().truth.front().time_s;
-  for (const MrclamData::Robot& robot : data.robots) start_s = std::min(start_s, robot.truth.front().time_s);
+  double start_s = 0;
+  for (const MrclamData::Robot& robot : data.robots) start_s = std::max(start_s, robot.truth.front().time_s);
   return std::floor(start_s);
 }
 
@@ -52,6 +53,11 @@ double end_of_data(const MrclamData& data) {
   double end_s = 0;
   for (const MrclamData::Robot& robot : data.robots) end_s = std::max(end_s, robot.truth.back().time_s);
   return end_s;
+}
+
+/// Returns the last step with a true pose of a robot, since the start.
+double end_of_truth(const MrclamData::Robot& robot, double start_s) {
+  return std::floor((robot.truth.back().time_s - start_s) / mrclam_step_s) * mrclam_step_s;
 }
 
 /// Returns the true pose at a time, the first or last one outside of the data.
@@ -144,17 +150,18 @@ class ImportedRun {
       Source& source = sources_[i];
       for (; source.odometry < robot.odometry.size() && robot.odometry[source.odometry].time_s <= now_s;
            ++source.odometry)
-        publish_odometry(i, source, robot.odometry[source.odometry]);
+        if (robot.odometry[source.odometry].time_s >= start_s_)
+          publish_odometry(i, source, robot.odometry[source.odometry]);
       for (; source.measurement < robot.measurements.size() && robot.measurements[source.measurement].time_s <= now_s;
            ++source.measurement)
         publish_measurement(i, robot.measurements[source.measurement]);
     }
   }
 
-  /// The velocities hold until the next ones.
+  /// The velocities hold until the next ones.  Dead reckoning begins at the start.
   void publish_odometry(std::size_t robot, Source& source, const MrclamData::Odometry& odometry) {
     const MrclamData::Odometry& before = data_.robots[robot].odometry[source.odometry == 0 ? 0 : source.odometry - 1];
-    const double dt_s = odometry.time_s - before.time_s;
+    const double dt_s = odometry.time_s - std::max(before.time_s, start_s_);
     const double middle_rad = source.theta_rad + 0.5 * dt_s * before.turn_radps;
     source.x_m += dt_s * before.forward_mps * std::cos(middle_rad);
     source.y_m += dt_s * before.forward_mps * std::sin(middle_rad);
@@ -216,11 +223,19 @@ MrclamData read_mrclam(const std::string& directory) {
     parse_mrclam_measurements(read(stem + "Measurement.dat"), path(stem + "Measurement.dat"), subjects, robot);
     data.robots.push_back(std::move(robot));
   }
+  const double start_s = start_of_data(data);
+  for (std::size_t i = 0; i < data.robots.size(); ++i)
+    if (end_of_truth(data.robots[i], start_s) <= 0)
+      sim::throw_config_error(
+          {sim::intern_file_name(path(fmt::format("Robot{}_Groundtruth.dat", i + 1)))}, "",
+          fmt::format("must have poses after {:.0f} s, when the last robot begins, the last one is of {:.3f} s",
+                      start_s, data.robots[i].truth.back().time_s));
   return data;
 }
 
 std::string mrclam_world(const MrclamData& data) {
   const double start_s = start_of_data(data);
+  const double duration_s = std::ceil((end_of_data(data) - start_s) / mrclam_step_s) * mrclam_step_s;
   const auto seconds = static_cast<std::time_t>(start_s);
   std::tm utc{};
   gmtime_r(&seconds, &utc);
@@ -229,7 +244,7 @@ std::string mrclam_world(const MrclamData& data) {
   std::string yaml = fmt::format(
       "shoal: 1\nname: mrclam\ndescription: A data set of the UTIAS MR.CLAM collection, along its true tracks.\n"
       "epoch: \"{}\"\nrun: {{duration_s: {:.2f}, speed: max}}\nphysics: {{step_s: {}}}\n",
-      epoch, std::ceil((end_of_data(data) - start_s) / mrclam_step_s) * mrclam_step_s, mrclam_step_s);
+      epoch, duration_s, mrclam_step_s);
   if (!data.landmarks.empty()) yaml += "objects:\n";
   for (const MrclamData::Landmark& landmark : data.landmarks)
     yaml += fmt::format(
@@ -246,9 +261,12 @@ std::string mrclam_world(const MrclamData& data) {
         robot_name(i), pose.x_m, pose.y_m, sim::radians_to_degrees(sim::wrap_angle(pose.yaw_rad)));
   }
   yaml += "metrics:\n";
-  for (std::size_t i = 0; i < data.robots.size(); ++i)
+  for (std::size_t i = 0; i < data.robots.size(); ++i) {
+    const double until_s = end_of_truth(data.robots[i], start_s);
     yaml +=
-        fmt::format("  - {{name: {0}, type: position_error, vehicle: {0}, channel: {0}.estimate}}\n", robot_name(i));
+        fmt::format("  - {{name: {0}, type: position_error, vehicle: {0}, channel: {0}.estimate{1}}}\n", robot_name(i),
+                    until_s < duration_s - mrclam_step_s ? fmt::format(", until_s: {:.2f}", until_s) : "");
+  }
   return yaml;
 }
 

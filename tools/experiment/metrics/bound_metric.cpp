@@ -37,8 +37,8 @@ const std::vector<std::pair<std::string, TeamBound::Known>>& known_words() {
 class BoundMetric final : public Metric {
  public:
   static constexpr const char* meaning =
-      "smallest rms position error that any estimator can have with the measurements of the run: the posterior "
-      "Cramer-Rao bound, horizontal";
+      "reference for the rms position error with the measurements of the run: the posterior Cramer-Rao bound, "
+      "horizontal, in which a vehicle without DVL and odometry knows its newest fix alone";
   static std::vector<sim::FigureKind> figures() {
     return {{"rms_m", "m", "root of the mean variance of the position, from `from_s` to the end"},
             {"final_m", "m", "standard deviation of the position at the end"},
@@ -160,9 +160,15 @@ std::vector<std::string> BoundMetric::names_of(const Params& params, const sim::
 }
 
 std::vector<VehicleErrors> BoundMetric::errors_of_team(const std::vector<std::string>& names, const sim::World& world) {
+  std::vector<const sim::VehicleConfig*> vehicles;
+  for (const std::string& name : names) vehicles.push_back(&world.find_vehicle(name)->config());
   std::vector<VehicleErrors> team;
-  for (const std::string& name : names)
-    team.push_back(errors_of(world.find_vehicle(name)->config(), sim::to_seconds(world.step_time())));
+  for (const sim::VehicleConfig* vehicle : vehicles) {
+    VehicleErrors errors = errors_of(*vehicle, sim::to_seconds(world.step_time()));
+    if (errors.usbl)
+      errors.usbl->errors.hearing = usbl_hearing(*vehicle, vehicles, world.config().acoustics, world.medium());
+    team.push_back(std::move(errors));
+  }
   return team;
 }
 

@@ -2,6 +2,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "sim/world_file/world_config.hpp"
 #include "tools/experiment/metrics/estimate_metric.hpp"
@@ -14,9 +15,9 @@ namespace {
 /// Rms error of an estimate over the bound of its vehicle.
 class BoundRatioMetric final : public Metric {
  public:
-  static constexpr const char* meaning = "how near an estimate comes to the bound of the position error";
+  static constexpr const char* meaning = "how near an estimate comes to the reference for its error";
   static std::vector<sim::FigureKind> figures() {
-    return {{"ratio", "1", "rms_m of `metric` over rms_m of `bound`; 1: no estimator can be better"}};
+    return {{"ratio", "1", "rms_m of `metric` over rms_m of `bound`; 1: as good as the reference"}};
   }
   struct Params final : sim::MetricParams {
     std::string metric, bound;
@@ -24,7 +25,7 @@ class BoundRatioMetric final : public Metric {
       in.require("metric");
       read_known_name(in, "metric", metric, "position_error", "the error of the estimate");
       in.require("bound");
-      read_known_name(in, "bound", bound, "bound", "the smallest possible error");
+      read_known_name(in, "bound", bound, "bound", "the reference");
     }
     void check(const sim::MetricConfig& config, const sim::WorldConfig& world,
                sim::Diagnostics& diagnostics) const override;
@@ -67,6 +68,8 @@ void BoundRatioMetric::Params::check(const sim::MetricConfig& config, const sim:
   if (error->from_s != limit->from_s)
     refuse(fmt::format("'{}' and '{}' must have the same 'from_s', got {:.6g} and {:.6g}", metric, bound, error->from_s,
                        limit->from_s));
+  if (std::isfinite(error->until_s))
+    refuse(fmt::format("'{}' must not have 'until_s', got {:.6g}: the bound is until the end", metric, error->until_s));
   if (error->dimensions != 2) refuse(fmt::format("'{}' must have 2 dimensions: the bound is horizontal", metric));
 }
 

@@ -40,7 +40,7 @@ void EstimateMetric::Params::read(sim::ParamReader& in) {
   read_vehicle(in);
   in.require("channel");
   read_channel(in);
-  read_from_s(in);
+  read_period(in);
   in.read("dimensions", dimensions, sim::between(2, 3), "dimensions of the error; 2: horizontal");
 }
 
@@ -77,7 +77,7 @@ std::string EstimateMetric::why_none(const std::string& figure) const {
   if (bad_messages_ > 0)
     return fmt::format("none of {} message{} on '{}' could be used", bad_messages_, bad_messages_ == 1 ? "" : "s",
                        params_.channel);
-  return "no estimate was received on '" + params_.channel + "'" + since_from_s();
+  return "no estimate was received on '" + params_.channel + "'" + since_from_s() + params_.to_until_s();
 }
 
 void EstimateMetric::visit_state(sim::StateArchive& archive, History history) {
@@ -131,7 +131,7 @@ void EstimateMetric::take(const Estimate& estimate) {
   if (forgotten || time > world_.now() + max_ahead)
     throw std::runtime_error(
         fmt::format("'utime' is not within the last {} s of simulated time", TruthHistory::memory_s));
-  if (sim::to_seconds(time) < params_.from_s) return;
+  if (sim::to_seconds(time) < params_.from_s || sim::to_seconds(time) > params_.until_s) return;
   if (!compare(time, estimate)) early_.push_back({time, estimate});
 }
 
@@ -162,7 +162,7 @@ double EstimateMetric::nees(const Estimate& estimate, const sim::Vector3d& error
 }
 
 double EstimateMetric::max_gap_s() const {
-  const double now_s = sim::to_seconds(world_.now());
+  const double now_s = std::min(sim::to_seconds(world_.now()), params_.until_s);
   double last_s = std::max(params_.from_s, begun_s_.value_or(now_s));
   double gap_s = 0;
   for (const ErrorSample& sample : samples_) {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/experiment/metrics/scored_period.hpp"
 #include "tools/experiment/score/metric.hpp"
 
 namespace tools {
@@ -15,7 +16,7 @@ namespace tools {
 /// subclasses compute figures from the errors.
 class EstimateMetric : public Metric {
  public:
-  struct Params final : sim::MetricParams {
+  struct Params final : ScoredPeriod {
     int dimensions = 2;  ///< of the error; 2: horizontal
     void read(sim::ParamReader& in) override;
   };

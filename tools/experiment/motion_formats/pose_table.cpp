@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/experiment/motion_formats/pose_table.hpp"
 
+#include <spdlog/fmt/fmt.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <map>
 #include <set>
 
@@ -230,9 +231,7 @@ class TableBuilder {
       }
     constexpr double exact = 1e-9;
     if (furthest <= exact) return "; at its frames the motion is exact";
-    char number[32];
-    std::snprintf(number, sizeof number, "%.2g", furthest);
-    return "; at its frames up to " + std::string(number) + " rad from the motion, joint '" + joint + "'";
+    return fmt::format("; at its frames up to {:.2g} rad from the motion, joint '{}'", furthest, joint);
   }
 
   const sim::JointMotion& motion_;

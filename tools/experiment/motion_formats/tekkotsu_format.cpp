@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <spdlog/fmt/fmt.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "sim/config/message_text.hpp"
 #include "tools/experiment/motion_formats/pose_table.hpp"
@@ -21,9 +22,7 @@ std::string value_line(const sim::JointMotion& motion, const std::string& name, 
   if (name.size() > max_tekkotsu_name || name.find_first_of(" \t\r\n#") != std::string::npos || name.empty())
     refuse_motion(motion,
                   "joint '" + sim::printable(name) + "' must be a word of at most 63 bytes in a file of Tekkotsu");
-  char number[48];
-  std::snprintf(number, sizeof number, "\t%.6f", value);
-  return name + number + weight + "\n";
+  return fmt::format("{}\t{:.6f}{}\n", name, value, weight);
 }
 
 std::string write_mot(const sim::JointMotion& motion, const JointNames& names, const FormatOptions&, Losses& losses) {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <spdlog/fmt/fmt.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <set>
 
 #include "sim/config/message_text.hpp"
@@ -75,13 +76,9 @@ std::string write_webots(const sim::JointMotion& motion, const JointNames& names
   // Poses.
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
     const auto time_ms = static_cast<long long>(std::llround(table.times_s[i] / ms_of_webots));
-    char number[64];
-    std::snprintf(number, sizeof number, "%02lld:%02lld:%03lld,", time_ms / 60000, time_ms / 1000 % 60, time_ms % 1000);
-    std::string line = number + sim::shortened(name_of_pose(table.notes[i], i + 1), 200);
-    for (const double value : table.rows[i]) {
-      std::snprintf(number, sizeof number, ",%.6f", value);
-      line += number;
-    }
+    std::string line = fmt::format("{:02}:{:02}:{:03},{}", time_ms / 60000, time_ms / 1000 % 60, time_ms % 1000,
+                                   sim::shortened(name_of_pose(table.notes[i], i + 1), 200));
+    for (const double value : table.rows[i]) line += fmt::format(",{:.6f}", value);
     if (line.size() >= max_line)
       refuse_motion(motion, "a line of a .motion file has at most 4094 bytes: too many joints");
     text += line + "\n";

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/experiment/motion_formats/yaml_text.hpp"
 
+#include <spdlog/fmt/fmt.h>
+
 #include <algorithm>
 #include <cctype>
-#include <cstdio>
 
 #include "sim/config/message_text.hpp"
 #include "sim/config/yaml_writer.hpp"
@@ -38,9 +39,7 @@ std::string yaml_word(const std::string& text) {
 }
 
 std::string yaml_double(double value) {
-  char number[64];
-  std::snprintf(number, sizeof number, "%.9f", value);
-  std::string text = number;
+  std::string text = fmt::format("{:.9f}", value);
   while (text.ends_with('0') && !text.ends_with(".0")) text.pop_back();
   return text == "-0.0" ? "0.0" : text;
 }

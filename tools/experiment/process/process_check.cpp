@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "sim/base/number.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/program/find_program.hpp"
 #include "sim/program/program_args.hpp"
@@ -74,7 +75,7 @@ class Program {
   std::optional<Slots> slots() const {
     try {
       const int slot = std::stoi(value_of("slot")), slots = std::stoi(value_of("slots"));
-      const double slot_s = std::stod(value_of("slot_s"));
+      const double slot_s = sim::read_number(value_of("slot_s")).value_or(0);
       if (slot < 0 || slot >= slots || !(slot_s >= 0.1 && slot_s <= 3600)) return std::nullopt;
       const std::int64_t length_us = std::llround(slot_s * 1e6);
       return Slots{slot * length_us, length_us, slots * length_us};

@@ -17,6 +17,7 @@
 #include "bridges/control/run_audit.hpp"
 #include "bridges/log/event_log.hpp"
 #include "bridges/log/recording_bus.hpp"
+#include "bridges/log/run_info.hpp"
 #include "bridges/log/run_journal.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/sim_audit_t.hpp"
@@ -306,7 +307,7 @@ class Reader {
   }
 
   void take_info(const bridges::LogEventView& event) {
-    auto info = shoal::decode<shoal::sim_info_t>(event.payload, shoal::Finite::any);
+    auto info = bridges::read_run_info(event.payload);
     if (event.utime != info.utime) log_.own_stamps = false;
     // First message: start of the run.
     if (!informed_) {

@@ -155,8 +155,8 @@ std::string table(const std::vector<Cell>& cells) {
   return html +
          "</tbody></table></div>\n<p>rms: root of the mean square over the seeds, with the 95 % bootstrap interval. "
          "NEES: mean over the seeds with Student's 95 % interval; 2 is right. bound / rms: efficiency against the "
-         "posterior Cramér-Rao bound; 1 is the bound, and single runs lie on both sides of it. B/h: payload that a "
-         "vehicle says, us/event: CPU time, each the "
+         "reference of the metric bound; an estimator that knows the speed of a craft between its fixes, which the "
+         "reference does not, can be above 1. B/h: payload that a vehicle says, us/event: CPU time, each the "
          "greatest of the worlds.</p>\n";
 }
 

@@ -134,7 +134,7 @@ std::string consistency_sentence(const RunMetric& metric) {
 std::string bound_sentence(const RunMetric& metric) {
   const auto rms_m = metric.value("rms_m");
   if (!rms_m) return metric.name + ": no time was counted.";
-  return fmt::format("{}: no estimator of {} can be better than {} rms, with {} and {}.", metric.name,
+  return fmt::format("{}: the reference for the error of {} is {} rms, with {} and {}.", metric.name,
                      metric.vehicle.empty() ? "the position" : metric.vehicle, length_text(*rms_m),
                      counted(metric.value("ranges").value_or(0), "range", "ranges"),
                      counted(metric.value("fixes").value_or(0), "fix", "fixes"));

@@ -83,7 +83,9 @@ RunPrograms::Clients BranchPrograms::clients() {
             replayed_.service().client_exited(client);
             return !replayed_.lockstep().has(client);
           },
-          [this](const std::string& client) { return replayed_.lockstep().reason_to_leave(client); }};
+          [this](const std::string& client) {
+            return RunPrograms::Left{replayed_.lockstep().reason_to_leave(client), replayed_.lockstep().end_s(client)};
+          }};
 }
 
 bool BranchPrograms::joined() {

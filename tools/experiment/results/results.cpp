@@ -12,8 +12,10 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <utility>
+#include <vector>
 
 #include "sim/base/log.hpp"
+#include "sim/base/number.hpp"
 #include "tools/experiment/files/gnuplot.hpp"
 #include "tools/experiment/results/audit_text.hpp"
 #include "tools/experiment/results/results_world.hpp"
@@ -104,6 +106,14 @@ void Summary::fail(int code, const std::string& how_ended, const std::string& wh
 
 namespace {
 
+/// Lists the first phrases in one line.
+std::string listed(const std::vector<std::string>& phrases) {
+  constexpr std::size_t max = 5;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(max, phrases.size()); ++i) text += (i == 0 ? "" : "; ") + phrases[i];
+  return phrases.size() <= max ? text : text + fmt::format("; and {} more, see summary.json", phrases.size() - max);
+}
+
 /// Lists the first hundred pairs: a dense swarm has thousands.
 nlohmann::ordered_json contacts_json(const std::vector<FirstContacts::Contact>& contacts) {
   constexpr std::size_t max = 100;
@@ -114,6 +124,29 @@ nlohmann::ordered_json contacts_json(const std::vector<FirstContacts::Contact>& 
                     {"first_s", contacts[i].first_s},
                     {"count", contacts[i].count}});
   return json;
+}
+
+constexpr std::size_t many_zeros = 4;
+
+/// Text of the figures, one in a line; many of a metric that are 0 share one.
+std::string figures_text(const std::map<std::string, double>& figures) {
+  std::map<std::string, std::vector<std::string>> zeros;  // by metric
+  for (const auto& [name, value] : figures)
+    if (const std::size_t dot = name.rfind('.'); value == 0 && dot != std::string::npos)
+      zeros[name.substr(0, dot)].push_back(name.substr(dot + 1));
+  std::erase_if(zeros, [](const auto& each) { return each.second.size() < many_zeros; });
+  const auto is_folded = [&](const std::string& name, double value) {
+    return value == 0 && zeros.contains(name.substr(0, name.rfind('.')));
+  };
+  std::size_t width = 28;
+  for (const auto& [name, value] : figures)
+    if (!is_folded(name, value)) width = std::max(width, name.size());
+  std::string text;
+  for (const auto& [name, value] : figures)
+    if (!is_folded(name, value))
+      text += fmt::format("  {:<{}} {}\n", name, width, std::isnan(value) ? "none" : fmt::format("{:.4g}", value));
+  for (const auto& [metric, names] : zeros) text += fmt::format("  0 in {}: {}\n", metric, fmt::join(names, ", "));
+  return text;
 }
 
 }  // namespace
@@ -148,7 +181,7 @@ std::string Summary::to_json() const {
     json["processes"].push_back(
         {{"name", process.name}, {"how", process.how}, {"sim_time_s", process.sim_time_s}, {"failed", process.failed}});
   if (!clients.empty()) json["clients"] = nlohmann::ordered_json::array();
-  for (const bridges::LockstepSummary& client : clients)
+  for (const bridges::LockstepSummary& client : clients) {
     json["clients"].push_back({{"name", client.client},
                                {"ticks", client.ticks},
                                {"repeated_ticks", client.repeated_ticks},
@@ -158,6 +191,9 @@ std::string Summary::to_json() const {
                                {"timeouts", client.timeouts},
                                {"contradictions", client.contradictions},
                                {"ended", client.ended.empty() ? "with the run" : client.ended}});
+    if (!client.ended.empty()) json["clients"].back()["ended_s"] = client.ended_s;
+  }
+  if (!not_recorded.empty()) json["not_recorded"] = not_recorded;
   // Control, zones and modems.
   json["control"] = {{"needs_key", needs_key}, {"refused_requests", refused_requests}, {"audit_count", audit_count}};
   json["control"]["audit"] = audit_json(audit);
@@ -197,11 +233,18 @@ std::string Summary::to_json() const {
 }
 
 std::string Summary::to_text() const {
-  std::string text = fmt::format(
-      "world {}  seed {}\n"
+  std::string text = fmt::format("world {}  seed {}\n", world, seed);
+  // The verdict.
+  for (const Scoring::Verdict& verdict : verdicts)
+    text += fmt::format("  {}: {}\n", verdict.passed ? "passed" : "FAILED", verdict.text());
+  if (event) text += fmt::format("  ended by an event, {}: {}\n", event->passed ? "passed" : "FAILED", event->text);
+  if (!judged())
+    text += ended_by_hand() ? fmt::format("  {}: not judged\n", why_not_judged())
+                            : fmt::format("  not judged: {}\n", why_not_judged());
+  text += fmt::format(
       "  {} steps, {:.2f} s simulated in {:.2f} s: {:.1f} x real time\n"
       "  {} messages, {} dropped, {} bad\n",
-      world, seed, steps, sim_time_s, wall_s, real_time_factor(), messages, dropped_messages, bad_messages);
+      steps, sim_time_s, wall_s, real_time_factor(), messages, dropped_messages, bad_messages);
   // Branches and accuracy.
   if (!snapshot.empty())
     text += fmt::format("  {:.2f} s of it here, from {}; metrics count from {:.2f} s\n", stepped_s, snapshot, from_s);
@@ -222,17 +265,12 @@ std::string Summary::to_text() const {
   if (modem_dropped_messages > 0)
     text += fmt::format("  {} messages were dropped from full queues of modems\n", modem_dropped_messages);
   if (serial_dropped_bytes > 0) text += fmt::format("  {} bytes of serial ports were not read\n", serial_dropped_bytes);
-  // Contacts, metrics and rules.
-  text += contacts_text(contacts);
-  std::size_t width = 28;
-  for (const auto& [name, value] : metrics) width = std::max(width, name.size());
-  for (const auto& [name, value] : metrics)
-    text += fmt::format("  {:<{}} {}\n", name, width, std::isnan(value) ? "none" : fmt::format("{:.4g}", value));
-  for (const Scoring::Verdict& verdict : verdicts)
-    text += fmt::format("  {}: {}\n", verdict.passed ? "passed" : "FAILED", verdict.text());
+  // Contacts and metrics.
+  text += contacts_text(contacts) + figures_text(metrics);
   // Programs, interventions and zones.
   for (const Process& process : processes)
     text += fmt::format("  process '{}' {} at {:.2f} s\n", process.name, process.how, process.sim_time_s);
+  if (!not_recorded.empty()) text += "  not in the record: " + listed(not_recorded) + "\n";
   for (const bridges::AuditEntry& audit_entry : audit) text += "  " + audit_text(audit_entry) + "\n";
   if (refused_requests > 0)
     text += fmt::format("  {} requests without the key of the run were rejected\n", refused_requests);
@@ -240,11 +278,6 @@ std::string Summary::to_text() const {
     if (record.finish_s) text += fmt::format("  {} finished at {:.2f} s\n", vehicle, *record.finish_s);
     if (record.speeding_s > 0) text += fmt::format("  {} was too fast for {:.2f} s\n", vehicle, record.speeding_s);
   }
-  // End of the run.
-  if (event) text += fmt::format("  ended by an event, {}: {}\n", event->passed ? "passed" : "FAILED", event->text);
-  if (!judged())
-    text += ended_by_hand() ? fmt::format("  {}: not judged\n", why_not_judged())
-                            : fmt::format("  not judged: {}\n", why_not_judged());
   text += fmt::format("  run hash {:016x}, state hash {:016x}\n", run_hash, state_hash);
   return text;
 }
@@ -295,12 +328,6 @@ Results::Results(const std::string& directory, const sim::World& world, bool plo
   remove_link(path);
   tracks_ = std::fopen(path.c_str(), "w");
   if (tracks_ == nullptr) throw cannot_write(path, std::strerror(errno));
-  std::error_code error;
-  // Remove the files of an earlier run, which would be mistaken for those of this one if it is killed.
-  for (const char* image : run_plots) std::filesystem::remove(directory + "/" + image, error);
-  for (const char* file : {"summary.json", "metrics.csv", "errors.csv"})
-    if (!std::filesystem::is_directory(directory + "/" + file, error))
-      std::filesystem::remove(directory + "/" + file, error);
   // Start the tracks.
   std::fprintf(tracks_, "time_s,vehicle,x_m,y_m,z_m,yaw_rad\n");
   const double step_s = sim::to_seconds(world.step_time());
@@ -320,9 +347,10 @@ void Results::after_step() {
   for (const auto& vehicle : world_.vehicles()) {
     const sim::Pose X_WV = vehicle->X_WV();
     const sim::Vector3d p = X_WV.translation();
-    const int written = std::fprintf(tracks_, "%.6f,%s,%.6f,%.6f,%.6f,%.6f\n", sim::to_seconds(world_.now()),
-                                     vehicle->name().c_str(), p.x(), p.y(), p.z(), sim::yaw_of(X_WV.linear()));
-    if (written < 0 && !error_) error_ = cannot_write(directory_ + "/tracks.csv", std::strerror(errno)).what();
+    const std::string row = fmt::format("{:.6f},{},{:.6f},{:.6f},{:.6f},{:.6f}\n", sim::to_seconds(world_.now()),
+                                        vehicle->name(), p.x(), p.y(), p.z(), sim::yaw_of(X_WV.linear()));
+    if (std::fputs(row.c_str(), tracks_) < 0 && !error_)
+      error_ = cannot_write(directory_ + "/tracks.csv", std::strerror(errno)).what();
   }
 }
 
@@ -372,7 +400,8 @@ void Results::start_branch(sim::Time back_to, bool ours) {
   std::uintmax_t keep = 0;
   // Times are written with all digits.
   for (bool first = true; std::getline(in, line); first = false) {
-    if (!first && (!ours || std::strtod(line.c_str(), nullptr) > sim::to_seconds(back_to) + 1e-7)) break;
+    const double time_s = sim::read_number(std::string_view(line).substr(0, line.find(','))).value_or(0);
+    if (!first && (!ours || time_s > sim::to_seconds(back_to) + 1e-7)) break;
     keep += line.size() + 1;
   }
   std::error_code error;

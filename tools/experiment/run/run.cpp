@@ -10,7 +10,7 @@
 #include "bridges/base/bus_error.hpp"
 #include "sim/base/log.hpp"
 #include "sim/world/world_state.hpp"
-#include "tools/experiment/results/results_world.hpp"
+#include "tools/experiment/files/no_links.hpp"
 #include "tools/experiment/results/run_error.hpp"
 #include "tools/experiment/run/run_ports.hpp"
 #include "tools/experiment/run/scores_message.hpp"
@@ -66,10 +66,7 @@ Run::Run(const sim::LoadedWorld& loaded, const RunOptions& options)
     // Earlier messages are not in this run's log, which a gap indicates.
     journal_.start_branch(control_.branch, 1);
   }
-  if (!options.results.empty()) {
-    results_ = std::make_unique<Results>(options.results, world_, options.plots);
-    write_results_world(options.results, loaded.resolved);
-  }
+  if (!options.results.empty()) results_ = std::make_unique<Results>(options.results, world_, options.plots);
   progress_.restart(world_.now());
   plan_snapshots();
   if (options.keys && !options.quiet && TerminalKeys::possible()) {
@@ -81,9 +78,10 @@ Run::Run(const sim::LoadedWorld& loaded, const RunOptions& options)
 }
 
 std::vector<bridges::LockstepBus> Run::lockstep_buses() {
-  std::vector<bridges::LockstepBus> all{{buses_.network(), buses_.gate()}};
+  const bool is_recorded = !options_.record.empty();
+  std::vector<bridges::LockstepBus> all{{buses_.network(), buses_.gate(), "", is_recorded}};
   for (const sim::BusConfig& bus : loaded_.config.buses)
-    all.push_back({buses_.network(bus.name), buses_.gate(bus.name), bus.name});
+    all.push_back({buses_.network(bus.name), buses_.gate(bus.name), bus.name, is_recorded});
   return all;
 }
 
@@ -114,7 +112,10 @@ TimeControl::Options Run::time_options() const {
   time.rewind_s = options_.rewind_s.value_or(accepts_requests ? usual_rewind_s : 0);
   time.max_bytes = static_cast<std::size_t>(options_.rewind_MB * 1e6);
   time.directory = options_.snapshots;
-  if (time.directory.empty() && !options_.results.empty()) time.directory = options_.results + "/snapshots";
+  if (time.directory.empty() && !options_.results.empty()) {
+    time.directory = options_.results + "/snapshots";
+    refuse_links(options_.results, time.directory);
+  }
   time.overwrite = options_.overwrite;
   time.resolved_world = sim::to_yaml(loaded_.resolved);
   time.files = files_;
@@ -168,7 +169,6 @@ Summary Run::go() {
     start_clients();
     loop();
     summary.ended = how_ended();
-    if (page_) page_->ended(world_, control_, summary.ended);
     if (caught_signal() != 0) summary.exit_code = 128 + caught_signal();
   } catch (const RunError& error) {
     summary.fail(error.exit_code, error.ended, error.what());
@@ -180,6 +180,9 @@ Summary Run::go() {
     summary.fail(4, "error", error.what());
   }
   progress_.clear();
+  if (page_)
+    page_->ended(world_, control_, summary.ended + (summary.error.empty() ? "" : ": " + summary.error),
+                 options_.record);
   summary.wall_s = std::chrono::duration<double>(Clock::now() - begin).count();
   finish(summary);
   return summary;
@@ -368,7 +371,9 @@ RunPrograms::Clients Run::clients(bool goes_on) {
             service_.client_exited(client);
             return !lockstep_.has(client);
           },
-          [this](const std::string& client) { return lockstep_.reason_to_leave(client); }};
+          [this](const std::string& client) {
+            return RunPrograms::Left{lockstep_.reason_to_leave(client), lockstep_.end_s(client)};
+          }};
 }
 
 void Run::check_programs() {

@@ -58,6 +58,8 @@ class RunBuses {
   /// Returns the error of a connection or of the record.
   std::optional<std::string> lost_connection() const;
   std::optional<std::string> record_error() const;
+  /// Returns the number of messages that the budget of the record left out.
+  std::uint64_t left_out_of_record() const { return main_.recorder ? main_.recorder->left_out() : 0; }
   void close_record();
   /// Flushes the record, for a run that is paused.
   void hand_over_record();

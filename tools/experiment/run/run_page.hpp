@@ -71,8 +71,9 @@ class RunPage {
   /// `programs`: what the programs of the branch do; empty: nothing is to be said of it.
   virtual void moved(const sim::World& world, const sim::RunControl& control, bool continues,
                      const std::string& programs) = 0;
-  /// Announces the end of the run, and why.
-  virtual void ended(const sim::World& world, const sim::RunControl& control, const std::string& why) = 0;
+  /// Announces the end of the run, and why.  `log`: the record of the run; empty: none.
+  virtual void ended(const sim::World& world, const sim::RunControl& control, const std::string& why,
+                     const std::string& log) = 0;
 };
 
 }  // namespace tools

@@ -34,25 +34,31 @@ std::vector<std::string> RunPrograms::start() {
   return awaited;
 }
 
-std::vector<ProcessGroup::Exit> RunPrograms::reap(const Clients& clients) {
-  std::vector<ProcessGroup::Exit> exits = processes_.reap();
-  for (ProcessGroup::Exit& exit : exits) {
-    if (exit.failed || exit.client.empty()) continue;
+std::vector<RunPrograms::Exit> RunPrograms::reap(sim::Time now, const Clients& clients) {
+  std::vector<Exit> exits;
+  for (ProcessGroup::Exit& process : processes_.reap()) {
+    Exit& exit = exits.emplace_back(Exit{std::move(process), sim::to_seconds(now)});
+    if (exit.client.empty()) continue;
     const bool has_left = clients.has_left(exit.client);
-    const std::string reason = has_left ? clients.reason_to_leave(exit.client) : "";
-    if (has_left && reason.empty()) continue;
+    const Left left = has_left ? clients.left(exit.client) : Left{};
+    if (!left.reason.empty()) {
+      exit.how += "; its client '" + exit.client + "' had left: " + left.reason;
+      exit.time_s = left.time_s;
+    } else if (!exit.failed && !has_left) {
+      exit.how += " before the last tick of client '" + exit.client + "', which did not leave";
+    } else {
+      continue;
+    }
     exit.failed = true;
-    exit.how += has_left ? "; its client '" + exit.client + "' had left: " + reason
-                         : " before the last tick of client '" + exit.client + "', which did not leave";
   }
   return exits;
 }
 
 void RunPrograms::check(sim::Time now, const Clients& clients) {
   if (processes_.empty()) return;
-  for (const ProcessGroup::Exit& exit : reap(clients)) {
+  for (const Exit& exit : reap(now, clients)) {
     const std::string text = "process '" + exit.name + "' " + exit.how;
-    note(exit, now);
+    note(exit);
     if (exit.ends_run) throw RunError(1, "process", text + "; the run ends with it, as the world requires");
     const bool goes_on = clients.removed(exit.client);
     if (exit.failed && !exit.ignored)
@@ -63,18 +69,18 @@ void RunPrograms::check(sim::Time now, const Clients& clients) {
   }
 }
 
-void RunPrograms::note(const ProcessGroup::Exit& exit, sim::Time now) {
-  ended_.push_back({exit.name, exit.how, sim::to_seconds(now), exit.failed && !exit.ignored});
+void RunPrograms::note(const Exit& exit) {
+  ended_.push_back({exit.name, exit.how, exit.time_s, exit.failed && !exit.ignored});
 }
 
 void RunPrograms::note_last(sim::Time now, const Clients& clients) {
   if (processes_.empty()) return;
-  for (const ProcessGroup::Exit& exit : reap(clients)) note(exit, now);
+  for (const Exit& exit : reap(now, clients)) note(exit);
   for (const sim::ProcessConfig& process : config_.processes) {
     const auto is_noted = [&](const Summary::Process& one) { return one.name == process.name; };
     if (process.client.empty() || std::any_of(ended_.begin(), ended_.end(), is_noted)) continue;
-    if (const std::string reason = clients.reason_to_leave(process.client); !reason.empty())
-      ended_.push_back({process.name, "left: " + reason, sim::to_seconds(now), process.on_exit != sim::OnExit::ignore});
+    if (const Left left = clients.left(process.client); !left.reason.empty())
+      ended_.push_back({process.name, "left: " + left.reason, left.time_s, process.on_exit != sim::OnExit::ignore});
   }
 }
 

@@ -21,6 +21,10 @@ class RunPrograms {
 
   /// Starts the programs when the options require it.  Returns the lockstep clients to wait for.  Throws RunError.
   std::vector<std::string> start();
+  struct Left {
+    std::string reason;  ///< such as an exception; empty: as planned, or it has not left
+    double time_s = 0;   ///< simulated
+  };
   /// State of lockstep clients, by name.
   struct Clients {
     /// Returns whether the client has left the lockstep.
@@ -28,8 +32,8 @@ class RunPrograms {
     /// Handles the end of its process.  Returns whether the run continues without it at once; otherwise its
     /// `on_timeout` applies.
     std::function<bool(const std::string& client)> removed;
-    /// Returns the reason for which the client has left, such as an exception; empty: as planned, or it has not left.
-    std::function<std::string(const std::string& client)> reason_to_leave;
+    /// Returns why and when the client has left.
+    std::function<Left(const std::string& client)> left;
   };
 
   /// Checks for programs that have ended.  A client that ended before its last tick without leaving, or that left for a
@@ -47,8 +51,11 @@ class RunPrograms {
   const std::vector<Summary::Process>& ended() const { return ended_; }
 
  private:
-  std::vector<ProcessGroup::Exit> reap(const Clients& clients);
-  void note(const ProcessGroup::Exit& exit, sim::Time now);
+  struct Exit : ProcessGroup::Exit {
+    double time_s;  ///< simulated: of the leave, if its client had left for a reason
+  };
+  std::vector<Exit> reap(sim::Time now, const Clients& clients);
+  void note(const Exit& exit);
 
   const sim::WorldConfig& config_;
   const RunOptions& options_;

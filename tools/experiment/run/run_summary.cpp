@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <spdlog/fmt/fmt.h>
+
 #include "devices/common/serial_port.hpp"
 #include "devices/comms/message_modem.hpp"
 #include "sim/acoustics/channel.hpp"
@@ -89,6 +91,9 @@ void Run::add_figures(Summary& summary) {
   summary.verdicts = scoring_.verdicts();
   summary.processes = programs_.ended();
   summary.clients = lockstep_.summaries();
+  summary.not_recorded = lockstep_.not_recorded();
+  if (const std::uint64_t count = buses_.left_out_of_record(); count > 0)
+    summary.not_recorded.push_back(fmt::format("{} messages (--record-mb)", count));
   summary.needs_key = lockstep_.guard().requires_key();
   summary.refused_requests = service_.refused_requests();
   summary.audit = service_.audit().all();

@@ -75,6 +75,18 @@ void Run::plan_snapshots() {
                                  sim::to_seconds(world_.now())));
     snapshot_steps_.insert(std::llround(time_s / step_s));
   }
+  // An existing file ends the run now, not when its snapshot is due.
+  std::set<std::int64_t> planned = snapshot_steps_;
+  if (options_.snapshot_every_s) {
+    const double per_step = step_s / *options_.snapshot_every_s;
+    const double next = std::floor((2 * static_cast<double>(world_.step_number()) + 1) * per_step / 2) + 1;
+    planned.insert(static_cast<std::int64_t>(std::ceil(next / per_step - 0.5)));
+  }
+  try {
+    for (const std::int64_t step : planned) time_.check_planned_snapshot(step);
+  } catch (const std::exception& error) {
+    throw RunError(4, "bus", error.what());
+  }
 }
 
 void Run::report_missed_snapshots() const {

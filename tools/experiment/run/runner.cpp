@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/experiment/run/runner.hpp"
 
-#include <filesystem>
 #include <optional>
 
 #include "sim/config/diagnostics.hpp"
 #include "tools/experiment/process/process_check.hpp"
+#include "tools/experiment/results/earlier_run.hpp"
 #include "tools/experiment/results/results_lock.hpp"
+#include "tools/experiment/results/results_world.hpp"
 #include "tools/experiment/results/run_error.hpp"
 #include "tools/experiment/run/run.hpp"
 #include "tools/experiment/run/version.hpp"
@@ -32,10 +33,12 @@ Summary run_world(const sim::LoadedWorld& loaded, const RunOptions& options) {
     summary.fail(error.exit_code, error.ended, error.what());
     return summary;
   }
-  // Remove an old summary, which would be mistaken for that of this run if it is killed.
-  std::error_code ignored;
-  if (!options.results.empty()) std::filesystem::remove(options.results + "/summary.json", ignored);
   try {
+    // Remove the files of an earlier run, which would be mistaken for those of this one, also if it fails or is killed.
+    if (!options.results.empty()) {
+      remove_earlier_run(options.results);
+      write_results_world(options.results, loaded.resolved);
+    }
     // Check the options and run.
     if (options.launch && options.bus == "none")
       throw RunError(2, "configuration", "--launch needs the LCM bus: processes cannot attach to --bus none");

@@ -380,9 +380,19 @@ std::string TimeControl::write_snapshot(const std::string& name) {
   return text;
 }
 
+std::string TimeControl::planned_name(std::int64_t step) const {
+  return fmt::format("branch{}_step{}", control_.branch, step);
+}
+
+void TimeControl::check_planned_snapshot(std::int64_t step) const {
+  const std::string path = path_of(planned_name(step));
+  std::error_code error;
+  if (!options_.overwrite && std::filesystem::exists(path, error))
+    throw std::runtime_error(path + ": a snapshot of an earlier run; give --overwrite, or another --snapshots");
+}
+
 std::string TimeControl::write_file(const std::string& name) {
-  const std::string path =
-      path_of(!name.empty() ? name : fmt::format("branch{}_step{}", control_.branch, world_.step_number()));
+  const std::string path = path_of(!name.empty() ? name : planned_name(world_.step_number()));
   std::error_code error;
   std::filesystem::create_directories(options_.directory, error);
   if (!options_.overwrite && std::filesystem::exists(path, error))

@@ -63,6 +63,8 @@ class TimeControl final : public bridges::TimeMachine {
   std::string write_snapshot(const std::string& name);
   /// Writes a snapshot that the command line requested, without a limit.
   std::string write_planned_snapshot();
+  /// Throws std::runtime_error when the file of a planned snapshot exists already, and may not be replaced.
+  void check_planned_snapshot(std::int64_t step) const;
   /// Continues from a file in the directory of snapshots.  With lockstep clients it rewinds to that step as rewind()
   /// does, so that they are restored too; this is limited to files that this run wrote, and to its history.
   std::string restore(const std::string& name, bool run_on);
@@ -100,6 +102,7 @@ class TimeControl final : public bridges::TimeMachine {
   void rewind_to(std::int64_t base, std::int64_t target, bool run_on);
   void restore_with_clients(const Snapshot& snapshot, const std::string& path, bool run_on);
   std::string what_is_kept() const;
+  std::string planned_name(std::int64_t step) const;
   std::string write_file(const std::string& name);
   std::string path_of(const std::string& name) const;
 

@@ -12,10 +12,12 @@
 #include <fstream>
 #include <iterator>
 #include <span>
+#include <system_error>
 
 #include "sim/base/crc32.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/state/state_archive.hpp"
+#include "tools/experiment/files/no_links.hpp"
 #include "tools/experiment/snapshot/run_identity.hpp"
 
 namespace tools {
@@ -118,18 +120,17 @@ Snapshot snapshot_from_bytes(const sim::Bytes& bytes, const std::string& path) {
 void write_snapshot(const std::string& path, const Snapshot& snapshot) {
   const sim::Bytes bytes = to_bytes(snapshot);
   const std::string unfinished = path + ".part" + std::to_string(getpid());
-  const int fd = open(unfinished.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  if (fd < 0) throw cannot("written", path, errno);
   try {
-    write_all(fd, bytes, path);
-    if (fsync(fd) != 0 && errno != EINVAL) throw cannot("written", path, errno);
+    const bridges::FileDescriptor file = make_new_file(unfinished);
+    write_all(file.number(), bytes, path);
+    if (fsync(file.number()) != 0 && errno != EINVAL) throw cannot("written", path, errno);
     if (rename(unfinished.c_str(), path.c_str()) != 0) throw cannot("written", path, errno);
+  } catch (const std::system_error& error) {
+    throw cannot("written", path, error.code().value());
   } catch (...) {
-    ::close(fd);
     unlink(unfinished.c_str());
     throw;
   }
-  ::close(fd);
 }
 
 Snapshot read_snapshot(const std::string& path) {

@@ -29,7 +29,7 @@ struct AlgorithmCell {
   double nees = no_figure;  ///< mean; its interval by Student's t
   Interval nees_95{no_figure, no_figure};
   double inside_95 = no_figure;
-  double efficiency = no_figure;  ///< sqrt(sum of the bound's squares / sum of the squared errors); 1 is the bound
+  double efficiency = no_figure;  ///< sqrt(sum of the bound's squares / sum of the squared errors); 1 is the reference
   Interval efficiency_95{no_figure, no_figure};
   double bytes_per_h = no_figure;   ///< of a vehicle
   double us_per_event = no_figure;  ///< median

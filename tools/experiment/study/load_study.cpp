@@ -4,6 +4,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
+#include <charconv>
 #include <filesystem>
 #include <set>
 #include <stdexcept>
@@ -140,7 +141,7 @@ std::string world_file_of(const std::string& study_file, const std::string& worl
 /// Loads the world of a case.  Errors in a value of `set:` name its place in the study.
 sim::LoadedWorld world_of_case(const StudyCase& in_case, sim::LoadOptions options) {
   const std::vector<std::string> sets = in_case.sets();
-  options.sets.insert(options.sets.end(), sets.begin(), sets.end());
+  options.study_sets.insert(options.study_sets.end(), sets.begin(), sets.end());
   try {
     return sim::load_world(in_case.world, options);
   } catch (const sim::ConfigError& error) {
@@ -160,37 +161,49 @@ sim::LoadedWorld world_of_case(const StudyCase& in_case, sim::LoadOptions option
   }
 }
 
-/// Most values of a factor that are checked before the first run.
+/// Most numbers of a factor that are checked before the first run.
 constexpr std::size_t max_checked_values = 8;
 
-/// Loads the world with some values of each factor: its first and last ones, and those between up to a number. Errors
-/// name the factor.
+bool is_number(const std::string& value) {
+  double number = 0;
+  const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), number);
+  return error == std::errc() && end == value.data() + value.size();
+}
+
+/// First and last value of a factor and those between up to a number; texts, which may be names of files, all.
+std::vector<std::string> checked_values(const StudyFactor& factor) {
+  if (factor.values.empty()) return {factor.value_at(0), factor.value_at(1)};
+  if (factor.values.size() <= max_checked_values || !std::all_of(factor.values.begin(), factor.values.end(), is_number))
+    return factor.values;
+  std::vector<std::string> values(factor.values.begin(), factor.values.begin() + max_checked_values);
+  values.push_back(factor.values.back());
+  return values;
+}
+
+/// Loads each world with some values of each factor.  Errors name the factor.
 void check_factors(const LoadedStudy& study, const sim::LoadOptions& load) {
   const StudyConfig& config = study.config;
-  for (const StudyFactor& factor : config.factors) {
-    std::vector<std::string> values{factor.value_at(0), factor.value_at(1)};
-    if (!factor.values.empty()) {
-      values.assign(factor.values.begin(), factor.values.begin() + static_cast<std::ptrdiff_t>(std::min(
-                                                                       factor.values.size(), max_checked_values)));
-      if (factor.values.size() > max_checked_values) values.push_back(factor.values.back());
-    }
-    for (const std::string& value : values) {
-      sim::LoadOptions options = load;
-      for (const std::string& set : config.cases.front().sets()) options.sets.push_back(set);
-      for (const std::string& path : factor.paths) options.sets.push_back(path + "=" + value);
-      try {
-        sim::load_world(config.cases.front().world, options);
-      } catch (const sim::ConfigError& error) {
-        std::vector<std::string> lines = error.lines();
-        for (std::string& line : lines) {
-          const std::size_t at = line.find(": ");
-          if (line.starts_with("--set ") && at != std::string::npos)
-            line = factor.place.text() + ": factor '" + factor.name + "': value " +
-                   sim::shortened(sim::printable(value)) + line.substr(at);
+  std::set<std::string> worlds;
+  for (const StudyCase& in_case : config.cases) {
+    if (!worlds.insert(in_case.world).second) continue;
+    for (const StudyFactor& factor : config.factors)
+      for (const std::string& value : checked_values(factor)) {
+        sim::LoadOptions options = load;
+        for (const std::string& set : in_case.sets()) options.study_sets.push_back(set);
+        for (const std::string& path : factor.paths) options.study_sets.push_back(path + "=" + value);
+        try {
+          sim::load_world(in_case.world, options);
+        } catch (const sim::ConfigError& error) {
+          std::vector<std::string> lines = error.lines();
+          for (std::string& line : lines) {
+            const std::size_t at = line.find(": ");
+            if (line.starts_with("--set ") && at != std::string::npos)
+              line = factor.place.text() + ": factor '" + factor.name + "': value " +
+                     sim::shortened(sim::printable(value)) + line.substr(at);
+          }
+          throw sim::ConfigError(std::move(lines));
         }
-        throw sim::ConfigError(std::move(lines));
       }
-    }
   }
 }
 

@@ -23,7 +23,11 @@ std::runtime_error mrclam_error(const std::string& path, const std::string& why)
 MrclamFile::MrclamFile(std::string path_of_file, const std::string& comment)
     : path(std::move(path_of_file)), file(std::fopen(path.c_str(), "w")) {
   if (!file) throw mrclam_error(path, std::strerror(errno));
-  std::fprintf(file.get(), "# %s\n", comment.c_str());
+  write("# " + comment + "\n");
+}
+
+void MrclamFile::write(const std::string& text) {
+  std::fputs(text.c_str(), file.get());
 }
 
 void MrclamFile::close() {
@@ -35,7 +39,7 @@ MrclamPoses::MrclamPoses(const std::string& path, const std::string& robot)
     : file_(path, robot + "\n# Time [s]\tx [m]\ty [m]\torientation [rad]") {}
 
 void MrclamPoses::add(double time_s, double x_m, double y_m, double yaw_rad) {
-  std::fprintf(file_.file.get(), "%.3f\t%.6f\t%.6f\t%.6f\n", time_s, x_m, y_m, yaw_rad);
+  file_.write(fmt::format("{:.3f}\t{:.6f}\t{:.6f}\t{:.6f}\n", time_s, x_m, y_m, yaw_rad));
 }
 
 void MrclamPoses::close() {
@@ -54,7 +58,7 @@ MrclamWriter::MrclamWriter(const std::string& directory, const std::vector<std::
   MrclamFile barcodes(directory + "/Barcodes.dat", "Subject #\tBarcode #");
   for (std::size_t i = 0; i < robots.size(); ++i) {
     const int robot = static_cast<int>(i);
-    std::fprintf(barcodes.file.get(), "%d\t%d\n", robot + 1, barcode_of(robot));
+    barcodes.write(fmt::format("{}\t{}\n", robot + 1, barcode_of(robot)));
     const std::string path = fmt::format("{}/Robot{}_", directory, i + 1);
     robots_.push_back(
         {MrclamPoses(path + "Groundtruth.dat", robots[i]),
@@ -71,13 +75,13 @@ void MrclamWriter::add_truth(int robot, double time_s, double x_m, double y_m, d
 }
 
 void MrclamWriter::add_odometry(int robot, double time_s, double forward_mps, double turn_radps) {
-  std::fprintf(robots_[static_cast<std::size_t>(robot)].odometry.file.get(), "%.3f\t%.6f\t%.6f\n", time_s, forward_mps,
-               turn_radps);
+  robots_[static_cast<std::size_t>(robot)].odometry.write(
+      fmt::format("{:.3f}\t{:.6f}\t{:.6f}\n", time_s, forward_mps, turn_radps));
 }
 
 void MrclamWriter::add_measurement(int robot, double time_s, int seen, double range_m, double bearing_rad) {
-  std::fprintf(robots_[static_cast<std::size_t>(robot)].measurement.file.get(), "%.3f\t%d\t%.6f\t%.6f\n", time_s,
-               barcode_of(seen), range_m, bearing_rad);
+  robots_[static_cast<std::size_t>(robot)].measurement.write(
+      fmt::format("{:.3f}\t{}\t{:.6f}\t{:.6f}\n", time_s, barcode_of(seen), range_m, bearing_rad));
 }
 
 void MrclamWriter::close() {

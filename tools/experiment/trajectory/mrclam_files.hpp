@@ -15,6 +15,7 @@ struct MrclamFile {
   };
   /// Throws std::runtime_error with path and reason.
   MrclamFile(std::string path_of_file, const std::string& comment);
+  void write(const std::string& text);
   /// Throws std::runtime_error when the file could not be written.
   void close();
 

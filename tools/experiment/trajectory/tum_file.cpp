@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/experiment/trajectory/tum_file.hpp"
 
+#include <spdlog/fmt/fmt.h>
+
 #include <cerrno>
 #include <cstring>
 #include <stdexcept>
@@ -21,8 +23,9 @@ TumFile::TumFile(const std::string& path) : path_(path), file_(std::fopen(path.c
 }
 
 void TumFile::add(double time_s, const sim::Vector3d& p_W, const sim::Quaterniond& q_WB) {
-  std::fprintf(file_.get(), "%.6f %.6f %.6f %.6f %.9f %.9f %.9f %.9f\n", time_s, p_W.x(), p_W.y(), p_W.z(), q_WB.x(),
-               q_WB.y(), q_WB.z(), q_WB.w());
+  const std::string line = fmt::format("{:.6f} {:.6f} {:.6f} {:.6f} {:.9f} {:.9f} {:.9f} {:.9f}\n", time_s, p_W.x(),
+                                       p_W.y(), p_W.z(), q_WB.x(), q_WB.y(), q_WB.z(), q_WB.w());
+  std::fputs(line.c_str(), file_.get());
 }
 
 void TumFile::close() {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 
 #include "shoal/message_codec.hpp"
 #include "shoal/sim_info_t.hpp"
@@ -60,6 +61,9 @@ LogView::LogView(const std::string& path, const LogIndex& index, const ViewOptio
 void LogView::compare_with(const std::string& path, const LogIndex& index,
                            const std::optional<LogDifference>& difference) {
   other_.emplace(path, index);
+  other_epoch_us_ = index.epoch_us();
+  constexpr double always_s = std::numeric_limits<double>::infinity(), interval_s = 0.1;
+  other_estimates_ = LogEstimates(path, -always_s, always_s, interval_s);
   difference_ = difference;
   distances_.emplace(path_, index_, path, index, messages_.scene());
   const auto item = [](int branch, const std::string& name, const LogIndex& of) {
@@ -97,7 +101,20 @@ void LogView::look(const bridges::ViewRequest& request) {
   head.paused = head.past = true;
   past_.begin(head);
   arrange(poses->bodies, *poses->names, order, past_);
+  if (branch == 1) send_other_estimates(request, poses->time_us);
   server_.send_state_to(request.client, past_.end());
+}
+
+void LogView::send_other_estimates(const bridges::ViewRequest& request, std::int64_t time_us) {
+  std::string items;
+  for (const std::string& vehicle : other_estimates_.vehicles()) {
+    constexpr double max_age_s = 1e-6 * static_cast<double>(before_us);
+    const LogEstimate* const estimate = other_estimates_.find(vehicle, 1e-6 * static_cast<double>(time_us), max_age_s);
+    if (estimate == nullptr) continue;
+    items += (items.empty() ? "" : ",") + estimate_text(vehicle, *estimate, estimate->utime - other_epoch_us_);
+  }
+  if (other_estimates_.vehicles().empty()) return;
+  server_.reply(request.client, "{\"op\":\"estimates\",\"branch\":1,\"items\":[" + items + "]}");
 }
 
 void LogView::send_event_at(std::uint64_t offset) {

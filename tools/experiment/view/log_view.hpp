@@ -7,6 +7,7 @@
 
 #include "bridges/log/event_log.hpp"
 #include "bridges/web/web_server.hpp"
+#include "tools/experiment/estimates/log_estimates.hpp"
 #include "tools/experiment/log_data/log_difference.hpp"
 #include "tools/experiment/log_data/log_distances.hpp"
 #include "tools/experiment/log_data/log_index.hpp"
@@ -38,6 +39,8 @@ class LogView {
  private:
   void handle(const bridges::ViewRequest& request);
   void look(const bridges::ViewRequest& request);
+  /// Sends the page the estimates of the other log at a time.
+  void send_other_estimates(const bridges::ViewRequest& request, std::int64_t time_us);
   void send_event_at(std::uint64_t offset);
   /// Gives pages the last messages of their channels, after they have subscribed.
   void fill_feed();
@@ -60,6 +63,8 @@ class LogView {
   MessageTimes times_;
   LogPoses poses_;                 // for the requests `look`
   std::optional<LogPoses> other_;  // of the log that this one is compared with
+  LogEstimates other_estimates_;
+  std::int64_t other_epoch_us_ = 0;
   std::optional<LogDifference> difference_;
   std::optional<LogDistances> distances_;  // until they have been computed
   StateFrame past_;

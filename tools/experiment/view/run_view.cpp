@@ -119,7 +119,7 @@ void RunView::flush_traffic(const sim::World& world) {
 }
 
 void RunView::send_status(const sim::World& world, const sim::RunControl& control, const std::string& waits_for,
-                          const std::string& ended) {
+                          const std::string& ended, const std::string& log) {
   const Clock::time_point now = Clock::now();
   next_status_ = now + status_interval;
   // Rate of simulated time since a second ago.
@@ -130,15 +130,16 @@ void RunView::send_status(const sim::World& world, const sim::RunControl& contro
     rate_since_ = now;
     rate_from_ = world.now();
   }
-  const Json status{{"op", "status"},
-                    {"time_us", world.now().count()},
-                    {"step", world.step_number()},
-                    {"branch", control.branch},
-                    {"paused", control.paused},
-                    {"speed", control.speed > 0 ? Json(control.speed) : Json(nullptr)},
-                    {"rate", std::max(0.0, rate_)},
-                    {"waits_for", waits_for},
-                    {"ended", ended.empty() ? Json(nullptr) : Json(ended)}};
+  Json status{{"op", "status"},
+              {"time_us", world.now().count()},
+              {"step", world.step_number()},
+              {"branch", control.branch},
+              {"paused", control.paused},
+              {"speed", control.speed > 0 ? Json(control.speed) : Json(nullptr)},
+              {"rate", std::max(0.0, rate_)},
+              {"waits_for", waits_for},
+              {"ended", ended.empty() ? Json(nullptr) : Json(ended)}};
+  if (!log.empty()) status["log"] = log;
   server_.retain("status", json_text(status));
 }
 
@@ -227,8 +228,9 @@ void RunView::serve_foxglove(const sim::World& world, const bridges::ViewPublish
   if (foxglove_.take_subscribed()) foxglove_.message(utime(), "sim.bodies", shoal::encode(publisher.bodies()));
 }
 
-void RunView::ended(const sim::World& world, const sim::RunControl& control, const std::string& why) {
-  send_status(world, control, "", why);
+void RunView::ended(const sim::World& world, const sim::RunControl& control, const std::string& why,
+                    const std::string& log) {
+  send_status(world, control, "", why, log);
 }
 
 }  // namespace tools

@@ -47,7 +47,8 @@ class RunView final : public RunPage {
              const std::string& waits_for, const Execute& execute) override;
   void moved(const sim::World& world, const sim::RunControl& control, bool continues,
              const std::string& programs = {}) override;
-  void ended(const sim::World& world, const sim::RunControl& control, const std::string& why) override;
+  void ended(const sim::World& world, const sim::RunControl& control, const std::string& why,
+             const std::string& log) override;
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -55,7 +56,7 @@ class RunView final : public RunPage {
   void send_state(const sim::World& world, const bridges::ViewPublisher& publisher, const sim::RunControl& control);
   void flush_traffic(const sim::World& world);
   void send_status(const sim::World& world, const sim::RunControl& control, const std::string& waits_for,
-                   const std::string& ended);
+                   const std::string& ended, const std::string& log = {});
   void handle(const bridges::ViewRequest& request, const Execute& execute);
   void serve_foxglove(const sim::World& world, const bridges::ViewPublisher& publisher, const sim::RunControl& control,
                       const Execute& execute);

@@ -4,7 +4,6 @@
 #include <charconv>
 #include <cmath>
 
-#include "shoal/estimate_t.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/sim_asset_t.hpp"
 #include "shoal/sim_bodies_t.hpp"
@@ -35,16 +34,20 @@ std::string sound_id(const std::string& source, std::int64_t sequence) {
   return source + "#" + std::to_string(sequence);
 }
 
-/// Returns whether a payload has the fingerprint of a type.
-template <typename Message>
-bool is_of_type(std::span<const std::byte> payload) {
-  if (payload.size() < 8) return false;
-  std::uint64_t fingerprint = 0;
-  for (std::size_t i = 0; i < 8; ++i) fingerprint = fingerprint << 8 | std::to_integer<std::uint64_t>(payload[i]);
-  return fingerprint == static_cast<std::uint64_t>(Message::getHash());
-}
-
 }  // namespace
+
+std::string estimate_text(const std::string& vehicle, const VehicleEstimate& estimate, std::int64_t time_us) {
+  const sim::Vector3d& p = estimate.position_m;
+  const sim::Quaterniond& q = estimate.orientation;
+  Json item{{"vehicle", vehicle}, {"time_us", time_us}, {"pose", {p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z()}}};
+  if (estimate.covariance_m2) {
+    Json& covariance = item["covariance_m2"] = Json::array();
+    for (int row = 0; row < 3; ++row)
+      for (int column = 0; column < 3; ++column)
+        covariance.push_back(number_or_null((*estimate.covariance_m2)(row, column)));
+  }
+  return json_text(item);
+}
 
 void ViewMessages::take(std::string_view channel, std::span<const std::byte> payload) {
   try {
@@ -186,13 +189,9 @@ void ViewMessages::take_scores(std::span<const std::byte> payload) {
 }
 
 void ViewMessages::take_estimate(std::string_view channel, std::span<const std::byte> payload) {
-  if (server_.clients() == 0 || !is_of_type<shoal::estimate_t>(payload)) return;
-  const auto estimate = shoal::decode<shoal::estimate_t>(payload, shoal::Finite::any);
-  Json covariance = Json::array();
-  for (const double number : estimate.covariance_m2) covariance.push_back(number_or_null(number));
-  const double* const p = estimate.position_m;
-  for (int i = 0; i < 3; ++i)
-    if (!std::isfinite(p[i])) return;
+  if (server_.clients() == 0) return;
+  const auto estimate = read_estimate(channel, payload);
+  if (!estimate) return;
   // The vehicle is the part of the channel before its last dot.  Of several estimates of a vehicle the page shows that
   // on VEHICLE.estimate, else the first.
   const std::string vehicle(channel.substr(0, channel.rfind('.')));
@@ -201,13 +200,7 @@ void ViewMessages::take_estimate(std::string_view channel, std::span<const std::
   Estimate& shown = estimates_[vehicle];
   if (shown.channel.empty() || channel == vehicle + ".estimate") shown.channel = channel;
   if (shown.channel != channel) return;
-  const double half_rad = std::isfinite(estimate.yaw_rad) ? estimate.yaw_rad / 2 : 0;
-  Json item{{"vehicle", vehicle},
-            {"channel", std::string(channel)},
-            {"time_us", time_us(estimate.utime)},
-            {"pose", {p[0], p[1], p[2], std::cos(half_rad), 0, 0, std::sin(half_rad)}},
-            {"covariance_m2", std::move(covariance)}};
-  shown.json = json_text(item);
+  shown.json = estimate_text(vehicle, *estimate, time_us(estimate->utime));
   shown.is_new = true;
 }
 

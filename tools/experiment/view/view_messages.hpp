@@ -12,10 +12,14 @@
 
 #include "bridges/web/page_output.hpp"
 #include "sim/bus/bus.hpp"
+#include "tools/experiment/estimates/vehicle_estimate.hpp"
 #include "tools/experiment/log_data/state_frame.hpp"
 #include "tools/experiment/page_data/earlier_events.hpp"
 
 namespace tools {
+
+/// Returns an item of the text `estimates` of the page protocol.  `time_us`: simulated time of the estimate.
+std::string estimate_text(const std::string& vehicle, const VehicleEstimate& estimate, std::int64_t time_us);
 
 /// Passes messages of a bus or a log on to the pages: scene, assets, sounds, events, scores and estimates, and, if
 /// there is no simulator in this process, the poses.  A message that cannot be read is counted and left out.

@@ -48,9 +48,7 @@ class CentralisedEkf final : public TeamEstimator {
   void saw(int vehicle, const Relative& seen) override {
     const auto other = numbers_.find(seen.other);
     if (other == numbers_.end()) return;
-    const JointFilter::RelativeRow row = filter_.relative_row(numbers_.at(vehicle), other->second, seen);
-    const Vector2 variances(seen.range_std_m * seen.range_std_m, seen.bearing_std_rad * seen.bearing_std_rad);
-    filter_.see(numbers_.at(vehicle), row, variances.asDiagonal());
+    filter_.see(filter_.relative_row(numbers_.at(vehicle), other->second, seen));
   }
   Estimate now(int vehicle, Time time) const override { return filter_.now(numbers_.at(vehicle), time); }
 

@@ -57,20 +57,18 @@ class CovarianceIntersection final : public OwnFilterEstimator<CovarianceInterse
     if (!other) return;
     const JointFilter::RelativeRow row = filter_.relative_row(own, *other, seen);
     const Matrix2 B = row.J * other->P * row.J.transpose();
-    const Vector2 variances(seen.range_std_m * seen.range_std_m, seen.bearing_std_rad * seen.bearing_std_rad);
-    const Matrix2 R = Matrix2(variances.asDiagonal()) + row.bend;
-    if (!filter_.admits(own, row, B + Matrix2(variances.asDiagonal()))) return;
+    if (!filter_.within_gate(row, B)) return;
     const Eigen::MatrixXd PH = filter_.P() * row.H.transpose();
     const Matrix2 A = row.H * PH;
     const Minimum best = minimum_between(0.01, 0.999, [&](double w) {
-      const Matrix2 S = A / w + B / (1 - w) + R;
+      const Matrix2 S = A / w + B / (1 - w) + row.R;
       const Matrix2 gained = PH.topRows<2>() * S.inverse() * PH.topRows<2>().transpose();
       return filter_.covariance(own).trace() / w - gained.trace() / (w * w);
     });
     if (!(best.value < filter_.covariance(own).trace())) return;
     independence_.shared();
     filter_.set_P(filter_.P() / best.at);
-    filter_.update(row.H, row.innovation, B / (1 - best.at) + R);
+    filter_.update(row.H, row.innovation, B / (1 - best.at) + row.R);
   }
   Bytes say(Time time, std::size_t) override {
     Bytes payload = payload_of(own_position(time));

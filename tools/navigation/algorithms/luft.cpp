@@ -55,28 +55,16 @@ class PairwiseCommunication final : public TeamEstimator {
     if (sent == sender.sent_W.end()) return;
     // The range refers to the place of the transmission.
     const Vector2 since_W = sender.travelled_W - sent->second;
-    meet(
-        vehicle, heard.sender, [](JointFilter&) { return true; },
-        [&](JointFilter& both) {
-          shift(both, 1, -since_W);
-          both.range(0, 1, heard.own_z_m - heard.sender_z_m, heard.range_m, heard.std_m);
-          shift(both, 1, since_W);
-        });
+    meet(vehicle, heard.sender, [&](JointFilter& both) {
+      shift(both, 1, -since_W);
+      const auto outcome = both.range(0, 1, heard.own_z_m - heard.sender_z_m, heard.range_m, heard.std_m);
+      shift(both, 1, since_W);
+      return outcome;
+    });
   }
   void saw(int vehicle, const Relative& seen) override {
     if (!vehicles_.contains(seen.other)) return;
-    const Vector2 variances(seen.range_std_m * seen.range_std_m, seen.bearing_std_rad * seen.bearing_std_rad);
-    meet(
-        vehicle, seen.other,
-        [&](JointFilter& both) {
-          const bool admitted = both.admits(0, both.relative_row(0, 1, seen), variances.asDiagonal());
-          vehicles_.at(vehicle).filter.set_refused_sights(number, both.refused_sights(0));
-          return admitted;
-        },
-        [&](JointFilter& both) {
-          const JointFilter::RelativeRow row = both.relative_row(0, 1, seen);
-          both.update(row.H, row.innovation, Matrix2(variances.asDiagonal()) + row.bend);
-        });
+    meet(vehicle, seen.other, [&](JointFilter& both) { return both.see(both.relative_row(0, 1, seen)); });
   }
   Estimate now(int vehicle, Time time) const override { return vehicles_.at(vehicle).filter.now(number, time); }
 
@@ -103,9 +91,9 @@ class PairwiseCommunication final : public TeamEstimator {
     filter.set_x(x);
   }
 
-  /// `admits`: whether to update, which may make the position of i more uncertain.
-  template <class Admits, class Update>
-  void meet(int i, int j, const Admits& admits, const Update& update) {
+  /// Updates both by a measurement, unless that is refused.
+  template <class Update>
+  void meet(int i, int j, const Update& update) {
     Own& a = vehicles_.at(i);
     Own& b = vehicles_.at(j);
     const int n = a.filter.size(), m = b.filter.size();
@@ -117,9 +105,8 @@ class PairwiseCommunication final : public TeamEstimator {
       P.bottomLeftCorner(m, n) = across.transpose();
       both.set_P(P);
     }
-    if (!admits(both)) return;
     const Eigen::MatrixXd P = both.P();
-    update(both);
+    if (update(both) == JointFilter::Outcome::refused) return;
     const Eigen::MatrixXd P_after = both.P();
     const Eigen::MatrixXd kept_a = kept_of(P_after.topLeftCorner(n, n), P.topLeftCorner(n, n));
     const Eigen::MatrixXd kept_b = kept_of(P_after.bottomRightCorner(m, m), P.bottomRightCorner(m, m));

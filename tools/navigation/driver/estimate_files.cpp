@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/navigation/driver/estimate_files.hpp"
 
+#include <spdlog/fmt/fmt.h>
+
 #include <Eigen/LU>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <limits>
@@ -30,12 +31,10 @@ std::ofstream opened(const std::filesystem::path& path) {
 void write_csv(std::ofstream file, const std::vector<OfflineRun::Published>& estimates) {
   file << "time_s,utime,x_m,y_m,z_m,vx_mps,vy_mps,yaw_rad,cov_xx_m2,cov_xy_m2,cov_yy_m2\n";
   for (const auto& [time_us, message] : estimates) {
-    char line[400];
-    std::snprintf(line, sizeof line, "%.6f,%lld,%.4f,%.4f,%.4f,%.4f,%.4f,%.6f,%.6g,%.6g,%.6g\n", seconds(time_us),
-                  static_cast<long long>(message.utime), message.position_m[0], message.position_m[1],
-                  message.position_m[2], message.velocity_mps[0], message.velocity_mps[1], message.yaw_rad,
-                  message.covariance_m2[0], message.covariance_m2[1], message.covariance_m2[4]);
-    file << line;
+    file << fmt::format("{:.6f},{},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.6f},{:.6g},{:.6g},{:.6g}\n", seconds(time_us),
+                        message.utime, message.position_m[0], message.position_m[1], message.position_m[2],
+                        message.velocity_mps[0], message.velocity_mps[1], message.yaw_rad, message.covariance_m2[0],
+                        message.covariance_m2[1], message.covariance_m2[4]);
   }
 }
 

@@ -2,15 +2,18 @@
 #include "tools/navigation/driver/nav_record.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
+#include <limits>
 #include <map>
 #include <memory>
 #include <stdexcept>
 
 #include "bridges/log/record_reader.hpp"
+#include "bridges/log/run_info.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/sim_info_t.hpp"
-#include "shoal/sim_state_t.hpp"
+#include "sim/config/param_reader.hpp"
 
 namespace navigation {
 
@@ -50,16 +53,6 @@ std::map<std::string, NavChannel, std::less<>> channels_of(const NavTeam& team) 
   return channels;
 }
 
-void add_truth(NavRecord& record, const shoal::sim_state_t& state) {
-  for (std::size_t i = 0; i < state.vehicle.size(); ++i) {
-    const auto vehicle = record.team->index_of(state.vehicle[i]);
-    if (!vehicle) continue;
-    const auto& p = state.position_m[i];
-    record.truth[static_cast<std::size_t>(*vehicle)].push_back(
-        {state.utime - record.epoch_utime, Eigen::Vector3d(p[0], p[1], p[2])});
-  }
-}
-
 }  // namespace
 
 NavRecord read_record(const std::string& path) {
@@ -69,11 +62,11 @@ NavRecord read_record(const std::string& path) {
   std::map<std::string, NavChannel, std::less<>> channels;
   while (reader->next(event)) {
     if (event.channel == "sim.info" && !record.team) {
-      const auto info = shoal::decode<shoal::sim_info_t>(event.payload, shoal::Finite::any);
+      const auto info = bridges::read_run_info(event.payload);
       record.world = info.world;
       record.epoch_utime = info.epoch_utime;
       record.team = std::make_shared<NavTeam>(team_of_text(info.resolved_config));
-      record.truth.resize(record.team->vehicles.size());
+      begin_truth(record, info.resolved_config);
       const auto arguments = nav_arguments_of(info.resolved_config);
       for (const NavVehicle& vehicle : record.team->vehicles) {
         const auto own = arguments.find(vehicle.name);
@@ -99,6 +92,39 @@ NavRecord read_record(const std::string& path) {
   record.problems = reader->problems();
   if (!record.team) throw std::invalid_argument("'" + path + "' has no sim.info: it is not the record of a run");
   return record;
+}
+
+void begin_truth(NavRecord& record, const std::string& resolved_world) {
+  record.truth.resize(record.team->vehicles.size());
+  std::vector<std::optional<std::int64_t>> until_us(record.truth.size());
+  sim::Diagnostics diagnostics;
+  const sim::ConfigNode world = sim::parse_config_text(resolved_world, "sim.info", diagnostics);
+  diagnostics.throw_if_any();
+  constexpr auto never = std::numeric_limits<std::int64_t>::max();
+  const sim::ConfigNode* metrics = world.find("metrics");
+  for (const sim::ConfigNode& item : metrics != nullptr ? metrics->items : std::vector<sim::ConfigNode>()) {
+    std::string type, name;
+    std::optional<double> until_s;
+    sim::ParamReader in(item, "metrics", diagnostics);  // the run has checked it
+    in.read("type", type, "");
+    in.read("vehicle", name, "");
+    in.read("until_s", until_s, sim::at_least(0), "");
+    const auto vehicle = record.team->index_of(name);
+    if (!vehicle || (type != "position_error" && type != "consistency")) continue;
+    auto& until = until_us[static_cast<std::size_t>(*vehicle)];
+    until = std::max(until.value_or(0), until_s ? static_cast<std::int64_t>(std::llround(1e6 * *until_s)) : never);
+  }
+  for (const auto& until : until_us) record.truth_until_us.push_back(until.value_or(never));
+}
+
+void add_truth(NavRecord& record, const shoal::sim_state_t& state) {
+  const std::int64_t time_us = state.utime - record.epoch_utime;
+  for (std::size_t i = 0; i < state.vehicle.size(); ++i) {
+    const auto vehicle = record.team->index_of(state.vehicle[i]);
+    if (!vehicle || time_us > record.truth_until_us[static_cast<std::size_t>(*vehicle)]) continue;
+    const auto& p = state.position_m[i];
+    record.truth[static_cast<std::size_t>(*vehicle)].push_back({time_us, Eigen::Vector3d(p[0], p[1], p[2])});
+  }
 }
 
 std::optional<Eigen::Vector3d> true_position(const std::vector<NavRecord::Truth>& truth, std::int64_t time_us) {

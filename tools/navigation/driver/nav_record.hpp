@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "shoal/modem_send_t.hpp"
+#include "shoal/sim_state_t.hpp"
 #include "tools/navigation/driver/nav_arguments.hpp"
 
 namespace navigation {
@@ -31,7 +32,8 @@ struct NavRecord {
   std::shared_ptr<const NavTeam> team;
   std::vector<NavArguments> arguments;  ///< by vehicle, of the programs that the world starts
   std::vector<Item> items;
-  std::vector<std::vector<Truth>> truth;  ///< by vehicle
+  std::vector<std::vector<Truth>> truth;     ///< by vehicle
+  std::vector<std::int64_t> truth_until_us;  ///< by vehicle: there is none later
   std::int64_t end_us = 0;
   std::size_t frame_bytes = 0;        ///< the longest that was transmitted
   std::vector<std::string> problems;  ///< of the file, such as an end that is cut off
@@ -41,6 +43,12 @@ struct NavRecord {
 /// Throws bridges::BusError when it cannot be read, std::invalid_argument when it has no sim.info or no vehicle with a
 /// modem.
 NavRecord read_record(const std::string& path);
+
+/// Begins the truth of each vehicle of the team.  It ends where the scoring of its estimates ends in the world: at the
+/// latest `until_s` of its metrics `position_error` and `consistency`.
+void begin_truth(NavRecord& record, const std::string& resolved_world);
+/// Adds true positions of the team.
+void add_truth(NavRecord& record, const shoal::sim_state_t& state);
 
 /// Returns the true position at a time, between two reports; nothing outside of them.
 std::optional<Eigen::Vector3d> true_position(const std::vector<NavRecord::Truth>& truth, std::int64_t time_us);

@@ -76,16 +76,17 @@ void add_gps(const devices::Gps::Params& gps, NavVehicle& vehicle) {
 }
 
 void add_usbl(const devices::Usbl::Params& usbl, NavVehicle& vehicle) {
-  vehicle.usbl_range_std_m = white_part(usbl.range_noise);
-  vehicle.usbl_azimuth_std_rad = std::hypot(white_part(usbl.azimuth_noise), vehicle.heading_white_rad);
-  vehicle.usbl_elevation_std_rad = white_part(usbl.elevation_noise);
+  vehicle.usbl_errors.range_std_m = white_part(usbl.range_noise);
+  vehicle.usbl_errors.across_std_rad = white_part(usbl.azimuth_noise);
+  vehicle.usbl_errors.elevation_std_rad = white_part(usbl.elevation_noise);
+  vehicle.usbl_errors.heading_std_rad = vehicle.heading_white_rad;
 }
 
 /// A craft without DVL moves by the velocity of its fixes, which its heading does not turn: the lasting errors of the
 /// heading are in its sights only.
 void without_heading_states(NavVehicle& vehicle) {
-  vehicle.usbl_azimuth_std_rad =
-      std::hypot(vehicle.usbl_azimuth_std_rad, vehicle.errors.heading_bias_rad, vehicle.errors.slow_heading_rad);
+  vehicle.usbl_errors.heading_std_rad =
+      std::hypot(vehicle.usbl_errors.heading_std_rad, vehicle.errors.heading_bias_rad, vehicle.errors.slow_heading_rad);
   vehicle.errors.heading_bias_rad = vehicle.errors.heading_walk_radprts = vehicle.errors.slow_heading_rad = 0;
 }
 
@@ -147,13 +148,17 @@ NavVehicle vehicle_of(const sim::WorldConfig& world, const sim::VehicleInstance&
 
 NavTeam team_of(const sim::WorldConfig& world) {
   NavTeam team;
+  const sim::Medium medium(world.medium, world.physics.gravity_mps2, static_cast<std::uint64_t>(world.run.seed));
+  std::vector<const sim::VehicleConfig*> configs;
+  for (const sim::VehicleInstance& instance : world.vehicles) configs.push_back(instance.config.get());
   for (const sim::VehicleInstance& instance : world.vehicles) {
     NavVehicle vehicle = vehicle_of(world, instance);
-    if (vehicle.modem) team.vehicles.push_back(std::move(vehicle));
+    if (!vehicle.modem) continue;
+    vehicle.usbl_errors.hearing = tools::usbl_hearing(*instance.config, configs, world.acoustics, medium);
+    team.vehicles.push_back(std::move(vehicle));
   }
   if (team.vehicles.empty())
     throw std::invalid_argument("world '" + world.name + "' has no vehicle with an acoustic modem");
-  const sim::Medium medium(world.medium, world.physics.gravity_mps2, static_cast<std::uint64_t>(world.run.seed));
   team.sound = SoundRanges(medium);
   return team;
 }

@@ -7,6 +7,7 @@
 
 #include "sim/base/math.hpp"
 #include "sim/world_file/world_config.hpp"
+#include "tools/experiment/bound/usbl_errors.hpp"
 #include "tools/navigation/driver/sound_ranges.hpp"
 #include "tools/navigation/estimator/setup.hpp"
 
@@ -32,9 +33,9 @@ struct NavVehicle {
   double fix_std_m = 0;          ///< white error of a fix; 0: as reported
   double stamp_std_s = 0;        ///< error of a stamp, by the resolution of the clock
   double depth_std_m = 0;        ///< white error of the depth, by pressure
-  // White errors of USBL; that of the azimuth has the parts of the heading that are not white, too, in a vehicle
-  // without DVL, where they are not states.
-  double usbl_range_std_m = 0, usbl_azimuth_std_rad = 0, usbl_elevation_std_rad = 0;
+  /// White errors of USBL.  That of the heading has its other parts, too, in a vehicle without DVL, where they are
+  /// not states.
+  tools::UsblErrors usbl_errors;
 };
 
 /// Vehicles that navigate together: those with an acoustic modem, in the order of the world file.

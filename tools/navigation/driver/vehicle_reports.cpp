@@ -161,16 +161,17 @@ std::vector<NavEvent> VehicleReports::receive(const shoal::gps_data_t& fix) {
 }
 
 Relative VehicleReports::sight_of(const NavVehicle& observer, const Eigen::Vector3d& d_W) {
-  const double level_m = d_W.head<2>().norm(), range_m = d_W.norm();
+  const double level_m = d_W.head<2>().norm();
   Relative seen;
   seen.range_m = level_m;
   seen.bearing_rad = std::atan2(d_W.y(), d_W.x());
-  // Along the level: cos(e) of the error of the range, sin(e) of that of the elevation.  A report is up to a period
-  // late, as ranges are.
-  const double along_m = range_m > 0 ? level_m / range_m * observer.usbl_range_std_m : observer.usbl_range_std_m;
-  seen.range_std_m = std::hypot(along_m, d_W.z() * observer.usbl_elevation_std_rad, VehicleReports::min_range_std_m);
-  seen.bearing_std_rad =
-      std::hypot(observer.usbl_azimuth_std_rad, VehicleReports::min_range_std_m / std::max(level_m, 1.0));
+  // A report is up to a period late, as ranges are.
+  const tools::UsblErrors::Plane variances = observer.usbl_errors.at(d_W);
+  const double across_m = std::hypot(std::sqrt(variances.across_m2), VehicleReports::min_range_std_m);
+  // Near the vertical an error across makes the level too long: sqrt(level^2 + across^2), at most by itself.
+  const double longer_m = std::hypot(level_m, across_m) - level_m;
+  seen.range_std_m = std::hypot(std::sqrt(variances.along_m2), longer_m, VehicleReports::min_range_std_m);
+  seen.bearing_std_rad = across_m / std::max(level_m, 1.0);
   return seen;
 }
 

@@ -66,7 +66,7 @@ class Estimator {
   /// work with this set-up, for example with so few bytes.
   virtual void start(const Setup& setup) = 0;
   /// The vehicle moved with this measured velocity since the last call, until `time`.  `q`: white noise of the
-  /// displacement, m^2/s.
+  /// displacement, m^2/s.  Both are in east and north by the measured heading: an error of the heading turns both.
   virtual void moved(Time time, const Vector2& v_W, const Matrix2& q) = 0;
   /// Satellite position; `std_m`: white error of each coordinate.
   virtual void fix(Time time, const Vector2& p_W, double std_m) = 0;

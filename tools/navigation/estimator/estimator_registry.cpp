@@ -13,7 +13,7 @@ std::map<std::string, Algorithm>& algorithms_by_name() {
   return algorithms;
 }
 
-/// Those of families, which exist once somebody has named them.
+/// Those of families, which exist once a caller has named them.
 std::map<std::string, Algorithm>& made_algorithms() {
   static std::map<std::string, Algorithm> algorithms;
   return algorithms;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/navigation/filter/joint_filter.hpp"
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -11,10 +12,15 @@ namespace navigation {
 namespace {
 
 constexpr double position_gate = 13.82;  ///< 99.9 % of chi-square with 2 degrees of freedom
-constexpr int max_refused = 5;           ///< in a row, of fixes or of sights
+constexpr int max_refused_fixes = 5;     ///< in a row
+constexpr double min_seen_m = 0.1;       ///< least distance at which a bearing has its error
 
 double square(double x) {
   return x * x;
+}
+
+double wrapped(double angle_rad) {
+  return std::remainder(angle_rad, 2 * std::numbers::pi);
 }
 
 Vector2 left_of(const Vector2& v) {
@@ -25,10 +31,6 @@ Vector2 turned(const Vector2& v, double angle_rad) {
   const double c = std::cos(angle_rad);
   const double s = std::sin(angle_rad);
   return {c * v.x() - s * v.y(), s * v.x() + c * v.y()};
-}
-
-double wrapped(double angle_rad) {
-  return std::remainder(angle_rad, 2 * std::numbers::pi);
 }
 
 }  // namespace
@@ -188,6 +190,7 @@ void JointFilter::move(int vehicle, Time time, const Vector2& v_W, const Matrix2
   const StateLayout& layout = part.layout;
   const DeviceErrors& errors = part.errors;
   const int o = part.offset;
+  const Matrix2 turn = Eigen::Rotation2Dd(heading_error(part)).toRotationMatrix();
   part.time = time;
   part.v_W = v_W;
   // State.
@@ -201,7 +204,7 @@ void JointFilter::move(int vehicle, Time time, const Vector2& v_W, const Matrix2
     apply(part, step, [this](int i) { return P_.col(i); });
   }
   // Noise.
-  P_.block<2, 2>(o, o) += q * step.dt_s;
+  P_.block<2, 2>(o, o) += turn * q * turn.transpose() * step.dt_s;
   const auto grow = [&](int index, double variance) {
     if (index >= 0) P_(o + index, o + index) += variance;
   };
@@ -242,18 +245,14 @@ JointFilter::Outcome JointFilter::fix(int vehicle, const Vector2& p_W, double st
   if (gate_ > 0) {
     const Matrix2 S = H * P_ * H.transpose() + R;
     if (!(innovation.dot(S.inverse() * innovation) <= position_gate)) {
-      if (++part.refused_fixes < max_refused || !innovation.allFinite()) return Outcome::refused;
-      open_position(part, innovation);
+      if (++part.refused_fixes < max_refused_fixes || !innovation.allFinite()) return Outcome::refused;
+      P_.block<2, 2>(o, o) += innovation.squaredNorm() * Matrix2::Identity();
     }
     part.refused_fixes = 0;
   }
   const Eigen::MatrixXd kept_here = update(H, innovation, R);
   if (kept != nullptr) *kept = kept_here;
   return Outcome::used;
-}
-
-void JointFilter::open_position(const Part& part, const Vector2& error_W) {
-  P_.block<2, 2>(part.offset, part.offset) += error_W.squaredNorm() * Matrix2::Identity();
 }
 
 JointFilter::RangeRow JointFilter::range_row(int own, const Position& other, double dz_m) const {
@@ -320,35 +319,49 @@ Matrix2 JointFilter::bend_of(const Vector2& d_W, const Matrix2& P) {
   return variances.asDiagonal();
 }
 
-void JointFilter::turn_by_heading(const Part& observer, RelativeRow& row) const {
-  for (const int index : {observer.layout.heading_bias, observer.layout.slow_heading})
-    if (index >= 0) row.H(1, observer.offset + index) = -1;
-  row.innovation[1] = wrapped(row.innovation[1] + heading_error(observer));
-}
-
-JointFilter::RelativeRow JointFilter::relative_row(int own, const Position& other, const Relative& seen) const {
-  const Part& part = at(own);
-  const Vector2 d_W = other.p_W - position(own);
+JointFilter::RelativeRow JointFilter::relative_row(const Part& own, const Position& other, const Relative& seen,
+                                                   const Part* observer) const {
+  RelativeRow row;
+  row.H = Eigen::MatrixXd::Zero(2, size());
+  double bearing_rad = seen.bearing_rad, variance_rad2 = square(seen.bearing_std_rad);
+  if (observer != nullptr) {
+    for (const int index : {observer->layout.heading_bias, observer->layout.slow_heading}) {
+      if (index < 0) continue;
+      row.H(1, observer->offset + index) = -1;
+      variance_rad2 += P_(observer->offset + index, observer->offset + index);
+    }
+    bearing_rad += heading_error(*observer);
+  }
+  // Where they are, by their positions and by the sight: the measurement is linearised at what both give together.
+  const Vector2 predicted_W = other.p_W - x_.segment<2>(own.offset);
+  const Vector2 u_seen(std::cos(bearing_rad), std::sin(bearing_rad));
+  const Matrix2 R_seen =
+      square(seen.range_std_m) * u_seen * u_seen.transpose() +
+      square(std::max(seen.range_m, min_seen_m)) * variance_rad2 * left_of(u_seen) * left_of(u_seen).transpose();
+  const Matrix2 gain = other.P * (other.P + R_seen).inverse();
+  const Vector2 d_W = predicted_W + gain * (seen.range_m * u_seen - predicted_W);
   const double distance_m = std::max(d_W.norm(), 0.01);
   const Vector2 u = d_W / distance_m;
-  RelativeRow row;
   row.J.row(0) = u.transpose();
   row.J.row(1) = left_of(u).transpose() / distance_m;
-  row.H = Eigen::MatrixXd::Zero(2, size());
-  row.H.middleCols<2>(part.offset) = -row.J;
-  row.innovation << seen.range_m - distance_m, wrapped(seen.bearing_rad - std::atan2(d_W.y(), d_W.x()));
-  if (!seen.by_other) turn_by_heading(part, row);
-  row.bend = bend_of(d_W, covariance(own) + other.P);
+  row.H.middleCols<2>(own.offset) = -row.J;
+  row.innovation << seen.range_m - distance_m, wrapped(bearing_rad - std::atan2(d_W.y(), d_W.x()));
+  row.innovation -= row.J * (predicted_W - d_W);
+  row.R = Vector2(square(seen.range_std_m), square(seen.bearing_std_rad)).asDiagonal();
+  row.R += bend_of(d_W, other.P - gain * other.P);
   return row;
 }
 
+JointFilter::RelativeRow JointFilter::relative_row(int own, const Position& other, const Relative& seen) const {
+  const Position relative{other.p_W, covariance(own) + other.P};
+  return relative_row(at(own), relative, seen, seen.by_other ? nullptr : &at(own));
+}
+
 JointFilter::RelativeRow JointFilter::relative_row(int own, int other, const Relative& seen) const {
-  RelativeRow row = relative_row(own, Position{position(other), Matrix2::Zero()}, seen);
-  row.H.middleCols<2>(at(other).offset) += row.J;
-  if (seen.by_other) turn_by_heading(at(other), row);
   const Matrix2 across = P_.block<2, 2>(at(own).offset, at(other).offset);
-  row.bend =
-      bend_of(position(other) - position(own), covariance(own) + covariance(other) - across - across.transpose());
+  const Position relative{position(other), covariance(own) + covariance(other) - across - across.transpose()};
+  RelativeRow row = relative_row(at(own), relative, seen, &at(seen.by_other ? other : own));
+  row.H.middleCols<2>(at(other).offset) += row.J;
   return row;
 }
 
@@ -356,20 +369,13 @@ bool JointFilter::within_gate(const Vector2& innovation, const Matrix2& S) const
   return gate_ <= 0 || innovation.dot(S.inverse() * innovation) <= position_gate;
 }
 
-bool JointFilter::admits(int own, const RelativeRow& row, const Matrix2& R) {
-  if (!row.innovation.allFinite()) return false;
-  Part& part = at(own);
-  if (!within_gate(row.innovation, row.H * P_ * row.H.transpose() + R + row.bend)) {
-    if (++part.refused_sights < max_refused) return false;
-    open_position(part, row.J.inverse() * row.innovation);
-  }
-  part.refused_sights = 0;
-  return true;
+bool JointFilter::within_gate(const RelativeRow& row, const Matrix2& more) const {
+  return row.innovation.allFinite() && within_gate(row.innovation, row.H * P_ * row.H.transpose() + row.R + more);
 }
 
-JointFilter::Outcome JointFilter::see(int own, const RelativeRow& row, const Matrix2& R) {
-  if (!admits(own, row, R)) return Outcome::refused;
-  update(row.H, row.innovation, R + row.bend);
+JointFilter::Outcome JointFilter::see(const RelativeRow& row, const Matrix2& more) {
+  if (!within_gate(row, more)) return Outcome::refused;
+  update(row.H, row.innovation, row.R + more);
   return Outcome::used;
 }
 

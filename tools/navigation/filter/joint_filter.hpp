@@ -45,9 +45,11 @@ class JointFilter {
   /// Marginalises a copy.  Its number may be used again.
   void remove(int part);
 
-  /// Moves a vehicle with a measured velocity until `time`, with white noise q (m^2/s).  An earlier time has no effect.
+  /// Moves a vehicle with a measured velocity until `time`, with white noise q (m^2/s).  Both are in the axes of the
+  /// measured heading, so that the heading error turns both.  An earlier time has no effect.
   ///
   ///     p' = p + (1 + s) R(b + h) v dt     dp/db = dp/dh = left((1 + s) R(b + h) v dt)     dp/ds = R(b + h) v dt
+  ///     Q = R(b + h) q R(b + h)' dt
   ///     c' = c + d dt     h' = exp(-dt / T) h     g' = exp(-dt / T) g
   void move(int vehicle, Time time, const Vector2& v_W, const Matrix2& q);
   /// Returns the Jacobian of this motion, of all states.
@@ -74,25 +76,24 @@ class JointFilter {
   Outcome range(int own, const Position& other, double dz_m, double range_m, double std_m, double more_variance_m2 = 0);
 
   /// Linearised measurement by a sensor: (horizontal range, bearing by the heading of the observer) of another part or
-  /// a position.  A position has no heading error.
+  /// a position.  A position has no heading error.  It is linearised at the displacement that positions and sight give
+  /// together, not at the predicted one, which may be wrong by more than the distance: the first iteration of an
+  /// iterated filter (Bell and Cathey, IEEE Trans. Automatic Control 38(2), 1993).
   struct RelativeRow {
     Eigen::MatrixXd H;  ///< 2 rows
     Vector2 innovation = Vector2::Zero();
     Matrix2 J = Matrix2::Zero();  ///< derivative with respect to the other position
-    /// Variances of the terms of second order, with the variances a along and s sideways of the relative position:
-    /// 3 (s / 2r)^2 of the range, a s / r^4 of the bearing.
-    Matrix2 bend = Matrix2::Zero();
+    /// Covariance of its error, with the terms of second order.  By the variances a along and s sideways of the
+    /// relative position after the sight they are 3 (s / 2r)^2 of the range, a s / r^4 of the bearing.
+    Matrix2 R = Matrix2::Zero();
   };
   RelativeRow relative_row(int own, int other, const Relative& seen) const;
   RelativeRow relative_row(int own, const Position& other, const Relative& seen) const;
-  /// Whether such a measurement by or of a vehicle, whose error has the covariance R + bend, is within the gate.  After
-  /// five in a row beyond it the covariance of the position grows by the innovation, and the last one counts as within.
-  bool admits(int own, const RelativeRow& row, const Matrix2& R);
-  /// Number of such measurements beyond it in a row.
-  int refused_sights(int own) const { return at(own).refused_sights; }
-  void set_refused_sights(int own, int count) { at(own).refused_sights = count; }
-  /// Updates with it, unless it is beyond the gate.
-  Outcome see(int own, const RelativeRow& row, const Matrix2& R);
+  /// Whether such a measurement, whose error has the covariance R + more, is finite and within the gate.
+  bool within_gate(const RelativeRow& row, const Matrix2& more) const;
+  /// Updates with it, unless it is beyond the gate.  Any number of refused ones in a row changes nothing: a sensor that
+  /// takes one vehicle for another does so again and again.
+  Outcome see(const RelativeRow& row, const Matrix2& more = Matrix2::Zero());
 
   /// Updates with a scalar measurement z = H x + noise.
   void update(const Eigen::VectorXd& H, double innovation, double R);
@@ -127,7 +128,7 @@ class JointFilter {
     Time time = 0;
     Vector2 v_W = Vector2::Zero();
     DeviceErrors errors;
-    int refused_fixes = 0, refused_sights = 0;  ///< in a row
+    int refused_fixes = 0;  ///< in a row
     bool in_use = true;
   };
   const Part& at(int part) const { return parts_[static_cast<std::size_t>(part)]; }
@@ -136,10 +137,8 @@ class JointFilter {
   /// Heading error b + h of a part.
   double heading_error(const Part& part) const;
   Vector2 corrected(const Part& part, const Vector2& v_W) const;
-  /// Adds the heading error of the observer to the row of a bearing.
-  void turn_by_heading(const Part& observer, RelativeRow& row) const;
-  /// Makes a position as uncertain as an error that was found.
-  void open_position(const Part& part, const Vector2& error_W);
+  /// `other`: its position, with the covariance of the relative one; `observer`: whose heading error counts, or null.
+  RelativeRow relative_row(const Part& own, const Position& other, const Relative& seen, const Part* observer) const;
   static Matrix2 bend_of(const Vector2& d_W, const Matrix2& P);
   Outcome use_range(const RangeRow& row, double range_m, double variance_m2);
   /// Coefficients of the motion over some time.

@@ -58,18 +58,12 @@ class OwnFilterEstimator : public EstimatorOf<Own> {
     return {estimate.p_W, estimate.P};
   }
 
-  /// Updates with a sight of a vehicle whose payload is a position, as if that were independent.  Refused ones do not
-  /// open the position: they are what becomes of a filter that is too sure of itself.
+  /// Updates with a sight of a vehicle whose payload is a position, as if that were independent.
   void see_independent(const Relative& seen) {
     const auto other = position_in(seen.payload);
     if (!other) return;
     const JointFilter::RelativeRow row = filter_.relative_row(own, *other, seen);
-    Matrix2 R = row.J * other->P * row.J.transpose();
-    R(0, 0) += seen.range_std_m * seen.range_std_m;
-    R(1, 1) += seen.bearing_std_rad * seen.bearing_std_rad;
-    R += row.bend;
-    if (row.innovation.allFinite() && filter_.within_gate(row.innovation, row.H * filter_.P() * row.H.transpose() + R))
-      filter_.update(row.H, row.innovation, R);
+    filter_.see(row, row.J * other->P * row.J.transpose());
   }
 
   /// Updates with the range to a sender whose payload is a position, as if that were independent.

@@ -8,9 +8,9 @@
 #include <stdexcept>
 
 #include "bridges/log/record_reader.hpp"
+#include "bridges/log/run_info.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/sim_info_t.hpp"
-#include "shoal/sim_state_t.hpp"
 #include "tools/navigation/driver/nav_frame.hpp"
 
 namespace navigation {
@@ -53,16 +53,7 @@ void begin(const shoal::sim_info_t& info, const sim::WorldConfig& world, LandRec
   record.run.team = std::move(names);
   record.run.world = info.world;
   record.run.epoch_utime = info.epoch_utime;
-  record.run.truth.resize(record.land.vehicles.size());
-}
-
-void add_true_positions(LandRecord& record, const shoal::sim_state_t& state) {
-  for (std::size_t i = 0; i < state.vehicle.size(); ++i) {
-    const auto& p = state.position_m[i];
-    if (const auto vehicle = record.land.index_of(state.vehicle[i]))
-      record.run.truth[static_cast<std::size_t>(*vehicle)].push_back(
-          {state.utime - record.run.epoch_utime, Eigen::Vector3d(p[0], p[1], p[2])});
-  }
+  begin_truth(record.run, info.resolved_config);
 }
 
 }  // namespace
@@ -74,7 +65,7 @@ std::optional<LandRecord> read_land_record(const std::string& path) {
   LandChannels channels;
   while (reader->next(event)) {
     if (event.channel == "sim.info" && !record.run.team) {
-      const auto info = shoal::decode<shoal::sim_info_t>(event.payload, shoal::Finite::any);
+      const auto info = bridges::read_run_info(event.payload);
       const sim::WorldConfig world = world_of_text(info.resolved_config);
       if (!is_on_land(world)) return std::nullopt;
       begin(info, world, record);
@@ -84,7 +75,7 @@ std::optional<LandRecord> read_land_record(const std::string& path) {
     const std::int64_t time_us = event.utime - record.run.epoch_utime;
     record.run.end_us = std::max(record.run.end_us, time_us);
     if (event.channel == "sim.state")
-      add_true_positions(record, shoal::decode<shoal::sim_state_t>(event.payload, shoal::Finite::any));
+      add_truth(record.run, shoal::decode<shoal::sim_state_t>(event.payload, shoal::Finite::any));
     const auto channel = channels.find(event.channel);
     if (channel == channels.end()) continue;
     try {

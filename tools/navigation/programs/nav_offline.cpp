@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/navigation/programs/nav_offline.hpp"
 
+#include <spdlog/fmt/fmt.h>
+
 #include <CLI/App.hpp>
 #include <algorithm>
 #include <cmath>
@@ -36,8 +38,8 @@ struct OfflineOptions {
 void print_scores(const NavRecord& record, const OfflineRun& run, double from_s) {
   for (std::size_t i = 0; i < run.estimates.size(); ++i) {
     const NavScore score = score_of(run.estimates[i], record.truth[i], record.epoch_utime, std::llround(1e6 * from_s));
-    std::printf("%-10s %-12s %9.3f %8.2f %7.3f %8d\n", run.algorithm.c_str(), record.team->vehicles[i].name.c_str(),
-                score.rms_m, score.nees, score.inside_95, score.samples);
+    fmt::print("{:10} {:12} {:9.3f} {:8.2f} {:7.3f} {:8}\n", run.algorithm, record.team->vehicles[i].name, score.rms_m,
+               score.nees, score.inside_95, score.samples);
   }
 }
 
@@ -69,8 +71,8 @@ int navigate_all(const OfflineOptions& options, const NavRecord& record,
     try {
       const OfflineRun run = run_one(algorithm_named(name));
       print_scores(record, run, options.from_s);
-      std::printf("%-10s %d frames, %d ranges, %.1f us per event\n", name.c_str(), run.frames_said, run.ranges,
-                  1e6 * run.cpu_s / static_cast<double>(std::max<std::size_t>(run.events, 1)));
+      fmt::print("{:10} {} frames, {} ranges, {:.1f} us per event\n", name, run.frames_said, run.ranges,
+                 1e6 * run.cpu_s / static_cast<double>(std::max<std::size_t>(run.events, 1)));
       if (!options.out.empty()) write_estimates(options.out, record, run);
       scores.add(run);
     } catch (const EstimatorFailure&) {
@@ -103,12 +105,9 @@ void check_record(const OfflineOptions& options, const NavRecord& record) {
   for (const std::string& problem : record.problems)
     std::cerr << "shoal-nav: " << options.log << ": " << problem << "; the scores are of the rest\n";
   const double end_s = 1e-6 * static_cast<double>(record.end_us);
-  if (options.from_s > end_s) {
-    char text[100];
-    std::snprintf(text, sizeof text, "--from-s must be at most %g, the end of the record, got %g", end_s,
-                  options.from_s);
-    throw std::invalid_argument(text);
-  }
+  if (options.from_s > end_s)
+    throw std::invalid_argument(
+        fmt::format("--from-s must be at most {:g}, the end of the record, got {:g}", end_s, options.from_s));
 }
 
 int navigate(const OfflineOptions& options) {

@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <spawn.h>
+#include <spdlog/fmt/fmt.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -19,6 +20,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "sim/base/number.hpp"
 #include "sim/config/message_text.hpp"
 #include "tools/navigation/estimator/estimator.hpp"
 #include "tools/navigation/python/host_files.hpp"
@@ -42,9 +44,8 @@ double limit_of_environment() {
   constexpr double default_s = 60, min_s = 0.01, max_s = 1e6;
   const char* const text = std::getenv("SHOAL_PYTHON_LIMIT_S");
   if (text == nullptr) return default_s;
-  char* end = nullptr;
-  const double limit_s = std::strtod(text, &end);
-  if (end == text || *end != 0 || !(limit_s >= min_s && limit_s <= max_s))
+  const double limit_s = sim::read_number(text).value_or(0);
+  if (!(limit_s >= min_s && limit_s <= max_s))
     throw std::invalid_argument("SHOAL_PYTHON_LIMIT_S must be a number from 0.01 to 1e6, got '" +
                                 sim::shortened(sim::printable(text)) + "'");
   return limit_s;
@@ -125,9 +126,8 @@ double PythonHost::cpu_s() const {
 void PythonHost::wait_for(const bridges::FileDescriptor& descriptor, short events, const nlohmann::json& request) {
   if (!is_stuck_ && is_ready(descriptor.number(), events, limit_s_)) return;
   is_stuck_ = true;
-  char limit[32];
-  std::snprintf(limit, sizeof limit, "%g", limit_s_);
-  throw EstimatorFailure(what_ + ": no answer within " + limit + " s to " + request["do"].get<std::string>() +
+  throw EstimatorFailure(what_ + ": no answer within " + fmt::format("{:g}", limit_s_) + " s to " +
+                         request["do"].get<std::string>() +
                          "() or a call before it; SHOAL_PYTHON_LIMIT_S is the limit in seconds");
 }
 

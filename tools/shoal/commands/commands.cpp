@@ -49,6 +49,30 @@ constexpr Command commands[] = {
     {"upgrade", "files", "Rewrite files of an older version in the format of this one"},
 };
 
+/// Commands that people know from other programs, and what does the same.
+constexpr std::pair<const char*, const char*> calls_elsewhere[] = {
+    {"play", "`shoal view LOG`, or `shoal replay --play LOG` for programs on a bus"},
+    {"playback", "`shoal view LOG`, or `shoal replay --play LOG` for programs on a bus"},
+    {"plot", "`shoal report DIR`, or `shoal.plots` in Python"},
+    {"record", "`shoal run WORLD --record LOG`, or `shoal motion record` for a motion"},
+    {"bag", "`shoal run WORLD --record LOG`, and `shoal log`"},
+    {"version", "`shoal --version`"},
+    {"start", "`shoal run WORLD`"},
+    {"launch", "`shoal run WORLD --launch`"},
+    {"sim", "`shoal run WORLD`"},
+    {"topic", "`shoal spy`"},
+    {"echo", "`shoal spy CHANNEL`"},
+    {"msg", "`shoal describe TYPE`"},
+    {"validate", "`shoal check FILE`"},
+    {"lint", "`shoal check FILE`"},
+    {"init", "`shoal new world NAME`"},
+    {"create", "`shoal new world NAME`"},
+    {"convert", "`shoal import`, `shoal log` or `shoal mesh`"},
+    {"video", "`shoal film LOG`"},
+    {"screenshot", "`shoal snap WORLD`"},
+    {"benchmark", "`shoal study benchmark`, or `shoal bench` for the speed of this machine"},
+};
+
 /// Those that were registered since the last add_registered().
 std::vector<AddCommand>& registered() {
   static std::vector<AddCommand> all;
@@ -64,6 +88,12 @@ void add_registered(CLI::App& app, int& exit_code) {
 bool register_command(AddCommand add) {
   registered().push_back(add);
   return true;
+}
+
+std::string meant_call(const std::string& name) {
+  for (const auto& [known, call] : calls_elsewhere)
+    if (name == known) return call;
+  return {};
 }
 
 void list_commands(CLI::App& app) {

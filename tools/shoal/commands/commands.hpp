@@ -24,4 +24,7 @@ void complete_command(CLI::App& app, int& exit_code, const std::string& name);
 /// Does so for all commands.
 void complete_commands(CLI::App& app, int& exit_code);
 
+/// Returns what to call in place of a command of other programs, such as `play`; empty: nothing is known.
+std::string meant_call(const std::string& name);
+
 }  // namespace tools

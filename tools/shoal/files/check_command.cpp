@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cmath>
 #include <iostream>
 #include <memory>
+#include <set>
 
 #include "messages/yaml/message_writer.hpp"
 #include "sim/bus/in_process_bus.hpp"
 #include "sim/camera/texture.hpp"
 #include "sim/config/message_text.hpp"
+#include "sim/hydrodynamics/level_speed.hpp"
 #include "sim/motion/motion.hpp"
 #include "sim/program/find_program.hpp"
 #include "sim/world/world.hpp"
@@ -49,16 +53,63 @@ std::size_t device_count(const sim::WorldConfig& world) {
   return count;
 }
 
+/// Prints the speed at which a vehicle that is pushed, but has nothing that keeps it level, turns over.
+void print_tipping(const sim::VehicleConfig& vehicle) {
+  const auto has = [&](const char* type) {
+    return std::any_of(vehicle.devices.begin(), vehicle.devices.end(),
+                       [type](const sim::DeviceConfig& device) { return device.type == type; });
+  };
+  if (has("autopilot") || has("fin") || !(has("thruster") || has("body_wrench"))) return;
+  for (const sim::BodyConfig& body : vehicle.bodies) {
+    if (!body.hydrodynamics || body.hydrodynamics->model == sim::HydrodynamicsConfig::Model::none ||
+        body.hydrodynamics->waterline)
+      continue;
+    const double tipping = sim::tipping_mps(
+        sim::CoefficientModel(*body.hydrodynamics, sim::PhysicsConfig{}.gravity_mps2), sim::LevelMotion::ahead);
+    if (std::isinf(tipping)) continue;
+    std::cout << "note: vehicle '" << vehicle.vehicle << "': nothing keeps it level: above "
+              << sim::number_text(std::round(100 * tipping) / 100)
+              << " m/s ahead the Munk moment of its added mass turns it over (" << vehicle.description << ")\n";
+  }
+}
+
+void print_notes(sim::World& world) {
+  for (const std::string& note : world.warnings().building().notes()) std::cout << "note: " << note << '\n';
+  std::set<const sim::VehicleConfig*> models;
+  for (const sim::VehicleInstance& vehicle : world.config().vehicles)
+    if (models.insert(vehicle.config.get()).second) print_tipping(*vehicle.config);
+}
+
 /// Builds a world, which finds errors that reading cannot: mesh files, bodies without mass.
 std::size_t body_count(sim::LoadedWorld& loaded, sim::Warnings& warnings) {
   loaded.config.bodies_only_of_many = true;
   sim::InProcessBus bus;
-  const sim::World world(loaded.config, bus);
+  sim::World world(loaded.config, bus);
+  print_notes(world);
   check_textures(loaded.config);
   warn_of_processes(loaded, warnings);
   warn_of_missing_programs(loaded, warnings);
   warn_of_unchecked_arguments(loaded, warnings);
   return world.physics().bodies().size();
+}
+
+/// Builds a vehicle with coefficients in deep water.
+void check_in_water(sim::VehicleConfig vehicle, sim::LoadOptions options) {
+  options.sets.clear();
+  if (std::none_of(vehicle.bodies.begin(), vehicle.bodies.end(),
+                   [](const sim::BodyConfig& body) { return body.hydrodynamics.has_value(); }))
+    return;
+  sim::LoadedWorld loaded = sim::load_world_text(
+      "shoal: 1\nphysics: {step_s: 0.001}\nmedium: {water: {}}\n"
+      "objects: [{name: bottom, fixed: true, position_m: [0, 0, -100], parts: [{shape: plane}]}]\n",
+      "water.yaml", options);
+  sim::VehicleInstance instance;
+  instance.name = vehicle.vehicle;
+  instance.X_WV.translation().z() = -10;
+  instance.config = std::make_shared<sim::VehicleConfig>(std::move(vehicle));
+  loaded.config.vehicles.push_back(std::move(instance));
+  sim::Warnings warnings;
+  body_count(loaded, warnings);
 }
 
 void check_study(const std::string& path, const sim::LoadOptions& options) {
@@ -99,10 +150,10 @@ void check(const std::string& path, const sim::LoadOptions& options) {
   if (kind == sim::FileKind::motion) return check_motion(path);
   if (kind == sim::FileKind::study) return check_study(path, options);
   if (kind == sim::FileKind::vehicle) {
-    const sim::VehicleConfig vehicle = sim::load_vehicle(path, options);
+    sim::VehicleConfig vehicle = sim::load_vehicle(path, options);
     std::cout << path << ": vehicle '" << vehicle.vehicle << "': " << counted(vehicle.bodies.size(), "body") << ", "
               << counted(vehicle.joints.size(), "joint") << ", " << counted(vehicle.devices.size(), "device") << '\n';
-    return;
+    return check_in_water(std::move(vehicle), options);
   }
   sim::LoadOptions with_messages = options;
   with_messages.encode_message = shoal::encode_own_message;

@@ -20,7 +20,7 @@ RecordView::RecordView(const ViewOptions& options, MotionStage& stage)
 
 RecordView::~RecordView() {
   stage_.after_step = {};
-  page_.ended(stage_.world(), control_, "quit");
+  page_.ended(stage_.world(), control_, "quit", "");
 }
 
 void RecordView::serve(bool is_paused) {

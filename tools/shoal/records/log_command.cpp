@@ -11,6 +11,8 @@
 #include <regex>
 
 #include "bridges/log/event_log.hpp"
+#include "bridges/log/run_info.hpp"
+#include "bridges/log/time_order.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/sim_info_t.hpp"
 #include "sim/config/message_text.hpp"
@@ -27,20 +29,20 @@ namespace {
 struct ChannelCount {
   std::uint64_t events = 0;
   std::uint64_t bytes = 0;
-  std::int64_t first_us = 0;
-  std::int64_t last_us = 0;
-  std::int64_t fingerprint = 0;
+  bridges::TimeOrder order;
+  std::optional<std::int64_t> fingerprint;  ///< of the last message; none: it is too short to have one
 };
 
-std::string type_name(const shoal::MessageTypes& types, std::int64_t fingerprint) {
-  const shoal::MessageSchema* schema = types.find(static_cast<std::uint64_t>(fingerprint));
-  return schema != nullptr ? schema->name : fmt::format("unknown {:016x}", static_cast<std::uint64_t>(fingerprint));
+std::string type_name(const shoal::MessageTypes& types, std::optional<std::int64_t> fingerprint) {
+  if (!fingerprint) return "too short for a type";
+  const shoal::MessageSchema* schema = types.find(static_cast<std::uint64_t>(*fingerprint));
+  return schema != nullptr ? schema->name : fmt::format("unknown {:016x}", static_cast<std::uint64_t>(*fingerprint));
 }
 
 void print_run(const bridges::LogEvent& event) {
   if (event.channel != "sim.info") return;
   try {
-    const auto info = shoal::decode<shoal::sim_info_t>(event.payload, shoal::Finite::any);
+    const auto info = bridges::read_run_info(event.payload);
     fmt::print("world {}, seed {}, step {} us\n{}", info.world, info.seed, info.step_us, info.versions);
   } catch (const shoal::MessageError&) {
     // The channel belongs to another program that uses the name.
@@ -56,35 +58,35 @@ int info(const std::string& path, const shoal::MessageTypes& types) {
   bridges::EventLogReader log(path);
   std::map<std::string, ChannelCount> channels;
   std::uint64_t events = 0;
-  std::int64_t first_us = 0;
-  std::int64_t last_us = 0;
+  bridges::TimeOrder order;
   bool run_shown = false;
   // Count the events of each channel.
   while (const auto event = log.next()) {
-    if (events++ == 0) first_us = event->utime;
-    last_us = event->utime;
+    ++events;
+    order.add(event->utime, event->channel);
     ChannelCount& count = channels[event->channel];
-    if (count.events++ == 0) count.first_us = event->utime;
-    count.last_us = event->utime;
+    ++count.events;
+    count.order.add(event->utime, event->channel);
     count.bytes += event->payload.size();
-    count.fingerprint = shoal::fingerprint(event->payload);
+    count.fingerprint.reset();
+    if (event->payload.size() >= sizeof(std::int64_t)) count.fingerprint = shoal::fingerprint(event->payload);
     if (!run_shown && event->channel == "sim.info") {
       print_run(*event);
       run_shown = true;
     }
   }
   // Print the table.
-  fmt::print("{}: {} events, {} bytes, {:.3f} s\n", path, events, log.file_bytes(),
-             static_cast<double>(last_us - first_us) * 1e-6);
+  fmt::print("{}: {} events, {} bytes, {:.3f} s\n", path, events, log.file_bytes(), order.span_s());
   std::size_t width = 7;
   for (const auto& [channel, count] : channels) width = std::max(width, channel.size());
   fmt::print("{:>8} {:>8} {:>11}  {:<{}} {}\n", "events", "Hz", "bytes", "channel", width, "type");
   for (const auto& [channel, count] : channels) {
-    const double span_s = static_cast<double>(count.last_us - count.first_us) * 1e-6;
+    const double span_s = count.order.span_s();
     const double rate_hz = span_s > 0 ? static_cast<double>(count.events - 1) / span_s : 0;
     fmt::print("{:>8} {:>8.2f} {:>11}  {:<{}} {}\n", count.events, rate_hz, count.bytes, sim::printable(channel), width,
                type_name(types, count.fingerprint));
   }
+  if (const auto problem = order.problem()) std::cerr << path << ": " << *problem << '\n';
   return show_problems(log);
 }
 

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "sim/base/number.hpp"
 #include "sim/world_file/world_config.hpp"
 #include "tools/shoal/reference/param_tables.hpp"
 #include "tools/shoal/reference/program_schema.hpp"
@@ -39,7 +40,7 @@ Json json_scalar(const std::string& text, ParamKind kind) {
     case ParamKind::number:
     case ParamKind::vector:
     case ParamKind::numbers:
-      return json_number(std::strtod(text.c_str(), nullptr));
+      return json_number(sim::read_number(text).value_or(0));
     default:
       return text;
   }

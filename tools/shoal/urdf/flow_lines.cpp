@@ -4,8 +4,8 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <cmath>
-#include <cstdlib>
 
+#include "sim/base/number.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/config/yaml_writer.hpp"
 
@@ -19,7 +19,7 @@ constexpr std::size_t max_width = 120;
 
 std::string short_number(double value) {
   if (std::abs(value) < 1e-12) return "0";
-  return sim::number_text(std::strtod(fmt::format("{:.10g}", value).c_str(), nullptr));
+  return sim::number_text(sim::rounded_to(value, 10));
 }
 
 std::string short_list(const std::vector<double>& values) {

@@ -5,8 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numbers>
 #include <utility>
 
 #include "sim/config/message_text.hpp"
@@ -22,14 +20,13 @@ void set_range(const UrdfJoint& from, ImportedJoint& joint, std::vector<UrdfNote
   joint.servo_low = std::clamp(from.soft_lower.value_or(low), low, high);
   joint.servo_high = std::clamp(from.soft_upper.value_or(high), low, high);
   // A run starts at zero of all joints, so a stop beyond zero would throw the joint into its range.
-  const double max_stop =
-      joint.type == sim::JointType::slider ? std::numeric_limits<double>::infinity() : std::numbers::pi;
+  const double max_stop = sim::joint_info(joint.type).max_stop;
   const auto stop_at = [&](double limit, bool excludes_zero) -> std::optional<double> {
     if (std::abs(limit) <= max_stop && !excludes_zero) return limit;
     notes.push_back(
         {from.place,
          fmt::format("joint '{}': its limit {} limits only its servo: {}", joint.name, sim::number_text(limit),
-                     excludes_zero ? "zero, where a run starts, is beyond it" : "a stop is at most half a turn")});
+                     excludes_zero ? "zero, where a run starts, is beyond it" : "a stop is at most two turns")});
     return std::nullopt;
   };
   joint.low_stop = stop_at(low, low > 0);

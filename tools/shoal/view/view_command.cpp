@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -13,12 +14,14 @@
 #include "shoal/message_codec.hpp"
 #include "shoal/sim_control_request_t.hpp"
 #include "sim/base/log.hpp"
+#include "sim/config/diagnostics.hpp"
 #include "sim/config/message_text.hpp"
 #include "tools/experiment/process/browser.hpp"
 #include "tools/experiment/process/signals.hpp"
 #include "tools/experiment/resimulate/resimulated_run.hpp"
 #include "tools/experiment/run/version.hpp"
 #include "tools/experiment/view/log_view.hpp"
+#include "tools/experiment/world_files/world_by_name.hpp"
 #include "tools/shoal/commands/commands.hpp"
 #include "tools/shoal/options/view_options.hpp"
 
@@ -161,12 +164,23 @@ int view_bus(const ViewArguments& arguments) {
   return exit_ok;
 }
 
+/// Throws sim::ConfigError for a world, which is viewed in another way.
+void refuse_world(const std::string& given) {
+  const bool is_world = given.ends_with(".yaml") || given.ends_with(".yml");
+  bool is_shipped = false;
+  for (const ShippedFile& world : shipped_files(ShippedKind::world)) is_shipped |= world.name == given;
+  if (!is_world && (!is_shipped || std::filesystem::exists(given))) return;
+  sim::throw_config_error({}, "'" + sim::shortened(sim::printable(given)) + "'",
+                          "is a world, and this command shows logs; `shoal run " + given + " --view` shows its run");
+}
+
 int view(ViewArguments& arguments) {
   if (arguments.launch && !arguments.resimulate) throw CLI::ValidationError("--launch", "needs --resimulate");
   if (!arguments.logs.empty() && !arguments.lcm_url.empty() && !arguments.launch)
     throw CLI::ValidationError("--lcm-url", "cannot be given with a LOG, except with --launch");
   if (arguments.resimulate && arguments.logs.size() != 1)
     throw CLI::ValidationError("--resimulate", "needs one LOG, got " + std::to_string(arguments.logs.size()));
+  for (const std::string& log : arguments.logs) refuse_world(log);
   catch_signals(true);
   Browser browser;
   if (arguments.open) arguments.view.opened = [&browser](const std::string& url) { browser.open(url); };

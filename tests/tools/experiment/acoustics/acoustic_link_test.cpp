@@ -215,7 +215,6 @@ tools::AcousticLink to_50_m(double range_m) {
 
 TEST(AcousticLink, FollowsTheRayOfAThermocline) {
   AcousticsConfig config = thorp();
-  config.spreading.factor = 2;
   const tools::LinkBudget budget = tools::link_budget(to_50_m(1000), config, thermocline());
   EXPECT_TRUE(budget.bent);
   EXPECT_FALSE(budget.shadow);

@@ -193,9 +193,25 @@ TEST(TeamBound, UsesASightingInTheFrameOfTheObserver) {
   EXPECT_NEAR(variances.y(), updated(0.25 + 0.0225 + 0.16), 1e-6);
 }
 
+TEST(TeamBound, ASightByUSBLFromAboveHasErrorsInBothDirections) {
+  VehicleErrors craft = beacon(0.5);
+  craft.usbl = VehicleErrors::Usbl{
+      {}, {.range_std_m = 0.4, .across_std_rad = 0.02, .elevation_std_rad = 0.03, .heading_std_rad = 0, .hearing = {}}};
+  TeamBound bound({submarine(), craft}, 0, start_of(10));
+  travel(bound, {{0, 0, -100}, {0, 0, 0}}, {{0, 0, 0}, {0, 0, 0}}, 0, 10);
+  bound.add_fix(seconds(5), 1);
+  bound.add_usbl(seconds(5.1), 1, 0);
+  const Eigen::Vector2d variances = variances_of(bound, 10);
+  const auto updated = [](double r) { return 100 - 1e4 / (100 + r); };
+  EXPECT_NEAR(variances.x(), updated(0.25 + std::pow(100 * 0.03, 2)), 1e-6);
+  EXPECT_NEAR(variances.y(), updated(0.25 + std::pow(100 * 0.02, 2)), 1e-6);
+}
+
 TEST(TeamBound, UsesASightByUSBLWithItsErrorsAlongAndAcross) {
   VehicleErrors craft = beacon(0.5);
-  craft.usbl = VehicleErrors::Usbl{{}, 0.4, 0.02, 0.03};
+  craft.usbl = VehicleErrors::Usbl{
+      {},
+      {.range_std_m = 0.4, .across_std_rad = 0.02, .elevation_std_rad = 0.03, .heading_std_rad = 0.01, .hearing = {}}};
   TeamBound bound({submarine(), craft}, 0, start_of(10));
   travel(bound, {{0, 0, -30}, {40, 0, 0}}, {{0, 0, 0}, {0, 0, 0}}, 0, 10);
   bound.add_fix(seconds(5), 1);
@@ -204,7 +220,8 @@ TEST(TeamBound, UsesASightByUSBLWithItsErrorsAlongAndAcross) {
   const auto updated = [](double r) { return 100 - 1e4 / (100 + r); };
   // 40 m away and 30 m below: 50 m, cos 0.8, sin 0.6.
   EXPECT_NEAR(variances.x(), updated(0.25 + std::pow(0.8 * 0.4, 2) + std::pow(30 * 0.03, 2)), 1e-6);
-  EXPECT_NEAR(variances.y(), updated(0.25 + std::pow(40 * 0.02, 2)), 1e-6);
+  // The direction turns by 0.02 at 50 m, the heading by 0.01 at 40 m.
+  EXPECT_NEAR(variances.y(), updated(0.25 + std::pow(50 * 0.02, 2) + std::pow(40 * 0.01, 2)), 1e-6);
   EXPECT_EQ(bound.result().sightings, 1);
 }
 

@@ -71,9 +71,10 @@ TEST(VehicleErrors, OfUSBLHaveThoseOfTheHeading) {
   const tools::VehicleErrors errors = errors_in("benchmark/12_usbl_fleet", "craft1");
   ASSERT_TRUE(errors.usbl);
   EXPECT_EQ(errors.usbl->sensor.device, "usbl");
-  EXPECT_EQ(errors.usbl->range_std_m, 0.2);
-  EXPECT_NEAR(errors.usbl->azimuth_std_rad, std::hypot(0.02, 0.01), 1e-12);
-  EXPECT_EQ(errors.usbl->elevation_std_rad, 0.02);
+  EXPECT_EQ(errors.usbl->errors.range_std_m, 0.2);
+  EXPECT_EQ(errors.usbl->errors.across_std_rad, 0.02);
+  EXPECT_EQ(errors.usbl->errors.heading_std_rad, 0.01);
+  EXPECT_EQ(errors.usbl->errors.elevation_std_rad, 0.02);
 }
 
 TEST(VehicleErrors, TakeAConstantErrorForAStandardDeviation) {

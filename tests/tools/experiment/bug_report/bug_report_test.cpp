@@ -73,6 +73,14 @@ class BugReportTest : public testing::Test {
   std::string record;
 };
 
+TEST_F(BugReportTest, IsNotWrittenThroughALink) {
+  write(folder.file("profile"), "mine");
+  fs::create_symlink(folder.file("profile"), options.directory + "/bug.tar.gz.part");
+  packed();
+  EXPECT_EQ(text_of(folder.file("profile")), "mine");
+  EXPECT_FALSE(fs::is_symlink(report.path));
+}
+
 TEST_F(BugReportTest, HoldsWorldSummaryVersionsLogsAndTheEndOfTheRecord) {
   options.record = record;
   write(options.directory + "/pilot.log", "mayday\n");

@@ -4,7 +4,9 @@
 #include <gmock/gmock.h>
 
 #include <filesystem>
+#include <fstream>
 #include <stdexcept>
+#include <system_error>
 
 #include "tests/scratch_folder.hpp"
 
@@ -46,6 +48,25 @@ TEST(NoLinks, ALinkBelowIsAnErrorWithItsName) {
   EXPECT_THROW(tools::refuse_links(folder.root(), folder.below("dangling")), std::runtime_error);
   EXPECT_THROW(tools::make_folders(folder.root(), folder.below("below/link/new")), std::runtime_error);
   EXPECT_TRUE(fs::is_empty(folder.scratch.file("victim")));
+}
+
+TEST(NoLinks, ANewFileTakesThePlaceOfALinkAndLeavesItsTarget) {
+  const test_support::ScratchFolder scratch;
+  const std::string victim = scratch.file("victim"), path = scratch.file("a.part");
+  std::ofstream(victim) << "keep";
+  fs::create_symlink(victim, path);
+  {
+    const bridges::FileDescriptor file = tools::make_new_file(path);
+    EXPECT_EQ(write(file.number(), "new", 3), 3);
+  }
+  EXPECT_FALSE(fs::is_symlink(path));
+  EXPECT_EQ(fs::file_size(path), 3u);
+  EXPECT_EQ(fs::file_size(victim), 4u);
+  { const bridges::FileDescriptor again = tools::make_new_file(path); }
+  EXPECT_EQ(fs::file_size(path), 0u);
+  fs::create_directory(scratch.file("folder"));
+  EXPECT_THROW(tools::make_new_file(scratch.file("folder")), std::system_error);
+  EXPECT_THROW(tools::make_new_file(scratch.file("missing/a.part")), std::system_error);
 }
 
 }  // namespace

@@ -122,12 +122,13 @@ TEST_F(FilmTest, DrawsTheEstimatesOfTheLog) {
   };
   with_estimates();
   const tools::LogEstimates estimates(log, 0, 10, 0.05);
-  const tools::FilmEstimate* found = estimates.find("r1", 1.05, 1);
+  const tools::LogEstimate* found = estimates.find("r1", 1.05, 1);
   ASSERT_NE(found, nullptr);
   EXPECT_NEAR(found->time_s, 1, 0.11);
   EXPECT_EQ(found->position_m, sim::Vector3d(0, 0.5, 0));
   EXPECT_EQ(estimates.find("r1", 20, 1), nullptr);
   EXPECT_EQ(estimates.find("r2", 1, 1), nullptr);
+  EXPECT_EQ(estimates.vehicles(), std::vector<std::string>{"r1"});
   // The image differs by them.
   tools::FilmOptions film = options("with/");
   film.until_s = film.from_s = 1;

@@ -91,6 +91,43 @@ TEST_F(MrclamTest, BecomesARecordThatScoresEstimates) {
   EXPECT_NEAR(tools::score_log(options).figures.at("robot1.rms_m"), 0.3, 1e-3);
 }
 
+TEST_F(MrclamTest, ARobotIsScoredUntilItsTruthEnds) {
+  std::string still;
+  for (int i = 0; i <= 60; ++i) still += fmt::format("{:.3f} 5.0 2.0 1.5\n", start_s + 0.1 * i);
+  write("Robot2_Groundtruth.dat", still);
+  const tools::MrclamData data = read();
+  const std::string world = tools::mrclam_world(data);
+  EXPECT_THAT(world, HasSubstr("channel: robot2.estimate, until_s: 6.00}"));
+  EXPECT_THAT(world, HasSubstr("channel: robot1.estimate}"));
+  tools::write_mrclam_record(data, folder_.file("run.lcm"), false);
+  // 0.4 m wrong while there is a truth; at 8 s its place is unknown.
+  write("mine.csv", fmt::format("t,x,y\n{:.1f},5.4,2\n{:.1f},1,2\n", start_s + 5, start_s + 8));
+  tools::LogScoreOptions options;
+  options.log = folder_.file("run.lcm");
+  options.estimate = folder_.file("mine.csv");
+  options.metric = "robot2";
+  options.quiet = true;
+  const tools::LogScore score = tools::score_log(options);
+  EXPECT_NEAR(score.figures.at("robot2.rms_m"), 0.4, 1e-6);
+  EXPECT_EQ(score.figures.at("robot2.samples"), 1);
+  EXPECT_NEAR(score.figures.at("robot2.max_gap_s"), 5, 0.1);  // from 0 to 5 s; from there to the end of the truth 1 s
+}
+
+TEST_F(MrclamTest, BeginsWhenThePlacesOfAllRobotsAreKnown) {
+  std::string still;
+  for (int i = 32; i <= 100; ++i) still += fmt::format("{:.3f} 5.0 2.0 1.5\n", start_s + 0.1 * i);
+  write("Robot2_Groundtruth.dat", still);
+  const tools::MrclamRecord record = tools::write_mrclam_record(read(), folder_.file("run.lcm"), false);
+  EXPECT_NEAR(record.duration_s, 7, 1e-9);
+  // Robot 1 is at x = 1.3 m then, and its dead reckoning begins.
+  EXPECT_THAT(tools::mrclam_world(read()), HasSubstr("name: robot1, position_m: [1.300000, 2.000000, 0]"));
+  const auto odometry = messages_of<shoal::odometry_t>("robot1.odometry");
+  ASSERT_FALSE(odometry.empty());
+  EXPECT_EQ(odometry.front().utime, static_cast<std::int64_t>((start_s + 3) * 1e6));
+  EXPECT_NEAR(odometry.front().x_m, 0, 1e-9);
+  EXPECT_NEAR(odometry.back().x_m, 0.7, 0.011);  // the last message is up to a step before the end
+}
+
 TEST_F(MrclamTest, RefusesWhatItCannotUse) {
   const auto error = [&](const std::string& file, const std::string& text) -> std::string {
     std::ifstream old(folder_.file(file));
@@ -110,6 +147,8 @@ TEST_F(MrclamTest, RefusesWhatItCannotUse) {
   EXPECT_THAT(error("Robot1_Groundtruth.dat", "1 2 3\n"), HasSubstr(":1:1: must have 4 columns, got 3"));
   EXPECT_THAT(error("Robot1_Odometry.dat", "5 0 0\n4 0 0\n"), HasSubstr("Odometry.dat:2:1: times must not decrease"));
   EXPECT_THAT(error("Robot1_Measurement.dat", "5 5 -1 0\n"), HasSubstr(":1:5: a range must be a number from 0"));
+  EXPECT_THAT(error("Robot2_Groundtruth.dat", "1248272270 5 2 0\n1248272271.5 5 2 0\n"),
+              HasSubstr("Robot2_Groundtruth.dat: must have poses after 1248272272 s, when the last robot begins"));
   std::filesystem::remove(folder_.file("Robot2_Odometry.dat"));
   EXPECT_THAT(error("Barcodes.dat", "1 5\n"), HasSubstr("Robot2_Odometry.dat"));
 }

@@ -85,7 +85,7 @@ TEST(Take, ItsFirstLinesMustBeGood) {
   EXPECT_FALSE(damage);
   EXPECT_THAT(error_of(head + "b 0\n"), HasSubstr(":3: a return must come after a frame"));
   EXPECT_THAT(error_of("shoal recording 1\n{joints: [a, a]}\n"), HasSubstr("'joints' names joint 'a' twice"));
-  EXPECT_THAT(error_of("shoal recording 1\n{joints: [\"a\\0\"]}\n"), HasSubstr("without control characters"));
+  EXPECT_THAT(error_of("shoal recording 1\n{joints: [\"a\\0\"]}\n"), HasSubstr("must have no control characters"));
 }
 
 TEST(Take, HasNoMoreValuesThanCanBeWritten) {

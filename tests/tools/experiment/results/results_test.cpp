@@ -13,7 +13,7 @@
 #include "messages/yaml/message_writer.hpp"
 #include "tests/bridges/lcm/lcm_test_support.hpp"
 #include "tests/devices/world_fixture.hpp"
-#include "tools/experiment/results/results_world.hpp"
+#include "tools/experiment/results/earlier_run.hpp"
 #include "tools/experiment/run/runner.hpp"
 
 namespace {
@@ -141,6 +141,18 @@ TEST(Summary, AProgramThatFailedIsARuleThatFailedAlsoWithoutOtherRules) {
   EXPECT_EQ(json["judged"], true);
   EXPECT_EQ(json["processes"][0]["failed"], false);
   EXPECT_EQ(json["processes"][1]["failed"], true);
+}
+
+TEST(Summary, NamesWhatTheRecordLacksInOneLine) {
+  tools::Summary summary;
+  EXPECT_THAT(summary.to_text(), testing::Not(testing::HasSubstr("not in the record")));
+  EXPECT_FALSE(nlohmann::json::parse(summary.to_json()).contains("not_recorded"));
+  summary.not_recorded = {"a", "b"};
+  EXPECT_THAT(summary.to_text(), testing::HasSubstr("\n  not in the record: a; b\n"));
+  summary.not_recorded = {"a", "b", "c", "d", "e", "f", "g"};
+  EXPECT_THAT(summary.to_text(),
+              testing::HasSubstr("not in the record: a; b; c; d; e; and 2 more, see summary.json\n"));
+  EXPECT_EQ(nlohmann::json::parse(summary.to_json())["not_recorded"].size(), 7u);
 }
 
 TEST(Summary, ReportsWhatBecameOfAcousticPackets) {
@@ -352,6 +364,30 @@ TEST(Results, ReplaceThoseOfAnEarlierRun) {
   const auto json = nlohmann::json::parse(text_of_file(options.results + "/summary.json"));
   EXPECT_EQ(json["ended"], "configuration");
   EXPECT_EQ(json["steps"], 0);
+  for (const char* file : {"metrics.csv", "errors.csv", "tracks.csv", "tracks.png"})
+    EXPECT_FALSE(fs::exists(options.results + "/" + file)) << file;
+}
+
+TEST(Results, AreNeverMixedWithThoseOfAnotherWorld) {
+  const ScratchFolder folder;
+  auto options = quiet_run();
+  options.results = folder.file("results");
+  const auto path = [&](const std::string& file) { return options.results + "/" + file; };
+  tools::run_world(small_world("processes: [{name: guest, command: [guest]}, {name: guide, command: [guide]}]\n"),
+                   options);
+  fs::create_directory(path("branch0"));
+  fs::create_directory(path("branch1"));
+  for (const char* file : {"guest.log", "guide.log", "report.html", "run.html", "branch0/summary.json",
+                           "branch1/tracks.csv", "branch1/mine.txt", "mine.log", "mine.lcm", "branching.txt"})
+    std::ofstream(path(file)) << "of the earlier run\n";
+  tools::run_world(small_world(), options);
+  for (const char* file : {"guest.log", "guide.log", "report.html", "run.html", "branch0", "branch1/tracks.csv"})
+    EXPECT_FALSE(fs::exists(path(file))) << file;
+  // What no run writes by itself is kept.
+  for (const char* file : {"branch1/mine.txt", "mine.log", "mine.lcm", "branching.txt"})
+    EXPECT_TRUE(fs::exists(path(file))) << file;
+  EXPECT_TRUE(fs::exists(path("summary.json")));
+  EXPECT_THAT(text_of_file(path("world.yaml")), testing::Not(testing::HasSubstr("guest")));
 }
 
 TEST(Results, OfAnEarlierRunAreGoneWhenARunIsKilled) {
@@ -362,10 +398,8 @@ TEST(Results, OfAnEarlierRunAreGoneWhenARunIsKilled) {
   EXPECT_EQ(tools::run_world(loaded, options).exit_code, 0);
   sim::InProcessBus bus;
   sim::World world(loaded.config, bus);
-  {
-    const tools::Results killed(options.results, world);  // as far as a run comes that is killed in its first step
-    tools::write_results_world(killed.directory(), loaded.resolved);
-  }
+  tools::remove_earlier_run(options.results);
+  { const tools::Results killed(options.results, world); }  // as far as a run comes that is killed in its first step
   for (const char* file : {"summary.json", "metrics.csv", "errors.csv", "tracks.png"})
     EXPECT_FALSE(fs::exists(options.results + "/" + file)) << file;
   EXPECT_TRUE(fs::exists(options.results + "/world.yaml"));

@@ -235,6 +235,39 @@ TEST(StudyConfig, ReportsWhatIsWrong) {
   EXPECT_THAT(error("plots: [{name: p, figure: passed, cases: [b]}]\n"), HasSubstr("names no case 'b'"));
 }
 
+TEST(StudyConfig, NamesNoOtherFilesThanItsWorldMay) {
+  const std::string stone = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
+  const ScratchFolder elsewhere;
+  write(elsewhere.file("private.obj"), stone);
+  const auto error_of = [&](const std::string& more) -> std::string {
+    const StudyFolder study(more);
+    write(study.folder.file("small.yaml"),
+          "shoal: 1\nrun: {duration_s: 1}\n"
+          "objects: [{name: o, fixed: true, parts: [{shape: mesh, mesh: own.obj}]}]\n");
+    write(study.folder.file("own.obj"), stone);
+    tools::StudyChanges changes;
+    changes.load.only_own_files = true;
+    try {
+      tools::load_study(study.path(), changes);
+      return "";
+    } catch (const sim::ConfigError& error) {
+      return error.what();
+    }
+  };
+  const std::string mesh = "objects.o.parts.1.mesh", other = elsewhere.file("private.obj");
+  const std::string rule = "'mesh' must lie below the folder of the world";
+  EXPECT_EQ(error_of("cases: [{name: a, set: {" + mesh + ": own.obj}}]\n"), "");
+  EXPECT_THAT(error_of("cases: [{name: a, set: {" + mesh + ": " + other + "}}]\n"), HasSubstr(rule));
+  // Texts are all checked, not only the first ones.
+  const auto factor = [&](const std::string& tenth) {
+    std::string values = "own.obj";
+    for (int i = 0; i < 8; ++i) values += ", ./" + std::string(static_cast<std::size_t>(i), '/') + "own.obj";
+    return "factors: [{name: f, paths: [" + mesh + "], values: [" + values + ", " + tenth + ", ./././own.obj]}]\n";
+  };
+  EXPECT_EQ(error_of(factor("././own.obj")), "");
+  EXPECT_THAT(error_of(factor(other)), HasSubstr(rule));
+}
+
 TEST(StudyConfig, ReportsWhatIsWrongWithFactorsAndTheirDesign) {
   const auto error = [](const std::string& factor, const std::string& more = "") {
     return StudyFolder("factors:\n  - {name: g, paths: [physics.gravity_mps2], " + factor + "}\n" + more).error();

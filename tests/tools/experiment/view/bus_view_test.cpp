@@ -85,6 +85,25 @@ TEST(BusView, PassesOnTheMessagesOfSubscribedChannels) {
   EXPECT_TRUE(found) << utime;
 }
 
+/// On another channel a pose may be a goal.
+TEST(BusView, TakesAPoseForAnEstimateOnVehicleEstimate) {
+  ServedBus bus;
+  test::ViewPage page(bus.url());
+  page.text("hello");
+  shoal::pose_t pose{};
+  pose.utime = 5'000'000;
+  pose.pos[0] = 1;
+  pose.orientation[0] = pose.orientation[3] = std::sqrt(0.5);  // 90 degrees to the left
+  bus.publish("r2.goal", shoal::encode(pose));
+  bus.publish("r1.estimate", shoal::encode(pose));
+  const auto items = page.text("estimates")["items"];
+  ASSERT_EQ(items.size(), 1u);
+  EXPECT_EQ(items[0]["vehicle"], "r1");
+  EXPECT_EQ(items[0]["time_us"], 5'000'000);
+  EXPECT_EQ(items[0]["pose"][0], 1);
+  EXPECT_NEAR(items[0]["pose"][6].get<double>(), std::sqrt(0.5), 1e-12);
+}
+
 TEST(BusView, CountsMessagesAndSaysWhoHeardWhom) {
   const test::TrafficLog log;
   ServedBus bus;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <functional>
+#include <optional>
 #include <thread>
 
 #include "bridges/view/view_publisher.hpp"
@@ -27,17 +28,28 @@ inline std::string falling_ball() {
          "sphere, mass_kg: 1}]}]";
 }
 
-/// A log of a ball that falls for three seconds, from 100 m, with an event after one.
+/// A log of a ball that falls for three seconds, from 100 m, with an event after one.  `estimate_x_m`: it believes to
+/// be there, ten times per second, in a shoal.pose_t.
 struct FallLog {
-  explicit FallLog(const std::string& more = "") {
+  explicit FallLog(const std::string& more = "", const std::optional<double>& estimate_x_m = {}) {
     test::RecordedRun run(falling_ball() + "\nevents: [{name: half, at: 1, do: [{log: one second}]}" + more + "]\n",
                           path);
     bridges::ViewPublisher view(run.gate, run.world, {}, [] { return true; });
     view.after_step();
-    for (int i = 0; i < 300; ++i) {
+    for (int i = 1; i <= 300; ++i) {
       run.world.step();
+      if (estimate_x_m && i % 10 == 0) publish(run, *estimate_x_m);
       view.after_step();
     }
+  }
+  static void publish(test::RecordedRun& run, double x_m) {
+    const sim::Time now = run.world.now();
+    run.recorder.set_time(now);
+    shoal::pose_t pose{};
+    pose.utime = run.world.epoch_us() + now.count();
+    pose.pos[0] = x_m;
+    pose.orientation[0] = 1;
+    run.gate.publish("ball.estimate", shoal::encode(pose), now);
   }
   test_support::ScratchFolder folder;
   const std::string path = folder.file("run.lcm");

@@ -89,6 +89,31 @@ TEST(LogView, ShowsASecondLogAtTheSameTimeAndWhereItDiffers) {
   EXPECT_EQ(page.text("error")["text"], "look: there is no log 2");
 }
 
+/// Of the first log they come as it is played, of the second one with its poses.
+TEST(LogView, SendsTheEstimatesOfBothLogs) {
+  const test::FallLog log("", 1.5), other("", 3);
+  const tools::LogIndex b(other.path);
+  test::LogPage page(log, [&](tools::LogView& view) { view.compare_with(other.path, b, std::nullopt); });
+  page.pause();
+  page.seek(2'000'000);
+  const auto own = page.text_when("estimates", [](const web_test::Json& text) {
+    return !text.contains("branch") && text["items"][0]["time_us"] == 2'000'000;
+  });
+  EXPECT_EQ(own["items"][0]["pose"], web_test::Json({1.5, 0, 0, 1, 0, 0, 0}));
+  EXPECT_FALSE(own["items"][0].contains("covariance_m2")) << "a pose has none";
+  const auto look = [&](std::int64_t time_us) {
+    page.client.send_json({{"op", "look"}, {"branch", 1}, {"time_us", time_us}});
+    return page.text_when("estimates", [](const web_test::Json& text) { return text.contains("branch"); });
+  };
+  const auto others = look(1'050'000);
+  EXPECT_EQ(others["branch"], 1);
+  ASSERT_EQ(others["items"].size(), 1u);
+  EXPECT_EQ(others["items"][0]["vehicle"], "ball");
+  EXPECT_EQ(others["items"][0]["time_us"], 1'000'000);
+  EXPECT_EQ(others["items"][0]["pose"][0], 3);
+  EXPECT_TRUE(look(50'000)["items"].empty()) << "before the first one";
+}
+
 /// Logs with hashes, as `shoal run` writes them, differ where their hashes do.
 class LogDifference : public testing::Test {
  protected:

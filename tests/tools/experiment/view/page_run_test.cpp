@@ -30,8 +30,8 @@ float height_m(double t_s) {  // the step is exact for constant gravity
 /// A run in another thread, paused, with a page.
 class PageRun {
  public:
-  explicit PageRun(const std::string& record = "") {
-    loaded_ = sim::load_world_text(falling, "worlds/test.yaml", test::LoadedTestWorld::with_messages({}));
+  explicit PageRun(const std::string& record = "", const std::string& world = falling) {
+    loaded_ = sim::load_world_text(world, "worlds/test.yaml", test::LoadedTestWorld::with_messages({}));
     options_.bus = "none";
     options_.quiet = options_.paused = true;
     options_.speed = 0;
@@ -76,6 +76,25 @@ tools::Summary plain_run() {
   options.quiet = true;
   options.speed = 0;
   return tools::run_world(loaded, options);
+}
+
+TEST(PageRun, SaysWhyTheRunHasEndedAndWhereItsRecordIs) {
+  const test_support::ScratchFolder folder;
+  const std::string record = folder.file("run.lcm");
+  const auto has_ended = [](const web_test::Json& status) { return !status["ended"].is_null(); };
+  PageRun run(record);
+  run.end();
+  const auto status = run.page->text("status", has_ended);
+  EXPECT_EQ(status["ended"], "duration");
+  EXPECT_EQ(status["log"], record);
+  // Also a run that fails.
+  std::string too_fast = falling;
+  too_fast.insert(too_fast.find("step_s"), "max_speed_mps: 10, ");
+  PageRun failed("", too_fast);
+  failed.end();
+  const auto failure = failed.page->text("status", has_ended);
+  EXPECT_THAT(failure["ended"].get<std::string>(), testing::MatchesRegex("fault: .*ball.*"));
+  EXPECT_FALSE(failure.contains("log"));
 }
 
 TEST(PageRun, ALookShowsThePastAndDoesNotTouchTheRun) {

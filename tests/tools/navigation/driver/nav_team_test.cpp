@@ -216,7 +216,8 @@ vehicles:
 
 /// The craft at 10 s: it heads north at 2 m/s, and measured the AUV 48 m ahead of the USBL, and 40 m below.
 struct Sighting {
-  explicit Sighting(const NavTeam& of) : team(std::make_shared<const NavTeam>(of)) {
+  explicit Sighting(const NavTeam& of, double ahead_m = 48, double below_m = 40)
+      : team(std::make_shared<const NavTeam>(of)) {
     shoal::ins_t north{};
     north.utime = 9'000'000;
     north.quat[0] = north.quat[3] = std::sqrt(0.5);
@@ -232,8 +233,8 @@ struct Sighting {
     shoal::usbl_t sight{};
     sight.utime = 10'000'000;
     sight.target = "auv/transponder";
-    sight.position_m[0] = 48;
-    sight.position_m[2] = -40;
+    sight.position_m[0] = ahead_m;
+    sight.position_m[2] = -below_m;
     events = craft.receive(sight);
     shoal::pressure_t pressure{};
     pressure.utime = 10'000'000;
@@ -264,9 +265,25 @@ TEST(VehicleReports, USBLMeasuresARangeAndADirectionFromModemToModem) {
   // The USBL is 2 m ahead of the modem: 50 m to the north.
   EXPECT_NEAR(seen.range_m, 50, 1e-9);
   EXPECT_NEAR(seen.bearing_rad, M_PI / 2, 1e-9);
-  const double cosine = 50 / std::hypot(50, 40);
-  EXPECT_NEAR(seen.range_std_m, std::hypot(cosine * 0.5, 40 * 0.02, 0.1), 1e-9);
-  EXPECT_NEAR(seen.bearing_std_rad, std::hypot(0.04, 0.03, 0.1 / 50), 1e-9);
+  // The direction turns by 0.04 across it, the heading by 0.03 about the vertical; an error across makes the level
+  // longer.
+  const double away_m = std::hypot(50, 40), across_m = std::hypot(0.04 * away_m, 0.03 * 50, 0.1);
+  EXPECT_NEAR(seen.bearing_std_rad, across_m / 50, 1e-9);
+  EXPECT_NEAR(seen.range_std_m,
+              std::sqrt(std::pow(50 / away_m * 0.5, 2) + std::pow(40 * 0.02, 2) + 0.1 * 0.1 +
+                        std::pow(std::hypot(50, across_m) - 50, 2)),
+              1e-9);
+}
+
+TEST(VehicleReports, USBLAboveItsTransponderIsUncertainAllAround) {
+  // The USBL is 2 m ahead of the modem.
+  const Sighting sighting(usbl_team("{}"), -2, 200);
+  ASSERT_EQ(sighting.events.size(), 1U);
+  const Relative& below = sighting.events[0].seen;
+  // 0.04 across and 0.02 along at 200 m; the level, 0 here, is as long as the error across.
+  EXPECT_NEAR(below.range_m, 0, 1e-9);
+  EXPECT_NEAR(below.bearing_std_rad, 8, 0.01);
+  EXPECT_NEAR(below.range_std_m, std::hypot(8, 4), 0.01);
 }
 
 TEST(VehicleReports, AFrameTellsTheVehicleWhereItWasSeen) {
@@ -305,7 +322,8 @@ TEST(NavTeam, AHeadingThatTurnsNoVelocityHasItsErrorsInTheSights) {
   const NavVehicle craft = usbl_team("{bias_std: 0.05, gauss_markov_std: 0.02}").vehicles[0];
   EXPECT_EQ(craft.errors.heading_bias_rad, 0);
   EXPECT_EQ(craft.errors.slow_heading_rad, 0);
-  EXPECT_NEAR(craft.usbl_azimuth_std_rad, std::hypot(0.04, 0.05, 0.02), 1e-12);
+  EXPECT_EQ(craft.usbl_errors.across_std_rad, 0.04);
+  EXPECT_NEAR(craft.usbl_errors.heading_std_rad, std::hypot(0.05, 0.02), 1e-12);
 }
 
 TEST(VehicleReports, FramesThatAreNotARangeToTheirSenderAreNotHeard) {

@@ -5,6 +5,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
+#include <numbers>
 
 namespace {
 
@@ -25,6 +26,24 @@ TEST(JointFilter, HeadingBiasAndScaleMakeThePositionUnsureAcrossAndAlong) {
   // After a straight of length L: L times the bias across, L times the scale error along.
   EXPECT_NEAR(std::sqrt(filter.covariance(auv)(0, 0)), 2000 * 0.05, 1e-6);
   EXPECT_NEAR(std::sqrt(filter.covariance(auv)(1, 1)), 2000 * 0.02, 1e-6);
+}
+
+TEST(JointFilter, NoiseIsInTheAxesOfTheCorrectedHeading) {
+  for (const DeviceErrors& errors : {DeviceErrors{.heading_bias_rad = 2}, DeviceErrors{.slow_heading_rad = 2}}) {
+    JointFilter filter;
+    const int robot = filter.add(errors, 0, {0, 0}, 1e-9);
+    // Its odometry says east; a measurement shows that it drives north.
+    Eigen::VectorXd H = Eigen::VectorXd::Zero(3);
+    H[2] = 1;
+    filter.update(H, std::numbers::pi / 2, 1e-12);
+    filter.move(robot, second, {0.1, 0}, Vector2(0.04, 0.01).asDiagonal());
+    EXPECT_NEAR(filter.position(robot).x(), 0, 1e-9);
+    EXPECT_NEAR(filter.position(robot).y(), 0.1, 1e-9);
+    // What is along the track is to the north now.  1e-12 rad^2 of the heading are 1e-14 m^2.
+    EXPECT_NEAR(filter.covariance(robot)(1, 1), 0.04, 1e-9);
+    EXPECT_NEAR(filter.covariance(robot)(0, 0), 0.01, 1e-9);
+    EXPECT_NEAR(filter.covariance(robot)(0, 1), 0, 1e-9);
+  }
 }
 
 TEST(JointFilter, ASlowHeadingErrorAddsAsAGaussMarkovProcess) {
@@ -104,11 +123,27 @@ TEST(JointFilter, ADirectionAndADistanceAreAPosition) {
   seen.range_m = 5;
   seen.bearing_rad = std::atan2(4, 3);
   const Position other{{13, 24}, 1e-8 * Matrix2::Identity()};
-  const JointFilter::RelativeRow row = filter.relative_row(rover, other, seen);
-  filter.update(row.H, row.innovation, 1e-8 * Matrix2::Identity());
-  // The error of the linearisation is of second order, 0.02^2 / 5.
-  EXPECT_NEAR(filter.position(rover).x(), 10, 1e-4);
-  EXPECT_NEAR(filter.position(rover).y(), 20, 1e-4);
+  seen.range_std_m = seen.bearing_std_rad = 1e-4;
+  filter.see(filter.relative_row(rover, other, seen));
+  EXPECT_NEAR(filter.position(rover).x(), 10, 1e-6);
+  EXPECT_NEAR(filter.position(rover).y(), 20, 1e-6);
+}
+
+TEST(JointFilter, ASightOfANearOneIsAsGoodAsTheSensorHoweverUnsureThePositionIs) {
+  JointFilter filter(1500, 10.83);
+  const int rover = filter.add(DeviceErrors{}, 0, {2, 1}, 5);
+  navigation::Relative seen;
+  seen.range_m = 2;
+  seen.range_std_m = 0.1;
+  seen.bearing_std_rad = 0.05;
+  // It is at (0, 0), 2 m west of the other one, but is believed to be 1 m north of it.
+  const Position other{{2, 0}, 1e-8 * Matrix2::Identity()};
+  EXPECT_EQ(filter.see(filter.relative_row(rover, other, seen)), JointFilter::Outcome::used);
+  // 5 m against 0.1 m: of the error of (2, 1) m there remains (0.1 / 5)^2.  Terms of second order are s / 2r = 3 mm.
+  EXPECT_NEAR(filter.position(rover).x(), 0, 2e-3);
+  EXPECT_NEAR(filter.position(rover).y(), 0, 2e-3);
+  EXPECT_NEAR(std::sqrt(filter.covariance(rover)(0, 0)), 0.1, 1e-3);
+  EXPECT_NEAR(std::sqrt(filter.covariance(rover)(1, 1)), 0.05 * 2, 1e-3);
 }
 
 TEST(JointFilter, ABearingByAnotherVehicleSaysNothingOfTheOwnHeading) {
@@ -123,29 +158,29 @@ TEST(JointFilter, ABearingByAnotherVehicleSaysNothingOfTheOwnHeading) {
   EXPECT_EQ(row.H(1, filter.offset(other) + 2), -1);
   // Of a position outside of the filter: across, 0.02 rad at 100 m against 1 m.
   const Position craft{{100, 0}, 1e-9 * Matrix2::Identity()};
-  const Matrix2 R = navigation::Vector2(1e-4, 4e-4).asDiagonal();
-  filter.see(own, filter.relative_row(own, craft, seen), R);
+  seen.range_std_m = 0.01;
+  seen.bearing_std_rad = 0.02;
+  filter.see(filter.relative_row(own, craft, seen));
   EXPECT_NEAR(filter.covariance(own)(1, 1), 1 - 1 / (1 + 4.0), 1e-3);
   EXPECT_NEAR(filter.P()(filter.offset(own) + 2, filter.offset(own) + 2), 0.01, 1e-12);
 }
 
-TEST(JointFilter, FiveRefusedSightsInARowOpenThePosition) {
+TEST(JointFilter, ASightOfAnotherPlaceIsRefusedHoweverOftenItComes) {
   JointFilter filter(1500, 10.83);
-  const int rover = filter.add(DeviceErrors{}, 0, {0, 0}, 0.1);
+  filter.add(DeviceErrors{}, 0, {0, 0}, 0.1);
   const Position other{{20, 0}, 1e-4 * Matrix2::Identity()};
   navigation::Relative seen;
-  seen.range_m = 10;
-  seen.bearing_rad = 0;
-  const Matrix2 R = navigation::Vector2(0.01, 1e-4).asDiagonal();
-  const auto see = [&] { return filter.see(rover, filter.relative_row(rover, other, seen), R); };
-  for (int i = 0; i < 4; ++i) EXPECT_EQ(see(), JointFilter::Outcome::refused);
-  // One that fits begins the row again.
-  seen.range_m = 20;
-  EXPECT_EQ(see(), JointFilter::Outcome::used);
-  seen.range_m = 10;
-  for (int i = 0; i < 4; ++i) EXPECT_EQ(see(), JointFilter::Outcome::refused);
-  EXPECT_EQ(see(), JointFilter::Outcome::used);
-  EXPECT_NEAR(filter.position(rover).x(), 10, 0.5);
+  seen.range_std_m = 0.1;
+  seen.bearing_std_rad = 0.01;
+  const auto see = [&](double range_m) {
+    seen.range_m = range_m;
+    return filter.see(filter.relative_row(0, other, seen));
+  };
+  // Cameras that read a wrong code read it in frame after frame.
+  for (int i = 0; i < 50; ++i) EXPECT_EQ(see(10), JointFilter::Outcome::refused);
+  EXPECT_EQ(filter.position(0), Vector2(0, 0));
+  EXPECT_EQ(filter.covariance(0)(0, 0), 0.1 * 0.1);
+  EXPECT_EQ(see(20), JointFilter::Outcome::used);
 }
 
 TEST(JointFilter, FiveRefusedFixesInARowOpenThePosition) {

@@ -87,6 +87,19 @@ TEST(LandTeam, HasTheVehiclesWithOdometryAndTheErrorsOfTheirDevices) {
   EXPECT_NEAR(rover.errors.heading_walk_radprts, 0.001 * std::sqrt(2 * 10) / 0.4, 1e-9);
 }
 
+TEST(LandTeam, OfADataSetHasTheErrorsOfItsRobotsWhichDoNotSlideSideways) {
+  const LandTeam team = land_team_of(world_of_text(
+      "shoal: 1\nname: mrclam\nvehicles:\n  - {name: robot1, model: {shoal: 1, bodies: [{name: base, kinematic: true, "
+      "parts: [{shape: cylinder, radius_m: 0.17, length_m: 0.1}]}]}}\n"));
+  ASSERT_EQ(team.vehicles.size(), 1U);
+  const LandVehicle& robot = team.vehicles[0];
+  EXPECT_EQ(robot.odometry.channel, "robot1.odometry");
+  // In 1 s 6 cm along the track, 3 mm across.
+  EXPECT_NEAR(std::sqrt(robot.along_density), 0.06, 1e-12);
+  EXPECT_NEAR(std::sqrt(robot.across_density), 0.003, 1e-12);
+  EXPECT_EQ(robot.errors.heading_walk_radprts, 0.06);
+}
+
 TEST(LandTeam, OfNoVehicleItCanNavigateIsAnError) {
   try {
     land_team_of(

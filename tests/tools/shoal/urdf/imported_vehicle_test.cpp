@@ -46,7 +46,7 @@ TEST(ImportedVehicle, MakesASliderOfAPrismaticJointWithTheDefaultAxis) {
   const tools::ImportedJoint& joint = vehicle.joints.at(0);
   EXPECT_EQ(joint.type, sim::JointType::slider);
   EXPECT_EQ(joint.axis_V, Vector3d::UnitX());
-  EXPECT_EQ(joint.high_stop, 7);  // m: half a turn does not limit it
+  EXPECT_EQ(joint.high_stop, 7);  // m
   EXPECT_EQ(joint.max_acceleration, 5);
 }
 
@@ -71,14 +71,13 @@ TEST(ImportedVehicle, GivesNoServoToAJointWithoutEffort) {
 }
 
 TEST(ImportedVehicle, LimitsTheServoWhereAStopCannotBe) {
-  // Beyond half a turn, which is the range of a stop; and beyond zero, where a run starts.
+  // Beyond two turns, which is the range of a stop; and beyond zero, where a run starts.
   const tools::ImportedVehicle wide =
-      imported(pair_text("revolute", "<limit lower=\"-3.5\" upper=\"1\" effort=\"1\" velocity=\"1\"/>"));
+      imported(pair_text("revolute", "<limit lower=\"-13\" upper=\"1\" effort=\"1\" velocity=\"1\"/>"));
   EXPECT_EQ(wide.joints.at(0).low_stop, std::nullopt);
-  EXPECT_EQ(wide.joints.at(0).servo_low, -3.5);
+  EXPECT_EQ(wide.joints.at(0).servo_low, -13);
   EXPECT_EQ(wide.joints.at(0).high_stop, 1);
-  EXPECT_EQ(notes_of(wide),
-            "r.urdf:4: joint 'j': its limit -3.5 limits only its servo: a stop is at most half a turn\n");
+  EXPECT_EQ(notes_of(wide), "r.urdf:4: joint 'j': its limit -13 limits only its servo: a stop is at most two turns\n");
   const tools::ImportedVehicle bent =
       imported(pair_text("revolute", "<limit lower=\"-2\" upper=\"-0.5\" effort=\"1\" velocity=\"1\"/>"));
   EXPECT_EQ(bent.joints.at(0).low_stop, -2);

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/autonomy/missions/marine/coop_station.hpp"
 
+#include <spdlog/fmt/fmt.h>
+
 #include <algorithm>
-#include <cstdio>
 #include <iterator>
 #include <limits>
 #include <stdexcept>
@@ -17,9 +18,7 @@ namespace {
 constexpr std::size_t max_orders = 255;
 
 std::string decimal(double number) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%g", number);
-  return text;
+  return fmt::format("{:g}", number);
 }
 
 shoal::estimate_t estimate_of(const AcousticState& state) {

@@ -7,16 +7,13 @@
 #include <string>
 #include <vector>
 
-#include "sim/base/math.hpp"
-#include "sim/base/time.hpp"
+#include "tools/experiment/estimates/vehicle_estimate.hpp"
 
 namespace tools {
 
-/// Position estimate of a vehicle.
-struct FilmEstimate {
-  double time_s = 0;  ///< at which it was valid, by the clock of the vehicle
-  sim::Vector3d position_m = sim::Vector3d::Zero();
-  Eigen::Matrix3d covariance_m2 = Eigen::Matrix3d::Zero();
+/// Position estimate in a log.
+struct LogEstimate : VehicleEstimate {
+  double time_s = 0;  ///< simulated time at which it was valid, by the clock of the vehicle
 };
 
 /// Position estimates that the programs of a recorded run published on `VEHICLE.estimate`, by time.
@@ -28,13 +25,14 @@ class LogEstimates {
   LogEstimates(const std::string& log, double from_s, double until_s, double interval_s);
 
   /// Returns the last estimate of a vehicle up to a time, none older than `max_age_s`.
-  const FilmEstimate* find(const std::string& vehicle, double time_s, double max_age_s) const;
-  bool empty() const { return by_vehicle_.empty(); }
+  const LogEstimate* find(const std::string& vehicle, double time_s, double max_age_s) const;
+  /// Returns the vehicles of which there are estimates, by name.
+  std::vector<std::string> vehicles() const;
 
  private:
-  void add(std::string_view channel, const FilmEstimate& estimate, double interval_s);
+  void add(std::string_view channel, const LogEstimate& estimate, double interval_s);
 
-  std::map<std::string, std::vector<FilmEstimate>, std::less<>> by_vehicle_;
+  std::map<std::string, std::vector<LogEstimate>, std::less<>> by_vehicle_;
 };
 
 }  // namespace tools
