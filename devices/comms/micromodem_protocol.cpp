@@ -49,8 +49,8 @@ std::string nmea_time_of_day(std::int64_t utc_us, int digits) {
 }
 
 std::string nmea_date(std::int64_t utc_us) {
-  using namespace std::chrono;
-  const year_month_day date{floor<days>(sys_time<microseconds>(microseconds(utc_us)))};
+  const std::chrono::sys_time<std::chrono::microseconds> time{std::chrono::microseconds(utc_us)};
+  const std::chrono::year_month_day date{std::chrono::floor<std::chrono::days>(time)};
   return padded(static_cast<int>(date.year()), 4) + padded(static_cast<int>(static_cast<unsigned>(date.month())), 2) +
          padded(static_cast<int>(static_cast<unsigned>(date.day())), 2);
 }

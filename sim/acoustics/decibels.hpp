@@ -35,7 +35,7 @@ class Decibels {
   constexpr Decibels operator-() const { return Decibels(-dB_); }
   /// Repeated gain, such as dB per bounce times the number of bounces.
   friend constexpr Decibels operator*(double times, Decibels each) { return Decibels(times * each.dB_); }
-  friend constexpr auto operator<=>(Decibels a, Decibels b) = default;
+  friend constexpr auto operator<=>(Decibels a, Decibels b) = default;  // NOLINT(modernize-use-nullptr): not a null
   template <typename Archive>
   void visit_state(Archive& archive) {
     archive.not_only_finite(dB_);  // -infinity: silence

@@ -84,7 +84,7 @@ TEST(Nav, ARecordHasTheArgumentsOfThePrograms) {
     ASSERT_EQ(of_run.size(), 3U);
     for (const auto& [channel, estimates] : of_run) {
       EXPECT_EQ(estimates.size(), 100U) << channel;                   // period_s: 1
-      const bool equal = *sound == 0 || channel == "craft.estimate";  // sound: rays; the craft hears nobody
+      const bool equal = *sound == 0 || channel == "craft.estimate";  // sound: rays; the craft receives no sound
       EXPECT_EQ(of_record.at(channel) == estimates, equal) << channel;
     }
   }

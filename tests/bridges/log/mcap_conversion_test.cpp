@@ -107,11 +107,13 @@ TEST(McapConversion, RefusesTimesThatRos2CannotHold) {
   const std::string range =
       " is outside of 1970-01-01T00:00:00Z to 2038-01-19T03:14:07Z, which messages of ROS 2 in an MCAP file can hold";
   // Midnights in UTC, in seconds of 1970.
-  for (const auto& [utc, utime] : {std::pair{"2040-01-01T00:00:00Z", 2'208'988'800 * us_per_s},
-                                   {"1969-01-01T00:00:00Z", -31'536'000 * us_per_s},
-                                   {"9999-01-01T00:00:00Z", 253'370'764'800 * us_per_s},
-                                   {"2038-01-19T03:14:08Z", 2'147'483'648 * us_per_s},
-                                   {"1969-12-31T23:59:59Z", std::int64_t{-1}}}) {
+  for (const auto& each : {std::pair{"2040-01-01T00:00:00Z", 2'208'988'800 * us_per_s},
+                           {"1969-01-01T00:00:00Z", -31'536'000 * us_per_s},
+                           {"9999-01-01T00:00:00Z", 253'370'764'800 * us_per_s},
+                           {"2038-01-19T03:14:08Z", 2'147'483'648 * us_per_s},
+                           {"1969-12-31T23:59:59Z", std::int64_t{-1}}}) {
+    const std::string utc = each.first;
+    const std::int64_t utime = each.second;
     record_at(folder.file(utc), {1, utime});
     EXPECT_THAT(
         [&] {
@@ -119,7 +121,7 @@ TEST(McapConversion, RefusesTimesThatRos2CannotHold) {
         },
         ThrowsMessage<bridges::BusError>(folder.file(utc) + ": byte 53: the time " + utc + range));
     EXPECT_FALSE(std::filesystem::exists(folder.file("a.mcap")));
-    if (std::string(utc) == "2040-01-01T00:00:00Z") {
+    if (utc == "2040-01-01T00:00:00Z") {
       sim::InProcessBus network;
       EXPECT_THAT(
           [&] { bridges::RecordingBus(network, folder.file("b.mcap"), utime); },
