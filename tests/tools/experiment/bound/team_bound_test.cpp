@@ -6,6 +6,8 @@
 #include <Eigen/LU>
 #include <cmath>
 
+#include "sim/bus/bus.hpp"
+
 namespace {
 
 using tools::TeamBound;
