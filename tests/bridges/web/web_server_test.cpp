@@ -334,6 +334,7 @@ TEST_F(WebServerTest, TheNumberOfClientsWithoutTheTokenIsLimited) {
   ASSERT_TRUE(frame);
   EXPECT_EQ(frame->close_code(), 1008);
   EXPECT_THAT(frame->payload, HasSubstr("the limit of 2 clients is reached"));
+  third.reset();                          // else the server waits ten seconds for its goodbye
   Client owner = page_of(server, token);  // those who may control get in
   second.reset();
   EXPECT_TRUE(await([&] { return server.clients() == 2; }));
