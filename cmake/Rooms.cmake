@@ -50,6 +50,8 @@ function(shoal_room folder)
 endfunction()
 
 # shoal_headers(<name> LIBRARIES <library>... HEADERS <header>... [OPTIONS <option>...]): precompiled headers.
+# Own headers are named in <>, because CMake writes others with the folder of the checkout, for which no other checkout
+# finds them in the compiler cache.
 function(shoal_headers name)
   cmake_parse_arguments(ARG "" "" "LIBRARIES;HEADERS;OPTIONS" ${ARGN})
   file(CONFIGURE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/${name}.cpp CONTENT "")
@@ -93,7 +95,7 @@ function(shoal_use_headers target path)
   else()
     string(MAKE_C_IDENTIFIER "world_headers${ARGN}" name)
     list(APPEND libraries sim_world)
-    list(APPEND headers "${PROJECT_SOURCE_DIR}/sim/config/param_reader.hpp" "${PROJECT_SOURCE_DIR}/sim/world/world.hpp")
+    list(APPEND headers <sim/config/param_reader.hpp> <sim/world/world.hpp>)
   endif()
   if(NOT TARGET ${name})
     shoal_headers(${name} LIBRARIES ${libraries} HEADERS ${headers} OPTIONS ${ARGN})
