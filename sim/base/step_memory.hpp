@@ -16,8 +16,8 @@ struct VisitedInSteps {
   static void* operator new(std::size_t bytes) { return allocate_for_steps(bytes); }
   static void operator delete(void* memory, std::size_t bytes) noexcept { free_for_steps(memory, bytes); }
   static void* operator new(std::size_t bytes, std::align_val_t alignment) { return ::operator new(bytes, alignment); }
-  static void operator delete(void* memory, std::size_t bytes, std::align_val_t alignment) noexcept {
-    ::operator delete(memory, bytes, alignment);
+  static void operator delete(void* memory, std::align_val_t alignment) noexcept {
+    ::operator delete(memory, alignment);
   }
 };
 
