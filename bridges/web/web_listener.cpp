@@ -123,7 +123,7 @@ class WebSocketPeer final : public Peer, public WebLink, public std::enable_shar
   int number() const override { return number_; }
   void wake() override;
   void close(WebClose code, std::string reason) override;
-  void leave() override { begin_close({websocket::close_code::going_away, "the server ends"}); }
+  void leave() override;
   void cut() override;
 
   bool awaits_greeting() const { return !session_ || session_->awaits_greeting(); }
@@ -246,6 +246,12 @@ void WebSocketPeer::close(WebClose code, std::string reason) {
   reason.resize(std::min<std::size_t>(reason.size(), 120));
   close_when_sent_ = websocket::close_reason(static_cast<websocket::close_code>(code), reason);
   wake();
+}
+
+/// What was said before, such as why a run has ended, is still sent.
+void WebSocketPeer::leave() {
+  if (session_) return close(WebClose::going_away, "the server ends");
+  begin_close({websocket::close_code::going_away, "the server ends"});
 }
 
 void WebSocketPeer::begin_close(const websocket::close_reason& reason) {
