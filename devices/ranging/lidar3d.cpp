@@ -64,7 +64,7 @@ Lidar3d::Lidar3d(const Params& params, const sim::DeviceContext& context)
 }
 
 std::optional<sim::FieldOfView> Lidar3d::field_of_view() const {
-  sim::FieldOfView view{sim::FieldOfView::Kind::fan, params_.laser.range_max_m};
+  sim::FieldOfView view{sim::FieldOfView::Kind::fan, params_.laser.range_max_m, params_.laser.range_min_m};
   view.from_rad = -std::numbers::pi;
   view.to_rad = std::numbers::pi;
   return view;
