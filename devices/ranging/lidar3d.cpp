@@ -196,7 +196,7 @@ void fill(const Lidar3d& lidar, shoal::point_cloud_t& message) {
   std::size_t beam = 0;
   for (int column = 0; column < lidar.columns(); ++column)
     for (int ring = 0; ring < lidar.rings(); ++ring, ++beam) {
-      if (!returns.returned[beam]) continue;
+      if (returns.returned[beam] != LaserReturns::echo) continue;
       const sim::Vector3d p_S = returns.ranges_m[beam] * lidar.direction_S(column, ring);
       message.x_m.push_back(static_cast<float>(p_S.x()));
       message.y_m.push_back(static_cast<float>(p_S.y()));
