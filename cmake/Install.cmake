@@ -28,11 +28,11 @@ install(DIRECTORY worlds vehicles DESTINATION share/shoal COMPONENT programs)
 install(DIRECTORY docs/reference/schema DESTINATION share/shoal/docs/reference COMPONENT programs)
 install(FILES LICENSE DESTINATION share/doc/shoal COMPONENT programs)
 
-# Templates of `shoal new program`; in Python with the message types.
+# Templates of `shoal new program`.
 install(DIRECTORY examples/client DESTINATION share/shoal/examples COMPONENT programs
         FILES_MATCHING PATTERN "*.cpp" PATTERN CMakeLists.txt PATTERN build EXCLUDE)
 # Those for the Python package are apart: the folder of the others has another package of its name, made by lcm-gen.
-set(package_examples allan_deviation dead_reckoning first_run own_client random_policy range_only_filter read_record)
+set(package_examples allan_deviation dead_reckoning first_run own_client pilot random_policy range_only_filter read_record)
 list(TRANSFORM package_examples PREPEND examples/python/)
 list(TRANSFORM package_examples APPEND .py)
 install(FILES ${package_examples} DESTINATION share/shoal/examples/python COMPONENT programs)

@@ -31,7 +31,10 @@ McapConverted convert_to_mcap(const McapConversion& conversion, const shoal::Mes
     if (conversion.wants) {
       auto known = converts.find(event.channel);
       if (known == converts.end()) known = converts.emplace(event.channel, conversion.wants(event.channel)).first;
-      if (!known->second) continue;
+      if (!known->second) {
+        out.learn(event.channel, event.payload);
+        continue;
+      }
     }
     if (const std::string why = mcap::time_error(event.utime); !why.empty()) {
       std::remove(conversion.out.c_str());

@@ -49,6 +49,12 @@ bool McapRecord::write(std::int64_t utime, std::string_view channel, std::span<c
   return topics_.encode(channel, payload, *this);
 }
 
+void McapRecord::learn(std::string_view channel, std::span<const std::byte> payload) {
+  ros2::NoTopics nothing;
+  if (channel == "sim.scene" || channel == "sim.asset" || channel == "sim.info")
+    topics_.encode(channel, payload, nothing);
+}
+
 bool McapRecord::take(const ros2::Topic& topic, std::span<const std::byte> bytes) {
   if (topic.encoding == "lcm") ++not_decoded_;
   const std::uint16_t channel = channel_of(topic);

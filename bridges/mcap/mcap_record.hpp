@@ -32,6 +32,8 @@ class McapRecord final : private ros2::TopicSink {
   /// Writes a message with its simulated time.  Returns false after a failed write, and for a time of which
   /// time_error() says why; errno has the reason.
   bool write(std::int64_t utime, std::string_view channel, std::span<const std::byte> payload);
+  /// Takes a message that is not written, for what it tells about others: the devices and the world.
+  void learn(std::string_view channel, std::span<const std::byte> payload);
   /// Continues with another file, which starts with the first `messages` messages of this record; `path`: its file.
   /// Returns null when the file cannot be read or written.
   std::unique_ptr<McapRecord> branch(const std::string& path, std::uint64_t messages, FileDescriptor file);

@@ -5,11 +5,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <map>
 #include <memory>
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include "bridges/ros2/cdr_writer.hpp"
@@ -28,6 +30,30 @@ struct ConverterContext {
     std::array<float, 4> rgba{};
   };
 
+  /// Device of the last `sim.scene`; as it is here, one that is not known.
+  struct Device {
+    std::string vehicle, parent;    ///< parent: frame in which it is mounted
+    std::array<double, 7> pose{};   ///< in the parent: x, y, z, qw, qx, qy, qz
+    std::array<double, 3> axis{1};  ///< of a beam, in its own frame
+    float range_min_m = 0;
+    float range_max_m = std::numeric_limits<float>::infinity();
+    float opening_rad = 0;  ///< of a beam, full angle
+    bool is_camera = false;
+    /// Returns whether its beam is not along x.
+    bool is_turned() const { return axis[0] < 1 - 1e-9; }
+  };
+
+  /// Returns the device that reports on a channel or on its truth channel.
+  const Device& device_of(std::string_view channel) const {
+    static const Device unknown;
+    const auto known = devices.find(frame_of(channel));
+    return known == devices.end() ? unknown : known->second;
+  }
+
+  std::map<std::string, Device, std::less<>> devices;  ///< by frame
+  /// World of the last `sim.info`, and the poses in it of the frames of wheel odometry.
+  std::string world;
+  std::map<std::string, std::array<double, 7>> odometry_frames;
   /// Coordinate frames of the bodies of the last `sim.scene`, by their numbers, and its revision.
   std::map<std::int32_t, std::string> body_frames;
   std::int32_t scene_revision = -1;
@@ -71,33 +97,30 @@ namespace detail {
 /// Adds a converter of the type with this name in package shoal.
 bool add_converter(const char* message, const char* ros_type, const char* topic, decltype(Converter::convert) convert);
 
-template <class Message>
-bool add_converter(const char* ros_type, const char* topic,
-                   bool (*write)(const Message& message, std::string_view channel, CdrWriter& out)) {
-  return add_converter(Message::getTypeName(), ros_type, topic,
-                       [write](std::span<const std::byte> payload, std::string_view channel, ConverterContext&,
-                               std::vector<std::byte>& cdr) {
-                         CdrWriter out(cdr);
-                         return write(shoal::decode<Message>(payload, shoal::Finite::any), channel, out);
-                       });
-}
-
-template <class Message>
-bool add_converter(const char* ros_type, const char* topic,
-                   bool (*write)(const Message& message, ConverterContext& context, CdrWriter& out)) {
-  return add_converter(Message::getTypeName(), ros_type, topic,
-                       [write](std::span<const std::byte> payload, std::string_view, ConverterContext& context,
-                               std::vector<std::byte>& cdr) {
-                         CdrWriter out(cdr);
-                         return write(shoal::decode<Message>(payload, shoal::Finite::any), context, out);
-                       });
+/// Adds a function that takes a message, channel or context or both, and a writer.
+template <class Message, class... Inputs>
+bool add_converter(const char* ros_type, const char* topic, bool (*write)(const Message& message, Inputs... inputs)) {
+  return add_converter(
+      Message::getTypeName(), ros_type, topic,
+      [write](std::span<const std::byte> payload, std::string_view channel, ConverterContext& context,
+              std::vector<std::byte>& cdr) {
+        CdrWriter out(cdr);
+        const Message message = shoal::decode<Message>(payload, shoal::Finite::any);
+        if constexpr (std::is_invocable_v<decltype(write), const Message&, std::string_view, ConverterContext&,
+                                          CdrWriter&>)
+          return write(message, channel, context, out);
+        else if constexpr (std::is_invocable_v<decltype(write), const Message&, ConverterContext&, CdrWriter&>)
+          return write(message, context, out);
+        else
+          return write(message, channel, out);
+      });
 }
 
 }  // namespace detail
 
 /// Registers a converter, in its own file of bridges/ros2/converters.  `write` is a function
-/// `bool write(const Message&, std::string_view channel, CdrWriter&)`, which appends the standard message, or one that
-/// takes a ConverterContext& in place of the channel.
+/// `bool write(const Message&, std::string_view channel, CdrWriter&)`, which appends the standard message; a
+/// ConverterContext& may be in place of the channel, or after it.
 #define SHOAL_ROS2_CONVERTER(write, ros_type, topic) \
   [[maybe_unused]] static const bool registered_##write = ::bridges::ros2::detail::add_converter(ros_type, topic, write)
 

@@ -63,6 +63,12 @@ constexpr std::array standard_types{
                  "std_msgs/Header header\nuint32 height\nuint32 width\nstring encoding\nuint8 is_bigendian\n"
                  "uint32 step\nuint8[] data\n"},
     StandardType{"sensor_msgs/CompressedImage", "std_msgs/Header header\nstring format\nuint8[] data\n"},
+    StandardType{"sensor_msgs/RegionOfInterest",
+                 "uint32 x_offset\nuint32 y_offset\nuint32 height\nuint32 width\nbool do_rectify\n"},
+    StandardType{"sensor_msgs/CameraInfo",
+                 "std_msgs/Header header\nuint32 height\nuint32 width\nstring distortion_model\nfloat64[] d\n"
+                 "float64[9] k\nfloat64[9] r\nfloat64[12] p\nuint32 binning_x\nuint32 binning_y\n"
+                 "sensor_msgs/RegionOfInterest roi\n"},
     StandardType{"sensor_msgs/JointState",
                  "std_msgs/Header header\nstring[] name\nfloat64[] position\nfloat64[] velocity\nfloat64[] effort\n"},
     StandardType{"sensor_msgs/Range",

@@ -40,6 +40,13 @@ class TopicSink {
   virtual void invalid(std::string_view /*channel*/, const std::string& /*error*/) {}
 };
 
+/// Sink of nothing: for messages that only explain others.
+class NoTopics final : public TopicSink {
+ public:
+  bool wants(const Topic&) override { return false; }
+  bool take(const Topic&, std::span<const std::byte>) override { return true; }
+};
+
 /// Topics of LCM channels, for MCAP files and live viewers: each channel has one with all its messages in CDR, and
 /// further ones with those that a standard type of ROS 2 can express.  Payloads of unknown types, and invalid ones, are
 /// on `/CHANNEL/bytes` as they are.

@@ -150,6 +150,7 @@ Json field_of_view_json(const sim::FieldOfView& view) {
       for (const sim::Vector3d& direction : view.directions_S) json["directions"].push_back(numbers(direction));
   }
   json["range_m"] = view.range_m;
+  json["range_min_m"] = view.range_min_m;
   return json;
 }
 

@@ -108,8 +108,9 @@ void ViewPublisher::sound_arrived(const sim::SoundArrived& arrived) {
 }
 
 void ViewPublisher::happened(const sim::Occurrence& occurrence) {
-  // Poses of fixed objects are only in the scene.
-  if (occurrence.kind == sim::Occurrence::Kind::moved) scene_is_old_ = true;
+  // Poses of fixed objects and the ranges of sensors are only in the scene.
+  using Kind = sim::Occurrence::Kind;
+  if (occurrence.kind == Kind::moved || occurrence.kind == Kind::changed) scene_is_old_ = true;
   auto* const message = add(world_.config().view.events, events_);
   if (message == nullptr) return;
   message->utime = utime(world_.now());

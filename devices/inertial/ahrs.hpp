@@ -27,6 +27,7 @@ class Ahrs final : public sim::Sensor {
   void change(const Params& params) { heading_drift_rad_per_s_ = params.heading_drift_rad_per_s; }
   auto noises() { return std::tie(tilt_noise_, heading_noise_, gyro_noise_, accel_noise_); }
   void measure(const sim::SenseContext& context) override;
+  void displaced() override { strapdown_.restart(); }
   void disturb(double dt_s, sim::Random& random) override;
   void visit_state(sim::StateArchive& archive) override {
     archive(drifted_rad_, strapdown_, tilt_noise_, heading_noise_, gyro_noise_, accel_noise_, q_WS_, w_S_, f_S_);

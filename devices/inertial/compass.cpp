@@ -28,12 +28,13 @@ sim::Vector3d field_W_uT(const Compass::Params& p) {
 }  // namespace
 
 void Compass::Params::read(sim::ParamReader& in) {
-  in.read_deg("declination_deg", declination_rad, sim::between(-180, 180), "magnetic north from true north, + is east");
+  in.read_deg("declination_deg", declination_rad, sim::between(-180, 180),
+              "magnetic north from true north, + is east; the default is that of the default origin");
   in.read_deg("inclination_deg", inclination_rad, sim::between(-90, 90),
               "inclination of the earth's field, + is downwards");
   in.read("field_uT", field_uT, sim::above(0), "strength of the earth's field, microtesla");
   in.read_deg("declination_correction_deg", declination_correction_rad, sim::between(-180, 180),
-              "configured declination, added to the heading for heading_true");
+              "configured declination, added to the heading for heading_true; 0: not configured");
   in.read("hard_iron_uT", hard_iron_uT, sim::any_number(),
           "field of magnetised parts that move with the sensor, in its axes");
   in.read("soft_iron", soft_iron, sim::any_number(), "3x3 matrix on the field, 9 numbers by rows");

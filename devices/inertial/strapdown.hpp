@@ -38,6 +38,8 @@ class Strapdown {
   /// Computes the means since the last call.  The first call has no interval: it gives the instantaneous angular
   /// velocity, and the specific force of a sensor that is not accelerated.
   void measure(const sim::SenseContext& context);
+  /// Makes the next call the first: the vehicle was put elsewhere, which no sensor feels.
+  void restart() { started_ = false; }
   void visit_state(sim::StateArchive& archive) { archive(started_, q_WS_, v_WS_W_, w_WS_S_, f_S_); }
 
   /// Mean angular velocity: the rotation vector from the last attitude to the present one, divided by dt.  Its integral

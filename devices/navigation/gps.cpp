@@ -13,6 +13,9 @@ namespace devices {
 
 namespace {
 
+/// Speed below which the course is held: the resolution of the speed of a u-blox receiver (UBX-NAV-PVT, gSpeed).
+constexpr double course_min_mps = 1e-3;
+
 /// Reports an error when another receiver disciplines the same clock.
 void refuse_two_masters(const sim::DeviceContext& context) {
   for (const sim::DeviceConfig& device : context.vehicle.config().devices) {
@@ -66,6 +69,14 @@ void Gps::measure(const sim::SenseContext& context) {
   if (denied || context.world.medium().in_water(reading_.p_W)) denied_at_ = context.now;
   if (denied_at_ && context.now <= *denied_at_ + sim::from_seconds(params_.reacquisition_s)) reading_.fix_quality = 0;
   reading_.position = geodesy_.to_geodetic(reading_.p_W);
+  find_course(true_course_rad_);
+  true_course_rad_ = reading_.course_rad;
+}
+
+void Gps::find_course(double held_rad) {
+  const sim::Vector3d v_E = geodesy_.local_axes_W(reading_.p_W).transpose() * reading_.v_W;
+  reading_.speed_mps = std::hypot(v_E.x(), v_E.y());
+  reading_.course_rad = reading_.speed_mps < course_min_mps ? held_rad : std::atan2(v_E.x(), v_E.y());
 }
 
 void Gps::disturb(double dt_s, sim::Random& random) {
@@ -73,6 +84,7 @@ void Gps::disturb(double dt_s, sim::Random& random) {
   vertical_noise_.apply(reading_.p_W.z(), dt_s, random);
   velocity_noise_.apply(std::span<double>(reading_.v_W.data(), 3), dt_s, random);
   reading_.position = geodesy_.to_geodetic(reading_.p_W);
+  find_course(true_course_rad_);
   if (params_.disciplines_clock) discipline(random);  // last, so that the other random draws do not depend on it
 }
 
@@ -102,8 +114,8 @@ void GpsReporter::report(sim::Time sampled_at, sim::Publisher& out) const {
   message.horizontal_accuracy = fix ? Gps::accuracy_m(gps_.params().horizontal_noise) : nothing;
   message.vertical_accuracy = fix ? Gps::accuracy_m(gps_.params().vertical_noise) : nothing;
   message.numSatellites = fix ? gps_.params().satellites : 0;
-  message.speed = fix ? std::hypot(reading.v_W.x(), reading.v_W.y()) : nothing;
-  message.heading = fix ? std::atan2(reading.v_W.x(), reading.v_W.y()) : nothing;
+  message.speed = fix ? reading.speed_mps : nothing;
+  message.heading = fix ? reading.course_rad : nothing;
   for (int i = 0; i < 3; ++i) message.xyz_pos[i] = fix ? reading.p_W[i] : nothing;
   // Satellites provide the true time, independent of the vehicle clock.
   message.gps_time = static_cast<double>(fix ? out.true_utime(sampled_at) : message.utime) * 1e-6;

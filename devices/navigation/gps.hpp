@@ -35,8 +35,11 @@ class Gps final : public sim::Sensor {
     sim::GeodeticPosition position;
     sim::Vector3d p_W = sim::Vector3d::Zero();
     sim::Vector3d v_W = sim::Vector3d::Zero();
+    double speed_mps = 0;   ///< over ground: of the horizontal velocity at the place of the antenna
+    double course_rad = 0;  ///< of that velocity, clockwise from the meridian; the last one when slower than 1 mm/s
     void visit_state(sim::StateArchive& archive) {
-      archive(fix_quality, position.latitude_deg, position.longitude_deg, position.height_m, p_W, v_W);
+      archive(fix_quality, position.latitude_deg, position.longitude_deg, position.height_m, p_W, v_W, speed_mps,
+              course_rad);
     }
   };
 
@@ -46,7 +49,7 @@ class Gps final : public sim::Sensor {
   void measure(const sim::SenseContext& context) override;
   void disturb(double dt_s, sim::Random& random) override;
   void visit_state(sim::StateArchive& archive) override {
-    archive(horizontal_noise_, vertical_noise_, velocity_noise_, reading_, sampled_at_, denied_at_);
+    archive(horizontal_noise_, vertical_noise_, velocity_noise_, reading_, true_course_rad_, sampled_at_, denied_at_);
   }
   const Reading& reading() const { return reading_; }
   const Params& params() const { return params_; }
@@ -54,6 +57,8 @@ class Gps final : public sim::Sensor {
   static double accuracy_m(const sim::NoiseParams& noise);
 
  private:
+  /// Sets speed and course from the velocity; `held_rad`: course of a receiver that does not move.
+  void find_course(double held_rad);
   void discipline(sim::Random& random);
 
   Params params_;
@@ -66,6 +71,7 @@ class Gps final : public sim::Sensor {
   sim::NoiseOf<&Params::vertical_noise> vertical_noise_;
   sim::NoiseOf<&Params::velocity_noise> velocity_noise_;
   Reading reading_;
+  double true_course_rad_ = 0;  ///< held by the truth channel
   sim::Time sampled_at_{0};
   std::optional<sim::Time> denied_at_;  ///< last time under water or in a denied zone
 };

@@ -67,6 +67,7 @@ class Camera final : public sim::Sensor {
   void change(const Params& params);
   auto noises() { return std::tie(noise_); }
   void sweep(const sim::SweepContext& context) override;
+  void displaced() override { places_.clear(); }
   void measure(const sim::SenseContext& context) override;
   void disturb(double dt_s, sim::Random& random) override;
   std::optional<sim::FieldOfView> field_of_view() const override;

@@ -32,7 +32,7 @@ class ImagingSonar final : public sim::Sensor {
   void measure(const sim::SenseContext& context) override;
   void disturb(double dt_s, sim::Random& random) override;
   std::optional<sim::FieldOfView> field_of_view() const override {
-    sim::FieldOfView view{sim::FieldOfView::Kind::fan, params_.sonar.range_max_m};
+    sim::FieldOfView view{sim::FieldOfView::Kind::fan, params_.sonar.range_max_m, params_.sonar.range_min_m};
     view.from_rad = -params_.fov_rad / 2;
     view.to_rad = params_.fov_rad / 2;
     return view;

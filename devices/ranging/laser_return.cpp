@@ -27,7 +27,8 @@ void LaserWeather::read(sim::ParamReader& in) {
 
 void LaserParams::read(sim::ParamReader& in) {
   // Range and its errors.
-  in.read("range_min_m", range_min_m, sim::at_least(0), "minimum range: closer hits report this");
+  in.read("range_min_m", range_min_m, sim::at_least(0),
+          "minimum range: closer hits report this, and are not points of a cloud");
   in.read("range_max_m", range_max_m, sim::above(0), "maximum range: a ray that hits nothing reports this");
   in.read("resolution_m", resolution_m, sim::at_least(0), "ranges are rounded to multiples of this; 0: not");
   in.read("range_std_m", range_std_m, sim::at_least(0),
@@ -59,7 +60,13 @@ void LaserParams::read(sim::ParamReader& in) {
 void LaserReturns::assign(std::size_t beams, double range_m) {
   ranges_m.assign(beams, range_m);
   intensities.assign(beams, 0.0);
-  returned.assign(beams, 0);
+  returned.assign(beams, none);
+}
+
+void LaserReturns::set_limit(std::size_t beam, std::uint8_t kind, double range_m) {
+  ranges_m[beam] = range_m;
+  if (!intensities.empty()) intensities[beam] = 0;  // a scanner that needs none has none
+  returned[beam] = kind;
 }
 
 LaserReceiver::LaserReceiver(const LaserParams& params, const sim::DeviceContext& context)
@@ -95,23 +102,23 @@ double LaserReceiver::threshold(double range_m) const {
 
 void LaserReceiver::receive(const sim::RayHit& hit, const sim::Vector3d& direction_W, LaserReturns& returns,
                             std::size_t i) const {
-  returns.ranges_m[i] = params_.range_max_m;
-  returns.intensities[i] = 0;
-  returns.returned[i] = 0;
+  returns.set_limit(i, LaserReturns::none, params_.range_max_m);
   if (!hit.hit()) return;
   const double power = intensity(hit, direction_W);
-  if (power < threshold(hit.range_m)) return;
-  returns.ranges_m[i] = std::clamp(hit.range_m, params_.range_min_m, params_.range_max_m);
+  if (power >= threshold(hit.range_m)) set_return(returns, i, hit.range_m, power);
+}
+
+void LaserReceiver::set_return(LaserReturns& returns, std::size_t i, double range_m, double power) const {
+  if (range_m < params_.range_min_m) return returns.set_limit(i, LaserReturns::too_near, params_.range_min_m);
+  returns.ranges_m[i] = std::min(range_m, params_.range_max_m);
   returns.intensities[i] = power;
-  returns.returned[i] = 1;
+  returns.returned[i] = LaserReturns::echo;
 }
 
 void LaserReceiver::receive(std::span<const sim::RayHit> hits, std::span<const sim::Ray> rays, LaserReturns& returns,
                             std::size_t i) {
   if (hits.size() == 1) return receive(hits.front(), rays.front().direction_W, returns, i);
-  returns.ranges_m[i] = params_.range_max_m;
-  returns.intensities[i] = 0;
-  returns.returned[i] = 0;
+  returns.set_limit(i, LaserReturns::none, params_.range_max_m);
   // Echoes of all rays, sorted by range.
   echoes_.clear();
   for (std::size_t k = 0; k < hits.size(); ++k)
@@ -129,11 +136,10 @@ void LaserReceiver::receive(std::span<const sim::RayHit> hits, std::span<const s
     }
     // Use the unweighted mean for black surfaces, which return no power.
     const double mean_m = power > 0 ? moment / power : sum_m / static_cast<double>(to - from);
-    if (power < threshold(mean_m) || (returns.returned[i] && power <= returns.intensities[i])) continue;
-    returns.ranges_m[i] = std::clamp(mean_m, params_.range_min_m, params_.range_max_m);
-    returns.intensities[i] = power;
-    returns.returned[i] = 1;
-    if (first) return;
+    const bool has_echo = returns.returned[i] == LaserReturns::echo;
+    if (power < threshold(mean_m) || (has_echo && power <= returns.intensities[i])) continue;
+    set_return(returns, i, mean_m, power);
+    if (first && returns.returned[i] == LaserReturns::echo) return;
   }
 }
 
@@ -146,7 +152,7 @@ void LaserReceiver::disturb(LaserReturns& returns, double dt_s, sim::Random& ran
       if (drop_m >= ranges_m[i] || drop_m < params_.range_min_m) continue;
       ranges_m[i] = drop_m;
       returns.intensities[i] = params_.weather.drop_intensity;
-      returns.returned[i] = 1;
+      returns.returned[i] = LaserReturns::echo;
     }
   }
   // Noise of the ranges.
@@ -157,8 +163,11 @@ void LaserReceiver::disturb(LaserReturns& returns, double dt_s, sim::Random& ran
   // Quantisation and limits.
   for (std::size_t i = 0; i < ranges_m.size(); ++i) {
     if (params_.resolution_m > 0) ranges_m[i] = std::round(ranges_m[i] / params_.resolution_m) * params_.resolution_m;
-    ranges_m[i] =
-        returns.returned[i] ? std::clamp(ranges_m[i], params_.range_min_m, params_.range_max_m) : params_.range_max_m;
+    std::uint8_t kind = returns.returned[i];
+    if (kind == LaserReturns::echo && ranges_m[i] < params_.range_min_m) kind = LaserReturns::too_near;
+    if (kind == LaserReturns::echo && ranges_m[i] > params_.range_max_m) kind = LaserReturns::none;
+    if (kind != LaserReturns::echo)
+      returns.set_limit(i, kind, kind == LaserReturns::none ? params_.range_max_m : params_.range_min_m);
   }
 }
 

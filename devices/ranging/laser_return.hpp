@@ -45,13 +45,18 @@ struct LaserParams {
 
 /// Returns of a scan, one per beam.
 struct LaserReturns {
+  /// Kinds of `returned`.  Without an echo the range is a limit: the largest, or the least if something is nearer.
+  static constexpr std::uint8_t none = 0, echo = 1, too_near = 2;
+
   std::vector<double> ranges_m;
   /// Received power times range squared, relative to a white Lambert surface at normal incidence in clear air.
   std::vector<double> intensities;
-  std::vector<std::uint8_t> returned;  ///< 0: no return
+  std::vector<std::uint8_t> returned;
 
   /// Sets the number of beams, all without return at `range_m`.
   void assign(std::size_t beams, double range_m);
+  /// Sets a beam that has no echo.
+  void set_limit(std::size_t beam, std::uint8_t kind, double range_m);
   std::size_t size() const { return ranges_m.size(); }
 };
 
@@ -73,12 +78,13 @@ class LaserReceiver {
   bool sees_all() const { return params_.dark_range_m == 0 && !params_.weather.any(); }
 
   /// Computes the return of beam `i` from the hits of the rays that sample it.  Without a detectable echo the range is
-  /// range_max_m and `returned` is 0.
+  /// range_max_m, or range_min_m when something is nearer than that.
   void receive(std::span<const sim::RayHit> hits, std::span<const sim::Ray> rays, LaserReturns& returns, std::size_t i);
   /// Computes the return of a beam with one ray.
   void receive(const sim::RayHit& hit, const sim::Vector3d& direction_W, LaserReturns& returns, std::size_t i) const;
 
-  /// Applies returns from drops, noise and quantisation in place.
+  /// Applies returns from drops, noise and quantisation in place.  A range that leaves the limits is not an echo any
+  /// more.
   void disturb(LaserReturns& returns, double dt_s, sim::Random& random);
   void visit_state(sim::StateArchive& archive) { archive(noise_); }
 
@@ -89,6 +95,8 @@ class LaserReceiver {
   };
   /// Returns the range-compensated power of a hit, see LaserReturns::intensities.
   double intensity(const sim::RayHit& hit, const sim::Vector3d& direction_W) const;
+  /// Sets beam `i` to an echo, which is too near below range_min_m.
+  void set_return(LaserReturns& returns, std::size_t i, double range_m, double power) const;
   /// Returns the minimum detectable intensity at a range.
   double threshold(double range_m) const;
 

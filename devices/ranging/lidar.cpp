@@ -92,8 +92,12 @@ void Lidar::measure_axes(const sim::SenseContext& context) {
   context.world.scene().cast_fan(fan_, receiver_.filter(), hits);
   if (ranges_suffice()) {
     for (std::size_t i = 0; i < hits.size(); ++i) {
-      returns_.ranges_m[i] = std::clamp(hits[i].range_m, params_.laser.range_min_m, params_.laser.range_max_m);
-      returns_.returned[i] = hits[i].hit();
+      const double range_m = hits[i].range_m;
+      const bool too_near = range_m < params_.laser.range_min_m;
+      returns_.ranges_m[i] = std::clamp(range_m, params_.laser.range_min_m, params_.laser.range_max_m);
+      returns_.returned[i] = too_near        ? LaserReturns::too_near
+                             : hits[i].hit() ? LaserReturns::echo
+                                             : LaserReturns::none;
     }
     return;
   }

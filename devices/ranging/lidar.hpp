@@ -31,7 +31,7 @@ class Lidar final : public sim::Sensor {
   void measure(const sim::SenseContext& context) override;
   void disturb(double dt_s, sim::Random& random) override;
   std::optional<sim::FieldOfView> field_of_view() const override {
-    sim::FieldOfView view{sim::FieldOfView::Kind::fan, params_.laser.range_max_m};
+    sim::FieldOfView view{sim::FieldOfView::Kind::fan, params_.laser.range_max_m, params_.laser.range_min_m};
     view.from_rad = fan_.first_angle_rad;
     view.to_rad = fan_.first_angle_rad + (fan_.count - 1) * fan_.step_rad;
     return view;

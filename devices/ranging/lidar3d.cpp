@@ -64,7 +64,7 @@ Lidar3d::Lidar3d(const Params& params, const sim::DeviceContext& context)
 }
 
 std::optional<sim::FieldOfView> Lidar3d::field_of_view() const {
-  sim::FieldOfView view{sim::FieldOfView::Kind::fan, params_.laser.range_max_m};
+  sim::FieldOfView view{sim::FieldOfView::Kind::fan, params_.laser.range_max_m, params_.laser.range_min_m};
   view.from_rad = -std::numbers::pi;
   view.to_rad = std::numbers::pi;
   return view;
@@ -196,7 +196,7 @@ void fill(const Lidar3d& lidar, shoal::point_cloud_t& message) {
   std::size_t beam = 0;
   for (int column = 0; column < lidar.columns(); ++column)
     for (int ring = 0; ring < lidar.rings(); ++ring, ++beam) {
-      if (!returns.returned[beam]) continue;
+      if (returns.returned[beam] != LaserReturns::echo) continue;
       const sim::Vector3d p_S = returns.ranges_m[beam] * lidar.direction_S(column, ring);
       message.x_m.push_back(static_cast<float>(p_S.x()));
       message.y_m.push_back(static_cast<float>(p_S.y()));

@@ -38,7 +38,7 @@ Multibeam::Multibeam(const Params& params, const sim::DeviceContext& context)
 /// Returns the edges of the swath and a few beams between them.
 std::optional<sim::FieldOfView> Multibeam::field_of_view() const {
   constexpr int shown = 9;
-  sim::FieldOfView view{sim::FieldOfView::Kind::beams, params_.sonar.range_max_m};
+  sim::FieldOfView view{sim::FieldOfView::Kind::beams, params_.sonar.range_max_m, params_.sonar.range_min_m};
   for (int i = 0; i < shown; ++i) {
     const double angle_rad = params_.swath_rad * (static_cast<double>(i) / (shown - 1) - 0.5);
     view.directions_S.emplace_back(0, std::sin(angle_rad), -std::cos(angle_rad));

@@ -33,7 +33,7 @@ SideScan::SideScan(const Params& params, const sim::DeviceContext& context)
 
 /// Returns the edges and the axis of both beams.
 std::optional<sim::FieldOfView> SideScan::field_of_view() const {
-  sim::FieldOfView view{sim::FieldOfView::Kind::beams, params_.sonar.range_max_m};
+  sim::FieldOfView view{sim::FieldOfView::Kind::beams, params_.sonar.range_max_m, params_.sonar.range_min_m};
   for (const double side : {1.0, -1.0})
     for (const double share : {-0.5, 0.0, 0.5}) {
       const double down_rad = params_.depression_rad + share * params_.vertical_rad;

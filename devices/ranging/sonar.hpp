@@ -30,7 +30,7 @@ class RangeSonar : public sim::Sensor {
   void measure(const sim::SenseContext& context) override;
   void disturb(double dt_s, sim::Random& random) override;
   std::optional<sim::FieldOfView> field_of_view() const override {
-    sim::FieldOfView view{sim::FieldOfView::Kind::cone, params_.sonar.range_max_m};
+    sim::FieldOfView view{sim::FieldOfView::Kind::cone, params_.sonar.range_max_m, params_.sonar.range_min_m};
     view.half_angle_rad = params_.beam_rad / 2;
     view.axis_S = axis_S_;
     return view;

@@ -6,6 +6,7 @@
 
 #include "shoal/message_codec.hpp"
 #include "shoal/usbl_t.hpp"
+#include "sim/acoustics/rays/ray_trace.hpp"
 #include "sim/world/world.hpp"
 
 namespace devices {

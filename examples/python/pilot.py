@@ -3,7 +3,6 @@
 import sys
 
 import shoal
-from lockstep_client import LockstepClient
 
 ahead_m = 0.0
 
@@ -13,16 +12,11 @@ def on_lidar(scan):
     ahead_m = scan.ranges[scan.nranges // 2]
 
 
-def decide(utime):
-    """Called at each tick, when all reports up to that time have been handled."""
-    command = shoal.twist_command_t()
-    command.utime = utime
-    command.forward_mps = 0.5 if ahead_m > 1.0 else 0.0
-    client.publish("rover1.drive.cmd", command)
-
-
-client = LockstepClient("pilot", 0.1)  # a tick every 0.1 s of simulated time
-client.subscribe("rover1.lidar", shoal.planar_lidar_t, on_lidar)
-client.decide = decide
-client.run()
+with shoal.Client("pilot") as client:
+    client.subscribe("rover1.lidar", on_lidar)
+    client.join(0.1)  # a tick every 0.1 s of simulated time
+    for utime in client.ticks():  # all reports up to this time have been handled
+        command = shoal.messages.twist_command_t(utime=utime)
+        command.forward_mps = 0.5 if ahead_m > 1.0 else 0.0
+        client.publish("rover1.drive.cmd", command)
 print(f"the run is over, {ahead_m:.2f} m before the wall", file=sys.stderr)

@@ -63,15 +63,15 @@ def _by_metric(folder, metrics):
 
 
 def errors(folder: Folder, metrics: str | Sequence[str] | None = None, axes: Axes | None = None) -> Axes:
-    """Draws position error against time in m, with the 95 % bound that the estimate claims; returns the axes."""
+    """Draws position error against time in m, with three times the sigma that the estimate claims; returns the axes."""
     axes, bounded = _axes(axes), False
     for metric, own in _by_metric(folder, metrics):
         line, = axes.plot(own['time_s'], own['error_m'], label=metric)
         if np.isfinite(own['sigma_m']).any():
             bounded = True
-            axes.plot(own['time_s'], 2 * own['sigma_m'], '--', color=line.get_color(), linewidth=0.8)
+            axes.plot(own['time_s'], 3 * own['sigma_m'], '--', color=line.get_color(), linewidth=0.8)
     axes.set_xlabel('time in s')
-    axes.set_ylabel('error in m (dashed: twice its own sigma)' if bounded else 'error in m')
+    axes.set_ylabel('error in m (dashed: three times its own sigma)' if bounded else 'error in m')
     _legend(axes)
     return axes
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import os
 from typing import Any
 
 from . import _shoal
@@ -31,8 +32,8 @@ def _plain(who, value, depth):
         return {text(who, 'a key', str(key)): _plain(who, each, depth + 1) for key, each in value.items()}
     if isinstance(value, (list, tuple)):
         return [_plain(who, each, depth + 1) for each in value]
-    if isinstance(value, str):
-        return text(who, 'a text', value)
+    if isinstance(value, (str, os.PathLike)):
+        return text(who, 'a text', os.fspath(value))
     if value is None or isinstance(value, (bool, int)):
         return value
     if isinstance(value, float):

@@ -3,7 +3,7 @@
 
 #include <numbers>
 
-#include "sim/config/read_points.hpp"
+#include "sim/config/common_keys.hpp"
 
 namespace sim {
 

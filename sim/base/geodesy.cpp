@@ -2,6 +2,7 @@
 #include "sim/base/geodesy.hpp"
 
 #include <GeographicLib/LocalCartesian.hpp>
+#include <vector>
 
 namespace sim {
 
@@ -18,6 +19,13 @@ GeodeticPosition Geodesy::to_geodetic(const Vector3d& p_W) const {
   GeodeticPosition out;
   impl_->local.Reverse(p_W.x(), p_W.y(), p_W.z(), out.latitude_deg, out.longitude_deg, out.height_m);
   return out;
+}
+
+Matrix3d Geodesy::local_axes_W(const Vector3d& p_W) const {
+  GeodeticPosition place;
+  std::vector<GeographicLib::Math::real> by_rows(9);
+  impl_->local.Reverse(p_W.x(), p_W.y(), p_W.z(), place.latitude_deg, place.longitude_deg, place.height_m, by_rows);
+  return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(by_rows.data());
 }
 
 Vector3d Geodesy::to_local(const GeodeticPosition& position) const {

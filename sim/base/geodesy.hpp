@@ -22,6 +22,8 @@ class Geodesy {
   ~Geodesy();
   GeodeticPosition to_geodetic(const Vector3d& p_W) const;
   Vector3d to_local(const GeodeticPosition& position) const;
+  /// Returns the rotation from the east, north and up axes at a position to those of the origin.
+  Matrix3d local_axes_W(const Vector3d& p_W) const;
 
  private:
   struct Impl;

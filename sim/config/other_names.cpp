@@ -41,6 +41,12 @@ constexpr Pair synonyms[] = {
     {"ins", "ahrs"},
     {"depth", "pressure"},
     {"sphere_joint", "ball"},
+    {"yaw", "rpy_deg"},
+    {"yaw_deg", "rpy_deg"},
+    {"heading_deg", "rpy_deg"},
+    {"orientation", "rpy_deg"},
+    {"rotation", "rpy_deg"},
+    {"xyz", "position_m"},
 };
 
 std::string_view find(std::span<const Pair> pairs, std::string_view name) {

@@ -62,6 +62,8 @@ class Sensor {
   /// Observes one physics step.  Called after each step, before measure() when a sample is due; the world is in its
   /// state at the end of the step.
   virtual void sweep(const SweepContext& /*context*/) {}
+  /// Called after its vehicle was put elsewhere: a rate or a path from a place before to one after is none.
+  virtual void displaced() {}
   /// Adds the measurement errors to the reading in place: noise, quantisation.  Called once after every measure().
   virtual void disturb(double dt_s, Random& random) = 0;
   /// Returns the approximate number of rays of a sample, which decides whether the work is shared among threads.

@@ -19,6 +19,7 @@ struct FieldOfView {
 
   Kind kind = Kind::beams;                  ///< form of the region
   double range_m = 0;                       ///< largest distance from S
+  double range_min_m = 0;                   ///< least distance from S
   double from_rad = 0;                      ///< fan: first angle from +x, counter-clockwise about +z
   double to_rad = 0;                        ///< fan: last angle
   double half_angle_rad = 0;                ///< cone

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <initializer_list>
 
-#include "sim/config/read_points.hpp"
+#include "sim/config/common_keys.hpp"
 
 namespace sim {
 

@@ -7,6 +7,7 @@
 #include <map>
 #include <numbers>
 
+#include "sim/config/common_keys.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/motion/joint_name.hpp"
 #include "sim/motion/motion_frames.hpp"
@@ -133,8 +134,7 @@ void MotionOrigin::read(ParamReader& in) {
 
 void JointMotion::read(ParamReader& in) {
   int version = 1;
-  in.require("shoal");
-  in.read("shoal", version, between(1, 1), "version of the file format");
+  read_version(in, version);
   in.require("motion");
   read_keys(in);
 }

@@ -192,8 +192,6 @@ void append_words(const ArgDeclaration& arg, const ConfigNode& value, const std:
   }
   if (diagnostics.lines().size() != errors) return;
   std::string word = option_of(arg.name) + "=" + text;
-  if (text.find('\0') != std::string::npos)
-    return diagnostics.error(value.place, who, "'" + arg.name + "' must not contain a zero byte");
   if (word.size() > max_word)
     return diagnostics.error(value.place, who,
                              "'" + arg.name + "' must have at most " + std::to_string(max_word) +

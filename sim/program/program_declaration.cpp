@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 
+#include "sim/config/common_keys.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/config/yaml_writer.hpp"
 #include "sim/program/program_args.hpp"
@@ -208,8 +209,7 @@ std::size_t ArgDeclaration::needed_columns() const {
 }
 
 void ProgramDeclaration::read(ParamReader& in) {
-  in.require("shoal_args");
-  in.read("shoal_args", shoal_args, between(1, 1), "version of the format");
+  read_version(in, shoal_args, "shoal_args");
   in.require("program");
   in.read("program", program, "file name of the program; the declaration is NAME.args.yaml");
   in.read("meaning", meaning, "description in one sentence");

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/config/read_points.hpp"
+#include "sim/config/common_keys.hpp"
 
 namespace sim {
 

@@ -4,8 +4,8 @@
 #include <filesystem>
 
 #include "sim/config/choice_keys.hpp"
+#include "sim/config/common_keys.hpp"
 #include "sim/config/message_text.hpp"
-#include "sim/config/read_points.hpp"
 #include "sim/terrain/height_grid.hpp"
 
 namespace sim {

@@ -244,6 +244,11 @@ void MountedDevice::sweep(Time now) {
   X_WS_before_ = X_WS;
 }
 
+void MountedDevice::displaced() {
+  X_WS_before_.reset();
+  if (sensor_ != nullptr) sensor_->displaced();
+}
+
 void MountedDevice::publish_reports() {
   if (truth_outlet_) truth_outlet_->flush();
   if (report_outlet_) report_outlet_->flush();

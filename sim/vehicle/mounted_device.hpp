@@ -64,6 +64,8 @@ class MountedDevice : public VisitedInSteps {
   /// Samples, and publishes or schedules the reports, unless they are held until publish_reports(); then it may be
   /// called concurrently for sensors that cast rays or measure alone.
   void sample(Time now, std::int64_t step_number, bool hold);
+  /// Called after its vehicle was put elsewhere.
+  void displaced();
   /// Publishes or schedules the reports that sample() held.
   void publish_reports();
   /// Handles an event of this device that is due.

@@ -7,6 +7,7 @@
 
 #include "sim/config/diagnostics.hpp"
 #include "sim/vehicle/limit_check.hpp"
+#include "sim/vehicle/mounted_device.hpp"
 #include "sim/world/bottom_check.hpp"
 #include "sim/world/world.hpp"
 #include "sim/world/world_builder.hpp"
@@ -126,6 +127,7 @@ void WorldEditor::move_vehicle(const std::string& name, const Pose& X_WV) {
   parts_.physics.move_group(vehicle.group(), X_WV * vehicle.X_WV().inverse());
   if (parts_.physics.anchored(vehicle.group())) journal_.anchored_vehicle_moved(vehicle);
   parts_.acoustics->discard_places();
+  for (MountedDevice* const device : vehicle.devices()) device->displaced();
   report(Occurrence::Kind::moved, vehicle.name(), "vehicle");
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/world_file/vehicle_config.hpp"
 
+#include "sim/config/common_keys.hpp"
+
 namespace sim {
 
 VehicleConfig::VehicleConfig() = default;
@@ -12,8 +14,7 @@ VehicleConfig::~VehicleConfig() = default;
 
 void VehicleConfig::read(ParamReader& in) {
   // Identification and parameters.
-  in.require("shoal");
-  in.read("shoal", shoal, between(1, 1), "version of the file format");
+  read_version(in, shoal);
   in.read("vehicle", vehicle, "name of this kind of vehicle");
   in.read("description", description, "description in one sentence");
   in.read_raw("parameters", parameters, "default of each ${name} used in the file");

@@ -33,12 +33,20 @@ std::string find_file(const std::string& file, const SourcePlace& named_in) {
   return {};
 }
 
-std::vector<std::string> shipped_vehicle_files() {
+/// Names that a vehicle file may have been meant by: of files beside the world, and of the shipped ones.  Who spawns a
+/// vehicle is not told what lies beside the world.
+std::vector<std::string> vehicle_files(const VehicleEntry& entry) {
+  std::vector<fs::path> folders;
+  if (entry.beside.file == nullptr && entry.place.file != nullptr) {
+    const fs::path beside = fs::path(*entry.place.file).parent_path();
+    folders.push_back(beside.empty() ? "." : beside);
+  }
+  if (!shipped_folder().empty()) folders.push_back(fs::path(shipped_folder()) / "vehicles");
   std::vector<std::string> names;
   std::error_code error;
-  if (!shipped_folder().empty())
-    for (const fs::directory_entry& entry : fs::directory_iterator(fs::path(shipped_folder()) / "vehicles", error))
-      names.push_back(entry.path().filename().string());
+  for (const fs::path& folder : folders)
+    for (const fs::directory_entry& file : fs::directory_iterator(folder, error))
+      if (file.path().extension() == ".yaml") names.push_back(file.path().filename().string());
   std::sort(names.begin(), names.end());
   return names;
 }
@@ -142,7 +150,7 @@ const ConfigNode* VehicleLoader::model_of(const VehicleEntry& entry, const std::
     diagnostics_.error(entry.file_place, who,
                        "there is no vehicle file '" + shortened(entry.file) +
                            "' beside the world file, in ../vehicles or among the shipped ones" +
-                           did_you_mean(entry.file, shipped_vehicle_files()));
+                           did_you_mean(entry.file, vehicle_files(entry)));
     return nullptr;
   }
   if (!may_read(entry, path, who)) return nullptr;

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "sim/bus/bus.hpp"
+#include "sim/config/common_keys.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/config/yaml_writer.hpp"
 
@@ -211,8 +212,7 @@ void ViewConfig::read(ParamReader& in) {
 
 void WorldConfig::read(ParamReader& in) {
   // Identification.
-  in.require("shoal");
-  in.read("shoal", shoal, between(1, 1), "version of the file format");
+  read_version(in, shoal);
   in.read("name", name, "name of the world");
   if (name.find('\n') != std::string::npos) in.error("name", "'name' must be one line");
   in.read("description", description, "description in one sentence");

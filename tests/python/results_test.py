@@ -3,6 +3,7 @@
 """Tests of runs with programs, their results as tables and plots, and studies."""
 import glob
 import os
+import pathlib
 import signal
 import subprocess
 import sys
@@ -99,6 +100,11 @@ class RunTest(unittest.TestCase):
         world = shoal.World(BALL, seed=3)
         world.run_until(1)
         self.assertEqual(run.run_hash, f'{world.run_hash():016x}')
+
+    def test_of_a_dict_may_have_paths(self):
+        worlds = [shoal.World({'shoal': 1, 'vehicles': [{'name': 'r', 'file': file}]})
+                  for file in ('rover.yaml', pathlib.PurePath('rover.yaml'))]
+        self.assertEqual(*[world.state_hash() for world in worlds])
 
     def test_may_be_done_in_several_threads(self):
         hashes = {}

@@ -8,6 +8,7 @@ import { mkdtempSync, readFileSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { basename, join } from "node:path";
 
+import { checkConventions } from "./conventions.mjs";
 import { countStream, readIndexed } from "./read_mcap.mjs";
 
 const [shoal, seconds, ...worlds] = process.argv.slice(2);
@@ -135,11 +136,12 @@ async function checkWorld(world, folder) {
   check(file.attachments.length === 1 && file.attachments[0].name === "world.yaml", "the world is attached");
   check(file.metadata.length >= 1 && file.metadata[0].metadata.get("seed") !== undefined, "metadata");
   check(file.topics.has("/tf") && file.topics.has("/clock"), "/tf and /clock");
+  const conventions = checkConventions(file.topics);
   await checkCuts(path, Number(total));
   const standard = file.topics.size - byChannel.size;
   console.log(
     `${basename(world, ".yaml").padEnd(20)} ${channels.size} channels, ${standard} standard topics, ` +
-      `${total} messages decoded, ${compared} values compared`,
+      `${total} messages decoded, ${compared} values compared, ${conventions} by convention`,
   );
 }
 

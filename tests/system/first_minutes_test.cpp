@@ -85,13 +85,17 @@ TEST(New, WritesWorldsAndVehiclesThatCheckAcceptsAndThatRun) {
   const ScratchFolder folder;
   const std::string here = folder.file("");
   for (const char* command :
-       {"new world yard", "new world bay --under-water", "new vehicle digger", "new world pit --vehicle digger.yaml"}) {
+       {"new world yard", "new world bay --under-water", "new vehicle digger", "new world pit --vehicle digger.yaml",
+        "new vehicle fish --under-water", "new world pond --under-water --vehicle fish.yaml"}) {
     const Ended ended = shoal_in(here, command);
     EXPECT_EQ(ended.exit_code, 0) << command << ": " << ended.errors;
   }
-  const Ended checked = shoal_in(here, "check digger.yaml");
-  EXPECT_EQ(checked.exit_code, 0) << checked.errors;
-  for (const std::string name : {"yard", "bay", "pit"}) {
+  for (const char* vehicle : {"digger.yaml", "fish.yaml"}) {
+    const Ended checked = shoal_in(here, std::string("check ") + vehicle);
+    EXPECT_EQ(checked.exit_code, 0) << checked.errors;
+    EXPECT_EQ(checked.errors, "") << vehicle;
+  }
+  for (const std::string name : {"yard", "bay", "pit", "pond"}) {
     const Ended check = shoal_in(here, "check " + name + ".yaml");
     EXPECT_EQ(check.exit_code, 0) << name << check.errors;
     EXPECT_EQ(check.errors, "") << name;
@@ -144,12 +148,19 @@ TEST(New, WritesProgramsOfTheNameAndForTheVehicle) {
   EXPECT_EQ(shoal_in(folder.file(""), "new program helm").exit_code, 4) << "it is there already";
 }
 
-TEST(New, WritesAPythonProgramThatFindsItsModules) {
+TEST(New, WritesAPythonProgramThatFindsThePackage) {
   const ScratchFolder folder;
   const Ended ended = shoal_in(folder.file(""), "new program pilot --python");
+  if (!fs::exists(fs::path(built("shoal")).parent_path() / "../lib/python/shoal")) {
+    EXPECT_EQ(ended.exit_code, 4);
+    EXPECT_THAT(ended.errors, HasSubstr("there is no Python package beside this program: `tools/build programs`"));
+    GTEST_SKIP() << "built without Python";
+  }
   ASSERT_EQ(ended.exit_code, 0) << ended.errors;
+  const std::string text = text_of_file(folder.file("pilot.py"));
+  EXPECT_THAT(text, ContainsRegex("\nimport sys\n\nsys.path.insert\\(0, \".*/lib/python\"\\)  # the Python package\n"));
   const std::string url = own_url();
-  Program pilot({"env", "LCM_DEFAULT_URL=" + url, "python3", folder.file("pilot.py")});
+  Program pilot({"env", "LCM_DEFAULT_URL=" + url, "/usr/bin/python3", folder.file("pilot.py")});
   const Ended run =
       run_shoal({"run", "minimal", "--duration", "15", "--speed", "max", "--await", "pilot", "--lcm-url", url});
   EXPECT_EQ(run.exit_code, 0) << run.errors;

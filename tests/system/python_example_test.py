@@ -146,8 +146,8 @@ class Example(unittest.TestCase):
         self.assertIsNone(client.tick)
 
     def test_says_after_three_seconds_what_it_waits_for(self):
-        waiting = subprocess.Popen([sys.executable, os.path.join(ROOT, "examples", "python", "pilot.py")], text=True,
-                                   env=dict(os.environ, PYTHONPATH=sys.path[0]), stderr=subprocess.PIPE)
+        waiting = subprocess.Popen([sys.executable, os.path.join(ROOT, "examples", "python", "lockstep_client.py")],
+                                   text=True, env=dict(os.environ, PYTHONPATH=sys.path[0]), stderr=subprocess.PIPE)
         try:
             self.assertIn("'pilot' waits for a simulator to answer its join on 'sim.control.reply', at udpm://",
                           waiting.stderr.readline())

@@ -10,12 +10,33 @@
 #include <string_view>
 
 #include "bridges/ros2/cdr_writer.hpp"
+#include "bridges/ros2/converter.hpp"
 #include "bridges/ros2/ros2_names.hpp"
 
 namespace bridges::ros2 {
 
 inline constexpr const char* world_frame = "world";
+/// Endings of frames in that of a device: of a camera, x right, y down, z ahead (REP 103); of a sonar, x along its
+/// beam.
+inline constexpr const char* optical_ending = "_optical";
+inline constexpr const char* beam_ending = "_beam";
 inline constexpr std::array<double, 9> unknown_3x3{};
+
+inline std::string optical_frame_of(std::string_view channel) {
+  return frame_of(channel) + optical_ending;
+}
+
+/// Frame of the vehicle of a channel: `rover1` of `rover1.odometry`.
+inline std::string vehicle_frame(std::string_view channel, const ConverterContext& context) {
+  if (const std::string& known = context.device_of(channel).vehicle; !known.empty()) return known;
+  const std::string frame = frame_of(channel);
+  return frame.substr(0, frame.rfind('/'));
+}
+
+/// Frame in which the wheel odometry of a vehicle is; REP 105.
+inline std::string odometry_frame(std::string_view vehicle) {
+  return std::string(vehicle) + "/odom";
+}
 
 /// Frame of a body: `rover1/body/base`, so that no device has the same.
 inline std::string body_frame(std::string_view owner, std::string_view body) {

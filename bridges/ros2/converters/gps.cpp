@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
+
 #include "bridges/ros2/converter.hpp"
 #include "bridges/ros2/converters/common_parts.hpp"
 #include "shoal/gps_data_t.hpp"
@@ -23,12 +25,27 @@ bool write_fix(const shoal::gps_data_t& message, std::string_view channel, CdrWr
   out.put(message.elev);
   const double horizontal = message.horizontal_accuracy * message.horizontal_accuracy;
   const double vertical = message.vertical_accuracy * message.vertical_accuracy;
-  put_numbers(out, {horizontal, 0, 0, 0, horizontal, 0, 0, 0, vertical});
-  out.put(message.gps_lock > 0 ? covariance_diagonal : covariance_unknown);
+  const bool fix = message.gps_lock > 0;
+  if (fix)
+    put_numbers(out, {horizontal, 0, 0, 0, horizontal, 0, 0, 0, vertical});
+  else
+    out.put_array(std::span<const double>(unknown_3x3));
+  out.put(fix ? covariance_diagonal : covariance_unknown);
+  return true;
+}
+
+/// Velocity over ground in east, north and up, the axes of the world, of the course from north; only with a fix.
+bool write_ground_velocity(const shoal::gps_data_t& message, std::string_view, CdrWriter& out) {
+  if (message.gps_lock <= 0) return false;
+  put_header(out, message.utime, world_frame);
+  put_numbers(out, {message.speed * std::sin(message.heading), message.speed * std::cos(message.heading), 0});
+  put_numbers(out, {0, 0, 0});
+  put_unknown_6x6(out);
   return true;
 }
 
 SHOAL_ROS2_CONVERTER(write_fix, "sensor_msgs/msg/NavSatFix", "fix");
+SHOAL_ROS2_CONVERTER(write_ground_velocity, "geometry_msgs/msg/TwistWithCovarianceStamped", "velocity");
 
 }  // namespace
 }  // namespace bridges::ros2

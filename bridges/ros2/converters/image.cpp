@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+
 #include "bridges/ros2/converter.hpp"
 #include "bridges/ros2/converters/common_parts.hpp"
 #include "shoal/image_t.hpp"
@@ -13,9 +15,10 @@ struct RawFormat {
   const char* encoding;
 };
 
+constexpr std::int32_t format_float = 842221382;
 /// FourCC codes of bot_core, and the encodings of sensor_msgs/image_encodings.hpp.
 constexpr RawFormat raw_formats[] = {
-    {1497715271, 1, "mono8"}, {859981650, 3, "rgb8"}, {909199180, 2, "mono16"}, {842221382, 4, "32FC1"}};
+    {1497715271, 1, "mono8"}, {859981650, 3, "rgb8"}, {909199180, 2, "mono16"}, {format_float, 4, "32FC1"}};
 constexpr std::int32_t format_mjpeg = 1196444237;
 constexpr std::int32_t format_png = 'P' | 'N' << 8 | 'G' << 16 | ' ' << 24;
 
@@ -29,6 +32,13 @@ void put_image(CdrWriter& out, std::int32_t height, std::int32_t width, const ch
   out.put_sequence(data);
 }
 
+/// Returns whether 16-bit pixels are depths in mm (REP 118) or labels, and no brightness.
+bool is_number_image(const shoal::image_t& message) {
+  return message.pixelformat != format_float &&
+         std::any_of(message.metadata.begin(), message.metadata.end(),
+                     [](const auto& entry) { return entry.key == "unit" || entry.key == "labels"; });
+}
+
 bool write_image(const shoal::image_t& message, std::string_view channel, CdrWriter& out) {
   for (const RawFormat& format : raw_formats) {
     if (format.pixelformat != message.pixelformat) continue;
@@ -36,8 +46,9 @@ bool write_image(const shoal::image_t& message, std::string_view channel, CdrWri
                       message.row_stride >= message.width * format.pixel_bytes &&
                       message.size == std::int64_t{message.height} * message.row_stride;
     if (!fits) return false;
-    put_header(out, message.utime, frame_of(channel));
-    put_image(out, message.height, message.width, format.encoding, message.row_stride, message.data);
+    put_header(out, message.utime, optical_frame_of(channel));
+    put_image(out, message.height, message.width, is_number_image(message) ? "16UC1" : format.encoding,
+              message.row_stride, message.data);
     return true;
   }
   return false;
@@ -46,8 +57,8 @@ bool write_image(const shoal::image_t& message, std::string_view channel, CdrWri
 bool write_compressed(const shoal::image_t& message, std::string_view channel, CdrWriter& out) {
   const bool jpeg = message.pixelformat == format_mjpeg;
   if (!jpeg && message.pixelformat != format_png) return false;
-  put_header(out, message.utime, frame_of(channel));
-  out.put(std::string_view(jpeg ? "jpeg" : "png"));
+  put_header(out, message.utime, optical_frame_of(channel));
+  out.put(std::string_view(jpeg ? "jpeg" : is_number_image(message) ? "16UC1; png compressed " : "png"));
   out.put_sequence(std::span<const std::uint8_t>(message.data));
   return true;
 }

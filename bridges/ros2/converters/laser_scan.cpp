@@ -8,15 +8,25 @@
 namespace bridges::ros2 {
 namespace {
 
-bool write_scan(const shoal::planar_lidar_t& message, std::string_view channel, CdrWriter& out) {
+/// Ranges by REP 117: without a return the scanner reports its largest range, which is +inf here, and its least one of
+/// what is nearer, which is -inf.
+bool write_scan(const shoal::planar_lidar_t& message, std::string_view channel, ConverterContext& context,
+                CdrWriter& out) {
+  constexpr float infinite = std::numeric_limits<float>::infinity();
+  const ConverterContext::Device& device = context.device_of(channel);
   put_header(out, message.utime, frame_of(channel));
   const auto steps = static_cast<float>(message.nranges > 0 ? message.nranges - 1 : 0);
   out.put(message.rad0);
   out.put(message.rad0 + message.radstep * steps);
   out.put(message.radstep);
-  // Time between beams, time of the scan and limits of the range are not in the message.
-  for (const float unknown : {0.0f, 0.0f, 0.0f, std::numeric_limits<float>::infinity()}) out.put(unknown);
-  out.put_sequence(std::span<const float>(message.ranges));
+  // All beams are measured at one instant; the time between scans is not in the message.
+  for (const float value : {0.0f, 0.0f, device.range_min_m, device.range_max_m}) out.put(value);
+  std::vector<float> ranges_m = message.ranges;
+  for (float& range_m : ranges_m) {
+    if (range_m >= device.range_max_m) range_m = infinite;
+    if (range_m <= device.range_min_m && device.range_min_m > 0) range_m = -infinite;
+  }
+  out.put_sequence(std::span<const float>(ranges_m));
   out.put_sequence(std::span<const float>(message.intensities));
   return true;
 }

@@ -1,102 +1,131 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <charconv>
-#include <cmath>
-#include <optional>
+#include <algorithm>
 
 #include "bridges/ros2/converter.hpp"
 #include "bridges/ros2/converters/common_parts.hpp"
+#include "bridges/ros2/converters/config_values.hpp"
+#include "bridges/ros2/converters/scene_values.hpp"
 #include "shoal/sim_info_t.hpp"
-#include "sim/base/math.hpp"
-#include "sim/config/config_node.hpp"
+#include "shoal/sim_scene_t.hpp"
 
 namespace bridges::ros2 {
 namespace {
 
-/// Frame of a device in that of its vehicle, or of a body that may move in the vehicle.
-struct MountedFrame {
-  std::string parent, frame;
-  sim::Pose pose;
-};
+using Device = ConverterContext::Device;
 
-/// Returns a list of three numbers; zeros when there is none.
-sim::Vector3d three_numbers(const sim::ConfigNode& parent, std::string_view key) {
-  sim::Vector3d numbers = sim::Vector3d::Zero();
-  const sim::ConfigNode* list = parent.find(key);
-  for (std::size_t i = 0; list != nullptr && i < 3 && i < list->items.size(); ++i) {
-    const std::string& text = list->items[i].scalar;
-    double number = 0;
-    const auto end = std::from_chars(text.data(), text.data() + text.size(), number);
-    if (end.ec == std::errc() && std::isfinite(number)) numbers[static_cast<Eigen::Index>(i)] = number;
-  }
-  return numbers;
+Device device_of(const Json& device, std::string vehicle) {
+  Device known;
+  known.vehicle = std::move(vehicle);
+  const Json* view = at(device, "field_of_view");
+  if (view == nullptr) return known;
+  known.is_camera = text_at(*view, "kind") == "frustum";
+  known.range_min_m = static_cast<float>(number_at(*view, "range_min_m"));
+  if (const double range_m = number_at(*view, "range_m"); range_m > 0) known.range_max_m = static_cast<float>(range_m);
+  known.opening_rad = static_cast<float>(2 * number_at(*view, "half_angle_rad"));
+  const auto axis = numbers_at<3>(*view, "axis");
+  if (axis && sim::Vector3d(axis->data()).norm() > 0.5) known.axis = *axis;
+  return known;
 }
 
-/// Returns the pose of a body or device in its parent, as written in a world.
-sim::Pose pose_of(const sim::ConfigNode& node) {
+/// Appends a transform of tf2_msgs/TFMessage.
+void put_transform(CdrWriter& out, std::int64_t utime, std::string_view parent, std::string_view frame,
+                   const std::array<double, 7>& pose) {
+  put_header(out, utime, parent);
+  out.put(frame);
+  out.put_array(std::span(pose).first(3));
+  put_quaternion(out, std::span(pose).last<4>());
+}
+
+/// Returns the pose of a frame at the origin with x along an axis.
+std::array<double, 7> along_x(const std::array<double, 3>& axis) {
+  const sim::Quaterniond q = sim::rotation_between(sim::Vector3d::UnitX(), sim::Vector3d(axis.data()));
+  return {0, 0, 0, q.w(), q.x(), q.y(), q.z()};
+}
+
+/// Appends all frames that do not move in their parents: devices in vehicles or moving bodies, optical and beam frames
+/// in devices, odometry frames in the world.
+bool put_frames(CdrWriter& out, std::int64_t utime, const ConverterContext& context) {
+  std::size_t count = context.odometry_frames.size();
+  for (const auto& [frame, device] : context.devices)
+    count += (device.parent.empty() ? 0 : 1) + (device.is_camera || device.is_turned() ? 1 : 0);
+  out.put_count(count);
+  for (const auto& [frame, pose] : context.odometry_frames) put_transform(out, utime, world_frame, frame, pose);
+  for (const auto& [frame, device] : context.devices) {
+    if (!device.parent.empty()) put_transform(out, utime, device.parent, frame, device.pose);
+    // x right, y down, z ahead are -y, -z, x of the sensor.
+    if (device.is_camera)
+      put_transform(out, utime, frame, frame + optical_ending, {0, 0, 0, 0.5, -0.5, 0.5, -0.5});
+    else if (device.is_turned())
+      put_transform(out, utime, frame, frame + beam_ending, along_x(device.axis));
+  }
+  return count > 0;
+}
+
+/// Reads where the vehicles with odometry start.
+void read_odometry(const std::string& world, ConverterContext& context) {
   constexpr double rad_per_deg = M_PI / 180;
-  return sim::make_pose(three_numbers(node, "position_m"), three_numbers(node, "rpy_deg") * rad_per_deg);
-}
-
-std::string text_at(const sim::ConfigNode& node, std::string_view key) {
-  const sim::ConfigNode* value = node.find(key);
-  return value != nullptr ? value->scalar : "";
-}
-
-const std::vector<sim::ConfigNode>& items_at(const sim::ConfigNode& node, std::string_view key) {
-  static const std::vector<sim::ConfigNode> none;
-  const sim::ConfigNode* list = node.find(key);
-  return list != nullptr ? list->items : none;
-}
-
-/// Appends the frames of the devices of a vehicle.  The first body is the base, in which the vehicle frame is fixed.
-void add_frames(const sim::ConfigNode& vehicle, std::vector<MountedFrame>& frames) {
-  const std::string name = text_at(vehicle, "name");
-  const sim::ConfigNode* model = vehicle.find("model");
-  if (name.empty() || model == nullptr || items_at(*model, "bodies").empty()) return;
-  const sim::ConfigNode& base = items_at(*model, "bodies").front();
-  for (const sim::ConfigNode& device : items_at(*model, "devices")) {
-    const std::string body = text_at(device, "body");
-    const std::string channel = text_at(device, "channel");
-    const std::string frame = frame_of(channel.empty() ? name + "." + text_at(device, "name") : channel);
-    if (body.empty() || body == text_at(base, "name"))
-      frames.push_back({name, frame, pose_of(base) * pose_of(device)});
-    else
-      frames.push_back({body_frame(name, body), frame, pose_of(device)});
-  }
-}
-
-/// The frames of a resolved world.
-std::vector<MountedFrame> frames_of(const std::string& world) {
-  std::vector<MountedFrame> frames;
   sim::Diagnostics diagnostics;
   const sim::ConfigNode root = sim::parse_config_text(world, "sim.info", diagnostics);
-  for (const sim::ConfigNode& vehicle : items_at(root, "vehicles")) add_frames(vehicle, frames);
-  return frames;
+  context.odometry_frames.clear();
+  for (const sim::ConfigNode& vehicle : items_at(root, "vehicles")) {
+    const sim::ConfigNode* model = vehicle.find("model");
+    if (model == nullptr) continue;
+    const auto& devices = items_at(*model, "devices");
+    if (std::none_of(devices.begin(), devices.end(),
+                     [](const auto& each) { return text_at(each, "type") == "odometry"; }))
+      continue;
+    std::vector<double> position_m = numbers_at(vehicle, "position_m"), rpy_deg = numbers_at(vehicle, "rpy_deg");
+    position_m.resize(3);
+    rpy_deg.resize(3);
+    context.odometry_frames.insert_or_assign(
+        odometry_frame(text_at(vehicle, "name")),
+        numbers_of(sim::make_pose(sim::Vector3d(position_m.data()), sim::Vector3d(rpy_deg.data()) * rad_per_deg)));
+  }
 }
 
 /// Where the devices of the vehicles are mounted.
-bool write_frames(const shoal::sim_info_t& message, std::string_view channel, CdrWriter& out) {
-  // The same world is in every sim.info of a run.
-  struct Parsed {
-    std::string world;
-    std::vector<MountedFrame> frames;
-  };
-  static thread_local std::optional<Parsed> last;
-  if (channel != "sim.info") return false;
-  if (!last || last->world != message.resolved_config)
-    last = Parsed{message.resolved_config, frames_of(message.resolved_config)};
-  out.put_count(last->frames.size());
-  for (const MountedFrame& each : last->frames) {
-    put_header(out, message.utime, each.parent);
-    out.put(std::string_view(each.frame));
-    const sim::Vector3d p = each.pose.translation();
-    const Eigen::Quaterniond q(each.pose.linear());
-    put_numbers(out, {p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w()});
-  }
-  return !last->frames.empty();
+bool write_scene_frames(const shoal::sim_scene_t& message, ConverterContext& context, CdrWriter& out) {
+  return put_frames(out, message.utime, context);
 }
 
+/// The same again, and where odometry starts.
+bool write_frames(const shoal::sim_info_t& message, ConverterContext& context, CdrWriter& out) {
+  // The same world is in every sim.info of a run.
+  if (context.world != message.resolved_config) read_odometry(message.resolved_config, context);
+  context.world = message.resolved_config;
+  return put_frames(out, message.utime, context);
+}
+
+SHOAL_ROS2_CONVERTER(write_scene_frames, "tf2_msgs/msg/TFMessage", "/tf_static");
 SHOAL_ROS2_CONVERTER(write_frames, "tf2_msgs/msg/TFMessage", "/tf_static");
 
 }  // namespace
+
+void read_devices(const Json& scene, ConverterContext& context) {
+  context.devices.clear();
+  for (const Json& vehicle : list_at(scene, "vehicles")) {
+    const std::string name = text_at(vehicle, "name");
+    const sim::Pose X_VB = pose_at(vehicle, "pose").inverse();
+    for (const Json& each : list_at(vehicle, "devices")) {
+      Device device = device_of(each, name);
+      const std::int32_t body = integer_at(each, "body");
+      const sim::Pose X_BS = pose_at(each, "pose");
+      // The vehicle frame is fixed in its first body.  Odometry is of the vehicle, and is not mounted.
+      const bool on_base = body == integer_at(vehicle, "body");
+      device.pose = numbers_of(on_base ? X_VB * X_BS : X_BS);
+      const auto moving = context.body_frames.find(body);
+      if (text_at(each, "type") == "odometry")
+        device.parent = "";
+      else if (on_base)
+        device.parent = name;
+      else if (moving != context.body_frames.end())
+        device.parent = moving->second;
+      const Json& channels = list_at(each, "channels");
+      const bool reports = !channels.empty() && channels.front().is_string();
+      const std::string channel = reports ? channels.front().get<std::string>() : name + "." + text_at(each, "name");
+      context.devices.insert_or_assign(frame_of(channel), std::move(device));
+    }
+  }
+}
+
 }  // namespace bridges::ros2

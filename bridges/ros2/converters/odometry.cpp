@@ -11,9 +11,9 @@ namespace bridges::ros2 {
 namespace {
 
 /// Velocities of nav_msgs/Odometry are in the axes of the moving frame, those of pose_t in the world frame.
-bool write_pose(const shoal::pose_t& message, std::string_view channel, CdrWriter& out) {
+bool write_pose(const shoal::pose_t& message, std::string_view channel, ConverterContext& context, CdrWriter& out) {
   put_header(out, message.utime, world_frame);
-  out.put(std::string_view(frame_of(channel)));
+  out.put(std::string_view(vehicle_frame(channel, context)));
   put_numbers(out, message.pos);
   put_quaternion(out, message.orientation);
   put_unknown_6x6(out);
@@ -26,10 +26,12 @@ bool write_pose(const shoal::pose_t& message, std::string_view channel, CdrWrite
   return true;
 }
 
-/// Dead reckoning from its start pose, its own frame.
-bool write_wheel_odometry(const shoal::odometry_t& message, std::string_view channel, CdrWriter& out) {
-  put_header(out, message.utime, frame_of(channel) + "/start");
-  out.put(std::string_view(frame_of(channel)));
+/// Dead reckoning from the pose in which the vehicle starts.
+bool write_wheel_odometry(const shoal::odometry_t& message, std::string_view channel, ConverterContext& context,
+                          CdrWriter& out) {
+  const std::string vehicle = vehicle_frame(channel, context);
+  put_header(out, message.utime, odometry_frame(vehicle));
+  out.put(std::string_view(vehicle));
   put_numbers(out, {message.x_m, message.y_m, 0});
   put_numbers(out, {0, 0, std::sin(message.theta_rad / 2), std::cos(message.theta_rad / 2)});
   put_unknown_6x6(out);

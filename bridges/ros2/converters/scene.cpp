@@ -1,19 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <charconv>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "bridges/ros2/converter.hpp"
 #include "bridges/ros2/converters/common_parts.hpp"
 #include "bridges/ros2/converters/markers.hpp"
+#include "bridges/ros2/converters/scene_values.hpp"
 #include "shoal/sim_asset_t.hpp"
 #include "shoal/sim_scene_t.hpp"
 
 namespace bridges::ros2 {
 namespace {
 
-using Json = nlohmann::json;
 using AssetPart = ConverterContext::AssetPart;
 using Color = std::array<float, 4>;
 
@@ -21,67 +20,6 @@ using Color = std::array<float, 4>;
 constexpr std::size_t max_asset_bytes = 64'000'000;
 constexpr double plane_m = 200;  // edge of the square that shows a plane
 constexpr double water_m = 400;
-
-// --- Values of the scene: anything is possible, for it comes from another process
-
-const Json* at(const Json& parent, const char* key) {
-  if (!parent.is_object()) return nullptr;
-  const auto value = parent.find(key);
-  return value == parent.end() ? nullptr : &*value;
-}
-
-std::string text_at(const Json& parent, const char* key) {
-  const Json* value = at(parent, key);
-  return value != nullptr && value->is_string() ? value->get<std::string>() : "";
-}
-
-double number_at(const Json& parent, const char* key) {
-  const Json* value = at(parent, key);
-  return value != nullptr && value->is_number() ? value->get<double>() : 0;
-}
-
-std::int32_t integer_at(const Json& parent, const char* key) {
-  const double value = number_at(parent, key);
-  return std::abs(value) < 1e9 ? static_cast<std::int32_t>(value) : 0;
-}
-
-const Json& list_at(const Json& parent, const char* key) {
-  static const Json none = Json::array();
-  const Json* value = at(parent, key);
-  return value != nullptr && value->is_array() ? *value : none;
-}
-
-/// Returns `count` numbers; none when there are fewer.
-template <std::size_t count>
-std::optional<std::array<double, count>> numbers_at(const Json& parent, const char* key) {
-  const Json& list = list_at(parent, key);
-  std::array<double, count> numbers{};
-  if (list.size() < count) return std::nullopt;
-  for (std::size_t i = 0; i < count; ++i) {
-    if (!list[i].is_number()) return std::nullopt;
-    numbers[i] = list[i].get<double>();
-  }
-  return numbers;
-}
-
-sim::Pose pose_of(const std::array<double, 7>& numbers) {
-  const sim::Quaterniond q(numbers[3], numbers[4], numbers[5], numbers[6]);
-  sim::Pose pose = sim::Pose::Identity();
-  pose.translation() = sim::Vector3d(numbers[0], numbers[1], numbers[2]);
-  if (q.norm() > 0.5) pose.linear() = q.normalized().toRotationMatrix();
-  return pose;
-}
-
-sim::Pose pose_at(const Json& parent, const char* key) {
-  const auto numbers = numbers_at<7>(parent, key);
-  return numbers ? pose_of(*numbers) : sim::Pose::Identity();
-}
-
-std::array<double, 7> numbers_of(const sim::Pose& pose) {
-  const sim::Quaterniond q(pose.linear());
-  const sim::Vector3d p = pose.translation();
-  return {p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z()};
-}
 
 std::optional<Color> color_of(const std::string& text) {
   if (text.size() != 7 || text[0] != '#') return std::nullopt;
@@ -286,7 +224,7 @@ bool write_asset(const shoal::sim_asset_t& message, ConverterContext& context, C
   return true;
 }
 
-/// Remembers the frames of the bodies of a scene, and its parts; it gives no message itself.
+/// Remembers the frames of the bodies of a scene, its parts and its devices; it gives no message itself.
 bool read_scene(const shoal::sim_scene_t& message, ConverterContext& context, CdrWriter&) {
   context.body_frames.clear();
   context.asset_parts.clear();
@@ -297,6 +235,7 @@ bool read_scene(const shoal::sim_scene_t& message, ConverterContext& context, Cd
     context.body_frames.insert_or_assign(body["id"].get<std::int32_t>(), frame_of_body(body));
   }
   context.asset_parts = asset_parts_of(scene);
+  read_devices(scene, context);
   return false;
 }
 

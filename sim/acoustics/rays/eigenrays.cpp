@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <numeric>
-#include <tuple>
+
+#include "sim/acoustics/rays/twin_rays.hpp"
 
 namespace sim {
 
@@ -183,13 +183,7 @@ struct Eigenrays::Search {
   const RayDepths& depths;
   bool source_is_upper;
   std::vector<SoundRay>& out;
-  /// Where the rays of `out` are in their families.
-  struct Root {
-    int family, cycles;
-    double xi, slope;
-    double power_by_slope;  ///< power by the ray tube times the size of dr/dxi
-  };
-  std::vector<Root> roots{};
+  std::vector<RayRoot> roots{};
 
   const SoundProfile& profile() const { return rays.profile_; }
   void add(double xi, Family family, int cycles);
@@ -201,16 +195,10 @@ struct Eigenrays::Search {
   void solve(double low, double high, double v1, double v2, double f1, Family family, int cycles);
   void search_steep(double fastest_mps, Family family, int cycles);
   void search_bounces();
-  /// Merges rays that the borders of the layers have made of one or two, where the reach has kinks.
-  void merge_false_rays();
-  /// Finds the twins among the rays, the closest in time first.
-  void pair_twins();
   /// Width in xi of the thin layer in which a ray turns; 0: of another one.
   double thin_layer(double xi) const;
   /// Derivative of the reach: about a ray that turns in a thin layer, whose borders are kinks, the mean over some.
   double slope_about(double xi, Family family, int cycles, const RayLegs& legs) const;
-  /// Whether two rays are of one family, reversed as often by the same.
-  bool same_kind(std::size_t i, std::size_t j) const;
   /// Whether rays of an interval of xi can have few enough bounces.
   bool may_turn(const Interval& interval) const;
 };
@@ -264,43 +252,8 @@ void Eigenrays::Search::add(double xi, Family family, int cycles) {
   const double xi_by_range = vertical ? 1 / reach.by_xi : xi / query.range_m;
   ray.power_per_m2 = xi_by_range * depths.upper_mps * depths.lower_mps / std::max(tube, 1e-300);
   out.push_back(ray);
-  roots.push_back({static_cast<int>(family), cycles, xi, slope, ray.power_per_m2 * std::abs(reach.by_xi)});
-}
-
-bool Eigenrays::Search::same_kind(std::size_t i, std::size_t j) const {
-  return roots[i].family == roots[j].family && roots[i].cycles == roots[j].cycles &&
-         out[i].surface_bounces == out[j].surface_bounces && out[i].bottom_bounces == out[j].bottom_bounces;
-}
-
-void Eigenrays::Search::merge_false_rays() {
-  std::vector<std::size_t> order(out.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  const auto key = [&](std::size_t i) {
-    return std::tuple(roots[i].family, roots[i].cycles, out[i].surface_bounces, out[i].bottom_bounces, roots[i].xi);
-  };
-  std::sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) { return key(i) < key(j); });
-  std::vector<std::size_t> kept;
-  for (std::size_t first = 0, last = 0; first < order.size(); first = last + 1) {
-    const double near = thin_layer(roots[order[first]].xi);
-    for (last = first; last + 1 < order.size() && same_kind(order[last], order[last + 1]) &&
-                       roots[order[last + 1]].xi - roots[order[last]].xi < near;)
-      ++last;
-    // The reach crosses the range up and down in turn: an even number in all is a caustic, an odd one is one ray.
-    if ((last - first) % 2 == 1) {
-      kept.push_back(order[first]);
-      kept.push_back(order[last]);
-    } else {
-      kept.push_back(order[first]);
-    }
-  }
-  if (kept.size() == out.size()) return;
-  std::sort(kept.begin(), kept.end());
-  for (std::size_t i = 0; i < kept.size(); ++i) {
-    out[i] = out[kept[i]];
-    roots[i] = roots[kept[i]];
-  }
-  out.resize(kept.size());
-  roots.resize(kept.size());
+  roots.push_back(
+      {static_cast<int>(family), cycles, xi, slope, ray.power_per_m2 * std::abs(reach.by_xi), thin_layer(xi)});
 }
 
 double Eigenrays::Search::thin_layer(double xi) const {
@@ -319,39 +272,6 @@ double Eigenrays::Search::slope_about(double xi, Family family, int cycles, cons
   for (const RayLegs* each : {&less, &more})
     if (each->upper_end != legs.upper_end || each->lower_end != legs.lower_end) return exact;
   return (reach_of(family, cycles, more).r_m - reach_of(family, cycles, less).r_m) / (2 * far);
-}
-
-void Eigenrays::Search::pair_twins() {
-  while (true) {
-    std::size_t first = out.size(), second = 0;
-    double closest_s = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i + 1 < out.size(); ++i) {
-      if (out[i].twin) continue;
-      for (std::size_t j = i + 1; j < out.size(); ++j) {
-        // The reach has an extreme between them.
-        const bool merges = (roots[i].slope < 0) != (roots[j].slope < 0);
-        if (out[j].twin || !merges || !same_kind(i, j)) continue;
-        const double apart_s = std::abs(out[j].travel_time_s - out[i].travel_time_s);
-        if (apart_s >= closest_s) continue;
-        closest_s = apart_s;
-        first = i, second = j;
-      }
-    }
-    if (first == out.size()) return;
-    // Time changes by xi with the range, so twins are apart by the area between the reach and the range over xi.  Of a
-    // parabola with this second derivative it is two thirds of the cube of the slope at both ends over its square.
-    const double slopes = std::abs(roots[first].slope) + std::abs(roots[second].slope);
-    const double bend = slopes / std::max(std::abs(roots[first].xi - roots[second].xi), 1e-300);
-    const double fold = std::max(std::cbrt(1.5 * bend * bend * closest_s), 1e-300);
-    const double later_s = out[second].travel_time_s - out[first].travel_time_s;
-    for (const std::size_t i : {first, second}) {
-      SoundRay& ray = out[i];
-      ray.twin = SoundRay::Twin{i == first ? later_s : -later_s, roots[i].power_by_slope / fold};
-      ray.power_per_m2 = roots[i].power_by_slope / std::max(std::abs(roots[i].slope), 1e-300);
-      // The later one has passed the caustic.
-      ray.caustics = std::max(0, ray.turns - (ray.twin->later_s > 0));
-    }
-  }
 }
 
 /// Solves for the one crossing of the range between two places of an interval, by Newton's method in a bracket.
@@ -476,7 +396,8 @@ void Eigenrays::find(const RayQuery& query, std::vector<SoundRay>& rays) const {
     ray.travel_time_s = query.range_m / depths.upper_mps;
     ray.power_per_m2 = 1 / std::max(query.range_m * query.range_m, 1e-12);
     rays.push_back(ray);
-    search.roots.push_back({static_cast<int>(Family::down_down), 0, 1 / depths.upper_mps, -1, 0});
+    const double xi = 1 / depths.upper_mps;
+    search.roots.push_back({static_cast<int>(Family::down_down), 0, xi, -1, 0, search.thin_layer(xi)});
   }
   // The direct ray.
   if (!level) search.search_steep(depths.highest_between_mps, Family::down_down, 0);
@@ -504,118 +425,11 @@ void Eigenrays::find(const RayQuery& query, std::vector<SoundRay>& rays) const {
     }
   }
   if (rays.size() > 1) {
-    search.merge_false_rays();
-    search.pair_twins();
+    merge_false_rays(rays, search.roots);
+    pair_twins(rays, search.roots);
   }
   std::stable_sort(rays.begin(), rays.end(),
                    [](const SoundRay& a, const SoundRay& b) { return a.travel_time_s < b.travel_time_s; });
-}
-
-RayTrace trace_ray(const SoundProfile& profile, double source_m, double launch_rad, double water_m, double step_m,
-                   int steps) {
-  RayTrace trace;
-  trace.launch_rad = launch_rad;
-  const double bottom_m = std::min(water_m, profile.deepest_m());
-  double z_m = std::clamp(source_m, 0.0, bottom_m), r_m = 0;
-  const double xi = std::cos(launch_rad) / profile.speed_mps(z_m);
-  bool down = launch_rad < 0;
-  int next = 0;
-  std::size_t layer = profile.layer_of(z_m);
-  if (!down && layer > 0 && z_m == profile.knots()[layer].depth_m) --layer;
-  // Layer by layer: the arc from z_m to the border of the layer, or to its turning point and back.
-  while (next <= steps) {
-    const auto& knots = profile.knots();
-    const double g = profile.gradient(layer), c = profile.speed_mps(z_m), s = ray_sine(xi, c);
-    const double top_m = knots[layer].depth_m, low_m = std::min(knots[layer + 1].depth_m, bottom_m);
-    const double edge_m = down ? low_m : top_m;
-    const double edge_mps = knots[layer].speed_mps + g * (edge_m - top_m);
-    const bool turns = xi * edge_mps > 1 || (s == 0 && (g > 0) == down);
-    const double turn_m = turns ? turn_reach(xi, g, s).r_m : 0;
-    const double length_m =
-        turns ? 2 * turn_m : arc_reach(xi, std::abs(edge_m - z_m), c, s, edge_mps, ray_sine(xi, edge_mps)).r_m;
-    // Depth along the arc: the sine changes by xi g for each metre of range.
-    for (; next <= steps && next * step_m <= r_m + length_m; ++next) {
-      const double dr_m = next * step_m - r_m, slope = (down ? 1 : -1) * g * xi;
-      const double sine = std::clamp(s - slope * dr_m, -1.0, 1.0), mean = (s + sine) / 2;
-      const double c_there = std::sqrt(1 - sine * sine) / xi;
-      trace.depth_m.push_back(z_m + (down ? 1 : -1) * dr_m * 2 * mean / (xi * (c + c_there)));
-    }
-    r_m += length_m;
-    if (!(length_m > 0) && next * step_m > r_m && turns) break;
-    if (turns) {
-      down = !down;
-      continue;
-    }
-    z_m = edge_m;
-    if (down && edge_m >= bottom_m) {
-      if (bottom_m >= profile.deepest_m()) break;
-      ++trace.bottom_bounces;
-      down = false;
-    } else if (!down && layer == 0) {
-      ++trace.surface_bounces;
-      down = true;
-    } else {
-      layer += down ? 1 : -1;
-    }
-  }
-  return trace;
-}
-
-RayPlace ray_place(const SoundProfile& profile, double source_m, double launch_rad, double time_s) {
-  const auto& knots = profile.knots();
-  RayPlace at{0, std::clamp(source_m, 0.0, profile.deepest_m())};
-  const double xi = std::cos(launch_rad) / profile.speed_mps(at.depth_m);
-  // A vertical ray has no xi.
-  const bool steep = xi * profile.speed_mps(at.depth_m) < 1e-9;
-  bool down = launch_rad < 0;
-  std::size_t layer = profile.layer_of(at.depth_m);
-  if (!down && layer > 0 && at.depth_m == knots[layer].depth_m) --layer;
-  double left_s = time_s;
-  while (left_s > 0) {
-    const double c = profile.speed_mps(at.depth_m), g = profile.gradient(layer), along = down ? g : -g;
-    const double s = steep ? 1 : ray_sine(xi, c);
-    const double edge_m = down ? knots[layer + 1].depth_m : knots[layer].depth_m;
-    const double edge_mps = down ? knots[layer + 1].speed_mps : knots[layer].speed_mps;
-    const bool turns = !steep && along > 0 && (xi * edge_mps > 1 || s == 0);
-    const double thick_m = std::abs(edge_m - at.depth_m);
-    const double in_layer_s = turns ? 2 * turn_time_s(g, s)
-                              : thick_m == 0
-                                  ? 0
-                                  : arc_time_s(xi, thick_m, c, s, edge_mps, steep ? 1 : ray_sine(xi, edge_mps));
-    if (left_s < in_layer_s) {
-      // atanh of the sine changes by the gradient along the ray times the time.
-      if (steep || std::abs(g) < 1e-9) {
-        at.range_m += c * std::sqrt(1 - s * s) * left_s;
-        at.depth_m += (down ? 1 : -1) * c * s * left_s;
-      } else {
-        const double later = std::tanh(std::atanh(s) - along * left_s);
-        at.range_m += (s - later) / (xi * along);
-        at.depth_m += (std::sqrt(1 - later * later) / xi - c) / g;
-      }
-      return at;
-    }
-    left_s -= in_layer_s;
-    if (turns) {
-      at.range_m += 2 * turn_reach(xi, g, s).r_m;
-      down = !down;
-      // Above a turning point in the uppermost part of a layer lies the layer from which the ray came.
-      if (!down && at.depth_m == knots[layer].depth_m && layer > 0)
-        --layer;
-      else if (down && at.depth_m == knots[layer + 1].depth_m && layer + 1 < profile.layers())
-        ++layer;
-      if (s == 0 && in_layer_s == 0) break;
-      continue;
-    }
-    if (!steep && thick_m > 0) at.range_m += arc_reach(xi, thick_m, c, s, edge_mps, ray_sine(xi, edge_mps)).r_m;
-    at.depth_m = edge_m;
-    if (!down && layer == 0)
-      down = true;
-    else if (down && layer + 1 == profile.layers())
-      break;
-    else
-      layer += down ? 1 : -1;
-  }
-  return at;
 }
 
 }  // namespace sim

@@ -3,9 +3,11 @@
 
 #include <gmock/gmock.h>
 
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -13,6 +15,8 @@
 #include "bridges/log/recording_bus.hpp"
 #include "bridges/mcap/mcap_reader.hpp"
 #include "shoal/message_codec.hpp"
+#include "shoal/planar_lidar_t.hpp"
+#include "shoal/sim_scene_t.hpp"
 #include "shoal/utime_t.hpp"
 #include "sim/bus/in_process_bus.hpp"
 #include "tests/bridges/lcm/lcm_test_support.hpp"
@@ -80,6 +84,43 @@ TEST(McapConversion, TakesOnlyTheWantedChannels) {
   EXPECT_EQ(converted.events, 5u);
   EXPECT_EQ(converted.channels, 1u);
   EXPECT_GT(last, 0u);
+}
+
+TEST(McapConversion, KnowsTheDevicesAlsoWhenTheirSceneIsNotWanted) {
+  const ScratchFolder folder;
+  {
+    bridges::EventLogWriter log(bridges::create_record_file(folder.file("a.lcm"), bridges::Existing::refuse));
+    shoal::sim_scene_t scene{};
+    scene.scene = R"({"vehicles": [{"name": "a", "devices": [{"name": "lidar", "channels": ["a.lidar"],
+                      "field_of_view": {"kind": "fan", "range_m": 10, "range_min_m": 0.5}}]}]})";
+    log.write(0, 0, "sim.scene", shoal::encode(scene));
+    log.write(1, 0, "a.lidar", shoal::encode(shoal::planar_lidar_t{0, 1, {10}, 0, {}, 0, 0}));
+    log.flush();
+  }
+  bridges::convert_to_mcap({folder.file("a.lcm"),
+                            folder.file("a.mcap"),
+                            {},
+                            [](std::string_view channel) { return channel == "a.lidar"; },
+                            {}},
+                           shoal::embedded_types());
+  bridges::mcap::McapReader reader(folder.file("a.mcap"));
+  std::vector<std::string> topics;
+  std::vector<std::byte> scan;
+  for (bridges::mcap::McapReader::Item item; (item = reader.next()) != bridges::mcap::McapReader::Item::end;) {
+    if (item != bridges::mcap::McapReader::Item::message) continue;
+    topics.push_back(reader.channel(reader.message().channel).topic);
+    scan.assign(reader.message().data.begin(), reader.message().data.end());
+  }
+  ASSERT_EQ(topics, (std::vector<std::string>{"/a/lidar", "/a/lidar/scan"}));
+  // Its last numbers: limits, count and value of the ranges, count of the intensities.
+  float min_m = 0, max_m = 0, range_m = 0;
+  ASSERT_GT(scan.size(), 20u);
+  std::memcpy(&min_m, &scan[scan.size() - 20], 4);
+  std::memcpy(&max_m, &scan[scan.size() - 16], 4);
+  std::memcpy(&range_m, &scan[scan.size() - 8], 4);
+  EXPECT_EQ(min_m, 0.5f);
+  EXPECT_EQ(max_m, 10.0f);
+  EXPECT_EQ(range_m, std::numeric_limits<float>::infinity());
 }
 
 TEST(McapConversion, RefusesAnExistingFileAndAnMcapFileAsLog) {

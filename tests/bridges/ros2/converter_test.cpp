@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bridges/ros2/converter.hpp"
-
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -18,68 +16,18 @@
 #include "shoal/sim_asset_t.hpp"
 #include "shoal/sim_bodies_t.hpp"
 #include "shoal/sim_event_t.hpp"
-#include "shoal/sim_info_t.hpp"
 #include "shoal/sim_scene_t.hpp"
 #include "shoal/sim_state_t.hpp"
 #include "shoal/sonar_range_t.hpp"
 #include "shoal/utime_t.hpp"
+#include "tests/bridges/ros2/converted.hpp"
 
 namespace {
 
 using namespace bridges::ros2;
-
-/// Reads CDR back, with its alignment.
-class CdrReader {
- public:
-  explicit CdrReader(std::vector<std::byte> cdr) : cdr_(std::move(cdr)) {}
-  template <class T>
-  T number() {
-    at_ = (at_ - 4 + sizeof(T) - 1) / sizeof(T) * sizeof(T) + 4;
-    T value{};
-    EXPECT_LE(at_ + sizeof value, cdr_.size());
-    if (at_ + sizeof value <= cdr_.size()) std::memcpy(&value, cdr_.data() + at_, sizeof value);
-    at_ += sizeof value;
-    return value;
-  }
-  std::string text() {
-    const auto size = number<std::uint32_t>();
-    std::string value(reinterpret_cast<const char*>(cdr_.data() + at_), size - 1);
-    at_ += size;
-    return value;
-  }
-  template <class T>
-  void skip(int count) {
-    for (int i = 0; i < count; ++i) number<T>();
-  }
-  bool at_end() const { return at_ == cdr_.size(); }
-
- private:
-  std::vector<std::byte> cdr_;
-  std::size_t at_ = 4;
-};
-
-/// Converts a message; nothing when the converter does not apply.
-template <class Message>
-std::optional<CdrReader> converted(const Message& message, const std::string& topic,
-                                   const std::string& channel = "auv1.x", ConverterContext* context = nullptr) {
-  ConverterContext fresh;
-  for (const Converter* each : ConverterTable::instance().of(std::string("shoal.") + Message::getTypeName())) {
-    if (each->topic != topic) continue;
-    std::vector<std::byte> cdr;
-    if (!each->convert(shoal::encode(message), channel, context != nullptr ? *context : fresh, cdr))
-      return std::nullopt;
-    return CdrReader(cdr);
-  }
-  ADD_FAILURE() << "no converter to " << topic;
-  return std::nullopt;
-}
-
-/// Reads a header with the time 1.5 s.
-void expect_header(CdrReader& in, const std::string& frame) {
-  EXPECT_EQ(in.number<std::int32_t>(), 1);
-  EXPECT_EQ(in.number<std::uint32_t>(), 500'000'000u);
-  EXPECT_EQ(in.text(), frame);
-}
+using test::CdrReader;
+using test::converted;
+using test::expect_header;
 
 TEST(Ros2Converter, TimeBeforeTheEpochHasPositiveNanoseconds) {
   auto in = converted(shoal::utime_t{-1}, "/clock", "sim.clock");
@@ -197,7 +145,7 @@ TEST(Ros2Converter, ImagesAreRawOrCompressedByTheirFormat) {
   image.data = {1, 2, 3, 4, 5, 6};
   auto in = converted(image, "image");
   EXPECT_FALSE(converted(image, "compressed"));
-  expect_header(*in, "auv1/x");
+  expect_header(*in, "auv1/x_optical");
   EXPECT_EQ(in->number<std::uint32_t>(), 1u);
   EXPECT_EQ(in->number<std::uint32_t>(), 2u);
   EXPECT_EQ(in->text(), "rgb8");
@@ -208,7 +156,7 @@ TEST(Ros2Converter, ImagesAreRawOrCompressedByTheirFormat) {
   EXPECT_FALSE(converted(image, "image"));  // rows overlap
   image.pixelformat = 1196444237;           // JPEG
   auto jpeg = converted(image, "compressed");
-  expect_header(*jpeg, "auv1/x");
+  expect_header(*jpeg, "auv1/x_optical");
   EXPECT_EQ(jpeg->text(), "jpeg");
 }
 
@@ -231,7 +179,7 @@ TEST(Ros2Converter, VelocitiesOfOdometryAreInTheAxesOfTheVehicle) {
   shoal::pose_t pose{1'500'000, {0, 0, 0}, {0, 2, 0}, {half, 0, 0, half}, {0, 0, 1}, {0, 0, 0}};
   auto in = converted(pose, "odometry");
   expect_header(*in, "world");
-  EXPECT_EQ(in->text(), "auv1/x");
+  EXPECT_EQ(in->text(), "auv1");
   in->skip<double>(7 + 36);
   for (const double value : {2.0, 0.0, 0.0, 0.0, 0.0, 1.0}) EXPECT_NEAR(in->number<double>(), value, 1e-12);
   in->skip<double>(36);
@@ -259,27 +207,6 @@ TEST(Ros2Converter, ADvlWithoutBottomLockGivesNoVelocity) {
   EXPECT_FALSE(converted(dvl, "velocity"));
   dvl.bottom_lock = 1;
   EXPECT_TRUE(converted(dvl, "velocity"));
-}
-
-TEST(Ros2Converter, DevicesHaveFramesInTheirVehicleOrInAMovingBody) {
-  shoal::sim_info_t info{};
-  info.utime = 1'500'000;
-  info.resolved_config =
-      "vehicles:\n- name: a\n  model:\n    bodies:\n    - {name: base, position_m: [0, 0, 1]}\n    - {name: arm}\n"
-      "    devices:\n    - {name: lidar, position_m: [0.5, 0, 0], rpy_deg: [0, 0, 180]}\n"
-      "    - {name: gripper, body: arm}\n    - {name: gps, channel: fixes}\n";
-  auto in = converted(info, "/tf_static", "sim.info");
-  ASSERT_EQ(in->number<std::uint32_t>(), 3u);
-  expect_header(*in, "a");
-  EXPECT_EQ(in->text(), "a/lidar");
-  for (const double value : {0.5, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0}) EXPECT_NEAR(in->number<double>(), value, 1e-15);
-  expect_header(*in, "a/body/arm");
-  EXPECT_EQ(in->text(), "a/gripper");
-  in->skip<double>(7);
-  expect_header(*in, "a");
-  EXPECT_EQ(in->text(), "fixes");
-  info.resolved_config = "vehicles: [ {";
-  EXPECT_FALSE(converted(info, "/tf_static", "sim.info"));
 }
 
 TEST(Ros2Converter, BodiesAreTransformsNamedByTheSceneBefore) {

@@ -62,7 +62,16 @@ TEST(ViewPublisher, TheSceneHasEveryBodyInTheOrderOfItsNumber) {
   EXPECT_EQ(lidar["type"], "lidar");
   EXPECT_EQ(lidar["channels"], Json({"r1.lidar"}));
   EXPECT_EQ(lidar["field_of_view"]["range_m"], 8);
+  EXPECT_EQ(lidar["field_of_view"]["range_min_m"], 0.05);
   EXPECT_NEAR(lidar["field_of_view"]["to_rad"].get<double>(), 0.7854, 1e-3);
+}
+
+TEST(ViewPublisher, TheSceneHasTheRangesOfADeviceAfterAChange) {
+  ViewedWorld viewed(rover_and_ball);
+  viewed.run_for(1);
+  EXPECT_EQ(viewed.test.change("r1/lidar", "{range_max_m: 5}"), "");
+  viewed.run_for(0.1);
+  EXPECT_EQ(viewed.last_scene()["vehicles"][0]["devices"][0]["field_of_view"]["range_m"], 5);
 }
 
 TEST(ViewPublisher, TheSceneSaysWhichVehiclesHaveTheirOwnClock) {

@@ -217,6 +217,22 @@ TEST(MicromodemProtocol, ReportsABadFrameAndAMissingPacket) {
   EXPECT_THAT(modem.wait(15), testing::Contains("CAMSG,PACKET_TIMEOUT,0"));
 }
 
+TEST(MicromodemProtocol, AllFramesOfABadPacketAreBad) {
+  Modem modem(Modem::at_address(2));
+  MicromodemPacket packet;
+  packet.kind = MicromodemPacket::Kind::data;
+  packet.source = 1, packet.destination = 2, packet.rate = 2, packet.frame_count = 3;
+  packet.frames.assign(3, {false, sim::Bytes(3)});
+  devices::MicromodemArrival arrival;
+  for (const bool good : {true, false}) {
+    arrival.good = good;
+    modem.protocol.receive(packet, arrival);
+    const auto lines = modem.recorder.take();
+    EXPECT_EQ(std::count_if(lines.begin(), lines.end(), [](const auto& line) { return line.starts_with("CARXD"); }),
+              good ? 3 : 0);
+  }
+}
+
 TEST(MicromodemProtocol, PacketsSurviveTheWayThroughTheirText) {
   MicromodemPacket packet;
   packet.kind = MicromodemPacket::Kind::data;

@@ -92,6 +92,32 @@ TEST(Imu, FeelsTheCentripetalForceAtItsLeverArm) {
   EXPECT_NEAR(accel_of(report).x(), -4 * 0.5, 1e-3);  // -w^2 r
 }
 
+TEST(Imu, DoesNotFeelThatItsVehicleIsPutElsewhere) {
+  test::TestWorld test(test::rover_world(imu()));
+  test.run_for(2);
+  test::Listener<shoal::imu_t> reports(test, "r1.imu");
+  const sim::Pose X_move_W = sim::make_pose({3, 4, 0}, {0, 0, sim::degrees_to_radians(90)});
+  test.world.editor().move_vehicle("r1", X_move_W * test.world.find_vehicle("r1")->X_WV());
+  test.run_for(0.5);
+  for (const auto& report : reports.take_all()) {
+    EXPECT_LT(gyro_of(report).norm(), 1e-3);
+    EXPECT_NEAR(accel_of(report).norm(), 9.80665, 1e-3);  // at rest, as before
+  }
+}
+
+TEST(Imu, KeepsItsRateWhenItsVehicleIsPutElsewhere) {
+  test::TestWorld test(test::box_world(imu(), weightless));
+  hull(test).set_velocity_W({1, 0, 0}, {0, 0, 2});
+  test.run_for(0.1);
+  test::Listener<shoal::imu_t> reports(test, "r1.imu");
+  test.world.editor().move_vehicle("r1", sim::make_pose({3, 4, 0}, {0, 0, 1.5}));
+  test.run_for(0.1);
+  for (const auto& report : reports.take_all()) {
+    EXPECT_NEAR(gyro_of(report).z(), 2, 1e-6);
+    EXPECT_NEAR(accel_of(report).norm(), 0, 1e-9);
+  }
+}
+
 TEST(Imu, ItsRatesAddUpToTheAttitude) {
   test::TestWorld test(test::box_world(imu(), weightless));
   hull(test).set_velocity_W({0, 0, 0}, {1, 4, 2});  // tumbles: three different moments of inertia

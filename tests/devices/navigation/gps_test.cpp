@@ -46,6 +46,43 @@ TEST(Gps, FindsEveryPointOfTheReference) {
   }
 }
 
+/// A weightless box with a perfect receiver at a place, in a world whose origin is at 60 degrees north.
+std::string far_box(const std::string& place) {
+  return test::marine_world("type: gps", place, "[]", "", "{}") + "origin: {latitude_deg: 60, longitude_deg: 10}\n";
+}
+
+TEST(Gps, TheCourseIsFromTheMeridianOfItsPlace) {
+  // 30 km to the east the meridian has turned by the convergence: the longitude that lies between, 30 km / (N cos 60
+  // deg) with N = 6 394 209 m, times sin(60 deg) = 0.4656 deg.
+  test::TestWorld test(far_box("[30000, 0, 100]"));
+  test::Listener<shoal::gps_data_t> fixes(test, "r1.s");
+  test::set_velocity(test, {0, 2, 0});  // north of the origin
+  test.run_for(0.1);
+  EXPECT_NEAR(fixes.last().heading, sim::degrees_to_radians(0.4656), sim::degrees_to_radians(0.001));
+  EXPECT_NEAR(fixes.last().speed, 2, 1e-4);  // the vertical has turned by 0.27 deg: 2 (1 - cos)
+  test::set_velocity(test, {2, 0, 0});
+  test.run_for(0.1);
+  EXPECT_NEAR(fixes.last().heading, sim::degrees_to_radians(90.4656), sim::degrees_to_radians(0.001));
+}
+
+TEST(Gps, HoldsTheLastCourseAtRest) {
+  test::TestWorld test(far_box("[0, 0, 100]"));
+  test::Listener<shoal::gps_data_t> fixes(test, "r1.s"), truths(test, "r1.s.truth");
+  test::set_velocity(test, {-1, 1, 0});
+  test.run_for(0.1);
+  EXPECT_NEAR(fixes.last().heading, sim::degrees_to_radians(-45), 1e-9);
+  for (const sim::Vector3d& slow_mps :
+       {sim::Vector3d(0, 0, 0), sim::Vector3d(7e-18, 0, 0), sim::Vector3d(9e-4, 0, 0)}) {
+    test::set_velocity(test, slow_mps);
+    test.run_for(0.1);
+    EXPECT_NEAR(fixes.last().heading, sim::degrees_to_radians(-45), 1e-9);
+    EXPECT_NEAR(truths.last().heading, sim::degrees_to_radians(-45), 1e-9);
+  }
+  test::set_velocity(test, {2e-3, 0, 0});
+  test.run_for(0.1);
+  EXPECT_NEAR(fixes.last().heading, sim::degrees_to_radians(90), 1e-9);
+}
+
 TEST(Gps, HasNoFixBelowItsLeastHeight) {
   test::TestWorld test(test::rover_world(gps(", min_height_m: 1")));
   test::Listener<shoal::gps_data_t> fixes(test, "r1.gps");

@@ -110,6 +110,27 @@ TEST(LaserReturn, AMixedPixelLiesBetweenTheEdgeAndWhatIsBehindIt) {
   EXPECT_NEAR(range(5, "white", ""), 3, 1e-3);
 }
 
+TEST(LaserReturn, AnEchoThatIsTooNearLeavesTheFartherOne) {
+  const auto range = [](const std::string& more) {
+    return static_cast<double>(
+        first_truth<planar_lidar_t>(ranging_world(lidar_of("beams: 1, beam_divergence_deg: 0.5, beam_samples: 100, "
+                                                           "intensities: true, returns: first" +
+                                                           more),
+                                                  half_covered(5, "grey"), surfaces))
+            .ranges[0]);
+  };
+  EXPECT_NEAR(range(""), 3, 1e-3);
+  EXPECT_NEAR(range(", range_min_m: 4"), 5, 1e-3);
+  EXPECT_EQ(range(", range_min_m: 6"), 6);  // nothing but what is too near
+}
+
+TEST(LaserReturn, WhatIsTooNearHasNoIntensity) {
+  const auto scan = first_report<planar_lidar_t>(
+      ranging_world(lidar_of("beams: 1, intensities: true, range_min_m: 3, range_std_m: 0.1"), wall_at(2)));
+  EXPECT_EQ(scan.ranges[0], 3.0f);
+  EXPECT_EQ(scan.intensities[0], 0.0f);
+}
+
 TEST(LaserReturn, DropsAreAMeanFreePathAway) {
   test::TestWorld test(
       ranging_world(lidar_of("beams: 100, range_min_m: 0.0001, weather: {false_returns_per_m: 0.1}"), wall_at(200)));

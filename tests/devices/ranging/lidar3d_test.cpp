@@ -30,6 +30,36 @@ TEST(Lidar3d, AWallIsAPlane) {
   }
 }
 
+TEST(Lidar3d, WhatIsTooNearIsNoPoint) {
+  // The wall is beyond 3 m along beams of more than acos(2/3) = 48.2 deg; only these have points.
+  test::TestWorld test(
+      lidar_world("rings: 1, lowest_deg: 0, highest_deg: 0, columns: 360, range_min_m: 3", wall_at(2)));
+  test::Listener<point_cloud_t> clouds(test, "r1.s"), truths(test, "r1.s.truth");
+  test.run_for(0.2);
+  for (const auto& cloud : {clouds.last(), truths.last()}) {
+    EXPECT_EQ(cloud.count, 2 * (88 - 48));  // 49 to 88 deg on both sides: 2 m / cos(88 deg) = 57 m
+    for (int i = 0; i < cloud.count; ++i) EXPECT_NEAR(cloud.x_m[i], 2, 1e-5);  // float at 57 m
+  }
+}
+
+TEST(Lidar3d, NoiseThatLeavesTheLimitsMakesNoPointAtThem) {
+  // About half of the ranges of a wall at the least one are below it: 0.02 of the 50 mm lie between.
+  test::TestWorld test(lidar_world("ring_angles_deg: [0], columns: 360, range_min_m: 5, range_std_m: 0.05",
+                                   "  - {name: shell, fixed: true, parts: [{shape: sphere, radius_m: 5.001, "
+                                   "material: nothing_special}]}\n"));
+  test::Listener<point_cloud_t> clouds(test, "r1.s"), truths(test, "r1.s.truth");
+  test.run_for(1);
+  EXPECT_EQ(truths.last().count, 360);
+  double points = 0;
+  const auto all = clouds.take_all();
+  for (std::size_t k = 1; k < all.size(); ++k) {
+    points += all[k].count;
+    for (int i = 0; i < all[k].count; ++i) EXPECT_GE(std::hypot(all[k].x_m[i], all[k].y_m[i]), 5 - 1e-6);
+  }
+  const double beams = 360.0 * static_cast<double>(all.size() - 1);
+  EXPECT_NEAR(points / beams, 0.508, 4 * 0.5 / std::sqrt(beams));  // four standard deviations
+}
+
 TEST(Lidar3d, ColumnsAreMeasuredOneAfterTheOther) {
   test::TestWorld test(lidar_world("rings: 1, lowest_deg: 0, highest_deg: 0, columns: 100", wall_at(5)));
   test::Listener<point_cloud_t> clouds(test, "r1.s");

@@ -173,6 +173,21 @@ TEST(Renderer, LabelsCoverTheFaceOfABox) {
   EXPECT_EQ(sim::Renderer::label_name(*world, ImageKind::groups, 0), "nothing");
 }
 
+TEST(Renderer, LabelsBeyond65534AreOne) {
+  std::vector<PartConfig> crowd(65534, sphere(0.01, 0));
+  for (std::size_t i = 0; i < crowd.size(); ++i) crowd[i].name = "p" + std::to_string(i);
+  for (const double side : {1.0, -1.0}) {
+    crowd.push_back(box({1, 1, 1}, 0));
+    crowd.back().name = side > 0 ? "left" : "right";
+    crowd.back().position_m = {-95.5, 0.5 * side, 0};
+  }
+  auto world = make_world();
+  add(*world, body("crowd", crowd), translation(100, 0, 0), Motion::fixed);
+  const Frame parts = render(*world, Pose::Identity(), of_kind(ImageKind::parts));
+  EXPECT_EQ(*parts.labels.at(80, 75), 65535);
+  EXPECT_EQ(*parts.labels.at(120, 75), 65535);
+}
+
 TEST(Renderer, CheckersHaveTheirCornersAtWholeFields) {
   MaterialConfig tiles;
   tiles.name = "tiles";

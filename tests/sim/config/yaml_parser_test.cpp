@@ -118,6 +118,8 @@ TEST(YamlParser, RefusesAnAliasInsideItself) {
 TEST(YamlParser, ReportsASyntaxErrorWithItsPlace) {
   EXPECT_EQ(errors_of("a: 1\nb: [1, 2\nc: 3\n"), "w.yaml:3:2: not valid YAML: end of sequence flow not found");
   EXPECT_EQ(errors_of("a: b: c\n"), "w.yaml:1:5: not valid YAML: illegal map value");
+  EXPECT_EQ(errors_of("a: 1\nname shoal\nrun: 2\n"),
+            "w.yaml:3:4: not valid YAML: illegal map value; line 2 has no colon");
   EXPECT_EQ(errors_of("a: *nowhere\n"), "w.yaml:1:4: not valid YAML: the referenced anchor is not defined");
 }
 

@@ -64,7 +64,7 @@ TEST(ProgramDeclaration, SaysWhatIsWrongAndWhere) {
   EXPECT_THAT(errors_of("args: []\n"), ElementsAre("pilot.args.yaml:1:1: missing key 'shoal_args'",
                                                    "pilot.args.yaml:1:1: missing key 'program'"));
   EXPECT_THAT(errors_of("shoal_args: 2\nprogram: pilot\n"),
-              ElementsAre("pilot.args.yaml:1:13: 'shoal_args' must be 1, got 2"));
+              ElementsAre("pilot.args.yaml:1:13: 'shoal_args' must be 1, got 2: the file is of a newer Shoal"));
   EXPECT_THAT(errors_of(std::string(head) + "arguments: []\n"), ElementsAre(HasSubstr("unknown key 'arguments'")));
   EXPECT_THAT(errors_of("[1, 2"), ElementsAre(HasSubstr("pilot.args.yaml:1:")));
   EXPECT_THAT(errors_of_arg("name: speed, type: nummer"), ElementsAre(HasSubstr("4:25: argument 'speed': 'type'")));

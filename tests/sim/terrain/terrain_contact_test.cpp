@@ -142,6 +142,21 @@ TEST(SmoothGround, ABoxMeetsTheBumpUnderItsMiddle) {
   for (const auto& contact : contacts) EXPECT_NEAR(contact.pos[0], 1, 0.5);
 }
 
+TEST(SmoothGround, ABoxMissesWhatIsFinerThanSevenPointsBelowIt) {
+  PartConfig part = level_ground(0.02);
+  part.terrain->size_m = {4, 4};
+  part.terrain->source = TerrainSource::sine;
+  part.terrain->amplitude_m = 0.05;
+  part.terrain->wavelength_m = 1.0 / 3;  // the spacing of seven points along 2 m
+  const Ground ground(part);
+  double trough_m = 0;
+  for (double x = -0.2; x < 0.2; x += 0.01)
+    if (ground.grid().height(x, 0) < ground.grid().height(trough_m, 0)) trough_m = x;
+  ASSERT_NEAR(ground.grid().height(trough_m, 0), -0.05, 0.002);
+  // The crests reach 5 cm into the box.
+  EXPECT_TRUE(ground.touch(placed(dCreateBox(nullptr, 2, 1, 0.4), {trough_m, 0, 0.2}).get()).empty());
+}
+
 TEST(SmoothGround, ContactsAreBoundedForAnySizeOfCells) {
   for (const double cell_m : {0.05, 0.2, 1.0}) {
     PartConfig part = level_ground(cell_m);

@@ -9,6 +9,7 @@
 #include "sim/world/world_state.hpp"
 #include "tests/devices/world_fixture.hpp"
 #include "tests/project_paths.hpp"
+#include "tests/scratch_folder.hpp"
 
 namespace {
 
@@ -185,6 +186,15 @@ TEST(LoadWorld, NamesAnUnknownParameter) {
 TEST(LoadWorld, NamesAMissingVehicleFile) {
   EXPECT_THAT(errors_of("shoal: 1\nvehicles:\n  - {name: a, file: no_such.yaml}\n"),
               HasSubstr("worlds/test.yaml:3:21: vehicle 'a': there is no vehicle file 'no_such.yaml'"));
+  const test_support::ScratchFolder folder;
+  std::ofstream(folder.file("sprat.yaml")) << "shoal: 1\n";
+  std::ofstream(folder.file("w.yaml")) << "shoal: 1\nvehicles: [{name: a, file: sprat.yml}]\n";
+  try {
+    sim::load_world(folder.file("w.yaml"));
+    FAIL();
+  } catch (const sim::ConfigError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("; did you mean 'sprat.yaml'?"));
+  }
 }
 
 TEST(LoadWorld, RefusesTwoVehiclesOfOneName) {

@@ -53,9 +53,9 @@ struct LinkBudget {
   double absorption_dBpkm = 0;
   double wind_mps = 0;
   sim::Decibels from_gain, spreading, absorption, to_gain;  ///< all are added; losses are negative
-  std::optional<sim::Decibels> echoes;  ///< multipath: all inside the window over the first path, phases averaged
-  std::optional<sim::Decibels> late;    ///< multipath: level of the echoes outside the window, which interfere
-  double delay_spread_s = 0;            ///< multipath: rms
+  std::optional<sim::Decibels> echoes;                      ///< multipath: all inside the window over the first path
+  std::optional<sim::Decibels> late;  ///< multipath: level of the echoes outside the window, which interfere
+  double delay_spread_s = 0;          ///< multipath: rms
   /// Rays: level, travel time and directions are those of the first arrival, which is a bounce in a shadow.
   bool bent = false, shadow = false;
   double launch_rad = 0, arrival_rad = 0;       ///< rays: elevations of the first arrival, upwards positive

@@ -30,6 +30,12 @@ const char* model_name(const sim::AbsorptionConfig& absorption) {
                                                         : "constant";
 }
 
+/// Signal with the echoes in the window over noise and later echoes.
+sim::Decibels snr_with_echoes(const LinkBudget& budget) {
+  const sim::PowerRatio both = sim::to_power(budget.noise) + sim::to_power(*budget.late);
+  return budget.level + *budget.echoes - sim::to_decibels(both);
+}
+
 }  // namespace
 
 std::string budget_text(const AcousticLink& link, const LinkBudget& budget, const sim::AcousticsConfig& acoustics) {
@@ -55,8 +61,11 @@ std::string budget_text(const AcousticLink& link, const LinkBudget& budget, cons
   text += row_text("level at the receiver", budget.level, fmt::format("re 1 uPa, {}", path));
   // Multipath.
   if (budget.echoes)
-    text += row_text("echoes in the window", *budget.echoes,
-                     fmt::format("phases averaged; delays spread by {:.2f} ms rms", 1000 * budget.delay_spread_s));
+    text += row_text(
+        "echoes in the window", *budget.echoes,
+        fmt::format("phases {}; delays spread by {:.2f} ms rms",
+                    acoustics.multipath->phases == sim::MultipathConfig::Phases::random ? "averaged" : "of the paths",
+                    1000 * budget.delay_spread_s));
   if (budget.late && budget.late->dB() > -HUGE_VAL) text += row_text("echoes that disturb", *budget.late, "re 1 uPa");
   // Noise.
   text +=
@@ -67,12 +76,10 @@ std::string budget_text(const AcousticLink& link, const LinkBudget& budget, cons
   text += row_text("noise in the band", budget.noise, fmt::format("re 1 uPa; {:g} Hz", link.bandwidth_Hz));
   // Signal-to-noise ratio and travel time.
   text += row_text("signal over noise", budget.snr, path);
-  if (budget.echoes && budget.late) {
-    const sim::PowerRatio both = sim::to_power(budget.noise) + sim::to_power(*budget.late);
-    text += row_text("signal over noise, echoes", budget.level + *budget.echoes - sim::to_decibels(both), "");
-  }
-  text += fmt::format("{:<25}{:>8.4f} s   over {:.1f} m, {:.2f} m/s on average\n", "travel time", budget.travel_time_s,
-                      budget.range_m, budget.range_m / std::max(budget.travel_time_s, 1e-12));
+  if (budget.echoes && budget.late) text += row_text("signal over noise, echoes", snr_with_echoes(budget), "");
+  if (!silent)
+    text += fmt::format("{:<25}{:>8.4f} s   over {:.1f} m, {:.2f} m/s on average\n", "travel time",
+                        budget.travel_time_s, budget.range_m, budget.range_m / std::max(budget.travel_time_s, 1e-12));
   if (budget.bent && !silent)
     text += fmt::format("{:<25}{:>8.2f} deg over the horizontal; at the receiver {:.2f} deg\n", "launch angle",
                         budget.launch_rad * 180 / std::numbers::pi, budget.arrival_rad * 180 / std::numbers::pi);
@@ -99,12 +106,15 @@ std::string packets_text(const AcousticLink& link, const LinkBudget& budget, con
 std::string csv_text(const std::vector<RangeRow>& rows, const std::vector<AcousticPacket>& packets) {
   std::string text = "range_m,travel_time_s,level_dB,noise_dB,snr_dB";
   for (const AcousticPacket& packet : packets) text += ",delivered_" + packet.name;
-  text += "\n";
+  const bool echoes = !rows.empty() && rows.front().budget.echoes && rows.front().budget.late;
+  text += echoes ? ",snr_with_echoes_dB\n" : "\n";
   for (const RangeRow& row : rows) {
     const LinkBudget& budget = row.budget;
-    text += fmt::format("{:g},{:.6f},{:.3f},{:.3f},{:.3f}", budget.range_m, budget.travel_time_s, budget.level.dB(),
-                        budget.noise.dB(), budget.snr.dB());
+    const bool arrives = budget.level.dB() > -HUGE_VAL;
+    text += fmt::format("{:g},{:.6f},{:.3f},{:.3f},{:.3f}", budget.range_m, arrives ? budget.travel_time_s : NAN,
+                        budget.level.dB(), budget.noise.dB(), budget.snr.dB());
     for (const double delivered : row.delivered) text += fmt::format(",{:.6f}", delivered);
+    if (echoes) text += fmt::format(",{:.3f}", snr_with_echoes(budget).dB());
     text += "\n";
   }
   return text;

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "sim/acoustics/acoustics_config.hpp"
-#include "sim/acoustics/rays/eigenrays.hpp"
+#include "sim/acoustics/rays/ray_trace.hpp"
 #include "sim/medium/medium.hpp"
 
 namespace tools {

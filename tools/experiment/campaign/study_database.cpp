@@ -11,7 +11,6 @@
 #include <memory>
 #include <optional>
 #include <stdexcept>
-#include <system_error>
 
 #include "tools/experiment/files/no_links.hpp"
 #include "tools/experiment/run/version.hpp"
@@ -46,11 +45,7 @@ struct FinalizeStatement {
 class NewDatabase {
  public:
   explicit NewDatabase(const std::string& path) : path_(path), part_(path + ".part") {
-    try {
-      make_new_file(part_);
-    } catch (const std::system_error& error) {
-      throw std::runtime_error(path_ + ": cannot be written: " + error.code().message());
-    }
+    make_part_file(path_, part_);
     sqlite3* opened = nullptr;
     const int code = sqlite3_open_v2(part_.c_str(), &opened, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, nullptr);
     database_.reset(opened);

@@ -7,8 +7,6 @@
 #include <cassert>
 #include <cerrno>
 #include <filesystem>
-#include <stdexcept>
-#include <system_error>
 
 namespace tools {
 

@@ -22,11 +22,8 @@ TarFile::TarFile(const std::string& path) : path_(path), part_(path + ".part"), 
   archive_write_add_filter_gzip(archive_);
   archive_write_set_format_pax_restricted(archive_);
   try {
-    file_ = make_new_file(part_);
+    file_ = make_part_file(path_, part_);
     if (archive_write_open_fd(archive_, file_.number()) != ARCHIVE_OK) fail();
-  } catch (const std::system_error& error) {
-    archive_write_free(archive_);
-    throw std::runtime_error(path_ + ": cannot be written: " + error.code().message());
   } catch (...) {
     archive_write_free(archive_);
     throw;

@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <system_error>
 
 #include "sim/image/image_file.hpp"
 #include "tools/experiment/files/no_links.hpp"
@@ -41,12 +40,8 @@ std::string chunk(const std::string& name, const std::string& content) {
 
 AviFile::AviFile(std::string file, const FilmFormat& format)
     : file_(std::move(file)), part_(file_ + ".part"), format_(format) {
-  try {
-    const bridges::FileDescriptor part = make_new_file(part_);
-    out_ = fdopen(fcntl(part.number(), F_DUPFD_CLOEXEC, 0), "wb");
-  } catch (const std::system_error& error) {
-    throw FilmError(file_ + ": cannot be written: " + error.code().message());
-  }
+  const bridges::FileDescriptor part = make_part_file<FilmError>(file_, part_);
+  out_ = fdopen(fcntl(part.number(), F_DUPFD_CLOEXEC, 0), "wb");
   if (out_ == nullptr) throw FilmError(file_ + ": cannot be written: " + std::strerror(errno));
   try {
     write(header());

@@ -12,7 +12,6 @@
 #include <cstring>
 #include <fstream>
 #include <sstream>
-#include <system_error>
 #include <utility>
 
 #include "sim/config/message_text.hpp"
@@ -59,11 +58,7 @@ bool has_ffmpeg() {
 
 EncoderProgram::EncoderProgram(std::string file, const FilmFormat& format, const std::vector<std::string>& codec)
     : file_(std::move(file)), part_(file_ + ".part"), log_(file_ + ".log") {
-  try {
-    for (const std::string* path : {&part_, &log_}) make_new_file(*path);
-  } catch (const std::system_error& error) {
-    throw FilmError(file_ + ": cannot be written: " + error.code().message());
-  }
+  for (const std::string* path : {&part_, &log_}) make_part_file<FilmError>(file_, *path);
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0) throw FilmError(file_ + ": no pipe to ffmpeg: " + std::strerror(errno));
   const bridges::FileDescriptor read_end(ends[0]);

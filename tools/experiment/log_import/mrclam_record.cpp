@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <ctime>
 #include <filesystem>
 #include <stdexcept>
@@ -207,16 +208,33 @@ class ImportedRun {
 
 }  // namespace
 
+namespace {
+
+/// The greatest N of the files RobotN_... of a data set, at least 1.
+int count_of_robots(const std::string& directory) {
+  int count = 1;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(directory, error)) {
+    const std::string name = entry.path().filename().string();
+    int number = 0, end = 0;
+    if (std::sscanf(name.c_str(), "Robot%4d_%n", &number, &end) != 1 || end == 0) continue;
+    for (const char* file : {"Groundtruth.dat", "Odometry.dat", "Measurement.dat"})
+      if (name.substr(static_cast<std::size_t>(end)) == file) count = std::max(count, number);
+  }
+  return count;
+}
+
+}  // namespace
+
 MrclamData read_mrclam(const std::string& directory) {
   const auto path = [&](const std::string& file) { return directory + "/" + file; };
   const auto read = [&](const std::string& file) { return read_whole_file(path(file)); };
   MrclamData data;
   const std::map<int, int> subjects = parse_mrclam_barcodes(read("Barcodes.dat"), path("Barcodes.dat"));
   data.landmarks = parse_mrclam_landmarks(read("Landmark_Groundtruth.dat"), path("Landmark_Groundtruth.dat"));
-  std::error_code error;
-  for (int number = 1;; ++number) {
+  const int count = count_of_robots(directory);
+  for (int number = 1; number <= count; ++number) {
     const std::string stem = fmt::format("Robot{}_", number);
-    if (number > 1 && !std::filesystem::exists(path(stem + "Groundtruth.dat"), error)) break;
     MrclamData::Robot robot;
     robot.truth = parse_mrclam_truth(read(stem + "Groundtruth.dat"), path(stem + "Groundtruth.dat"));
     robot.odometry = parse_mrclam_odometry(read(stem + "Odometry.dat"), path(stem + "Odometry.dat"));

@@ -61,6 +61,13 @@ constexpr const char* canvas_for_tracks =
     "larger(a, b) = a > b ? a : b\n"
     "width = larger(larger(E_max, OE_max) + larger(-E_min, -OE_min), 1e-3)\n"
     "height = larger(larger(N_max, ON_max) + larger(-N_min, -ON_min), 1e-3)\n"
+    // A straight track has a range across it that its labels fit into.
+    "least = 0.3 * larger(width, height)\n"
+    "middle(low, high) = 0.5 * (high - low)\n"
+    "east = middle(larger(-E_min, -OE_min), larger(E_max, OE_max))\n"
+    "north = middle(larger(-N_min, -ON_min), larger(N_max, ON_max))\n"
+    "if (width < least) set xrange [east - 0.5 * least : east + 0.5 * least]\n"
+    "if (height < least) set yrange [north - 0.5 * least : north + 0.5 * least]\n"
     "across = larger(400, 900 * (height > width ? width / height : 1))\n"
     "up = larger(250, 900 * (width > height ? height / width : 1))\n"
     "set terminal pngcairo size across + 100, up + 220 font ',13'\n";
@@ -116,7 +123,7 @@ std::string tracks_script(const sim::World& world, const Tracks& tracks) {
     curves.emplace_back("$ends using 1:2 with points pt 7 ps 1 lc 'gray20' title 'at the end'");
   return canvas_for_tracks + end_positions(world) + title_of(world, "tracks from above") +
          "set output 'tracks.png'\nset size ratio -1\nset xlabel 'east (m)'\nset ylabel 'north (m)'\n" +
-         "set offsets graph 0.03, graph 0.03, graph 0.03, graph 0.03\n" + joined(curves) + "unset offsets\n";
+         "set offsets graph 0.03, graph 0.03, graph 0.03, graph 0.03\n" + joined(curves) + "unset offsets\nset xrange [*:*]\nset yrange [*:*]\n";
 }
 
 double rms_of(const Scoring::Track& track) {

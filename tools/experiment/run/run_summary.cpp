@@ -74,9 +74,9 @@ void Run::add_figures(Summary& summary) {
   summary.bad_messages =
       world_.counts().bad_messages + service_.bad_messages() + lockstep_.bad_messages() + scoring_.bad_messages();
   summary.quick_steps = world_.physics().quick_steps();
-  // More threads are of interest only where the run takes all the time it can get.
+  // More threads are of interest only to a user who asked for some, where the run takes all the time it can get.
   constexpr double keeps_up = 0.9;
-  if (control_.speed <= 0 || summary.real_time_factor() < keeps_up * control_.speed)
+  if (options_.threads > 1 && (control_.speed <= 0 || summary.real_time_factor() < keeps_up * control_.speed))
     summary.threads_advice = shared_work_.advice(sim::ThreadPool(options_.threads).threads());
   // Modems and serial ports.
   const LinkCounts links = link_counts(world_, "", "");

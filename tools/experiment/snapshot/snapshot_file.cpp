@@ -12,7 +12,6 @@
 #include <fstream>
 #include <iterator>
 #include <span>
-#include <system_error>
 
 #include "sim/base/crc32.hpp"
 #include "sim/config/message_text.hpp"
@@ -120,13 +119,11 @@ Snapshot snapshot_from_bytes(const sim::Bytes& bytes, const std::string& path) {
 void write_snapshot(const std::string& path, const Snapshot& snapshot) {
   const sim::Bytes bytes = to_bytes(snapshot);
   const std::string unfinished = path + ".part" + std::to_string(getpid());
+  const auto file = make_part_file<SnapshotFileError>(path, unfinished);
   try {
-    const bridges::FileDescriptor file = make_new_file(unfinished);
     write_all(file.number(), bytes, path);
     if (fsync(file.number()) != 0 && errno != EINVAL) throw cannot("written", path, errno);
     if (rename(unfinished.c_str(), path.c_str()) != 0) throw cannot("written", path, errno);
-  } catch (const std::system_error& error) {
-    throw cannot("written", path, error.code().value());
   } catch (...) {
     unlink(unfinished.c_str());
     throw;

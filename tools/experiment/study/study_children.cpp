@@ -28,6 +28,15 @@ namespace tools {
 
 namespace {
 
+/// The first rule of a run that does not hold, and the number of others.
+std::string why_failed(const RunRecord& run) {
+  const auto failed = [](const RunRecord::Rule& rule) { return !rule.passed; };
+  const auto first = std::find_if(run.rules.begin(), run.rules.end(), failed);
+  if (first == run.rules.end()) return run.event ? "by its event '" + run.event->rule + "'" : "a program failed";
+  const auto count = std::count_if(run.rules.begin(), run.rules.end(), failed);
+  return first->rule + (count > 1 ? fmt::format(", and {} more", count - 1) : "");
+}
+
 using Clock = std::chrono::steady_clock;
 
 /// Time for children to end after a signal: they end their own programs and write plots.
@@ -245,7 +254,7 @@ class StudyChildren {
       write_stamp(run.directory, {inputs_of(study_, run), short_version()});
       const Judgement judgement = run.record->judgement;
       outcome = judgement_word(judgement);
-      if (judgement == Judgement::failed) outcome += ": a rule of its world does not hold";
+      if (judgement == Judgement::failed) outcome += ": " + why_failed(*run.record);
     } else {
       run.tried = true;
       write_failure(run.directory, {inputs_of(study_, run), run.failure});

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <set>
 
+#include "sim/config/common_keys.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/config/yaml_writer.hpp"
 #include "sim/world_file/rule_list.hpp"
@@ -64,8 +65,7 @@ void StudyPlot::read(sim::ParamReader& in) {
 void StudyConfig::read(sim::ParamReader& in) {
   // Version and name.
   int version = 1;
-  in.require("shoal");
-  in.read("shoal", version, sim::between(1, 1), "version of the file format");
+  sim::read_version(in, version);
   in.require("study");
   in.read_name("study", name, "name of the study");
   in.read("description", description, "description in one sentence");

@@ -26,6 +26,14 @@ const std::vector<std::string>& column_names() {
   return names;
 }
 
+/// Column of this name; `shoal-nav` writes `x_m` and `cov_xx_m2`.
+std::string column_of(std::string_view name) {
+  if (name == "time_s") return "t";
+  if (name.starts_with("cov_") && name.ends_with("_m2")) return std::string(name.substr(4, name.size() - 7));
+  if (name.size() == 3 && name.ends_with("_m")) return std::string(name.substr(0, 1));
+  return std::string(name);
+}
+
 /// Index in a row of each column that is read.
 using Columns = std::map<std::string, std::size_t>;
 
@@ -37,7 +45,7 @@ bool is_name(const Word& word) {
 Columns columns_of_header(const LineReader& reader, const std::vector<Word>& words) {
   Columns columns;
   for (std::size_t i = 0; i < words.size(); ++i) {
-    const std::string name(words[i].text);
+    const std::string name = column_of(words[i].text);
     const auto& names = column_names();
     if (std::find(names.begin(), names.end(), name) == names.end()) continue;
     if (!columns.emplace(name, i).second) reader.fail(words[i], "each column must be named once");
@@ -46,6 +54,9 @@ Columns columns_of_header(const LineReader& reader, const std::vector<Word>& wor
     if (!columns.contains(name))
       reader.fail(1, std::string("the columns must include ") + name +
                          "; columns that are read: " + sim::list_text(column_names()));
+  // Its height is not an estimate: it has no covariance.
+  const auto is_own = [](const Word& word) { return word.text == "cov_xx_m2"; };
+  if (std::any_of(words.begin(), words.end(), is_own) && !columns.contains("zz")) columns.erase("z");
   // The covariance is that of the positions.
   const auto require_all = [&](const std::set<std::string>& names) {
     const bool any = std::any_of(names.begin(), names.end(), [&](const auto& name) { return columns.contains(name); });

@@ -25,7 +25,7 @@ struct EstimateFile {
 ///
 /// - TUM: `t x y z qx qy qz qw`, separated by blanks; the orientation is checked and not used;
 /// - CSV with the names of its columns in the first line: t, x, y, and optionally z and the covariance, xx, xy, yy, and
-///   with z also xz, yz, zz; further columns are not read;
+///   with z also xz, yz, zz; or those of shoal-nav: time_s, x_m, y_m, cov_xx_m2, ...; further columns are not read;
 /// - CSV without names: t, x, y or t, x, y, z.
 ///
 /// Times in s, positions in m.  `file`: name for errors.  Throws sim::ConfigError.

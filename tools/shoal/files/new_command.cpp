@@ -153,10 +153,12 @@ static void add_new_command(CLI::App& app, int& exit_code) {
                                       {}});
   world->callback([arguments, &exit_code] { exit_code = new_world(*arguments); });
   // Vehicle.
-  CLI::App* vehicle = add_kind(*command, "vehicle", "A rover of two driven wheels with a lidar", *arguments);
-  command_line::set_help_end(*vehicle, {{"shoal new vehicle digger"}, exit_codes, {}});
+  CLI::App* vehicle = add_kind(*command, "vehicle", "A rover of two driven wheels with a lidar, or an AUV", *arguments);
+  vehicle->add_flag("--under-water", arguments->under_water, "an AUV instead of a rover");
+  command_line::set_help_end(*vehicle,
+                             {{"shoal new vehicle digger", "shoal new vehicle fish --under-water"}, exit_codes, {}});
   vehicle->callback([arguments, &exit_code] {
-    exit_code = write_yaml(*arguments, start_vehicle(arguments->name, schema_file("vehicle")));
+    exit_code = write_yaml(*arguments, start_vehicle(arguments->name, arguments->under_water, schema_file("vehicle")));
   });
   // Program.
   CLI::App* program = add_kind(*command, "program", "A program that drives a vehicle in lockstep", *arguments);

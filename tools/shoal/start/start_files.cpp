@@ -170,6 +170,33 @@ devices:
   # - {name: gps, type: gps, position_m: [0, 0, 0.3], rate_hz: 1}
 )";
 
+constexpr const char* auv_text =
+    R"(# NAME: a vehicle to begin with, the shipped REMUS 100 with an autopilot and instruments.
+#   shoal check NAME.yaml                              every mistake, with line and column
+#   shoal new world bay --under-water --vehicle NAME.yaml    a world with it
+# Every key, with its default: shoal describe vehicle, shoal list devices, shoal describe dvl.
+# The vehicle frame: x forward, y left, z up, its origin at the centre of buoyancy.
+# Hull, fins and propeller are those of the included file.  For a hull of your own remove `include:` and write `bodies:`
+# with `hydrodynamics:` and the devices `thruster` and `fin`, as that file does: docs/models/coefficients.md.
+include: remus100.yaml
+shoal: 1
+vehicle: NAME
+description: AUV with an autopilot, a DVL, an AHRS, GPS and an acoustic modem.
+
+# Devices report on VEHICLE.DEVICE and take commands on VEHICLE.DEVICE.cmd.
+devices:
+  # Takes shoal.helm_command_t (speed, heading, depth) and shoal.route_command_t (waypoints).
+  - {name: autopilot, type: autopilot, thrusters: [propeller], fins: [rudder, stern_planes]}
+  # Velocity over the bottom.  `..._noise` is the error of a quantity; without the key a sensor is ideal.
+  - {name: dvl, type: dvl, position_m: [0.3, 0, -0.095], rate_hz: 5, beam_std_mps: 0.003}
+  - {name: ahrs, type: ahrs, rate_hz: 10, heading_noise: {gaussian_std: 0.02}}
+  - {name: pressure, type: pressure, rate_hz: 10, pressure_noise: {gaussian_std: 100}}
+  # Only at the surface.
+  - {name: gps, type: gps, position_m: [0, 0, 0.12], rate_hz: 1, horizontal_noise: {gaussian_std: 1}}
+  - {name: modem, type: acoustic_modem, position_m: [0, 0, -0.1]}
+  # - {name: altimeter, type: altimeter, position_m: [0.4, 0, -0.095], rate_hz: 10}
+)";
+
 std::string filled(std::string text, const std::string& word, const std::string& with) {
   for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + with.size()))
     text.replace(at, word.size(), with);
@@ -191,9 +218,9 @@ std::string start_sea(const std::string& name, const std::string& vehicle_file, 
   return schema_line(schema) + filled(filled(sea_text, "VEHICLE", vehicle_file), "NAME", name);
 }
 
-std::string start_vehicle(const std::string& name, const std::string& schema) {
+std::string start_vehicle(const std::string& name, bool under_water, const std::string& schema) {
   // The comment about channels contains VEHICLE.DEVICE, which is not replaced.
-  return schema_line(schema) + filled(vehicle_text, "NAME", name);
+  return schema_line(schema) + filled(under_water ? auv_text : vehicle_text, "NAME", name);
 }
 
 }  // namespace tools

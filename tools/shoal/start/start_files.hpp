@@ -10,7 +10,7 @@ namespace tools {
 std::string start_world(const std::string& name, const std::string& vehicle_file, const std::string& schema);
 /// Returns the same under water: an AUV with an autopilot.
 std::string start_sea(const std::string& name, const std::string& vehicle_file, const std::string& schema);
-/// Returns a commented rover with two driven wheels.  `schema`: path of vehicle.schema.json, empty: none.
-std::string start_vehicle(const std::string& name, const std::string& schema);
+/// Returns a commented rover with two driven wheels, or an AUV.  `schema`: path of vehicle.schema.json, empty: none.
+std::string start_vehicle(const std::string& name, bool under_water, const std::string& schema);
 
 }  // namespace tools

@@ -34,27 +34,15 @@ fs::path shipped() {
   return folder;
 }
 
-/// Returns the folders of the Python message types and the client: in an installation, or in a checkout and its build
-/// folder.
-std::vector<fs::path> python_folders() {
+/// Returns the folder of the Python package of this installation or build folder.
+fs::path package_folder() {
   std::error_code error;
-  const fs::path build = fs::read_symlink("/proc/self/exe", error).parent_path().parent_path();
-  // python/ of a checkout has neither: it is the source of the package.
-  std::vector<fs::path> found;
-  for (const fs::path& folder : {shipped() / "python", shipped() / "examples/python", build / "python"})
-    if (fs::is_regular_file(folder / "pilot.py", error) ||
-        fs::is_regular_file(folder / "shoal/twist_command_t.py", error))
-      found.push_back(folder);
-  return found;
-}
-
-/// Returns the file in the first folder that contains it.
-fs::path find_in(const std::vector<fs::path>& folders, const std::string& file) {
-  std::error_code error;
-  for (const fs::path& folder : folders)
-    if (fs::is_regular_file(folder / file, error)) return folder / file;
-  throw std::runtime_error("there is no " + file +
-                           " for Python: cmake --build build/release --target messages_python makes the message types");
+  const fs::path prefix = fs::read_symlink("/proc/self/exe", error).parent_path().parent_path();
+  for (const char* folder : {"lib/python3/dist-packages", "lib/python"})
+    if (fs::is_regular_file(prefix / folder / "shoal/client.py", error)) return prefix / folder;
+  throw std::runtime_error(
+      "there is no Python package beside this program: `tools/build programs` in the checkout builds "
+      "it, `cmake --install` installs it");
 }
 
 }  // namespace
@@ -72,14 +60,11 @@ StartFiles start_cpp_program(const std::string& name, const std::string& vehicle
 }
 
 StartFiles start_python_program(const std::string& name, const std::string& vehicle) {
-  const std::vector<fs::path> folders = python_folders();
-  find_in(folders, "shoal/twist_command_t.py");
-  std::string list;
-  for (const fs::path& folder : folders) list += (list.empty() ? "\"" : ", \"") + folder.string() + "\"";
-  const std::string text = adapted(find_in(folders, "pilot.py"), name, vehicle);
-  return {
-      {name + ".py", replaced(text, "\nimport sys\n",
-                              "\nimport sys\n\nsys.path[:0] = [" + list + "]  # the message types and the client\n")}};
+  const std::string folder = package_folder().string();
+  const std::string text = adapted(shipped() / "examples/python/pilot.py", name, vehicle);
+  if (folder.starts_with("/usr/lib/")) return {{name + ".py", text}};  // python3 looks there
+  const std::string path = "\nimport sys\n\nsys.path.insert(0, \"" + folder + "\")  # the Python package\n";
+  return {{name + ".py", replaced(text, "\nimport sys\n", path)}};
 }
 
 }  // namespace tools

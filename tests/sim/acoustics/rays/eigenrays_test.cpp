@@ -12,6 +12,7 @@
 
 #include "sim/acoustics/multipath.hpp"
 #include "sim/acoustics/rays/ray_tables.hpp"
+#include "sim/acoustics/rays/ray_trace.hpp"
 #include "sim/medium/water_column.hpp"
 #include "tests/project_paths.hpp"
 

@@ -142,6 +142,24 @@ TEST(AcousticLink, TableOverRangeFallsAndKeepsTheDepths) {
   EXPECT_EQ(std::count(csv.begin(), csv.end(), ','), 5 * (4 + 7));
 }
 
+TEST(AcousticLink, SaysWhichPhasesItsEchoesHaveAndTheRatioWithThem) {
+  AcousticsConfig config = thorp();
+  config.multipath.emplace();
+  config.multipath->water_depth_m = 100;
+  for (const auto& [phases, text] : {std::pair{sim::MultipathConfig::Phases::random, "phases averaged;"},
+                                     {sim::MultipathConfig::Phases::geometric, "phases of the paths;"}}) {
+    config.multipath->phases = phases;
+    const auto rows = tools::over_range(link_over(500), {}, {500}, config, sea());
+    const std::string budget = tools::budget_text(link_over(500), rows.at(0).budget, config);
+    EXPECT_THAT(budget, HasSubstr(text));
+    const std::string csv = tools::csv_text(rows, {});
+    EXPECT_THAT(csv, testing::StartsWith("range_m,travel_time_s,level_dB,noise_dB,snr_dB,snr_with_echoes_dB\n"));
+    // The budget has the same number, rounded to 0.1 dB.
+    const std::size_t row = budget.find("signal over noise, echoes") + 25;
+    EXPECT_NEAR(std::stod(csv.substr(csv.rfind(',') + 1)), std::stod(budget.substr(row)), 0.051);
+  }
+}
+
 TEST(AcousticLink, DrawsAnImage) {
   const ScratchFolder folder;
   const std::vector<tools::AcousticPacket> packets{*tools::parse_packet("fsk:80:32")};
@@ -231,6 +249,9 @@ TEST(AcousticLink, SaysThatNoRayReachesAShadow) {
   EXPECT_TRUE(dark.shadow);
   EXPECT_EQ(dark.level.dB(), -HUGE_VAL);
   EXPECT_THAT(tools::budget_text(to_50_m(2300), dark, config), HasSubstr("in a shadow: no ray arrives"));
+  EXPECT_THAT(tools::budget_text(to_50_m(2300), dark, config), Not(HasSubstr("travel time")));
+  const auto rows = tools::over_range(to_50_m(2300), {}, {2300}, config, thermocline());
+  EXPECT_THAT(tools::csv_text(rows, {}), HasSubstr("\n2300,nan,-inf,"));
   config.shadow_loss_dB = 20;
   EXPECT_GT(tools::link_budget(to_50_m(2300), config, thermocline()).level.dB(), 50);
 }

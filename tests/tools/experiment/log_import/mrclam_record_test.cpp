@@ -153,4 +153,16 @@ TEST_F(MrclamTest, RefusesWhatItCannotUse) {
   EXPECT_THAT(error("Barcodes.dat", "1 5\n"), HasSubstr("Robot2_Odometry.dat"));
 }
 
+TEST_F(MrclamTest, NoRobotIsLeftOutForAMissingFile) {
+  write("Robot4_Odometry.dat", "");
+  write("Robot4_Odometry.dat.bak", "");
+  write("Robot5_notes.dat", "");
+  try {
+    read();
+    FAIL();
+  } catch (const std::exception& problem) {
+    EXPECT_THAT(problem.what(), HasSubstr("Robot3_Groundtruth.dat: cannot be read: No such file"));
+  }
+}
+
 }  // namespace

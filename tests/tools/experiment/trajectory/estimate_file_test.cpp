@@ -49,6 +49,17 @@ TEST(EstimateFile, ReadsCovariances) {
   EXPECT_EQ((*whole.rows[0].covariance_m2)(2, 1), 1);
 }
 
+TEST(EstimateFile, ReadsFilesOfShoalNav) {
+  const EstimateFile file = parse_estimates(
+      "time_s,utime,x_m,y_m,z_m,vx_mps,vy_mps,yaw_rad,cov_xx_m2,cov_xy_m2,cov_yy_m2\n"
+      "2.5,2500000,1,2,-3,0,0,0,4,1,2\n",
+      "f");
+  EXPECT_EQ(file.rows[0].time_s, 2.5);
+  EXPECT_EQ(file.rows[0].position_m, sim::Vector3d(1, 2, 0));
+  EXPECT_FALSE(file.has_height);  // the filter estimates none
+  EXPECT_EQ((*file.rows[0].covariance_m2)(1, 1), 2);
+}
+
 TEST(EstimateFile, RefusesWhatItCannotUse) {
   EXPECT_EQ(estimate_error(""), "mine.csv:1:1: must have an estimate");
   EXPECT_EQ(estimate_error("1 2 3\n"),

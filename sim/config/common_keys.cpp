@@ -1,11 +1,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sim/config/read_points.hpp"
+#include "sim/config/common_keys.hpp"
 
+#include <charconv>
 #include <string>
 
 #include "sim/config/message_text.hpp"
 
 namespace sim {
+
+void read_version(ParamReader& in, int& version, const char* key) {
+  in.require(key);
+  const ConfigNode* node = in.describing() ? nullptr : in.node()->find(key);
+  const std::string text = node != nullptr && node->kind == ConfigNode::Kind::scalar ? node->scalar : "";
+  int given = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), given);
+  if (error != std::errc() || end != text.data() + text.size() || given < 2)
+    return in.read(key, version, between(1, 1), "version of the file format");
+  in.child(key);
+  in.error(key, "'" + std::string(key) + "' must be 1, got " + text + ": the file is of a newer Shoal");
+}
 
 void read_points(ParamReader& in, const char* key, std::vector<Vector3d>& value, std::size_t columns,
                  const char* meaning) {
