@@ -27,6 +27,11 @@ std::string seconds_text(sim::Time time) {
   return fmt::format("{:.2f} s", sim::to_seconds(time));
 }
 
+void add_subscriptions(ChannelUse& use, const sim::LockstepMember& member) {
+  for (std::size_t i = 0; i < member.terms.receives.size(); ++i)
+    use.add_subscribed(member.name, member.terms.receives[i], i < member.has_received.size() && member.has_received[i]);
+}
+
 }  // namespace
 
 std::string LockstepService::names() const {
@@ -218,6 +223,7 @@ void LockstepService::remove_all(const std::string& why) {
 void LockstepService::discard(const std::string& client, const std::string& why) {
   if (const sim::LockstepMember* member = lockstep_.find(client)) {
     give_up(*member);
+    add_subscriptions(use_, *member);
     if (member->terms.session != 0) {
       ended_.emplace_back(client, member->terms.session);
       if (ended_.size() > max_ended_sessions) ended_.pop_front();
@@ -236,6 +242,12 @@ void LockstepService::end_summary(const std::string& client, const std::string& 
   LockstepSummary& summary = summary_of(client);
   summary.ended = why;
   summary.ended_s = sim::to_seconds(world_.now());
+}
+
+ChannelUse LockstepService::channel_use() const {
+  ChannelUse use = use_;
+  for (const auto& [name, member] : lockstep_.members()) add_subscriptions(use, member);
+  return use;
 }
 
 void LockstepService::drop(const std::string& client, const std::string& why) {

@@ -208,6 +208,7 @@ void LockstepService::take_ack(int link_index, const sim::Message& message) {
       return;
     }
     open_channels(link_index, ack);
+    note_use(link_index, ack);
     link.messages.collect();  // messages before this answer that arrived since the last collection
     link.messages.expect(ack.client, named);
     Pending& requested = pending_[ack.client];
@@ -241,6 +242,12 @@ bool LockstepService::is_only_recorded(int link_index, std::string_view channel)
   const Link& link = link_of(link_index);
   return link.is_recorded && link.passed_on.contains(channel) && link.gate.readers(channel) == 1 &&
          !lockstep_.has_receiver(link_index, channel);
+}
+
+void LockstepService::note_use(int link_index, const shoal::sim_ack_t& ack) {
+  const Link& link = link_of(link_index);
+  for (const std::string& channel : ack.channel)
+    use_.add_published(ack.client, channel, link.gate.reads(channel) && !is_only_recorded(link_index, channel));
 }
 
 bool LockstepService::do_without(const sim::LockstepMember& member) {

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "bridges/lockstep/answer_history.hpp"
+#include "bridges/lockstep/channel_use.hpp"
 #include "bridges/lockstep/control_guard.hpp"
 #include "bridges/lockstep/lockstep_summary.hpp"
 #include "shoal/sim_ack_t.hpp"
@@ -140,6 +141,9 @@ class LockstepService {
   /// of client 'pilot' on 'sim.note' (channels of the simulator)`.  Only with recorded buses.
   std::vector<std::string> not_recorded() const;
 
+  /// Returns what the clients did with each channel, including former clients.
+  ChannelUse channel_use() const;
+
   /// Maximum number of channels of a bus that are open only for the record.
   static constexpr std::size_t max_recorded_only = 1000;
 
@@ -204,6 +208,8 @@ class LockstepService {
   /// Opens the channels of an answer that the world does not read, for other clients and for the record.
   void open_channels(int link, const shoal::sim_ack_t& ack);
   bool is_only_recorded(int link, std::string_view channel) const;
+  /// Notes for each channel of an answer whether something besides the record reads it.
+  void note_use(int link, const shoal::sim_ack_t& ack);
   /// Continues without the missing messages of a client when only the record needs them; otherwise returns false.
   bool do_without(const sim::LockstepMember& member);
   /// Stops waiting for the missing messages of a client.
@@ -247,6 +253,7 @@ class LockstepService {
     const char* why;
   };
   std::map<std::pair<std::string, std::string>, NotRecorded> not_recorded_;  // by client and channel
+  ChannelUse use_;  // published by all clients, subscribed by former ones
   bool paused_here_ = false;
   std::int64_t pause_requests_ = 0;  // RunControl::pause_requests at that time
   bool suspended_ = false;

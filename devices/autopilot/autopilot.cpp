@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <stdexcept>
 
 #include "devices/autopilot/level_check.hpp"
@@ -17,6 +18,7 @@
 #include "shoal/waypoints_command_t.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/vehicle/mounted_device.hpp"
+#include "sim/world/plan_check.hpp"
 #include "sim/world/world.hpp"
 
 namespace devices {
@@ -59,6 +61,8 @@ Autopilot::Autopilot(const Params& params, const sim::DeviceContext& context)
       vehicle_(context.vehicle),
       body_(context.body),
       faults_(context.faults),
+      warnings_(context.host.warnings),
+      who_("device '" + context.full_name() + "'"),
       may_need_bottom_(needs_bottom()),
       surface_m_(world_.config().medium.water ? world_.config().medium.water->surface_m : 0),
       actuators_(params.helm.empty() ? std::make_optional<AutopilotActuators>(params, context) : std::nullopt),
@@ -68,6 +72,7 @@ Autopilot::Autopilot(const Params& params, const sim::DeviceContext& context)
       mode_(params.first_mode()) {
   check_helm(context, params.helm);
   if (actuators_) check_level(*actuators_, params.gains.attitude, context);
+  warn_of_no_speed(context);
   const HoldParams& hold = params.hold;
   desired_.speed_mps = hold.speed_mps;
   desired_.heading_rad =
@@ -77,6 +82,50 @@ Autopilot::Autopilot(const Params& params, const sim::DeviceContext& context)
   if (mode_ == Mode::waypoints) start_route(params.route(), params.loop);
   if (mode_ == Mode::station) desired_.station_m = params.station.place_m.value_or(place());
   if (mode_ == Mode::circle) start_circle(params.station.place_m.value_or(place()));
+}
+
+/// Warns of a route that begins without a speed, unless something else in the world may command one.
+void Autopilot::warn_of_no_speed(const sim::DeviceContext& context) const {
+  if (mode_ != Mode::waypoints || params_.route().front().speed_mps.value_or(params_.hold.speed_mps) != 0) return;
+  const sim::WorldConfig& world = context.world.config();
+  std::set<std::string> published;
+  for (const sim::EventConfig& event : world.events)
+    for (const sim::ActionEntry& entry : event.actions)
+      if (entry.action) entry.action->add_channels(published);
+  const std::string commands =
+      sim::device_channel(context.host.channels, vehicle_.name(), context.config, sim::ChannelKind::command);
+  if (!world.processes.empty() || published.contains(commands)) return;
+  const char* key = params_.lawnmower ? "lawnmower" : "waypoints";
+  warnings_.building().warn(context.config.source ? sim::place_of(*context.config.source, key) : context.config.place,
+                            "vehicle '" + vehicle_.name() + "': device '" + context.config.name + "'",
+                            std::string("'") + key +
+                                "' begins without a speed: the vehicle stands still until a command gives one; set "
+                                "'speed_mps' there or in 'hold'");
+}
+
+std::string_view Autopilot::lacks() const {
+  return mode_ == Mode::waypoints && desired_.speed_mps == 0 ? "speed for its route" : "";
+}
+
+std::vector<sim::PlannedPlace> Autopilot::planned_places() const {
+  std::vector<sim::PlannedPlace> places;
+  std::optional<double> depth_m = params_.hold.depth_m;
+  if (depth_m) places.push_back({"hold", place(), *depth_m});
+  const char* key = params_.lawnmower ? "lawnmower" : "waypoints";
+  for (const Waypoint& point : params_.route()) {
+    if (point.depth_m || point.altitude_m) depth_m = point.depth_m;
+    if (depth_m) places.push_back({point.depth_m ? key : "hold", point.p_W, *depth_m});
+  }
+  return places;
+}
+
+void Autopilot::note_depth(const Eigen::Vector2d& p_W, double depth_m) {
+  const std::string fault = sim::depth_fault(world_, p_W, depth_m);
+  if (!fault.empty()) warnings_.keep_for_end(who_, "it was commanded to a place whose " + fault);
+}
+
+void Autopilot::note_start_of_route() {
+  if (desired_.speed_mps == 0) warnings_.keep_for_end(who_, "it was commanded to follow a route, and had no speed");
 }
 
 double Autopilot::depth_m() const {
@@ -115,7 +164,8 @@ void Autopilot::set_mode(Mode mode) {
   if (mode == Mode::waypoints) {
     if (route_.size() == 0 && params_.route().empty()) throw std::runtime_error("there is no route");
     const bool own = route_.size() == 0;
-    return own ? start_route(params_.route(), params_.loop) : start_route(route_.points(), route_.loops());
+    own ? start_route(params_.route(), params_.loop) : start_route(route_.points(), route_.loops());
+    return note_start_of_route();
   }
   if (mode_ == Mode::off || mode == Mode::off) law_.reset();
   desired_.station_m.reset();
@@ -136,6 +186,7 @@ void Autopilot::set_helm(const shoal::helm_command_t& command) {
   }
   desired_.speed_mps = given(command.speed_mps, desired_.speed_mps);
   take_height(if_number(command.depth_m), if_number(command.altitude_m));
+  if (command.depth_m < 0) note_depth(place(), command.depth_m);  // the bottom there may be deeper on its way
 }
 
 void Autopilot::set_waypoints(const shoal::waypoints_command_t& command) {
@@ -143,9 +194,11 @@ void Autopilot::set_waypoints(const shoal::waypoints_command_t& command) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     points[i].p_W = {command.x_m[i], command.y_m[i]};
     points[i].depth_m = if_number(command.depth_m[i]);
+    if (points[i].depth_m) note_depth(points[i].p_W, *points[i].depth_m);
   }
   desired_.speed_mps = given(command.speed_mps, desired_.speed_mps);
   start_route(std::move(points), command.loop != 0);
+  note_start_of_route();
 }
 
 void Autopilot::set_station(const shoal::station_command_t& command) {
@@ -155,6 +208,7 @@ void Autopilot::set_station(const shoal::station_command_t& command) {
   desired_.station_m = Eigen::Vector2d(given(command.x_m, place().x()), given(command.y_m, place().y()));
   desired_.heading_rad = given(command.heading_rad, kept ? heading_rad : desired_.heading_rad);
   take_height(if_number(command.depth_m), std::nullopt);
+  if (!std::isnan(command.depth_m)) note_depth(*desired_.station_m, command.depth_m);
 }
 
 CraftMotion Autopilot::motion_of(const sim::World& world) const {

@@ -47,6 +47,8 @@ class Autopilot final : public sim::Sensor {
   std::int64_t rays() const override { return altitude_desired_m_ || may_need_bottom_ ? 1 : 0; }
   /// Returns true when the configuration has an altitude to hold.
   bool needs_bottom() const override;
+  std::string_view lacks() const override;
+  std::vector<sim::PlannedPlace> planned_places() const override;
   void visit_state(sim::StateArchive& archive) override;
   const Reading& reading() const { return reading_; }
   const Route& route() const { return route_; }
@@ -66,6 +68,10 @@ class Autopilot final : public sim::Sensor {
   double altitude_of(const sim::SenseContext& context) const;
   double depth_m() const;
   Eigen::Vector2d place() const;
+  void warn_of_no_speed(const sim::DeviceContext& context) const;
+  /// Keeps a warning for the end of the run of a commanded depth at a place.
+  void note_depth(const Eigen::Vector2d& p_W, double depth_m);
+  void note_start_of_route();
   void take_height(const std::optional<double>& depth_m, const std::optional<double>& altitude_m);
   void start_route(std::vector<Waypoint> points, bool loop);
   void follow_route(double dt_s);
@@ -81,6 +87,8 @@ class Autopilot final : public sim::Sensor {
   sim::Vehicle& vehicle_;
   const sim::Body& body_;
   const sim::DeviceFaults& faults_;
+  sim::WorldWarnings& warnings_;
+  const std::string who_;
   const bool may_need_bottom_;
   double surface_m_;  // height of the still water surface
   std::optional<AutopilotActuators> actuators_;

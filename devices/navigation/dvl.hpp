@@ -72,6 +72,7 @@ class Dvl final : public sim::Sensor {
     return view;
   }
   std::int64_t rays() const override { return dvl_beams; }
+  std::string_view lacks() const override { return reading_.velocity_S ? "" : "bottom lock"; }
   void visit_state(sim::StateArchive& archive) override;
   const Reading& reading() const { return reading_; }
 

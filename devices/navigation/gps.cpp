@@ -66,7 +66,9 @@ void Gps::measure(const sim::SenseContext& context) {
   reading_.v_W = context.v_WS_W;
   reading_.fix_quality = params_.min_height_m && reading_.p_W.z() < *params_.min_height_m ? 0 : params_.fix_quality;
   const bool denied = context.world.zones().denied(sim::ZoneFlag::gps_denied, reading_.p_W);
-  if (denied || context.world.medium().in_water(reading_.p_W)) denied_at_ = context.now;
+  const bool submerged = context.world.medium().in_water(reading_.p_W);
+  no_fix_ = submerged ? "fix under water" : denied ? "fix in a zone that denies it" : "fix";
+  if (denied || submerged) denied_at_ = context.now;
   if (denied_at_ && context.now <= *denied_at_ + sim::from_seconds(params_.reacquisition_s)) reading_.fix_quality = 0;
   reading_.position = geodesy_.to_geodetic(reading_.p_W);
   find_course(true_course_rad_);

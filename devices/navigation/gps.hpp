@@ -51,6 +51,7 @@ class Gps final : public sim::Sensor {
   void visit_state(sim::StateArchive& archive) override {
     archive(horizontal_noise_, vertical_noise_, velocity_noise_, reading_, true_course_rad_, sampled_at_, denied_at_);
   }
+  std::string_view lacks() const override { return reading_.fix_quality > 0 ? "" : no_fix_; }
   const Reading& reading() const { return reading_; }
   const Params& params() const { return params_; }
   /// Returns the reported standard deviation for a noise model, m.
@@ -72,6 +73,7 @@ class Gps final : public sim::Sensor {
   sim::NoiseOf<&Params::velocity_noise> velocity_noise_;
   Reading reading_;
   double true_course_rad_ = 0;  ///< held by the truth channel
+  std::string_view no_fix_ = "fix";  ///< what the last sample lacked, and why
   sim::Time sampled_at_{0};
   std::optional<sim::Time> denied_at_;  ///< last time under water or in a denied zone
 };

@@ -71,6 +71,7 @@ class Altimeter final : public RangeSonar {
   static constexpr const char* meaning = "Single-beam sonar that looks down: height above the ground.";
   Altimeter(const Params& params, const sim::DeviceContext& context)
       : RangeSonar(params, context, -sim::Vector3d::UnitZ()) {}
+  std::string_view lacks() const override { return valid() ? "" : "echo of the bottom"; }
 };
 
 }  // namespace devices

@@ -87,6 +87,12 @@ void Lbl::disturb(double dt_s, sim::Random& random) {
   }
 }
 
+std::string_view Lbl::lacks() const {
+  const bool answered =
+      std::any_of(ranges_.begin(), ranges_.end(), [](const Range& range) { return !std::isnan(range.travel_time_s); });
+  return answered ? "" : "answer of a transponder";
+}
+
 void Lbl::visit_state(sim::StateArchive& archive) {
   archive(interrogator_, asking_, next_ping_, ranges_, since_ping_s_, time_noise_);
 }

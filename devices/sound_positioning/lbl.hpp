@@ -45,6 +45,7 @@ class Lbl final : public sim::Sensor {
   void measure(const sim::SenseContext& context) override;
   void disturb(double dt_s, sim::Random& random) override;
   void visit_state(sim::StateArchive& archive) override;
+  std::string_view lacks() const override;
   /// Returns the answers to the ping completed at this sample; empty: none is completed, or no transponder was
   /// interrogated.
   const std::vector<Range>& ranges() const { return ranges_; }

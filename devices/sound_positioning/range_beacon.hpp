@@ -51,6 +51,9 @@ class RangeBeacon final : public sim::Sensor {
   void measure(const sim::SenseContext& context) override;
   void disturb(double dt_s, sim::Random& random) override;
   void visit_state(sim::StateArchive& archive) override;
+  std::string_view lacks() const override {
+    return params_.beacon_only || !sightings_.empty() ? "" : "beacon in range";
+  }
   const std::vector<Sighting>& sightings() const { return sightings_; }
   const Params& params() const { return params_; }
 

@@ -54,6 +54,7 @@ class Usbl final : public sim::Sensor {
   void measure(const sim::SenseContext& context) override;
   void disturb(double dt_s, sim::Random& random) override;
   void visit_state(sim::StateArchive& archive) override;
+  std::string_view lacks() const override { return fixes_.empty() ? "answer of a transponder" : ""; }
   const std::vector<Fix>& fixes() const { return fixes_; }
 
  private:

@@ -11,6 +11,12 @@
 
 namespace sim {
 
+/// Warning that was found and is given later; see Warnings::warn().
+struct Warning {
+  SourcePlace place;
+  std::string who, text;
+};
+
 /// Warnings of input that is valid but probably unintended, each logged as one line: `file:line:column: who: text`; and
 /// notes on valid input, which `shoal check` prints.
 class Warnings {
@@ -18,6 +24,7 @@ class Warnings {
   /// Logs `place: who: text` (place and who may be empty).  The same text at the same place is logged once,
   /// independent of `who`; at most 100 lines are logged.
   void warn(const SourcePlace& place, const std::string& who, const std::string& text);
+  void warn(const Warning& warning) { warn(warning.place, warning.who, warning.text); }
   /// Keeps a line in the same form, without logging it.
   void note(const SourcePlace& place, const std::string& who, const std::string& text);
   const std::vector<std::string>& notes() const { return notes_; }

@@ -5,6 +5,8 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "sim/base/math.hpp"
 #include "sim/base/state_hash.hpp"
@@ -46,6 +48,13 @@ struct SweepContext {
   Pose X_WS_at(Time at) const;
 };
 
+/// Place to which the configuration of a device sends its vehicle.
+struct PlannedPlace {
+  const char* key;      ///< that gives it, such as `waypoints`
+  Eigen::Vector2d p_W;  ///< m
+  double depth_m;       ///< below the still surface
+};
+
 /// Model of a sensor: reads the physics, and does not depend on message types.
 /// A model whose measure(), disturb() and sweep() access only the model itself and the scene declares `static constexpr
 /// bool casts_rays = true`: these functions and its reporter are then called from several threads, for different
@@ -75,6 +84,12 @@ class Sensor {
   /// Returns whether the sensor detects the bottom without casting rays as scanners do: a world without a bottom then
   /// causes a warning.
   virtual bool needs_bottom() const { return false; }
+  /// Returns what the present reading lacks, such as `bottom lock`; empty: nothing.  A sensor that has lacked it from
+  /// its first sample on causes a warning at the end of the run.
+  virtual std::string_view lacks() const { return {}; }
+  /// Returns the places to which it brings its vehicle by itself, with their depths: those below the bottom or in the
+  /// air cause a warning.
+  virtual std::vector<PlannedPlace> planned_places() const { return {}; }
   /// Receives data scheduled for this device at a simulated time, see DeviceHost::schedule_arrival.
   virtual void arrive(Time /*at*/, std::span<const std::byte> /*payload*/) {}
   /// Visits the reading and all state that is kept between samples.

@@ -9,7 +9,6 @@
 #include <mutex>
 
 #include "sim/base/first_failure.hpp"
-#include "sim/base/log.hpp"
 #include "sim/config/diagnostics.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/hydrodynamics/coefficient_model.hpp"
@@ -79,13 +78,13 @@ void Hydrodynamics::add_craft(Body& body, const HydrodynamicsConfig& config) {
 }
 
 void Hydrodynamics::check_step(const CoefficientModel& model, const HydrodynamicsConfig& config,
-                               const std::string& who) const {
+                               const std::string& who) {
   const CoefficientModel::StepLimit limit = model.max_step();
   if (limit.step_s < step_s_)
     throw_config_error(config.place, who,
                        std::string("the ") + limit.why + " are too stiff for 'step_s' " + number_text(step_s_) +
                            fmt::format(": they need a step below {:.6g} s", limit.step_s));
-  for (const std::string& doubt : doubts_about(config, who)) log_warn("{}", doubt);
+  for (std::string& doubt : doubts_about(config)) warnings_.push_back({config.place, who, std::move(doubt)});
 }
 
 void Hydrodynamics::remove_group(int group) {

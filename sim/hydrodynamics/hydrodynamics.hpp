@@ -65,8 +65,8 @@ class Hydrodynamics {
   /// Adds the hydrodynamic forces to those that actuators applied to the bodies in this step.  `threads` share the
   /// bodies; may be null.  Of several exceptions, that of the first body is thrown.
   void step(double gravity_mps2, ThreadPool* threads = nullptr);
-  /// Returns the warnings about bodies since the last call, one line each.
-  std::vector<std::string> take_warnings() { return std::exchange(warnings_, {}); }
+  /// Returns the warnings about bodies since the last call.
+  std::vector<Warning> take_warnings() { return std::exchange(warnings_, {}); }
 
   /// Visits the last water values of bodies in the air, and which warnings were given.
   void visit_state(StateArchive& archive);
@@ -98,7 +98,7 @@ class Hydrodynamics {
   void warn_of_stiffness(CoefficientBody& craft, const Six& nu_r, double fastest_rate, LateWarnings& late) const;
   CraftState state_of(const CoefficientModel& model, const BodyInWater& around) const;
   static void warn_of_missing_current(Wetted& wetted, const Vector3d& p_WB, LateWarnings& late);
-  void check_step(const CoefficientModel& model, const HydrodynamicsConfig& config, const std::string& who) const;
+  void check_step(const CoefficientModel& model, const HydrodynamicsConfig& config, const std::string& who);
 
   const Medium& medium_;
   double gravity_mps2_;
@@ -110,7 +110,7 @@ class Hydrodynamics {
   std::vector<Wetted> wetted_;  // bodies whose water begin_step() updates, in order of addition too
   std::vector<InWater> groups_;
   bool groups_listed_ = false;
-  std::vector<std::string> warnings_;
+  std::vector<Warning> warnings_;
   Warn warn_;
   // Models, shared by identical vehicles.
   std::map<const HydrodynamicsConfig*, std::weak_ptr<const CoefficientModel>> models_;

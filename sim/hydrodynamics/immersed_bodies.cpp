@@ -36,15 +36,14 @@ struct ImmersedBodies::Wrench {
   Matrix6d mass_matrix(double mass_kg, const Matrix3d& I_W) const;
 };
 
-double ImmersedBodies::add(Body& body, const BodyConfig& config, double gravity_mps2,
-                           std::vector<std::string>& warnings) {
+double ImmersedBodies::add(Body& body, const BodyConfig& config, double gravity_mps2, std::vector<Warning>& warnings) {
   ImmersedBody added;
   added.body = &body;
   added.pieces = pieces_of(body, config, std::numeric_limits<double>::infinity(), warnings);
   if (added.pieces.empty()) return 0;
-  find_stiffness(added, gravity_mps2, warnings);
+  find_stiffness(added, config.place, gravity_mps2, warnings);
   if (medium_.has_waves()) {
-    std::vector<std::string> known;
+    std::vector<Warning> known;
     added.pieces = pieces_of(body, config, section_m, known);
   }
   for (const ImmersedPiece& piece : added.pieces) {
@@ -55,13 +54,13 @@ double ImmersedBodies::add(Body& body, const BodyConfig& config, double gravity_
 }
 
 std::vector<ImmersedPiece> ImmersedBodies::pieces_of(const Body& body, const BodyConfig& config, double max_m,
-                                                     std::vector<std::string>& warnings) {
+                                                     std::vector<Warning>& warnings) {
+  const std::string who = "body '" + body.name() + "'";
   std::vector<ImmersedPiece> pieces;
   for (const PartConfig& part : config.parts) {
     std::optional<std::string> warning;
-    for (ImmersedPiece& piece : sim::pieces_of(part, max_m, "body '" + body.name() + "'", meshes_, warning))
-      pieces.push_back(std::move(piece));
-    if (warning) warnings.push_back(*warning);
+    for (ImmersedPiece& piece : sim::pieces_of(part, max_m, who, meshes_, warning)) pieces.push_back(std::move(piece));
+    if (warning) warnings.push_back({part.place, who, *warning});
   }
   return pieces;
 }
@@ -69,7 +68,8 @@ std::vector<ImmersedPiece> ImmersedBodies::pieces_of(const Body& body, const Bod
 /// Finds hydrostatic stiffness that the step cannot resolve: a light body with a large water plane may oscillate faster
 /// than semi-implicit Euler can follow, h w <= 2.  From h w = sqrt(2) on, these springs are integrated by backward
 /// Euler, which is stable for any stiffness, and adds damping.
-void ImmersedBodies::find_stiffness(ImmersedBody& body, double gravity_mps2, std::vector<std::string>& warnings) const {
+void ImmersedBodies::find_stiffness(ImmersedBody& body, const SourcePlace& place, double gravity_mps2,
+                                    std::vector<Warning>& warnings) const {
   const LocalWater water = medium_.water_at(body.body->X_WB().translation());
   const double pressure = water.density_kgpm3 * std::abs(gravity_mps2);  // per metre
   double heave_Npm = 0;
@@ -96,9 +96,10 @@ void ImmersedBodies::find_stiffness(ImmersedBody& body, double gravity_mps2, std
   body.stiff = fastest > max;
   if (!body.stiff) return;
   body.body->use_first_order();  // these springs are integrated for its step
-  warnings.push_back("body '" + body.body->name() + "': it is so light that it oscillates in the water faster than " +
-                     "'step_s' " + number_text(step_s_) + " resolves, and is damped; use a step below " +
-                     number_text(std::floor(std::sqrt(2 / fastest) * 1e4) / 1e4) + " s");
+  warnings.push_back({place, "body '" + body.body->name() + "'",
+                      "it is so light that it oscillates in the water faster than 'step_s' " + number_text(step_s_) +
+                          " resolves, and is damped; use a step below " +
+                          number_text(std::floor(std::sqrt(2 / fastest) * 1e4) / 1e4) + " s"});
 }
 
 void ImmersedBodies::remove_group(int group) {

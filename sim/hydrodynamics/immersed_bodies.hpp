@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sim/base/thread_pool.hpp"
+#include "sim/config/warnings.hpp"
 #include "sim/hydrodynamics/body_in_water.hpp"
 #include "sim/hydrodynamics/immersed_drag.hpp"
 #include "sim/hydrodynamics/immersed_piece.hpp"
@@ -22,7 +23,7 @@ class ImmersedBodies {
 
   /// Adds a body and returns its bounding radius about the origin, m; 0 for a body without displacing parts, which is
   /// not added.  Appends warnings about it.  Throws ConfigError (meshes).
-  double add(Body& body, const BodyConfig& config, double gravity_mps2, std::vector<std::string>& warnings);
+  double add(Body& body, const BodyConfig& config, double gravity_mps2, std::vector<Warning>& warnings);
   void remove_group(int group);
   /// Adds the water forces to the forces on each body.  `around`: by body number.  `threads` may be null.
   void step(double gravity_mps2, std::span<const BodyInWater> around, ThreadPool* threads);
@@ -41,8 +42,9 @@ class ImmersedBodies {
   struct Wrench;
 
   std::vector<ImmersedPiece> pieces_of(const Body& body, const BodyConfig& config, double max_m,
-                                       std::vector<std::string>& warnings);
-  void find_stiffness(ImmersedBody& body, double gravity_mps2, std::vector<std::string>& warnings) const;
+                                       std::vector<Warning>& warnings);
+  void find_stiffness(ImmersedBody& body, const SourcePlace& place, double gravity_mps2,
+                      std::vector<Warning>& warnings) const;
   // `drag`: of the present body.
   void step_body(const ImmersedBody& body, double gravity_mps2, const BodyInWater& around, ImmersedDrag& drag) const;
   void add_piece(const ImmersedPiece& piece, double gravity_mps2, const LocalWater& at_origin, ImmersedDrag& drag,

@@ -103,7 +103,7 @@ std::shared_ptr<const Mesh> closed_mesh(const PartConfig& part, const std::strin
   if (at->second) return at->second;
   const std::string open = "mesh '" + part.mesh + "' has an open surface, so that the water it displaces is unknown";
   if (part.displaces_was_given) throw_config_error(part.place, who, open + ": close it, or set 'displaces' to false");
-  warning = who + ": " + open + ": it displaces none";
+  warning = open + ": it displaces none";
   return nullptr;
 }
 

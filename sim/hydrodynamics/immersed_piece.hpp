@@ -36,7 +36,7 @@ using PieceMeshes = std::map<std::pair<std::string, double>, std::shared_ptr<con
 
 /// Returns the pieces of a part; none for a part that displaces no water.  A part longer than `max_m` is cut across its
 /// longest axis, into at most 8 sections; a sphere is never cut.  An open mesh displaces no water, with a text in
-/// `warning`; ConfigError when the part sets `displaces`.
+/// `warning`, without `who`; ConfigError when the part sets `displaces`.
 std::vector<ImmersedPiece> pieces_of(const PartConfig& part, double max_m, const std::string& who, PieceMeshes& meshes,
                                      std::optional<std::string>& warning);
 

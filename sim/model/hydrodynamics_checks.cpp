@@ -2,6 +2,7 @@
 #include "sim/model/hydrodynamics_checks.hpp"
 
 #include <cmath>
+#include <numbers>
 
 #include "sim/base/linear_algebra.hpp"
 #include "sim/base/number.hpp"
@@ -121,19 +122,27 @@ void check_coefficients(const HydrodynamicsConfig& config, ParamReader& in) {
   check_added_mass(config.added_mass, in);
 }
 
-std::vector<std::string> doubts_about(const HydrodynamicsConfig& config, const std::string& who) {
+std::vector<std::string> doubts_about(const HydrodynamicsConfig& config) {
   std::vector<std::string> doubts;
   const double above = config.center_of_buoyancy_m.z() - config.center_of_mass_m.z();
   // Centre of mass above the centre of buoyancy: unstable.
   if (!config.waterline && above > 0)
-    doubts.push_back(config.place.text() + ": " + who + ": its centre of mass lies " + number_text(above) +
+    doubts.push_back("its centre of mass lies " + number_text(above) +
                      " m above its centre of buoyancy, so that it turns over; is 'frame' " +
                      std::string(word_of(axes_frame_words, config.frame)) + " right?");
+  // Uniform solids of a mass and a volume have at least the inertia of a sphere, 2/5 m r^2.
+  constexpr double water_kgpm3 = 1000, far_below = 0.1;
+  const double volume_m3 = config.volume_m3.value_or(config.mass_kg / water_kgpm3);
+  const double sphere = 0.4 * config.mass_kg * std::pow(0.75 * volume_m3 / std::numbers::pi, 2.0 / 3);
+  const double mean = config.inertia_kgm2.trace() / 3;
+  if (mean > 0 && mean < far_below * sphere)
+    doubts.push_back("the mean of its moments of inertia is " + computed_text(mean) +
+                     " kg m^2, less than a tenth of that of a sphere of its mass and volume, " + computed_text(sphere));
   // Triangle inequality of the principal moments of inertia.
   const Vector3d moments = symmetric_eigenvalues(config.inertia_kgm2);
   if (moments[2] > (1 + 1e-9) * (moments[0] + moments[1]))
-    doubts.push_back(config.place.text() + ": " + who + ": no solid has its principal moments of inertia, " +
-                     number_text(moments[0]) + ", " + number_text(moments[1]) + " and " + number_text(moments[2]) +
+    doubts.push_back("no solid has its principal moments of inertia, " + number_text(moments[0]) + ", " +
+                     number_text(moments[1]) + " and " + number_text(moments[2]) +
                      " kg m^2: none is larger than the sum of the others");
   return doubts;
 }

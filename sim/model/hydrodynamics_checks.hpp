@@ -12,7 +12,7 @@ namespace sim {
 /// negative, damping that adds energy.  Expects numbers that were read without errors.
 void check_coefficients(const HydrodynamicsConfig& config, ParamReader& in);
 
-/// Returns warnings about values that are possible but most likely wrong, one line each: `body 'auv1/hull': ...`.
-std::vector<std::string> doubts_about(const HydrodynamicsConfig& config, const std::string& who);
+/// Returns warnings about values that are possible but most likely wrong.
+std::vector<std::string> doubts_about(const HydrodynamicsConfig& config);
 
 }  // namespace sim

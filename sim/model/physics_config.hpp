@@ -104,7 +104,10 @@ struct BodyConfig {
   std::vector<PartConfig> parts;
   bool kinematic = false;                            ///< moved by a device, not by forces
   std::optional<HydrodynamicsConfig> hydrodynamics;  ///< its mass replaces the mass of the parts
-  SourcePlace place;                                 ///< position in the YAML file, for errors while building
+  bool has_coefficients() const {
+    return hydrodynamics && hydrodynamics->model == HydrodynamicsConfig::Model::coefficients;
+  }
+  SourcePlace place;  ///< position in the YAML file, for errors while building
 
   void read(ParamReader& in);
 };

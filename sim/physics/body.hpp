@@ -124,6 +124,10 @@ class Body : public VisitedInSteps {
     return !(std::abs(p_WC_[0] - box_center_W_[0]) <= leeway_m_ && std::abs(p_WC_[1] - box_center_W_[1]) <= leeway_m_ &&
              std::abs(p_WC_[2] - box_center_W_[2]) <= leeway_m_);
   }
+  /// Whether it is so fast that PhysicsWorld looks whether it moves further than its size in a step.
+  bool may_leap() const {
+    return v_WC_W_[0] * v_WC_W_[0] + v_WC_W_[1] * v_WC_W_[1] + v_WC_W_[2] * v_WC_W_[2] > leap_m2ps2_;
+  }
   void place_fixed_geoms();
   void place_ode_body(const Pose& X_WB);
   void write_rotation(const Quaterniond& q_WB);
@@ -169,6 +173,7 @@ class Body : public VisitedInSteps {
   // FarGroups has for it; infinite: it has none.
   Vector3d box_center_W_ = Vector3d::Zero();
   double leeway_m_ = std::numeric_limits<double>::infinity();
+  double leap_m2ps2_ = std::numeric_limits<double>::infinity();  // of may_leap()
 
   Pose seat_X_WB_ = Pose::Identity();            // of a fixed body now; of a kinematic body after the next step
   Vector3d planned_force_W_, planned_torque_W_;  // of apply_plan()

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <set>
 #include <utility>
@@ -9,7 +10,8 @@
 #include "sim/physics/physics_world_impl.hpp"
 
 // Warnings about pairs of terrain and parts with poor contact or a high cost; docs/models/terrain.md has the
-// measurements behind the rules.
+// measurements behind the rules.  And bodies that move further than their size in a step: contacts are only found where
+// parts overlap at its end.
 
 namespace sim {
 namespace {
@@ -77,6 +79,17 @@ Vector3d size_of(dGeomID geom) {
   }
 }
 
+/// Returns the box of all parts of a body, in the axes of the world; an empty one without parts.
+Eigen::AlignedBox3d box_around(dBodyID ode) {
+  Eigen::AlignedBox3d box;
+  for (dGeomID geom = dBodyGetFirstGeom(ode); geom != nullptr; geom = dBodyGetNextGeom(geom)) {
+    dReal sides[6];
+    dGeomGetAABB(geom, sides);
+    box.extend(Eigen::AlignedBox3d(Vector3d(sides[0], sides[2], sides[4]), Vector3d(sides[1], sides[3], sides[5])));
+  }
+  return box;
+}
+
 }  // namespace
 
 std::vector<std::string> PhysicsWorld::ground_warnings() const {
@@ -120,6 +133,46 @@ std::vector<std::string> PhysicsWorld::ground_warnings() const {
                          warning);
   }
   return warnings;
+}
+
+/// Sets the speeds of a new group from which on its bodies are looked at.
+void PhysicsWorld::Impl::plan_leaps(const Group& group) {
+  for (Body* body : group.moving) {
+    if (!body->free()) continue;
+    const Eigen::AlignedBox3d box = box_around(body->ode_.get());
+    if (box.isEmpty()) continue;
+    const double speed_mps = box.sizes().minCoeff() / config.step_s;
+    body->leap_m2ps2_ = speed_mps * speed_mps;
+  }
+}
+
+void PhysicsWorld::Impl::note_may_leap(const std::vector<int>& fast) {
+  if (fast.empty()) return;
+  const std::lock_guard lock(left_mutex);
+  may_leap.insert(may_leap.end(), fast.begin(), fast.end());
+}
+
+void PhysicsWorld::Impl::find_leaps() {
+  if (may_leap.empty()) return;
+  std::sort(may_leap.begin(), may_leap.end());
+  for (const int number : may_leap) {
+    Body& body = *bodies[static_cast<std::size_t>(number)];
+    if (far_groups.far(body.group_)) continue;
+    const Vector3d v_W = to_eigen(body.v_WC_W_);
+    const double speed_mps = v_W.norm(), moved_m = speed_mps * config.step_s;
+    mark_as_moved(body);
+    const double size_m = box_around(body.ode_.get()).sizes().dot(v_W.cwiseAbs()) / speed_mps;
+    constexpr double faster = 1.2;  // until it is looked at again, for it may turn
+    body.leap_m2ps2_ = faster * faster * speed_mps * speed_mps;
+    if (moved_m <= size_m) continue;
+    body.leap_m2ps2_ = std::numeric_limits<double>::infinity();
+    leaps.push_back({number, moved_m, size_m});
+  }
+  may_leap.clear();
+}
+
+std::vector<Leap> PhysicsWorld::take_leaps() {
+  return std::exchange(impl_->leaps, {});
 }
 
 }  // namespace sim

@@ -125,6 +125,7 @@ void PhysicsWorld::step(std::int64_t step_number) {
   impl_->step_shards(step_number);
   ++impl_->moves.moving;
   impl_->collider.note_positions(impl_->moves);
+  impl_->find_leaps();
 }
 
 bool PhysicsWorld::Impl::out_of_bounds(const Body& body) const {

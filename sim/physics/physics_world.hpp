@@ -73,6 +73,13 @@ struct IslandInfo {
   std::size_t body_count = 0;
 };
 
+/// Body that moved further than its own size in a step.
+struct Leap {
+  int body = -1;  ///< number
+  double moved_m = 0;
+  double size_m = 0;  ///< of its parts, along its motion
+};
+
 /// Rigid bodies, joints and contacts, stepped by ODE.  It has no notion of vehicles or devices: each vehicle or object
 /// is a group, whose parts share one collision space.
 ///
@@ -141,6 +148,10 @@ class PhysicsWorld {
 
   /// Advances by one step of `config.step_s`: collide, solve, check.  Throws PhysicsFault with the name of the body.
   void step(std::int64_t step_number);
+
+  /// Returns the free bodies that have moved further than their size in a step since the last call, each once, unless
+  /// nothing was near them: contacts are only found where parts overlap at the end of a step.
+  std::vector<Leap> take_leaps();
 
   /// Start and stop the report of a group's contacts by contacts(), from the next step on.  Calls are counted: each
   /// watch_contacts needs one unwatch_contacts.

@@ -253,6 +253,7 @@ Joint& PhysicsWorld::add_joint(int group, const JointConfig& config, Body& first
 
 void PhysicsWorld::close_group(int group) {
   impl_->collider.close_group(group);
+  impl_->plan_leaps(impl_->group(group));
   impl_->note_group(group);
   impl_->scene->close_group(group);
 }

@@ -74,6 +74,9 @@ struct PhysicsWorld::Impl {
   std::vector<Body*> near_singles;  // with parts, in the collision space
   bool shards_listed = false, near_singles_known = false;
   bool parts_behind = false;  ///< parts of single bodies are not marked as moved
+  // ground_check.cpp
+  std::vector<int> may_leap;  // bodies, in the order of the threads
+  std::vector<Leap> leaps;
   // far_group_boxes.cpp
   FarGroups far_groups;
   std::vector<int> left_boxes;  // new groups, and those of bodies that left the box; several times the same
@@ -123,6 +126,10 @@ struct PhysicsWorld::Impl {
   void bring_parts();
   static void mark_as_moved(const Body& body);
   void note_left_boxes(const std::vector<int>& left);
+  // ground_check.cpp
+  void plan_leaps(const Group& group);
+  void note_may_leap(const std::vector<int>& fast);
+  void find_leaps();
   // shard_step.cpp
   void step_shards(std::int64_t step_number);
   void step_shard(Shard& shard, ShardStepper& stepper, std::int64_t step_number);

@@ -132,14 +132,16 @@ void PhysicsWorld::Impl::step_shard(Shard& shard, ShardStepper& stepper, std::in
                                                        std::to_string(step_number) + " (" + error.what() + ")"));
   }
   // Kinematic bodies reach their poses, and joints their positions.
-  std::vector<int> left;
+  std::vector<int> left, fast;
   for (Body* body : shard.moving) {
     if (body->kinematic() && !shard.fault) body->end_kinematic_step();
     shard.out_of_bounds |= out_of_bounds(*body);
     collider.note_position(body->number_);
     if (body->left_its_box()) left.push_back(body->group_);
+    if (body->may_leap()) fast.push_back(body->number_);
   }
   note_left_boxes(left);
+  note_may_leap(fast);
   for (Joint* joint : shard.joints)
     if (joint->axes() > 0 && !shard.fault) joint->update_position(config.step_s);
 }

@@ -35,7 +35,7 @@ bool PhysicsWorld::Impl::step_singles() {
   std::atomic<bool> out = false;
   for_each_block(threads.get(), singles.size(), [&](std::size_t begin, std::size_t end) {
     bool some_out = false;
-    std::vector<int> left;
+    std::vector<int> left, fast;
     for (std::size_t i = begin; i < end; ++i) {
       Body& body = *singles[i].body;
       if (steps_by_ode[singles[i].shard]) continue;
@@ -52,9 +52,11 @@ bool PhysicsWorld::Impl::step_singles() {
       collider.note_position(body.number_);
       some_out |= out_of_bounds(body);
       if (body.left_its_box()) left.push_back(body.group_);
+      if (body.may_leap()) fast.push_back(body.number_);
     }
     if (some_out) out = true;
     note_left_boxes(left);
+    note_may_leap(fast);
   });
   parts_behind = true;
   return out;

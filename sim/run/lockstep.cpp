@@ -143,6 +143,8 @@ void Lockstep::post(int link, std::string_view channel, std::span<const std::byt
       crc = crc32(payload);
     }
     LockstepMember& member = *receiver.member;
+    member.has_received.resize(member.terms.receives.size());
+    member.has_received[static_cast<std::size_t>(receiver.channel)] = true;
     // Replay: collect the repeated messages.
     if (again_) {
       member.again_bytes += payload.size() + sizeof(PostedMessage);

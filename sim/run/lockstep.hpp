@@ -91,6 +91,7 @@ struct LockstepMember {
   bool answered = true;                ///< whether that tick has been acknowledged
   bool removed = false;                ///< its process is known to have ended
   std::vector<PostedMessage> list;     ///< messages of its last tick
+  std::vector<bool> has_received;      ///< of each channel of `receives`, a message; perhaps shorter
   std::vector<PostedMessage> pending;  ///< messages for the next tick
   std::size_t pending_bytes = 0;
   std::vector<PostedMessage> again;  ///< pending messages at the step to which the world is rewound

@@ -277,6 +277,10 @@ void MountedDevice::sample(Time now, std::int64_t step_number, bool hold) {
   // Add the errors.
   noise_random_.begin_step(step_number);
   sensor_->disturb(dt_s, noise_random_);
+  if (!complete_) {
+    complete_ = sensor_->lacks().empty();
+    if (lacking_since_.count() < 0) lacking_since_ = now;
+  }
   link_random_.begin_step(-step_number);  // independent of the draws of take_messages in the same step
   // Report, unless the message is lost.
   if (dropout_ > 0 && link_random_.uniform() < dropout_) return;
@@ -285,6 +289,13 @@ void MountedDevice::sample(Time now, std::int64_t step_number, bool hold) {
   if (faults_.dropout() > 0 && link_random_.uniform() < faults_.dropout()) return;
   report_outlet_->set(now, latency, hold);
   report(now);
+}
+
+std::optional<MountedDevice::Lack> MountedDevice::lack() const {
+  if (complete_ || lacking_since_.count() < 0) return std::nullopt;
+  const std::string_view what = sensor_->lacks();
+  if (what.empty()) return std::nullopt;  // since it was restored
+  return Lack{what, lacking_since_};
 }
 
 void MountedDevice::report(Time now) {
@@ -365,13 +376,14 @@ void MountedDevice::visit_state(StateArchive& archive) {
   archive(samples_planned_, next_sample_step_, last_sample_, X_WS_before_, faults_, frozen_, frozen_utime_);
   archive(acting_->last_command, acting_->safe);
   double period_us = period_us_, phase_us = phase_us_;
-  archive.unhashed(period_us, phase_us);
+  archive.unhashed(period_us, phase_us, lacking_since_, complete_);
   if (archive.restoring()) {
     wake();
     // The device may have another rate in the restored world.
     if (period_us != period_us_ || phase_us != phase_us_) plan_again(host_.clock.now());
     check_schedule(archive);
     archive.require(last_sample_, Time{-1}, host_.clock.now(), "the time of a last sample");
+    archive.require(lacking_since_, Time{-1}, host_.clock.now(), "the time of a first sample");
     archive.require(acting_->last_command, Time{-1}, host_.clock.now(), "the time of a last command");
     acting_->effectiveness = faults_.effectiveness();
     acting_->stuck = faults_.stuck();

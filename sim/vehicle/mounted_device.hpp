@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "sim/bus/bus.hpp"
@@ -102,6 +103,12 @@ class MountedDevice : public VisitedInSteps {
   const std::string& report_channel() const { return report_channel_; }
   const std::string& command_channel() const { return command_channel_; }
   const DeviceConfig& config() const { return *config_; }
+  /// What all its readings lacked, and since when; nothing when some did not, or none was taken.  See Sensor::lacks().
+  struct Lack {
+    std::string_view what;
+    Time since;
+  };
+  std::optional<Lack> lack() const;
   const Vehicle& vehicle() const { return vehicle_; }
   /// For tests and tools.
   const Sensor* sensor() const { return sensor_; }
@@ -134,6 +141,8 @@ class MountedDevice : public VisitedInSteps {
   std::int64_t samples_planned_ = 0;
   std::int64_t next_sample_step_ = 0;
   Time last_sample_{-1};
+  Time lacking_since_{-1};  ///< its first sample, while all lacked something; -1: none was taken
+  bool complete_ = false;   ///< one lacked nothing
   double latency_s_ = 0, jitter_s_ = 0, dropout_ = 0;  // of config_
   bool truth_ = false;
   Pose X_BS_;

@@ -27,6 +27,10 @@ class WorldWarnings {
   void bad_message(const std::string& who, const std::string& text);
   /// Logs a warning with the time of the world.  It is not counted.
   void warn(const std::string& who, const std::string& text) const;
+  /// Keeps a warning for the end of the run, with the time of the world: the first of each `who`, at most 100.
+  void keep_for_end(const std::string& who, const std::string& text);
+  /// Returns the kept warnings, in the order of time.
+  const std::vector<std::string>& kept() const { return kept_; }
   /// Logs a fault that a device has found in itself, as warn(), and passes it to the listener.
   void device_fault(const std::string& device, const std::string& text) const;
   /// Sets the listener of device_fault(); null: none.
@@ -35,13 +39,14 @@ class WorldWarnings {
   }
 
   std::int64_t bad_messages() const { return bad_messages_; }
-  void visit_state(StateArchive& archive) { archive(bad_messages_, lines_); }
+  void visit_state(StateArchive& archive) { archive(bad_messages_, lines_, kept_of_, kept_); }
 
  private:
   const StepClock& clock_;
   Warnings building_;
   std::int64_t bad_messages_ = 0;
-  std::vector<std::string> lines_;  // of bad messages
+  std::vector<std::string> lines_;           // of bad messages
+  std::vector<std::string> kept_of_, kept_;  // who, and the line about it
   std::function<void(const std::string&, const std::string&)> fault_listener_;
 };
 

@@ -14,13 +14,9 @@ namespace {
 
 constexpr double deepest_m = 12000;  // deeper than any ocean
 
-bool has_coefficients(const BodyConfig& body) {
-  return body.hydrodynamics && body.hydrodynamics->model == HydrodynamicsConfig::Model::coefficients;
-}
-
 bool in_water(const World& world, const Vehicle& vehicle, const VehicleConfig& config) {
   return std::any_of(config.bodies.begin(), config.bodies.end(), [&](const BodyConfig& body) {
-    return has_coefficients(body) || world.medium().in_water(vehicle.body(body.name).X_WB().translation());
+    return body.has_coefficients() || world.medium().in_water(vehicle.body(body.name).X_WB().translation());
   });
 }
 

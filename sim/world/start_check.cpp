@@ -24,13 +24,26 @@ constexpr double allowed_m = 0.01;
 /// Height above all terrain.
 constexpr double highest_m = 12000;
 
+/// Height above the water from which on a craft falls noticeably.
+constexpr double drop_m = 0.1;
+
 /// Vehicle or free object with its initial pose.
 struct Starter {
   std::string kind, name;
   SourcePlace place;
   int group = -1;
   Vector3d p_W = Vector3d::Zero();
+  bool swims = false;  ///< a vehicle with hydrodynamic coefficients
 };
+
+std::string rounded(double value, double digits) {
+  return number_text(std::round(value * digits) / digits);
+}
+
+bool swims(const VehicleConfig& vehicle) {
+  return std::any_of(vehicle.bodies.begin(), vehicle.bodies.end(),
+                     [](const BodyConfig& body) { return body.has_coefficients(); });
+}
 
 std::vector<Starter> starters_of(const World& world, const std::map<std::string, SourcePlace>& places) {
   std::vector<Starter> starters;
@@ -40,7 +53,7 @@ std::vector<Starter> starters_of(const World& world, const std::map<std::string,
   for (const auto& vehicle : world.vehicles()) {
     const auto place = places.find(vehicle->name());
     starters.push_back({"vehicle", vehicle->name(), place == places.end() ? SourcePlace{} : place->second,
-                        vehicle->group(), vehicle->base().X_WB().translation()});
+                        vehicle->group(), vehicle->base().X_WB().translation(), swims(vehicle->config())});
   }
   return starters;
 }
@@ -58,23 +71,27 @@ std::set<int> groups_of_terrain(const World& world) {
 class StartCheck {
  public:
   explicit StartCheck(const World& world) : world_(world), terrains_(groups_of_terrain(world)) {
-    if (terrains_.empty()) return;
+    if (terrains_.empty() && !world.medium().has_water()) return;
     const auto parts = world.physics().parts();
     for (std::size_t i = 0; i < parts.size(); ++i) {
       const auto box = parts[i].group < 0 ? std::nullopt : world.physics().bounds_W(static_cast<int>(i));
       if (!box) continue;
-      const auto [top, fresh] = tops_m_.emplace(parts[i].group, box->max().z());
-      if (!fresh) top->second = std::max(top->second, box->max().z());
+      const auto [height, fresh] = heights_m_.try_emplace(parts[i].group, box->min().z(), box->max().z());
+      if (fresh) continue;
+      height->second.first = std::min(height->second.first, box->min().z());
+      height->second.second = std::max(height->second.second, box->max().z());
     }
   }
 
   std::string warning(const Starter& starter) {
     if (const std::string ground = terrain_over(starter); !ground.empty()) return "below the terrain of " + ground;
+    if (const double air_m = height_over_water_m(starter); air_m > drop_m)
+      return rounded(air_m, 100) + " m above the water, and falls";
     const auto [other, depth_m] = world_.physics().deepest_overlap(starter.group);
     if (depth_m <= allowed_m) return "";
     // Report only one of two entities that penetrate each other.
     if (!warned_.insert(std::minmax(starter.name, other)).second) return "";
-    return number_text(std::round(depth_m * 1000) / 1000) + " m deep in '" + other + "'";
+    return rounded(depth_m, 1000) + " m deep in '" + other + "'";
   }
 
  private:
@@ -83,18 +100,32 @@ class StartCheck {
     RayFilter others;
     others.exclude_group = starter.group;
     // The whole entity must be below: partial penetration of the ground is another error.
-    const auto top = tops_m_.find(starter.group);
-    if (top == tops_m_.end()) return "";
-    const Vector3d from_W(starter.p_W.x(), starter.p_W.y(), top->second);
+    const auto height = heights_m_.find(starter.group);
+    if (height == heights_m_.end()) return "";
+    const Vector3d from_W(starter.p_W.x(), starter.p_W.y(), height->second.second);
     const auto hit = world_.scene().cast(from_W, Vector3d::UnitZ(), highest_m, others);
     if (!hit) return "";
     const int group = world_.physics().parts()[static_cast<std::size_t>(hit->part)].group;
     return terrains_.contains(group) ? "'" + world_.physics().group_name(group) + "'" : "";
   }
 
+  /// Returns how far a craft falls before it touches the water; 0 when it does not swim, or something else is below it.
+  double height_over_water_m(const Starter& starter) const {
+    if (!starter.swims || !world_.medium().has_water()) return 0;
+    const auto height = heights_m_.find(starter.group);
+    const double low_m = height == heights_m_.end() ? starter.p_W.z() : height->second.first;
+    const double air_m = low_m - world_.medium().surface_m(starter.p_W.x(), starter.p_W.y());
+    RayFilter others;
+    others.exclude_group = starter.group;
+    if (air_m <= drop_m ||
+        world_.scene().cast(starter.p_W, -Vector3d::UnitZ(), starter.p_W.z() - low_m + air_m, others))
+      return 0;
+    return air_m;
+  }
+
   const World& world_;
   std::set<int> terrains_;
-  std::map<int, double> tops_m_;  // the highest point of each group, in worlds with terrain
+  std::map<int, std::pair<double, double>> heights_m_;  // lowest and highest point of each group, with terrain or water
   std::set<std::pair<std::string, std::string>> warned_;
 };
 

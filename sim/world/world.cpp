@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/world/world.hpp"
 
+#include <spdlog/fmt/fmt.h>
+
 #include <utility>
 
 #include "sim/base/shared_work.hpp"
 #include "sim/base/thread_pool.hpp"
 #include "sim/world/bottom_check.hpp"
+#include "sim/world/plan_check.hpp"
 #include "sim/world/start_check.hpp"
 #include "sim/world/world_builder.hpp"
 #include "sim/world/world_editor.hpp"
@@ -31,9 +34,10 @@ World::World(const WorldConfig& config, Bus& bus, PortOpener open_port, BusFinde
   parts_->script = std::make_unique<Script>(*editor_);
   Warnings& warnings = parts_->warnings.building();
   warn_of_starts(*this, warnings);
-  for (const std::vector<std::string>& found :
-       {physics_.ground_warnings(), parts_->hydrodynamics->take_warnings(), bottom_warnings(*this)})
-    for (const std::string& warning : found) warnings.warn({}, "", warning);
+  for (const std::string& warning : physics_.ground_warnings()) warnings.warn({}, "", warning);
+  for (const Warning& warning : parts_->hydrodynamics->take_warnings()) warnings.warn(warning);
+  for (const std::string& warning : bottom_warnings(*this)) warnings.warn({}, "", warning);
+  for (const auto& vehicle : vehicles()) warn_of_plans(*this, *vehicle, warnings);
 }
 
 World::~World() = default;
@@ -52,6 +56,17 @@ void World::set_observer(WorldObserver* observer) {
 }
 
 namespace {
+
+/// Keeps warnings of the bodies that moved too far in this step.
+void keep_leaps(WorldParts& parts) {
+  for (const Leap& leap : parts.physics.take_leaps())
+    parts.warnings.keep_for_end(
+        "body '" + parts.physics.bodies()[static_cast<std::size_t>(leap.body)]->name() + "'",
+        fmt::format(
+            "it moves {:.3g} m in a step, further than its size of {:.3g} m, and may pass through what is thin; "
+            "use a 'step_s' below {:.2g}",
+            leap.moved_m, leap.size_m, parts.config.physics.step_s * leap.size_m / leap.moved_m));
+}
 
 /// Returns where to measure the work of this step; null: not.
 SharedWork* work_to_measure(const WorldParts& parts) {
@@ -78,6 +93,7 @@ void World::step() {
   parts.script->step();
   stages.end(StepStage::script);
   parts.physics.step(parts.clock.step_number);
+  keep_leaps(parts);
   stages.end(StepStage::physics);
   ++parts.clock.step_number;
   parts.medium.advance_to(now());
@@ -174,6 +190,10 @@ Bus& World::bus_of_channel(const std::string& channel) {
 }
 
 WorldWarnings& World::warnings() {
+  return parts_->warnings;
+}
+
+const WorldWarnings& World::warnings() const {
   return parts_->warnings;
 }
 

@@ -110,6 +110,7 @@ class World {
   /// Returns the bus of a channel: that of the vehicle whose device uses it, else that of the world.
   Bus& bus_of_channel(const std::string& channel);
   WorldWarnings& warnings();
+  const WorldWarnings& warnings() const;
 
   /// Returns reason and result when the world itself ends the run; none: it continues.
   const std::optional<EndOfRun>& ended() const;

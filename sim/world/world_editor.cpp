@@ -9,6 +9,7 @@
 #include "sim/vehicle/limit_check.hpp"
 #include "sim/vehicle/mounted_device.hpp"
 #include "sim/world/bottom_check.hpp"
+#include "sim/world/plan_check.hpp"
 #include "sim/world/world.hpp"
 #include "sim/world/world_builder.hpp"
 #include "sim/world/world_journal.hpp"
@@ -74,9 +75,10 @@ const Vehicle& WorldEditor::add_vehicle(const VehicleInstance& instance) {
   }
   Vehicle& vehicle = *parts_.entities.vehicles().back();
   journal_.vehicle_added(instance, vehicle, new_surfaces);
-  for (const std::vector<std::string>& found :
-       {parts_.hydrodynamics->take_warnings(), bottom_warnings(world_, vehicle)})
-    for (const std::string& warning : found) parts_.warnings.building().warn({}, "", warning);
+  Warnings& warnings = parts_.warnings.building();
+  for (const Warning& warning : parts_.hydrodynamics->take_warnings()) warnings.warn(warning);
+  for (const std::string& warning : bottom_warnings(world_, vehicle)) warnings.warn({}, "", warning);
+  warn_of_plans(world_, vehicle, warnings);
   builder_.schedule(vehicle);
   report(Occurrence::Kind::added, instance.name, "vehicle");
   return vehicle;

@@ -6,6 +6,8 @@
 #include <initializer_list>
 
 #include "sim/acoustics/propagation.hpp"
+#include "sim/base/math.hpp"
+#include "sim/base/number.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/device/device_registry.hpp"
 
@@ -104,6 +106,7 @@ class ConfigCheck {
  private:
   void check_device(const DeviceConfig& device, const std::string& who) const {
     if (device.device_type == nullptr) return;
+    check_noise(device, who);
     const auto place = [&](const char* key) { return device.source ? place_of(*device.source, key) : device.place; };
     if (device.device_type->reports()) {
       const bool given = device.source && device.source->find("rate_hz") != nullptr;
@@ -115,6 +118,21 @@ class ConfigCheck {
         warnings_.warn(
             place(key), who,
             "'" + std::string(key) + "' has no effect: a device of type '" + device.type + "' publishes no reports");
+  }
+
+  /// Errors of angles are in radians, and their keys do not say so.
+  void check_noise(const DeviceConfig& device, const std::string& who) const {
+    for (const char* of : {"heading_noise", "tilt_noise", "bearing_noise", "azimuth_noise", "elevation_noise"}) {
+      const ConfigNode* noise = device.source ? device.source->find(of) : nullptr;
+      for (const char* key : {"bias", "bias_std", "gauss_markov_std", "gaussian_std"}) {
+        const ConfigNode* value = noise != nullptr ? noise->find(key) : nullptr;
+        const double error_rad = value != nullptr ? std::abs(read_number(value->scalar).value_or(0)) : 0;
+        if (error_rad > 1)
+          warnings_.warn(value->place, who,
+                         "'" + std::string(key) + "' of '" + of + "' is in radians, and " + value->scalar +
+                             " of them are " + number_text(std::round(radians_to_degrees(error_rad))) + " degrees");
+      }
+    }
   }
 
   void check_joint(const JointConfig& joint, const ConfigNode& source, const std::string& who) const {

@@ -148,6 +148,45 @@ TEST(Warnings, ReportAtTheEndOfAMetricThatReceivedNothing) {
               HasSubstr("metric 'error': no estimate was received on 'rover1.estimate': its figures are not numbers"));
 }
 
+TEST(Warnings, AreSaidOnceForAllCopiesOfAVehicle) {
+  const system_test::ScratchFolder scratch;
+  const std::string file = scratch.file("copies.yaml");
+  // Of 10 kg and 0.01 m^3: 2/5 m r^2 = 0.0714 kg m^2; and a raft that is too light for the step.
+  system_test::write_file(scratch.file("fish.yaml"),
+                          "shoal: 1\nvehicle: fish\nbodies:\n  - name: hull\n    parts: [{shape: sphere, radius_m: "
+                          "0.1, mass_kg: 10}]\n    hydrodynamics: {frame: frd, mass_kg: 10, inertia_kgm2: [0.001, "
+                          "0.001, 0.001], added_mass: [5, 5, 5, 1, 1, 1], linear_damping: [1, 1, 1, 1, 1, 1]}\n");
+  system_test::write_file(scratch.file("raft.yaml"),
+                          "shoal: 1\nvehicle: raft\nbodies: [{name: hull, parts: [{shape: box, size_m: [1, 1, 0.1], "
+                          "mass_kg: 0.1}]}]\n");
+  std::string world = "shoal: 1\nphysics: {step_s: 0.01}\nmedium: {water: {}}\nvehicles:\n";
+  for (int i = 0; i < 3; ++i)
+    for (const char* kind : {"fish", "raft"})
+      world += "  - {name: " + (kind + std::to_string(i)) + ", file: " + kind + ".yaml, position_m: [" +
+               std::to_string(5 * i) + ", " + (kind[0] == 'f' ? "0, -3" : "5, 0") + "]}\n";
+  system_test::write_file(file, world);
+  const system_test::Ended check = system_test::run_shoal({"check", file});
+  EXPECT_EQ(check.exit_code, 0);
+  EXPECT_THAT(check.errors, HasSubstr("body 'fish0/hull': the mean of its moments of inertia is 0.001 kg m^2"));
+  EXPECT_THAT(check.errors, HasSubstr("body 'raft0/hull': it is so light that it oscillates in the water"));
+  EXPECT_EQ(std::count(check.errors.begin(), check.errors.end(), '\n'), 2) << check.errors;
+}
+
+TEST(Warnings, OfTheEndAreInTheSummary) {
+  const system_test::ScratchFolder scratch;
+  const std::string file = scratch.file("deep.yaml");
+  system_test::write_file(
+      file,
+      "shoal: 1\nphysics: {step_s: 0.1}\nrun: {duration_s: 70}\nmedium: {water: {}}\nvehicles:\n  - {name: auv, "
+      "position_m: [0, 0, -10], model: {shoal: 1, vehicle: ball, bodies: [{name: hull, parts: [{shape: sphere, "
+      "density_kgpm3: 1030}]}], devices: [{name: gps, type: gps, phase_s: 0}]}}\n");
+  const system_test::Ended run =
+      system_test::run_shoal({"run", file, "--bus", "none", "--speed", "max", "--results", scratch.file("out")});
+  const std::string line = "device 'auv/gps': no fix under water in 69.9 s";
+  EXPECT_THAT(run.errors, HasSubstr("warning: " + line));
+  EXPECT_THAT(system_test::text_of_file(scratch.file("out") + "/summary.json"), HasSubstr("\"" + line + "\""));
+}
+
 TEST(Warnings, ReportAFirstContactWhileTheWorldRuns) {
   const system_test::ScratchFolder scratch;
   const std::string file = scratch.file("fall.yaml");

@@ -122,6 +122,31 @@ TEST(LockstepRecord, AThousandChannelsAreOpenedAndTheOthersNamed) {
               ElementsAre("1 message of client 'pilot' on 'note.1000' (more than 1000 channels)"));
 }
 
+TEST(LockstepRecord, DoesNotCountAsAReaderOfAChannel) {
+  for (const bool is_recorded : {false, true}) {
+    lcm_test::LockstepWorld s("{timeout_s: 60}", {}, is_recorded);
+    const auto reader = s.gate.open_mailbox("cmd");
+    ASSERT_TRUE(s.join("pilot", "{session: 5, receives: [x, y]}").ok);
+    s.gate.publish("x", bytes_of("1"), sim::Time(0));
+    bool answered = false;
+    s.synchronize([&] {
+      if (!answered) s.acknowledge(0, "pilot", 5, 1, {{"note", "1"}, {"cmd", "2"}, {"note", "3"}});
+      answered = true;
+      if (s.resend_requests.take_all().empty()) return;
+      for (const auto& [channel, text] : {std::pair("note", "1"), std::pair("cmd", "2"), std::pair("note", "3")})
+        s.test.bus.publish(channel, bytes_of(text), sim::Time(0));
+    });
+    const auto use = s.lockstep.channel_use().clients().at("pilot");
+    EXPECT_EQ(use.at("note").published, 2);
+    EXPECT_FALSE(use.at("note").is_read);
+    EXPECT_TRUE(use.at("cmd").is_read);
+    EXPECT_TRUE(use.at("x").is_subscribed && use.at("x").has_received);
+    EXPECT_TRUE(use.at("y").is_subscribed && !use.at("y").has_received);
+    s.lockstep.client_exited("pilot");
+    EXPECT_EQ(s.lockstep.channel_use().clients().at("pilot").size(), 4u) << "those of former clients are kept";
+  }
+}
+
 TEST(LockstepRecord, AClientThatListsNothingIsNamed) {
   Recorded s;
   ASSERT_TRUE(s.join("pilot").ok);

@@ -113,15 +113,25 @@ TEST(HydrodynamicsChecks, AStepTooLongForStiffForcesIsRefused) {
 
 TEST(HydrodynamicsChecks, AHullThatTurnsOverIsDoubted) {
   const std::string rest = ", mass_kg: 10, inertia_kgm2: [1, 1, 1], center_of_mass_m: [0, 0, 0.02]}";
-  EXPECT_THAT(sim::doubts_about(test::config_of("{frame: frd" + rest), "auv"), testing::IsEmpty());
-  EXPECT_THAT(sim::doubts_about(test::config_of("{frame: flu" + rest), "auv"),
-              testing::ElementsAre(HasSubstr("auv: its centre of mass lies 0.02 m above its centre of buoyancy")));
+  EXPECT_THAT(sim::doubts_about(test::config_of("{frame: frd" + rest)), testing::IsEmpty());
+  EXPECT_THAT(sim::doubts_about(test::config_of("{frame: flu" + rest)),
+              testing::ElementsAre(HasSubstr("its centre of mass lies 0.02 m above its centre of buoyancy")));
 }
 
 TEST(HydrodynamicsChecks, AnInertiaThatNoSolidHasIsDoubted) {
-  EXPECT_THAT(
-      sim::doubts_about(test::config_of("{mass_kg: 10, inertia_kgm2: [0.2, 4, 40]}"), "auv"),
-      testing::ElementsAre(HasSubstr("auv: no solid has its principal moments of inertia, 0.2, 4 and 40 kg m^2")));
+  EXPECT_THAT(sim::doubts_about(test::config_of("{mass_kg: 10, inertia_kgm2: [0.2, 4, 40]}")),
+              testing::ElementsAre(HasSubstr("no solid has its principal moments of inertia, 0.2, 4 and 40 kg m^2")));
+}
+
+TEST(HydrodynamicsChecks, AnInertiaFarBelowThatOfASphereIsDoubted) {
+  // Of 1000 kg and 1 m^3: r = 0.62035 m, 2/5 m r^2 = 153.934 kg m^2.
+  const auto doubts = [](const std::string& inertia) {
+    return sim::doubts_about(test::config_of("{mass_kg: 1000, inertia_kgm2: " + inertia + "}"));
+  };
+  EXPECT_THAT(doubts("[15.4, 15.4, 15.4]"), testing::IsEmpty());
+  EXPECT_THAT(doubts("[15.3, 15.3, 15.3]"),
+              testing::ElementsAre("the mean of its moments of inertia is 15.3 kg m^2, less than a tenth of that of a "
+                                   "sphere of its mass and volume, 153.934"));
 }
 
 TEST(HydrodynamicsChecks, BuoyancyIsGivenInOneWay) {

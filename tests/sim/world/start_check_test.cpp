@@ -79,6 +79,21 @@ TEST(StartCheck, ReportsAWheelInTheGround) {
   EXPECT_THAT(warnings_of_start(rover), HasSubstr("vehicle 'r1': it starts 0.03 m deep in 'ground'"));
 }
 
+TEST(StartCheck, ReportsACraftInTheAir) {
+  const auto warnings = [](double height_m, const std::string& more = "") {
+    return warnings_of_start("shoal: 1\nphysics: {step_s: 0.01}\nmedium: {water: {surface_m: 1}}\n" + more +
+                             "vehicles: [{name: auv, file: remus100.yaml, position_m: [0, 0, " +
+                             std::to_string(height_m) + "]}]\n");
+  };
+  // The hull's radius is 0.095 m: 16 - 0.095 - 1 = 14.905 m.
+  EXPECT_THAT(warnings(16), HasSubstr("vehicle 'auv': it starts 14.91 m above the water, and falls"));
+  EXPECT_EQ(warnings(1.1), "");
+  EXPECT_EQ(warnings(-10), "");
+  const std::string deck =
+      "objects: [{name: deck, fixed: true, position_m: [0, 0, 15], parts: [{shape: box, size_m: [9, 9, 1]}]}]\n";
+  EXPECT_EQ(warnings(16, deck), "");
+}
+
 /// A restore that builds the world again says nothing again.
 TEST(StartCheck, IsSilentWhenAWorldIsBuiltAgain) {
   const test_support::LogCapture log;

@@ -50,6 +50,19 @@ TEST(ConfigWarnings, ReportRatesOfTheWorldAboveThatOfTheSteps) {
   EXPECT_THAT(warnings_of_file(yaml), HasSubstr("worlds/test.yaml:3:22: run: 'track_rate_hz' of 1000 Hz is above"));
 }
 
+TEST(ConfigWarnings, ReportErrorsOfAnglesThatAreMeantInDegrees) {
+  const auto compass = [](const std::string& bias_std) {
+    return world("        - {name: compass, type: compass, rate_hz: 10, heading_noise: {bias_std: " + bias_std +
+                 "}}\n");
+  };
+  // 3 rad = 171.89 deg.
+  EXPECT_THAT(
+      warnings_of_file(compass("3")),
+      HasSubstr("vehicle 'r1': device 'compass': 'bias_std' of 'heading_noise' is in radians, and 3 of them are "
+                "172 degrees\n"));
+  EXPECT_EQ(warnings_of_file(compass("0.05")), "");
+}
+
 TEST(ConfigWarnings, ReportOnceOfAKindOfVehicle) {
   std::string yaml = world("        - {name: imu, type: imu, rate_hz: 300}\n");
   yaml.replace(yaml.find("    model:"), 10, "    count: 20\n    model:");

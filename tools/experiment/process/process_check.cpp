@@ -221,6 +221,14 @@ void warn_of_processes(const sim::LoadedWorld& loaded, sim::Warnings& warnings) 
   check_events(loaded.config, programs, warnings);
 }
 
+std::set<std::string> channels_of_programs(const sim::LoadedWorld& loaded) {
+  std::set<std::string> declared;
+  for (const Program& program : programs_of(loaded))
+    for (const auto& channels : {program.published(), program.subscribed()})
+      if (channels) declared.insert(channels->begin(), channels->end());
+  return declared;
+}
+
 void warn_of_missing_programs(const sim::LoadedWorld& loaded, sim::Warnings& warnings) {
   for (std::size_t i = 0; i < loaded.config.processes.size(); ++i) {
     const sim::ProcessConfig& process = loaded.config.processes[i];

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <set>
 #include <string>
 
 #include "sim/config/warnings.hpp"
@@ -12,6 +13,9 @@ namespace tools {
 /// overlapping slots, a vehicle to follow that does not exist or never sends, a different name in the lockstep (all for
 /// programs that come with Shoal), metrics of channels on which none of the programs publishes.
 void warn_of_processes(const sim::LoadedWorld& loaded, sim::Warnings& warnings);
+
+/// Returns the channels that the programs of a world publish on or subscribe to, by their declarations.
+std::set<std::string> channels_of_programs(const sim::LoadedWorld& loaded);
 
 /// Warns of programs that cannot be started: they are neither in the folder of the running program nor in PATH.
 void warn_of_missing_programs(const sim::LoadedWorld& loaded, sim::Warnings& warnings);

@@ -194,6 +194,7 @@ std::string Summary::to_json() const {
     if (!client.ended.empty()) json["clients"].back()["ended_s"] = client.ended_s;
   }
   if (!not_recorded.empty()) json["not_recorded"] = not_recorded;
+  if (!warnings.empty()) json["warnings"] = warnings;
   // Control, zones and modems.
   json["control"] = {{"needs_key", needs_key}, {"refused_requests", refused_requests}, {"audit_count", audit_count}};
   json["control"]["audit"] = audit_json(audit);

@@ -81,6 +81,8 @@ class Run final : private Timeline {
   std::string how_ended() const;
   std::uint64_t messages() const;
   void finish(Summary& summary);
+  /// Warns of what was silent, and keeps the lines.
+  void warn_at_end(Summary& summary);
   void add_figures(Summary& summary);
   void write_results(Summary& summary);
 

@@ -6,7 +6,9 @@
 #include "sim/acoustics/channel.hpp"
 #include "sim/base/log.hpp"
 #include "sim/base/thread_pool.hpp"
+#include "sim/world/end_check.hpp"
 #include "sim/world/world_state.hpp"
+#include "tools/experiment/process/channel_check.hpp"
 #include "tools/experiment/run/run.hpp"
 #include "tools/experiment/run/version.hpp"
 #include "tools/experiment/snapshot/run_identity.hpp"
@@ -42,13 +44,21 @@ void Run::finish(Summary& summary) {
   buses_.close_record();
   if (const auto error = buses_.record_error(); error && summary.exit_code == 0) summary.fail(4, "bus", *error);
   add_figures(summary);
-  sim::Warnings warnings;
-  if (summary.steps > 0 && programs_take_part(loaded_.config, options_)) scoring_.warn_of_silence(warnings);
+  warn_at_end(summary);
   // Any failed rule or program, or the event that ended it.
   if (summary.exit_code == 0 && summary.judgement() == Judgement::failed) summary.exit_code = 1;
   note_signal(summary);
   if (results_) write_results(summary);
   report_missed_snapshots();
+}
+
+void Run::warn_at_end(Summary& summary) {
+  if (summary.steps == 0) return;
+  sim::Warnings warnings;
+  if (programs_take_part(loaded_.config, options_)) scoring_.warn_of_silence(warnings);
+  for (const std::string& line : sim::end_warnings(world_)) warnings.warn({}, "", line);
+  warn_of_channels(loaded_, world_, lockstep_.channel_use(), !options_.record.empty(), warnings);
+  summary.warnings = warnings.lines();
 }
 
 void Run::add_figures(Summary& summary) {

@@ -30,6 +30,12 @@ bool has_wheels(const sim::VehicleConfig& vehicle) {
   });
 }
 
+/// A craft has coefficients, or is one body.
+bool swims(const sim::VehicleConfig& vehicle) {
+  return vehicle.joints.empty() || std::any_of(vehicle.bodies.begin(), vehicle.bodies.end(),
+                                               [](const sim::BodyConfig& body) { return body.has_coefficients(); });
+}
+
 }  // namespace
 
 FirstContacts::FirstContacts(sim::World& world, Report report) : world_(world), report_(std::move(report)) {
@@ -44,17 +50,24 @@ void FirstContacts::choose_groups() {
     if (groups_.size() <= at) groups_.resize(at + 1);
     groups_[at] = std::move(entry);
   };
-  std::map<const sim::VehicleConfig*, bool> on_wheels;  // for lookup only
+  struct Kind {
+    bool drives, swims;
+  };
+  std::map<const sim::VehicleConfig*, Kind> kinds;  // for lookup only
   for (const auto& vehicle : world_.vehicles()) {
-    const auto [drives, fresh] = on_wheels.try_emplace(&vehicle->config());
-    if (fresh) drives->second = has_wheels(vehicle->config());
+    const auto [kind, fresh] = kinds.try_emplace(&vehicle->config());
+    if (fresh) {
+      kind->second.drives = has_wheels(vehicle->config());
+      kind->second.swims = world_.medium().has_water() && !kind->second.drives && swims(vehicle->config());
+    }
     const std::int64_t who = 2 * static_cast<std::int64_t>(vehicle->number());
-    put(vehicle->group(), {who, vehicle->name(), true, drives->second, false, false});
+    put(vehicle->group(), {who, vehicle->name(), true, kind->second.drives, false, false, kind->second.swims});
     since_s_.try_emplace(who, sim::to_seconds(world_.now()));
     world_.physics().watch_contacts(vehicle->group());
   }
   for (const auto& [name, object] : world_.objects())
-    put(object.group, {2 * object.number + 1, name, false, false, is_ground(object.config), object.config.fixed});
+    put(object.group,
+        {2 * object.number + 1, name, false, false, is_ground(object.config), object.config.fixed, false});
 }
 
 void FirstContacts::after_step() {
@@ -69,7 +82,7 @@ void FirstContacts::look_at(const sim::ContactReport& contact) {
   const std::size_t first = group_of(contact.parts[0]), second = group_of(contact.parts[1]);
   if (first == second || std::max(first, second) >= groups_.size()) return;
   const Group &a = groups_[first], &b = groups_[second];
-  if (a.ground || b.ground) return;
+  if ((a.ground && !b.swims) || (b.ground && !a.swims)) return;
   const bool up = contact.normal_W.z() > carries, down = contact.normal_W.z() < -carries;
   if (rests_on(a, b, up) || rests_on(b, a, down)) return;
   touch(a, b);

@@ -19,8 +19,9 @@ inline constexpr double parted_after_s = 0.5;
 
 /// Counter of the contacts of vehicles with vehicles and objects.  Counting does not change the run.
 ///
-/// Not counted: planes and terrain; the fixed objects that a vehicle with wheels drives on (contacts from below); the
-/// support of a vehicle in its first 0.1 s.  A contact counts again after a separation of 0.5 s.
+/// Not counted: planes and terrain, except by craft in water that start free of them; the fixed objects that a vehicle
+/// with wheels drives on (contacts from below); the support of a vehicle in its first 0.1 s.  A contact counts again
+/// after a separation of 0.5 s.
 class FirstContacts {
  public:
   struct Contact {
@@ -52,6 +53,7 @@ class FirstContacts {
     bool drives = false;  ///< a vehicle on wheels
     bool ground = false;  ///< planes and terrain
     bool fixed = false;
+    bool swims = false;  ///< a vehicle of a world with water that neither rolls nor walks
   };
 
   void choose_groups();

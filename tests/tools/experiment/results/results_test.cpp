@@ -155,6 +155,13 @@ TEST(Summary, NamesWhatTheRecordLacksInOneLine) {
   EXPECT_EQ(nlohmann::json::parse(summary.to_json())["not_recorded"].size(), 7u);
 }
 
+TEST(Summary, KeepsTheWarningsOfTheEndIfThereWereAny) {
+  tools::Summary summary;
+  EXPECT_FALSE(nlohmann::json::parse(summary.to_json()).contains("warnings"));
+  summary.warnings = {"device 'a/gps': no fix in 60 s"};
+  EXPECT_EQ(nlohmann::json::parse(summary.to_json())["warnings"], nlohmann::json({"device 'a/gps': no fix in 60 s"}));
+}
+
 TEST(Summary, ReportsWhatBecameOfAcousticPackets) {
   tools::Summary summary;
   EXPECT_FALSE(nlohmann::json::parse(summary.to_json()).contains("acoustics"));

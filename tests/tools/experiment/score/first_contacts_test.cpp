@@ -102,6 +102,24 @@ TEST(FirstContacts, LeaveOutWhatAVehicleStandsOn) {
   EXPECT_THAT(watched.pairs(), IsEmpty());
 }
 
+/// A heavy ball of 0.5 m radius in water over a plane at 10 m, at a depth of its middle.
+std::string sinking_ball(double depth_m) {
+  return "shoal: 1\nphysics: {step_s: 0.01}\nmedium: {water: {}}\nobjects: [{name: bottom, fixed: true, position_m: "
+         "[0, 0, -10], parts: [{shape: plane}]}]\nvehicles: [{name: auv, position_m: [0, 0, " +
+         std::to_string(-depth_m) +
+         "], model: {shoal: 1, vehicle: ball, bodies: [{name: hull, parts: [{shape: sphere, mass_kg: 700}]}]}}]\n";
+}
+
+TEST(FirstContacts, ReportACraftThatTouchesTheBottom) {
+  WatchedWorld sinks(sinking_ball(9));
+  sinks.run_for(5);
+  ASSERT_THAT(sinks.lines, ElementsAre(HasSubstr(" s: auv hits bottom")));
+  EXPECT_THAT(sinks.pairs(), ElementsAre(HasSubstr("auv-bottom")));
+  WatchedWorld rests(sinking_ball(9.5));
+  rests.run_for(5);
+  EXPECT_THAT(rests.pairs(), IsEmpty()) << "it starts on it";
+}
+
 TEST(FirstContacts, GoBackWithTheWorld) {
   WatchedWorld watched(balls(3, 2));
   watched.push("v1", 2);

@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// No world that comes with Shoal is warned of, neither as it is read nor as it is built.
-#include <gtest/gtest.h>
+// No world that comes with Shoal is warned of, neither as it is read nor as it is built, nor after a run without its
+// programs.
+#include <gmock/gmock.h>
 
 #include <algorithm>
 #include <filesystem>
 
+#include "sim/world/end_check.hpp"
 #include "tests/devices/comms/port_fixture.hpp"
 #include "tests/devices/world_fixture.hpp"
 #include "tests/project_paths.hpp"
 #include "tests/sim/medium/log_capture.hpp"
 #include "tools/experiment/process/process_check.hpp"
+#include "tools/experiment/score/first_contacts.hpp"
 
 namespace {
 
@@ -24,19 +27,42 @@ std::vector<std::string> shipped_worlds() {
   return names;
 }
 
+struct BuiltWorld {
+  explicit BuiltWorld(const std::string& name)
+      : loaded(sim::load_world(test_support::source_path("worlds/") + name + ".yaml",
+                               test::LoadedTestWorld::with_messages({}))),
+        world(loaded.config, bus, [](sim::PortKind, const std::string&) -> std::unique_ptr<sim::BytePort> {
+          return std::make_unique<test::FakePort>(std::make_shared<test::PortEnd>());
+        }) {}
+  sim::LoadedWorld loaded;
+  sim::InProcessBus bus;
+  sim::World world;
+};
+
 class ShippedWorld : public testing::TestWithParam<std::string> {};
 
 TEST_P(ShippedWorld, IsNotWarnedOf) {
   const test_support::LogCapture log;
-  const sim::LoadedWorld loaded = sim::load_world(test_support::source_path("worlds/") + GetParam() + ".yaml",
-                                                  test::LoadedTestWorld::with_messages({}));
+  const BuiltWorld built(GetParam());
   sim::Warnings warnings;
-  tools::warn_of_processes(loaded, warnings);
-  sim::InProcessBus bus;
-  const sim::World world(loaded.config, bus, [](sim::PortKind, const std::string&) -> std::unique_ptr<sim::BytePort> {
-    return std::make_unique<test::FakePort>(std::make_shared<test::PortEnd>());
-  });
+  tools::warn_of_processes(built.loaded, warnings);
   EXPECT_EQ(log.text(), "");
+}
+
+/// After a minute where that takes few steps, from which on sensors without a lock or a fix are named.
+TEST_P(ShippedWorld, IsNotWarnedOfAtTheEndOfAShortRun) {
+  BuiltWorld built(GetParam());
+  tools::FirstContacts contacts(built.world);
+  constexpr int few_steps = 50;
+  const sim::Time minute = std::chrono::seconds(61);
+  const bool is_quick = built.world.step_time() >= std::chrono::milliseconds(100);
+  const sim::Time end = is_quick ? minute : few_steps * built.world.step_time();
+  while (built.world.now() < end) {
+    built.world.step();
+    contacts.after_step();
+  }
+  EXPECT_THAT(sim::end_warnings(built.world), testing::IsEmpty());
+  EXPECT_EQ(tools::contacts_text(contacts.all()), "");
 }
 
 INSTANTIATE_TEST_SUITE_P(Warnings, ShippedWorld, testing::ValuesIn(shipped_worlds()), [](const auto& world) {

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sim/world/end_check.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include "sim/world/world.hpp"
+
+namespace sim {
+
+std::vector<std::string> end_warnings(const World& world) {
+  constexpr Time max_search = std::chrono::minutes(1);  // a first fix or answer may take some time
+  std::vector<std::string> lines = world.warnings().kept();
+  for (const auto& vehicle : world.vehicles())
+    for (const MountedDevice* device : vehicle->devices()) {
+      const auto lack = device->senses() ? device->lack() : std::nullopt;
+      if (!lack || world.now() - lack->since < max_search) continue;
+      lines.push_back(fmt::format("device '{}': no {} in {:.6g} s", device->full_name(), lack->what,
+                                  to_seconds(world.now() - lack->since)));
+    }
+  return lines;
+}
+
+}  // namespace sim

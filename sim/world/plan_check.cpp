@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sim/world/plan_check.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/config/message_text.hpp"
+#include "sim/config/warnings.hpp"
+#include "sim/vehicle/mounted_device.hpp"
+#include "sim/vehicle/vehicle.hpp"
+#include "sim/world/world.hpp"
+
+namespace sim {
+
+namespace {
+
+constexpr double any_height_m = 12000;  // more than any ocean has
+
+/// Returns the fixed object to which a part belongs; null: it belongs to something that can move.
+const ObjectConfig* fixed_object_of(const World& world, int part) {
+  const int group = world.physics().parts()[static_cast<std::size_t>(part)].group;
+  for (const auto& [name, object] : world.objects())
+    if (object.group == group) return object.config.fixed ? &object.config : nullptr;
+  return nullptr;
+}
+
+/// Returns the depth of the bottom above a point; none when the point is in the open.
+std::optional<double> bottom_above(const World& world, const Vector3d& p_W, double depth_m) {
+  const auto above = world.scene().cast(p_W, Vector3d::UnitZ(), any_height_m, {});
+  const ObjectConfig* object = above ? fixed_object_of(world, above->part) : nullptr;
+  if (object == nullptr) return std::nullopt;
+  const bool is_ground = std::none_of(object->parts.begin(), object->parts.end(),
+                                      [](const PartConfig& part) { return shape_info(part.shape).solid; });
+  // From within a solid both rays meet its surface; what only lies above may be a ship or a pier.
+  const auto below = world.scene().cast(p_W, -Vector3d::UnitZ(), any_height_m, {});
+  if (!is_ground && !(below && below->part == above->part)) return std::nullopt;
+  return depth_m - above->range_m;
+}
+
+std::string metres(double value) {
+  return number_text(std::round(value * 100) / 100) + " m";
+}
+
+}  // namespace
+
+std::string depth_fault(const World& world, const Eigen::Vector2d& p_W, double depth_m) {
+  if (!world.config().medium.water) return "";
+  const std::string depth = "depth " + metres(depth_m) + " is ";
+  if (depth_m < 0) return depth + "in the air: depths are positive downwards";
+  const double surface_m = world.config().medium.water->surface_m;
+  const auto bottom_m = bottom_above(world, {p_W.x(), p_W.y(), surface_m - depth_m}, depth_m);
+  return bottom_m ? depth + "below the bottom, which is at " + metres(*bottom_m) + " there" : "";
+}
+
+void warn_of_plans(const World& world, const Vehicle& vehicle, Warnings& warnings) {
+  for (const MountedDevice* device : vehicle.devices()) {
+    if (!device->senses()) continue;
+    for (const PlannedPlace& place : device->sensor()->planned_places()) {
+      const std::string fault = depth_fault(world, place.p_W, place.depth_m);
+      if (fault.empty()) continue;
+      const DeviceConfig& config = device->config();
+      warnings.warn(config.source ? place_of(*config.source, place.key) : config.place,
+                    "vehicle '" + vehicle.name() + "': device '" + config.name + "'",
+                    "'" + std::string(place.key) + "': " + fault);
+      break;
+    }
+  }
+}
+
+}  // namespace sim

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sim/world/end_check.hpp"
+
+#include <gmock/gmock.h>
+
+#include <limits>
+
+#include "shoal/helm_command_t.hpp"
+#include "shoal/waypoints_command_t.hpp"
+#include "sim/vehicle/vehicle.hpp"
+#include "sim/world/world_state.hpp"
+#include "tests/devices/navigation/immersed_sensor_fixture.hpp"
+
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+/// The fixture's device has a rate, which this replaces.
+std::string slower(std::string yaml) {
+  const std::string rate = "rate_hz: 100, phase_s: 0, ";
+  yaml.erase(yaml.find(rate), rate.size());
+  return yaml;
+}
+
+/// The end of a run with one device at a depth of 10 m over a bottom at 30 m.
+std::vector<std::string> end_of(const std::string& device, double run_s = 61,
+                                const std::string& position_m = "[0, 0, -10]") {
+  test::TestWorld test(
+      slower(test::marine_world("rate_hz: 2, phase_s: 0, " + device, position_m, test::bottom_at(-30))));
+  test.run_for(run_s);
+  return sim::end_warnings(test.world);
+}
+
+TEST(EndCheck, NamesASensorThatNeverHadLockOrFix) {
+  // First samples at 0.5 s, for that at 0 s comes before the first step.
+  EXPECT_THAT(end_of("type: dvl, altitude_max_m: 5"), ElementsAre("device 'r1/s': no bottom lock in 60.5 s"));
+  EXPECT_THAT(end_of("type: gps"), ElementsAre("device 'r1/s': no fix under water in 60.5 s"));
+  EXPECT_THAT(end_of("type: altimeter, range_max_m: 5"), ElementsAre("device 'r1/s': no echo of the bottom in 60.5 s"));
+  EXPECT_THAT(end_of("type: usbl"), ElementsAre("device 'r1/s': no answer of a transponder in 60.5 s"));
+  EXPECT_THAT(end_of("type: lbl"), ElementsAre("device 'r1/s': no answer of a transponder in 60.5 s"));
+  EXPECT_THAT(end_of("type: range_beacon"), ElementsAre("device 'r1/s': no beacon in range in 60.5 s"));
+}
+
+TEST(EndCheck, IsSilentAboutSensorsThatHadOneAndInTheFirstMinute) {
+  EXPECT_THAT(end_of("type: dvl"), IsEmpty());
+  EXPECT_THAT(end_of("type: altimeter"), IsEmpty());
+  EXPECT_THAT(end_of("type: gps", 61, "[0, 0, 0.2]"), IsEmpty());
+  EXPECT_THAT(end_of("type: range_beacon, beacons: [{name: b, position_m: [5, 0, 1]}]", 61, "[0, 0, 1]"), IsEmpty());
+  EXPECT_THAT(end_of("type: range_beacon, beacon_only: true"), IsEmpty());
+  EXPECT_THAT(end_of("type: dvl, altitude_max_m: 5", 59), IsEmpty());
+}
+
+TEST(EndCheck, RemembersALockThatWasLost) {
+  test::TestWorld test(slower(test::marine_world("rate_hz: 2, type: gps", "[0, 0, 0.2]")));
+  test.run_for(1);
+  const sim::Bytes at_surface = test.world.state().snapshot();
+  test.world.editor().move_vehicle("r1", sim::make_pose({0, 0, -10}, sim::Vector3d::Zero()));
+  test.run_for(70);
+  EXPECT_THAT(sim::end_warnings(test.world), IsEmpty());
+  // So does a run that continues from a snapshot.
+  test::TestWorld other(slower(test::marine_world("rate_hz: 2, type: gps", "[0, 0, 0.2]")));
+  other.world.state().restore(at_surface);
+  other.world.editor().move_vehicle("r1", sim::make_pose({0, 0, -10}, sim::Vector3d::Zero()));
+  other.run_for(70);
+  EXPECT_THAT(sim::end_warnings(other.world), IsEmpty());
+}
+
+/// A ball of 2 cm radius that flies at a plate of 20 mm.
+struct Flight {
+  std::vector<std::string> warnings;
+  double end_m;
+};
+
+Flight flight(double speed_mps, double step_s, double start_m, double time_s) {
+  test::TestWorld test("shoal: 1\nphysics: {step_s: " + std::to_string(step_s) +
+                       ", gravity_mps2: 0}\nobjects:\n  - {name: plate, fixed: true, parts: [{shape: box, size_m: "
+                       "[0.02, 1, 1]}]}\n  - {name: ball, position_m: [" +
+                       std::to_string(start_m) + ", 0, 0], parts: [{shape: sphere, radius_m: 0.02, mass_kg: 0.1}]}\n");
+  test.world.find_object("ball")->body->set_velocity_W({speed_mps, 0, 0}, sim::Vector3d::Zero());
+  test.run_for(time_s);
+  return {sim::end_warnings(test.world), test.world.find_object("ball")->body->p_WB().x()};
+}
+
+std::vector<std::string> end_of_flight(double speed_mps, double step_s, double start_m = -0.5) {
+  return flight(speed_mps, step_s, start_m, 0.04).warnings;
+}
+
+/// The rule of docs/reference/known_limits.md: v h < d/2 + r = 30 mm.
+TEST(EndCheck, ABallPassesThroughAPlateOnlyWhereItIsWarnedOf) {
+  constexpr double step_s = 0.01;
+  // At -0.05 m it is not in the plate yet, after one step of 0.1 m not any more.
+  EXPECT_GT(flight(10, step_s, -0.05, 0.1).end_m, 0.03);
+  for (double start_m = -0.06; start_m < -0.031; start_m += 0.003)
+    EXPECT_LT(flight(2.9, step_s, start_m, 0.1).end_m, 0) << start_m;
+}
+
+TEST(EndCheck, NamesABodyThatMovesFurtherThanItsSizeInAStep) {
+  EXPECT_THAT(end_of_flight(10, 0.01),
+              ElementsAre(HasSubstr("it moves 0.1 m in a step, further than its size of 0.04 m, and may pass through "
+                                    "what is thin; use a 'step_s' below 0.004 (at 0.00 s)")));
+  EXPECT_THAT(end_of_flight(10, 0.01).front(), HasSubstr("body 'ball"));
+  EXPECT_THAT(end_of_flight(3.9, 0.01), IsEmpty());  // 39 mm
+  EXPECT_THAT(end_of_flight(10, 0.003), IsEmpty());  // 30 mm
+}
+
+TEST(EndCheck, IsSilentAboutAFastBodyThatIsFarFromEverything) {
+  EXPECT_THAT(end_of_flight(-10, 0.01, -1000), IsEmpty());
+}
+
+/// The size counts along the motion: a rod of 1 m may go 10 cm endwise.
+TEST(EndCheck, MeasuresABodyAlongItsMotion) {
+  const auto warnings = [](const sim::Vector3d& v_W) {
+    test::TestWorld test(
+        "shoal: 1\nphysics: {step_s: 0.01, gravity_mps2: 0}\nobjects:\n  - {name: wall, fixed: true, position_m: [0, "
+        "0, "
+        "-0.2], parts: [{shape: box, size_m: [9, 9, 0.1]}]}\n  - {name: rod, parts: [{shape: box, size_m: [1, 0.02, "
+        "0.02], mass_kg: 0.1}]}\n");
+    test.world.find_object("rod")->body->set_velocity_W(v_W, sim::Vector3d::Zero());
+    test.run_for(0.03);
+    return sim::end_warnings(test.world).size();
+  };
+  EXPECT_EQ(warnings({10, 0, 0}), 0u);
+  EXPECT_EQ(warnings({0, 10, 0}), 1u);
+}
+
+constexpr double unchanged = std::numeric_limits<double>::quiet_NaN();
+
+/// The end of 1 s in which the autopilot of an AUV gets a command.
+template <typename Message>
+std::vector<std::string> end_of_command(const Message& command) {
+  test::TestWorld test(
+      "shoal: 1\nphysics: {step_s: 0.01}\nmedium: {water: {}}\nobjects: [{name: bottom, fixed: true, position_m: [0, "
+      "0, "
+      "-40], parts: [{shape: plane}]}]\nvehicles: [{name: v, file: remus100_survey.yaml, position_m: [0, 0, -10]}]\n");
+  test.send("v.autopilot.cmd", command);
+  test.run_for(1);
+  return sim::end_warnings(test.world);
+}
+
+TEST(EndCheck, NamesACommandToAPlaceInTheAirOrBelowTheBottom) {
+  EXPECT_THAT(end_of_command(shoal::helm_command_t{0, 1, unchanged, -15, unchanged}),
+              ElementsAre("device 'v/autopilot': it was commanded to a place whose depth -15 m is in the air: depths "
+                          "are positive downwards (at 0.00 s)"));
+  EXPECT_THAT(end_of_command(shoal::helm_command_t{0, 1, unchanged, 15, unchanged}), IsEmpty());
+  shoal::waypoints_command_t route{0, 1, {50}, {0}, {55}, 1.5, 0};
+  EXPECT_THAT(end_of_command(route), ElementsAre(HasSubstr("depth 55 m is below the bottom, which is at 40 m there")));
+  route.depth_m = {20};
+  EXPECT_THAT(end_of_command(route), IsEmpty());
+}
+
+TEST(EndCheck, NamesACommandedRouteWithoutASpeed) {
+  shoal::waypoints_command_t route{0, 1, {50}, {0}, {20}, unchanged, 0};
+  EXPECT_THAT(end_of_command(route),
+              ElementsAre("device 'v/autopilot': it was commanded to follow a route, and had no speed (at 0.00 s)"));
+}
+
+}  // namespace
