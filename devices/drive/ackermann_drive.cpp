@@ -8,6 +8,7 @@
 #include "devices/drive/drive_commands.hpp"
 #include "devices/drive/weight_on_wheels.hpp"
 #include "devices/drive/wheel_geometry.hpp"
+#include "devices/drive/wheel_sides.hpp"
 #include "devices/joint/joint_of_device.hpp"
 #include "sim/config/message_text.hpp"
 
@@ -63,6 +64,10 @@ AckermannDrive::AckermannDrive(const Params& params, const sim::DeviceContext& c
     wheels_.push_back({WheelMotors(context, {name}), p_m.x(), p_m.y()});
   }
   take_lengths(context);
+  warn_of_backward_wheels(context, params.drive_joints);
+  warn_of_backward_steering(context, {params.left_steer_joint, params.right_steer_joint});
+  warn_of_swapped_sides(context, {"left_steer_joint", {params.left_steer_joint}},
+                        {"right_steer_joint", {params.right_steer_joint}});
   warn_of_shared_weight(context, params.drive_joints);
 }
 

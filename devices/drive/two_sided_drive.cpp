@@ -7,6 +7,7 @@
 
 #include "devices/drive/weight_on_wheels.hpp"
 #include "devices/drive/wheel_geometry.hpp"
+#include "devices/drive/wheel_sides.hpp"
 #include "devices/joint/joint_of_device.hpp"
 
 namespace devices {
@@ -42,6 +43,8 @@ TwoSidedDrive::TwoSidedDrive(const Params& params, const sim::DeviceContext& con
   if (!params.track_m && !(joint_track_m_ > 0)) refuse(context, "'track_m' is needed: its wheels are in one place");
   take_lengths();
   check_lengths(context, scrubs);
+  warn_of_sides(context, {scrubs ? "left_joints" : "left_joint", left_joints},
+                {scrubs ? "right_joints" : "right_joint", right_joints});
   warn_of_shared_weight(context, joints);
 }
 

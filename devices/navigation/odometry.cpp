@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "devices/drive/wheel_geometry.hpp"
+#include "devices/drive/wheel_sides.hpp"
 #include "devices/joint/joint_of_device.hpp"
 #include "messages/reporter/message_reporter.hpp"
 #include "shoal/odometry_t.hpp"
@@ -56,6 +57,7 @@ Odometry::Odometry(const Params& params, const sim::DeviceContext& context)
   check_length(context, radius, miscalibrated, "it estimates {} times the distance", as_it_is);
   if (!scrubs || *track.real_m > track_m_)
     check_length(context, track, miscalibrated, "it estimates {} times the turn", inverse);
+  warn_of_sides(context, {"left_joint", {params.left_joint}}, {"right_joint", {params.right_joint}});
 }
 
 void Odometry::measure(const sim::SenseContext& context) {

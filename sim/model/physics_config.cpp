@@ -205,6 +205,7 @@ void check_axes(ParamReader& in, const JointConfig& joint) {
 }  // namespace
 
 void JointConfig::read(ParamReader& in) {
+  if (!in.describing()) place = in.node()->place;
   in.require("name");
   in.read_name("name", name, "name of the joint");
   in.read_choice("type", type, joint_type_words, "kind of joint");

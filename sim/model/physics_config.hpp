@@ -137,6 +137,7 @@ struct JointConfig {
   JointAxisConfig axis1;                 ///< ball with a motor: applies to all axes
   JointAxisConfig axis2;                 ///< hinge2 and universal
   bool motor = false;                    ///< ball: has a motor about x, y and z of the vehicle frame
+  SourcePlace place;                     ///< position in the YAML file, for warnings while building
 
   void read(ParamReader& in);
   /// Sets the anchor to the origin of the second body, or of the first when the second is the world.

@@ -8,6 +8,7 @@
 #include "sim/base/free_numbers.hpp"
 #include "sim/ode/find_contacts.hpp"
 #include "sim/ode/ode_math.hpp"
+#include "sim/ode/wheel_contacts.hpp"
 #include "sim/physics/terrain_geom.hpp"
 
 namespace sim {
@@ -89,6 +90,11 @@ void Collider::add_part(int number, const CollisionPart& part, GeomHandle geom, 
 void Collider::join(int first, int second) {
   joined_[first].push_back(second);
   joined_[second].push_back(first);
+}
+
+void Collider::find_wheels(std::span<const int> parts, const Vector3d& at_W, const Vector3d& axis_W) {
+  for (const int part : parts)
+    if (turns_about_its_axis(parts_[part].geom, at_W, axis_W)) parts_[part].wheel = true;
 }
 
 void Collider::close_group(int number) {
@@ -194,13 +200,25 @@ const Surface& Collider::surface_at(const CollisionPart& a, const CollisionPart&
   return table_.of(material(a), material(b));
 }
 
+/// Finds the contact points of two parts.
+int Collider::find_points(const CollisionPart& a, const CollisionPart& b, Making& making) const {
+  const bool wheels = a.wheel || b.wheel;
+  const int max = wheels ? static_cast<int>(making.touching.size()) : making.max_per_pair;
+  int count = find_contacts(a.geom, b.geom, max, &making.touching[0].geom, sizeof(dContact));
+  if (!wheels) return count;
+  for (const CollisionPart* part : {&a, &b})
+    if (part->wheel)
+      count = put_wheel_on_its_middle(part->geom, surface_layer_m_,
+                                      std::span(making.touching).first(static_cast<std::size_t>(count)));
+  return std::min(count, making.max_per_pair);
+}
+
 void Collider::touch(Pair pair, dWorldID world, Islands& islands, Making& making) const {
   const int first = first_of(pair), second = second_of(pair);
   std::vector<dContact>& touching = making.touching;
   const CollisionPart& part_a = parts_[first];
   const CollisionPart& part_b = parts_[second];
-  const int count =
-      find_contacts(part_a.geom, part_b.geom, static_cast<int>(touching.size()), &touching[0].geom, sizeof(dContact));
+  const int count = find_points(part_a, part_b, making);
   if (count == 0) return;
   // Select the contact parameters, which depend on position on terrain.
   const Surface* surface = &table_.of(part_a.material, part_b.material);

@@ -3,6 +3,7 @@
 
 #include <ode/ode.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <utility>
@@ -30,6 +31,7 @@ struct CollisionPart {
   std::uint32_t category = 1;
   std::uint32_t collides_with = ~0u;
   const CollisionTerrain* terrain = nullptr;  ///< for a part of shape terrain: its material depends on position
+  bool wheel = false;                         ///< a cylinder or capsule that turns about its axis
 };
 
 /// Motion state of a body, used for the velocity of a contact point; all null for a fixed body.
@@ -62,6 +64,8 @@ class Collider {
   void replace_body(int number, const CollisionBody& body) { bodies_[static_cast<std::size_t>(number)] = body; }
   /// Excludes contacts between two bodies connected by a joint.
   void join(int first, int second);
+  /// Makes those cylinders and capsules among the parts wheels that turn about the axis of a joint.
+  void find_wheels(std::span<const int> parts, const Vector3d& at_W, const Vector3d& axis_W);
   /// Adds the space and the fixed parts of the group to the world's space.
   void close_group(int group);
   /// Takes a group that can touch nothing out of the world's space, or brings it back.
@@ -116,7 +120,10 @@ class Collider {
   };
   /// Where the contacts of some pairs are made.
   struct Making {
-    explicit Making(int max_contacts_per_pair) : touching(static_cast<std::size_t>(max_contacts_per_pair)) {}
+    /// Two at least: those on the rims of a wheel, of which one becomes.
+    explicit Making(int max_contacts_per_pair)
+        : max_per_pair(max_contacts_per_pair), touching(static_cast<std::size_t>(std::max(max_per_pair, 2))) {}
+    int max_per_pair;
     JointGroupHandle contacts{dJointGroupCreate(0)};
     std::vector<dContact> touching;  ///< buffer of a pair
     std::vector<Between> between;    ///< contacts between groups
@@ -146,6 +153,7 @@ class Collider {
   static void on_near(void* self, dGeomID first, dGeomID second);
   void add_pair(int first, int second);
   void touch(Pair pair, dWorldID world, Islands& islands, Making& making) const;
+  int find_points(const CollisionPart& a, const CollisionPart& b, Making& making) const;
   bool watched(const CollisionPart& a, const CollisionPart& b) const {
     return groups_[a.group].watchers > 0 || groups_[b.group].watchers > 0;
   }

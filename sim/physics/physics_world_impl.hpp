@@ -105,6 +105,7 @@ struct PhysicsWorld::Impl {
   void add_part(Body& body, const BodyConfig& config, std::size_t index, NewPart made);
   void set_mass(Body& body, const BodyConfig& config, const dMass& total);
   CollisionBody collision_body(const Body& body) const;
+  void find_wheels(const JointConfig& hinge, const Body& first, const Body* second, const Pose& X_WV);
   // shards.cpp
   Shard& shard(int number);
   void deal_pairs(std::int64_t step_number);

@@ -45,7 +45,7 @@ class Balance {
     double rate_filter_s = 0.005;       ///< low pass on the rate of the tilt
     double speed_filter_s = 0.05;       ///< low pass on speed and turn rate
     double wheel_radius_m = 0.236;
-    double track_m = 0.481;     ///< between the inner edges of its wheels, on which they turn
+    double track_m = 0.57;      ///< between the middles of its wheels, on which they turn
     double max_torque_Nm = 50;  ///< of each wheel
     double fallen_rad = 0.8;    ///< tilt from the balanced one at which it gives up
   };
