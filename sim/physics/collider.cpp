@@ -97,6 +97,12 @@ void Collider::find_wheels(std::span<const int> parts, const Vector3d& at_W, con
     if (turns_about_its_axis(parts_[part].geom, at_W, axis_W)) parts_[part].wheel = true;
 }
 
+void Collider::load_wheels(std::span<const int> parts, double mass_kg) {
+  const auto wheels = std::count_if(parts.begin(), parts.end(), [&](int part) { return parts_[part].wheel; });
+  for (const int part : parts)
+    if (parts_[part].wheel) parts_[part].carried_kg = mass_kg / static_cast<double>(wheels);
+}
+
 void Collider::close_group(int number) {
   Group& group = groups_[number];
   if (dSpaceGetNumGeoms(group.space.get()) > 0 && !dGeomGetSpace(reinterpret_cast<dGeomID>(group.space.get())))
@@ -227,6 +233,7 @@ void Collider::touch(Pair pair, dWorldID world, Islands& islands, Making& making
   const CollisionBody& b = bodies_[part_b.body];
   const bool between = a.ode != nullptr && b.ode != nullptr && part_a.group != part_b.group;
   const bool note = watchers_ > 0 && watched(part_a, part_b);
+  const double carried_kg = std::max(part_a.carried_kg, part_b.carried_kg);
   // Make a contact joint for each point.
   int rows = 0;
   for (int i = 0; i < count; ++i) {
@@ -236,6 +243,7 @@ void Collider::touch(Pair pair, dWorldID world, Islands& islands, Making& making
     contact.surface = surface->parameters;
     if (by_place) follow_ground(contact);
     if (surface->friction) align_friction(contact, a, b);
+    if (carried_kg > 0) ease_friction_across(contact, a, b, carried_kg * std::abs(gravity_mps2_));
     const dJointID joint = dJointCreateContact(world, making.contacts.get(), &contact);
     dJointAttach(joint, a.ode, b.ode);
     if (between) making.between.push_back({joint, contact, {a.ode, b.ode}});
@@ -281,6 +289,27 @@ void Collider::align_friction(dContact& contact, const CollisionBody& a, const C
   if (!(speed > still_mps_)) return;
   contact.surface.mode |= dContactFDir1;
   for (int i = 0; i < 3; ++i) contact.fdir1[i] = slip[i] / speed;
+}
+
+// Coulomb's friction of a sliding contact has no part across its slip s.  To first order in a velocity u across it, it
+// is mu N u / |s|.  ODE's limit along that axis is mu N of its own, with which wheels that slip lengthwise would hold a
+// skid-steered vehicle as if they stood.  `load_N` need not be exact: where the slip has settled, the part is zero.
+void Collider::ease_friction_across(dContact& contact, const CollisionBody& a, const CollisionBody& b,
+                                    double load_N) const {
+  const double limit_N = contact.surface.mu * load_N;
+  if ((contact.surface.mode & dContactFDir1) == 0 || !(limit_N > 0)) return;
+  const Vector3d at = to_eigen(contact.geom.pos), normal = to_eigen(contact.geom.normal);
+  const auto velocity = [&](const CollisionBody& body) -> Vector3d {
+    if (!body.ode) return Vector3d::Zero();
+    return to_eigen(body.velocity) + to_eigen(body.angular_velocity).cross(at - to_eigen(body.position));
+  };
+  Vector3d slip = velocity(a) - velocity(b);
+  slip -= slip.dot(normal) * normal;
+  const double speed = slip.norm();
+  if (!(speed > still_mps_)) return;
+  if ((contact.surface.mode & dContactSlip2) == 0) contact.surface.slip2 = 0;
+  contact.surface.mode |= dContactSlip2;
+  contact.surface.slip2 += speed / limit_N;
 }
 
 }  // namespace sim

@@ -32,6 +32,7 @@ struct CollisionPart {
   std::uint32_t collides_with = ~0u;
   const CollisionTerrain* terrain = nullptr;  ///< for a part of shape terrain: its material depends on position
   bool wheel = false;                         ///< a cylinder or capsule that turns about its axis
+  double carried_kg = 0;                      ///< by a wheel: its share of the mass of its group
 };
 
 /// Motion state of a body, used for the velocity of a contact point; all null for a fixed body.
@@ -66,6 +67,8 @@ class Collider {
   void join(int first, int second);
   /// Makes those cylinders and capsules among the parts wheels that turn about the axis of a joint.
   void find_wheels(std::span<const int> parts, const Vector3d& at_W, const Vector3d& axis_W);
+  /// Shares a mass among the wheels of these parts.
+  void load_wheels(std::span<const int> parts, double mass_kg);
   /// Adds the space and the fixed parts of the group to the world's space.
   void close_group(int group);
   /// Takes a group that can touch nothing out of the world's space, or brings it back.
@@ -159,6 +162,7 @@ class Collider {
   }
   void follow_ground(dContact& contact) const;
   void align_friction(dContact& contact, const CollisionBody& a, const CollisionBody& b) const;
+  void ease_friction_across(dContact& contact, const CollisionBody& a, const CollisionBody& b, double load_N) const;
   bool free(const CollisionPart& part) const { return bodies_[part.body].free; }
 
   /// Parts near a group whose overlap is requested.

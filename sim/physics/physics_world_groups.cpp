@@ -265,6 +265,10 @@ void PhysicsWorld::Impl::find_wheels(const JointConfig& hinge, const Body& first
 }
 
 void PhysicsWorld::close_group(int group) {
+  const Impl::Group& closed = impl_->group(group);
+  double mass_kg = 0;
+  for (const int body : closed.bodies) mass_kg += impl_->bodies[body]->mass_kg();
+  impl_->collider.load_wheels(closed.parts, mass_kg);
   impl_->collider.close_group(group);
   impl_->plan_leaps(impl_->group(group));
   impl_->note_group(group);
