@@ -193,8 +193,6 @@ TEST(Segway, WithoutSlackOrWithoutALeverArmItsWheelsStayWithinTheSlack) {
   RecordProperty("centre_mm", std::to_string(no_lever_arm.centre_mm));
   EXPECT_LT(no_lever_arm.axis_deg, 0.7) << "nothing holds a wheel that stands on its middle, within 0.57 degrees";
   EXPECT_LT(no_lever_arm.tilt_deg, 15);
-  // Steered freely it is not turned around, as with the lever arm.
-  EXPECT_LT(wobble_of(free_steering).tilt_deg, 45);
 }
 
 TEST(Segway, ASoftSuspensionSinksAndDoesNotWobble) {
