@@ -8,7 +8,7 @@
 
 namespace sim {
 
-void read_version(ParamReader& in, int& version, const char* key) {
+void read_version(ParamReader& in, const char* key, int& version) {
   in.require(key);
   const ConfigNode* node = in.describing() ? nullptr : in.node()->find(key);
   const std::string text = node != nullptr && node->kind == ConfigNode::Kind::scalar ? node->scalar : "";

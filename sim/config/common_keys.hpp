@@ -9,7 +9,7 @@
 namespace sim {
 
 /// Reads the version of a file's format, a required key: only 1 exists.  A greater one is an error that says so.
-void read_version(ParamReader& in, int& version, const char* key = "shoal");
+void read_version(ParamReader& in, const char* key, int& version);
 
 /// Reads a list of points `[[x, y, z], ...]`, or of `[x, y]` when `columns` is 2 (z is then 0).
 void read_points(ParamReader& in, const char* key, std::vector<Vector3d>& value, std::size_t columns,

@@ -309,8 +309,8 @@ bool is_indented_with_tab(std::string_view text, int line) {
   return first != std::string_view::npos && text[first] == '\t';
 }
 
-/// Number, from 1, of the line before `line` (from 0) if it is text without a colon; 0: it is not.  yaml-cpp joins such a
-/// line to the key below it, and reports the value of that one as `illegal map value`.
+/// Number, from 1, of the line before `line` (from 0) if it is text without a colon; 0: it is not.  yaml-cpp joins such
+/// a line to the key below it, and reports the value of that one as `illegal map value`.
 int line_without_colon(const std::string& text, int line) {
   std::istringstream lines(text);
   std::string before, each;

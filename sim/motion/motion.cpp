@@ -134,7 +134,7 @@ void MotionOrigin::read(ParamReader& in) {
 
 void JointMotion::read(ParamReader& in) {
   int version = 1;
-  read_version(in, version);
+  read_version(in, "shoal", version);
   in.require("motion");
   read_keys(in);
 }

@@ -209,7 +209,7 @@ std::size_t ArgDeclaration::needed_columns() const {
 }
 
 void ProgramDeclaration::read(ParamReader& in) {
-  read_version(in, shoal_args, "shoal_args");
+  read_version(in, "shoal_args", shoal_args);
   in.require("program");
   in.read("program", program, "file name of the program; the declaration is NAME.args.yaml");
   in.read("meaning", meaning, "description in one sentence");

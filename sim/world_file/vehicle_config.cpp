@@ -14,7 +14,7 @@ VehicleConfig::~VehicleConfig() = default;
 
 void VehicleConfig::read(ParamReader& in) {
   // Identification and parameters.
-  read_version(in, shoal);
+  read_version(in, "shoal", shoal);
   in.read("vehicle", vehicle, "name of this kind of vehicle");
   in.read("description", description, "description in one sentence");
   in.read_raw("parameters", parameters, "default of each ${name} used in the file");

@@ -212,7 +212,7 @@ void ViewConfig::read(ParamReader& in) {
 
 void WorldConfig::read(ParamReader& in) {
   // Identification.
-  read_version(in, shoal);
+  read_version(in, "shoal", shoal);
   in.read("name", name, "name of the world");
   if (name.find('\n') != std::string::npos) in.error("name", "'name' must be one line");
   in.read("description", description, "description in one sentence");

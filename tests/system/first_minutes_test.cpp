@@ -151,7 +151,7 @@ TEST(New, WritesProgramsOfTheNameAndForTheVehicle) {
 TEST(New, WritesAPythonProgramThatFindsThePackage) {
   const ScratchFolder folder;
   const Ended ended = shoal_in(folder.file(""), "new program pilot --python");
-  if (!fs::exists(fs::path(built("shoal")).parent_path() / "../lib/python/shoal")) {
+  if (!fs::exists(fs::path(built("shoal")).parent_path() / "../lib/python/shoal/messages.pyi")) {  // with its module
     EXPECT_EQ(ended.exit_code, 4);
     EXPECT_THAT(ended.errors, HasSubstr("there is no Python package beside this program: `tools/build programs`"));
     GTEST_SKIP() << "built without Python";

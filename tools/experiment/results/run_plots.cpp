@@ -123,7 +123,8 @@ std::string tracks_script(const sim::World& world, const Tracks& tracks) {
     curves.emplace_back("$ends using 1:2 with points pt 7 ps 1 lc 'gray20' title 'at the end'");
   return canvas_for_tracks + end_positions(world) + title_of(world, "tracks from above") +
          "set output 'tracks.png'\nset size ratio -1\nset xlabel 'east (m)'\nset ylabel 'north (m)'\n" +
-         "set offsets graph 0.03, graph 0.03, graph 0.03, graph 0.03\n" + joined(curves) + "unset offsets\nset xrange [*:*]\nset yrange [*:*]\n";
+         "set offsets graph 0.03, graph 0.03, graph 0.03, graph 0.03\n" + joined(curves) +
+         "unset offsets\nset xrange [*:*]\nset yrange [*:*]\n";
 }
 
 double rms_of(const Scoring::Track& track) {

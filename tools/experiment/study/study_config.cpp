@@ -65,7 +65,7 @@ void StudyPlot::read(sim::ParamReader& in) {
 void StudyConfig::read(sim::ParamReader& in) {
   // Version and name.
   int version = 1;
-  sim::read_version(in, version);
+  sim::read_version(in, "shoal", version);
   in.require("study");
   in.read_name("study", name, "name of the study");
   in.read("description", description, "description in one sentence");

@@ -38,8 +38,10 @@ fs::path shipped() {
 fs::path package_folder() {
   std::error_code error;
   const fs::path prefix = fs::read_symlink("/proc/self/exe", error).parent_path().parent_path();
+  // A build folder has the part in Python before its module is built.
   for (const char* folder : {"lib/python3/dist-packages", "lib/python"})
-    if (fs::is_regular_file(prefix / folder / "shoal/client.py", error)) return prefix / folder;
+    for (const fs::directory_entry& file : fs::directory_iterator(prefix / folder / "shoal", error))
+      if (file.path().extension() == ".so") return prefix / folder;
   throw std::runtime_error(
       "there is no Python package beside this program: `tools/build programs` in the checkout builds "
       "it, `cmake --install` installs it");
