@@ -78,13 +78,15 @@ void drop_unconnected_links(UrdfRobot& robot) {
   const std::string kept = (*std::max_element(roots.begin(), roots.end(), smaller))->name;  // the first of equal ones
   std::set<std::string> dropped;
   for (const UrdfLink* root : roots) {
-    if (root->name == kept) continue;
-    dropped.insert(trees[root->name].begin(), trees[root->name].end());
+    const std::set<std::string>& other = trees[root->name];
+    const bool is_apart =
+        std::none_of(other.begin(), other.end(), [&](const std::string& link) { return trees[kept].contains(link); });
+    if (!is_apart) continue;  // also the kept one; a link of two parents is refused
+    dropped.insert(other.begin(), other.end());
     robot.notes.push_back({root->place, "link " + quoted_name(root->name) + " is not connected to " +
                                             quoted_name(kept) + ": neither it nor what it carries is imported"});
   }
-  const std::set<std::string>& tree = trees[kept];
-  const auto is_dropped = [&](const std::string& link) { return dropped.contains(link) && !tree.contains(link); };
+  const auto is_dropped = [&](const std::string& link) { return dropped.contains(link); };
   std::erase_if(robot.joints, [&](const UrdfJoint& joint) { return is_dropped(joint.parent); });
   std::erase_if(robot.links, [&](const UrdfLink& link) { return is_dropped(link.name); });
 }

@@ -92,7 +92,8 @@ TEST(UrdfReader, DoesNotExpandEntities) {
 
 TEST(UrdfReader, NamesLineRuleAndValueOfAWrongShape) {
   EXPECT_EQ(shape_error("<sphere radius=\"-1\"/>"), "r.urdf:2: link 'a': 'radius' must be > 0, got -1");
-  EXPECT_EQ(shape_error("<sphere radius=\"1e8\"/>"), "r.urdf:2: link 'a': 'radius' must be at most 1e7 m, got 1e+08");
+  EXPECT_EQ(shape_error("<sphere radius=\"1e8\"/>"),
+            "r.urdf:2: link 'a': 'radius' must be at most 1e7 m, got 100000000");
   EXPECT_EQ(shape_error("<sphere/>"), "r.urdf:2: link 'a': <sphere> needs the attribute 'radius'");
   EXPECT_EQ(shape_error("<sphere radius=\"1 2\"/>"),
             "r.urdf:2: link 'a': 'radius' must be a number between -1e9 and 1e9, got '1 2'");
