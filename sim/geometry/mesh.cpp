@@ -5,7 +5,9 @@
 #include <charconv>
 #include <cstring>
 #include <filesystem>
+#include <limits>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include "sim/base/whole_file.hpp"
@@ -17,43 +19,74 @@ namespace {
 
 constexpr double max_mesh_coordinate_m = 1e7;  // same limit as for the position of a part
 
-/// Splits a text into words separated by white space, by line or across lines.
+/// Splits a text into words separated by white space, by line or across lines.  A line ends with `\n`, `\r\n`, or `\r`
+/// in a text without any `\n`.  A backslash before its end continues it.
 class Words {
  public:
-  explicit Words(std::string_view text) : whole_(text), text_(text) {}
+  explicit Words(std::string_view text)
+      : whole_(text), text_(text), line_end_(text.find('\n') == std::string_view::npos ? '\r' : '\n') {}
   /// Returns the next word of the line; empty at its end.
   std::string_view in_line() {
-    while (!text_.empty() && (text_[0] == ' ' || text_[0] == '\t' || text_[0] == '\r')) text_.remove_prefix(1);
+    while (!text_.empty()) {
+      const bool blank = text_[0] != line_end_ && (text_[0] == ' ' || text_[0] == '\t' || text_[0] == '\r');
+      const std::size_t skipped = blank ? 1 : continuation();
+      if (skipped == 0) break;
+      text_.remove_prefix(skipped);
+    }
     return take();
   }
   /// Returns the next word of the text; empty at its end.
   std::string_view any() {
-    while (!text_.empty() && is_space(text_[0])) text_.remove_prefix(1);
+    while (!text_.empty() && (is_space(text_[0]) || continuation() > 0)) text_.remove_prefix(1);
     return take();
   }
   /// Skips to the next line; returns false at the end of the text.
   bool next_line() {
-    const auto end = text_.find('\n');
+    const auto end = text_.find(line_end_);
     if (end == std::string_view::npos) return false;
     text_.remove_prefix(end + 1);
     return true;
   }
+  bool has_lines() const { return whole_.find(line_end_) != std::string_view::npos; }
   /// Returns the line number of the last word, from 1.
   std::ptrdiff_t line() const {
-    return 1 + std::count(whole_.begin(), whole_.end() - static_cast<std::ptrdiff_t>(text_.size()), '\n');
+    return 1 + std::count(whole_.begin(), whole_.end() - static_cast<std::ptrdiff_t>(text_.size()), line_end_);
   }
 
  private:
   static bool is_space(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\f' || c == '\v'; }
+  /// Returns the length of a continuation of the line; 0: there is none.
+  std::size_t continuation() const {
+    if (text_[0] != '\\') return 0;
+    const std::size_t end = text_.find_first_not_of("\r", 1);
+    if (line_end_ == '\r') return text_.size() > 1 && text_[1] == '\r' ? 2 : 0;
+    return end != std::string_view::npos && text_[end] == '\n' ? end + 1 : 0;
+  }
   std::string_view take() {
-    std::size_t length = 0;
-    while (length < text_.size() && !is_space(text_[length])) ++length;
-    const std::string_view word = text_.substr(0, length);
-    text_.remove_prefix(length);
-    return word;
+    const std::string_view rest = text_;
+    while (!text_.empty() && !is_space(text_[0]) && continuation() == 0) text_.remove_prefix(1);
+    return rest.substr(0, rest.size() - text_.size());
   }
   std::string_view whole_, text_;
+  char line_end_;
 };
+
+std::string lower_case(std::string_view word) {
+  std::string lower(word);
+  for (char& c : lower) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c;
+  return lower;
+}
+
+std::string_view without_leading_blanks(std::string_view text) {
+  return text.substr(std::min(text.find_first_not_of(" \t\r\n"), text.size()));
+}
+
+/// Returns true for ASCII STL.  Some binary files begin with `solid` too; their numbers have bytes that are 0.
+bool is_ascii_stl(std::string_view bytes) {
+  constexpr std::size_t looked_at = 512;
+  const std::string_view head = without_leading_blanks(without_byte_order_mark(bytes)).substr(0, looked_at);
+  return lower_case(head.substr(0, 5)) == "solid" && head.find('\0') == std::string_view::npos;
+}
 
 /// Throws MeshError with the line number.  The contents of the file are not quoted, because a world may refer to a file
 /// that its author cannot read.
@@ -114,19 +147,30 @@ Mesh parse_binary_stl(std::string_view bytes, std::uint32_t count) {
   return mesh;
 }
 
+/// Skips `normal` and its three numbers, which some writers leave out or write as `-nan(ind)`.
+std::string skip_normal(Words& words) {
+  std::string word = lower_case(words.any());
+  if (word != "normal") return word;
+  for (int i = 0; i < 3; ++i) words.any();
+  return lower_case(words.any());
+}
+
 Mesh parse_ascii_stl(std::string_view text) {
   Mesh mesh;
   Welder welder(mesh);
   Words words(text);
-  words.next_line();  // `solid` and an arbitrary name
+  // `solid` and an arbitrary name.
+  words.any();
+  if (words.has_lines()) words.next_line();
   // Collect three vertices per facet.
   std::vector<std::uint32_t> corners;
-  bool ended = false;
-  for (auto word = words.any(); !word.empty(); word = words.any()) {
+  bool ended = false, in_name = !words.has_lines();
+  for (auto word = lower_case(words.any()); !word.empty(); word = lower_case(words.any())) {
+    if (in_name && word != "facet" && word != "endsolid") continue;
+    in_name = false;
     ended = word == "endsolid";
-    if (word == "facet") {
-      words.next_line();  // the normal is ignored
-    } else if (word == "vertex") {
+    if (word == "facet") word = skip_normal(words);
+    if (word == "vertex") {
       const double x = number_from(words.any(), words);
       const double y = number_from(words.any(), words);
       const double z = number_from(words.any(), words);
@@ -136,7 +180,8 @@ Mesh parse_ascii_stl(std::string_view text) {
       add_triangle(mesh, corners[0], corners[1], corners[2]);
       corners.clear();
     } else if (word == "endsolid" || word == "solid") {
-      if (!words.next_line()) break;
+      in_name = !words.has_lines();
+      if (!in_name && !words.next_line()) break;
     } else if (word != "outer" && word != "loop" && word != "endloop") {
       fail_in_line(words, "unknown word");
     }
@@ -158,25 +203,49 @@ Mesh not_empty(Mesh mesh) {
   return mesh;
 }
 
-/// Returns the vertex index of a corner of an OBJ face: `7`, `7/1`, `7//3` or `-1`.  Texture and normal are ignored.
-std::uint32_t obj_index(std::string_view word, const Words& words, std::size_t vertices) {
-  const double number = number_from(word.substr(0, word.find('/')), words, "vertex number");
-  const double index = number < 0 ? static_cast<double>(vertices) + number : number - 1;
-  if (number != std::floor(number) || !(index >= 0 && index < static_cast<double>(vertices)))
-    fail_in_line(words, "must have numbers of the " + std::to_string(vertices) + " vertices so far");
-  return static_cast<std::uint32_t>(index);
-}
+/// Faces of an OBJ file, whose vertices may follow them.
+class ObjFaces {
+ public:
+  /// Reads corners such as `7`, `7/1`, `7//3`, or `-1` for the last vertex so far.  Texture and normal are ignored.
+  void read(Words& words, Mesh& mesh) {
+    std::vector<std::uint32_t> corners;
+    for (auto corner = words.in_line(); !corner.empty() && corner[0] != '#'; corner = words.in_line())
+      corners.push_back(index_of(corner, words, mesh.vertices_m.size()));
+    if (corners.size() < 3) throw MeshError("has a face with fewer than three vertices");
+    for (std::size_t i = 2; i < corners.size(); ++i) add_triangle(mesh, corners[0], corners[i - 1], corners[i]);
+  }
+  /// Checks that all vertices exist.
+  void finish(const Mesh& mesh) const {
+    if (needed_ > mesh.vertices_m.size()) refuse(*needed_at_, mesh.vertices_m.size());
+  }
+
+ private:
+  [[noreturn]] static void refuse(const Words& words, std::size_t vertices) {
+    fail_in_line(words, "must have numbers of the " + std::to_string(vertices) + " vertices");
+  }
+  std::uint32_t index_of(std::string_view word, const Words& words, std::size_t vertices) {
+    constexpr double max_number = 4e9;
+    const double number = number_from(word.substr(0, word.find('/')), words, "vertex number");
+    const double index = number < 0 ? static_cast<double>(vertices) + number : number - 1;
+    if (number != std::floor(number) || !(index >= 0 && index < max_number)) refuse(words, vertices);
+    const auto found = static_cast<std::uint32_t>(index);
+    if (found >= std::max(needed_, vertices)) {
+      needed_ = std::size_t{found} + 1;
+      needed_at_ = words;
+    }
+    return found;
+  }
+  std::size_t needed_ = 0;  ///< number of vertices that a face before them needs
+  std::optional<Words> needed_at_;
+};
 
 }  // namespace
 
 Mesh load_mesh(const std::string& path, double scale) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(c >= 'A' && c <= 'Z' ? c + 32 : c); });
+  const std::string extension = lower_case(std::filesystem::path(path).extension().string());
   if (extension != ".stl" && extension != ".obj") throw MeshError("must end in .stl or .obj");
   const std::string bytes = whole_file<MeshError>(path);
-  const std::string_view text = without_byte_order_mark(bytes);
-  Mesh mesh = extension == ".obj" ? parse_obj(text) : parse_stl(text.starts_with("solid") ? text : bytes);
+  Mesh mesh = extension == ".obj" ? parse_obj(bytes) : parse_stl(bytes);
   for (Vector3d& p : mesh.vertices_m) {
     p = checked_vertex(p * scale);
     if (p.cwiseAbs().maxCoeff() > max_mesh_coordinate_m)
@@ -187,23 +256,31 @@ Mesh load_mesh(const std::string& path, double scale) {
 }
 
 Mesh parse_stl(std::string_view bytes) {
+  constexpr std::size_t head = 84, per_triangle = 50;
   std::uint32_t count = 0;
-  if (bytes.size() >= 84) std::memcpy(&count, bytes.data() + 80, 4);
-  const bool size_fits = bytes.size() >= 84 && bytes.size() == 84 + 50 * std::size_t{count};
-  // Check the size first, because some binary files begin with `solid` too.
-  if (!size_fits && bytes.substr(0, 5) == "solid") return not_empty(parse_ascii_stl(bytes));
-  if (bytes.size() < 84) throw MeshError("is not a mesh: too short for an STL file");
-  if (count > max_mesh_triangles && bytes.size() >= 84 + 50 * std::size_t{count})
+  if (bytes.size() >= head) std::memcpy(&count, bytes.data() + 80, 4);
+  const bool size_fits = bytes.size() >= head && bytes.size() == head + per_triangle * count;
+  if (!size_fits && is_ascii_stl(bytes)) {
+    return not_empty(parse_ascii_stl(bytes));
+  }
+  if (bytes.size() < head) throw MeshError("is not a mesh: too short for an STL file");
+  const std::size_t room = (bytes.size() - head) / per_triangle;
+  // Writers that do not know the number in advance leave 0 or all ones.
+  const bool no_count = count == 0 || count == std::numeric_limits<std::uint32_t>::max();
+  if (no_count && bytes.size() == head + per_triangle * room && room <= max_mesh_triangles)
+    count = static_cast<std::uint32_t>(room);
+  if (count > max_mesh_triangles && count <= room)
     throw MeshError("has more than 4 million triangles: make a coarser one for collision");
-  if (bytes.size() < 84 + 50 * std::size_t{count})
+  if (count > room)
     throw MeshError("says it has " + std::to_string(count) + " triangles, but there is room for " +
-                    std::to_string((bytes.size() - 84) / 50));
+                    std::to_string(room));
   return not_empty(parse_binary_stl(bytes, count));
 }
 
 Mesh parse_obj(std::string_view text) {
   Mesh mesh;
-  Words words(text);
+  ObjFaces faces;
+  Words words(without_byte_order_mark(text));
   do {
     const std::string_view word = words.in_line();
     if (word == "v") {
@@ -212,13 +289,10 @@ Mesh parse_obj(std::string_view text) {
       const double z = number_from(words.in_line(), words);
       mesh.vertices_m.push_back(checked_vertex({x, y, z}));
     } else if (word == "f") {
-      std::vector<std::uint32_t> corners;
-      for (auto corner = words.in_line(); !corner.empty(); corner = words.in_line())
-        corners.push_back(obj_index(corner, words, mesh.vertices_m.size()));
-      if (corners.size() < 3) throw MeshError("has a face with fewer than three vertices");
-      for (std::size_t i = 2; i < corners.size(); ++i) add_triangle(mesh, corners[0], corners[i - 1], corners[i]);
+      faces.read(words, mesh);
     }
   } while (words.next_line());
+  faces.finish(mesh);
   return not_empty(std::move(mesh));
 }
 

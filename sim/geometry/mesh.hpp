@@ -39,9 +39,11 @@ struct MeshSolid {
 /// the surface.  Throws MeshError when the file is missing, too large, truncated or of another format, has numbers that
 /// are not finite, or has no triangle with an area.
 Mesh load_mesh(const std::string& path, double scale);
-/// Parses the contents of an STL file.  Throws MeshError.
+/// Parses the contents of an STL file.  Words may be in capitals; a byte order mark, blank lines before `solid`, lines
+/// that end with a carriage return, and bytes after the last triangle of a binary file do no harm.  Throws MeshError.
 Mesh parse_stl(std::string_view bytes);
-/// Parses the contents of an OBJ file.  Throws MeshError.
+/// Parses the contents of an OBJ file: vertices and faces, with positive numbers in any order and negative ones.  All
+/// else is ignored, also normals, textures and materials.  Throws MeshError.
 Mesh parse_obj(std::string_view text);
 
 /// Returns true when the mesh encloses a solid: every edge is shared by two triangles with opposite directions.

@@ -122,6 +122,7 @@ struct JointAxisConfig {
   std::optional<double> high_stop;
   double motor_velocity = 0;   ///< rad/s, or m/s of a slider
   double motor_max_force = 0;  ///< N m, or N of a slider; 0: no motor
+  double damping = 0;          ///< N m s/rad, or N s/m of a slider
   std::optional<double> restitution, cfm, stop_erp, stop_cfm, fudge_factor, suspension_erp, suspension_cfm, erp;
 
   void read(ParamReader& in);

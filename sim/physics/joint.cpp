@@ -173,6 +173,7 @@ void Joint::configure_axis(const JointAxisConfig& config, int axis) {
   const auto set = [&](int parameter, const std::optional<double>& value) {
     if (value) set_parameter(parameter, *value, axis);
   };
+  damping_[axis] = config.damping;
   place_stops(config.low_stop, config.high_stop, axis);
   set(dParamBounce, config.restitution);
   set(dParamCFM, config.cfm);

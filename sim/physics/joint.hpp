@@ -65,8 +65,8 @@ class Joint {
   /// Switches the measurement of the load on, from the next step; until then the load reads zero.
   void measure_load();
   /// Force and torque that the joint applied to its second body in the last step, or to the only moving body.  They
-  /// include the constraint, motor, stops and efforts.  The torque is about the joint's anchor, which moves with that
-  /// body.
+  /// include the constraint, motor, stops, efforts and damping.  The torque is about the joint's anchor, which moves
+  /// with that body.
   Vector3d force_W_N() const;
   Vector3d torque_W_Nm() const;
   /// Part of the load applied by motor, stops and add_effort about or along an axis, in the joint's sign.
@@ -116,13 +116,15 @@ class Joint {
   void visit_load(StateArchive& archive);
   void measure_no_load();
   void set_parameter(int parameter, double value, int axis);
-  int max_rows() const;  ///< constraint rows with all motors and stops active; motors that leave a stop add some
+  /// Constraint rows with all motors and stops active; motors that leave a stop, and damping, add some.
+  int max_rows() const;
   double wrapped_position(int axis) const;
   double get_parameter(int parameter, int axis) const;
   Vector3d axis_W(int axis) const;
   void request_load();
   void note_before_step();
   void note_load();
+  void note_load_without_damping();
   double motor_at_stop(int axis) const;
   /// Returns whether the motor of an axis drives it away from a stop at which it is.
   bool leaves_stop(int axis) const;
@@ -132,6 +134,10 @@ class Joint {
   /// any; then end_leaving_stops() must follow the step.
   bool start_leaving_stops(dxJointGroup* group, double step_s);
   void end_leaving_stops();
+  /// Gives the damping of the axes to a joint of `group` for the next step.
+  void start_damping(dxJointGroup* group);
+  dxJoint* create_slider_damper(dxJointGroup* group) const;
+  Vector3d middle_of_bodies_W() const;
   dxJoint* create_slider_stop(dxJointGroup* group) const;
   void move_world_side(const Pose& X_move_W);
   void make_again(const Pose& X_WV, const Pose& X_WC);
@@ -150,9 +156,11 @@ class Joint {
   double wrapped_[max_axes] = {};
   double motor_velocity_[max_axes] = {};
   double motor_max_force_[max_axes] = {};
+  double damping_[max_axes] = {};
   OdeStops stops_[max_axes];  // none where they have no effect
   OdeStops configured_stops_[max_axes];
   bool leaves_stops_ = false;           // in this step
+  bool damps_ = false;                  // in this step
   bool stops_were_set_ = false;         ///< set_stops() was called
   dxBody* loaded_ = nullptr;            // whose load is measured
   Vector3d p_CA_C_ = Vector3d::Zero();  // the anchor in ODE's frame of the loaded body

@@ -17,6 +17,9 @@ namespace {
 
 constexpr double solver_rounding = 1e-9;  // rad/s or m/s: above that of a velocity
 constexpr double stop_rounding = 1e-9;    // rad or m: above that of a position, which sums the angles that ODE measures
+constexpr double no_force_cfm = 1e12;     // (m/s)/N: a row this soft gives no force
+constexpr double no_force_limit = 1e12;   // N, or N m
+constexpr double min_damping = 1e-12;     // N s/m, or N m s/rad: its row stays finite
 
 }  // namespace
 
@@ -127,7 +130,6 @@ bool Joint::start_leaving_stops(dJointGroupID group, double step_s) {
 
 /// Makes a contact without friction whose row is that of the stop that the slider leaves: ODE's linear motor has none.
 dJointID Joint::create_slider_stop(dJointGroupID group) const {
-  const dBodyID first = dJointGetBody(ode_.get(), 0), second = dJointGetBody(ode_.get(), 1);
   const bool at_low = sign_ * motor_velocity_[0] > 0;
   dContact contact = {};
   contact.surface.mode = dContactSoftERP | dContactSoftCFM | dContactBounce;
@@ -137,8 +139,49 @@ dJointID Joint::create_slider_stop(dJointGroupID group) const {
   contact.geom.depth =
       depth_in_stop(0) + dWorldGetContactSurfaceLayer(dBodyGetWorld(loaded_));  // in which a contact has no depth
   const Vector3d normal_W = (at_low ? 1 : -1) * axis_W(0);
-  Vector3d p_W = to_eigen(dBodyGetPosition(first));
-  if (second != nullptr) p_W = (p_W + to_eigen(dBodyGetPosition(second))) / 2;
+  const Vector3d p_W = middle_of_bodies_W();
+  std::copy_n(normal_W.data(), 3, contact.geom.normal);
+  std::copy_n(p_W.data(), 3, contact.geom.pos);
+  return dJointCreateContact(dBodyGetWorld(loaded_), group, &contact);
+}
+
+Vector3d Joint::middle_of_bodies_W() const {
+  const dBodyID first = dJointGetBody(ode_.get(), 0), second = dJointGetBody(ode_.get(), 1);
+  const Vector3d p_W = to_eigen(dBodyGetPosition(first));
+  return second == nullptr ? p_W : Vector3d((p_W + to_eigen(dBodyGetPosition(second))) / 2);
+}
+
+// A motor for the velocity 0 whose row is soft: its torque is -velocity / cfm at the end of the step (ODE User Guide,
+// "Soft constraint and constraint force mixing"), so that damping is stable at any step and with any other joint.
+void Joint::start_damping(dJointGroupID group) {
+  int damped[max_axes], count = 0;
+  for (int axis = 0; axis < axes_; ++axis)
+    if (damping_[axis] > min_damping) damped[count++] = axis;
+  damps_ = count > 0;
+  if (!damps_) return;
+  const bool slides = type_ == JointType::slider;
+  const dJointID damper = slides ? create_slider_damper(group) : dJointCreateAMotor(dBodyGetWorld(loaded_), group);
+  dJointAttach(damper, dJointGetBody(ode_.get(), 0), dJointGetBody(ode_.get(), 1));
+  if (!slides) dJointSetAMotorNumAxes(damper, count);
+  for (int i = 0; i < count && !slides; ++i) {
+    const Vector3d along = axis_W(damped[i]);
+    dJointSetAMotorAxis(damper, i, 0, along.x(), along.y(), along.z());
+    dJointSetAMotorParam(damper, dParamFMax + dParamGroup * i, no_force_limit);
+    dJointSetAMotorParam(damper, dParamCFM + dParamGroup * i, 1 / damping_[damped[i]]);
+  }
+  if (load_) dJointSetFeedback(damper, &load_->damping_feedback);
+}
+
+/// Makes a contact whose friction is that of the damper: ODE's linear motor pushes the bodies at their centres, off the
+/// line of the slider.
+dJointID Joint::create_slider_damper(dJointGroupID group) const {
+  dContact contact = {};
+  contact.surface.mode = dContactSoftCFM | dContactFDir1 | dContactSlip1 | dContactMu2;
+  contact.surface.soft_cfm = no_force_cfm;
+  contact.surface.mu = no_force_limit;
+  contact.surface.slip1 = 1 / damping_[0];
+  const Vector3d along_W = axis_W(0), normal_W = along_W.unitOrthogonal(), p_W = middle_of_bodies_W();
+  std::copy_n(along_W.data(), 3, contact.fdir1);
   std::copy_n(normal_W.data(), 3, contact.geom.normal);
   std::copy_n(p_W.data(), 3, contact.geom.pos);
   return dJointCreateContact(dBodyGetWorld(loaded_), group, &contact);
@@ -165,6 +208,16 @@ double Joint::motor_at_stop(int axis) const {
 }
 
 void Joint::note_load() {
+  note_load_without_damping();  // also the efforts of the axes
+  if (!damps_) return;
+  const bool first = origin_->to_world;
+  const dJointFeedback& damping = load_->damping_feedback;
+  const Vector3d force_W_N = to_eigen(first ? damping.f1 : damping.f2);
+  load_->force_W_N += force_W_N;
+  load_->torque_W_Nm += to_eigen(first ? damping.t1 : damping.t2) - load_->p_CA_W.cross(force_W_N);
+}
+
+void Joint::note_load_without_damping() {
   Load& load = *load_;
   const bool first = origin_->to_world;
   // Constraint force and torque, moved to the anchor.

@@ -154,8 +154,10 @@ void PhysicsWorld::Impl::solve(Shard& shard, ShardStepper& stepper, std::int64_t
   for (Body* body : shard.moving)
     if (body->gyroscopic_ && !body->alone()) body->add_gyroscopic_torque(config.step_s);
   stepper.leaving.clear();
-  for (Joint* joint : shard.joints)
+  for (Joint* joint : shard.joints) {
+    joint->start_damping(stepper.making.contacts.get());
     if (joint->start_leaving_stops(stepper.making.contacts.get(), config.step_s)) stepper.leaving.push_back(joint);
+  }
   // Record the poses at the start of the step for the joint loads.
   const auto for_each_measured_joint = [&](const auto& visit) {
     for (Joint* joint : shard.joints)

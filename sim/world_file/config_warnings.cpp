@@ -42,6 +42,32 @@ class ConfigCheck {
     }
   }
 
+  /// Places such as those of a map in UTM.  The world is a plane that touches the earth at its origin: 150 km away it
+  /// is 1.8 km above the ellipsoid.  In UTM x is 166 km or more.
+  void check_places() const {
+    constexpr double far_m = 150e3;
+    const SourcePlace* place = nullptr;
+    std::string who;
+    double distance_m = 0;
+    int others = -1;
+    const auto check = [&](const Vector3d& p, const SourcePlace& source, const char* kind, const std::string& name) {
+      const double distance = p.head<2>().norm();
+      if (distance < far_m || others++ >= 0) return;
+      place = &source;
+      who = std::string(kind) + " '" + name + "'";
+      distance_m = distance;
+    };
+    for (const VehicleInstance& vehicle : world_.vehicles)
+      check(vehicle.X_WV.translation(), vehicle.place, "vehicle", vehicle.name);
+    for (const ObjectConfig& object : world_.objects) check(object.position_m, object.place, "object", object.name);
+    if (place == nullptr) return;
+    const std::string more = others == 0 ? "" : ", and " + std::to_string(others) + " more are as far";
+    warnings_.warn(*place, who,
+                   "it is " + std::to_string(std::lround(distance_m / 1000)) + " km from the world's origin" + more +
+                       ": the world is flat, so that a GPS there is far above the earth; give coordinates of a map, "
+                       "such as UTM, relative to 'origin'");
+  }
+
   void check_rates() const {
     if (root_.find("state_rate_hz") != nullptr)
       check_rate("'state_rate_hz'", world_.state_rate_hz, place_of(root_, "state_rate_hz"), "");
@@ -146,7 +172,7 @@ class ConfigCheck {
                          "'" + std::string(key) + "' has no effect on a " + type + where);
     };
     const auto stop_keys = {"low_stop", "high_stop", "restitution", "stop_erp", "stop_cfm", "fudge_factor"};
-    const auto motor_keys = {"motor_velocity", "motor_max_force", "cfm"};
+    const auto motor_keys = {"motor_velocity", "motor_max_force", "cfm", "damping"};
     const auto suspension_keys = {"suspension_erp", "suspension_cfm"};
     warn_of(&source, {fixed || ball ? "axis" : "erp"}, "");
     if (fixed || (ball && !joint.motor)) {
@@ -220,6 +246,7 @@ void warn_of_config(const WorldConfig& world, const ConfigNode& root, Warnings& 
   const bool endless = given_s == 0 || world.run.duration_s == 0;
   const ConfigCheck check(world, root, warnings, endless ? 0 : std::max(given_s, world.run.duration_s));
   check.check_vehicles();
+  check.check_places();
   check.check_water();
   check.check_rates();
   check.check_metrics();

@@ -2,6 +2,7 @@
 #include "sim/config/config_node.hpp"
 #include "tests/fuzz/fuzz_input.hpp"
 #include "tools/shoal/urdf/imported_meshes.hpp"
+#include "tools/shoal/urdf/mass_of_shapes.hpp"
 #include "tools/shoal/urdf/urdf_reader.hpp"
 #include "tools/shoal/urdf/vehicle_text.hpp"
 
@@ -10,10 +11,11 @@
 SHOAL_FUZZ_TARGET(urdf) {
   fuzz::Reader reader(input);
   const tools::Base base = reader.below(2) == 0 ? tools::Base::free : tools::Base::fixed;
-  const std::string urdf(fuzz::text_of(reader.rest()));
   fuzz::allow<sim::ConfigError>([&] {
-    tools::ImportedVehicle vehicle = tools::vehicle_of(tools::read_urdf(urdf, "r.urdf"), "r.urdf", base);
-    tools::convert_meshes(vehicle, {.use = tools::MeshUse::none});
+    const tools::NoMass no_mass = reader.below(2) == 0 ? tools::NoMass::refused : tools::NoMass::of_shapes;
+    const std::string urdf(fuzz::text_of(reader.rest()));
+    tools::ImportedVehicle vehicle = tools::vehicle_of(tools::read_urdf(urdf, "r.urdf"), "r.urdf", base, no_mass);
+    tools::complete_masses(vehicle, tools::convert_meshes(vehicle, {.use = tools::MeshUse::none}));
     fuzz::require(!vehicle.bodies.empty(), "a robot has a body");
     for (const tools::ImportedBody& body : vehicle.bodies)
       fuzz::require(body.mass_kg > 0 && body.inertia_kgm2.allFinite() && body.X_VB.matrix().allFinite(),

@@ -84,6 +84,44 @@ TEST(ImportUrdf, WritesTheHullsOfMeshesBesideTheVehicle) {
   EXPECT_EQ(run_shoal({"run", folder.file("w.yaml"), "--bus", "none"}).exit_code, 0);
 }
 
+TEST(ImportUrdf, MakesVisualShapesOfACategoryThatTheCheckKnows) {
+  const ScratchFolder folder;
+  const std::string urdf = folder.file("r.urdf"), output = folder.file("r.yaml");
+  write_file(urdf,
+             "<robot name=\"r\"><link name=\"a\"><inertial><mass value=\"1\"/><inertia ixx=\"1\" iyy=\"1\" izz=\"1\"/>"
+             "</inertial><visual><geometry><sphere radius=\"1\"/></geometry></visual></link></robot>");
+  EXPECT_EQ(import_urdf({urdf, "--output", output}).exit_code, 0);
+  const Ended checked = run_shoal({"check", output});
+  EXPECT_EQ(checked.exit_code, 0) << checked.errors;
+  // So does a vehicle with coefficients, which is checked in water.
+  std::string text = text_of_file(output);
+  const std::string none = "model: none, mass_kg: 1, inertia_kgm2: [1, 1, 1]";
+  ASSERT_THAT(text, HasSubstr(none));
+  text.replace(text.find(none), none.size(),
+               "model: none, mass_kg: 1, volume_m3: 0.001, inertia_kgm2: [1, 1, 1], added_mass: [1, 1, 1, 0, 0, 0]");
+  text.replace(text.find("model: none"), 11, "model: fossen");
+  write_file(output, text);
+  const Ended in_water = run_shoal({"check", output});
+  EXPECT_EQ(in_water.exit_code, 0) << in_water.errors;
+}
+
+TEST(ImportUrdf, GivesMassesByTheDensity) {
+  const ScratchFolder folder;
+  const std::string urdf = folder.file("r.urdf"), output = folder.file("r.yaml");
+  write_file(urdf,
+             "<robot name=\"r\">\n<link name=\"a\"><collision><geometry><box size=\"1 2 3\"/></geometry></collision>"
+             "</link></robot>");
+  const Ended refused = import_urdf({urdf, "--output", output});
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.errors, HasSubstr("`--density 1000` gives it the mass of its shapes"));
+  const Ended ended = import_urdf({urdf, "--output", output, "--density", "500"});
+  EXPECT_EQ(ended.exit_code, 0);
+  EXPECT_EQ(ended.errors,
+            urdf + ":2: body 'a': its mass is not given: it gets 3000 kg, that of its shapes at 500 kg/m^3\n");
+  EXPECT_EQ(run_shoal({"check", output}).exit_code, 0);
+  EXPECT_EQ(import_urdf({urdf, "--output", output, "--density", "0", "--overwrite"}).exit_code, 2);
+}
+
 TEST(ImportUrdf, RefusesAFileThatExistsUnlessItMayReplaceIt) {
   const ScratchFolder folder;
   const std::string output = folder.file("bittle.yaml");

@@ -103,6 +103,64 @@ TEST(Mesh, BinaryStlMayBeginWithSolid) {
   EXPECT_EQ(sim::parse_stl(bytes).triangles.size(), 12u);
 }
 
+/// Replaces every `from`.
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
+    text.replace(at, from.size(), to);
+  return text;
+}
+
+TEST(Mesh, ReadsAsciiStlHoweverItIsWritten) {
+  const std::string plain = ascii_stl_of(box_mesh({1, 2, 3}, {0, 0, 0}));
+  std::string capitals = plain;
+  for (char& c : capitals) c = c >= 'a' && c <= 'z' ? static_cast<char>(c - 32) : c;
+  const std::string two = plain + "\n" + plain;
+  for (const std::string& text :
+       {capitals, "\n  \r\n" + plain, "\xef\xbb\xbf" + plain, replaced(plain, "\n", "\r\n"),
+        replaced(plain, "\n", "\r"), replaced(plain, "\n", " "), replaced(plain, "\n", "\t\n"),
+        replaced(plain, "normal 0 0 0", ""), replaced(plain, "normal 0 0 0\n", "normal -nan(ind) 0 1.#QNAN "),
+        replaced(plain, "a box", "C:\\facet vertex"), replaced(plain, "vertex 0", "vertex +0"),
+        replaced(plain, " a box", ""), two}) {
+    const Mesh read = sim::parse_stl(text);
+    EXPECT_NEAR(sim::solid_of(read).volume_m3, text == two ? 12 : 6, 1e-12) << text.substr(0, 200);
+    EXPECT_EQ(read.vertices_m.size(), 8u);
+  }
+}
+
+TEST(Mesh, ReadsBinaryStlWithOddHeaderCountOrEnd) {
+  const std::string plain = binary_stl_of(box_mesh({1, 2, 3}, {0, 0, 0}));
+  std::string solid = plain, no_count = plain, all_ones = plain;
+  solid.replace(0, 20, "solid facet endsolid");
+  no_count.replace(80, 4, 4, '\0');
+  all_ones.replace(80, 4, 4, '\xff');
+  for (const std::string& bytes : {solid, solid + "\n", solid + std::string(17, 'x'), plain + std::string(3, '\0'),
+                                   no_count, all_ones, "\xef\xbb\xbf" + plain.substr(3)})
+    EXPECT_NEAR(sim::solid_of(sim::parse_stl(bytes)).volume_m3, 6, 1e-12);
+  EXPECT_EQ(error_of([&] { sim::parse_stl(no_count + "x"); }), "has no triangles");
+}
+
+TEST(Mesh, ReadsObjHoweverItIsWritten) {
+  const std::string plain = obj_of(box_mesh({1, 2, 3}, {0, 0, 0}));
+  const std::size_t faces = plain.find("f ");
+  const std::string with_all = "mtllib not_there.mtl\nvt 0 0\nvn 0 0 1\ng a b\ns off\nusemtl red\nl 1 2\n" +
+                               replaced(plain, "\nf", "\nl 1 2\nf");
+  for (const std::string& text :
+       {with_all, replaced(plain, "\n", "\r\n"), replaced(plain, "\n", "\r"), "\xef\xbb\xbf" + plain,
+        replaced(plain, "/1/1", "/1"), replaced(plain, "/1/1", ""), replaced(plain, "\n", " # text\n"),
+        replaced(plain, "//1", "//1 \\\n"), replaced(plain, "/1/1 ", "/1/1\\\r\n "), replaced(plain, "f ", "f\t "),
+        plain.substr(0, faces - 1) + " 0.5 0.5 0.5\n" + plain.substr(faces),  // a color behind the last vertex
+        plain.substr(faces) + plain.substr(0, faces)}) {                      // faces first
+    const Mesh read = sim::parse_obj(text);
+    EXPECT_NEAR(sim::solid_of(read).volume_m3, 6, 1e-12) << text.substr(0, 200);
+    EXPECT_EQ(read.triangles.size(), 12u);
+  }
+  // A continued line counts as those of the file.
+  EXPECT_EQ(error_of([] { sim::parse_obj("v 0 0 \\\n0\nf 1 \\\n 2 3\n"); }),
+            "is not a mesh: line 4: must have numbers of the 1 vertices");
+  EXPECT_EQ(error_of([] { sim::parse_obj("v 0 0 0\nf -2 -1 1\n"); }),
+            "is not a mesh: line 2: must have numbers of the 1 vertices");
+}
+
 TEST(Mesh, ObjHasPolygonsAndIndicesFromTheEnd) {
   const Mesh mesh = sim::parse_obj("v 0 0 0\nv 1 0 0\nv 1 1 0\r\nv 0 1 0\nf -4 -3 -2 -1\n");
   EXPECT_EQ(mesh.triangles.size(), 2u);
@@ -152,11 +210,11 @@ TEST(Mesh, ErrorsSayWhatIsWrong) {
   EXPECT_EQ(error_of([] { sim::parse_obj("v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n"); }), "has no triangle with an area");
   EXPECT_EQ(error_of([] { sim::parse_obj("v 0 0\n"); }), "is not a mesh: line 1: must have a number here");
   EXPECT_EQ(error_of([] { sim::parse_obj("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n"); }),
-            "is not a mesh: line 4: must have numbers of the 3 vertices so far");
+            "is not a mesh: line 4: must have numbers of the 3 vertices");
   EXPECT_EQ(error_of([] { sim::parse_obj("v 0 0 0\nf 0 1 1\n"); }),
-            "is not a mesh: line 2: must have numbers of the 1 vertices so far");
+            "is not a mesh: line 2: must have numbers of the 1 vertices");
   EXPECT_EQ(error_of([] { sim::parse_obj("v 0 0 0\nf 1e99 1 1\n"); }),
-            "is not a mesh: line 2: must have numbers of the 1 vertices so far");
+            "is not a mesh: line 2: must have numbers of the 1 vertices");
   EXPECT_EQ(error_of([] { sim::parse_obj("v 0 0 inf\n"); }), "has a vertex that is not finite");
   EXPECT_EQ(error_of([] { sim::parse_obj("v 0 0 0\n"); }), "has no triangles");
   EXPECT_EQ(error_of([] { sim::parse_obj(""); }), "has no triangles");

@@ -94,14 +94,15 @@ TEST(ConfigWarnings, ReportKeysOfJointsThatTheirTypeDoesNotHave) {
   EXPECT_THAT(warnings_of_joint("type: slider, erp: 0.5"), HasSubstr("'erp' has no effect on a slider\n"));
   EXPECT_THAT(warnings_of_joint("type: ball, high_stop: 1"),
               HasSubstr("'high_stop' has no effect on a ball without 'motor: true'\n"));
-  const std::string of_fixed = warnings_of_joint("type: fixed, axis: [1, 0, 0], low_stop: -1, high_stop: 1, cfm: 0.1");
-  for (const std::string key : {"axis", "low_stop", "high_stop", "cfm"})
+  const std::string of_fixed =
+      warnings_of_joint("type: fixed, axis: [1, 0, 0], low_stop: -1, high_stop: 1, cfm: 0.1, damping: 1");
+  for (const std::string key : {"axis", "low_stop", "high_stop", "cfm", "damping"})
     EXPECT_THAT(of_fixed, HasSubstr("'" + key + "' has no effect on a fixed joint\n"));
 }
 
 TEST(ConfigWarnings, AreSilentAboutTheKeysOfATypeOfJoint) {
   const std::string stops = "low_stop: -1, high_stop: 1, restitution: 0.1, stop_erp: 0.1, stop_cfm: 0.1";
-  const std::string motor = "motor_velocity: 1, motor_max_force: 1, cfm: 0.1, fudge_factor: 0.5";
+  const std::string motor = "motor_velocity: 1, motor_max_force: 1, cfm: 0.1, fudge_factor: 0.5, damping: 1";
   for (const std::string type : {"hinge", "slider"})
     EXPECT_EQ(warnings_of_joint("type: " + type + ", axis: [1, 0, 0], " + stops + ", " + motor), "");
   EXPECT_EQ(warnings_of_joint("type: universal, axis2: {axis: [0, 1, 0], " + stops + ", " + motor + "}, " + stops), "");
@@ -110,6 +111,24 @@ TEST(ConfigWarnings, AreSilentAboutTheKeysOfATypeOfJoint) {
             "");
   EXPECT_EQ(warnings_of_joint("type: ball, motor: true, erp: 0.5, " + stops + ", " + motor), "");
   EXPECT_EQ(warnings_of_joint("type: fixed, erp: 0.5"), "");
+}
+
+TEST(ConfigWarnings, ReportPlacesAsFarFromTheOriginAsThoseOfAMapInUtm) {
+  const auto at = [](const std::string& place, const std::string& more = "") {
+    std::string yaml = world("        []\n", more);
+    yaml.replace(yaml.find("    model:"), 10, "    position_m: " + place + "\n    model:");
+    return warnings_of_file(yaml);
+  };
+  const std::string objects =
+      "objects:\n  - {name: rock, position_m: [326060, 4690000, 0], fixed: true, parts: [{shape: box}]}\n"
+      "  - {name: dock, position_m: [326080, 4690000, 0], fixed: true, parts: [{shape: box}]}\n";
+  // hypot(326.06, 4690) = 4701.3.
+  EXPECT_EQ(at("[326060, 4690000, 0]"),
+            "worlds/test.yaml:5:5: vehicle 'r1': it is 4701 km from the world's origin: the world is flat, so that a "
+            "GPS there is far above the earth; give coordinates of a map, such as UTM, relative to 'origin'\n");
+  EXPECT_THAT(at("[0, 0, 0]", objects),
+              HasSubstr("object 'rock': it is 4701 km from the world's origin, and 1 more are as far"));
+  EXPECT_EQ(at("[100000, -100000, -6000]"), "");  // 141 km
 }
 
 TEST(ConfigWarnings, ReportAMetricOfAChannelOnWhichNoOnePublishes) {

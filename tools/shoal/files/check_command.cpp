@@ -96,13 +96,18 @@ std::size_t body_count(sim::LoadedWorld& loaded, sim::Warnings& warnings) {
 /// Builds a vehicle with coefficients in deep water.
 void check_in_water(sim::VehicleConfig vehicle, sim::LoadOptions options) {
   options.sets.clear();
-  if (std::none_of(vehicle.bodies.begin(), vehicle.bodies.end(),
-                   [](const sim::BodyConfig& body) { return body.hydrodynamics.has_value(); }))
+  if (std::none_of(vehicle.bodies.begin(), vehicle.bodies.end(), [](const sim::BodyConfig& body) {
+        return body.hydrodynamics && body.hydrodynamics->model != sim::HydrodynamicsConfig::Model::none;
+      }))
     return;
   sim::LoadedWorld loaded = sim::load_world_text(
       "shoal: 1\nphysics: {step_s: 0.001}\nmedium: {water: {}}\n"
       "objects: [{name: bottom, fixed: true, position_m: [0, 0, -100], parts: [{shape: plane}]}]\n",
       "water.yaml", options);
+  const auto add = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
+  add(loaded.config.categories, vehicle.categories);
+  add(loaded.config.materials, vehicle.materials);
+  add(loaded.config.contacts, vehicle.contacts);
   sim::VehicleInstance instance;
   instance.name = vehicle.vehicle;
   instance.X_WV.translation().z() = -10;

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 
 #include "sim/config/message_text.hpp"
@@ -26,6 +27,7 @@ struct ImportArguments {
   std::string file, output;
   std::vector<std::string> packages;
   std::string meshes = "hull";
+  std::optional<double> density_kgpm3;
   bool fixed_base = false;
   bool overwrite = false;
 };
@@ -97,16 +99,17 @@ std::string counted(std::size_t count, const std::string& word) {
 }
 
 int import_robot(const ImportArguments& arguments) {
-  const UrdfMeshOptions options = mesh_options(arguments);
+  const UrdfImportOptions options{.base = arguments.fixed_base ? Base::fixed : Base::free,
+                                  .density_kgpm3 = arguments.density_kgpm3,
+                                  .meshes = mesh_options(arguments),
+                                  .schema = schema_for(arguments.output)};
   check_output(arguments);
-  const UrdfImport result = import_urdf(arguments.file, arguments.fixed_base ? Base::fixed : Base::free, options,
-                                        schema_for(arguments.output));
+  const UrdfImport result = import_urdf(arguments.file, options);
   write_files(arguments, result);
   print_notes(result.vehicle.notes);
   const std::vector<ImportedJoint>& joints = result.vehicle.joints;
-  const auto servos = std::count_if(joints.begin(), joints.end(), [](const ImportedJoint& joint) {
-    return joint.max_velocity.has_value() && joint.max_effort.has_value();
-  });
+  const auto servos =
+      std::count_if(joints.begin(), joints.end(), [](const ImportedJoint& joint) { return joint.has_servo(); });
   std::cout << arguments.output << ": vehicle '" << result.vehicle.name
             << "': " << counted(result.vehicle.bodies.size(), "body") << ", " << counted(joints.size(), "joint") << ", "
             << counted(static_cast<std::size_t>(servos), "servo") << ", " << counted(result.meshes.size(), "mesh file")
@@ -133,12 +136,18 @@ void add_urdf_command(CLI::App& app, int& exit_code) {
       ->type_name("USE")
       ->check(one_of({"hull", "box", "none"}).description(""))
       ->capture_default_str();
+  command
+      ->add_option("--density", arguments->density_kgpm3,
+                   "density of bodies without mass, which get the mass of their shapes, kg/m^3")
+      ->type_name("DENSITY")
+      ->check(CLI::Range(1e-3, 1e5).description(""));
   command->add_flag("--fixed-base", arguments->fixed_base, "fix the root link to the world, as of an arm on a table");
   command->add_flag("--overwrite", arguments->overwrite, "replace an existing file");
   command_line::set_help_end(
       *command,
       {{"shoal import urdf bittle.urdf --output vehicles/bittle.yaml",
-        "shoal import urdf arm.urdf --output arm.yaml --package arm_description=../arm_description --meshes box"},
+        "shoal import urdf arm.urdf --output arm.yaml --package arm_description=../arm_description --meshes box",
+        "shoal import urdf panda.urdf --output panda.yaml --fixed-base --density 1000"},
        {{0, "the vehicle file was written"}, {2, "wrong usage, or an error in the URDF"}, {4, "file error"}},
        {"Each part of the URDF that a vehicle file does not hold is one line on stderr, as file:line: text.  "
         "docs/guides/import_urdf.md has the details."}});

@@ -3,6 +3,8 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "sim/base/linear_algebra.hpp"
@@ -30,16 +32,22 @@ bool same_shapes(const std::vector<UrdfShape>& a, const std::vector<UrdfShape>& 
   return true;
 }
 
-/// Checks the moments of inertia: of a solid they are positive, and none is larger than the sum of the others.
-void check_inertia(const ImportedBody& body, std::vector<UrdfNote>& notes) {
+constexpr double min_mass_kg = 1e-9;  // of a body in Shoal
+
+/// Checks the moments of inertia: of a solid they are positive, and none is larger than the sum of the others.  One
+/// that is zero is not known.
+void check_inertia(ImportedBody& body, std::vector<UrdfNote>& notes) {
   const std::string who = "body '" + body.name + "'";
   const sim::Vector3d moments = sim::symmetric_eigenvalues(body.inertia_kgm2);
-  if (!(moments[0] > 1e-9 * moments[2] && moments[0] > 1e-30))
+  constexpr double no_inertia_kgm2 = 1e-15;  // that of a grain of dust, 1e-9 kg and 1 mm
+  const double rounding = std::max(1e-9 * std::abs(moments[2]), no_inertia_kgm2);
+  if (moments[0] < -rounding)
     sim::throw_config_error(
         body.place, who,
         fmt::format("its inertia must be positive definite, got the moments {:.6g}, {:.6g} and {:.6g} kg m^2",
                     moments[0], moments[1], moments[2]));
-  if (moments[2] > 1.001 * (moments[0] + moments[1]))
+  body.lacks_inertia = !(moments[0] > rounding);
+  if (!body.lacks_inertia && moments[2] > 1.001 * (moments[0] + moments[1]))
     notes.push_back(
         {body.place, fmt::format("{}: no solid has its moments of inertia, {:.6g}, {:.6g} and {:.6g} kg m^2: none is "
                                  "larger than the sum of the others",
@@ -81,20 +89,29 @@ void BodyAssembly::add(const UrdfLink& link, const sim::Pose& X_VL, std::vector<
   }
 }
 
+bool BodyAssembly::has_mass() const {
+  return body_.mass_kg >= min_mass_kg;
+}
+
 void BodyAssembly::allow_no_mass() {
-  if (body_.mass_kg > 0) return;
+  if (has_mass()) return;
   body_.mass_kg = 1;
+  moment_kgm_.setZero();
   about_origin_ = 0.01 * sim::Matrix3d::Identity();
 }
 
-ImportedBody BodyAssembly::finish(std::vector<UrdfNote>& notes) {
-  if (!(body_.mass_kg >= 1e-9))
+ImportedBody BodyAssembly::finish(NoMass no_mass, std::vector<UrdfNote>& notes) {
+  if (has_mass()) {
+    body_.center_of_mass_m = moment_kgm_ / body_.mass_kg;
+    body_.inertia_kgm2 = about_origin_ - body_.mass_kg * inertia_of_point(body_.center_of_mass_m);
+    check_inertia(body_, notes);
+  } else if (no_mass == NoMass::refused) {
     sim::throw_config_error(body_.place, "body '" + body_.name + "'",
                             "must have a mass of at least 1e-9 kg, got " + sim::number_text(body_.mass_kg) +
-                                ": its link, or one that a fixed joint attaches to it, needs an <inertial>");
-  body_.center_of_mass_m = moment_kgm_ / body_.mass_kg;
-  body_.inertia_kgm2 = about_origin_ - body_.mass_kg * inertia_of_point(body_.center_of_mass_m);
-  check_inertia(body_, notes);
+                                ": its link, or one that a fixed joint attaches to it, needs an <inertial>; `--density "
+                                "1000` gives it the mass of its shapes, and `--fixed-base` a root that needs none");
+  }
+  body_.lacks_mass = !has_mass();
   // Names of parts are unique in their body.
   ShoalNames names("part", {});
   std::vector<UrdfNote> ignored;

@@ -17,10 +17,14 @@ class BodyAssembly {
   /// Adds mass and shapes of a link at X_VL.  A link with collision shapes gives these; another one gives its visual
   /// shapes, which collide with nothing.
   void add(const UrdfLink& link, const sim::Pose& X_VL, std::vector<UrdfNote>& notes);
+  bool has_mass() const;
+  bool is_empty() const { return !has_mass() && body_.parts.empty(); }
+  const sim::SourcePlace& place() const { return body_.place; }
   /// Gives a body without mass one that matters to nothing, because the body will be fixed to the world.
   void allow_no_mass();
-  /// Returns the body.  Throws sim::ConfigError when it has no mass, or an inertia that is not positive definite.
-  ImportedBody finish(std::vector<UrdfNote>& notes);
+  /// Returns the body.  Throws sim::ConfigError when it has no mass and `no_mass` refuses that, or an impossible
+  /// inertia.
+  ImportedBody finish(NoMass no_mass, std::vector<UrdfNote>& notes);
 
  private:
   ImportedBody body_;

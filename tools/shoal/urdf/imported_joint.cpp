@@ -39,6 +39,7 @@ ImportedJoint imported_joint(const UrdfJoint& from, const std::string& name, con
                              const sim::Matrix3d& R_VJ, std::vector<UrdfNote>& notes) {
   ImportedJoint joint;
   joint.name = name;
+  joint.place = from.place;
   joint.first = ends.parent;
   joint.second = ends.child;
   joint.axis_V = R_VJ * from.axis_J;
@@ -49,6 +50,8 @@ ImportedJoint imported_joint(const UrdfJoint& from, const std::string& name, con
   }
   switch (from.type) {
     case UrdfJointType::fixed:
+    case UrdfJointType::floating:
+    case UrdfJointType::planar:
       joint.type = sim::JointType::fixed;
       return joint;
     case UrdfJointType::prismatic:
@@ -58,12 +61,22 @@ ImportedJoint imported_joint(const UrdfJoint& from, const std::string& name, con
     case UrdfJointType::continuous:
       joint.type = sim::JointType::hinge;
   }
+  joint.damping = from.damping;
+  joint.friction = from.friction;
+  joint.follows = from.mimic;
   set_range(from, joint, notes);
   if (from.max_effort.value_or(0) > 0 && from.max_velocity.value_or(0) > 0) {
     joint.max_effort = from.max_effort;
     joint.max_velocity = from.max_velocity;
     joint.max_acceleration = from.max_acceleration;
-  } else {
+    if (from.friction >= *from.max_effort) {
+      notes.push_back(
+          {from.place, fmt::format("joint '{}': its friction, {}, is not imported: it is not below its "
+                                   "effort, {}",
+                                   name, sim::number_text(from.friction), sim::number_text(*from.max_effort))});
+      joint.friction = 0;
+    }
+  } else if (!from.mimic) {
     notes.push_back(
         {from.place, "joint '" + name + "' gets no servo: that needs a <limit> with effort and velocity above 0"});
   }

@@ -114,6 +114,24 @@ class MeshConversion {
   MeshConversion(ImportedVehicle& vehicle, const UrdfMeshOptions& options)
       : vehicle_(vehicle), options_(options), folders_(vehicle.source, options), names_("mesh", {}) {}
 
+  /// Converts a part.  Returns false, and adds a note, for one that is left out: a mesh file without triangles, and one
+  /// that is only visual and cannot be read.
+  bool convert_or_note(ImportedPart& part) {
+    const auto leave_out = [&](const std::string& text) {
+      vehicle_.notes.push_back({part.shape.place, text});
+      return false;
+    };
+    try {
+      if (is_empty_file(part.shape)) return leave_out(shown_path(part.shape.mesh) + " has no triangles: not imported");
+      convert(part);
+      return true;
+    } catch (const sim::ConfigError& error) {
+      if (!part.only_visual) throw;
+      const std::string text = error.what();  // with its place, `FILE:LINE: `
+      return leave_out(text.substr(text.find(": ", part.shape.place.file->size()) + 2) +
+                       ": this <visual> is not imported");
+    }
+  }
   void convert(ImportedPart& part) {
     const sim::Mesh& mesh = read(part.shape);
     if (options_.use == MeshUse::box) return become_box(mesh, part);
@@ -142,6 +160,14 @@ class MeshConversion {
 
   Key key_of(const UrdfShape& shape) const {
     return {folders_.find(shape), shape.scale.x(), shape.scale.y(), shape.scale.z()};
+  }
+  /// Returns whether a file exists and is too short for a triangle in any format.
+  bool is_empty_file(const UrdfShape& shape) const {
+    constexpr std::uintmax_t head_of_stl = 84;
+    std::error_code error;
+    const std::uintmax_t bytes = fs::file_size(folders_.find(shape), error);
+    const std::string extension = fs::path(shape.mesh).extension().string();
+    return !error && bytes <= (extension == ".stl" || extension == ".STL" ? head_of_stl : 0);
   }
   const sim::Mesh& read(const UrdfShape& shape) {
     const Key key = key_of(shape);
@@ -183,8 +209,10 @@ std::vector<MeshFile> convert_meshes(ImportedVehicle& vehicle, const UrdfMeshOpt
       });
       continue;
     }
+    std::vector<ImportedPart> kept;
     for (ImportedPart& part : body.parts)
-      if (part.shape.shape == sim::PartShape::mesh) conversion.convert(part);
+      if (part.shape.shape != sim::PartShape::mesh || conversion.convert_or_note(part)) kept.push_back(std::move(part));
+    body.parts = std::move(kept);
   }
   return conversion.take_files();
 }

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/shoal/urdf/imported_vehicle.hpp"
 
+#include <algorithm>
 #include <utility>
 
+#include "sim/config/message_text.hpp"
 #include "tools/shoal/urdf/body_assembly.hpp"
 #include "tools/shoal/urdf/imported_joint.hpp"
 #include "tools/shoal/urdf/shoal_names.hpp"
@@ -12,35 +14,47 @@ namespace tools {
 
 namespace {
 
+bool is_free_joint(UrdfJointType type) {
+  return type == UrdfJointType::floating || type == UrdfJointType::planar;
+}
+
 /// Walks from the root to the ends, and starts a body at each joint that is not fixed.
 class VehicleAssembly {
  public:
   explicit VehicleAssembly(ImportedVehicle& vehicle) : vehicle_(vehicle) {}
 
+  /// Adds the root, which may stand for the world.
+  void add_root(const UrdfLink& link, bool is_world) {
+    if (is_world) return places_.push_back({sim::Pose::Identity(), no_body});
+    start_body(link, sim::Pose::Identity());
+    places_.push_back({sim::Pose::Identity(), 0});
+    bodies_.front().add(link, sim::Pose::Identity(), vehicle_.notes);
+  }
   /// Adds a link whose parent was added before.
-  void add(const UrdfBranch& branch) {
-    const UrdfJoint* joint = branch.joint;
-    const Place parent = joint != nullptr ? places_[branch.parent] : Place{};
-    const sim::Pose X_VL = joint != nullptr ? parent.X_VL * joint->X_PJ : sim::Pose::Identity();
-    if (joint == nullptr && is_world(*branch.link)) return places_.push_back({X_VL, no_body});
-    const bool merges = joint != nullptr && joint->type == UrdfJointType::fixed && parent.body != no_body;
-    if (!merges) start_body(*branch.link, X_VL);
+  void add(const UrdfLink& link, const UrdfJoint& joint, std::size_t parent_number) {
+    const Place parent = places_[parent_number];
+    const sim::Pose X_VL = parent.X_VL * joint.X_PJ;
+    const bool merges = joint.type == UrdfJointType::fixed && parent.body != no_body;
+    if (!merges) start_body(link, X_VL);
     places_.push_back({X_VL, merges ? parent.body : bodies_.size() - 1});
-    bodies_[places_.back().body].add(*branch.link, X_VL, vehicle_.notes);
-    if (joint == nullptr || merges) return;
+    bodies_[places_.back().body].add(link, X_VL, vehicle_.notes);
+    if (merges) return;
+    if (is_free_joint(joint.type)) return note_free_joint(joint, parent);
     const std::string first = parent.body == no_body ? "world" : bodies_[parent.body].name();
-    add_joint(*joint, {first, bodies_.back().name()}, X_VL.linear());
+    add_joint(joint, {first, bodies_.back().name()}, X_VL.linear());
   }
   void fix_base() {
-    if (bodies_.empty() || places_.front().body == no_body) return;  // it is fixed
+    if (bodies_.empty() || (places_.front().body == no_body && !has_free_root_)) return;  // it is fixed
     bodies_.front().allow_no_mass();
     UrdfJoint joint;
     joint.name = "fixed_base";
     add_joint(joint, {"world", bodies_.front().name()}, sim::Matrix3d::Identity());
   }
-  void finish(const UrdfLink& root) {
+  void finish(const UrdfLink& root, NoMass no_mass) {
     if (bodies_.empty()) sim::throw_config_error(root.place, "", "a robot needs a link other than 'world'");
-    for (BodyAssembly& body : bodies_) vehicle_.bodies.push_back(body.finish(vehicle_.notes));
+    drop_empty_ends();
+    for (ImportedJoint& joint : vehicle_.joints) find_followed(joint);
+    for (BodyAssembly& body : bodies_) vehicle_.bodies.push_back(body.finish(no_mass, vehicle_.notes));
   }
 
  private:
@@ -50,9 +64,48 @@ class VehicleAssembly {
     std::size_t body = no_body;
   };
 
-  /// A root link that stands for the world, by custom.
-  static bool is_world(const UrdfLink& link) {
-    return link.name == "world" && !link.inertial && link.collisions.empty() && link.visuals.empty();
+  /// A floating or planar joint from the root leaves the vehicle free.
+  void note_free_joint(const UrdfJoint& joint, const Place& parent) {
+    const std::string who = "joint '" + sim::shortened(sim::printable(joint.name)) + "'";
+    const std::string type = joint.type == UrdfJointType::floating ? "floating" : "planar";
+    if (parent.body != no_body || bodies_.size() > 1)
+      sim::throw_config_error(joint.place, who,
+                              "a joint of type '" + type +
+                                  "' can only lead from the root, a link without mass and shapes, to the one link that "
+                                  "carries all others; Shoal has hinges and sliders");
+    has_free_root_ = true;
+    vehicle_.notes.push_back({joint.place, who + " of type '" + type + "' is not imported: the vehicle moves freely"});
+  }
+  /// Leaves out bodies that have neither mass nor shapes and carry nothing, such as frames of tools.
+  void drop_empty_ends() {
+    for (std::size_t i = bodies_.size(); i-- > 1;) {
+      if (!bodies_[i].is_empty()) continue;
+      const std::string& name = bodies_[i].name();
+      const auto has_it = [&](const ImportedJoint& joint) { return joint.first == name || joint.second == name; };
+      std::vector<ImportedJoint>& joints = vehicle_.joints;
+      if (std::count_if(joints.begin(), joints.end(), has_it) != 1) continue;
+      vehicle_.notes.push_back(
+          {bodies_[i].place(),
+           "body '" + name + "' has neither mass nor shapes and carries nothing: it and its joint are not imported"});
+      std::erase_if(joints, has_it);
+      bodies_.erase(bodies_.begin() + static_cast<std::ptrdiff_t>(i));
+    }
+  }
+  /// Replaces the name of the joint that a joint follows by that in the vehicle file.
+  void find_followed(ImportedJoint& joint) {
+    if (!joint.follows) return;
+    const std::string original = joint.follows->joint;
+    const std::string* name = joint_names_.find(original);
+    for (const ImportedJoint& other : vehicle_.joints) {
+      if (name == nullptr || other.name != *name || other.type == sim::JointType::fixed || &other == &joint) continue;
+      joint.follows->joint = *name;
+      if (joint.max_effort.value_or(0) <= 0) joint.max_effort = other.max_effort;
+      return;
+    }
+    vehicle_.notes.push_back({joint.place, "joint '" + joint.name + "' moves on its own: its <mimic> names '" +
+                                               sim::shortened(sim::printable(original)) +
+                                               "', and no other joint that moves has this name"});
+    joint.follows.reset();
   }
   void start_body(const UrdfLink& link, const sim::Pose& X_VB) {
     bodies_.emplace_back(body_names_.add(link.name, link.place, vehicle_.notes), X_VB, link.place);
@@ -67,11 +120,22 @@ class VehicleAssembly {
   ShoalNames joint_names_{"joint", {"any", "world", "sim", "joints"}};  // and the device `joints`
   std::vector<BodyAssembly> bodies_;
   std::vector<Place> places_;  ///< of the links, in the order of the branches
+  bool has_free_root_ = false;
 };
+
+/// Returns whether the root stands for the world: by its name, or because a free joint leads from it.
+bool is_world(const std::vector<UrdfBranch>& branches) {
+  const UrdfLink& root = *branches.front().link;
+  const bool has_mass = root.inertial && root.inertial->mass_kg > 0;
+  if (has_mass || !root.collisions.empty() || !root.visuals.empty()) return false;
+  if (root.name == "world" && !root.inertial) return true;
+  return std::any_of(branches.begin() + 1, branches.end(),
+                     [](const UrdfBranch& branch) { return branch.parent == 0 && is_free_joint(branch.joint->type); });
+}
 
 }  // namespace
 
-ImportedVehicle vehicle_of(const UrdfRobot& robot, const std::string& file_name, Base base) {
+ImportedVehicle vehicle_of(const UrdfRobot& robot, const std::string& file_name, Base base, NoMass no_mass) {
   ImportedVehicle vehicle;
   vehicle.name = plain_name(robot.name);
   vehicle.source = file_name;
@@ -79,9 +143,11 @@ ImportedVehicle vehicle_of(const UrdfRobot& robot, const std::string& file_name,
   vehicle.notes = robot.notes;
   VehicleAssembly assembly(vehicle);
   const std::vector<UrdfBranch> branches = branches_of(robot);
-  for (const UrdfBranch& branch : branches) assembly.add(branch);
+  assembly.add_root(*branches.front().link, is_world(branches));
+  for (std::size_t i = 1; i < branches.size(); ++i)
+    assembly.add(*branches[i].link, *branches[i].joint, branches[i].parent);
   if (base == Base::fixed) assembly.fix_base();
-  assembly.finish(*branches.front().link);
+  assembly.finish(*branches.front().link, no_mass);
   return vehicle;
 }
 

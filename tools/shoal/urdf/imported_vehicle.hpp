@@ -24,6 +24,8 @@ struct ImportedBody {
   double mass_kg = 0;
   sim::Vector3d center_of_mass_m = sim::Vector3d::Zero();  ///< in B
   sim::Matrix3d inertia_kgm2 = sim::Matrix3d::Zero();      ///< about the centre of mass, in axes of B
+  bool lacks_mass = false;     ///< its mass is not known: complete_masses() sets it, and the inertia
+  bool lacks_inertia = false;  ///< its inertia is not known: complete_masses() sets it
   std::vector<ImportedPart> parts;
   sim::SourcePlace place;
 };
@@ -36,8 +38,12 @@ struct ImportedJoint {
   sim::Vector3d axis_V = sim::Vector3d::UnitX();
   std::optional<double> low_stop, high_stop;       ///< rad or m
   std::optional<double> servo_low, servo_high;     ///< rad or m
-  std::optional<double> max_velocity, max_effort;  ///< both set: it gets a servo
+  std::optional<double> max_velocity, max_effort;  ///< both set: it gets a servo, unless it follows another joint
   std::optional<double> max_acceleration;
+  double damping = 0, friction = 0;  ///< N m s/rad or N s/m; N m or N
+  std::optional<UrdfMimic> follows;  ///< the joint that it follows, by its name in the vehicle file
+  sim::SourcePlace place;
+  bool has_servo() const { return max_velocity && max_effort && !follows; }
 };
 
 /// A robot in the terms of a vehicle file.
@@ -53,9 +59,14 @@ struct ImportedVehicle {
 /// Free: the root link moves.  Fixed: a joint fixes it to the world; it then needs no mass.
 enum class Base { free, fixed };
 
+/// What happens to a body without mass: it is refused, or complete_masses() gives it one.
+enum class NoMass { refused, of_shapes };
+
 /// Makes bodies and joints of a checked robot: the frame of the root link becomes the vehicle's frame, fixed joints are
 /// merged into the body of their parent, and names become those that Shoal accepts.  A root link `world` without mass
-/// and shapes is the world.  Throws sim::ConfigError for a body without mass or with an impossible inertia.
-ImportedVehicle vehicle_of(const UrdfRobot& robot, const std::string& file_name, Base base = Base::free);
+/// and shapes is the world, as is one from which a floating or planar joint leads.  An end without mass and shapes is
+/// left out.  Throws sim::ConfigError for a body without mass or with an impossible inertia.
+ImportedVehicle vehicle_of(const UrdfRobot& robot, const std::string& file_name, Base base = Base::free,
+                           NoMass no_mass = NoMass::refused);
 
 }  // namespace tools

@@ -18,6 +18,11 @@ class ShoalNames {
 
   /// Gives an original name its new one, and adds a note when they differ.
   std::string add(const std::string& original, const sim::SourcePlace& place, std::vector<UrdfNote>& notes);
+  /// Returns the new name of an original one; null: it was not added.
+  const std::string* find(const std::string& original) const {
+    const auto found = names_.find(original);
+    return found == names_.end() ? nullptr : &found->second;
+  }
   /// Returns the new name of an original one that was added.
   const std::string& of(const std::string& original) const { return names_.at(original); }
 

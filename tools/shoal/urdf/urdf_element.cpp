@@ -36,12 +36,12 @@ std::vector<std::string_view> words_of(std::string_view text) {
   return words;
 }
 
-/// Parses a finite number; nothing for any other text.
+/// Parses a number; nothing for any other text.
 std::optional<double> parse_number(std::string_view word) {
   if (word.starts_with('+')) word.remove_prefix(1);
   double value = 0;
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value)) return std::nullopt;
+  if (error != std::errc() || end != word.data() + word.size() || std::isnan(value)) return std::nullopt;
   return value;
 }
 
@@ -118,16 +118,21 @@ std::string UrdfElement::text(const char* attribute, const std::string& initial)
   return has(attribute) ? text(attribute) : initial;
 }
 
-std::vector<double> UrdfElement::numbers(const char* attribute, std::size_t count) const {
+std::vector<double> UrdfElement::any_numbers(const char* attribute) const {
   const std::string value = text(attribute);
-  const std::vector<std::string_view> words = words_of(value);
   std::vector<double> parsed;
-  for (const std::string_view word : words) {
+  for (const std::string_view word : words_of(value)) {
     const std::optional<double> number = parse_number(word);
-    if (!number || std::abs(*number) > max_number) break;
+    if (!number || std::abs(*number) > max_number) return {};
     parsed.push_back(*number);
   }
-  if (words.size() != count || parsed.size() != count)
+  return parsed;
+}
+
+std::vector<double> UrdfElement::numbers(const char* attribute, std::size_t count) const {
+  const std::string value = text(attribute);
+  const std::vector<double> parsed = any_numbers(attribute);
+  if (parsed.size() != count)
     refuse(fmt::format("'{}' must be {} between -1e9 and 1e9, got {}", attribute,
                        count == 1 ? "a number" : fmt::format("{} numbers", count), shown_text(value)));
   return parsed;
@@ -142,10 +147,12 @@ std::optional<double> UrdfElement::optional_number(const char* attribute) const 
   return number(attribute);
 }
 
-double UrdfElement::positive(const char* attribute) const {
-  const double value = number(attribute);
-  if (!(value > 0)) refuse(fmt::format("'{}' must be > 0, got {}", attribute, sim::number_text(value)));
-  return value;
+double UrdfElement::limited_number(const char* attribute) const {
+  const std::string value = text(attribute);
+  const std::vector<std::string_view> words = words_of(value);
+  const std::optional<double> parsed = words.size() == 1 ? parse_number(words[0]) : std::nullopt;
+  if (!parsed) refuse(fmt::format("'{}' must be a number, got {}", attribute, shown_text(value)));
+  return std::clamp(*parsed, -max_number, max_number);
 }
 
 sim::Vector3d UrdfElement::vector(const char* attribute, const sim::Vector3d& initial) const {

@@ -45,7 +45,10 @@ class UrdfElement {
   std::string text(const char* attribute, const std::string& initial) const;
   double number(const char* attribute) const;
   std::optional<double> optional_number(const char* attribute) const;
-  double positive(const char* attribute) const;
+  /// A number of any size, also infinite, limited to -1e9 and 1e9.
+  double limited_number(const char* attribute) const;
+  /// Finite numbers, separated by blanks; none when one of the words is not one.
+  std::vector<double> any_numbers(const char* attribute) const;
   /// `count` finite numbers, separated by blanks.
   std::vector<double> numbers(const char* attribute, std::size_t count) const;
   sim::Vector3d vector(const char* attribute, const sim::Vector3d& initial) const;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,8 +16,14 @@ struct UrdfImport {
   std::vector<MeshFile> meshes;  ///< to be written beside it
 };
 
-/// Reads a URDF and converts it into a vehicle file.  `schema`: path of vehicle.schema.json; empty: none.  Throws
-/// sim::ConfigError of one line.
-UrdfImport import_urdf(const std::string& path, Base base, const UrdfMeshOptions& meshes, const std::string& schema);
+struct UrdfImportOptions {
+  Base base = Base::free;
+  std::optional<double> density_kgpm3;  ///< of bodies without mass; unset: they are refused
+  UrdfMeshOptions meshes;
+  std::string schema;  ///< path of vehicle.schema.json; empty: none
+};
+
+/// Reads a URDF and converts it into a vehicle file.  Throws sim::ConfigError of one line.
+UrdfImport import_urdf(const std::string& path, const UrdfImportOptions& options);
 
 }  // namespace tools

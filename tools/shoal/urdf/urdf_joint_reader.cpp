@@ -15,9 +15,9 @@ UrdfJointType read_type(const UrdfElement& element) {
   if (type == "revolute") return UrdfJointType::revolute;
   if (type == "continuous") return UrdfJointType::continuous;
   if (type == "prismatic") return UrdfJointType::prismatic;
-  if (type == "floating" || type == "planar")
-    element.refuse("a joint of type '" + type + "' cannot be imported; Shoal has hinges and sliders");
-  element.refuse("'type' must be one of: continuous, fixed, prismatic, revolute, got '" +
+  if (type == "floating") return UrdfJointType::floating;
+  if (type == "planar") return UrdfJointType::planar;
+  element.refuse("'type' must be one of: continuous, fixed, floating, planar, prismatic, revolute, got '" +
                  sim::shortened(sim::printable(type)) + "'");
 }
 
@@ -30,13 +30,16 @@ void read_axis(const UrdfElement& element, UrdfJoint& joint) {
 
 constexpr double min_limit = 1e-9;  // of a joint_servo
 
-/// Reads a limit: 0, or one that a servo can have.
-double read_bound(const UrdfElement& limit, const char* attribute) {
-  const double value = limit.number(attribute);
-  if (value < 0) limit.refuse(fmt::format("'{}' must be >= 0, got {}", attribute, sim::number_text(value)));
-  if (value > 0 && value < min_limit)
-    limit.refuse(fmt::format("'{}' must be 0 or >= {}, got {}", attribute, sim::number_text(min_limit),
-                             sim::number_text(value)));
+/// Reads a limit that a servo can have; 0, and a note, for another one.
+double read_bound(const UrdfElement& limit, const char* attribute, std::vector<UrdfNote>& notes) {
+  const auto leave_out = [&](const std::string& what) {
+    notes.push_back({limit.place(), fmt::format("{}: '{}' of <limit> must be > 0, got {}: it is taken as unknown",
+                                                limit.who(), attribute, what)});
+    return 0.0;
+  };
+  if (!limit.has(attribute)) return leave_out("none");
+  const double value = limit.limited_number(attribute);
+  if (value < 0 || (value > 0 && value < min_limit)) return leave_out(sim::number_text(value));
   return value;
 }
 
@@ -44,19 +47,19 @@ void read_limit(const UrdfElement& element, UrdfJoint& joint, std::vector<UrdfNo
   const std::optional<UrdfElement> limit = element.child("limit");
   const bool has_range = joint.type != UrdfJointType::continuous;
   if (!limit) {
-    if (has_range) element.refuse("a joint of type '" + element.text("type") + "' needs a <limit>");
+    if (has_range) notes.push_back({element.place(), element.who() + " has no <limit>: it moves without bounds"});
     return;
   }
-  joint.max_effort = read_bound(*limit, "effort");
-  joint.max_velocity = read_bound(*limit, "velocity");
-  if (limit->has("acceleration")) joint.max_acceleration = read_bound(*limit, "acceleration");
-  if (joint.max_acceleration == 0.0) limit->refuse("'acceleration' must be > 0, got 0");
+  joint.max_effort = read_bound(*limit, "effort", notes);
+  joint.max_velocity = read_bound(*limit, "velocity", notes);
+  if (limit->has("acceleration")) joint.max_acceleration = read_bound(*limit, "acceleration", notes);
+  if (joint.max_acceleration == 0.0) joint.max_acceleration.reset();
   for (const char* other : {"deceleration", "jerk"})
     if (limit->has(other))
       notes.push_back({limit->place(), fmt::format("{}: '{}' of <limit> is not imported", element.who(), other)});
   if (!has_range) return;
-  joint.lower = limit->optional_number("lower").value_or(0);
-  joint.upper = limit->optional_number("upper").value_or(0);
+  joint.lower = limit->has("lower") ? limit->limited_number("lower") : 0;
+  joint.upper = limit->has("upper") ? limit->limited_number("upper") : 0;
   if (*joint.lower > *joint.upper)
     limit->refuse(fmt::format("'lower' must not be above 'upper', got {} and {}", sim::number_text(*joint.lower),
                               sim::number_text(*joint.upper)));
@@ -73,18 +76,24 @@ void read_soft_limits(const UrdfElement& element, UrdfJoint& joint, std::vector<
   notes.push_back({safety->place(), element.who() + ": gains of <safety_controller> are not imported"});
 }
 
-/// Adds notes for elements that Shoal does not hold.
-void note_losses(const UrdfElement& element, std::vector<UrdfNote>& notes) {
-  if (const auto mimic = element.child("mimic"))
-    notes.push_back(
-        {mimic->place(), fmt::format("{}: <mimic> of joint '{}' is not imported: the joint moves on its own",
-                                     element.who(), mimic->text("joint", ""))});
-  if (const auto dynamics = element.child("dynamics"))
-    for (const char* key : {"damping", "friction"})
-      if (dynamics->optional_number(key).value_or(0) != 0)
-        notes.push_back(
-            {dynamics->place(), fmt::format("{}: {} {} is not imported", element.who(), key, dynamics->text(key))});
-  element.note_others({"origin", "parent", "child", "axis", "limit", "dynamics", "mimic", "safety_controller"}, notes);
+double read_loss(const UrdfElement& dynamics, const char* attribute) {
+  const double value = dynamics.optional_number(attribute).value_or(0);
+  if (value < 0) dynamics.refuse(fmt::format("'{}' must be >= 0, got {}", attribute, sim::number_text(value)));
+  return value;
+}
+
+void read_dynamics(const UrdfElement& element, UrdfJoint& joint) {
+  const std::optional<UrdfElement> dynamics = element.child("dynamics");
+  if (!dynamics) return;
+  joint.damping = read_loss(*dynamics, "damping");
+  joint.friction = read_loss(*dynamics, "friction");
+}
+
+void read_mimic(const UrdfElement& element, UrdfJoint& joint) {
+  const std::optional<UrdfElement> mimic = element.child("mimic");
+  if (!mimic) return;
+  joint.mimic = {mimic->text("joint"), mimic->optional_number("multiplier").value_or(1),
+                 mimic->optional_number("offset").value_or(0)};
 }
 
 }  // namespace
@@ -98,11 +107,15 @@ UrdfJoint read_urdf_joint(UrdfElement element, std::vector<UrdfNote>& notes) {
   joint.parent = element.required_child("parent").text("link");
   joint.child = element.required_child("child").text("link");
   joint.X_PJ = element.origin();
-  if (joint.type == UrdfJointType::fixed) return joint;
+  const bool has_axis = joint.type != UrdfJointType::fixed && joint.type != UrdfJointType::floating &&
+                        joint.type != UrdfJointType::planar;
+  if (!has_axis) return joint;
   read_axis(element, joint);
   read_limit(element, joint, notes);
   read_soft_limits(element, joint, notes);
-  note_losses(element, notes);
+  read_dynamics(element, joint);
+  read_mimic(element, joint);
+  element.note_others({"origin", "parent", "child", "axis", "limit", "dynamics", "mimic", "safety_controller"}, notes);
   return joint;
 }
 

@@ -44,8 +44,14 @@ struct UrdfLink {
   sim::SourcePlace place;
 };
 
-/// Types of joints that Shoal can hold; floating and planar joints are refused.
-enum class UrdfJointType { fixed, revolute, continuous, prismatic };
+/// Types of joints.  A floating or planar one can only be that of the root.
+enum class UrdfJointType { fixed, revolute, continuous, prismatic, floating, planar };
+
+/// `<mimic>`: position = multiplier * position of another joint + offset.
+struct UrdfMimic {
+  std::string joint;
+  double multiplier = 1, offset = 0;  ///< offset: rad or m
+};
 
 struct UrdfJoint {
   std::string name;
@@ -57,6 +63,8 @@ struct UrdfJoint {
   std::optional<double> max_effort, max_velocity;  ///< N m or N; rad/s or m/s
   std::optional<double> max_acceleration;          ///< rad/s^2 or m/s^2
   std::optional<double> soft_lower, soft_upper;    ///< `<safety_controller>`
+  double damping = 0, friction = 0;                ///< N m s/rad or N s/m; N m or N
+  std::optional<UrdfMimic> mimic;
   sim::SourcePlace place;
 };
 

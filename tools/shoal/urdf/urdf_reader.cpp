@@ -9,6 +9,7 @@
 #include <fstream>
 #include <iterator>
 #include <sstream>
+#include <utility>
 
 #include "sim/config/message_text.hpp"
 #include "tools/shoal/urdf/urdf_element.hpp"
@@ -67,8 +68,9 @@ UrdfInertial read_inertial(const UrdfElement& inertial, std::vector<UrdfNote>& n
   const double xy = inertia.optional_number("ixy").value_or(0), xz = inertia.optional_number("ixz").value_or(0),
                yz = inertia.optional_number("iyz").value_or(0);
   read.inertia_kgm2 << xx, xy, xz, xy, yy, yz, xz, yz, zz;
+  constexpr double rounding_kgm2 = 1e-15;
   for (int i = 0; i < 3; ++i)
-    if (read.inertia_kgm2(i, i) < 0)
+    if (read.inertia_kgm2(i, i) < -rounding_kgm2)
       inertia.refuse("the moments of inertia must be >= 0 kg m^2, got " + sim::number_text(read.inertia_kgm2(i, i)));
   return read;
 }
@@ -82,9 +84,9 @@ UrdfLink read_link(UrdfElement element, const UrdfColors& colors, std::vector<Ur
   element.note_others({"inertial", "visual", "collision"}, notes);
   if (const auto inertial = element.child("inertial")) link.inertial = read_inertial(*inertial, notes);
   for (const UrdfElement& shape : element.children("collision"))
-    link.collisions.push_back(read_urdf_shape(shape, colors, notes));
+    if (auto read = read_urdf_shape(shape, colors, notes)) link.collisions.push_back(std::move(*read));
   for (const UrdfElement& shape : element.children("visual"))
-    link.visuals.push_back(read_urdf_shape(shape, colors, notes));
+    if (auto read = read_urdf_visual(shape, colors, notes)) link.visuals.push_back(std::move(*read));
   return link;
 }
 
@@ -127,7 +129,11 @@ UrdfRobot read_urdf(const std::string& text, const std::string& file_name) {
   // Read the robot.
   UrdfRobot robot;
   refuse_xacro(root);
-  robot.name = root.text("name");
+  robot.name = root.text("name", "");
+  if (robot.name.empty()) {
+    robot.name = std::filesystem::path(file_name).stem().string();
+    robot.notes.push_back({root.place(), "the robot has no name: it gets that of the file"});
+  }
   robot.comment = leading_comment(document);
   note_document_type(document, file, robot.notes);
   root.note_others({"link", "joint", "material"}, robot.notes);
@@ -135,6 +141,8 @@ UrdfRobot read_urdf(const std::string& text, const std::string& file_name) {
   for (const UrdfElement& link : root.children("link")) robot.links.push_back(read_link(link, colors, robot.notes));
   for (const UrdfElement& joint : root.children("joint")) robot.joints.push_back(read_urdf_joint(joint, robot.notes));
   check_counts(robot, root);
+  add_world(robot);
+  drop_unconnected_links(robot);
   check_urdf_tree(robot);
   return robot;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/shoal/urdf/urdf_tree.hpp"
 
+#include <algorithm>
 #include <map>
 #include <set>
 #include <string>
@@ -44,22 +45,62 @@ void check_ends(const UrdfRobot& robot) {
 
 }  // namespace
 
+void add_world(UrdfRobot& robot) {
+  const auto is_world = [](const UrdfLink& link) { return link.name == "world"; };
+  const auto is_at_world = [](const UrdfJoint& joint) { return joint.parent == "world"; };
+  const auto joint = std::find_if(robot.joints.begin(), robot.joints.end(), is_at_world);
+  if (joint == robot.joints.end() || std::any_of(robot.links.begin(), robot.links.end(), is_world)) return;
+  robot.links.push_back({.name = "world", .inertial = {}, .collisions = {}, .visuals = {}, .place = joint->place});
+}
+
+void drop_unconnected_links(UrdfRobot& robot) {
+  std::set<std::string> children;
+  for (const UrdfJoint& joint : robot.joints) children.insert(joint.child);
+  std::map<std::string, std::set<std::string>> trees;  // links of each root
+  std::vector<const UrdfLink*> roots;
+  std::map<std::string, std::vector<std::string>> ends_from;
+  for (const UrdfJoint& joint : robot.joints) ends_from[joint.parent].push_back(joint.child);
+  for (const UrdfLink& link : robot.links) {
+    if (children.contains(link.name) || trees.contains(link.name)) continue;
+    roots.push_back(&link);
+    std::set<std::string>& tree = trees[link.name];
+    for (std::vector<std::string> pending{link.name}; !pending.empty();) {
+      const std::string name = pending.back();
+      pending.pop_back();
+      if (!tree.insert(name).second) continue;
+      pending.insert(pending.end(), ends_from[name].begin(), ends_from[name].end());
+    }
+  }
+  if (roots.size() < 2) return;
+  const auto smaller = [&](const UrdfLink* a, const UrdfLink* b) {
+    return trees[a->name].size() < trees[b->name].size();
+  };
+  const std::string kept = (*std::max_element(roots.begin(), roots.end(), smaller))->name;  // the first of equal ones
+  std::set<std::string> dropped;
+  for (const UrdfLink* root : roots) {
+    const std::set<std::string>& other = trees[root->name];
+    const bool is_apart =
+        std::none_of(other.begin(), other.end(), [&](const std::string& link) { return trees[kept].contains(link); });
+    if (!is_apart) continue;  // also the kept one; a link of two parents is refused
+    dropped.insert(other.begin(), other.end());
+    robot.notes.push_back({root->place, "link " + quoted_name(root->name) + " is not connected to " +
+                                            quoted_name(kept) + ": neither it nor what it carries is imported"});
+  }
+  const auto is_dropped = [&](const std::string& link) { return dropped.contains(link); };
+  std::erase_if(robot.joints, [&](const UrdfJoint& joint) { return is_dropped(joint.parent); });
+  std::erase_if(robot.links, [&](const UrdfLink& link) { return is_dropped(link.name); });
+}
+
 void check_urdf_tree(const UrdfRobot& robot) {
   check_names(robot.links, "link");
   check_names(robot.joints, "joint");
   check_ends(robot);
-  // One link without a parent.
+  // drop_unconnected_links() has left at most one link without a parent.
   std::set<std::string> children;
   for (const UrdfJoint& joint : robot.joints) children.insert(joint.child);
-  const UrdfLink* root = nullptr;
-  for (const UrdfLink& link : robot.links) {
-    if (children.contains(link.name)) continue;
-    if (root != nullptr)
-      sim::throw_config_error(link.place, "link " + quoted_name(link.name),
-                              "is not connected to " + quoted_name(root->name) + ": a robot is one tree of links");
-    root = &link;
-  }
-  if (root == nullptr)
+  const bool has_root = std::any_of(robot.links.begin(), robot.links.end(),
+                                    [&](const UrdfLink& link) { return !children.contains(link.name); });
+  if (!has_root)
     sim::throw_config_error(robot.links.front().place, "", "each link has a parent: the joints form a loop");
   // Each link has at most one parent joint, so a link that the root does not reach is in a loop.
   const std::vector<UrdfBranch> branches = branches_of(robot);

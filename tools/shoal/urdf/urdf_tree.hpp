@@ -15,6 +15,12 @@ struct UrdfBranch {
   std::size_t parent = 0;            ///< index of the parent's branch
 };
 
+/// Adds the link `world` where a joint has this parent and there is no such link, as in files of Drake.
+void add_world(UrdfRobot& robot);
+
+/// Keeps the tree of most links, and adds a note for each other root.
+void drop_unconnected_links(UrdfRobot& robot);
+
 /// Checks that names are unique and that the joints connect all links to one tree.  Throws sim::ConfigError.
 void check_urdf_tree(const UrdfRobot& robot);
 

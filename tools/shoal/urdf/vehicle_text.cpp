@@ -90,6 +90,9 @@ std::string joint_text(const ImportedJoint& joint) {
   if (joint.type != sim::JointType::fixed) map.add("axis", joint.axis_V);
   if (joint.low_stop) map.add("low_stop", *joint.low_stop);
   if (joint.high_stop) map.add("high_stop", *joint.high_stop);
+  if (joint.damping > 0) map.add("damping", joint.damping);
+  // Coulomb friction is a motor that holds; a device of the joint replaces it.
+  if (joint.friction > 0 && !joint.has_servo() && !joint.follows) map.add("motor_max_force", joint.friction);
   return map.lines("  - ");
 }
 
@@ -103,7 +106,20 @@ std::string servo_text(const ImportedJoint& joint) {
   map.add("max_velocity", *joint.max_velocity);
   if (joint.max_acceleration) map.add("max_acceleration", *joint.max_acceleration);
   map.add("max_effort", *joint.max_effort);
+  if (joint.friction > 0) map.add("friction", joint.friction);
   map.add("safe", "hold");
+  return map.lines("  - ");
+}
+
+std::string follower_text(const ImportedJoint& joint) {
+  FlowMap map;
+  map.add_text("name", joint.name);
+  map.add("type", "joint_follower");
+  map.add_text("joint", joint.name);
+  map.add_text("follows", joint.follows->joint);
+  if (joint.follows->multiplier != 1) map.add("multiplier", joint.follows->multiplier);
+  if (joint.follows->offset != 0) map.add("offset", joint.follows->offset);
+  if (joint.max_effort) map.add("max_effort", *joint.max_effort);
   return map.lines("  - ");
 }
 
@@ -163,9 +179,11 @@ std::string vehicle_text(const ImportedVehicle& vehicle, const std::string& sche
                                  [](const ImportedJoint& joint) { return joint.type != sim::JointType::fixed; });
   if (moves) text += "\ndevices:\n";
   for (const ImportedJoint& joint : vehicle.joints)
-    if (joint.max_velocity && joint.max_effort) text += servo_text(joint);
+    if (joint.has_servo()) text += servo_text(joint);
+  for (const ImportedJoint& joint : vehicle.joints)
+    if (joint.follows) text += follower_text(joint);
   const bool has_servo = std::any_of(vehicle.joints.begin(), vehicle.joints.end(),
-                                     [](const ImportedJoint& joint) { return joint.max_velocity && joint.max_effort; });
+                                     [](const ImportedJoint& joint) { return joint.has_servo(); });
   const bool is_taken = std::any_of(vehicle.joints.begin(), vehicle.joints.end(), [](const ImportedJoint& joint) {
     return joint.name == "group" || joint.name == "player";
   });

@@ -163,14 +163,15 @@ TEST(ImportedVehicle, ListsWhatItLeavesOut) {
       imported(robot_text(link_text("a") + link_text("b") +
                           test::joint_text("continuous",
                                            "<limit effort=\"1\" velocity=\"1\"/><mimic joint=\"k\"/>"
-                                           "<dynamics damping=\"0.5\" friction=\"0\"/><calibration rising=\"0\"/>") +
+                                           "<dynamics damping=\"0.5\" friction=\"2\"/><calibration rising=\"0\"/>") +
                           "<gazebo/>\n<transmission name=\"t\"/>\n"));
-  EXPECT_EQ(notes_of(vehicle),
-            "r.urdf:5: <gazebo> is not imported\n"
-            "r.urdf:6: <transmission> is not imported\n"
-            "r.urdf:4: joint 'j': <mimic> of joint 'k' is not imported: the joint moves on its own\n"
-            "r.urdf:4: joint 'j': damping 0.5 is not imported\n"
-            "r.urdf:4: joint 'j': <calibration> is not imported\n");
+  EXPECT_EQ(
+      notes_of(vehicle),
+      "r.urdf:5: <gazebo> is not imported\n"
+      "r.urdf:6: <transmission> is not imported\n"
+      "r.urdf:4: joint 'j': <calibration> is not imported\n"
+      "r.urdf:4: joint 'j': its friction, 2, is not imported: it is not below its effort, 1\n"
+      "r.urdf:4: joint 'j' moves on its own: its <mimic> names 'k', and no other joint that moves has this name\n");
 }
 
 TEST(ImportedVehicle, NamesAreThoseThatShoalAccepts) {

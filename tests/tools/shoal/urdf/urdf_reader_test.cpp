@@ -58,7 +58,6 @@ TEST(UrdfReader, RefusesWhatIsNotUrdf) {
             "r.urdf:2: the root element must be <robot>, got <sdf>; this is SDF");
   EXPECT_EQ(import_error("<mujoco/>"),
             "r.urdf:1: the root element must be <robot>, got <mujoco>; this is a model of MuJoCo");
-  EXPECT_EQ(import_error("<robot/>"), "r.urdf:1: <robot> needs the attribute 'name'");
   EXPECT_EQ(import_error(robot_text("")), "r.urdf:1: a robot needs a <link>");
 }
 
@@ -93,22 +92,17 @@ TEST(UrdfReader, DoesNotExpandEntities) {
 
 TEST(UrdfReader, NamesLineRuleAndValueOfAWrongShape) {
   EXPECT_EQ(shape_error("<sphere radius=\"-1\"/>"), "r.urdf:2: link 'a': 'radius' must be > 0, got -1");
-  EXPECT_EQ(shape_error("<sphere radius=\"1e-7\"/>"),
-            "r.urdf:2: link 'a': 'radius' must be from 1e-6 to 1e7 m, got 1e-07");
+  EXPECT_EQ(shape_error("<sphere radius=\"1e8\"/>"),
+            "r.urdf:2: link 'a': 'radius' must be at most 1e7 m, got 100000000");
   EXPECT_EQ(shape_error("<sphere/>"), "r.urdf:2: link 'a': <sphere> needs the attribute 'radius'");
   EXPECT_EQ(shape_error("<sphere radius=\"1 2\"/>"),
             "r.urdf:2: link 'a': 'radius' must be a number between -1e9 and 1e9, got '1 2'");
   EXPECT_EQ(shape_error("<box size=\"1 nan 1\"/>"),
             "r.urdf:2: link 'a': 'size' must be 3 numbers between -1e9 and 1e9, got '1 nan 1'");
-  EXPECT_EQ(shape_error("<box size=\"1 0 1\"/>"),
-            "r.urdf:2: link 'a': 'size' must be three lengths from 1e-6 to 1e7 m, got '1 0 1'");
+  EXPECT_EQ(shape_error("<box size=\"1 -2 1\"/>"), "r.urdf:2: link 'a': 'size' must be > 0, got -2");
   EXPECT_EQ(shape_error("<cone/>"),
             "r.urdf:2: link 'a': the shape must be one of: box, capsule, cylinder, mesh, sphere, got <cone>");
-  EXPECT_EQ(shape_error(""), "r.urdf:2: link 'a': <geometry> must have one shape, got 0");
-  EXPECT_EQ(shape_error("<mesh filename=\"m.stl\" scale=\"1 0 1\"/>"),
-            "r.urdf:2: link 'a': 'scale' must not be zero, got '1 0 1'");
-  EXPECT_EQ(import_error(robot_text("<material name=\"m\">\n<color rgba=\"1 1 1 2\"/></material>")),
-            "r.urdf:3: 'rgba' must be four numbers from 0 to 1, got '1 1 1 2'");
+  EXPECT_EQ(shape_error(""), "r.urdf:2: link 'a': <geometry> must have a shape");
 }
 
 TEST(UrdfReader, NamesLineRuleAndValueOfAWrongInertial) {
@@ -124,26 +118,24 @@ TEST(UrdfReader, NamesLineRuleAndValueOfAWrongInertial) {
   EXPECT_EQ(
       import_error(robot_text("<link name=\"a\"/>")),
       "r.urdf:2: body 'a': must have a mass of at least 1e-9 kg, got 0: its link, or one that a fixed joint attaches "
-      "to it, needs an <inertial>");
+      "to it, needs an <inertial>; `--density 1000` gives it the mass of its shapes, and `--fixed-base` a root that "
+      "needs none");
 }
 
 TEST(UrdfReader, NamesLineRuleAndValueOfAWrongJoint) {
   EXPECT_EQ(import_error(pair_text("floating")),
-            "r.urdf:4: joint 'j': a joint of type 'floating' cannot be imported; Shoal has hinges and sliders");
-  EXPECT_THAT(import_error(pair_text("planar")), HasSubstr("'planar' cannot be imported"));
+            "r.urdf:4: joint 'j': a joint of type 'floating' can only lead from the root, a link without mass and "
+            "shapes, to the one link that carries all others; Shoal has hinges and sliders");
+  EXPECT_THAT(import_error(pair_text("planar")), HasSubstr("a joint of type 'planar' can only lead from the root"));
   EXPECT_EQ(import_error(pair_text("hinge")),
-            "r.urdf:4: joint 'j': 'type' must be one of: continuous, fixed, prismatic, revolute, got 'hinge'");
-  EXPECT_EQ(import_error(pair_text("revolute")), "r.urdf:4: joint 'j': a joint of type 'revolute' needs a <limit>");
-  EXPECT_EQ(import_error(pair_text("prismatic", "\n<limit lower=\"0\" upper=\"1\" velocity=\"1\"/>")),
-            "r.urdf:5: joint 'j': <limit> needs the attribute 'effort'");
+            "r.urdf:4: joint 'j': 'type' must be one of: continuous, fixed, floating, planar, prismatic, revolute, got "
+            "'hinge'");
   EXPECT_EQ(import_error(pair_text("revolute", "\n<limit lower=\"1\" upper=\"0\" effort=\"1\" velocity=\"1\"/>")),
             "r.urdf:5: joint 'j': 'lower' must not be above 'upper', got 1 and 0");
-  EXPECT_EQ(import_error(pair_text("revolute", "<limit lower=\"0\" upper=\"1\" effort=\"-1\" velocity=\"1\"/>")),
-            "r.urdf:4: joint 'j': 'effort' must be >= 0, got -1");
-  EXPECT_EQ(import_error(pair_text("revolute", "<limit lower=\"0\" upper=\"1\" effort=\"1e-300\" velocity=\"1\"/>")),
-            "r.urdf:4: joint 'j': 'effort' must be 0 or >= 1e-09, got 1e-300");
-  EXPECT_EQ(import_error(pair_text("revolute", "<limit lower=\"0\" upper=\"1\" effort=\"1\" velocity=\"1e-300\"/>")),
-            "r.urdf:4: joint 'j': 'velocity' must be 0 or >= 1e-09, got 1e-300");
+  EXPECT_EQ(import_error(pair_text("revolute", "<limit lower=\"nan\" upper=\"1\" effort=\"1\" velocity=\"1\"/>")),
+            "r.urdf:4: joint 'j': 'lower' must be a number, got 'nan'");
+  EXPECT_EQ(import_error(pair_text("revolute", range + "<dynamics damping=\"-1\"/>")),
+            "r.urdf:4: joint 'j': 'damping' must be >= 0, got -1");
   EXPECT_EQ(import_error(pair_text("revolute", range + "\n<axis xyz=\"0 0 0\"/>")),
             "r.urdf:5: joint 'j': the axis must not be zero");
   EXPECT_EQ(import_error(pair_text("fixed", "<parent link=\"a\"/>")),
@@ -160,8 +152,6 @@ TEST(UrdfReader, RefusesLinksThatAreNoTree) {
   EXPECT_EQ(import_error(robot_text(a + b + joint("j", "a", "b") + joint("j", "a", "b"))),
             "r.urdf:5: there are two joints 'j'");
   EXPECT_EQ(import_error(robot_text(a + joint("j", "a", "x"))), "r.urdf:3: joint 'j': there is no link 'x'");
-  EXPECT_EQ(import_error(robot_text(a + b)),
-            "r.urdf:3: link 'b': is not connected to 'a': a robot is one tree of links");
   EXPECT_EQ(import_error(robot_text(a + b + c + joint("j", "a", "c") + joint("k", "b", "c"))),
             "r.urdf:6: joint 'k': link 'c' already has the parent joint 'j': a URDF is a tree");
   EXPECT_EQ(import_error(robot_text(a + b + joint("j", "a", "b") + joint("k", "b", "a"))),

@@ -82,6 +82,53 @@ TEST(VehicleText, MovesAJointAsTheUrdfSays) {
   EXPECT_TRUE(X_PC.isApprox(expected, 1e-5)) << X_PC.matrix() << "\n\n" << expected.matrix();
 }
 
+TEST(VehicleText, DampsAJointAsTheUrdfSays) {
+  // The arm coasts: its rate falls with the time constant I / c, and with friction T by T / I each second.
+  const auto rate_after_a_second = [](const std::string& dynamics) {
+    ImportedWorld built(robot_text(
+        "<link name=\"world\"/>\n" + link_text("b") +
+        "<joint name=\"j\" type=\"continuous\"><parent link=\"world\"/><child link=\"b\"/><axis xyz=\"0 0 1\"/>" +
+        dynamics + "</joint>"));
+    built.world.world.find_vehicle("v1")->joint("j").add_effort(2 / 0.001);  // 2 rad/s of 1 kg m^2 in a step
+    built.world.run_for(1);
+    return built.vehicle().joint("j").velocity();
+  };
+  EXPECT_NEAR(rate_after_a_second(""), 2, 1e-6);
+  EXPECT_NEAR(rate_after_a_second("<dynamics damping=\"0.5\"/>"), 2 * std::exp(-0.5), 1e-3);
+  EXPECT_NEAR(rate_after_a_second("<dynamics friction=\"0.7\"/>"), 2 - 0.7, 1e-5);
+  EXPECT_NEAR(rate_after_a_second("<dynamics friction=\"3\"/>"), 0, 1e-6);
+}
+
+TEST(VehicleText, GivesFrictionToTheServoThatDrivesTheJoint) {
+  const std::string text = tools::vehicle_text(
+      imported(test::pair_text("continuous",
+                               "<limit effort=\"3\" velocity=\"4\"/><dynamics damping=\"0.5\" friction=\"0.7\"/>")),
+      "");
+  EXPECT_THAT(text, HasSubstr("axis: [1, 0, 0], damping: 0.5}"));
+  EXPECT_THAT(text, HasSubstr("max_effort: 3, friction: 0.7, safe: hold}"));
+}
+
+TEST(VehicleText, LetsAMimicJointFollowTheOther) {
+  const auto joint = [](const std::string& name, const std::string& child, const std::string& more) {
+    return "<joint name=\"" + name + "\" type=\"revolute\"><parent link=\"a\"/><child link=\"" + child +
+           "\"/><axis xyz=\"0 0 1\"/><limit lower=\"-2\" upper=\"2\" effort=\"100\" velocity=\"2\"/>" + more +
+           "</joint>\n";
+  };
+  // The second follows the third, which comes later; the third follows the first.
+  ImportedWorld built(robot_text(link_text("a") + link_text("b") + link_text("c") + link_text("d") +
+                                 joint("lead.er", "b", "") +
+                                 joint("half", "c", "<mimic joint=\"minus\" multiplier=\"-0.5\"/>") +
+                                 joint("minus", "d", "<mimic joint=\"lead.er\" multiplier=\"-1\" offset=\"0.2\"/>")));
+  EXPECT_EQ(built.vehicle().config().devices.size(), 6u);  // one servo, group, player, two followers, joint_state
+  shoal::joint_servo_command_t message{};
+  message.position = 0.6;
+  built.world.send("v1.lead_er.cmd", message);
+  built.world.run_for(2);
+  EXPECT_NEAR(built.vehicle().joint("lead_er").position(), 0.6, 1e-5);
+  EXPECT_NEAR(built.vehicle().joint("minus").position(), 0.2 - 0.6, 1e-5);
+  EXPECT_NEAR(built.vehicle().joint("half").position(), 0.2, 1e-5);
+}
+
 TEST(VehicleText, PartsThatAreOnlyVisualCollideWithNothing) {
   // Two balls at the same place: if they collided, they would be pushed apart.
   const std::string ball = "<geometry><sphere radius=\"0.1\"/></geometry>";

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "sim/physics/joint.hpp"
+#include "tests/sim/physics/small_worlds.hpp"
+
+namespace {
+
+using namespace small_worlds;
+
+constexpr double damped_step_s = 0.01;
+constexpr double cube_kg = 1, cube_kgm2 = cube_kg * 0.2 * 0.2 / 6;  // of the cube
+
+/// A fixed or free base of 1000 kg and a cube of 1 kg, 1 m along x, without gravity.
+struct DampedPair {
+  explicit DampedPair(const JointConfig& config, Motion motion = Motion::fixed) {
+    PhysicsConfig physics;
+    physics.step_s = damped_step_s;
+    physics.gravity_mps2 = 0;
+    world = make_world(physics);
+    const int group = world->add_group("rig");
+    base = &world->add_body(group, body("base", {box({0.2, 0.2, 0.2}, 1000)}), Pose::Identity(), motion);
+    arm = &world->add_body(group, body("arm", {box({0.2, 0.2, 0.2}, cube_kg)}, {1, 0, 0}), Pose::Identity());
+    joint = &world->add_joint(group, config, *base, arm, Pose::Identity());
+    world->close_group(group);
+  }
+  void run(int steps) {
+    for (int i = 0; i < steps; ++i) world->step(step++);
+  }
+  std::unique_ptr<PhysicsWorld> world;
+  sim::Body* base;
+  sim::Body* arm;
+  sim::Joint* joint;
+  int step = 0;
+};
+
+JointConfig damped(JointType type, const Vector3d& axis, double damping) {
+  JointConfig config = joint("j", type, {1, 0, 0}, axis);
+  config.axis1.damping = damping;
+  return config;
+}
+
+/// Speed after a push that gives `inertia` the speed 1 without damping, and `steps` in all: implicit Euler.
+double damped_speed(double damping, double inertia, int steps) {
+  return std::pow(1 + damping * damped_step_s / inertia, -steps);
+}
+
+TEST(JointDamping, SlowsEachKindOfJointByItsRate) {
+  for (const double damping : {0.002, 0.2, 1000.0}) {
+    DampedPair hinge(damped(JointType::hinge, Vector3d::UnitY(), damping));
+    hinge.joint->add_effort(cube_kgm2 / damped_step_s);
+    hinge.run(1);
+    EXPECT_NEAR(hinge.joint->velocity(), damped_speed(damping, cube_kgm2, 1), 1e-6);
+    hinge.run(9);
+    EXPECT_NEAR(hinge.joint->velocity(), damped_speed(damping, cube_kgm2, 10), 1e-6);
+
+    DampedPair slider(damped(JointType::slider, Vector3d::UnitZ(), damping));
+    slider.joint->add_effort(cube_kg / damped_step_s);
+    slider.run(10);
+    EXPECT_NEAR(slider.joint->velocity(), damped_speed(damping, cube_kg, 10), 1e-6);
+
+    JointConfig cardan = damped(JointType::universal, Vector3d::UnitY(), 0);
+    cardan.axis2.axis = Vector3d::UnitZ();
+    cardan.axis2.damping = damping;
+    DampedPair universal(cardan);
+    universal.joint->add_effort(cube_kgm2 / damped_step_s, 1);
+    universal.run(10);
+    EXPECT_NEAR(universal.joint->velocity(1), damped_speed(damping, cube_kgm2, 10), 1e-6);
+    EXPECT_NEAR(universal.joint->velocity(0), 0, 1e-6);
+
+    JointConfig ball_config = damped(JointType::ball, Vector3d::UnitZ(), damping);
+    ball_config.motor = true;
+    DampedPair ball(ball_config);
+    ball.joint->add_effort(cube_kgm2 / damped_step_s, 2);
+    ball.run(10);
+    EXPECT_NEAR(ball.joint->velocity(2), damped_speed(damping, cube_kgm2, 10), 1e-6);
+  }
+}
+
+TEST(JointDamping, OfASliderBesideTheCentresKeepsAllMomentum) {
+  // The bodies are 1 m apart across the slider: a pair of forces at their centres would turn them.
+  DampedPair rig(damped(JointType::slider, Vector3d::UnitY(), 2), Motion::free);
+  rig.joint->add_effort(cube_kg / damped_step_s);
+  rig.run(50);
+  const Vector3d momentum = 1000 * rig.base->v_WB_W() + cube_kg * rig.arm->v_WB_W();
+  EXPECT_NEAR(momentum.norm(), 0, 1e-9);
+  // The effort acts half way between the bodies and turns both together, as without damping; they stay slow.
+  DampedPair free(damped(JointType::slider, Vector3d::UnitY(), 0), Motion::free);
+  free.joint->add_effort(cube_kg / damped_step_s);
+  free.run(50);
+  EXPECT_NEAR(rig.base->w_WB_W().norm(), 0, 1e-6);
+  EXPECT_NEAR(free.base->w_WB_W().norm(), 0, 1e-6);
+  EXPECT_NEAR(rig.joint->velocity() / free.joint->velocity(), damped_speed(2, cube_kg * 1000 / 1001, 50), 1e-4);
+}
+
+TEST(JointDamping, IsNotPartOfTheEffortOfTheMotorThatWorksAgainstIt) {
+  DampedPair rig(damped(JointType::hinge, Vector3d::UnitY(), 0.5));
+  rig.joint->measure_load();
+  rig.joint->set_motor(2, 10);
+  rig.run(10);
+  EXPECT_NEAR(rig.joint->velocity(), 2, 1e-6);
+  EXPECT_NEAR(rig.joint->effort(), 0.5 * 2, 1e-6);
+  EXPECT_NEAR(rig.joint->torque_W_Nm().y(), 0, 1e-6);  // motor and damping: the speed is constant
+  // A motor that is too weak stops where damping takes all of it.
+  rig.joint->set_motor(2, 0.3);
+  rig.run(100);
+  EXPECT_NEAR(rig.joint->velocity(), 0.3 / 0.5, 1e-6);
+}
+
+TEST(JointDamping, CalmsAPendulum) {
+  // theta'' = -c / I theta' - m g L / I theta: after a time t the amplitude is that at first times exp(-c t / 2 I).
+  const double length_m = 1, damping = 0.2, inertia = cube_kg * (length_m * length_m + 0.4 * 0.01 * 0.01);
+  PhysicsConfig physics;
+  physics.step_s = 0.001;
+  const auto world = make_world(physics);
+  const int group = world->add_group("pendulum");
+  const double start = 0.1;
+  const sim::Body& bob = world->add_body(
+      group, body("bob", {sphere(0.01, cube_kg)}, length_m * Vector3d(std::sin(start), 0, -std::cos(start))),
+      Pose::Identity());
+  JointConfig pivot = joint("pivot", JointType::hinge, {0, 0, 0}, Vector3d::UnitY());
+  pivot.axis1.damping = damping;
+  world->add_joint(group, pivot, const_cast<sim::Body&>(bob), nullptr, Pose::Identity());
+  world->close_group(group);
+  const double w = std::sqrt(9.80665 * cube_kg * length_m / inertia - std::pow(damping / (2 * inertia), 2));
+  const int steps = static_cast<int>(std::lround(4 * 2 * std::numbers::pi / w / physics.step_s));  // four periods
+  for (int i = 0; i < steps; ++i) world->step(i);
+  const double expected = start * std::exp(-damping / (2 * inertia) * steps * physics.step_s);
+  EXPECT_NEAR(bob.X_WB().translation().x(), length_m * std::sin(expected), 0.01 * expected);  // the step's error
+}
+
+}  // namespace

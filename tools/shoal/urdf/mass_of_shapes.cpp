@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/shoal/urdf/mass_of_shapes.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "sim/base/linear_algebra.hpp"
+#include "tools/shoal/urdf/convex_hull.hpp"
+
+namespace tools {
+
+namespace {
+
+using std::numbers::pi;
+
+/// Solid of revolution about z, at the origin.
+sim::MeshSolid round_solid(double volume_m3, double across, double along) {
+  return {volume_m3, sim::Vector3d::Zero(), sim::Vector3d(across, across, along).asDiagonal()};
+}
+
+sim::MeshSolid ball(double radius_m) {
+  const double volume = 4.0 / 3 * pi * std::pow(radius_m, 3), moment = 0.4 * volume * radius_m * radius_m;
+  return round_solid(volume, moment, moment);
+}
+
+sim::MeshSolid cylinder(double r, double length_m) {
+  const double volume = pi * r * r * length_m;
+  return round_solid(volume, volume * (3 * r * r + length_m * length_m) / 12, volume * r * r / 2);
+}
+
+/// A cylinder and two half balls, whose centroids are 3/8 r beyond its ends.
+sim::MeshSolid capsule(double r, double length_m) {
+  const sim::MeshSolid middle = cylinder(r, length_m), caps = ball(r);
+  const double shift = caps.volume_m3 * length_m * (length_m / 4 + 3.0 / 8 * r);
+  return round_solid(middle.volume_m3 + caps.volume_m3, middle.inertia(0, 0) + caps.inertia(0, 0) + shift,
+                     middle.inertia(2, 2) + caps.inertia(2, 2));
+}
+
+sim::MeshSolid box(const sim::Vector3d& size) {
+  const sim::Vector3d squares = size.cwiseProduct(size);
+  const double volume = size.prod();
+  return {volume, sim::Vector3d::Zero(),
+          (volume / 12 * (sim::Vector3d::Constant(squares.sum()) - squares)).asDiagonal()};
+}
+
+sim::MeshSolid hull(const std::string& file, const std::vector<MeshFile>& meshes) {
+  for (const auto& [path, mesh] : meshes)
+    if (path == file)
+      if (const auto solid = convex_hull(outermost_points(mesh.vertices_m))) return sim::solid_of(*solid);
+  return {};  // flat
+}
+
+/// Solid of a part in its own frame.
+sim::MeshSolid solid_of_part(const UrdfShape& shape, const std::vector<MeshFile>& meshes) {
+  switch (shape.shape) {
+    case sim::PartShape::box:
+      return box(shape.size_m);
+    case sim::PartShape::sphere:
+      return ball(shape.radius_m);
+    case sim::PartShape::cylinder:
+      return cylinder(shape.radius_m, shape.length_m);
+    case sim::PartShape::capsule:
+      return capsule(shape.radius_m, shape.length_m);
+    case sim::PartShape::mesh:
+      return hull(shape.mesh, meshes);
+    case sim::PartShape::plane:
+    case sim::PartShape::terrain:
+      break;  // not in a URDF
+  }
+  return {};
+}
+
+/// Inertia of a point of mass 1 at `c` about the origin (parallel axis theorem).
+sim::Matrix3d of_point(const sim::Vector3d& c) {
+  return c.squaredNorm() * sim::Matrix3d::Identity() - c * c.transpose();
+}
+
+/// Solid of all parts of a body that collide, or of those that are only visual, in the body's frame.
+sim::MeshSolid solid_of_body(const ImportedBody& body, bool visual, const std::vector<MeshFile>& meshes) {
+  sim::MeshSolid all;
+  sim::Vector3d moment = sim::Vector3d::Zero();
+  sim::Matrix3d about_origin = sim::Matrix3d::Zero();
+  for (const ImportedPart& part : body.parts) {
+    if (part.only_visual != visual) continue;
+    const sim::MeshSolid solid = solid_of_part(part.shape, meshes);
+    const sim::Matrix3d& R_BP = part.X_BP.linear();
+    const sim::Vector3d c = part.X_BP * solid.centroid_m;
+    all.volume_m3 += solid.volume_m3;
+    moment += solid.volume_m3 * c;
+    about_origin += R_BP * solid.inertia * R_BP.transpose() + solid.volume_m3 * of_point(c);
+  }
+  if (!(all.volume_m3 > 0)) return {};
+  all.centroid_m = moment / all.volume_m3;
+  all.inertia = about_origin - all.volume_m3 * of_point(all.centroid_m);
+  return all;
+}
+
+/// Returns whether a solid has moments of inertia that a body can have.
+bool is_solid(const sim::MeshSolid& solid, double density_kgpm3) {
+  constexpr double least_mass_kg = 1e-9;
+  if (!(solid.volume_m3 * density_kgpm3 >= least_mass_kg)) return false;
+  const sim::Vector3d moments = sim::symmetric_eigenvalues(solid.inertia);
+  return moments[0] > 1e-9 * moments[2];
+}
+
+void complete(ImportedBody& body, const std::vector<MeshFile>& meshes, double density_kgpm3,
+              std::vector<UrdfNote>& notes) {
+  sim::MeshSolid solid = solid_of_body(body, false, meshes);
+  if (!is_solid(solid, density_kgpm3)) solid = solid_of_body(body, true, meshes);
+  const bool has_shapes = is_solid(solid, density_kgpm3);
+  std::string text;
+  if (body.lacks_mass) {
+    constexpr double radius_m = 0.01;
+    if (!has_shapes) solid = ball(radius_m);
+    body.mass_kg = density_kgpm3 * solid.volume_m3;
+    body.center_of_mass_m = solid.centroid_m;
+    body.inertia_kgm2 = density_kgpm3 * solid.inertia;
+    text = fmt::format("its mass is not given: it gets {:.4g} kg, that of {} at {:.6g} kg/m^3", body.mass_kg,
+                       has_shapes ? "its shapes" : "a ball of 10 mm radius", density_kgpm3);
+  } else {
+    if (!has_shapes) solid = ball(std::cbrt(3 * body.mass_kg / (4 * pi * usual_density_kgpm3)));
+    body.inertia_kgm2 = body.mass_kg / solid.volume_m3 * solid.inertia;
+    text = fmt::format("its inertia is zero: it gets that of {} with its mass",
+                       has_shapes ? "its shapes" : "a ball of 1000 kg/m^3");
+  }
+  body.lacks_mass = body.lacks_inertia = false;
+  notes.push_back({body.place, "body '" + body.name + "': " + text});
+}
+
+}  // namespace
+
+void complete_masses(ImportedVehicle& vehicle, const std::vector<MeshFile>& meshes, double density_kgpm3) {
+  for (ImportedBody& body : vehicle.bodies)
+    if (body.lacks_mass || body.lacks_inertia) complete(body, meshes, density_kgpm3, vehicle.notes);
+}
+
+}  // namespace tools
