@@ -85,7 +85,8 @@ class Sensor {
   /// causes a warning.
   virtual bool needs_bottom() const { return false; }
   /// Returns what the present reading lacks, such as `bottom lock`; empty: nothing.  A sensor that has lacked it from
-  /// its first sample on causes a warning at the end of the run.
+  /// its first sample on causes a warning at the end of the run; with an ending ` under water`, where that is usual,
+  /// only when a program waits for the sensor.
   virtual std::string_view lacks() const { return {}; }
   /// Returns the places to which it brings its vehicle by itself, with their depths: those below the bottom or in the
   /// air cause a warning.

@@ -179,10 +179,10 @@ TEST(Warnings, OfTheEndAreInTheSummary) {
       file,
       "shoal: 1\nphysics: {step_s: 0.1}\nrun: {duration_s: 70}\nmedium: {water: {}}\nvehicles:\n  - {name: auv, "
       "position_m: [0, 0, -10], model: {shoal: 1, vehicle: ball, bodies: [{name: hull, parts: [{shape: sphere, "
-      "density_kgpm3: 1030}]}], devices: [{name: gps, type: gps, phase_s: 0}]}}\n");
+      "density_kgpm3: 1030}]}], devices: [{name: dvl, type: dvl, phase_s: 0}]}}\n");
   const system_test::Ended run =
       system_test::run_shoal({"run", file, "--bus", "none", "--speed", "max", "--results", scratch.file("out")});
-  const std::string line = "device 'auv/gps': no fix under water in 69.9 s";
+  const std::string line = "device 'auv/dvl': no bottom lock in 69.8 s";
   EXPECT_THAT(run.errors, HasSubstr("warning: " + line));
   EXPECT_THAT(system_test::text_of_file(scratch.file("out") + "/summary.json"), HasSubstr("\"" + line + "\""));
 }

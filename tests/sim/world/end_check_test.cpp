@@ -17,6 +17,11 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
+/// A program waits for the sensors, unless `is_awaited` is false.
+std::vector<std::string> ended(const test::LoadedTestWorld& test, bool is_awaited = true) {
+  return sim::end_warnings(test.world, [is_awaited](const std::string&) { return is_awaited; });
+}
+
 /// The fixture's device has a rate, which this replaces.
 std::string slower(std::string yaml) {
   const std::string rate = "rate_hz: 100, phase_s: 0, ";
@@ -30,7 +35,7 @@ std::vector<std::string> end_of(const std::string& device, double run_s = 61,
   test::TestWorld test(
       slower(test::marine_world("rate_hz: 2, phase_s: 0, " + device, position_m, test::bottom_at(-30))));
   test.run_for(run_s);
-  return sim::end_warnings(test.world);
+  return ended(test);
 }
 
 TEST(EndCheck, NamesASensorThatNeverHadLockOrFix) {
@@ -52,19 +57,26 @@ TEST(EndCheck, IsSilentAboutSensorsThatHadOneAndInTheFirstMinute) {
   EXPECT_THAT(end_of("type: dvl, altitude_max_m: 5", 59), IsEmpty());
 }
 
+TEST(EndCheck, TakesItForUsualThatAGpsUnderWaterHasNoFixUnlessAProgramWaits) {
+  test::TestWorld test(slower(test::marine_world("rate_hz: 2, type: gps")));
+  test.run_for(61);
+  EXPECT_THAT(ended(test, false), IsEmpty());
+  EXPECT_EQ(ended(test).size(), 1u);
+}
+
 TEST(EndCheck, RemembersALockThatWasLost) {
   test::TestWorld test(slower(test::marine_world("rate_hz: 2, type: gps", "[0, 0, 0.2]")));
   test.run_for(1);
   const sim::Bytes at_surface = test.world.state().snapshot();
   test.world.editor().move_vehicle("r1", sim::make_pose({0, 0, -10}, sim::Vector3d::Zero()));
   test.run_for(70);
-  EXPECT_THAT(sim::end_warnings(test.world), IsEmpty());
+  EXPECT_THAT(ended(test), IsEmpty());
   // So does a run that continues from a snapshot.
   test::TestWorld other(slower(test::marine_world("rate_hz: 2, type: gps", "[0, 0, 0.2]")));
   other.world.state().restore(at_surface);
   other.world.editor().move_vehicle("r1", sim::make_pose({0, 0, -10}, sim::Vector3d::Zero()));
   other.run_for(70);
-  EXPECT_THAT(sim::end_warnings(other.world), IsEmpty());
+  EXPECT_THAT(ended(other), IsEmpty());
 }
 
 /// A ball of 2 cm radius that flies at a plate of 20 mm.
@@ -80,7 +92,7 @@ Flight flight(double speed_mps, double step_s, double start_m, double time_s) {
                        std::to_string(start_m) + ", 0, 0], parts: [{shape: sphere, radius_m: 0.02, mass_kg: 0.1}]}\n");
   test.world.find_object("ball")->body->set_velocity_W({speed_mps, 0, 0}, sim::Vector3d::Zero());
   test.run_for(time_s);
-  return {sim::end_warnings(test.world), test.world.find_object("ball")->body->p_WB().x()};
+  return {ended(test), test.world.find_object("ball")->body->p_WB().x()};
 }
 
 std::vector<std::string> end_of_flight(double speed_mps, double step_s, double start_m = -0.5) {
@@ -119,7 +131,7 @@ TEST(EndCheck, MeasuresABodyAlongItsMotion) {
         "0.02], mass_kg: 0.1}]}\n");
     test.world.find_object("rod")->body->set_velocity_W(v_W, sim::Vector3d::Zero());
     test.run_for(0.03);
-    return sim::end_warnings(test.world).size();
+    return ended(test).size();
   };
   EXPECT_EQ(warnings({10, 0, 0}), 0u);
   EXPECT_EQ(warnings({0, 10, 0}), 1u);
@@ -136,7 +148,7 @@ std::vector<std::string> end_of_command(const Message& command) {
       "-40], parts: [{shape: plane}]}]\nvehicles: [{name: v, file: remus100_survey.yaml, position_m: [0, 0, -10]}]\n");
   test.send("v.autopilot.cmd", command);
   test.run_for(1);
-  return sim::end_warnings(test.world);
+  return ended(test);
 }
 
 TEST(EndCheck, NamesACommandToAPlaceInTheAirOrBelowTheBottom) {

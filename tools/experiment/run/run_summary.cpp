@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
+
 #include "devices/common/serial_port.hpp"
 #include "devices/comms/message_modem.hpp"
 #include "sim/acoustics/channel.hpp"
@@ -56,8 +58,15 @@ void Run::warn_at_end(Summary& summary) {
   if (summary.steps == 0) return;
   sim::Warnings warnings;
   if (programs_take_part(loaded_.config, options_)) scoring_.warn_of_silence(warnings);
-  for (const std::string& line : sim::end_warnings(world_)) warnings.warn({}, "", line);
-  warn_of_channels(loaded_, world_, lockstep_.channel_use(), !options_.record.empty(), warnings);
+  const bridges::ChannelUse use = lockstep_.channel_use();
+  const auto is_awaited = [&](const std::string& channel) {
+    return std::any_of(use.clients().begin(), use.clients().end(), [&](const auto& client) {
+      const auto found = client.second.find(channel);
+      return found != client.second.end() && found->second.is_subscribed;
+    });
+  };
+  for (const std::string& line : sim::end_warnings(world_, is_awaited)) warnings.warn({}, "", line);
+  warn_of_channels(loaded_, world_, use, !options_.record.empty(), warnings);
   summary.warnings = warnings.lines();
 }
 
