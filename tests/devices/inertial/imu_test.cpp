@@ -105,17 +105,14 @@ TEST(Imu, DoesNotFeelThatItsVehicleIsPutElsewhere) {
   }
 }
 
-TEST(Imu, KeepsItsRateWhenItsVehicleIsPutElsewhere) {
+TEST(Imu, DoesNotFeelThatAMoveStopsItsVehicle) {
   test::TestWorld test(test::box_world(imu(), weightless));
   hull(test).set_velocity_W({1, 0, 0}, {0, 0, 2});
   test.run_for(0.1);
   test::Listener<shoal::imu_t> reports(test, "r1.imu");
   test.world.editor().move_vehicle("r1", sim::make_pose({3, 4, 0}, {0, 0, 1.5}));
   test.run_for(0.1);
-  for (const auto& report : reports.take_all()) {
-    EXPECT_NEAR(gyro_of(report).z(), 2, 1e-6);
-    EXPECT_NEAR(accel_of(report).norm(), 0, 1e-9);
-  }
+  for (const auto& report : reports.take_all()) EXPECT_NEAR(gyro_of(report).norm() + accel_of(report).norm(), 0, 1e-9);
 }
 
 TEST(Imu, ItsRatesAddUpToTheAttitude) {

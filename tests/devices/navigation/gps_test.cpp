@@ -58,8 +58,9 @@ TEST(Gps, TheCourseIsFromTheMeridianOfItsPlace) {
   test::Listener<shoal::gps_data_t> fixes(test, "r1.s");
   test::set_velocity(test, {0, 2, 0});  // north of the origin
   test.run_for(0.1);
-  EXPECT_NEAR(fixes.last().heading, sim::degrees_to_radians(0.4656), sim::degrees_to_radians(0.001));
-  EXPECT_NEAR(fixes.last().speed, 2, 1e-4);  // the vertical has turned by 0.27 deg: 2 (1 - cos)
+  const auto fix = fixes.last();
+  EXPECT_NEAR(fix.heading, sim::degrees_to_radians(0.4656), sim::degrees_to_radians(0.001));
+  EXPECT_NEAR(fix.speed, 2, 1e-4);  // the vertical has turned by 0.27 deg: 2 (1 - cos)
   test::set_velocity(test, {2, 0, 0});
   test.run_for(0.1);
   EXPECT_NEAR(fixes.last().heading, sim::degrees_to_radians(90.4656), sim::degrees_to_radians(0.001));
