@@ -72,7 +72,7 @@ class Gps final : public sim::Sensor {
   sim::NoiseOf<&Params::vertical_noise> vertical_noise_;
   sim::NoiseOf<&Params::velocity_noise> velocity_noise_;
   Reading reading_;
-  double true_course_rad_ = 0;  ///< held by the truth channel
+  double true_course_rad_ = 0;       ///< held by the truth channel
   std::string_view no_fix_ = "fix";  ///< what the last sample lacked, and why
   sim::Time sampled_at_{0};
   std::optional<sim::Time> denied_at_;  ///< last time under water or in a denied zone
