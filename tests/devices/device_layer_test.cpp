@@ -288,7 +288,8 @@ std::string device_of(const sim::DeviceType& type) {
   for (const sim::ParamInfo& info : table) {
     if (!info.required) continue;
     const bool list = info.type.find("list") != std::string::npos;
-    const std::string name = info.key.find("right") != std::string::npos ? "right" : "left";
+    const bool other = info.key.find("right") != std::string::npos || info.key == "follows";
+    const std::string name = other ? "right" : "left";
     keys += ", " + info.key + ": " + (list ? "[" + name + "]" : name);
   }
   return "        - {name: device, type: " + type.name + keys + "}\n";
@@ -327,7 +328,7 @@ TEST_P(EveryActuator, SaysWhatItIsInFull) {
   const sim::DeviceType& type = *GetParam();
   EXPECT_FALSE(type.meaning.empty());
   EXPECT_TRUE(type.meaning.ends_with(".")) << type.meaning;
-  EXPECT_TRUE(type.takes_commands());
+  EXPECT_TRUE(type.takes_commands() || type.always_on) << "only a linkage takes none";
   EXPECT_TRUE(type.changeable) << "what can be tuned can be tuned while it runs";
   std::vector<sim::ParamInfo> table;
   sim::ParamReader in(table);

@@ -99,7 +99,7 @@ TEST(ImportUrdf, MakesVisualShapesOfACategoryThatTheCheckKnows) {
   ASSERT_THAT(text, HasSubstr(none));
   text.replace(text.find(none), none.size(),
                "model: none, mass_kg: 1, volume_m3: 0.001, inertia_kgm2: [1, 1, 1], added_mass: [1, 1, 1, 0, 0, 0]");
-  text.replace(text.find("model: none"), 11, "model: fossen");
+  text.replace(text.find("model: none"), 11, "model: coefficients");
   write_file(output, text);
   const Ended in_water = run_shoal({"check", output});
   EXPECT_EQ(in_water.exit_code, 0) << in_water.errors;
