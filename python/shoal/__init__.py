@@ -19,8 +19,8 @@ import sys as _sys
 try:
     import numpy as _numpy
 except ImportError as _error:
-    raise ImportError('shoal needs NumPy: install the Debian package python3-numpy, which is for /usr/bin/python3; this is '
-                      f'{_sys.executable} ({_error})') from None
+    raise ImportError('shoal needs NumPy: install the Debian package python3-numpy (for /usr/bin/python3; this is '
+                      f'{_sys.executable}: {_error})') from None
 
 # Plugins of worlds use symbols of the module, as they use those of the program.
 _flags = _sys.getdlopenflags()
