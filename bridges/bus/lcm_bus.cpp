@@ -175,12 +175,20 @@ struct LcmBus::Threads final : Arrivals::Port {
 
   ~Threads() {
     place.reset();
-    outgoing.close([this] { connection.shut_down(); });
+    outgoing.close([this] { cut_off(); });
     stopping = true;
     const std::uint64_t one = 1;
     [[maybe_unused]] const auto written = write(stop_fd, &one, sizeof(one));
     receiver.join();
     close(stop_fd);
+  }
+
+  /// Ends a connection in which a message is stuck.  liblcm may not be called again: it would connect anew, and wait
+  /// for the answer of a server that may never come.
+  void cut_off() {
+    const std::unique_lock lock(receive_mutex, std::chrono::seconds(1));  // the receiver may be stuck too
+    connected = false;
+    connection.shut_down();
   }
 
   void send(const OutgoingQueue::Entry& message) {
@@ -268,7 +276,8 @@ struct LcmBus::Threads final : Arrivals::Port {
   LcmBusOptions options;
   std::map<std::string, std::unique_ptr<Channel>, std::less<>> channels;  // outlives the handlers of the connection
   LcmConnection connection;
-  std::mutex transmit_mutex, receive_mutex;
+  std::mutex transmit_mutex;
+  std::timed_mutex receive_mutex;
   mutable std::mutex channels_mutex;
   std::atomic<bool> stopping = false;
   std::atomic<bool> connected = true;
