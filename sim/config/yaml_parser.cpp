@@ -310,11 +310,12 @@ bool is_indented_with_tab(std::string_view text, int line) {
 }
 
 /// Number, from 1, of the line before `line` (from 0) if it is text without a colon; 0: it is not.  yaml-cpp joins such
-/// a line to the key below it, and reports the value of that one as `illegal map value`.
-int line_without_colon(const std::string& text, int line) {
+/// a line to the key below it, and reports the value of that one, behind the first colon, as `illegal map value`.
+int line_without_colon(const std::string& text, int line, int column) {
   std::istringstream lines(text);
   std::string before, each;
   for (int number = 0; number < line && std::getline(lines, each); ++number) before = each;
+  if (!std::getline(lines, each) || each.find(':') < static_cast<std::size_t>(column)) return 0;
   const std::size_t first = before.find_first_not_of(" \r");
   const bool is_text = first != std::string::npos && before[first] != '#' && before[first] != '-';
   return is_text && before.find(':') == std::string::npos ? line : 0;
@@ -356,7 +357,7 @@ ConfigNode parse_config_text(const std::string& text, const std::string& file_na
   } catch (const YAML::Exception& error) {
     const bool tab = !error.mark.is_null() && is_indented_with_tab(text, error.mark.line);
     const bool value = !error.mark.is_null() && error.msg == YAML::ErrorMsg::MAP_VALUE;
-    const int joined = value ? line_without_colon(text, error.mark.line) : 0;
+    const int joined = value ? line_without_colon(text, error.mark.line, error.mark.column) : 0;
     builder.error(builder.place_of(error.mark),
                   "not valid YAML: " + (tab ? "the line is indented with a tab; use spaces" : error.msg) +
                       (joined > 0 ? "; line " + std::to_string(joined) + " has no colon" : ""));

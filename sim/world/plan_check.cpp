@@ -15,6 +15,10 @@ namespace sim {
 namespace {
 
 constexpr double any_height_m = 12000;  // more than any ocean has
+/// Step behind a surface that a ray has met.
+constexpr double beyond_m = 1e-4;
+/// Surfaces of a solid above a place; where there are more, none is taken for the bottom.
+constexpr int max_crossings = 64;
 
 /// Returns the fixed object to which a part belongs; null: it belongs to something that can move.
 const ObjectConfig* fixed_object_of(const World& world, int part) {
@@ -31,9 +35,15 @@ std::optional<double> bottom_above(const World& world, const Vector3d& p_W, doub
   if (object == nullptr) return std::nullopt;
   const bool is_ground = std::none_of(object->parts.begin(), object->parts.end(),
                                       [](const PartConfig& part) { return shape_info(part.shape).solid; });
-  // From within a solid both rays meet its surface; what only lies above may be a ship or a pier.
-  const auto below = world.scene().cast(p_W, -Vector3d::UnitZ(), any_height_m, {});
-  if (!is_ground && !(below && below->part == above->part)) return std::nullopt;
+  // A solid is left through its surface an odd number of times from within, and from its tunnels, or below it, an even.
+  int crossings = 0;
+  Vector3d from_W = p_W;
+  for (auto hit = above; !is_ground && hit && crossings < max_crossings;
+       hit = world.scene().cast(from_W, Vector3d::UnitZ(), any_height_m, {})) {
+    if (hit->part == above->part) ++crossings;
+    from_W.z() += hit->range_m + beyond_m;
+  }
+  if (!is_ground && crossings % 2 == 0) return std::nullopt;
   return depth_m - above->range_m;
 }
 

@@ -111,10 +111,12 @@ class StartCheck {
 
   /// Returns how far a craft falls before it touches the water; 0 when it does not swim, or something else is below it.
   double height_over_water_m(const Starter& starter) const {
-    if (!starter.swims || !world_.medium().has_water()) return 0;
+    if (!starter.swims || !world_.medium().has_water() || world_.physics().anchored(starter.group)) return 0;
     const auto height = heights_m_.find(starter.group);
     const double low_m = height == heights_m_.end() ? starter.p_W.z() : height->second.first;
-    const double air_m = low_m - world_.medium().surface_m(starter.p_W.x(), starter.p_W.y());
+    // A craft that floats may start over the trough of a wave.
+    const double surface_m = world_.medium().surface_m(starter.p_W.x(), starter.p_W.y());
+    const double air_m = low_m - std::max(surface_m, world_.medium().still_surface_m());
     RayFilter others;
     others.exclude_group = starter.group;
     if (air_m <= drop_m ||

@@ -120,6 +120,7 @@ TEST(YamlParser, ReportsASyntaxErrorWithItsPlace) {
   EXPECT_EQ(errors_of("a: b: c\n"), "w.yaml:1:5: not valid YAML: illegal map value");
   EXPECT_EQ(errors_of("a: 1\nname shoal\nrun: 2\n"),
             "w.yaml:3:4: not valid YAML: illegal map value; line 2 has no colon");
+  EXPECT_EQ(errors_of("points: [[1, 2],\n  [3, 4]]\nname: a: b\n"), "w.yaml:3:8: not valid YAML: illegal map value");
   EXPECT_EQ(errors_of("a: *nowhere\n"), "w.yaml:1:4: not valid YAML: the referenced anchor is not defined");
 }
 

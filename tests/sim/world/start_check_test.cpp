@@ -94,6 +94,14 @@ TEST(StartCheck, ReportsACraftInTheAir) {
   EXPECT_EQ(warnings(16, deck), "");
 }
 
+TEST(StartCheck, IsSilentAboutACraftOverTheTroughOfAWave) {
+  // The hull begins 0.9 m above the trough.
+  EXPECT_EQ(
+      warnings_of_start("shoal: 1\nphysics: {step_s: 0.01}\nmedium: {water: {}, waves: {type: regular, height_m: 2, "
+                        "phase_deg: 180}}\nvehicles: [{name: auv, file: remus100.yaml}]\n"),
+      "");
+}
+
 /// A restore that builds the world again says nothing again.
 TEST(StartCheck, IsSilentWhenAWorldIsBuiltAgain) {
   const test_support::LogCapture log;
