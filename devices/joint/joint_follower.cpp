@@ -34,11 +34,12 @@ void JointFollower::act(const sim::ActContext& context) {
   const double target = params_.multiplier * followed_.position(params_.follows_axis) + params_.offset;
   // A large error is removed no faster than half of the effort can brake: v^2 = 2 a error.
   const double error = target - joint_.position(params_.axis);
-  const double braking = 0.5 * params_.max_effort * joint_.mobility(params_.axis);
+  const double effort = context.effectiveness * params_.max_effort;
+  const double braking = 0.5 * effort * joint_.mobility(params_.axis);
   const double closing = std::min(std::abs(error) / context.step_s, std::sqrt(2 * braking * std::abs(error)));
   const double velocity = params_.multiplier * followed_.velocity(params_.follows_axis) + std::copysign(closing, error);
   const double limit = params_.max_velocity.value_or(std::numeric_limits<double>::max());
-  joint_.set_motor(std::clamp(velocity, -limit, limit), context.effectiveness * params_.max_effort, params_.axis);
+  joint_.set_motor(std::clamp(velocity, -limit, limit), effort, params_.axis);
 }
 
 SHOAL_ACTUATOR("joint_follower", JointFollower, void);

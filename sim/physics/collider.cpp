@@ -243,7 +243,8 @@ void Collider::touch(Pair pair, dWorldID world, Islands& islands, Making& making
     contact.surface = surface->parameters;
     if (by_place) follow_ground(contact);
     if (surface->friction) align_friction(contact, a, b);
-    if (carried_kg > 0) ease_friction_across(contact, a, b, carried_kg * std::abs(gravity_mps2_));
+    // Between vehicles it is not pressed by its share of the weight, and crowds are solved without slip.
+    if (carried_kg > 0 && !between) ease_friction_across(contact, a, b, carried_kg * std::abs(gravity_mps2_));
     const dJointID joint = dJointCreateContact(world, making.contacts.get(), &contact);
     dJointAttach(joint, a.ode, b.ode);
     if (between) making.between.push_back({joint, contact, {a.ode, b.ode}});
