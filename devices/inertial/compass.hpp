@@ -44,7 +44,10 @@ class Compass final : public sim::Sensor {
   void change(const Params& params);
   auto noises() { return std::tie(field_noise_, heading_noise_); }
   void measure(const sim::SenseContext& context) override;
-  void displaced() override { strapdown_.restart(); }
+  void displaced() override {
+    strapdown_.restart();
+    tilt_filter_.restart();
+  }
   void disturb(double dt_s, sim::Random& random) override;
   void visit_state(sim::StateArchive& archive) override {
     archive(strapdown_, tilt_filter_, field_noise_, heading_noise_, reading_);

@@ -25,7 +25,11 @@ class Imu final : public sim::Sensor {
   Imu(const Params& params, const sim::DeviceContext& context);
   void change(const Params& params);
   void measure(const sim::SenseContext& context) override;
-  void displaced() override { strapdown_.restart(); }
+  void displaced() override {
+    strapdown_.restart();
+    gyro_filter_.restart();
+    accel_filter_.restart();
+  }
   void disturb(double dt_s, sim::Random& random) override;
   void visit_state(sim::StateArchive& archive) override {
     archive(strapdown_, gyro_filter_, accel_filter_, gyro_errors_, accel_errors_, w_S_, f_S_);

@@ -32,7 +32,10 @@ class Inclinometer final : public sim::Sensor {
   void change(const Params& params);
   auto noises() { return std::tie(noise_); }
   void measure(const sim::SenseContext& context) override;
-  void displaced() override { strapdown_.restart(); }
+  void displaced() override {
+    strapdown_.restart();
+    filter_.restart();
+  }
   void disturb(double dt_s, sim::Random& random) override;
   void visit_state(sim::StateArchive& archive) override { archive(strapdown_, filter_, noise_, reading_); }
   const Tilt& reading() const { return reading_; }

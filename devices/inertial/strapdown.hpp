@@ -17,6 +17,8 @@ class LowPass {
   /// `time_constant_s` 0: no filtering.
   explicit LowPass(double time_constant_s) : time_constant_s_(time_constant_s) {}
   void change(double time_constant_s);
+  /// Makes the next input the first: the filter begins in its steady state again.
+  void restart() { started_ = false; }
   const sim::Vector3d& apply(const sim::Vector3d& x, double dt_s);
   void visit_state(sim::StateArchive& archive) { archive(started_, y_); }
 

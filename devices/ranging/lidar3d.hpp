@@ -11,7 +11,8 @@ namespace devices {
 /// Multi-ring laser scanner.  Its head rotates about +z of the sensor frame S, counter-clockwise seen from above, once
 /// per report period.  Column k of n has the azimuth -pi + 2 pi k / n, and the last column is measured at the end of
 /// the rotation.  Each step casts the columns due in it, from the pose of the sensor at their times.  A rotation that
-/// begins before the run or without power lacks the columns of that time.
+/// begins before the run or without power lacks the columns of that time, and one in which the vehicle is put elsewhere
+/// those before.
 class Lidar3d final : public sim::Sensor {
  public:
   static constexpr const char* meaning = "Multi-ring laser scanner: a point cloud for each revolution.";
@@ -34,6 +35,10 @@ class Lidar3d final : public sim::Sensor {
   void change(const Params& params);
   void sweep(const sim::SweepContext& context) override;
   void measure(const sim::SenseContext& context) override;
+  /// Clears the columns of a rotation that has begun: they were measured elsewhere.
+  void displaced() override {
+    if (next_column_ < params_.columns) returns_.assign(returns_.size(), params_.laser.range_max_m);
+  }
   void disturb(double dt_s, sim::Random& random) override;
   std::optional<sim::FieldOfView> field_of_view() const override;
   std::int64_t rays() const override;

@@ -170,6 +170,7 @@ Mesh parse_ascii_stl(std::string_view text) {
     in_name = false;
     ended = word == "endsolid";
     if (word == "facet") word = skip_normal(words);
+    if (word.empty()) break;
     if (word == "vertex") {
       const double x = number_from(words.any(), words);
       const double y = number_from(words.any(), words);
@@ -267,8 +268,8 @@ Mesh parse_stl(std::string_view bytes) {
   const std::size_t room = (bytes.size() - head) / per_triangle;
   // Writers that do not know the number in advance leave 0 or all ones.
   const bool no_count = count == 0 || count == std::numeric_limits<std::uint32_t>::max();
-  if (no_count && bytes.size() == head + per_triangle * room && room <= max_mesh_triangles)
-    count = static_cast<std::uint32_t>(room);
+  if (no_count && bytes.size() == head + per_triangle * room)
+    count = static_cast<std::uint32_t>(std::min<std::size_t>(room, std::numeric_limits<std::uint32_t>::max()));
   if (count > max_mesh_triangles && count <= room)
     throw MeshError("has more than 4 million triangles: make a coarser one for collision");
   if (count > room)

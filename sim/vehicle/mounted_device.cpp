@@ -295,7 +295,7 @@ std::optional<MountedDevice::Lack> MountedDevice::lack() const {
   if (complete_ || lacking_since_.count() < 0) return std::nullopt;
   const std::string_view what = sensor_->lacks();
   if (what.empty()) return std::nullopt;  // since it was restored
-  return Lack{what, lacking_since_};
+  return Lack{what, last_sample_ - lacking_since_};
 }
 
 void MountedDevice::report(Time now) {

@@ -103,10 +103,11 @@ class MountedDevice : public VisitedInSteps {
   const std::string& report_channel() const { return report_channel_; }
   const std::string& command_channel() const { return command_channel_; }
   const DeviceConfig& config() const { return *config_; }
-  /// What all its readings lacked, and since when; nothing when some did not, or none was taken.  See Sensor::lacks().
+  /// What all its readings lacked, and the time from the first to the last; nothing when some did not, or none was
+  /// taken.  See Sensor::lacks().
   struct Lack {
     std::string_view what;
-    Time since;
+    Time span;
   };
   std::optional<Lack> lack() const;
   const Vehicle& vehicle() const { return vehicle_; }

@@ -13,10 +13,10 @@ std::vector<std::string> end_warnings(const World& world, const std::function<bo
   for (const auto& vehicle : world.vehicles())
     for (const MountedDevice* device : vehicle->devices()) {
       const auto lack = device->senses() ? device->lack() : std::nullopt;
-      if (!lack || world.now() - lack->since < max_search) continue;
+      if (!lack || lack->span < max_search) continue;
       if (lack->what.ends_with(" under water") && !is_awaited(device->report_channel())) continue;
-      lines.push_back(fmt::format("device '{}': no {} in {:.6g} s", device->full_name(), lack->what,
-                                  to_seconds(world.now() - lack->since)));
+      lines.push_back(
+          fmt::format("device '{}': no {} in {:.6g} s", device->full_name(), lack->what, to_seconds(lack->span)));
     }
   return lines;
 }

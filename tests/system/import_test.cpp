@@ -120,6 +120,7 @@ TEST(ImportUrdf, GivesMassesByTheDensity) {
             urdf + ":2: body 'a': its mass is not given: it gets 3000 kg, that of its shapes at 500 kg/m^3\n");
   EXPECT_EQ(run_shoal({"check", output}).exit_code, 0);
   EXPECT_EQ(import_urdf({urdf, "--output", output, "--density", "0", "--overwrite"}).exit_code, 2);
+  EXPECT_EQ(import_urdf({urdf, "--output", output, "--density", "nan", "--overwrite"}).exit_code, 2);
 }
 
 TEST(ImportUrdf, RefusesAFileThatExistsUnlessItMayReplaceIt) {

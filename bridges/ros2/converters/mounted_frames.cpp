@@ -61,7 +61,7 @@ bool put_frames(CdrWriter& out, std::int64_t utime, const ConverterContext& cont
   return count > 0;
 }
 
-/// Reads where the vehicles with odometry start.
+/// Reads where the vehicles with odometry start, except those by `count`, whose names and places are not in the world.
 void read_odometry(const std::string& world, ConverterContext& context) {
   constexpr double rad_per_deg = M_PI / 180;
   sim::Diagnostics diagnostics;
@@ -69,7 +69,7 @@ void read_odometry(const std::string& world, ConverterContext& context) {
   context.odometry_frames.clear();
   for (const sim::ConfigNode& vehicle : items_at(root, "vehicles")) {
     const sim::ConfigNode* model = vehicle.find("model");
-    if (model == nullptr) continue;
+    if (model == nullptr || vehicle.find("count") != nullptr || vehicle.find("placement") != nullptr) continue;
     const auto& devices = items_at(*model, "devices");
     if (std::none_of(devices.begin(), devices.end(),
                      [](const auto& each) { return text_at(each, "type") == "odometry"; }))

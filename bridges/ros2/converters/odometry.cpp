@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <Eigen/Geometry>
 #include <cmath>
+#include <string>
 
 #include "bridges/ros2/converter.hpp"
 #include "bridges/ros2/converters/common_parts.hpp"
@@ -10,10 +11,17 @@
 namespace bridges::ros2 {
 namespace {
 
+/// Frame whose pose a channel tells: of the vehicle on that of a device or an estimate, of its own otherwise, such as a
+/// goal.
+std::string posed_frame(std::string_view channel, const ConverterContext& context) {
+  const bool is_of_vehicle = channel.ends_with(".estimate") || !context.device_of(channel).vehicle.empty();
+  return is_of_vehicle ? vehicle_frame(channel, context) : frame_of(channel);
+}
+
 /// Velocities of nav_msgs/Odometry are in the axes of the moving frame, those of pose_t in the world frame.
 bool write_pose(const shoal::pose_t& message, std::string_view channel, ConverterContext& context, CdrWriter& out) {
   put_header(out, message.utime, world_frame);
-  out.put(std::string_view(vehicle_frame(channel, context)));
+  out.put(std::string_view(posed_frame(channel, context)));
   put_numbers(out, message.pos);
   put_quaternion(out, message.orientation);
   put_unknown_6x6(out);

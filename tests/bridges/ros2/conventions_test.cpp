@@ -137,7 +137,8 @@ TEST(RosConventions, WheelOdometryIsThePoseOfTheVehicleInAFrameWhereItStarted) {
   shoal::sim_info_t info{};
   info.resolved_config =
       "vehicles:\n- {name: a, position_m: [1, 2, 0], rpy_deg: [0, 0, 180], model: {devices: [{type: odometry}]}}\n"
-      "- {name: b, model: {devices: [{type: gps}]}}\n";
+      "- {name: b, model: {devices: [{type: gps}]}}\n"
+      "- {name: rover, count: 2, model: {devices: [{type: odometry}]}}\n";  // rover1 and rover2, no rover
   const auto frames = frames_of(converted(info, "/tf_static", "sim.info", &context));
   ASSERT_EQ(frames.size(), 1u);
   EXPECT_THAT(frames.at("world > a/odom"), near_to({1, 2, 0, 0, 0, 1, 0}));
@@ -152,6 +153,18 @@ TEST(RosConventions, AnEstimateOfAClientIsThePoseOfItsVehicle) {
   pose.orientation[0] = 1;
   for (const auto& [channel, frame] : {std::pair{"rover1.estimate", "rover1"}, {"guess", "guess"}}) {
     auto in = converted(pose, "odometry", channel);
+    expect_header(*in, "world");
+    EXPECT_EQ(in->text(), frame);
+  }
+}
+
+TEST(RosConventions, OnlyADeviceOrAnEstimateTellsThePoseOfAVehicle) {
+  ConverterContext context = knowing(device_with("{}"));
+  shoal::pose_t pose{};
+  pose.utime = 1'500'000;
+  pose.orientation[0] = 1;
+  for (const auto& [channel, frame] : {std::pair{"rover1.goal", "rover1/goal"}, {"auv1.x", "auv1"}}) {
+    auto in = converted(pose, "odometry", channel, &context);
     expect_header(*in, "world");
     EXPECT_EQ(in->text(), frame);
   }

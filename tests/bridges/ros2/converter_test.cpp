@@ -177,7 +177,7 @@ TEST(Ros2Converter, VelocitiesOfOdometryAreInTheAxesOfTheVehicle) {
   // Heading north (yaw 90 degrees) with 2 m/s to the north: forward.
   const double half = std::sqrt(0.5);
   shoal::pose_t pose{1'500'000, {0, 0, 0}, {0, 2, 0}, {half, 0, 0, half}, {0, 0, 1}, {0, 0, 0}};
-  auto in = converted(pose, "odometry");
+  auto in = converted(pose, "odometry", "auv1.estimate");
   expect_header(*in, "world");
   EXPECT_EQ(in->text(), "auv1");
   in->skip<double>(7 + 36);

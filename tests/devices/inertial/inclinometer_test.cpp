@@ -52,6 +52,16 @@ TEST(Inclinometer, TheLowPassTakesItsTime) {
               1e-9);
 }
 
+TEST(Inclinometer, TheLowPassBeginsAnewInAnotherPlace) {
+  test::TestWorld test(test::box_world(inclinometer(", time_constant_s: 10")));
+  test::Listener<shoal::inclination_t> reports(test, "r1.tilt");
+  test.run_for(0.05);
+  const double roll_rad = sim::degrees_to_radians(60);
+  test.world.editor().move_vehicle("r1", sim::make_pose({0, 0, 0}, {roll_rad, 0, 0}));
+  test.run_for(0.01);
+  EXPECT_NEAR(reports.last().roll_rad, roll_rad, 1e-9);
+}
+
 TEST(Inclinometer, NoiseHasTheSpreadAskedFor) {
   test::TestWorld test(test::box_world(inclinometer(", ideal: true, noise: {gaussian_std: 0.01}"), weightless));
   test::Listener<shoal::inclination_t> reports(test, "r1.tilt");

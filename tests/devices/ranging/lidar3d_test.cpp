@@ -145,6 +145,20 @@ TEST(Lidar3d, ChangesItsRateWhileItRuns) {
   EXPECT_GE(all.back().time_offsets_us.front(), -50000);
 }
 
+TEST(Lidar3d, ATurnHasNoPointsFromBeforeAMove) {
+  test::TestWorld test(lidar_world("rings: 1, lowest_deg: 0, highest_deg: 0, columns: 100", wall_at(5)));
+  test::Listener<point_cloud_t> clouds(test, "r1.s");
+  test.run_for(0.15);  // half of the second turn
+  test.world.editor().move_vehicle("r1", sim::make_pose({2, 0, 0}, sim::Vector3d::Zero()));
+  test.run_for(0.05);
+  const auto cloud = clouds.last();
+  EXPECT_GT(cloud.count, 20);
+  for (int i = 0; i < cloud.count; ++i) {
+    EXPECT_NEAR(cloud.x_m[i], 3, 1e-5);
+    EXPECT_GT(cloud.time_offsets_us[i], -50000);
+  }
+}
+
 TEST(Lidar3d, SaysWhatIsWrongWithItsParameters) {
   EXPECT_THAT(test::error_of_world(lidar_world("lowest_deg: 5, highest_deg: -5", wall_at(5))),
               testing::HasSubstr("'lowest_deg' must be <= highest_deg"));

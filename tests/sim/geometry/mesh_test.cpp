@@ -197,6 +197,8 @@ TEST(Mesh, ErrorsSayWhatIsWrong) {
             "has a vertex that is not finite");
   EXPECT_EQ(error_of([] { sim::parse_stl("solid x\nfacet normal 0 0 1\nouter loop\nvertex 1 2 3\n"); }),
             "ends inside a facet");
+  EXPECT_EQ(error_of([] { sim::parse_stl("solid x\nfacet normal 0 0 1\n"); }),
+            "is truncated: it ends without 'endsolid'");
   EXPECT_EQ(error_of([] {
               const std::string whole = ascii_stl_of(box_mesh({1, 1, 1}, {0, 0, 0}));
               sim::parse_stl(whole.substr(0, whole.rfind("endsolid")));
@@ -238,10 +240,11 @@ PartConfig mesh_part(const std::string& path, double density_kgpm3) {
 TEST(Mesh, MoreThanFourMillionTrianglesAreRefusedWhereverTheyAreCounted) {
   // All alike, so that they take little memory.
   std::string stl(84 + 50 * (sim::max_mesh_triangles + 1), '\0');
-  const auto count = static_cast<std::uint32_t>(sim::max_mesh_triangles + 1);
-  std::memcpy(stl.data() + 80, &count, sizeof count);
-  EXPECT_EQ(error_of([&] { sim::parse_stl(stl); }),
-            "has more than 4 million triangles: make a coarser one for collision");
+  for (const std::uint32_t count : {static_cast<std::uint32_t>(sim::max_mesh_triangles + 1), 0u, 0xffffffffu}) {
+    std::memcpy(stl.data() + 80, &count, sizeof count);
+    EXPECT_EQ(error_of([&] { sim::parse_stl(stl); }),
+              "has more than 4 million triangles: make a coarser one for collision");
+  }
   std::string obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
   for (std::size_t i = 0; i <= sim::max_mesh_triangles; ++i) obj += "f 1 2 3\n";
   EXPECT_EQ(error_of([&] { sim::parse_obj(obj); }),

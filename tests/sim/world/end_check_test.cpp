@@ -64,6 +64,14 @@ TEST(EndCheck, TakesItForUsualThatAGpsUnderWaterHasNoFixUnlessAProgramWaits) {
   EXPECT_EQ(ended(test).size(), 1u);
 }
 
+TEST(EndCheck, DoesNotCountTheTimeInWhichASensorIsOff) {
+  test::TestWorld test(slower(test::marine_world("rate_hz: 2, phase_s: 0, type: gps")));
+  test.run_for(59);
+  test.world.vehicles().front()->systems().powered = false;
+  test.run_for(10);
+  EXPECT_THAT(ended(test), IsEmpty());
+}
+
 TEST(EndCheck, RemembersALockThatWasLost) {
   test::TestWorld test(slower(test::marine_world("rate_hz: 2, type: gps", "[0, 0, 0.2]")));
   test.run_for(1);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sim/config/message_text.hpp"
+#include "sim/vehicle/vehicle.hpp"
 #include "sim/world_file/config_warnings.hpp"
 #include "tools/experiment/process/process_check.hpp"
 
@@ -33,7 +34,12 @@ class ChannelCheck {
     for (const std::string& channel : sim::subscribed_channels_of(loaded.config)) received.insert(channel);
     for (const auto& device : world.devices()) {  // also those of vehicles that were added
       if (!device) continue;
-      if (device->senses()) spoken_.insert(device->report_channel());
+      if (device->senses()) {
+        spoken_.insert(device->report_channel());
+        if (device->config().truth)
+          spoken_.insert(sim::device_channel(loaded.config.channels, device->vehicle().name(), device->config(),
+                                             sim::ChannelKind::truth));
+      }
       if (device->mailbox() != nullptr) received.insert(device->command_channel());
     }
     for (const auto& [client, channels] : use.clients())

@@ -30,10 +30,21 @@ bool has_wheels(const sim::VehicleConfig& vehicle) {
   });
 }
 
-/// A craft has coefficients, or is one body.
-bool swims(const sim::VehicleConfig& vehicle) {
-  return vehicle.joints.empty() || std::any_of(vehicle.bodies.begin(), vehicle.bodies.end(),
-                                               [](const sim::BodyConfig& body) { return body.has_coefficients(); });
+bool has_coefficients(const sim::VehicleConfig& vehicle) {
+  return std::any_of(vehicle.bodies.begin(), vehicle.bodies.end(),
+                     [](const sim::BodyConfig& body) { return body.has_coefficients(); });
+}
+
+/// Returns whether a vehicle is in the water, at least in part.
+bool is_in_water(const sim::World& world, const sim::Vehicle& vehicle) {
+  if (world.medium().in_water(vehicle.base().p_WB())) return true;
+  const auto parts = world.physics().parts();
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    if (parts[i].group != vehicle.group()) continue;
+    const auto bounds = world.physics().bounds_W(static_cast<int>(i));
+    if (bounds && world.medium().in_water({bounds->center().x(), bounds->center().y(), bounds->min().z()})) return true;
+  }
+  return false;
 }
 
 }  // namespace
@@ -51,18 +62,22 @@ void FirstContacts::choose_groups() {
     groups_[at] = std::move(entry);
   };
   struct Kind {
-    bool drives, swims;
+    bool drives, swims, may_float;
   };
   std::map<const sim::VehicleConfig*, Kind> kinds;  // for lookup only
   for (const auto& vehicle : world_.vehicles()) {
     const auto [kind, fresh] = kinds.try_emplace(&vehicle->config());
     if (fresh) {
       kind->second.drives = has_wheels(vehicle->config());
-      kind->second.swims = world_.medium().has_water() && !kind->second.drives && swims(vehicle->config());
+      const bool is_craft = world_.medium().has_water() && !kind->second.drives;
+      kind->second.swims = is_craft && has_coefficients(vehicle->config());
+      kind->second.may_float = is_craft && !kind->second.swims && vehicle->config().joints.empty();
     }
     const std::int64_t who = 2 * static_cast<std::int64_t>(vehicle->number());
-    put(vehicle->group(), {who, vehicle->name(), true, kind->second.drives, false, false, kind->second.swims});
-    since_s_.try_emplace(who, sim::to_seconds(world_.now()));
+    const auto [start, came] = starts_.try_emplace(who, Start{sim::to_seconds(world_.now()), false});
+    if (came) start->second.in_water = kind->second.may_float && is_in_water(world_, *vehicle);
+    const bool swims = kind->second.swims || start->second.in_water;
+    put(vehicle->group(), {who, vehicle->name(), true, kind->second.drives, false, false, swims});
     world_.physics().watch_contacts(vehicle->group());
   }
   for (const auto& [name, object] : world_.objects())
@@ -92,8 +107,8 @@ bool FirstContacts::rests_on(const Group& vehicle, const Group& other, bool up) 
   if (!vehicle.is_vehicle) return false;
   if (up && vehicle.drives && other.fixed) return true;
   const Pair pair{vehicle.who, other.who};
-  const auto came = since_s_.find(vehicle.who);
-  const double since_s = came == since_s_.end() ? 0 : came->second;
+  const auto start = starts_.find(vehicle.who);
+  const double since_s = start == starts_.end() ? 0 : start->second.time_s;
   if (up && sim::to_seconds(world_.now()) <= since_s + settled_after_s) resting_.insert(pair);
   return !resting_.empty() && resting_.contains(pair);
 }
@@ -129,7 +144,7 @@ std::vector<FirstContacts::Contact> FirstContacts::all() const {
 }
 
 void FirstContacts::visit_state(sim::StateArchive& archive) {
-  archive(since_s_, resting_, contacts_);
+  archive(starts_, resting_, contacts_);
   // Immediately, not after the next step: a restored world does not report contacts yet.
   if (archive.restoring()) choose_groups();
 }

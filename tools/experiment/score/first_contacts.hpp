@@ -19,7 +19,8 @@ inline constexpr double parted_after_s = 0.5;
 
 /// Counter of the contacts of vehicles with vehicles and objects.  Counting does not change the run.
 ///
-/// Not counted: planes and terrain, except by craft in water that start free of them; the fixed objects that a vehicle
+/// Not counted: planes and terrain, except by craft that start free of them (without wheels, in a world with water;
+/// with hydrodynamic coefficients, or without joints and in the water at their start); the fixed objects that a vehicle
 /// with wheels drives on (contacts from below); the support of a vehicle in its first 0.1 s.  A contact counts again
 /// after a separation of 0.5 s.
 class FirstContacts {
@@ -46,6 +47,11 @@ class FirstContacts {
 
  private:
   using Pair = std::pair<std::int64_t, std::int64_t>;
+  struct Start {
+    double time_s = 0;
+    bool in_water = false;  ///< of a vehicle without wheels, joints and coefficients
+    void visit_state(sim::StateArchive& archive) { archive(time_s, in_water); }
+  };
   struct Group {
     std::int64_t who = 0;  ///< unique; the number of a group may be reused
     std::string name;
@@ -53,7 +59,7 @@ class FirstContacts {
     bool drives = false;  ///< a vehicle on wheels
     bool ground = false;  ///< planes and terrain
     bool fixed = false;
-    bool swims = false;  ///< a vehicle of a world with water that neither rolls nor walks
+    bool swims = false;  ///< a craft
   };
 
   void choose_groups();
@@ -65,9 +71,9 @@ class FirstContacts {
 
   sim::World& world_;
   std::uint64_t generation_ = ~std::uint64_t{0};
-  std::vector<Group> groups_;               ///< by group number
-  std::map<std::int64_t, double> since_s_;  ///< start times of vehicles that were added after the start
-  std::set<Pair> resting_;                  ///< pairs of a vehicle and its support at its start
+  std::vector<Group> groups_;             ///< by group number
+  std::map<std::int64_t, Start> starts_;  ///< of vehicles
+  std::set<Pair> resting_;                ///< pairs of a vehicle and its support at its start
   std::map<Pair, Contact> contacts_;
   // Output on the terminal, which is not rewound.
   Report report_;

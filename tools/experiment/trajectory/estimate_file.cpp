@@ -26,8 +26,9 @@ const std::vector<std::string>& column_names() {
   return names;
 }
 
-/// Column of this name; `shoal-nav` writes `x_m` and `cov_xx_m2`.
-std::string column_of(std::string_view name) {
+/// Column of this name; `own`: in a file of `shoal-nav`, which writes `x_m` and `cov_xx_m2`.
+std::string column_of(std::string_view name, bool own) {
+  if (!own) return std::string(name);
   if (name == "time_s") return "t";
   if (name.starts_with("cov_") && name.ends_with("_m2")) return std::string(name.substr(4, name.size() - 7));
   if (name.size() == 3 && name.ends_with("_m")) return std::string(name.substr(0, 1));
@@ -43,9 +44,10 @@ bool is_name(const Word& word) {
 }
 
 Columns columns_of_header(const LineReader& reader, const std::vector<Word>& words) {
+  const bool own = std::none_of(words.begin(), words.end(), [](const Word& word) { return word.text == "t"; });
   Columns columns;
   for (std::size_t i = 0; i < words.size(); ++i) {
-    const std::string name = column_of(words[i].text);
+    const std::string name = column_of(words[i].text, own);
     const auto& names = column_names();
     if (std::find(names.begin(), names.end(), name) == names.end()) continue;
     if (!columns.emplace(name, i).second) reader.fail(words[i], "each column must be named once");
@@ -55,8 +57,8 @@ Columns columns_of_header(const LineReader& reader, const std::vector<Word>& wor
       reader.fail(1, std::string("the columns must include ") + name +
                          "; columns that are read: " + sim::list_text(column_names()));
   // Its height is not an estimate: it has no covariance.
-  const auto is_own = [](const Word& word) { return word.text == "cov_xx_m2"; };
-  if (std::any_of(words.begin(), words.end(), is_own) && !columns.contains("zz")) columns.erase("z");
+  const auto is_covariance = [](const Word& word) { return word.text == "cov_xx_m2"; };
+  if (own && std::any_of(words.begin(), words.end(), is_covariance) && !columns.contains("zz")) columns.erase("z");
   // The covariance is that of the positions.
   const auto require_all = [&](const std::set<std::string>& names) {
     const bool any = std::any_of(names.begin(), names.end(), [&](const auto& name) { return columns.contains(name); });

@@ -140,7 +140,7 @@ void add_urdf_command(CLI::App& app, int& exit_code) {
       ->add_option("--density", arguments->density_kgpm3,
                    "density of bodies without mass, which get the mass of their shapes, kg/m^3")
       ->type_name("DENSITY")
-      ->check(CLI::Range(1e-3, 1e5).description(""));
+      ->check(number_from(1e-3, 1e5).description(""));
   command->add_flag("--fixed-base", arguments->fixed_base, "fix the root link to the world, as of an arm on a table");
   command->add_flag("--overwrite", arguments->overwrite, "replace an existing file");
   command_line::set_help_end(

@@ -76,7 +76,9 @@ ImportedJoint imported_joint(const UrdfJoint& from, const std::string& name, con
                                    name, sim::number_text(from.friction), sim::number_text(*from.max_effort))});
       joint.friction = 0;
     }
-  } else if (!from.mimic) {
+  } else if (from.mimic) {
+    if (from.max_velocity.value_or(0) > 0) joint.max_velocity = from.max_velocity;
+  } else {
     notes.push_back(
         {from.place, "joint '" + name + "' gets no servo: that needs a <limit> with effort and velocity above 0"});
   }

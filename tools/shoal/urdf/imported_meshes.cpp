@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <fstream>
 #include <optional>
 #include <set>
 #include <tuple>
@@ -115,7 +116,7 @@ class MeshConversion {
       : vehicle_(vehicle), options_(options), folders_(vehicle.source, options), names_("mesh", {}) {}
 
   /// Converts a part.  Returns false, and adds a note, for one that is left out: a mesh file without triangles, and one
-  /// that is only visual and cannot be read.
+  /// that is only visual and cannot be read.  Too many triangles refuse the vehicle.
   bool convert_or_note(ImportedPart& part) {
     const auto leave_out = [&](const std::string& text) {
       vehicle_.notes.push_back({part.shape.place, text});
@@ -126,7 +127,7 @@ class MeshConversion {
       convert(part);
       return true;
     } catch (const sim::ConfigError& error) {
-      if (!part.only_visual) throw;
+      if (!part.only_visual || triangles_ > max_triangles) throw;
       const std::string text = error.what();  // with its place, `FILE:LINE: `
       return leave_out(text.substr(text.find(": ", part.shape.place.file->size()) + 2) +
                        ": this <visual> is not imported");
@@ -161,28 +162,43 @@ class MeshConversion {
   Key key_of(const UrdfShape& shape) const {
     return {folders_.find(shape), shape.scale.x(), shape.scale.y(), shape.scale.z()};
   }
-  /// Returns whether a file exists and is too short for a triangle in any format.
+  /// Returns whether a file exists and is a mesh without triangles, as programs write it: nothing but blanks, or an STL
+  /// of only its head.
   bool is_empty_file(const UrdfShape& shape) const {
-    constexpr std::uintmax_t head_of_stl = 84;
+    constexpr std::uintmax_t max_bytes = 1024;
+    const std::string path = folders_.find(shape);
     std::error_code error;
-    const std::uintmax_t bytes = fs::file_size(folders_.find(shape), error);
+    const std::uintmax_t bytes = fs::file_size(path, error);
+    if (error || bytes > max_bytes) return false;
+    std::string text(bytes, ' ');
+    if (!std::ifstream(path, std::ios::binary).read(text.data(), static_cast<std::streamsize>(bytes))) return false;
+    text.erase(0, text.find_first_not_of(" \t\r\n"));
+    if (text.empty()) return true;
     const std::string extension = fs::path(shape.mesh).extension().string();
-    return !error && bytes <= (extension == ".stl" || extension == ".STL" ? head_of_stl : 0);
+    if (extension != ".stl" && extension != ".STL") return false;
+    constexpr std::uintmax_t header = 80;  // of binary STL; behind it the number of triangles
+    if (bytes == header || (bytes == header + 4 && text.ends_with(std::string(4, '\0')))) return true;
+    return text.starts_with("solid") && text.find("facet") == std::string::npos && text.find('\0') == std::string::npos;
   }
   const sim::Mesh& read(const UrdfShape& shape) {
     const Key key = key_of(shape);
     const auto known = meshes_.find(key);
     if (known != meshes_.end()) return known->second;
-    try {
-      // Like other readers of URDF, coordinates are taken as in the file, whatever axis points up in it.
-      sim::Mesh mesh = import_mesh(std::get<0>(key), {.scale = 1, .up = 'z'});
-      triangles_ += mesh.triangles.size();
-      if (triangles_ > max_triangles) throw sim::MeshError("is one too many: all have more than 8 million triangles");
-      scale_mesh(shape.scale, mesh);
-      return meshes_.emplace(key, std::move(mesh)).first->second;
-    } catch (const sim::MeshError& error) {
-      sim::throw_config_error(shape.place, "", shown_path(shape.mesh) + ' ' + error.what());
+    // A file that cannot be read may take a minute: it is tried once.
+    std::string& failure = failures_[std::get<0>(key)];
+    if (failure.empty()) {
+      try {
+        // Like other readers of URDF, coordinates are taken as in the file, whatever axis points up in it.
+        sim::Mesh mesh = import_mesh(std::get<0>(key), {.scale = 1, .up = 'z'});
+        triangles_ += mesh.triangles.size();
+        if (triangles_ > max_triangles) throw sim::MeshError("is one too many: all have more than 8 million triangles");
+        scale_mesh(shape.scale, mesh);
+        return meshes_.emplace(key, std::move(mesh)).first->second;
+      } catch (const sim::MeshError& error) {
+        failure = error.what();
+      }
     }
+    sim::throw_config_error(shape.place, "", shown_path(shape.mesh) + ' ' + failure);
   }
 
   ImportedVehicle& vehicle_;
@@ -192,6 +208,7 @@ class MeshConversion {
   static constexpr std::size_t max_triangles = 2 * sim::max_mesh_triangles;
   std::size_t triangles_ = 0;
   std::map<Key, sim::Mesh> meshes_;
+  std::map<std::string, std::string> failures_;  ///< why a file could not be read; empty: it could
   std::map<std::pair<Key, bool>, std::optional<std::string>> written_;
   std::vector<MeshFile> files_;
 };

@@ -100,6 +100,11 @@ class VehicleAssembly {
       if (name == nullptr || other.name != *name || other.type == sim::JointType::fixed || &other == &joint) continue;
       joint.follows->joint = *name;
       if (joint.max_effort.value_or(0) <= 0) joint.max_effort = other.max_effort;
+      if (joint.friction > 0)
+        vehicle_.notes.push_back({joint.place, "joint '" + joint.name + "': its friction, " +
+                                                   sim::number_text(joint.friction) +
+                                                   ", is not imported: it follows another joint"});
+      joint.friction = 0;
       return;
     }
     vehicle_.notes.push_back({joint.place, "joint '" + joint.name + "' moves on its own: its <mimic> names '" +

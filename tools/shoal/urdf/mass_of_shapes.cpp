@@ -4,6 +4,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <cmath>
+#include <map>
 #include <numbers>
 
 #include "sim/base/linear_algebra.hpp"
@@ -45,15 +46,30 @@ sim::MeshSolid box(const sim::Vector3d& size) {
           (volume / 12 * (sim::Vector3d::Constant(squares.sum()) - squares)).asDiagonal()};
 }
 
-sim::MeshSolid hull(const std::string& file, const std::vector<MeshFile>& meshes) {
-  for (const auto& [path, mesh] : meshes)
-    if (path == file)
-      if (const auto solid = convex_hull(outermost_points(mesh.vertices_m))) return sim::solid_of(*solid);
-  return {};  // flat
-}
+/// Solids of the convex hulls of mesh files, each computed once.
+class HullSolids {
+ public:
+  explicit HullSolids(const std::vector<MeshFile>& meshes) : meshes_(meshes) {}
+  const sim::MeshSolid& of(const std::string& file) {
+    const auto [known, added] = solids_.try_emplace(file);
+    if (added) known->second = computed(file);
+    return known->second;
+  }
+
+ private:
+  sim::MeshSolid computed(const std::string& file) const {
+    for (const auto& [path, mesh] : meshes_)
+      if (path == file)
+        if (const auto solid = convex_hull(outermost_points(mesh.vertices_m))) return sim::solid_of(*solid);
+    return {};  // flat
+  }
+
+  const std::vector<MeshFile>& meshes_;
+  std::map<std::string, sim::MeshSolid> solids_;
+};
 
 /// Solid of a part in its own frame.
-sim::MeshSolid solid_of_part(const UrdfShape& shape, const std::vector<MeshFile>& meshes) {
+sim::MeshSolid solid_of_part(const UrdfShape& shape, HullSolids& hulls) {
   switch (shape.shape) {
     case sim::PartShape::box:
       return box(shape.size_m);
@@ -64,7 +80,7 @@ sim::MeshSolid solid_of_part(const UrdfShape& shape, const std::vector<MeshFile>
     case sim::PartShape::capsule:
       return capsule(shape.radius_m, shape.length_m);
     case sim::PartShape::mesh:
-      return hull(shape.mesh, meshes);
+      return hulls.of(shape.mesh);
     case sim::PartShape::plane:
     case sim::PartShape::terrain:
       break;  // not in a URDF
@@ -78,13 +94,13 @@ sim::Matrix3d of_point(const sim::Vector3d& c) {
 }
 
 /// Solid of all parts of a body that collide, or of those that are only visual, in the body's frame.
-sim::MeshSolid solid_of_body(const ImportedBody& body, bool visual, const std::vector<MeshFile>& meshes) {
+sim::MeshSolid solid_of_body(const ImportedBody& body, bool visual, HullSolids& hulls) {
   sim::MeshSolid all;
   sim::Vector3d moment = sim::Vector3d::Zero();
   sim::Matrix3d about_origin = sim::Matrix3d::Zero();
   for (const ImportedPart& part : body.parts) {
     if (part.only_visual != visual) continue;
-    const sim::MeshSolid solid = solid_of_part(part.shape, meshes);
+    const sim::MeshSolid solid = solid_of_part(part.shape, hulls);
     const sim::Matrix3d& R_BP = part.X_BP.linear();
     const sim::Vector3d c = part.X_BP * solid.centroid_m;
     all.volume_m3 += solid.volume_m3;
@@ -105,10 +121,19 @@ bool is_solid(const sim::MeshSolid& solid, double density_kgpm3) {
   return moments[0] > 1e-9 * moments[2];
 }
 
-void complete(ImportedBody& body, const std::vector<MeshFile>& meshes, double density_kgpm3,
-              std::vector<UrdfNote>& notes) {
-  sim::MeshSolid solid = solid_of_body(body, false, meshes);
-  if (!is_solid(solid, density_kgpm3)) solid = solid_of_body(body, true, meshes);
+/// Says why an inertia is replaced, one whose smallest moment is zero.
+std::string fault_of(const sim::Matrix3d& inertia_kgm2) {
+  const sim::Vector3d moments = sim::symmetric_eigenvalues(inertia_kgm2);
+  constexpr double no_inertia_kgm2 = 1e-15;
+  if (moments[2] <= no_inertia_kgm2) return "its inertia is zero";
+  const auto shown = [&](int i) { return std::abs(moments[i]) < 1e-9 * moments[2] ? 0 : moments[i]; };
+  return fmt::format("no solid has its inertia, with the moments {:.6g}, {:.6g} and {:.6g} kg m^2", shown(0), shown(1),
+                     shown(2));
+}
+
+void complete(ImportedBody& body, HullSolids& hulls, double density_kgpm3, std::vector<UrdfNote>& notes) {
+  sim::MeshSolid solid = solid_of_body(body, false, hulls);
+  if (!is_solid(solid, density_kgpm3)) solid = solid_of_body(body, true, hulls);
   const bool has_shapes = is_solid(solid, density_kgpm3);
   std::string text;
   if (body.lacks_mass) {
@@ -121,9 +146,9 @@ void complete(ImportedBody& body, const std::vector<MeshFile>& meshes, double de
                        has_shapes ? "its shapes" : "a ball of 10 mm radius", density_kgpm3);
   } else {
     if (!has_shapes) solid = ball(std::cbrt(3 * body.mass_kg / (4 * pi * usual_density_kgpm3)));
-    body.inertia_kgm2 = body.mass_kg / solid.volume_m3 * solid.inertia;
-    text = fmt::format("its inertia is zero: it gets that of {} with its mass",
+    text = fmt::format("{}: it gets that of {} with its mass", fault_of(body.inertia_kgm2),
                        has_shapes ? "its shapes" : "a ball of 1000 kg/m^3");
+    body.inertia_kgm2 = body.mass_kg / solid.volume_m3 * solid.inertia;
   }
   body.lacks_mass = body.lacks_inertia = false;
   notes.push_back({body.place, "body '" + body.name + "': " + text});
@@ -132,8 +157,9 @@ void complete(ImportedBody& body, const std::vector<MeshFile>& meshes, double de
 }  // namespace
 
 void complete_masses(ImportedVehicle& vehicle, const std::vector<MeshFile>& meshes, double density_kgpm3) {
+  HullSolids hulls(meshes);
   for (ImportedBody& body : vehicle.bodies)
-    if (body.lacks_mass || body.lacks_inertia) complete(body, meshes, density_kgpm3, vehicle.notes);
+    if (body.lacks_mass || body.lacks_inertia) complete(body, hulls, density_kgpm3, vehicle.notes);
 }
 
 }  // namespace tools

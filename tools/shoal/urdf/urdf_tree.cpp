@@ -55,7 +55,8 @@ void add_world(UrdfRobot& robot) {
 
 void drop_unconnected_links(UrdfRobot& robot) {
   std::set<std::string> children;
-  for (const UrdfJoint& joint : robot.joints) children.insert(joint.child);
+  for (const UrdfJoint& joint : robot.joints)
+    if (!children.insert(joint.child).second) return;  // check_urdf_tree() refuses a link of two parents
   std::map<std::string, std::set<std::string>> trees;  // links of each root
   std::vector<const UrdfLink*> roots;
   std::map<std::string, std::vector<std::string>> ends_from;
@@ -78,11 +79,8 @@ void drop_unconnected_links(UrdfRobot& robot) {
   const std::string kept = (*std::max_element(roots.begin(), roots.end(), smaller))->name;  // the first of equal ones
   std::set<std::string> dropped;
   for (const UrdfLink* root : roots) {
-    const std::set<std::string>& other = trees[root->name];
-    const bool is_apart =
-        std::none_of(other.begin(), other.end(), [&](const std::string& link) { return trees[kept].contains(link); });
-    if (!is_apart) continue;  // also the kept one; a link of two parents is refused
-    dropped.insert(other.begin(), other.end());
+    if (root->name == kept) continue;
+    dropped.insert(trees[root->name].begin(), trees[root->name].end());
     robot.notes.push_back({root->place, "link " + quoted_name(root->name) + " is not connected to " +
                                             quoted_name(kept) + ": neither it nor what it carries is imported"});
   }

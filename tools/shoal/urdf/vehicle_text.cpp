@@ -120,6 +120,7 @@ std::string follower_text(const ImportedJoint& joint) {
   if (joint.follows->multiplier != 1) map.add("multiplier", joint.follows->multiplier);
   if (joint.follows->offset != 0) map.add("offset", joint.follows->offset);
   if (joint.max_effort) map.add("max_effort", *joint.max_effort);
+  if (joint.max_velocity) map.add("max_velocity", *joint.max_velocity);
   return map.lines("  - ");
 }
 

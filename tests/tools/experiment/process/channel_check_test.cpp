@@ -22,11 +22,18 @@ struct PilotWorld {
   static std::string boat(const std::string& name, int east_m) {
     return "  - {name: " + name + ", position_m: [" + std::to_string(east_m) +
            ", 0, 0], model: {shoal: 1, vehicle: ball, bodies: [{name: hull, parts: [{shape: sphere, mass_kg: 500}]}], "
-           "devices: [{name: imu, type: imu}, {name: modem, type: acoustic_modem}]}}\n";
+           "devices: [{name: imu, type: imu, truth: true}, {name: modem, type: acoustic_modem}]}}\n";
   }
-  std::vector<std::string> warnings(bool is_recorded = false) const {
+  /// `spawned`: name of a vehicle as a1 that is added to the run; empty: none.
+  std::vector<std::string> warnings(bool is_recorded = false, const std::string& spawned = "") const {
     sim::InProcessBus bus;
-    const sim::World world(loaded.config, bus);
+    sim::World world(loaded.config, bus);
+    if (!spawned.empty()) {
+      sim::VehicleInstance instance = loaded.config.vehicles.front();
+      instance.name = spawned;
+      instance.X_WV = sim::make_pose({-9, 0, 0}, sim::Vector3d::Zero());
+      world.editor().add_vehicle(instance);
+    }
     sim::Warnings warnings;
     tools::warn_of_channels(loaded, world, use, is_recorded, warnings);
     return warnings.lines();
@@ -85,6 +92,13 @@ TEST(ChannelCheck, NamesASubscriptionToAChannelOnWhichNothingIsPublished) {
   EXPECT_THAT(world.warnings(),
               ElementsAre("client 'pilot': it subscribes to 'a1/imu', on which nothing was published; "
                           "did you mean 'a1.imu'?"));
+}
+
+TEST(ChannelCheck, KnowsTheTruthOfASpawnedVehicle) {
+  PilotWorld world;
+  world.subscribes("a3.imu.truth");
+  EXPECT_EQ(world.warnings().size(), 1u);
+  EXPECT_THAT(world.warnings(false, "a3"), IsEmpty());
 }
 
 TEST(ChannelCheck, IsSilentAboutChannelsThatAProgramDeclares) {

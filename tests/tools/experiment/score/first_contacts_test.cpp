@@ -120,6 +120,17 @@ TEST(FirstContacts, ReportACraftThatTouchesTheBottom) {
   EXPECT_THAT(rests.pairs(), IsEmpty()) << "it starts on it";
 }
 
+TEST(FirstContacts, TakeABodyForACraftOnlyIfItStartsInTheWater) {
+  std::string on_land = sinking_ball(-4);
+  on_land.replace(on_land.find("[0, 0, -10]"), 11, "[0, 0, 2]");  // it falls 1.5 m
+  WatchedWorld falls(on_land);
+  falls.run_for(1);
+  EXPECT_THAT(falls.pairs(), IsEmpty());
+  WatchedWorld sinks(sinking_ball(-0.4));  // 0.1 m of it are in the water
+  sinks.run_for(15);
+  EXPECT_THAT(sinks.pairs(), ElementsAre(HasSubstr("auv-bottom")));
+}
+
 TEST(FirstContacts, GoBackWithTheWorld) {
   WatchedWorld watched(balls(3, 2));
   watched.push("v1", 2);

@@ -35,6 +35,14 @@ TEST(EstimateFile, ReadsNamedColumnsInAnyOrder) {
   EXPECT_FALSE(file.has_height);
 }
 
+TEST(EstimateFile, IgnoresNamesOfShoalNavBesideATime) {
+  const EstimateFile file = parse_estimates("t,x,y,z,time_s,x_m,cov_xx_m2\n0,1,2,3,7,8,9\n", "f");
+  EXPECT_EQ(file.rows[0].time_s, 0);
+  EXPECT_EQ(file.rows[0].position_m, sim::Vector3d(1, 2, 3));
+  EXPECT_TRUE(file.has_height);
+  EXPECT_FALSE(file.rows[0].covariance_m2);
+}
+
 TEST(EstimateFile, ReadsColumnsWithoutNames) {
   EXPECT_EQ(parse_estimates("0,1,2\r\n1,3,4\r\n", "f").rows[1].position_m, sim::Vector3d(3, 4, 0));
   EXPECT_EQ(parse_estimates("0,1,2,-5\n", "f").rows[0].position_m, sim::Vector3d(1, 2, -5));

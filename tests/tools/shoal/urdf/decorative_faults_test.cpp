@@ -161,6 +161,15 @@ TEST(DecorativeFault, ALinkThatNothingConnectsIsLeftOut) {
                         "r.urdf:10: link 'frame' is not connected to 'a': neither it nor what it carries is"));
 }
 
+TEST(DecorativeFault, ALinkOfTwoParentsIsRefusedAlsoWhereNothingConnectsIt) {
+  const std::string urdf =
+      robot_text(link_text("a") + link_text("b") + link_text("c") + joint_between("j", "continuous", "a", "b") +
+                 joint_between("k", "continuous", "b", "c") + link_text("spare") + link_text("tip") +
+                 joint_between("s", "continuous", "spare", "tip") + joint_between("t", "continuous", "spare", "tip"));
+  EXPECT_EQ(test::import_error(urdf),
+            "r.urdf:10: joint 't': link 'tip' already has the parent joint 's': a URDF is a tree");
+}
+
 TEST(DecorativeFault, AnEndWithoutMassAndShapesIsLeftOut) {
   // A frame, and one behind it.  A mass of 1e-10 kg is none.
   const tools::ImportedVehicle vehicle = imported(
@@ -178,6 +187,10 @@ TEST(DecorativeFault, AnEmptyMeshOrAVisualOneThatIsMissingIsLeftOut) {
   const test_support::ScratchFolder folder;
   std::ofstream(folder.file("empty.STL")) << std::string(80, ' ');
   std::ofstream(folder.file("empty.obj"));
+  std::ofstream(folder.file("blank.dae")) << "\n";
+  std::ofstream(folder.file("text.stl")) << "solid x\nendsolid x\n";
+  std::ofstream(folder.file("none.stl")) << std::string(84, '\0');
+  std::ofstream(folder.file("page.stl")) << "404: Not Found";
   std::ofstream(folder.file("bad.dae")) << "<COLLADA>";
   const auto convert = [&](const std::string& kind, const std::string& mesh) {
     const std::string path = folder.file("r.urdf");
@@ -190,14 +203,28 @@ TEST(DecorativeFault, AnEmptyMeshOrAVisualOneThatIsMissingIsLeftOut) {
     EXPECT_TRUE(vehicle.bodies.at(0).parts.empty());
     return notes_of(vehicle).substr(path.size());
   };
-  EXPECT_EQ(convert("collision", "empty.STL"), ":2: mesh 'empty.STL' has no triangles: not imported\n");
-  EXPECT_EQ(convert("collision", "empty.obj"), ":2: mesh 'empty.obj' has no triangles: not imported\n");
+  for (const std::string file : {"empty.STL", "empty.obj", "blank.dae", "text.stl", "none.stl"})
+    EXPECT_EQ(convert("collision", file), ":2: mesh '" + file + "' has no triangles: not imported\n");
   EXPECT_EQ(convert("visual", "gone.stl"), ":2: mesh 'gone.stl' does not exist: this <visual> is not imported\n");
   EXPECT_THAT(convert("visual", "bad.dae"), HasSubstr("this <visual> is not imported\n"));
   EXPECT_EQ(convert("visual", "package://p/m.stl"),
             ":2: the folder of package 'p' is unknown: give --package p=DIR: this <visual> is not imported\n");
   // What collides matters.
   EXPECT_THROW(convert("collision", "gone.stl"), sim::ConfigError);
+  EXPECT_THROW(convert("collision", "page.stl"), sim::ConfigError);
+}
+
+TEST(DecorativeFault, EachVisualOfADamagedMeshGetsTheNoteOfTheFirst) {
+  const test_support::ScratchFolder folder;
+  std::ofstream(folder.file("bad.dae")) << "<COLLADA>";
+  const std::string path = folder.file("r.urdf"),
+                    visual = "\n<visual><geometry><mesh filename=\"bad.dae\"/></geometry></visual>";
+  tools::ImportedVehicle vehicle =
+      tools::vehicle_of(tools::read_urdf(robot_text(link_text("a", visual + visual)), path), path);
+  EXPECT_TRUE(tools::convert_meshes(vehicle, {}).empty());
+  ASSERT_EQ(vehicle.notes.size(), 2u);
+  EXPECT_EQ(vehicle.notes[0].text, vehicle.notes[1].text);
+  EXPECT_EQ(vehicle.notes[1].place.line, 4);
 }
 
 TEST(DecorativeFault, ARobotWithoutNameGetsThatOfTheFile) {

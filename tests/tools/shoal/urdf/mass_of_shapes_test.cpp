@@ -101,13 +101,16 @@ TEST(MassOfShapes, GivesAnInertiaOfZeroThatOfTheShapesWithTheMass) {
     return vehicle;
   };
   const std::string box = shape("collision", "<box size=\"1 2 3\"/>");
-  for (const std::string inertia :
-       {"ixx=\"0\" iyy=\"0\" izz=\"0\"", "ixx=\"1e-20\" ixy=\"-1e-19\" iyy=\"-5e-20\" izz=\"0\"",
-        "ixx=\"0\" iyy=\"0.1\" izz=\"0.1\""}) {
+  const std::string zero = "its inertia is zero",
+                    needle = "no solid has its inertia, with the moments 0, 0.1 and 0.1 kg m^2";
+  for (const auto& [inertia, fault] :
+       std::vector<std::pair<std::string, std::string>>{{"ixx=\"0\" iyy=\"0\" izz=\"0\"", zero},
+                                                        {"ixx=\"1e-20\" ixy=\"-1e-19\" iyy=\"-5e-20\" izz=\"0\"", zero},
+                                                        {"ixx=\"0\" iyy=\"0.1\" izz=\"0.1\"", needle}}) {
     const tools::ImportedVehicle vehicle = body(inertia, box);
     expect_moments(vehicle.bodies[0], 2, Vector3d(13, 10, 5) * 2 / 12);
     EXPECT_EQ(vehicle.bodies[0].center_of_mass_m, Vector3d(0, 0, 0.3));
-    EXPECT_EQ(notes_of(vehicle), "r.urdf:2: body 'a': its inertia is zero: it gets that of its shapes with its mass\n");
+    EXPECT_EQ(notes_of(vehicle), "r.urdf:2: body 'a': " + fault + ": it gets that of its shapes with its mass\n");
   }
   // Without shapes: a ball of water.  m = 4/3 pi r^3 1000.
   const tools::ImportedVehicle bare = body("ixx=\"0\" iyy=\"0\" izz=\"0\"", "");

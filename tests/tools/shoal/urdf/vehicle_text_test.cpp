@@ -129,6 +129,21 @@ TEST(VehicleText, LetsAMimicJointFollowTheOther) {
   EXPECT_NEAR(built.vehicle().joint("half").position(), 0.2, 1e-5);
 }
 
+TEST(VehicleText, GivesTheVelocityButNotTheFrictionOfAMimicJointToItsFollower) {
+  const auto text_of = [](const std::string& limit) {
+    const tools::ImportedVehicle vehicle = imported(robot_text(
+        link_text("a") + link_text("b") + link_text("c") +
+        test::joint_text("continuous", "<limit effort=\"3\" velocity=\"4\"/>") +
+        "<joint name=\"k\" type=\"continuous\"><parent link=\"a\"/><child link=\"c\"/><mimic joint=\"j\"/><limit " +
+        limit + "/><dynamics friction=\"0.5\"/></joint>"));
+    EXPECT_THAT(test::notes_of(vehicle),
+                HasSubstr("joint 'k': its friction, 0.5, is not imported: it follows another joint\n"));
+    return tools::vehicle_text(vehicle, "");
+  };
+  EXPECT_THAT(text_of("effort=\"1\" velocity=\"2\""), HasSubstr("follows: j, max_effort: 1, max_velocity: 2}"));
+  EXPECT_THAT(text_of("velocity=\"2\""), HasSubstr("follows: j, max_effort: 3, max_velocity: 2}"));
+}
+
 TEST(VehicleText, PartsThatAreOnlyVisualCollideWithNothing) {
   // Two balls at the same place: if they collided, they would be pushed apart.
   const std::string ball = "<geometry><sphere radius=\"0.1\"/></geometry>";
