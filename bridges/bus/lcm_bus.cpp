@@ -183,7 +183,7 @@ struct LcmBus::Threads final : Arrivals::Port {
     close(stop_fd);
   }
 
-  /// Ends a connection in which a message is stuck.  liblcm may not be called again: it would connect anew, and wait
+  /// Ends a connection in which a message is stuck.  liblcm may not be called again: it would connect again, and wait
   /// for the answer of a server that may never come.
   void cut_off() {
     const std::unique_lock lock(receive_mutex, std::chrono::seconds(1));  // the receiver may be stuck too
