@@ -50,10 +50,8 @@ struct ConverterContext {
     return known == devices.end() ? unknown : known->second;
   }
 
-  std::map<std::string, Device, std::less<>> devices;  ///< by frame
-  /// World of the last `sim.info`, and the poses in it of the frames of wheel odometry.
-  std::string world;
-  std::map<std::string, std::array<double, 7>> odometry_frames;
+  std::map<std::string, Device, std::less<>> devices;            ///< by frame
+  std::map<std::string, std::array<double, 7>> odometry_frames;  ///< poses in the world of where wheel odometry starts
   /// Coordinate frames of the bodies of the last `sim.scene`, by their numbers, and its revision.
   std::map<std::int32_t, std::string> body_frames;
   std::int32_t scene_revision = -1;

@@ -170,6 +170,8 @@ Json SceneWriter::vehicles() const {
       if (device->sensor() != nullptr && device->sensor()->data_rate_bps())
         json["data_rate_bps"] = *device->sensor()->data_rate_bps();
       if (device->sensor() != nullptr)
+        if (const auto origin = device->sensor()->origin()) json["origin"] = pose_json(*origin);
+      if (device->sensor() != nullptr)
         if (const auto view = device->sensor()->field_of_view()) json["field_of_view"] = field_of_view_json(*view);
       devices.push_back(std::move(json));
     }

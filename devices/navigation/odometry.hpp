@@ -15,6 +15,7 @@ class Odometry final : public sim::Sensor {
  public:
   static constexpr const char* meaning =
       "Position from the ticks of two wheels; errors by slip, ticks and calibration.";
+  static constexpr const char* without_effect[] = {"position_m", "rpy_deg"};
   static constexpr double default_rate_hz = 20;
   struct Params {
     std::string left_joint;
@@ -38,6 +39,8 @@ class Odometry final : public sim::Sensor {
   void measure(const sim::SenseContext& context) override;
   /// Sets the measured pose by integration of the wheel ticks.
   void disturb(double dt_s, sim::Random& random) override;
+  /// Returns the initial pose of the vehicle.
+  std::optional<sim::Pose> origin() const override { return X_W0_; }
   void visit_state(sim::StateArchive& archive) override;
   const Reading& reading() const { return reading_; }
 

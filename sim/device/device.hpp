@@ -79,6 +79,9 @@ class Sensor {
   virtual std::int64_t rays() const { return 0; }
   /// Returns the region that the sensor observes, for viewers; none: it has none.
   virtual std::optional<FieldOfView> field_of_view() const { return std::nullopt; }
+  /// Returns the pose in the world of the frame in which it reports the pose of its vehicle; none: it reports none, or
+  /// in the world.
+  virtual std::optional<Pose> origin() const { return std::nullopt; }
   /// Data rate of an acoustic modem within its packets, bit/s; none for other devices, and when it varies.
   virtual std::optional<double> data_rate_bps() const { return std::nullopt; }
   /// Returns whether the sensor detects the bottom without casting rays as scanners do: a world without a bottom then

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <cmath>
 
 #include "bridges/ros2/converter.hpp"
 #include "bridges/ros2/converters/common_parts.hpp"
-#include "bridges/ros2/converters/config_values.hpp"
 #include "shoal/image_t.hpp"
+#include "sim/base/number.hpp"
+#include "sim/config/config_node.hpp"
 
 namespace bridges::ros2 {
 namespace {
@@ -18,13 +20,25 @@ sim::ConfigNode lens_of(const shoal::image_t& message) {
   return sim::parse_config_text(std::string(optics->value.begin(), optics->value.end()), "optics", diagnostics);
 }
 
+/// Returns the numbers of a list in the lens, with 0 for what is none.
+std::vector<double> numbers_of(const sim::ConfigNode& lens, std::string_view key) {
+  std::vector<double> numbers;
+  if (const sim::ConfigNode* list = lens.find(key))
+    for (const sim::ConfigNode& item : list->items) {
+      const double number = sim::read_number(item.scalar).value_or(0);
+      numbers.push_back(std::isfinite(number) ? number : 0);
+    }
+  return numbers;
+}
+
 /// The lens of a camera of Shoal.  Positions in the image count from the centre of the first pixel, as in OpenCV.
 bool write_camera_info(const shoal::image_t& message, std::string_view channel, CdrWriter& out) {
   const sim::ConfigNode lens = lens_of(message);
-  const std::vector<double> focal_px = numbers_at(lens, "focal_px"), principal_px = numbers_at(lens, "principal_px");
+  const std::vector<double> focal_px = numbers_of(lens, "focal_px"), principal_px = numbers_of(lens, "principal_px");
   if (message.width < 1 || message.height < 1 || focal_px.size() != 2 || principal_px.size() != 2) return false;
-  const bool fisheye = text_at(lens, "lens") == "fisheye";
-  std::vector<double> distortion = numbers_at(lens, "distortion");
+  const sim::ConfigNode* kind = lens.find("lens");
+  const bool fisheye = kind != nullptr && kind->scalar == "fisheye";
+  std::vector<double> distortion = numbers_of(lens, "distortion");
   distortion.resize(fisheye ? 4 : 5);
   const double cx = principal_px[0] - 0.5, cy = principal_px[1] - 0.5;
   put_header(out, message.utime, optical_frame_of(channel));

@@ -3,7 +3,6 @@
 
 #include "bridges/ros2/converter.hpp"
 #include "bridges/ros2/converters/common_parts.hpp"
-#include "bridges/ros2/converters/config_values.hpp"
 #include "bridges/ros2/converters/scene_values.hpp"
 #include "shoal/sim_info_t.hpp"
 #include "shoal/sim_scene_t.hpp"
@@ -61,48 +60,24 @@ bool put_frames(CdrWriter& out, std::int64_t utime, const ConverterContext& cont
   return count > 0;
 }
 
-/// Reads where the vehicles with odometry start, except those by `count`, whose names and places are not in the world.
-void read_odometry(const std::string& world, ConverterContext& context) {
-  constexpr double rad_per_deg = M_PI / 180;
-  sim::Diagnostics diagnostics;
-  const sim::ConfigNode root = sim::parse_config_text(world, "sim.info", diagnostics);
-  context.odometry_frames.clear();
-  for (const sim::ConfigNode& vehicle : items_at(root, "vehicles")) {
-    const sim::ConfigNode* model = vehicle.find("model");
-    if (model == nullptr || vehicle.find("count") != nullptr || vehicle.find("placement") != nullptr) continue;
-    const auto& devices = items_at(*model, "devices");
-    if (std::none_of(devices.begin(), devices.end(),
-                     [](const auto& each) { return text_at(each, "type") == "odometry"; }))
-      continue;
-    std::vector<double> position_m = numbers_at(vehicle, "position_m"), rpy_deg = numbers_at(vehicle, "rpy_deg");
-    position_m.resize(3);
-    rpy_deg.resize(3);
-    context.odometry_frames.insert_or_assign(
-        odometry_frame(text_at(vehicle, "name")),
-        numbers_of(sim::make_pose(sim::Vector3d(position_m.data()), sim::Vector3d(rpy_deg.data()) * rad_per_deg)));
-  }
-}
-
-/// Where the devices of the vehicles are mounted.
-bool write_scene_frames(const shoal::sim_scene_t& message, ConverterContext& context, CdrWriter& out) {
+/// Where the devices of the vehicles are mounted, and where odometry starts.
+bool write_frames(const shoal::sim_scene_t& message, ConverterContext& context, CdrWriter& out) {
   return put_frames(out, message.utime, context);
 }
 
-/// The same again, and where odometry starts.
-bool write_frames(const shoal::sim_info_t& message, ConverterContext& context, CdrWriter& out) {
-  // The same world is in every sim.info of a run.
-  if (context.world != message.resolved_config) read_odometry(message.resolved_config, context);
-  context.world = message.resolved_config;
+/// The same again: the frames of a run are in every part of its record.
+bool write_frames_again(const shoal::sim_info_t& message, ConverterContext& context, CdrWriter& out) {
   return put_frames(out, message.utime, context);
 }
 
-SHOAL_ROS2_CONVERTER(write_scene_frames, "tf2_msgs/msg/TFMessage", "/tf_static");
 SHOAL_ROS2_CONVERTER(write_frames, "tf2_msgs/msg/TFMessage", "/tf_static");
+SHOAL_ROS2_CONVERTER(write_frames_again, "tf2_msgs/msg/TFMessage", "/tf_static");
 
 }  // namespace
 
 void read_devices(const Json& scene, ConverterContext& context) {
   context.devices.clear();
+  context.odometry_frames.clear();
   for (const Json& vehicle : list_at(scene, "vehicles")) {
     const std::string name = text_at(vehicle, "name");
     const sim::Pose X_VB = pose_at(vehicle, "pose").inverse();
@@ -114,8 +89,8 @@ void read_devices(const Json& scene, ConverterContext& context) {
       const bool on_base = body == integer_at(vehicle, "body");
       device.pose = numbers_of(on_base ? X_VB * X_BS : X_BS);
       const auto moving = context.body_frames.find(body);
-      if (text_at(each, "type") == "odometry")
-        device.parent = "";
+      if (at(each, "origin") != nullptr)
+        context.odometry_frames.insert_or_assign(odometry_frame(name), numbers_of(pose_at(each, "origin")));
       else if (on_base)
         device.parent = name;
       else if (moving != context.body_frames.end())

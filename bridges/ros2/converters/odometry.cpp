@@ -20,13 +20,18 @@ std::string posed_frame(std::string_view channel, const ConverterContext& contex
 
 /// Velocities of nav_msgs/Odometry are in the axes of the moving frame, those of pose_t in the world frame.
 bool write_pose(const shoal::pose_t& message, std::string_view channel, ConverterContext& context, CdrWriter& out) {
+  const double* q = message.orientation;
+  Eigen::Quaterniond turn(q[0], q[1], q[2], q[3]);
+  // Programs round, and some leave zeros, which are no orientation.
+  if (!std::isfinite(turn.norm()) || turn.norm() < 1e-6) return false;
+  turn.normalize();
+  const double unit[4] = {turn.w(), turn.x(), turn.y(), turn.z()};
   put_header(out, message.utime, world_frame);
   out.put(std::string_view(posed_frame(channel, context)));
   put_numbers(out, message.pos);
-  put_quaternion(out, message.orientation);
+  put_quaternion(out, unit);
   put_unknown_6x6(out);
-  const double* q = message.orientation;
-  const Eigen::Quaterniond to_body = Eigen::Quaterniond(q[0], q[1], q[2], q[3]).conjugate();
+  const Eigen::Quaterniond to_body = turn.conjugate();
   const Eigen::Vector3d v = to_body * Eigen::Vector3d(message.vel);
   const Eigen::Vector3d w = to_body * Eigen::Vector3d(message.rotation_rate);
   put_numbers(out, {v.x(), v.y(), v.z(), w.x(), w.y(), w.z()});

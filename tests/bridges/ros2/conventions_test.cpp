@@ -108,10 +108,10 @@ TEST(RosConventions, EveryDeviceHasAFrameInItsVehicleOrInAMovingBody) {
           "field_of_view": {"kind": "frustum", "range_m": 100}},
          {"name": "altimeter", "body": 3, "pose": [0, 0, 0, 1, 0, 0, 0], "channels": ["auv1.altimeter"],
           "field_of_view": {"kind": "cone", "axis": [0, 0, -1], "half_angle_rad": 0.1, "range_m": 50}},
-         {"name": "odom", "type": "odometry", "body": 3, "channels": ["auv1.odom"]},
+         {"name": "odom", "body": 3, "channels": ["auv1.odom"], "origin": [0, 0, 0, 1, 0, 0, 0]},
          {"name": "lost", "body": 9, "channels": []}, 7)");
   const auto frames = frames_of(converted(shoal::sim_scene_t{}, "/tf_static", "sim.scene", &context));
-  EXPECT_EQ(frames.size(), 7u);  // odometry is of the vehicle, and nothing is known of the body of `lost`
+  EXPECT_EQ(frames.size(), 8u);  // odometry is of the vehicle, and nothing is known of the body of `lost`
   // The vehicle frame is 1 m below that of its first body.
   EXPECT_THAT(frames.at("auv1 > auv1/lidar"), near_to({0.5, 0, 1, 0, 0, 1, 0}));
   EXPECT_THAT(frames.at("auv1/body/arm > auv1/gripper"), near_to({1, 0, 0, 0, 0, 0, 1}));
@@ -133,17 +133,15 @@ TEST(RosConventions, WheelOdometryIsThePoseOfTheVehicleInAFrameWhereItStarted) {
   for (const double value : {3.0, 4.0, 0.0, 0.0, 0.0, 1.0}) EXPECT_EQ(in->number<double>(), value);
   in->skip<double>(1 + 36);
   for (const double value : {0.5, 0.0, 0.0, 0.0, 0.0, 0.25}) EXPECT_EQ(in->number<double>(), value);
-  // sim.info tells where that is, once for each vehicle that has odometry.
-  shoal::sim_info_t info{};
-  info.resolved_config =
-      "vehicles:\n- {name: a, position_m: [1, 2, 0], rpy_deg: [0, 0, 180], model: {devices: [{type: odometry}]}}\n"
-      "- {name: b, model: {devices: [{type: gps}]}}\n"
-      "- {name: rover, count: 2, model: {devices: [{type: odometry}]}}\n";  // rover1 and rover2, no rover
-  const auto frames = frames_of(converted(info, "/tf_static", "sim.info", &context));
+  // The scene tells where that is, also for vehicles by `count` and those that came later.
+  context = knowing(
+      R"({"name": "odometry", "type": "odometry", "body": 3, "channels": ["auv1.odometry"],
+          "origin": [1, 2, 0, 0, 0, 0, 1]})");
+  const auto frames = frames_of(converted(shoal::sim_scene_t{}, "/tf_static", "sim.scene", &context));
   ASSERT_EQ(frames.size(), 1u);
-  EXPECT_THAT(frames.at("world > a/odom"), near_to({1, 2, 0, 0, 0, 1, 0}));
-  info.resolved_config = "vehicles: [ {";
-  EXPECT_FALSE(converted(info, "/tf_static", "sim.info", &context));
+  EXPECT_THAT(frames.at("world > auv1/odom"), near_to({1, 2, 0, 0, 0, 1, 0}));
+  // They come again with each sim.info.
+  EXPECT_EQ(frames_of(converted(shoal::sim_info_t{}, "/tf_static", "sim.info", &context)), frames);
 }
 
 TEST(RosConventions, AnEstimateOfAClientIsThePoseOfItsVehicle) {
@@ -167,6 +165,23 @@ TEST(RosConventions, OnlyADeviceOrAnEstimateTellsThePoseOfAVehicle) {
     auto in = converted(pose, "odometry", channel, &context);
     expect_header(*in, "world");
     EXPECT_EQ(in->text(), frame);
+  }
+}
+
+TEST(RosConventions, AnOrientationHasTheLengthOneOrIsNone) {
+  // Heading north at 1 m/s, with a quaternion of the length 2 sqrt(2).
+  shoal::pose_t pose{1'500'000, {0, 0, 0}, {0, 1, 0}, {2, 0, 0, 2}, {0, 0, 0}, {0, 0, 0}};
+  auto in = converted(pose, "odometry", "auv1.estimate");
+  expect_header(*in, "world");
+  in->text();
+  in->skip<double>(3);
+  const double half = std::sqrt(0.5);
+  for (const double value : {0.0, 0.0, half, half}) EXPECT_NEAR(in->number<double>(), value, 1e-12);
+  in->skip<double>(36);
+  for (const double value : {1.0, 0.0, 0.0}) EXPECT_NEAR(in->number<double>(), value, 1e-12);
+  for (const double none : {0.0, std::numeric_limits<double>::quiet_NaN()}) {
+    for (double& each : pose.orientation) each = none;
+    EXPECT_FALSE(converted(pose, "odometry", "auv1.estimate")) << none;
   }
 }
 
