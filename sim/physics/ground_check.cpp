@@ -146,6 +146,14 @@ void PhysicsWorld::Impl::plan_leaps(const Group& group) {
   }
 }
 
+/// Forgets which bodies have moved too far: a restored world may come to it again.
+void PhysicsWorld::Impl::plan_leaps_anew() {
+  may_leap.clear();
+  leaps.clear();
+  for (const Group& group : groups)
+    if (group.in_use) plan_leaps(group);
+}
+
 void PhysicsWorld::Impl::note_may_leap(const std::vector<int>& fast) {
   if (fast.empty()) return;
   const std::lock_guard lock(left_mutex);

@@ -62,6 +62,7 @@ void PhysicsWorld::visit_state(StateArchive& archive) {
     set_gravity(was_set ? gravity : impl_->config.gravity_mps2);
     impl_->gravity_was_set = was_set;
     ++impl_->moves.moving;
+    impl_->plan_leaps_anew();
   }
   archive.unhashed(impl_->contact_reports, impl_->counts, impl_->quick_steps);
   const auto known = [&](int part) { return part >= 0 && part < static_cast<int>(impl_->parts.size()); };

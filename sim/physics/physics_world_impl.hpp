@@ -129,6 +129,7 @@ struct PhysicsWorld::Impl {
   void note_left_boxes(const std::vector<int>& left);
   // ground_check.cpp
   void plan_leaps(const Group& group);
+  void plan_leaps_anew();
   void note_may_leap(const std::vector<int>& fast);
   void find_leaps();
   // shard_step.cpp

@@ -40,11 +40,6 @@ std::string rounded(double value, double digits) {
   return number_text(std::round(value * digits) / digits);
 }
 
-bool swims(const VehicleConfig& vehicle) {
-  return std::any_of(vehicle.bodies.begin(), vehicle.bodies.end(),
-                     [](const BodyConfig& body) { return body.has_coefficients(); });
-}
-
 std::vector<Starter> starters_of(const World& world, const std::map<std::string, SourcePlace>& places) {
   std::vector<Starter> starters;
   for (const auto& [name, object] : world.objects())
@@ -53,7 +48,7 @@ std::vector<Starter> starters_of(const World& world, const std::map<std::string,
   for (const auto& vehicle : world.vehicles()) {
     const auto place = places.find(vehicle->name());
     starters.push_back({"vehicle", vehicle->name(), place == places.end() ? SourcePlace{} : place->second,
-                        vehicle->group(), vehicle->base().X_WB().translation(), swims(vehicle->config())});
+                        vehicle->group(), vehicle->base().X_WB().translation(), vehicle->config().has_coefficients()});
   }
   return starters;
 }

@@ -190,9 +190,7 @@ void warn_of_missing_water(const WorldConfig& world, Warnings& warnings) {
   if (world.medium.water) return;
   std::vector<const VehicleInstance*> dry;
   for (const VehicleInstance& vehicle : world.vehicles)
-    if (std::any_of(vehicle.config->bodies.begin(), vehicle.config->bodies.end(),
-                    [](const BodyConfig& body) { return body.has_coefficients(); }))
-      dry.push_back(&vehicle);
+    if (vehicle.config->has_coefficients()) dry.push_back(&vehicle);
   if (dry.empty()) return;
   const std::string more = dry.size() == 1 ? "" : fmt::format(" (and {} more)", dry.size() - 1);
   warnings.warn(dry.front()->place, "vehicle '" + dry.front()->name + "'" + more,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
@@ -38,6 +39,10 @@ struct VehicleConfig {
   void read(ParamReader& in);
   /// Declares its bodies and parts, for keys that refer to them.
   void declare_bodies(ParamReader& in) const;
+  /// Returns whether a body has hydrodynamic coefficients, as that of a craft.
+  bool has_coefficients() const {
+    return std::any_of(bodies.begin(), bodies.end(), [](const BodyConfig& body) { return body.has_coefficients(); });
+  }
 };
 
 }  // namespace sim

@@ -14,29 +14,6 @@ using namespace small_worlds;
 constexpr double damped_step_s = 0.01;
 constexpr double cube_kg = 1, cube_kgm2 = cube_kg * 0.2 * 0.2 / 6;  // of the cube
 
-/// A fixed or free base of 1000 kg and a cube of 1 kg, 1 m along x, without gravity.
-struct DampedPair {
-  explicit DampedPair(const JointConfig& config, Motion motion = Motion::fixed) {
-    PhysicsConfig physics;
-    physics.step_s = damped_step_s;
-    physics.gravity_mps2 = 0;
-    world = make_world(physics);
-    const int group = world->add_group("rig");
-    base = &world->add_body(group, body("base", {box({0.2, 0.2, 0.2}, 1000)}), Pose::Identity(), motion);
-    arm = &world->add_body(group, body("arm", {box({0.2, 0.2, 0.2}, cube_kg)}, {1, 0, 0}), Pose::Identity());
-    joint = &world->add_joint(group, config, *base, arm, Pose::Identity());
-    world->close_group(group);
-  }
-  void run(int steps) {
-    for (int i = 0; i < steps; ++i) world->step(step++);
-  }
-  std::unique_ptr<PhysicsWorld> world;
-  sim::Body* base;
-  sim::Body* arm;
-  sim::Joint* joint;
-  int step = 0;
-};
-
 JointConfig damped(JointType type, const Vector3d& axis, double damping) {
   JointConfig config = joint("j", type, {1, 0, 0}, axis);
   config.axis1.damping = damping;
@@ -50,14 +27,14 @@ double damped_speed(double damping, double inertia, int steps) {
 
 TEST(JointDamping, SlowsEachKindOfJointByItsRate) {
   for (const double damping : {0.002, 0.2, 1000.0}) {
-    DampedPair hinge(damped(JointType::hinge, Vector3d::UnitY(), damping));
+    CubePair hinge(damped(JointType::hinge, Vector3d::UnitY(), damping), true);
     hinge.joint->add_effort(cube_kgm2 / damped_step_s);
     hinge.run(1);
     EXPECT_NEAR(hinge.joint->velocity(), damped_speed(damping, cube_kgm2, 1), 1e-6);
     hinge.run(9);
     EXPECT_NEAR(hinge.joint->velocity(), damped_speed(damping, cube_kgm2, 10), 1e-6);
 
-    DampedPair slider(damped(JointType::slider, Vector3d::UnitZ(), damping));
+    CubePair slider(damped(JointType::slider, Vector3d::UnitZ(), damping), true);
     slider.joint->add_effort(cube_kg / damped_step_s);
     slider.run(10);
     EXPECT_NEAR(slider.joint->velocity(), damped_speed(damping, cube_kg, 10), 1e-6);
@@ -65,7 +42,7 @@ TEST(JointDamping, SlowsEachKindOfJointByItsRate) {
     JointConfig cardan = damped(JointType::universal, Vector3d::UnitY(), 0);
     cardan.axis2.axis = Vector3d::UnitZ();
     cardan.axis2.damping = damping;
-    DampedPair universal(cardan);
+    CubePair universal(cardan, true);
     universal.joint->add_effort(cube_kgm2 / damped_step_s, 1);
     universal.run(10);
     EXPECT_NEAR(universal.joint->velocity(1), damped_speed(damping, cube_kgm2, 10), 1e-6);
@@ -73,7 +50,7 @@ TEST(JointDamping, SlowsEachKindOfJointByItsRate) {
 
     JointConfig ball_config = damped(JointType::ball, Vector3d::UnitZ(), damping);
     ball_config.motor = true;
-    DampedPair ball(ball_config);
+    CubePair ball(ball_config, true);
     ball.joint->add_effort(cube_kgm2 / damped_step_s, 2);
     ball.run(10);
     EXPECT_NEAR(ball.joint->velocity(2), damped_speed(damping, cube_kgm2, 10), 1e-6);
@@ -82,7 +59,7 @@ TEST(JointDamping, SlowsEachKindOfJointByItsRate) {
 
 TEST(JointDamping, OfASliderBesideTheCentresKeepsAllMomentum) {
   // The bodies are 1 m apart across the slider: a pair of forces at their centres would turn them.
-  DampedPair rig(damped(JointType::slider, Vector3d::UnitY(), 2), Motion::free);
+  CubePair rig(damped(JointType::slider, Vector3d::UnitY(), 2), false);
   const auto spin = [&] {
     const auto of_cube = [](const sim::Body& cube, double mass) {
       return Vector3d(mass * cube.X_WB().translation().cross(cube.v_WB_W()) + mass * 0.04 / 6 * cube.w_WB_W());
@@ -100,7 +77,7 @@ TEST(JointDamping, OfASliderBesideTheCentresKeepsAllMomentum) {
 }
 
 TEST(JointDamping, IsNotPartOfTheEffortOfTheMotorThatWorksAgainstIt) {
-  DampedPair rig(damped(JointType::hinge, Vector3d::UnitY(), 0.5));
+  CubePair rig(damped(JointType::hinge, Vector3d::UnitY(), 0.5), true);
   rig.joint->measure_load();
   rig.joint->set_motor(2, 10);
   rig.run(10);
@@ -111,6 +88,19 @@ TEST(JointDamping, IsNotPartOfTheEffortOfTheMotorThatWorksAgainstIt) {
   rig.joint->set_motor(2, 0.3);
   rig.run(100);
   EXPECT_NEAR(rig.joint->velocity(), 0.3 / 0.5, 1e-6);
+}
+
+TEST(JointDamping, IsPartOfTheForceOfASlider) {
+  CubePair rig(damped(JointType::slider, Vector3d::UnitZ(), 0.5), true);
+  rig.joint->measure_load();
+  rig.joint->add_effort(cube_kg / damped_step_s);
+  rig.run(1);
+  // The effort gives the cube 1 m/s in a step, of which damping takes 0.5 N (m/s)^-1 times the speed at its end.
+  const double speed_mps = damped_speed(0.5, cube_kg, 1);
+  EXPECT_NEAR(rig.joint->velocity(), speed_mps, 1e-6);
+  rig.run(1);  // without effort: damping alone
+  EXPECT_NEAR(std::abs(rig.joint->force_W_N().z()), 0.5 * damped_speed(0.5, cube_kg, 2), 1e-6);
+  EXPECT_NEAR(rig.joint->force_W_N().head<2>().norm(), 0, 1e-6);
 }
 
 TEST(JointDamping, CalmsAPendulum) {

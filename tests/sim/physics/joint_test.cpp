@@ -19,34 +19,6 @@ using namespace small_worlds;
 using std::numbers::pi;
 using test::g;
 
-PhysicsConfig weightless(double step_s = 0.01) {
-  PhysicsConfig config;
-  config.step_s = step_s;
-  config.gravity_mps2 = 0;
-  return config;
-}
-
-/// A group whose body `base` is heavy and whose body `arm` is light, both cubes, the arm 1 m along x.
-struct Pair {
-  explicit Pair(const JointConfig& config, bool to_world = false, const PhysicsConfig& physics = weightless())
-      : world(make_world(physics)) {
-    const int group = world->add_group("rig");
-    base = &world->add_body(group, body("base", {box({0.2, 0.2, 0.2}, 1000)}), Pose::Identity(),
-                            to_world ? Motion::fixed : Motion::free);
-    arm = &world->add_body(group, body("arm", {box({0.2, 0.2, 0.2}, 1)}, {1, 0, 0}), Pose::Identity());
-    joint = &world->add_joint(group, config, *base, arm, Pose::Identity());
-    world->close_group(group);
-  }
-  void run(int steps) {
-    for (int i = 0; i < steps; ++i) world->step(step++);
-  }
-  std::unique_ptr<PhysicsWorld> world;
-  sim::Body* base;
-  sim::Body* arm;
-  sim::Joint* joint;
-  int step = 0;
-};
-
 /// Time between two passages of the lowest point in the same direction.
 double pendulum_period(JointType type, double length_m, double amplitude_deg, double step_s) {
   PhysicsConfig config;
@@ -85,7 +57,7 @@ TEST(Pendulum, LongPendulumHasTheClosedFormPeriod) {
 }
 
 TEST(HingeJoint, MotorTurnsTheSecondBodyRightHandedAboutTheAxis) {
-  Pair rig(joint("elbow", JointType::hinge, {1, 0, 0}, Vector3d::UnitY()));
+  CubePair rig(joint("elbow", JointType::hinge, {1, 0, 0}, Vector3d::UnitY()));
   EXPECT_EQ(rig.joint->axes(), 1);
   rig.joint->set_motor(2, 1000);
   rig.run(50);
@@ -95,7 +67,7 @@ TEST(HingeJoint, MotorTurnsTheSecondBodyRightHandedAboutTheAxis) {
 }
 
 TEST(HingeJoint, ToAFixedBodyCountsTheSameWay) {
-  Pair rig(joint("elbow", JointType::hinge, {1, 0, 0}, Vector3d::UnitY()), true);
+  CubePair rig(joint("elbow", JointType::hinge, {1, 0, 0}, Vector3d::UnitY()), true);
   rig.joint->set_motor(2, 1000);
   rig.run(50);
   EXPECT_NEAR(rig.joint->position(), 1, 1e-6);
@@ -116,7 +88,7 @@ TEST(HingeJoint, ToTheWorldCountsTheMovingBody) {
 }
 
 TEST(HingeJoint, PositionContinuesBeyondPi) {
-  Pair rig(joint("wheel", JointType::hinge, {1, 0, 0}, Vector3d::UnitY()));
+  CubePair rig(joint("wheel", JointType::hinge, {1, 0, 0}, Vector3d::UnitY()));
   rig.joint->set_motor(10, 1000);
   rig.run(1000);
   // A motor without limit of force runs at its speed from the first step.  The finite rotation is exact.
@@ -127,14 +99,14 @@ TEST(HingeJoint, PositionContinuesBeyondPi) {
 }
 
 TEST(HingeJoint, PositionFollowsAWheelThatTurnsMoreThanHalfATurnInAStep) {
-  Pair rig(joint("wheel", JointType::hinge, {1, 0, 0}, Vector3d::UnitY()));
+  CubePair rig(joint("wheel", JointType::hinge, {1, 0, 0}, Vector3d::UnitY()));
   rig.joint->set_motor(500, 1e6);  // 5 rad in a step
   rig.run(100);
   EXPECT_NEAR(rig.joint->position(), 500, 1e-3);
 }
 
 TEST(HingeJoint, MotorIsLimitedByItsForce) {
-  Pair rig(joint("wheel", JointType::hinge, {1, 0, 0}, Vector3d::UnitY()), true);
+  CubePair rig(joint("wheel", JointType::hinge, {1, 0, 0}, Vector3d::UnitY()), true);
   rig.joint->set_motor(1000, 0.1);
   rig.run(10);
   const double inertia = 0.2 * 0.2 / 6;
@@ -145,7 +117,7 @@ TEST(HingeJoint, StopsHold) {
   JointConfig config = joint("elbow", JointType::hinge, {1, 0, 0}, Vector3d::UnitY());
   config.axis1.low_stop = -0.25;
   config.axis1.high_stop = 0.5;
-  Pair rig(config);
+  CubePair rig(config);
   rig.joint->set_motor(1, 10);
   rig.run(500);
   EXPECT_NEAR(rig.joint->position(), 0.5, 1e-3);
@@ -155,7 +127,7 @@ TEST(HingeJoint, StopsHold) {
 }
 
 TEST(HingeJoint, EffortIsATorqueOnTheSecondBody) {
-  Pair rig(joint("wheel", JointType::hinge, {1, 0, 0}, Vector3d::UnitY()), true);
+  CubePair rig(joint("wheel", JointType::hinge, {1, 0, 0}, Vector3d::UnitY()), true);
   rig.joint->add_effort(0.5);
   rig.run(1);
   EXPECT_NEAR(rig.joint->velocity(), 0.5 / (0.04 / 6) * 0.01, 1e-7);
@@ -165,7 +137,7 @@ TEST(HingeJoint, EffortIsATorqueOnTheSecondBody) {
 
 TEST(SliderJoint, MotorMovesTheSecondBodyAlongTheAxis) {
   for (const bool to_world : {false, true}) {
-    Pair rig(joint("rail", JointType::slider, {0, 0, 0}, Vector3d::UnitX()), to_world);
+    CubePair rig(joint("rail", JointType::slider, {0, 0, 0}, Vector3d::UnitX()), to_world);
     rig.joint->set_motor(0.5, 1e4);
     rig.run(100);
     EXPECT_NEAR(rig.joint->position(), 0.5, 1e-5);
@@ -178,7 +150,7 @@ TEST(SliderJoint, StopsHold) {
   JointConfig config = joint("rail", JointType::slider, {0, 0, 0}, Vector3d::UnitX());
   config.axis1.low_stop = -0.1;
   config.axis1.high_stop = 0.2;
-  Pair rig(config);
+  CubePair rig(config);
   rig.joint->set_motor(1, 10);
   rig.run(300);
   EXPECT_NEAR(rig.joint->position(), 0.2, 1e-3);
@@ -188,14 +160,14 @@ TEST(SliderJoint, StopsHold) {
 }
 
 TEST(SliderJoint, EffortIsAForce) {
-  Pair rig(joint("rail", JointType::slider, {0, 0, 0}, Vector3d::UnitX()), true);
+  CubePair rig(joint("rail", JointType::slider, {0, 0, 0}, Vector3d::UnitX()), true);
   rig.joint->add_effort(3);
   rig.run(1);
   EXPECT_NEAR(rig.joint->velocity(), 3.0 / 1 * 0.01, 1e-7);
 }
 
 TEST(FixedJoint, CarriesTheSecondBody) {
-  Pair rig(joint("weld", JointType::fixed, {0, 0, 0}));
+  CubePair rig(joint("weld", JointType::fixed, {0, 0, 0}));
   EXPECT_EQ(rig.joint->axes(), 0);
   rig.base->set_velocity_W({0, 0, 1}, {0, 0, 0});
   rig.arm->set_velocity_W({0, 0, 1}, {0, 0, 0});
@@ -206,7 +178,7 @@ TEST(FixedJoint, CarriesTheSecondBody) {
 }
 
 TEST(BallJoint, KeepsThePointTogetherAndLeavesTheRotationFree) {
-  Pair rig(joint("shoulder", JointType::ball, {0.9, 0, 0}));
+  CubePair rig(joint("shoulder", JointType::ball, {0.9, 0, 0}));
   EXPECT_EQ(rig.joint->axes(), 0);
   rig.arm->add_torque_W({0.1, 0.2, 0.3});
   rig.run(200);
@@ -219,7 +191,7 @@ TEST(BallJoint, ItsMotorTurnsTheSecondBodyAboutTheAxesOfTheFirst) {
   for (const bool to_fixed : {false, true}) {
     JointConfig config = joint("shoulder", JointType::ball, {1, 0, 0});
     config.motor = true;
-    Pair rig(config, to_fixed);
+    CubePair rig(config, to_fixed);
     ASSERT_EQ(rig.joint->axes(), 3);
     for (int axis = 0; axis < 3; ++axis) rig.joint->set_motor(axis == 1 ? 0.5 : 0, 1000, axis);
     rig.run(100);
@@ -286,7 +258,7 @@ TEST(RestoredJoint, StandsAtNoStopThatItGotLater) {
   for (const JointType type :
        {JointType::hinge, JointType::slider, JointType::universal, JointType::hinge2, JointType::ball}) {
     SCOPED_TRACE(std::string(word_of(sim::joint_type_words, type)));
-    Pair rig(joint_of_type(type));
+    CubePair rig(joint_of_type(type));
     const sim::Bytes before = saved(*rig.joint);
     rig.joint->set_stops(-0.1, 0.2);
     rig.joint->set_motor(0.5, 10);
@@ -304,13 +276,13 @@ TEST(RestoredJoint, HasTheStopsOfItsConfigurationUnlessTheyWereSet) {
   JointConfig config = joint_of_type(JointType::hinge);
   config.axis1.low_stop = -0.1;
   config.axis1.high_stop = 0.2;
-  Pair original(config);
+  CubePair original(config);
   const sim::Bytes as_configured = saved(*original.joint);
   original.joint->set_stops(-0.1, 0.25);
   const sim::Bytes as_set = saved(*original.joint);
   config.axis1.high_stop = 0.3;
   for (const bool set : {false, true}) {
-    Pair other(config);
+    CubePair other(config);
     restore(*other.joint, set ? as_set : as_configured);
     other.joint->set_motor(0.5, 10);
     other.run(100);
@@ -319,7 +291,7 @@ TEST(RestoredJoint, HasTheStopsOfItsConfigurationUnlessTheyWereSet) {
 }
 
 TEST(RestoredJoint, MeasuresNoLoadWhereNoneWasMeasured) {
-  Pair rig(joint_of_type(JointType::hinge));
+  CubePair rig(joint_of_type(JointType::hinge));
   const sim::Bytes before = saved(*rig.joint);
   rig.joint->measure_load();
   rig.joint->set_motor(0.5, 10);
@@ -338,7 +310,7 @@ TEST(RestoredJoint, MeasuresNoLoadWhereNoneWasMeasured) {
 }
 
 TEST(RestoredJoint, RefusesNumbersThatAreNotFinite) {
-  Pair rig(joint_of_type(JointType::hinge));
+  CubePair rig(joint_of_type(JointType::hinge));
   const sim::Bytes good = saved(*rig.joint);
   const double nan_ = std::nan("");
   sim::Bytes bad = good;
@@ -356,7 +328,7 @@ TEST(JointAtItsStop, IsHeldAgainstALoadThatItsMotorCannotLift) {
       SCOPED_TRACE(std::string(word_of(sim::joint_type_words, type)));
       JointConfig config = joint_of_type(type);
       config.axis1.low_stop = 0;
-      Pair rig(config, to_fixed);
+      CubePair rig(config, to_fixed);
       const auto run = [&](double max_force, int steps) {
         rig.joint->set_motor(0.5, max_force);
         for (int i = 0; i < steps; ++i) {
@@ -429,7 +401,7 @@ TEST(JointAtItsStop, TheFudgeFactorIsThePartOfTheForceWithWhichTheMotorLeavesIt)
   JointConfig config = joint_of_type(JointType::hinge);
   config.axis1.low_stop = 0;
   config.axis1.fudge_factor = 0.25;
-  Pair rig(config, true);
+  CubePair rig(config, true);
   rig.joint->set_motor(1000, 0.4);
   rig.run(1);
   EXPECT_NEAR(rig.joint->velocity(), 0.25 * 0.4 / (0.04 / 6) * 0.01, 1e-6);  // torque / inertia * time
@@ -438,7 +410,7 @@ TEST(JointAtItsStop, TheFudgeFactorIsThePartOfTheForceWithWhichTheMotorLeavesIt)
 TEST(JointAtItsStop, EqualStopsAreAConstraintThatTheMotorDoesNotMove) {
   JointConfig config = joint_of_type(JointType::hinge);
   config.axis1.low_stop = config.axis1.high_stop = 0;
-  Pair rig(config, true);
+  CubePair rig(config, true);
   for (const double velocity : {1.0, -1.0}) {
     rig.joint->set_motor(velocity, 100);
     rig.run(100);
@@ -448,7 +420,7 @@ TEST(JointAtItsStop, EqualStopsAreAConstraintThatTheMotorDoesNotMove) {
 
 TEST(BallJoint, PositionContinuesBeyondHalfATurn) {
   JointConfig config = joint_of_type(JointType::ball);
-  Pair rig(config);
+  CubePair rig(config);
   for (const double rate : {2.0, -2.0}) {
     for (int axis = 0; axis < 3; ++axis) rig.joint->set_motor(axis == 1 ? rate : 0, 1000, axis);
     rig.run(200);
@@ -463,7 +435,7 @@ TEST(BallJoint, ErpIsTheShareOfItsGapThatAStepCloses) {
   const auto gap = [](double erp) {
     JointConfig config = joint("tether", JointType::ball, {0, 0, 0});
     config.axis1.erp = erp;
-    Pair rig(config, true);
+    CubePair rig(config, true);
     rig.arm->set_velocity_W({0, 2, 0}, {0, 0, 2});
     rig.run(200);
     return (rig.arm->X_WB() * Vector3d(-1, 0, 0)).norm();
@@ -476,7 +448,7 @@ TEST(UniversalJoint, EachAxisHasItsMotor) {
   JointConfig config = joint("cardan", JointType::universal, {1, 0, 0}, Vector3d::UnitY());
   config.axis2.axis = Vector3d::UnitZ();
   for (const int axis : {0, 1}) {
-    Pair rig(config);
+    CubePair rig(config);
     EXPECT_EQ(rig.joint->axes(), 2);
     rig.joint->set_motor(0.5, 1000, axis);
     rig.joint->set_motor(0, 1000, 1 - axis);
@@ -493,7 +465,7 @@ TEST(Hinge2Joint, SteersAndRolls) {
   config.axis2.axis = Vector3d::UnitY();
   config.axis1.low_stop = -0.6;
   config.axis1.high_stop = 0.4;
-  Pair rig(config);
+  CubePair rig(config);
   EXPECT_EQ(rig.joint->axes(), 2);
   rig.joint->set_motor(0, 1000, 1);
   rig.joint->set_motor(1, 10, 0);
@@ -504,7 +476,7 @@ TEST(Hinge2Joint, SteersAndRolls) {
   rig.run(300);
   EXPECT_NEAR(rig.joint->position(0), -0.6, 0.01);
 
-  Pair straight(config);
+  CubePair straight(config);
   straight.joint->set_motor(0, 1000, 0);
   straight.joint->set_motor(5, 1000, 1);
   straight.run(200);

@@ -110,6 +110,31 @@ inline PhysicsConfig with_step(double step_s, double gravity_mps2 = test::g) {
   return config;
 }
 
+inline PhysicsConfig weightless(double step_s = 0.01) {
+  return with_step(step_s, 0);
+}
+
+/// A group whose body `base` is heavy and whose body `arm` is light, both cubes, the arm 1 m along x.
+struct CubePair {
+  explicit CubePair(const JointConfig& config, bool to_world = false, const PhysicsConfig& physics = weightless())
+      : world(make_world(physics)) {
+    const int group = world->add_group("rig");
+    base = &world->add_body(group, body("base", {box({0.2, 0.2, 0.2}, 1000)}), Pose::Identity(),
+                            to_world ? Motion::fixed : Motion::free);
+    arm = &world->add_body(group, body("arm", {box({0.2, 0.2, 0.2}, 1)}, {1, 0, 0}), Pose::Identity());
+    joint = &world->add_joint(group, config, *base, arm, Pose::Identity());
+    world->close_group(group);
+  }
+  void run(int steps) {
+    for (int i = 0; i < steps; ++i) world->step(step++);
+  }
+  std::unique_ptr<PhysicsWorld> world;
+  sim::Body* base;
+  sim::Body* arm;
+  sim::Joint* joint;
+  int step = 0;
+};
+
 inline void run_for(PhysicsWorld& world, double time_s) {
   const auto steps = std::lround(time_s / world.step_s());
   for (int i = 0; i < steps; ++i) world.step(i);

@@ -93,14 +93,22 @@ struct Flight {
   double end_m;
 };
 
+struct FlyingBall : test::TestWorld {
+  FlyingBall(double speed_mps, double step_s, double start_m)
+      : TestWorld("shoal: 1\nphysics: {step_s: " + std::to_string(step_s) +
+                  ", gravity_mps2: 0}\nobjects:\n  - {name: plate, fixed: true, parts: [{shape: box, size_m: "
+                  "[0.02, 1, 1]}]}\n  - {name: ball, position_m: [" +
+                  std::to_string(start_m) + ", 0, 0], parts: [{shape: sphere, radius_m: 0.02, mass_kg: 0.1}]}\n"),
+        ball(*world.find_object("ball")->body) {
+    ball.set_velocity_W({speed_mps, 0, 0}, sim::Vector3d::Zero());
+  }
+  sim::Body& ball;
+};
+
 Flight flight(double speed_mps, double step_s, double start_m, double time_s) {
-  test::TestWorld test("shoal: 1\nphysics: {step_s: " + std::to_string(step_s) +
-                       ", gravity_mps2: 0}\nobjects:\n  - {name: plate, fixed: true, parts: [{shape: box, size_m: "
-                       "[0.02, 1, 1]}]}\n  - {name: ball, position_m: [" +
-                       std::to_string(start_m) + ", 0, 0], parts: [{shape: sphere, radius_m: 0.02, mass_kg: 0.1}]}\n");
-  test.world.find_object("ball")->body->set_velocity_W({speed_mps, 0, 0}, sim::Vector3d::Zero());
+  FlyingBall test(speed_mps, step_s, start_m);
   test.run_for(time_s);
-  return {ended(test), test.world.find_object("ball")->body->p_WB().x()};
+  return {ended(test), test.ball.p_WB().x()};
 }
 
 std::vector<std::string> end_of_flight(double speed_mps, double step_s, double start_m = -0.5) {
@@ -127,6 +135,18 @@ TEST(EndCheck, NamesABodyThatMovesFurtherThanItsSizeInAStep) {
 
 TEST(EndCheck, IsSilentAboutAFastBodyThatIsFarFromEverything) {
   EXPECT_THAT(end_of_flight(-10, 0.01, -1000), IsEmpty());
+}
+
+TEST(EndCheck, NamesItAgainAfterARewindToBefore) {
+  FlyingBall test(10, 0.01, -0.5);
+  const sim::Bytes start = test.world.state().snapshot();
+  test.run_for(0.04);
+  const std::vector<std::string> first = ended(test);
+  ASSERT_EQ(first.size(), 1u);
+  test.world.state().restore(start);
+  EXPECT_THAT(ended(test), IsEmpty());
+  test.run_for(0.04);
+  EXPECT_EQ(ended(test), first);
 }
 
 /// The size counts along the motion: a rod of 1 m may go 10 cm endwise.

@@ -30,11 +30,6 @@ bool has_wheels(const sim::VehicleConfig& vehicle) {
   });
 }
 
-bool has_coefficients(const sim::VehicleConfig& vehicle) {
-  return std::any_of(vehicle.bodies.begin(), vehicle.bodies.end(),
-                     [](const sim::BodyConfig& body) { return body.has_coefficients(); });
-}
-
 /// Returns whether a vehicle is in the water, at least in part.
 bool is_in_water(const sim::World& world, const sim::Vehicle& vehicle) {
   if (world.medium().in_water(vehicle.base().p_WB())) return true;
@@ -70,7 +65,7 @@ void FirstContacts::choose_groups() {
     if (fresh) {
       kind->second.drives = has_wheels(vehicle->config());
       const bool is_craft = world_.medium().has_water() && !kind->second.drives;
-      kind->second.swims = is_craft && has_coefficients(vehicle->config());
+      kind->second.swims = is_craft && vehicle->config().has_coefficients();
       kind->second.may_float = is_craft && !kind->second.swims && vehicle->config().joints.empty();
     }
     const std::int64_t who = 2 * static_cast<std::int64_t>(vehicle->number());
