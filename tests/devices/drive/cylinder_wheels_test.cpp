@@ -164,6 +164,21 @@ TEST_P(CylinderWheels, TurnOnABoxAndOnTerrainToo) {
   }
 }
 
+/// They rest up to half a millimetre deep, and roll on their radius all the same.
+TEST_P(CylinderWheels, SpheresRollAsFarOnABoxAsOnAPlane) {
+  WheeledRobot robot = two_wheels("shape: sphere");
+  robot.radius_m = 0.01;
+  for (const char* ground : {"{shape: plane}", "{shape: box, size_m: [4, 4, 1], position_m: [0, 0, -0.5]}"}) {
+    robot.ground = ground;
+    test::TestWorld test(one_joint(robot.world(GetParam())));
+    test.send("r1.drive.cmd", test::twist(0.1, 0));
+    test.run_for(1);
+    const double start_m = test.world.find_vehicle("r1")->X_WV().translation().x();
+    test.run_for(4);
+    EXPECT_NEAR(test.world.find_vehicle("r1")->X_WV().translation().x() - start_m, 0.4, 0.003 * 0.4) << ground;
+  }
+}
+
 TEST_P(CylinderWheels, TurnOnSoftGroundToo) {
   WheeledRobot robot = two_wheels("shape: cylinder, length_m: 0.08");
   robot.contacts = ", {between: [any, any], soft_cfm: 1e-5}, {between: [slick, any], friction: 0, soft_cfm: 1e-5}";
