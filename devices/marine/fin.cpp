@@ -99,8 +99,11 @@ void Fin::lift_locally(const WaterFlow& flow, double angle_rad, double scale, do
 
 void Fin::lift_by_speed_of_body(const WaterFlow& flow, double angle_rad, double scale, double step_s) {
   const sim::Vector3d v_D = mount_.in_D(flow, flow.body.v_WB_W - flow.water_W);
-  const double square = v_D.x() * v_D.x() + v_D.y() * v_D.y();
-  const double upper = mount_.max_force_N(std::sqrt(square), step_s);
+  // As published for motion ahead.  Astern the flow comes from behind, and the force is reversed; it changes in
+  // proportion while the flow is more from the side than along.
+  const double ahead = v_D.x() == 0 ? 0 : std::clamp(v_D.x() / std::abs(v_D.y()), -1.0, 1.0);
+  const double square = (v_D.x() * v_D.x() + v_D.y() * v_D.y()) * ahead;
+  const double upper = mount_.max_force_N(std::sqrt(std::abs(square)), step_s);
   const double lift = std::clamp(0.5 * params_.density_kgpm3.value_or(flow.density_kgpm3) * square * params_.area_m2 *
                                      foil_.slope() * angle_rad * scale,
                                  -upper, upper);
@@ -110,7 +113,7 @@ void Fin::lift_by_speed_of_body(const WaterFlow& flow, double angle_rad, double 
 void Fin::act_as_published(const WaterFlow& flow, double angle_rad, double scale, double step_s) {
   const sim::BodyMotion& body = flow.body;
   const double u = body.R_WB.col(0).dot(body.v_WB_W - flow.water_W);
-  const double published = u * u * angle_rad * scale;
+  const double published = u * std::abs(u) * angle_rad * scale;  // published for motion ahead
   if (published == 0) return;
   const double upper = mount_.max_force_N(std::abs(u), step_s);
   const double factor = published * std::min(1.0, upper / (std::abs(published) * max_coefficient_));

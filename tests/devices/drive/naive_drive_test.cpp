@@ -66,6 +66,19 @@ TEST_F(NaiveDrive, TurnsAtTheRateOfItsRudderAndAsFastAsItMoves) {
   EXPECT_NEAR(test->world.vehicles()[0]->base().w_WB_W().z(), sim::degrees_to_radians(5), 1e-12);
 }
 
+TEST_F(NaiveDrive, ItsRudderTurnsTheOtherWayAsternAlsoOnTheSpot) {
+  for (const char* steerage : {"", ", steerage_speed_mps: 1"}) {
+    start(std::string(", max_speed_mps: 2, speed_time_constant_s: 0, turn_time_constant_s: 0") + steerage);
+    controls(1, 1, 0);
+    test->run_for(1);
+    EXPECT_GT(sim::yaw_of(pose().linear()), 0.1) << steerage;
+    start(std::string(", max_speed_mps: 2, speed_time_constant_s: 0, turn_time_constant_s: 0") + steerage);
+    controls(-1, 1, 0);
+    test->run_for(1);
+    EXPECT_LT(sim::yaw_of(pose().linear()), -0.1) << steerage;
+  }
+}
+
 TEST_F(NaiveDrive, HoldsHeadingAndDepth) {
   start(", max_pitch_deg: 30");
   helm(1.5, std::numbers::pi / 2, 25);

@@ -44,6 +44,27 @@ TEST(Fin, LiftsAndDragsAsAThinWing) {
   EXPECT_NEAR(F.z(), 0, rounding_N);
 }
 
+TEST(Fin, IsReversedAsternInEachKindOfFlow) {
+  // The flow that comes from behind pushes the fin to the other side, and drags it along.
+  for (const char* flow : {"flow: body", "flow: local"}) {
+    const std::string keys = std::string("area_m2: 0.02, lift_slope: 3, drag_coefficient: 0, ") + flow;
+    const sim::Vector3d ahead = force(keys, 0.1, {2, 0, 0}), astern = force(keys, 0.1, {-2, 0, 0});
+    EXPECT_GT(ahead.y(), 1) << flow;
+    EXPECT_LT(astern.y(), -1) << flow;
+    EXPECT_LT(ahead.x(), 0) << flow;
+    EXPECT_GT(astern.x(), 0) << flow;
+  }
+  const std::string published = "model: coefficients, coefficients: {Y: 5, N: -3}";
+  EXPECT_NEAR(force(published, 0.1, {2, 0, 0}).y(), 5 * 4 * 0.1, rounding_N);
+  EXPECT_NEAR(force(published, 0.1, {-2, 0, 0}).y(), -5 * 4 * 0.1, rounding_N);
+}
+
+TEST(Fin, OfTheSpeedOfTheBodyHasNoJumpWhereTheFlowIsFromTheSide) {
+  const std::string keys = "area_m2: 0.02, lift_slope: 3, flow: body";
+  EXPECT_NEAR(force(keys, 0.1, {0, 1, 0}).y(), 0, rounding_N);
+  EXPECT_NEAR(force(keys, 0.1, {0.001, 1, 0}).y(), -force(keys, 0.1, {-0.001, 1, 0}).y(), 1e-6);
+}
+
 TEST(Fin, ItsAngleToTheFlowAtItsOwnPlaceCounts) {
   const std::string keys = "area_m2: 0.02, lift_slope: 3, drag_coefficient: 0, position_m: [-1, 0, 0]";
   // Turned into the flow it does nothing: sideslip to port, and the same by the turning of the vehicle (stern to port).
