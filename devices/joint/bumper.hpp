@@ -12,6 +12,7 @@ namespace devices {
 class Bumper final : public sim::Sensor {
  public:
   static constexpr const char* meaning = "Contacts of parts of the vehicle: where, with whom and how hard.";
+  static constexpr const char* without_effect[] = {"position_m", "rpy_deg"};
   static constexpr double default_rate_hz = 0;
   static constexpr const char* fixed_keys[] = {"parts"};
   enum class When { changes, always };

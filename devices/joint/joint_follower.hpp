@@ -17,6 +17,7 @@ class JointFollower final : public sim::Actuator {
  public:
   static constexpr const char* meaning =
       "Linkage that keeps one axis of a joint at a multiple of another one's position.";
+  static constexpr const char* without_effect[] = {"position_m", "rpy_deg"};
   static constexpr const char* fixed_keys[] = {"joint", "axis", "follows", "follows_axis"};
   static constexpr bool always_on = true;
   struct Params {

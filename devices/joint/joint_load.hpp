@@ -12,6 +12,7 @@ namespace devices {
 class JointLoad final : public sim::Sensor {
  public:
   static constexpr const char* meaning = "Force and torque that go through a joint, about its anchor.";
+  static constexpr const char* without_effect[] = {"position_m"};
   static constexpr double default_rate_hz = 100;
   static constexpr const char* fixed_keys[] = {"joint"};
   enum class Frame { sensor, body, world };

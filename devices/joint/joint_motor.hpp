@@ -11,6 +11,7 @@ namespace devices {
 class JointMotor final : public sim::Actuator {
  public:
   static constexpr const char* meaning = "Motor on one hinge or slider, commanded by velocity.";
+  static constexpr const char* without_effect[] = {"position_m", "rpy_deg"};
   static constexpr bool acts_alone = true;
   static constexpr sim::SafeState safe_states[] = {sim::SafeState::stop, sim::SafeState::coast};
   static constexpr const char* fixed_keys[] = {"joint"};

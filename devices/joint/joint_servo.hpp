@@ -21,6 +21,7 @@ namespace devices {
 class JointServo final : public sim::Actuator {
  public:
   static constexpr const char* meaning = "Servo on one axis of a joint, commanded by position, velocity or effort.";
+  static constexpr const char* without_effect[] = {"position_m", "rpy_deg"};
   static constexpr sim::SafeState safe_states[] = {sim::SafeState::hold, sim::SafeState::coast, sim::SafeState::stop,
                                                    sim::SafeState::park};
   static constexpr const char* fixed_keys[] = {"joint", "axis", "alias"};

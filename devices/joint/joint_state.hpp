@@ -12,6 +12,7 @@ namespace devices {
 class JointState final : public sim::Sensor {
  public:
   static constexpr const char* meaning = "Positions, velocities and efforts of the vehicle's joints.";
+  static constexpr const char* without_effect[] = {"position_m", "rpy_deg"};
   static constexpr double default_rate_hz = 50;
   static constexpr const char* fixed_keys[] = {"joints", "effort"};
   struct Params {

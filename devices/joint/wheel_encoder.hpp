@@ -11,6 +11,7 @@ namespace devices {
 class WheelEncoder final : public sim::Sensor {
  public:
   static constexpr const char* meaning = "Ticks of wheels, counted from the turning of their joints.";
+  static constexpr const char* without_effect[] = {"position_m", "rpy_deg"};
   static constexpr double default_rate_hz = 50;
   static constexpr const char* fixed_keys[] = {"joints", "ticks_per_revolution"};
   struct Params {

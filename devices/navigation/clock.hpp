@@ -11,6 +11,7 @@ namespace devices {
 class Clock final : public sim::Sensor {
  public:
   static constexpr const char* meaning = "State of the vehicle's clock: when it was disciplined, how good it may be.";
+  static constexpr const char* without_effect[] = {"position_m", "rpy_deg"};
   static constexpr double default_rate_hz = 1;
   struct Params {
     void read(sim::ParamReader&) {}

@@ -34,7 +34,7 @@ void Odometry::Params::read(sim::ParamReader& in) {
   in.read("wheel_radius_m", wheel_radius_m, sim::above(0), "assumed radius of the wheels; unset: as in the vehicle");
   in.read("track_m", track_m, sim::above(0), "assumed distance between the wheels; unset: as given by the joints");
   in.read("ticks_per_revolution", ticks_per_revolution, sim::at_least(1), "encoder ticks in one turn of a wheel");
-  in.read("noise", noise, "error of the angle a wheel turned between two samples, rad");
+  in.read("noise", noise, "error of the angle a wheel turned between two samples, rad; each has one, also at rest");
 }
 
 Odometry::Odometry(const Params& params, const sim::DeviceContext& context)

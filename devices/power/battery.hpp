@@ -15,6 +15,7 @@ class Battery final : public sim::Sensor {
  public:
   static constexpr const char* meaning =
       "Battery of the vehicle: drained by its devices; when it is empty, they are off.";
+  static constexpr const char* without_effect[] = {"position_m", "rpy_deg"};
   static constexpr double default_rate_hz = 1;
   static constexpr bool always_on = true;
   static constexpr const char* fixed_keys[] = {"initial_charge"};

@@ -15,6 +15,7 @@ class Bumper;
 class EmergencyStop final : public sim::Sensor {
  public:
   static constexpr const char* meaning = "Emergency stop: engaged, all actuators of the vehicle go to safe states.";
+  static constexpr const char* without_effect[] = {"position_m", "rpy_deg"};
   static constexpr double default_rate_hz = 10;
   static constexpr bool always_on = true;
   struct Params {

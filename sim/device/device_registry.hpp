@@ -46,13 +46,14 @@ struct DeviceType {
   std::vector<SafeState> safe_states;   ///< safe states of an actuator, the default first; empty: not an actuator
   bool changeable = false;              ///< whether keys of the type can change at run time
   std::vector<std::string> fixed_keys;  ///< keys of a changeable type that cannot change
-  bool always_on = false;               ///< works without power and at an emergency stop
-  bool casts_rays = false;              ///< see Sensor
-  bool sweeps = false;                  ///< see Sensor
-  bool measures_alone = false;          ///< see Sensor
-  bool acts_alone = false;              ///< see Actuator
-  bool sleeps = false;                  ///< see Actuator
-  std::function<std::shared_ptr<DeviceParams>()> make_params;                   ///< parameters with their defaults
+  std::vector<std::string> without_effect;                     ///< keys of its mount that it does not use
+  bool always_on = false;                                      ///< works without power and at an emergency stop
+  bool casts_rays = false;                                     ///< see Sensor
+  bool sweeps = false;                                         ///< see Sensor
+  bool measures_alone = false;                                 ///< see Sensor
+  bool acts_alone = false;                                     ///< see Actuator
+  bool sleeps = false;                                         ///< see Actuator
+  std::function<std::shared_ptr<DeviceParams>()> make_params;  ///< parameters with their defaults
   std::function<BuiltDevice(const DeviceParams&, const DeviceContext&)> build;  ///< makes one device
 
   /// Returns whether the device publishes messages.
@@ -212,6 +213,8 @@ bool add_device(const char* name) {
   type.changeable = Changes<Model> || HasNoises<Model>;
   if constexpr (requires { Model::fixed_keys; })
     type.fixed_keys.assign(std::begin(Model::fixed_keys), std::end(Model::fixed_keys));
+  if constexpr (requires { Model::without_effect; })
+    type.without_effect.assign(std::begin(Model::without_effect), std::end(Model::without_effect));
   if constexpr (requires { Model::always_on; }) type.always_on = Model::always_on;
   if constexpr (requires { Model::casts_rays; }) type.casts_rays = Model::casts_rays;
   if constexpr (requires { Model::sweeps; }) type.sweeps = Model::sweeps;

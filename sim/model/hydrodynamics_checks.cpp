@@ -112,24 +112,19 @@ void check_derivatives(const HydrodynamicsConfig& config, ParamReader& in) {
 }  // namespace
 
 void check_coefficients(const HydrodynamicsConfig& config, ParamReader& in) {
-  if (in.describing() || config.model != HydrodynamicsConfig::Model::coefficients || !(config.mass_kg > 0)) return;
+  if (in.describing() || !(config.mass_kg > 0)) return;
+  if (in.has("inertia_kgm2")) check_inertia(config, in);
+  if (config.model != HydrodynamicsConfig::Model::coefficients) return;
   check_damping("linear_damping", config.linear_damping, in);
   check_damping("quadratic_damping", config.quadratic_damping, in);
   check_damping_couplings(config, in);
   check_derivatives(config, in);
   if (config.waterline) check_waterline(*config.waterline, in);
-  if (in.has("inertia_kgm2")) check_inertia(config, in);
   check_added_mass(config.added_mass, in);
 }
 
-std::vector<std::string> doubts_about(const HydrodynamicsConfig& config) {
+std::vector<std::string> doubts_about_inertia(const HydrodynamicsConfig& config) {
   std::vector<std::string> doubts;
-  const double above = config.center_of_buoyancy_m.z() - config.center_of_mass_m.z();
-  // Centre of mass above the centre of buoyancy: unstable.
-  if (!config.waterline && above > 0)
-    doubts.push_back("its centre of mass lies " + number_text(above) +
-                     " m above its centre of buoyancy, so that it turns over; is 'frame' " +
-                     std::string(word_of(axes_frame_words, config.frame)) + " right?");
   // Uniform solids of a mass and a volume have at least the inertia of a sphere, 2/5 m r^2.
   constexpr double water_kgpm3 = 1000, far_below = 0.1;
   const double volume_m3 = config.volume_m3.value_or(config.mass_kg / water_kgpm3);
@@ -144,6 +139,17 @@ std::vector<std::string> doubts_about(const HydrodynamicsConfig& config) {
     doubts.push_back("no solid has its principal moments of inertia, " + number_text(moments[0]) + ", " +
                      number_text(moments[1]) + " and " + number_text(moments[2]) +
                      " kg m^2: none is larger than the sum of the others");
+  return doubts;
+}
+
+std::vector<std::string> doubts_about(const HydrodynamicsConfig& config) {
+  std::vector<std::string> doubts = doubts_about_inertia(config);
+  const double above = config.center_of_buoyancy_m.z() - config.center_of_mass_m.z();
+  // Centre of mass above the centre of buoyancy: unstable.
+  if (!config.waterline && above > 0)
+    doubts.insert(doubts.begin(), "its centre of mass lies " + number_text(above) +
+                                      " m above its centre of buoyancy, so that it turns over; is 'frame' " +
+                                      std::string(word_of(axes_frame_words, config.frame)) + " right?");
   return doubts;
 }
 

@@ -12,7 +12,10 @@ namespace sim {
 /// negative, damping that adds energy.  Expects numbers that were read without errors.
 void check_coefficients(const HydrodynamicsConfig& config, ParamReader& in);
 
-/// Returns warnings about values that are possible but most likely wrong.
+/// Returns warnings about an inertia that is possible but most likely wrong.
+std::vector<std::string> doubts_about_inertia(const HydrodynamicsConfig& config);
+
+/// Returns these, and warnings about coefficients that are possible but most likely wrong.
 std::vector<std::string> doubts_about(const HydrodynamicsConfig& config);
 
 }  // namespace sim

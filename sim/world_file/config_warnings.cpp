@@ -10,6 +10,7 @@
 #include "sim/base/number.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/device/device_registry.hpp"
+#include "sim/model/hydrodynamics_checks.hpp"
 
 namespace sim {
 
@@ -36,6 +37,7 @@ class ConfigCheck {
       const std::string who = "vehicle '" + vehicle.name + "': ";
       for (const DeviceConfig& device : vehicle.config->devices)
         check_device(device, who + "device '" + device.name + "'");
+      for (const BodyConfig& body : vehicle.config->bodies) check_body(body, who + "body '" + body.name + "'");
       const ConfigNode* joints = vehicle.config->source ? vehicle.config->source->find("joints") : nullptr;
       for (std::size_t i = 0; joints != nullptr && i < vehicle.config->joints.size(); ++i)
         check_joint(vehicle.config->joints[i], joints->items[i], who);
@@ -130,8 +132,20 @@ class ConfigCheck {
   }
 
  private:
+  /// Those of coefficients are found when the world is built.
+  void check_body(const BodyConfig& body, const std::string& who) const {
+    const auto& config = body.hydrodynamics;
+    if (!config || config->model == HydrodynamicsConfig::Model::coefficients || !(config->mass_kg > 0)) return;
+    if (config->inertia_kgm2.isZero(0)) return;  // none is given
+    for (const std::string& doubt : doubts_about_inertia(*config)) warnings_.warn(config->place, who, doubt);
+  }
+
   void check_device(const DeviceConfig& device, const std::string& who) const {
     if (device.device_type == nullptr) return;
+    for (const std::string& key : device.device_type->without_effect)
+      if (device.source && device.source->find(key) != nullptr)
+        warnings_.warn(place_of(*device.source, key), who,
+                       "'" + key + "' has no effect on a device of type '" + device.type + "'");
     check_noise(device, who);
     const auto place = [&](const char* key) { return device.source ? place_of(*device.source, key) : device.place; };
     if (device.device_type->reports()) {

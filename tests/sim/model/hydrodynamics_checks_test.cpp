@@ -19,6 +19,11 @@ std::string error_of(const std::string& more, const std::string& step_s = "0.001
 }
 const std::string inertia = ", inertia_kgm2: [1, 1, 1]";
 
+TEST(HydrodynamicsChecks, AnInertiaIsSymmetricAlsoWithoutCoefficients) {
+  EXPECT_THAT(error_of(", model: none, inertia_kgm2: [1, 0.5, 0, 0, 1, 0, 0, 0, 1]"),
+              HasSubstr("'inertia_kgm2' must be symmetric"));
+}
+
 TEST(HydrodynamicsChecks, GoodCoefficientsPass) {
   EXPECT_EQ(error_of(inertia + ", added_mass: [1, 10, 10, 0.1, 1, 1], linear_damping: [1, 2, 3, 1, 1, 1]"), "");
 }

@@ -76,6 +76,25 @@ TEST(ConfigWarnings, ReportKeysOfReportsOfADeviceThatReportsNothing) {
             "'body_wrench' publishes no reports\n");
 }
 
+TEST(ConfigWarnings, ReportAPlaceOfADeviceThatHasNone) {
+  EXPECT_EQ(warnings_of_file(world("        - {name: power, type: battery, capacity_Wh: 10, rpy_deg: [0, 0, 90]}\n")),
+            "worlds/test.yaml:11:61: vehicle 'r1': device 'power': 'rpy_deg' has no effect on a device of type "
+            "'battery'\n");
+}
+
+TEST(ConfigWarnings, ReportAnInertiaThatNoSolidHas) {
+  const auto warnings = [](const std::string& inertia) {
+    std::string yaml = world("        []\n");
+    const std::string hull = "{name: hull, ";
+    yaml.replace(yaml.find(hull), hull.size(),
+                 hull + "hydrodynamics: {model: none, mass_kg: 100, inertia_kgm2: " + inertia + "}, ");
+    return warnings_of_file(yaml);
+  };
+  EXPECT_EQ(warnings("[10, 10, 10]"), "");
+  EXPECT_THAT(warnings("[11, 100, 10]"), HasSubstr("vehicle 'r1': body 'hull': no solid has its principal moments"));
+  EXPECT_THAT(warnings("[1e-9, 1e-9, 1e-9]"), HasSubstr("less than a tenth of that of a sphere"));
+}
+
 std::string warnings_of_joint(const std::string& keys) {
   std::string yaml = world("        []\n");
   const std::string hull = "{name: hull, parts: [{shape: box, mass_kg: 1}]}";
