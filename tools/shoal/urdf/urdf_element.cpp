@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <map>
+#include <set>
 
 #include "sim/config/message_text.hpp"
 
@@ -94,11 +96,32 @@ UrdfElement UrdfElement::required_child(std::string_view name) const {
 }
 
 void UrdfElement::note_others(std::initializer_list<std::string_view> known, std::vector<UrdfNote>& notes) const {
+  const std::string of = who_.empty() ? "" : who_ + ": ";
   for (const UrdfElement& child : children()) {
-    if (std::find(known.begin(), known.end(), child.name()) != known.end()) continue;
-    const std::string of = who_.empty() ? "" : who_ + ": ";
+    if (std::find(known.begin(), known.end(), child.name()) != known.end()) {
+      child.note_other_attributes(of, notes);
+      continue;
+    }
     notes.push_back({child.place(), fmt::format("{}<{}> is not imported", of, child.name())});
   }
+}
+
+void UrdfElement::note_other_attributes(const std::string& of, std::vector<UrdfNote>& notes) const {
+  // Of elements that mean the same wherever they are.
+  static const std::map<std::string_view, std::set<std::string_view>> known_of = {
+      {"origin", {"xyz", "rpy", "quat_xyzw"}},
+      {"axis", {"xyz"}},
+      {"limit", {"lower", "upper", "effort", "velocity"}},
+      {"dynamics", {"damping", "friction"}},
+      {"mimic", {"joint", "multiplier", "offset"}},
+      {"mass", {"value"}},
+      {"inertia", {"ixx", "ixy", "ixz", "iyy", "iyz", "izz"}}};
+  const auto known = known_of.find(name());
+  if (known == known_of.end()) return;
+  for (const tinyxml2::XMLAttribute* each = element_->FirstAttribute(); each != nullptr; each = each->Next())
+    if (!known->second.contains(each->Name()))
+      notes.push_back({place(), fmt::format("{}'{}' of <{}> is not imported", of,
+                                            sim::shortened(sim::printable(each->Name())), name())});
 }
 
 bool UrdfElement::has(const char* attribute) const {
@@ -164,7 +187,17 @@ sim::Vector3d UrdfElement::vector(const char* attribute, const sim::Vector3d& in
 sim::Pose UrdfElement::origin() const {
   const std::optional<UrdfElement> origin = child("origin");
   if (!origin) return sim::Pose::Identity();
-  return sim::make_pose(origin->vector("xyz", sim::Vector3d::Zero()), origin->vector("rpy", sim::Vector3d::Zero()));
+  const sim::Vector3d xyz = origin->vector("xyz", sim::Vector3d::Zero());
+  if (!origin->has("quat_xyzw")) return sim::make_pose(xyz, origin->vector("rpy", sim::Vector3d::Zero()));
+  if (origin->has("rpy")) origin->refuse("has 'rpy' and 'quat_xyzw', of which one is enough");
+  const std::vector<double> q = origin->numbers("quat_xyzw", 4);
+  const sim::Quaterniond turn(q[3], q[0], q[1], q[2]);
+  if (!(std::abs(turn.norm() - 1) < 0.01))
+    origin->refuse("'quat_xyzw' must have the length 1, got " + sim::number_text(turn.norm()));
+  sim::Pose pose = sim::Pose::Identity();
+  pose.linear() = turn.normalized().toRotationMatrix();
+  pose.translation() = xyz;
+  return pose;
 }
 
 }  // namespace tools

@@ -36,7 +36,7 @@ class UrdfElement {
   std::optional<UrdfElement> child(std::string_view name) const;
   /// The only child of this name; refuses none.
   UrdfElement required_child(std::string_view name) const;
-  /// Adds a note for each child whose name is none of these.
+  /// Adds a note for each child whose name is none of these, and for each attribute of the others that is not imported.
   void note_others(std::initializer_list<std::string_view> known, std::vector<UrdfNote>& notes) const;
 
   bool has(const char* attribute) const;
@@ -52,10 +52,12 @@ class UrdfElement {
   /// `count` finite numbers, separated by blanks.
   std::vector<double> numbers(const char* attribute, std::size_t count) const;
   sim::Vector3d vector(const char* attribute, const sim::Vector3d& initial) const;
-  /// `xyz` and `rpy` of its child `<origin>`; the identity without it.
+  /// `xyz` and `rpy` or `quat_xyzw` of its child `<origin>`; the identity without it.
   sim::Pose origin() const;
 
  private:
+  void note_other_attributes(const std::string& of, std::vector<UrdfNote>& notes) const;
+
   const tinyxml2::XMLElement* element_;
   const std::string* file_;
   std::string who_;

@@ -53,6 +53,23 @@ TEST(DecorativeFault, AShapeWithoutVolumeIsLeftOut) {
   expect_left_out("<mesh filename=\"m.stl\" scale=\"1 0 1\"/>", "mesh");
 }
 
+TEST(DecorativeFault, AttributesThatAreNotImportedAreNoted) {
+  EXPECT_EQ(notes_of(with_limit("lower=\"-1\" upper=\"1\" effort=\"5\" velocity=\"2\" acceleration=\"3\"")),
+            "r.urdf:4: joint 'j': 'acceleration' of <limit> is not imported\n");
+}
+
+TEST(DecorativeFault, AnOriginMayHaveAQuaternion) {
+  const auto turned = [](const std::string& attributes) {
+    return with_shape("collision", "<origin xyz=\"1 2 3\" " + attributes + "/>" + unit_box);
+  };
+  const tools::ImportedVehicle by_angles = turned("rpy=\"0 0 1.5707963267948966\"");
+  const tools::ImportedVehicle by_quaternion = turned("quat_xyzw=\"0 0 0.70711 0.70711\"");
+  const auto pose = [](const tools::ImportedVehicle& vehicle) { return vehicle.bodies.at(0).parts.at(0).X_BP; };
+  EXPECT_TRUE(pose(by_quaternion).isApprox(pose(by_angles), 1e-9));
+  EXPECT_THROW(turned("quat_xyzw=\"0 0 0 0\""), sim::ConfigError);
+  EXPECT_THROW(turned("quat_xyzw=\"0 0 0 1\" rpy=\"0 0 1\""), sim::ConfigError);
+}
+
 TEST(DecorativeFault, OnlyTheFirstElementOfAGeometryCounts) {
   const tools::ImportedVehicle vehicle =
       with_shape("collision", "<geometry><sphere radius=\"0.5\"/>\n<origin xyz=\"1 0 0\"/></geometry>");
