@@ -44,15 +44,11 @@ class World : public Guarded, public std::enable_shared_from_this<World> {
 class Subscription : public ZeroedMemory {
  public:
   Subscription(std::shared_ptr<World> world, const std::string& channel, std::size_t capacity)
-      : world_(std::move(world)),
-        channel_(channel),
-        mailbox_(world_->own->subscribe(channel, capacity)),
-        restores_(world_->own->restores()) {}
+      : world_(std::move(world)), channel_(channel), mailbox_(world_->own->subscribe(channel, capacity)) {}
 
   py::list take() {
     require_made();
     const Guarded::Use use(*world_);
-    if (std::exchange(restores_, world_->own->restores()) != world_->own->restores()) mailbox_->set_unread({});
     py::list all;
     while (const auto message = mailbox_->take()) all.append(decode_if_known(message->payload));
     return all;
@@ -73,8 +69,7 @@ class Subscription : public ZeroedMemory {
 
   const std::shared_ptr<World> world_;  // the mailbox may not outlive its bus
   const std::string channel_;
-  const std::unique_ptr<sim::Mailbox> mailbox_;
-  std::uint64_t restores_;
+  const std::shared_ptr<sim::Mailbox> mailbox_;
 };
 
 std::shared_ptr<World> make_world(const std::string& file, const std::optional<std::string>& text,

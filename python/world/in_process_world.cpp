@@ -101,12 +101,15 @@ const sim::Bytes* InProcessWorld::last(const std::string& channel) {
   return nullptr;
 }
 
-std::unique_ptr<sim::Mailbox> InProcessWorld::subscribe(const std::string& channel, std::size_t capacity) {
+std::shared_ptr<sim::Mailbox> InProcessWorld::subscribe(const std::string& channel, std::size_t capacity) {
   require_name(channel);
   if (capacity < 1) throw sim::WorldError("subscribe: capacity must be >= 1, got 0");
   require_readable(channel);
   subscribed_.insert(channel);
-  return bus_.open_mailbox(channel, capacity);
+  std::shared_ptr<sim::Mailbox> mailbox = bus_.open_mailbox(channel, capacity);
+  std::erase_if(mailboxes_, [](const auto& each) { return each.expired(); });
+  mailboxes_.push_back(mailbox);
+  return mailbox;
 }
 
 const WorldChannels& InProcessWorld::channels() {
@@ -182,7 +185,9 @@ void InProcessWorld::restore(std::span<const std::byte> snapshot) {
   bus_.clear();
   channels_.reset();
   fault_.clear();
-  ++restores_;
+  // What the program has not read is of another future.
+  for (const auto& each : mailboxes_)
+    if (const auto mailbox = each.lock()) mailbox->set_unread({});
 }
 
 std::unique_ptr<InProcessWorld> InProcessWorld::branch() const {

@@ -56,7 +56,7 @@ class InProcessWorld {
   /// once, or throws sim::WorldError when its name is close to that of another.
   const sim::Bytes* last(const std::string& channel);
   /// Opens a mailbox; see last().
-  std::unique_ptr<sim::Mailbox> subscribe(const std::string& channel, std::size_t capacity);
+  std::shared_ptr<sim::Mailbox> subscribe(const std::string& channel, std::size_t capacity);
   /// Returns the channels of the entities that are in the world now.
   const WorldChannels& channels();
   /// Executes an action, or a list of them, written in YAML, as in `events:`.  Throws sim::ConfigError,
@@ -73,8 +73,6 @@ class InProcessWorld {
   void restore(std::span<const std::byte> snapshot);
   /// Returns another world in the same state.
   std::unique_ptr<InProcessWorld> branch() const;
-  /// Returns a counter of restores; unread messages of subscribers before the last one are of another future.
-  std::uint64_t restores() const { return restores_; }
 
  private:
   void require_readable(const std::string& channel);
@@ -87,7 +85,7 @@ class InProcessWorld {
   std::set<std::string, std::less<>> known_;       // channels on which something was published, or that were reported
   std::set<std::string, std::less<>> subscribed_;  // channels that the program reads
   std::string fault_;                              // of a step that failed; empty: none
-  std::uint64_t restores_ = 0;
+  std::vector<std::weak_ptr<sim::Mailbox>> mailboxes_;  // of the program
 };
 
 }  // namespace python

@@ -113,6 +113,10 @@ vehicles:
         self.assertEqual(imu.take(), [])
         world.step(3)
         self.assertEqual(len(imu.take()), 3)
+        # Also when the program takes them only later.
+        world.restore(snapshot)
+        world.step(4)
+        self.assertEqual(len(imu.take()), 4)
 
     def test_adds_removes_and_breaks(self):
         world = shoal.World(COOP_LAND)
