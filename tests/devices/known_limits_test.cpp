@@ -8,11 +8,13 @@
 #include <numbers>
 
 #include "shoal/acoustic_received_t.hpp"
+#include "shoal/actuator_command_t.hpp"
 #include "shoal/compass_t.hpp"
 #include "shoal/gps_data_t.hpp"
 #include "shoal/imu_t.hpp"
 #include "shoal/planar_lidar_t.hpp"
 #include "shoal/range_beacon_t.hpp"
+#include "shoal/wrench_t.hpp"
 #include "sim/world/world_editor.hpp"
 #include "tests/devices/comms/modem_fixture.hpp"
 #include "tests/devices/marine/marine_fixture.hpp"
@@ -146,6 +148,37 @@ TEST(KnownLimits, APropellerHasNoInflowAsternAndFromBehind) {
   EXPECT_NEAR(thrust(1525, -1), thrust(1525, 0), 1e-9);
   EXPECT_NEAR(thrust(-1525, -1), thrust(-1525, 0), 1e-9);
   EXPECT_NEAR(thrust(-1525, 1), thrust(-1525, 0), 1e-9);
+}
+
+TEST(KnownLimits, AJointPassesOnTheThrustOfAPodWithoutItsAddedMass) {
+  // A neutral pod of 1.025 kg on a fixed joint, with half of its mass as added mass.
+  TestWorld test(R"(
+shoal: 1
+physics: {step_s: 0.01, gravity_mps2: 0}
+medium: {water: {density_kgpm3: 1025}}
+vehicles:
+  - name: v
+    position_m: [0, 0, -10]
+    model:
+      shoal: 1
+      vehicle: pod
+      bodies:
+        - {name: base, parts: [{shape: box, size_m: [0.2, 0.2, 0.2], mass_kg: 10}]}
+        - name: pod
+          position_m: [0.5, 0, 0]
+          parts:
+            - {shape: box, size_m: [0.1, 0.1, 0.1], mass_kg: 1.025, added_mass_coefficient: 0.5, drag_coefficient: 0}
+      joints:
+        - {name: mount, type: fixed, bodies: [base, world]}
+        - {name: arm, type: fixed, bodies: [base, pod]}
+      devices:
+        - {name: push, type: thruster, body: pod, command: thrust_N, curve: direct, max: 100}
+        - {name: load, type: joint_load, joint: arm, frame: world}
+)");
+  test::Listener<shoal::wrench_t> load(test, "v.load");
+  test.send("v.push.cmd", shoal::actuator_command_t{0, 10});
+  test.run_for(2);
+  EXPECT_NEAR(std::abs(load.take_all().back().force_N[0]), 10 / 1.5, 0.01);
 }
 
 TEST(KnownLimits, AMovingMassPushesNoVehicleByItsMotion) {

@@ -81,7 +81,10 @@ int convert(const McapArguments& arguments) {
   if (done.not_decoded > 0) std::cerr << done.not_decoded << " events could not be decoded\n";
   for (const std::string& problem : done.log_problems) std::cerr << arguments.log << ": " << problem << '\n';
   if (done.time_problem) std::cerr << arguments.log << ": " << *done.time_problem << '\n';
-  if (done.events == 0) std::cerr << arguments.log << ": no event on such a channel; see shoal log info\n";
+  if (done.events == 0)
+    std::cerr << arguments.log
+              << (arguments.channels.empty() ? ": contains no readable event\n"
+                                             : ": no event on such a channel; see shoal log info\n");
   return done.log_problems.empty() && done.events > 0 ? exit_ok : exit_bus;
 }
 
