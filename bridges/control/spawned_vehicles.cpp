@@ -106,7 +106,7 @@ void SpawnedVehicles::report(sim::Bus& bus, shoal::sim_vehicle_t& message, bool 
 
 void SpawnedVehicles::write_down(const std::string& client, const std::string& command, const std::string& text) {
   if (journal_ == nullptr) return;
-  shoal::sim_control_request_t request;
+  shoal::sim_control_request_t request{};
   request.utime = world_.epoch_us() + world_.now().count();
   request.id = 0;
   request.client = client;

@@ -163,7 +163,7 @@ void ViewPublisher::update_structure() {
 }
 
 void ViewPublisher::publish_scene() {
-  shoal::sim_scene_t scene;
+  shoal::sim_scene_t scene{};
   scene.utime = utime(world_.now());
   scene.step = world_.step_number();
   scene.branch = branch_;
@@ -176,7 +176,7 @@ void ViewPublisher::publish_scene() {
   if (std::exchange(scene_requested_, false)) published_assets_.clear();
   for (const auto& [hash, bytes] : assets_.all()) {
     if (!published_assets_.insert(hash).second) continue;
-    shoal::sim_asset_t asset;
+    shoal::sim_asset_t asset{};
     asset.utime = scene.utime;
     asset.hash = hash;
     asset.size = static_cast<std::int32_t>(bytes.size());
@@ -207,7 +207,7 @@ void ViewPublisher::fill_in_bodies(shoal::sim_bodies_t& bodies) const {
 }
 
 shoal::sim_bodies_t ViewPublisher::bodies() const {
-  shoal::sim_bodies_t bodies;
+  shoal::sim_bodies_t bodies{};
   fill_in_bodies(bodies);
   return bodies;
 }

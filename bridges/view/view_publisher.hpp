@@ -103,9 +103,9 @@ class ViewPublisher final : public sim::WorldObserver {
   std::vector<shoal::sim_sound_t> sounds_;
   std::vector<shoal::sim_sound_arrival_t> arrivals_;
   std::vector<shoal::sim_event_t> events_;
-  shoal::sim_bodies_t bodies_;
-  shoal::sim_current_t current_;
-  shoal::sim_scores_t scores_;
+  shoal::sim_bodies_t bodies_{};
+  shoal::sim_current_t current_{};
+  shoal::sim_scores_t scores_{};
   std::int64_t left_out_ = 0;
   sim::Bytes buffer_;
 };

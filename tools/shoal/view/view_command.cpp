@@ -130,7 +130,7 @@ int view_again(const ViewArguments& arguments) {
 
 /// Asks a run that has already begun for its scene.
 void ask_for_scene(bridges::LcmListener& lcm) {
-  shoal::sim_control_request_t request;
+  shoal::sim_control_request_t request{};
   request.client = fmt::format("shoal-view-{}", getpid());
   request.command = "scene";
   request.id = 1;
