@@ -3,7 +3,10 @@
 
 #include <gmock/gmock.h>
 
+#include <array>
 #include <fstream>
+#include <memory>
+#include <new>
 #include <nlohmann/json.hpp>
 
 #include "shoal/sim_asset_t.hpp"
@@ -259,6 +262,21 @@ TEST(ViewPublisher, DoesNotChangeTheRun) {
     return test.world.state().run_hash();
   };
   EXPECT_EQ(hash_of(true), hash_of(false));
+}
+
+/// The publisher lies in memory that was used before, as on the stack of a program.
+TEST(ViewPublisher, PublishesNoScoresWhenThereAreNone) {
+  test::TestWorld test(rover_and_ball);
+  test::Listener<shoal::sim_scores_t> scores(test, "sim.scores");
+  struct Destroy {
+    void operator()(bridges::ViewPublisher* view) const { view->~ViewPublisher(); }
+  };
+  alignas(bridges::ViewPublisher) std::array<unsigned char, sizeof(bridges::ViewPublisher)> used;
+  used.fill(0x55);
+  const std::unique_ptr<bridges::ViewPublisher, Destroy> view(new (used.data()) bridges::ViewPublisher(
+      test.bus, test.world, [](shoal::sim_scores_t&) {}, [] { return true; }));
+  view->after_step();
+  EXPECT_TRUE(scores.take_all().empty());
 }
 
 TEST(ViewPublisher, MakesNothingWhileNothingIsObserved) {
