@@ -266,6 +266,15 @@ describe('connection', () => {
 });
 
 describe('steering', () => {
+  it('says what the run waits for, in the words of the server', async () => {
+    const waits = 'waits 0.2 s for \'client\'';
+    await withPage(scenes.land(), async (page, server) => {
+      server.waits_for = waits;
+      await page.waitForFunction(
+          (words) => document.getElementById('status').textContent.split(' · ').includes(words), {}, waits);
+    });
+  });
+
   it('pauses, steps, changes the speed and rewinds a run', async () => {
     await withPage(scenes.land(), async (page, server) => {
       await show(page, server, 5);
