@@ -51,7 +51,7 @@ class ViewedRecording {
     thread_.join();
   }
   std::string url() const { return view_->url(); }
-  void go_back() { goes_back_ = true; }
+  void rewind() { goes_back_ = true; }
 
  private:
   struct Destroy {
@@ -76,7 +76,7 @@ TEST(RecordView, ShowsTheRecordingAndGoesBackWithIt) {
   const test::ViewState before = page.state();
   EXPECT_EQ(before.count, 2u);
   EXPECT_EQ(before.branch, 0);
-  recording.go_back();
+  recording.rewind();
   test::ViewState after = page.state();
   while (after.branch == 0) after = page.state();
   EXPECT_EQ(after.branch, 1);
