@@ -19,8 +19,6 @@
 
 namespace {
 
-namespace fs = std::filesystem;
-
 /// Names of all types without package, such as `pose_t`.
 std::set<std::string> names_of_types() {
   std::set<std::string> names;
@@ -49,10 +47,10 @@ std::vector<std::string> offenders_in_text(const std::string& text) {
 }
 
 TEST(InitializedMessages, EveryObjectOfAGeneratedClassHasAnInitializer) {
-  const fs::path root = test_support::source_path("");
+  const std::filesystem::path root = test_support::source_path("");
   int files = 0;
   for (const char* folder : {"sim", "messages", "devices", "bridges", "tools", "python", "examples", "tests"})
-    for (const auto& entry : fs::recursive_directory_iterator(root / folder)) {
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(root / folder)) {
       const std::string extension = entry.path().extension().string();
       if (!entry.is_regular_file() || (extension != ".cpp" && extension != ".hpp")) continue;
       if (entry.path().filename() == "initialized_messages_test.cpp") continue;
