@@ -149,7 +149,7 @@ std::optional<std::int64_t> Client::next_tick() {
 std::optional<std::int64_t> Client::Connection::next_joined_tick() {
   if (unanswered) lcm.acknowledge(*unanswered);
   unanswered.reset();
-  shoal::sim_tick_t tick;
+  shoal::sim_tick_t tick{};
   if (!lcm.next_tick(tick)) {
     end = end_of(lcm.end());
     return std::nullopt;

@@ -14,7 +14,7 @@ void RunAudit::add(AuditEntry audit_entry, std::int32_t branch) {
   audit_entry.sim_time_s = sim::to_seconds(world_.now());
   ++count_;
   if (count_ <= static_cast<std::int64_t>(max_published)) {
-    shoal::sim_audit_t message;
+    shoal::sim_audit_t message{};
     message.utime = world_.epoch_us() + world_.now().count();
     message.step = world_.step_number();
     message.branch = branch;

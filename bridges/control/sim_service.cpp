@@ -73,7 +73,7 @@ void SimService::publish_step() {
   if (!muted_) spawned_vehicles_.report_to_other_timeline(network_);
   if (due(info_rate_hz) && info_step_ != world_.step_number()) publish_info();
   if (!due(world_.config().state_rate_hz)) return;
-  shoal::utime_t clock;
+  shoal::utime_t clock{};
   clock.utime = world_.epoch_us() + world_.now().count();
   publish(bus_, "sim.clock", clock);
   for (std::size_t i = 1; i < links_.size(); ++i) {
@@ -85,7 +85,7 @@ void SimService::publish_step() {
 }
 
 void SimService::publish_info() {
-  shoal::sim_info_t info;
+  shoal::sim_info_t info{};
   info.utime = world_.epoch_us() + world_.now().count();
   info.world = world_.config().name;
   info.seed = world_.config().run.seed;
@@ -103,7 +103,7 @@ void SimService::publish_info() {
 }
 
 void SimService::publish_state() {
-  static thread_local shoal::sim_state_t state;  // reuses its vectors from step to step
+  static thread_local shoal::sim_state_t state{};  // reuses its vectors from step to step
   state.utime = world_.epoch_us() + world_.now().count();
   state.step = world_.step_number();
   // Size the lists of the message.
@@ -207,7 +207,7 @@ void SimService::refuse(Link& link, const shoal::sim_control_request_t& request,
 
 void SimService::reply(Link& link, const shoal::sim_control_request_t& request, std::int64_t session, bool ok,
                        const std::string& text) {
-  shoal::sim_control_reply_t reply;
+  shoal::sim_control_reply_t reply{};
   reply.id = request.id;
   reply.client = request.client;
   reply.session = session;

@@ -33,23 +33,6 @@ std::string in_words(const shoal::sim_vehicle_t& message) {
   return text;
 }
 
-shoal::sim_vehicle_t message_of(const sim::Vehicle& vehicle) {
-  shoal::sim_vehicle_t message{};
-  message.vehicle = vehicle.name();
-  message.count = static_cast<std::int32_t>(vehicle.devices().size());
-  for (const sim::MountedDevice* device : vehicle.devices()) {
-    const sim::DeviceType& type = *device->config().device_type;
-    message.device.push_back(device->config().name);
-    message.device_type.push_back(type.name);
-    message.report_channel.push_back(type.reports() ? device->report_channel() : "");
-    message.report_type.push_back(type.report_message);
-    message.rate_hz.push_back(type.reports() ? device->config().rate_hz : 0);
-    message.command_channel.push_back(type.takes_commands() ? device->command_channel() : "");
-    message.command_types.push_back(type.command_messages);
-  }
-  return message;
-}
-
 /// Reads a request.  The requester receives only the place of an error in a vehicle file; the log of the run has the
 /// whole error.
 sim::SpawnRequest read_request(const sim::WorldConfig& world, const std::string& text) {
@@ -89,6 +72,23 @@ std::string place_in_file(const std::string& line) {
 
 }  // namespace
 
+shoal::sim_vehicle_t vehicle_message(const sim::Vehicle& vehicle) {
+  shoal::sim_vehicle_t message{};
+  message.vehicle = vehicle.name();
+  message.count = static_cast<std::int32_t>(vehicle.devices().size());
+  for (const sim::MountedDevice* device : vehicle.devices()) {
+    const sim::DeviceType& type = *device->config().device_type;
+    message.device.push_back(device->config().name);
+    message.device_type.push_back(type.name);
+    message.report_channel.push_back(type.reports() ? device->report_channel() : "");
+    message.report_type.push_back(type.report_message);
+    message.rate_hz.push_back(type.reports() ? device->config().rate_hz : 0);
+    message.command_channel.push_back(type.takes_commands() ? device->command_channel() : "");
+    message.command_types.push_back(type.command_messages);
+  }
+  return message;
+}
+
 SpawnedVehicles::SpawnedVehicles(sim::World& world, sim::Bus& bus, RunJournal* journal)
     : world_(world), bus_(bus), journal_(journal) {
   record_all();
@@ -106,7 +106,7 @@ void SpawnedVehicles::report(sim::Bus& bus, shoal::sim_vehicle_t& message, bool 
 
 void SpawnedVehicles::write_down(const std::string& client, const std::string& command, const std::string& text) {
   if (journal_ == nullptr) return;
-  shoal::sim_control_request_t request;
+  shoal::sim_control_request_t request{};
   request.utime = world_.epoch_us() + world_.now().count();
   request.id = 0;
   request.client = client;
@@ -135,7 +135,7 @@ void SpawnedVehicles::report_difference(Known& known, sim::Bus& bus) {
   for (const auto& vehicle : world_.vehicles()) {
     const auto [reported, fresh] = known.try_emplace(vehicle->name());
     if (!fresh) continue;
-    reported->second = message_of(*vehicle);
+    reported->second = vehicle_message(*vehicle);
     report(bus, reported->second, true);
   }
 }
@@ -148,7 +148,7 @@ void SpawnedVehicles::report_to_other_timeline(sim::Bus& network) {
 
 void SpawnedVehicles::record_all() {
   known_.clear();
-  for (const auto& vehicle : world_.vehicles()) known_.emplace(vehicle->name(), message_of(*vehicle));
+  for (const auto& vehicle : world_.vehicles()) known_.emplace(vehicle->name(), vehicle_message(*vehicle));
   generation_ = world_.generation();
 }
 

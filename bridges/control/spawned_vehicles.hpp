@@ -18,6 +18,9 @@ namespace bridges {
 
 class RunJournal;
 
+/// Returns what `sim.vehicle` says of a vehicle: its devices, channels and rates; without time, owner and presence.
+shoal::sim_vehicle_t vehicle_message(const sim::Vehicle& vehicle);
+
 /// Vehicles that clients spawn over `sim.control`, and their owners.  Every vehicle that is added or removed, by any
 /// client, is reported on `sim.vehicle`.
 class SpawnedVehicles {

@@ -261,7 +261,7 @@ void LockstepService::drop(const std::string& client, const std::string& why) {
 }
 
 void LockstepService::notify_dropped(const Dropped& dropped, const std::string& client) {
-  shoal::sim_control_reply_t reply;
+  shoal::sim_control_reply_t reply{};
   reply.utime = utime();
   reply.id = dropped.join_id;
   reply.client = client;

@@ -39,7 +39,7 @@ void check_permission(const std::string& client, const char* does, const Control
 }
 
 shoal::sim_due_t due_of(const sim::LockstepMember& member) {
-  shoal::sim_due_t due;
+  shoal::sim_due_t due{};
   due.name = member.name;
   due.session = member.terms.session;
   due.sequence = member.sequence;
@@ -55,7 +55,7 @@ shoal::sim_due_t due_of(const sim::LockstepMember& member) {
 
 void LockstepService::publish_tick(const std::vector<std::string>& clients, bool last) {
   for (std::size_t i = 0; i < links_.size(); ++i) {
-    shoal::sim_tick_t tick;
+    shoal::sim_tick_t tick{};
     tick.utime = utime();
     tick.step = world_.step_number();
     tick.branch = branch_;
@@ -82,7 +82,7 @@ void LockstepService::publish_tick(const std::vector<std::string>& clients, bool
 
 /// Publishes a tick of the abandoned branch to a client that had not answered it.
 void LockstepService::publish_left_tick(const sim::LockstepMember& member) {
-  shoal::sim_tick_t tick;
+  shoal::sim_tick_t tick{};
   tick.step = member.left_step;
   tick.utime = world_.epoch_us() + (world_.step_time() * member.left_step).count();
   tick.branch = member.left_branch;
@@ -103,7 +103,7 @@ void LockstepService::probe_client(const sim::LockstepMember& member) {
       publish_tick({member.name}, false);
     return link.network.end_of_step();
   }
-  shoal::sim_tick_t tick;
+  shoal::sim_tick_t tick{};
   tick.utime = utime();
   // Or send an empty tick with the last sequence.
   tick.step = member.requested;
@@ -121,7 +121,7 @@ void LockstepService::probe_client(const sim::LockstepMember& member) {
 
 void LockstepService::request_from_client(const sim::LockstepMember& member) {
   Link& link = link_of(member.link);
-  shoal::sim_resend_t question;
+  shoal::sim_resend_t question{};
   question.utime = utime();
   question.client = member.name;
   question.session = member.terms.session;
@@ -343,7 +343,7 @@ void LockstepService::take_request(int link_index, const sim::Message& message) 
 
 void LockstepService::send_again(const sim::LockstepMember& member, std::int32_t first) {
   Link& link = link_of(member.link);
-  shoal::sim_resent_t head;
+  shoal::sim_resent_t head{};
   head.utime = utime();
   head.client = member.name;
   head.session = member.terms.session;

@@ -266,7 +266,7 @@ void LockstepClient::take_request(std::span<const std::byte> payload) {
   const auto question = try_decode<shoal::sim_resend_t>(payload);
   if (!question || question->of_client == 0 || question->client != name_ || question->session != session_) return;
   if (question->sequence != sequence_ || outbox_.is_open()) return;
-  shoal::sim_resent_t head;
+  shoal::sim_resent_t head{};
   head.utime = tick_.utime;
   head.client = name_;
   head.session = session_;
@@ -288,7 +288,7 @@ void LockstepClient::request_when_due() {
   if (now < incomplete_->ask_at) return;
   incomplete_->ask_at = now + incomplete_->interval;
   incomplete_->interval = next_resend_interval(incomplete_->interval);
-  shoal::sim_resend_t question;
+  shoal::sim_resend_t question{};
   question.utime = incomplete_->tick.utime;
   question.client = name_;
   question.session = session_;

@@ -27,7 +27,7 @@ namespace bridges {
 ///     LockstepClient client("", "pilot");
 ///     client.subscribe("auv1.lidar", on_lidar);
 ///     client.join(0.1, 5s);
-///     shoal::sim_tick_t tick;
+///     shoal::sim_tick_t tick{};
 ///     while (client.next_tick(tick)) {
 ///       client.publish("auv1.drive.cmd", shoal::encode(command));
 ///       client.acknowledge(tick);
@@ -106,7 +106,7 @@ class LockstepClient {
   using Clock = std::chrono::steady_clock;
   /// Tick with messages that have not all arrived.
   struct Incomplete {
-    shoal::sim_tick_t tick;
+    shoal::sim_tick_t tick{};
     std::int64_t sequence;
     Clock::time_point ask_at;
     std::chrono::milliseconds interval;
@@ -157,7 +157,7 @@ class LockstepClient {
 
   std::optional<Incomplete> incomplete_;
   std::int64_t sequence_ = 0;  // sequence of the last handled tick
-  shoal::sim_tick_t tick_;
+  shoal::sim_tick_t tick_{};
   std::function<void(const shoal::sim_tick_t&)> rewound_;
   std::int32_t branch_ = 0;
 

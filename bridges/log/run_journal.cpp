@@ -93,7 +93,7 @@ void RunJournal::add(std::int64_t step, const std::string& bus, const std::strin
   if (muted_) return;
   if (listener_) listener_(step, {bus, channel, sim::Bytes(payload.begin(), payload.end())});
   if (!waiting_.empty() && waiting_bytes_ + payload.size() > max_bytes) publish_inputs();
-  shoal::sim_input_t input;
+  shoal::sim_input_t input{};
   input.step = step;
   input.bus = bus;
   input.channel = channel;
@@ -133,7 +133,7 @@ void RunJournal::start_branch(std::int32_t branch, std::int64_t next_sequence) {
 }
 
 void RunJournal::publish_inputs() {
-  shoal::sim_inputs_t message;
+  shoal::sim_inputs_t message{};
   message.utime = world_.epoch_us() + world_.now().count();
   message.step = world_.step_number();
   message.sequence = sequence_++;
@@ -148,7 +148,7 @@ void RunJournal::publish_inputs() {
 
 void RunJournal::publish_hash() {
   if (is_observed_ && !is_observed_()) return;
-  shoal::sim_hash_t message;
+  shoal::sim_hash_t message{};
   message.utime = world_.epoch_us() + world_.now().count();
   message.step = world_.step_number();
   message.branch = branch_;

@@ -9,7 +9,6 @@
 #include "bridges/view/scene_text.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/sim_asset_t.hpp"
-#include "shoal/sim_scene_t.hpp"
 
 namespace bridges {
 
@@ -139,7 +138,12 @@ void ViewPublisher::after_step() {
   update_structure();
   const bool may_publish = revision_ == 1 || world_.now() < scene_time_ ||
                            world_.now() - scene_time_ >= min_scene_interval || scene_requested_;
-  if (world_.config().view.scene && (scene_requested_ || (scene_is_old_ && may_publish))) publish_scene();
+  if (world_.config().view.scene) {
+    if (scene_requested_ || (scene_is_old_ && may_publish))
+      publish_scene();
+    else if (repeat_is_due())
+      repeat_scene();
+  }
   // A large world lowers the rate of its poses.
   const double share = std::min(1.0, static_cast<double>(max_bodies_at_full_rate) /
                                          static_cast<double>(std::max<std::size_t>(1, movables_.size())));
@@ -163,27 +167,46 @@ void ViewPublisher::update_structure() {
 }
 
 void ViewPublisher::publish_scene() {
-  shoal::sim_scene_t scene;
-  scene.utime = utime(world_.now());
-  scene.step = world_.step_number();
-  scene.branch = branch_;
-  scene.revision = revision_;
-  scene.scene = scene_text(world_, revision_, assets_);
-  publish("sim.scene", scene);
+  scene_.revision = revision_;
+  scene_.scene = scene_text(world_, revision_, assets_);
   scene_time_ = world_.now();
   scene_is_old_ = false;
   // Assets are published once, and again on request.
   if (std::exchange(scene_requested_, false)) published_assets_.clear();
-  for (const auto& [hash, bytes] : assets_.all()) {
+  publish_stamped_scene();
+}
+
+/// Publishes the last scene again, with equal text, by which viewers know that they have it.
+void ViewPublisher::repeat_scene() {
+  published_assets_.clear();
+  publish_stamped_scene();
+}
+
+bool ViewPublisher::repeat_is_due() const {
+  if (scene_is_old_ || revision_ == 0) return false;
+  const sim::Time now = world_.now();
+  return now < repeated_ || now - repeated_ >= repeat_after_;  // earlier: after a rewind
+}
+
+void ViewPublisher::publish_stamped_scene() {
+  scene_.utime = utime(world_.now());
+  scene_.step = world_.step_number();
+  scene_.branch = branch_;
+  publish("sim.scene", scene_);
+  std::size_t bytes = scene_.scene.size();
+  for (const auto& [hash, content] : assets_.all()) {
+    bytes += content.size();
     if (!published_assets_.insert(hash).second) continue;
-    shoal::sim_asset_t asset;
-    asset.utime = scene.utime;
+    shoal::sim_asset_t asset{};
+    asset.utime = scene_.utime;
     asset.hash = hash;
-    asset.size = static_cast<std::int32_t>(bytes.size());
-    asset.data.resize(bytes.size());
-    std::memcpy(asset.data.data(), bytes.data(), bytes.size());
+    asset.size = static_cast<std::int32_t>(content.size());
+    asset.data.resize(content.size());
+    std::memcpy(asset.data.data(), content.data(), content.size());
     publish("sim.asset", asset);
   }
+  repeated_ = world_.now();
+  repeat_after_ = std::max(repeat_interval, sim::from_seconds(static_cast<double>(bytes) / repeated_bytes_per_s));
 }
 
 void ViewPublisher::fill_in_bodies(shoal::sim_bodies_t& bodies) const {
@@ -207,7 +230,7 @@ void ViewPublisher::fill_in_bodies(shoal::sim_bodies_t& bodies) const {
 }
 
 shoal::sim_bodies_t ViewPublisher::bodies() const {
-  shoal::sim_bodies_t bodies;
+  shoal::sim_bodies_t bodies{};
   fill_in_bodies(bodies);
   return bodies;
 }

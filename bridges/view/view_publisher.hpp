@@ -12,6 +12,7 @@
 #include "shoal/sim_bodies_t.hpp"
 #include "shoal/sim_current_t.hpp"
 #include "shoal/sim_event_t.hpp"
+#include "shoal/sim_scene_t.hpp"
 #include "shoal/sim_scores_t.hpp"
 #include "shoal/sim_sound_arrival_t.hpp"
 #include "shoal/sim_sound_t.hpp"
@@ -29,6 +30,10 @@ class ViewPublisher final : public sim::WorldObserver {
   using FillScores = std::function<void(shoal::sim_scores_t&)>;
   /// Bodies above this number lower the rate of `sim.bodies` in proportion, so that the cost is bounded.
   static constexpr std::size_t max_bodies_at_full_rate = 2000;
+  /// The scene comes again after this time, for viewers and loggers that start later, and a large one after a longer
+  /// time: with its assets it takes this many bytes per simulated second on average.
+  static constexpr sim::Time repeat_interval{10'000'000};
+  static constexpr double repeated_bytes_per_s = 2000;
   /// Maximum number of messages of one kind in a step; further ones are left out and counted.
   static constexpr std::size_t max_per_step = 1000;
 
@@ -72,6 +77,9 @@ class ViewPublisher final : public sim::WorldObserver {
 
   void update_structure();
   void publish_scene();
+  void repeat_scene();
+  void publish_stamped_scene();
+  bool repeat_is_due() const;
   void publish_bodies();
   void fill_in_bodies(shoal::sim_bodies_t& bodies) const;
   void publish_current();
@@ -97,15 +105,18 @@ class ViewPublisher final : public sim::WorldObserver {
   std::uint64_t generation_ = 0;  // of the world at revision_
   bool scene_is_old_ = false;     // since the last revision no scene was published
   bool scene_requested_ = false;
-  sim::Time scene_time_{0};  // of the last scene
+  sim::Time scene_time_{0};                   // of the last scene
+  shoal::sim_scene_t scene_{};                // the last one
+  sim::Time repeated_{0};                     // when it came last
+  sim::Time repeat_after_ = repeat_interval;  // by its size
   sim::Time next_scores_{0};
   std::vector<Movable> movables_;  // at revision_
   std::vector<shoal::sim_sound_t> sounds_;
   std::vector<shoal::sim_sound_arrival_t> arrivals_;
   std::vector<shoal::sim_event_t> events_;
-  shoal::sim_bodies_t bodies_;
-  shoal::sim_current_t current_;
-  shoal::sim_scores_t scores_;
+  shoal::sim_bodies_t bodies_{};
+  shoal::sim_current_t current_{};
+  shoal::sim_scores_t scores_{};
   std::int64_t left_out_ = 0;
   sim::Bytes buffer_;
 };

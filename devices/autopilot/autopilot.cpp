@@ -309,7 +309,7 @@ void Autopilot::drive(const sim::SenseContext& context, const Demand& demand) {
 }
 
 void Autopilot::drive_helm(const Demand& demand, sim::Time now) {
-  shoal::helm_command_t message;
+  shoal::helm_command_t message{};
   message.utime = world_.epoch_us() + vehicle_.clock().reading(now).count();
   message.speed_mps = demand.speed_mps;
   message.heading_rad = demand.heading_rad;

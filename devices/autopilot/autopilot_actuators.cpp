@@ -176,7 +176,7 @@ AutopilotActuators::Given AutopilotActuators::share(const Wrench& wrench, const 
 }
 
 void AutopilotActuators::publish(Driven& device, sim::Time now) {
-  shoal::actuator_command_t message;
+  shoal::actuator_command_t message{};
   message.utime = epoch_us_ + vehicle_.clock().reading(now).count();
   message.value = device.command;
   shoal::encode_into(message, payload_);

@@ -262,7 +262,7 @@ void AcousticModem::read_serial(sim::Time now) {
 
 void AcousticModemReporter::report(sim::Time, sim::Publisher& out) const {
   for (const AcousticModem::Packet& packet : modem_.received()) {
-    shoal::acoustic_received_t message;
+    shoal::acoustic_received_t message{};
     message.utime = out.utime_elsewhere(packet.arrived, packet.arrived_reading);
     message.sent_utime = out.utime_elsewhere(packet.sent, packet.sent_reading);
     message.travel_time_s = static_cast<double>(message.utime - message.sent_utime) * 1e-6;

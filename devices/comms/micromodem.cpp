@@ -276,7 +276,7 @@ void Micromodem::visit_state(sim::StateArchive& archive) {
 
 void MicromodemReporter::report(sim::Time, sim::Publisher& out) const {
   for (const Micromodem::Sentence& sentences : modem_.sentences()) {
-    shoal::nmea_sentence_t message;
+    shoal::nmea_sentence_t message{};
     message.utime = out.utime_elsewhere(sentences.at, sentences.reading);
     message.sentence = sentences.sentence;
     shoal::encode_into(message, out.buffer());

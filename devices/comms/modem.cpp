@@ -112,7 +112,7 @@ void Modem::transmit(sim::Time now, const Outgoing& message) {
   ++sent_;
   // The frame between modems is a modem_received_t; the copy of the receiver is completed on arrival.  Its utime
   // contains the error of the clock of the sender.
-  shoal::modem_received_t frame;
+  shoal::modem_received_t frame{};
   frame.sent_utime = now.count();
   frame.source = vehicle_;
   frame.destination = message.destination;
@@ -208,7 +208,7 @@ void Modem::read_serial(sim::Time now) {
 
 void ModemReporter::report(sim::Time, sim::Publisher& out) const {
   for (const Modem::Packet& packet : modem_.received()) {
-    shoal::modem_received_t message;
+    shoal::modem_received_t message{};
     message.utime = out.utime(packet.arrived);
     message.sent_utime = out.utime_elsewhere(packet.sent, packet.sent_reading);
     message.source = packet.source;

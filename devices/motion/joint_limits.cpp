@@ -81,6 +81,12 @@ JointLimitTable::Range JointLimitTable::range_of(std::size_t joint, std::span<co
   return range;
 }
 
+bool JointLimitTable::depends_on(std::size_t joint, std::size_t other) const {
+  return std::any_of(tables_.begin(), tables_.end(), [&](const Table& table) {
+    return table.joint == joint && (table.by == other || table.while_joint == other);
+  });
+}
+
 int JointLimitTable::limit(std::span<double> positions) const {
   constexpr double rounding_rad = 1e-9;
   int beyond = 0;

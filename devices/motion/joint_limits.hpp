@@ -43,6 +43,8 @@ class JointLimitTable {
 
   /// Returns the range of a joint at the positions of all joints, rad.
   Range range_of(std::size_t joint, std::span<const double> positions) const;
+  /// Returns whether the range of a joint depends on the position of another one.
+  bool depends_on(std::size_t joint, std::size_t other) const;
   /// Limits the positions, joint by joint.  Returns how many were beyond their limits.
   int limit(std::span<double> positions) const;
 

@@ -107,7 +107,7 @@ void GpsReporter::report(sim::Time sampled_at, sim::Publisher& out) const {
   const Gps::Reading& reading = gps_.reading();
   const double nothing = std::numeric_limits<double>::quiet_NaN();
   const bool fix = reading.fix_quality > 0;
-  shoal::gps_data_t message;
+  shoal::gps_data_t message{};
   message.utime = out.utime(sampled_at);
   message.gps_lock = reading.fix_quality;
   message.longitude = fix ? reading.position.longitude_deg : nothing;

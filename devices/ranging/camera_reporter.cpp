@@ -41,7 +41,7 @@ void set_compressed(shoal::image_t& message, const sim::Bytes& compressed, std::
 }
 
 void add_metadata(shoal::image_t& message, const std::string& key, const std::string& value) {
-  shoal::image_metadata_t entry;
+  shoal::image_metadata_t entry{};
   entry.key = key;
   entry.n = static_cast<std::int32_t>(value.size());
   entry.value.assign(value.begin(), value.end());

@@ -132,7 +132,7 @@ void Usbl::visit_state(sim::StateArchive& archive) {
 void UsblReporter::report(sim::Time sampled_at, sim::Publisher& out) const {
   for (const Usbl::Fix& fix : usbl_.fixes()) {
     const sim::Vector3d position_S = fix.position_S();
-    shoal::usbl_t message;
+    shoal::usbl_t message{};
     message.utime = out.utime(sampled_at);
     message.target = fix.target;
     message.travel_time_s = fix.travel_time_s;

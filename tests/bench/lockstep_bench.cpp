@@ -81,7 +81,7 @@ Times ping_pong(const std::string& on, int rounds) {
 void be_a_client(const std::string& on, int number) {
   bridges::LockstepClient client(on, "client" + std::to_string(number));
   client.join(0.01, 30s);
-  shoal::sim_tick_t tick;
+  shoal::sim_tick_t tick{};
   while (client.next_tick(tick)) client.acknowledge(tick);
   _exit(0);
 }

@@ -216,6 +216,24 @@ TEST_F(DriveTest, APageDrivesVehiclesWithTheirOwnBusAlsoSpawnedOnes) {
   replay();
 }
 
+/// The kind is not named: twist is the first one by which the Segway can be driven.
+TEST_F(DriveTest, TheSegwayIsDrivenThroughTheProgramThatBalancesIt) {
+  lcm_.listen("segway1.balance.cmd");
+  run_ = std::make_unique<Program>(std::vector<std::string>{built("shoal"), "run", source("worlds/segway.yaml"),
+                                                            "--launch", "--speed", "1", "--duration", "600", "--set",
+                                                            "events=[]", "--lcm-url", own_url()});
+  ASSERT_TRUE(await_state([](const shoal::sim_state_t&) { return true; })) << run_->errors();
+  write_file(folder_.file("pad.events"), pad_events(1.5));
+  const Ended drive = run_shoal({"drive", "segway1", "--events", folder_.file("pad.events"), "--lcm-url", own_url()});
+  EXPECT_EQ(drive.exit_code, 0) << drive.errors;
+  EXPECT_TRUE(await_message([](const bridges::Received& message) {
+    return message.channel == "segway1.balance.cmd" &&
+           shoal::decode<shoal::twist_command_t>(message.payload, shoal::Finite::required).forward_mps == 1;
+  }));
+  EXPECT_EQ(control({"quit"}).exit_code, 0);
+  run_->wait();
+}
+
 TEST_F(DriveTest, SaysWhyAVehicleIsNotDriven) {
   start();
   write_file(folder_.file("pad.events"), pad_events(0.2));

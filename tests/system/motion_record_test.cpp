@@ -97,6 +97,24 @@ TEST_F(MotionRecord, EightJointsStartInOneFrameAndTheSameEventsGiveTheSameFiles)
   EXPECT_EQ(checked.exit_code, 0) << checked.output;
 }
 
+TEST_F(MotionRecord, APageChangesNothing) {
+  const std::vector<Stroke> strokes{{0.1, key_1, 1}, {0.2, key_1, 0}};
+  const Ended alone = record(strokes, 0.4, {"--overwrite"});
+  EXPECT_EQ(alone.exit_code, 0) << alone.errors;
+  const Ended viewed = record(strokes, 0.4, {"--overwrite", "--view", "--view-port", "0"});
+  EXPECT_EQ(viewed.exit_code, 0) << viewed.errors;
+  EXPECT_THAT(viewed.errors, HasSubstr("live page: http://"));
+  EXPECT_EQ(viewed.output, alone.output);  // with the hash of the state
+}
+
+TEST_F(MotionRecord, SaysOnceWhatIsWrongWithItsWorld) {
+  const Ended ended = record({}, 0.4, {"--set", "view.scores_rate_hz=0"});
+  EXPECT_EQ(ended.exit_code, 2);
+  const std::size_t first = ended.errors.find("'scores_rate_hz' must be > 0");
+  ASSERT_NE(first, std::string::npos) << ended.errors;
+  EXPECT_EQ(ended.errors.find("'scores_rate_hz' must be > 0", first + 1), std::string::npos) << ended.errors;
+}
+
 TEST_F(MotionRecord, AGamepadMovesTheJointsOfALeg) {
   // The next set twice: the right foreleg; its stick up, and the right stick.
   const Ended ended = record({{0.05, 311, 1},

@@ -82,7 +82,7 @@ std::vector<std::vector<sim::Bytes>> ticks_of(const std::string& channel, double
   client.subscribe(
       channel, [&](std::span<const std::byte> payload) { ticks.back().emplace_back(payload.begin(), payload.end()); });
   client.join(period_s, timeout);
-  shoal::sim_tick_t tick;
+  shoal::sim_tick_t tick{};
   while (client.next_tick(tick)) {
     client.acknowledge(tick);
     ticks.emplace_back();
@@ -160,7 +160,7 @@ TEST_F(Play, RefusesABusWithAnotherSimulator) {
 TEST_F(Play, SaysWhichChannelsTheRecordDoesNotHave) {
   record_minimal();
   Program play = player({"--join-timeout", "60"});
-  shoal::sim_tick_t tick;
+  shoal::sim_tick_t tick{};
   {
     bridges::LockstepClient other_client(own_url(1), "stranger");
     other_client.subscribe("rover9.lidar", [](std::span<const std::byte>) {});

@@ -280,7 +280,7 @@ export class MockServer {
       paused: this.paused,
       speed: this.speed,
       rate: this.paused ? 0 : this.speed,
-      waits_for: '',
+      waits_for: this.waits_for ?? '',
       ended: this.ended ?? null,
       log: this.log
     });

@@ -114,7 +114,7 @@ export class TimeBar {
     else if (Number.isFinite(status.rate))
       parts.push(`runs at ${+ status.rate.toPrecision(2)}×`);
     if (this.hello.programs) parts.push(`programs: ${this.hello.programs}`);
-    if (status.waits_for) parts.push(`waits for ${status.waits_for}`);
+    if (status.waits_for) parts.push(status.waits_for);
     if (status.branch) parts.push(`branch ${status.branch}`);
     if (Number.isFinite(status.step)) parts.push(`step ${status.step}`);
     const text = parts.join(' · ');

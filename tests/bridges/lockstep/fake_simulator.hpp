@@ -101,7 +101,7 @@ class FakeSimulator {
  private:
   struct Member {
     std::vector<std::string> receives;
-    shoal::sim_due_t due;
+    shoal::sim_due_t due{};
     std::int32_t join_id = 0;  ///< number of the request
   };
 
@@ -151,7 +151,7 @@ class FakeSimulator {
   std::unique_ptr<sim::Mailbox> requests_, acks_, questions_, bundles_, commands_;
   std::map<std::string, Member> members_;
   std::set<std::pair<std::string, std::int32_t>> replied_;  // client and number of the request
-  shoal::sim_tick_t last_tick_;
+  shoal::sim_tick_t last_tick_{};
 };
 
 }  // namespace lcm_test

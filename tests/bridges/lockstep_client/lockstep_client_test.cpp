@@ -46,7 +46,7 @@ TEST(LockstepClient, RunsInStepWithTheSimulator) {
     }
   });
   client.join(0.1, 60s);
-  shoal::sim_tick_t tick;
+  shoal::sim_tick_t tick{};
   int ticks = 0;
   while (client.next_tick(tick)) {
     EXPECT_EQ(tick.step, ++ticks);
@@ -82,7 +82,7 @@ TEST(LockstepClient, IsNotNotifiedOfWhatAnotherClientOfItsNameIs) {
   });
   client.join(0.1, 60s);
   client.set_silence_limit(60s);
-  shoal::sim_tick_t tick;
+  shoal::sim_tick_t tick{};
   ASSERT_TRUE(client.next_tick(tick));
   client.acknowledge(tick);
   EXPECT_FALSE(client.next_tick(tick));
@@ -128,7 +128,7 @@ TEST(LockstepClient, SaysThatItLivesBeforeItsFirstTick) {
   });
   client.join(0.1, 60s);
   client.set_silence_limit(60s);
-  shoal::sim_tick_t tick;
+  shoal::sim_tick_t tick{};
   EXPECT_FALSE(client.next_tick(tick));
   thread.join();
 }
@@ -157,7 +157,7 @@ TEST(LockstepClient, ContinuesWhenALastTickThatDoesNotListItEndsAnotherRun) {
   });
   client.join(0.1, 60s);
   client.set_silence_limit(60s);
-  shoal::sim_tick_t tick;
+  shoal::sim_tick_t tick{};
   ASSERT_TRUE(client.next_tick(tick));
   client.acknowledge(tick);
   EXPECT_TRUE(client.next_tick(tick));
@@ -219,7 +219,7 @@ TEST(LockstepClient, HandlerMaySubscribeToItsOwnChannel) {
   simulator.publish("auv1.note", bytes_of("one"));
   simulator.publish("auv1.note", bytes_of("two"));
   simulator.tick(1, {"pilot"});
-  shoal::sim_tick_t tick;
+  shoal::sim_tick_t tick{};
   ASSERT_TRUE(client.next_tick(tick));
   EXPECT_EQ(first, 2);
   EXPECT_EQ(later, 50);  // with the second message
@@ -235,7 +235,7 @@ TEST(LockstepClient, AcknowledgesARepeatedTickAgain) {
   LockstepClient client(own_url(1), "pilot");
   join(simulator, client);
   simulator.tick(1, {"pilot"});
-  shoal::sim_tick_t tick;
+  shoal::sim_tick_t tick{};
   ASSERT_TRUE(client.next_tick(tick));
   client.acknowledge(tick);
   EXPECT_EQ(simulator.await_ack().step, 1);
@@ -258,14 +258,14 @@ TEST(LockstepClient, InvalidPayloadsAreIgnored) {
   simulator.bus().publish("sim.tick", cut, sim::Time(0));
   simulator.bus().publish("sim.control.reply", cut, sim::Time(0));
   simulator.tick(5, {"pilot"});
-  shoal::sim_tick_t tick;
+  shoal::sim_tick_t tick{};
   ASSERT_TRUE(client.next_tick(tick));
   EXPECT_EQ(tick.step, 5);
 }
 
 TEST(LockstepClient, EndsWhenStoppedAndAfterSilence) {
   LockstepClient client(own_url(1), "pilot");
-  shoal::sim_tick_t tick;
+  shoal::sim_tick_t tick{};
   client.set_silence_limit(20ms);
   EXPECT_FALSE(client.next_tick(tick));
   EXPECT_EQ(client.end(), LockstepClient::End::silence);
@@ -288,7 +288,7 @@ struct Listening {
   FakeSimulator simulator;
   LockstepClient client{own_url(1), "pilot"};
   std::vector<std::string> seen;
-  shoal::sim_tick_t tick;
+  shoal::sim_tick_t tick{};
 };
 
 TEST(LockstepClient, HandlesMessagesInTheOrderOfTheTickAndOnce) {

@@ -3,7 +3,10 @@
 
 #include <gmock/gmock.h>
 
+#include <array>
 #include <fstream>
+#include <memory>
+#include <new>
 #include <nlohmann/json.hpp>
 
 #include "shoal/sim_asset_t.hpp"
@@ -149,6 +152,33 @@ TEST(ViewPublisher, TheSceneAndItsAssetsComeAgainOnRequest) {
   EXPECT_EQ(viewed.assets.take_all().size(), 1u);
 }
 
+/// A logger may start at any time.
+TEST(ViewPublisher, TheSceneComesAgainAfterTenSeconds) {
+  ViewedWorld viewed(rover_and_ball);
+  const std::string first = viewed.scenes.take_all().at(0).scene;
+  viewed.run_for(9.9);
+  EXPECT_TRUE(viewed.scenes.take_all().empty());
+  viewed.run_for(0.2);
+  const std::vector<shoal::sim_scene_t> again = viewed.scenes.take_all();
+  ASSERT_EQ(again.size(), 1u);
+  EXPECT_EQ(again[0].scene, first) << "by which a viewer knows that it has it";
+  EXPECT_EQ(again[0].utime, viewed.test.world.epoch_us() + 10'000'000);
+}
+
+TEST(ViewPublisher, ALargeSceneAndItsAssetsComeAgainMoreRarely) {
+  ViewedWorld viewed(
+      "shoal: 1\nphysics: {step_s: 0.01}\nobjects: [{name: hill, fixed: true, parts: [{shape: terrain, terrain: "
+      "{source: slope, angle_deg: 10, cell_m: 1, size_m: [200, 100]}}]}]\n");
+  const std::size_t bytes = viewed.scenes.take_all().at(0).scene.size() + viewed.assets.take_all().at(0).data.size();
+  const double after_s = static_cast<double>(bytes) / 2000;
+  ASSERT_GT(after_s, 40);  // 201 x 101 heights of 4 bytes
+  viewed.run_for(after_s - 0.1);
+  EXPECT_TRUE(viewed.scenes.take_all().empty());
+  viewed.run_for(0.2);
+  EXPECT_EQ(viewed.scenes.take_all().size(), 1u);
+  EXPECT_EQ(viewed.assets.take_all().size(), 1u);
+}
+
 TEST(ViewPublisher, FaultsAreEvents) {
   ViewedWorld viewed(rover_and_ball +
                      "events: [{name: dark, at: 0.1, do: [{fault: {device: r1/lidar, kind: silent}}]}]\n");
@@ -259,6 +289,21 @@ TEST(ViewPublisher, DoesNotChangeTheRun) {
     return test.world.state().run_hash();
   };
   EXPECT_EQ(hash_of(true), hash_of(false));
+}
+
+/// The publisher lies in memory that was used before, as on the stack of a program.
+TEST(ViewPublisher, PublishesNoScoresWhenThereAreNone) {
+  test::TestWorld test(rover_and_ball);
+  test::Listener<shoal::sim_scores_t> scores(test, "sim.scores");
+  struct Destroy {
+    void operator()(bridges::ViewPublisher* view) const { view->~ViewPublisher(); }
+  };
+  alignas(bridges::ViewPublisher) std::array<unsigned char, sizeof(bridges::ViewPublisher)> used;
+  used.fill(0x55);
+  const std::unique_ptr<bridges::ViewPublisher, Destroy> view(new (used.data()) bridges::ViewPublisher(
+      test.bus, test.world, [](shoal::sim_scores_t&) {}, [] { return true; }));
+  view->after_step();
+  EXPECT_TRUE(scores.take_all().empty());
 }
 
 TEST(ViewPublisher, MakesNothingWhileNothingIsObserved) {

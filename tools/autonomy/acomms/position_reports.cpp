@@ -16,7 +16,7 @@ constexpr double speed_change_std_mps = 0.3;
 
 shoal::modem_send_t broadcast(const shoal::position_report_t& report) {
   const std::vector<std::byte> bytes = shoal::encode(report);
-  shoal::modem_send_t message;
+  shoal::modem_send_t message{};
   message.utime = report.utime;
   message.size = static_cast<std::int32_t>(bytes.size());
   const auto* data = reinterpret_cast<const std::uint8_t*>(bytes.data());

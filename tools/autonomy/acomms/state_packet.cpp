@@ -13,7 +13,7 @@ template <class Content>
 std::optional<shoal::modem_send_t> broadcast(const Content& content) {
   auto bytes = acoustic_frame::encode(content);
   if (!bytes) return std::nullopt;
-  shoal::modem_send_t message;
+  shoal::modem_send_t message{};
   message.utime = content.utime;
   message.size = static_cast<std::int32_t>(bytes->size());
   message.data = std::move(*bytes);

@@ -116,7 +116,7 @@ Twist CoopRover::drive_by_helm(std::int64_t utime) {
 std::vector<CoopRover::Outgoing> CoopRover::step(std::int64_t utime) {
   std::vector<Outgoing> out;
   const Twist twist = drive(utime);
-  shoal::twist_command_t command;
+  shoal::twist_command_t command{};
   command.utime = utime;
   command.forward_mps = twist.forward_mps;
   command.turn_radps = twist.turn_radps;
@@ -147,7 +147,7 @@ bool CoopRover::report_is_due(std::int64_t utime) const {
 std::vector<std::byte> CoopRover::report() const {
   const Pose2& pose = filter_.pose();
   const Vector2d v_W = turned({measured_.forward_mps, 0}, pose.yaw_rad);
-  shoal::position_report_t report;
+  shoal::position_report_t report{};
   report.utime = *odometry_utime_;
   report.vehicle = params_.name;
   for (int i = 0; i < 2; ++i) {

@@ -120,7 +120,7 @@ class Wanderers final : public ScenePrograms {
       while (const auto message = each.scans->take()) {
         const auto scan = shoal::decode<shoal::planar_lidar_t>(message->payload, shoal::Finite::any);
         const autonomy::Twist twist = each.brain.step({scan.ranges, scan.rad0, scan.radstep});
-        shoal::twist_command_t command;
+        shoal::twist_command_t command{};
         command.utime = scan.utime;
         command.forward_mps = twist.forward_mps;
         command.turn_radps = twist.turn_radps;

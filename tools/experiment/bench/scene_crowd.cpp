@@ -49,7 +49,7 @@ class CrowdDrivers final : public ScenePrograms {
     if (now < next_) return;
     for (auto& [channel, random] : all_) {
       random.begin_step(seconds_);
-      shoal::twist_command_t command;
+      shoal::twist_command_t command{};
       command.utime = now.count();
       command.forward_mps = 0.4;
       command.turn_radps = random.uniform() - 0.5;

@@ -90,6 +90,14 @@ sim::Bytes mix_payload(bool wrench, const std::vector<DriveProfile::Share>& shar
 
 }  // namespace
 
+DrivenVehicle driven_vehicle(const shoal::sim_vehicle_t& message) {
+  DrivenVehicle vehicle{message.vehicle, {}};
+  for (std::size_t i = 0; i < message.device.size(); ++i)
+    vehicle.devices.push_back(
+        {message.device[i], message.device_type[i], message.command_channel[i], message.command_types[i]});
+  return vehicle;
+}
+
 std::vector<DriveKind> drive_kinds(const DriveProfile& profile, const DrivenVehicle& vehicle) {
   std::vector<DriveKind> kinds;
   for (const DriveKind kind : {DriveKind::twist, DriveKind::helm, DriveKind::thrust, DriveKind::joints})

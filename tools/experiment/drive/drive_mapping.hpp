@@ -6,22 +6,27 @@
 #include <string>
 #include <vector>
 
+#include "shoal/sim_vehicle_t.hpp"
 #include "sim/bus/bus.hpp"
 #include "tools/experiment/drive/drive_profile.hpp"
 
 namespace tools {
 
-/// Device that takes commands.
+/// Device of a vehicle.
 struct DrivenDevice {
-  std::string name, type, channel;
+  std::string name, type;
+  std::string channel;        ///< of its commands; empty: it takes none
   std::string command_types;  ///< comma separated
 };
 
-/// Vehicle as a driver sees it.
+/// Vehicle as a driver sees it, with all its devices: programs that drive it are found by their sensors too.
 struct DrivenVehicle {
   std::string name;
   std::vector<DrivenDevice> devices;
 };
+
+/// Returns the vehicle that a message of `sim.vehicle` describes.
+DrivenVehicle driven_vehicle(const shoal::sim_vehicle_t& message);
 
 /// Where a vehicle is, for commands relative to it.
 struct DrivePose {

@@ -23,6 +23,21 @@ std::optional<std::uint64_t> word_of(std::span<const std::byte> payload, std::si
   return shoal::big_endian<std::uint64_t>(payload.data() + fingerprint_bytes + offset);
 }
 
+/// Returns the UTC of simulated time 0 by the first `sim.info`, which a logger that was started after the run has only
+/// after other messages; none: 0.
+std::int64_t epoch_in(const std::string& path) {
+  bridges::EventLogReader reader(path);
+  bridges::LogEventView event;
+  while (reader.next(event)) {
+    if (event.channel != "sim.info") continue;
+    try {
+      return shoal::decode<shoal::sim_info_t>(event.payload, shoal::Finite::any).epoch_utime;
+    } catch (const shoal::MessageError&) {  // reported later
+    }
+  }
+  return 0;
+}
+
 }  // namespace
 
 const LogIndex::Mark* LogIndex::last(const std::vector<Mark>& marks, std::int64_t time_us) {
@@ -53,7 +68,8 @@ void LogIndex::add_hash(const Hash& hash) {
   if (hashes_.empty() || hashes_.back().time_us < hash.time_us) hashes_.push_back(hash);
 }
 
-LogIndex::LogIndex(const std::string& path, const std::function<void(double share)>& progress) {
+LogIndex::LogIndex(const std::string& path, const std::function<void(double share)>& progress)
+    : epoch_us_(epoch_in(path)) {
   bridges::EventLogReader reader(path);
   bridges::LogEventView event;
   std::int64_t number = 0;
@@ -71,6 +87,7 @@ LogIndex::LogIndex(const std::string& path, const std::function<void(double shar
     try {
       if (event.channel == "sim.info") {
         const auto info = shoal::decode<shoal::sim_info_t>(event.payload, shoal::Finite::any);
+        has_info_ = true;
         epoch_us_ = info.epoch_utime;
         world_ = info.world;
       } else if (is_bodies) {
@@ -107,7 +124,8 @@ void LogIndex::check(const std::string& path) const {
   throw std::runtime_error(
       path + ": has " + missing +
       ", so there is nothing to show: it was recorded by an earlier version of Shoal, with 'view:' "
-      "switched off, or by a logger that was started after the run");
+      "switched off, or by a logger that was started after the run" +
+      (has_info_ ? "; `shoal view " + path + " --resimulate` runs its world again, and shows it" : ""));
 }
 
 }  // namespace tools

@@ -64,6 +64,7 @@ class LogIndex {
   void check(const std::string& path) const;
 
   std::int64_t epoch_us_ = 0;
+  bool has_info_ = false;  // of the run, with its world
   std::string world_;
   std::vector<Mark> bodies_, scenes_, scores_;
   std::vector<Hash> hashes_;

@@ -20,7 +20,7 @@ class LogPoses {
   struct Poses {
     std::int64_t time_us = 0;
     const std::vector<std::string>* names = nullptr;  ///< of the bodies, by the scene of this time
-    shoal::sim_bodies_t message;
+    shoal::sim_bodies_t message{};
     std::span<const std::byte> bodies;  ///< as in StateFrame::bodies()
   };
 

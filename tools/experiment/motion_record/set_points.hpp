@@ -28,24 +28,40 @@ class SetPoints {
         pairs_(std::move(pairs)),
         frame_s_(frame_s),
         values_(limits_.size(), 0.0),
+        reach_(limits_.size()),
         at_limit_(limits_.size(), false) {}
 
   std::span<const double> values() const { return values_; }
   /// Sets the value of a joint that something else moves.
-  void set(std::size_t joint, double value) { values_[joint] = value; }
+  void set(std::size_t joint, double value) {
+    values_[joint] = value;
+    reach_[joint].reset();
+  }
   /// Moves a joint for one frame.
   void move(std::size_t joint, double velocity, const std::optional<Goal>& goal);
   /// Returns whether the joint is at a limit of its servo, or of two joints, which its last movement would pass.
   bool is_at_limit(std::size_t joint) const { return at_limit_[joint]; }
-  /// Keeps the limits of pairs for these joints, after all have been moved.
+  /// Keeps the limits of pairs for these joints, after all have been moved.  No joint is faster than its servo for it:
+  /// while a joint is on its way into a new range, those on which this range depends wait.  Only a joint that something
+  /// else moves, or that has to reach its goal, does not wait; then the other one jumps.
   void limit(std::span<const std::size_t> joints);
 
  private:
+  /// Values that a joint can have in this frame.
+  struct Reach {
+    double before, low, high;
+  };
+
+  bool find_limited(std::span<const std::size_t> joints);
+  bool is_too_fast(std::size_t joint) const;
+  bool let_wait(std::span<const std::size_t> joints, std::size_t joint);
+
   std::vector<Limits> limits_;
   devices::JointLimitTable pairs_;
   double frame_s_;
-  std::vector<double> values_, limited_;
-  std::vector<bool> at_limit_;
+  std::vector<double> values_, limited_, desired_;
+  std::vector<std::optional<Reach>> reach_;  ///< of the joints that have been moved in this frame
+  std::vector<bool> at_limit_, waits_;
 };
 
 }  // namespace tools

@@ -223,7 +223,7 @@ void ReplayMessages::differ(std::string_view channel, std::int64_t step, const s
 
 void ReplayMessages::compare_states(Payload logged, Payload here, std::int64_t step) {
   // Decode both messages.
-  shoal::sim_state_t there, own;
+  shoal::sim_state_t there{}, own{};
   try {
     there = shoal::decode<shoal::sim_state_t>(logged, shoal::Finite::any);
     own = shoal::decode<shoal::sim_state_t>(here, shoal::Finite::any);

@@ -342,7 +342,7 @@ std::string ResimulatedRun::change(const std::string& command, double value, con
     throw std::runtime_error("'" + command + "': this is a record, which cannot be changed: branch here first");
   if (command != "do" && command != "spawn" && command != "remove")
     throw std::runtime_error("'" + command + "' is not possible in a record that is run again");
-  shoal::sim_control_request_t request;
+  shoal::sim_control_request_t request{};
   request.client = "live page";
   request.command = command;
   request.value = value;

@@ -142,7 +142,7 @@ RunPage::Publish Run::drive_publisher() {
 void Run::serve_page() {
   page_->serve(world_, view_, control_, service_.waits_for(),
                [this](const std::string& command, double value, const std::string& text) -> RunPage::Answer {
-                 shoal::sim_control_request_t request;
+                 shoal::sim_control_request_t request{};
                  request.client = "live page";
                  request.command = command;
                  request.value = value;

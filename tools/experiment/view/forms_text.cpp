@@ -4,6 +4,7 @@
 #include <map>
 #include <set>
 
+#include "bridges/control/spawned_vehicles.hpp"
 #include "sim/device/device_registry.hpp"
 #include "sim/script/action_registry.hpp"
 #include "tools/experiment/drive/drive_mapping.hpp"
@@ -62,7 +63,7 @@ std::string forms_text(const sim::World& world, const DriveProfile& profile) {
     Json& kinds = by_model[&vehicle->config()];
     if (kinds.is_null()) {
       kinds = Json::array();
-      const DrivenVehicle driven = driven_vehicle(*vehicle);
+      const DrivenVehicle driven = driven_vehicle(bridges::vehicle_message(*vehicle));
       for (const DriveKind kind : drive_kinds(profile, driven))
         kinds.push_back({{"kind", std::string(sim::word_of(drive_kind_words, kind))},
                          {"axes", DriveMapping(profile, driven, kind).axes()}});

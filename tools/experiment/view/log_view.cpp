@@ -352,7 +352,7 @@ void BusView::send_status() {
                                       {"paused", known && simulated_s == 0},
                                       {"speed", nullptr},
                                       {"rate", known ? simulated_s / wall_s : 0},
-                                      {"waits_for", ""},
+                                      {"waits_for", messages_.has_scene() ? "" : "waits for sim.scene"},
                                       {"ended", nullptr}}));
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "bridges/control/spawned_vehicles.hpp"
 #include "sim/config/message_text.hpp"
 #include "tools/experiment/drive/drive_error.hpp"
 
@@ -30,16 +31,6 @@ std::string text_of(const Json& message, const char* key) {
 }
 
 }  // namespace
-
-DrivenVehicle driven_vehicle(const sim::Vehicle& vehicle) {
-  DrivenVehicle driven{vehicle.name(), {}};
-  for (const sim::MountedDevice* device : vehicle.devices()) {
-    const sim::DeviceType& type = *device->config().device_type;
-    if (type.takes_commands())
-      driven.devices.push_back({device->config().name, type.name, device->command_channel(), type.command_messages});
-  }
-  return driven;
-}
 
 PageDrive::Request PageDrive::read(std::string_view text) {
   const Json message = Json::parse(text, nullptr, false);
@@ -83,8 +74,8 @@ void PageDrive::take(int client, const Request& request, const sim::World& world
         throw DriveError("'kind' of drive must be twist, helm, thrust or joints, got '" +
                          sim::shortened(sim::printable(request.kind)) + "'");
     }
-    seat =
-        seats_.emplace(request.vehicle, Seat{client, request.kind, {profile_, driven_vehicle(*vehicle), kind}}).first;
+    const DrivenVehicle driven = driven_vehicle(bridges::vehicle_message(*vehicle));
+    seat = seats_.emplace(request.vehicle, Seat{client, request.kind, {profile_, driven, kind}}).first;
   }
   // An axis that the vehicle does not have is a mistake, not nothing.
   const std::vector<std::string>& axes = seat->second.driver.mapping().axes();

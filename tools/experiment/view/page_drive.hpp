@@ -13,9 +13,6 @@
 
 namespace tools {
 
-/// Returns the devices of a vehicle that take commands.
-DrivenVehicle driven_vehicle(const sim::Vehicle& vehicle);
-
 /// Vehicles that pages drive by hand: one driver each, with its dead-man switch and watchdog (docs/guides/drive.md).
 /// The wall time is passed in.
 class PageDrive {

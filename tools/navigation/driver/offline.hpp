@@ -15,7 +15,7 @@ namespace navigation {
 struct OfflineRun {
   struct Published {
     std::int64_t time_us = 0;  ///< simulated
-    shoal::estimate_t message;
+    shoal::estimate_t message{};
   };
   std::string algorithm;
   std::vector<std::vector<Published>> estimates;  ///< by vehicle

@@ -119,15 +119,6 @@ class PadControls final : public Controls {
   std::optional<Clock::time_point> start_;
 };
 
-DrivenVehicle driven_vehicle_of(const shoal::sim_vehicle_t& message) {
-  DrivenVehicle vehicle{message.vehicle, {}};
-  for (std::size_t i = 0; i < message.device.size(); ++i)
-    if (!message.command_channel[i].empty())
-      vehicle.devices.push_back(
-          {message.device[i], message.device_type[i], message.command_channel[i], message.command_types[i]});
-  return vehicle;
-}
-
 /// A vehicle of a run elsewhere: its devices, its pose, and its commands.  Commands go to the bus of the vehicle, all
 /// else is on that of the world.
 class RemoteVehicle {
@@ -167,7 +158,7 @@ class RemoteVehicle {
   void take_vehicle(const shoal::sim_vehicle_t& message) {
     if (message.vehicle != name_) return;
     removed_ = !message.present;
-    if (message.present) description_ = driven_vehicle_of(message);
+    if (message.present) description_ = driven_vehicle(message);
   }
   void take_state(const shoal::sim_state_t& message) {
     utime_ = message.utime;

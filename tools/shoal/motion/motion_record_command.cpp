@@ -23,12 +23,12 @@
 #include "tools/experiment/motion/motion_tracking.hpp"
 #include "tools/experiment/motion_record/motion_recorder.hpp"
 #include "tools/experiment/motion_record/record_input.hpp"
+#include "tools/experiment/motion_record/record_view.hpp"
 #include "tools/experiment/motion_record/recorded_motion.hpp"
 #include "tools/experiment/process/signals.hpp"
 #include "tools/experiment/world_files/world_by_name.hpp"
 #include "tools/shoal/motion/motion_commands.hpp"
 #include "tools/shoal/motion/motion_output.hpp"
-#include "tools/shoal/motion/record_view.hpp"
 #include "tools/shoal/motion/vehicle_joints.hpp"
 #include "tools/shoal/options/view_options.hpp"
 

@@ -130,7 +130,7 @@ int view_again(const ViewArguments& arguments) {
 
 /// Asks a run that has already begun for its scene.
 void ask_for_scene(bridges::LcmListener& lcm) {
-  shoal::sim_control_request_t request;
+  shoal::sim_control_request_t request{};
   request.client = fmt::format("shoal-view-{}", getpid());
   request.command = "scene";
   request.id = 1;
@@ -146,6 +146,7 @@ int view_bus(const ViewArguments& arguments) {
   announce(arguments.view, view.url());
   constexpr std::chrono::seconds ask_interval{2};
   Clock::time_point next_flush = Clock::now(), next_request = next_flush;
+  int requests = 0;
   const Deadline deadline(arguments.duration_s);
   while (deadline.goes_on()) {
     const auto now = Clock::now();
@@ -156,6 +157,10 @@ int view_bus(const ViewArguments& arguments) {
     if (!view.has_scene() && now >= next_request) {
       ask_for_scene(lcm);
       next_request = now + ask_interval;
+      if (++requests == 2)
+        sim::log_info(
+            "waits for sim.scene: a run sends it when it is asked; of a log that is played it comes again when it was "
+            "recorded, usually every 10 s; `shoal view LOG` shows a log at once");
     }
     const auto wait = std::chrono::duration_cast<std::chrono::milliseconds>(next_flush - Clock::now());
     if (const auto message = lcm.next(std::max(wait, std::chrono::milliseconds(1))))

@@ -13,7 +13,7 @@ using autonomy::PositionReports;
 using test::second;
 
 shoal::position_report_t report_at(std::int64_t utime) {
-  shoal::position_report_t report;
+  shoal::position_report_t report{};
   report.utime = utime;
   report.vehicle = "rover1";
   report.position_m[0] = 10;
@@ -27,7 +27,7 @@ shoal::position_report_t report_at(std::int64_t utime) {
 /// What the modem of a receiver publishes 20 ms after the report was made.
 shoal::modem_received_t over_the_modem(const shoal::position_report_t& report, const std::string& source = "rover1") {
   const shoal::modem_send_t sent = autonomy::broadcast(report);
-  shoal::modem_received_t packet;
+  shoal::modem_received_t packet{};
   packet.utime = report.utime + 20'000;
   packet.sent_utime = report.utime;
   packet.source = source;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "bridges/control/spawned_vehicles.hpp"
 #include "shoal/ackermann_command_t.hpp"
 #include "shoal/actuator_command_t.hpp"
 #include "shoal/helm_command_t.hpp"
@@ -15,6 +16,7 @@
 #include "shoal/twist_command_t.hpp"
 #include "shoal/wrench_t.hpp"
 #include "sim/device/device_registry.hpp"
+#include "tests/devices/world_fixture.hpp"
 #include "tests/project_paths.hpp"
 #include "tools/experiment/drive/drive_error.hpp"
 
@@ -142,15 +144,15 @@ TEST(DriveMapping, RunsJointsAtAVelocityAndHoldsTheOthers) {
   EXPECT_DOUBLE_EQ(command(commands[1]).velocity, -profile().joints.velocity);
 }
 
-TEST(DriveMapping, DrivesAProgramThatBalances) {
-  tools::DriveMapping mapping(profile(),
-                              vehicle({{"left_motor", "joint_servo"},
-                                       {"right_motor", "joint_servo"},
-                                       {"inclinometer", "inclinometer"},
-                                       {"encoder", "wheel_encoder"}}),
-                              {});
-  EXPECT_EQ(mapping.kind(), DriveKind::twist);
-  only<shoal::twist_command_t>(mapping.commands({}, 0, {}), "v.balance.cmd");
+TEST(DriveMapping, DrivesTheSegwayThroughTheProgramThatBalancesIt) {
+  const test::LoadedTestWorld segway(test_support::source_path("worlds/segway.yaml"));
+  const tools::DrivenVehicle driven =
+      tools::driven_vehicle(bridges::vehicle_message(*segway.world.find_vehicle("segway1")));
+  EXPECT_THAT(tools::drive_kinds(profile(), driven), ElementsAre(DriveKind::twist, DriveKind::joints));
+  tools::DriveMapping mapping(profile(), driven, {});
+  only<shoal::twist_command_t>(mapping.commands({}, 0, {}), "segway1.balance.cmd");
+  EXPECT_THAT(tools::DriveMapping(profile(), driven, DriveKind::joints).axes(),
+              ElementsAre("left_motor", "right_motor"));
 }
 
 TEST(DriveMapping, SaysWhatIsPossibleInstead) {

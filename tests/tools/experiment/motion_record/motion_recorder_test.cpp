@@ -7,11 +7,15 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <numbers>
 
 #include "devices/joint/joint_servo.hpp"
 #include "sim/vehicle/mounted_device.hpp"
+#include "sim/world_file/vehicle_loader.hpp"
 #include "tests/devices/joint/leg_fixture.hpp"
+#include "tests/project_paths.hpp"
 #include "tests/scratch_folder.hpp"
+#include "tools/experiment/motion/motion_check.hpp"
 #include "tools/experiment/motion_record/recorded_motion.hpp"
 
 namespace {
@@ -138,6 +142,37 @@ TEST(MotionRecorder, KeepsTheStopsOfAJointAndTheSpeedOfItsServo) {
   EXPECT_FALSE(recorder->is_at_limit(0));
   record(*recorder, 1, 0, -1);
   EXPECT_FALSE(recorder->is_at_limit(1));
+}
+
+/// Below -40 deg of the neck of an ERS-7 its head must nod by 5 deg, by Sony; its servo turns 2.65 deg in a frame.
+TEST(MotionRecorder, TheNeckOfAnErs7WaitsForItsHead) {
+  Studio studio;
+  studio.options.stage.world = test_support::source_path("worlds/ers7_studio.yaml");
+  auto recorder = studio.recorder();
+  const std::size_t neck = recorder->find("neck_tilt").value(), nod = recorder->find("head_nod").value();
+  std::vector<double> velocities(recorder->joints().size(), 0.0);
+  velocities[neck] = -1.5;
+  const double neck_at_start = recorder->set_points()[neck];
+  double fastest = 0;
+  int waited = 0;
+  constexpr int frames = 64;
+  for (int i = 0; i < frames; ++i) {
+    const double neck_before = recorder->set_points()[neck], nod_before = recorder->set_points()[nod];
+    recorder->frame(velocities);
+    fastest = std::max(fastest, std::abs(recorder->set_points()[nod] - nod_before));
+    waited += recorder->set_points()[neck] == neck_before;
+  }
+  EXPECT_NEAR(fastest, 5.781 * frame_s, 1e-9);
+  EXPECT_EQ(waited, 1);  // the second frame brings the head to 5 deg
+  constexpr double degree = std::numbers::pi / 180;
+  EXPECT_NEAR(recorder->set_points()[nod], 5 * degree, 1e-9);
+  EXPECT_NEAR(recorder->set_points()[neck], neck_at_start - (frames - 1) * 1.5 * frame_s, 1e-9);
+  EXPECT_LT(recorder->set_points()[neck], -40 * degree);
+  // Motion and take keep all limits of the robot.
+  const sim::JointMotion motion = studio.save(std::move(recorder));
+  const sim::VehicleConfig ers7 = sim::load_vehicle(test_support::source_path("vehicles/ers7.yaml"), {});
+  for (const sim::JointMotion& each : {motion, sim::load_motion(tools::take_path(studio.file))})
+    for (const tools::MotionFinding& finding : tools::check_motion(each, ers7)) ADD_FAILURE() << finding.text();
 }
 
 TEST(MotionRecorder, GoesBackToTheStateOfThatInstant) {

@@ -66,6 +66,16 @@ TEST(BusView, ShowsTheSceneAndTheTimeOfTheRunOnTheBus) {
   EXPECT_EQ(status["ended"], nullptr);
 }
 
+/// A viewer may join the playback of a log at any time.
+TEST(BusView, SaysThatItWaitsForTheScene) {
+  ServedBus bus;
+  test::ViewPage page(bus.url());
+  EXPECT_EQ(page.text("status")["waits_for"], "waits for sim.scene");
+  const test::TrafficLog log;
+  bus.play(log.path);
+  page.text("status", [](const auto& text) { return text["waits_for"] == ""; });
+}
+
 TEST(BusView, PassesOnTheMessagesOfSubscribedChannels) {
   const test::TrafficLog log;
   ServedBus bus;

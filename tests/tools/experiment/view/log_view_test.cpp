@@ -4,8 +4,10 @@
 #include <gmock/gmock.h>
 
 #include <fstream>
+#include <optional>
 #include <random>
 
+#include "bridges/log/record_file.hpp"
 #include "tests/tools/experiment/view/log_page.hpp"
 #include "tools/experiment/replay/replay.hpp"
 
@@ -35,7 +37,38 @@ TEST(LogIndex, SaysWhatALogLacks) {
     FAIL();
   } catch (const std::runtime_error& error) {
     EXPECT_THAT(error.what(), HasSubstr("empty.lcm: has neither sim.scene nor sim.bodies"));
+    EXPECT_THAT(error.what(), HasSubstr("`shoal view " + path + " --resimulate` runs its world again, and shows it"));
   }
+}
+
+/// The log of a logger that was started a second after the run: its `sim.info` and `sim.scene` come after ten seconds.
+struct LateLog {
+  LateLog() {
+    test::TrafficLog log;
+    bridges::EventLogReader reader(log.path);
+    bridges::EventLogWriter writer(bridges::create_record_file(path, bridges::Existing::refuse));
+    std::optional<bridges::LogEvent> info;
+    std::int64_t number = 0;
+    while (const auto event = reader.next()) {
+      if (!info && event->channel == "sim.info") info = event;
+      if (!info || event->utime <= info->utime + 1'000'000) continue;
+      if (event->channel == "sim.scene") writer.write(number++, event->utime, info->channel, info->payload);
+      writer.write(number++, event->utime, event->channel, event->payload);
+    }
+    writer.flush();
+  }
+  test_support::ScratchFolder folder;
+  const std::string path = folder.file("late.lcm");
+};
+
+TEST(LogView, ShowsALogThatLacksItsStart) {
+  const LateLog log;
+  test::LogPage page(log);
+  EXPECT_NEAR(static_cast<double>(page.index.start_us()), 1e6, 1e5);
+  EXPECT_EQ(page.index.end_us(), 10'000'000);
+  EXPECT_EQ(page.text("scene")["bodies"][0]["name"], "ball/body");
+  page.pause();
+  EXPECT_EQ(page.state_after_seek(5'000'000).count, 1u);
 }
 
 TEST(LogView, IntroducesTheLogAndItsScene) {

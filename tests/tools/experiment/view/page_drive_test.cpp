@@ -158,4 +158,15 @@ TEST_F(PageDriveTest, FormsTellWhatTheWorldTakes) {
   for (const Json& action : forms["actions"]) EXPECT_EQ(action["keys"][0]["key"], action["main"]) << action["word"];
 }
 
+TEST_F(PageDriveTest, FormsOfferToDriveTheSegwayThroughItsProgram) {
+  const test::RecordedRun run("shoal: 1\nvehicles: [{name: segway1, file: segway_rmp.yaml}]\n", log);
+  const Json forms = Json::parse(tools::forms_text(run.world, drive.profile()));
+  EXPECT_EQ(forms["drives"]["segway1"][0], Json({{"kind", "twist"}, {"axes", {"forward", "turn"}}}));
+  drive.take(1, {"segway1", "", {{"forward", 1}}}, run.world, start);
+  std::vector<std::string> channels;
+  drive.run(run.world, start, false,
+            [&](const std::string&, const std::string& channel, auto) { channels.push_back(channel); });
+  EXPECT_THAT(channels, ElementsAre("segway1.balance.cmd"));
+}
+
 }  // namespace

@@ -149,9 +149,9 @@ TEST(LandEvents, OfAFixAreThePositionOfTheOriginAndOfAMessageItsSending) {
   fix.gps_lock = 3;
   fix.xyz_pos[0] = 10;
   fix.xyz_pos[1] = 20.3;
-  shoal::modem_send_t send;
+  shoal::modem_send_t send{};
   send.data = {1, 2, 3};
-  shoal::modem_received_t packet;
+  shoal::modem_received_t packet{};
   packet.utime = 400'000;
   packet.source = "rover1";
   packet.data = send.data;

@@ -57,10 +57,10 @@ class LandOffline : public testing::Test {
   }
   /// Robot 2 sends a message that robot 1 receives 0.4 s later.
   void message(int time_s) {
-    shoal::modem_send_t send;
+    shoal::modem_send_t send{};
     send.data = {static_cast<std::uint8_t>(time_s)};
     record_.items.push_back({time_s * second, 1, send});
-    shoal::modem_received_t packet;
+    shoal::modem_received_t packet{};
     packet.utime = time_s * second + 400'000;
     packet.source = "robot2";
     packet.data = send.data;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tools/shoal/motion/record_view.hpp"
+#include "tools/experiment/motion_record/record_view.hpp"
 
 #include "tools/experiment/run/version.hpp"
 
@@ -9,8 +9,7 @@ RecordView::RecordView(const ViewOptions& options, MotionStage& stage)
     : stage_(stage),
       page_(options, short_version()),
       bus_(page_),
-      publisher_(
-          bus_, stage.world(), [](shoal::sim_scores_t&) {}, [] { return true; }) {
+      publisher_(bus_, stage.world(), {}, [] { return true; }) {
   page_.start(stage_.world(), std::nullopt);
   stage_.after_step = [this](MotionStage& now) {
     publisher_.after_step();
