@@ -179,35 +179,15 @@ export class Bodies {
     const box = new Box3();
     const moving = this.list.filter((body) => !body.fixed);
     for (const body of moving.length ? moving : this.list) {
-      box.expandByPoint(new Vector3().setFromMatrixPosition(this.X_WB[body.index]));
-      for (const part of body.parts) {
-        const half_m = halfSizeOf(part);
-        if (!half_m) continue;
-        const own = new Box3(half_m.clone().negate(), half_m);
-        box.union(own.applyMatrix4(this.X_WB[body.index].clone().multiply(matrixOf(part.pose))));
-      }
+      const at = new Vector3().setFromMatrixPosition(this.X_WB[body.index]);
+      const radius_m = radiusOf(body);
+      box.expandByPoint(at.clone().addScalar(radius_m)).expandByPoint(at.clone().addScalar(-radius_m));
     }
     return box.isEmpty() ? new Sphere(new Vector3(), 10) : box.getBoundingSphere(new Sphere());
   }
 
-  /** Returns the height of the highest level plane; null: there is none. */
-  groundLevel() {
-    const poses = this.planes.map(({body, X_BP}) => this.X_WB[body].clone().multiply(X_BP).elements);
-    const levels = poses.filter((elements) => elements[10] > 0.999).map((elements) => elements[14]);
-    return levels.length ? Math.max(...levels) : null;
-  }
-
   /** Returns objects for rays of the mouse. */
   get pickable() { return [...this.groups.map((group) => group.mesh), ...this.planes.map((plane) => plane.mesh)]; }
-}
-
-/** Returns half the lengths of a part along its axes, 1 m for meshes; null for planes and terrains. */
-function halfSizeOf(part) {
-  if (part.shape === 'plane' || part.shape === 'terrain') return null;
-  if (part.shape === 'box') return new Vector3(...part.size_m).multiplyScalar(0.5);
-  if (part.shape === 'mesh') return new Vector3(1, 1, 1);
-  const cap_m = part.shape === 'cylinder' ? 0 : part.radius_m;
-  return new Vector3(part.radius_m, part.radius_m, 0.5 * (part.length_m ?? 0) + cap_m);
 }
 
 /** Radius of the sphere around the origin of a body that contains its parts; 1 m for meshes. */

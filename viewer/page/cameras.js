@@ -39,7 +39,6 @@ export class Cameras {
     this.keys = new Set();
     this.device = null;
     this.last = null;
-    this.ground_m = null;
     this.listen();
   }
 
@@ -133,7 +132,6 @@ export class Cameras {
     if (this.mode === 'device') this.lookThrough(X_WB);
     if (this.controls.enabled) {
       if (this.mode === 'orbit' || this.mode === 'top') this.moveByKeys(dt_s);
-      this.keepAboveGround();
       this.controls.update(dt_s);
     }
     // Keep the depth precise at any distance.
@@ -142,15 +140,6 @@ export class Cameras {
     this.camera.far = Math.max(20000, 60 * distance_m);
     this.camera.updateProjectionMatrix();
     this.camera.updateMatrixWorld();
-  }
-
-  /** Limits the orbit about a place above the ground, ground_m (null: none): the camera stays above it, too. */
-  keepAboveGround() {
-    const {target} = this.controls, distance_m = this.camera.position.distanceTo(target);
-    const lowest = this.ground_m === null || target.z < this.ground_m ?
-        -1 :
-        (this.ground_m + 0.01 * distance_m - target.z) / distance_m;
-    this.controls.maxPolarAngle = Math.acos(Math.max(-1, Math.min(1, lowest)));
   }
 
   followVehicle(vehicle) {

@@ -249,7 +249,6 @@ class App {
     this.bodies.setScene(data);
     const sphere = this.bodies.boundingSphere();
     this.extent_m = this.cameras.extent_m = Math.max(2, sphere.radius);
-    this.cameras.ground_m = this.bodies.groundLevel();
     this.vehicles = describeVehicles(data, this.bodies);
     this.byName = new Map(this.vehicles.map((vehicle) => [vehicle.name, vehicle]));
     this.owners =
