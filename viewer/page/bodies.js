@@ -11,7 +11,6 @@ import {
   Matrix4,
   Mesh,
   Quaternion,
-  Sphere,
   Vector3,
 } from './vendor/three.js';
 
@@ -50,6 +49,7 @@ export class Bodies {
     this.X_WB = [];
     this.groups = [];
     this.planes = [];
+    this.boxes = new Map();
     this.revision = null;
   }
 
@@ -107,6 +107,8 @@ export class Bodies {
     const geometry = await this.assets.geometry(group.part.asset);
     if (!geometry || revision !== this.revision) return;
     group.geometry = geometry;
+    geometry.computeBoundingBox();
+    this.boxes.set(group.part.asset, geometry.boundingBox);
     this.addGroup(group);
     this.assets.changed();
   }
@@ -174,20 +176,56 @@ export class Bodies {
     }
   }
 
-  /** Returns the sphere around movable bodies, or around all if none moves. */
-  boundingSphere() {
-    const box = new Box3();
-    const moving = this.list.filter((body) => !body.fixed);
-    for (const body of moving.length ? moving : this.list) {
-      const at = new Vector3().setFromMatrixPosition(this.X_WB[body.index]);
-      const radius_m = radiusOf(body);
-      box.expandByPoint(at.clone().addScalar(radius_m)).expandByPoint(at.clone().addScalar(-radius_m));
-    }
-    return box.isEmpty() ? new Sphere(new Vector3(), 10) : box.getBoundingSphere(new Sphere());
+  /** Returns the box around movable bodies, or around all if none moves, without planes. */
+  boundingBox() {
+    const box = new Box3(), moving = this.list.filter((body) => !body.fixed);
+    for (const body of moving.length ? moving : this.list)
+      for (const part of body.parts) {
+        const own = this.boxOf(part), X_WP = this.X_WB[body.index].clone().multiply(matrixOf(part.pose));
+        if (!own) continue;
+        // A sphere does not grow when it turns.
+        box.union(own.applyMatrix4(part.shape === 'sphere' ? new Matrix4().copyPosition(X_WP) : X_WP));
+      }
+    return box.isEmpty() ? new Box3(new Vector3(-5, -5, 0), new Vector3(5, 5, 5)) : box;
+  }
+
+  /** Box around a part in its frame; of a mesh that is still on its way 1 m about its origin, null: it has none. */
+  boxOf(part) {
+    if (part.shape === 'plane') return null;
+    if (part.shape === 'terrain') return this.boxes.get(part.asset)?.clone() ?? null;
+    if (part.shape === 'mesh' && this.boxes.has(part.asset)) return this.boxes.get(part.asset).clone();
+    const cap_m = part.shape === 'capsule' ? part.radius_m : 0, r_m = part.radius_m;
+    const half_m = {
+      box: part.size_m?.map((size) => size / 2),
+      sphere: [r_m, r_m, r_m],
+      mesh: [1, 1, 1],
+    }[part.shape] ??
+        [r_m, r_m, part.length_m / 2 + cap_m];
+    const half = new Vector3(...half_m);
+    return new Box3(half.clone().negate(), half);
+  }
+
+  /** Height of the ground, of planes and terrains, at a place; -Infinity: there is none. */
+  groundAt(x, y) {
+    const heights = this.planes.map(({body, X_BP}) => planeHeight(this.X_WB[body].clone().multiply(X_BP), x, y));
+    for (const {geometry, instances} of this.groups)
+      if (geometry.userData.heightAt)
+        for (const {body, X_BP} of instances) {
+          const X_WP = this.X_WB[body].clone().multiply(X_BP);
+          const at = new Vector3(x, y, 0).applyMatrix4(X_WP.clone().invert());
+          heights.push(at.setZ(geometry.userData.heightAt(at.x, at.y)).applyMatrix4(X_WP).z);
+        }
+    return Math.max(-Infinity, ...heights.filter(Number.isFinite));
   }
 
   /** Returns objects for rays of the mouse. */
   get pickable() { return [...this.groups.map((group) => group.mesh), ...this.planes.map((plane) => plane.mesh)]; }
+}
+
+/** Height of a plane at a place; -Infinity: it is steeper than ground is. */
+function planeHeight(X_WP, x, y) {
+  const [nx, ny, nz] = X_WP.elements.slice(8, 11), [px, py, pz] = X_WP.elements.slice(12, 15);
+  return nz > 0.5 ? pz - (nx * (x - px) + ny * (y - py)) / nz : -Infinity;
 }
 
 /** Radius of the sphere around the origin of a body that contains its parts; 1 m for meshes. */

@@ -48,7 +48,7 @@ export function makeLayers(canvas, problem, changed) {
     dots: new Dots(scene),
     ring: new SelectionRing(scene),
     labels: new Labels(document.getElementById('labels')),
-    cameras: new Cameras(canvas),
+    cameras: new Cameras(canvas, (x, y) => common.bodies.groundAt(x, y)),
   };
 }
 
