@@ -159,6 +159,7 @@ class Film {
     while (world_.now() < time && caught_signal() == 0) {
       if (!source_->step()) return false;
       const double now_s = sim::to_seconds(world_.now());
+      if (now_s > options_.from_s - LaserScans::kept_s) overlay_.observe_scans();
       if (now_s < options_.from_s - 15 * options_.speed || now_s - observed_s_ < 0.1 * step_s()) continue;
       overlay_.observe();
       observed_s_ = now_s;

@@ -174,6 +174,7 @@ class Clips {
     while (world_.now() < time && caught_signal() == 0) {
       if (!source_->step()) return false;
       const double now_s = sim::to_seconds(world_.now());
+      overlay_.observe_scans();
       if (now_s - observed_s_ < 0.1 * step_s) continue;
       overlay_.observe();
       observed_s_ = now_s;
