@@ -532,6 +532,7 @@ async function start() {
       setView: (text) => app.setView(text),
       select: (name) => app.select(name),
       returnsOf: (channel) => app.instruments.returns.pointsOf(channel),
+      raysOf: (channel) => app.instruments.returns.pointsOf(channel, 'rays'),
       sonarPixel: (channel, u, v) => app.instruments.sonars.pixelOf(channel, u, v),
       modems: () => app.instruments.traffic.modems.rows(),
       imageOf: (channel) => app.instruments.images.view?.views.find((one) => one.channel === channel),
