@@ -41,6 +41,32 @@ describe('scene', () => {
     });
   });
 
+  it('shows the shapes of collisions, and the wire frame', async () => {
+    const script = scenes.land();
+    script.scene.bodies[0].parts[2].collides = false;
+    const total = script.scene.bodies.flatMap((body) => body.parts).filter((part) => part.shape !== 'plane').length;
+    await withPage(script, async (page, server) => {
+      const {shapes: drawn} = await show(page, server, 1);
+      assert.deepEqual([drawn.which, drawn.parts, drawn.wire, drawn.planes], ['drawn', total, 0, 1]);
+      const choose = (value) => page.evaluate((to) => {
+        document.getElementById('o-shapes').value = to;
+        document.getElementById('o-shapes').dispatchEvent(new Event('input'));
+      }, value);
+      await choose('collision');
+      const {shapes: collide} = await until(page, (p) => p.shapes.which === 'collision');
+      assert.deepEqual([collide.parts, collide.wire, collide.planes], [total - 1, 0, 1]);
+      await choose('wire');
+      const {shapes: wire} = await until(page, (p) => p.shapes.which === 'wire');
+      assert.deepEqual([wire.parts, wire.wire, wire.planes], [total, wire.groups, 1]);
+      // It is still drawn where the state says, and as before when it is chosen again.
+      await show(page, server, 2);
+      await choose('drawn');
+      const {shapes: again, bodies: [rover]} = await until(page, (p) => p.shapes.which === 'drawn');
+      assert.deepEqual(again, drawn);
+      near(rover.position[0], 2 * Math.cos(2 * Math.PI * 2 / 20), 1e-3, 'x');
+    });
+  });
+
   it('shows a state of another revision only after its scene', async () => {
     await withPage(scenes.land(), async (page, server) => {
       await show(page, server, 1);

@@ -16,6 +16,10 @@ import {
 
 const ONE = new Vector3(1, 1, 1);
 const PLANE_REACH_M = 30000;
+const COLLISION_COLORS = {
+  movable: '#4fb477',
+  fixed: '#8b97a3'
+};
 
 /** Returns the matrix of a pose [x, y, z, qw, qx, qy, qz]. */
 export function matrixOf(pose, scale = ONE) {
@@ -37,26 +41,47 @@ export class Bodies {
     this.assets = assets;
     this.root = new Group();
     scene.add(this.root);
+    this.shapes = 'drawn';
     this.clear();
   }
 
   /** Removes all bodies. */
   clear() {
+    this.removeMeshes();
+    this.list = [];
+    this.X_WB = [];
+    this.boxes = new Map();
+  }
+
+  removeMeshes() {
     this.root.traverse((object) => object.dispose?.());
     this.root.clear();
     this.surfaces.clear();
-    this.list = [];
-    this.X_WB = [];
     this.groups = [];
     this.planes = [];
-    this.boxes = new Map();
-    this.revision = null;
+  }
+
+  /** What is drawn: 'drawn', the shapes with their looks; 'collision', those that collide; 'wire', their edges. */
+  setShapes(shapes) {
+    if (shapes === this.shapes) return;
+    this.shapes = shapes;
+    this.surfaces.wire = shapes === 'wire';
+    this.removeMeshes();
+    this.gather();
+    this.update(null);
+  }
+
+  /** Parts of a body as they are drawn. */
+  partsOf(body) {
+    if (this.shapes !== 'collision') return body.parts;
+    const color = body.fixed ? COLLISION_COLORS.fixed : COLLISION_COLORS.movable;
+    return body.parts.filter((part) => part.collides !== false)
+        .map((part) => (part.shape === 'plane' ? part : {...part, color}));
   }
 
   /** Builds the bodies of a checked scene. */
   setScene(data) {
     this.clear();
-    this.revision = data.revision;
     this.list = data.bodies;
     this.origin = new Vector3(...data.origin_m);
     // Vehicles differ in their default color.
@@ -80,7 +105,7 @@ export class Bodies {
   gather() {
     const groups = new Map();
     for (const body of this.list)
-      for (const part of body.parts) {
+      for (const part of this.partsOf(body)) {
         if (part.shape === 'plane') this.addPlane(body, part);
         const shape = ['mesh', 'terrain'].includes(part.shape) ? {key: part.asset, scale: [1, 1, 1]} :
             part.shape === 'plane'                             ? null :
@@ -95,7 +120,7 @@ export class Bodies {
       if (group.geometry)
         this.addGroup(group);
       else
-        this.loadGroup(group, this.revision);
+        this.loadGroup(group, this.groups);
   }
 
   colorOf(body, part) {
@@ -103,9 +128,9 @@ export class Bodies {
     return new Color(color);
   }
 
-  async loadGroup(group, revision) {
+  async loadGroup(group, groups) {
     const geometry = await this.assets.geometry(group.part.asset);
-    if (!geometry || revision !== this.revision) return;
+    if (!geometry || groups !== this.groups) return;  // another scene, or other shapes
     group.geometry = geometry;
     geometry.computeBoundingBox();
     this.boxes.set(group.part.asset, geometry.boundingBox);
@@ -119,7 +144,8 @@ export class Bodies {
     mesh.instanceMatrix.setUsage(DynamicDrawUsage);
     group.instances.forEach((instance, i) => mesh.setColorAt(i, instance.color));
     mesh.frustumCulled = false;
-    mesh.castShadow = mesh.receiveShadow = true;
+    mesh.castShadow = this.shapes !== 'wire';
+    mesh.receiveShadow = true;
     mesh.matrixAutoUpdate = false;
     mesh.userData.bodies = group.instances.map((instance) => instance.body);
     group.mesh = mesh;

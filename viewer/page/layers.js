@@ -62,6 +62,7 @@ export function applyOptions(layers, options) {
     estimates.showEllipsoids = get('ellipsoids');
   }
   layers.zones.root.visible = get('zones');
+  layers.bodies.setShapes(get('shapes'));
   layers.currents.which = get('currents');
   layers.currents.depth_m = Math.max(0, Number(get('current-depth')) || 0);
   layers.views.which = get('sensors');
