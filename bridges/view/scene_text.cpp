@@ -48,9 +48,10 @@ class Collisions {
   /// A part of `owner` that collides with all categories does, even where it is alone.
   bool has(const sim::PartConfig& part, const std::string& owner) const {
     return part.collides_with.empty() || std::any_of(kinds_.begin(), kinds_.end(), [&](const Kind& kind) {
-      const bool other = kind.owners.size() > (kind.owners.contains(owner) ? 1U : 0U) || kind.with_self.contains(owner);
-      return other && accepts(part.collides_with, kind.category) && accepts(kind.collides_with, part.category);
-    });
+             const bool other =
+                 kind.owners.size() > (kind.owners.contains(owner) ? 1U : 0U) || kind.with_self.contains(owner);
+             return other && accepts(part.collides_with, kind.category) && accepts(kind.collides_with, part.category);
+           });
   }
 
  private:

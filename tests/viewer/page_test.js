@@ -410,9 +410,8 @@ describe('views', () => {
                                     pose: scenes.at(x, y, 2),
                                     parts: [{shape: 'box', size_m, pose: scenes.at(0, 0, 0), material: 0}],
                                   });
-    const walls = [
-      wall(35, 0, [1, 70, 4]), wall(-35, 0, [1, 70, 4]), wall(0, 34.5, [68.9, 1, 4]), wall(0, -34.5, [68.9, 1, 4])
-    ];
+    const walls =
+        [wall(35, 0, [1, 70, 4]), wall(-35, 0, [1, 70, 4]), wall(0, 34.5, [68.9, 1, 4]), wall(0, -34.5, [68.9, 1, 4])];
     script.scene.bodies.push(...walls.map((body, i) => ({...body, id: script.scene.bodies.length + i})));
     const rovers = script.posesAt;
     script.posesAt = (t_s) => [...rovers(t_s), ...walls.map(({pose}) => pose)];

@@ -146,8 +146,8 @@ export class Cameras {
   /** Keeps the camera above the ground: no orbit goes below it. */
   stayAboveGround() {
     const {position} = this.camera, {target} = this.controls, distance_m = position.distanceTo(target);
-    const least_m = this.groundAt(position.x, position.y) + GROUND_CLEARANCE_M + 0.02 * distance_m - target.z;
-    this.controls.maxPolarAngle = Math.acos(Math.max(-1, Math.min(1, least_m / distance_m)));
+    const min_m = this.groundAt(position.x, position.y) + GROUND_CLEARANCE_M + 0.02 * distance_m - target.z;
+    this.controls.maxPolarAngle = Math.acos(Math.max(-1, Math.min(1, min_m / distance_m)));
   }
 
   /** Moves the camera with the selected vehicle; X_WB: matrices of all bodies. */

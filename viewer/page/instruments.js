@@ -126,8 +126,8 @@ export class Instruments {
       this.dock.view?.changed?.();
     }
     const {options, selected, data} = this.app;
-    const wanted = ['returns', 'rays', 'ranges'].map((name) => options.get(name));
-    const key = JSON.stringify([wanted, selected, data.revision]);
+    const chosen = ['returns', 'rays', 'ranges'].map((name) => options.get(name));
+    const key = JSON.stringify([chosen, selected, data.revision]);
     if (key !== this.key) {
       this.key = key;
       this.returns.subscribe(options.get('returns'), options.get('rays'));

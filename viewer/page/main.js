@@ -360,8 +360,8 @@ class App {
     for (const ghost of this.ghosts.ghosts)
       if (ghost.root.visible) box.expandByPoint(ghost.at);
     // One vehicle alone does not fill the page.
-    const least_m = 3.5 * Math.max(0.3, this.vehicles[0]?.radius_m ?? 0);
-    box.union(new Box3().setFromCenterAndSize(center, new Vector3(least_m, least_m, least_m)));
+    const min_size_m = 3.5 * Math.max(0.3, this.vehicles[0]?.radius_m ?? 0);
+    box.union(new Box3().setFromCenterAndSize(center, new Vector3(min_size_m, min_size_m, min_size_m)));
     this.cameras.fit(box, this.sides.free);
     this.showMode();
     this.dirty = true;

@@ -80,8 +80,8 @@ TEST(ViewPublisher, TheSceneSaysWhichPartsCollideWithNothing) {
   const Json alone = ViewedWorld(world).last_scene();
   EXPECT_EQ(collide(alone), (std::vector<bool>{true, true, false}));
   EXPECT_FALSE(alone["bodies"][0]["parts"][0].contains("collides"));
-  const Json two = ViewedWorld(world + "  - {name: two, fixed: true, position_m: [9, 0, 0], parts: [" + lamp + "]}\n")
-                       .last_scene();
+  const Json two =
+      ViewedWorld(world + "  - {name: two, fixed: true, position_m: [9, 0, 0], parts: [" + lamp + "]}\n").last_scene();
   EXPECT_EQ(collide(two), (std::vector<bool>{true, true, true}));
 }
 
