@@ -6,12 +6,11 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <numbers>
-#include <set>
-#include <vector>
 
 #include "bridges/view/scene_assets.hpp"
 #include "bridges/view/scene_currents.hpp"
 #include "sim/device/device.hpp"
+#include "sim/world/part_collisions.hpp"
 #include "sim/world/world.hpp"
 
 namespace bridges {
@@ -35,52 +34,6 @@ Json limit_json(double limit_m) {
   return std::abs(limit_m) < 1e8 ? Json(limit_m) : Json(nullptr);
 }
 
-/// Which parts collide with anything in the world, by their categories.
-class Collisions {
- public:
-  explicit Collisions(const sim::World& world) {
-    for (const auto& vehicle : world.vehicles())
-      for (const sim::BodyConfig& body : vehicle->config().bodies)
-        add(body.parts, vehicle->name(), vehicle->config().self_collision);
-    for (const auto& [name, object] : world.objects()) add(object.config.parts, name, false);
-  }
-
-  /// A part of `owner` that collides with all categories does, even where it is alone.
-  bool has(const sim::PartConfig& part, const std::string& owner) const {
-    return part.collides_with.empty() || std::any_of(kinds_.begin(), kinds_.end(), [&](const Kind& kind) {
-             const bool other =
-                 kind.owners.size() > (kind.owners.contains(owner) ? 1U : 0U) || kind.with_self.contains(owner);
-             return other && accepts(part.collides_with, kind.category) && accepts(kind.collides_with, part.category);
-           });
-  }
-
- private:
-  /// Parts that collide with the same ones.
-  struct Kind {
-    std::string category;
-    std::vector<std::string> collides_with;
-    std::set<std::string> owners;     ///< vehicles and objects that have them, two at most
-    std::set<std::string> with_self;  ///< those whose own parts collide with each other
-  };
-
-  static bool accepts(const std::vector<std::string>& categories, const std::string& category) {
-    return categories.empty() || std::find(categories.begin(), categories.end(), category) != categories.end();
-  }
-
-  void add(const std::vector<sim::PartConfig>& parts, const std::string& owner, bool self_collision) {
-    for (const sim::PartConfig& part : parts) {
-      auto kind = std::find_if(kinds_.begin(), kinds_.end(), [&](const Kind& each) {
-        return each.category == part.category && each.collides_with == part.collides_with;
-      });
-      if (kind == kinds_.end()) kind = kinds_.insert(kind, Kind{part.category, part.collides_with, {}, {}});
-      if (kind->owners.size() < 2) kind->owners.insert(owner);
-      if (self_collision) kind->with_self.insert(owner);
-    }
-  }
-
-  std::vector<Kind> kinds_;
-};
-
 /// Writer of one scene.
 class SceneWriter {
  public:
@@ -101,7 +54,7 @@ class SceneWriter {
 
   const sim::World& world_;
   SceneAssets& assets_;
-  const Collisions collisions_;
+  const sim::PartCollisions collisions_;
   std::map<std::string, int, std::less<>> material_numbers_;
 };
 

@@ -173,7 +173,8 @@ class Film {
     frame_.width = options_.format.width, frame_.height = options_.format.height, frame_.channels = 3;
     frame_.data.assign(frame_.size(), 0);
     for (std::size_t i = 0; i < rigs_.size(); ++i) {
-      const SceneView view = rigs_[i]->view(film_step_s);
+      SceneView view = rigs_[i]->view(film_step_s);
+      overlay_.prepare(view);
       RenderedScene& rendered = painter_.paint(view);
       if (options_.overlays.any() && view.options.kind == sim::ImageKind::color) overlay_.draw(rendered, view);
       place(rendered.image, static_cast<int>(i) * columns, columns, frame_);

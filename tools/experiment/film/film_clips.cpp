@@ -111,7 +111,8 @@ class OpenClip {
       rig_ = make_camera_rig("chase:" + clip_.vehicle, world_, like_);
       follows_ = true;
     }
-    const SceneView view = rig_->view(frames_++ == 0 ? 0 : film_step_s);
+    SceneView view = rig_->view(frames_++ == 0 ? 0 : film_step_s);
+    overlay.prepare(view);
     RenderedScene& rendered = painter.paint(view);
     if (with_overlay) overlay.draw(rendered, view);
     writer_->add(rendered.image);

@@ -53,7 +53,11 @@ OverlayChoice parse_overlays(const std::string& text) {
 }
 
 Overlay::Overlay(const sim::World& world, Settings settings, LogEstimates estimates)
-    : world_(world), settings_(std::move(settings)), estimates_(std::move(estimates)), scans_(world) {}
+    : world_(world),
+      settings_(std::move(settings)),
+      estimates_(std::move(estimates)),
+      scans_(world),
+      edges_(std::make_unique<ShapeEdges>(world)) {}
 
 void Overlay::extend(Trail& trail, double now_s, const sim::Vector3d& p_W, double trail_s) {
   auto& points_W = trail.points_W;
@@ -92,8 +96,14 @@ void Overlay::observe() {
   });
 }
 
+void Overlay::prepare(SceneView& view) const {
+  const bool only_edges = settings_.choice.shapes == BodyShapes::wire;
+  if (only_edges && view.options.kind == sim::ImageKind::color) view.options.filter.categories = 0;
+}
+
 void Overlay::draw(RenderedScene& rendered, const SceneView& view) const {
   OverlayCanvas canvas(rendered, view);
+  if (settings_.choice.shapes != BodyShapes::drawn) edges_->draw(canvas, settings_.choice.shapes);
   if (settings_.choice.pings) draw_pings(canvas);
   if (settings_.choice.rays) draw_rays(canvas);
   if (settings_.choice.trails) draw_trails(canvas);

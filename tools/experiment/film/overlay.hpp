@@ -3,6 +3,7 @@
 
 #include <deque>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "tools/experiment/estimates/log_estimates.hpp"
 #include "tools/experiment/film/laser_scans.hpp"
 #include "tools/experiment/film/overlay_canvas.hpp"
+#include "tools/experiment/film/shape_edges.hpp"
 
 namespace tools {
 
@@ -21,11 +23,12 @@ struct OverlayChoice {
   bool rays = false;      ///< rays of laser scanners, from the sensor to what they hit
   bool labels = false;    ///< names of the vehicles
   bool clock = false;     ///< simulated time
+  BodyShapes shapes = BodyShapes::drawn;
 
-  bool any() const { return trails || ellipses || pings || rays || labels || clock; }
+  bool any() const { return trails || ellipses || pings || rays || labels || clock || shapes != BodyShapes::drawn; }
 };
 
-/// Parses `trails,labels` and so on, `all` or `none`.  Throws std::invalid_argument.
+/// Parses `trails,labels` and so on, `all` or `none`; bodies are drawn as they look.  Throws std::invalid_argument.
 OverlayChoice parse_overlays(const std::string& text);
 
 /// Sound that a transducer sent.
@@ -56,6 +59,8 @@ class Overlay {
   void observe_scans();
   /// Adds a sound.  Of very many the last ones are drawn.
   void add(const FilmPing& ping);
+  /// Prepares a view for draw(): without the bodies where only their edges are to be seen.
+  void prepare(SceneView& view) const;
   /// Draws into a color image of the present state of the world.
   void draw(RenderedScene& rendered, const SceneView& view) const;
 
@@ -80,6 +85,7 @@ class Overlay {
   std::map<std::string, Trail> trails_, estimate_trails_;
   std::deque<FilmPing> pings_;
   LaserScans scans_;
+  std::unique_ptr<ShapeEdges> edges_;
 };
 
 }  // namespace tools

@@ -6,6 +6,7 @@
 #include <charconv>
 
 #include "sim/image/image.hpp"
+#include "tools/shoal/options/shared_options.hpp"
 
 namespace tools {
 
@@ -58,6 +59,20 @@ OverlayChoice parse_overlay_option(const std::string& text) {
   } catch (const std::invalid_argument& error) {
     throw CLI::ValidationError("--overlay", error.what());
   }
+}
+
+void add_shapes_option(CLI::App& command, std::string& text) {
+  command
+      .add_option("--shapes", text,
+                  "of the bodies: drawn, collision (with the edges of the parts that collide) or wire (only edges)")
+      ->type_name("KIND")
+      ->check(one_of({"drawn", "collision", "wire"}).description(""))
+      ->capture_default_str();
+}
+
+BodyShapes parse_shapes(const std::string& text) {
+  if (text == "wire") return BodyShapes::wire;
+  return text == "collision" ? BodyShapes::collision : BodyShapes::drawn;
 }
 
 }  // namespace tools
