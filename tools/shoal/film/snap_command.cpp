@@ -299,6 +299,7 @@ static void add_snap_command(CLI::App& app, int& exit_code) {
       *command, {{"shoal snap worlds/coop_land.yaml --out coop_land.png",
                   "shoal snap worlds/dynamic_warehouse.yaml --at 12.5 --eye -6,-8,5 --look 4,2,0 --out hall.jpg",
                   "shoal snap worlds/proving_ground.yaml --at 3 --from turntable.camera --out seen.png",
+                  "shoal snap erl_room --at 1 --overlay rays,labels --out rays.png",
                   "shoal snap --log run.lcm --at 40 --overlay trails,ellipses,labels --out run.png",
                   "shoal snap worlds/arm_reach.yaml --every 0.5 --until 5 --size 640x480 --out reach.png"},
                  {{0, "success"},

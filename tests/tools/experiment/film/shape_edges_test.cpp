@@ -3,8 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <fstream>
-#include <limits>
 
 #include "sim/bus/in_process_bus.hpp"
 #include "sim/world_file/load_world.hpp"
@@ -116,7 +117,7 @@ TEST(ShapeEdges, OfCollisionsAreOnTheBodiesThatCollide) {
 
 TEST(ShapeEdges, OfAMeshAreThoseBetweenItsFaces) {
   // A plate of 2 m in the yz-plane, of two triangles: its diagonal is none.
-  const ScratchFolder folder;
+  const test_support::ScratchFolder folder;
   std::ofstream(folder.file("plate.obj")) << "v 0 -1 -1\nv 0 1 -1\nv 0 1 1\nv 0 -1 1\nf 1 2 3\nf 1 3 4\n";
   const Block plate(tools::BodyShapes::wire, "shape: mesh, mesh: \"" + folder.file("plate.obj") + "\"");
   EXPECT_TRUE(plate.drawn(89, 92));  // 10 px
