@@ -10,6 +10,7 @@
 #include "bridges/view/scene_assets.hpp"
 #include "bridges/view/scene_currents.hpp"
 #include "sim/device/device.hpp"
+#include "sim/world/part_collisions.hpp"
 #include "sim/world/world.hpp"
 
 namespace bridges {
@@ -36,7 +37,7 @@ Json limit_json(double limit_m) {
 /// Writer of one scene.
 class SceneWriter {
  public:
-  SceneWriter(const sim::World& world, SceneAssets& assets) : world_(world), assets_(assets) {
+  SceneWriter(const sim::World& world, SceneAssets& assets) : world_(world), assets_(assets), collisions_(world) {
     for (int i = 0; i < world.physics().materials(); ++i) material_numbers_[world.physics().material(i).name] = i;
   }
 
@@ -47,12 +48,13 @@ class SceneWriter {
   Json zones() const;
 
  private:
-  Json part(const sim::PartConfig& part);
+  Json part(const sim::PartConfig& part, const std::string& owner);
   Json body(const sim::Body& body, const std::string& owner, const char* kind,
             const std::vector<sim::PartConfig>& parts);
 
   const sim::World& world_;
   SceneAssets& assets_;
+  const sim::PartCollisions collisions_;
   std::map<std::string, int, std::less<>> material_numbers_;
 };
 
@@ -80,7 +82,7 @@ Json SceneWriter::materials() {
   return all;
 }
 
-Json SceneWriter::part(const sim::PartConfig& part) {
+Json SceneWriter::part(const sim::PartConfig& part, const std::string& owner) {
   Json json;
   if (!part.name.empty()) json["name"] = part.name;
   json["shape"] = std::string(sim::word_of(sim::part_shape_words, part.shape));
@@ -106,6 +108,7 @@ Json SceneWriter::part(const sim::PartConfig& part) {
   }
   json["pose"] = pose_json(sim::make_pose(part.position_m, part.rpy_rad));
   if (!part.color.empty()) json["color"] = part.color;
+  if (!collisions_.has(part, owner)) json["collides"] = false;
   const auto material = material_numbers_.find(part.material);
   json["material"] = material == material_numbers_.end() ? 0 : material->second;
   return json;
@@ -116,7 +119,7 @@ Json SceneWriter::body(const sim::Body& body, const std::string& owner, const ch
   Json json{{"id", body.number()}, {"name", body.name()},   {"owner", owner},
             {"kind", kind},        {"fixed", body.fixed()}, {"pose", pose_json(body.X_WB())}};
   json["parts"] = Json::array();
-  for (const sim::PartConfig& each : parts) json["parts"].push_back(part(each));
+  for (const sim::PartConfig& each : parts) json["parts"].push_back(part(each, owner));
   return json;
 }
 

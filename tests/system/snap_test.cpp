@@ -46,6 +46,11 @@ TEST(Snap, TakesImagesOfEveryKind) {
     EXPECT_EQ(ended.exit_code, 0) << image << ended.errors;
     EXPECT_EQ(sim::read_image(folder.file("a.png")).width, 80) << image;
   }
+  for (const char* shapes : {"drawn", "collision", "wire"}) {
+    const Ended ended = snap({world, "--shapes", shapes, "--overlay", "rays", "--at", "0.3", "--size", "80x60", "--out",
+                              folder.file("s.png")});
+    EXPECT_EQ(ended.exit_code, 0) << shapes << ended.errors;
+  }
   const Ended from = snap({world, "--from", "turntable.camera", "--at", "0.5", "--out", folder.file("b.jpg")});
   EXPECT_THAT(from.output, HasSubstr("64x48"));
   EXPECT_THAT(from.output, HasSubstr("at 0.500 s from turntable.camera"));
@@ -85,6 +90,9 @@ TEST(Snap, SaysWhatIsWrong) {
       {{world, "--out", out, "--every", "1"}, "--until"},
       {{world, "--out", out, "--at", "3", "--every", "1", "--until", "2"}, "--until: must not be before --at"},
       {{world, "--out", out, "--image", "heat"}, "--image"},
+      {{world, "--out", out, "--overlay", "beams"}, "must be trails, ellipses, pings, rays, labels and clock"},
+      {{world, "--out", out, "--shapes", "round"}, "--shapes"},
+      {{world, "--out", out, "--shapes", "wire", "--image", "depth"}, "--shapes: must be drawn for an image without"},
       {{"nothing.yaml", "--out", out}, "nothing.yaml"}};
   for (const auto& [arguments, error] : wrong) {
     const Ended ended = snap(arguments);

@@ -41,6 +41,32 @@ describe('scene', () => {
     });
   });
 
+  it('shows the shapes of collisions, and the wire frame', async () => {
+    const script = scenes.land();
+    script.scene.bodies[0].parts[2].collides = false;
+    const total = script.scene.bodies.flatMap((body) => body.parts).filter((part) => part.shape !== 'plane').length;
+    await withPage(script, async (page, server) => {
+      const {shapes: drawn} = await show(page, server, 1);
+      assert.deepEqual([drawn.which, drawn.parts, drawn.wire, drawn.planes], ['drawn', total, 0, 1]);
+      const choose = (value) => page.evaluate((to) => {
+        document.getElementById('o-shapes').value = to;
+        document.getElementById('o-shapes').dispatchEvent(new Event('input'));
+      }, value);
+      await choose('collision');
+      const {shapes: collide} = await until(page, (p) => p.shapes.which === 'collision');
+      assert.deepEqual([collide.parts, collide.wire, collide.planes], [total - 1, 0, 1]);
+      await choose('wire');
+      const {shapes: wire} = await until(page, (p) => p.shapes.which === 'wire');
+      assert.deepEqual([wire.parts, wire.wire, wire.planes], [total, wire.groups, 1]);
+      // It is still drawn where the state says, and as before when it is chosen again.
+      await show(page, server, 2);
+      await choose('drawn');
+      const {shapes: again, bodies: [rover]} = await until(page, (p) => p.shapes.which === 'drawn');
+      assert.deepEqual(again, drawn);
+      near(rover.position[0], 2 * Math.cos(2 * Math.PI * 2 / 20), 1e-3, 'x');
+    });
+  });
+
   it('shows a state of another revision only after its scene', async () => {
     await withPage(scenes.land(), async (page, server) => {
       await show(page, server, 1);
@@ -380,6 +406,58 @@ describe('views', () => {
       const after = await values();
       assert.equal(after['speed, m/s'], '–');
       assert.deepEqual(Object.values(after).filter((value) => /^-0[.0]*°?$/.test(value)), [], 'zeros have no sign');
+    });
+  });
+
+  it('first shows all that moves, as large as the part of the page between the panels allows', async () => {
+    // A room of 70 m with loose walls, as in erl_room.
+    const script = scenes.land(), wall = (x, y, size_m) => ({
+                                    name: `wall ${x} ${y}`,
+                                    owner: '',
+                                    kind: 'object',
+                                    fixed: false,
+                                    pose: scenes.at(x, y, 2),
+                                    parts: [{shape: 'box', size_m, pose: scenes.at(0, 0, 0), material: 0}],
+                                  });
+    const walls =
+        [wall(35, 0, [1, 70, 4]), wall(-35, 0, [1, 70, 4]), wall(0, 34.5, [68.9, 1, 4]), wall(0, -34.5, [68.9, 1, 4])];
+    script.scene.bodies.push(...walls.map((body, i) => ({...body, id: script.scene.bodies.length + i})));
+    const rovers = script.posesAt;
+    script.posesAt = (t_s) => [...rovers(t_s), ...walls.map(({pose}) => pose)];
+    await withPage(script, async (page, server) => {
+      const {camera: {position, target, fov_deg}} = await show(page, server, 1);
+      // All corners of the room by the pinhole model: inside the free part, which they nearly fill on one side.
+      const minus = (a, b) => a.map((x, i) => x - b[i]), dot = (a, b) => a.reduce((s, x, i) => s + x * b[i], 0);
+      const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+      const unit = (a) => a.map((x) => x / Math.hypot(...a));
+      const ahead = unit(minus(target, position)), right = unit(cross(ahead, [0, 0, 1])), up = cross(right, ahead);
+      const focal_px = 450 / Math.tan(fov_deg * Math.PI / 360);
+      // Panels of 220 and 300 px, 10 px from the edges: what is free about the middle is 2 x (720 - 310) px wide.
+      const free_px = [820, 900 - 2 * 40], used = [0, 0];
+      for (const x of [-35.5, 35.5])
+        for (const y of [-35, 35])
+          for (const z of [0, 4]) {
+            const d = minus([x, y, z], position);
+            used[0] = Math.max(used[0], 2 * focal_px * Math.abs(dot(d, right)) / dot(d, ahead) / free_px[0]);
+            used[1] = Math.max(used[1], 2 * focal_px * Math.abs(dot(d, up)) / dot(d, ahead) / free_px[1]);
+          }
+      assert.ok(Math.max(...used) > 0.85 && used[0] <= 1 && used[1] <= 1, `shares used: ${used}`);
+      assert.ok(Math.hypot(...minus(position, target)) < 150, `from ${position}`);
+    }, {width: 1440, height: 900});
+  });
+
+  it('never orbits below the ground', async () => {
+    await withPage(scenes.land(), async (page) => {
+      await page.evaluate(() => window.shoal.setView('orbit,10,0,-5,0,0,0'));
+      const {camera} = await until(page, (p) => p.camera.position[2] > 0);
+      near(camera.position[2], 0.05 + 0.02 * Math.hypot(10, 5), 0.02, 'height at the lowest');
+    });
+    // Of a terrain, whose samples are 4 m apart.
+    await withPage(scenes.underwater(), async (page) => {
+      await page.evaluate(() => window.shoal.setView('orbit,40,0,-60,0,0,-10'));
+      const {camera: {position: [x, y, z]}} = await until(page, (p) => p.camera.position[2] > -40);
+      const ground = -30 + 4 * Math.sin(x / 24) * Math.cos(y / 31) + 2.5 * Math.sin((x + 2 * y) / 17);
+      assert.ok(z > ground - 0.5, `${z} above ${ground}`);
     });
   });
 

@@ -80,6 +80,39 @@ describe('returns', () => {
     }, SMALL);
   });
 
+  it('of lasers have rays from the sensor, of the selected vehicle or of all', async () => {
+    const script = scenes.land(), [one, two] = script.scene.vehicles;
+    two.devices.push({name: 'eye', type: 'lidar', body: 1, pose: scenes.at(0, 0, 0.2), channels: ['rover2.eye']});
+    one.devices[0].pose = scenes.at(0.12, 0.05, 0.3, 0.7);
+    await withPage(script, async (page, server) => {
+      await page.evaluate(() => window.shoal.select('rover1'));
+      await show(page, server, 1);
+      const scan = {utime: 1e6, ranges: Float32Array.from([2, 5, 3]), rad0: -0.5, radstep: 0.5};
+      await server.publishOnceWanted('rover1.lidar', 'planar_lidar_t', 1e6, scan);
+      await until(page, (p) => p.returns[0]?.count === 2 && p.returns[0].rays === 0);
+      // The second beam, of the largest range, has no return.
+      const choose = (id, value) => page.evaluate((option, to) => {
+        document.getElementById(option).value = to;
+        document.getElementById(option).dispatchEvent(new Event('input'));
+      }, id, value);
+      await choose('o-rays', 'selected');
+      await until(page, (p) => p.returns[0]?.rays === 2);
+      const [body] = script.posesAt(1);
+      const hit = (range, angle) =>
+          toWorld(body, one.devices[0].pose, [range * Math.cos(angle), range * Math.sin(angle), 0]);
+      const eye = toWorld(body, one.devices[0].pose, [0, 0, 0]);
+      compare(await page.evaluate(() => window.shoal.raysOf('rover1.lidar')), [eye, hit(2, -0.5), eye, hit(3, 0.5)]);
+      // Rays without the points, and those of the other vehicle.
+      await choose('o-returns', 'off');
+      await until(page, (p) => p.returns[0]?.count === 0 && p.returns[0].rays === 2);
+      await choose('o-rays', 'all');
+      await server.publishOnceWanted('rover2.eye', 'planar_lidar_t', 1e6, scan);
+      await until(page, (p) => p.returns.find(({channel}) => channel === 'rover2.eye')?.rays === 3);
+      await choose('o-rays', 'off');
+      await until(page, (p) => p.returns.length === 0);
+    }, SMALL);
+  });
+
   it('of a DVL, an altimeter and a multibeam lie on their beams', async () => {
     const script = scenes.underwater(), [auv] = script.scene.vehicles, [body] = script.posesAt(0);
     auv.devices[0].channels = ['auv1.dvl'];

@@ -11,12 +11,15 @@ import {
   Matrix4,
   Mesh,
   Quaternion,
-  Sphere,
   Vector3,
 } from './vendor/three.js';
 
 const ONE = new Vector3(1, 1, 1);
 const PLANE_REACH_M = 30000;
+const COLLISION_COLORS = {
+  movable: '#4fb477',
+  fixed: '#8b97a3'
+};
 
 /** Returns the matrix of a pose [x, y, z, qw, qx, qy, qz]. */
 export function matrixOf(pose, scale = ONE) {
@@ -38,25 +41,47 @@ export class Bodies {
     this.assets = assets;
     this.root = new Group();
     scene.add(this.root);
+    this.shapes = 'drawn';
     this.clear();
   }
 
   /** Removes all bodies. */
   clear() {
+    this.removeMeshes();
+    this.list = [];
+    this.X_WB = [];
+    this.boxes = new Map();
+  }
+
+  removeMeshes() {
     this.root.traverse((object) => object.dispose?.());
     this.root.clear();
     this.surfaces.clear();
-    this.list = [];
-    this.X_WB = [];
     this.groups = [];
     this.planes = [];
-    this.revision = null;
+  }
+
+  /** What is drawn: 'drawn', the shapes with their looks; 'collision', those that collide; 'wire', their edges. */
+  setShapes(shapes) {
+    if (shapes === this.shapes) return;
+    this.shapes = shapes;
+    this.surfaces.wire = shapes === 'wire';
+    this.removeMeshes();
+    this.gather();
+    this.update(null);
+  }
+
+  /** Parts of a body as they are drawn. */
+  partsOf(body) {
+    if (this.shapes !== 'collision') return body.parts;
+    const color = body.fixed ? COLLISION_COLORS.fixed : COLLISION_COLORS.movable;
+    return body.parts.filter((part) => part.collides !== false)
+        .map((part) => (part.shape === 'plane' ? part : {...part, color}));
   }
 
   /** Builds the bodies of a checked scene. */
   setScene(data) {
     this.clear();
-    this.revision = data.revision;
     this.list = data.bodies;
     this.origin = new Vector3(...data.origin_m);
     // Vehicles differ in their default color.
@@ -80,7 +105,7 @@ export class Bodies {
   gather() {
     const groups = new Map();
     for (const body of this.list)
-      for (const part of body.parts) {
+      for (const part of this.partsOf(body)) {
         if (part.shape === 'plane') this.addPlane(body, part);
         const shape = ['mesh', 'terrain'].includes(part.shape) ? {key: part.asset, scale: [1, 1, 1]} :
             part.shape === 'plane'                             ? null :
@@ -95,7 +120,7 @@ export class Bodies {
       if (group.geometry)
         this.addGroup(group);
       else
-        this.loadGroup(group, this.revision);
+        this.loadGroup(group, this.groups);
   }
 
   colorOf(body, part) {
@@ -103,10 +128,12 @@ export class Bodies {
     return new Color(color);
   }
 
-  async loadGroup(group, revision) {
+  async loadGroup(group, groups) {
     const geometry = await this.assets.geometry(group.part.asset);
-    if (!geometry || revision !== this.revision) return;
+    if (!geometry || groups !== this.groups) return;  // another scene, or other shapes
     group.geometry = geometry;
+    geometry.computeBoundingBox();
+    this.boxes.set(group.part.asset, geometry.boundingBox);
     this.addGroup(group);
     this.assets.changed();
   }
@@ -117,7 +144,8 @@ export class Bodies {
     mesh.instanceMatrix.setUsage(DynamicDrawUsage);
     group.instances.forEach((instance, i) => mesh.setColorAt(i, instance.color));
     mesh.frustumCulled = false;
-    mesh.castShadow = mesh.receiveShadow = true;
+    mesh.castShadow = this.shapes !== 'wire';
+    mesh.receiveShadow = true;
     mesh.matrixAutoUpdate = false;
     mesh.userData.bodies = group.instances.map((instance) => instance.body);
     group.mesh = mesh;
@@ -174,20 +202,56 @@ export class Bodies {
     }
   }
 
-  /** Returns the sphere around movable bodies, or around all if none moves. */
-  boundingSphere() {
-    const box = new Box3();
-    const moving = this.list.filter((body) => !body.fixed);
-    for (const body of moving.length ? moving : this.list) {
-      const at = new Vector3().setFromMatrixPosition(this.X_WB[body.index]);
-      const radius_m = radiusOf(body);
-      box.expandByPoint(at.clone().addScalar(radius_m)).expandByPoint(at.clone().addScalar(-radius_m));
-    }
-    return box.isEmpty() ? new Sphere(new Vector3(), 10) : box.getBoundingSphere(new Sphere());
+  /** Returns the box around movable bodies, or around all if none moves, without planes. */
+  boundingBox() {
+    const box = new Box3(), moving = this.list.filter((body) => !body.fixed);
+    for (const body of moving.length ? moving : this.list)
+      for (const part of body.parts) {
+        const own = this.boxOf(part), X_WP = this.X_WB[body.index].clone().multiply(matrixOf(part.pose));
+        if (!own) continue;
+        // A sphere does not grow when it turns.
+        box.union(own.applyMatrix4(part.shape === 'sphere' ? new Matrix4().copyPosition(X_WP) : X_WP));
+      }
+    return box.isEmpty() ? new Box3(new Vector3(-5, -5, 0), new Vector3(5, 5, 5)) : box;
+  }
+
+  /** Box around a part in its frame; of a mesh that is still on its way 1 m about its origin, null: it has none. */
+  boxOf(part) {
+    if (part.shape === 'plane') return null;
+    if (part.shape === 'terrain') return this.boxes.get(part.asset)?.clone() ?? null;
+    if (part.shape === 'mesh' && this.boxes.has(part.asset)) return this.boxes.get(part.asset).clone();
+    const cap_m = part.shape === 'capsule' ? part.radius_m : 0, r_m = part.radius_m;
+    const half_m = {
+      box: part.size_m?.map((size) => size / 2),
+      sphere: [r_m, r_m, r_m],
+      mesh: [1, 1, 1],
+    }[part.shape] ??
+        [r_m, r_m, part.length_m / 2 + cap_m];
+    const half = new Vector3(...half_m);
+    return new Box3(half.clone().negate(), half);
+  }
+
+  /** Height of the ground, of planes and terrains, at a place; -Infinity: there is none. */
+  groundAt(x, y) {
+    const heights = this.planes.map(({body, X_BP}) => planeHeight(this.X_WB[body].clone().multiply(X_BP), x, y));
+    for (const {geometry, instances} of this.groups)
+      if (geometry.userData.heightAt)
+        for (const {body, X_BP} of instances) {
+          const X_WP = this.X_WB[body].clone().multiply(X_BP);
+          const at = new Vector3(x, y, 0).applyMatrix4(X_WP.clone().invert());
+          heights.push(at.setZ(geometry.userData.heightAt(at.x, at.y)).applyMatrix4(X_WP).z);
+        }
+    return Math.max(-Infinity, ...heights.filter(Number.isFinite));
   }
 
   /** Returns objects for rays of the mouse. */
   get pickable() { return [...this.groups.map((group) => group.mesh), ...this.planes.map((plane) => plane.mesh)]; }
+}
+
+/** Height of a plane at a place; -Infinity: it is steeper than ground is. */
+function planeHeight(X_WP, x, y) {
+  const [nx, ny, nz] = X_WP.elements.slice(8, 11), [px, py, pz] = X_WP.elements.slice(12, 15);
+  return nz > 0.5 ? pz - (nx * (x - px) + ny * (y - py)) / nz : -Infinity;
 }
 
 /** Radius of the sphere around the origin of a body that contains its parts; 1 m for meshes. */

@@ -14,7 +14,11 @@ export const MODES = {
   device: 'Through a camera of the selected vehicle',
 };
 const FOV_DEG = 50;
+const GROUND_CLEARANCE_M = 0.05;
 const NEEDS_VEHICLE = new Set(['follow', 'chase', 'first', 'device']);
+/** Direction from what is fitted to the camera, and the share of the view that it fills, as in `shoal snap`. */
+const FIT_BACK = new Vector3(-0.5, -0.75, 0.617).normalize();
+const FIT_SHARE = 0.93;
 /** Share of the view from above, from its middle to its nearest edge, that panels leave free. */
 const FREE_SHARE = 0.75;
 
@@ -24,8 +28,10 @@ const LOOK_ALONG_X = new Quaternion().setFromRotationMatrix(
 
 /** The camera of the page and what moves it. */
 export class Cameras {
-  constructor(element) {
+  /** groundAt(x, y): height of the ground, -Infinity where there is none. */
+  constructor(element, groundAt) {
     this.element = element;
+    this.groundAt = groundAt;
     this.camera = new PerspectiveCamera(FOV_DEG, 1, 0.05, 10000);
     this.camera.up.set(0, 0, 1);
     this.camera.position.set(8, -8, 6);
@@ -111,15 +117,37 @@ export class Cameras {
     this.last = {name: vehicle.name, at, yaw: headingOf(vehicle.X_WV)};
   }
 
-  /** Shows a sphere as a whole; free_share: of the height of the view, the smaller side of what no panel covers. */
-  fit(sphere, free_share) {
+  /**
+   * Shows a box as a whole: from the least distance at which all its corners are in view, by the rule of
+   * camera_pose_for() in tools/experiment/images/overview.cpp.  `free`: shares of width and height of the view, about
+   * its middle, that no panel covers.
+   */
+  fit(box, free) {
     if (!this.controls.enabled) this.setMode('orbit', null);
-    const share = Math.max(0.1, Math.min(1, free_share));
-    const distance_m = 1.3 * Math.max(sphere.radius, 0.5) / Math.sin(FOV_DEG * Math.PI / 360) / share;
-    const direction = this.mode === 'top' ? new Vector3(0, -1e-4, 1) : new Vector3(-0.55, -0.75, 0.5);
-    this.controls.target.copy(sphere.center);
-    this.camera.position.copy(sphere.center).addScaledVector(direction.normalize(), distance_m);
+    const back = this.mode === 'top' ? new Vector3(0, -1e-4, 1).normalize() : FIT_BACK;
+    const right = new Vector3().crossVectors(this.camera.up, back).normalize();
+    const up = new Vector3().crossVectors(back, right);
+    const half = FIT_SHARE * Math.tan(FOV_DEG * Math.PI / 360);
+    const wide = half * this.camera.aspect * free.wide, high = half * free.high;
+    const center = box.getCenter(new Vector3());
+    let distance_m = 0.5;
+    for (const x of [box.min.x, box.max.x])
+      for (const y of [box.min.y, box.max.y])
+        for (const z of [box.min.z, box.max.z]) {
+          const corner = new Vector3(x, y, z).sub(center), nearer_m = corner.dot(back);
+          const aside_m = Math.abs(corner.dot(right)), above_m = Math.abs(corner.dot(up));
+          distance_m = Math.max(distance_m, aside_m / wide + nearer_m, above_m / high + nearer_m);
+        }
+    this.controls.target.copy(center);
+    this.camera.position.copy(center).addScaledVector(back, distance_m);
     this.last = null;
+  }
+
+  /** Keeps the camera above the ground: no orbit goes below it. */
+  stayAboveGround() {
+    const {position} = this.camera, {target} = this.controls, distance_m = position.distanceTo(target);
+    const min_m = this.groundAt(position.x, position.y) + GROUND_CLEARANCE_M + 0.02 * distance_m - target.z;
+    this.controls.maxPolarAngle = Math.acos(Math.max(-1, Math.min(1, min_m / distance_m)));
   }
 
   /** Moves the camera with the selected vehicle; X_WB: matrices of all bodies. */
@@ -132,6 +160,7 @@ export class Cameras {
     if (this.mode === 'device') this.lookThrough(X_WB);
     if (this.controls.enabled) {
       if (this.mode === 'orbit' || this.mode === 'top') this.moveByKeys(dt_s);
+      this.stayAboveGround();
       this.controls.update(dt_s);
     }
     // Keep the depth precise at any distance.

@@ -126,10 +126,11 @@ export class Instruments {
       this.dock.view?.changed?.();
     }
     const {options, selected, data} = this.app;
-    const key = JSON.stringify([options.get('returns'), options.get('ranges'), selected, data.revision]);
+    const chosen = ['returns', 'rays', 'ranges'].map((name) => options.get(name));
+    const key = JSON.stringify([chosen, selected, data.revision]);
     if (key !== this.key) {
       this.key = key;
-      this.returns.subscribe(options.get('returns'));
+      this.returns.subscribe(options.get('returns'), options.get('rays'));
       this.sonars?.subscribe(options.get('returns'));
       this.ranges.subscribe(options.get('ranges'));
     }
@@ -163,6 +164,7 @@ export class Instruments {
                                              channel,
                                              time_us: one.time_us,
                                              count: one.points.geometry.drawRange.count,
+                                             rays: one.rays.geometry.drawRange.count / 2,
                                            })),
       ranges: this.ranges.shown(this.app.playback.time_us).map((range) => ({
                                                                  name: range.name,

@@ -48,7 +48,7 @@ export function makeLayers(canvas, problem, changed) {
     dots: new Dots(scene),
     ring: new SelectionRing(scene),
     labels: new Labels(document.getElementById('labels')),
-    cameras: new Cameras(canvas),
+    cameras: new Cameras(canvas, (x, y) => common.bodies.groundAt(x, y)),
   };
 }
 
@@ -62,6 +62,7 @@ export function applyOptions(layers, options) {
     estimates.showEllipsoids = get('ellipsoids');
   }
   layers.zones.root.visible = get('zones');
+  layers.bodies.setShapes(get('shapes'));
   layers.currents.which = get('currents');
   layers.currents.depth_m = Math.max(0, Number(get('current-depth')) || 0);
   layers.views.which = get('sensors');

@@ -22,9 +22,11 @@ import {Stability} from './stability.js';
 import {TimeBar} from './time_bar.js';
 import {trailColor} from './trails.js';
 import {describeVehicles, moveVehicles, truthAt} from './vehicles.js';
-import {Vector3} from './vendor/three.js';
+import {Box3, Vector3} from './vendor/three.js';
 
 const $ = (id) => document.getElementById(id);
+
+const sizeOf = (box) => box.getSize(new Vector3()).length();
 
 /** While time passes the panels are written this far apart: each time costs a layout. */
 const PANELS_MS = 125;
@@ -247,8 +249,7 @@ class App {
       this.past.clear();
     this.ghosts.setScene(data);
     this.bodies.setScene(data);
-    const sphere = this.bodies.boundingSphere();
-    this.extent_m = this.cameras.extent_m = Math.max(2, sphere.radius);
+    this.extent_m = this.cameras.extent_m = Math.max(2, 0.5 * sizeOf(this.bodies.boundingBox()));
     this.vehicles = describeVehicles(data, this.bodies);
     this.byName = new Map(this.vehicles.map((vehicle) => [vehicle.name, vehicle]));
     this.owners =
@@ -351,11 +352,17 @@ class App {
     this.setMode('device');
   }
 
-  /** Shows all that moves. */
+  /** Shows all that moves, with some of its surroundings. */
   fit() {
-    const sphere = this.bodies.boundingSphere();
-    sphere.radius = Math.max(sphere.radius, ...this.vehicles.slice(0, 1).map((vehicle) => 3 * vehicle.radius_m));
-    this.cameras.fit(sphere, this.sides.freeShare);
+    const box = this.bodies.boundingBox(), center = box.getCenter(new Vector3());
+    const around_m = Math.max(0.2, Math.min(2, ...this.vehicles.map((vehicle) => 0.5 * vehicle.radius_m)));
+    box.expandByVector(new Vector3(around_m, around_m, 0));
+    for (const ghost of this.ghosts.ghosts)
+      if (ghost.root.visible) box.expandByPoint(ghost.at);
+    // One vehicle alone does not fill the page.
+    const min_size_m = 3.5 * Math.max(0.3, this.vehicles[0]?.radius_m ?? 0);
+    box.union(new Box3().setFromCenterAndSize(center, new Vector3(min_size_m, min_size_m, min_size_m)));
+    this.cameras.fit(box, this.sides.free);
     this.showMode();
     this.dirty = true;
   }
@@ -525,6 +532,7 @@ async function start() {
       setView: (text) => app.setView(text),
       select: (name) => app.select(name),
       returnsOf: (channel) => app.instruments.returns.pointsOf(channel),
+      raysOf: (channel) => app.instruments.returns.pointsOf(channel, 'rays'),
       sonarPixel: (channel, u, v) => app.instruments.sonars.pixelOf(channel, u, v),
       modems: () => app.instruments.traffic.modems.rows(),
       imageOf: (channel) => app.instruments.images.view?.views.find((one) => one.channel === channel),

@@ -138,6 +138,7 @@ export class Surfaces {
   constructor(assets) {
     this.assets = assets;
     this.contour_m = {value: 1};
+    this.wire = false;  // only edges, but for planes
     this.clear();
   }
 
@@ -157,7 +158,8 @@ export class Surfaces {
   get(part, {contours = false} = {}) {
     const texture = part.color ? null : part.material.texture ?? null;
     const plain = !part.color && !texture && !part.material.color;
-    const key = Surfaces.key(part, plain) + contours;
+    const wireframe = this.wire && part.shape !== 'plane';
+    const key = Surfaces.key(part, plain) + contours + wireframe;
     const known = this.materials.get(key);
     if (known) return known;
     // Choose the code of the shader by the pattern.
@@ -171,6 +173,7 @@ export class Surfaces {
       defines,
       lights: true,
       side: DoubleSide,
+      wireframe,
       vertexShader: VERTEX,
       fragmentShader: FRAGMENT,
       uniforms: {

@@ -36,6 +36,13 @@ export function probe(app) {
                                   position: world(place.setFromMatrixPosition(X)),
                                   pixel: app.labels.project(place, app.camera),
                                 })),
+    shapes: {
+      which: app.bodies.shapes,
+      parts: app.bodies.groups.reduce((sum, group) => sum + group.instances.length, 0),
+      wire: app.bodies.groups.filter((group) => group.mesh.material.wireframe).length,
+      groups: app.bodies.groups.length,
+      planes: app.bodies.planes.filter(({mesh}) => !mesh.material.wireframe).length,
+    },
     vehicles: app.vehicles.map((vehicle, i) => ({
                                  name: vehicle.name,
                                  position: world(vehicle.at),

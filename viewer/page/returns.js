@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Returns of sensors in the scene: points of lidars, beams of a DVL, echoes of sonars, at the pose of the sensor when
-// it measured.
+// Returns of sensors in the scene: points of lidars and the rays to them, beams of a DVL, echoes of sonars, at the pose
+// of the sensor when it measured.
 import {
   BufferAttribute,
   BufferGeometry,
@@ -24,6 +24,8 @@ const SLOT_US = 10000;
 const RING_STEPS = 32;
 const TYPES = ['planar_lidar_t', 'point_cloud_t', 'dvl_t', 'sonar_range_t', 'multibeam_t'];
 const DEVICES = ['lidar', 'lidar3d', 'dvl', 'sonar', 'altimeter', 'multibeam'];
+/** Devices that have rays, from the sensor to each point. */
+const LASERS = ['lidar', 'lidar3d'];
 const COLORS = {
   planar_lidar_t: '#ff9d3c',
   point_cloud_t: '#ff9d3c',
@@ -40,20 +42,25 @@ void main() {
 }`;
 const FRAGMENT = /* glsl */ `
 uniform vec3 color;
-uniform float round;
+uniform float round, opacity;
 void main() {
   float off = round * 2.0 * length(gl_PointCoord - 0.5);
   if (off > 1.0) discard;
   // A dark rim, to be seen on any ground.
-  gl_FragColor = vec4(mix(color, vec3(0.02, 0.05, 0.08), smoothstep(0.6, 0.8, off)), 1.0);
+  gl_FragColor = vec4(mix(color, vec3(0.02, 0.05, 0.08), smoothstep(0.6, 0.8, off)), opacity);
   #include <colorspace_fragment>
 }`;
 
-const look = (color, round) => new ShaderMaterial({
-  uniforms: {color: {value: new Color(color)}, round: {value: round}, size_px: {value: 5}},
+const look = (color, round, opacity = 1) => new ShaderMaterial({
+  uniforms: {color: {value: new Color(color)}, round: {value: round}, size_px: {value: 5}, opacity: {value: opacity}},
   vertexShader: VERTEX,
   fragmentShader: FRAGMENT,
+  transparent: opacity < 1,
+  depthWrite: opacity === 1,
 });
+
+/** Opacity of each of so many rays: thousands leave something to be seen behind them. As in images of `shoal snap`. */
+const rayOpacity = (count) => Math.max(0.05, Math.min(0.6, 90 / Math.max(1, count)));
 
 const finite = (values) => values.every(Number.isFinite);
 
@@ -166,10 +173,12 @@ export class Returns {
   }
 
   remove(name) {
-    for (const object of [this.drawn.get(name).points, this.drawn.get(name).lines]) {
+    const {points, lines, rays} = this.drawn.get(name);
+    for (const object of [points, lines, rays]) {
       object.geometry.dispose();
       this.app.scene.remove(object);
     }
+    rays.material.dispose();
     this.drawn.delete(name);
     this.app.dirty = true;
   }
@@ -180,12 +189,18 @@ export class Returns {
       if (one.time_us > time_us || one.time_us < time_us - KEPT_US) this.remove(name);
   }
 
-  /** Wants the channels of the devices whose returns are shown. */
-  subscribe(which) {
-    this.names = this.poses.channelsOf(DEVICES, which, DEVICES_MAX);
+  /** Wants the channels of the devices whose returns are shown, and of those with rays. */
+  subscribe(which, ofRays) {
+    this.shown = this.poses.channelsOf(DEVICES, which, DEVICES_MAX);
+    this.traced = this.poses.channelsOf(LASERS, ofRays, DEVICES_MAX);
+    this.names = new Set([...this.shown, ...this.traced]);
     this.app.channels.want('returns', this.names, RATE_HZ, (message) => this.take(message));
-    for (const name of [...this.drawn.keys()])
-      if (!this.names.has(name)) this.remove(name);
+    for (const [name, {message}] of [...this.drawn])
+      if (this.names.has(name))
+        this.draw(name, this.poses.byChannel.get(name), message);
+      else
+        this.remove(name);
+    this.app.dirty = true;
   }
 
   take(message) {
@@ -210,7 +225,7 @@ export class Returns {
     const time_us = this.poses.sampleTime(message, mounted);
     const {points, lines} = returnsOf(message, mounted.device.field_of_view);
     const one = this.drawn.get(channel) ?? this.make(channel, message.type);
-    one.time_us = message.time_us;
+    Object.assign(one, {message, time_us: message.time_us});
     // One pose for all points, or one for each slot of time.
     const X_WS = new Map(), at = new Vector3();
     const toWorld = (list) => {
@@ -222,30 +237,35 @@ export class Returns {
       });
       return positions;
     };
-    setPositions(one.points, toWorld(points));
-    setPositions(one.lines, toWorld(lines));
+    const shown = this.shown.has(channel);
+    const rays = this.traced.has(channel) ? points.flatMap((point) => [[0, 0, 0, point[3]], point]) : [];
+    setPositions(one.points, toWorld(shown ? points : []));
+    setPositions(one.lines, toWorld(shown ? lines : []));
+    setPositions(one.rays, toWorld(rays));
+    one.rays.material.uniforms.opacity.value = rayOpacity(points.length);
   }
 
   make(channel, type) {
     const one = {
       type,
       points: new Points(new BufferGeometry(), this.pointLooks.get(type)),
-      lines: new LineSegments(new BufferGeometry(), this.lineLooks.get(type))
+      lines: new LineSegments(new BufferGeometry(), this.lineLooks.get(type)),
+      rays: new LineSegments(new BufferGeometry(), look(COLORS[type], 0, 0.5))
     };
-    for (const object of [one.points, one.lines]) {
+    for (const object of [one.rays, one.points, one.lines]) {
       object.frustumCulled = false;
-      object.renderOrder = 14;
+      object.renderOrder = object === one.rays ? 13 : 14;
       this.app.scene.add(object);
     }
     this.drawn.set(channel, one);
     return one;
   }
 
-  /** Points of a channel in the world, for tests. */
-  pointsOf(channel) {
+  /** Points of a channel in the world, or the two ends of each of its rays, for tests. */
+  pointsOf(channel, kind = 'points') {
     const one = this.drawn.get(channel);
     if (!one) return null;
-    const {geometry} = one.points, origin = this.app.data.origin_m;
+    const {geometry} = one[kind], origin = this.app.data.origin_m;
     const values = geometry.getAttribute('position')?.array ?? [];
     const count = geometry.drawRange.count;
     return [...Array(count).keys()].map((i) => origin.map((o, k) => o + values[3 * i + k]));

@@ -66,6 +66,15 @@ function readHeights(view) {
   geometry.setAttribute('position', new BufferAttribute(points, 3));
   geometry.setIndex(new BufferAttribute(corners, 1));
   geometry.computeVertexNormals();
+  // Height at a place of the part, between the samples; NaN: outside.
+  geometry.userData.heightAt = (x, y) => {
+    const u = (x - x0) / dx, v = (y - y0) / dy;
+    if (!(u >= 0 && v >= 0 && u <= columns - 1 && v <= rows - 1)) return NaN;
+    const i = Math.min(columns - 2, Math.floor(u)), j = Math.min(rows - 2, Math.floor(v));
+    const at = (k, l) => heights[(j + l) * columns + i + k], east = u - i, north = v - j;
+    const low = at(0, 0) + east * (at(1, 0) - at(0, 0)), high = at(0, 1) + east * (at(1, 1) - at(0, 1));
+    return low + north * (high - low);
+  };
   return geometry;
 }
 

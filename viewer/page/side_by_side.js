@@ -8,6 +8,8 @@ import {truthAt} from './vehicles.js';
 import {Vector3} from './vendor/three.js';
 
 const $ = (id) => document.getElementById(id);
+/** The least share of a view that counts as free of panels. */
+const FREE_MIN = 0.2;
 /** The server keeps states this far apart. */
 const END_US = 100000;
 
@@ -94,12 +96,26 @@ export class SideBySide {
     return width / height;
   }
 
-  /** The smaller side of what is seen between the panels, as a share of the height of a view. */
+  /** What is seen between the panels about the middle of a view, as shares of its width and height. */
+  get free() {
+    const {x, y, width, height} = freeArea(), [view] = this.regions;
+    const share = (from, size, middle, whole) =>
+        Math.max(FREE_MIN, Math.min(1, 2 * Math.min(middle - from, from + size - middle) / whole));
+    if (!this.on)
+      return {wide: share(x, width, innerWidth / 2, innerWidth), high: share(y, height, innerHeight / 2, innerHeight)};
+    // The middle of each view is that of its half.
+    const stacked = innerWidth <= NARROW_PX;
+    const part = (size, whole) => Math.max(FREE_MIN, Math.min(1, size / whole));
+    return {
+      wide: part(stacked ? width : width / 2, view.width),
+      high: part(stacked ? height / 2 : height, view.height)
+    };
+  }
+
+  /** The smaller side of it, as a share of the height of a view. */
   get freeShare() {
-    const free = freeArea(), [{height}] = this.regions;
-    if (!this.on) return Math.min(1, free.width / height);
-    const sides = innerWidth <= NARROW_PX ? [free.width, free.height / 2] : [free.width / 2, free.height];
-    return Math.min(1, Math.min(...sides) / height);
+    const {wide, high} = this.free;
+    return Math.min(1, wide * this.aspect, high);
   }
 
   /** Brings the camera in line with the size of a view, which changes with the panels. */

@@ -69,6 +69,25 @@ TEST(ViewPublisher, TheSceneHasEveryBodyInTheOrderOfItsNumber) {
   EXPECT_NEAR(lidar["field_of_view"]["to_rad"].get<double>(), 0.7854, 1e-3);
 }
 
+TEST(ViewPublisher, TheSceneSaysWhichPartsCollideWithNothing) {
+  const std::string lamp = "{shape: sphere, radius_m: 0.1, category: light, collides_with: [light]}";
+  const std::string post = "[{shape: box}, {shape: box, category: light}, " + lamp + "]";
+  const std::string world =
+      "shoal: 1\ncategories: [light]\nobjects:\n  - {name: one, fixed: true, parts: " + post + "}\n";
+  const auto collide = [](const Json& scene) {
+    std::vector<bool> all;
+    for (const Json& part : scene["bodies"][0]["parts"]) all.push_back(part.value("collides", true));
+    return all;
+  };
+  // A lamp collides with lamps of others only.
+  const Json alone = ViewedWorld(world).last_scene();
+  EXPECT_EQ(collide(alone), (std::vector<bool>{true, true, false}));
+  EXPECT_FALSE(alone["bodies"][0]["parts"][0].contains("collides"));
+  const Json two =
+      ViewedWorld(world + "  - {name: two, fixed: true, position_m: [9, 0, 0], parts: [" + lamp + "]}\n").last_scene();
+  EXPECT_EQ(collide(two), (std::vector<bool>{true, true, true}));
+}
+
 TEST(ViewPublisher, TheSceneHasTheRangesOfADeviceAfterAChange) {
   ViewedWorld viewed(rover_and_ball);
   viewed.run_for(1);

@@ -159,6 +159,7 @@ class Film {
     while (world_.now() < time && caught_signal() == 0) {
       if (!source_->step()) return false;
       const double now_s = sim::to_seconds(world_.now());
+      if (now_s > options_.from_s - LaserScans::kept_s) overlay_.observe_scans();
       if (now_s < options_.from_s - 15 * options_.speed || now_s - observed_s_ < 0.1 * step_s()) continue;
       overlay_.observe();
       observed_s_ = now_s;
@@ -172,7 +173,8 @@ class Film {
     frame_.width = options_.format.width, frame_.height = options_.format.height, frame_.channels = 3;
     frame_.data.assign(frame_.size(), 0);
     for (std::size_t i = 0; i < rigs_.size(); ++i) {
-      const SceneView view = rigs_[i]->view(film_step_s);
+      SceneView view = rigs_[i]->view(film_step_s);
+      overlay_.prepare(view);
       RenderedScene& rendered = painter_.paint(view);
       if (options_.overlays.any() && view.options.kind == sim::ImageKind::color) overlay_.draw(rendered, view);
       place(rendered.image, static_cast<int>(i) * columns, columns, frame_);

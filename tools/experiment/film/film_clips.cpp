@@ -111,7 +111,8 @@ class OpenClip {
       rig_ = make_camera_rig("chase:" + clip_.vehicle, world_, like_);
       follows_ = true;
     }
-    const SceneView view = rig_->view(frames_++ == 0 ? 0 : film_step_s);
+    SceneView view = rig_->view(frames_++ == 0 ? 0 : film_step_s);
+    overlay.prepare(view);
     RenderedScene& rendered = painter.paint(view);
     if (with_overlay) overlay.draw(rendered, view);
     writer_->add(rendered.image);
@@ -174,6 +175,7 @@ class Clips {
     while (world_.now() < time && caught_signal() == 0) {
       if (!source_->step()) return false;
       const double now_s = sim::to_seconds(world_.now());
+      overlay_.observe_scans();
       if (now_s - observed_s_ < 0.1 * step_s) continue;
       overlay_.observe();
       observed_s_ = now_s;

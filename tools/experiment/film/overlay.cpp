@@ -21,6 +21,7 @@ constexpr sim::Color vehicle_colors[] = {{86, 180, 233}, {230, 159, 0},   {0, 20
                                          {213, 94, 0},   {204, 121, 167}, {120, 140, 255}, {230, 230, 230}};
 constexpr sim::Color estimate_color{255, 90, 160};
 constexpr sim::Color ping_color{255, 255, 160};
+constexpr sim::Color ray_color{255, 157, 60};  ///< as on the live page
 
 sim::Color color_of(int number) {
   return vehicle_colors[static_cast<std::size_t>(number) % std::size(vehicle_colors)];
@@ -35,14 +36,16 @@ OverlayChoice parse_overlays(const std::string& text) {
   while (std::getline(words, word, ',')) {
     if (word == "none") continue;
     const bool all = word == "all";
-    if (!all && word != "trails" && word != "ellipses" && word != "pings" && word != "labels" && word != "clock")
+    if (!all && word != "trails" && word != "ellipses" && word != "pings" && word != "rays" && word != "labels" &&
+        word != "clock")
       throw std::invalid_argument(
-          "must be trails, ellipses, pings, labels and clock, separated by commas, all or none, "
+          "must be trails, ellipses, pings, rays, labels and clock, separated by commas, all or none, "
           "got '" +
           text + "'");
     choice.trails |= all || word == "trails";
     choice.ellipses |= all || word == "ellipses";
     choice.pings |= all || word == "pings";
+    choice.rays |= all || word == "rays";
     choice.labels |= all || word == "labels";
     choice.clock |= all || word == "clock";
   }
@@ -50,7 +53,11 @@ OverlayChoice parse_overlays(const std::string& text) {
 }
 
 Overlay::Overlay(const sim::World& world, Settings settings, LogEstimates estimates)
-    : world_(world), settings_(std::move(settings)), estimates_(std::move(estimates)) {}
+    : world_(world),
+      settings_(std::move(settings)),
+      estimates_(std::move(estimates)),
+      scans_(world),
+      edges_(std::make_unique<ShapeEdges>(world)) {}
 
 void Overlay::extend(Trail& trail, double now_s, const sim::Vector3d& p_W, double trail_s) {
   auto& points_W = trail.points_W;
@@ -64,8 +71,13 @@ void Overlay::add(const FilmPing& ping) {
   if (pings_.size() > max_pings) pings_.pop_front();
 }
 
+void Overlay::observe_scans() {
+  if (settings_.choice.rays) scans_.observe();
+}
+
 void Overlay::observe() {
   const double now_s = sim::to_seconds(world_.now());
+  observe_scans();
   if (settings_.choice.trails) {
     for (const auto& vehicle : world_.vehicles()) {
       Trail& trail = trails_[vehicle->name()];
@@ -84,9 +96,16 @@ void Overlay::observe() {
   });
 }
 
+void Overlay::prepare(SceneView& view) const {
+  const bool only_edges = settings_.choice.shapes == BodyShapes::wire;
+  if (only_edges && view.options.kind == sim::ImageKind::color) view.options.filter.categories = 0;
+}
+
 void Overlay::draw(RenderedScene& rendered, const SceneView& view) const {
   OverlayCanvas canvas(rendered, view);
+  if (settings_.choice.shapes != BodyShapes::drawn) edges_->draw(canvas, settings_.choice.shapes);
   if (settings_.choice.pings) draw_pings(canvas);
+  if (settings_.choice.rays) draw_rays(canvas);
   if (settings_.choice.trails) draw_trails(canvas);
   if (settings_.choice.ellipses) draw_estimates(canvas);
   if (settings_.choice.labels) draw_labels(canvas, view);
@@ -149,6 +168,17 @@ void Overlay::draw_pings(OverlayCanvas& canvas) const {
         canvas.ellipse(ping.position_W, radius_m * sim::Vector3d::Unit(i), radius_m * sim::Vector3d::Unit((i + 1) % 3),
                        pen);
     }
+  }
+}
+
+void Overlay::draw_rays(OverlayCanvas& canvas) const {
+  for (const auto& [name, scan] : scans_.scans()) {
+    // Thousands of rays must leave something to be seen behind them.
+    const auto count = static_cast<float>(std::max<std::size_t>(1, scan->rays.size()));
+    Pen ray{ray_color, 1, std::clamp(90 / count, 0.05F, 0.6F)}, hit{ray_color, 4, 0.95F};
+    ray.hidden_opacity = hit.hidden_opacity = 0.3F;
+    for (const LaserScans::Ray& each : scan->rays) canvas.line(each.from_W, each.to_W, ray);
+    for (const LaserScans::Ray& each : scan->rays) canvas.dot(each.to_W, hit);
   }
 }
 

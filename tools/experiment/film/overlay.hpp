@@ -3,12 +3,15 @@
 
 #include <deque>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "sim/world/world.hpp"
 #include "tools/experiment/estimates/log_estimates.hpp"
+#include "tools/experiment/film/laser_scans.hpp"
 #include "tools/experiment/film/overlay_canvas.hpp"
+#include "tools/experiment/film/shape_edges.hpp"
 
 namespace tools {
 
@@ -17,13 +20,15 @@ struct OverlayChoice {
   bool trails = false;    ///< paths of the vehicles
   bool ellipses = false;  ///< estimates of a log: position, its covariance (3 sigma) and its error
   bool pings = false;     ///< sound in the water as spheres that expand
+  bool rays = false;      ///< rays of laser scanners, from the sensor to what they hit
   bool labels = false;    ///< names of the vehicles
   bool clock = false;     ///< simulated time
+  BodyShapes shapes = BodyShapes::drawn;
 
-  bool any() const { return trails || ellipses || pings || labels || clock; }
+  bool any() const { return trails || ellipses || pings || rays || labels || clock || shapes != BodyShapes::drawn; }
 };
 
-/// Parses `trails,labels` and so on, `all` or `none`.  Throws std::invalid_argument.
+/// Parses `trails,labels` and so on, `all` or `none`; bodies are drawn as they look.  Throws std::invalid_argument.
 OverlayChoice parse_overlays(const std::string& text);
 
 /// Sound that a transducer sent.
@@ -50,8 +55,12 @@ class Overlay {
   /// Notes where the vehicles are.  To be called at least once before each image; between images it makes trails
   /// smoother.
   void observe();
+  /// Notes what laser scanners measure.  To be called after each step of the last LaserScans::kept_s before an image.
+  void observe_scans();
   /// Adds a sound.  Of very many the last ones are drawn.
   void add(const FilmPing& ping);
+  /// Prepares a view for draw(): without the bodies where only their edges are to be seen.
+  void prepare(SceneView& view) const;
   /// Draws into a color image of the present state of the world.
   void draw(RenderedScene& rendered, const SceneView& view) const;
 
@@ -66,6 +75,7 @@ class Overlay {
   void draw_trails(OverlayCanvas& canvas) const;
   void draw_estimates(OverlayCanvas& canvas) const;
   void draw_pings(OverlayCanvas& canvas) const;
+  void draw_rays(OverlayCanvas& canvas) const;
   void draw_labels(OverlayCanvas& canvas, const SceneView& view) const;
   void draw_clock(OverlayCanvas& canvas, const SceneView& view) const;
 
@@ -74,6 +84,8 @@ class Overlay {
   LogEstimates estimates_;
   std::map<std::string, Trail> trails_, estimate_trails_;
   std::deque<FilmPing> pings_;
+  LaserScans scans_;
+  std::unique_ptr<ShapeEdges> edges_;
 };
 
 }  // namespace tools

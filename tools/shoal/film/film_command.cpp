@@ -17,7 +17,7 @@ namespace {
 struct FilmArguments {
   FilmOptions film;
   ClipOptions clips;
-  std::string size = "640x480", overlays = "labels,clock", visibility;
+  std::string size = "640x480", overlays = "labels,clock", shapes = "drawn", visibility;
   double fov_deg = 60;
   int split = 1;
 };
@@ -48,6 +48,7 @@ int film(FilmArguments& arguments) {
   film.split = arguments.split == 2;
   film.visibility_m = parse_visibility(arguments.visibility);
   film.overlays = parse_overlay_option(arguments.overlays);
+  film.overlays.shapes = parse_shapes(arguments.shapes);
   if (film.cameras.empty()) film.cameras.push_back("all");
   if (film.cameras.size() > 2) throw CLI::ValidationError("--camera", "may be given twice at most");
   if (film.out.empty() && arguments.clips.directory.empty())
@@ -107,6 +108,7 @@ void add_film_options(CLI::App& command, FilmArguments& arguments) {
       ->capture_default_str();
   add_visibility_option(command, arguments.visibility);
   add_overlay_option(command, arguments.overlays)->capture_default_str();
+  add_shapes_option(command, arguments.shapes);
   add_threads_option(command, film.threads);
   command.add_flag("--quiet", film.quiet, "no progress");
 }

@@ -6,6 +6,7 @@
 #include <charconv>
 
 #include "sim/image/image.hpp"
+#include "tools/shoal/options/shared_options.hpp"
 
 namespace tools {
 
@@ -46,7 +47,9 @@ std::optional<double> parse_visibility(const std::string& text) {
 
 CLI::Option* add_overlay_option(CLI::App& command, std::string& text) {
   return command
-      .add_option("--overlay", text, "trails, ellipses (estimates of a log), pings, labels and clock; all or none")
+      .add_option(
+          "--overlay", text,
+          "trails, ellipses (estimates of a log), pings, rays (of laser scanners), labels and clock; all or none")
       ->type_name("LIST");
 }
 
@@ -56,6 +59,20 @@ OverlayChoice parse_overlay_option(const std::string& text) {
   } catch (const std::invalid_argument& error) {
     throw CLI::ValidationError("--overlay", error.what());
   }
+}
+
+void add_shapes_option(CLI::App& command, std::string& text) {
+  command
+      .add_option("--shapes", text,
+                  "of the bodies: drawn, collision (with the edges of the parts that collide) or wire (only edges)")
+      ->type_name("KIND")
+      ->check(one_of({"drawn", "collision", "wire"}).description(""))
+      ->capture_default_str();
+}
+
+BodyShapes parse_shapes(const std::string& text) {
+  if (text == "wire") return BodyShapes::wire;
+  return text == "collision" ? BodyShapes::collision : BodyShapes::drawn;
 }
 
 }  // namespace tools

@@ -30,4 +30,9 @@ CLI::Option* add_overlay_option(CLI::App& command, std::string& text);
 /// Parses it.  Throws CLI::ValidationError.
 OverlayChoice parse_overlay_option(const std::string& text);
 
+/// Adds `--shapes KIND`; `text` must be `drawn` before.
+void add_shapes_option(CLI::App& command, std::string& text);
+/// Returns the choice of a text that passed the check of the option.
+BodyShapes parse_shapes(const std::string& text);
+
 }  // namespace tools

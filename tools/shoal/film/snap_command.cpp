@@ -35,7 +35,7 @@ struct SnapArguments {
   std::optional<int> antialias;
   bool all = false;
   int quality = 90;
-  std::string visibility, overlays = "none";
+  std::string visibility, overlays = "none", shapes = "drawn";
   // What the texts above give.
   std::optional<double> visibility_m;
   OverlayChoice overlay;
@@ -120,6 +120,8 @@ SnapView make_view(const SnapArguments& arguments, const sim::World& world) {
   }
   if (arguments.antialias) view.antialias = *arguments.antialias;
   if (view.options.kind != sim::ImageKind::color) view.antialias = 1;
+  if (view.options.kind != sim::ImageKind::color && arguments.overlay.shapes != BodyShapes::drawn)
+    throw CLI::ValidationError("--shapes", "must be drawn for an image without color");
   const std::int64_t rays = std::int64_t{view.optics.width} * view.optics.height * view.antialias * view.antialias;
   if (rays > 4 * sim::max_image_pixels)
     throw CLI::ValidationError("--size", "with --antialias makes more than 64000000 rays in an image");
@@ -149,8 +151,9 @@ void warn(const SnapView& view) {
 
 void take_one(const SnapArguments& arguments, const sim::World& world, const std::string& path, ScenePainter& painter,
               Overlay& overlay) {
-  const SnapView view = make_view(arguments, world);
+  SnapView view = make_view(arguments, world);
   warn(view);
+  overlay.prepare(view.scene);
   const auto start = std::chrono::steady_clock::now();
   RenderedScene& rendered = painter.paint(view.scene);
   overlay.observe();
@@ -201,6 +204,7 @@ int snap(SnapArguments& arguments) {
     throw CLI::ValidationError("WORLD", "either a world or --log LOG must be given");
   arguments.visibility_m = parse_visibility(arguments.visibility);
   arguments.overlay = parse_overlay_option(arguments.overlays);
+  arguments.overlay.shapes = parse_shapes(arguments.shapes);
   // Load the world, or the log.
   if (!arguments.log.empty() && !is_event_log(arguments.log))
     throw std::runtime_error(arguments.log + ": is not an LCM log: it cannot be read, or begins with something else");
@@ -283,6 +287,7 @@ static void add_snap_command(CLI::App& app, int& exit_code) {
   add_view_options(*command, *arguments);
   add_visibility_option(*command, arguments->visibility);
   add_overlay_option(*command, arguments->overlays)->capture_default_str();
+  add_shapes_option(*command, arguments->shapes);
   command->add_option("--seed", arguments->load.seed, "seed of every random stream")
       ->type_name("N")
       ->check(command_line::seed());
@@ -294,6 +299,7 @@ static void add_snap_command(CLI::App& app, int& exit_code) {
       *command, {{"shoal snap worlds/coop_land.yaml --out coop_land.png",
                   "shoal snap worlds/dynamic_warehouse.yaml --at 12.5 --eye -6,-8,5 --look 4,2,0 --out hall.jpg",
                   "shoal snap worlds/proving_ground.yaml --at 3 --from turntable.camera --out seen.png",
+                  "shoal snap erl_room --at 1 --overlay rays,labels --out rays.png",
                   "shoal snap --log run.lcm --at 40 --overlay trails,ellipses,labels --out run.png",
                   "shoal snap worlds/arm_reach.yaml --every 0.5 --until 5 --size 640x480 --out reach.png"},
                  {{0, "success"},
