@@ -130,8 +130,8 @@ TEST(HydrodynamicsChecks, AnInertiaThatNoSolidHasIsDoubted) {
 
 TEST(HydrodynamicsChecks, AnInertiaFarBelowThatOfASphereIsDoubted) {
   // Of 1000 kg and 1 m^3: r = 0.62035 m, 2/5 m r^2 = 153.934 kg m^2.
-  const auto doubts = [](const std::string& inertia) {
-    return sim::doubts_about(test::config_of("{mass_kg: 1000, inertia_kgm2: " + inertia + "}"));
+  const auto doubts = [](const std::string& kgm2) {
+    return sim::doubts_about(test::config_of("{mass_kg: 1000, inertia_kgm2: " + kgm2 + "}"));
   };
   EXPECT_THAT(doubts("[15.4, 15.4, 15.4]"), testing::IsEmpty());
   EXPECT_THAT(doubts("[15.3, 15.3, 15.3]"),

@@ -102,8 +102,8 @@ TEST_F(WorldPrograms, OtherWaysOfNamingAProgramAreErrors) {
     try {
       load("  - {name: p, " + keys + "}\n");
       return std::string();
-    } catch (const sim::ConfigError& error) {
-      return std::string(error.what());
+    } catch (const sim::ConfigError& wrong) {
+      return std::string(wrong.what());
     }
   };
   EXPECT_EQ(error("program: a, command: [a]"),

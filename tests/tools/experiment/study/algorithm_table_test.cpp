@@ -248,8 +248,8 @@ TEST(VerifiedRuns, ATableThatIsWrongIsRefusedWithItsLine) {
     try {
       tools::parse_study_rows(text, "study.csv");
       return {};
-    } catch (const std::runtime_error& error) {
-      return error.what();
+    } catch (const std::runtime_error& wrong) {
+      return wrong.what();
     }
   };
   EXPECT_EQ(error(head), "");
