@@ -39,7 +39,7 @@ PACKAGE = '''# SPDX-License-Identifier: BSD-3-Clause
 # Made by python/make_stubs.py.
 from . import messages as messages, plots as plots, results as results, vector as vector
 from ._shoal import Error as Error
-from .client import Client as Client
+from .client import Client as Client, DeviceChannels as DeviceChannels
 from .messages import (
 {messages}
 )

@@ -117,8 +117,8 @@ def class_text(name, owner):
 def page():
     """Returns the whole page."""
     parts = [HEAD.strip()]
-    for name in ('World', 'Subscription', 'Client', 'run', 'Run', 'study', 'Study', 'read', 'table', 'Record', 'Event',
-                 'RecordWriter', 'set_log_level'):
+    for name in ('World', 'Subscription', 'Client', 'DeviceChannels', 'run', 'Run', 'study', 'Study', 'read', 'table',
+                 'Record', 'Event', 'RecordWriter', 'set_log_level'):
         value = getattr(shoal, name)
         if inspect.isclass(value):
             parts += class_text(name, value)

@@ -7,6 +7,7 @@
 #include "bridges/base/bus_error.hpp"
 #include "bridges/lockstep_client/lockstep_client.hpp"
 #include "bridges/lockstep_client/lockstep_terms.hpp"
+#include "shoal/sim_vehicle_t.hpp"
 #include "shoal/utime_t.hpp"
 
 namespace shoal {
@@ -180,6 +181,25 @@ std::optional<std::int64_t> Client::wait_until(std::int64_t utime) {
   auto now = next_tick();
   while (now && *now < utime) now = next_tick();
   return now;
+}
+
+std::map<std::string, DeviceChannels> Client::spawn(const std::string& text, std::chrono::milliseconds timeout) {
+  if (!connection_->joined) throw std::logic_error("shoal::Client: join() comes before spawn()");
+  const shoal::sim_vehicle_t vehicle = with_own_errors([&] { return connection_->lcm.spawn(text, timeout); });
+  std::map<std::string, DeviceChannels> channels;
+  for (std::size_t i = 0; i < vehicle.device.size(); ++i)
+    channels[vehicle.device[i]] = {vehicle.device_type[i], vehicle.report_channel[i],  vehicle.report_type[i],
+                                   vehicle.rate_hz[i],     vehicle.command_channel[i], vehicle.command_types[i]};
+  return channels;
+}
+
+void Client::leave(std::chrono::milliseconds timeout) {
+  if (!connection_->joined || connection_->end == End::last_tick || connection_->end == End::dropped) return;
+  with_own_errors([&] { connection_->lcm.leave_at_next_tick(connection_->reason_to_leave, timeout); });
+  connection_->unanswered.reset();
+  connection_->joined = false;
+  const bool is_over = connection_->lcm.end() == bridges::LockstepClient::End::last_tick;
+  connection_->end = is_over ? End::last_tick : End::left;
 }
 
 void Client::stop() noexcept {

@@ -22,6 +22,8 @@ namespace bridges {
 namespace {
 
 constexpr double info_rate_hz = 0.1;
+/// Refusal of a request that a client sent for a tick of a branch that was left.
+constexpr const char* rewound_text = "the world was rewound before this request was carried out";
 
 }  // namespace
 
@@ -141,13 +143,14 @@ void SimService::handle_requests(TimeMachine* machine) {
   lockstep_.check_clock();
   // Limit the requests per step, so that a flood does not block the world; the others remain queued, and overflows are
   // counted.
-  constexpr int max_at_once = 50;
+  constexpr int max_at_once = 50, max_taken = 1000;
   for (Link& link : links_)
-    for (int handled = 0; handled < max_at_once; ++handled) {
+    for (int taken = 0, handled = 0; taken < max_taken && handled < max_at_once; ++taken) {
       const auto message = link.requests->take();
       if (!message) break;
-      handle_request(link, *message, machine);
+      if (handle_request(link, *message, machine)) ++handled;
     }
+  answer_in_turn(max_at_once, machine);
   for (Link& link : links_)
     while (const auto info = link.infos->take())
       // No warning when the bus is shared intentionally.
@@ -169,19 +172,57 @@ void SimService::warn_of_another(const Link& link, const char* how) {
                 lockstep_.called(number_of(link)));
 }
 
-void SimService::handle_request(Link& link, const sim::Message& message, TimeMachine* machine) {
+/// Answers requests of lockstep clients, in the order of their turns.
+void SimService::answer_in_turn(int max_at_once, TimeMachine* machine) {
+  if (std::exchange(branch_of_requests_, lockstep_.branch()) != lockstep_.branch())
+    for (const ClientRequests::Waiting& each : lockstep_.requests().take_all()) {
+      Link& link = links_[static_cast<std::size_t>(each.link)];
+      if (each.request.command == "leave")
+        answer(link, each.request, each.signer, machine);
+      else
+        reply(link, each.request, 0, false, rewound_text);
+    }
+  for (int handled = 0; handled < max_at_once; ++handled) {
+    const auto next = lockstep_.next_request();
+    if (!next) break;
+    answer(links_[static_cast<std::size_t>(next->link)], next->request, next->signer, machine);
+  }
+}
+
+/// Lets a request wait for its turn, unless it repeats one that was answered: then repeats the answer.
+void SimService::wait_for_turn(Link& link, const shoal::sim_control_request_t& request, const std::string& signer) {
+  if (number_of(link) == 0) spawned_vehicles_.client_alive(request.client);
+  ClientRequests& requests = lockstep_.requests();
+  if (const ClientRequests::Answer* first = requests.answer_to(request)) {
+    if (first->ok && request.command == "spawn") spawned_vehicles_.report_again(network_, first->text);
+    return reply(link, request, 0, first->ok, first->text);
+  }
+  if (lockstep_.is_of_left_branch(request.client)) return reply(link, request, 0, false, rewound_text);
+  if (requests.add({number_of(link), request, signer})) return;
+  reply(link, request, 0, false, fmt::format("more than {} requests wait for their turn", ClientRequests::max_waiting));
+}
+
+/// Returns false for a request that waits for its turn.
+bool SimService::handle_request(Link& link, const sim::Message& message, TimeMachine* machine) {
   try {
     const ControlGuard::Opened opened = lockstep_.guard().open(message.channel, message.payload);
     const auto request = shoal::decode<shoal::sim_control_request_t>(opened.content, shoal::Finite::any);
-    if (others_ != nullptr && is_own_request(link, request)) return;
+    if (others_ != nullptr && is_own_request(link, request)) return true;
     // A starting run does not have the key of this run, and changes nothing.
     const bool is_question =
         others_ != nullptr && others_->requester_of(request) != OtherSimulators::Requester::none_of_ours;
-    if (!opened.refusal.empty() && !is_question) return refuse(link, request, opened);
-    answer(link, request, opened.signer, machine);
+    if (!opened.refusal.empty() && !is_question) {
+      refuse(link, request, opened);
+    } else if (lockstep_.takes_turns(number_of(link), request)) {
+      wait_for_turn(link, request, opened.signer);
+      return false;
+    } else {
+      answer(link, request, opened.signer, machine);
+    }
   } catch (const shoal::MessageError& error) {
     warn_client(std::string("sim.control: ") + error.what());
   }
+  return true;
 }
 
 /// Refuses a request with the reason.  The rate of answers is limited, and a repeated request is not answered again:
@@ -235,12 +276,19 @@ void SimService::answer(Link& link, const shoal::sim_control_request_t& request,
     if (!text) return;
     if (account != nullptr) account->use(request.client);
     if (releases || request.command != "leave") note(request, signer);
+    note_answer(link, request, true, *text);
     reply(link, request, session, true, *text);
   } catch (const std::exception& error) {  // an error of the request; the run continues
     warn_client((on_own_bus ? "sim.control of " + lockstep_.called(number_of(link)) : "sim.control") + ": client '" +
                 sim::shortened(request.client) + "': " + error.what());
+    note_answer(link, request, false, error.what());
     reply(link, request, session, false, error.what());
   }
+}
+
+void SimService::note_answer(const Link& link, const shoal::sim_control_request_t& request, bool ok,
+                             const std::string& text) {
+  if (lockstep_.takes_turns(number_of(link), request)) lockstep_.requests().note_answer(request, {ok, text});
 }
 
 ClientAccounts* SimService::account_for(const std::string& command) {

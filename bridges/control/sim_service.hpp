@@ -91,11 +91,15 @@ class SimService {
   };
 
   void publish_state();
-  void handle_request(Link& link, const sim::Message& message, TimeMachine* machine);
+  bool handle_request(Link& link, const sim::Message& message, TimeMachine* machine);
+  void answer_in_turn(int max_at_once, TimeMachine* machine);
+  void wait_for_turn(Link& link, const shoal::sim_control_request_t& request, const std::string& signer);
   void refuse(Link& link, const shoal::sim_control_request_t& request, const ControlGuard::Opened& opened);
   void answer(Link& link, const shoal::sim_control_request_t& request, const std::string& signer, TimeMachine* machine);
   void reply(Link& link, const shoal::sim_control_request_t& request, std::int64_t session, bool ok,
              const std::string& text);
+  /// Stores an answer for repetitions of its request, if they would wait for their turn.
+  void note_answer(const Link& link, const shoal::sim_control_request_t& request, bool ok, const std::string& text);
   /// Executes a request and returns the result; none while it is undecided and not answered yet.  Throws
   /// std::runtime_error with the reason when it is refused.
   std::optional<std::string> execute(Link& link, const shoal::sim_control_request_t& request, TimeMachine* machine);
@@ -136,6 +140,7 @@ class SimService {
   std::int64_t refused_requests_ = 0;
   std::chrono::steady_clock::time_point refusals_since_;
   int refusals_answered_ = 0;  // since then
+  std::int32_t branch_of_requests_ = 0;
   sim::Bytes buffer_;
   std::int64_t bad_messages_ = 0;
 };

@@ -31,6 +31,9 @@ class SpawnedVehicles {
   /// Adds the vehicle that `text` describes (an entry of `vehicles:` in YAML); returns one line that names it, its
   /// channels and rates.  Throws sim::ConfigError, with the same lines as for files.
   std::string spawn(const std::string& client, const std::string& text);
+  /// Publishes the report of a spawned vehicle again on `network`, for a client that did not receive it; not recorded.
+  /// `line`: what spawn() returned.
+  void report_again(sim::Bus& network, const std::string& line);
   /// Spawns a vehicle from a text of a journal.
   std::string spawn_again(const std::string& client, const std::string& text);
   /// Removes a vehicle or an object.  Throws sim::WorldError.

@@ -2,6 +2,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "bridges/lockstep/lockstep_link.hpp"
@@ -125,7 +126,39 @@ bool LockstepService::has(const std::string& client, int link) const {
   return member != lockstep_.members().end() && member->second.link == link;
 }
 
+bool LockstepService::takes_turns(int link, const shoal::sim_control_request_t& request) const {
+  const auto found = lockstep_.members().find(request.client);
+  if (found == lockstep_.members().end() || found->second.link != link) return false;
+  const sim::LockstepMember& member = found->second;
+  if (request.command != "leave") {
+    constexpr std::array<std::string_view, 4> changes{"describe", "do", "remove", "spawn"};
+    return link == 0 && std::find(changes.begin(), changes.end(), request.command) != changes.end();
+  }
+  if (member.answered || member.abandoned) return false;
+  try {
+    const sim::LeaveTerms terms = sim::read_leave_terms(request.text);
+    return terms.session != 0 && terms.session == member.terms.session && terms.acknowledged >= 0 &&
+           terms.acknowledged < member.sequence;
+  } catch (const sim::ConfigError&) {
+    return false;  // refused by leave()
+  }
+}
+
+std::optional<ClientRequests::Waiting> LockstepService::next_request() {
+  if (requests_.empty() || !lockstep_.abandoned().empty()) return std::nullopt;
+  const std::int64_t step = world_.step_number();
+  for (const sim::LockstepMember* member : lockstep_.missing(step))
+    if (member->requested < step) return std::nullopt;
+  return requests_.next(late());
+}
+
+bool LockstepService::is_of_left_branch(const std::string& client) const {
+  const auto found = lockstep_.members().find(client);
+  return found != lockstep_.members().end() && found->second.abandoned;
+}
+
 bool LockstepService::has_left(const std::string& client) const {
+  if (requests_.is_leaving(client)) return true;
   const auto summary = summaries_.find(client);
   return !lockstep_.has(client) && summary != summaries_.end() && summary->second.ended.starts_with(left);
 }
@@ -161,7 +194,7 @@ bool LockstepService::leave(int link, const shoal::sim_control_request_t& reques
   // Accept messages that it sent before it left and that arrive later.  It does not answer later ticks.
   const bool answered = member->answered || (terms.acknowledged >= 0 && terms.acknowledged < member->sequence);
   const bool complete = link_of(member->link).messages.is_complete(member->name);
-  if (terms.session != 0 && !(answered && complete)) return false;
+  if (terms.session != 0 && !(answered && complete && !requests_.has(member->name))) return false;
   // Remove the client.
   report_who_left(*member, link, terms);
   const std::string reason = sim::printable(sim::shortened(terms.reason, 300));
@@ -215,6 +248,7 @@ void LockstepService::client_exited(const std::string& client) {
 void LockstepService::remove_all(const std::string& why) {
   while (!lockstep_.empty()) discard(std::string(lockstep_.members().begin()->first), why);
   for (const auto& link : links_) link->messages.clear();
+  requests_.take_all();
   dropped_.clear();
   followers_.clear();
   paused_here_ = false;
@@ -234,6 +268,7 @@ void LockstepService::discard(const std::string& client, const std::string& why)
   join_ids_.erase(client);
   challenges_.erase(client);
   answers_.erase(client);
+  requests_.discard_answers(client);
   end_summary(client, why);
   watch_gates();
 }

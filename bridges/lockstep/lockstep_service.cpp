@@ -186,6 +186,7 @@ std::string LockstepService::waits_for() {
   for (const auto& [client, requested] : pending_) {
     const sim::LockstepMember* member = lockstep_.find(client);
     if (member == nullptr || (member->answered && link_of(member->link).messages.is_complete(client))) continue;
+    if (requests_.has(client)) continue;  // it waits for the others
     text += fmt::format("{}waits {:.1f} s for '{}'", text.empty() ? "" : ", ",
                         std::chrono::duration<double>(Clock::now() - requested.since).count(), client);
     if (text.size() > 1000) return text + ", ...";
@@ -230,13 +231,17 @@ void LockstepService::serve(const std::vector<std::string>& late) {
     const Clock::time_point now = Clock::now();
     const auto [entry, fresh] = pending_.try_emplace(client);
     Pending& requested = entry->second;
-    if (fresh) requested = {now, now, now, now, first_resend_interval, false};
+    if (fresh) requested = {now, now, now, now, first_resend_interval, false, false};
+    // Its time-out starts when its request has been carried out.
+    const bool awaits_turn = requests_.has(client);
+    if (std::exchange(requested.awaits_turn, awaits_turn) || awaits_turn) requested.begin = taken_;
     check_time(client, requested, taken_);
     const sim::LockstepMember* member = lockstep_.find(client);
     if (member == nullptr || requested.send_at > now) continue;
     if (member->answered && link_of(member->link).messages.is_complete(client)) continue;  // it continues without some
     requested.send_at = now + requested.interval;
     requested.interval = fresh ? requested.interval : next_resend_interval(requested.interval);
+    if (awaits_turn && !fresh) continue;
     if (member->answered) {
       request_from_client(*member);
     } else {

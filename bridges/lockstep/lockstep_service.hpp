@@ -18,6 +18,7 @@
 
 #include "bridges/lockstep/answer_history.hpp"
 #include "bridges/lockstep/channel_use.hpp"
+#include "bridges/lockstep/client_requests.hpp"
 #include "bridges/lockstep/control_guard.hpp"
 #include "bridges/lockstep/lockstep_summary.hpp"
 #include "shoal/sim_ack_t.hpp"
@@ -87,6 +88,16 @@ class LockstepService {
   /// Handles a follow: the last tick will list a program that is not in the lockstep.  Throws std::runtime_error with
   /// the reason of a refusal.
   void follow(int link, const shoal::sim_control_request_t& request);
+  /// Returns whether a request waits for its turn in requests(): one of a client on this link that changes the world,
+  /// or by which it leaves in place of an answer to its open tick.
+  bool takes_turns(int link, const shoal::sim_control_request_t& request) const;
+  /// Requests that wait for their turn.
+  ClientRequests& requests() { return requests_; }
+  /// Removes and returns the request whose turn it is; none while a client that is due has no tick of this step, or
+  /// neither a request nor an answer.
+  std::optional<ClientRequests::Waiting> next_request();
+  /// Returns whether the open tick of a client is of a branch that was left by a rewind.
+  bool is_of_left_branch(const std::string& client) const;
   /// Handles the exit of the process of a client: executes the agreed time-out action immediately; without one the
   /// world continues.
   void client_exited(const std::string& client);
@@ -95,7 +106,8 @@ class LockstepService {
   bool has(const std::string& client) const { return lockstep_.has(client); }
   /// Returns whether a client is in the lockstep on this link.
   bool has(const std::string& client, int link) const;
-  /// Returns whether a client has left the lockstep; false when it is in it, was dropped, or never joined.
+  /// Returns whether a client has left the lockstep, or leaves it at its turn; false when it is in it, was dropped, or
+  /// never joined.
   bool has_left(const std::string& client) const;
   /// Returns the reason that a client gave when it left; empty: it gave none, or has not left.
   std::string reason_to_leave(const std::string& client) const;
@@ -156,7 +168,8 @@ class LockstepService {
     Clock::time_point begin;  ///< start of its time-out: `since` plus the time for which the world was paused
     Clock::time_point send_at, serve_after;
     std::chrono::milliseconds interval;
-    bool reported = false;  ///< whether its delay was reported
+    bool reported = false;     ///< whether its delay was reported
+    bool awaits_turn = false;  ///< whether a request of it waited at the last look
   };
   /// Check whether a client is alive, because another one requests its name.
   struct Challenge {
@@ -246,6 +259,7 @@ class LockstepService {
   std::set<std::string, std::less<>> warned_;  // clients with reported bad messages
   std::function<void(const std::string&)> on_answer_;
   ControlGuard guard_;
+  ClientRequests requests_;
   std::map<std::string, AnswerHistory, std::less<>> answers_;  // of the clients in the lockstep
   Contradiction contradiction_;
   struct NotRecorded {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <random>
+#include <utility>
 
 #include "bridges/lockstep_client/lockstep_terms.hpp"
 #include "bridges/lockstep_client/resend.hpp"
@@ -24,6 +25,7 @@ constexpr const char* request_channel = "sim.control";
 constexpr const char* reply_channel = "sim.control.reply";
 constexpr const char* question_channel = "sim.resend";
 constexpr const char* bundle_channel = "sim.resent";
+constexpr const char* vehicle_channel = "sim.vehicle";
 
 constexpr milliseconds slice{50};
 /// Maximum number of requests of a following program to be notified of the end of the run.
@@ -63,8 +65,8 @@ LockstepClient::LockstepClient(const std::string& url, std::string name)
 
 void LockstepClient::subscribe(const std::string& channel, Handler handler) {
   auto& handlers = handlers_[channel];
-  const bool own =
-      channel == tick_channel || channel == reply_channel || channel == question_channel || channel == bundle_channel;
+  const bool own = channel == tick_channel || channel == reply_channel || channel == question_channel ||
+                   channel == bundle_channel || (channel == vehicle_channel && hears_vehicles_);
   // One subscription per channel: otherwise each message would arrive twice.
   if (handlers.empty() && !own) lcm_.listen(channel);
   if (ClientInbox::is_named(channel)) inbox_.add_channel(channel);
@@ -99,7 +101,7 @@ void LockstepClient::send_request(const std::string& command, std::int32_t id, d
 }
 
 void LockstepClient::request(const std::string& command, double value, const std::string& text,
-                             Clock::time_point deadline, bool heed_stop) {
+                             Clock::time_point deadline, bool heed_stop, const std::function<bool()>& is_complete) {
   const std::int32_t id = ++request_id_;
   if (command == "join") join_id_ = id;
   answered_id_.reset();
@@ -112,16 +114,44 @@ void LockstepClient::request(const std::string& command, double value, const std
       take(std::move(*message));
       if (answered_id_ != id) continue;
       if (!refusal_.empty()) throw BusError("the simulator rejects '" + name_ + "': " + refusal_);
-      return;
+      if (is_complete()) return;
     }
+    if (command == "spawn" && (is_last_tick() || end_ == End::dropped))
+      throw BusError("the run of '" + name_ + "' was over before its '" + command + "' was answered");
   }
   const std::string where = " on " + lcm_.url();
   if (stop_ && heed_stop) throw BusError("'" + name_ + "' was stopped while it waited for a simulator" + where);
+  if (command == "spawn")
+    throw BusError("the 'spawn' of '" + name_ + "' was not answered in time" + where +
+                   "; the world may wait for another client");
   throw BusError("no simulator answered '" + name_ + "' in time" + where + "; is it running, with the same LCM URL?");
 }
 
 void LockstepClient::wait_for(const std::string& what) {
   wait_warning_.emplace("'" + name_ + "' waits for " + what + ", at " + lcm_.url(), warning_after_);
+}
+
+bool LockstepClient::await_tick(Clock::time_point deadline) {
+  while (!outbox_.is_open() && !incomplete_ && end_ == End::none) {
+    auto message = wait(deadline);
+    if (!message) return false;
+    take(std::move(*message));
+  }
+  return end_ == End::none;
+}
+
+shoal::sim_vehicle_t LockstepClient::spawn(const std::string& text, milliseconds timeout) {
+  const auto deadline = Clock::now() + timeout;
+  if (!std::exchange(hears_vehicles_, true) && !handlers_.contains(vehicle_channel)) lcm_.listen(vehicle_channel);
+  if (!await_tick(deadline) && end_ == End::none && !stop_)
+    throw BusError("'" + name_ + "' got no tick on 'sim.tick' in time at " + lcm_.url() +
+                   "; a paused run or missing clients may delay it");
+  if (end_ != End::none || is_last_tick()) throw BusError("the run of '" + name_ + "' is over");
+  spawned_.clear();
+  // The report is published before the reply, and both again when the request is repeated.
+  const auto name = [this] { return granted_.substr(0, granted_.find(':')); };
+  request("spawn", 0, text, deadline, true, [&] { return spawned_.contains(name()); });
+  return spawned_.at(name());
 }
 
 void LockstepClient::request_join(Clock::time_point deadline) {
@@ -218,7 +248,15 @@ void LockstepClient::take(Received message) {
   if (message.channel == reply_channel) take_reply(message.payload);
   if (message.channel == question_channel) take_request(message.payload);
   if (message.channel == bundle_channel) take_bundle(message.payload);
+  if (message.channel == vehicle_channel) take_vehicle(message.payload);
   if (!inbox_.hold(message)) call_handlers(message.channel, message.payload);
+}
+
+void LockstepClient::take_vehicle(std::span<const std::byte> payload) {
+  constexpr std::size_t max_reports = 1000;  // any program may publish them
+  if (!hears_vehicles_ || spawned_.size() >= max_reports) return;
+  auto report = try_decode<shoal::sim_vehicle_t>(payload);
+  if (report && report->present != 0 && report->client == name_) spawned_[report->vehicle] = std::move(*report);
 }
 
 void LockstepClient::take_reply(std::span<const std::byte> payload) {
@@ -230,6 +268,7 @@ void LockstepClient::take_reply(std::span<const std::byte> payload) {
   if (reply->id == request_id_) {
     answered_id_ = reply->id;
     refusal_ = reply->ok != 0 ? "" : reply->text.empty() ? "no reason given" : reply->text;
+    granted_ = reply->ok != 0 ? reply->text : "";
   } else if (reply->id != join_id_) {
     return;
   }
@@ -386,7 +425,27 @@ void LockstepClient::send_ack() {
 
 void LockstepClient::leave(const std::string& reason) {
   if (!joined_) return;
-  const auto deadline = Clock::now() + time_to_leave;
+  request_leave(reason, Clock::now() + time_to_leave);
+}
+
+void LockstepClient::leave_at_next_tick(const std::string& reason, milliseconds timeout) {
+  if (!joined_) return;
+  const auto deadline = Clock::now() + timeout;
+  acknowledge(tick_);
+  const bool is_awaited = await_tick(deadline);
+  if (!is_last_tick()) {
+    const auto briefly = Clock::now() + time_to_leave;
+    return request_leave(reason, is_awaited ? std::max(deadline, briefly) : briefly);
+  }
+  tick_ = incomplete_->tick;
+  sequence_ = incomplete_->sequence;
+  outbox_.open();
+  acknowledge(tick_);
+  end_ = End::last_tick;
+  joined_ = false;
+}
+
+void LockstepClient::request_leave(const std::string& reason, Clock::time_point deadline) {
   if (outbox_.is_open()) {
     outbox_.close();
     send_ack();

@@ -18,6 +18,7 @@
 #include "bridges/lockstep_client/wait_warning.hpp"
 #include "bridges/signing/signed_message.hpp"
 #include "shoal/sim_tick_t.hpp"
+#include "shoal/sim_vehicle_t.hpp"
 #include "sim/run/lockstep.hpp"
 
 namespace bridges {
@@ -77,6 +78,13 @@ class LockstepClient {
   /// Acknowledges the open tick, and requests to leave the lockstep, for a reason that is reported unless it is empty.
   /// Waits briefly for the confirmation.
   void leave(const std::string& reason = {});
+  /// Answers the open tick, and leaves at the next one, which makes the step at which it leaves independent of the
+  /// network.  Leaves as leave() does when that tick does not come in time, and when the run is over.
+  void leave_at_next_tick(const std::string& reason, std::chrono::milliseconds timeout);
+  /// Requests a vehicle (`text`: YAML, an entry of `vehicles:`) in the open tick, or the next one when none is open,
+  /// and returns its report.  Throws BusError with the reason when the simulator refuses, when it does not answer in
+  /// time, when the run is over, and when stop() is called.
+  shoal::sim_vehicle_t spawn(const std::string& text, std::chrono::milliseconds timeout);
   /// Follows a run without lockstep: handle_message() requests to be listed in the last tick of the run, again for each
   /// run that is followed.
   void follow();
@@ -114,9 +122,14 @@ class LockstepClient {
 
   /// Waits for a message in short intervals, so that stop() takes effect.
   std::optional<Received> wait(Clock::time_point deadline, bool heed_stop = true);
-  /// Sends a request repeatedly until it is answered.  Throws BusError.
-  void request(const std::string& command, double value, const std::string& text, Clock::time_point deadline,
-               bool heed_stop);
+  /// Sends a request repeatedly until it is answered, and `is_complete` returns true.  Throws BusError.
+  void request(
+      const std::string& command, double value, const std::string& text, Clock::time_point deadline, bool heed_stop,
+      const std::function<bool()>& is_complete = [] { return true; });
+  /// Waits until a tick is open, or has arrived.  Returns false when none comes in time, and when the session is over.
+  bool await_tick(Clock::time_point deadline);
+  bool is_last_tick() const { return incomplete_ && incomplete_->tick.last != 0; }
+  void request_leave(const std::string& reason, Clock::time_point deadline);
   void send_request(const std::string& command, std::int32_t id, double value, const std::string& text);
   void request_join(Clock::time_point deadline);
   void request_end_notification();
@@ -127,6 +140,7 @@ class LockstepClient {
   void take_reply(std::span<const std::byte> payload);
   void take_request(std::span<const std::byte> payload);
   void take_bundle(std::span<const std::byte> payload);
+  void take_vehicle(std::span<const std::byte> payload);
   void start_tick(shoal::sim_tick_t tick, const shoal::sim_due_t& due);
   bool rewind(const shoal::sim_tick_t& tick);
   void request_when_due();
@@ -149,6 +163,9 @@ class LockstepClient {
   std::int32_t request_id_ = 0, join_id_ = 0;
   std::optional<std::int32_t> answered_id_;
   std::string refusal_;  // reason of the refusal of the request; empty: granted
+  std::string granted_;  // text of the reply that grants it
+  bool hears_vehicles_ = false;
+  std::map<std::string, shoal::sim_vehicle_t, std::less<>> spawned_;  // by name, since the last spawn()
 
   bool following_ = false;
   int requests_left_ = 0;  // for notification of the end of the followed run

@@ -109,6 +109,8 @@ const char* word_of(shoal::Client::End end) {
       return "rewound";
     case shoal::Client::End::dropped:
       return "dropped";
+    case shoal::Client::End::left:
+      return "left";
   }
   return "";
 }
@@ -160,6 +162,25 @@ class Client : public Guarded {
     options.timeout_s = timeout_s;
     options.timeout = milliseconds("wait_s", wait_s);
     interruptibly([&] { own_->join(period_s, options); });
+  }
+
+  /// Returns the channels as tuples, by device.
+  py::dict spawn(const std::string& text, double wait_s) {
+    const Use use(*this);
+    const auto timeout = milliseconds("wait_s", wait_s);
+    const auto channels = interruptibly([&] { return std::optional(own_->spawn(text, timeout)); });
+    py::dict all;
+    if (!channels) return all;
+    for (const auto& [device, each] : *channels)
+      all[py::str(device)] =
+          py::make_tuple(each.type, each.reports, each.report_type, each.rate_hz, each.commands, each.command_types);
+    return all;
+  }
+
+  void leave(double wait_s) {
+    const Use use(*this);
+    const auto timeout = milliseconds("wait_s", wait_s);
+    interruptibly([&] { own_->leave(timeout); });
   }
 
   void follow(double period_s) {
@@ -265,6 +286,8 @@ void add_client(py::module_& module) {
       .def("subscribe", &Client::subscribe, "channel"_a, "handler"_a, "type"_a = py::none())
       .def("publish", &Client::publish, "channel"_a, "payload"_a)
       .def("join", &Client::join, "period_s"_a, "on_timeout"_a = "", "timeout_s"_a = 0.0, "wait_s"_a = 30.0)
+      .def("spawn", &Client::spawn, "text"_a, "wait_s"_a = 30.0)
+      .def("leave", &Client::leave, "wait_s"_a = 30.0)
       .def("follow", &Client::follow, "period_s"_a)
       .def("next_tick", &Client::next_tick)
       .def("wait_until", &Client::wait_until, "utime"_a)

@@ -32,13 +32,13 @@ finally:
 
 from . import messages, plots, results, vector
 from ._shoal import Error
-from .client import Client
+from .client import Client, DeviceChannels
 from .record import Event, Record, RecordWriter, read, table
 from .run import Run, Study, run, study
 from .world import Subscription, World, set_log_level
 
-__all__ = ['Client', 'Error', 'Event', 'Record', 'RecordWriter', 'Run', 'Study', 'Subscription', 'World', 'messages',
-           'plots', 'read', 'results', 'run', 'set_log_level', 'study', 'table', 'vector']
+__all__ = ['Client', 'DeviceChannels', 'Error', 'Event', 'Record', 'RecordWriter', 'Run', 'Study', 'Subscription',
+           'World', 'messages', 'plots', 'read', 'results', 'run', 'set_log_level', 'study', 'table', 'vector']
 __version__: str = _shoal.short_version()
 
 

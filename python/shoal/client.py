@@ -7,11 +7,26 @@ import builtins
 import sys
 import threading
 import weakref
-from typing import Callable, Iterator
+from typing import Callable, Iterator, NamedTuple
 
-from . import _shoal, checks, messages
+from . import _shoal, checks, messages, yaml_text
 
 _open: weakref.WeakSet[Client] = weakref.WeakSet()
+
+
+class DeviceChannels(NamedTuple):
+    """Channels of a device of a vehicle; '' for none.
+
+    type: type of the device, such as 'planar_lidar'
+    reports: channel of its reports, of the type report_type, rate_hz times a second (0: every step)
+    commands: channel of commands to it, of command_types, separated by commas
+    """
+    type: str
+    reports: str
+    report_type: str
+    rate_hz: float
+    commands: str
+    command_types: str
 
 
 class Client:
@@ -83,6 +98,33 @@ class Client:
                        checks.number('Client.join', 'timeout_s', timeout_s, 0, 1e6),
                        checks.number('Client.join', 'wait_s', wait_s, 0))
 
+    def spawn(self, text: str | dict, wait_s: float = 30.0) -> dict[str, DeviceChannels]:
+        """Spawns a vehicle in a world in lockstep, and returns the channels of its devices by name.
+
+        text: an entry of `vehicles:` as YAML or a dict, with the whole vehicle as `model` or a `file`; with
+            `with_client: true` the vehicle is removed with this client
+        wait_s: how long to wait for the reply, as the world may wait for another client
+
+        The world waits: the vehicle is there when the present tick is answered, or the next one between ticks.
+        Requests of clients in one step are carried out in the order of their names, so that the run is repeatable.
+
+        Raises Error with the reason when the simulator refuses, the run ends or no reply comes.
+        """
+        if isinstance(text, dict):
+            text = yaml_text.yaml_of('Client.spawn', text)
+        channels = self._own.spawn(checks.text('Client.spawn', 'text', text),
+                                   checks.number('Client.spawn', 'wait_s', wait_s, 0))
+        return {device: DeviceChannels(*each) for device, each in channels.items()}
+
+    def leave(self, wait_s: float = 30.0) -> None:
+        """Answers the present tick and leaves the lockstep at the next one, so that the run is repeatable.
+
+        wait_s: how long to wait for that tick; afterwards the client leaves without it, as close() does
+
+        Vehicles of spawn() with `with_client: true` are removed.
+        """
+        self._own.leave(checks.number('Client.leave', 'wait_s', wait_s, 0))
+
     def follow(self, period_s: float) -> None:
         """Follows a run without lockstep: next_tick() returns when sim.clock passes a multiple of `period_s`."""
         self._own.follow(checks.number('Client.follow', 'period_s', period_s, 0, above=True))
@@ -128,7 +170,7 @@ class Client:
 
     @property
     def end(self) -> str:
-        """Why the run is over: last_tick, stopped, silence, rewound, dropped; '' while it continues."""
+        """Why the run is over: last_tick, stopped, silence, rewound, dropped, left; '' while it continues."""
         return self._own.end
 
     @property

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -23,6 +24,16 @@ namespace shoal {
 class ClientError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
+};
+
+/// Channels of a device of a vehicle.
+struct DeviceChannels {
+  std::string type;           ///< of the device, such as `planar_lidar`
+  std::string reports;        ///< channel of its reports; empty: none
+  std::string report_type;    ///< such as `shoal.planar_lidar_t`
+  double rate_hz = 0;         ///< of the reports; 0: every step
+  std::string commands;       ///< channel of commands to it; empty: none
+  std::string command_types;  ///< comma separated
 };
 
 /// Connection of an autonomy program to its vehicle, in one thread:
@@ -47,6 +58,7 @@ class Client {
     silence,    ///< no message arrived within the silence limit
     rewound,    ///< the world was rewound, and there is no on_rewind()
     dropped,    ///< the world continued without this client, which had not answered in time; see reason()
+    left,       ///< leave() was called
   };
   /// Policy for the case that the client does not answer.
   struct JoinOptions {
@@ -114,14 +126,27 @@ class Client {
   /// Handles ticks up to the first one at or after `utime`, and returns its time as next_tick() does.
   std::optional<std::int64_t> wait_until(std::int64_t utime);
 
+  /// Spawns a vehicle in a world in lockstep: `text` is YAML, an entry of `vehicles:`, with the whole vehicle as
+  /// `model` or a `file`; with `with_client: true` the vehicle is removed with this client.  Returns the channels of
+  /// its devices by name.  The world waits: the vehicle is there when the present tick is answered, or the next one
+  /// between ticks. Requests of clients in one step are carried out in the order of their names, so that the run is
+  /// repeatable. Throws ClientError with the reason when the simulator refuses, when the run ends, and when no reply
+  /// comes within `timeout` of wall time, as the world may wait for another client; std::logic_error before join().
+  std::map<std::string, DeviceChannels> spawn(const std::string& text,
+                                              std::chrono::milliseconds timeout = std::chrono::seconds(30));
+  /// Leaves the lockstep: answers the present tick, and leaves at the next one, in the order of client names, so that
+  /// the run is repeatable.  Vehicles of spawn() with `with_client: true` are removed.  When that tick does not come
+  /// within `timeout` of wall time, the client leaves without it, as on destruction.
+  void leave(std::chrono::milliseconds timeout = std::chrono::seconds(30));
+
   /// Makes next_tick() return, permanently.  May be called from a signal handler or another thread.
   void stop() noexcept;
   /// Returns why the run is over for this client; End::none while it continues.
   End end() const;
   /// Returns the reason given by the simulator when it dropped this client.
   const std::string& reason() const;
-  /// Sets why the client leaves when it is destroyed before the end of the run, such as the text of an exception; the
-  /// simulator warns with it.  Empty: as planned, without a warning.
+  /// Sets why the client leaves before the end of the run, such as the text of an exception; the simulator warns with
+  /// it.  Empty: as planned, without a warning.
   void set_reason_to_leave(const std::string& reason);
   /// Sets the handler of rewinds.  `handler(utime)` is called in next_tick() when the world was rewound, before any
   /// message of the new branch is handled; held messages are dropped.  Without a handler next_tick() then returns none.
