@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Data of sensors on the page: the panel of plots, images, clocks, traffic, water and distances of two logs; returns,
 // images of sonars and ranges in the scene.
-import {Clocks} from './clocks.js';
 import {Distances} from './distances.js';
 import {Dock} from './dock.js';
 import {LazyView} from './lazy_view.js';
 import {Channels} from './messages.js';
 import {Plots} from './plots.js';
-import {Ranges} from './ranges.js';
 import {Recorder} from './recorder.js';
 import {Returns} from './returns.js';
 import {SensorPoses} from './sensor_poses.js';
@@ -15,6 +13,8 @@ import {panelsText, setPanels} from './settings.js';
 import {Traffic} from './traffic.js';
 
 const LIST_MS = 500;
+/** Types of devices that measure ranges to others. */
+const RANGING_DEVICES = ['usbl', 'lbl', 'range_beacon', 'acoustic_modem', 'micromodem'];
 
 /** Brings them together; the page calls this one only. */
 export class Instruments {
@@ -24,10 +24,10 @@ export class Instruments {
     this.poses = new SensorPoses(app);
     this.returns = new Returns(app, this.poses);
     this.sonars = null;
-    this.ranges = new Ranges(app, this.poses);
+    this.ranges = null;
     this.plots = new Plots(app);
     this.images = new LazyView('images', 'Images', async () => new (await import('./image_panel.js')).Images(app));
-    this.clocks = new Clocks(app);
+    this.clocks = new LazyView('clocks', 'Clocks', async () => new (await import('./clocks.js')).Clocks(app));
     this.traffic = new Traffic(app);
     this.water = new LazyView('water', 'Water', async () => new (await import('./water_panel.js')).WaterPanel(app));
     this.distances = new Distances(app);
@@ -83,19 +83,24 @@ export class Instruments {
     this.poses.setScene(data);
     this.returns.clear();
     this.sonars?.clear();
-    this.ranges.clear();
+    this.ranges?.clear();
     this.water.apply('scene', (view) => view.setScene(data));
-    this.loadSonars(data);
+    this.loadParts(data);
     this.listChanged();
     this.key = null;
   }
 
-  /** Loads what draws images of sonars, if the scene has such sonars. */
-  async loadSonars({vehicles}) {
-    const isSonar = (device) => device.type === 'imaging_sonar';
-    if (this.sonars || !vehicles.some(({devices}) => devices.some(isSonar))) return;
-    const {SonarPlanes} = await import('./sonar_planes.js');
-    this.sonars ??= new SonarPlanes(this.app, this.poses);
+  /** Loads what draws images of sonars and ranges, if the scene has devices that give them. */
+  async loadParts({vehicles}) {
+    const has = (types) => vehicles.some(({devices}) => devices.some((device) => types.includes(device.type)));
+    if (has(['imaging_sonar']) && !this.sonars) {
+      const {SonarPlanes} = await import('./sonar_planes.js');
+      this.sonars ??= new SonarPlanes(this.app, this.poses);
+    }
+    if (has(RANGING_DEVICES) && !this.ranges) {
+      const {Ranges} = await import('./ranges.js');
+      this.ranges ??= new Ranges(this.app, this.poses);
+    }
     this.key = null;  // to subscribe
     this.app.dirty = true;
   }
@@ -113,7 +118,7 @@ export class Instruments {
     this.app.channels.rewind(time_us);
     this.returns.rewind(time_us);
     this.sonars?.rewind(time_us);
-    this.ranges.rewind(time_us);
+    this.ranges?.rewind(time_us);
   }
 
   listChanged() { this.listStale = true; }
@@ -132,14 +137,14 @@ export class Instruments {
       this.key = key;
       this.returns.subscribe(options.get('returns'), options.get('rays'));
       this.sonars?.subscribe(options.get('returns'));
-      this.ranges.subscribe(options.get('ranges'));
+      this.ranges?.subscribe(options.get('ranges'), RANGING_DEVICES);
     }
     this.dock.update(now_ms);
     const changed = [this.returns, this.sonars, this.ranges].map((part) => part?.update(now_ms));
     return changed.includes(true);
   }
 
-  annotate(labels, time_us) { this.ranges.draw(labels, time_us); }
+  annotate(labels, time_us) { this.ranges?.draw(labels, time_us); }
 
   /** Numbers for tests. */
   probe() {
@@ -166,13 +171,13 @@ export class Instruments {
                                              count: one.points.geometry.drawRange.count,
                                              rays: one.rays.geometry.drawRange.count / 2,
                                            })),
-      ranges: this.ranges.shown(this.app.playback.time_us).map((range) => ({
-                                                                 name: range.name,
-                                                                 range_m: range.range_m,
-                                                                 true_m: range.true_m,
-                                                                 centre: range.centre.toArray().map(
-                                                                     (x, i) => x + origin[i]),
-                                                               })),
+      ranges: (this.ranges?.shown(this.app.playback.time_us) ??
+               []).map((range) => ({
+                         name: range.name,
+                         range_m: range.range_m,
+                         true_m: range.true_m,
+                         centre: range.centre.toArray().map((x, i) => x + origin[i]),
+                       })),
       sonars: this.sonars?.probe() ?? [],
       distances: this.distances.probe(),
       saved: this.recorder.last,

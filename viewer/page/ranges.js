@@ -3,7 +3,6 @@
 import {soundSpeedAt} from './clocks.js';
 import {Vector3} from './vendor/three.js';
 
-const DEVICES = ['usbl', 'lbl', 'range_beacon', 'acoustic_modem', 'micromodem'];
 const TYPES = ['usbl_t', 'lbl_t', 'range_beacon_t', 'acoustic_received_t'];
 const RATE_HZ = 20;
 const CHANNELS_MAX = 64;
@@ -42,8 +41,8 @@ export class Ranges {
   }
 
   /** Wants the channels of the devices that measure ranges. */
-  subscribe(which) {
-    this.names = this.poses.channelsOf(DEVICES, which, CHANNELS_MAX);
+  subscribe(which, devices) {
+    this.names = this.poses.channelsOf(devices, which, CHANNELS_MAX);
     this.app.channels.want('ranges', this.names, RATE_HZ, (message) => this.take(message));
     for (const [key, range] of this.ranges)
       if (!this.names.has(range.channel)) this.ranges.delete(key);
