@@ -20,11 +20,15 @@ bool attracts_contacts(dGeomID geom) {
   }
 }
 
-/// Puts contacts on a sphere, where they are with planes and terrains.
+/// Puts contacts on a sphere, where they are with planes and terrains.  Deep ones are of bodies that were put into each
+/// other, and stay.
 void put_on_sphere(dGeomID sphere, dContactGeom& contact) {
+  constexpr dReal deep = 0.2;
+  const dReal radius = dGeomSphereGetRadius(sphere);
+  if (contact.depth > deep * radius) return;
   const dReal* const center = dGeomGetPosition(sphere);
   // The normal points into the first geom.
-  const dReal reach = dGeomSphereGetRadius(sphere) * (contact.g1 == sphere ? -1 : 1);
+  const dReal reach = contact.g1 == sphere ? -radius : radius;
   for (int i = 0; i < 3; ++i) contact.pos[i] = center[i] + reach * contact.normal[i];
 }
 

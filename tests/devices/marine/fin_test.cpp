@@ -229,7 +229,7 @@ vehicles:
 }
 
 TEST(Fin, TakesTheWaterAsTheHullDoesWhenItsModelTurnsTheCurrentByTheYawAlone) {
-  const double along = 2 * 9 * 0.1;
+  const double along = -2 * 9 * 0.1;  // the flow comes from behind
   EXPECT_NEAR(force_in_current_N(", quirks: {current: yaw_only}"), along, 1e-6);
   EXPECT_NEAR(force_in_current_N(""), along * std::pow(std::cos(30 * degree), 2), 1e-6);
 }

@@ -78,7 +78,7 @@ TEST(ConfigWarnings, ReportKeysOfReportsOfADeviceThatReportsNothing) {
 
 TEST(ConfigWarnings, ReportAPlaceOfADeviceThatHasNone) {
   EXPECT_EQ(warnings_of_file(world("        - {name: power, type: battery, capacity_Wh: 10, rpy_deg: [0, 0, 90]}\n")),
-            "worlds/test.yaml:11:61: vehicle 'r1': device 'power': 'rpy_deg' has no effect on a device of type "
+            "worlds/test.yaml:11:66: vehicle 'r1': device 'power': 'rpy_deg' has no effect on a device of type "
             "'battery'\n");
 }
 
