@@ -160,17 +160,18 @@ export function land() {
   };
 }
 
-/** A rover in a room of 70 x 70 m on a plane; its four walls can move. */
+/** Two rovers in a room of 70 x 70 m on a plane; its four walls can move. */
 export function room() {
   const wall = (name, pose, size_m) =>
       ({name, owner: '', kind: 'object', fixed: false, pose, parts: [part('box', IDENTITY, null, {size_m})]});
-  const poses = [at(0, 0, 0.14), at(35, 0, 2), at(-35, 0, 2), at(0, 34.5, 2), at(0, -34.5, 2)];
+  const poses = [at(0, 0, 0.14), at(4, 4, 0.14), at(35, 0, 2), at(-35, 0, 2), at(0, 34.5, 2), at(0, -34.5, 2)];
   const bodies = number([
     rover('rover1', '#d1495b'),
-    wall('east', poses[1], [1, 70, 4]),
-    wall('west', poses[2], [1, 70, 4]),
-    wall('north', poses[3], [69, 1, 4]),
-    wall('south', poses[4], [69, 1, 4]),
+    rover('rover2', '#2f7ed8'),
+    wall('east', poses[2], [1, 70, 4]),
+    wall('west', poses[3], [1, 70, 4]),
+    wall('north', poses[4], [69, 1, 4]),
+    wall('south', poses[5], [69, 1, 4]),
     {
       name: 'ground',
       owner: '',
@@ -180,7 +181,10 @@ export function room() {
       parts: [part('plane', IDENTITY, null, {})]
     },
   ]);
-  return {scene: scene('test_room', {bodies, vehicles: [vehicle('rover1', 0)]}), posesAt: () => poses};
+  return {
+    scene: scene('test_room', {bodies, vehicles: [vehicle('rover1', 0), vehicle('rover2', 1)]}),
+    posesAt: () => poses
+  };
 }
 
 /** A height grid of 61 x 61 samples, 4 m apart, about -30 m. */
