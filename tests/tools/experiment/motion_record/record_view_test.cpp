@@ -71,7 +71,8 @@ TEST(RecordView, ShowsTheRecordingAndGoesBackWithIt) {
   test::ViewPage page(recording.url());
   EXPECT_EQ(page.text("hello")["source"], "run");
   std::vector<std::string> names;
-  for (const auto& body : page.text("scene")["bodies"]) names.push_back(body["name"]);
+  const auto scene = page.text("scene");
+  for (const auto& body : scene["bodies"]) names.push_back(body["name"]);
   EXPECT_EQ(names, (std::vector<std::string>{"dog/thigh", "dog/shin"}));
   const test::ViewState before = page.state();
   EXPECT_EQ(before.count, 2u);
