@@ -23,7 +23,7 @@ class ClientRequests {
  public:
   struct Waiting {
     int link = 0;  ///< index of the bus on which it arrived
-    shoal::sim_control_request_t request;
+    shoal::sim_control_request_t request{};
     std::string signer;  ///< verified sender; empty: none
   };
   struct Answer {

@@ -76,7 +76,8 @@ class Balance {
   Balance(double balanced_rad, double radius_m) : balanced_rad_(balanced_rad), radius_m_(radius_m) {}
 
   double velocity_radps(double tilt_rad, double added_rad) {
-    const double rate = tilt_rad_ ? (tilt_rad - *tilt_rad_) / period_s : 0;
+    const double rate = is_first_ ? 0 : (tilt_rad - tilt_rad_) / period_s;
+    is_first_ = false;
     const double error = tilt_rad - balanced_rad_ - added_rad;
     tilt_rad_ = tilt_rad;
     x_m_ += v_mps_ * period_s;
@@ -87,8 +88,8 @@ class Balance {
 
  private:
   double balanced_rad_, radius_m_;
-  std::optional<double> tilt_rad_;
-  double x_m_ = 0, v_mps_ = 0;
+  bool is_first_ = true;
+  double tilt_rad_ = 0, x_m_ = 0, v_mps_ = 0;
 };
 
 /// What the robot has seen.

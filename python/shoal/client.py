@@ -18,8 +18,11 @@ class DeviceChannels(NamedTuple):
     """Channels of a device of a vehicle; '' for none.
 
     type: type of the device, such as 'planar_lidar'
-    reports: channel of its reports, of the type report_type, rate_hz times a second (0: every step)
-    commands: channel of commands to it, of command_types, separated by commas
+    reports: channel of its reports
+    report_type: their type, such as 'shoal.imu_t'
+    rate_hz: reports per simulated second; 0: every step
+    commands: channel of commands to it
+    command_types: types that it takes, separated by commas
     """
     type: str
     reports: str

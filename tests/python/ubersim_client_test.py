@@ -100,7 +100,7 @@ class UbersimClientTest(unittest.TestCase):
                 with self.assertRaisesRegex(shoal.Error, 'join.. comes before spawn'):
                     client.spawn('{name: guest}')
                 client.join(0.1)
-                for wrong, error in [({'nme': 'guest'}, "'pilot': spawn:1:2: unknown key 'nme'"),
+                for wrong, error in [({'nme': 'guest'}, "(?s)'pilot': .*spawn:1:2: unknown key 'nme'"),
                                      ('{name: guest, file: none.yaml}', "there is no vehicle file 'none.yaml'")]:
                     with self.assertRaisesRegex(shoal.Error, error):
                         client.spawn(wrong)

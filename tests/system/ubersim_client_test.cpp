@@ -126,9 +126,10 @@ TEST(UbersimClient, SaysWhatIsWrongWithTheXml) {
     write_file(folder.file("wrong.xml"), text);
     Program program(client({}, folder.file("wrong.xml")));
     EXPECT_EQ(program.wait(), 1);
-    EXPECT_THAT(program.errors(), HasSubstr("wrong.xml: ")) << error;
-    EXPECT_THAT(program.errors(), HasSubstr(error));
-    EXPECT_EQ(std::count(program.errors().begin(), program.errors().end(), '\n'), 1) << error;
+    const std::string errors = program.errors();
+    EXPECT_THAT(errors, HasSubstr("wrong.xml: ")) << error;
+    EXPECT_THAT(errors, HasSubstr(error));
+    EXPECT_EQ(std::count(errors.begin(), errors.end(), '\n'), 1) << error;
   }
 }
 

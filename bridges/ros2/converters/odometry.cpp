@@ -22,7 +22,7 @@ std::string posed_frame(std::string_view channel, const ConverterContext& contex
 bool write_pose(const shoal::pose_t& message, std::string_view channel, ConverterContext& context, CdrWriter& out) {
   const double* q = message.orientation;
   Eigen::Quaterniond turn(q[0], q[1], q[2], q[3]);
-  // Programs round, and some leave zeros, which are no orientation.
+  // Programs round, and some leave zeros, which name no direction.
   if (!std::isfinite(turn.norm()) || turn.norm() < 1e-6) return false;
   turn.normalize();
   const double unit[4] = {turn.w(), turn.x(), turn.y(), turn.z()};

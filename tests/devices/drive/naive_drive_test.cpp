@@ -68,11 +68,13 @@ TEST_F(NaiveDrive, TurnsAtTheRateOfItsRudderAndAsFastAsItMoves) {
 
 TEST_F(NaiveDrive, ItsRudderTurnsTheOtherWayAsternAlsoOnTheSpot) {
   for (const char* steerage : {"", ", steerage_speed_mps: 1"}) {
-    start(std::string(", max_speed_mps: 2, max_astern_mps: 2, speed_time_constant_s: 0, turn_time_constant_s: 0") + steerage);
+    start(std::string(", max_speed_mps: 2, max_astern_mps: 2, speed_time_constant_s: 0, turn_time_constant_s: 0") +
+          steerage);
     controls(1, 1, 0);
     test->run_for(1);
     EXPECT_GT(sim::yaw_of(pose().linear()), 0.1) << steerage;
-    start(std::string(", max_speed_mps: 2, max_astern_mps: 2, speed_time_constant_s: 0, turn_time_constant_s: 0") + steerage);
+    start(std::string(", max_speed_mps: 2, max_astern_mps: 2, speed_time_constant_s: 0, turn_time_constant_s: 0") +
+          steerage);
     controls(-1, 1, 0);
     test->run_for(1);
     EXPECT_LT(sim::yaw_of(pose().linear()), -0.1) << steerage;
