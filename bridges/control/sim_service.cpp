@@ -139,7 +139,8 @@ void SimService::warn_client(const std::string& text) {
 }
 
 void SimService::handle_requests(TimeMachine* machine) {
-  if (!repeating_) spawned_vehicles_.remove_timed_out();
+  if (!repeating_)
+    spawned_vehicles_.remove_timed_out([this](const std::string& client) { return lockstep_.has(client, 0); });
   lockstep_.check_clock();
   // Limit the requests per step, so that a flood does not block the world; the others remain queued, and overflows are
   // counted.
@@ -174,7 +175,8 @@ void SimService::warn_of_another(const Link& link, const char* how) {
 
 /// Answers requests of lockstep clients, in the order of their turns.
 void SimService::answer_in_turn(int max_at_once, TimeMachine* machine) {
-  if (std::exchange(branch_of_requests_, lockstep_.branch()) != lockstep_.branch())
+  if (std::exchange(branch_of_requests_, lockstep_.branch()) != lockstep_.branch()) {
+    lockstep_.requests().discard_answers();
     for (const ClientRequests::Waiting& each : lockstep_.requests().take_all()) {
       Link& link = links_[static_cast<std::size_t>(each.link)];
       if (each.request.command == "leave")
@@ -182,6 +184,7 @@ void SimService::answer_in_turn(int max_at_once, TimeMachine* machine) {
       else
         reply(link, each.request, 0, false, rewound_text);
     }
+  }
   for (int handled = 0; handled < max_at_once; ++handled) {
     const auto next = lockstep_.next_request();
     if (!next) break;
@@ -199,7 +202,9 @@ void SimService::wait_for_turn(Link& link, const shoal::sim_control_request_t& r
   }
   if (lockstep_.is_of_left_branch(request.client)) return reply(link, request, 0, false, rewound_text);
   if (requests.add({number_of(link), request, signer})) return;
-  reply(link, request, 0, false, fmt::format("more than {} requests wait for their turn", ClientRequests::max_waiting));
+  reply(link, request, 0, false,
+        fmt::format("more than {} requests of this client, or {} MB of all, wait for their turn",
+                    ClientRequests::max_waiting, ClientRequests::max_waiting_bytes >> 20));
 }
 
 /// Returns false for a request that waits for its turn.

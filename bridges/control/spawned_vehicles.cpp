@@ -224,12 +224,14 @@ void SpawnedVehicles::client_alive(const std::string& client) {
   if (known != clients_.end()) known->second.last_seen = Clock::now();
 }
 
-void SpawnedVehicles::remove_timed_out() {
+void SpawnedVehicles::remove_timed_out(const std::function<bool(const std::string& client)>& takes_part) {
   if (clients_.empty()) return;
   const Clock::time_point now = Clock::now();
   std::vector<std::string> silent;
-  for (const auto& [name, client] : clients_)
+  for (auto& [name, client] : clients_) {
+    if (takes_part(name)) client.last_seen = now;
     if (now - client.last_seen > client.timeout) silent.push_back(name);
+  }
   for (const std::string& name : silent) {
     sim::log_warn("client '{}' timed out: its vehicles are removed", sim::printable(sim::shortened(name)));
     remove_vehicles_of(name);

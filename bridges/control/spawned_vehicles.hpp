@@ -51,7 +51,7 @@ class SpawnedVehicles {
   /// Notes that the client is alive.
   void client_alive(const std::string& client);
   /// Removes the vehicles of clients that were silent longer than their time-out (wall time).
-  void remove_timed_out();
+  void remove_timed_out(const std::function<bool(const std::string& client)>& takes_part);
   /// Removes the vehicles that this client spawned with `with_client`.
   void remove_vehicles_of(const std::string& client);
   bool has(const std::string& client) const { return clients_.contains(client); }

@@ -2,6 +2,9 @@
 #include "bridges/lockstep/client_requests.hpp"
 
 #include <algorithm>
+#include <functional>
+
+#include "sim/config/message_text.hpp"
 
 namespace bridges {
 
@@ -21,7 +24,10 @@ bool ClientRequests::add(Waiting request) {
         return is_repetition(each.request, request.request);
       }))
     return true;
-  if (count_ >= max_waiting) return false;
+  const std::size_t bytes = request.request.text.size();
+  if (known != waiting_.end() && known->second.size() >= max_waiting) return false;
+  if (bytes_ + bytes > max_waiting_bytes) return false;
+  bytes_ += bytes;
   waiting_[client].push_back(std::move(request));
   ++count_;
   return true;
@@ -46,6 +52,7 @@ std::optional<ClientRequests::Waiting> ClientRequests::next(const std::vector<st
   turn->second.pop_front();
   if (turn->second.empty()) waiting_.erase(turn);
   --count_;
+  bytes_ -= request.request.text.size();
   return request;
 }
 
@@ -55,23 +62,38 @@ std::vector<ClientRequests::Waiting> ClientRequests::take_all() {
     for (Waiting& request : requests) all.push_back(std::move(request));
   waiting_.clear();
   round_.clear();
-  count_ = 0;
+  count_ = bytes_ = 0;
   return all;
+}
+
+void ClientRequests::discard(const std::string& client) {
+  answered_.erase(client);
+  const auto known = waiting_.find(client);
+  if (known == waiting_.end()) return;
+  count_ -= known->second.size();
+  for (const Waiting& each : known->second) bytes_ -= each.request.text.size();
+  waiting_.erase(known);
+  std::erase(round_, client);
 }
 
 void ClientRequests::note_answer(const shoal::sim_control_request_t& request, Answer answer) {
   if (request.id == 0) return;
   std::deque<Answered>& answered = answered_[request.client];
-  answered.emplace_back(request, std::move(answer));
+  answered.push_back({request.id, sim::shortened(request.command), request.value,
+                      std::hash<std::string>()(request.text), request.text.size(), std::move(answer)});
   if (answered.size() > max_answers) answered.pop_front();
 }
 
 const ClientRequests::Answer* ClientRequests::answer_to(const shoal::sim_control_request_t& request) const {
   const auto known = answered_.find(request.client);
   if (known == answered_.end()) return nullptr;
-  const auto same = std::find_if(known->second.begin(), known->second.end(),
-                                 [&](const Answered& each) { return is_repetition(each.first, request); });
-  return same == known->second.end() ? nullptr : &same->second;
+  if (request.id == 0) return nullptr;
+  const std::size_t hash = std::hash<std::string>()(request.text);
+  const auto same = std::find_if(known->second.begin(), known->second.end(), [&](const Answered& each) {
+    return each.id == request.id && each.command == sim::shortened(request.command) && each.value == request.value &&
+           each.text_hash == hash && each.text_size == request.text.size();
+  });
+  return same == known->second.end() ? nullptr : &same->answer;
 }
 
 }  // namespace bridges

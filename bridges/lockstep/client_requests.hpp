@@ -30,8 +30,8 @@ class ClientRequests {
     bool ok = false;
     std::string text;
   };
-  /// Limit of the waiting requests of all clients.
-  static constexpr std::size_t max_waiting = 1000;
+  /// Limits of the waiting requests of a client, and of the texts of all clients.
+  static constexpr std::size_t max_waiting = 100, max_waiting_bytes = 64 << 20;
   /// Number of answers kept for repetitions, of each client.
   static constexpr std::size_t max_answers = 20;
 
@@ -52,14 +52,23 @@ class ClientRequests {
   void note_answer(const shoal::sim_control_request_t& request, Answer answer);
   /// Returns the answer to the request that this one repeats; null: it repeats none.
   const Answer* answer_to(const shoal::sim_control_request_t& request) const;
-  /// Discards the answers to a client, whose session is over.
-  void discard_answers(const std::string& client) { answered_.erase(client); }
+  /// Discards the requests of a client, whose session is over, and the answers to it.
+  void discard(const std::string& client);
+  /// Discards the answers to all clients: what was done in a branch that was left is not done.
+  void discard_answers() { answered_.clear(); }
 
  private:
-  using Answered = std::pair<shoal::sim_control_request_t, Answer>;
+  /// An answered request, without its text, which may be long.
+  struct Answered {
+    std::int32_t id;
+    std::string command;
+    double value;
+    std::size_t text_hash, text_size;
+    Answer answer;
+  };
 
   std::map<std::string, std::deque<Waiting>, std::less<>> waiting_;  // by client; none is empty
-  std::size_t count_ = 0;
+  std::size_t count_ = 0, bytes_ = 0;
   std::deque<std::string> round_;  // clients whose turn comes in the present round
   std::map<std::string, std::deque<Answered>, std::less<>> answered_;
 };

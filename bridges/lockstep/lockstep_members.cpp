@@ -194,7 +194,8 @@ bool LockstepService::leave(int link, const shoal::sim_control_request_t& reques
   // Accept messages that it sent before it left and that arrive later.  It does not answer later ticks.
   const bool answered = member->answered || (terms.acknowledged >= 0 && terms.acknowledged < member->sequence);
   const bool complete = link_of(member->link).messages.is_complete(member->name);
-  if (terms.session != 0 && !(answered && complete && !requests_.has(member->name))) return false;
+  // It may leave because a request was not answered in time: that waits no longer.
+  if (terms.session != 0 && !(answered && complete)) return false;
   // Remove the client.
   report_who_left(*member, link, terms);
   const std::string reason = sim::printable(sim::shortened(terms.reason, 300));
@@ -240,6 +241,7 @@ std::string LockstepService::what_is_missing(const sim::LockstepMember& member) 
 void LockstepService::client_exited(const std::string& client) {
   sim::LockstepMember* member = lockstep_.find(client);
   if (member == nullptr || member->removed) return;
+  requests_.discard(client);
   if (!member->terms.agreed) return discard(client, "its process ended");
   member->removed = true;
   end_summary(client, "its process ended");
@@ -268,7 +270,7 @@ void LockstepService::discard(const std::string& client, const std::string& why)
   join_ids_.erase(client);
   challenges_.erase(client);
   answers_.erase(client);
-  requests_.discard_answers(client);
+  requests_.discard(client);
   end_summary(client, why);
   watch_gates();
 }

@@ -233,15 +233,21 @@ void LockstepService::serve(const std::vector<std::string>& late) {
     Pending& requested = entry->second;
     if (fresh) requested = {now, now, now, now, first_resend_interval, false, false};
     // Its time-out starts when its request has been carried out.
+    constexpr int max_extensions = 100;
     const bool awaits_turn = requests_.has(client);
-    if (std::exchange(requested.awaits_turn, awaits_turn) || awaits_turn) requested.begin = taken_;
+    const bool awaits_others = awaits_turn && std::any_of(late.begin(), late.end(), [this](const std::string& each) {
+                                 return !requests_.has(each);
+                               });
+    if ((std::exchange(requested.awaits_turn, awaits_turn) || awaits_turn) &&
+        (awaits_others || ++requested.extensions <= max_extensions))
+      requested.begin = taken_;
     check_time(client, requested, taken_);
     const sim::LockstepMember* member = lockstep_.find(client);
     if (member == nullptr || requested.send_at > now) continue;
     if (member->answered && link_of(member->link).messages.is_complete(client)) continue;  // it continues without some
     requested.send_at = now + requested.interval;
     requested.interval = fresh ? requested.interval : next_resend_interval(requested.interval);
-    if (awaits_turn && !fresh) continue;
+    if (awaits_others && !fresh) continue;
     if (member->answered) {
       request_from_client(*member);
     } else {

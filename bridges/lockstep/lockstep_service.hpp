@@ -170,6 +170,7 @@ class LockstepService {
     std::chrono::milliseconds interval;
     bool reported = false;     ///< whether its delay was reported
     bool awaits_turn = false;  ///< whether a request of it waited at the last look
+    int extensions = 0;        ///< of its time-out, by requests that waited for no other client
   };
   /// Check whether a client is alive, because another one requests its name.
   struct Challenge {

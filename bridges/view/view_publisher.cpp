@@ -136,6 +136,7 @@ bool ViewPublisher::due(double rate_hz) const {
 void ViewPublisher::after_step() {
   if (!is_observed_()) return discard();
   update_structure();
+  if (world_.now() < scene_time_) scene_is_old_ = true;  // it is of another future
   const bool may_publish = revision_ == 1 || world_.now() < scene_time_ ||
                            world_.now() - scene_time_ >= min_scene_interval || scene_requested_;
   if (world_.config().view.scene) {
@@ -183,9 +184,7 @@ void ViewPublisher::repeat_scene() {
 }
 
 bool ViewPublisher::repeat_is_due() const {
-  if (scene_is_old_ || revision_ == 0) return false;
-  const sim::Time now = world_.now();
-  return now < repeated_ || now - repeated_ >= repeat_after_;  // earlier: after a rewind
+  return revision_ > 0 && world_.now() - repeated_ >= repeat_after_;
 }
 
 void ViewPublisher::publish_stamped_scene() {

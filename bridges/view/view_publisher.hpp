@@ -49,7 +49,10 @@ class ViewPublisher final : public sim::WorldObserver {
   /// Publishes the scene and its assets again with the next step, for a viewer that starts later.
   void request_scene() { scene_requested_ = true; }
   /// Sets the branch of the run, after a rewind.
-  void set_branch(std::int32_t branch) { branch_ = branch; }
+  void set_branch(std::int32_t branch) {
+    branch_ = branch;
+    scene_is_old_ = true;  // fixed objects may be elsewhere
+  }
   /// Discards what was observed while a part of the run was computed again.
   void discard();
   /// Returns the revision of the scene to which the movable bodies belong.

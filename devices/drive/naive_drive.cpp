@@ -144,8 +144,9 @@ NaiveDrive::Path NaiveDrive::path(double surface_m) {
   const sim::Medium& medium = world_.medium();
   // Advance speed, turn rate and yaw.
   speed_mps_ += (speed_target_mps_ * context.effectiveness - speed_mps_) * speed_share_;
+  constexpr double astern_mps = 0.01;  // slower it turns on the spot
   const double speed_share = params_.steerage_speed_mps > 0 ? speed_mps_ / params_.steerage_speed_mps
-                             : speed_mps_ < 0               ? -1
+                             : speed_mps_ < -astern_mps     ? -1
                                                             : 1;
   turn_radps_ += (desired_turn(speed_share) - turn_radps_) * turn_share_;
   yaw_rad_ = sim::wrap_angle(yaw_rad_ + h * turn_radps_);

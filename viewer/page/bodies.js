@@ -42,6 +42,7 @@ export class Bodies {
     this.root = new Group();
     scene.add(this.root);
     this.shapes = 'drawn';
+    this.onShape = () => {};  // a mesh or terrain has come
     this.clear();
   }
 
@@ -134,6 +135,7 @@ export class Bodies {
     group.geometry = geometry;
     geometry.computeBoundingBox();
     this.boxes.set(group.part.asset, geometry.boundingBox);
+    this.onShape();
     this.addGroup(group);
     this.assets.changed();
   }

@@ -87,6 +87,12 @@ class App {
     $('unselect').addEventListener('click', () => this.select(null));
     if (this.software) this.options.set('shadows', false);
     this.applyOptions();
+    this.bodies.onShape = () => {
+      this.fitDue ||= this.isFirstView;
+    };
+    this.cameras.controls.addEventListener('start', () => {
+      this.isFirstView = false;
+    });
   }
 
   /** Makes the connection, and returns the handlers of its messages. */
@@ -293,7 +299,7 @@ class App {
     if (view)
       this.setView(view);
     else
-      this.fitPending = true;  // again with the first state
+      this.fitPending = this.isFirstView = true;  // again with the first state, and with each shape that comes later
     // One vehicle alone: follow it.
     if (!view && this.vehicles.length === 1) this.follow(this.vehicles[0].name);
   }
@@ -323,7 +329,7 @@ class App {
 
   setMode(mode) {
     if (!this.cameras.setMode(mode, this.vehicle)) Events.toast('select a vehicle first');
-    this.fitDue = this.fitPending = false;  // the user has chosen where to look
+    this.fitDue = this.fitPending = this.isFirstView = false;  // the user has chosen where to look
     this.showMode();
     this.dirty = true;
   }

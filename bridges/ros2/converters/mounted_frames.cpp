@@ -91,6 +91,8 @@ void read_devices(const Json& scene, ConverterContext& context) {
       const auto moving = context.body_frames.find(body);
       if (at(each, "origin") != nullptr)
         context.odometry_frames.insert_or_assign(odometry_frame(name), numbers_of(pose_at(each, "origin")));
+      else if (text_at(each, "type") == "odometry")
+        device.parent = "";  // of an older version, which does not say where it starts
       else if (on_base)
         device.parent = name;
       else if (moving != context.body_frames.end())

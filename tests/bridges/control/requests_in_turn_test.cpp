@@ -159,6 +159,47 @@ TEST(RequestsInTurn, ToLeaveInPlaceOfAnAnswerRemoveTheVehiclesInOrder) {
   EXPECT_THAT(crew.vehicles(), ElementsAre("a", "ball_of_one"));
 }
 
+TEST(RequestsInTurn, DoNotKeepAClientThatLeavesWithoutItsReply) {
+  Crew crew;
+  int waited = 0;
+  crew.synchronize([&] {
+    switch (waited++) {
+      case 0:
+        crew.spawn("one");
+        return crew.answer("one");
+      case 1:
+        crew.send_request("leave", 0, "one", "{session: 5, acknowledged: 1}");
+        return;
+      case 2:
+        EXPECT_FALSE(crew.lockstep.has("one")) << "it gave up the request";
+        return crew.answer("two");
+      default:
+        break;
+    }
+  });
+  EXPECT_THAT(crew.vehicles(), ElementsAre("a"));
+}
+
+TEST(RequestsInTurn, AVehicleOfAMemberStaysWhileTheWorldWaitsForAnother) {
+  Crew crew;
+  int waited = 0;
+  crew.synchronize([&] {
+    switch (waited++) {
+      case 0:
+        crew.send_request("spawn", 0, "one", "{alive_timeout_s: 0.001, " + ball("ball_of_one", "5").substr(1));
+        return crew.answer("two");
+      case 1:
+        return crew.answer("one");
+      default:
+        break;
+    }
+  });
+  ASSERT_THAT(crew.vehicles(), ElementsAre("a", "ball_of_one"));
+  const auto begin = std::chrono::steady_clock::now();
+  while (std::chrono::steady_clock::now() - begin < std::chrono::milliseconds(20)) crew.service.handle_requests();
+  EXPECT_THAT(crew.vehicles(), ElementsAre("a", "ball_of_one"));
+}
+
 TEST(RequestsInTurn, OfABranchThatWasLeftAreRefused) {
   Crew crew;
   int waited = 0;

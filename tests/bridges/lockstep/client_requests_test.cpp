@@ -72,7 +72,7 @@ TEST(ClientRequests, ThatAreSentAgainAreCarriedOutOnce) {
   EXPECT_EQ(answer->text, "it is there");
   EXPECT_EQ(requests.answer_to(request("a", "box", 8).request), nullptr);
   EXPECT_EQ(requests.answer_to(request("b", "box", 7).request), nullptr);
-  requests.discard_answers("a");
+  requests.discard("a");
   EXPECT_EQ(requests.answer_to(request("a", "box", 7).request), nullptr);
 }
 
@@ -90,11 +90,29 @@ TEST(ClientRequests, WithoutAnIdAreNeverRepetitions) {
 TEST(ClientRequests, AreRefusedBeyondALimit) {
   ClientRequests requests;
   for (std::size_t i = 0; i < ClientRequests::max_waiting; ++i)
-    ASSERT_TRUE(requests.add(request(i % 2 == 0 ? "a" : "b", std::to_string(i))));
-  EXPECT_FALSE(requests.add(request("c", "one more")));
-  EXPECT_EQ(requests.take_all().size(), ClientRequests::max_waiting);
-  EXPECT_TRUE(requests.add(request("c", "one more")));
+    ASSERT_TRUE(requests.add(request("a", std::to_string(i))));
+  EXPECT_FALSE(requests.add(request("a", "one more")));
+  EXPECT_TRUE(requests.add(request("b", "of another client")));
+  EXPECT_EQ(requests.take_all().size(), ClientRequests::max_waiting + 1);
+  EXPECT_TRUE(requests.add(request("a", "one more")));
   EXPECT_THAT(carried_out(requests), ElementsAre("one more"));
+  // The texts of all together are limited too.
+  constexpr std::size_t large = 16 << 20;
+  for (std::size_t i = 0; i < ClientRequests::max_waiting_bytes / large; ++i)
+    ASSERT_TRUE(requests.add(request(std::string(1, static_cast<char>('a' + i)), std::string(large, ' '))));
+  EXPECT_FALSE(requests.add(request("z", "x")));
+  requests.discard("a");
+  EXPECT_TRUE(requests.add(request("z", "x")));
+}
+
+TEST(ClientRequests, OfASessionThatIsOverAreDiscarded) {
+  ClientRequests requests;
+  for (const char* client : {"a", "b", "c"}) requests.add(request(client, std::string("box of ") + client));
+  ASSERT_TRUE(requests.next({}));  // b and c still have their turn in this round
+  requests.discard("b");
+  EXPECT_FALSE(requests.has("b"));
+  EXPECT_THAT(carried_out(requests), ElementsAre("box of c"));
+  EXPECT_TRUE(requests.empty());
 }
 
 }  // namespace

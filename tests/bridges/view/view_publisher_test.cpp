@@ -184,6 +184,24 @@ TEST(ViewPublisher, TheSceneComesAgainAfterTenSeconds) {
   EXPECT_EQ(again[0].utime, viewed.test.world.epoch_us() + 10'000'000);
 }
 
+TEST(ViewPublisher, TheSceneIsMadeAnewWhenTheTimeGoesBack) {
+  ViewedWorld viewed(
+      "shoal: 1\nphysics: {step_s: 0.01}\nobjects: [{name: gate, fixed: true, position_m: [1, 0, 0], parts: [{shape: "
+      "box}]}]\nevents: [{name: open, at: 15, do: [{move: {name: gate, position_m: [9, 0, 0]}}]}]\n");
+  viewed.run_for(13);
+  const sim::Bytes before = viewed.test.world.state().snapshot();
+  viewed.run_for(5);
+  const std::vector<shoal::sim_scene_t> scenes = viewed.scenes.take_all();
+  ASSERT_NE(scenes.back().scene, scenes.front().scene) << "the gate has moved";
+  viewed.test.world.state().restore(before);
+  viewed.view.discard();
+  viewed.view.set_branch(1);
+  viewed.run_for(0.02);
+  const std::vector<shoal::sim_scene_t> again = viewed.scenes.take_all();
+  ASSERT_EQ(again.size(), 1u);
+  EXPECT_NE(again[0].scene.find("\"pose\":[1.0,"), std::string::npos) << again[0].scene;
+}
+
 TEST(ViewPublisher, ALargeSceneAndItsAssetsComeAgainMoreRarely) {
   ViewedWorld viewed(
       "shoal: 1\nphysics: {step_s: 0.01}\nobjects: [{name: hill, fixed: true, parts: [{shape: terrain, terrain: "

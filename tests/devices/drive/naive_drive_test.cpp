@@ -81,6 +81,17 @@ TEST_F(NaiveDrive, ItsRudderTurnsTheOtherWayAsternAlsoOnTheSpot) {
   }
 }
 
+TEST_F(NaiveDrive, TurnsByItsRudderAgainWhenItHasStoppedGoingAstern) {
+  start(", max_speed_mps: 2, max_astern_mps: 2, speed_time_constant_s: 1, turn_time_constant_s: 0");
+  controls(-1, 0, 0);
+  test->run_for(5);
+  controls(0, 1, 0);
+  test->run_for(10);  // 1e-4 m/s astern
+  const double yaw_rad = sim::yaw_of(pose().linear());
+  test->run_for(0.1);
+  EXPECT_GT(sim::wrap_angle(sim::yaw_of(pose().linear()) - yaw_rad), 0);
+}
+
 TEST_F(NaiveDrive, HoldsHeadingAndDepth) {
   start(", max_pitch_deg: 30");
   helm(1.5, std::numbers::pi / 2, 25);

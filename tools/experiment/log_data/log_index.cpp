@@ -125,7 +125,9 @@ void LogIndex::check(const std::string& path) const {
       path + ": has " + missing +
       ", so there is nothing to show: it was recorded by an earlier version of Shoal, with 'view:' "
       "switched off, or by a logger that was started after the run" +
-      (has_info_ ? "; `shoal view " + path + " --resimulate` runs its world again, and shows it" : ""));
+      (has_info_ ? "; `shoal view " + path +
+                       " --resimulate` runs its world again, and shows it, if the log has the run from its start"
+                 : ""));
 }
 
 }  // namespace tools

@@ -160,7 +160,7 @@ int view_bus(const ViewArguments& arguments) {
       if (++requests == 2)
         sim::log_info(
             "waits for sim.scene: a run sends it when it is asked; of a log that is played it comes again when it was "
-            "recorded, usually every 10 s; `shoal view LOG` shows a log at once");
+            "recorded, every 10 s or, when it is large, more rarely; `shoal view LOG` shows a log at once");
     }
     const auto wait = std::chrono::duration_cast<std::chrono::milliseconds>(next_flush - Clock::now());
     if (const auto message = lcm.next(std::max(wait, std::chrono::milliseconds(1))))
