@@ -22,7 +22,8 @@ function readMesh(view) {
   const points = new Float32Array(view.buffer, 12, 3 * vertices);
   const corners = new Uint32Array(view.buffer, 12 + 12 * vertices, 3 * triangles);
   if (corners.some((corner) => corner >= vertices)) throw new AssetError('mesh: a corner beyond its vertices');
-  if (points.some((value) => !(Math.abs(value) < 1e9))) throw new AssetError('mesh: a vertex that is no place');
+  if (points.some((value) => !(Math.abs(value) < 1e9)))
+    throw new AssetError('mesh: a vertex that is not finite, or too far');
   // Every face has its own normal, as in the renderer.
   const geometry = new BufferGeometry();
   geometry.setAttribute('position', new BufferAttribute(points.slice(), 3));
