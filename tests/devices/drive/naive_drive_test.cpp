@@ -82,7 +82,9 @@ TEST_F(NaiveDrive, ItsRudderTurnsTheOtherWayAsternAlsoOnTheSpot) {
 }
 
 TEST_F(NaiveDrive, TurnsByItsRudderAgainWhenItHasStoppedGoingAstern) {
-  start(", max_speed_mps: 2, max_astern_mps: 2, speed_time_constant_s: 1, turn_time_constant_s: 0");
+  start(
+      ", max_speed_mps: 2, max_astern_mps: 2, speed_time_constant_s: 1, turn_time_constant_s: 0, steerage_speed_mps: "
+      "0");
   controls(-1, 0, 0);
   test->run_for(5);
   controls(0, 1, 0);
