@@ -167,8 +167,7 @@ std::string SpawnedVehicles::spawn(const std::string& client, const std::string&
 void SpawnedVehicles::report_again(sim::Bus& network, const std::string& line) {
   const auto known = known_.find(line.substr(0, line.find(':')));
   if (known == known_.end()) return;  // removed meanwhile
-  shoal::encode_into(known->second, buffer_);
-  network.publish("sim.vehicle", buffer_, world_.now());
+  report(network, known->second, true);
 }
 
 std::string SpawnedVehicles::spawn_again(const std::string& client, const std::string& text) {

@@ -50,7 +50,8 @@ class SpawnedVehicles {
   void report_to_other_timeline(sim::Bus& network);
   /// Notes that the client is alive.
   void client_alive(const std::string& client);
-  /// Removes the vehicles of clients that were silent longer than their time-out (wall time).
+  /// Removes the vehicles of clients that were silent longer than their time-out (wall time).  It does not run for
+  /// those that take part in the lockstep, which has time-outs of its own.
   void remove_timed_out(const std::function<bool(const std::string& client)>& takes_part);
   /// Removes the vehicles that this client spawned with `with_client`.
   void remove_vehicles_of(const std::string& client);
