@@ -3,9 +3,9 @@
 //   shoal run empty.yaml --await cmu &
 //   ubersim_client segway.xml
 // docs/guides/spawn_vehicles.md has the world.  ubersim_client.py is the same program in Python.
+#include <charconv>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <iostream>
 #include <limits>
 #include <numbers>
@@ -37,9 +37,10 @@ constexpr const char* usage =
     "usage: ubersim_client FILE [--name NAME] [--position EAST NORTH] [--seconds S] [--tilt DEG] [--width PIXELS]\n";
 
 double number(const char* text) {
-  char* end = nullptr;
-  const double value = std::strtod(text, &end);
-  if (end == text || *end != '\0' || !(std::abs(value) < 1e6)) throw std::invalid_argument(text);
+  const std::string_view digits = text;
+  double value = 0;
+  const auto [end, error] = std::from_chars(digits.begin(), digits.end(), value);
+  if (error != std::errc() || end != digits.end() || !(std::abs(value) < 1e6)) throw std::invalid_argument(text);
   return value;
 }
 

@@ -13,6 +13,17 @@ namespace tools {
 namespace {
 
 constexpr double nearest_m = 0.02;  ///< lines closer to the camera are cut off
+constexpr double widest = 100;      ///< tangent of the largest angle from its axis that a line is drawn at
+
+/// Cuts off the part of a line where `normal` . p < `least`; false: that is all of it.
+bool cut(sim::Vector3d& from, sim::Vector3d& to, const sim::Vector3d& normal, double least) {
+  const double from_m = normal.dot(from) - least, to_m = normal.dot(to) - least;
+  if (from_m < 0 && to_m < 0) return false;
+  const sim::Vector3d edge = from + from_m / (from_m - to_m) * (to - from);
+  if (from_m < 0) from = edge;
+  if (to_m < 0) to = edge;
+  return true;
+}
 
 }  // namespace
 
@@ -44,14 +55,12 @@ std::optional<sim::Vector2d> OverlayCanvas::pixel(const sim::Vector3d& p_W) cons
 
 void OverlayCanvas::line(const sim::Vector3d& from_W, const sim::Vector3d& to_W, const Pen& pen) {
   sim::Vector3d from_S = X_SW_ * from_W, to_S = X_SW_ * to_W;
-  // Cut off what is behind the camera.
-  if (from_S.x() < nearest_m && to_S.x() < nearest_m) return;
-  const auto cut = [](const sim::Vector3d& outside, const sim::Vector3d& inside) -> sim::Vector3d {
-    const double share = (1.001 * nearest_m - outside.x()) / (inside.x() - outside.x());
-    return outside + share * (inside - outside);
-  };
-  if (from_S.x() < nearest_m) from_S = cut(from_S, to_S);
-  if (to_S.x() < nearest_m) to_S = cut(to_S, from_S);
+  if (!cut(from_S, to_S, sim::Vector3d::UnitX(), 1.001 * nearest_m)) return;
+  // A line that passes beside the camera would end at infinity.
+  for (const sim::Vector3d& side : {sim::Vector3d(widest, 1, 0), sim::Vector3d(widest, -1, 0),
+                                    sim::Vector3d(widest, 0, 1), sim::Vector3d(widest, 0, -1)}) {
+    if (straight_ && !cut(from_S, to_S, side, 0)) return;
+  }
   // A lens with distortion bends lines.
   const int pieces = straight_ ? 1 : 12;
   auto last = project(from_S);

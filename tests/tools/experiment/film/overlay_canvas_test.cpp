@@ -78,6 +78,15 @@ TEST(OverlayCanvas, CutsOffWhatIsBehindTheCamera) {
   EXPECT_EQ(drawing.level(99, 80), 255);
 }
 
+TEST(OverlayCanvas, DrawsTheVisiblePartOfALineThatPassesFarBesideTheCamera) {
+  Drawing drawing;
+  // At 1000 m ahead it is 30 px left of the middle, at 300 m it leaves the image; 300 m beside the camera the pixels of
+  // its end have no bound.
+  tools::OverlayCanvas(drawing.rendered, drawing.view).line({1000, 300, 0}, {-1000, 300, 0}, {{255, 255, 255}, 2});
+  for (const int column : {2, 35, 68}) EXPECT_GT(drawing.level(column, 50), 100) << column;
+  EXPECT_EQ(drawing.level(75, 50), 0);
+}
+
 TEST(OverlayCanvas, DrawsAnEllipseThroughItsAxes) {
   Drawing drawing;
   tools::OverlayCanvas canvas(drawing.rendered, drawing.view);
