@@ -15,9 +15,9 @@ namespace {
 constexpr double nearest_m = 0.02;  ///< lines closer to the camera are cut off
 constexpr double widest = 100;      ///< tangent of the largest angle from its axis that a line is drawn at
 
-/// Cuts off the part of a line where `normal` . p < `least`; false: that is all of it.
-bool cut(sim::Vector3d& from, sim::Vector3d& to, const sim::Vector3d& normal, double least) {
-  const double from_m = normal.dot(from) - least, to_m = normal.dot(to) - least;
+/// Cuts off the part of a line where `normal` . p < `min`; false: that is all of it.
+bool cut(sim::Vector3d& from, sim::Vector3d& to, const sim::Vector3d& normal, double min) {
+  const double from_m = normal.dot(from) - min, to_m = normal.dot(to) - min;
   if (from_m < 0 && to_m < 0) return false;
   const sim::Vector3d edge = from + from_m / (from_m - to_m) * (to - from);
   if (from_m < 0) from = edge;
