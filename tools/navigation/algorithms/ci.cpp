@@ -14,10 +14,13 @@ namespace {
 /// Covariance intersection (Julier and Uhlmann, ACC 1997) with a partial measurement, as by Chang, Chen and Mehta
 /// (IEEE T-RO, 2021): the correlation of own and sender's estimate is unknown, that of the range with both is 0.
 ///
-///     P1 = P / w,   B1 = B / (1 - w),   S = u' P1 u + u' B1 u + R,   K = P1 u / S,   P+ = (I - K u') P1
+///     P1 = D P D,   B1 = B / (1 - w),   S = u' P1 u + u' B1 u + R,   K = P1 u / S,   P+ = (I - K u') P1
 ///
-/// w in (0, 1] gives the least trace of the position; w = 1 means no update.  A sender whose fixes by
-/// satellite replaced all that it said before is independent, and says so: the range is used without inflation.
+/// D is w^(-1/2) for the position and 1 for the errors of the own instruments (heading, speed, clock), which are in no
+/// data of others.  Inflated with each of many measurements, they would exceed what the instruments allow: a heading
+/// that nothing bounds turns the track.  w in (0, 1] gives the least trace of the position; w = 1 means no update.  A
+/// sender whose fixes by satellite replaced all that it said before is independent, and says so: the range is used
+/// without inflation.
 class CovarianceIntersection final : public OwnFilterEstimator<CovarianceIntersection> {
  public:
   static constexpr const char* meaning = "covariance intersection: never too sure, whatever the correlation";
@@ -36,8 +39,7 @@ class CovarianceIntersection final : public OwnFilterEstimator<CovarianceInterse
                      sender_clock_variance_m2(setup_, heard.sender, heard.toa - setup_.time);
     const double b = row.u.dot(sender->P * row.u);
     const double innovation_m = heard.range_m - row.predicted_m;
-    const Eigen::VectorXd PH = filter_.P() * row.H;
-    const double a = row.H.dot(PH);
+    const double a = row.H.dot(filter_.P() * row.H);
     if (!std::isfinite(innovation_m) || !filter_.within_gate(innovation_m, a + b + R)) return;
     independence_.shared();
     if (is_independent) {
@@ -45,11 +47,12 @@ class CovarianceIntersection final : public OwnFilterEstimator<CovarianceInterse
       return;
     }
     const double trace = filter_.covariance(own).trace();
-    const double gained = PH.head<2>().squaredNorm();
-    const Minimum best = minimum_between(
-        0.01, 0.999, [&](double w) { return trace / w - gained / (w * w * (a / w + b / (1 - w) + R)); });
+    const Minimum best = minimum_between(0.01, 0.999, [&](double w) {
+      const Eigen::VectorXd DH = inflated(row.H, w), PDH = filter_.P() * DH;
+      return trace / w - PDH.head<2>().squaredNorm() / (w * (DH.dot(PDH) + b / (1 - w) + R));
+    });
     if (!(best.value < trace)) return;
-    filter_.set_P(filter_.P() / best.at);
+    inflate(best.at);
     filter_.update(row.H, innovation_m, b / (1 - best.at) + R);
   }
   void saw(const Relative& seen) override {
@@ -58,16 +61,16 @@ class CovarianceIntersection final : public OwnFilterEstimator<CovarianceInterse
     const JointFilter::RelativeRow row = filter_.relative_row(own, *other, seen);
     const Matrix2 B = row.J * other->P * row.J.transpose();
     if (!filter_.within_gate(row, B)) return;
-    const Eigen::MatrixXd PH = filter_.P() * row.H.transpose();
-    const Matrix2 A = row.H * PH;
+    const double trace = filter_.covariance(own).trace();
     const Minimum best = minimum_between(0.01, 0.999, [&](double w) {
-      const Matrix2 S = A / w + B / (1 - w) + row.R;
-      const Matrix2 gained = PH.topRows<2>() * S.inverse() * PH.topRows<2>().transpose();
-      return filter_.covariance(own).trace() / w - gained.trace() / (w * w);
+      const Eigen::MatrixXd DH = inflated(row.H.transpose(), w), PDH = filter_.P() * DH;
+      const Matrix2 S = DH.transpose() * PDH + B / (1 - w) + row.R;
+      const Matrix2 gained = PDH.topRows<2>() * S.inverse() * PDH.topRows<2>().transpose();
+      return (trace - gained.trace()) / w;
     });
-    if (!(best.value < filter_.covariance(own).trace())) return;
+    if (!(best.value < trace)) return;
     independence_.shared();
-    filter_.set_P(filter_.P() / best.at);
+    inflate(best.at);
     filter_.update(row.H, row.innovation, B / (1 - best.at) + row.R);
   }
   Bytes say(Time time, std::size_t) override {
@@ -76,6 +79,15 @@ class CovarianceIntersection final : public OwnFilterEstimator<CovarianceInterse
     independence_.shared();
     return payload;
   }
+
+ private:
+  /// D H.
+  static Eigen::MatrixXd inflated(Eigen::MatrixXd H, double w) {
+    H.topRows<2>() /= std::sqrt(w);
+    return H;
+  }
+  /// P = D P D.
+  void inflate(double w) { filter_.set_P(inflated(inflated(filter_.P(), w).transpose(), w)); }
 };
 
 SHOAL_ESTIMATOR("ci", CovarianceIntersection);
