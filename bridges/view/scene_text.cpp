@@ -125,13 +125,13 @@ Json SceneWriter::body(const sim::Body& body, const std::string& owner, const ch
 
 Json SceneWriter::bodies() {
   std::vector<Json> all;
-  for (const auto& vehicle : world_.vehicles()) {
-    const std::vector<sim::BodyConfig>& configs = vehicle->config().bodies;
-    for (std::size_t i = 0; i < std::min(configs.size(), vehicle->bodies().size()); ++i)
-      all.push_back(body(*vehicle->bodies()[i].second, vehicle->name(), "vehicle", configs[i].parts));
-  }
-  for (const auto& [name, object] : world_.objects())
-    all.push_back(body(*object.body, name, "object", object.config.parts));
+  const auto add = [&](const sim::Mechanism& owner, const sim::MechanismConfig& config, const std::string& name,
+                       const char* kind) {
+    for (std::size_t i = 0; i < std::min(config.bodies.size(), owner.bodies().size()); ++i)
+      all.push_back(body(*owner.bodies()[i].second, name, kind, config.bodies[i].parts));
+  };
+  for (const auto& vehicle : world_.vehicles()) add(*vehicle, vehicle->config(), vehicle->name(), "vehicle");
+  for (const auto& [name, object] : world_.objects()) add(object, *object.config, name, "object");
   std::sort(all.begin(), all.end(), [](const Json& a, const Json& b) { return a["id"] < b["id"]; });
   return all;
 }

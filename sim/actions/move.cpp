@@ -32,7 +32,7 @@ class MoveAction final : public Action {
       return run.stage.move_vehicle(name, where_.choose(vehicle->X_WV(), run.random));
     const WorldObject* object = entities.find_object(name);
     if (object == nullptr) throw WorldError("there is no vehicle or object '" + name + "' to move");
-    run.stage.move_object(name, where_.choose(object->body->X_WB(), run.random));
+    run.stage.move_object(name, where_.choose(object->X_WV(), run.random));
   }
 
  private:

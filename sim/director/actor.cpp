@@ -44,29 +44,30 @@ void Actor::command(ActorCommand command, Time now) {
   direction_ = command == ActorCommand::forward ? 1 : -1;
 }
 
-void Actor::find_body(Stage& stage) {
+void Actor::find_object(Stage& stage) {
   if (generation_ == stage.entities().generation()) return;
   const WorldObject* object = stage.entities().find_object(config_.object);
-  // Only a kinematic body can be moved along a path; the world makes the object of an actor kinematic.
-  body_ = object && object->body->kinematic() ? object->body : nullptr;
+  // Only a kinematic body can be moved along a path; the world makes the first one of an actor's object kinematic.
+  object_ = object && object->base().kinematic() ? object : nullptr;
   generation_ = stage.entities().generation();
 }
 
 void Actor::place(Stage& stage) {
-  find_body(stage);
-  X_WB_ = pose_at(Time{0});
-  if (body_ != nullptr) body_->set_pose(X_WB_);
+  find_object(stage);
+  X_WV_ = pose_at(Time{0});
+  if (object_ != nullptr) object_->place(stage.physics(), X_WV_);
 }
 
 void Actor::step(Stage& stage, Time now) {
-  find_body(stage);
-  if (body_ == nullptr) return;  // removed; placed again when it is added again
-  // The body was moved, or is new: place it without velocity, because the displacement in one step would be a very fast
-  // impact on others.
-  if ((body_->X_WB().translation() - X_WB_.translation()).squaredNorm() > 1e-12) body_->set_pose(pose_at(now));
+  find_object(stage);
+  if (object_ == nullptr) return;  // removed; placed again when it is added again
+  // The object was moved, or is new: place it without velocity, because the displacement in one step would be a very
+  // fast impact on others.
+  if ((object_->X_WV().translation() - X_WV_.translation()).squaredNorm() > 1e-12)
+    object_->place(stage.physics(), pose_at(now));
   const Time step = stage.clock().step;
-  X_WB_ = pose_at(now + step);
-  body_->move_to(X_WB_, to_seconds(step));
+  X_WV_ = pose_at(now + step);
+  object_->base().move_to(object_->base_pose(X_WV_), to_seconds(step));
 }
 
 }  // namespace sim

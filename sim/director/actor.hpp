@@ -7,8 +7,8 @@
 
 namespace sim {
 
-class Body;
 class Stage;
+struct WorldObject;
 
 /// Actor in the world.  Its pose is a function of its last command and the time since then, without accumulation over
 /// steps.
@@ -22,10 +22,10 @@ class Actor {
   void place(Stage& stage);
   /// Moves its object so that it reaches its pose at the end of the step that starts now.
   void step(Stage& stage, Time now);
-  void visit_state(StateArchive& archive) { archive(since_, from_, direction_, moving_, X_WB_); }
+  void visit_state(StateArchive& archive) { archive(since_, from_, direction_, moving_, X_WV_); }
 
  private:
-  void find_body(Stage& stage);
+  void find_object(Stage& stage);
   double progress_at(Time now) const;
   void anchor(Time now);
 
@@ -36,9 +36,9 @@ class Actor {
   double from_ = 0;  ///< progress at the last command; reverse: up to twice the length, forward and back
   int direction_ = 1;
   bool moving_ = true;
-  // Body of the object, looked up by name again after entities were added or removed.
-  Body* body_ = nullptr;
-  Pose X_WB_ = Pose::Identity();  ///< last commanded pose
+  // Looked up by name again after entities were added or removed.
+  const WorldObject* object_ = nullptr;
+  Pose X_WV_ = Pose::Identity();  ///< last commanded pose of the object
   std::uint64_t generation_ = ~std::uint64_t{0};
 };
 

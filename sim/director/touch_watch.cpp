@@ -45,10 +45,9 @@ class TouchWatch final : public ConditionWatch {
       consider(vehicle->name(), vehicle->group(), true);
     }
     for (const auto& [name, object] : stage.entities().objects()) {
-      whose_[object.group] = 2 * object.number + 1;
+      whose_[object.group()] = 2 * object.number + 1;
       const auto is_plane = [](const PartConfig& part) { return part.shape == PartShape::plane; };
-      const auto& shapes = object.config.parts;
-      consider(name, object.group, !std::all_of(shapes.begin(), shapes.end(), is_plane));
+      consider(name, object.group(), !object.config->all_parts(is_plane));
     }
     // A new group may have the number of a removed one, whose watch ended with it; watching twice is harmless.
     const bool any_first = condition_.subject == "any";

@@ -29,10 +29,35 @@ void ObjectConfig::read(ParamReader& in) {
   in.read("present", present, "false: it is absent until an event adds it");
   in.read("count", count, between(1, 100000), "number of instances, named NAME1, NAME2, ...");
   in.read("placement", placement, "placement of the instances when there is a count");
-  in.require("parts");
-  in.read_list("parts", parts, "part", "parts of the body");
+  std::vector<PartConfig> parts;
+  in.read_list("parts", parts, "part", "parts of a single body; or 'bodies'");
+  read_mechanism(in);
+  if (in.describing()) return;
+  check_keys(in);
+  if (bodies.empty()) bodies.resize(1);
+  if (in.has("bodies")) return;
+  bodies.front().name = "body";
+  bodies.front().parts = std::move(parts);
+}
+
+void ObjectConfig::check_keys(ParamReader& in) const {
+  if (in.has("parts") == in.has("bodies"))
+    in.error(in.has("parts") ? "needs either 'parts' or 'bodies', not both" : "needs either 'parts' or 'bodies'");
   if (in.has("parts") && in.child("parts")->items.empty() && in.child("parts")->kind != ConfigNode::Kind::scalar)
     in.error("parts", "'parts' must have at least one part");
+  for (const char* key : {"joints", "self_collision"})
+    if (in.has(key) && !in.has("bodies")) in.error(key, "'" + std::string(key) + "' goes with 'bodies'");
+  if (fixed && in.has("bodies"))
+    in.error("fixed", "'fixed' goes with 'parts'; of 'bodies', a joint to 'world' holds one");
+  for (const BodyConfig& body : bodies)
+    if (body.kinematic)
+      in.error("bodies",
+               "body '" + body.name + "': 'kinematic' is for bodies that a device moves, and an object has none");
+}
+
+std::string ObjectConfig::error_of_leading() const {
+  if (fixed) return "is fixed and cannot be moved";
+  return anchored() ? "has a joint to 'world' and cannot be moved" : "";
 }
 
 }  // namespace sim

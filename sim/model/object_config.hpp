@@ -5,22 +5,20 @@
 #include <string>
 #include <vector>
 
-#include "sim/model/physics_config.hpp"
+#include "sim/model/mechanism_config.hpp"
 #include "sim/model/placement.hpp"
 
 namespace sim {
 
-/// Object: one or more parts without devices.
-struct ObjectConfig {
+/// Object: bodies without devices.
+struct ObjectConfig : MechanismConfig {
   std::string name;
   Vector3d position_m = Vector3d::Zero();
   Vector3d rpy_rad = Vector3d::Zero();
-  bool fixed = false;      ///< static
-  bool present = true;     ///< false: absent until an event adds it
-  bool kinematic = false;  ///< moved by an actor, not by forces
+  bool fixed = false;   ///< static
+  bool present = true;  ///< false: absent until an event adds it
   int count = 1;
   PlacementConfig placement;
-  std::vector<PartConfig> parts;
   std::shared_ptr<const ConfigNode> source;  ///< YAML node it was read from; null: created in code
   SourcePlace place;
 
@@ -32,6 +30,13 @@ struct ObjectConfig {
   ~ObjectConfig();
 
   void read(ParamReader& in);
+  /// Returns whether an actor moves its first body, which is then kinematic.
+  bool led() const { return bodies.front().kinematic; }
+  /// Returns why an actor cannot move it; empty: one can.
+  std::string error_of_leading() const;
+
+ private:
+  void check_keys(ParamReader& in) const;
 };
 
 /// Reports an error when `name` is a reserved word (any, world, sim).

@@ -149,8 +149,8 @@ void BodyConfig::read(ParamReader& in) {
   if (!in.describing()) place = in.node()->place;
   in.require("name");
   in.read_name("name", name, "name of the body");
-  in.read("position_m", position_m, any_place(), "origin of the body's frame in the frame of the vehicle");
-  in.read_deg("rpy_deg", rpy_rad, "roll, pitch and yaw of the body's frame in the frame of the vehicle");
+  in.read("position_m", position_m, any_place(), "origin of the body's frame in the frame of the vehicle or object");
+  in.read_deg("rpy_deg", rpy_rad, "roll, pitch and yaw of the body's frame in that frame");
   in.read_list("parts", parts, "part", "shapes of the rigid body");
   in.read("kinematic", kinematic,
           "kinematic: a device such as naive_drive moves it; it pushes others and is not affected by forces");
@@ -167,7 +167,7 @@ std::string error_of_stop(JointType type, double stop) {
 }
 
 void JointAxisConfig::read(ParamReader& in) {
-  in.read("axis", axis, any_number(), "direction in the frame of the vehicle, of any length");
+  in.read("axis", axis, any_number(), "direction in the frame of the vehicle or object, of any length");
   if (axis.norm() < 1e-9) {
     in.error("axis", "'axis' must not be zero");
     axis = Vector3d::UnitZ();
@@ -223,7 +223,8 @@ void JointConfig::read(ParamReader& in) {
   // Anchor and axes.
   std::optional<Vector3d> anchor;
   in.read("anchor_m", anchor, any_number(),
-          "point of the joint in the frame of the vehicle; unset: the origin of the second body, or of the first when "
+          "point of the joint in the frame of the vehicle or object; unset: the origin of the second body, or of the "
+          "first when "
           "the second is world");
   anchored = anchor.has_value();
   if (anchor) anchor_m = *anchor;

@@ -13,12 +13,13 @@
 namespace sim {
 
 /// Object without devices in the world.
-struct WorldObject {
-  std::int64_t number = 0;  ///< increases from object to object, and is never reused
+struct WorldObject : Mechanism {
+  WorldObject(std::int64_t number_, std::string name_, int group, std::shared_ptr<const ObjectConfig> config_)
+      : Mechanism(group, *config_), number(number_), name(std::move(name_)), config(std::move(config_)) {}
+
+  std::int64_t number;  ///< increases from object to object, and is never reused
   std::string name;
-  int group = -1;
-  Body* body = nullptr;
-  ObjectConfig config;
+  std::shared_ptr<const ObjectConfig> config;  ///< shared by the objects of a `count`
 };
 
 /// Vehicles and objects of a world, by name.

@@ -8,8 +8,7 @@
 #include "sim/base/math.hpp"
 #include "sim/bus/bus.hpp"
 #include "sim/clock/vehicle_clock.hpp"
-#include "sim/physics/body.hpp"
-#include "sim/physics/joint.hpp"
+#include "sim/vehicle/mechanism.hpp"
 #include "sim/world_file/vehicle_config.hpp"
 
 namespace sim {
@@ -30,7 +29,7 @@ struct VehicleSystems {
 };
 
 /// Vehicle in the world: its bodies, joints and devices by name.
-class Vehicle {
+class Vehicle : public Mechanism {
  public:
   /// Makes a vehicle without bodies, joints and devices, which are added in this order.  `clock`: clock of its devices.
   Vehicle(std::string name, int number, int group, std::shared_ptr<const VehicleConfig> config, Bus& bus,
@@ -39,21 +38,11 @@ class Vehicle {
   const std::string& name() const { return name_; }
   /// Returns the vehicle number, which increases from vehicle to vehicle and is never reused.
   int number() const { return number_; }
-  int group() const { return group_; }
   const VehicleConfig& config() const { return *config_; }
   /// Returns the bus of its devices.
   Bus& bus() const { return bus_; }
-  /// Returns the first body, which carries the vehicle frame.
-  const Body& base() const { return *bodies_.front().second; }
-  Pose X_WV() const;
-
-  /// Return a body or joint by its name in the vehicle file.  Throw std::out_of_range when there is none.
-  Body& body(const std::string& name) const;
-  Joint& joint(const std::string& name) const;
   /// Returns a device by name; null when there is none.
   MountedDevice* find_device(const std::string& name) const;
-  const std::vector<std::pair<std::string, Body*>>& bodies() const { return bodies_; }
-  const std::vector<std::pair<std::string, Joint*>>& joints() const { return joints_; }
   const std::vector<MountedDevice*>& devices() const { return devices_; }
 
   VehicleSystems& systems() { return systems_; }
@@ -65,24 +54,17 @@ class Vehicle {
 
   /// Visits bodies, joints, systems and clock; devices are separate parts of the state.
   void visit_state(StateArchive& archive) {
-    for (const auto& [name, body] : bodies_) body->visit_state(archive);
-    for (const auto& [name, joint] : joints_) joint->visit_state(archive);
+    Mechanism::visit_state(archive);
     archive(systems_, clock_);
   }
 
-  void add_body(const std::string& name, Body& body) { bodies_.emplace_back(name, &body); }
-  void add_joint(const std::string& name, Joint& joint) { joints_.emplace_back(name, &joint); }
   void add_device(MountedDevice& device) { devices_.push_back(&device); }
 
  private:
   std::string name_;
   int number_;
-  int group_;
   std::shared_ptr<const VehicleConfig> config_;
   Bus& bus_;
-  Pose X_BV_;
-  std::vector<std::pair<std::string, Body*>> bodies_;
-  std::vector<std::pair<std::string, Joint*>> joints_;
   std::vector<MountedDevice*> devices_;
   VehicleSystems systems_;
   VehicleClock clock_;

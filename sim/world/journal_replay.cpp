@@ -130,7 +130,9 @@ void JournalReplay::apply_move(const Entry& entry) {
     check_pose(joint.X_WV);
     check_pose(joint.X_WC);
   }
-  parts_.physics.make_joints_again(parts_.entities.vehicle_named(entry.name).group(), entry.joints);
+  const WorldObject* object = parts_.entities.find_object(entry.name);
+  const Mechanism& moved = object ? static_cast<const Mechanism&>(*object) : parts_.entities.vehicle_named(entry.name);
+  parts_.physics.make_joints_again(moved.group(), entry.joints);
 }
 
 const ConfigNode& JournalReplay::parsed(std::int64_t text_number) {

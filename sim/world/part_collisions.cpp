@@ -16,21 +16,22 @@ bool accepts(const std::vector<std::string>& categories, const std::string& cate
 }  // namespace
 
 PartCollisions::PartCollisions(const World& world) {
-  for (const auto& vehicle : world.vehicles())
-    for (const BodyConfig& body : vehicle->config().bodies)
-      add(body.parts, vehicle->name(), vehicle->config().self_collision);
-  for (const auto& [name, object] : world.objects()) add(object.config.parts, name, false);
+  for (const auto& vehicle : world.vehicles()) add(vehicle->config(), vehicle->name());
+  for (const auto& [name, object] : world.objects()) add(*object.config, name);
 }
 
-void PartCollisions::add(const std::vector<PartConfig>& parts, const std::string& owner, bool self_collision) {
-  for (const PartConfig& part : parts) {
-    auto kind = std::find_if(kinds_.begin(), kinds_.end(), [&](const Kind& each) {
-      return each.category == part.category && each.collides_with == part.collides_with;
-    });
-    if (kind == kinds_.end()) kind = kinds_.insert(kind, Kind{part.category, part.collides_with, {}, {}});
-    if (kind->owners.size() < 2) kind->owners.insert(owner);
-    if (self_collision) kind->with_self.insert(owner);
-  }
+void PartCollisions::add(const MechanismConfig& config, const std::string& owner) {
+  for (const BodyConfig& body : config.bodies)
+    for (const PartConfig& part : body.parts) add(part, owner, config.self_collision);
+}
+
+void PartCollisions::add(const PartConfig& part, const std::string& owner, bool self_collision) {
+  auto kind = std::find_if(kinds_.begin(), kinds_.end(), [&](const Kind& each) {
+    return each.category == part.category && each.collides_with == part.collides_with;
+  });
+  if (kind == kinds_.end()) kind = kinds_.insert(kind, Kind{part.category, part.collides_with, {}, {}});
+  if (kind->owners.size() < 2) kind->owners.insert(owner);
+  if (self_collision) kind->with_self.insert(owner);
 }
 
 bool PartCollisions::has(const PartConfig& part, const std::string& owner) const {

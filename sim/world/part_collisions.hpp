@@ -8,6 +8,7 @@
 namespace sim {
 
 class World;
+struct MechanismConfig;
 struct PartConfig;
 
 /// Which parts collide with anything in a world, by their categories.
@@ -28,7 +29,8 @@ class PartCollisions {
     std::set<std::string> with_self;  ///< those whose own parts collide with each other
   };
 
-  void add(const std::vector<PartConfig>& parts, const std::string& owner, bool self_collision);
+  void add(const MechanismConfig& config, const std::string& owner);
+  void add(const PartConfig& part, const std::string& owner, bool self_collision);
 
   std::vector<Kind> kinds_;
 };

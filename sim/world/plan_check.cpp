@@ -24,7 +24,7 @@ constexpr int max_crossings = 64;
 const ObjectConfig* fixed_object_of(const World& world, int part) {
   const int group = world.physics().parts()[static_cast<std::size_t>(part)].group;
   for (const auto& [name, object] : world.objects())
-    if (object.group == group) return object.config.fixed ? &object.config : nullptr;
+    if (object.group() == group) return object.config->fixed ? object.config.get() : nullptr;
   return nullptr;
 }
 
@@ -33,8 +33,7 @@ std::optional<double> bottom_above(const World& world, const Vector3d& p_W, doub
   const auto above = world.scene().cast(p_W, Vector3d::UnitZ(), any_height_m, {});
   const ObjectConfig* object = above ? fixed_object_of(world, above->part) : nullptr;
   if (object == nullptr) return std::nullopt;
-  const bool is_ground = std::none_of(object->parts.begin(), object->parts.end(),
-                                      [](const PartConfig& part) { return shape_info(part.shape).solid; });
+  const bool is_ground = object->all_parts([](const PartConfig& part) { return !shape_info(part.shape).solid; });
   // A solid is left through its surface an odd number of times from within, and from its tunnels, or below it, an even.
   int crossings = 0;
   Vector3d from_W = p_W;

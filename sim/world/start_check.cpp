@@ -43,8 +43,8 @@ std::string rounded(double value, double digits) {
 std::vector<Starter> starters_of(const World& world, const std::map<std::string, SourcePlace>& places) {
   std::vector<Starter> starters;
   for (const auto& [name, object] : world.objects())
-    if (!object.config.fixed && !object.config.kinematic)
-      starters.push_back({"object", name, object.config.place, object.group, object.body->X_WB().translation()});
+    if (!object.config->fixed && !object.config->led())
+      starters.push_back({"object", name, object.config->place, object.group(), object.base().X_WB().translation()});
   for (const auto& vehicle : world.vehicles()) {
     const auto place = places.find(vehicle->name());
     starters.push_back({"vehicle", vehicle->name(), place == places.end() ? SourcePlace{} : place->second,
@@ -56,9 +56,8 @@ std::vector<Starter> starters_of(const World& world, const std::map<std::string,
 std::set<int> groups_of_terrain(const World& world) {
   std::set<int> groups;
   for (const auto& [name, object] : world.objects())
-    if (std::any_of(object.config.parts.begin(), object.config.parts.end(),
-                    [](const PartConfig& part) { return part.shape == PartShape::terrain; }))
-      groups.insert(object.group);
+    if (!object.config->all_parts([](const PartConfig& part) { return part.shape != PartShape::terrain; }))
+      groups.insert(object.group());
   return groups;
 }
 

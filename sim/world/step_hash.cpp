@@ -87,7 +87,7 @@ std::uint64_t StepHash::of_state(WorldParts& parts, ThreadPool* threads) {
   hash.add(parts.acoustics->content_hash());
   StateArchive archive = StateArchive::quick_hasher();
   parts.visit_beginning(archive);
-  for (const auto& [name, object] : parts.entities.objects()) archive(*object.body);
+  for (const auto& [name, object] : parts.entities.objects()) object.visit_state(archive);
   archive(*parts.script);
   hash.add(archive.hash());
   return hash.value();

@@ -43,8 +43,9 @@ void WorldBuilder::add_objects() {
     const std::vector<Pose> poses =
         object.count == 1 ? std::vector<Pose>{X_WE}
                           : place_instances(object.placement, object.count, X_WE, parts_.seed(), object.name);
+    const auto config = std::make_shared<const ObjectConfig>(object);
     for (int i = 0; i < object.count; ++i)
-      build_object(object, object.count == 1 ? object.name : object.name + std::to_string(i + 1),
+      build_object(config, object.count == 1 ? object.name : object.name + std::to_string(i + 1),
                    poses[static_cast<std::size_t>(i)]);
   }
 }
@@ -74,21 +75,19 @@ void WorldBuilder::add_vehicles() {
   if (!errors.empty()) throw ConfigError(errors);
 }
 
-const WorldObject& WorldBuilder::build_object(const ObjectConfig& config, const std::string& name, const Pose& X_WE) {
-  WorldObject object{parts_.entities.take_object_number(), name, parts_.physics.add_group(name), nullptr, config};
-  BodyConfig body;
-  body.parts = config.parts;
-  body.name = "body";
-  const Motion motion = config.kinematic ? Motion::kinematic : config.fixed ? Motion::fixed : Motion::free;
+const WorldObject& WorldBuilder::build_object(std::shared_ptr<const ObjectConfig> config, const std::string& name,
+                                              const Pose& X_WE) {
+  WorldObject object(parts_.entities.take_object_number(), name, parts_.physics.add_group(name, config->self_collision),
+                     config);
   try {
-    object.body = &parts_.physics.add_body(object.group, body, X_WE, motion);
-    if (motion == Motion::free) parts_.hydrodynamics->add_body(*object.body, body);
+    build_bodies_of(object, *config, X_WE, config->fixed);
+    build_joints_of(object, *config, X_WE);
   } catch (...) {
-    parts_.hydrodynamics->remove_group(object.group);
-    parts_.physics.remove_group(object.group);
+    parts_.hydrodynamics->remove_group(object.group());
+    parts_.physics.remove_group(object.group());
     throw;
   }
-  parts_.physics.close_group(object.group);
+  parts_.physics.close_group(object.group());
   parts_.entities.mark_changed();
   return parts_.entities.add(std::move(object));
 }
@@ -97,14 +96,14 @@ const WorldObject& WorldBuilder::place_object(const ObjectConfig& config, const 
   // An object moved by an actor must be kinematic, also when another object of its name is added.
   const bool led = std::any_of(parts_.config.actors.begin(), parts_.config.actors.end(),
                                [&](const ActorConfig& actor) { return actor.object == name; });
-  if (!led || config.kinematic) return build_object(config, name, X_WE);
-  const bool has_plane = std::any_of(config.parts.begin(), config.parts.end(),
-                                     [](const PartConfig& part) { return part.shape == PartShape::plane; });
-  if (config.fixed || has_plane)
-    throw_config_error(config.place, "object " + shown_name(name), "an actor moves it: it cannot be fixed or a plane");
-  ObjectConfig kinematic = config;
-  kinematic.kinematic = true;
-  return build_object(kinematic, name, X_WE);
+  const auto own = std::make_shared<ObjectConfig>(config);
+  if (led && !config.led()) {
+    if (const std::string error = config.error_of_leading(); !error.empty())
+      throw_config_error(config.place, "object " + shown_name(name),
+                         "an actor leads an object of this name; it " + error);
+    own->bodies.front().kinematic = true;
+  }
+  return build_object(own, name, X_WE);
 }
 
 Vehicle& WorldBuilder::build_vehicle(const VehicleInstance& instance) {
@@ -124,20 +123,14 @@ Vehicle& WorldBuilder::build_vehicle(const VehicleInstance& instance) {
 
 void WorldBuilder::build_parts_of(Vehicle& vehicle, const VehicleInstance& instance) {
   const VehicleConfig& config = *instance.config;
-  // Add the bodies.
-  for (const BodyConfig& body : config.bodies) {
-    Body& built = parts_.physics.add_body(vehicle.group(), body, instance.X_WV,
-                                          body.kinematic ? Motion::kinematic : Motion::free);
-    vehicle.add_body(body.name, built);
-    if (!body.kinematic) parts_.hydrodynamics->add_body(built, body);
-  }
+  build_bodies_of(vehicle, config, instance.X_WV, false);
   // Errors in joints and devices of a model were found in its first vehicles.
   constexpr int max_of_kind_as_a_whole = 100;
   if (parts_.config.bodies_only_of_many && parts_.config.events.empty() &&
       ++built_of_kind_[&config] > max_of_kind_as_a_whole)
     return parts_.physics.close_group(vehicle.group());
   // Add joints and devices.
-  build_joints_of(vehicle, instance);
+  build_joints_of(vehicle, config, instance.X_WV);
   parts_.physics.close_group(vehicle.group());
   std::vector<std::string> errors;
   for (const DeviceConfig& device : config.devices) {
@@ -150,11 +143,20 @@ void WorldBuilder::build_parts_of(Vehicle& vehicle, const VehicleInstance& insta
   if (!errors.empty()) throw ConfigError(errors);
 }
 
-void WorldBuilder::build_joints_of(Vehicle& vehicle, const VehicleInstance& instance) {
-  for (const JointConfig& joint : instance.config->joints) {
-    Body* second = joint.bodies[1] == "world" ? nullptr : &vehicle.body(joint.bodies[1]);
-    vehicle.add_joint(joint.name, parts_.physics.add_joint(vehicle.group(), joint, vehicle.body(joint.bodies[0]),
-                                                           second, instance.X_WV));
+void WorldBuilder::build_bodies_of(Mechanism& owner, const MechanismConfig& config, const Pose& X_WV, bool fixed) {
+  for (const BodyConfig& body : config.bodies) {
+    const Motion motion = body.kinematic ? Motion::kinematic : fixed ? Motion::fixed : Motion::free;
+    Body& built = parts_.physics.add_body(owner.group(), body, X_WV, motion);
+    owner.add_body(body.name, built);
+    if (motion == Motion::free) parts_.hydrodynamics->add_body(built, body);
+  }
+}
+
+void WorldBuilder::build_joints_of(Mechanism& owner, const MechanismConfig& config, const Pose& X_WV) {
+  for (const JointConfig& joint : config.joints) {
+    Body* second = joint.bodies[1] == "world" ? nullptr : &owner.body(joint.bodies[1]);
+    owner.add_joint(joint.name,
+                    parts_.physics.add_joint(owner.group(), joint, owner.body(joint.bodies[0]), second, X_WV));
   }
 }
 
@@ -193,8 +195,8 @@ void WorldBuilder::remove_device(const MountedDevice& device) {
 }
 
 void WorldBuilder::dismantle(const WorldObject& object) {
-  parts_.hydrodynamics->remove_group(object.group);
-  parts_.physics.remove_group(object.group);
+  parts_.hydrodynamics->remove_group(object.group());
+  parts_.physics.remove_group(object.group());
   parts_.entities.mark_changed();
   parts_.entities.remove(object);
 }

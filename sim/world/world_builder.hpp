@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <string>
 
 #include "sim/base/math.hpp"
@@ -10,10 +11,12 @@
 namespace sim {
 
 class Diagnostics;
+class Mechanism;
 class MountedDevice;
 class Vehicle;
 struct ConfigNode;
 struct DeviceConfig;
+struct MechanismConfig;
 struct ObjectConfig;
 struct VehicleConfig;
 struct VehicleInstance;
@@ -47,9 +50,11 @@ class WorldBuilder {
  private:
   void add_objects();
   void add_vehicles();
-  const WorldObject& build_object(const ObjectConfig& config, const std::string& name, const Pose& X_WE);
+  const WorldObject& build_object(std::shared_ptr<const ObjectConfig> config, const std::string& name,
+                                  const Pose& X_WE);
   void build_parts_of(Vehicle& vehicle, const VehicleInstance& instance);
-  void build_joints_of(Vehicle& vehicle, const VehicleInstance& instance);
+  void build_bodies_of(Mechanism& owner, const MechanismConfig& config, const Pose& X_WV, bool fixed);
+  void build_joints_of(Mechanism& owner, const MechanismConfig& config, const Pose& X_WV);
   void add_device(Vehicle& vehicle, const DeviceConfig& config);
   void remove_device(const MountedDevice& device);
   void dismantle_all();

@@ -33,9 +33,7 @@ void WorldEditor::check_new_vehicle(const VehicleInstance& instance) const {
   check_limit("vehicles", parts_.entities.vehicles().size() + 1, limits.vehicles, instance.place, who);
   check_limit("bodies in a vehicle", config.bodies.size(), limits.bodies_per_vehicle, instance.place, who);
   check_limit("devices in a vehicle", config.devices.size(), limits.devices_per_vehicle, instance.place, who);
-  std::size_t parts = 0;
-  for (const BodyConfig& body : config.bodies) parts += body.parts.size();
-  check_limit("parts in a vehicle", parts, limits.parts, instance.place, who);
+  check_limit("parts in a vehicle", config.part_count(), limits.parts, instance.place, who);
   std::set<std::string, std::less<>> own;
   for (const DeviceConfig& device : config.devices)
     for (const ChannelKind kind : all_channel_kinds) {
@@ -127,7 +125,7 @@ void WorldEditor::remove_vehicle(const std::string& name) {
 void WorldEditor::move_vehicle(const std::string& name, const Pose& X_WV) {
   const Vehicle& vehicle = parts_.entities.vehicle_named(name);
   parts_.physics.move_group(vehicle.group(), X_WV * vehicle.X_WV().inverse());
-  if (parts_.physics.anchored(vehicle.group())) journal_.anchored_vehicle_moved(vehicle);
+  if (parts_.physics.anchored(vehicle.group())) journal_.anchored_moved(vehicle.name(), vehicle.group());
   parts_.acoustics->discard_places();
   for (MountedDevice* const device : vehicle.devices()) device->displaced();
   report(Occurrence::Kind::moved, vehicle.name(), "vehicle");
@@ -138,7 +136,8 @@ const WorldObject& WorldEditor::add_object(const ObjectConfig& config, const std
   const LimitsConfig& limits = parts_.config.limits;
   parts_.entities.check_new_name(name, config.place, who);
   check_limit("objects", parts_.entities.objects().size() + 1, limits.objects, config.place, who);
-  check_limit("parts in an object", config.parts.size(), limits.parts, config.place, who);
+  check_limit("bodies in an object", config.bodies.size(), limits.bodies_per_vehicle, config.place, who);
+  check_limit("parts in an object", config.part_count(), limits.parts, config.place, who);
   const WorldObject& object = builder_.place_object(config, name, X_WE);
   journal_.object_added(config, object, X_WE);
   report(Occurrence::Kind::added, name, "object");
@@ -155,8 +154,8 @@ void WorldEditor::remove_object(const std::string& name) {
 
 void WorldEditor::move_object(const std::string& name, const Pose& X_WE) {
   const WorldObject& object = parts_.entities.object_named(name);
-  object.body->set_pose(X_WE);
-  object.body->set_velocity_W(Vector3d::Zero(), Vector3d::Zero());
+  object.place(parts_.physics, X_WE);
+  if (parts_.physics.anchored(object.group())) journal_.anchored_moved(object.name, object.group());
   report(Occurrence::Kind::moved, object.name, "object");
 }
 

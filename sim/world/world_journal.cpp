@@ -202,7 +202,7 @@ void WorldJournal::object_added(const ObjectConfig& config, const WorldObject& o
   Entry added = entry(Entry::Kind::object_added, object.name);
   added.X_W = X_WE;
   added.number = object.number;
-  added.numbers = parts_.physics.numbers_of(object.group);
+  added.numbers = parts_.physics.numbers_of(object.group());
   added.in_file = place_in(parts_.config.objects, &config);
   if (added.in_file < 0 && config.source) note_source(added, *config.source);
   if (added.in_file < 0 && !config.source && gap_.empty()) gap_ = "object '" + object.name + "' did not come from YAML";
@@ -212,6 +212,7 @@ void WorldJournal::object_added(const ObjectConfig& config, const WorldObject& o
 void WorldJournal::object_removed(const std::string& name) {
   if (full_) return;
   const std::optional<std::size_t> added = place_of(Entry::Kind::object_added, name);
+  drop_changes_of(name, added.value_or(0));
   added ? drop(*added) : append(entry(Entry::Kind::object_removed, name));
 }
 
@@ -237,11 +238,11 @@ void WorldJournal::device_changed(const std::string& full_name, const ConfigNode
 }
 
 /// Appends the entry at the end, because joints that are created again are the last ones.
-void WorldJournal::anchored_vehicle_moved(const Vehicle& vehicle) {
+void WorldJournal::anchored_moved(const std::string& name, int group) {
   if (full_) return;
-  if (const auto known = place_of(Entry::Kind::moved, vehicle.name())) drop(*known);
-  Entry moved = entry(Entry::Kind::moved, vehicle.name());
-  moved.joints = parts_.physics.joint_places(vehicle.group());
+  if (const auto known = place_of(Entry::Kind::moved, name)) drop(*known);
+  Entry moved = entry(Entry::Kind::moved, name);
+  moved.joints = parts_.physics.joint_places(group);
   append(std::move(moved));
 }
 

@@ -43,8 +43,8 @@ class WorldJournal {
   void object_added(const ObjectConfig& config, const WorldObject& object, const Pose& X_WE);
   void object_removed(const std::string& name);
   void device_changed(const std::string& full_name, const ConfigNode& values);
-  /// Records the move of a vehicle that is joined to the world: its joints were created again.
-  void anchored_vehicle_moved(const Vehicle& vehicle);
+  /// Records the move of a vehicle or an object that is joined to the world: its joints were created again.
+  void anchored_moved(const std::string& name, int group);
 
   /// Returns the whole journal, as read by JournalReplay.
   Bytes bytes() const;

@@ -73,7 +73,7 @@ void WorldParts::visit_vehicle(StateArchive& archive, Vehicle& vehicle) {
 
 void WorldParts::visit_rest(StateArchive& archive) {
   archive.section("objects");
-  for (const auto& [name, object] : entities.objects()) archive(*object.body);
+  for (const auto& [name, object] : entities.objects()) object.visit_state(archive);
   archive.section("events");
   archive(events);
   archive.section("acoustics");

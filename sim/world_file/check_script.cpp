@@ -12,10 +12,11 @@ void check_actor(const ActorConfig& actor, WorldConfig& world, Diagnostics& diag
   for (ObjectConfig& object : world.objects) {
     if (object.name != actor.object) continue;
     if (object.count != 1) diagnostics.error(actor.place, who, "'object' must be one object, not a 'count' of them");
-    if (object.fixed) diagnostics.error(actor.place, who, "object '" + object.name + "' is fixed and cannot be moved");
-    if (object.kinematic)
+    if (const std::string error = object.error_of_leading(); !error.empty())
+      diagnostics.error(actor.place, who, "object '" + object.name + "' " + error);
+    if (object.led())
       diagnostics.error(actor.place, who, "object '" + object.name + "' is already moved by another actor");
-    object.kinematic = true;
+    object.bodies.front().kinematic = true;
   }
 }
 

@@ -37,11 +37,13 @@ class ConfigCheck {
       const std::string who = "vehicle '" + vehicle.name + "': ";
       for (const DeviceConfig& device : vehicle.config->devices)
         check_device(device, who + "device '" + device.name + "'");
-      for (const BodyConfig& body : vehicle.config->bodies) check_body(body, who + "body '" + body.name + "'");
-      const ConfigNode* joints = vehicle.config->source ? vehicle.config->source->find("joints") : nullptr;
-      for (std::size_t i = 0; joints != nullptr && i < vehicle.config->joints.size(); ++i)
-        check_joint(vehicle.config->joints[i], joints->items[i], who);
+      check_mechanism(*vehicle.config, vehicle.config->source.get(), who);
     }
+  }
+
+  void check_objects() const {
+    for (const ObjectConfig& object : world_.objects)
+      check_mechanism(object, object.source.get(), "object '" + object.name + "': ");
   }
 
   /// Places such as those of a map in UTM.  The world is a plane that touches the earth at its origin: 150 km away it
@@ -133,6 +135,17 @@ class ConfigCheck {
 
  private:
   /// Those of coefficients are found when the world is built.
+  void check_mechanism(const MechanismConfig& config, const ConfigNode* source, const std::string& who) const {
+    for (const BodyConfig& body : config.bodies) check_body(body, who + "body '" + body.name + "'");
+    const ConfigNode* joints = source != nullptr ? source->find("joints") : nullptr;
+    for (std::size_t i = 0; joints != nullptr && i < config.joints.size(); ++i)
+      check_joint(config.joints[i], joints->items[i], who);
+    for (const BodyConfig* body : config.unconnected())
+      if (!body->kinematic)
+        warnings_.warn(body->place, who + "body '" + body->name + "'",
+                       "no joints connect it with body '" + config.bodies.front().name + "': it moves on its own");
+  }
+
   void check_body(const BodyConfig& body, const std::string& who) const {
     const auto& config = body.hydrodynamics;
     if (!config || config->model == HydrodynamicsConfig::Model::coefficients || !(config->mass_kg > 0)) return;
@@ -260,6 +273,7 @@ void warn_of_config(const WorldConfig& world, const ConfigNode& root, Warnings& 
   const bool endless = given_s == 0 || world.run.duration_s == 0;
   const ConfigCheck check(world, root, warnings, endless ? 0 : std::max(given_s, world.run.duration_s));
   check.check_vehicles();
+  check.check_objects();
   check.check_places();
   check.check_water();
   check.check_rates();

@@ -25,30 +25,14 @@ void VehicleConfig::read(ParamReader& in) {
   in.read("categories", categories, "categories of parts that this vehicle adds to the world");
   for (const std::string& category : categories) in.declare("category", category);
   // Properties of the whole vehicle.
-  in.read("self_collision", self_collision, "parts of this vehicle collide with each other");
   in.read("actuator_latency_s", actuator_latency_s, between(0, 1e6),
           "from command to effect, added to the latency of each actuator");
   in.read("clock", clock, "clock with which its devices stamp their reports; unset: true time");
   // Bodies, joints and devices.
   in.require("bodies");
-  in.read_list("bodies", bodies, "body", "parts that move as one; the first carries the vehicle frame");
-  if (in.has("bodies") && bodies.empty()) in.error("bodies", "'bodies' must have at least one body");
-  declare_bodies(in);
-  in.read_list("joints", joints, "joint", "joints between bodies");
-  for (const JointConfig& joint : joints) in.declare("joint", joint.name);
-  for (JointConfig& joint : joints)
-    if (!joint.anchored) joint.anchor_at_body(bodies);
+  read_mechanism(in);
   in.read_list("devices", devices, "device", "sensors and actuators; keys by type, see docs/reference/devices.md");
   for (const DeviceConfig& device : devices) in.declare("device", device.name);
-}
-
-void VehicleConfig::declare_bodies(ParamReader& in) const {
-  for (const BodyConfig& body : bodies) {
-    in.declare("body", body.name);
-    for (const PartConfig& part : body.parts)
-      if (!part.name.empty()) in.declare("part", body.name + "/" + part.name);
-  }
-  in.declare("body", "world");  // for joints
 }
 
 }  // namespace sim

@@ -8,12 +8,12 @@
 
 #include "sim/clock/oscillator.hpp"
 #include "sim/device/device_config.hpp"
-#include "sim/model/physics_config.hpp"
+#include "sim/model/mechanism_config.hpp"
 
 namespace sim {
 
 /// Vehicle model, as described by a vehicle file.
-struct VehicleConfig {
+struct VehicleConfig : MechanismConfig {
   int shoal = 1;        ///< version of the file format
   std::string vehicle;  ///< name of the model
   std::string description;
@@ -21,11 +21,8 @@ struct VehicleConfig {
   std::vector<MaterialConfig> materials;
   std::vector<ContactConfig> contacts;
   std::vector<std::string> categories;
-  bool self_collision = false;
   double actuator_latency_s = 0;  ///< delay from command to effect, added to that of each actuator
   ClockConfig clock;
-  std::vector<BodyConfig> bodies;  ///< the first one carries the vehicle frame
-  std::vector<JointConfig> joints;
   std::vector<DeviceConfig> devices;
   std::shared_ptr<const ConfigNode> source;  ///< source tree with parameters substituted; null: not read from a file
 
@@ -37,8 +34,6 @@ struct VehicleConfig {
   ~VehicleConfig();
 
   void read(ParamReader& in);
-  /// Declares its bodies and parts, for keys that refer to them.
-  void declare_bodies(ParamReader& in) const;
   /// Returns whether a body has hydrodynamic coefficients, as that of a craft.
   bool has_coefficients() const {
     return std::any_of(bodies.begin(), bodies.end(), [](const BodyConfig& body) { return body.has_coefficients(); });

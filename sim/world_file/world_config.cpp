@@ -139,7 +139,8 @@ void LimitsConfig::read(ParamReader& in) {
   in.read("vehicles", vehicles, between(0, 1000000), "vehicles at any one time, including spawned ones");
   in.read("objects", objects, between(0, 10000000),
           "objects at any one time, including those that scripts or clients add");
-  in.read("bodies_per_vehicle", bodies_per_vehicle, between(1, 100000), "bodies of a vehicle that a client spawns");
+  in.read("bodies_per_vehicle", bodies_per_vehicle, between(1, 100000),
+          "bodies of a vehicle that a client spawns, or of an object that is added during the run");
   in.read("devices_per_vehicle", devices_per_vehicle, between(0, 100000), "devices of a vehicle that a client spawns");
   in.read("parts", parts, between(1, 100000), "parts of one vehicle or object that is added during the run");
   in.read("spawns_per_client", spawns_per_client, between(0, 100000000),

@@ -42,7 +42,7 @@ objects:
   - {name: plate, fixed: true, parts: [{shape: box, size_m: [0.02, 2, 2]}]}
   - {name: ball, position_m: [-0.55, 0, 0], parts: [{shape: sphere, radius_m: 0.02, mass_kg: 0.1}]}
 )");
-  sim::Body& ball = *test.world.find_object("ball")->body;
+  sim::Body& ball = test.world.find_object("ball")->base();
   ball.set_velocity_W({speed_mps, 0, 0}, Vector3d::Zero());
   test.run_for(2 / speed_mps);
   return ball.X_WB().translation().x();
@@ -90,7 +90,7 @@ objects:
     parts: [{shape: sphere, radius_m: 0.3, mass_kg: 170}, {shape: sphere, radius_m: 0.3, displaces: )" +
                    std::string(twice ? "true" : "false") + "}]\n");
     test.run_for(1);
-    EXPECT_EQ(test.world.find_object("it")->body->v_WB_W().z() > 0, twice);
+    EXPECT_EQ(test.world.find_object("it")->base().v_WB_W().z() > 0, twice);
   }
 }
 

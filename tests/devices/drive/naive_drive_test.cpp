@@ -220,7 +220,7 @@ TEST_F(NaiveDrive, PushesWhatIsFree) {
   test->world.physics().set_gravity(0);
   test->run_for(3);
   EXPECT_NEAR(pose().translation().x(), 3, 1e-9);
-  EXPECT_GT(test->world.find_object("ball")->body->X_WB().translation().x(), 3.3);
+  EXPECT_GT(test->world.find_object("ball")->base().X_WB().translation().x(), 3.3);
 }
 
 }  // namespace

@@ -84,7 +84,7 @@ TEST(Events, ChooseAtRandomByTheirOwnNameWhateverElseHappens) {
     std::vector<double> xs;
     for (int i = 0; i < 30; ++i) {
       test.run_for(0.1);
-      xs.push_back(test.world.find_object("ball")->body->X_WB().translation().x());
+      xs.push_back(test.world.find_object("ball")->base().X_WB().translation().x());
     }
     return xs;
   };
@@ -131,10 +131,10 @@ TEST(Events, AddMoveAndRemoveObjects) {
   EXPECT_EQ(test.world.find_object("crate"), nullptr);
   test.run_for(0.15);
   ASSERT_NE(test.world.find_object("crate"), nullptr);
-  EXPECT_EQ(test.world.find_object("crate")->body->X_WB().translation().x(), 9);
+  EXPECT_EQ(test.world.find_object("crate")->base().X_WB().translation().x(), 9);
   EXPECT_NE(test.world.find_object("barrel"), nullptr);
   test.run_for(0.15);
-  EXPECT_EQ(test.world.find_object("crate")->body->X_WB().translation(), sim::Vector3d(4, 4, 4));
+  EXPECT_EQ(test.world.find_object("crate")->base().X_WB().translation(), sim::Vector3d(4, 4, 4));
   EXPECT_EQ(test.world.find_object("barrel"), nullptr);
   // The second removal and the second crate fail, are reported and change nothing.
   EXPECT_EQ(test.world.counts().bad_messages, 2);
@@ -143,9 +143,9 @@ TEST(Events, AddMoveAndRemoveObjects) {
 TEST(Events, ChangeGravity) {
   test::TestWorld test(event_world("  - {name: a, at: 1, do: [{gravity_mps2: 2}]}\n"));
   test.run_for(1);
-  EXPECT_EQ(test.world.find_object("ball")->body->v_WB_W().z(), 0);
+  EXPECT_EQ(test.world.find_object("ball")->base().v_WB_W().z(), 0);
   test.run_for(1);
-  EXPECT_NEAR(test.world.find_object("ball")->body->v_WB_W().z(), -2, 1e-9);
+  EXPECT_NEAR(test.world.find_object("ball")->base().v_WB_W().z(), -2, 1e-9);
 }
 
 TEST(Events, ReceiveMessagesAndSeeTouches) {

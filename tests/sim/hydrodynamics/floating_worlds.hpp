@@ -18,7 +18,7 @@ inline std::string floating_world(const std::string& parts, const std::string& p
 }
 
 inline sim::Body& body_of(LoadedTestWorld& test) {
-  return *test.world.find_object("it")->body;
+  return test.world.find_object("it")->base();
 }
 
 /// The mean time between upward crossings of `rest` by what `value` gives, while `time_s` pass.

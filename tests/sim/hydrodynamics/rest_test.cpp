@@ -76,7 +76,7 @@ std::string still_world(double step_s) {
 std::vector<Body*> all_bodies(TestWorld& test) {
   std::vector<Body*> bodies;
   for (const auto& vehicle : test.world.vehicles()) bodies.push_back(&vehicle->body("hull"));
-  for (const auto& [name, object] : test.world.objects()) bodies.push_back(object.body);
+  for (const auto& [name, object] : test.world.objects()) bodies.push_back(&object.base());
   return bodies;
 }
 

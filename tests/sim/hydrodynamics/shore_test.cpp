@@ -33,8 +33,8 @@ TEST(Shore, ABoxThatSlidesIntoTheSeaFloatsAndAStoneStaysBelow) {
                   "  - {name: stone, position_m: [5, 0, 1], parts: [{shape: box, size_m: [1, 1, 0.4], "
                   "density_kgpm3: 2600}]}\n"));
   test.run_for(30);
-  EXPECT_NEAR(test.world.find_object("raft")->body->X_WB().translation().z(), 0.2 - 0.4 * 400 / 1025, 0.02);
-  EXPECT_NEAR(test.world.find_object("stone")->body->X_WB().translation().z(), -1.8, 0.002);
+  EXPECT_NEAR(test.world.find_object("raft")->base().X_WB().translation().z(), 0.2 - 0.4 * 400 / 1025, 0.02);
+  EXPECT_NEAR(test.world.find_object("stone")->base().X_WB().translation().z(), -1.8, 0.002);
 }
 
 TEST(Shore, WaterFarBelowChangesNoBitOfALandVehicle) {
@@ -43,7 +43,7 @@ TEST(Shore, WaterFarBelowChangesNoBitOfALandVehicle) {
                    "objects:\n  - {name: ground, fixed: true, parts: [{shape: plane}]}\n"
                    "  - {name: it, position_m: [0, 0, 1], rpy_deg: [10, 20, 30], parts: [{shape: box, mass_kg: 3}]}\n");
     test.run_for(5);
-    return test.world.find_object("it")->body->X_WB().matrix().eval();
+    return test.world.find_object("it")->base().X_WB().matrix().eval();
   };
   EXPECT_EQ(pose_after(""), pose_after("medium: {water: {surface_m: -3}}\n"));
 }

@@ -26,7 +26,7 @@ objects:
 class Overlap : public testing::Test {
  protected:
   std::pair<std::string, double> of(const std::string& name) const {
-    return world_.physics().deepest_overlap(world_.find_object(name)->group);
+    return world_.physics().deepest_overlap(world_.find_object(name)->group());
   }
   void expect(const std::string& name, const std::string& other, double depth_m) const {
     const auto [found, depth] = of(name);
@@ -61,7 +61,7 @@ TEST_F(Overlap, IsThatOfTheNewPosesAfterAStep) {
 TEST_F(Overlap, IsFoundWhereStepsHaveBroughtTheOthers) {
   expect_all();
   for (int i = 0; i < 50; ++i) world_.step();
-  const sim::Pose X_WA = world_.find_object("apart")->body->X_WB();
+  const sim::Pose X_WA = world_.find_object("apart")->base().X_WB();
   EXPECT_LT(X_WA.translation().z(), 4.5) << "it has fallen";
   const sim::ObjectConfig box = loaded_.config.objects[4];
   world_.editor().add_object(box, "guest", sim::make_pose({5.9, 0, X_WA.translation().z()}, {0, 0, 0}));

@@ -19,7 +19,7 @@ objects:
 }
 
 sim::Pose cart(const test::TestWorld& test) {
-  return test.world.find_object("cart")->body->X_WB();
+  return test.world.find_object("cart")->base().X_WB();
 }
 
 TEST(Actor, IsOnItsPathAtEachOfTenThousandSteps) {
@@ -61,7 +61,7 @@ TEST(Actor, PushesWhatStandsInItsWayAndIsNotPushed) {
   test.run_for(6);
   EXPECT_NEAR(cart(test).translation().x(), 4, 1e-9);
   // The front of the cart ends at 4.5 m, and the crate reaches 0.25 m farther at least.
-  EXPECT_GT(test.world.find_object("crate")->body->X_WB().translation().x(), 4.7);
+  EXPECT_GT(test.world.find_object("crate")->base().X_WB().translation().x(), 4.7);
 }
 
 TEST(Actor, OfADoorOpensForAVehicleThatComesNear) {
@@ -82,7 +82,7 @@ events:
   - {name: open, when: any enters doorstep, do: [{actor: {name: slide, command: forward}}]}
   - {name: shut, when: any leaves doorstep, do: [{actor: {name: slide, command: back}}]}
 )");
-  const auto door_y = [&] { return test.world.find_object("door")->body->X_WB().translation().y(); };
+  const auto door_y = [&] { return test.world.find_object("door")->base().X_WB().translation().y(); };
   test.run_for(1);
   EXPECT_EQ(door_y(), 0);
   for (int i = 0; i < 80; ++i) {
@@ -107,13 +107,13 @@ TEST(Actor, LeadsWhatComesInPlaceOfItsObjectAndRefusesWhatCannotBeLed) {
   test.world.editor().remove_object("lift");
   test.run_for(0.1);
   sim::ObjectConfig other = test.loaded.config.objects.front();
-  other.kinematic = false;
+  other.bodies.front().kinematic = false;
   other.fixed = true;
   EXPECT_THROW(test.world.editor().add_object(other, "lift", sim::Pose::Identity()), sim::ConfigError);
   other.fixed = false;
   test.world.editor().add_object(other, "lift", sim::Pose::Identity());
   test.run_for(0.9);
-  EXPECT_NEAR(test.world.find_object("lift")->body->X_WB().translation().z(), 2, 1e-9);  // 1 m/s for 2 s
+  EXPECT_NEAR(test.world.find_object("lift")->base().X_WB().translation().z(), 2, 1e-9);  // 1 m/s for 2 s
 }
 
 }  // namespace

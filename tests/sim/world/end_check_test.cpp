@@ -99,7 +99,7 @@ struct FlyingBall : test::TestWorld {
                   ", gravity_mps2: 0}\nobjects:\n  - {name: plate, fixed: true, parts: [{shape: box, size_m: "
                   "[0.02, 1, 1]}]}\n  - {name: ball, position_m: [" +
                   std::to_string(start_m) + ", 0, 0], parts: [{shape: sphere, radius_m: 0.02, mass_kg: 0.1}]}\n"),
-        ball(*world.find_object("ball")->body) {
+        ball(world.find_object("ball")->base()) {
     ball.set_velocity_W({speed_mps, 0, 0}, sim::Vector3d::Zero());
   }
   sim::Body& ball;
@@ -157,7 +157,7 @@ TEST(EndCheck, MeasuresABodyAlongItsMotion) {
         "0, "
         "-0.2], parts: [{shape: box, size_m: [9, 9, 0.1]}]}\n  - {name: rod, parts: [{shape: box, size_m: [1, 0.02, "
         "0.02], mass_kg: 0.1}]}\n");
-    test.world.find_object("rod")->body->set_velocity_W(v_W, sim::Vector3d::Zero());
+    test.world.find_object("rod")->base().set_velocity_W(v_W, sim::Vector3d::Zero());
     test.run_for(0.03);
     return ended(test).size();
   };

@@ -19,7 +19,7 @@ bool collides(const std::string& objects, const std::string& name) {
       sim::load_world_text("shoal: 1\ncategories: [light, glass]\nobjects:\n" + objects, "test", {});
   sim::InProcessBus bus;
   const sim::World world(loaded.config, bus);
-  return sim::PartCollisions(world).has(world.objects().at(name).config.parts.front(), name);
+  return sim::PartCollisions(world).has(world.objects().at(name).config->bodies.front().parts.front(), name);
 }
 
 const std::string lamp = "category: light, collides_with: [light]";

@@ -22,7 +22,8 @@ using test::SavedRun;
 using test::TappedWorld;
 using testing::HasSubstr;
 
-/// Boxes that fall onto each other, rovers, an actor, events: things that come and go while it runs.
+/// Boxes that fall onto each other, objects of two bodies, rovers, an actor, events: things that come and go while it
+/// runs.
 const char* const busy_world = R"(
 shoal: 1
 physics: {step_s: 0.005}
@@ -36,6 +37,19 @@ objects:
   - {name: crate, position_m: [0, 4, 0.3], count: 5, placement: {pattern: line, spacing_m: 0.3},
      parts: [{shape: box, size_m: [0.4, 0.4, 0.4], mass_kg: 2}]}
   - {name: late, present: false, position_m: [2, 3, 1], parts: [{shape: sphere, radius_m: 0.2, mass_kg: 1}]}
+  - name: swing
+    position_m: [-6, 4, 0]
+    bodies:
+      - {name: rope, position_m: [0.5, 0, 2], parts: [{shape: box, size_m: [1, 0.1, 0.1], mass_kg: 2}]}
+      - {name: seat, position_m: [1.2, 0, 2], parts: [{shape: box, size_m: [0.4, 0.1, 0.1], mass_kg: 1}]}
+    joints:
+      - {name: top, type: hinge, bodies: [rope, world], anchor_m: [0, 0, 2], axis: [0, 1, 0], damping: 0.1}
+      - {name: knee, type: hinge, bodies: [rope, seat], anchor_m: [1, 0, 2], axis: [0, 1, 0], low_stop: -0.5}
+  - name: late_swing
+    present: false
+    position_m: [-6, -4, 0]
+    bodies: [{name: rope, position_m: [0.5, 0, 2], parts: [{shape: box, size_m: [1, 0.1, 0.1], mass_kg: 2}]}]
+    joints: [{name: top, type: hinge, bodies: [rope, world], anchor_m: [0, 0, 2], axis: [0, 1, 0]}]
 actors: [{name: porter, object: gate, points: [[6, 0, 0.5], [6, 3, 0.5]], ends: reverse, speed_mps: 0.7}]
 zones: [{name: dock, shape: box, position_m: [0, 0, 0], size_m: [3, 3, 3], finish: true, speed_limit_mps: 0.1}]
 vehicles:
@@ -62,9 +76,11 @@ vehicles:
         - {name: lidar, type: lidar, rate_hz: 10, beams: 20, range_std_m: 0.01}
         - {name: bumper, type: bumper, rate_hz: 20}
 events:
+  - {name: wind, every: 0.6, do: [{move: {name: swing, position_m: [-6, 4, 0.5], area_m: [1, 1, 0], random_yaw: true}}]}
   - {name: rain, every: 0.4, jitter_s: 0.1, probability: 0.7,
-     do: [{add: {object: late, position_m: [0, 0, 2], area_m: [4, 4, 0]}}, {move: {name: crate1, position_m: [0, 0, 1], area_m: [2, 2, 1]}}]}
-  - {name: sun, when: event rain fires, delay_s: 0.25, do: [{remove: late}]}
+     do: [{add: {object: late, position_m: [0, 0, 2], area_m: [4, 4, 0]}}, {add: late_swing},
+       {move: {name: late_swing, position_m: [-6, -4, 0.3]}}, {move: {name: crate1, position_m: [0, 0, 1], area_m: [2, 2, 1]}}]}
+  - {name: sun, when: event rain fires, delay_s: 0.25, do: [{remove: late}, {remove: late_swing}]}
   - {name: knock, when: any touches crate2, do: [{log: knock}]}
 )";
 
@@ -439,7 +455,7 @@ class ForgedSnapshot : public DamagedSnapshot {
 };
 
 TEST_F(ForgedSnapshot, WithBodiesWhereNoneCanBeIsRefused) {
-  const sim::Vector3d p_W = world().find_object("crate3")->body->X_WB().translation();  // its centre of mass
+  const sim::Vector3d p_W = world().find_object("crate3")->base().X_WB().translation();  // its centre of mass
   const std::size_t p = behind(good, std::array{p_W.x(), p_W.y(), p_W.z()}) - 3 * sizeof(double);
   const std::size_t q = p + 3 * sizeof(double), R = q + 4 * sizeof(double), v = R + 12 * sizeof(double);
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();

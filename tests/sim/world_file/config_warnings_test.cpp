@@ -31,6 +31,29 @@ TEST(ConfigWarnings, ReportARateAboveThatOfTheSteps) {
             "becomes 100 Hz with 'step_s' 0.01\n");
 }
 
+TEST(ConfigWarnings, ReportBodiesThatNoJointsConnect) {
+  const auto bodies = [](const std::string& joints) {
+    return "bodies: [{name: seat, parts: [{shape: box, mass_kg: 1}]}, {name: foot, parts: [{shape: box, mass_kg: 1}]},"
+           " {name: cup, parts: [{shape: box, mass_kg: 1}]}]\n    joints: [" +
+           joints + "]\n";
+  };
+  const auto chair = [&](const std::string& joints) {
+    return warnings_of_file("shoal: 1\nobjects:\n  - name: chair\n    " + bodies(joints));
+  };
+  const std::string joined = "{name: a, bodies: [seat, foot]}";
+  EXPECT_EQ(chair(joined),
+            "worlds/test.yaml:4:105: object 'chair': body 'cup': no joints connect it with body 'seat': "
+            "it moves on its own\n");
+  // By way of another body, or of the world.
+  EXPECT_EQ(chair(joined + ", {name: b, bodies: [cup, foot]}"), "");
+  EXPECT_EQ(chair(joined + ", {name: b, bodies: [cup, world]}, {name: c, bodies: [foot, world]}"), "");
+  // The check of vehicles and objects is one.
+  EXPECT_THAT(warnings_of_file("shoal: 1\nvehicles:\n- name: v1\n  model:\n    " + bodies(joined)),
+              HasSubstr("vehicle 'v1': body 'cup': no joints connect it with body 'seat'"));
+  EXPECT_THAT(chair(joined + ", {name: b, type: fixed, bodies: [cup, foot], low_stop: 0}"),
+              HasSubstr("object 'chair': joint 'b': 'low_stop' has no effect on a fixed joint"));
+}
+
 TEST(ConfigWarnings, AreSilentAboutTheRateOfTheSteps) {
   EXPECT_EQ(warnings_of_file(world("        - {name: imu, type: imu, rate_hz: 100}\n")), "");
   EXPECT_EQ(warnings_of_file(world("        - {name: imu, type: imu, rate_hz: every_step}\n")), "");

@@ -139,13 +139,12 @@ void ShapeEdges::draw(OverlayCanvas& canvas, BodyShapes shapes) {
       draw(canvas, part, body.X_WB(), pen);
     }
   };
-  for (const auto& vehicle : world_.vehicles()) {
-    const std::vector<sim::BodyConfig>& configs = vehicle->config().bodies;
-    for (std::size_t i = 0; i < std::min(configs.size(), vehicle->bodies().size()); ++i)
-      draw_body(*vehicle->bodies()[i].second, vehicle->name(), configs[i].parts);
-  }
-  for (const auto& [name, object] : world_.objects())
-    if (object.body != nullptr) draw_body(*object.body, name, object.config.parts);
+  const auto draw_all = [&](const sim::Mechanism& owner, const sim::MechanismConfig& config, const std::string& name) {
+    for (std::size_t i = 0; i < std::min(config.bodies.size(), owner.bodies().size()); ++i)
+      draw_body(*owner.bodies()[i].second, name, config.bodies[i].parts);
+  };
+  for (const auto& vehicle : world_.vehicles()) draw_all(*vehicle, vehicle->config(), vehicle->name());
+  for (const auto& [name, object] : world_.objects()) draw_all(object, *object.config, name);
 }
 
 }  // namespace tools

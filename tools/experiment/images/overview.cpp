@@ -38,11 +38,10 @@ std::vector<Subject> subjects_of(const sim::World& world, bool everything) {
   for (const auto& vehicle : world.vehicles())
     subjects.push_back(subject_of(world.physics(), vehicle->name(), vehicle->group()));
   if (subjects.empty() || everything)
-    for (const auto& [name, object] : world.objects())
-      if (object.body != nullptr) {
-        subjects.push_back(subject_of(world.physics(), name, object.body->group()));
-        subjects.back().is_vehicle = false;
-      }
+    for (const auto& [name, object] : world.objects()) {
+      subjects.push_back(subject_of(world.physics(), name, object.group()));
+      subjects.back().is_vehicle = false;
+    }
   std::erase_if(subjects, [](const Subject& each) { return each.box.isEmpty(); });
   return subjects;
 }

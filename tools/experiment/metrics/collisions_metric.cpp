@@ -73,8 +73,8 @@ class CollisionMetric final : public Metric {
     }
     for (const auto& [name, object] : world_.objects()) {
       const auto is_plane = [](const sim::PartConfig& part) { return part.shape == sim::PartShape::plane; };
-      const bool planes = std::all_of(object.config.parts.begin(), object.config.parts.end(), is_plane);
-      add_group(object.group, 2 * object.number + 1, {false, params_.with.empty() ? !planes : params_.with == name});
+      const bool planes = object.config->all_parts(is_plane);
+      add_group(object.group(), 2 * object.number + 1, {false, params_.with.empty() ? !planes : params_.with == name});
     }
   }
 

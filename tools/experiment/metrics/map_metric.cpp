@@ -117,8 +117,10 @@ class MapMetric final : public Metric {
     sim::StateHash hash;
     for (const auto& [name, object] : world_.objects()) {
       hash.add(static_cast<std::uint64_t>(object.number));
-      const sim::Pose X_WB = object.body->X_WB();
-      hash.add_bytes(X_WB.matrix().data(), sizeof(double) * 16);
+      for (const auto& [body_name, body] : object.bodies()) {
+        const sim::Pose X_WB = body->X_WB();
+        hash.add_bytes(X_WB.matrix().data(), sizeof(double) * 16);
+      }
     }
     return hash.value();
   }

@@ -53,7 +53,7 @@ void set_friction(sim::WorldConfig& world, sim::VehicleConfig& vehicle, double f
 
 void add_bumps(sim::WorldConfig& world, const sim::VehicleInstance& vehicle, const Perturbation& perturbation) {
   for (sim::ObjectConfig& object : world.objects)
-    for (sim::PartConfig& part : object.parts) {
+    for (sim::PartConfig& part : object.bodies.front().parts) {  // that of a fixed object is the only one
       if (!object.fixed || part.shape != sim::PartShape::plane) continue;
       part.shape = sim::PartShape::terrain;
       sim::TerrainConfig& terrain = part.terrain.emplace();

@@ -362,7 +362,9 @@ void Results::write(const std::string& file, const std::string& text) const {
 void Results::write_outlines() const {
   std::string text;
   for (const auto& [name, object] : world_.objects())
-    for (const sim::PartConfig& part : object.config.parts) text += outline_of(part, object.body->X_WB());
+    for (std::size_t i = 0; i < object.bodies().size(); ++i)
+      for (const sim::PartConfig& part : object.config->bodies[i].parts)
+        text += outline_of(part, object.bodies()[i].second->X_WB());
   write("outlines.dat", text.empty() ? "0 0\n" : text);
 }
 

@@ -20,8 +20,7 @@ constexpr double carries = 0.7;
 constexpr std::size_t max_lines = 20;
 
 bool is_ground(const sim::ObjectConfig& object) {
-  return std::all_of(object.parts.begin(), object.parts.end(),
-                     [](const sim::PartConfig& part) { return !sim::shape_info(part.shape).solid; });
+  return object.all_parts([](const sim::PartConfig& part) { return !sim::shape_info(part.shape).solid; });
 }
 
 bool has_wheels(const sim::VehicleConfig& vehicle) {
@@ -76,8 +75,8 @@ void FirstContacts::choose_groups() {
     world_.physics().watch_contacts(vehicle->group());
   }
   for (const auto& [name, object] : world_.objects())
-    put(object.group,
-        {2 * object.number + 1, name, false, false, is_ground(object.config), object.config.fixed, false});
+    put(object.group(),
+        {2 * object.number + 1, name, false, false, is_ground(*object.config), object.config->fixed, false});
 }
 
 void FirstContacts::after_step() {

@@ -200,9 +200,8 @@ bool in_ground(const sim::Vector3d& p_W, const sim::World& world) {
   if (part.plane) return true;
   const sim::Body* body = world.physics().bodies()[static_cast<std::size_t>(part.body)].get();
   for (const auto& [name, object] : world.objects())
-    if (object.body == body)
-      for (const sim::PartConfig& each : object.config.parts)
-        if (each.shape == sim::PartShape::terrain) return true;
+    if (&object.base() == body)
+      return !object.config->all_parts([](const auto& each) { return each.shape != sim::PartShape::terrain; });
   return false;
 }
 

@@ -62,7 +62,7 @@ TEST(PerturbedWorld, BumpsReplaceTheGround) {
   tools::Perturbation perturbation;
   perturbation.ground_m = 0.003;
   const sim::WorldConfig changed = tools::perturbed(studio(), "dog", perturbation);
-  EXPECT_EQ(changed.objects.front().parts.front().shape, sim::PartShape::terrain);
+  EXPECT_EQ(changed.objects.front().bodies.front().parts.front().shape, sim::PartShape::terrain);
   sim::InProcessBus bus;
   sim::World world(changed, bus);
   // The dog stands on it: after half a second no lower than the bumps are deep.
