@@ -10,6 +10,8 @@
 
 #include "devices/common/param_checks.hpp"
 #include "devices/ranging/ray_filter.hpp"
+#include "sim/config/diagnostics.hpp"
+#include "sim/config/message_text.hpp"
 #include "sim/world/world.hpp"
 
 namespace devices {
@@ -49,6 +51,41 @@ sim::ImageKind render_kind(Camera::Kind kind) {
     default:
       return sim::ImageKind::color;
   }
+}
+
+/// Returns the baseline of the stereo pair in which a camera is the right one.  Throws ConfigError when the images of
+/// the two are not those of one lens, displaced to the right, at the same times.
+double baseline_of(const Camera::Params& params, const sim::DeviceContext& context) {
+  if (params.right_of.empty()) return 0;
+  const sim::DeviceConfig& right = context.config;
+  const auto check = [&](bool holds, const std::string& what) {
+    if (!holds)
+      sim::throw_config_error(right.place, "vehicle '" + context.vehicle.name() + "': device '" + right.name + "'",
+                              "'right_of': " + what);
+  };
+  // The left one may follow it in the file: at this point only its configuration exists.
+  const auto& devices = context.vehicle.config().devices;
+  const auto left = std::find_if(devices.begin(), devices.end(),
+                                 [&](const sim::DeviceConfig& device) { return device.name == params.right_of; });
+  const auto* of_left =
+      left == devices.end() ? nullptr : dynamic_cast<const sim::detail::ParamsOf<Camera::Params>*>(left->params.get());
+  const std::string name = "'" + sim::shortened(sim::printable(params.right_of)) + "'";
+  check(of_left != nullptr && &*left != &right, "the vehicle has no other camera " + name);
+  const sim::OpticsConfig& optics = params.optics;
+  check(optics.lens == sim::OpticsConfig::Lens::pinhole && optics.distortion.empty(),
+        "a stereo pair needs pinholes without distortion");
+  check(optics.text() == of_left->params.optics.text(), "its lens and size must be those of " + name);
+  check(right.rate_hz == left->rate_hz && right.phase_s && right.phase_s == left->phase_s,
+        "it needs rate_hz and phase_s, equal to those of " + name);
+  check(right.body == left->body, "it must be on the body of " + name);
+  const sim::Pose X_LR = left->X_BS().inverse() * right.X_BS();
+  const sim::Vector3d p_LR = X_LR.translation();
+  constexpr double rounding = 1e-9;
+  check(
+      X_LR.linear().isIdentity(rounding) && std::hypot(p_LR.x(), p_LR.z()) < rounding && p_LR.y() < -rounding,
+      fmt::format("it must look as {} does, from a place to the right of it; it is at [{:g}, {:g}, {:g}] in its frame",
+                  name, p_LR.x(), p_LR.y(), p_LR.z()));
+  return -p_LR.y();
 }
 
 }  // namespace
@@ -93,6 +130,10 @@ void Camera::Params::read(sim::ParamReader& in) {
   in.read("blur_samples", blur_samples, sim::between(2, 64), "images that are averaged for a blurred one");
   in.read("sees_own_vehicle", sees_own_vehicle, "its own vehicle is visible in the image");
   in.read_references("see_through", see_through, "category", "categories of parts that are not visible in the image");
+  in.read(
+      "right_of", right_of,
+      "the left camera of the stereo pair in which this is the right one: with its lens, rate and phase, and to the "
+      "right of it; unset: no pair");
   if (in.describing()) return;
   // Check combinations of keys and the size of messages.
   if (encoding == Encoding::raw16 && image != Kind::depth) in.error("encoding", "'raw16' is for images of depth");
@@ -138,6 +179,7 @@ Camera::Camera(const Params& params, const sim::DeviceContext& context)
       config_(context.config),
       step_(sim::from_seconds(context.world.config().physics.step_s)),
       own_group_(context.vehicle.group()),
+      baseline_m_(baseline_of(params, context)),
       noise_(context, params, params.image == Kind::rgb ? 3 : 1) {
   change(params);
   renderer_->clear(frame_);

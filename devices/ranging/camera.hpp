@@ -28,7 +28,7 @@ class Camera final : public sim::Sensor {
   static constexpr double default_rate_hz = 20;
   static constexpr bool casts_rays = true;
   static constexpr bool sweeps = true;
-  static constexpr const char* fixed_keys[] = {"image", "readout_s", "exposure_time_s", "blur_samples"};
+  static constexpr const char* fixed_keys[] = {"image", "readout_s", "exposure_time_s", "blur_samples", "right_of"};
   static constexpr bool reuses_message = true;
   /// Kind of image: color, grey, depth, segmentation by part or by vehicle.
   enum class Kind { rgb, grey, depth, parts, vehicles };
@@ -55,6 +55,7 @@ class Camera final : public sim::Sensor {
     int blur_samples = 4;
     bool sees_own_vehicle = false;
     std::vector<std::string> see_through;  ///< part categories
+    std::string right_of;                  ///< left camera of a stereo pair; empty: no stereo pair
     void read(sim::ParamReader& in);
     /// Returns the size of the pixels of an image in bytes; 0 for compressed images.
     double message_bytes() const;
@@ -75,6 +76,8 @@ class Camera final : public sim::Sensor {
   void visit_state(sim::StateArchive& archive) override;
 
   const Params& params() const { return params_; }
+  /// Returns the distance to the left camera of its stereo pair, m; 0: it is not the right one of a pair.
+  double baseline_m() const { return baseline_m_; }
   /// Returns filter, range and light of the images.
   const sim::RenderOptions& render_options() const { return renderer_->options(); }
   /// Return the last image.  Only the image of the configured kind is filled.
@@ -111,6 +114,7 @@ class Camera final : public sim::Sensor {
   sim::Time step_;
   int own_group_;
   Params params_;
+  double baseline_m_ = 0;
   std::unique_ptr<sim::Renderer> renderer_;
   sim::NoiseOf<&Params::noise> noise_;
   sim::Frame in_progress_, frame_;  // image being exposed, and last image

@@ -7,6 +7,7 @@
 #include "devices/ranging/camera.hpp"
 #include "messages/reporter/message_reporter.hpp"
 #include "shoal/image_t.hpp"
+#include "sim/base/number.hpp"
 #include "sim/image/image_file.hpp"
 
 namespace devices {
@@ -85,6 +86,7 @@ void fill(const Camera& camera, shoal::image_t& message) {
   message.height = params.optics.height;
   message.metadata.clear();
   add_metadata(message, "optics", params.optics.text());
+  if (camera.baseline_m() > 0) add_metadata(message, "baseline_m", sim::shortest_text(camera.baseline_m()));
   // Pixels in the encoding of the camera.
   switch (params.image) {
     case Camera::Kind::rgb:

@@ -11,13 +11,23 @@
 namespace bridges::ros2 {
 namespace {
 
+/// Returns an entry of the metadata of an image; empty when there is none.
+std::string metadata_of(const shoal::image_t& message, std::string_view key) {
+  const auto found = std::find_if(message.metadata.begin(), message.metadata.end(),
+                                  [key](const auto& entry) { return entry.key == key; });
+  return found == message.metadata.end() ? std::string() : std::string(found->value.begin(), found->value.end());
+}
+
 /// Reads the lens in the metadata of an image; an empty map when there is none.
 sim::ConfigNode lens_of(const shoal::image_t& message) {
-  const auto optics = std::find_if(message.metadata.begin(), message.metadata.end(),
-                                   [](const auto& entry) { return entry.key == "optics"; });
-  if (optics == message.metadata.end()) return {};
   sim::Diagnostics diagnostics;
-  return sim::parse_config_text(std::string(optics->value.begin(), optics->value.end()), "optics", diagnostics);
+  return sim::parse_config_text(metadata_of(message, "optics"), "optics", diagnostics);
+}
+
+/// Returns the distance to the left camera of a stereo pair, m; 0 for a camera that is not the right one of a pair.
+double baseline_of(const shoal::image_t& message) {
+  const double baseline_m = sim::read_number(metadata_of(message, "baseline_m")).value_or(0);
+  return std::isfinite(baseline_m) ? baseline_m : 0;
 }
 
 /// Returns the numbers of a list in the lens, with 0 for what is none.
@@ -48,7 +58,9 @@ bool write_camera_info(const shoal::image_t& message, std::string_view channel, 
   out.put_sequence(std::span<const double>(distortion));
   put_numbers(out, {focal_px[0], 0, cx, 0, focal_px[1], cy, 0, 0, 1});
   put_numbers(out, {1, 0, 0, 0, 1, 0, 0, 0, 1});
-  put_numbers(out, {focal_px[0], 0, cx, 0, 0, focal_px[1], cy, 0, 0, 0, 1, 0});
+  // Of the right camera of a pair -fx B, as sensor_msgs/CameraInfo says; without -0.
+  const double shift_px_m = 0.0 - focal_px[0] * baseline_of(message);
+  put_numbers(out, {focal_px[0], 0, cx, shift_px_m, 0, focal_px[1], cy, 0, 0, 0, 1, 0});
   // No binning, and the region of interest is the whole image.
   for (int i = 0; i < 6; ++i) out.put(std::uint32_t{0});
   out.put(false);

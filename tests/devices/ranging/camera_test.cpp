@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "shoal/image_t.hpp"
+#include "sim/base/number.hpp"
 #include "sim/image/image_file.hpp"
 #include "sim/world/world_state.hpp"
 #include "tests/devices/world_fixture.hpp"
@@ -297,6 +298,63 @@ TEST(Camera, CountsTheRaysThatTheNextStepCasts) {
   // A row each ms.
   EXPECT_EQ(rays_of(", readout_s: 0.047", 0.04), 0);
   EXPECT_EQ(rays_of(", readout_s: 0.047", 0.07), 64);
+}
+
+/// A stereo pair with a baseline of 0.12 m, at the same times; `more`: keys of the right one.
+std::string stereo_pair(const std::string& more = "") {
+  const std::string lens = ", type: camera, width: 640, height: 48, rate_hz: 10, phase_s: 0.05";
+  return "        - {name: right, position_m: [0, -0.06, 0.4], right_of: left" + lens + more +
+         "}\n        - {name: left, position_m: [0, 0.06, 0.4]" + lens + ", image: segmentation_vehicles}\n";
+}
+
+TEST(Camera, TheDisparityOfAStereoPairIsFocalLengthTimesBaselineOverDepth) {
+  for (const double depth_m : {1.5, 3.0, 8.0}) {
+    // A pole of 0.1 m ahead of the middle of both.
+    test::TestWorld test(test::rover_world(stereo_pair(labels),
+                                           "  - {name: pole, fixed: true, position_m: [" + std::to_string(depth_m) +
+                                               ", 0, 0], parts: [{shape: cylinder, radius_m: 0.05, length_m: 10}]}\n"));
+    test::Listener<shoal::image_t> lefts(test, "r1.left"), rights(test, "r1.right");
+    test.run_for(0.06);
+    const auto left = lefts.last(), right = rights.last();
+    EXPECT_EQ(left.utime, right.utime);
+    const auto column = [](const shoal::image_t& image) {
+      double sum = 0;
+      int pixels = 0;
+      for (int i = 0; i < image.width; ++i)
+        if (value_at<std::uint16_t>(image, i, 10) == 2) sum += i + 0.5, ++pixels;  // after the ground
+      return sum / pixels;
+    };
+    const double focal_px = 320 / std::tan(sim::degrees_to_radians(45) / 2);
+    EXPECT_NEAR(column(left) - column(right), focal_px * 0.12 / depth_m, 0.5) << depth_m;
+    EXPECT_EQ(metadata(left, "baseline_m"), "none");
+    EXPECT_NEAR(*sim::read_number(metadata(right, "baseline_m")), 0.12, 1e-12);
+  }
+}
+
+TEST(Camera, RefusesAStereoPairWhoseImagesDoNotFit) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"right_of: middle", "'right_of': the vehicle has no other camera 'middle'"},
+      {"right_of: right", "'right_of': the vehicle has no other camera 'right'"},
+      {"width: 320", "'right_of': its lens and size must be those of 'left'"},
+      {"phase_s: 0.01", "'right_of': it needs rate_hz and phase_s, equal to those of 'left'"},
+      {"lens: fisheye", "'right_of': a stereo pair needs pinholes without distortion"},
+      {"body: left_wheel", "'right_of': it must be on the body of 'left'"},
+      {"position_m: [0, 0.2, 0.4]", "it is at [0, 0.14, 0] in its frame"},
+      {"rpy_deg: [0, 0, 1]", "'right_of': it must look as 'left' does, from a place to the right of it"}};
+  for (const auto& [key, error] : cases) {
+    // The key replaces the one that the pair has.
+    std::string pair = stereo_pair();
+    const std::string text(key), name = text.substr(0, text.find(':') + 1);
+    if (const auto at = pair.find(name); at != std::string::npos) {
+      std::size_t end = at;
+      for (int depth = 0; depth > 0 || (pair[end] != ',' && pair[end] != '}'); ++end)
+        depth += pair[end] == '[' ? 1 : pair[end] == ']' ? -1 : 0;
+      pair.replace(at, end - at, text);
+    } else {
+      pair.insert(pair.find("}"), ", " + text);
+    }
+    EXPECT_THAT(test::error_of_world(test::rover_world(pair)), HasSubstr(error)) << key;
+  }
 }
 
 TEST(Camera, IsTheSameForAnyNumberOfThreads) {
