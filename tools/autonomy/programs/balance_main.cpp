@@ -35,8 +35,14 @@ int balance(const Options& options) {
   const auto take = [&](const auto& message) { balance.receive(message); };
   const std::string prefix = options.name + ".";
   client.subscribe<shoal::inclination_t>(prefix + "inclinometer", take, shoal::Finite::required);
+  if (options.balance.filter_s > 0) client.subscribe<shoal::imu_t>(prefix + "imu", take, shoal::Finite::required);
   client.subscribe<shoal::wheel_encoder_t>(prefix + "encoder", take, shoal::Finite::required);
-  client.subscribe<shoal::twist_command_t>(prefix + "balance.cmd", take, shoal::Finite::required);
+  client.subscribe_bytes(prefix + "balance.cmd", [&](std::span<const std::byte> payload) {
+    if (shoal::fingerprint(payload) == shoal::fingerprint_of<shoal::inclination_t>())
+      balance.command_tilt(shoal::decode<shoal::inclination_t>(payload, shoal::Finite::required).pitch_rad);
+    else
+      balance.receive(shoal::decode<shoal::twist_command_t>(payload, shoal::Finite::required));
+  });
 
   const int exit_code = autonomy::take_part(client, options.participation, state, [&](std::int64_t utime) {
     // Apply the speed profile.
@@ -79,6 +85,10 @@ void declare_gains(command_line::DeclaredOptions& declared, Options& options) {
   declared.number("ki_rad_per_m", gains.ki_rad_per_m, 0, 10, "tilt setpoint per integral of that error");
   declared.number("max_tilt_rad", gains.max_tilt_rad, 0.01, 0.7, "limit of the tilt setpoint, from the balanced tilt");
   declared.number("max_acceleration_mps2", gains.max_acceleration_mps2, 0.01, 10, "limit of the speed setpoint");
+  declared.number("max_tilt_speed_mps", gains.max_tilt_speed_mps, 0.01, 10,
+                  "speed towards which a commanded tilt is taken back");
+  declared.number("tilt_torque_Nm_per_rad", gains.tilt_torque_Nm_per_rad, 0, 1e4,
+                  "torque of both wheels that keeps a commanded tilt while it accelerates");
   declared.number("turn_gain_Nms_per_rad", gains.turn_gain_Nms_per_rad, 0, 1e4,
                   "differential wheel torque per yaw rate error");
   declared.number("turn_ki_Nm_per_rad", gains.turn_ki_Nm_per_rad, 0, 1e4,
@@ -86,6 +96,9 @@ void declare_gains(command_line::DeclaredOptions& declared, Options& options) {
   declared.number("rate_filter_s", gains.rate_filter_s, 0, 1, "time constant of the low-pass filter of the tilt rate");
   declared.number("speed_filter_s", gains.speed_filter_s, 0, 1,
                   "time constant of the low-pass filter of speed and turn rate");
+  declared.number(
+      "filter_s", gains.filter_s, 0, 1000,
+      "time constant of the complementary filter of IMU and inclinometer; 0: tilt by the inclinometer alone");
   declared.number("wheel_radius_m", gains.wheel_radius_m, 0.01, 10, "radius of its wheels");
   declared.number("track_m", gains.track_m, 0.01, 10, "distance between the wheels");
   declared.number("max_torque_Nm", gains.max_torque_Nm, 0.1, 1e4, "limit of the torque of each wheel");
@@ -93,7 +106,7 @@ void declare_gains(command_line::DeclaredOptions& declared, Options& options) {
 
 void declare(command_line::DeclaredOptions& declared, Options& options) {
   declared.publishes({"{name}.left_motor.cmd", "{name}.right_motor.cmd", "{name}.fallen"});
-  declared.subscribes({"{name}.inclinometer", "{name}.encoder", "{name}.balance.cmd"});
+  declared.subscribes({"{name}.inclinometer", "{name}.imu", "{name}.encoder", "{name}.balance.cmd"});
   autonomy::add_name(declared, options.name, "vehicle to balance").required_in_worlds();
   declared.tuples(
       "speeds", {"from_s", "forward_mps", "turn_radps"}, 2, sim::any_place(),
@@ -106,8 +119,9 @@ void declare(command_line::DeclaredOptions& declared, Options& options) {
   options.participation.declare(declared);
   autonomy::set_help_end(
       declared, {"shoal-balance --name segway1 --speeds '[[5,0.5],[15,-0.5],[25,0]]'", "shoal-balance --delay-margin"},
-      "It reads NAME.inclinometer and NAME.encoder, and drives as shoal.twist_command_t on "
-      "NAME.balance.cmd says; it publishes NAME.left_motor.cmd and NAME.right_motor.cmd, and "
+      "It reads NAME.inclinometer, NAME.encoder and, with filter_s, NAME.imu, and drives as shoal.twist_command_t on "
+      "NAME.balance.cmd says, or tilts from its balance by the pitch of shoal.inclination_t there; it publishes "
+      "NAME.left_motor.cmd and NAME.right_motor.cmd, and "
       "NAME.fallen when it fell.  Start it beside `shoal run worlds/segway.yaml --await segway1`.  "
       "docs/models/segway.md explains the gains.");
 }

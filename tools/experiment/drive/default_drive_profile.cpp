@@ -35,6 +35,7 @@ gamepad:
     - {code: 3, axis: turn, scale: -1}     # right stick, right is positive
     - {code: 4, axis: dive, scale: 1}
 twist: {forward_mps: 1, turn_radps: 1, steering_deg: 28}
+tilt: {tilt_deg: 4, turn_radps: 1}
 helm: {speed_mps: 1.5, heading_lead_deg: 45, depth_lead_m: 2}
 thrust: {thrust: 1, rudder: 1, elevator: 1}
 joints: {velocity: 0.5}
@@ -67,7 +68,7 @@ crafts:
       - {device: wrench, part: force_z_N, dive: 40}
       - {device: wrench, part: torque_z_Nm, turn: -5}
 programs:
-  - {name: balance, devices: [left_motor, right_motor, inclinometer, encoder]}
+  - {name: balance, devices: [left_motor, right_motor, inclinometer, encoder], tilts: true}
 )";
 }
 

@@ -10,6 +10,7 @@
 #include "shoal/ackermann_command_t.hpp"
 #include "shoal/actuator_command_t.hpp"
 #include "shoal/helm_command_t.hpp"
+#include "shoal/inclination_t.hpp"
 #include "shoal/joint_command_t.hpp"
 #include "shoal/joint_servo_command_t.hpp"
 #include "shoal/joint_settings_t.hpp"
@@ -100,7 +101,8 @@ DrivenVehicle driven_vehicle(const shoal::sim_vehicle_t& message) {
 
 std::vector<DriveKind> drive_kinds(const DriveProfile& profile, const DrivenVehicle& vehicle) {
   std::vector<DriveKind> kinds;
-  for (const DriveKind kind : {DriveKind::twist, DriveKind::helm, DriveKind::thrust, DriveKind::joints})
+  for (const DriveKind kind :
+       {DriveKind::twist, DriveKind::tilt, DriveKind::helm, DriveKind::thrust, DriveKind::joints})
     if (DriveMapping(profile).find(kind, vehicle)) kinds.push_back(kind);
   return kinds;
 }
@@ -121,6 +123,10 @@ bool DriveMapping::find(DriveKind kind, const DrivenVehicle& vehicle) {
     case DriveKind::twist:
       find_twist(vehicle);
       break;
+    case DriveKind::tilt:
+      axes_ = {"forward", "turn"};
+      find_program(true, vehicle);
+      break;
     case DriveKind::helm:
       find_helm(vehicle);
       break;
@@ -140,13 +146,18 @@ void DriveMapping::find_twist(const DrivenVehicle& vehicle) {
       targets_.push_back({Form::ackermann, device.channel});
     else if (takes(device, "twist_command_t"))
       targets_.push_back({Form::twist, device.channel});
-  if (!targets_.empty()) return;
-  // A program that drives it.
+  if (targets_.empty()) find_program(false, vehicle);
+}
+
+/// Finds a program that drives the vehicle, of kind tilt by its turn rate and then its tilt.
+void DriveMapping::find_program(bool tilts, const DrivenVehicle& vehicle) {
   for (const DriveProfile::Program& program : profile_.programs) {
+    if (tilts && !program.tilts) continue;
     const bool fits = std::all_of(program.devices.begin(), program.devices.end(),
                                   [&](const std::string& name) { return find_device(vehicle, name) != nullptr; });
     if (!fits) continue;
     targets_.push_back({Form::twist, vehicle.name + "." + program.name + ".cmd"});
+    if (tilts) targets_.push_back({Form::tilt, targets_.back().channel});
     return;
   }
 }
@@ -214,7 +225,11 @@ void DriveMapping::find_joints(const DrivenVehicle& vehicle) {
 std::vector<DriveCommand> DriveMapping::commands(const DriveValues& values, std::int64_t utime,
                                                  const std::optional<DrivePose>& pose) {
   std::vector<DriveCommand> commands;
-  for (const Target& target : targets_) commands.push_back({target.channel, payload(target, values, utime, pose)});
+  for (const Target& target : targets_) {
+    // A vehicle that tilts no more rolls on: what stops it is the speed of 0 before.
+    if (target.form == Form::tilt && value_of(values, "forward") == 0) continue;
+    commands.push_back({target.channel, payload(target, values, utime, pose)});
+  }
   for (const MixTarget& target : mix_)
     commands.push_back({target.channel, mix_payload(target.wrench, target.shares, values, utime)});
   return commands;
@@ -227,8 +242,13 @@ sim::Bytes DriveMapping::payload(const Target& target, const DriveValues& values
   switch (target.form) {
     case Form::twist: {
       shoal::twist_command_t command{};
-      command.forward_mps = forward * profile_.twist.forward_mps;
-      command.turn_radps = turn * profile_.twist.turn_radps;
+      command.forward_mps = kind_ == DriveKind::tilt ? 0 : forward * profile_.twist.forward_mps;
+      command.turn_radps = turn * (kind_ == DriveKind::tilt ? profile_.tilt.turn_radps : profile_.twist.turn_radps);
+      return stamped(command, utime);
+    }
+    case Form::tilt: {
+      shoal::inclination_t command{};
+      command.pitch_rad = forward * profile_.tilt.tilt_rad;
       return stamped(command, utime);
     }
     case Form::ackermann: {

@@ -61,7 +61,17 @@ class DriveMapping {
   friend std::vector<DriveKind> drive_kinds(const DriveProfile& profile, const DrivenVehicle& vehicle);
 
   /// How a device is commanded.
-  enum class Form { twist, ackermann, helm, thrust_rudder_elevator, thrust_rudder, joint_servo, joint, joint_settings };
+  enum class Form {
+    twist,
+    tilt,
+    ackermann,
+    helm,
+    thrust_rudder_elevator,
+    thrust_rudder,
+    joint_servo,
+    joint,
+    joint_settings
+  };
   struct Target {
     Form form;
     std::string channel;
@@ -78,6 +88,7 @@ class DriveMapping {
   /// Finds the devices of a kind; returns false if there are none.
   bool find(DriveKind kind, const DrivenVehicle& vehicle);
   void find_twist(const DrivenVehicle& vehicle);
+  void find_program(bool tilts, const DrivenVehicle& vehicle);
   void find_helm(const DrivenVehicle& vehicle);
   void find_thrust(const DrivenVehicle& vehicle);
   void find_joints(const DrivenVehicle& vehicle);

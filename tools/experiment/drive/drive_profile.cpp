@@ -79,6 +79,11 @@ void DriveProfile::Twist::read(sim::ParamReader& in) {
   in.read_deg("steering_deg", steering_rad, sim::between(0, 90), "steering angle of a car at full deflection");
 }
 
+void DriveProfile::Tilt::read(sim::ParamReader& in) {
+  in.read_deg("tilt_deg", tilt_rad, sim::between(0, 45), "tilt from the balance at full deflection");
+  in.read("turn_radps", turn_radps, sim::between(0, 100), "turn rate at full deflection");
+}
+
 void DriveProfile::Helm::read(sim::ParamReader& in) {
   in.read("speed_mps", speed_mps, sim::between(0, 100), "speed at full deflection");
   in.read_deg("heading_lead_deg", heading_lead_rad, sim::between(0, 180),
@@ -124,6 +129,7 @@ void DriveProfile::Program::read(sim::ParamReader& in) {
   in.require("devices");
   in.read("devices", devices, "devices that such a vehicle has");
   if (!in.describing() && in.has("devices") && devices.empty()) in.error("devices", "'devices' must name a device");
+  in.read("tilts", tilts, "it takes shoal.inclination_t on the same channel: its tilt, for kind tilt");
 }
 
 void DriveProfile::read(sim::ParamReader& in) {
@@ -132,6 +138,7 @@ void DriveProfile::read(sim::ParamReader& in) {
   in.read("keys", keys, "keys of the terminal");
   in.read("gamepad", gamepad, "buttons and axes of a gamepad");
   in.read("twist", twist, "limits of kind twist");
+  in.read("tilt", tilt, "limits of kind tilt");
   in.read("helm", helm, "limits of kind helm");
   in.read("thrust", thrust, "limits of kind thrust, of a drive that takes thrust and rudder");
   in.read("joints", joints, "limits of kind joints");

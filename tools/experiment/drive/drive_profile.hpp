@@ -16,12 +16,14 @@ namespace tools {
 /// Ways of driving a vehicle.
 enum class DriveKind {
   twist,   ///< velocity and turn rate of a drive
+  tilt,    ///< tilt and turn rate of a vehicle that balances
   helm,    ///< speed, heading and depth of an autopilot
   thrust,  ///< thrust, rudder and elevator, or single thrusters and fins
   joints   ///< velocities of joints
 };
 
 inline constexpr sim::ChoiceWords<DriveKind> drive_kind_words{{"twist", DriveKind::twist},
+                                                              {"tilt", DriveKind::tilt},
                                                               {"helm", DriveKind::helm},
                                                               {"thrust", DriveKind::thrust},
                                                               {"joints", DriveKind::joints}};
@@ -70,6 +72,10 @@ struct DriveProfile {
     double forward_mps = 1, turn_radps = 1, steering_rad = 0.5;
     void read(sim::ParamReader& in);
   };
+  struct Tilt {
+    double tilt_rad = sim::degrees_to_radians(4), turn_radps = 1;
+    void read(sim::ParamReader& in);
+  };
   struct Helm {
     double speed_mps = 1.5, heading_lead_rad = sim::degrees_to_radians(45), depth_lead_m = 2;
     void read(sim::ParamReader& in);
@@ -101,6 +107,7 @@ struct DriveProfile {
   struct Program {
     std::string name;
     std::vector<std::string> devices;
+    bool tilts = false;  ///< takes shoal.inclination_t too: its tilt from the balance
     void read(sim::ParamReader& in);
   };
 
@@ -109,6 +116,7 @@ struct DriveProfile {
   Keys keys;
   Gamepad gamepad;
   Twist twist;
+  Tilt tilt;
   Helm helm;
   Thrust thrust;
   Joints joints;

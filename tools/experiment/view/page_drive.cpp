@@ -71,7 +71,7 @@ void PageDrive::take(int client, const Request& request, const sim::World& world
     if (!request.kind.empty()) {
       kind = sim::value_of(drive_kind_words, request.kind);
       if (!kind)
-        throw DriveError("'kind' of drive must be twist, helm, thrust or joints, got '" +
+        throw DriveError("'kind' of drive must be twist, tilt, helm, thrust or joints, got '" +
                          sim::shortened(sim::printable(request.kind)) + "'");
     }
     const DrivenVehicle driven = driven_vehicle(bridges::vehicle_message(*vehicle));

@@ -320,7 +320,7 @@ static void add_drive_command(CLI::App& app, int& exit_code) {
       ->add_option("--kind", arguments->kind,
                    "what to command; without it the one that fits the devices of the vehicle")
       ->type_name("KIND")
-      ->check(one_of({"twist", "helm", "thrust", "joints"}));
+      ->check(one_of({"twist", "tilt", "helm", "thrust", "joints"}));
   // Controls.
   command->add_option("--profile", arguments->profile, "file with keys, axes, limits and rates")->type_name("FILE");
   command->add_flag("--print-profile", arguments->print_profile, "print the profile of the program, to be changed");
@@ -343,7 +343,7 @@ static void add_drive_command(CLI::App& app, int& exit_code) {
   // End of the help and action.
   command_line::set_help_end(
       *command,
-      {{"shoal drive rover1  # arrow keys or WASD, while the space bar is held",
+      {{"shoal drive rover1  # arrow keys or WASD, while the space bar is held", "shoal drive segway1 --kind tilt",
         "shoal drive auv1 --kind thrust --gamepad /dev/input/event5", "shoal drive --print-profile > my_pad.yaml",
         "shoal drive rover1 --profile my_pad.yaml --run results/dive1", "shoal drive rover1 --events lap.events"},
        {{0, "ended by Ctrl-C or the end of the events; the vehicle got its safe command"},

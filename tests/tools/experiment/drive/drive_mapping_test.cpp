@@ -10,6 +10,7 @@
 #include "shoal/ackermann_command_t.hpp"
 #include "shoal/actuator_command_t.hpp"
 #include "shoal/helm_command_t.hpp"
+#include "shoal/inclination_t.hpp"
 #include "shoal/joint_servo_command_t.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/thrust_rudder_elevator_command_t.hpp"
@@ -148,11 +149,30 @@ TEST(DriveMapping, DrivesTheSegwayThroughTheProgramThatBalancesIt) {
   const test::LoadedTestWorld segway(test_support::source_path("worlds/segway.yaml"));
   const tools::DrivenVehicle driven =
       tools::driven_vehicle(bridges::vehicle_message(*segway.world.find_vehicle("segway1")));
-  EXPECT_THAT(tools::drive_kinds(profile(), driven), ElementsAre(DriveKind::twist, DriveKind::joints));
+  EXPECT_THAT(tools::drive_kinds(profile(), driven), ElementsAre(DriveKind::twist, DriveKind::tilt, DriveKind::joints));
   tools::DriveMapping mapping(profile(), driven, {});
   only<shoal::twist_command_t>(mapping.commands({}, 0, {}), "segway1.balance.cmd");
   EXPECT_THAT(tools::DriveMapping(profile(), driven, DriveKind::joints).axes(),
               ElementsAre("left_motor", "right_motor"));
+}
+
+TEST(DriveMapping, TiltsTheSegwayAndStopsItWhenItTiltsNoMore) {
+  const test::LoadedTestWorld segway(test_support::source_path("worlds/segway.yaml"));
+  const tools::DrivenVehicle driven =
+      tools::driven_vehicle(bridges::vehicle_message(*segway.world.find_vehicle("segway1")));
+  tools::DriveMapping mapping(profile(), driven, DriveKind::tilt);
+  EXPECT_THAT(mapping.axes(), ElementsAre("forward", "turn"));
+  // The turn rate first, since a twist ends a tilt.
+  const auto commands = mapping.commands({{"forward", -0.5}, {"turn", 1}}, 7, {});
+  ASSERT_EQ(commands.size(), 2u);
+  const auto turn = shoal::decode<shoal::twist_command_t>(commands[0].payload, shoal::Finite::required);
+  EXPECT_EQ(turn.forward_mps, 0);
+  EXPECT_EQ(turn.turn_radps, profile().tilt.turn_radps);
+  const auto tilt = shoal::decode<shoal::inclination_t>(commands[1].payload, shoal::Finite::required);
+  EXPECT_DOUBLE_EQ(tilt.pitch_rad, -0.5 * profile().tilt.tilt_rad);
+  EXPECT_EQ(tilt.utime, 7);
+  for (const auto& command : commands) EXPECT_EQ(command.channel, "segway1.balance.cmd");
+  EXPECT_EQ(only<shoal::twist_command_t>(mapping.commands({}, 0, {}), "segway1.balance.cmd").forward_mps, 0);
 }
 
 TEST(DriveMapping, SaysWhatIsPossibleInstead) {
@@ -166,6 +186,8 @@ TEST(DriveMapping, SaysWhatIsPossibleInstead) {
   };
   EXPECT_EQ(error(vehicle({{"drive", "skid_steer"}}), DriveKind::helm),
             "vehicle 'v' cannot be driven by 'helm', only by: twist, thrust");
+  EXPECT_EQ(error(vehicle({{"drive", "skid_steer"}}), DriveKind::tilt),
+            "vehicle 'v' cannot be driven by 'tilt', only by: twist, thrust");
   EXPECT_EQ(error(vehicle({{"lidar", "lidar"}}), {}), "vehicle 'v' has no devices by which it can be driven");
 }
 

@@ -104,7 +104,7 @@ TEST_F(PageDriveTest, RefusesWhatAVehicleCannot) {
   const test::RecordedRun run(test::driven_world(), log);
   EXPECT_EQ(refused(1, {"r9", "", {{"forward", 1}}}, run.world, 0ms), "there is no vehicle 'r9' to drive");
   EXPECT_EQ(refused(1, {"r1", "fly", {{"forward", 1}}}, run.world, 0ms),
-            "'kind' of drive must be twist, helm, thrust or joints, got 'fly'");
+            "'kind' of drive must be twist, tilt, helm, thrust or joints, got 'fly'");
   EXPECT_THAT(refused(1, {"r1", "helm", {{"forward", 1}}}, run.world, 0ms), HasSubstr("cannot be driven by 'helm'"));
   EXPECT_EQ(refused(1, {"r1", "twist", {{"dive", 1}}}, run.world, 0ms), "vehicle 'r1' has no axis 'dive'");
 }

@@ -11,11 +11,6 @@ namespace autonomy {
 
 namespace {
 
-/// Maximum lead of a tilt; a later one belongs to another clock.
-constexpr double max_late_s = 0.1;
-/// Maximum interval between tilts whose difference is used as a rate.
-constexpr double tilt_gap_s = 1;
-
 /// Gain of a first-order low-pass filter for a time step.
 double share(double time_s, double time_constant_s) {
   return time_s / (time_s + time_constant_s);
@@ -30,24 +25,32 @@ void check_speeds(const std::vector<SpeedPoint>& points) {
 }
 
 Balance::Balance(const Params& params) : params_(params) {
+  if (params.filter_s > 0) filter_.emplace(params.filter_s);
   for (const double number : {params.period_s, params.wheel_radius_m, params.track_m, params.max_torque_Nm,
-                              params.fallen_rad, params.max_acceleration_mps2})
+                              params.fallen_rad, params.max_acceleration_mps2, params.max_tilt_speed_mps})
     if (!(number > 0)) throw std::invalid_argument("period, sizes and limits must be above 0");
 }
 
 void Balance::receive(const shoal::inclination_t& message) {
-  // Floating point, because the difference of two integers may overflow.
-  const double dt_s = (static_cast<double>(message.utime) - static_cast<double>(tilt_utime_)) * 1e-6;
-  const bool late = dt_s <= 0 && dt_s > -max_late_s;
-  if (tilt_known_ && late) return;
-  // Other times: the clock was set, or the last message had its own time.  The rate is kept.
-  if (tilt_known_ && dt_s > 0 && dt_s < tilt_gap_s) {
-    const double rate_radps = (message.pitch_rad - tilt_rad_) / dt_s;
-    rate_radps_ += share(dt_s, params_.rate_filter_s) * (rate_radps - rate_radps_);
-  }
+  if (filter_) return filter_->correct(message.utime, message.pitch_rad);
+  bool is_new = false;
+  const auto dt_s = tilt_interval_.take(message.utime, is_new);
+  if (!is_new) return;
+  // After a jump of the clock the rate is kept.
+  if (dt_s) take_rate((message.pitch_rad - tilt_rad_) / *dt_s, *dt_s);
   tilt_rad_ = message.pitch_rad;
-  tilt_utime_ = message.utime;
   tilt_known_ = true;
+}
+
+void Balance::receive(const shoal::imu_t& message) {
+  if (!filter_ || !filter_->predict(message.utime, message.angular_velocity_radps[1]) || !filter_->known()) return;
+  take_rate(filter_->rate_radps(), params_.period_s);
+  tilt_rad_ = filter_->tilt_rad();
+  tilt_known_ = true;
+}
+
+void Balance::take_rate(double rate_radps, double dt_s) {
+  rate_radps_ += share(dt_s, params_.rate_filter_s) * (rate_radps - rate_radps_);
 }
 
 void Balance::receive(const shoal::wheel_encoder_t& message) {
@@ -63,8 +66,37 @@ void Balance::receive(const shoal::twist_command_t& message) {
 }
 
 void Balance::drive(double forward_mps, double turn_radps) {
+  asked_tilt_rad_.reset();
   asked_mps_ = forward_mps;
   asked_turn_radps_ = turn_radps;
+}
+
+/// PI law from speed to tilt.
+double Balance::tilt_for_speed() {
+  const Params& p = params_;
+  const double max_change = p.max_acceleration_mps2 * p.period_s;
+  desired_mps_ += std::clamp(asked_mps_ - desired_mps_, -max_change, max_change);
+  const double slow_mps = desired_mps_ - speed_mps_;
+  const double by_speed_rad = p.kv_rad_per_mps * slow_mps;
+  const double by_distance_rad = p.ki_rad_per_m * (distance_m_ + slow_mps * p.period_s);
+  // The integral is held while the tilt is limited (anti-windup).
+  if (std::abs(by_speed_rad + by_distance_rad) < p.max_tilt_rad) distance_m_ += slow_mps * p.period_s;
+  return by_speed_rad + by_distance_rad;
+}
+
+/// Returns the commanded tilt; near the largest speed no more than keeps it.  0 while it drives at a speed.
+double Balance::commanded_tilt_rad() const {
+  if (!asked_tilt_rad_) return 0;
+  const Params& p = params_;
+  const double tilt_rad = std::clamp(*asked_tilt_rad_, p.kv_rad_per_mps * (-p.max_tilt_speed_mps - speed_mps_),
+                                     p.kv_rad_per_mps * (p.max_tilt_speed_mps - speed_mps_));
+  return std::clamp(tilt_rad, -p.max_tilt_rad, p.max_tilt_rad);
+}
+
+/// Tilts from the balance that the integral of the speed law has found, which is held.
+double Balance::tilt_for_command() {
+  desired_mps_ = speed_mps_;  // from which a later speed command starts
+  return commanded_tilt_rad() + params_.ki_rad_per_m * distance_m_;
 }
 
 std::optional<Balance::Torques> Balance::step() {
@@ -79,19 +111,13 @@ std::optional<Balance::Torques> Balance::step() {
   speed_mps_ += part * (rolled_mps - speed_mps_);
   turn_radps_ += part * (p.wheel_radius_m * (right_radps_ - left_radps_) / p.track_m - turn_radps_);
 
-  // PI law from speed to tilt.
-  const double max_change = p.max_acceleration_mps2 * p.period_s;
-  desired_mps_ += std::clamp(asked_mps_ - desired_mps_, -max_change, max_change);
-  const double slow_mps = desired_mps_ - speed_mps_;
-  const double by_speed_rad = p.kv_rad_per_mps * slow_mps;
-  const double by_distance_rad = p.ki_rad_per_m * (distance_m_ + slow_mps * p.period_s);
-  // The integral is held while the tilt is limited (anti-windup).
-  if (std::abs(by_speed_rad + by_distance_rad) < p.max_tilt_rad) distance_m_ += slow_mps * p.period_s;
-  const double desired_rad =
-      p.balanced_tilt_rad + std::clamp(by_speed_rad + by_distance_rad, -p.max_tilt_rad, p.max_tilt_rad);
+  // Desired tilt, by the speed or as commanded.
+  const double from_balance_rad = asked_tilt_rad_ ? tilt_for_command() : tilt_for_speed();
+  const double desired_rad = p.balanced_tilt_rad + std::clamp(from_balance_rad, -p.max_tilt_rad, p.max_tilt_rad);
 
   // PD law from tilt to the common torque.
-  const double both_Nm = p.kp_Nm_per_rad * (tilt_rad_ - desired_rad) + p.kd_Nms_per_rad * rate_radps_;
+  const double both_Nm = p.kp_Nm_per_rad * (tilt_rad_ - desired_rad) + p.kd_Nms_per_rad * rate_radps_ +
+                         p.tilt_torque_Nm_per_rad * commanded_tilt_rad();
   // PI law from yaw rate to the difference of the torques.
   const double slow_radps = asked_turn_radps_ - turn_radps_;
   const double max_rad = p.turn_ki_Nm_per_rad > 0 ? p.max_torque_Nm / p.turn_ki_Nm_per_rad : 0;

@@ -21,6 +21,12 @@ BalanceModel::Response BalanceModel::response(Complex s) const {
   return {tilt, (distance_by_tilt * tilt + distance_by_torque) / s};
 }
 
+double BalanceModel::hold_torque() const {
+  const double M = wheels_kg + wheels_kgm2 / (wheel_radius_m * wheel_radius_m), ml = mass_kg * height_m;
+  const double total_kgm = (M + mass_kg) * wheel_radius_m;  // T = total x''
+  return ml * gravity_mps2 * total_kgm / (total_kgm + ml);
+}
+
 Complex open_loop(const Balance::Params& law, const BalanceModel& model, double w_radps) {
   const double h = law.period_s;
   const Complex s(0, w_radps), late = std::exp(-s * h);  // one sample later

@@ -27,6 +27,8 @@ struct BalanceModel {
     std::complex<double> tilt, speed;
   };
   Response response(std::complex<double> s) const;
+  /// Returns the torque for each rad of a tilt that is kept while it accelerates, N m: a'' = 0 in the equations above.
+  double hold_torque() const;
 };
 
 /// Returns the frequency response, at `w` rad/s, of the loop opened at the torque: model, sampling, filters, both laws
@@ -36,7 +38,6 @@ std::complex<double> open_loop(const Balance::Params& law, const BalanceModel& m
 
 /// Delay margin from tilt to torque: the smallest phase margin over its frequency.  For a loop that is stable without
 /// delay.
-/// stable without delay.
 struct DelayMargin {
   double delay_s = 0;
   double frequency_radps = 0;  ///< of the oscillation at the limit

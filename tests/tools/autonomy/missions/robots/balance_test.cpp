@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 
+#include "shoal/imu_t.hpp"
 #include "shoal/inclination_t.hpp"
 #include "shoal/joint_servo_command_t.hpp"
 #include "shoal/wheel_encoder_t.hpp"
@@ -20,17 +21,18 @@ using autonomy::Balance;
 
 constexpr double degrees = 180 / std::numbers::pi;
 
-/// worlds/segway.yaml with the balance law in the same process, and without its latency.
+/// A world of the Segway with the balance law in the same process, and without its latency.
 struct Balanced : test::LoadedTestWorld {
   explicit Balanced(const Balance::Params& params, const std::string& physics_step_s = "0.005",
-                    const std::string& latency_s = "0.02")
+                    const std::string& latency_s = "0.02", const std::string& name = "segway")
       : LoadedTestWorld(sim::load_world(
-            test_support::source_path("worlds/segway.yaml"),
+            test_support::source_path("worlds/" + name + ".yaml"),
             with_messages({.sets = {"physics.step_s=" + physics_step_s,
                                     "vehicles.segway1.actuator_latency_s=" + latency_s, "metrics=[]", "pass=[]"}}))),
         law(params),
         inclination_(*this, "segway1.inclinometer"),
-        encoder_(*this, "segway1.encoder") {}
+        encoder_(*this, "segway1.encoder"),
+        imu_(*this, "segway1.imu") {}
 
   void balance_for(double time_s) {
     const sim::Time end = world.now() + sim::from_seconds(time_s);
@@ -39,6 +41,7 @@ struct Balanced : test::LoadedTestWorld {
       const auto tilts = inclination_.take_all();
       for (const auto& wheels : encoder_.take_all()) law.receive(wheels);
       for (const auto& tilt : tilts) law.receive(tilt);
+      for (const auto& rates : imu_.take_all()) law.receive(rates);
       if (tilts.empty()) continue;
       const auto torques = law.step();
       if (!torques) continue;
@@ -59,6 +62,7 @@ struct Balanced : test::LoadedTestWorld {
  private:
   test::Listener<shoal::inclination_t> inclination_;
   test::Listener<shoal::wheel_encoder_t> encoder_;
+  test::Listener<shoal::imu_t> imu_;
 };
 
 TEST(Balance, TenMinutesStanding) {
@@ -147,6 +151,53 @@ TEST(Balance, SwingsFromTheLatencyOnThatTheLinearModelAllows) {
 TEST(Balance, FallsWhenItIsMuchLater) {
   EXPECT_FALSE(swing_at({}, 120).fell);
   EXPECT_TRUE(swing_at({}, 150).fell);
+}
+
+TEST(Balance, StandsByGyroAndInclinometerAndFallsByTheInclinometerAlone) {
+  Balanced by_both({.filter_s = 3}, "0.005", "0.02", "segway_imu");
+  by_both.balance_for(60);
+  EXPECT_FALSE(by_both.law.fallen());
+  EXPECT_NEAR(by_both.law.speed_mps(), 0, 0.05);
+  Balanced by_one({}, "0.005", "0.02", "segway_imu");
+  by_one.balance_for(60);
+  EXPECT_TRUE(by_one.law.fallen());
+}
+
+TEST(Balance, TiltsAsCommandedAndNoFasterThanItsLimit) {
+  EXPECT_NEAR(Balance::Params{}.tilt_torque_Nm_per_rad, autonomy::BalanceModel{}.hold_torque(), 0.05);
+  const double balanced_rad = Balance::Params{}.balanced_tilt_rad, tilt_rad = 4 / degrees;
+  for (const double sign : {1.0, -1.0}) {
+    Balanced test({});
+    test.balance_for(5);
+    test.law.command_tilt(sign * tilt_rad);
+    test.balance_for(2);
+    // It swings in: within a tenth of the tilt.
+    EXPECT_NEAR(sign * (test.law.tilt_rad() - balanced_rad), tilt_rad, 0.1 * tilt_rad);
+    // x'' = hold torque / (r (M + m)) = 3.81 m/s^2 per rad, so 0.27 m/s^2.
+    const double before_mps = test.law.speed_mps();
+    test.balance_for(1);
+    EXPECT_NEAR(sign * (test.law.speed_mps() - before_mps), 3.81 * tilt_rad, 0.03);
+    test.balance_for(30);
+    EXPECT_NEAR(sign * test.law.speed_mps(), 1.5, 0.05);
+    test.law.drive(0, 0);
+    test.balance_for(20);
+    EXPECT_NEAR(test.law.speed_mps(), 0, 0.02);
+    EXPECT_FALSE(test.law.fallen());
+  }
+}
+
+TEST(Balance, LimitsATiltThatIsTooLarge) {
+  Balanced test({});
+  test.balance_for(5);
+  test.law.command_tilt(1);
+  double largest_rad = 0;
+  for (int i = 0; i < 1000; ++i) {
+    test.balance_for(0.01);
+    largest_rad = std::max(largest_rad, test.law.tilt_rad() - Balance::Params{}.balanced_tilt_rad);
+  }
+  EXPECT_FALSE(test.law.fallen());
+  EXPECT_GT(largest_rad, 0.1);
+  EXPECT_LT(largest_rad, 0.3);  // max_tilt_rad, 0.2, and what it swings over
 }
 
 TEST(Balance, TorqueIsThatOfThePdLaw) {
