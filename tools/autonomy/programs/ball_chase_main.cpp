@@ -1,29 +1,39 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <numbers>
+#include <optional>
 #include <stdexcept>
 
+#include "shoal/compass_t.hpp"
 #include "shoal/twist_command_t.hpp"
-#include "tools/autonomy/missions/robots/ball_chase.hpp"
+#include "sim/base/math.hpp"
+#include "tools/autonomy/missions/robots/striker.hpp"
 #include "tools/autonomy/programs/program.hpp"
 
 namespace {
 
 struct Options {
-  std::string name, vehicle, camera = "camera", drive = "balance";
+  std::string name, vehicle, camera = "camera", compass = "compass", drive = "balance";
   autonomy::BallDetector::Params detector;
-  autonomy::BallChase::Params chase;
+  autonomy::Striker::Params striker;
+  std::optional<double> goal_yaw_deg;
   autonomy::Participation participation;
 };
 
 /// Chases with a vehicle that drives as shoal.twist_command_t says.
 int chase_ball(const Options& options) {
   autonomy::BallDetector detector(options.detector);
-  autonomy::BallChase chase(options.chase);  // all of the program's state: it is rewound with the world
+  autonomy::Striker striker(options.striker);  // all of the program's state: it is rewound with the world
   shoal::Client client(options.name, options.participation.lcm_url);
   const std::string prefix = options.vehicle + ".";
   client.subscribe<shoal::image_t>(prefix + options.camera,
-                                   [&](const shoal::image_t& image) { chase.see(detector.detect(image)); });
-  return autonomy::take_part(client, options.participation, chase, [&](std::int64_t utime) {
-    const autonomy::ChaseCommand command = chase.step(utime);
+                                   [&](const shoal::image_t& image) { striker.see(detector.detect(image)); });
+  if (options.goal_yaw_deg)
+    client.subscribe<shoal::compass_t>(
+        prefix + options.compass,
+        [&](const shoal::compass_t& compass) { striker.head(std::numbers::pi / 2 - compass.heading_true_rad); },
+        shoal::Finite::required);
+  return autonomy::take_part(client, options.participation, striker, [&](std::int64_t utime) {
+    const autonomy::ChaseCommand command = striker.step(utime);
     shoal::twist_command_t twist{};
     twist.utime = utime;
     twist.forward_mps = command.forward_mps;
@@ -58,18 +68,35 @@ void declare_chase(command_line::DeclaredOptions& declared, autonomy::BallChase:
   declared.flag("predict", chase.predict, "corrects the bearing of late images by the turns since their time");
 }
 
+void declare_striker(command_line::DeclaredOptions& declared, Options& options) {
+  declare_chase(declared, options.striker.chase);
+  declared.number("goal_yaw_deg", options.goal_yaw_deg, -360, 360,
+                  "direction of the goal, counter-clockwise from east: it drives around the ball to kick it there, "
+                  "with the true heading of a compass; without it, it kicks in any direction");
+  declared
+      .number("aligned_rad", options.striker.aligned_rad, 0.01, 3,
+              "the ball is played when its direction is that of the goal up to this")
+      .needs({"goal_yaw_deg"});
+  declared.number("behind_m", options.striker.behind_m, 0.01, 10, "distance at which it drives around the ball")
+      .needs({"goal_yaw_deg"});
+  declared.number("memory_s", options.striker.memory_s, 0.01, 100, "the ball is remembered this long out of the image")
+      .needs({"goal_yaw_deg"});
+}
+
 void declare(command_line::DeclaredOptions& declared, Options& options) {
   declared.publishes({"{vehicle}.{drive}.cmd"});
-  declared.subscribes({"{vehicle}.{camera}"});
+  declared.subscribes({"{vehicle}.{camera}", "{vehicle}.{compass}"});
   declared.text("name", "NAME", options.name, "its name in the lockstep").required_in_worlds();
   declared.text("vehicle", "VEHICLE", options.vehicle, "vehicle that chases the ball").required_in_worlds();
   declared.text("camera", "DEVICE", options.camera, "its camera: raw RGB images of a pinhole without distortion");
+  declared.text("compass", "DEVICE", options.compass, "its compass").needs({"goal_yaw_deg"});
   declared.text("drive", "NAME", options.drive, "what takes the commands, on NAME.cmd of the vehicle");
   declare_ball(declared, options.detector);
-  declare_chase(declared, options.chase);
+  declare_striker(declared, options);
   options.participation.declare(declared);
   autonomy::set_help_end(declared, {"shoal-ball-chase --name chase --vehicle segway1"},
-                         "It reads VEHICLE.camera and publishes shoal.twist_command_t on VEHICLE.balance.cmd.  "
+                         "It reads VEHICLE.camera, with goal_yaw_deg VEHICLE.compass, and publishes "
+                         "shoal.twist_command_t on VEHICLE.balance.cmd.  "
                          "docs/guides/vision_in_the_loop.md explains it.");
 }
 
@@ -83,6 +110,7 @@ int run(int argc, char** argv) {
   if (const auto exit_code = declared.parse(argc, argv)) return *exit_code;
   if (options.name.empty()) throw std::invalid_argument("--name is required");
   if (options.vehicle.empty()) throw std::invalid_argument("--vehicle is required");
+  if (options.goal_yaw_deg) options.striker.goal_yaw_rad = sim::degrees_to_radians(*options.goal_yaw_deg);
   return chase_ball(options);
 }
 

@@ -78,7 +78,8 @@ ChaseCommand BallChase::decide(std::int64_t utime) {
     seen_utime_ = utime;
     if (in_reach) in_reach_utime_ = utime;
     if (phase_ == Phase::search) enter(Phase::approach, utime);
-    if (phase_ == Phase::approach && in_reach && std::abs(bearing_rad_) < p.kick_bearing_rad) enter(Phase::kick, utime);
+    if (phase_ == Phase::approach && may_kick_ && in_reach && std::abs(bearing_rad_) < p.kick_bearing_rad)
+      enter(Phase::kick, utime);
   }
   is_new_ = false;
   if (phase_ == Phase::approach && since_s(seen_utime_) > p.lost_s) enter(Phase::search, utime);

@@ -47,6 +47,8 @@ class BallChase {
   explicit BallChase(const Params& params);
   /// Takes the result of an image; none: there was no ball in it.
   void see(const std::optional<BallSighting>& sighting);
+  /// Whether a kick may start; at first it may.
+  void allow_kick(bool allowed) { may_kick_ = allowed; }
   /// Decides at the tick `utime`.
   ChaseCommand step(std::int64_t utime);
 
@@ -73,6 +75,7 @@ class BallChase {
   std::int64_t seen_utime_ = 0;      ///< tick of the last sighting
   std::int64_t in_reach_utime_ = 0;  ///< tick of the last sighting within the range of a kick
   int kicks_ = 0;
+  bool may_kick_ = true;
   double bearing_rad_ = 0;  ///< of the ball at the present tick
   struct Turn {
     std::int64_t utime;
