@@ -10,9 +10,9 @@
 namespace tools {
 
 const std::vector<MotionFormat>& motion_formats() {
-  static const std::vector<MotionFormat> formats{csv_format(),    ros_format(), play_motion2_format(),
-                                                 webots_format(), mtn_format(), open_r_table_format(),
-                                                 mot_format(),    pos_format(), opencat_format()};
+  static const std::vector<MotionFormat> formats{
+      csv_format(),          ros_format(),           play_motion2_format(), webots_format(), mtn_format(),
+      open_r_table_format(), open_r_object_format(), mot_format(),          pos_format(),    opencat_format()};
   return formats;
 }
 
@@ -37,11 +37,18 @@ const MotionFormat* motion_format_of_file(const std::string& path, std::string_v
   return nullptr;
 }
 
+std::vector<ExportedFile> files_of_motion(const MotionFormat& format, const sim::JointMotion& motion,
+                                          const JointNames& names, const FormatOptions& options, Losses& losses) {
+  if (format.write == nullptr && format.write_folder == nullptr)
+    refuse_motion(motion, std::string("'") + format.name + "' files can only be read");
+  if (motion.tracks().empty()) refuse_motion(motion, "needs a joint");
+  if (format.write_folder != nullptr) return format.write_folder(motion, names, options, losses);
+  return {{"", format.write(motion, names, options, losses)}};
+}
+
 std::string bytes_of_motion(const MotionFormat& format, const sim::JointMotion& motion, const JointNames& names,
                             const FormatOptions& options, Losses& losses) {
-  if (format.write == nullptr) refuse_motion(motion, std::string("'") + format.name + "' files can only be read");
-  if (motion.tracks().empty()) refuse_motion(motion, "needs a joint");
-  return format.write(motion, names, options, losses);
+  return files_of_motion(format, motion, names, options, losses).front().bytes;
 }
 
 sim::JointMotion motion_of_bytes(const MotionFormat& format, const MotionSource& source, Losses& losses) {

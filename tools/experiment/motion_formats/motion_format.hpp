@@ -38,6 +38,12 @@ struct MotionSource {
   std::function<std::string(const std::string&)> read_other;
 };
 
+/// File of an export.
+struct ExportedFile {
+  std::string name;  ///< in the folder; empty: the only file of the format
+  std::string bytes;
+};
+
 /// Format of files with motions of other programs.
 struct MotionFormat {
   const char* name;
@@ -52,6 +58,9 @@ struct MotionFormat {
   /// Returns the motion; its angles are in rad.  Throws sim::ConfigError with line and column, or the offset of the
   /// byte.  Null: not possible.
   sim::JointMotion (*read)(const MotionSource& source, Losses& losses);
+  /// As `write`, for a format of several files in a folder.
+  std::vector<ExportedFile> (*write_folder)(const sim::JointMotion& motion, const JointNames& names,
+                                            const FormatOptions& options, Losses& losses) = nullptr;
 };
 
 /// Returns all formats, those of most users first.
@@ -62,7 +71,10 @@ const MotionFormat* find_motion_format(std::string_view name);
 /// Returns the format of a file by its first bytes, else by its ending; null: unknown.
 const MotionFormat* motion_format_of_file(const std::string& path, std::string_view bytes);
 
-/// Returns the motion as a file of this format.  Throws sim::ConfigError.
+/// Returns the motion as a file, or as the files of a folder, of this format.  Throws sim::ConfigError.
+std::vector<ExportedFile> files_of_motion(const MotionFormat& format, const sim::JointMotion& motion,
+                                          const JointNames& names, const FormatOptions& options, Losses& losses);
+/// Returns the motion as the file of a format that has one.  Throws sim::ConfigError.
 std::string bytes_of_motion(const MotionFormat& format, const sim::JointMotion& motion, const JointNames& names,
                             const FormatOptions& options, Losses& losses);
 /// Reads a file.  Its name becomes that of the motion where the file has none.  Throws sim::ConfigError.
@@ -81,5 +93,6 @@ MotionFormat ros_format();
 MotionFormat play_motion2_format();
 MotionFormat opencat_format();
 MotionFormat open_r_table_format();
+MotionFormat open_r_object_format();
 
 }  // namespace tools

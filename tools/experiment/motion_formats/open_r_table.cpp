@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "tools/experiment/motion_formats/open_r_table.hpp"
+
 #include <cctype>
 #include <cmath>
 
 #include "sim/config/message_text.hpp"
 #include "sim/motion/motion_frames.hpp"
-#include "tools/experiment/motion_formats/pose_table.hpp"
 
 namespace tools {
 
@@ -22,8 +23,10 @@ std::string c_text(const sim::JointMotion& motion, const std::string& text) {
   return "\"" + text + "\"";
 }
 
-std::string write_open_r_table(const sim::JointMotion& motion, const JointNames& names, const FormatOptions& options,
-                               Losses& losses) {
+}  // namespace
+
+OpenRTable open_r_table(const sim::JointMotion& motion, const JointNames& names, const FormatOptions& options,
+                        Losses& losses) {
   list_losses(motion, {}, losses);
   // Set points at whole frames.
   const TableRules rules{.tick_s = open_r_frame_s, .max_rows = max_frames, .max_value = 2147, .holds_sliders = false};
@@ -63,10 +66,8 @@ std::string write_open_r_table(const sim::JointMotion& motion, const JointNames&
       text += i + 1 == frames_per_package ? "}},\n" : "},\n";
     }
   }
-  return text + "};\n";
+  return {lower, upper, table.joints, text + "};\n"};
 }
-
-}  // namespace
 
 MotionFormat open_r_table_format() {
   return {.name = "openr-c",
@@ -75,7 +76,8 @@ MotionFormat open_r_table_format() {
           .head = "",
           .list = "open-r",
           .uses_aliases = true,
-          .write = write_open_r_table,
+          .write = [](const sim::JointMotion& motion, const JointNames& names, const FormatOptions& options,
+                      Losses& losses) { return open_r_table(motion, names, options, losses).text; },
           .read = nullptr};
 }
 

@@ -75,7 +75,7 @@ bool may_lose(const FormatArguments& arguments, const Losses& losses) {
 std::string formats_text(bool is_import) {
   std::string text;
   for (const MotionFormat& format : motion_formats())
-    if (is_import ? format.read != nullptr : format.write != nullptr)
+    if (is_import ? format.read != nullptr : format.write != nullptr || format.write_folder != nullptr)
       text += (text.empty() ? "Formats: " : "; ") + std::string(format.name) + ", " + format.meaning;
   return text + ".";
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <spdlog/fmt/fmt.h>
 
+#include <filesystem>
 #include <iostream>
 #include <memory>
 
@@ -26,9 +27,19 @@ const MotionFormat& format_of(const ExportArguments& arguments) {
   return *format;
 }
 
+/// Throws when the folder of an export cannot be made, or has one of its files without --overwrite.
+void check_folder(const ExportArguments& arguments, const std::vector<ExportedFile>& files) {
+  std::error_code error;
+  std::filesystem::create_directories(arguments.output, error);
+  if (!std::filesystem::is_directory(arguments.output, error))
+    throw CLI::ValidationError("--output",
+                               "must be a folder for this format, and '" + arguments.output + "' cannot be made");
+  for (const ExportedFile& file : files) check_output(arguments, arguments.output + "/" + file.name);
+}
+
 int export_motion(ExportArguments& arguments) {
   const MotionFormat& format = format_of(arguments);
-  check_output(arguments, arguments.output);
+  if (format.write_folder == nullptr) check_output(arguments, arguments.output);
   const sim::JointMotion motion = sim::load_motion(arguments.input);
   const JointNames names = names_for(arguments, motion.vehicle);
   FormatOptions& options = arguments.options;
@@ -40,11 +51,16 @@ int export_motion(ExportArguments& arguments) {
                     : arguments.skill == "gait"  ? SkillKind::gait
                                                  : SkillKind::behaviour;
   Losses losses;
-  const std::string bytes = bytes_of_motion(format, motion, names, options, losses);
+  const std::vector<ExportedFile> files = files_of_motion(format, motion, names, options, losses);
   if (!may_lose(arguments, losses)) return exit_failed;
-  write_bytes(arguments.output, bytes);
-  fmt::print("{}: {}, {} bytes, {} joints, {} s\n", arguments.output, format.meaning, bytes.size(),
-             motion.tracks().size(), sim::number_text(motion.end_s()));
+  if (format.write_folder != nullptr) check_folder(arguments, files);
+  std::size_t bytes = 0;
+  for (const ExportedFile& file : files) {
+    write_bytes(file.name.empty() ? arguments.output : arguments.output + "/" + file.name, file.bytes);
+    bytes += file.bytes.size();
+  }
+  fmt::print("{}: {}, {} bytes, {} joints, {} s\n", arguments.output, format.meaning, bytes, motion.tracks().size(),
+             sim::number_text(motion.end_s()));
   return exit_ok;
 }
 
@@ -56,7 +72,8 @@ void add_motion_export_command(CLI::App& motion, int& exit_code) {
   add_log_level_option(*command);
   command->add_option("MOTION", arguments->input, "motion file")->required();
   add_format_options(*command, *arguments);
-  command->get_option("--name")->description("play_motion2, mtn, openr-c, opencat: name of the motion in the file");
+  command->get_option("--name")->description(
+      "play_motion2, mtn, openr-c, openr, opencat: name of the motion in the file");
   // Options of single formats.
   CLI::Option* at = command->add_option("--at", arguments->at_s, "pos, opencat: instant of the posture");
   at->type_name("S")->check(number_from(0, sim::max_motion_s).description(""));
@@ -72,7 +89,8 @@ void add_motion_export_command(CLI::App& motion, int& exit_code) {
       ->check(one_of({"posture", "gait", "behaviour"}).description(""));
   command_line::set_help_end(*command, {{"shoal motion export wave.yaml --format mtn --output wave.mtn",
                                          "shoal motion export trot.yaml --output trot.motion --loop-step-ms 16",
-                                         "shoal motion export wave.yaml --vehicle ers7 --output wave.mot --strict"},
+                                         "shoal motion export wave.yaml --vehicle ers7 --output wave.mot --strict",
+                                         "shoal motion export wave.yaml --format openr --output wave_object"},
                                         {{0, "success"},
                                          {1, "a part of the motion cannot be kept, with --strict"},
                                          {2, "wrong usage, or the format cannot hold the motion"},
