@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <set>
 
 #include "sim/config/file_access.hpp"
@@ -49,6 +51,22 @@ std::vector<std::string> vehicle_files(const VehicleEntry& entry) {
       if (file.path().extension() == ".yaml") names.push_back(file.path().filename().string());
   std::sort(names.begin(), names.end());
   return names;
+}
+
+/// Returns which shipped world has a vehicle that the command line chose; empty: none.
+std::string hint_to_a_world(const VehicleEntry& entry) {
+  if (entry.file_place.origin != Origin::command_line || shipped_folder().empty()) return {};
+  const std::string vehicle = "file: " + fs::path(entry.file).filename().string();
+  std::set<std::string> worlds;
+  std::error_code error;
+  for (const fs::directory_entry& file : fs::directory_iterator(fs::path(shipped_folder()) / "worlds", error)) {
+    if (file.path().extension() != ".yaml" || !file.is_regular_file(error)) continue;
+    std::ifstream in(file.path());
+    const std::string text{std::istreambuf_iterator<char>(in), {}};
+    if (text.find(vehicle) != std::string::npos) worlds.insert(file.path().stem().string());
+  }
+  if (worlds.empty()) return {};
+  return "; world '" + *worlds.begin() + "' has this vehicle; or set --set vehicles." + entry.name + ".parameters={}";
 }
 
 bool mentions(const ConfigNode& node, std::string_view text) {
@@ -232,7 +250,7 @@ Parameters VehicleLoader::parameters_of(const VehicleEntry& entry, const ConfigN
     const auto known =
         std::find_if(parameters.begin(), parameters.end(), [&](const auto& each) { return each.first == given.key; });
     if (known == parameters.end()) {
-      diagnostics_.error(given.place, who, "the vehicle has no parameter '" + given.key + "'");
+      diagnostics_.error(given.place, who, "the vehicle has no parameter '" + given.key + "'" + hint_to_a_world(entry));
       continue;
     }
     known->second = given.value;

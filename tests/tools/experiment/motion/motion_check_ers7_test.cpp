@@ -3,12 +3,15 @@
 
 #include <gmock/gmock.h>
 
+#include <filesystem>
 #include <span>
 
 #include "sim/world_file/vehicle_loader.hpp"
 #include "tests/devices/joint/ers7_table.hpp"
 #include "tests/project_paths.hpp"
 #include "tools/experiment/motion/motion_check.hpp"
+#include "tools/experiment/motion/motion_stage.hpp"
+#include "tools/experiment/motion/motion_tracking.hpp"
 
 namespace test::ers7 {
 namespace {
@@ -135,6 +138,35 @@ TEST(MotionCheckOfErs7, FindsEachSpeedBrokenOnce) {
     EXPECT_NEAR(found[0].limit * degrees * 0.008, row.frame_deg, 0.001);
   }
   EXPECT_EQ(joints, 18);
+}
+
+/// The dog of the thesis, of 15 axes, plays all of the twelve motions but the one of the tail and ears.
+TEST(Ers7Seed, PlaysTheMotionsOfItsJoints) {
+  tools::StageOptions options;
+  options.world = test_support::source_path("worlds/ers7_seed_studio.yaml");
+  options.kept_s = 0;
+  int played = 0;
+  for (const auto& file : std::filesystem::directory_iterator(test_support::source_path("vehicles/motions/ers7"))) {
+    const sim::JointMotion motion = sim::load_motion(file.path().string());
+    SCOPED_TRACE(motion.name);
+    if (motion.name == "wag") {
+      try {
+        tools::MotionStage stage(options, motion);
+        FAIL();
+      } catch (const sim::ConfigError& error) {
+        EXPECT_THAT(error.what(), testing::HasSubstr("motion 'wag' names joint 'tail_tilt', which is not a servo"));
+      }
+      continue;
+    }
+    tools::MotionStage stage(options, motion);
+    tools::MotionTracking tracking;
+    stage.after_step = [&](tools::MotionStage& now) { tracking.add(now); };
+    EXPECT_TRUE(stage.play_out(0, tools::end_limit_s(motion)));
+    EXPECT_FALSE(tracking.has_fallen());
+    EXPECT_LT(tracking.greatest_tilt_rad() * degrees, 25);  // the bound of ers7_show
+    ++played;
+  }
+  EXPECT_EQ(played, 11);
 }
 
 }  // namespace
