@@ -130,6 +130,7 @@ void MotionOrigin::read(ParamReader& in) {
   in.read("seed", seed, between(0, 9007199254740992.0), "seed of the run");
   in.read("set", set, "changes of the world, as with --set");
   in.read("state_hash", state_hash, "state hash at the end of the recording");
+  in.read_raw("embedded_world", embedded_world, "the world itself, in which it is played when no other one is named");
 }
 
 void JointMotion::read(ParamReader& in) {

@@ -50,6 +50,7 @@ struct MotionOrigin {
   std::int64_t seed = 0;
   std::string state_hash;        ///< at its end, hexadecimal
   std::vector<std::string> set;  ///< changes of the world, as with --set
+  ConfigNode embedded_world;     ///< resolved world; null: none
   void read(ParamReader& in);
 };
 

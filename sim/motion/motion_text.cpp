@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cctype>
 #include <iterator>
+#include <sstream>
 
 #include "sim/base/number.hpp"
 #include "sim/config/message_text.hpp"
@@ -108,6 +109,10 @@ class MotionWriter {
     line("  seed: " + std::to_string(from.seed));
     if (!from.set.empty()) line("  set: " + list(from.set));
     if (!from.state_hash.empty()) line("  state_hash: " + quoted(from.state_hash));
+    if (from.embedded_world.kind == ConfigNode::Kind::null) return;
+    line("  embedded_world:");
+    std::istringstream world(to_yaml(from.embedded_world));
+    for (std::string text; std::getline(world, text);) line("    " + text);
   }
 
   const JointMotion& motion_;

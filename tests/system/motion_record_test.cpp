@@ -15,6 +15,7 @@ namespace {
 
 using namespace system_test;
 using testing::HasSubstr;
+using testing::Not;
 using tools::InputEvent;
 
 struct Stroke {
@@ -95,6 +96,38 @@ TEST_F(MotionRecord, EightJointsStartInOneFrameAndTheSameEventsGiveTheSameFiles)
   EXPECT_THAT(played.output, HasSubstr("the state at the end is that of the recording"));
   const Ended checked = run_shoal({"motion", "check", file_});
   EXPECT_EQ(checked.exit_code, 0) << checked.output;
+}
+
+TEST_F(MotionRecord, ATakePlaysInTheWorldThatItHolds) {
+  const std::string world = folder_.file("carpet.yaml");
+  write_file(world, "shoal: 1\ninclude: ers7_studio.yaml\n");
+  write_file(folder_.file("keys.events"), events_of({{0.1, key_3, 1}, {0.2, key_3, 0}}, 0.4));
+  const std::vector<std::string> command{"motion",
+                                         "record",
+                                         file_,
+                                         "--world",
+                                         world,
+                                         "--set",
+                                         "physics.gravity_mps2=9",
+                                         "--events",
+                                         folder_.file("keys.events"),
+                                         "--embed",
+                                         "--overwrite"};
+  const Ended recorded = run_shoal(command);
+  ASSERT_EQ(recorded.exit_code, 0) << recorded.errors;
+  EXPECT_THAT(text_of_file(file_), Not(HasSubstr("embedded_world")));
+  // The world has changed: only the one in the take has the gravity and the name of the recording.
+  write_file(world, "shoal: 1\ninclude: ers7_studio.yaml\nphysics: {gravity_mps2: 4}\n");
+  const Ended changed = run_shoal({"motion", "play", take(), "--world", world});
+  EXPECT_EQ(changed.exit_code, 1) << changed.output;
+  EXPECT_THAT(changed.output, HasSubstr("world: " + world + ", not the embedded one\n"));
+  EXPECT_THAT(changed.output, HasSubstr("is another one than that of the recording"));
+  std::filesystem::remove(world);
+  const Ended played = run_shoal({"motion", "play", take()});
+  EXPECT_EQ(played.exit_code, 0) << played.output << played.errors;
+  EXPECT_THAT(played.output, HasSubstr("world: the one embedded in " + take() + "\n"));
+  EXPECT_THAT(played.output, HasSubstr("the state at the end is that of the recording"));
+  EXPECT_THAT(run_shoal({"motion", "play", file_}).errors, HasSubstr("needs --world: '" + file_ + "' holds no world"));
 }
 
 TEST_F(MotionRecord, APageChangesNothing) {

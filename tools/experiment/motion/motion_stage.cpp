@@ -44,6 +44,7 @@ double end_limit_s(const sim::JointMotion& motion) {
 sim::ConfigNode node_of(const sim::JointMotion& motion) {
   sim::JointMotion exact = in_one_piece(motion);
   exact.angles = sim::AngleUnit::rad;
+  if (exact.recorded) exact.recorded->embedded_world = {};
   sim::Diagnostics diagnostics;
   sim::ConfigNode node = sim::parse_config_text(sim::motion_text(exact), "motion " + motion.name, diagnostics);
   diagnostics.throw_if_any();
@@ -58,7 +59,8 @@ MotionStage::MotionStage(const StageOptions& options, const std::function<sim::J
     : options_(options) {
   sim::LoadOptions load = options.load;
   load.encode_message = shoal::encode_own_message;
-  loaded_ = sim::load_world(options.world, load);
+  loaded_ =
+      options.tree ? sim::load_world_tree(*options.tree, options.world, load) : sim::load_world(options.world, load);
   world_ = std::make_unique<sim::World>(loaded_.config, bus_);
   // Find the player.
   for (const auto& vehicle : world_->vehicles())

@@ -21,8 +21,9 @@ namespace tools {
 
 /// Where a motion is played.
 struct StageOptions {
-  std::string world;    ///< file
-  std::string vehicle;  ///< empty: the only one with a motion_player
+  std::string world;                            ///< file
+  std::shared_ptr<const sim::ConfigNode> tree;  ///< the world in a part of this file; null: it is the whole file
+  std::string vehicle;                          ///< empty: the only one with a motion_player
   sim::LoadOptions load;
   double snapshot_s = 0.25;                                 ///< simulated time between two snapshots
   double kept_s = std::numeric_limits<double>::infinity();  ///< how far it can go back, s
@@ -83,6 +84,8 @@ class MotionStage {
   std::uint64_t state_hash() const;
   const std::vector<Branch>& branches() const { return branches_; }
   sim::World& world() { return *world_; }
+  /// Returns the world at its start, as a complete world file.
+  const sim::ConfigNode& resolved_world() const { return loaded_.resolved; }
   /// Returns a world in which snapshots of this one can be restored.  It may be used by another thread, one thread at a
   /// time; the stage must outlive it.
   std::unique_ptr<StageCopy> copy() const { return std::make_unique<StageCopy>(loaded_.config); }

@@ -54,7 +54,7 @@ sim::JointMotion common_of(const Take& take, const sim::JointMotion& base) {
   std::stable_sort(motion.changes.begin(), motion.changes.end(),
                    [](const auto& a, const auto& b) { return a.at_s < b.at_s; });
   motion.recorded =
-      sim::MotionOrigin{take.settings.world, take.settings.vehicle, take.settings.seed, "", take.settings.set};
+      sim::MotionOrigin{take.settings.world, take.settings.vehicle, take.settings.seed, "", take.settings.set, {}};
   return motion;
 }
 

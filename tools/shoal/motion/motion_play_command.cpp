@@ -8,6 +8,7 @@
 #include "sim/config/message_text.hpp"
 #include "tools/experiment/motion/motion_stage.hpp"
 #include "tools/experiment/motion/motion_tracking.hpp"
+#include "tools/experiment/motion_record/embedded_world.hpp"
 #include "tools/experiment/world_files/world_by_name.hpp"
 #include "tools/shoal/motion/motion_commands.hpp"
 
@@ -58,6 +59,22 @@ std::string phase_text(const MotionStage& stage) {
   return fmt::format("it is at {:.3f} s", stage.player().at_s());
 }
 
+/// Sets the world that the command line names, else that in the take, and prints which of them it is.
+void choose_world(StageOptions& stage, const sim::JointMotion& motion, const std::string& file) {
+  StageOptions embedded = stage;
+  const bool is_embedded = use_embedded_world(embedded, motion, file);
+  if (!stage.world.empty())
+    stage.world = file_by_name({ShippedKind::world}, stage.world);
+  else if (is_embedded)
+    stage = std::move(embedded);
+  else
+    throw command_line::UsageError("needs --world: '" + file + "' holds no world (motion record --embed)");
+  if (is_embedded)
+    std::cout << (stage.tree ? "world: the one embedded in " + file
+                             : "world: " + stage.world + ", not the embedded one")
+              << '\n';
+}
+
 int play(PlayArguments arguments) {
   const sim::JointMotion motion = motion_of(arguments.file);
   if (arguments.again && !(arguments.from_s >= 0 && arguments.from_s <= motion.end_s()))
@@ -66,7 +83,7 @@ int play(PlayArguments arguments) {
   // Snapshots are needed to go back only, and a long motion has fewer of them.
   if (!arguments.again) arguments.stage.kept_s = 0;
   arguments.stage.snapshot_s = std::max(arguments.stage.snapshot_s, motion.end_s() / max_snapshots);
-  arguments.stage.world = file_by_name({ShippedKind::world}, arguments.stage.world);
+  choose_world(arguments.stage, motion, arguments.file);
   MotionStage stage(arguments.stage, motion);
   MotionTracking tracking;
   stage.after_step = [&](MotionStage& now) { tracking.add(now); };
@@ -118,6 +135,8 @@ void add_motion_play_command(CLI::App& motion, int& exit_code) {
   add_log_level_option(*command, "warn");
   command->add_option("FILE", arguments->file, "motion file")->required();
   add_stage_options(*command, arguments->stage.world, arguments->stage.vehicle);
+  command->get_option("--world")->required(false)->description(
+      "world with a vehicle that has a motion_player; unset: the one that the take holds");
   CLI::Option* from = command
                           ->add_option("--again-from", arguments->from_s,
                                        "then play again from this time of the motion, and compare the states")

@@ -21,6 +21,7 @@
 #include "tools/experiment/drive/drive_error.hpp"
 #include "tools/experiment/motion/motion_file.hpp"
 #include "tools/experiment/motion/motion_tracking.hpp"
+#include "tools/experiment/motion_record/embedded_world.hpp"
 #include "tools/experiment/motion_record/motion_recorder.hpp"
 #include "tools/experiment/motion_record/record_input.hpp"
 #include "tools/experiment/motion_record/record_view.hpp"
@@ -47,7 +48,7 @@ struct RecordArguments {
   std::string operation;  ///< in the words of the command line
   std::vector<std::string> devices, overdub, actions;
   std::optional<double> rate, from_s, to_s, duration_s;
-  bool overwrite = false, recover = false, with_page = false;
+  bool overwrite = false, recover = false, with_page = false, embed = false;
   ViewOptions view;
   StageOptions stage;
 };
@@ -340,9 +341,11 @@ int record(const RecordArguments& arguments) {
     catch_signals(false);
     int exit_code = exit_ok;
     std::string hash;
+    sim::ConfigNode embedded;
     {
       MotionRecorder recorder(options, journal_path(arguments.file));
       try {
+        if (arguments.embed) embedded = embeddable_world(recorder.stage().resolved_world(), recorder.settings().world);
         Session session(arguments, recorder, actions);
         exit_code = session.run();
       } catch (...) {
@@ -356,6 +359,7 @@ int record(const RecordArguments& arguments) {
     const std::optional<RecoveredTake> recorded = read_journal(arguments.file);
     if (!recorded) throw std::runtime_error("'" + journal_path(arguments.file) + "' is gone");
     const sim::JointMotion motion = save_take(arguments.file, *recorded, loops ? "" : hash, arguments.operation).motion;
+    if (arguments.embed) embed_world(take_path(arguments.file), embedded);
     std::cout << fmt::format("{}: {:.3f} s, {} joints, {} keys; each frame is in {}\nstate hash at the end {}\n",
                              arguments.file, motion.end_s(), motion.tracks().size(), motion.keys.size(),
                              take_path(arguments.file), hash);
@@ -418,7 +422,9 @@ void add_motion_record_command(CLI::App& motion, int& exit_code) {
       ->check(number_from(0.01, sim::max_motion_s));
   command->add_flag("--overwrite", arguments->overwrite,
                     "replace existing files; `shoal motion edit undo` brings FILE back");
-  command->add_flag("--recover", arguments->recover, "only save a recording that was cut off");
+  CLI::Option* embed = command->add_flag("--embed", arguments->embed,
+                                         "keep the world in FILE_take.yaml, so that it can be played without the file");
+  command->add_flag("--recover", arguments->recover, "only save a recording that was cut off")->excludes(embed);
   CLI::Option* page = command->add_flag("--view", arguments->with_page,
                                         "serve a live page of the recording in 3-D, and print its address");
   command->add_option("--view-port", arguments->view.port, "port of the live page; the next free one if it is taken")
