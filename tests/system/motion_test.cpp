@@ -69,6 +69,50 @@ TEST(Motion, ItsStabilityHasARowForEachKey) {
   EXPECT_THAT(ended.output, HasSubstr("\n   1.000"));
 }
 
+TEST(Motion, SeveralAreSortedIntoClassesOneLineEach) {
+  const ScratchFolder folder;
+  const std::string head = "shoal: 1\nvehicle: ers7\nmotion: ";
+  // Straight legs stand; a dog whose legs are all swung forward falls on its back.
+  write_file(folder.file("b.yaml"),
+             head + "look\nkeys: [{at_s: 0, joints: {head_pan: 0}}, {at_s: 1, joints: {head_pan: 40}}]\n");
+  write_file(folder.file("a.yaml"),
+             head +
+                 "fall\nkeys: [{at_s: 0, joints: {lf_swing: 0, rf_swing: 0, lh_swing: 0, rh_swing: 0}},\n"
+                 "  {at_s: 1, joints: {lf_swing: 100, rf_swing: 100, lh_swing: -100, rh_swing: -100}}]\n");
+  write_file(folder.file("c.yaml"), head + "other\nkeys: [{at_s: 0, joints: {elbow: 0}}]\n");
+  const std::vector<std::string> options{"--world", source("worlds/ers7_studio.yaml"), "--watch", "1", "--directions",
+                                         "2"};
+  const auto classes = [&](std::vector<std::string> files) {
+    files.insert(files.begin(), "stability");
+    files.insert(files.end(), options.begin(), options.end());
+    return motion(files);
+  };
+  const Ended two = classes({folder.file("b.yaml"), folder.file("a.yaml")});
+  EXPECT_EQ(two.exit_code, 1) << two.errors;
+  EXPECT_THAT(two.output, testing::ContainsRegex("\nlook +stable .*\nfall +unstable .* falls by itself\n"));
+  EXPECT_THAT(two.output, HasSubstr("stable: from 0.4 m/s; marginal: from 0.1 m/s"));
+  const Ended refused = classes({folder.file("c.yaml"), folder.file("b.yaml")});
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.output, testing::ContainsRegex("\nother +cannot be played\nlook +stable "));
+  EXPECT_THAT(refused.errors, HasSubstr("names joint 'elbow', which is not a servo"));
+  // The table of one motion ends with its class, by the same thresholds.
+  EXPECT_THAT(classes({folder.file("b.yaml")}).output, HasSubstr("\nlook: stable\n"));
+  EXPECT_THAT(classes({folder.file("b.yaml"), "--stable", "5"}).output, HasSubstr("\nlook: marginal\n"));
+  EXPECT_THAT(classes({folder.file("b.yaml"), "--marginal", "0.5"}).errors,
+              HasSubstr("--marginal must be at most --stable, 0.4, got 0.5"));
+}
+
+TEST(Motion, OfTheDogOfTheThesisHaveAWorldThatAWrongOneNames) {
+  const Ended wrong =
+      run_shoal({"check", source("worlds/ers7_field.yaml"), "--set", "vehicles.dog.file=ers7_seed.yaml"});
+  EXPECT_EQ(wrong.exit_code, 2);
+  EXPECT_THAT(wrong.errors, HasSubstr("the vehicle has no parameter 'camera_hz'; world 'ers7_seed_studio' has this "
+                                      "vehicle; or set --set vehicles.dog.parameters={}"));
+  const Ended right = run_shoal({"check", source("worlds/ers7_field.yaml"), "--set", "vehicles.dog.file=ers7_seed.yaml",
+                                 "--set", "vehicles.dog.parameters={}"});
+  EXPECT_EQ(right.exit_code, 0) << right.errors;
+}
+
 TEST(Motion, DivergesByModelAndTime) {
   const ScratchFolder folder;
   std::string first;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <mutex>
 #include <numbers>
+#include <span>
 
 #include "sim/base/thread_pool.hpp"
 #include "sim/world/world_state.hpp"
@@ -14,12 +15,46 @@ namespace tools {
 
 namespace {
 
+/// How the first body of a vehicle moves after a step.
+struct BaseState {
+  sim::Vector3d up_V, v_V, w_V;  ///< the vertical, and velocities, in the frame of the vehicle
+  bool has_tilted, touches;
+
+  BaseState(const sim::World& world, const sim::Vehicle& vehicle)
+      : up_V(vehicle.X_WV().linear().row(2)),
+        v_V(vehicle.X_WV().linear().transpose() * vehicle.base().v_WB_W()),
+        w_V(vehicle.X_WV().linear().transpose() * vehicle.base().w_WB_W()),
+        has_tilted(tilt_rad(vehicle) > fallen_rad),
+        touches(first_body_touches(world, vehicle)) {}
+
+  /// Returns whether both move alike: 10 mm/s, and 0.1 rad/s, which are 15 mm/s at the top of an ERS-7.  The tilt may
+  /// differ by 10 degrees, because the feet may have slipped.
+  bool is_like(const BaseState& other) const {
+    return (up_V - other.up_V).norm() < 0.175 && (v_V - other.v_V).norm() < 0.01 && (w_V - other.w_V).norm() < 0.1;
+  }
+};
+
+/// States without a push, by step.
+using Course = std::vector<BaseState>;
+
+constexpr double recovered_s = 0.06;  // that it must move as without a push
+
+/// Steps of a push, and of the time in which it may fall.
+struct PushSteps {
+  int push, all;
+  PushSteps(const sim::World& world, const PushOptions& options)
+      : push(std::max(1, static_cast<int>(std::lround(options.push_s / sim::to_seconds(world.step_time()))))),
+        all(push + static_cast<int>(std::lround(options.watch_s / sim::to_seconds(world.step_time())))) {}
+};
+
 /// A copy of the world in which a vehicle is pushed.
 class PushWorld {
  public:
   explicit PushWorld(const MotionStage& stage) : stage_(stage), copy_(stage.copy()) {}
 
-  PushOutcome push(const sim::Bytes& snapshot, const sim::Vector3d& impulse_per_mass_V, const PushOptions& options) {
+  /// `course`: it ends when it moves again as there.
+  PushOutcome push(const sim::Bytes& snapshot, const sim::Vector3d& impulse_per_mass_V, const PushOptions& options,
+                   std::span<const BaseState> course = {}) {
     sim::World& world = copy_->world();
     world.state().restore(snapshot);
     const sim::Vehicle& vehicle = *world.find_vehicle(stage_.vehicle().name());
@@ -31,16 +66,19 @@ class PushWorld {
     const sim::Vector3d impulse_W_Ns =
         mass_kg(vehicle) * (sim::rotation_from_rpy({0, 0, yaw_rad}) * impulse_per_mass_V);
     const double step_s = sim::to_seconds(world.step_time());
-    const auto push_steps = std::max(1, static_cast<int>(std::lround(options.push_s / step_s)));
-    const auto steps = push_steps + static_cast<int>(std::lround(options.watch_s / step_s));
+    const PushSteps steps(world, options);
     PushOutcome outcome;
     bool touched = false;
-    for (int i = 0; i < steps && !outcome.fell; ++i) {
-      if (i < push_steps) base.add_force_W(impulse_W_Ns / (push_steps * step_s), base.X_WB() * base.p_BC());
+    double alike_s = 0;
+    for (int i = 0; i < steps.all && !outcome.fell && alike_s < recovered_s; ++i) {
+      if (i < steps.push) base.add_force_W(impulse_W_Ns / (steps.push * step_s), base.X_WB() * base.p_BC());
       world.step();
-      const bool touches = first_body_touches(world, vehicle);
-      if (i == 0) touched = touches;
-      outcome.fell = tilt_rad(vehicle) > fallen_rad || (touches && !touched);
+      const BaseState state(world, vehicle);
+      if (i == 0) touched = state.touches;
+      outcome.fell = state.has_tilted || (state.touches && !touched);
+      const auto step = static_cast<std::size_t>(i);
+      const bool is_alike = i >= steps.push && step < course.size() && state.is_like(course[step]);
+      alike_s = is_alike ? alike_s + step_s : 0;
     }
     outcome.end_W = base.X_WB().translation();
     world.physics().unwatch_contacts(vehicle.group());
@@ -67,9 +105,10 @@ class PushWorlds {
  public:
   explicit PushWorlds(const MotionStage& stage) : stage_(stage) {}
 
-  PushOutcome push(const sim::Bytes& snapshot, const sim::Vector3d& impulse, const PushOptions& options) {
+  PushOutcome push(const sim::Bytes& snapshot, const sim::Vector3d& impulse, const PushOptions& options,
+                   std::span<const BaseState> course = {}) {
     std::unique_ptr<PushWorld> world = take();
-    const PushOutcome outcome = world->push(snapshot, impulse, options);
+    const PushOutcome outcome = world->push(snapshot, impulse, options, course);
     const std::lock_guard lock(mutex_);
     free_.push_back(std::move(world));
     return outcome;
@@ -125,18 +164,21 @@ std::vector<PushMargin> push_margins(MotionStage& stage, const std::vector<doubl
     margins.push_back({stage.now_s(), std::vector<double>(directions, 0.0), PushWorld::mass_kg(stage.vehicle()), 0});
     snapshots.push_back(stage.world().state().snapshot());
   }
-  // Each direction of each instant has its own search.
   PushWorlds worlds(stage);
+  sim::ThreadPool pool(options.threads);
+  std::vector<PushOutcome> alone(margins.size());
+  pool.for_each(margins.size(),
+                [&](std::size_t i) { alone[i] = worlds.push(snapshots[i], sim::Vector3d::Zero(), options); });
+  // Each direction of each instant has its own search.
   std::vector<double> settle_m(margins.size() * directions, 0.0);
-  sim::ThreadPool(options.threads).for_each(margins.size() * directions, [&](std::size_t i) {
+  pool.for_each(margins.size() * directions, [&](std::size_t i) {
     const std::size_t instant = i / directions, direction = i % directions;
     const double angle_rad = 2 * std::numbers::pi * static_cast<double>(direction) / options.directions;
     const auto pushed = [&](double mps) { return worlds.push(snapshots[instant], mps * along(angle_rad), options); };
     const auto falls = [&](double mps) { return pushed(mps).fell; };
-    const PushOutcome alone = pushed(0);
-    settle_m[i] = pushed(options.settle_mps).distance_m(alone);
+    settle_m[i] = pushed(options.settle_mps).distance_m(alone[instant]);
     double withstood = 0, fell = options.greatest_mps;
-    if (alone.fell) return;  // it falls by itself
+    if (alone[instant].fell) return;  // it falls by itself
     if (!falls(fell)) withstood = fell;
     while (fell - withstood > options.resolution_mps) {
       const double middle = (withstood + fell) / 2;
@@ -147,6 +189,88 @@ std::vector<PushMargin> push_margins(MotionStage& stage, const std::vector<doubl
   for (std::size_t i = 0; i < settle_m.size(); ++i)
     margins[i / directions].settle_m = std::max(margins[i / directions].settle_m, settle_m[i]);
   return margins;
+}
+
+WeakestPush weakest_push(MotionStage& stage, const std::vector<double>& instants_s, const PushOptions& options) {
+  // The course without a push, and snapshots of the instants.
+  Course course;
+  std::vector<sim::Bytes> snapshots;
+  std::vector<std::size_t> starts;
+  stage.go_to(instants_s.front());
+  const int group = stage.vehicle().group();
+  stage.world().physics().watch_contacts(group);
+  stage.after_step = [&](MotionStage& now) { course.emplace_back(now.world(), now.vehicle()); };
+  for (const double at_s : instants_s) {
+    stage.go_to(at_s);
+    starts.push_back(course.size());
+    snapshots.push_back(stage.world().state().snapshot());
+  }
+  const PushSteps steps(stage.world(), options);
+  const auto watched = static_cast<std::size_t>(steps.all);
+  stage.go_to(stage.now_s() + steps.all * sim::to_seconds(stage.world().step_time()));
+  stage.after_step = {};
+  stage.world().physics().unwatch_contacts(group);
+  WeakestPush weakest;
+  weakest.mass_kg = PushWorld::mass_kg(stage.vehicle());
+  for (std::size_t i = 0; i < starts.size(); ++i) {
+    const std::span<const BaseState> after = std::span(course).subspan(starts[i], watched);
+    if (std::none_of(after.begin(), after.end(), [&](const BaseState& state) {
+          return state.has_tilted || (state.touches && !after.front().touches);
+        }))
+      continue;
+    weakest.falls = true;
+    weakest.at_s = instants_s[i];
+    return weakest;
+  }
+  PushWorlds worlds(stage);
+  sim::ThreadPool pool(options.threads);
+  const auto directions = static_cast<std::size_t>(options.directions);
+  const auto angle_rad = [&](std::size_t push) {
+    return 2 * std::numbers::pi * static_cast<double>(push % directions) / options.directions;
+  };
+  /// Returns those of the pushes that make it fall.
+  const auto falling = [&](const std::vector<std::size_t>& pushes, double mps) {
+    std::vector<char> fell(pushes.size());
+    pool.for_each(pushes.size(), [&](std::size_t i) {
+      const std::size_t instant = pushes[i] / directions;
+      const std::span<const BaseState> after = std::span(course).subspan(starts[instant], watched);
+      fell[i] = worlds.push(snapshots[instant], mps * along(angle_rad(pushes[i])), options, after).fell ? 1 : 0;
+    });
+    std::vector<std::size_t> found;
+    for (std::size_t i = 0; i < pushes.size(); ++i)
+      if (fell[i] != 0) found.push_back(pushes[i]);
+    return found;
+  };
+  // The least margin of some pushes is an upper bound; of the others, most need one push to be above it.
+  std::vector<std::size_t> some, others;
+  const std::size_t all = snapshots.size() * directions;
+  const std::size_t stride = std::max<std::size_t>(1, all / 32) | 1;  // odd, so that it visits all directions
+  for (std::size_t i = 0; i < all; ++i) (i % stride == 0 ? some : others).push_back(i);
+  double withstood = options.greatest_mps, fell = withstood;
+  std::vector<std::size_t> falls_at;
+  const auto narrow = [&](const std::vector<std::size_t>& pushes) {
+    std::vector<std::size_t> first = falling(pushes, withstood);
+    if (first.empty()) return;
+    falls_at = std::move(first);
+    fell = withstood;
+    withstood = 0;
+    while (fell - withstood > options.resolution_mps) {
+      const double middle = (withstood + fell) / 2;
+      std::vector<std::size_t> found = falling(falls_at, middle);
+      if (found.empty())
+        withstood = middle;
+      else
+        fell = middle, falls_at = std::move(found);
+    }
+  };
+  narrow(some);
+  if (withstood > 0) narrow(others);
+  weakest.withstood_mps = withstood;
+  weakest.is_beyond = falls_at.empty();
+  if (falls_at.empty()) return weakest;
+  weakest.at_s = instants_s[falls_at.front() / directions];
+  weakest.direction_rad = angle_rad(falls_at.front());
+  return weakest;
 }
 
 }  // namespace tools

@@ -58,4 +58,20 @@ std::vector<PushOutcome> outcomes_of(MotionStage& stage, const std::vector<Push>
 std::vector<PushMargin> push_margins(MotionStage& stage, const std::vector<double>& instants_s,
                                      const PushOptions& options);
 
+/// The weakest instant and direction of a motion.
+struct WeakestPush {
+  bool falls = false;        ///< without a push; the rest is then that instant
+  bool is_beyond = false;    ///< it withstands the greatest push everywhere
+  double withstood_mps = 0;  ///< greatest impulse over mass that it withstands at all instants in all directions
+  double at_s = 0;           ///< time of the run
+  double direction_rad = 0;  ///< counter-clockwise from ahead
+  double mass_kg = 0;
+};
+
+/// Returns the least margin over all instants and directions, with a small part of the pushes of push_margins(): only
+/// the pushes that made it fall are repeated with weaker ones, and a push ends when the vehicle moves again as it does
+/// without one.  Instants and results as in push_margins(); the world of the stage ends later, when the last push may
+/// make it fall.
+WeakestPush weakest_push(MotionStage& stage, const std::vector<double>& instants_s, const PushOptions& options);
+
 }  // namespace tools

@@ -69,12 +69,12 @@ class @C@ : public OObject {
 
   void HoldPresentValues();
   void SetGains();
-  slongword Value(int command, int frame) const;
+  int Value(int command, int frame) const;
   void Send();
 
   OPrimitiveID primitive[COMMANDS];
   RCRegion* region[REGIONS];
-  slongword present[COMMANDS];  // 1e-6 rad
+  int present[COMMANDS];  // 1e-6 rad
   int approach;                 // packages on the way to the first frame
   int package;                  // the next one: 0 holds the present values, then the approach, then the table
 };
@@ -178,12 +178,12 @@ void @C@::SetGains() {
   }
 }
 
-slongword @C@::Value(int command, int frame) const {
+int @C@::Value(int command, int frame) const {
   const int column = commands[command].column;
   if (package > approach) return @L@_frames[package - approach - 1][frame][column];
   if (package == 0) return present[command];
   const double share = double((package - 1) * FRAMES + frame + 1) / (approach * FRAMES);
-  return present[command] + slongword((@L@_frames[0][0][column] - double(present[command])) * share);
+  return present[command] + int((@L@_frames[0][0][column] - double(present[command])) * share);
 }
 
 void @C@::Send() {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <numbers>
@@ -86,6 +87,43 @@ TEST(PushTest, ABlockTipsAtTheImpulseOfItsEnergy) {
   }
   EXPECT_NEAR(std::fmod(margins[0].least_direction_rad(), std::numbers::pi), std::numbers::pi / 2, 1e-9);
   EXPECT_GT(margins[0].settle_m, 0);
+}
+
+TEST(PushTest, TheWeakestPushIsTheLeastMarginWithFewerPushes) {
+  const Block block;
+  tools::PushOptions options;
+  options.watch_s = 3;
+  std::vector<double> weakest_mps;
+  const std::vector<double> instants_s{0.5, 1.0, 1.5};
+  for (const int threads : {1, 2}) {
+    options.threads = threads;
+    tools::MotionStage stage(block.options, turn());
+    const tools::WeakestPush weakest = tools::weakest_push(stage, instants_s, options);
+    EXPECT_FALSE(weakest.falls);
+    EXPECT_FALSE(weakest.is_beyond);
+    EXPECT_NEAR(weakest.mass_kg, 2.041, 1e-4);
+    // Sideways, over the edges at 0.1 m.
+    EXPECT_NEAR(std::fmod(weakest.direction_rad, std::numbers::pi), std::numbers::pi / 2, 1e-9);
+    weakest_mps.push_back(weakest.withstood_mps);
+  }
+  EXPECT_EQ(weakest_mps[0], weakest_mps[1]);
+  tools::MotionStage stage(block.options, turn());
+  double least_Ns = 1e9;
+  for (const tools::PushMargin& margin : tools::push_margins(stage, instants_s, options))
+    least_Ns = std::min(least_Ns, margin.least_Ns());
+  // Both are found to 1/64 m/s, between other pushes.
+  EXPECT_NEAR(weakest_mps[0], least_Ns / 2.041, 2.0 / 64);
+}
+
+TEST(PushTest, TheWeakestPushKnowsWhatIsBeyondItsRange) {
+  const Block block;
+  tools::PushOptions options;
+  options.watch_s = 0.5;
+  options.greatest_mps = 0.25;  // it tips at 1.1 m/s
+  tools::MotionStage stage(block.options, turn());
+  const tools::WeakestPush weakest = tools::weakest_push(stage, {0.5}, options);
+  EXPECT_TRUE(weakest.is_beyond);
+  EXPECT_EQ(weakest.withstood_mps, 0.25);
 }
 
 TEST(PushTest, SettlesWhereItWouldBeWithoutAPush) {

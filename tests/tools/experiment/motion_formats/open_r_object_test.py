@@ -120,12 +120,12 @@ class OpenRObject(unittest.TestCase):
         # The end is the table.
         played = [[frame[name] for name in gains] for frame in frames[-len(numbers):]]
         self.assertEqual(played, [[row[locators.index(name)] for name in gains] for row in numbers])
-        # The way to it: at 0.5 rad/s, the usual start of a motion, and at least 0.5 s; 1e-6 rad of rounding.
-        way = frames[4:-len(numbers)]
-        self.assertGreaterEqual(len(way) * 0.008, 0.5 - 0.032)
-        for before, after in zip(frames[3:], way):
+        # The approach: at 0.5 rad/s, the usual start of a motion, and at least 0.5 s; 1e-6 rad of rounding.
+        approach = frames[4:-len(numbers)]
+        self.assertGreaterEqual(len(approach) * 0.008, 0.5 - 0.032)
+        for before, after in zip(frames[3:], approach):
             self.assertLessEqual(max(abs(after[name] - before[name]) for name in gains), 0.5e6 * 0.008 + 1)
-        self.assertEqual(list(way[-1].values()), [frames[-len(numbers)][name] for name in way[-1]])
+        self.assertEqual(list(approach[-1].values()), [frames[-len(numbers)][name] for name in approach[-1]])
 
     def test_what_is_there_is_not_replaced(self):
         again = shoal(MOTION, "--format", "openr", "--output", self.folder)
