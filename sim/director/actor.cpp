@@ -63,7 +63,10 @@ void Actor::step(Stage& stage, Time now) {
   if (object_ == nullptr) return;  // removed; placed again when it is added again
   // The object was moved, or is new: place it without velocity, because the displacement in one step would be a very
   // fast impact on others.
-  if ((object_->X_WV().translation() - X_WV_.translation()).squaredNorm() > 1e-12)
+  const Pose X_WV = object_->X_WV();
+  constexpr double turned = 0.02;  // 0.8 degrees, far more than what a step of the integration errs
+  if ((X_WV.translation() - X_WV_.translation()).squaredNorm() > 1e-12 ||
+      (X_WV.linear() - X_WV_.linear()).norm() > turned)
     object_->place(stage.physics(), pose_at(now));
   const Time step = stage.clock().step;
   X_WV_ = pose_at(now + step);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/world/world_editor.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 #include <stdexcept>
@@ -33,6 +34,7 @@ void WorldEditor::check_new_vehicle(const VehicleInstance& instance) const {
   check_limit("vehicles", parts_.entities.vehicles().size() + 1, limits.vehicles, instance.place, who);
   check_limit("bodies in a vehicle", config.bodies.size(), limits.bodies_per_vehicle, instance.place, who);
   check_limit("devices in a vehicle", config.devices.size(), limits.devices_per_vehicle, instance.place, who);
+  check_limit("joints in a vehicle", config.joints.size(), limits.parts, instance.place, who);
   check_limit("parts in a vehicle", config.part_count(), limits.parts, instance.place, who);
   std::set<std::string, std::less<>> own;
   for (const DeviceConfig& device : config.devices)
@@ -136,8 +138,14 @@ const WorldObject& WorldEditor::add_object(const ObjectConfig& config, const std
   const LimitsConfig& limits = parts_.config.limits;
   parts_.entities.check_new_name(name, config.place, who);
   check_limit("objects", parts_.entities.objects().size() + 1, limits.objects, config.place, who);
-  check_limit("bodies in an object", config.bodies.size(), limits.bodies_per_vehicle, config.place, who);
-  check_limit("parts in an object", config.part_count(), limits.parts, config.place, who);
+  // One of the file of the world may be larger: it was there at the start.
+  const auto& own = parts_.config.objects;
+  if (!std::any_of(own.begin(), own.end(),
+                   [&](const ObjectConfig& object) { return config.source && object.source == config.source; })) {
+    check_limit("bodies in an object", config.bodies.size(), limits.bodies_per_vehicle, config.place, who);
+    check_limit("joints in an object", config.joints.size(), limits.parts, config.place, who);
+    check_limit("parts in an object", config.part_count(), limits.parts, config.place, who);
+  }
   const WorldObject& object = builder_.place_object(config, name, X_WE);
   journal_.object_added(config, object, X_WE);
   report(Occurrence::Kind::added, name, "object");

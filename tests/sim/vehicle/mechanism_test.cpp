@@ -238,6 +238,36 @@ TEST(Mechanism, IsMovedAsItIsAndAtRest) {
   EXPECT_LT(turns.joint("hinge").position(), door_rad - 0.5);
 }
 
+TEST(Mechanism, OfOneBodyIsMovedWithItsJointToTheWorld) {
+  test::TestWorld test(world_of(R"(
+  - name: sign
+    position_m: [0, 0, 3]
+    bodies: [{name: board, parts: [{shape: box, size_m: [1, 0.1, 1], mass_kg: 1}]}]
+    joints: [{name: hangs, type: fixed, bodies: [board, world]}]
+)"));
+  test.run_for(0.1);
+  test.world.editor().move_object("sign", sim::make_pose({1000, 0, 3}, {0, 0, 0}));
+  test.run_for(0.5);
+  EXPECT_LT((object(test, "sign").X_WV().translation() - sim::Vector3d(1000, 0, 3)).norm(), 1e-3);
+}
+
+TEST(Mechanism, ThatIsLedIsNotFlungByATurnInItsPlace) {
+  test::TestWorld test(world_of(R"(
+  - name: pair
+    position_m: [0, 0, 3]
+    bodies:
+      - {name: base, parts: [{shape: box, size_m: [0.5, 0.5, 0.1], mass_kg: 5}]}
+      - {name: top, position_m: [0, 0, 0.2], parts: [{shape: box, size_m: [0.4, 0.4, 0.1], mass_kg: 1}]}
+    joints: [{name: swivel, type: hinge, bodies: [base, top], axis: [0, 0, 1]}]
+)",
+                                "actors: [{name: lead, object: pair, points: [[0, 0, 3], [9, 0, 3]], speed_mps: 0.5}]\n"));
+  test.run_for(0.5);
+  const sim::Pose X_WV = object(test, "pair").X_WV();
+  test.world.editor().move_object("pair", X_WV * sim::make_pose({0, 0, 0}, {0, 0, 1.5}));
+  test.run_for(1);
+  EXPECT_NEAR(object(test, "pair").joint("swivel").position(), 0, 1e-6);
+}
+
 TEST(Mechanism, IsLedByAnActorWithItsWheelsRolling) {
   test::TestWorld test(world_of(stool, R"(
 actors: [{name: pull, object: stool, points: [[1, 2, 0], [4, 2, 0]], speed_mps: 0.5, ends: stop}]
@@ -278,6 +308,33 @@ TEST(Mechanism, OfARequestHasTheLimitsOfTheWorld) {
     FAIL() << "it was added";
   } catch (const sim::ConfigError& error) {
     EXPECT_THAT(error.what(), HasSubstr("at most 6 bodies in an object are allowed"));
+  }
+}
+
+TEST(Mechanism, OfTheFileComesBackAlsoIfItIsLargerThanTheLimits) {
+  test::TestWorld test(world_of(stool, R"(
+limits: {bodies_per_vehicle: 2}
+events: [{name: change, at: 0.1, do: [{remove: stool}, {add: stool}]}]
+)"));
+  test.run_for(0.2);
+  EXPECT_EQ(object(test, "stool").bodies().size(), 7u);
+}
+
+TEST(Mechanism, OfARequestHasNoMoreJointsThanParts) {
+  test::TestWorld test(world_of("", "limits: {parts: 3}\n"));
+  std::string joints;
+  for (int i = 0; i < 4; ++i) joints += "{name: j" + std::to_string(i) + ", type: fixed, bodies: [a, b]}, ";
+  sim::Diagnostics diagnostics;
+  const auto action = sim::parse_config_text(
+      "add: {object: {name: knot, bodies: [{name: a, parts: [{shape: box, mass_kg: 1}]}, {name: b, parts: [{shape: "
+      "box, mass_kg: 1}]}], joints: [" +
+          joints + "]}}",
+      "request", diagnostics);
+  try {
+    test.world.editor().run_action(action);
+    FAIL() << "it was added";
+  } catch (const sim::ConfigError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("at most 3 joints in an object are allowed"));
   }
 }
 
