@@ -222,25 +222,9 @@ std::string ResimulatedRun::execute(const std::string& command, double value, co
   if (command == "branch") return branch(text);
   if (command == "rewind") return rewind(value);
   if (command == "where") return place();
-  if (command == "pause" || command == "resume") {
-    if (command == "resume" && faulty_) throw std::runtime_error("the run cannot continue: go back");
-    if (command == "resume" && at_end()) throw std::runtime_error("the record ends here: go back, or branch");
-    control_.set_paused(command == "pause");
-    return place();
-  }
-  if (command == "step") {
-    if (!(value >= 1 && value <= 1e9 && value == std::floor(value)))
-      throw std::runtime_error(fmt::format("'step' needs a whole number of steps from 1 to 1e9, got {}", value));
-    control_.add_steps(static_cast<std::int64_t>(value));
-    return place();
-  }
-  if (command == "speed") {
-    if (value != 0 && !(value >= 1e-3 && value <= 1e6))
-      throw std::runtime_error(
-          fmt::format("'speed' must be 0 (as fast as possible) or from 0.001 to 1e6, got {}", value));
-    control_.set_speed(value);
-    return place();
-  }
+  if (command == "resume" && faulty_) throw std::runtime_error("the run cannot continue: go back");
+  if (command == "resume" && at_end()) throw std::runtime_error("the record ends here: go back, or branch");
+  if (set_pace(control_, command, value)) return place();
   if (command == "until") {
     if (!(value > sim::to_seconds(world().now()) && value <= 1e9))
       throw std::runtime_error(fmt::format("'until' needs a time after now and at most 1e9 s, got {}", value));

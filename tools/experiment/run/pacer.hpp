@@ -1,13 +1,38 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <spdlog/fmt/fmt.h>
+
 #include <algorithm>
 #include <chrono>
+#include <cmath>
+#include <stdexcept>
+#include <string>
 
 #include "sim/base/time.hpp"
 #include "sim/run/run_control.hpp"
 
 namespace tools {
+
+/// Executes a request to pause, resume, step or set the speed; returns whether it was one.  Throws std::runtime_error
+/// for a number of steps or a speed that is not possible.
+inline bool set_pace(sim::RunControl& control, const std::string& command, double value) {
+  if (command == "pause" || command == "resume") {
+    control.set_paused(command == "pause");
+  } else if (command == "step") {
+    if (!(value >= 1 && value <= 1e9 && value == std::floor(value)))
+      throw std::runtime_error(fmt::format("'step' needs a whole number of steps from 1 to 1e9, got {}", value));
+    control.add_steps(static_cast<std::int64_t>(value));
+  } else if (command == "speed") {
+    if (value != 0 && !(value >= 1e-3 && value <= 1e6))
+      throw std::runtime_error(
+          fmt::format("'speed' must be 0 (as fast as possible) or from 0.001 to 1e6, got {}", value));
+    control.set_speed(value);
+  } else {
+    return false;
+  }
+  return true;
+}
 
 /// Limits simulated time to a multiple of wall time.
 class Pacer {

@@ -13,6 +13,7 @@
 #include "sim/config/message_text.hpp"
 #include "sim/state/state_archive.hpp"
 #include "sim/world/world_state.hpp"
+#include "tools/experiment/run/pacer.hpp"
 
 namespace tools {
 
@@ -167,28 +168,19 @@ std::optional<std::string> TimeControl::execute(const std::string& command, cons
     const std::string waits = service_.waits_for();
     return place() + (waits.empty() ? "" : ", " + waits) + what_is_kept();
   }
-  // Pause, step and speed.
-  if (command == "pause" || command == "resume") {
-    control_.set_paused(command == "pause");
-    return place();
-  }
   if (command == "step") return step(value);
   if (command == "speed") return set_speed(value);
+  if (set_pace(control_, command, value)) return place();
   return std::nullopt;
 }
 
 std::string TimeControl::step(double count) {
-  if (!(count >= 1 && count <= 1e9 && count == std::floor(count)))
-    throw std::runtime_error(fmt::format("'step' needs a whole number of steps from 1 to 1e9, got {}", count));
-  control_.add_steps(static_cast<std::int64_t>(count));
+  set_pace(control_, "step", count);
   return place() + fmt::format(", takes {} step{}", control_.single_steps, control_.single_steps == 1 ? "" : "s");
 }
 
 std::string TimeControl::set_speed(double times) {
-  if (times != 0 && !(times >= 1e-3 && times <= 1e6))
-    throw std::runtime_error(
-        fmt::format("'speed' must be 0 (as fast as possible) or from 0.001 to 1e6, got {}", times));
-  control_.set_speed(times);
+  set_pace(control_, "speed", times);
   return place() + (times > 0 ? fmt::format(", {:g} x real time", times) : ", as fast as possible");
 }
 
