@@ -15,6 +15,7 @@ namespace {
 
 using namespace system_test;
 using testing::HasSubstr;
+using testing::MatchesRegex;
 using testing::Not;
 using tools::InputEvent;
 
@@ -41,7 +42,7 @@ std::string events_of(const std::vector<Stroke>& strokes, double end_s) {
 
 /// Codes of keys of a keyboard (linux/input-event-codes.h).
 constexpr std::uint16_t key_1 = 2, key_2 = 3, key_3 = 4, key_4 = 5, key_7 = 8, key_8 = 9, key_5 = 6, key_e = 18,
-                        key_d = 32, key_f = 33, key_left_bracket = 26;
+                        key_d = 32, key_f = 33, key_left_bracket = 26, key_apostrophe = 40;
 
 class MotionRecord : public testing::Test {
  protected:
@@ -186,6 +187,63 @@ TEST_F(MotionRecord, OverdubPunchAndUndo) {
   EXPECT_EQ(text_of_file(file_), first);
 }
 
+TEST_F(MotionRecord, GoesOnFromTheEndOfTheFile) {
+  ASSERT_EQ(record({{0.1, key_3, 1}, {0.5, key_3, 0}}, 0.8).exit_code, 0);
+  const std::string first = text_of_file(file_);
+  // The file ends at 0.824 s; the key moves the neck only after that.
+  const Ended ended = record({{0.1, key_1, 1}}, 1.2, {"--append"});
+  EXPECT_EQ(ended.exit_code, 0) << ended.errors;
+  EXPECT_THAT(ended.output, HasSubstr(": 1.224 s, "));
+  const std::string csv = text_of_file(frames());
+  EXPECT_THAT(row_of(csv, 0), HasSubstr("neck_tilt"));
+  const Ended played = run_shoal({"motion", "play", take(), "--world", source("worlds/ers7_studio.yaml")});
+  EXPECT_THAT(played.output, HasSubstr("the state at the end is that of the recording"));
+  // What the file had is still there: the other part was recorded at its end.
+  const Ended compared = run_shoal({"motion", "compare", file_});
+  EXPECT_THAT(compared.output, HasSubstr("neck_tilt"));
+  EXPECT_THAT(compared.output, Not(HasSubstr("lf_swing")));
+  EXPECT_EQ(run_shoal({"motion", "edit", "undo", file_}).exit_code, 0);
+  EXPECT_EQ(text_of_file(file_), first);
+}
+
+TEST_F(MotionRecord, ItsDurationMayBeBeyondTheEndOfTheFile) {
+  ASSERT_EQ(record({{0.1, key_3, 1}, {0.5, key_3, 0}}, 0.8).exit_code, 0);
+  const Ended ended = record({{0.1, key_1, 1}}, 5, {"--punch-in", "0.4", "--duration", "1.6"});
+  EXPECT_EQ(ended.exit_code, 0) << ended.errors;
+  EXPECT_THAT(ended.output, HasSubstr(": 1.600 s, "));
+  const auto errors_of = [&](std::vector<std::string> more) {
+    const Ended refused = record({}, 0.1, std::move(more));
+    EXPECT_EQ(refused.exit_code, 2);
+    return refused.errors;
+  };
+  EXPECT_THAT(errors_of({"--punch-in", "0.4", "--punch-out", "0.8", "--duration", "7"}),
+              HasSubstr("--duration must be at most 1.6 s, the end of the motion, to which it is played after "
+                        "--punch-out, got 7"));
+  EXPECT_THAT(errors_of({"--append", "--duration", "1"}),
+              HasSubstr("--duration must be above 1.6 s, where the recording starts, got 1"));
+  EXPECT_THAT(errors_of({"--append", "--punch-in", "1"}), HasSubstr("--punch-in does not go with --append"));
+  write_file(file_,
+             "shoal: 1\nmotion: wave\nloop: true\nkeys:\n  - {at_s: 0, joints: {mouth: -10}}\n"
+             "  - {at_s: 1, joints: {mouth: -10}}\n");
+  EXPECT_THAT(errors_of({"--append"}), HasSubstr("wave.yaml' loops, and has no end"));
+  std::filesystem::remove(file_);
+  EXPECT_THAT(errors_of({"--append"}), HasSubstr("wave.yaml"));
+}
+
+TEST_F(MotionRecord, MeasuresPushesInEightDirectionsAndChangesNothing) {
+  const std::vector<Stroke> strokes{{0.1, key_3, 1}, {0.3, key_3, 0}};
+  const Ended alone = record(strokes, 0.4);
+  EXPECT_EQ(alone.exit_code, 0) << alone.errors;
+  std::vector<Stroke> measured = strokes;
+  measured.push_back({0.35, key_apostrophe, 1});
+  const Ended ended = record(measured, 0.4, {"--overwrite"});
+  EXPECT_EQ(ended.output, alone.output);
+  EXPECT_THAT(ended.errors,
+              MatchesRegex("(.*\n)?withstands pushes at 0.36 s, N s: ahead [>0-9.]+, ahead left [>0-9.]+, "
+                           "left [>0-9.]+, back left [>0-9.]+, back [>0-9.]+, back right [>0-9.]+, right [>0-9.]+, "
+                           "ahead right [>0-9.]+; least [>0-9.]+ [a-z ]+\n(.*\n)?"));
+}
+
 TEST_F(MotionRecord, ChangesOfTheWorldAreAPartOfIt) {
   const Ended ended =
       record({{0.2, key_left_bracket, 1}, {0.3, key_3, 1}, {0.5, key_3, 0}}, 0.8,
@@ -321,6 +379,25 @@ TEST_F(MotionRecord, ATerminalWithoutReleasesStartsAndStopsJoints) {
   terminal.press("\t\r");
   EXPECT_EQ(terminal.wait(), 0);
   EXPECT_THAT(row_of(text_of_file(frames()), 0), HasSubstr("lf_swing,lf_flap"));
+}
+
+TEST_F(MotionRecord, ItsLineHasTheStaticMarginInRedWhereItIsSmall) {
+  // Its front legs swing backward, until its centre of mass is before its feet.
+  write_file(file_,
+             "shoal: 1\nmotion: wave\nvehicle: ers7\nkeys:\n"
+             "  - {at_s: 0, joints: {lf_swing: 0, rf_swing: 0}}\n"
+             "  - {at_s: 2, joints: {lf_swing: -60, rf_swing: -60}}\n");
+  std::vector<std::string> program = arguments({"--append"});
+  program.insert(program.begin(), built("shoal"));
+  OnTerminal terminal(program);
+  ASSERT_TRUE(terminal.shows("enter ends"));
+  EXPECT_TRUE(terminal.shows("playing    static "));
+  EXPECT_TRUE(terminal.shows("playing    \x1b[31mstatic "));
+  EXPECT_TRUE(terminal.shows("recording"));
+  EXPECT_TRUE(terminal.shows("past the end of wave.yaml: 2.0 s"));
+  terminal.press("\r");
+  EXPECT_TRUE(terminal.shows(" frames began more than a step, 2 ms, late"));
+  EXPECT_EQ(terminal.wait(), 0);
 }
 
 TEST_F(MotionRecord, SaysWhatIsWrong) {

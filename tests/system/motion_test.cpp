@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gmock/gmock.h>
+#include <signal.h>
 
 #include <filesystem>
 
 #include "tests/system/shoal_program.hpp"
+#include "tests/tools/experiment/view/view_page.hpp"
 
 namespace {
 
@@ -55,6 +57,68 @@ TEST(Motion, IsPlayedAndAgainFromAnInstantWithTheSameEnd) {
   EXPECT_EQ(ended.exit_code, 0) << ended.errors;
   EXPECT_THAT(ended.output, HasSubstr("the same state at the end"));
   EXPECT_THAT(ended.output, Not(HasSubstr("has fallen")));
+}
+
+TEST(Motion, APartOfItIsPlayedAgainAndAgain) {
+  const std::string world = source("worlds/ers7_studio.yaml");
+  const auto play = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {"play", source(wave), "--world", world});
+    return motion(more);
+  };
+  const Ended ended = play({"--from", "1", "--to", "1.5", "--loop", "--loop-time", "3"});
+  EXPECT_EQ(ended.exit_code, 0) << ended.errors;
+  EXPECT_THAT(ended.output, HasSubstr("3.000 s simulated"));
+  const Ended once = play({"--from", "1", "--to", "1.5", "--again-from", "1.25"});
+  EXPECT_EQ(once.exit_code, 0) << once.errors;
+  EXPECT_THAT(once.output, HasSubstr("the same state at the end"));
+  const auto error_of = [&](std::vector<std::string> more) {
+    const Ended refused = play(std::move(more));
+    EXPECT_EQ(refused.exit_code, 2);
+    return refused.errors;
+  };
+  EXPECT_THAT(error_of({"--from", "5", "--to", "4"}),
+              HasSubstr("--from and --to must be a part of the motion, from 0 to 9 s, got 5 to 4"));
+  EXPECT_THAT(error_of({"--to", "9.5"}), HasSubstr("from 0 to 9 s, got 0 to 9.5"));
+  EXPECT_THAT(error_of({"--from", "9"}), HasSubstr("from 0 to 9 s, got 9 to 9"));
+  EXPECT_THAT(error_of({"--from", "1", "--to", "2", "--again-from", "3"}),
+              HasSubstr("--again-from must be from 1 to 2 s, the part that is played, got 3"));
+  EXPECT_THAT(error_of({"--rate", "0.5"}), HasSubstr("--rate needs --view"));
+}
+
+TEST(Motion, IsPlayedOnALivePage) {
+  const std::string world = source("worlds/ers7_studio.yaml");
+  Program program({built("shoal"), "motion", "play", source("vehicles/motions/ers7/nod.yaml"), "--world", world,
+                   "--view", "--view-port", "0", "--rate", "0.5"});
+  ASSERT_TRUE(await([&] { return program.errors().find("Ctrl-C ends it\n") != std::string::npos; }, timeout));
+  const std::string errors = program.errors();
+  const std::size_t at = errors.find("http://");
+  test::ViewPage page(errors.substr(at, errors.find('\n', at) - at));
+  const auto margins =
+      page.text("scores", [](const auto& scores) { return scores["metrics"][0]["figures"]["static_m"].is_number(); });
+  EXPECT_EQ(margins["metrics"][0]["name"], "support");
+  page.control("pause");
+  EXPECT_EQ(page.reply()["ok"], true);
+  EXPECT_TRUE(page.text("status", [](const auto& status) { return status["paused"] == true; })["speed"] == 0.5);
+  page.control("rewind", 0.1);
+  EXPECT_EQ(page.reply()["ok"], true);
+  page.control("do", 0, "{remove: dog}");
+  EXPECT_THAT(page.reply()["text"], HasSubstr("'do' is not possible while a motion is played"));
+  page.control("speed", 0);
+  EXPECT_EQ(page.reply()["ok"], true);
+  page.control("resume");
+  EXPECT_EQ(program.wait(), 0);
+  // What the page did does not change how it ends.
+  const Ended alone = motion({"play", source("vehicles/motions/ers7/nod.yaml"), "--world", world});
+  EXPECT_EQ(program.output(), alone.output);
+}
+
+TEST(Motion, ASignalEndsALoopOnALivePage) {
+  Program program({built("shoal"), "motion", "play", source("vehicles/motions/ers7/nod.yaml"), "--world",
+                   source("worlds/ers7_studio.yaml"), "--view", "--view-port", "0", "--loop"});
+  ASSERT_TRUE(await([&] { return program.errors().find("Ctrl-C ends it\n") != std::string::npos; }, timeout));
+  program.send_signal(SIGINT);
+  EXPECT_EQ(program.wait(), 130);
+  EXPECT_THAT(program.output(), HasSubstr("ended after 0.000 s"));
 }
 
 TEST(Motion, ItsStabilityHasARowForEachKey) {

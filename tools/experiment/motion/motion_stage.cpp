@@ -8,6 +8,7 @@
 #include "messages/yaml/message_writer.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/motion/motion_frames.hpp"
+#include "sim/state/state_archive.hpp"
 #include "sim/world/world_editor.hpp"
 #include "sim/world/world_state.hpp"
 
@@ -62,6 +63,7 @@ MotionStage::MotionStage(const StageOptions& options, const std::function<sim::J
   loaded_ =
       options.tree ? sim::load_world_tree(*options.tree, options.world, load) : sim::load_world(options.world, load);
   world_ = std::make_unique<sim::World>(loaded_.config, bus_);
+  if (options.scores) scoring_ = std::make_unique<Scoring>(*world_);
   // Find the player.
   for (const auto& vehicle : world_->vehicles())
     for (const sim::MountedDevice* device : vehicle->devices()) {
@@ -83,10 +85,10 @@ MotionStage::MotionStage(const StageOptions& options, const std::function<sim::J
   std::stable_sort(due_.begin(), due_.end(), [](const auto& a, const auto& b) { return a.at_s < b.at_s; });
   // Play the motion from the start.
   set_motion(motion);
-  devices::MotionPlayer::Play play;
+  devices::MotionPlayer::Play play = options.play;
   play.motion = motion.name;
-  const_cast<devices::MotionPlayer&>(player()).play(play);
-  snapshots_[0] = world_->state().snapshot();
+  player().play(play);
+  snapshots_[0] = save();
 }
 
 MotionStage::~MotionStage() = default;
@@ -98,7 +100,44 @@ const sim::Vehicle& MotionStage::vehicle() const {
 }
 
 const devices::MotionPlayer& MotionStage::player() const {
-  return dynamic_cast<const devices::MotionPlayer&>(*world_->find_device(player_)->sensor());
+  return player_in(*world_);
+}
+
+devices::MotionPlayer& MotionStage::player_in(sim::World& world) const {
+  const auto& player = dynamic_cast<const devices::MotionPlayer&>(*world.find_device(player_)->sensor());
+  return const_cast<devices::MotionPlayer&>(player);
+}
+
+std::optional<Support> MotionStage::support() {
+  if (watched_generation_ == world_->generation()) return support_of(*world_, vehicle());
+  watched_generation_ = world_->generation();
+  world_->physics().watch_contacts(vehicle().group());
+  return std::nullopt;
+}
+
+MotionStage::Saved MotionStage::save() {
+  Saved saved{world_->state().snapshot(), {}};
+  if (!scoring_) return saved;
+  auto archive = sim::StateArchive::saver();
+  scoring_->visit_state(archive, History::length);
+  archive.end();
+  saved.scores = archive.take_bytes();
+  return saved;
+}
+
+void MotionStage::restore(const Saved& saved) {
+  world_->state().restore(saved.world);
+  watched_generation_.reset();
+  if (after_restore) after_restore(player());
+  if (!scoring_) return;
+  auto archive = sim::StateArchive::restorer(saved.scores);
+  scoring_->visit_state(archive, History::length);
+  archive.end();
+}
+
+void MotionStage::restore(StageCopy& copy, const sim::Bytes& snapshot) const {
+  copy.world().state().restore(snapshot);
+  if (after_restore) after_restore(player_in(copy.world()));
 }
 
 std::uint64_t MotionStage::state_hash() const {
@@ -111,7 +150,8 @@ double MotionStage::now_s() const {
 
 double MotionStage::time_of(double motion_s) const {
   if (started_s_) return *started_s_ + motion_s / player().rate();
-  return (motion_s - player().at_s()) / player().rate() + now_s();
+  // Before the start, its time in the motion is what is left of the approach.
+  return (motion_s - player().from_s()) / player().rate() - player().at_s() + now_s();
 }
 
 void MotionStage::set_motion(const sim::JointMotion& motion) {
@@ -148,9 +188,17 @@ void MotionStage::cut() {
 void MotionStage::start_branch(Change change) {
   const std::int64_t step = change.step;
   cut();
-  apply(change);
+  const Saved before = save();
+  try {
+    apply(change);
+    if (world_->find_vehicle(vehicle_) == nullptr)
+      throw sim::ConfigError({"vehicle '" + vehicle_ + "' has the motion, and cannot be removed"});
+  } catch (const std::runtime_error&) {
+    restore(before);
+    throw;
+  }
   changes_.push_back(std::move(change));
-  snapshots_[step] = world_->state().snapshot();  // it holds the change
+  snapshots_[step] = save();  // it holds the change
 }
 
 void MotionStage::change_motion(const sim::JointMotion& motion) {
@@ -163,6 +211,7 @@ void MotionStage::run_action(const sim::ConfigNode& action) {
 
 void MotionStage::step() {
   world_->step();
+  if (scoring_) scoring_->after_step();
   const std::int64_t step = world_->step_number();
   // Changes of the branch that the snapshot from which it was restored does not hold.
   for (const Change& change : changes_)
@@ -170,7 +219,7 @@ void MotionStage::step() {
   const auto period =
       std::max<std::int64_t>(1, std::llround(options_.snapshot_s / sim::to_seconds(world_->step_time())));
   if (step % period == 0 && !snapshots_.contains(step)) {
-    snapshots_[step] = world_->state().snapshot();
+    snapshots_[step] = save();
     drop_old_snapshots();
   }
   furthest_step_ = std::max(furthest_step_, step);
@@ -198,22 +247,23 @@ void MotionStage::go_to(double at_s) {
     const auto later = snapshots_.upper_bound(desired);
     if (later == snapshots_.begin())
       throw std::runtime_error("the earliest snapshot is at " + sim::number_text(earliest_s()) + " s");
-    world_->state().restore(std::prev(later)->second);
-    if (after_restore) after_restore(*this);
+    restore(std::prev(later)->second);
   }
   while (world_->step_number() < desired) step();
 }
 
-bool MotionStage::play_out(double settle_s, double max_s) {
-  while (player().phase() != devices::MotionPlayer::Phase::idle && now_s() < max_s) {
-    step();
-    // The approach is planned in the first step.
-    while (!due_.empty() && player().at_s() >= due_.front().at_s - 1e-9) {
-      const sim::MotionChange change = due_.front();
-      due_.erase(due_.begin());
-      run_action(change.action);
-    }
+void MotionStage::play_step() {
+  step();
+  // The approach is planned in the first step.
+  while (!due_.empty() && player().at_s() >= due_.front().at_s - 1e-9) {
+    const sim::MotionChange change = due_.front();
+    due_.erase(due_.begin());
+    run_action(change.action);
   }
+}
+
+bool MotionStage::play_out(double settle_s, double max_s) {
+  while (player().phase() != devices::MotionPlayer::Phase::idle && now_s() < max_s) play_step();
   const double end_s = std::min(now_s() + settle_s, max_s);
   while (now_s() < end_s - 1e-9) step();
   return player().phase() == devices::MotionPlayer::Phase::idle;

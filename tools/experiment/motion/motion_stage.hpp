@@ -16,6 +16,8 @@
 #include "sim/motion/motion.hpp"
 #include "sim/world/world.hpp"
 #include "sim/world_file/load_world.hpp"
+#include "tools/experiment/score/scoring.hpp"
+#include "tools/experiment/score/support.hpp"
 
 namespace tools {
 
@@ -27,6 +29,8 @@ struct StageOptions {
   sim::LoadOptions load;
   double snapshot_s = 0.25;                                 ///< simulated time between two snapshots
   double kept_s = std::numeric_limits<double>::infinity();  ///< how far it can go back, s
+  devices::MotionPlayer::Play play;                         ///< part that is played; the motion is that of the stage
+  bool scores = false;                                      ///< whether the metrics of the world are computed
 };
 
 /// Another world of the same configuration, on its own bus.
@@ -68,12 +72,15 @@ class MotionStage {
   /// the changes of the motion on the way.  Returns whether the motion has ended.  Throws ConfigError when a change is
   /// not an action of the world.
   bool play_out(double settle_s, double max_s);
+  /// Simulates one step, and carries out the changes of the motion that are due after it.  Throws as play_out().
+  void play_step();
 
   /// Drops what was simulated beyond the present instant, and the changes there: the next step starts a branch.
   void cut();
   /// Replaces the motion from now on.
   void change_motion(const sim::JointMotion& motion);
-  /// Executes an action of the world now, as in `events:`.
+  /// Executes an action of the world now, as in `events:`.  Throws sim::ConfigError or sim::WorldError when it cannot
+  /// be carried out, or removes the vehicle; the world is then as before.
   void run_action(const sim::ConfigNode& action);
 
   double now_s() const;
@@ -82,6 +89,11 @@ class MotionStage {
   /// Time of the run at which a time of the motion is reached in its first round, s.
   double time_of(double motion_s) const;
   std::uint64_t state_hash() const;
+  /// Returns how the vehicle stands in the last step.  None: fewer than three contacts carry it, or they are known from
+  /// the next step on, as in the first call and after a snapshot was restored.
+  std::optional<Support> support();
+  /// Metrics of the world, which go back with it; null without StageOptions::scores.
+  const Scoring* scoring() const { return scoring_.get(); }
   const std::vector<Branch>& branches() const { return branches_; }
   sim::World& world() { return *world_; }
   /// Returns the world at its start, as a complete world file.
@@ -89,13 +101,16 @@ class MotionStage {
   /// Returns a world in which snapshots of this one can be restored.  It may be used by another thread, one thread at a
   /// time; the stage must outlive it.
   std::unique_ptr<StageCopy> copy() const { return std::make_unique<StageCopy>(loaded_.config); }
+  /// Restores a snapshot of the world of this stage in a copy, with what after_restore sets.
+  void restore(StageCopy& copy, const sim::Bytes& snapshot) const;
   const sim::Vehicle& vehicle() const;
   const devices::MotionPlayer& player() const;
   devices::MotionPlayer& player() { return const_cast<devices::MotionPlayer&>(std::as_const(*this).player()); }
   /// Called after each step of go_to() and play_out().
   std::function<void(MotionStage&)> after_step;
-  /// Called in go_to() after a snapshot was restored: references to devices may have changed.
-  std::function<void(MotionStage&)> after_restore;
+  /// Sets what no snapshot holds in the player of a world in which one was restored, this or a copy.  Threads with
+  /// copies call it at the same time.
+  std::function<void(devices::MotionPlayer&)> after_restore;
 
  private:
   struct Change {
@@ -103,7 +118,13 @@ class MotionStage {
     sim::ConfigNode action;  ///< null: none
     sim::JointMotion motion;
   };
+  struct Saved {
+    sim::Bytes world, scores;
+  };
 
+  Saved save();
+  void restore(const Saved& saved);
+  devices::MotionPlayer& player_in(sim::World& world) const;
   void step();
   void apply(const Change& change);
   void set_motion(const sim::JointMotion& motion);
@@ -114,11 +135,13 @@ class MotionStage {
   sim::LoadedWorld loaded_;
   sim::InProcessBus bus_;
   std::unique_ptr<sim::World> world_;
+  std::unique_ptr<Scoring> scoring_;
   std::string vehicle_, player_;
-  std::optional<double> started_s_;               ///< time of the run at the start of the motion
-  std::vector<sim::MotionChange> due_;            ///< changes of the motion that are still to come
-  std::map<std::int64_t, sim::Bytes> snapshots_;  ///< by step
-  std::vector<Change> changes_;                   ///< of the present branch, by step
+  std::optional<std::uint64_t> watched_generation_;  ///< of the world, in which the contacts of the vehicle are watched
+  std::optional<double> started_s_;                  ///< time of the run at the start of the motion
+  std::vector<sim::MotionChange> due_;               ///< changes of the motion that are still to come
+  std::map<std::int64_t, Saved> snapshots_;          ///< by step
+  std::vector<Change> changes_;                      ///< of the present branch, by step
   std::vector<Branch> branches_;
   std::int64_t furthest_step_ = 0;  ///< of the present branch
   std::uint64_t furthest_hash_ = 0;

@@ -56,7 +56,7 @@ class PushWorld {
   PushOutcome push(const sim::Bytes& snapshot, const sim::Vector3d& impulse_per_mass_V, const PushOptions& options,
                    std::span<const BaseState> course = {}) {
     sim::World& world = copy_->world();
-    world.state().restore(snapshot);
+    stage_.restore(*copy_, snapshot);
     const sim::Vehicle& vehicle = *world.find_vehicle(stage_.vehicle().name());
     world.physics().watch_contacts(vehicle.group());
     sim::Body& base = *vehicle.bodies().front().second;
@@ -176,7 +176,7 @@ std::vector<PushMargin> push_margins(MotionStage& stage, const std::vector<doubl
     const double angle_rad = 2 * std::numbers::pi * static_cast<double>(direction) / options.directions;
     const auto pushed = [&](double mps) { return worlds.push(snapshots[instant], mps * along(angle_rad), options); };
     const auto falls = [&](double mps) { return pushed(mps).fell; };
-    settle_m[i] = pushed(options.settle_mps).distance_m(alone[instant]);
+    if (options.settle_mps > 0) settle_m[i] = pushed(options.settle_mps).distance_m(alone[instant]);
     double withstood = 0, fell = options.greatest_mps;
     if (alone[instant].fell) return;  // it falls by itself
     if (!falls(fell)) withstood = fell;

@@ -14,7 +14,7 @@ struct PushOptions {
   double watch_s = 2;       ///< time after the push in which it may fall
   double greatest_mps = 6;  ///< greatest impulse over the mass of the vehicle
   double resolution_mps = 1.0 / 64;
-  double settle_mps = 0.1875;  ///< impulse over mass of the settle displacement
+  double settle_mps = 0.1875;  ///< impulse over mass of the settle displacement; 0: it is not measured
   int threads = 0;             ///< 0: one for each processor
 };
 

@@ -83,6 +83,8 @@ bool JointCommands::wish_of(const std::string& name) {
     wishes_.push_back(RecordWish::finish);
   else if (name == "backspace")
     wishes_.push_back(RecordWish::back);
+  else if (name == "'")
+    wishes_.push_back(RecordWish::push);
   else if (name == "tab")
     release_all();
   else if (name == "=" || name == "+")
@@ -144,7 +146,7 @@ void JointCommands::button(int code, bool is_down) {
 }
 
 bool JointCommands::uses(const std::string& key) const {
-  for (const char* other : {"space", "enter", "backspace", "tab", "=", "+", "-"})
+  for (const char* other : {"space", "enter", "backspace", "tab", "=", "+", "-", "'"})
     if (key == other) return true;
   return std::any_of(keys_.begin(), keys_.end(), [&](const Keys& one) { return key == one.plus || key == one.minus; });
 }

@@ -14,7 +14,7 @@
 namespace tools {
 
 /// Wish of the person who records, beside the velocities of joints.
-enum class RecordWish { pause, finish, back };
+enum class RecordWish { pause, finish, back, push };
 
 /// Velocities of joints, from the keys and sticks that are held.
 ///

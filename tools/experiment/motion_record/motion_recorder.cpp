@@ -84,9 +84,10 @@ MotionRecorder::MotionRecorder(RecordOptions options, const std::string& journal
   // The first frame, to which its values hold, and the one after it.
   journal_->frame(recorded_values());
   recent_.push_back({0, recorded_values()});
-  stage_->after_restore = [this](MotionStage& stage) {
+  stage_->after_restore = [this](MotionPlayer& player) {
+    const auto present = static_cast<std::int64_t>(std::floor(player.at_s() / frame_s_));
     for (const Frame& frame : recent_)
-      if (frame.number > 0) stage.player().set_frame(frame.number, armed_, frame.values, 0x7fffffff);
+      if (frame.number > 0 && frame.number >= present) player.set_frame(frame.number, armed_, frame.values, 0x7fffffff);
   };
   frame(std::vector<double>(names_.size(), 0.0));
 }
@@ -179,7 +180,11 @@ void MotionRecorder::check_part() const {
   if (!options_.from_s && !options_.to_s) return;
   const double end_s = options_.over ? options_.over->end_s() : 0;
   const double from_s = options_.from_s.value_or(0), to_s = options_.to_s.value_or(end_s);
-  if (from_s >= 0 && from_s < to_s && to_s <= end_s + rounding * frame_s_) return;
+  // Without an end it may start where the motion ends.
+  const double last_s = static_cast<double>(frames_over()) * frame_s_;
+  const bool is_within = options_.to_s || options_.over->loop ? from_s < to_s && to_s <= end_s + rounding * frame_s_
+                                                              : from_s <= last_s + rounding * frame_s_;
+  if (from_s >= 0 && is_within) return;
   throw sim::ConfigError({"the part must lie within the motion, from 0 to " + sim::number_text(end_s) + " s, got " +
                           sim::number_text(from_s) + " to " + sim::number_text(to_s)});
 }
@@ -195,7 +200,7 @@ std::int64_t MotionRecorder::frames_over() const {
 }
 
 bool MotionRecorder::is_full() const {
-  const bool ends_with_over = options_.over && (options_.over->loop || options_.to_s || options_.from_s);
+  const bool ends_with_over = options_.over && (options_.over->loop || options_.to_s);
   const bool is_at_end = ends_with_over && frames_ + 1 >= frames_over();
   return is_at_end || frames_ + 2 >= static_cast<std::int64_t>(max_take_frames(armed_.size()));
 }
@@ -261,9 +266,20 @@ void MotionRecorder::frame(std::span<const double> velocities) {
 }
 
 void MotionRecorder::change(const sim::ConfigNode& action) {
+  if (changes_ == max_take_changes)
+    throw sim::ConfigError({"a recording has at most " + std::to_string(max_take_changes) + " changes of the world"});
   stage_->run_action(action);
+  ++changes_;
   const double at_s = std::max(0.0, stage_->player().at_s());
   journal_->change(std::round(at_s * 1e9) / 1e9, action);  // at a step: the same after rounding
+}
+
+PushMargin MotionRecorder::push_margin() {
+  PushOptions options;
+  options.watch_s = 1;
+  options.resolution_mps = 1.0 / 16;
+  options.settle_mps = 0;
+  return push_margins(*stage_, {stage_->now_s()}, options).front();
 }
 
 double MotionRecorder::back(double by_s) {

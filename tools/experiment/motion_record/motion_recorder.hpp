@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "tools/experiment/motion/motion_stage.hpp"
+#include "tools/experiment/motion/push_test.hpp"
 #include "tools/experiment/motion_record/set_points.hpp"
 #include "tools/experiment/motion_record/take_journal.hpp"
 
@@ -22,7 +23,8 @@ struct RecordOptions {
   std::optional<sim::JointMotion> over;  ///< motion that plays, while some of its joints are recorded
   std::vector<std::string> joints;       ///< that are recorded, by name or alias; empty: all of the group
   std::optional<double> from_s,
-      to_s;            ///< part of `over` that is recorded; unset: from its start, to the end of the recording
+      to_s;  ///< part of `over` that is recorded; unset: from its start, to the end of the recording, which may be
+             ///< later
   double back_s = 30;  ///< how far back() can go
 };
 
@@ -40,15 +42,18 @@ class MotionRecorder {
   /// Records and plays one frame.  `velocities`: of each joint of the group, rad/s or m/s.
   void frame(std::span<const double> velocities);
   /// Executes an action of the world now, as in `events:`, which becomes a part of the motion.  Throws
-  /// sim::ConfigError for one that cannot be carried out; it is then not recorded.
+  /// sim::ConfigError or sim::WorldError for one that cannot be carried out; it is then not recorded.
   void change(const sim::ConfigNode& action);
   /// Goes back in time; what was recorded since does not count.  Returns the time that it went back, s.
   double back(double by_s);
+  /// Measures the pushes that the vehicle withstands now, while the recorded joints hold, in copies of the world.  An
+  /// impulse over mass is exact to 1/16 m/s, and 6 m/s at most; the vehicle may fall within a second.
+  PushMargin push_margin();
   /// Plays to the end of the motion over which it records, and ends there.  Returns the hash of the state.
   std::uint64_t finish();
 
-  /// Returns whether the recording must end: at the end of a motion that loops or whose part is recorded, and at the
-  /// limit of the length of a motion.
+  /// Returns whether the recording must end: at the end of a motion that loops or whose part with an end is recorded,
+  /// and at the limit of the length of a motion.
   bool is_full() const;
   /// Returns whether the next frame is recorded, and not played from `over`.
   bool is_recording() const;
@@ -99,6 +104,7 @@ class MotionRecorder {
   std::int64_t frames_ = 0;      ///< number of the last one
   std::deque<Frame> recent_;     ///< for going back
   std::size_t next_change_ = 0;  ///< of `over`
+  std::size_t changes_ = 0;      ///< in the journal
 };
 
 }  // namespace tools

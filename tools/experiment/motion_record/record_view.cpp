@@ -1,38 +1,33 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/experiment/motion_record/record_view.hpp"
 
-#include "tools/experiment/run/version.hpp"
+#include <spdlog/fmt/fmt.h>
+
+#include "sim/world_file/vehicle_loader.hpp"
 
 namespace tools {
 
-RecordView::RecordView(const ViewOptions& options, MotionStage& stage)
-    : stage_(stage),
-      page_(options, short_version()),
-      bus_(page_),
-      publisher_(bus_, stage.world(), {}, [] { return true; }) {
-  page_.start(stage_.world(), std::nullopt);
-  stage_.after_step = [this](MotionStage& now) {
-    publisher_.after_step();
-    page_.after_step(now.world(), publisher_, control_);
-  };
-}
-
-RecordView::~RecordView() {
-  stage_.after_step = {};
-  page_.ended(stage_.world(), control_, "quit", "");
-}
-
 void RecordView::serve(bool is_paused) {
-  control_.paused = is_paused;
-  page_.serve(stage_.world(), publisher_, control_, "", [](const std::string&, double, const std::string&) {
-    return RunView::Answer{false, "a recording is steered by its keys"};
+  page_.control().paused = is_paused;
+  page_.serve([this](const std::string& command, double, const std::string& text) {
+    try {
+      return RunView::Answer{true, execute(command, text)};
+    } catch (const std::runtime_error& error) {
+      return RunView::Answer{false, error.what()};
+    }
   });
 }
 
-void RecordView::went_back() {
-  publisher_.discard();
-  publisher_.set_branch(++control_.branch);
-  page_.moved(stage_.world(), control_, true);
+std::string RecordView::execute(const std::string& command, const std::string& text) {
+  if (command == "spawn")
+    throw sim::ConfigError({"a motion cannot have a vehicle that is spawned: add it by an action, {add: ...}"});
+  if (command != "do") throw sim::ConfigError({"a recording is steered by its keys"});
+  const sim::ConfigNode action = sim::parse_untrusted(text, "do");
+  sim::Diagnostics diagnostics;
+  sim::check_untrusted(action, "", diagnostics);
+  diagnostics.throw_if_any();
+  recorder_.change(action);
+  return fmt::format("recorded at {:.3f} s", recorder_.now_s());
 }
 
 }  // namespace tools

@@ -3,53 +3,30 @@
 
 #include <string>
 
-#include "bridges/view/view_publisher.hpp"
-#include "sim/bus/in_process_bus.hpp"
-#include "sim/run/run_control.hpp"
-#include "tools/experiment/motion/motion_stage.hpp"
-#include "tools/experiment/view/run_view.hpp"
+#include "tools/experiment/motion_record/motion_recorder.hpp"
+#include "tools/experiment/motion_record/stage_view.hpp"
 
 namespace tools {
 
-/// Live page of a recording of a motion.  Pages see the world; they neither steer it nor change the recording.
+/// Live page of a recording of a motion.  Pages see the world, and change it by actions, which become a part of the
+/// recording; only keys steer it.
 class RecordView {
  public:
-  /// Starts the server, and sends the state after each step of the stage, which must outlive this.  Throws
-  /// bridges::WebError.
-  RecordView(const ViewOptions& options, MotionStage& stage);
-  ~RecordView();
-  RecordView(const RecordView&) = delete;
-  RecordView& operator=(const RecordView&) = delete;
+  /// Starts the server.  `recorder` must outlive this.  Throws bridges::WebError.
+  RecordView(const ViewOptions& options, MotionRecorder& recorder)
+      : recorder_(recorder), page_(options, recorder.stage()) {}
 
   std::string url() const { return page_.url(); }
   /// Serves the pages; to be called once a frame, also while the recording is paused.
   void serve(bool is_paused);
   /// Announces that the recording went back in time.
-  void went_back();
+  void went_back() { page_.went_back(); }
 
  private:
-  /// Bus of the messages for viewers only.
-  class PageBus final : public sim::Bus {
-   public:
-    explicit PageBus(RunView& page) : page_(page) {}
-    void publish(std::string_view channel, std::span<const std::byte> payload, sim::Time at) override {
-      page_.message(channel, payload, at);
-    }
-    std::unique_ptr<sim::Mailbox> open_mailbox(const std::string& channel, std::size_t capacity) override {
-      return nobody_.open_mailbox(channel, capacity);
-    }
-    sim::BusCounts counts() const override { return nobody_.counts(); }
+  std::string execute(const std::string& command, const std::string& text);
 
-   private:
-    RunView& page_;
-    sim::InProcessBus nobody_;
-  };
-
-  MotionStage& stage_;
-  sim::RunControl control_;
-  RunView page_;
-  PageBus bus_;
-  bridges::ViewPublisher publisher_;
+  MotionRecorder& recorder_;
+  StageView page_;
 };
 
 }  // namespace tools

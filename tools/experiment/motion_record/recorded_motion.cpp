@@ -80,18 +80,30 @@ void add_frames(std::vector<TrackKey>& keys, const MotionTrack& track, double fr
       keys.push_back({frame * frame_s, track.value_at(frame * frame_s), Easing::linear});
 }
 
+/// Returns the easing of the key of a motion at a time; linear: there is none, or it depends on other keys.
+Easing easing_at(const sim::JointMotion& motion, double at_s) {
+  for (const sim::MotionKey& key : motion.keys)
+    if (const Easing ease = key.ease.value_or(motion.ease);
+        std::abs(key.at_s - at_s) <= same_time_s && ease != Easing::spline)
+      return ease;
+  return Easing::linear;
+}
+
 /// Puts the keys of a part into a track, in place of what it has there.  Segments that are cut and not linear become
-/// frames.
-MotionTrack spliced(const MotionTrack& track, const std::vector<TrackKey>& part, double frame_s) {
+/// frames.  `ease`: of the keys of other joints at the start of the part; a joint that does not move up to it has it
+/// too.
+MotionTrack spliced(const MotionTrack& track, const std::vector<TrackKey>& part, double frame_s, Easing ease) {
   const double from_s = part.front().at_s, to_s = part.back().at_s;
   MotionTrack result{track.joint, {}};
   // Before the part.
   auto key = track.keys.begin();
   for (; key != track.keys.end() && key->at_s < from_s - same_time_s; ++key) result.keys.push_back(*key);
-  if (key != track.keys.end() && key != track.keys.begin() && key->ease != Easing::linear)
+  const bool is_cut = key != track.keys.end() && key->at_s > from_s + same_time_s;
+  if (is_cut && key != track.keys.begin() && key->ease != Easing::linear)
     add_frames(result.keys, track, result.keys.back().at_s, from_s, frame_s);
   // The part, then what follows.
-  result.keys.insert(result.keys.end(), part.begin(), part.end());
+  const auto first = result.keys.insert(result.keys.end(), part.begin(), part.end());
+  if (!is_cut) first->ease = key != track.keys.end() ? key->ease : ease;
   while (key != track.keys.end() && key->at_s <= to_s + same_time_s) ++key;
   if (key == track.keys.end()) return result;
   TrackKey next = *key;
@@ -165,6 +177,7 @@ sim::JointMotion keyed_motion(const Take& take, const sim::JointMotion& base, do
   const bool any_moves = !std::all_of(take.frames.begin(), take.frames.end(), is_at_rest);
   // Put them into the motion.
   std::vector<MotionTrack> tracks = base.tracks();
+  const Easing ease = easing_at(base, time_of(from, frame_s));
   for (MotionTrack& track : keyed) {
     const auto same =
         std::find_if(tracks.begin(), tracks.end(), [&](const auto& one) { return one.joint == track.joint; });
@@ -173,7 +186,7 @@ sim::JointMotion keyed_motion(const Take& take, const sim::JointMotion& base, do
       const auto is_spline = [](const TrackKey& key) { return key.ease == Easing::spline; };
       if (std::any_of(same->keys.begin(), same->keys.end(), is_spline))
         *same = sim::sampled({*same}, base.end_s(), frame_s).front();
-      *same = spliced(*same, track.keys, frame_s);
+      *same = spliced(*same, track.keys, frame_s, ease);
       continue;
     }
     const auto rests = [&](const TrackKey& key) { return key.value == track.keys.front().value; };

@@ -20,7 +20,6 @@ namespace tools {
 namespace {
 
 constexpr double max_value = 1e6;
-constexpr std::size_t max_take_changes = 100'000;
 
 std::string quoted(const std::string& text) {
   sim::ConfigNode node;

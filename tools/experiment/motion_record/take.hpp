@@ -43,6 +43,9 @@ struct Take {
 /// Returns how many frames of this many joints a recording may have: as many as can be written.
 std::size_t max_take_frames(std::size_t joints);
 
+/// Changes of the world that a recording may have.
+constexpr std::size_t max_take_changes = 100'000;
+
 /// First line of a journal.
 constexpr std::string_view take_head = "shoal recording 1\n";
 

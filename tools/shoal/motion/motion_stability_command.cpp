@@ -58,9 +58,9 @@ struct PlayedMotion {
 PlayedMotion played_once(const StabilityArguments& arguments, const std::string& file, const sim::JointMotion& motion) {
   PlayedMotion played{std::make_unique<MotionStage>(arguments.stage, motion), {}, 0, {}};
   MotionStage& stage = *played.stage;
-  stage.world().physics().watch_contacts(stage.vehicle().group());
+  stage.support();  // contacts are known from the next step on
   stage.after_step = [&](MotionStage& now) {
-    const auto support = support_of(now.world(), now.vehicle());
+    const auto support = now.support();
     played.course.push_back(
         support ? Margins{now.now_s(), support->static_margin_m, support->zmp_margin_m, support->capture_margin_m}
                 : Margins{now.now_s(), none, none, none});

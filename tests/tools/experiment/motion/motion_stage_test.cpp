@@ -2,12 +2,14 @@
 #include "tools/experiment/motion/motion_stage.hpp"
 
 #include <gmock/gmock.h>
+#include <spdlog/fmt/fmt.h>
 
 #include <fstream>
 #include <random>
 
 #include "sim/vehicle/mounted_device.hpp"
 #include "tests/devices/joint/leg_fixture.hpp"
+#include "tests/project_paths.hpp"
 #include "tests/scratch_folder.hpp"
 #include "tools/experiment/motion/motion_tracking.hpp"
 
@@ -133,6 +135,71 @@ TEST(MotionStage, CarriesOutTheChangesOfAMotionAtTheirTimes) {
     changed.go_to(end_s);
     EXPECT_EQ(changed.state_hash(), hash);
   }
+}
+
+TEST(MotionStage, AnActionThatCannotBeCarriedOutLeavesTheWorldAsItWas) {
+  const Theatre theatre;
+  tools::MotionStage stage(theatre.options, swing(1)), plain(theatre.options, swing(1));
+  stage.go_to(2);
+  plain.go_to(2);
+  sim::Diagnostics diagnostics;
+  const auto run = [&](const std::string& text) {
+    stage.run_action(sim::parse_config_text(text, "action", diagnostics));
+  };
+  EXPECT_THROW(run("{remove: dog}"), sim::ConfigError);
+  EXPECT_THROW(run("[{set: {device: dog/hip, values: {max_effort: 0.01}}}, {remove: dog}]"), sim::ConfigError);
+  EXPECT_EQ(stage.state_hash(), plain.state_hash());
+  stage.go_to(4);
+  plain.go_to(4);
+  EXPECT_EQ(stage.state_hash(), plain.state_hash());
+  // From before, too: nothing is carried out again.
+  stage.go_to(1);
+  stage.go_to(4);
+  EXPECT_EQ(stage.state_hash(), plain.state_hash());
+}
+
+TEST(MotionStage, PlaysAPartAgainAndAgain) {
+  Theatre theatre;
+  theatre.options.play.from_s = 0.5;
+  theatre.options.play.to_s = 1.5;
+  theatre.options.play.repeat = -1;
+  tools::MotionStage stage(theatre.options, swing(1));
+  stage.go_to(0.1);  // the approach is planned
+  const double start_s = stage.time_of(0.5);
+  stage.go_to(start_s + 2.25);
+  EXPECT_NEAR(stage.player().at_s(), 0.75, 1e-9);
+  theatre.options.play.to_s = 4;
+  EXPECT_THROW(tools::MotionStage(theatre.options, swing(1)), std::runtime_error);
+}
+
+TEST(MotionStage, MarginsAndScoresGoBackWithIt) {
+  tools::StageOptions options;
+  options.world = test_support::source_path("worlds/ers7_studio.yaml");
+  options.scores = true;
+  sim::JointMotion bow;
+  bow.name = "bow";
+  bow.keys = {{0, "", {{"lf_swing", 0}, {"rf_swing", 0}}, {}, "", {}},
+              {1, "", {{"lf_swing", -0.5}, {"rf_swing", -0.5}}, {}, "", {}}};
+  tools::MotionStage stage(options, bow);
+  const auto figures = [&] {
+    std::string text;
+    for (const auto& [name, value] : stage.scoring()->figures()) text += fmt::format("{} {}\n", name, value);
+    return text;
+  };
+  EXPECT_FALSE(stage.support());
+  stage.go_to(0.5);
+  const std::string half = figures();
+  const double margin_m = stage.support().value().static_margin_m;
+  EXPECT_GT(margin_m, 0);
+  // The metric of the world has the same.
+  EXPECT_THAT(half, HasSubstr(fmt::format("support.static_m {}\n", margin_m)));
+  stage.go_to(1.2);
+  EXPECT_NE(figures(), half);
+  stage.go_to(0.3);
+  EXPECT_FALSE(stage.support());  // its contacts are known from the next step on
+  stage.go_to(0.5);
+  EXPECT_EQ(figures(), half);
+  EXPECT_EQ(stage.support().value().static_margin_m, margin_m);
 }
 
 TEST(MotionStage, TracksSetPointsAndTilt) {

@@ -90,10 +90,12 @@ TEST(JointCommands, OtherKeysAreWishesAndActions) {
   tools::JointCommands held = commands({"[", "]"});
   held.key("space", true);
   held.key("]", true);
+  held.key("'", true);
   held.key("enter", true);
   held.key("=", true);
   held.key("1", true);
-  EXPECT_THAT(held.take_wishes(), ElementsAre(tools::RecordWish::pause, tools::RecordWish::finish));
+  EXPECT_THAT(held.take_wishes(),
+              ElementsAre(tools::RecordWish::pause, tools::RecordWish::push, tools::RecordWish::finish));
   EXPECT_TRUE(held.take_wishes().empty());
   EXPECT_THAT(held.take_actions(), ElementsAre(1));
   EXPECT_EQ(held.velocities()[0], 2 * 1.25);

@@ -16,6 +16,7 @@
 #include "tests/project_paths.hpp"
 #include "tests/scratch_folder.hpp"
 #include "tools/experiment/motion/motion_check.hpp"
+#include "tools/experiment/motion/push_test.hpp"
 #include "tools/experiment/motion_record/recorded_motion.hpp"
 
 namespace {
@@ -307,6 +308,80 @@ TEST(MotionRecorder, APartThatIsRecordedAnewEndsAtTheValuesOfTheMotion) {
     // The servo is as fast as 50 rad/s.
     EXPECT_LE(fastest, 50 * frame_s * (1 + 1e-9)) << joint;
   }
+}
+
+/// A motion of the leg that turns its hip in 1 s.
+sim::JointMotion turn_of_hip(Studio& studio, bool loop = false) {
+  sim::JointMotion base;
+  base.name = "swing";
+  base.ease = sim::Easing::smooth;
+  base.loop = loop;
+  base.keys = {{0, "", {{"hip", 0.2}}, {}, "", {}}, {1, "", {{"hip", loop ? 0.2 : 1}}, {}, "", {}}};
+  std::ofstream(studio.file) << sim::motion_text(base);
+  return sim::load_motion(studio.file);
+}
+
+TEST(MotionRecorder, GoesOnFromTheEndOfAMotion) {
+  Studio studio;
+  const sim::JointMotion base = turn_of_hip(studio);
+  studio.options.over = base;
+  studio.options.from_s = 1;
+  auto recorder = studio.recorder();
+  record(*recorder, 125, 5, 5);  // up to the end velocities have no effect, and the first frame was there
+  EXPECT_NEAR(recorder->now_s(), 126 * frame_s, 1e-9);
+  EXPECT_TRUE(recorder->is_recording());
+  record(*recorder, 50, -1, 0.5);
+  EXPECT_FALSE(recorder->is_full());
+  const sim::JointMotion motion = studio.save(std::move(recorder));
+  // The keys of the motion stay, with its easing: no frames.
+  EXPECT_TRUE(motion.frames.empty());
+  EXPECT_LE(motion.keys.size(), 6u);
+  const sim::MotionTrack before = track_of(base.tracks(), "hip"), hip = track_of(motion.tracks(), "hip");
+  for (int i = 0; i <= 125; ++i) EXPECT_EQ(hip.value_at(i * frame_s), before.value_at(i * frame_s));
+  // Frame 126 was the last one of the record() before: it moved by its velocity.
+  EXPECT_NEAR(hip.value_at(99), 1 + 5 * frame_s - 50 * frame_s, 1e-9);
+  EXPECT_NEAR(track_of(motion.tracks(), "knee").value_at(99), 5 * frame_s + 50 * 0.5 * frame_s, 1e-9);
+  EXPECT_EQ(track_of(motion.tracks(), "knee").value_at(1), 0);
+  EXPECT_NEAR(motion.end_s(), 177 * frame_s, 1e-9);
+}
+
+TEST(MotionRecorder, APartWithoutAnEndMayGoBeyondTheMotion) {
+  Studio studio;
+  studio.options.over = turn_of_hip(studio);
+  studio.options.from_s = 0.8;
+  auto recorder = studio.recorder();
+  record(*recorder, 200, 0, 0.1);
+  EXPECT_FALSE(recorder->is_full());
+  EXPECT_NEAR(studio.save(std::move(recorder)).end_s(), 202 * frame_s, 1e-9);
+  // With an end, and in a loop, it does not.
+  for (const bool loop : {false, true}) {
+    studio.options.over = turn_of_hip(studio, loop);
+    studio.options.to_s = loop ? std::nullopt : std::optional(0.9);
+    recorder = studio.recorder();
+    record(*recorder, 123, 0, 0.1);
+    EXPECT_TRUE(recorder->is_full()) << loop;
+    recorder.reset();
+    std::filesystem::remove(tools::journal_path(studio.file));
+  }
+}
+
+TEST(MotionRecorder, ThePushMarginIsThatOfTheFramesAndChangesNothing) {
+  Studio studio;
+  studio.options.stage.world = test_support::source_path("worlds/ers7_studio.yaml");
+  auto recorder = studio.recorder();
+  std::vector<double> bend(recorder->joints().size(), 0.0);
+  for (const char* knee : {"lf_knee", "rf_knee", "lh_knee", "rh_knee"}) bend[recorder->find(knee).value()] = 1;
+  for (int i = 0; i < 60; ++i) recorder->frame(bend);
+  const tools::PushMargin margin = recorder->push_margin();
+  EXPECT_GT(margin.least_Ns(), 0);
+  EXPECT_LT(margin.least_Ns(), 6 * margin.mass_kg);
+  studio.save(std::move(recorder));  // the state at the end is the same without it
+  // Copies have the recorded frames: the margin is that of the motion, which holds where the recording was measured.
+  tools::MotionStage stage(studio.options.stage, sim::load_motion(tools::take_path(studio.file)));
+  tools::PushOptions push;
+  push.watch_s = 1;
+  push.resolution_mps = 1.0 / 16;
+  EXPECT_EQ(tools::push_margins(stage, {margin.at_s}, push).front().withstood_mps, margin.withstood_mps);
 }
 
 TEST(MotionRecorder, SaysWhatCannotBeRecorded) {
