@@ -23,6 +23,7 @@ struct State {
   autonomy::Balance balance;
   std::optional<std::int64_t> started_utime = {}, fell_utime = {};
   std::size_t next_speed = 0;
+  bool waits = false;  ///< it has reported that sensors are missing
 };
 
 int balance(const Options& options) {
@@ -53,7 +54,13 @@ int balance(const Options& options) {
 
     // Publish the torques.
     const auto torques = balance.step();
-    if (!torques) return;
+    if (!torques) {
+      if (now_s < 1 || state.waits) return;
+      state.waits = true;
+      std::cerr << options.name << ": no torque, since not all reports come: " << prefix << "inclinometer, " << prefix
+                << "encoder" << (options.balance.filter_s > 0 ? ", " + prefix + "imu" : "") << '\n';
+      return;
+    }
     const auto publish = [&](const char* motor, double torque_Nm) {
       shoal::joint_servo_command_t command{};
       command.utime = utime;
