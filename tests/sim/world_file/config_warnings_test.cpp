@@ -42,13 +42,13 @@ TEST(ConfigWarnings, ReportBodiesThatNoJointsConnect) {
   };
   const std::string joined = "{name: a, bodies: [seat, foot]}";
   EXPECT_EQ(chair(joined),
-            "worlds/test.yaml:4:105: object 'chair': body 'cup': no joints connect it with body 'seat': "
+            "worlds/test.yaml:4:112: object 'chair': body 'cup': no joints connect it with body 'seat': "
             "it moves on its own\n");
   // By way of another body, or of the world.
   EXPECT_EQ(chair(joined + ", {name: b, bodies: [cup, foot]}"), "");
   EXPECT_EQ(chair(joined + ", {name: b, bodies: [cup, world]}, {name: c, bodies: [foot, world]}"), "");
   // The check of vehicles and objects is one.
-  EXPECT_THAT(warnings_of_file("shoal: 1\nvehicles:\n- name: v1\n  model:\n    " + bodies(joined)),
+  EXPECT_THAT(warnings_of_file("shoal: 1\nvehicles:\n- name: v1\n  model:\n    shoal: 1\n    " + bodies(joined)),
               HasSubstr("vehicle 'v1': body 'cup': no joints connect it with body 'seat'"));
   EXPECT_THAT(chair(joined + ", {name: b, type: fixed, bodies: [cup, foot], low_stop: 0}"),
               HasSubstr("object 'chair': joint 'b': 'low_stop' has no effect on a fixed joint"));
