@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "tests/devices/world_fixture.hpp"
+#include "tests/project_paths.hpp"
 
 // Objects of several bodies; those of vehicles are in vehicle_test.cpp and in the tests of devices.
 
@@ -294,6 +295,26 @@ TEST(Mechanism, TouchesAsOneObject) {
     test.world.step();
   }
   EXPECT_EQ(test.world.physics().gravity_mps2(), 5);  // a wheel has met it
+}
+
+/// The rover of the office opens the door, which shuts behind it, pushes a chair and the trolley, and shuts the drawer.
+TEST(Mechanism, OfTheOfficeDoesAsItsWorldSays) {
+  test::LoadedTestWorld test(test_support::source_path("worlds/office.yaml"));
+  const auto object = [&](const std::string& name) -> const sim::Mechanism& { return *test.world.find_object(name); };
+  test.run_for(1);
+  const auto place = [&](const std::string& name) { return sim::Vector3d(object(name).X_WV().translation()); };
+  const sim::Vector3d chair1 = place("chair1"), chair2 = place("chair2"), trolley = place("trolley");
+  double opened_rad = 0;
+  while (test.world.now() < std::chrono::seconds(40)) {
+    test.world.step();
+    opened_rad = std::max(opened_rad, object("door").joint("hinge").position());
+  }
+  EXPECT_GT(opened_rad, 1);
+  EXPECT_NEAR(object("door").joint("hinge").position(), 0, 0.01);
+  EXPECT_NEAR(object("cabinet").joint("slide").position(), -0.3, 0.001);
+  EXPECT_GT((place("chair1") - chair1).norm(), 0.5);
+  EXPECT_GT((place("trolley") - trolley).norm(), 0.3);
+  EXPECT_LT((place("chair2") - chair2).norm(), 1e-4);  // nothing met it: it rests
 }
 
 TEST(Mechanism, OfARequestHasTheLimitsOfTheWorld) {
