@@ -53,6 +53,37 @@ TEST(Mapping, ACarriedRoverIsFoundAgain) {
   EXPECT_EQ(run.exit_code, 0) << run.output << run.errors;
 }
 
+TEST(FindTheWay, ItsRulesHoldAndTheRunIsRepeatedAndReplayed) {
+  const ScratchFolder folder;
+  std::vector<std::string> arguments{"run",   source("worlds/find_the_way.yaml"), "--launch",  "--speed", "max",
+                                     "--set", "lockstep.timeout_s=1000",          "--lcm-url", own_url()};
+  const Ended again = run_shoal(arguments, 3 * timeout);
+  arguments.insert(arguments.end(), {"--record", folder.file("run.lcm")});
+  const Ended run = run_shoal(arguments, 3 * timeout);
+  EXPECT_EQ(run.exit_code, 0) << run.output << run.errors;
+  EXPECT_THAT(run.errors, HasSubstr("planner: the path is blocked at ("));
+  EXPECT_THAT(run.errors, HasSubstr("planner: 7 goals reached, 0 given up"));
+  EXPECT_EQ(run_hash_in(again), run_hash_in(run));
+  const Ended replayed = run_shoal({"replay", folder.file("run.lcm"), "--quiet"}, 3 * timeout);
+  EXPECT_EQ(replayed.exit_code, 0) << replayed.output << replayed.errors;
+}
+
+TEST(FindTheWay, GoalsComeFromAChannelAndOneWithoutAWayIsReported) {
+  const Ended run = run_shoal(
+      {"run", source("worlds/find_the_way.yaml"), "--launch", "--speed", "max", "--duration", "20", "--lcm-url",
+       own_url(), "--set", "pass=[]", "--set", "metrics=[]", "--set",
+       "events=[{name: wish, at: 5, do: [{publish: {channel: rover1.goals, type: shoal.waypoints_command_t, value: "
+       "{x_m: [-11], y_m: [5]}}}]}]"});
+  EXPECT_EQ(run.exit_code, 0) << run.output << run.errors;
+  EXPECT_THAT(run.errors, HasSubstr("to (-11.0, 5.0): the goal is 0."));
+}
+
+TEST(FindTheWay, AMapThatIsMissingIsWrongUsage) {
+  Program localizer({built("shoal-localizer"), "--name", "a", "--vehicle", "b", "--map-file", "none.yaml"});
+  EXPECT_EQ(localizer.wait(), 2);
+  EXPECT_THAT(localizer.errors(), HasSubstr("none.yaml"));
+}
+
 TEST(MapCommand, WritesTheTrueMapOfAWorldAtAnyTime) {
   const ScratchFolder folder;
   const Ended early =
@@ -79,9 +110,10 @@ TEST(MapCommand, ReportsWhatItCannotDo) {
 }
 
 TEST(Mapping, ItsProgramsReportMissingNames) {
-  for (const char* name : {"shoal-mapper", "shoal-patrol"}) {
+  for (const char* name : {"shoal-mapper", "shoal-patrol", "shoal-localizer", "shoal-planner"}) {
     std::vector<std::string> words{built(name)};
     if (std::string(name) == "shoal-patrol") words.insert(words.end(), {"--waypoints-m", "[[0,0]]"});
+    if (std::string(name) == "shoal-localizer") words.insert(words.end(), {"--map-file", "a.yaml"});
     Program without_name(words);
     EXPECT_EQ(without_name.wait(), 2);
     EXPECT_THAT(without_name.errors(), HasSubstr("--name is required"));

@@ -103,6 +103,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(RewoundMission{"worlds/segway.yaml", "30", {"9.005", "4.5", "14", "6.035"}},
                     RewoundMission{"worlds/ball_chase.yaml", "6", {"3.005", "1.5", "5", "2.035"}},
                     RewoundMission{"worlds/slam_days.yaml", "120", {"55.5", "20", "90", "40.3"}},
+                    RewoundMission{"worlds/find_the_way.yaml", "120", {"55.5", "20", "90", "40.3"}},
                     RewoundMission{"worlds/coop_land.yaml", "30", {"12.34", "5", "20", "11.27"}},
                     RewoundMission{"worlds/coop_underwater.yaml", "150", {"90", "33.3", "120", "40.14"}},
                     RewoundMission{"worlds/coop_relay.yaml", "200", {"150", "20", "160", "50.3"}},

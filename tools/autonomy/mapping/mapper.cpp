@@ -5,16 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "shoal/message_codec.hpp"
 #include "sim/base/math.hpp"
 
 namespace autonomy {
 
 namespace {
-
-Pose2 moved(const Pose2& pose, const Increment& by) {
-  return composed(pose, {{by.forward_m, by.left_m}, by.turn_rad});
-}
 
 /// Scans of the survey that do not close a loop with the present one.
 constexpr std::size_t recent_scans = 20;
@@ -29,10 +24,6 @@ OdometryStd std_of(const Increment& by) {
   return {min_m + share_m * std::hypot(by.forward_m, by.left_m), min_rad + share_rad * std::abs(by.turn_rad)};
 }
 
-Vector2d placed(const Pose2& pose, const Vector2d& p_B) {
-  return pose.p_W + turned(p_B, pose.yaw_rad);
-}
-
 }  // namespace
 
 Mapper::Mapper(const Params& params)
@@ -44,10 +35,7 @@ Mapper::Mapper(const Params& params)
       search_(params.search) {}
 
 void Mapper::receive(const shoal::odometry_t& odometry) {
-  constexpr double farthest_m = 1e6, fastest = 1e3;
-  if (std::hypot(odometry.x_m, odometry.y_m) > farthest_m || std::abs(odometry.theta_rad) > farthest_m ||
-      std::abs(odometry.forward_mps) > fastest || std::abs(odometry.turn_radps) > fastest)
-    throw shoal::MessageError("odometry must be within 1e6 m, 1e6 rad, 1e3 m/s and 1e3 rad/s");
+  check_reachable(odometry);
   odometry_ = odometry;
 }
 
@@ -55,34 +43,9 @@ void Mapper::receive(const shoal::planar_lidar_t& scan) {
   scan_ = scan;
 }
 
-Beams Mapper::beams_of(const shoal::planar_lidar_t& scan) const {
-  Beams beams;
-  beams.sensor_B = params_.lidar.p_W;
-  for (std::size_t i = 0; i < scan.ranges.size(); ++i) {
-    const double range_m = static_cast<double>(scan.ranges[i]);
-    if (!(range_m > 0)) continue;
-    const bool hit = range_m < 0.99 * params_.lidar_range_m && range_m <= params_.use_range_m;
-    const double angle_rad =
-        static_cast<double>(scan.rad0) + static_cast<double>(i) * static_cast<double>(scan.radstep);
-    const double length_m = std::min(range_m, params_.use_range_m);
-    beams.ends_B.push_back(placed(params_.lidar, length_m * Vector2d(std::cos(angle_rad), std::sin(angle_rad))));
-    beams.hits.push_back(hit ? 1 : 0);
-    if (hit) beams.points_B.push_back(beams.ends_B.back());
-  }
-  return beams;
-}
-
-Increment Mapper::moved_since_scan() {
-  // Odometry of the time of the scan, by its speed since the last report.
-  const double dt_s = std::clamp(seconds(scan_->utime - odometry_->utime), -1.0, 1.0);
-  const double theta_rad = odometry_->theta_rad + odometry_->turn_radps * dt_s;
-  const Vector2d p = Vector2d(odometry_->x_m, odometry_->y_m) + turned({odometry_->forward_mps * dt_s, 0}, theta_rad);
-  return odometer_.update(p, theta_rad);
-}
-
 std::optional<shoal::estimate_t> Mapper::step() {
   if (!scan_ || !odometry_) return std::nullopt;
-  Increment by = moved_since_scan();
+  Increment by = moved_until(scan_->utime, *odometry_, odometer_);
   // Whatever it moved while odometry was silent is in no increment, neither then nor when odometry is back.
   constexpr double max_gap_s = 2;
   const bool silent = std::abs(seconds(scan_->utime - odometry_->utime)) > max_gap_s;
@@ -98,7 +61,7 @@ std::optional<shoal::estimate_t> Mapper::step() {
   if (rests) by = {};
   left_ = has_map_ && (left_ || !rests);
   if (!left_) first_scan_.add(*scan_);
-  const Beams beams = beams_of(*scan_);
+  const Beams beams = beams_of(*scan_, params_.lidar);
   utime_ = scan_->utime;
   scan_.reset();
   if (lost_) {
@@ -183,7 +146,7 @@ void Mapper::survey(const Beams& beams) {
   surveyed_.push_back(
       {std::make_shared<const Beams>(beams), std::make_shared<const Outline>(beams.points_B), utime_, pose_});
   if (last == 1) {
-    const Beams first = beams_of(*first_scan_.scan());
+    const Beams first = beams_of(*first_scan_.scan(), params_.lidar);
     surveyed_[0].beams = std::make_shared<const Beams>(first);
     surveyed_[0].outline = std::make_shared<const Outline>(first.points_B);
     first_scan_.clear();
@@ -263,11 +226,8 @@ void Mapper::redraw() {
 }
 
 void Mapper::insert(const Beams& beams, const Pose2& pose, std::int64_t utime) {
-  std::vector<Vector2d> ends_W;
-  ends_W.reserve(beams.ends_B.size());
-  for (const Vector2d& end : beams.ends_B) ends_W.push_back(placed(pose, end));
   const std::int64_t since = std::max<std::int64_t>(0, utime - first_utime_);  // a clock may be set back
-  map_.insert(placed(pose, beams.sensor_B), ends_W, beams.hits, seconds(since));
+  map_.insert(placed(pose, beams.sensor_B), ends_W_of(beams, pose), beams.hits, seconds(since));
   has_map_ = true;
   inserted_ = pose;
   inserted_utime_ = utime;
@@ -276,18 +236,9 @@ void Mapper::insert(const Beams& beams, const Pose2& pose, std::int64_t utime) {
 shoal::estimate_t Mapper::estimate() const {
   // At least that of the grid; lost, it can be anywhere in the map.
   constexpr double grid_std_m = 0.02, lost_std_m = 10;
-  shoal::estimate_t message{};
-  message.utime = utime_;
-  message.position_m[0] = pose_.p_W.x();
-  message.position_m[1] = pose_.p_W.y();
-  for (int row = 0; row < 2; ++row)
-    for (int column = 0; column < 2; ++column)
-      message.covariance_m2[3 * row + column] =
-          covariance_(row, column) + (row == column ? squared(lost_ ? lost_std_m : grid_std_m) : 0);
-  message.covariance_m2[8] = 1;
-  message.yaw_rad = pose_.yaw_rad;
-  message.clock_error_s = unknown;
-  return message;
+  const double std_m = lost_ ? lost_std_m : grid_std_m;
+  return planar_estimate(utime_, pose_,
+                         covariance_.topLeftCorner<2, 2>() + squared(std_m) * Eigen::Matrix2d::Identity());
 }
 
 shoal::occupancy_grid_t Mapper::map_message() const {

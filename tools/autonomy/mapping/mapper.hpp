@@ -33,9 +33,7 @@ class Mapper {
     Pose2 start;  ///< pose of the vehicle at the start, in the frame of the map
     OccupancyMap::Params map;
     ScanMatcher::Params matcher;
-    Pose2 lidar;                        ///< pose of the lidar on the vehicle
-    double lidar_range_m = 20;          ///< a beam of this length has met nothing
-    double use_range_m = 15;            ///< longer beams only clear this length
+    LidarMount lidar;
     double rest_mps = 0.003;            ///< odometry below both is noise at rest
     double rest_radps = 0.01;           ///< and does not move the pose
     double survey_m = 0.1;              ///< a scan is added to the survey after this distance
@@ -77,8 +75,6 @@ class Mapper {
     std::int64_t utime = 0;
     Pose2 drawn;  ///< pose with which it is in the map
   };
-  Beams beams_of(const shoal::planar_lidar_t& scan) const;
-  Increment moved_since_scan();
   /// Moves pose and covariance by odometry.
   void predict(const Increment& moved);
   /// `rests`: it has not moved since the last scan.

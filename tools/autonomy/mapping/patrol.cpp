@@ -20,10 +20,11 @@ ObstacleAvoidance::Params avoidance_params(const Patrol::Params& params) {
 
 }  // namespace
 
-Patrol::Patrol(const Params& params)
-    : params_(params),
-      follower_(params.waypoints_W, {.reached_m = params.reached_m, .give_up_s = params.give_up_s}),
-      avoidance_(avoidance_params(params)) {}
+Patrol::Patrol(const Params& params) : params_(params), avoidance_(avoidance_params(params)) {
+  if (!params.waypoints_W.empty())
+    follower_.emplace(params.waypoints_W,
+                      WaypointFollower::Params{.reached_m = params.reached_m, .give_up_s = params.give_up_s});
+}
 
 void Patrol::receive(const shoal::odometry_t& odometry) {
   odometry_.emplace_back(odometry.utime, Pose2{{odometry.x_m, odometry.y_m}, odometry.theta_rad});
@@ -63,15 +64,27 @@ Twist Patrol::step(std::int64_t utime) {
   const double variance_m2 = estimate_->covariance_m2[0] + estimate_->covariance_m2[4];
   if (!(variance_m2 < 2 * squared(params_.lost_std_m))) return seek_place(utime);
   lost_since_.reset();
+  return follower_ ? to_waypoint(utime) : along_path();
+}
+
+Twist Patrol::along_path() {
+  if (path_W_.empty()) return {};
+  const Pose2 pose = present_pose();
+  if ((path_W_.back() - pose.p_W).norm() < 0.5 * params_.reached_m)
+    return {0, path_W_.size() == 1 ? params_.search_radps : 0};
+  const Vector2d ahead_W = ahead_on(path_W_, nearest_on(path_W_, pose.p_W), params_.ahead_m);
+  return steer(turned(ahead_W - pose.p_W, -pose.yaw_rad));
+}
+
+Twist Patrol::to_waypoint(std::int64_t utime) {
   if (utime < rests_until_) return {};
-  // The next waypoint.
-  const Vector2d goal_B = follower_.goal_B(present_pose(), seconds(utime));
-  if (follower_.reached() + follower_.given_up() > passed_) {
-    const bool reached = follower_.reached() > reached_;
-    passed_ = follower_.reached() + follower_.given_up();
-    reached_ = follower_.reached();
+  const Vector2d goal_B = follower_->goal_B(present_pose(), seconds(utime));
+  if (follower_->reached() + follower_->given_up() > passed_) {
+    const bool reached = follower_->reached() > reached_;
+    passed_ = follower_->reached() + follower_->given_up();
+    reached_ = follower_->reached();
     if (!reached) return {};
-    const bool charges = follower_.current() == 1 % params_.waypoints_W.size();
+    const bool charges = follower_->current() == 1 % params_.waypoints_W.size();
     rounds_ += charges && reached_ > 1 ? 1 : 0;
     rests_until_ = utime + static_cast<std::int64_t>(1e6 * (charges ? params_.charge_s : params_.pause_s));
     return {};

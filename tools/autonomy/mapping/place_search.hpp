@@ -4,19 +4,11 @@
 #include <optional>
 #include <vector>
 
-#include "tools/autonomy/filters/odometer.hpp"
+#include "tools/autonomy/mapping/lidar_odometry.hpp"
 #include "tools/autonomy/mapping/occupancy_map.hpp"
 #include "tools/autonomy/mapping/scan_matcher.hpp"
 
 namespace autonomy {
-
-/// Scan in the frame of the vehicle.
-struct Beams {
-  Vector2d sensor_B = Vector2d::Zero();
-  std::vector<Vector2d> ends_B;
-  std::vector<char> hits;          ///< whether a beam met something
-  std::vector<Vector2d> points_B;  ///< the ends of those that did
-};
 
 /// Finds the place of a vehicle that may be anywhere in the map.  The places where a first scan fits are followed by
 /// odometry and matched with each further view, until one of them fits clearly better than all others; when none does

@@ -8,6 +8,7 @@
 
 #include "sim/base/math.hpp"
 #include "tools/autonomy/mapping/mapper.hpp"
+#include "tools/autonomy/programs/lidar_options.hpp"
 #include "tools/autonomy/programs/program.hpp"
 
 namespace {
@@ -16,7 +17,8 @@ struct Options {
   std::string name, vehicle, memory = "forgetting";
   std::string pose = "estimate", map = "map";
   autonomy::Mapper::Params mapper;
-  double start_yaw_deg = 0, lidar_yaw_deg = 0;
+  autonomy::LidarOptions lidar;
+  double start_yaw_deg = 0;
   double map_every_s = 600;
   bool timing = false;
   autonomy::Participation participation;
@@ -110,17 +112,7 @@ void declare(command_line::DeclaredOptions& declared, Options& options) {
           "position of the vehicle at the start, east and north")
       .by_default({0, 0});
   declared.number("start_yaw_deg", options.start_yaw_deg, -360, 360, "its heading then, counter-clockwise from east");
-  declared
-      .tuple(
-          "lidar_m", {"x", "y"}, sim::any_place(),
-          [&](const auto& numbers) {
-            mapper.lidar.p_W = {numbers[0], numbers[1]};
-          },
-          "position of the lidar on the vehicle, forward and left")
-      .by_default({0, 0});
-  declared.number("lidar_yaw_deg", options.lidar_yaw_deg, -360, 360, "its direction, counter-clockwise from forward");
-  declared.number("lidar_range_m", mapper.lidar_range_m, 0.1, 1000, "a beam of this length has met nothing");
-  declared.number("use_range_m", mapper.use_range_m, 0.1, 1000, "beams are cut to this length");
+  options.lidar.declare(declared);
   declared.number("rest_mps", mapper.rest_mps, 0, 1, "odometry below it and below rest-radps is noise at rest");
   declared.number("rest_radps", mapper.rest_radps, 0, 1, "its turn rate");
   declare_map(declared, mapper.map, options.memory);
@@ -144,7 +136,7 @@ int run(int argc, char** argv) {
   if (options.name.empty()) throw std::invalid_argument("--name is required");
   if (options.vehicle.empty()) throw std::invalid_argument("--vehicle is required");
   options.mapper.start.yaw_rad = sim::degrees_to_radians(options.start_yaw_deg);
-  options.mapper.lidar.yaw_rad = sim::degrees_to_radians(options.lidar_yaw_deg);
+  options.mapper.lidar = options.lidar.mounted();
   options.mapper.map.forgets = options.memory == "forgetting";
   return map(options);
 }

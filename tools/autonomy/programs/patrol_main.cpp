@@ -10,7 +10,7 @@
 namespace {
 
 struct Options {
-  std::string name, vehicle, pose = "estimate";
+  std::string name, vehicle, pose = "estimate", path;
   autonomy::Patrol::Params patrol;
   autonomy::Participation participation;
 };
@@ -26,6 +26,9 @@ int drive(const Options& options) {
       prefix + "lidar", [&](const shoal::planar_lidar_t& scan) { patrol.receive(scan); }, Finite::required);
   client.subscribe<shoal::estimate_t>(prefix + options.pose,
                                       [&](const shoal::estimate_t& estimate) { patrol.receive(estimate); });
+  if (!options.path.empty())
+    client.subscribe<shoal::waypoints_command_t>(prefix + options.path,
+                                                 [&](const auto& path) { patrol.receive(path); });
   const int exit_code = autonomy::take_part(client, options.participation, patrol, [&](std::int64_t utime) {
     const autonomy::Twist twist = patrol.step(utime);
     shoal::twist_command_t command{};
@@ -35,24 +38,25 @@ int drive(const Options& options) {
     client.publish(prefix + "drive.cmd", command);
   });
   // A single write, because the programs of a run share a terminal.
-  std::cerr << options.name + ": " + std::to_string(patrol.rounds()) + " rounds, " +
-                   std::to_string(patrol.follower().given_up()) + " waypoints given up\n";
+  if (patrol.follower())
+    std::cerr << options.name + ": " + std::to_string(patrol.rounds()) + " rounds, " +
+                     std::to_string(patrol.follower()->given_up()) + " waypoints given up\n";
   return exit_code;
 }
 
 void declare(command_line::DeclaredOptions& declared, Options& options) {
   autonomy::Patrol::Params& patrol = options.patrol;
   declared.publishes({"{vehicle}.drive.cmd"});
-  declared.subscribes({"{vehicle}.odometry", "{vehicle}.lidar", "{vehicle}.{pose}"});
+  declared.subscribes({"{vehicle}.odometry", "{vehicle}.lidar", "{vehicle}.{pose}", "{vehicle}.{path}"});
   declared.text("name", "NAME", options.name, "its name in the lockstep").required_in_worlds();
   declared.text("vehicle", "VEHICLE", options.vehicle, "vehicle that drives rounds").required_in_worlds();
   declared.text("pose", "CHANNEL", options.pose, "channel of its estimated pose, after VEHICLE.");
-  declared
-      .tuples(
-          "waypoints_m", {"x", "y"}, 2, sim::any_place(),
-          [&](const auto& lists) { patrol.waypoints_W = autonomy::points_of(lists); },
-          "waypoints of a round, east and north; it charges at the first")
-      .required();
+  declared.tuples(
+      "waypoints_m", {"x", "y"}, 2, sim::any_place(),
+      [&](const auto& lists) { patrol.waypoints_W = autonomy::points_of(lists); },
+      "waypoints of a round, east and north; it charges at the first");
+  declared.text("path", "CHANNEL", options.path, "instead: channel of paths to drive along, after VEHICLE.");
+  declared.exactly_one({"waypoints_m", "path"});
   declared.number("speed_mps", patrol.speed_mps, 0.05, 5, "speed of the vehicle");
   declared.number("pause_s", patrol.pause_s, 0, 1e6, "pause at each waypoint");
   declared.number("charge_s", patrol.charge_s, 0, 1e6, "pause at the first waypoint, where it charges");
