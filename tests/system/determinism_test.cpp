@@ -127,7 +127,7 @@ TEST_P(Determinism, AnotherSeedIsAnotherRun) {
 INSTANTIATE_TEST_SUITE_P(Worlds, Determinism,
                          testing::Values(Case{"worlds/minimal.yaml", "20"}, Case{"worlds/erl_room.yaml", "20"},
                                          Case{"worlds/scale.yaml", "2"}, Case{"worlds/dynamic_warehouse.yaml", "20"},
-                                         Case{"worlds/office.yaml", "20"}, Case{"worlds/proving_ground.yaml", "20"},
+                                         Case{"worlds/office.yaml", "51"}, Case{"worlds/proving_ground.yaml", "20"},
                                          Case{"worlds/proving_sea.yaml", "20"}, Case{"worlds/hill_course.yaml", "5"},
                                          Case{"worlds/sonar_tank.yaml", "5"}, Case{"worlds/survey.yaml", "10"},
                                          Case{"worlds/harbour.yaml", "5"}, Case{"worlds/coop_underwater.yaml", "10"},
