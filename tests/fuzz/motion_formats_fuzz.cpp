@@ -41,7 +41,7 @@ void check_text(const sim::JointMotion& motion) {
 }
 
 void write_and_read(const tools::MotionFormat& format, const sim::JointMotion& motion) {
-  if (format.write == nullptr) return;
+  if (format.write == nullptr && format.write_folder == nullptr) return;
   std::string bytes;
   try {
     tools::Losses losses;

@@ -191,50 +191,67 @@ std::vector<PushMargin> push_margins(MotionStage& stage, const std::vector<doubl
   return margins;
 }
 
-WeakestPush weakest_push(MotionStage& stage, const std::vector<double>& instants_s, const PushOptions& options) {
-  // The course without a push, and snapshots of the instants.
+namespace {
+
+/// The course of a vehicle without pushes, and snapshots at instants of it.
+struct WatchedInstants {
   Course course;
   std::vector<sim::Bytes> snapshots;
-  std::vector<std::size_t> starts;
-  stage.go_to(instants_s.front());
-  const int group = stage.vehicle().group();
-  stage.world().physics().watch_contacts(group);
-  stage.after_step = [&](MotionStage& now) { course.emplace_back(now.world(), now.vehicle()); };
-  for (const double at_s : instants_s) {
-    stage.go_to(at_s);
-    starts.push_back(course.size());
-    snapshots.push_back(stage.world().state().snapshot());
+  std::vector<std::size_t> starts;  ///< steps of the course
+  std::size_t watched = 0;          ///< steps in which a push may make it fall
+
+  WatchedInstants(MotionStage& stage, const std::vector<double>& instants_s, const PushOptions& options) {
+    stage.go_to(instants_s.front());
+    const int group = stage.vehicle().group();
+    stage.world().physics().watch_contacts(group);
+    stage.after_step = [&](MotionStage& now) { course.emplace_back(now.world(), now.vehicle()); };
+    for (const double at_s : instants_s) {
+      stage.go_to(at_s);
+      starts.push_back(course.size());
+      snapshots.push_back(stage.world().state().snapshot());
+    }
+    const PushSteps steps(stage.world(), options);
+    watched = static_cast<std::size_t>(steps.all);
+    stage.go_to(stage.now_s() + steps.all * sim::to_seconds(stage.world().step_time()));
+    stage.after_step = {};
+    stage.world().physics().unwatch_contacts(group);
   }
-  const PushSteps steps(stage.world(), options);
-  const auto watched = static_cast<std::size_t>(steps.all);
-  stage.go_to(stage.now_s() + steps.all * sim::to_seconds(stage.world().step_time()));
-  stage.after_step = {};
-  stage.world().physics().unwatch_contacts(group);
+
+  std::span<const BaseState> after(std::size_t instant) const {
+    return std::span(course).subspan(starts[instant], watched);
+  }
+  bool falls_after(std::size_t instant) const {
+    const std::span<const BaseState> states = after(instant);
+    return std::any_of(states.begin(), states.end(), [&](const BaseState& state) {
+      return state.has_tilted || (state.touches && !states.front().touches);
+    });
+  }
+};
+
+}  // namespace
+
+WeakestPush weakest_push(MotionStage& stage, const std::vector<double>& instants_s, const PushOptions& options) {
+  const WatchedInstants instants(stage, instants_s, options);
   WeakestPush weakest;
   weakest.mass_kg = PushWorld::mass_kg(stage.vehicle());
-  for (std::size_t i = 0; i < starts.size(); ++i) {
-    const std::span<const BaseState> after = std::span(course).subspan(starts[i], watched);
-    if (std::none_of(after.begin(), after.end(), [&](const BaseState& state) {
-          return state.has_tilted || (state.touches && !after.front().touches);
-        }))
-      continue;
-    weakest.falls = true;
+  for (std::size_t i = 0; i < instants_s.size() && !weakest.falls; ++i) {
+    weakest.falls = instants.falls_after(i);
     weakest.at_s = instants_s[i];
-    return weakest;
   }
+  if (weakest.falls) return weakest;
   PushWorlds worlds(stage);
   sim::ThreadPool pool(options.threads);
   const auto directions = static_cast<std::size_t>(options.directions);
   const auto angle_rad = [&](std::size_t push) {
     return 2 * std::numbers::pi * static_cast<double>(push % directions) / options.directions;
   };
-  /// Returns those of the pushes that make it fall.
+  // Returns those of the pushes that make it fall.
   const auto falling = [&](const std::vector<std::size_t>& pushes, double mps) {
     std::vector<char> fell(pushes.size());
     pool.for_each(pushes.size(), [&](std::size_t i) {
-      const std::size_t instant = pushes[i] / directions;
-      const std::span<const BaseState> after = std::span(course).subspan(starts[instant], watched);
-      fell[i] = worlds.push(snapshots[instant], mps * along(angle_rad(pushes[i])), options, after).fell ? 1 : 0;
+      const std::size_t at = pushes[i] / directions;
+      const sim::Vector3d impulse = mps * along(angle_rad(pushes[i]));
+      fell[i] = worlds.push(instants.snapshots[at], impulse, options, instants.after(at)).fell ? 1 : 0;
     });
     std::vector<std::size_t> found;
     for (std::size_t i = 0; i < pushes.size(); ++i)
@@ -243,8 +260,8 @@ WeakestPush weakest_push(MotionStage& stage, const std::vector<double>& instants
   };
   // The least margin of some pushes is an upper bound; of the others, most need one push to be above it.
   std::vector<std::size_t> some, others;
-  const std::size_t all = snapshots.size() * directions;
-  const std::size_t stride = std::max<std::size_t>(1, all / 32) | 1;  // odd, so that it visits all directions
+  const std::size_t all = instants_s.size() * directions;
+  const std::size_t stride = std::max<std::size_t>(1, all / 32) | 1;  // odd: all of eight directions
   for (std::size_t i = 0; i < all; ++i) (i % stride == 0 ? some : others).push_back(i);
   double withstood = options.greatest_mps, fell = withstood;
   std::vector<std::size_t> falls_at;

@@ -70,18 +70,15 @@ std::string phase_text(const MotionStage& stage) {
 
 /// Sets the world that the command line names, else that in the take, and prints which of them it is.
 void choose_world(StageOptions& stage, const sim::JointMotion& motion, const std::string& file) {
-  StageOptions embedded = stage;
-  const bool is_embedded = use_embedded_world(embedded, motion, file);
-  if (!stage.world.empty())
-    stage.world = file_by_name({ShippedKind::world}, stage.world);
-  else if (is_embedded)
-    stage = std::move(embedded);
-  else
-    throw command_line::UsageError("needs --world: '" + file + "' holds no world (motion record --embed)");
-  if (is_embedded)
-    std::cout << (stage.tree ? "world: the one embedded in " + file
-                             : "world: " + stage.world + ", not the embedded one")
-              << '\n';
+  if (stage.world.empty()) {
+    if (!use_embedded_world(stage, motion, file))
+      throw command_line::UsageError("needs --world: '" + file + "' holds no world (motion record --embed)");
+    std::cout << "world: the one embedded in " << file << '\n';
+    return;
+  }
+  stage.world = file_by_name({ShippedKind::world}, stage.world);
+  if (motion.recorded && motion.recorded->embedded_world.kind != sim::ConfigNode::Kind::null)
+    std::cout << "world: " << stage.world << ", not the embedded one\n";
 }
 
 /// Throws command_line::UsageError for times that are not within the motion.
