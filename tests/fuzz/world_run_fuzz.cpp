@@ -13,12 +13,6 @@
 
 namespace {
 
-bool has_ground(const std::vector<sim::PartConfig>& parts) {
-  for (const sim::PartConfig& part : parts)
-    if (part.terrain) return true;
-  return false;
-}
-
 /// Much of anything is slow for a good reason.
 bool is_small(const sim::WorldConfig& world) {
   constexpr int max_entities = 12;
@@ -26,8 +20,8 @@ bool is_small(const sim::WorldConfig& world) {
                                           "side_scan", "multibeam", "sonar",   "range_beacon"};
   int entities = static_cast<int>(world.vehicles.size());
   for (const sim::ObjectConfig& object : world.objects) {
-    if (has_ground(object.parts)) return false;
-    entities += object.count > max_entities ? max_entities + 1 : object.count;
+    if (!object.all_parts([](const sim::PartConfig& part) { return !part.terrain; })) return false;
+    entities += object.count > max_entities ? max_entities + 1 : object.count * static_cast<int>(object.bodies.size());
   }
   for (const sim::VehicleInstance& vehicle : world.vehicles)
     for (const sim::DeviceConfig& device : vehicle.config->devices)
