@@ -142,7 +142,8 @@ void LimitsConfig::read(ParamReader& in) {
   in.read("bodies_per_vehicle", bodies_per_vehicle, between(1, 100000),
           "bodies of a vehicle that a client spawns, or of an object that is added during the run");
   in.read("devices_per_vehicle", devices_per_vehicle, between(0, 100000), "devices of a vehicle that a client spawns");
-  in.read("parts", parts, between(1, 100000), "parts of one vehicle or object that is added during the run, and joints");
+  in.read("parts", parts, between(1, 100000),
+          "parts of one vehicle or object that is added during the run, and joints");
   in.read("spawns_per_client", spawns_per_client, between(0, 100000000),
           "spawn requests of one client in a run; of all clients together ten times as many");
   in.read("rewinds_per_client", rewinds_per_client, between(0, 100000000),

@@ -253,7 +253,8 @@ TEST(Mechanism, OfOneBodyIsMovedWithItsJointToTheWorld) {
 }
 
 TEST(Mechanism, ThatIsLedIsNotFlungByATurnInItsPlace) {
-  test::TestWorld test(world_of(R"(
+  test::TestWorld test(
+      world_of(R"(
   - name: pair
     position_m: [0, 0, 3]
     bodies:
@@ -261,7 +262,7 @@ TEST(Mechanism, ThatIsLedIsNotFlungByATurnInItsPlace) {
       - {name: top, position_m: [0, 0, 0.2], parts: [{shape: box, size_m: [0.4, 0.4, 0.1], mass_kg: 1}]}
     joints: [{name: swivel, type: hinge, bodies: [base, top], axis: [0, 0, 1]}]
 )",
-                                "actors: [{name: lead, object: pair, points: [[0, 0, 3], [9, 0, 3]], speed_mps: 0.5}]\n"));
+               "actors: [{name: lead, object: pair, points: [[0, 0, 3], [9, 0, 3]], speed_mps: 0.5}]\n"));
   test.run_for(0.5);
   const sim::Pose X_WV = object(test, "pair").X_WV();
   test.world.editor().move_object("pair", X_WV * sim::make_pose({0, 0, 0}, {0, 0, 1.5}));
