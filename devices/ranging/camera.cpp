@@ -75,17 +75,20 @@ double baseline_of(const Camera::Params& params, const sim::DeviceContext& conte
   check(optics.lens == sim::OpticsConfig::Lens::pinhole && optics.distortion.empty(),
         "a stereo pair needs pinholes without distortion");
   check(optics.text() == of_left->params.optics.text(), "its lens and size must be those of " + name);
+  const Camera::Params& other = of_left->params;
+  check(params.readout_s == other.readout_s && params.exposure_time_s == other.exposure_time_s,
+        "its readout_s and exposure_time_s must be those of " + name);
   check(right.rate_hz == left->rate_hz && right.phase_s && right.phase_s == left->phase_s,
         "it needs rate_hz and phase_s, equal to those of " + name);
   check(right.body == left->body, "it must be on the body of " + name);
   const sim::Pose X_LR = left->X_BS().inverse() * right.X_BS();
   const sim::Vector3d p_LR = X_LR.translation();
-  constexpr double rounding = 1e-9;
+  constexpr double rounding = 1e-5;  // of numbers in a file
   check(
       X_LR.linear().isIdentity(rounding) && std::hypot(p_LR.x(), p_LR.z()) < rounding && p_LR.y() < -rounding,
       fmt::format("it must look as {} does, from a place to the right of it; it is at [{:g}, {:g}, {:g}] in its frame",
                   name, p_LR.x(), p_LR.y(), p_LR.z()));
-  return -p_LR.y();
+  return p_LR.norm();
 }
 
 }  // namespace

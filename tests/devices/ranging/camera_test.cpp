@@ -338,6 +338,7 @@ TEST(Camera, RefusesAStereoPairWhoseImagesDoNotFit) {
       {"width: 320", "'right_of': its lens and size must be those of 'left'"},
       {"phase_s: 0.01", "'right_of': it needs rate_hz and phase_s, equal to those of 'left'"},
       {"lens: fisheye", "'right_of': a stereo pair needs pinholes without distortion"},
+      {"readout_s: 0.02", "'right_of': its readout_s and exposure_time_s must be those of 'left'"},
       {"body: left_wheel", "'right_of': it must be on the body of 'left'"},
       {"position_m: [0, 0.2, 0.4]", "it is at [0, 0.14, 0] in its frame"},
       {"rpy_deg: [0, 0, 1]", "'right_of': it must look as 'left' does, from a place to the right of it"}};

@@ -117,20 +117,31 @@ std::optional<shoal::estimate_t> Localizer::step() {
   const double dt_s = std::min(seconds(scan_->utime - utime_), max_gap_s);
   Increment by = moved_until(scan_->utime, *odometry_, odometer_);
   if (scans_ == 1) by = {};
-  const bool rests = scans_ > 1 && std::hypot(by.forward_m, by.left_m) < params_.rest_mps * dt_s &&
-                     std::abs(by.turn_rad) < params_.rest_radps * dt_s;
+  const bool is_slow = scans_ > 1 && std::hypot(by.forward_m, by.left_m) < params_.rest_mps * dt_s &&
+                       std::abs(by.turn_rad) < params_.rest_radps * dt_s;
+  // Slow motion is postponed, not lost.
+  constexpr double postponed_m = 0.02, postponed_rad = 0.03;
+  postponed_ = moved(postponed_, by);
+  const bool rests =
+      is_slow && postponed_.p_W.norm() < postponed_m && std::abs(sim::wrap_angle(postponed_.yaw_rad)) < postponed_rad;
+  by = {};
+  if (!rests) {
+    by = {postponed_.p_W.x(), postponed_.p_W.y(), sim::wrap_angle(postponed_.yaw_rad)};
+    postponed_ = {};
+  }
   const Beams beams = beams_of(*scan_, params_.lidar);
   utime_ = scan_->utime;
   scan_.reset();
   points_B_.clear();
-  const std::size_t every = std::max<std::size_t>(1, beams.points_B.size() / params_.max_beams);
+  const std::size_t every =
+      std::max<std::size_t>(1, (beams.points_B.size() + params_.max_beams - 1) / params_.max_beams);
   for (std::size_t i = 0; i < beams.points_B.size(); i += every) points_B_.push_back(beams.points_B[i]);
   // Further scans of one place have the errors of the first: they would only make the filter too sure.
   const std::optional<double> here = fit();
   if (scans_ == 1 && !params_.start)
     for (std::size_t i = 0; const Pose2& pose : poses_of_scan(particles_.size())) particles_[i++].pose = pose;
   if (!rests || (here && *here < params_.lost_below * slow_fit_)) {
-    if (!rests) move(by);
+    move(by);  // at rest it only spreads them
     if (points_B_.size() >= min_points) {
       weigh();
       estimate();
@@ -212,7 +223,9 @@ void Localizer::judge() {
     fast_fit_ += params_.fast * (slow_fit_ - fast_fit_);
     return;
   }
-  const double first = 1 / static_cast<double>(++judged_scans_);  // the mean of the first ones
+  // The mean of the first ones, of which a bad one is none.
+  const bool is_bad = judged_scans_ > 0 && *now < params_.lost_below * slow_fit_;
+  const double first = is_bad ? 0 : 1 / static_cast<double>(++judged_scans_);
   slow_fit_ += std::max(params_.slow, first) * (*now - slow_fit_);
   fast_fit_ += std::max(params_.fast, first) * (*now - fast_fit_);
 }

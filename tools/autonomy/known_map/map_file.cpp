@@ -39,6 +39,9 @@ struct MapKeys {
     in.read("negate", negate, sim::between(0, 1), "1: white is occupied");
     in.read("occupied_thresh", occupied_thresh, sim::between(0, 1), "cells above it are occupied");
     in.read("free_thresh", free_thresh, sim::between(0, 1), "cells below it are free");
+    if (free_thresh > occupied_thresh)
+      in.error("free_thresh", fmt::format("'free_thresh' must be at most 'occupied_thresh', {}, got {}",
+                                          occupied_thresh, free_thresh));
     if (in.has("origin") && origin.z() != 0) in.error("origin", "'origin' must not be turned");
   }
 };
@@ -51,6 +54,11 @@ std::string found(const std::string& path) {
 }
 
 sim::Image16 levels_of(const std::string& path) {
+  constexpr std::uintmax_t max_bytes = 64'000'000;
+  std::error_code failed;
+  if (!fs::is_regular_file(path, failed)) throw std::invalid_argument(path + ": cannot be read, it is no file");
+  if (const std::uintmax_t bytes = fs::file_size(path, failed); failed || bytes > max_bytes)
+    throw std::invalid_argument(fmt::format("{}: must have at most {} bytes, got {}", path, max_bytes, bytes));
   std::ifstream file(path, std::ios::binary);
   if (!file) throw std::invalid_argument(path + ": cannot be read");
   const std::vector<char> bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};

@@ -4,6 +4,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <functional>
 #include <limits>
 #include <optional>
@@ -43,6 +44,16 @@ class Search {
     };
     const double here = at(from_W), there = at(to_W);
     return (here == impassable ? there : 0.5 * (here + there)) * (to_W - from_W).norm();
+  }
+
+  /// Returns whether the cells beside an oblique step are passable, between which it leads.
+  bool is_open(int column, int row, int right, int up) const {
+    if (right == 0 || up == 0) return true;
+    const int x = right / std::abs(right), y = up / std::abs(up);
+    const bool is_flat = std::abs(right) >= std::abs(up), is_steep = std::abs(up) >= std::abs(right);
+    if (is_flat && cost_at(column + x, row) == impassable) return false;
+    if (is_steep && cost_at(column, row + y) == impassable) return false;
+    return is_flat == is_steep || cost_at(column + x, row + y) < impassable;
   }
 
   /// Cost of a straight line; infinite: something is in the path.
@@ -96,7 +107,7 @@ std::vector<std::size_t> Search::cells(std::size_t start, std::size_t goal) cons
     const int column = static_cast<int>(cell % columns), row = static_cast<int>(cell / columns);
     const Vector2d here_W = frame.center_W(column, row);
     for (const auto& [right, up] : steps) {
-      if (cost_at(column + right, row + up) == impassable) continue;
+      if (cost_at(column + right, row + up) == impassable || !is_open(column, row, right, up)) continue;
       const double cost = cost_of_step(here_W, frame.center_W(column + right, row + up));
       add(frame.index(column + right, row + up), static_cast<double>(costs[cell]) + cost, cell);
     }
@@ -151,7 +162,10 @@ Path search_path(const PlanGrid& grid, const Vector2d& from_W, const Vector2d& t
     const auto columns = static_cast<std::size_t>(frame.columns);
     points_W.push_back(frame.center_W(static_cast<int>(cell % columns), static_cast<int>(cell / columns)));
   }
-  if (points_W.empty()) return {{}, fmt::format("no gap on the path is {:.2f} m wide", 2 * costs.keep_m)};
+  if (points_W.empty())
+    return {{},
+            fmt::format("no gap on the path{} is {:.2f} m wide", costs.enters_unknown ? "" : " on known ground",
+                        2 * costs.keep_m)};
   points_W.front() = from_W;
   if (points_W.size() == 1) points_W.push_back(to_W);
   points_W.back() = to_W;

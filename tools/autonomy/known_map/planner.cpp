@@ -43,9 +43,14 @@ void Planner::receive(const shoal::occupancy_grid_t& map) {
 }
 
 void Planner::receive(const shoal::planar_lidar_t& scan) {
-  constexpr std::size_t kept = 5;
+  // The estimate at a scan comes after the next ones.  Floating point, because a difference of integers may overflow.
+  constexpr double kept_us = 3e6;
+  constexpr std::size_t max_kept = 1000;
   scans_.push_back(scan);
-  if (scans_.size() > kept) scans_.pop_front();
+  const auto is_old = [&](const shoal::planar_lidar_t& each) {
+    return !(std::abs(static_cast<double>(scan.utime) - static_cast<double>(each.utime)) < kept_us);
+  };
+  while (scans_.size() > max_kept || is_old(scans_.front())) scans_.pop_front();
 }
 
 void Planner::receive(const shoal::waypoints_command_t& goals) {
@@ -101,7 +106,7 @@ PlanGrid Planner::grid() const {
 
 std::optional<Vector2d> Planner::blocked_at(const PlanGrid& grid, const Vector2d& p_W) const {
   // A cell less than planned is the error of cells; near the vehicle it is too late, and it may leave.
-  const double cell_m = grid.frame.cell_m, keep_m = params_.costs.keep_m - cell_m;
+  const double cell_m = grid.frame.cell_m, keep_m = std::max(params_.costs.keep_m - cell_m, 0.5 * cell_m);
   const OnPath here = nearest_on(path_W_, p_W);
   for (double ahead_m = 0;; ahead_m += cell_m) {
     const Vector2d at_W = ahead_on(path_W_, here, ahead_m);

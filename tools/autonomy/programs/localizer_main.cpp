@@ -71,7 +71,7 @@ void declare(command_line::DeclaredOptions& declared, Options& options) {
   declared.text("vehicle", "VEHICLE", options.vehicle, "vehicle that it localizes").required_in_worlds();
   declared
       .text("map_file", "FILE", options.map_file,
-            "map, a .yaml of `shoal map` or ROS map_server: below the working folder, else below the shipped worlds")
+            "map, a .yaml of `shoal map`: below the working folder, else below the shipped worlds")
       .required();
   declared.text("pose", "CHANNEL", options.pose, "channel of its estimated pose, after VEHICLE.");
   declared.text("map", "CHANNEL", options.map, "channel on which it publishes the map, after VEHICLE.");

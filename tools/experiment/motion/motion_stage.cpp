@@ -84,7 +84,7 @@ MotionStage::MotionStage(const StageOptions& options, const std::function<sim::J
   due_ = motion.changes;
   std::stable_sort(due_.begin(), due_.end(), [](const auto& a, const auto& b) { return a.at_s < b.at_s; });
   // Play the motion from the start.
-  set_motion(motion);
+  set_motion(*world_, motion);
   devices::MotionPlayer::Play play = options.play;
   play.motion = motion.name;
   player().play(play);
@@ -154,7 +154,7 @@ double MotionStage::time_of(double motion_s) const {
   return (motion_s - player().from_s()) / player().rate() - player().at_s() + now_s();
 }
 
-void MotionStage::set_motion(const sim::JointMotion& motion) {
+void MotionStage::set_motion(sim::World& world, const sim::JointMotion& motion) const {
   sim::ConfigNode values;
   values.kind = sim::ConfigNode::Kind::map;
   sim::ConfigNode list;
@@ -162,15 +162,20 @@ void MotionStage::set_motion(const sim::JointMotion& motion) {
   list.items.push_back(node_of(motion));
   values.entries.push_back({"motions", {}, std::move(list)});
   sim::Diagnostics diagnostics;
-  world_->editor().change_device(player_, values, diagnostics);
+  world.editor().change_device(player_, values, diagnostics);
   diagnostics.throw_if_any();
 }
 
-void MotionStage::apply(const Change& change) {
+void MotionStage::apply(sim::World& world, const Change& change) const {
   if (change.action.kind == sim::ConfigNode::Kind::null)
-    set_motion(change.motion);
+    set_motion(world, change.motion);
   else
-    world_->editor().run_action(change.action);
+    world.editor().run_action(change.action);
+}
+
+void MotionStage::apply_changes(sim::World& world) const {
+  for (const Change& change : changes_)
+    if (change.step == world.step_number()) apply(world, change);
 }
 
 void MotionStage::cut() {
@@ -190,7 +195,7 @@ void MotionStage::start_branch(Change change) {
   cut();
   const Saved before = save();
   try {
-    apply(change);
+    apply(*world_, change);
     if (world_->find_vehicle(vehicle_) == nullptr)
       throw sim::ConfigError({"vehicle '" + vehicle_ + "' has the motion, and cannot be removed"});
   } catch (const std::runtime_error&) {
@@ -210,12 +215,12 @@ void MotionStage::run_action(const sim::ConfigNode& action) {
 }
 
 void MotionStage::step() {
+  const bool was_there = world_->step_number() < furthest_step_;
   world_->step();
   if (scoring_) scoring_->after_step();
   const std::int64_t step = world_->step_number();
   // Changes of the branch that the snapshot from which it was restored does not hold.
-  for (const Change& change : changes_)
-    if (change.step == step && step < furthest_step_) apply(change);
+  if (was_there) apply_changes(*world_);
   const auto period =
       std::max<std::int64_t>(1, std::llround(options_.snapshot_s / sim::to_seconds(world_->step_time())));
   if (step % period == 0 && !snapshots_.contains(step)) {

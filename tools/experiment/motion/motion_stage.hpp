@@ -103,6 +103,8 @@ class MotionStage {
   std::unique_ptr<StageCopy> copy() const { return std::make_unique<StageCopy>(loaded_.config); }
   /// Restores a snapshot of the world of this stage in a copy, with what after_restore sets.
   void restore(StageCopy& copy, const sim::Bytes& snapshot) const;
+  /// Carries out in a copy the changes that the world of this stage had after the present step of the copy.
+  void apply_changes(sim::World& world) const;
   const sim::Vehicle& vehicle() const;
   const devices::MotionPlayer& player() const;
   devices::MotionPlayer& player() { return const_cast<devices::MotionPlayer&>(std::as_const(*this).player()); }
@@ -126,8 +128,8 @@ class MotionStage {
   void restore(const Saved& saved);
   devices::MotionPlayer& player_in(sim::World& world) const;
   void step();
-  void apply(const Change& change);
-  void set_motion(const sim::JointMotion& motion);
+  void apply(sim::World& world, const Change& change) const;
+  void set_motion(sim::World& world, const sim::JointMotion& motion) const;
   void start_branch(Change change);
   void drop_old_snapshots();
 

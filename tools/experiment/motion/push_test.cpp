@@ -73,6 +73,7 @@ class PushWorld {
     for (int i = 0; i < steps.all && !outcome.fell && alike_s < recovered_s; ++i) {
       if (i < steps.push) base.add_force_W(impulse_W_Ns / (steps.push * step_s), base.X_WB() * base.p_BC());
       world.step();
+      stage_.apply_changes(world);
       const BaseState state(world, vehicle);
       if (i == 0) touched = state.touches;
       outcome.fell = state.has_tilted || (state.touches && !touched);

@@ -2,6 +2,8 @@
 #include "tools/experiment/motion_record/embedded_world.hpp"
 
 #include <algorithm>
+#include <set>
+#include <utility>
 
 #include "sim/config/message_text.hpp"
 #include "sim/config/yaml_writer.hpp"
@@ -26,6 +28,19 @@ void insert_motions(ConfigNode& node) {
   }
 }
 
+/// Calls `found` for names of files that hold a parameter, such as ${part}.obj.
+template <typename Found>
+void visit_composed_names(const ConfigNode& node, const std::string& key,
+                          const std::set<std::pair<std::string, std::string>>& keys, const Found& found) {
+  for (const ConfigNode& item : node.items) visit_composed_names(item, key, keys, found);
+  for (const ConfigNode::Entry& entry : node.entries) {
+    const std::string& text = entry.value.scalar;
+    const bool is_whole = text.starts_with("${") && text.find('}') + 1 == text.size();
+    if (keys.contains({key, entry.key}) && text.find("${") != std::string::npos && !is_whole) found(text);
+    visit_composed_names(entry.value, entry.key, keys, found);
+  }
+}
+
 /// Throws sim::ConfigError when a world needs more than what stands in it.  `who`: in messages.
 void check_complete(ConfigNode world, const std::string& who) {
   const auto refuse = [&](const std::string& what) {
@@ -38,9 +53,11 @@ void check_complete(ConfigNode world, const std::string& who) {
     for (const ConfigNode& vehicle : vehicles->items)
       if (const ConfigNode* file = vehicle.find("file"))
         refuse("names the file '" + sim::shortened(sim::printable(file->scalar)) + "'");
-  sim::visit_data_files(world, [&](std::string& path, const std::string*) {
+  const auto refuse_file = [&](const std::string& path) {
     refuse("names the file '" + sim::shortened(sim::printable(path)) + "'");
-  });
+  };
+  sim::visit_data_files(world, [&](const std::string& path, const std::string*) { refuse_file(path); });
+  visit_composed_names(world, "", sim::data_file_keys(), refuse_file);
   if (const std::size_t bytes = sim::to_yaml(world).size(); bytes > max_embedded_bytes)
     throw sim::ConfigError(
         {who + " must have at most " + std::to_string(max_embedded_bytes) + " bytes, got " + std::to_string(bytes)});

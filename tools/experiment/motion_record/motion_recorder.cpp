@@ -59,6 +59,15 @@ void add_value(std::vector<sim::MotionKey>& keys, double at_s, const std::string
   key->joints.emplace_back(joint, value);
 }
 
+/// Returns whether a text stands anywhere in an action.
+bool mentions(const sim::ConfigNode& action, const std::string& text) {
+  return action.scalar == text ||
+         std::any_of(action.items.begin(), action.items.end(),
+                     [&](const auto& item) { return mentions(item, text); }) ||
+         std::any_of(action.entries.begin(), action.entries.end(),
+                     [&](const auto& entry) { return mentions(entry.value, text); });
+}
+
 }  // namespace
 
 MotionRecorder::MotionRecorder(RecordOptions options, const std::string& journal) : options_(std::move(options)) {
@@ -245,7 +254,8 @@ void MotionRecorder::play_frame() {
   const double step_s = sim::to_seconds(stage_->world().step_time());
   const auto is_due = [&] {
     const MotionPlayer& player = stage_->player();
-    return player.phase() != MotionPlayer::Phase::idle && player.at_s() + step_s <= now_s() + rounding * step_s;
+    const bool runs = player.phase() == MotionPlayer::Phase::approach || player.phase() == MotionPlayer::Phase::playing;
+    return runs && player.at_s() + step_s <= now_s() + rounding * step_s;
   };
   while (is_due()) {
     stage_->go_to(stage_->now_s() + step_s);
@@ -265,7 +275,16 @@ void MotionRecorder::frame(std::span<const double> velocities) {
   play_frame();
 }
 
+void MotionRecorder::check_change(const sim::ConfigNode& action) const {
+  for (const sim::MountedDevice* device : stage_->vehicle().devices()) {
+    if (device->sensor() != &stage_->player() && device->sensor() != &stage_->player().group()) continue;
+    if (mentions(action, device->full_name()) || mentions(action, device->command_channel()))
+      throw sim::ConfigError({"'" + device->full_name() + "' makes the recording, and cannot be changed by it"});
+  }
+}
+
 void MotionRecorder::change(const sim::ConfigNode& action) {
+  check_change(action);
   if (changes_ == max_take_changes)
     throw sim::ConfigError({"a recording has at most " + std::to_string(max_take_changes) + " changes of the world"});
   stage_->run_action(action);
@@ -333,6 +352,11 @@ std::uint64_t MotionRecorder::finish() {
   add_frame(rest);
   stage_->change_motion(tail());
   play_frame();
+  // The end may lie within a step.
+  if (stage_->player().phase() == MotionPlayer::Phase::playing) {
+    stage_->go_to(stage_->now_s() + sim::to_seconds(stage_->world().step_time()));
+    carry_out_changes();
+  }
   return stage_->state_hash();
 }
 

@@ -83,6 +83,8 @@ class MotionRecorder {
 
   sim::JointMotion live_motion(MotionStage& stage);
   void check_part() const;
+  /// Throws sim::ConfigError when an action names what makes the recording: its player or group.
+  void check_change(const sim::ConfigNode& action) const;
   void add_frame(std::span<const double> velocities);
   void play_frame();
   void carry_out_changes();

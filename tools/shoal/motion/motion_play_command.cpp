@@ -133,7 +133,9 @@ int play(PlayArguments arguments) {
   check_times(arguments, motion);
   // Snapshots are needed to go back only, and a long motion has fewer of them.
   if (!arguments.again_from_s) arguments.stage.kept_s = arguments.with_page ? rewind_s : 0;
-  arguments.stage.snapshot_s = std::max(arguments.stage.snapshot_s, motion.end_s() / max_snapshots);
+  const bool loops = motion.loop || arguments.loop;
+  const double all_s = loops ? arguments.loop_s.value_or(usual_loop_s) : motion.end_s();
+  arguments.stage.snapshot_s = std::max(arguments.stage.snapshot_s, all_s / max_snapshots);
   choose_world(arguments.stage, motion, arguments.file);
   arguments.stage.scores = arguments.with_page;
   if (arguments.loop) arguments.stage.play.repeat = -1;
@@ -157,7 +159,6 @@ int play(PlayArguments arguments) {
   bool is_cut = false;
   const auto goes_on = [&] { return !(is_cut = view && !view->goes_on()); };
   // Play it to its end, then let it settle.
-  const bool loops = motion.loop || arguments.loop;
   const double loop_s = arguments.loop_s.value_or(view ? std::numeric_limits<double>::infinity() : usual_loop_s);
   const double max_s = loops ? loop_s : end_limit_s(motion);
   const auto is_playing = [&] { return stage.player().phase() != devices::MotionPlayer::Phase::idle; };
@@ -174,6 +175,10 @@ int play(PlayArguments arguments) {
   while (stage.now_s() < until_s - 1e-9 && goes_on()) stage.play_step();
   // Report.
   std::cout << tracking.text(motion);
+  if (is_cut) {
+    std::cout << fmt::format("ended after {:.3f} s: while it settled\n", stage.now_s());
+    return 128 + caught_signal();
+  }
   std::cout << fmt::format("{:.3f} s simulated, state hash at the end of the motion {:016x}\n", played_s, end_hash);
   if (stage.now_s() > played_s)
     std::cout << fmt::format("{:.3f} s simulated, state hash after {} s of settling {:016x}\n", stage.now_s(),

@@ -165,6 +165,7 @@ int record(RecordArguments arguments) {
     catch_signals(false);
     int exit_code = exit_ok;
     std::string hash;
+    std::optional<double> unused_s;  ///< time of the end when nothing was recorded
     sim::ConfigNode embedded;
     {
       MotionRecorder recorder(options, journal_path(arguments.file));
@@ -177,7 +178,17 @@ int record(RecordArguments arguments) {
         if (recorder.now_s() <= recorder.frame_s()) fs::remove(journal_path(arguments.file));
         throw;
       }
-      hash = fmt::format("{:016x}", recorder.finish());
+      if (options.from_s && recorder.now_s() < *options.from_s)
+        unused_s = recorder.now_s();
+      else
+        hash = fmt::format("{:016x}", recorder.finish());
+    }
+    if (unused_s) {
+      fs::remove(journal_path(arguments.file));
+      std::cerr << fmt::format(
+          "{}: ended at {:.3f} s, before {:.3f} s where the recording starts: nothing was recorded\n", arguments.file,
+          *unused_s, *options.from_s);
+      return exit_code;
     }
     const bool loops = options.over && options.over->loop;
     const std::optional<RecoveredTake> recorded = read_journal(arguments.file);

@@ -162,11 +162,16 @@ int stability(StabilityArguments arguments) {
   if (arguments.marginal_mps > arguments.stable_mps)
     throw command_line::UsageError("--marginal must be at most --stable, " + sim::number_text(arguments.stable_mps) +
                                    ", got " + sim::number_text(arguments.marginal_mps));
+  if (arguments.push.greatest_mps < arguments.stable_mps)
+    throw command_line::UsageError("--greatest must be at least --stable, " + sim::number_text(arguments.stable_mps) +
+                                   ", got " + sim::number_text(arguments.push.greatest_mps));
   std::vector<sim::JointMotion> motions;
   for (const std::string& file : arguments.files) {
     motions.push_back(motion_of(file));
-    if (motions.back().keys.empty() && arguments.every_s <= 0)
-      throw command_line::UsageError(file + ": the motion has no keys: give the times with --every");
+    const bool has_frames = !motions.back().frames.empty();
+    if ((motions.back().keys.empty() || has_frames) && arguments.every_s <= 0)
+      throw command_line::UsageError(file + ": the motion has " + (has_frames ? "frames" : "no keys") +
+                                     ": give the times with --every");
   }
   arguments.stage.world = file_by_name({ShippedKind::world}, arguments.stage.world);
   return motions.size() == 1 ? print_table(arguments, motions.front()) : print_classes(arguments, motions);

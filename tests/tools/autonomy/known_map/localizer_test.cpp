@@ -122,6 +122,25 @@ TEST(Localizer, NoticesAtRestThatItWasCarried) {
   EXPECT_TRUE(run.std_m() > 0.5 || run.error_m() < 0.3) << run.std_m() << ' ' << run.error_m();
 }
 
+TEST(Localizer, NoticesThatItWasCarriedBeforeItHasMoved) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    Localizer::Params params = known_start();
+    params.seed = seed;
+    LocalizerRun run(params, hall_start);
+    for (int i = 0; i < 20; ++i) run.look();
+    run.truth = {{6.5, -1}, 2.2};
+    for (int i = 0; i < 60; ++i) run.look();
+    EXPECT_TRUE(run.std_m() > 0.5 || run.error_m() < 0.3) << seed << ": " << run.std_m() << ' ' << run.error_m();
+  }
+}
+
+TEST(Localizer, FollowsAMotionThatIsTooSlowToBeToldFromNoise) {
+  LocalizerRun run(known_start(), hall_start);
+  run.look();
+  for (int i = 0; i < 400; ++i) run.drive(0.002, 0.008);
+  EXPECT_LT(run.error_m(), 0.1);
+}
+
 TEST(Localizer, DoesNotGetSurerByLookingAtOnePlace) {
   LocalizerRun run(known_start(), hall_start);
   run.look();

@@ -182,4 +182,14 @@ TEST(GridFrame, RefusesMapsThatAreNone) {
   EXPECT_THAT(reason([](auto& map) { map.origin_m[1] = 1e9; }), HasSubstr("'origin_m' must be within 1e+07 m"));
 }
 
+TEST(PathSearch, DoesNotStepOverAWallOfOneCell) {
+  shoal::occupancy_grid_t map = test::flat_map({-5, -5}, {5, 5}, 0.1);
+  test::set_box(map, {0, -5}, {0.1, 5});
+  PathCosts costs;
+  costs.keep_m = 0.05;  // less than a cell
+  const Path path = autonomy::search_path(grid_of(map), {-3, 0}, {3, 0.5}, costs);
+  EXPECT_TRUE(path.points_W.empty());
+  EXPECT_THAT(path.why_none, HasSubstr("no gap on the path"));
+}
+
 }  // namespace

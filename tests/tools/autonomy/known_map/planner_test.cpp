@@ -96,6 +96,21 @@ TEST(Planner, PlansToItsGoalsOneAfterAnother) {
   EXPECT_EQ(run.planner.reached(), 2);
 }
 
+TEST(Planner, SeesByALidarOfTenScansASecond) {
+  PlannerRun run(to({{5, 0}}));
+  run.tick();
+  run.room.add_box({-0.1, -0.8}, {0.1, 0.8});
+  // The estimate at a scan comes a second after it.
+  shoal::estimate_t estimate{};
+  estimate.utime = run.utime + planner_second;
+  estimate.position_m[0] = -5;
+  estimate.covariance_m2[0] = estimate.covariance_m2[4] = 0.01;
+  for (int i = 0; i <= 10; ++i)
+    run.planner.receive(run.room.scan(run.pose, run.utime + planner_second + i * planner_second / 10));
+  run.planner.receive(estimate);
+  EXPECT_THAT(run.planner.step(run.utime + 2 * planner_second).line, HasSubstr("the path is blocked"));
+}
+
 TEST(Planner, TakesAnotherPathWhenTheLidarSeesAnObstacleInIt) {
   PlannerRun run(to({{5, 0}}));
   run.tick();

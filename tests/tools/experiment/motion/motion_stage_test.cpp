@@ -158,6 +158,19 @@ TEST(MotionStage, AnActionThatCannotBeCarriedOutLeavesTheWorldAsItWas) {
   EXPECT_EQ(stage.state_hash(), plain.state_hash());
 }
 
+TEST(MotionStage, AChangeInTheLastStepIsThereAgain) {
+  const Theatre theatre;
+  tools::MotionStage stage(theatre.options, swing(1));
+  stage.go_to(2);
+  sim::Diagnostics diagnostics;
+  stage.run_action(sim::parse_config_text("{gravity_mps2: 5}", "action", diagnostics));
+  const std::uint64_t hash = stage.state_hash();
+  stage.go_to(1.9);
+  stage.go_to(2);
+  EXPECT_EQ(stage.world().physics().gravity_mps2(), 5);
+  EXPECT_EQ(stage.state_hash(), hash);
+}
+
 TEST(MotionStage, PlaysAPartAgainAndAgain) {
   Theatre theatre;
   theatre.options.play.from_s = 0.5;

@@ -126,6 +126,24 @@ TEST(PushTest, TheWeakestPushKnowsWhatIsBeyondItsRange) {
   EXPECT_EQ(weakest.withstood_mps, 0.25);
 }
 
+TEST(PushTest, HasTheChangesOfTheMotionThatComeAfterThePush) {
+  const Block block;
+  tools::MotionStage stage(block.options, turn());
+  stage.go_to(1.02);
+  sim::Diagnostics diagnostics;
+  stage.run_action(sim::parse_config_text("{gravity_mps2: 1}", "action", diagnostics));
+  stage.go_to(2);
+  tools::PushOptions options;
+  options.directions = 1;
+  options.push_s = 0.002;
+  options.greatest_mps = 2;
+  options.watch_s = 8;
+  // From 20 ms on the energy to tip it is a tenth of before, and so the impulse a third; until then the weight of
+  // before takes g t of an impulse at the edge, 0.15 m beside it, and so half of that 0.3 m above it.
+  const double expected = tipping_mps(0.15) * std::sqrt(1 / 9.80665) + 9.80665 * 0.02 * 0.15 / 0.3;
+  EXPECT_NEAR(tools::push_margins(stage, {1.0}, options)[0].withstood_mps[0], expected, 0.1 * expected);
+}
+
 TEST(PushTest, SettlesWhereItWouldBeWithoutAPush) {
   const Block block;
   tools::MotionStage stage(block.options, turn());

@@ -176,6 +176,12 @@ TEST(RecordView, RefusesWhatARecordingCannotHave) {
   EXPECT_THAT(refused("do", "[" + add_box("box") + ", {remove: dog}]"), HasSubstr("cannot be removed"));
   EXPECT_THAT(refused("do", "{remove: box}"), HasSubstr("'remove' names no vehicle or object 'box'"));
   EXPECT_THAT(refused("spawn", "{name: other, file: rover.yaml}"), HasSubstr("cannot have a vehicle that is spawned"));
+  // What makes the recording would stop, or play other frames.
+  EXPECT_THAT(refused("do", "{set: {device: dog/player, values: {motions: []}}}"),
+              HasSubstr("'dog/player' makes the recording, and cannot be changed by it"));
+  EXPECT_THAT(refused("do", "[{log: hm}, {publish: {channel: dog.player.cmd, type: shoal.motion_command_t, value: "
+                            "{command: 2}}}]"),
+              HasSubstr("'dog/player' makes the recording"));
   EXPECT_TRUE(recording.save().changes.empty());
 }
 
