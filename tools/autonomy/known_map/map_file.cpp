@@ -56,7 +56,7 @@ std::string found(const std::string& path) {
 sim::Image16 levels_of(const std::string& path) {
   constexpr std::uintmax_t max_bytes = 64'000'000;
   std::error_code failed;
-  if (!fs::is_regular_file(path, failed)) throw std::invalid_argument(path + ": cannot be read, it is no file");
+  if (!fs::is_regular_file(path, failed)) throw std::invalid_argument(path + ": cannot be read, it is not a file");
   if (const std::uintmax_t bytes = fs::file_size(path, failed); failed || bytes > max_bytes)
     throw std::invalid_argument(fmt::format("{}: must have at most {} bytes, got {}", path, max_bytes, bytes));
   std::ifstream file(path, std::ios::binary);

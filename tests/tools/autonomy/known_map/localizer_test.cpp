@@ -134,7 +134,7 @@ TEST(Localizer, NoticesThatItWasCarriedBeforeItHasMoved) {
   }
 }
 
-TEST(Localizer, FollowsAMotionThatIsTooSlowToBeToldFromNoise) {
+TEST(Localizer, FollowsAMotionThatIsTooSlowToDifferFromNoise) {
   LocalizerRun run(known_start(), hall_start);
   run.look();
   for (int i = 0; i < 400; ++i) run.drive(0.002, 0.008);

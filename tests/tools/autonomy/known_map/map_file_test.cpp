@@ -69,8 +69,8 @@ TEST(MapFile, ReportsWhatIsWrongWithItsPlace) {
   EXPECT_THAT(reason(folder.with("image: d.png\nresolution: 0.1\norigin: [0, 0, 0]\n")),
               HasSubstr("/d.png: cannot be read"));
   EXPECT_THAT(reason(folder.with("image: /dev/zero\nresolution: 0.1\norigin: [0, 0, 0]\n")),
-              HasSubstr("/dev/zero: cannot be read, it is no file"));
-  EXPECT_THAT(reason(folder.with("image: .\nresolution: 0.1\norigin: [0, 0, 0]\n")), HasSubstr("it is no file"));
+              HasSubstr("/dev/zero: cannot be read, it is not a file"));
+  EXPECT_THAT(reason(folder.with("image: .\nresolution: 0.1\norigin: [0, 0, 0]\n")), HasSubstr("it is not a file"));
   EXPECT_THAT(reason(folder.with("image: a.png\nresolution: 0.1\norigin: [0, 0, 0]\nfree_thresh: 0.7\n")),
               HasSubstr("'free_thresh' must be at most 'occupied_thresh', 0.65, got 0.7"));
   EXPECT_THAT(reason(folder.with("image: b.yaml\nresolution: 0.1\norigin: [0, 0, 0]\n")), HasSubstr("/b.yaml: "));

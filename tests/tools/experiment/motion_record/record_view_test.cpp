@@ -179,8 +179,9 @@ TEST(RecordView, RefusesWhatARecordingCannotHave) {
   // What makes the recording would stop, or play other frames.
   EXPECT_THAT(refused("do", "{set: {device: dog/player, values: {motions: []}}}"),
               HasSubstr("'dog/player' makes the recording, and cannot be changed by it"));
-  EXPECT_THAT(refused("do", "[{log: hm}, {publish: {channel: dog.player.cmd, type: shoal.motion_command_t, value: "
-                            "{command: 2}}}]"),
+  EXPECT_THAT(refused("do",
+                      "[{log: hm}, {publish: {channel: dog.player.cmd, type: shoal.motion_command_t, value: "
+                      "{command: 2}}}]"),
               HasSubstr("'dog/player' makes the recording"));
   EXPECT_TRUE(recording.save().changes.empty());
 }
