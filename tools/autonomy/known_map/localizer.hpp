@@ -111,7 +111,7 @@ class Localizer {
   std::optional<shoal::planar_lidar_t> scan_;
   Odometer odometer_{Pose2{}};
   std::int64_t utime_ = 0;
-  Pose2 postponed_{};  ///< motion too slow to differ from noise, since the particles were moved
+  Pose2 postponed_{};                   ///< motion too slow to differ from noise, since the particles were moved
   double slow_fit_ = 0, fast_fit_ = 0;  ///< means of how well the scans fit, 0 to 1
   std::int64_t judged_scans_ = 0;
   Pose2 pose_;
