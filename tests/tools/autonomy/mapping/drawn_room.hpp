@@ -23,8 +23,8 @@ struct DrawnRoom {
   std::vector<std::pair<Vector2d, Vector2d>> walls;
 
   void add_box(const Vector2d& low, const Vector2d& high) {
-    const Vector2d a = low, b(high.x(), low.y()), c = high, d(low.x(), high.y());
-    walls.insert(walls.end(), {{a, b}, {b, c}, {c, d}, {d, a}});
+    const Vector2d b(high.x(), low.y()), d(low.x(), high.y());
+    walls.insert(walls.end(), {{low, b}, {b, high}, {high, d}, {d, low}});
   }
   /// Returns the distance along a ray to the first wall; 20 m without any.
   double range_m(const Vector2d& from, double angle_rad) const {
