@@ -7,7 +7,6 @@
 #include "sim/director/stage.hpp"
 #include "sim/model/object_config.hpp"
 #include "sim/script/action_registry.hpp"
-#include "sim/script/old_action.hpp"
 #include "sim/vehicle/world_error.hpp"
 
 namespace sim {
@@ -23,8 +22,6 @@ class AddAction final : public Action {
   void read(ParamReader& in, const char* main) override {
     if (in.describing())
       describe_object(in, main);
-    else if (in.has("name") && !in.has(main))
-      return refuse_old_form(in);
     else
       read_object(in, main);
     where_.read(in);
@@ -49,14 +46,6 @@ class AddAction final : public Action {
     info.meaning = "name of an object of the world that does not exist, or a map with the keys of a new object";
     info.required = true;
     in.describe(std::move(info));
-  }
-
-  /// `add: {name: b, parts: [...]}`
-  static void refuse_old_form(ParamReader& in) {
-    for (const ConfigNode::Entry& entry : in.node()->entries) in.child(entry.key.c_str());
-    const ConfigNode keys = map_node(main_key, *in.node());
-    in.error("a new object stands in the key 'object'; write '" + brief_text(map_node("add", keys)) +
-             "' ('shoal upgrade' rewrites it)");
   }
 
   void read_object(ParamReader& in, const char* key) {

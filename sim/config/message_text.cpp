@@ -174,8 +174,6 @@ std::string did_you_mean(std::string_view misspelt, const std::vector<std::strin
   const auto is_there = [&](std::string_view name) {
     return std::find(names.begin(), names.end(), name) != names.end();
   };
-  if (const std::string_view now = renamed_to(misspelt); is_there(now))
-    return "; write '" + std::string(now) + "' ('shoal upgrade' rewrites it)";
   if (const std::string_view here = synonym_of(misspelt); is_there(here))
     return "; did you mean '" + std::string(here) + "'?";
   const auto [stem, unit] = split_unit(misspelt);

@@ -353,8 +353,7 @@ const ConfigNode* ParamReader::take_unless_word(const char* key, double& value, 
   if (found != NumberText::number || rule.allows(number)) return node;
   std::string text =
       quoted_name(key) + " must be " + rule.text() + ", or " + word_text + ", got " + shortened(node->scalar);
-  if (number == word.value)
-    text += "; write '" + std::string(key) + ": " + word.word + "' ('shoal upgrade' rewrites it)";
+  if (number == word.value) text += "; write '" + std::string(key) + ": " + word.word + "'";
   error_at(node->place, text);
   return nullptr;
 }

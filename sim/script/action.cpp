@@ -3,7 +3,6 @@
 
 #include "sim/config/message_text.hpp"
 #include "sim/script/action_registry.hpp"
-#include "sim/script/old_action.hpp"
 
 namespace sim {
 
@@ -25,11 +24,8 @@ std::string unknown_action(const std::string& word) {
          did_you_mean(word, words);
 }
 
-/// Returns the present form of a map with keys beside the word of the action, for error messages.
-std::string advice(const ConfigNode& action, const ActionKind& kind) {
-  const ConfigNode form = new_form_of(action, kind);
-  if (has_keys_of(form.entries.front().value, kind))
-    return "; write '" + brief_text(form) + "' ('shoal upgrade' rewrites it)";
+/// Returns what belongs into the value of an action, for error messages.
+std::string advice(const ActionKind& kind) {
   std::vector<std::string> keys;
   for (const ParamInfo& info : kind.keys()) keys.push_back(info.key);
   return ", whose value is a map; keys of '" + kind.word + "': " + list_text(keys);
@@ -56,7 +52,7 @@ const ActionKind* find_kind(ParamReader& in) {
     in.error("an action must have exactly one key, its type, got '" + kind->word + "' and '" + other +
              "'; each action is an item of the list");
   else if (entries.size() > 1)
-    in.error("an action must have exactly one key, its type" + advice(*in.node(), *kind));
+    in.error("an action must have exactly one key, its type" + advice(*kind));
   else
     return kind;
   return nullptr;

@@ -7,7 +7,6 @@
 #include "sim/config/merged_keys.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/world_file/rule_list.hpp"
-#include "sim/world_file/rule_of_map.hpp"
 #include "sim/world_file/world_config.hpp"
 
 namespace sim {
@@ -15,7 +14,6 @@ namespace sim {
 namespace {
 
 /// Type of a metric without `type`, as before version 0.2.
-const std::string type_of_old_files = "position_error";
 
 /// Names in the rules of a world: figures of its metrics.
 class WorldRuleNames final : public RuleNames {
@@ -41,15 +39,6 @@ void MetricConfig::read(ParamReader& in) {
   in.require("name");
   in.read_name("name", name,
                "name of the metric; gives NAME.FIGURE for each figure of its type, see docs/guides/scoring.md");
-  // Report files of version 0.1.
-  if (!in.describing() && !in.has("type")) {
-    in.error("missing key 'type'; " +
-             (in.has("channel") ? "write 'type: " + type_of_old_files + "'" : "types: " + list_text(registry.words())));
-    // Further errors, of keys and of rules that name its figures, would obscure this one.
-    for (const ConfigNode::Entry& entry : in.node()->entries) in.child(entry.key.c_str());
-    kind = registry.find(type_of_old_files);
-    return;
-  }
   std::string type;
   in.require("type");
   in.read_one_of("type", type, registry.words(), "type of the metric");
@@ -109,7 +98,7 @@ void read_rules(ParamReader& in, std::vector<RuleExpression>& rules, const std::
     return describe_rules(in, "the run passes when every rule holds; else exit code 1; see docs/guides/scoring.md",
                           {"bumps.count == 0", "cooperative.rms_m < 0.4 * alone.rms_m"});
   if (const ConfigNode* list = in.child("pass"))
-    rules = read_rule_list(*list, WorldRuleNames(metrics), rule_of_map, in.diagnostics());
+    rules = read_rule_list(*list, WorldRuleNames(metrics), in.diagnostics());
 }
 
 void declare_metrics(ParamReader& in) {

@@ -5,15 +5,6 @@
 
 namespace sim {
 
-namespace {
-
-std::string no_text(const ConfigNode& entry, const std::optional<std::string>& new_form) {
-  if (new_form) return "a rule is text; write '" + *new_form + "' ('shoal upgrade' rewrites it)";
-  return "a rule is text, a comparison such as 'METRIC.FIGURE < 5', got " + shown(entry);
-}
-
-}  // namespace
-
 void describe_rules(ParamReader& in, const char* meaning, std::vector<std::string> examples) {
   ParamInfo info;
   info.key = "pass";
@@ -28,9 +19,7 @@ void describe_rules(ParamReader& in, const char* meaning, std::vector<std::strin
   in.describe(std::move(info));
 }
 
-std::vector<RuleExpression> read_rule_list(const ConfigNode& list, const RuleNames& names,
-                                           const std::function<std::optional<std::string>(const ConfigNode&)>& new_form,
-                                           Diagnostics& diagnostics) {
+std::vector<RuleExpression> read_rule_list(const ConfigNode& list, const RuleNames& names, Diagnostics& diagnostics) {
   std::vector<RuleExpression> rules;
   if (list.kind != ConfigNode::Kind::list && list.kind != ConfigNode::Kind::null)
     diagnostics.error(list.place, "", "'pass' must be a list of rules, got " + shown(list));
@@ -39,7 +28,8 @@ std::vector<RuleExpression> read_rule_list(const ConfigNode& list, const RuleNam
     const std::string who = "rule " + std::to_string(i + 1);
     RuleProblem problem;
     if (item.kind != ConfigNode::Kind::scalar)
-      diagnostics.error(item.place, who, no_text(item, new_form(item)));
+      diagnostics.error(item.place, who,
+                        "a rule is text, a comparison such as 'METRIC.FIGURE < 5', got " + shown(item));
     else if (auto rule = RuleExpression::parse(item.scalar, names, problem))
       rules.push_back(std::move(*rule));
     else

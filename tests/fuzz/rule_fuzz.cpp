@@ -4,7 +4,6 @@
 
 #include "sim/config/config_node.hpp"
 #include "sim/world_file/rule_expression.hpp"
-#include "sim/world_file/rule_of_map.hpp"
 #include "tests/fuzz/fuzz_input.hpp"
 
 namespace {
@@ -39,6 +38,4 @@ SHOAL_FUZZ_TARGET(rule) {
     values.front() = std::nan("");
     fuzz::require(!rule->evaluate(values).holds, "no rule holds for a figure that does not exist");
   }
-  sim::Diagnostics diagnostics;
-  sim::rule_of_map(sim::parse_config_text(std::string(text), "rule", diagnostics));
 }

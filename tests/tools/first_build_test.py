@@ -15,7 +15,7 @@ MAX_OBJECTS = 115
 # What other commands, a live page and other missions need.
 LATER = re.compile(r"bridges_(web|foxglove|ros2_converters)|tools_navigation|tools_autonomy_(mapping|vision|missions_)|"
                    r"tools_experiment_(view|page_data|log_data|drive|study|campaign|replay|report|film|images|motion|"
-                   r"fidelity|upgrade|optimise|bench|acoustics)|tools_shoal_(view|film|motion|study|files|records|models|page)")
+                   r"fidelity|optimise|bench|acoustics)|tools_shoal_(view|film|motion|study|files|records|models|page)")
 
 
 class FirstBuild(unittest.TestCase):

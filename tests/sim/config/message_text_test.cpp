@@ -20,7 +20,7 @@ TEST(DidYouMean, FindsANameWithoutItsUnitAndWithAnother) {
 }
 
 TEST(DidYouMean, KnowsFormerNamesAndWordsOfOtherSimulators) {
-  EXPECT_EQ(did_you_mean("lean", {"distance", "tilt"}), "; write 'tilt' ('shoal upgrade' rewrites it)");
+  EXPECT_EQ(did_you_mean("lean", {"distance", "tilt"}), "; write 'tilt'");
   EXPECT_EQ(did_you_mean("revolute", {"hinge", "slider"}), "; did you mean 'hinge'?");
   EXPECT_EQ(did_you_mean("revolute", {"box"}), "");
   EXPECT_EQ(did_you_mean("yaw", {"name", "position_m", "rpy_deg"}), "; did you mean 'rpy_deg'?");

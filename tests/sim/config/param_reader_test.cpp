@@ -206,8 +206,7 @@ TEST(ParamReader, AWordStandsForWhatNoNumberSays) {
 
 TEST(ParamReader, NamesTheWordWhereItsNumberIsWritten) {
   double number = 5;
-  const std::string zero =
-      "1:4 'x' must be >= 1 and <= 9, or 'none', got 0; write 'x: none' ('shoal upgrade' rewrites it)";
+  const std::string zero = "1:4 'x' must be >= 1 and <= 9, or 'none', got 0; write 'x: none'";
   EXPECT_EQ(error_of_word(number, "0"), zero);
   EXPECT_EQ(error_of_word(number, "10"), "1:4 'x' must be >= 1 and <= 9, or 'none', got 10");
   EXPECT_EQ(error_of_word(number, "nne"), "1:4 'x' must be a number or 'none', got 'nne'");

@@ -53,7 +53,7 @@ TEST(LoadWorld, SetTakesWordsAsTheFileDoes) {
   EXPECT_EQ(loaded.config.vehicles[0].config->devices[0].rate_hz, 0);
   EXPECT_THAT(errors_of(lidar_world(""), {{"run.speed=0"}, {}}),
               HasSubstr("--set run.speed=0:1:1: run: 'speed' must be >= 0.001 and <= 1000000, or 'max', got 0; write "
-                        "'speed: max' ('shoal upgrade' rewrites it)"));
+                        "'speed: max'"));
 }
 
 /// The anchor of a joint with these keys, between a body at the origin, one at (1, 2, 3) and the world.

@@ -8,7 +8,6 @@
 #include <map>
 
 #include "sim/world_file/load_world.hpp"
-#include "sim/world_file/rule_of_map.hpp"
 #include "tests/comma_locale.hpp"
 #include "tests/sim/config/parse.hpp"
 
@@ -216,28 +215,12 @@ TEST(RulesOfAWorld, PointAtTheStartOfTextThatTheFileHasInOtherForm) {
   EXPECT_EQ(world_error("pass:\n  - \"3\\x20> m.count\"\n"), "w.yaml:3:5: " + what);
 }
 
-TEST(RulesOfAWorld, AreRefusedAsMapsWithTheirNewForm) {
-  EXPECT_EQ(world_error("pass: [{metric: m.count, below: 3}]\n"),
-            "w.yaml:2:8: rule 1: a rule is text; write 'm.count < 3' ('shoal upgrade' rewrites it)");
+TEST(RulesOfAWorld, AreRefusedAsMaps) {
   EXPECT_THAT(world_error("pass: [{metric: m.count, below: }]\n"),
               HasSubstr("rule 1: a rule is text, a comparison such as 'METRIC.FIGURE < 5', got {metric: m.count"));
   EXPECT_THAT(world_error("pass: [~]\n"), HasSubstr("rule 1: a rule is text"));
   EXPECT_EQ(world_error("pass: m.count < 3\n"), "w.yaml:2:7: 'pass' must be a list of rules, got 'm.count < 3'");
   EXPECT_EQ(world_error("pass:\n"), "");
-}
-
-TEST(RulesOfAWorld, OldFormsHaveANewOne) {
-  const auto new_form = [](const std::string& map) { return sim::rule_of_map(test::parse(map)).value_or("none"); };
-  EXPECT_EQ(new_form("{metric: a.rms_m, below: 1e1}"), "a.rms_m < 1e1");
-  EXPECT_EQ(new_form("{above: -2, metric: a.rms_m}"), "a.rms_m > -2");
-  EXPECT_EQ(new_form("{metric: a.count, equals: 0}"), "a.count == 0");
-  EXPECT_EQ(new_form("{metric: a.rms_m, below_metric: b.rms_m, factor: 0.4}"), "a.rms_m < 0.4 * b.rms_m");
-  EXPECT_EQ(new_form("{metric: a.rms_m, above_metric: b.rms_m}"), "a.rms_m > b.rms_m");
-  EXPECT_EQ(new_form("{metric: a.rms_m, below: 1, above: 0}"), "none");
-  EXPECT_EQ(new_form("{metric: a.rms_m, below: 1, factor: 2}"), "none");
-  EXPECT_EQ(new_form("{metric: a.rms_m}"), "none");
-  EXPECT_EQ(new_form("{below: 1}"), "none");
-  EXPECT_EQ(new_form("[a]"), "none");
 }
 
 }  // namespace

@@ -78,7 +78,7 @@ class NameCheck {
     }
     sim::read_rule_list(config.rules,
                         StudyRuleNames(config.cases, study_.worlds, figures_of_algorithms(config.algorithms)),
-                        study_rule_of_map, diagnostics_);
+                        diagnostics_);
     diagnostics_.throw_if_any();
   }
 

@@ -92,7 +92,7 @@ void StudyConfig::read(sim::ParamReader& in) {
     return sim::describe_rules(in, "the study passes when every rule holds; else exit code 1",
                                {"mean(cooperative.passed) == 1", "max(cooperative.auv1.rms_m) < 0.8"});
   if (const sim::ConfigNode* node = in.child("pass")) rules = *node;
-  pass = sim::read_rule_list(rules, StudyRuleNames(cases), study_rule_of_map, in.diagnostics());
+  pass = sim::read_rule_list(rules, StudyRuleNames(cases), in.diagnostics());
 }
 
 std::string StudyConfig::world_text() const {

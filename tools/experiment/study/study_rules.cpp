@@ -5,7 +5,6 @@
 #include <string_view>
 
 #include "sim/config/message_text.hpp"
-#include "sim/world_file/rule_of_map.hpp"
 #include "tools/experiment/study/study_config.hpp"
 
 namespace tools {
@@ -60,29 +59,6 @@ std::optional<sim::RuleProblem> StudyRuleNames::name_problem(const std::string& 
   auto problem = sim::figure_problem(*metrics_[index], figure);
   if (problem) problem->at += begin;
   return problem;
-}
-
-std::optional<std::string> study_rule_of_map(const sim::ConfigNode& map) {
-  static const std::vector<sim::OldComparison> comparisons{
-      {"below", "<"}, {"above", ">"}, {"equals", "=="}, {"below_case", "<"}, {"below_figure", "<"}};
-  if (map.kind != sim::ConfigNode::Kind::map) return std::nullopt;
-  const auto in_case = sim::scalar_of_key(map, "case");
-  const auto figure = sim::scalar_of_key(map, "figure");
-  const sim::OldComparison* comparison = sim::only_comparison(map, comparisons);
-  if (!in_case || !figure || comparison == nullptr) return std::nullopt;
-  const auto value = sim::scalar_of_key(map, comparison->key);
-  const std::string key = comparison->key;
-  const bool of_figure = key.starts_with("below_");
-  if (!value || (map.find("factor") != nullptr && !of_figure)) return std::nullopt;
-  const std::string statistic = sim::scalar_of_key(map, "statistic").value_or("mean");
-  const auto taken = [&](const std::string& of_case, const std::string& name) {
-    return statistic + "(" + of_case + "." + name + ")";
-  };
-  const auto factor = sim::scalar_of_key(map, "factor");
-  std::string right = *value;
-  if (key == "below_case") right = taken(*value, *figure);
-  if (key == "below_figure") right = taken(*in_case, *value);
-  return taken(*in_case, *figure) + " " + comparison->sign + " " + (factor ? *factor + " * " : "") + right;
 }
 
 }  // namespace tools

@@ -39,8 +39,4 @@ class StudyRuleNames final : public sim::RuleNames {
 /// Splits `CASE.FIGURE` into case and figure.
 std::pair<std::string, std::string> case_and_figure(const std::string& name);
 
-/// Converts a rule as sim::rule_of_map does: `{case: a, figure: e.rms_m, statistic: max, below: 2}` becomes
-/// `max(a.e.rms_m) < 2`.
-std::optional<std::string> study_rule_of_map(const sim::ConfigNode& map);
-
 }  // namespace tools

@@ -46,7 +46,6 @@ constexpr Command commands[] = {
     {"bug", "records", "Pack a run into one archive for a report to the developers"},
     {"study", "study", "Run a world with many seeds and settings, and compare"},
     {"tune", "study", "Search for the settings of a study that make a figure best"},
-    {"upgrade", "files", "Rewrite files of an older version in the format of this one"},
 };
 
 /// Commands that people know from other programs, and what does the same.
