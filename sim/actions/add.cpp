@@ -27,6 +27,10 @@ class AddAction final : public Action {
     where_.read(in);
   }
 
+  void add_objects(std::vector<const ObjectConfig*>& objects) const override {
+    if (object_) objects.push_back(object_.get());
+  }
+
   void carry_out(const ActionRun& run) const override {
     if (object_) {
       const Pose X_WE = make_pose(object_->position_m, object_->rpy_rad);

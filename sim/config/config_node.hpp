@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -48,6 +49,15 @@ SourcePlace place_in(const ConfigNode& scalar, std::size_t offset);
 ConfigNode scalar_node(const std::string& text, const SourcePlace& place);
 /// Sets the origin of all values and keys of a tree.
 void set_origin(ConfigNode& node, Origin origin);
+/// Returns whether a condition holds for the text of a scalar anywhere below.
+template <typename Condition>
+bool any_scalar(const ConfigNode& node, const Condition& condition) {
+  return condition(node.scalar) ||
+         std::any_of(node.items.begin(), node.items.end(),
+                     [&](const ConfigNode& item) { return any_scalar(item, condition); }) ||
+         std::any_of(node.entries.begin(), node.entries.end(),
+                     [&](const ConfigNode::Entry& entry) { return any_scalar(entry.value, condition); });
+}
 /// Makes a map with one key, so that a value is read with the rules and messages of that key.
 ConfigNode map_node(const std::string& key, const ConfigNode& value);
 

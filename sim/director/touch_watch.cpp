@@ -46,8 +46,8 @@ class TouchWatch final : public ConditionWatch {
     }
     for (const auto& [name, object] : stage.entities().objects()) {
       whose_[object.group()] = 2 * object.number + 1;
-      const auto is_plane = [](const PartConfig& part) { return part.shape == PartShape::plane; };
-      consider(name, object.group(), !object.config->all_parts(is_plane));
+      const auto no_plane = [](const PartConfig& part) { return part.shape != PartShape::plane; };
+      consider(name, object.group(), object.config->any_part(no_plane));
     }
     // A new group may have the number of a removed one, whose watch ended with it; watching twice is harmless.
     const bool any_first = condition_.subject == "any";

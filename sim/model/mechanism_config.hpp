@@ -25,11 +25,15 @@ struct MechanismConfig {
   /// Returns the bodies without a chain of joints to the first one, also by way of the world.
   std::vector<const BodyConfig*> unconnected() const;
   std::size_t part_count() const;
-  /// Returns whether a condition holds for all parts.
+  /// Returns whether a body has hydrodynamic coefficients, as that of a craft.
+  bool has_coefficients() const {
+    return std::any_of(bodies.begin(), bodies.end(), [](const BodyConfig& body) { return body.has_coefficients(); });
+  }
+  /// Returns whether a condition holds for a part.
   template <typename Condition>
-  bool all_parts(Condition condition) const {
-    return std::all_of(bodies.begin(), bodies.end(), [&](const BodyConfig& body) {
-      return std::all_of(body.parts.begin(), body.parts.end(), condition);
+  bool any_part(Condition condition) const {
+    return std::any_of(bodies.begin(), bodies.end(), [&](const BodyConfig& body) {
+      return std::any_of(body.parts.begin(), body.parts.end(), condition);
     });
   }
 };

@@ -14,6 +14,7 @@ namespace sim {
 
 class ActionCheck;
 struct ActionRun;
+struct ObjectConfig;
 
 /// Function that encodes a map of values as a message of a type; errors are reported to the diagnostics.  sim/ does not
 /// depend on message types: the program that loads a world supplies this function.
@@ -36,6 +37,8 @@ class Action {
   virtual void add_channels(std::set<std::string>& /*channels*/) const {}
   /// Adds the names of the events that it triggers.
   virtual void add_triggered(std::set<std::string>& /*events*/) const {}
+  /// Adds the objects that it describes itself, for warnings.
+  virtual void add_objects(std::vector<const ObjectConfig*>& /*objects*/) const {}
 };
 
 /// Action in the list of an event.  In YAML a map with one key, the word of the action, whose value is a map with the

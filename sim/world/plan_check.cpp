@@ -33,7 +33,7 @@ std::optional<double> bottom_above(const World& world, const Vector3d& p_W, doub
   const auto above = world.scene().cast(p_W, Vector3d::UnitZ(), any_height_m, {});
   const ObjectConfig* object = above ? fixed_object_of(world, above->part) : nullptr;
   if (object == nullptr) return std::nullopt;
-  const bool is_ground = object->all_parts([](const PartConfig& part) { return !shape_info(part.shape).solid; });
+  const bool is_ground = !object->any_part([](const PartConfig& part) { return shape_info(part.shape).solid; });
   // A solid is left through its surface an odd number of times from within, and from its tunnels, or below it, an even.
   int crossings = 0;
   Vector3d from_W = p_W;

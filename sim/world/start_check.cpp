@@ -56,7 +56,7 @@ std::vector<Starter> starters_of(const World& world, const std::map<std::string,
 std::set<int> groups_of_terrain(const World& world) {
   std::set<int> groups;
   for (const auto& [name, object] : world.objects())
-    if (!object.config->all_parts([](const PartConfig& part) { return part.shape != PartShape::terrain; }))
+    if (object.config->any_part([](const PartConfig& part) { return part.shape == PartShape::terrain; }))
       groups.insert(object.group());
   return groups;
 }

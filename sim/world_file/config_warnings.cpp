@@ -42,8 +42,13 @@ class ConfigCheck {
   }
 
   void check_objects() const {
-    for (const ObjectConfig& object : world_.objects)
-      check_mechanism(object, object.source.get(), "object '" + object.name + "': ");
+    for (const ObjectConfig& object : world_.objects) check_object(object, "");
+    for (const EventConfig& event : world_.events)
+      for (const ActionEntry& entry : event.actions) {
+        std::vector<const ObjectConfig*> added;
+        if (entry.action) entry.action->add_objects(added);
+        for (const ObjectConfig* object : added) check_object(*object, entry.who + ": ");
+      }
   }
 
   /// Places such as those of a map in UTM.  The world is a plane that touches the earth at its origin: 150 km away it
@@ -134,6 +139,10 @@ class ConfigCheck {
   }
 
  private:
+  void check_object(const ObjectConfig& object, const std::string& where) const {
+    check_mechanism(object, object.source.get(), where + "object '" + object.name + "': ");
+  }
+
   /// Those of coefficients are found when the world is built.
   void check_mechanism(const MechanismConfig& config, const ConfigNode* source, const std::string& who) const {
     for (const BodyConfig& body : config.bodies) check_body(body, who + "body '" + body.name + "'");

@@ -188,12 +188,14 @@ bool load_plugins(ConfigNode& root, const LoadOptions& options, Diagnostics& dia
 /// Warns once that hydrodynamic coefficients have no effect in a world without water.
 void warn_of_missing_water(const WorldConfig& world, Warnings& warnings) {
   if (world.medium.water) return;
-  std::vector<const VehicleInstance*> dry;
+  std::vector<std::pair<std::string, SourcePlace>> dry;
   for (const VehicleInstance& vehicle : world.vehicles)
-    if (vehicle.config->has_coefficients()) dry.push_back(&vehicle);
+    if (vehicle.config->has_coefficients()) dry.emplace_back("vehicle '" + vehicle.name + "'", vehicle.place);
+  for (const ObjectConfig& object : world.objects)
+    if (object.has_coefficients()) dry.emplace_back("object '" + object.name + "'", object.place);
   if (dry.empty()) return;
   const std::string more = dry.size() == 1 ? "" : fmt::format(" (and {} more)", dry.size() - 1);
-  warnings.warn(dry.front()->place, "vehicle '" + dry.front()->name + "'" + more,
+  warnings.warn(dry.front().second, dry.front().first + more,
                 "it has hydrodynamics, but the world has no 'medium: water:', so it will fall freely");
 }
 

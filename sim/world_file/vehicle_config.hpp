@@ -34,10 +34,6 @@ struct VehicleConfig : MechanismConfig {
   ~VehicleConfig();
 
   void read(ParamReader& in);
-  /// Returns whether a body has hydrodynamic coefficients, as that of a craft.
-  bool has_coefficients() const {
-    return std::any_of(bodies.begin(), bodies.end(), [](const BodyConfig& body) { return body.has_coefficients(); });
-  }
 };
 
 }  // namespace sim

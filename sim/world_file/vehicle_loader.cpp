@@ -70,11 +70,7 @@ std::string hint_to_a_world(const VehicleEntry& entry) {
 }
 
 bool mentions(const ConfigNode& node, std::string_view text) {
-  if (node.scalar.find(text) != std::string::npos) return true;
-  return std::any_of(node.items.begin(), node.items.end(),
-                     [&](const ConfigNode& item) { return mentions(item, text); }) ||
-         std::any_of(node.entries.begin(), node.entries.end(),
-                     [&](const ConfigNode::Entry& entry) { return mentions(entry.value, text); });
+  return any_scalar(node, [&](const std::string& scalar) { return scalar.find(text) != std::string::npos; });
 }
 
 /// Returns the vehicle of a `count` in an override such as `rover7/devices.lidar.rate_hz`; empty when it applies to all

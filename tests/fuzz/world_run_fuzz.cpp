@@ -20,7 +20,7 @@ bool is_small(const sim::WorldConfig& world) {
                                           "side_scan", "multibeam", "sonar",   "range_beacon"};
   int entities = static_cast<int>(world.vehicles.size());
   for (const sim::ObjectConfig& object : world.objects) {
-    if (!object.all_parts([](const sim::PartConfig& part) { return !part.terrain; })) return false;
+    if (object.any_part([](const sim::PartConfig& part) { return part.terrain; })) return false;
     entities += object.count > max_entities ? max_entities + 1 : object.count * static_cast<int>(object.bodies.size());
   }
   for (const sim::VehicleInstance& vehicle : world.vehicles)

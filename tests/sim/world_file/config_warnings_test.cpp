@@ -54,6 +54,21 @@ TEST(ConfigWarnings, ReportBodiesThatNoJointsConnect) {
               HasSubstr("object 'chair': joint 'b': 'low_stop' has no effect on a fixed joint"));
 }
 
+TEST(ConfigWarnings, ReportBodiesOfAnObjectThatAnEventAdds) {
+  EXPECT_EQ(warnings_of_file("shoal: 1\nevents:\n- name: deliver\n  at_s: 1\n  do:\n"
+                             "  - add: {object: {name: chair, bodies: [{name: seat, parts: [{shape: box, mass_kg: 1}]},"
+                             " {name: foot, parts: [{shape: box, mass_kg: 1}]}]}}\n"),
+            "worlds/test.yaml:6:90: event 'deliver': action 1: object 'chair': body 'foot': no joints connect it with "
+            "body 'seat': it moves on its own\n");
+}
+
+TEST(ConfigWarnings, ReportHydrodynamicsOfAnObjectInADryWorld) {
+  EXPECT_THAT(warnings_of_file("shoal: 1\nobjects:\n- name: float\n  bodies:\n  - name: hull\n"
+                               "    parts: [{shape: box, mass_kg: 1}]\n"
+                               "    hydrodynamics: {mass_kg: 10, inertia_kgm2: [1, 1, 1], volume_m3: 0.01}\n"),
+              HasSubstr("object 'float': it has hydrodynamics, but the world has no 'medium: water:'"));
+}
+
 TEST(ConfigWarnings, AreSilentAboutTheRateOfTheSteps) {
   EXPECT_EQ(warnings_of_file(world("        - {name: imu, type: imu, rate_hz: 100}\n")), "");
   EXPECT_EQ(warnings_of_file(world("        - {name: imu, type: imu, rate_hz: every_step}\n")), "");

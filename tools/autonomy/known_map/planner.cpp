@@ -65,6 +65,7 @@ void Planner::see(const Pose2& pose) {
   const auto scan = std::find_if(scans_.begin(), scans_.end(),
                                  [&](const shoal::planar_lidar_t& each) { return each.utime == estimate_->utime; });
   if (scan == scans_.end()) return;
+  ++used_scans_;
   if (!seen_) {
     const GridFrame& frame = map_->frame;
     OccupancyMap::Params params;

@@ -59,6 +59,8 @@ class Planner {
   int reached() const { return reached_; }
   int given_up() const { return given_up_; }
   int plans() const { return plans_; }
+  /// Scans that had the time of an estimate: others are not used.
+  int used_scans() const { return used_scans_; }
   const std::vector<Vector2d>& path_W() const { return path_W_; }
 
  private:
@@ -91,7 +93,7 @@ class Planner {
   std::optional<std::int64_t> no_path_since_;
   std::string why_none_;
   std::int64_t tried_utime_ = 0;
-  int reached_ = 0, given_up_ = 0, plans_ = 0;
+  int reached_ = 0, given_up_ = 0, plans_ = 0, used_scans_ = 0;
 };
 
 }  // namespace autonomy

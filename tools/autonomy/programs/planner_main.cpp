@@ -39,6 +39,10 @@ int plan(const Options& options) {
   std::cerr << fmt::format("{}: {} goals reached, {} given up, {} paths planned{}\n", options.name, planner.reached(),
                            planner.given_up(), planner.plans(),
                            planner.has_map() ? "" : "; no map came on " + prefix + options.map);
+  if (planner.has_map() && planner.used_scans() == 0)
+    std::cerr << fmt::format(
+        "{}: no scan on {}lidar had the time of an estimate on {}{}: it planned by the map alone\n", options.name,
+        prefix, prefix, options.pose);
   return exit_code;
 }
 

@@ -59,15 +59,6 @@ void add_value(std::vector<sim::MotionKey>& keys, double at_s, const std::string
   key->joints.emplace_back(joint, value);
 }
 
-/// Returns whether a text stands anywhere in an action.
-bool mentions(const sim::ConfigNode& action, const std::string& text) {
-  return action.scalar == text ||
-         std::any_of(action.items.begin(), action.items.end(),
-                     [&](const auto& item) { return mentions(item, text); }) ||
-         std::any_of(action.entries.begin(), action.entries.end(),
-                     [&](const auto& entry) { return mentions(entry.value, text); });
-}
-
 }  // namespace
 
 MotionRecorder::MotionRecorder(RecordOptions options, const std::string& journal) : options_(std::move(options)) {
@@ -278,7 +269,10 @@ void MotionRecorder::frame(std::span<const double> velocities) {
 void MotionRecorder::check_change(const sim::ConfigNode& action) const {
   for (const sim::MountedDevice* device : stage_->vehicle().devices()) {
     if (device->sensor() != &stage_->player() && device->sensor() != &stage_->player().group()) continue;
-    if (mentions(action, device->full_name()) || mentions(action, device->command_channel()))
+    const auto is_of_device = [&](const std::string& text) {
+      return text == device->full_name() || text == device->command_channel();
+    };
+    if (sim::any_scalar(action, is_of_device))
       throw sim::ConfigError({"'" + device->full_name() + "' makes the recording, and cannot be changed by it"});
   }
 }

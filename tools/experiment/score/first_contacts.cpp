@@ -20,7 +20,7 @@ constexpr double carries = 0.7;
 constexpr std::size_t max_lines = 20;
 
 bool is_ground(const sim::ObjectConfig& object) {
-  return object.all_parts([](const sim::PartConfig& part) { return !sim::shape_info(part.shape).solid; });
+  return !object.any_part([](const sim::PartConfig& part) { return sim::shape_info(part.shape).solid; });
 }
 
 bool has_wheels(const sim::VehicleConfig& vehicle) {

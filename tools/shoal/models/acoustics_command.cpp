@@ -201,7 +201,7 @@ bool in_ground(const sim::Vector3d& p_W, const sim::World& world) {
   const sim::Body* body = world.physics().bodies()[static_cast<std::size_t>(part.body)].get();
   for (const auto& [name, object] : world.objects())
     if (&object.base() == body)
-      return !object.config->all_parts([](const auto& each) { return each.shape != sim::PartShape::terrain; });
+      return object.config->any_part([](const auto& each) { return each.shape == sim::PartShape::terrain; });
   return false;
 }
 

@@ -55,7 +55,7 @@ struct PlannerRun {
     estimate.yaw_rad = pose.yaw_rad;
     estimate.covariance_m2[0] = estimate.covariance_m2[4] = variance_m2;
     planner.receive(estimate);
-    planner.receive(room.scan(pose, utime));
+    planner.receive(room.scan(pose, utime + scan_late_us));
     return planner.step(utime);
   }
   /// The y at which its path crosses the wall.
@@ -72,6 +72,7 @@ struct PlannerRun {
   test::DrawnRoom room = walls();
   double variance_m2 = 0.01;
   std::int64_t utime = 0;
+  std::int64_t scan_late_us = 0;  ///< behind the estimate
 };
 
 TEST(Planner, PlansToItsGoalsOneAfterAnother) {
@@ -109,6 +110,16 @@ TEST(Planner, SeesByALidarOfTenScansASecond) {
     run.planner.receive(run.room.scan(run.pose, run.utime + planner_second + i * planner_second / 10));
   run.planner.receive(estimate);
   EXPECT_THAT(run.planner.step(run.utime + 2 * planner_second).line, HasSubstr("the path is blocked"));
+}
+
+TEST(Planner, CountsTheScansThatHaveTheTimeOfAnEstimate) {
+  PlannerRun run(to({{5, 0}}));
+  run.scan_late_us = 1;
+  for (int i = 0; i < 3; ++i) run.tick();
+  EXPECT_EQ(run.planner.used_scans(), 0);
+  run.scan_late_us = 0;
+  for (int i = 0; i < 3; ++i) run.tick();
+  EXPECT_EQ(run.planner.used_scans(), 3);
 }
 
 TEST(Planner, TakesAnotherPathWhenTheLidarSeesAnObstacleInIt) {
